@@ -1,0 +1,6 @@
+//! Physical limits of seeing by heat.
+
+pub mod error;
+pub mod units;
+
+pub use error::{Error, Result};

@@ -1,0 +1,310 @@
+//! Physical constants (exact SI) and quantities written with their unit.
+//!
+//! At the edge of the crate a quantity is a string with its unit (`"37 degC"`, `"12 um"`); [`Unit`]s of
+//! one [`Dimension`] are converted to one plain `f64` whose name then carries the unit
+//! (`temperature_k`, `pixel_m`). A bare number where a unit is due is an error that says what to write.
+//!
+//! Source of the constants: SI Brochure, 9th edition (2019), where h, k and c are exact.
+
+use crate::error::{Error, Result, check};
+
+/// Speed of light in vacuum, m s⁻¹ (exact).
+pub const SPEED_OF_LIGHT_M_S: f64 = 299_792_458.0;
+/// Planck constant, J s (exact).
+pub const PLANCK_J_S: f64 = 6.626_070_15e-34;
+/// Boltzmann constant, J K⁻¹ (exact).
+pub const BOLTZMANN_J_K: f64 = 1.380_649e-23;
+/// Second radiation constant hc/k, cm K, rounded to the nearest `f64`.
+pub const SECOND_RADIATION_CM_K: f64 = 1.438_776_877_503_933_8;
+/// What [`SECOND_RADIATION_CM_K`] leaves of hc/k, cm K: the sum of the two is good to 32 digits.
+pub const SECOND_RADIATION_REST_CM_K: f64 = 8.967_968_474_929_929e-18;
+
+/// What a number measures; fixes which units are accepted and which one is used inside.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Dimension {
+    /// Absolute temperature, inside in K.
+    Temperature,
+    /// Difference of temperatures (a noise, a prior), inside in K.
+    TemperatureDifference,
+    /// Length, inside in m.
+    Length,
+    /// Time, inside in s.
+    Time,
+    /// Speed, inside in m s⁻¹.
+    Speed,
+    /// Plane angle, inside in rad.
+    Angle,
+    /// Specific detectivity D*, inside in cm √Hz W⁻¹.
+    Detectivity,
+    /// Wavenumber, inside in cm⁻¹.
+    Wavenumber,
+    /// Wavelength, inside in µm.
+    Wavelength,
+}
+
+/// One accepted unit: spelling, factor and offset to the unit used inside.
+struct Unit {
+    spelling: &'static str,
+    factor: f64,
+    offset: f64,
+}
+
+const fn unit(spelling: &'static str, factor: f64) -> Unit {
+    Unit { spelling, factor, offset: 0.0 }
+}
+
+const TEMPERATURE: &[Unit] = &[
+    unit("K", 1.0),
+    Unit { spelling: "degC", factor: 1.0, offset: 273.15 },
+    Unit { spelling: "°C", factor: 1.0, offset: 273.15 },
+    Unit { spelling: "degF", factor: 5.0 / 9.0, offset: 459.67 * 5.0 / 9.0 },
+    Unit { spelling: "°F", factor: 5.0 / 9.0, offset: 459.67 * 5.0 / 9.0 },
+    unit("mK", 1e-3),
+];
+const TEMPERATURE_DIFFERENCE: &[Unit] =
+    &[unit("K", 1.0), unit("mK", 1e-3), unit("uK", 1e-6), unit("degC", 1.0)];
+const LENGTH: &[Unit] = &[
+    unit("m", 1.0),
+    unit("km", 1e3),
+    unit("cm", 1e-2),
+    unit("mm", 1e-3),
+    unit("um", 1e-6),
+    unit("µm", 1e-6),
+    unit("nm", 1e-9),
+    unit("ft", 0.3048),
+    unit("in", 0.0254),
+];
+const TIME: &[Unit] = &[
+    unit("s", 1.0),
+    unit("ms", 1e-3),
+    unit("us", 1e-6),
+    unit("µs", 1e-6),
+    unit("ns", 1e-9),
+    unit("min", 60.0),
+    unit("h", 3600.0),
+];
+const SPEED: &[Unit] =
+    &[unit("m/s", 1.0), unit("km/h", 1.0 / 3.6), unit("mph", 0.44704), unit("kn", 1852.0 / 3600.0)];
+const ANGLE: &[Unit] = &[unit("rad", 1.0), unit("mrad", 1e-3), unit("deg", std::f64::consts::PI / 180.0)];
+const DETECTIVITY: &[Unit] = &[unit("cm Hz^0.5/W", 1.0), unit("Jones", 1.0), unit("m Hz^0.5/W", 1e2)];
+const WAVENUMBER: &[Unit] = &[unit("cm^-1", 1.0), unit("cm-1", 1.0), unit("1/cm", 1.0), unit("m^-1", 1e-2)];
+const WAVELENGTH: &[Unit] = &[unit("um", 1.0), unit("µm", 1.0), unit("nm", 1e-3), unit("mm", 1e3)];
+
+impl Dimension {
+    const fn units(self) -> &'static [Unit] {
+        match self {
+            Self::Temperature => TEMPERATURE,
+            Self::TemperatureDifference => TEMPERATURE_DIFFERENCE,
+            Self::Length => LENGTH,
+            Self::Time => TIME,
+            Self::Speed => SPEED,
+            Self::Angle => ANGLE,
+            Self::Detectivity => DETECTIVITY,
+            Self::Wavenumber => WAVENUMBER,
+            Self::Wavelength => WAVELENGTH,
+        }
+    }
+
+    /// The unit used inside, as it is written, e.g. `K` or `cm^-1`.
+    #[must_use]
+    pub fn unit(self) -> &'static str {
+        self.units()[0].spelling
+    }
+
+    const fn example(self) -> &'static str {
+        match self {
+            Self::Temperature => "\"37 degC\" or \"310.15 K\"",
+            Self::TemperatureDifference => "\"50 mK\" or \"2 K\"",
+            Self::Length => "\"30 m\" or \"12 um\"",
+            Self::Time => "\"12 ms\"",
+            Self::Speed => "\"30 mph\" or \"13.4 m/s\"",
+            Self::Angle => "\"25 deg\"",
+            Self::Detectivity => "\"4.7e10 cm Hz^0.5/W\"",
+            Self::Wavenumber => "\"715 cm^-1\"",
+            Self::Wavelength => "\"8 um\"",
+        }
+    }
+
+    /// Reads a quantity with its unit, e.g. `"37 degC"`, into the unit used inside.
+    ///
+    /// # Errors
+    /// A missing or unknown unit, one of another dimension, or a number that is not finite.
+    ///
+    /// ```
+    /// use hadar::units::Dimension;
+    /// assert_eq!(Dimension::Temperature.parse("37 degC").unwrap(), 310.15);
+    /// assert!(Dimension::Length.parse("12").unwrap_err().to_string().contains("without a unit"));
+    /// ```
+    pub fn parse(self, text: &str) -> Result<f64> {
+        let text = text.trim();
+        let split = number_end(text);
+        let (number, spelling) = (text[..split].trim(), text[split..].trim());
+        let value: f64 = number.parse().map_err(|_| {
+            Error::malformed(
+                format!("`{text}` does not begin with a number"),
+                format!("write {}", self.example()),
+            )
+        })?;
+        check::finite("the number", value, "")?;
+        if spelling.is_empty() {
+            return Err(Error::malformed(
+                format!("`{text}` is a number without a unit"),
+                format!("write {}", self.example()),
+            ));
+        }
+        match self.units().iter().find(|unit| unit.spelling == spelling) {
+            Some(unit) => Ok(value * unit.factor + unit.offset),
+            None => Err(Error::malformed(
+                format!("`{spelling}` is not a unit of {}", self.name()),
+                format!("write {}", self.example()),
+            )),
+        }
+    }
+
+    /// Writes a value of the unit used inside so that [`Dimension::parse`] gives it back to the last bit.
+    #[must_use]
+    pub fn format(self, value: f64) -> String {
+        format!("{value} {}", self.unit())
+    }
+
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Temperature => "temperature",
+            Self::TemperatureDifference => "temperature difference",
+            Self::Length => "length",
+            Self::Time => "time",
+            Self::Speed => "speed",
+            Self::Angle => "angle",
+            Self::Detectivity => "detectivity",
+            Self::Wavenumber => "wavenumber",
+            Self::Wavelength => "wavelength",
+        }
+    }
+}
+
+/// A position or step on the spectral axis, in the axis its author chose.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Spectral {
+    /// Wavenumber, cm⁻¹.
+    Wavenumber(f64),
+    /// Wavelength, µm.
+    Wavelength(f64),
+}
+
+impl Spectral {
+    /// Reads `"715 cm^-1"` or `"8 um"`.
+    ///
+    /// # Errors
+    /// As [`Dimension::parse`].
+    pub fn parse(text: &str) -> Result<Self> {
+        let wavelength = WAVELENGTH.iter().any(|unit| text.trim().ends_with(unit.spelling));
+        if wavelength && !text.contains("m^-1") {
+            Dimension::Wavelength.parse(text).map(Self::Wavelength)
+        } else {
+            Dimension::Wavenumber.parse(text).map(Self::Wavenumber)
+        }
+    }
+
+    /// Writes it so that [`Spectral::parse`] gives it back.
+    #[must_use]
+    pub fn format(self) -> String {
+        match self {
+            Self::Wavenumber(value) => Dimension::Wavenumber.format(value),
+            Self::Wavelength(value) => Dimension::Wavelength.format(value),
+        }
+    }
+
+    /// As a wavenumber, cm⁻¹ (a position, not a step).
+    #[must_use]
+    pub fn wavenumber_cm1(self) -> f64 {
+        match self {
+            Self::Wavenumber(value) => value,
+            Self::Wavelength(value) => 1e4 / value,
+        }
+    }
+}
+
+/// End of the leading number of `text` (an `e` is part of it only before digits or a sign).
+fn number_end(text: &str) -> usize {
+    let bytes = text.as_bytes();
+    let mut end = 0;
+    while end < bytes.len() {
+        let byte = bytes[end];
+        let exponent =
+            matches!(byte, b'e' | b'E') && matches!(bytes.get(end + 1), Some(b'0'..=b'9' | b'+' | b'-'));
+        let sign = matches!(byte, b'+' | b'-') && (end == 0 || matches!(bytes[end - 1], b'e' | b'E'));
+        if byte.is_ascii_digit() || byte == b'.' || exponent || sign {
+            end += 1;
+        } else {
+            break;
+        }
+    }
+    end
+}
+
+macro_rules! quantity {
+    ($name:ident, $check:ident, $quantity:literal, $unit:literal, $doc:literal) => {
+        #[doc = $doc]
+        #[derive(Debug, Clone, Copy, PartialEq, PartialOrd, serde::Serialize)]
+        #[serde(transparent)]
+        pub struct $name(f64);
+
+        impl $name {
+            /// Checks and wraps the value.
+            ///
+            /// # Errors
+            /// [`Error::OutOfRange`] if the value is not finite or has the wrong sign.
+            pub fn new(value: f64) -> Result<Self> {
+                check::$check($quantity, value, $unit).map(Self)
+            }
+
+            /// The plain number, in the unit of the type.
+            #[must_use]
+            pub const fn get(self) -> f64 {
+                self.0
+            }
+        }
+    };
+}
+
+quantity!(Kelvin, positive, "temperature", "K", "An absolute temperature above 0 K, in K.");
+quantity!(Metres, positive, "length", "m", "A length above 0, in m.");
+quantity!(Seconds, positive, "time", "s", "A duration above 0, in s.");
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_radiation_constant_is_h_c_over_k() {
+        let direct = PLANCK_J_S * SPEED_OF_LIGHT_M_S / BOLTZMANN_J_K * 100.0;
+        assert!((direct / SECOND_RADIATION_CM_K - 1.0).abs() < 4e-16);
+    }
+
+    #[test]
+    fn quantities_survive_a_round_trip() {
+        for (dimension, text, value) in [
+            (Dimension::Temperature, "20 degC", 293.15),
+            (Dimension::Temperature, "212 degF", 373.15),
+            (Dimension::TemperatureDifference, "47.8mK", 0.0478),
+            (Dimension::Length, "12 um", 12e-6),
+            (Dimension::Speed, "30 mph", 13.4112),
+            (Dimension::Time, "1.2e-2 s", 0.012),
+            (Dimension::Wavenumber, "715 cm^-1", 715.0),
+        ] {
+            let parsed = dimension.parse(text).unwrap();
+            assert!((parsed / value - 1.0).abs() < 4e-16, "{text}: {parsed}");
+            assert_eq!(dimension.parse(&dimension.format(parsed)).unwrap(), parsed);
+        }
+    }
+
+    #[test]
+    fn units_of_another_dimension_and_bare_numbers_are_refused() {
+        assert!(Dimension::Temperature.parse("37 m").is_err());
+        assert!(Dimension::Temperature.parse("NaN K").is_err());
+        assert!(Dimension::Temperature.parse("").is_err());
+        assert_eq!(Spectral::parse("8 um").unwrap(), Spectral::Wavelength(8.0));
+        assert_eq!(Spectral::parse("715 cm^-1").unwrap(), Spectral::Wavenumber(715.0));
+        assert!(Spectral::parse("8").is_err());
+    }
+}
