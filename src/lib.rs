@@ -1,6 +1,9 @@
 //! Physical limits of seeing by heat.
 
 pub mod error;
+pub mod planck;
+pub mod spectrum;
+mod sum;
 pub mod units;
 
 pub use error::{Error, Result};
