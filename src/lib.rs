@@ -2,6 +2,7 @@
 
 pub mod error;
 pub mod planck;
+mod simd;
 pub mod spectrum;
 mod sum;
 pub mod units;

@@ -9,12 +9,13 @@
 //!
 //! x is formed as an unevaluated sum of two doubles (hc/k to 32 digits, Dekker products by fused
 //! multiply-add): a rounding error of x alone would cost x·u in B. Assumption: none beyond Planck's law.
-//! Where B is below about 1e-300 of the prefactor it underflows gradually to exactly 0, and so do its
+//! Where x > 708, so that B is below 1e-307 of its prefactor 2cν², it is exactly 0, and so are its
 //! derivatives; ratios such as B′/B must then be formed from [`log_derivative`].
 //!
 //! Sources: SI constants (2019); paper S2; exponential after Cody and Waite, 'Software Manual for the
 //! Elementary Functions' (1980), with a Taylor polynomial on |r| ≤ ln2/2.
 
+use crate::simd::dispatched;
 use crate::units::{SECOND_RADIATION_CM_K, SECOND_RADIATION_REST_CM_K, SPEED_OF_LIGHT_M_S};
 
 /// 2c in cm s⁻¹ times cm² per m²: turns ν² (cm⁻²) into photons s⁻¹ m⁻² sr⁻¹ per cm⁻¹.
@@ -22,8 +23,8 @@ const PREFACTOR: f64 = 2.0 * SPEED_OF_LIGHT_M_S * 1e2 * 1e4;
 
 const LN2_HIGH: f64 = 6.931_471_803_691_238e-1;
 const LN2_LOW: f64 = 1.908_214_929_270_587_7e-10;
-/// Beyond this, e⁻ˣ is below the smallest subnormal.
-const LARGEST_EXPONENT: f64 = 746.0;
+/// Beyond this, e⁻ˣ is below the smallest normal number and is taken as 0.
+const LARGEST_EXPONENT: f64 = 708.0;
 
 /// A number as the sum of two doubles, the second below half an ulp of the first.
 #[derive(Debug, Clone, Copy)]
@@ -42,35 +43,31 @@ fn inverse_thermal(temperature_k: f64) -> Double {
 /// e⁻ˣ and 1 − e⁻ˣ, both to full relative precision, for x = high + low ≥ 0.
 #[inline(always)]
 fn exp_and_complement(high: f64, low: f64) -> (f64, f64) {
-    let (power, head) = reduced_exp(-high.min(LARGEST_EXPONENT), -low);
-    // 2^k in two factors, so that the result may be subnormal.
-    let (first, second) = powers_of_two(power);
-    let q = (first + first * head) * second;
-    let scale = first * second;
-    let p = (1.0 - scale) - scale * head;
-    (q, p)
+    let (scale, head) = reduced_exp(-high.min(LARGEST_EXPONENT), -low);
+    let (q, p) = (scale.mul_add(head, scale), (-scale).mul_add(head, 1.0 - scale));
+    (if high < LARGEST_EXPONENT { q } else { 0.0 }, p)
 }
 
-/// e^y − 1 to full relative precision for |y| up to the exponent range.
+/// e^y − 1 to full relative precision for |y| ≤ [`LARGEST_EXPONENT`].
 #[inline(always)]
 fn exp_minus_one(y: f64) -> f64 {
-    let (power, head) = reduced_exp(y.clamp(-LARGEST_EXPONENT, 700.0), 0.0);
-    let (first, second) = powers_of_two(power);
-    let scale = first * second;
-    (scale - 1.0) + scale * head
+    let (scale, head) = reduced_exp(y, 0.0);
+    scale.mul_add(head, scale - 1.0)
 }
 
-/// (k, e^r − 1) with y = k ln2 + r, |r| ≤ ln2/2.
+/// (2ᵏ, e^r − 1) with y = k ln2 + r, |r| ≤ ln2/2, for |y| ≤ [`LARGEST_EXPONENT`].
 #[inline(always)]
 fn reduced_exp(y: f64, correction: f64) -> (f64, f64) {
-    // Adding and subtracting 1.5·2⁵² rounds to the nearest integer without a branch.
-    const ROUNDER: f64 = 6_755_399_441_055_744.0;
-    let power = y.mul_add(std::f64::consts::LOG2_E, ROUNDER) - ROUNDER;
+    // Adding 1.5·2⁵² rounds to the nearest integer without a branch and leaves it in the low bits,
+    // from where a shift moves it into the exponent.
+    const ROUNDER: f64 = 6_755_399_441_055_744.0 + 1023.0;
+    let shifted = y.mul_add(std::f64::consts::LOG2_E, ROUNDER);
+    let power = shifted - ROUNDER;
+    let scale = f64::from_bits(shifted.to_bits() << 52);
     let r = (-power).mul_add(LN2_LOW, (-power).mul_add(LN2_HIGH, y)) + correction;
-    // e^r − 1 = r + r²(1/2! + r/3! + … + r¹²/14!): the first neglected term is below 2⁻⁶⁰ of r.
-    let mut tail: f64 = 1.0 / 87_178_291_200.0;
+    // e^r − 1 = r + r²(1/2! + r/3! + … + r¹¹/13!): the first neglected term is below 2⁻⁵⁵ of r.
+    let mut tail: f64 = 1.0 / 6_227_020_800.0;
     for coefficient in [
-        1.0 / 6_227_020_800.0,
         1.0 / 479_001_600.0,
         1.0 / 39_916_800.0,
         1.0 / 3_628_800.0,
@@ -85,22 +82,7 @@ fn reduced_exp(y: f64, correction: f64) -> (f64, f64) {
     ] {
         tail = tail.mul_add(r, coefficient);
     }
-    (power, (r * r).mul_add(tail, r))
-}
-
-/// 2^k as a product of two normal doubles, |k| ≤ 2000, without a branch or a table.
-#[inline(always)]
-fn powers_of_two(power: f64) -> (f64, f64) {
-    const ROUNDER: f64 = 6_755_399_441_055_744.0;
-    let half = (power * 0.5 + ROUNDER) - ROUNDER;
-    (exact_power(half), exact_power(power - half))
-}
-
-#[inline(always)]
-fn exact_power(power: f64) -> f64 {
-    // The integer sits in the low bits of power + 1.5·2⁵²; shifting it into the exponent makes 2^power.
-    const ROUNDER: f64 = 6_755_399_441_055_744.0 + 1023.0;
-    f64::from_bits((power + ROUNDER).to_bits() << 52)
+    (scale, (r * r).mul_add(tail, r))
 }
 
 /// Photon radiance B(ν,T), photons s⁻¹ m⁻² sr⁻¹ per cm⁻¹, at wavenumber ν (cm⁻¹) and temperature T (K).
@@ -113,17 +95,17 @@ fn exact_power(power: f64) -> f64 {
 /// ```
 #[must_use]
 pub fn photon_radiance(wavenumber_cm1: f64, temperature_k: f64) -> f64 {
-    let mut out = [Radiance::default()];
-    evaluate(&[wavenumber_cm1], temperature_k, |_, radiance| out[0] = radiance);
-    out[0].value
+    let mut out = ([0.0], [0.0]);
+    photon_radiance_and_slope_into(&[wavenumber_cm1], temperature_k, &mut out.0, &mut out.1);
+    out.0[0]
 }
 
 /// ∂B/∂T in photons s⁻¹ m⁻² sr⁻¹ per cm⁻¹ per K. Error and arguments as [`photon_radiance`].
 #[must_use]
 pub fn photon_radiance_slope(wavenumber_cm1: f64, temperature_k: f64) -> f64 {
-    let mut out = [Radiance::default()];
-    evaluate(&[wavenumber_cm1], temperature_k, |_, radiance| out[0] = radiance);
-    out[0].slope
+    let mut out = ([0.0], [0.0]);
+    photon_radiance_and_slope_into(&[wavenumber_cm1], temperature_k, &mut out.0, &mut out.1);
+    out.1[0]
 }
 
 /// ∂ln B/∂T in K⁻¹: x/(T(1 − e⁻ˣ)), well defined also where B itself underflows.
@@ -136,7 +118,7 @@ pub fn log_derivative(wavenumber_cm1: f64, temperature_k: f64) -> f64 {
 }
 
 /// B and ∂B/∂T at one wavenumber.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy)]
 struct Radiance {
     value: f64,
     slope: f64,
@@ -149,46 +131,39 @@ fn product(wavenumber_cm1: f64, inverse: Double) -> (f64, f64) {
     (high, low)
 }
 
+/// B and ∂B/∂T at one wavenumber, given hc/kT and 1/T.
 #[inline(always)]
-fn evaluate(wavenumbers_cm1: &[f64], temperature_k: f64, mut put: impl FnMut(usize, Radiance)) {
-    let inverse = inverse_thermal(temperature_k);
-    let per_kelvin = 1.0 / temperature_k;
-    for (i, &wavenumber) in wavenumbers_cm1.iter().enumerate() {
-        let (x, low) = product(wavenumber, inverse);
-        let (q, p) = exp_and_complement(x, low);
-        let value = PREFACTOR * wavenumber * wavenumber * q / p;
-        put(i, Radiance { value, slope: value * (x * per_kelvin) / p });
+fn radiance(wavenumber_cm1: f64, inverse: Double, per_kelvin: f64) -> Radiance {
+    let (x, low) = product(wavenumber_cm1, inverse);
+    let (q, p) = exp_and_complement(x, low);
+    let value = PREFACTOR * wavenumber_cm1 * wavenumber_cm1 * q / p;
+    Radiance { value, slope: value * (x * per_kelvin) / p }
+}
+
+dispatched! {
+    /// B(ν,T) of a whole spectrum into `out` (same length as `wavenumbers_cm1`).
+    pub fn photon_radiance_into<'a>(wavenumbers_cm1: &'a [f64], temperature_k: f64, out: &'a mut [f64]) {
+        let (inverse, per_kelvin) = (inverse_thermal(temperature_k), 1.0 / temperature_k);
+        for (out, &wavenumber) in out.iter_mut().zip(wavenumbers_cm1) {
+            *out = radiance(wavenumber, inverse, per_kelvin).value;
+        }
     }
 }
 
-/// B(ν,T) of a whole spectrum into `out` (same length as `wavenumbers_cm1`).
-pub fn photon_radiance_into(wavenumbers_cm1: &[f64], temperature_k: f64, out: &mut [f64]) {
-    let n = wavenumbers_cm1.len().min(out.len());
-    let (wavenumbers, out) = (&wavenumbers_cm1[..n], &mut out[..n]);
-    pulp::Arch::new().dispatch(
-        #[inline(always)]
-        || evaluate(wavenumbers, temperature_k, |i, radiance| out[i] = radiance.value),
-    );
-}
-
-/// B and ∂B/∂T of a whole spectrum.
-pub fn photon_radiance_and_slope_into(
-    wavenumbers_cm1: &[f64],
-    temperature_k: f64,
-    values: &mut [f64],
-    slopes: &mut [f64],
-) {
-    let n = wavenumbers_cm1.len().min(values.len()).min(slopes.len());
-    let (wavenumbers, values, slopes) = (&wavenumbers_cm1[..n], &mut values[..n], &mut slopes[..n]);
-    pulp::Arch::new().dispatch(
-        #[inline(always)]
-        || {
-            evaluate(wavenumbers, temperature_k, |i, radiance| {
-                values[i] = radiance.value;
-                slopes[i] = radiance.slope;
-            });
-        },
-    );
+dispatched! {
+    /// B and ∂B/∂T of a whole spectrum.
+    pub fn photon_radiance_and_slope_into<'a>(
+        wavenumbers_cm1: &'a [f64],
+        temperature_k: f64,
+        values: &'a mut [f64],
+        slopes: &'a mut [f64],
+    ) {
+        let (inverse, per_kelvin) = (inverse_thermal(temperature_k), 1.0 / temperature_k);
+        for ((value, slope), &wavenumber) in values.iter_mut().zip(slopes).zip(wavenumbers_cm1) {
+            let at = radiance(wavenumber, inverse, per_kelvin);
+            (*value, *slope) = (at.value, at.slope);
+        }
+    }
 }
 
 /// B(T₀ + ΔT) − B(T₀) of a whole spectrum, given B(T₀) as `base`; exact to a few ulp however small ΔT is.
@@ -201,27 +176,75 @@ pub fn photon_radiance_difference_into(
     base: &[f64],
     out: &mut [f64],
 ) {
-    let n = wavenumbers_cm1.len().min(base.len()).min(out.len());
-    let (wavenumbers, base, out) = (&wavenumbers_cm1[..n], &base[..n], &mut out[..n]);
     let warmer_k = temperature_k + difference_k;
     let inverse = inverse_thermal(warmer_k);
     let delta_per_cm1 = inverse.high * (difference_k / temperature_k);
-    let direct = delta_per_cm1.abs() * wavenumbers.iter().copied().fold(0.0, f64::max) > 30.0;
-    pulp::Arch::new().dispatch(
-        #[inline(always)]
-        || {
-            if direct {
-                // e^δ may overflow, but then the two radiances have no digit in common to cancel.
-                evaluate(wavenumbers, warmer_k, |i, radiance| out[i] = radiance.value - base[i]);
-                return;
-            }
-            for i in 0..n {
-                let (x, low) = product(wavenumbers[i], inverse);
-                let (_, p) = exp_and_complement(x, low);
-                out[i] = base[i] * exp_minus_one(wavenumbers[i] * delta_per_cm1) / p;
-            }
-        },
-    );
+    if delta_per_cm1.abs() * wavenumbers_cm1.iter().copied().fold(0.0, f64::max) > 30.0 {
+        // e^δ may overflow, but then the two radiances have no digit in common to cancel.
+        photon_radiance_into(wavenumbers_cm1, warmer_k, out);
+        for (out, base) in out.iter_mut().zip(base) {
+            *out -= base;
+        }
+        return;
+    }
+    near_differences(wavenumbers_cm1, inverse, delta_per_cm1, base, out);
+}
+
+/// B(T₀), B(T), ∂B/∂T at T and B(T) − B(T₀) of a whole spectrum, for T within a quarter of T₀.
+///
+/// Two exponentials per wavenumber instead of three: with E = e^δ − 1, 1 − e⁻ˣ = p₀ − q₀E loses at most
+/// two bits where |T − T₀| ≤ T₀/4. The callers' only hot path.
+#[derive(Debug)]
+pub(crate) struct NearPair<'a> {
+    pub(crate) base: &'a mut [f64],
+    pub(crate) value: &'a mut [f64],
+    pub(crate) slope: &'a mut [f64],
+    pub(crate) difference: &'a mut [f64],
+}
+
+/// Whether [`near_pair_into`] may be used.
+pub(crate) fn is_near_pair(base_k: f64, temperature_k: f64) -> bool {
+    (temperature_k - base_k).abs() <= 0.25 * base_k
+}
+
+dispatched! {
+    pub(crate) fn near_pair_into<'a>(
+        wavenumbers_cm1: &'a [f64],
+        base_k: f64,
+        temperature_k: f64,
+        out: NearPair<'a>,
+    ) {
+        let inverse = inverse_thermal(base_k);
+        let delta_per_cm1 = inverse.high * ((temperature_k - base_k) / temperature_k);
+        let x_ratio = base_k / (temperature_k * temperature_k);
+        let bands = out.base.iter_mut().zip(out.value).zip(out.slope).zip(out.difference).zip(wavenumbers_cm1);
+        for ((((base, value), slope), difference), &wavenumber) in bands {
+            let (x, low) = product(wavenumber, inverse);
+            let (q, p) = exp_and_complement(x, low);
+            let e = exp_minus_one(wavenumber * delta_per_cm1);
+            let inverse_p = 1.0 / (-q).mul_add(e, p);
+            *base = PREFACTOR * wavenumber * wavenumber * q / p;
+            *difference = *base * (e * inverse_p);
+            *value = *base + *difference;
+            *slope = *value * (x * x_ratio) * inverse_p;
+        }
+    }
+}
+
+dispatched! {
+    fn near_differences<'a>(
+        wavenumbers_cm1: &'a [f64],
+        inverse: Double,
+        delta_per_cm1: f64,
+        base: &'a [f64],
+        out: &'a mut [f64],
+    ) {
+        for ((out, base), &wavenumber) in out.iter_mut().zip(base).zip(wavenumbers_cm1) {
+            let (x, low) = product(wavenumber, inverse);
+            let (_, p) = exp_and_complement(x, low);
+            *out = base * exp_minus_one(wavenumber * delta_per_cm1) / p;
+        }
+    }
 }
 
 #[cfg(test)]
