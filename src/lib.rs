@@ -1,7 +1,10 @@
 //! Physical limits of seeing by heat.
 
 pub mod error;
+pub mod fisher;
+pub mod identifiability;
 pub mod planck;
+pub mod scene;
 mod simd;
 pub mod spectrum;
 mod sum;

@@ -1,0 +1,279 @@
+//! The paper's semantic distance: what one photon tells of the material, at the target's own state.
+//!
+//! d₀ = ½‖P⊥ s_g‖ per √photon, s_g the score of the mixing fraction g and P⊥ the projector that removes the
+//! span of the nuisance scores; d₀ = 1/(2σ₀) with σ₀² = [1/J⁰]_gg. It is the tangent of the two surfaces at
+//! the target: for finite separations it can err either way, see [`super::nearest`].
+//!
+//! Source: paper S24–S30, Algorithm 2.
+
+use super::Status;
+use crate::error::{Error, Result};
+use crate::fisher::{Counting, Projection, Projector, Unknowns};
+use crate::scene::{Jacobian, Parameter, State, Surroundings};
+use crate::simd::dispatched;
+use crate::spectrum::Bands;
+
+/// Sums of the signal outside this range are brought back by a power of two before they are squared.
+const SAFE_RANGE: std::ops::Range<f64> = 1e-100..1e100;
+
+/// Local distance of a pair of materials.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LocalDistance {
+    /// d₀ per √photon, or the statistical distance d, whichever was asked for.
+    pub distance: f64,
+    /// The same with no nuisance at all.
+    pub distance_no_nuisance: f64,
+    /// Estimated bound on the relative rounding error of `distance`.
+    pub relative_error: f64,
+    /// What kind of answer it is.
+    pub status: Status,
+    /// Change of each nuisance (per unit of g) that imitates the alternative best.
+    pub imitation: Vec<(Parameter, f64)>,
+    /// Nuisances that change nothing, or nothing that the others do not.
+    pub dropped: Vec<Parameter>,
+    /// ΣS of the target, photons s⁻¹ m⁻² sr⁻¹.
+    pub photon_radiance: f64,
+    projection: Projection,
+}
+
+impl LocalDistance {
+    /// Condition number of the scaled scores (see [`Projection::condition_number`]).
+    #[must_use]
+    pub fn condition_number(&self) -> f64 {
+        self.projection.condition_number()
+    }
+}
+
+/// Computes local distances in fixed bands and surroundings, again and again without allocating much.
+///
+/// ```
+/// use hadar::fisher::{Nuisance, Unknowns};
+/// use hadar::identifiability::local::LocalSolver;
+/// use hadar::scene::{EnvironmentObject, Surroundings};
+/// use hadar::spectrum::Bands;
+///
+/// let bands = Bands::uniform(715.0, 1250.0, 1.0)?;
+/// let object = EnvironmentObject { temperature_k: 293.15, emissivity: None };
+/// let surroundings = Surroundings::new(bands.nodes_cm1(), vec![object])?;
+/// let skin = vec![0.95; bands.len()];
+/// let fabric = vec![0.88; bands.len()];
+/// let unknowns = Unknowns::new([Nuisance::Temperature, Nuisance::Lighting])?;
+/// let state = surroundings.state(310.15, &[0.5])?;
+/// let local = LocalSolver::new(&bands, &surroundings, unknowns).per_photon(&skin, &fabric, &state, f64::INFINITY)?;
+/// assert!(local.distance < 0.1 * local.distance_no_nuisance);
+/// # Ok::<(), hadar::Error>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct LocalSolver<'a> {
+    unknowns: Unknowns,
+    parameters: Vec<Parameter>,
+    jacobian: Jacobian<'a>,
+    projector: Projector,
+    columns: Vec<f64>,
+    weights: Vec<f64>,
+}
+
+impl<'a> LocalSolver<'a> {
+    /// A solver for one set of bands, surroundings and unknowns.
+    #[must_use]
+    pub fn new(bands: &'a Bands, surroundings: &'a Surroundings, unknowns: Unknowns) -> Self {
+        let mut parameters = unknowns.parameters(surroundings.objects().len());
+        parameters.push(Parameter::Material);
+        Self {
+            unknowns,
+            parameters,
+            jacobian: Jacobian::new(bands, surroundings),
+            projector: Projector::default(),
+            columns: Vec::new(),
+            weights: Vec::new(),
+        }
+    }
+
+    /// d₀ per √photon, in the limit of shot noise. Priors count as they do among `photons` photons;
+    /// with infinitely many they count for nothing.
+    ///
+    /// # Errors
+    /// A scene without photons, or fewer bands than unknowns.
+    pub fn per_photon(
+        &mut self,
+        emissivity: &[f64],
+        alternative: &[f64],
+        state: &State,
+        photons: f64,
+    ) -> Result<LocalDistance> {
+        let total = self.evaluate(emissivity, alternative, state)?;
+        let scale = safe_scale(total);
+        shot_weights(self.jacobian.signal(), scale, total * scale, &mut self.weights);
+        self.project(emissivity, alternative, state, scale, total, photons.sqrt())
+    }
+
+    /// Statistical distance d with the camera's own noise (S27 at N photons).
+    ///
+    /// # Errors
+    /// As [`LocalSolver::per_photon`].
+    pub fn with_counting(
+        &mut self,
+        emissivity: &[f64],
+        alternative: &[f64],
+        state: &State,
+        counting: &Counting,
+    ) -> Result<LocalDistance> {
+        let total = self.evaluate(emissivity, alternative, state)?;
+        let counts = counting.counts_per_radiance;
+        self.weights.clear();
+        let signal = self.jacobian.signal().iter().enumerate();
+        self.weights.extend(signal.map(|(w, signal)| {
+            // κ²/(κS + σ²) with one κ taken out, so that nothing overflows before it must.
+            let variance = signal + counting.var_electronic(w) / counts;
+            if variance > 0.0 { counts / variance } else { 0.0 }
+        }));
+        self.project(emissivity, alternative, state, 1.0, total, 1.0)
+    }
+
+    /// Signal of each band at the last evaluation.
+    #[must_use]
+    pub fn signal(&self) -> &[f64] {
+        self.jacobian.signal()
+    }
+
+    fn evaluate(&mut self, emissivity: &[f64], alternative: &[f64], state: &State) -> Result<f64> {
+        let total_known = self.unknowns.known_lighting_total().is_some();
+        self.jacobian.evaluate(emissivity, alternative, state, &self.parameters, total_known);
+        let total = crate::sum::sum(self.jacobian.signal());
+        if total > 0.0 && total.is_finite() {
+            return Ok(total);
+        }
+        Err(Error::out_of_range(
+            "photon radiance of the target",
+            total,
+            "photons s^-1 m^-2 sr^-1",
+            "above 0: a warmer scene, or bands at lower wavenumbers",
+        ))
+    }
+
+    fn project(
+        &mut self,
+        emissivity: &[f64],
+        alternative: &[f64],
+        state: &State,
+        scale: f64,
+        total: f64,
+        sqrt_photons: f64,
+    ) -> Result<LocalDistance> {
+        self.check_rank()?;
+        let plain = scale == 1.0 && !(self.unknowns.has_priors() && sqrt_photons.is_finite());
+        let projection = if plain {
+            self.projector.project(self.jacobian.columns(), &self.weights, self.jacobian.cancellation())
+        } else {
+            self.append_priors(scale, sqrt_photons);
+            self.projector.project(&self.columns, &self.weights, self.jacobian.cancellation())
+        };
+        Ok(self.judge(projection, emissivity, alternative, state, total))
+    }
+
+    /// Columns scaled by a power of two, with one more row for every prior.
+    fn append_priors(&mut self, scale: f64, sqrt_photons: f64) {
+        let bands = self.jacobian.bands().len();
+        let priors: Vec<(usize, f64)> = self
+            .parameters
+            .iter()
+            .enumerate()
+            .filter_map(|(i, parameter)| self.unknowns.sigma_prior(*parameter).map(|sigma| (i, sigma)))
+            .collect();
+        self.columns.clear();
+        for (i, column) in self.jacobian.columns().chunks(bands).enumerate() {
+            self.columns.extend(column.iter().map(|value| value * scale));
+            self.columns.extend(
+                priors.iter().map(
+                    |&(owner, sigma)| {
+                        if owner == i { 1.0 / (sigma * sqrt_photons) } else { 0.0 }
+                    },
+                ),
+            );
+        }
+        self.weights.extend(priors.iter().map(|_| 1.0));
+    }
+
+    fn check_rank(&self) -> Result<()> {
+        let bands = self.jacobian.bands().len();
+        let live = |i: usize| self.jacobian.column(i).iter().any(|&value| value != 0.0);
+        let free = (0..self.parameters.len() - 1)
+            .filter(|&i| self.unknowns.sigma_prior(self.parameters[i]).is_none() && live(i))
+            .count();
+        if bands > free {
+            return Ok(());
+        }
+        let s = if bands == 1 { "" } else { "s" };
+        Err(Error::malformed(
+            format!("{bands} band{s} for {} unknowns (the material among them)", free + 1),
+            format!("give at least {} bands, fewer nuisances, or priors on them", free + 1),
+        ))
+    }
+
+    fn judge(
+        &self,
+        projection: Projection,
+        emissivity: &[f64],
+        alternative: &[f64],
+        state: &State,
+        total: f64,
+    ) -> LocalDistance {
+        let status = if emissivity == alternative {
+            Status::Identical
+        } else if projection.norm == 0.0 && self.in_equilibrium(state) {
+            Status::Equilibrium
+        } else if projection.norm == 0.0 || projection.relative_error >= 1.0 || projection.residual == 0.0 {
+            Status::Blind
+        } else {
+            Status::Ok
+        };
+        let imitation =
+            self.parameters.iter().copied().zip(projection.coefficients.iter().copied()).collect();
+        let dropped = projection.dropped.iter().map(|&i| self.parameters[i]).collect();
+        LocalDistance {
+            distance: if status == Status::Ok { 0.5 * projection.residual } else { 0.0 },
+            distance_no_nuisance: 0.5 * projection.norm,
+            relative_error: if status == Status::Ok { projection.relative_error } else { 0.0 },
+            status,
+            imitation,
+            dropped,
+            photon_radiance: total,
+            projection,
+        }
+    }
+
+    /// Every object at the target's temperature, black, and together all around.
+    fn in_equilibrium(&self, state: &State) -> bool {
+        let black =
+            self.jacobian.surroundings().objects().iter().zip(&state.lighting).all(|(object, &factor)| {
+                factor == 0.0 || object.emissivity.iter().flatten().all(|&e| e == 1.0)
+            });
+        let warm = state.environment_k.iter().zip(&state.lighting);
+        black && warm.fold(true, |so_far, (t, v)| so_far && (*v == 0.0 || *t == state.temperature_k))
+    }
+}
+
+/// A power of two that brings `total` near 1, or 1 if squares are safe as they are.
+fn safe_scale(total: f64) -> f64 {
+    if SAFE_RANGE.contains(&total) {
+        1.0
+    } else {
+        total.log2().floor().clamp(-1000.0, 1000.0).mul_add(-1.0, 0.0).exp2()
+    }
+}
+
+/// u = 1/(S ΣS) with both scaled; 0 for a band without photons, which tells nothing.
+fn shot_weights(signal: &[f64], scale: f64, scaled_total: f64, weights: &mut Vec<f64>) {
+    weights.clear();
+    weights.resize(signal.len(), 0.0);
+    reciprocal_into(signal, scale * scaled_total, weights);
+}
+
+dispatched! {
+    fn reciprocal_into<'a>(values: &'a [f64], factor: f64, out: &'a mut [f64]) {
+        for (out, value) in out.iter_mut().zip(values) {
+            let product = factor * value;
+            *out = if product > 0.0 { 1.0 / product } else { 0.0 };
+        }
+    }
+}
