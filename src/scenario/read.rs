@@ -18,7 +18,7 @@ use crate::units::Dimension;
 /// Lighting factors that should add up to a value may miss it by this: rounding, not meaning.
 const LIGHTING_ROUNDING: f64 = 1e-12;
 /// The longest file taken for a scenario, bytes.
-const LONGEST_FILE: u64 = 16 << 20;
+const LONGEST_FILE: u64 = 1 << 20;
 
 const TABLES: &[&str] =
     &["title", "target", "environment", "alternatives", "bands", "unknown", "camera", "requirement"];
@@ -36,7 +36,7 @@ pub(super) fn text_of(path: &Path) -> Result<String> {
     let mut bytes = Vec::new();
     file.take(LONGEST_FILE + 1).read_to_end(&mut bytes).map_err(|error| refuse(&error.kind().to_string()))?;
     if bytes.len() as u64 > LONGEST_FILE {
-        return Err(refuse("it is longer than 16 MiB; name the scenario, not a data file"));
+        return Err(refuse("it is longer than 1 MiB; name the scenario, not a data file"));
     }
     String::from_utf8(bytes).map_err(|error| {
         let valid = error.utf8_error().valid_up_to();

@@ -3,7 +3,7 @@
 use toml::de::{DeTable, DeValue};
 
 use super::source::{Source, dotted};
-use crate::error::{Error, Result};
+use crate::error::{Error, Place, Result};
 use crate::units::Dimension;
 
 /// What a number must satisfy, and how that is said.
@@ -47,7 +47,7 @@ impl<'a> Section<'a> {
             None => Ok(Self { table, name: name.to_owned(), source }),
             Some(key) => {
                 let line = source.place(&dotted(name, key.get_ref())).line;
-                let place = crate::error::Place { line, ..source.place(name) };
+                let place = Place { line, ..source.place(name) };
                 Err(unknown_key(key.get_ref(), known).at(place))
             }
         }
