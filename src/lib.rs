@@ -4,6 +4,7 @@ pub mod error;
 pub mod fisher;
 pub mod identifiability;
 pub mod planck;
+pub mod scenario;
 pub mod scene;
 mod simd;
 pub mod spectrum;

@@ -1,6 +1,6 @@
 //! Physical constants (exact SI) and quantities written with their unit.
 //!
-//! At the edge of the crate a quantity is a string with its unit (`"37 degC"`, `"12 um"`); [`Unit`]s of
+//! At the edge of the crate a quantity is a string with its unit (`"37 degC"`, `"12 um"`); units of
 //! one [`Dimension`] are converted to one plain `f64` whose name then carries the unit
 //! (`temperature_k`, `pixel_m`). A bare number where a unit is due is an error that says what to write.
 //!

@@ -1,0 +1,249 @@
+//! Writes a scenario with every default filled in, as TOML and, in the same structure, for JSON.
+//!
+//! Quantities are strings in the unit used inside, with all digits, so that reading gives the same bits back.
+
+use std::path::Path;
+
+use serde::Serialize;
+use serde::ser::{SerializeMap, Serializer};
+use toml::Value;
+
+use super::read::is_path;
+use super::{
+    Alternatives, BandSource, BandsSpec, CameraSpec, EnvironmentObject, Extrapolation, MaterialRef, Nuisance,
+    Reliability, Requirement, Scenario, Target, Unknown,
+};
+use crate::units::Dimension;
+
+/// One entry of the document.
+enum Part {
+    Value(Value),
+    Table(Entries),
+    Tables(Vec<Entries>),
+}
+
+/// Keys in the order in which they are written; a silent one is not there.
+#[derive(Default)]
+struct Entries(Vec<(&'static str, Value)>);
+
+/// How file paths are written.
+#[derive(Clone, Copy)]
+struct Paths<'a> {
+    beside: Option<&'a Path>,
+}
+
+impl Scenario {
+    /// The scenario as TOML, every default filled in; reading it gives an equal scenario. What stays silent
+    /// has no value (a distance, a camera) or one that others know (a preset's fields, the library's
+    /// materials). Paths of files are absolute, so that it may be put anywhere on the same machine.
+    ///
+    /// ```
+    /// use hadar::scenario::Scenario;
+    /// let text = "[target]\nmaterial = \"skin\"\ntemperature = \"37 degC\"";
+    /// let scenario = Scenario::from_toml(text, None).unwrap();
+    /// let filled = scenario.to_toml();
+    /// assert!(filled.contains("nuisances = [\"temperature\", \"lighting\"]"));
+    /// assert_eq!(Scenario::from_toml(&filled, None).unwrap(), scenario);
+    /// ```
+    #[must_use]
+    pub fn to_toml(&self) -> String {
+        self.text(Paths { beside: None })
+    }
+
+    /// As [`Scenario::to_toml`], for a file in `directory` that may be moved along with its neighbours: paths
+    /// below `directory` are written relative to it, others absolute.
+    #[must_use]
+    pub fn to_toml_beside(&self, directory: &Path) -> String {
+        let absolute = std::path::absolute(directory).ok();
+        self.text(Paths { beside: absolute.as_deref() })
+    }
+
+    fn text(&self, paths: Paths<'_>) -> String {
+        let mut text = String::new();
+        for (name, part) in self.document(paths) {
+            match part {
+                Part::Value(value) => text.push_str(&format!("{name} = {value}\n")),
+                Part::Table(entries) => entries.write(&mut text, &format!("[{name}]")),
+                Part::Tables(tables) => {
+                    tables.iter().for_each(|entries| entries.write(&mut text, &format!("[[{name}]]")));
+                }
+            }
+        }
+        text
+    }
+
+    fn document(&self, paths: Paths<'_>) -> Vec<(&'static str, Part)> {
+        let mut document = Vec::new();
+        if let Some(title) = &self.title {
+            document.push(("title", Part::Value(title.as_str().into())));
+        }
+        document.push(("target", Part::Table(target(&self.target, paths))));
+        let objects = self.environment.iter().map(|object| environment(object, paths)).collect();
+        document.push(("environment", Part::Tables(objects)));
+        document.push(("alternatives", Part::Table(alternatives(&self.alternatives, paths))));
+        document.push(("bands", Part::Table(bands(&self.bands, paths))));
+        document.push(("unknown", Part::Table(unknown(&self.unknown))));
+        if let Some(spec) = &self.camera {
+            document.push(("camera", Part::Table(camera(spec))));
+        }
+        document.push(("requirement", Part::Table(requirement(&self.requirement))));
+        document
+    }
+}
+
+/// The same keys and values as the TOML, with absolute paths.
+impl Serialize for Scenario {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        for (name, part) in self.document(Paths { beside: None }) {
+            match part {
+                Part::Value(value) => map.serialize_entry(name, &value)?,
+                Part::Table(entries) => map.serialize_entry(name, &entries)?,
+                Part::Tables(tables) => map.serialize_entry(name, &tables)?,
+            }
+        }
+        map.end()
+    }
+}
+
+impl Serialize for Entries {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.iter().map(|(key, value)| (key, value)))
+    }
+}
+
+impl Entries {
+    fn put(mut self, key: &'static str, value: impl Into<Value>) -> Self {
+        self.0.push((key, value.into()));
+        self
+    }
+
+    fn put_if(self, key: &'static str, value: Option<impl Into<Value>>) -> Self {
+        match value {
+            Some(value) => self.put(key, value),
+            None => self,
+        }
+    }
+
+    fn put_quantity(self, key: &'static str, dimension: Dimension, value: Option<f64>) -> Self {
+        self.put_if(key, value.map(|value| dimension.format(value)))
+    }
+
+    fn write(&self, text: &mut String, header: &str) {
+        if !text.is_empty() {
+            text.push('\n');
+        }
+        text.push_str(&format!("{header}\n"));
+        for (key, value) in &self.0 {
+            text.push_str(&format!("{key} = {value}\n"));
+        }
+    }
+}
+
+impl Paths<'_> {
+    fn file(self, path: &Path) -> String {
+        let inside = self.beside.and_then(|directory| path.strip_prefix(directory).ok());
+        let text = inside.unwrap_or(path).to_string_lossy().into_owned();
+        // A bare `skin` would be read as a name of the library.
+        if is_path(&text) { text } else { format!("./{text}") }
+    }
+
+    fn material(self, material: &MaterialRef) -> String {
+        match material {
+            MaterialRef::Name(name) => name.clone(),
+            MaterialRef::File(path) => self.file(path),
+        }
+    }
+}
+
+fn target(target: &Target, paths: Paths<'_>) -> Entries {
+    Entries::default()
+        .put("material", paths.material(&target.material))
+        .put_quantity("temperature", Dimension::Temperature, Some(target.temperature_k))
+        .put_quantity("distance", Dimension::Length, target.distance_m)
+        .put_if("extrapolate", target.extrapolate.map(Extrapolation::name))
+}
+
+fn environment(object: &EnvironmentObject, paths: Paths<'_>) -> Entries {
+    Entries::default()
+        .put_quantity("temperature", Dimension::Temperature, Some(object.temperature_k))
+        .put("lighting", object.lighting)
+        .put_if("material", object.material.as_ref().map(|material| paths.material(material)))
+        .put_if("extrapolate", object.extrapolate.map(Extrapolation::name))
+}
+
+fn alternatives(alternatives: &Alternatives, paths: Paths<'_>) -> Entries {
+    let names = |materials: &Vec<MaterialRef>| -> Vec<String> {
+        materials.iter().map(|material| paths.material(material)).collect()
+    };
+    let kelvins = |range: [f64; 2]| range.map(|end| Dimension::Temperature.format(end)).to_vec();
+    Entries::default()
+        .put_if("materials", alternatives.materials.as_ref().map(names))
+        .put_if("temperature", alternatives.temperature_range_k.map(kelvins))
+        .put_if("lighting", alternatives.lighting_range.map(|range| range.to_vec()))
+        .put_if("extrapolate", alternatives.extrapolate.map(Extrapolation::name))
+}
+
+fn bands(bands: &BandsSpec, paths: Paths<'_>) -> Entries {
+    let entries = Entries::default();
+    let entries = match &bands.source {
+        BandSource::Grid { start, stop, step } => {
+            entries.put("start", start.format()).put("stop", stop.format()).put("step", step.format())
+        }
+        BandSource::Filters(path) => entries.put("filters", paths.file(path)),
+        BandSource::Rows(path) => entries.put("rows", paths.file(path)),
+        BandSource::Ranges(ranges) => {
+            let pairs: Vec<Vec<String>> =
+                ranges.iter().map(|range| range.map(|end| end.format()).to_vec()).collect();
+            entries.put("ranges", pairs)
+        }
+    };
+    entries.put("integrate", bands.integrate).put("tolerance", bands.tolerance)
+}
+
+fn unknown(unknown: &Unknown) -> Entries {
+    let names: Vec<&str> = unknown.nuisances.iter().map(|nuisance| nuisance.name()).collect();
+    let prior = |(nuisance, sigma): (&Nuisance, &f64)| {
+        let value = match nuisance {
+            Nuisance::Temperature | Nuisance::EnvironmentTemperature => {
+                Dimension::TemperatureDifference.format(*sigma).into()
+            }
+            Nuisance::Lighting | Nuisance::Gain => Value::from(*sigma),
+        };
+        (nuisance.name().to_owned(), value)
+    };
+    let priors: toml::Table = unknown.priors.iter().map(prior).collect();
+    Entries::default()
+        .put("nuisances", names)
+        .put("priors", priors)
+        .put_if("lighting_total", unknown.lighting_total)
+}
+
+fn camera(camera: &CameraSpec) -> Entries {
+    Entries::default()
+        .put_if("preset", camera.preset.as_deref())
+        .put_quantity("exposure", Dimension::Time, camera.exposure_s)
+        .put_quantity("pixel", Dimension::Length, camera.pixel_m)
+        .put_if("f_number", camera.f_number)
+        .put_quantity("focal_length", Dimension::Length, camera.focal_length_m)
+        .put_if("optics_efficiency", camera.optics_efficiency)
+        .put_quantity("netd", Dimension::TemperatureDifference, camera.netd_k)
+        .put_quantity("netd_temperature", Dimension::Temperature, camera.netd_temperature_k)
+        .put_if("netd_f_number", camera.netd_f_number)
+        .put_quantity("detectivity", Dimension::Detectivity, camera.detectivity_cm_hz05_w)
+        .put_if("noise_electrons", camera.noise_electrons)
+        .put_if("flicker_fraction", camera.flicker_fraction)
+        .put_if("full_well", camera.full_well)
+        .put_if("readout", camera.readout.map(|readout| readout.name()))
+        .put_if("frames", camera.frames)
+        .put_quantity("field_of_view", Dimension::Angle, camera.field_of_view_rad)
+        .put_if("pixels", camera.pixels)
+}
+
+fn requirement(requirement: &Requirement) -> Entries {
+    let entries = match requirement.reliability {
+        Reliability::DetectionProbability(value) => Entries::default().put("detection_probability", value),
+        Reliability::Distance(value) => Entries::default().put("distance", value),
+    };
+    entries.put("by", requirement.by.name()).put_quantity("speed", Dimension::Speed, requirement.speed_m_s)
+}
