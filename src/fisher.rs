@@ -20,21 +20,20 @@ use crate::error::{Error, Result, check};
 use crate::scene::Parameter;
 
 /// A kind of nuisance: unknown, but not what is asked for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Nuisance {
-    /// Target temperature.
+    /// Target temperature; prior in K.
     Temperature,
-    /// Lighting factors, one per environment object.
+    /// Lighting factors, one per environment object; prior dimensionless.
     Lighting,
-    /// Overall scale of the signal.
+    /// Overall scale of the signal; prior dimensionless (relative).
     Gain,
-    /// Temperatures of the environment objects.
+    /// Temperatures of the environment objects; prior in K.
     EnvironmentTemperature,
 }
 
 impl Nuisance {
-    /// All kinds.
+    /// All kinds, in their fixed order.
     pub const ALL: [Self; 4] = [Self::Temperature, Self::Lighting, Self::Gain, Self::EnvironmentTemperature];
 
     /// The name used in scenario files.

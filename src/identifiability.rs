@@ -6,6 +6,8 @@
 
 pub mod detection;
 pub mod local;
+pub mod nearest;
+mod step;
 
 /// What kind of answer a distance is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]

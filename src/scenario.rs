@@ -12,6 +12,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use crate::error::{Place, Result};
+pub use crate::fisher::Nuisance;
 
 pub mod bands;
 pub mod camera;
@@ -177,35 +178,6 @@ pub struct Alternatives {
     pub lighting_range: Option<[f64; 2]>,
     /// How the spectra of the alternatives are continued beyond their data.
     pub extrapolate: Option<Extrapolation>,
-}
-
-/// A quantity that is not known beforehand and costs information.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Nuisance {
-    /// The target's temperature; prior in K.
-    Temperature,
-    /// The lighting factor of each environment object; prior dimensionless.
-    Lighting,
-    /// The overall scale of the signal; prior dimensionless (relative).
-    Gain,
-    /// The temperature of each environment object; prior in K.
-    EnvironmentTemperature,
-}
-
-impl Nuisance {
-    /// All of them, in the order in which they are written.
-    pub const ALL: [Self; 4] = [Self::Temperature, Self::Lighting, Self::Gain, Self::EnvironmentTemperature];
-
-    /// The name in a scenario, e.g. `environment-temperature`.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Temperature => "temperature",
-            Self::Lighting => "lighting",
-            Self::Gain => "gain",
-            Self::EnvironmentTemperature => "environment-temperature",
-        }
-    }
 }
 
 /// What is not known beforehand (`[unknown]`).

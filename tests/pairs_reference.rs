@@ -2,6 +2,7 @@
 
 use hadar::fisher::{Nuisance, Unknowns};
 use hadar::identifiability::local::LocalSolver;
+use hadar::identifiability::nearest::{NearestSolver, StateRange};
 use hadar::scene::{EnvironmentObject, Parameter, Surroundings};
 use hadar::spectrum::Bands;
 use std::path::{Path, PathBuf};
@@ -114,4 +115,34 @@ fn local_distances_agree_with_thirty_digit_references() {
     println!(
         "{count} distances; worst {worst:.3} of the tolerance; estimate at most {widest:.0} x the true error"
     );
+}
+
+/// Tolerances: the distance 1e-9, since it is stationary in the state; the state 1e-6.
+#[test]
+fn nearest_states_agree_with_thirty_digit_references() {
+    let Some((root, reference)) = reference() else { return };
+    let mut count = 0;
+    for value in reference["cases"].as_array().unwrap() {
+        let case = case(&root, value);
+        let state = case.surroundings.state(case.temperature_k, &case.lighting).unwrap();
+        for answer in value["distance_nearest"].as_array().unwrap() {
+            // The references let V leave [0, 1] (human_vs_sand: V = 1.373).
+            let range = StateRange { lighting: [0.0, 10.0], lighting_sum: 10.0, ..StateRange::default() };
+            let unknowns = unknowns(&answer["unknown"]);
+            let mut solver = NearestSolver::new(&case.bands, &case.surroundings, unknowns, range);
+            let nearest = solver.per_photon(&case.target, &case.alternative, &state, f64::INFINITY).unwrap();
+            let error = nearest.distance / number(&answer["value"]) - 1.0;
+            let temperature = nearest.state.temperature_k / number(&answer["temperature_k"]) - 1.0;
+            let lighting = nearest.state.lighting[0] / number(&answer["lighting"][0]) - 1.0;
+            println!(
+                "{:22} distance {error:.1e}, temperature {temperature:.1e}, lighting {lighting:.1e}, {} iterations",
+                case.name, nearest.iterations
+            );
+            assert!(nearest.converged);
+            assert!(error.abs() < 1e-9, "{}: {error:e}", case.name);
+            assert!(temperature.abs() < 1e-6 && lighting.abs() < 1e-6, "{}", case.name);
+            count += 1;
+        }
+    }
+    assert!(count >= 4);
 }

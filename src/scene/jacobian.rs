@@ -127,6 +127,46 @@ impl<'a> Jacobian<'a> {
         self.cancellation
     }
 
+    /// B(T) at the nodes, of the last evaluation.
+    pub(crate) fn radiance(&self) -> &[f64] {
+        &self.value
+    }
+
+    /// The contrast C at the nodes, of the last evaluation.
+    pub(crate) fn contrast(&self) -> &[f64] {
+        &self.contrast
+    }
+
+    /// X − X′ at the nodes: the lighting of this one's last `state` less that of `other` in `other_state`,
+    /// as Σ (Vₖ − Vₖ′)εₖB(Tₖ) + Vₖ′εₖ[B(Tₖ) − B(Tₖ′)], which keeps its digits as the two become equal.
+    pub(crate) fn lighting_difference_into(
+        &self,
+        state: &State,
+        other: &Self,
+        other_state: &State,
+        out: &mut [f64],
+    ) {
+        let nodes = out.len();
+        out.fill(0.0);
+        for k in 0..state.lighting.len() {
+            let span = k * nodes..(k + 1) * nodes;
+            let change = state.lighting[k] - other_state.lighting[k];
+            for (j, (out, base)) in out.iter_mut().zip(&self.base[span.clone()]).enumerate() {
+                *out += change * self.surroundings.object_emissivity(k, j) * base;
+            }
+            let (t, other_k) = (state.environment_k[k], other_state.environment_k[k]);
+            if t == other_k {
+                continue;
+            }
+            let nu = &self.surroundings.nodes_cm1;
+            let mut warmer = vec![0.0; nodes];
+            planck::photon_radiance_difference_into(nu, other_k, t - other_k, &other.base[span], &mut warmer);
+            for (j, (out, warmer)) in out.iter_mut().zip(&warmer).enumerate() {
+                *out += other_state.lighting[k] * self.surroundings.object_emissivity(k, j) * warmer;
+            }
+        }
+    }
+
     /// Evaluates signal and derivatives of a surface `emissivity` in `state`; `alternative` is the material
     /// that g mixes in. Emissivities are values at the nodes.
     ///

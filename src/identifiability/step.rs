@@ -1,0 +1,162 @@
+//! The step of a least-squares fit within bounds.
+//!
+//! Minimises ½ pᵀHp + gᵀp for positive definite H subject to lᵢ ≤ pᵢ ≤ uᵢ and, for a subset I, Σ_I pᵢ ≤ s, all of which
+//! p = 0 meets. Active-set method on the box; the one sum constraint by its multiplier μ ≥ 0, on which
+//! Σ_I pᵢ(μ) depends monotonically. A handful of unknowns, so everything is dense.
+//!
+//! Source: Nocedal and Wright, 'Numerical Optimization' (2006), section 16.5.
+
+use nalgebra::{Cholesky, DMatrix, DVector};
+
+/// Halvings of the multiplier of the sum constraint: enough for its last bit.
+const HALVINGS: usize = 200;
+
+/// The problem: H, g, bounds, and the members and limit of the sum constraint.
+pub(super) struct BoundedStep<'a> {
+    pub(super) hessian: &'a DMatrix<f64>,
+    pub(super) gradient: &'a DVector<f64>,
+    pub(super) lower: &'a [f64],
+    pub(super) upper: &'a [f64],
+    pub(super) summed: &'a [bool],
+    pub(super) sum_limit: f64,
+}
+
+impl BoundedStep<'_> {
+    /// The minimiser, or `None` if H is not positive definite.
+    pub(super) fn solve(&self) -> Option<DVector<f64>> {
+        let free = self.in_box(self.gradient)?;
+        if self.summed_part(&free) <= self.sum_limit {
+            return Some(free);
+        }
+        let tilted = |multiplier: f64| {
+            let mut gradient = self.gradient.clone();
+            for (value, &member) in gradient.iter_mut().zip(self.summed) {
+                *value += if member { multiplier } else { 0.0 };
+            }
+            self.in_box(&gradient)
+        };
+        let (mut low, mut high) = (0.0, self.gradient.amax().max(f64::MIN_POSITIVE));
+        while self.summed_part(&tilted(high)?) > self.sum_limit {
+            if !high.is_finite() {
+                return None;
+            }
+            low = high;
+            high *= 4.0;
+        }
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (low + high);
+            if middle <= low || middle >= high {
+                break;
+            }
+            if self.summed_part(&tilted(middle)?) > self.sum_limit {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        tilted(high)
+    }
+
+    fn summed_part(&self, step: &DVector<f64>) -> f64 {
+        step.iter().zip(self.summed).filter(|(_, member)| **member).map(|(value, _)| value).sum()
+    }
+
+    /// The minimiser in the box alone.
+    fn in_box(&self, gradient: &DVector<f64>) -> Option<DVector<f64>> {
+        let n = gradient.len();
+        let mut step = DVector::zeros(n);
+        // A variable that stands at a bound it is pushed against starts fixed.
+        let mut fixed: Vec<bool> = (0..n)
+            .map(|i| {
+                (self.lower[i] >= 0.0 && gradient[i] > 0.0) || (self.upper[i] <= 0.0 && gradient[i] < 0.0)
+            })
+            .collect();
+        for _ in 0..10 * (n + 1) {
+            let goal = self.free_minimum(gradient, &step, &fixed)?;
+            let (mut share, mut blocking) = (1.0, None);
+            for i in (0..n).filter(|&i| !fixed[i]) {
+                let bound = if goal[i] > self.upper[i] {
+                    self.upper[i]
+                } else if goal[i] < self.lower[i] {
+                    self.lower[i]
+                } else {
+                    continue;
+                };
+                let reach = (bound - step[i]) / (goal[i] - step[i]);
+                if reach < share || blocking.is_none() {
+                    (share, blocking) = (reach.clamp(0.0, 1.0), Some((i, bound)));
+                }
+            }
+            for i in (0..n).filter(|&i| !fixed[i]) {
+                step[i] += share * (goal[i] - step[i]);
+            }
+            if let Some((i, bound)) = blocking {
+                step[i] = bound;
+                fixed[i] = true;
+                continue;
+            }
+            let slope = self.hessian * &step + gradient;
+            let release = (0..n)
+                .filter(|&i| fixed[i])
+                .map(|i| (i, if step[i] <= self.lower[i] { -slope[i] } else { slope[i] }))
+                .filter(|&(i, gain)| gain > 0.0 && self.lower[i] < self.upper[i])
+                .max_by(|a, b| a.1.total_cmp(&b.1));
+            match release {
+                Some((i, _)) => fixed[i] = false,
+                None => return Some(step),
+            }
+        }
+        Some(step)
+    }
+
+    /// Minimum over the free variables with the others held where they are.
+    fn free_minimum(
+        &self,
+        gradient: &DVector<f64>,
+        held: &DVector<f64>,
+        fixed: &[bool],
+    ) -> Option<DVector<f64>> {
+        let free: Vec<usize> = (0..fixed.len()).filter(|&i| !fixed[i]).collect();
+        let mut goal = held.clone();
+        if free.is_empty() {
+            return Some(goal);
+        }
+        let matrix = DMatrix::from_fn(free.len(), free.len(), |i, j| self.hessian[(free[i], free[j])]);
+        let right = DVector::from_fn(free.len(), |i, _| {
+            let pull: f64 =
+                (0..fixed.len()).filter(|&j| fixed[j]).map(|j| self.hessian[(free[i], j)] * held[j]).sum();
+            -gradient[free[i]] - pull
+        });
+        let solution = Cholesky::new(matrix)?.solve(&right);
+        for (i, value) in free.iter().zip(solution.iter()) {
+            goal[*i] = *value;
+        }
+        Some(goal)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn solve(lower: &[f64], upper: &[f64], sum_limit: f64) -> Vec<f64> {
+        // ½(p₁² + 2p₂²) + p₁p₂/2 − p₁ − p₂: free minimum at (6/7, 2/7).
+        let hessian = DMatrix::from_row_slice(2, 2, &[1.0, 0.5, 0.5, 2.0]);
+        let gradient = DVector::from_row_slice(&[-1.0, -1.0]);
+        let summed = [true, true];
+        let step =
+            BoundedStep { hessian: &hessian, gradient: &gradient, lower, upper, summed: &summed, sum_limit };
+        step.solve().unwrap().as_slice().to_vec()
+    }
+
+    #[test]
+    fn free_bounded_and_summed_minima() {
+        let close = |a: &[f64], b: [f64; 2]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-14);
+        assert!(close(&solve(&[-9.0; 2], &[9.0; 2], 9.0), [6.0 / 7.0, 2.0 / 7.0]));
+        // p₁ ≤ ½: then 2p₂ = 1 − ¼.
+        assert!(close(&solve(&[-9.0; 2], &[0.5, 9.0], 9.0), [0.5, 0.375]));
+        // p₁ + p₂ = ½: Lagrange gives p₁ = ⅜ , p₂ = ⅛ (1 − p₁ − p₂/2 = 1 − p₁/2 − 2p₂).
+        assert!(close(&solve(&[-9.0; 2], &[9.0; 2], 0.5), [0.375, 0.125]));
+        assert!(close(&solve(&[0.0; 2], &[0.0; 2], 9.0), [0.0, 0.0]));
+    }
+}
