@@ -6,6 +6,7 @@
 
 pub mod detection;
 pub mod local;
+pub mod map;
 pub mod nearest;
 mod step;
 

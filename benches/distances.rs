@@ -1,0 +1,64 @@
+//! How long a distance takes: one pair, a map over temperature and lighting, nearest states.
+//!
+//! `cargo bench --bench distances`. The cases are those a NumPy user would vectorise; the first includes
+//! everything (Planck, scores, orthogonalisation), with temperature and lighting unknown over 536 bands.
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use hadar::fisher::{Nuisance, Unknowns};
+use hadar::identifiability::local::LocalSolver;
+use hadar::identifiability::map::MapScene;
+use hadar::identifiability::nearest::{NearestSolver, StateRange};
+use hadar::scene::{EnvironmentObject, Surroundings};
+use hadar::spectrum::Bands;
+use std::hint::black_box;
+
+fn aluminium(bands: &Bands) -> Vec<f64> {
+    let t = |nu: f64| (nu - 985.0) / 265.0;
+    bands.nodes_cm1().iter().map(|&nu| 0.49287 - 0.0782 * t(nu) + 0.00892 * t(nu) * t(nu)).collect()
+}
+
+fn distances(criterion: &mut Criterion) {
+    let bands = Bands::uniform(715.0, 1250.0, 1.0).expect("valid bands");
+    let object = EnvironmentObject { temperature_k: 293.15, emissivity: None };
+    let surroundings = Surroundings::new(bands.nodes_cm1(), vec![object]).expect("valid surroundings");
+    let (skin, robot) = (vec![0.95; bands.len()], aluminium(&bands));
+    let unknowns = Unknowns::new([Nuisance::Temperature, Nuisance::Lighting]).expect("distinct");
+    let mut state = surroundings.state(310.15, &[0.5]).expect("valid state");
+
+    let mut solver = LocalSolver::new(&bands, &surroundings, unknowns.clone());
+    let mut flip = false;
+    criterion.bench_function("local distance, one pair, 536 bands", |bencher| {
+        bencher.iter(|| {
+            // Another temperature every time: nothing may be taken from the call before.
+            flip = !flip;
+            state.temperature_k = if flip { 310.15 } else { 311.15 };
+            solver.per_photon(black_box(&skin), black_box(&robot), &state, f64::INFINITY)
+        });
+    });
+    state.temperature_k = 310.15;
+
+    let mut nearest = NearestSolver::new(&bands, &surroundings, unknowns.clone(), StateRange::default());
+    criterion.bench_function("nearest distance, one pair, 536 bands", |bencher| {
+        bencher.iter(|| nearest.per_photon(black_box(&skin), black_box(&robot), &state, f64::INFINITY));
+    });
+
+    let scene = MapScene {
+        bands: &bands,
+        surroundings: &surroundings,
+        unknowns: &unknowns,
+        emissivity: &skin,
+        alternative: &robot,
+        state: &state,
+    };
+    let temperatures: Vec<f64> = (0..300).map(|i| 280.0 + 60.0 * f64::from(i) / 299.0).collect();
+    let lightings: Vec<f64> = (0..300).map(|i| 0.01 + 0.98 * f64::from(i) / 299.0).collect();
+    let mut group = criterion.benchmark_group("maps");
+    group.sample_size(20);
+    group.bench_function("local distance, 300 x 300 map", |bencher| {
+        bencher.iter(|| scene.local(black_box(&temperatures), &lightings));
+    });
+    group.finish();
+}
+
+criterion_group!(benches, distances);
+criterion_main!(benches);

@@ -1,0 +1,98 @@
+//! Distances over a grid of target temperature and lighting (the paper's Fig. 3c).
+//!
+//! Rows run over T, columns over the lighting factor of the first environment object; what depends on T
+//! alone is computed once per row. Rows are spread over the threads of the pool; the result does not
+//! depend on their number.
+
+use super::local::LocalSolver;
+use super::nearest::{NearestSolver, StateRange};
+use crate::error::Result;
+use crate::fisher::Unknowns;
+use crate::scene::{State, Surroundings};
+use crate::spectrum::Bands;
+use rayon::prelude::*;
+
+/// The pair of materials and everything around it that stays the same over a map.
+#[derive(Debug, Clone)]
+pub struct MapScene<'a> {
+    /// Bands.
+    pub bands: &'a Bands,
+    /// Surroundings.
+    pub surroundings: &'a Surroundings,
+    /// Unknowns.
+    pub unknowns: &'a Unknowns,
+    /// Emissivity of the target at the nodes.
+    pub emissivity: &'a [f64],
+    /// Emissivity of the alternative at the nodes.
+    pub alternative: &'a [f64],
+    /// The lighting of the other environment objects, and everything else of the state.
+    pub state: &'a State,
+}
+
+/// Local distance per √photon and ΣS (photons s⁻¹ m⁻² sr⁻¹) at one point of a map.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MapPoint {
+    /// Distance per √photon; 0 where nothing can be told apart.
+    pub distance: f64,
+    /// Photon radiance of the target.
+    pub photon_radiance: f64,
+}
+
+impl MapScene<'_> {
+    fn at(&self, temperature_k: f64, lighting: f64) -> State {
+        let mut state = State { temperature_k, ..self.state.clone() };
+        if let Some(first) = state.lighting.first_mut() {
+            *first = lighting;
+        }
+        state
+    }
+
+    /// Local distances, row-major [temperature][lighting].
+    ///
+    /// # Errors
+    /// As [`LocalSolver::per_photon`], at the first point that fails.
+    pub fn local(&self, temperatures_k: &[f64], lightings: &[f64]) -> Result<Vec<MapPoint>> {
+        let solver = || LocalSolver::new(self.bands, self.surroundings, self.unknowns.clone());
+        let rows: Result<Vec<Vec<MapPoint>>> = temperatures_k
+            .par_iter()
+            .map_init(solver, |solver, &temperature_k| {
+                let mut state = self.at(temperature_k, 0.0);
+                lightings
+                    .iter()
+                    .map(|&lighting| {
+                        if let Some(first) = state.lighting.first_mut() {
+                            *first = lighting;
+                        }
+                        let local =
+                            solver.per_photon(self.emissivity, self.alternative, &state, f64::INFINITY)?;
+                        Ok(MapPoint { distance: local.distance, photon_radiance: local.photon_radiance })
+                    })
+                    .collect()
+            })
+            .collect();
+        rows.map(|rows| rows.concat())
+    }
+
+    /// Nearest distances, row-major [temperature][lighting].
+    ///
+    /// # Errors
+    /// As [`NearestSolver::per_photon`], at the first point that fails.
+    pub fn nearest(&self, range: StateRange, temperatures_k: &[f64], lightings: &[f64]) -> Result<Vec<f64>> {
+        let solver = || NearestSolver::new(self.bands, self.surroundings, self.unknowns.clone(), range);
+        let rows: Result<Vec<Vec<f64>>> = temperatures_k
+            .par_iter()
+            .map_init(solver, |solver, &temperature_k| {
+                lightings
+                    .iter()
+                    .map(|&lighting| {
+                        let state = self.at(temperature_k, lighting);
+                        let nearest =
+                            solver.per_photon(self.emissivity, self.alternative, &state, f64::INFINITY)?;
+                        Ok(nearest.distance)
+                    })
+                    .collect()
+            })
+            .collect();
+        rows.map(|rows| rows.concat())
+    }
+}
