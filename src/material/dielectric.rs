@@ -43,7 +43,7 @@ impl Dielectric {
     /// Complex refractive index at a wavenumber in cm⁻¹.
     ///
     /// # Errors
-    /// Outside the table's rows.
+    /// Outside the table's rows; a model that would amplify.
     pub(super) fn index(&self, wavenumber_cm1: f64) -> Result<Complex<f64>> {
         let permittivity = match self {
             Self::Constants(OpticalConstants(table)) => {
@@ -63,6 +63,8 @@ impl Dielectric {
             Self::Factorised(factorised) => factorised.permittivity(wavenumber_cm1),
             Self::Gaussian(gaussian) => gaussian.permittivity(wavenumber_cm1),
         };
+        // with unequal dampings a factorised model can have Im ε < 0, which no passive medium has
+        check::non_negative("imaginary part of the permittivity", permittivity.im, "")?;
         Ok(square_root(permittivity))
     }
 
@@ -75,7 +77,7 @@ impl Dielectric {
     }
 }
 
-/// The root with n ≥ 0. The smaller of n and k comes from the imaginary part, so that neither loses
+/// The root with n ≥ 0 and k ≥ 0 of a number with Im ≥ 0. The smaller of n and k comes from the imaginary part, so that neither loses
 /// digits to the other (a metal has k ≫ n, a window n ≫ k).
 fn square_root(permittivity: Complex<f64>) -> Complex<f64> {
     let Complex { re, im } = permittivity;
@@ -85,7 +87,7 @@ fn square_root(permittivity: Complex<f64>) -> Complex<f64> {
     } else if re >= 0.0 {
         Complex::new(larger, im / (2.0 * larger))
     } else {
-        Complex::new(im.abs() / (2.0 * larger), larger.copysign(im))
+        Complex::new(im / (2.0 * larger), larger)
     }
 }
 

@@ -161,11 +161,14 @@ impl Model {
     /// Emissivity at one wavenumber in cm⁻¹, not yet checked to lie in [0, 1].
     ///
     /// # Errors
-    /// Outside a table, or next to a row whose emissivity is not between 0 and 1.
+    /// Outside a table, next to a row whose emissivity is not between 0 and 1, or where a polynomial leaves [0, 1].
     pub(super) fn emissivity(&self, wavenumber_cm1: f64) -> Result<f64> {
         match self {
             Self::Constant(emissivity) => Ok(*emissivity),
-            Self::Polynomial(polynomial) => Ok(polynomial.at(wavenumber_cm1)),
+            Self::Polynomial(polynomial) => check::unit_interval(
+                &format!("polynomial at {wavenumber_cm1} cm^-1"),
+                polynomial.at(wavenumber_cm1),
+            ),
             Self::Table(table) => tabulated(table, wavenumber_cm1),
             Self::HalfSpace(medium) => Ok(fresnel::half_space(medium.index(wavenumber_cm1)?)),
             Self::Film { film, thickness_um, substrate } => {

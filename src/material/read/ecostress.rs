@@ -150,8 +150,7 @@ fn table(rows: &[(usize, f64, f64)]) -> Result<Table<1>> {
     let emissivities: Vec<(f64, [f64; 1])> = wavenumbers
         .into_iter()
         .zip(rows)
-        // in percent first, so that a reflectance of 5.52 % is as near to 0.9448 as it can be
-        .map(|(wavenumber, (_, _, percent))| (wavenumber, [(100.0 - percent) / 100.0]))
+        .map(|(wavenumber, (_, _, percent))| (wavenumber, [1.0 - percent / 100.0]))
         .collect();
     Table::new(&emissivities)
 }
