@@ -165,10 +165,9 @@ impl Model {
     pub(super) fn emissivity(&self, wavenumber_cm1: f64) -> Result<f64> {
         match self {
             Self::Constant(emissivity) => Ok(*emissivity),
-            Self::Polynomial(polynomial) => check::unit_interval(
-                &format!("polynomial at {wavenumber_cm1} cm^-1"),
-                polynomial.at(wavenumber_cm1),
-            ),
+            Self::Polynomial(polynomial) => in_unit_interval(polynomial.at(wavenumber_cm1), || {
+                format!("polynomial at {wavenumber_cm1} cm^-1")
+            }),
             Self::Table(table) => tabulated(table, wavenumber_cm1),
             Self::HalfSpace(medium) => Ok(fresnel::half_space(medium.index(wavenumber_cm1)?)),
             Self::Film { film, thickness_um, substrate } => {
@@ -193,9 +192,17 @@ impl Model {
 fn tabulated(table: &Table<1>, wavenumber_cm1: f64) -> Result<f64> {
     let outside = || Error::out_of_range("wavenumber", wavenumber_cm1, "cm^-1", "within the rows");
     for (row_cm1, [emissivity]) in table.used_rows(wavenumber_cm1).ok_or_else(outside)? {
-        check::unit_interval(&format!("emissivity of the row at {row_cm1} cm^-1"), emissivity)?;
+        in_unit_interval(emissivity, || format!("emissivity of the row at {row_cm1} cm^-1"))?;
     }
     table.at(wavenumber_cm1).map(|[emissivity]| emissivity).ok_or_else(outside)
+}
+
+/// The emissivity, if it lies in [0, 1]; the name is only made for the error.
+fn in_unit_interval(emissivity: f64, name: impl Fn() -> String) -> Result<f64> {
+    if (0.0..=1.0).contains(&emissivity) {
+        return Ok(emissivity);
+    }
+    check::unit_interval(&name(), emissivity)
 }
 
 fn medium_range(medium: &Dielectric) -> Range {
