@@ -1,0 +1,230 @@
+//! Named materials: the embedded ones, and a user's own from a directory or file.
+//!
+//! A user's material replaces one of the same name, with a warning. Where several files of one
+//! directory define the same name, each is kept as `NAME@FILE`, and the bare name is an error that lists them.
+
+use super::manifest::{self, Surroundings};
+use super::read::{self, Content};
+use super::{Material, embedded};
+use crate::error::{Error, Result};
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// The name of a manifest within a directory.
+const MANIFEST: &str = "manifest.toml";
+
+/// Materials by name.
+///
+/// ```
+/// use hadar::material::Library;
+/// let library = Library::embedded()?;
+/// assert!(library.iter().count() >= 30);
+/// let error = library.get("aluminum").unwrap_err().to_string();
+/// assert!(error.contains("`aluminium"), "{error}");
+/// # Ok::<(), hadar::Error>(())
+/// ```
+#[derive(Debug, Clone, Default)]
+pub struct Library {
+    materials: BTreeMap<String, Material>,
+    ambiguous: BTreeMap<String, Vec<String>>,
+    warnings: Vec<String>,
+}
+
+impl Library {
+    /// A library without materials.
+    #[must_use]
+    pub fn empty() -> Self {
+        Self::default()
+    }
+
+    /// The materials that come with the crate: `spectra/manifest.toml`.
+    ///
+    /// # Errors
+    /// None that a release can have: the embedded data are tested.
+    pub fn embedded() -> Result<Self> {
+        let mut library = Self::empty();
+        let file = |name: &str| {
+            let text = embedded::FILES.iter().find(|(path, _)| *path == name).map(|(_, text)| *text);
+            text.map(Cow::Borrowed).ok_or_else(|| {
+                Error::unknown_name("embedded file", name, embedded::FILES.iter().map(|(path, _)| *path))
+            })
+        };
+        let path = Path::new("spectra/manifest.toml");
+        for material in library.manifest(embedded::MANIFEST, path, &file)? {
+            library.materials.insert(material.name().to_owned(), material);
+        }
+        Ok(library)
+    }
+
+    /// Adds the materials of a directory: those of its `manifest.toml` if it has one, else those of all its
+    /// `.csv` and `.txt` files. Files that hold no emissivity (transmittance, notes) are passed over with a warning.
+    ///
+    /// # Errors
+    /// A directory that cannot be read or holds no material; a file that is wrong (see [`read::from_file`]).
+    pub fn add_directory(&mut self, directory: &Path) -> Result<()> {
+        let path = directory.join(MANIFEST);
+        if path.is_file() {
+            return self.add_manifest(&path, directory);
+        }
+        let mut sources = Vec::new();
+        for file in spectra_in(directory)? {
+            match read::content_of_file(&file)? {
+                Content::Materials(materials) => sources.push((read::stem(&file), materials)),
+                Content::NoEmissivity(reason) => self.warnings.push(format!("passed over: {reason}")),
+            }
+        }
+        if sources.is_empty() {
+            let instead = "put .csv or .txt spectra or a manifest.toml into it";
+            return Err(Error::malformed("the directory holds no spectra", instead).in_file(directory));
+        }
+        self.add_sources(sources).map_err(|error| error.in_file(directory))
+    }
+
+    /// Adds the materials of one file: a spectrum, a table of materials, or a manifest (`.toml`).
+    ///
+    /// # Errors
+    /// As [`read::from_file`].
+    pub fn add_file(&mut self, path: &Path) -> Result<()> {
+        if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml")) {
+            return self.add_manifest(path, path.parent().unwrap_or(Path::new("")));
+        }
+        let materials = read::from_file(path)?;
+        self.add_sources(vec![(read::stem(path), materials)]).map_err(|error| error.in_file(path))
+    }
+
+    /// Adds a directory or a file, whichever it is.
+    ///
+    /// # Errors
+    /// As [`Library::add_directory`] and [`Library::add_file`].
+    pub fn add_path(&mut self, path: &Path) -> Result<()> {
+        if path.is_dir() { self.add_directory(path) } else { self.add_file(path) }
+    }
+
+    /// Adds one material. It replaces one of the same name, with a warning.
+    pub fn add(&mut self, material: Material) {
+        let name = material.name().to_owned();
+        self.ambiguous.remove(&name);
+        if self.materials.contains_key(&name) {
+            let source = &material.provenance().source;
+            self.warnings.push(format!("the material `{name}` is replaced by that of {source}"));
+        }
+        self.materials.insert(name, material);
+    }
+
+    /// The material of a name.
+    ///
+    /// # Errors
+    /// An unknown name, with the nearest ones; a name that several files define, with the qualified names.
+    pub fn get(&self, name: &str) -> Result<&Material> {
+        if let Some(qualified) = self.ambiguous.get(name) {
+            return Err(Error::malformed(
+                format!("the material `{name}` is defined by {} files", qualified.len()),
+                format!("write one of `{}`", qualified.join("`, `")),
+            ));
+        }
+        self.materials.get(name).ok_or_else(|| Error::unknown_name("material", name, self.names()))
+    }
+
+    /// All materials, in the order of their names.
+    pub fn iter(&self) -> impl Iterator<Item = &Material> {
+        self.materials.values()
+    }
+
+    /// All names, in order.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.materials.keys().map(String::as_str)
+    }
+
+    /// What was replaced or passed over while adding.
+    #[must_use]
+    pub fn warnings(&self) -> &[String] {
+        &self.warnings
+    }
+
+    fn add_manifest(&mut self, path: &Path, directory: &Path) -> Result<()> {
+        let text = read::text_of_file(path, "read the manifest")?;
+        let file = |name: &str| {
+            read::text_of_file(&directory.join(name), "read a file of the manifest").map(Cow::Owned)
+        };
+        for material in self.manifest(&text, path, &file)? {
+            self.add(material);
+        }
+        Ok(())
+    }
+
+    fn manifest(
+        &self,
+        text: &str,
+        path: &Path,
+        file: &dyn Fn(&str) -> Result<Cow<'static, str>>,
+    ) -> Result<Vec<Material>> {
+        let known = |name: &str| self.get(name).map(|material| material.model.clone());
+        manifest::parse(text, path, &Surroundings { file, known: &known })
+    }
+
+    /// Adds the materials of files; names that more than one of them defines are qualified with the file's.
+    fn add_sources(&mut self, sources: Vec<(String, Vec<Material>)>) -> Result<()> {
+        let mut files_of: BTreeMap<String, Vec<String>> = BTreeMap::new();
+        for (stem, materials) in &sources {
+            for material in materials {
+                files_of.entry(material.name().to_owned()).or_default().push(stem.clone());
+            }
+        }
+        files_of.retain(|_, files| files.len() > 1);
+        for (name, files) in &mut files_of {
+            files.sort();
+            for pair in files.windows(2) {
+                if let [a, b] = pair
+                    && a == b
+                {
+                    return Err(Error::malformed(
+                        format!("two files called `{a}` define the material `{name}`"),
+                        "rename one of them",
+                    ));
+                }
+            }
+        }
+        for (stem, materials) in sources {
+            for material in materials {
+                if files_of.contains_key(material.name()) {
+                    let qualified = format!("{}@{stem}", material.name());
+                    self.add(material.with_name(qualified));
+                } else {
+                    self.add(material);
+                }
+            }
+        }
+        for (name, files) in files_of {
+            let qualified = files.iter().map(|stem| format!("{name}@{stem}")).collect::<Vec<_>>();
+            if self.materials.remove(&name).is_some() {
+                let listed = qualified.join("`, `");
+                self.warnings.push(format!("the material `{name}` is replaced by `{listed}`"));
+            }
+            self.ambiguous.insert(name, qualified);
+        }
+        Ok(())
+    }
+}
+
+/// The `.csv` and `.txt` files of a directory, in the order of their names.
+fn spectra_in(directory: &Path) -> Result<Vec<PathBuf>> {
+    let failed = |error: std::io::Error| match error.kind() {
+        std::io::ErrorKind::NotFound => {
+            Error::file("read the library", directory, "there is no such directory; check the name")
+        }
+        _ => Error::file("read the library", directory, error),
+    };
+    let mut files = Vec::new();
+    for entry in std::fs::read_dir(directory).map_err(failed)? {
+        let path = entry.map_err(failed)?.path();
+        let known = |extension: &std::ffi::OsStr| {
+            extension.eq_ignore_ascii_case("csv") || extension.eq_ignore_ascii_case("txt")
+        };
+        if path.is_file() && path.extension().is_some_and(known) {
+            files.push(path);
+        }
+    }
+    files.sort();
+    Ok(files)
+}

@@ -1,0 +1,262 @@
+//! The manifest of a library: one `[[material]]` of a TOML file for each material.
+//!
+//! ```toml
+//! version = 1
+//!
+//! [[material]]
+//! name = "brass-rough"
+//! description = "sand-blasted brass"      # this and the next five may be left out
+//! category = "metal"
+//! basis = "model surface"
+//! source = "…"
+//! licence = "…"
+//! note = "…"
+//! range_cm1 = [690.0, 1362.0]             # only where the model is vouched for in a narrower range than it has
+//! model = { cavity = { area_ratio = 6.0, of = { half-space = { nk = "nk/brass.csv" } } } }
+//! ```
+//!
+//! A model is one of `constant = e`, `polynomial = {…}`, `table = "file.csv"`, `half-space = medium`,
+//! `film = { film = medium, thickness_um, substrate = medium }`, `slab = { medium, thickness_um }`,
+//! `cavity = { area_ratio, of = model }`, `mixture = [{ parts, of = model }, …]`, `material = "name"` (one
+//! further up, or of a library added before). A medium is one of `nk = "file.csv"`, `drude`, `lorentz`,
+//! `factorised`, `gaussian`. Files are sought beside the manifest.
+
+use super::dielectric::Dielectric;
+use super::gaussian::Gaussian;
+use super::model::{Model, Polynomial};
+use super::oscillator::{Drude, Factorised, Lorentz};
+use super::provenance::{Basis, Provenance};
+use super::{Material, read};
+use crate::error::{Error, Result};
+use serde::Deserialize;
+use std::borrow::Cow;
+use std::path::Path;
+use std::sync::Arc;
+
+/// The version of the format that this reads.
+const VERSION: u32 = 1;
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Manifest {
+    version: u32,
+    #[serde(default)]
+    material: Vec<Entry>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Entry {
+    name: String,
+    #[serde(default)]
+    description: String,
+    #[serde(default = "user")]
+    category: String,
+    #[serde(default = "user_file")]
+    basis: Basis,
+    #[serde(default)]
+    source: String,
+    #[serde(default)]
+    licence: String,
+    #[serde(default)]
+    note: String,
+    range_cm1: Option<[f64; 2]>,
+    model: ModelEntry,
+}
+
+fn user() -> String {
+    "user".to_owned()
+}
+
+fn user_file() -> Basis {
+    Basis::UserFile
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum ModelEntry {
+    Constant(f64),
+    Polynomial(Polynomial),
+    Table(String),
+    HalfSpace(Medium),
+    Film(FilmEntry),
+    Slab(SlabEntry),
+    Cavity(CavityEntry),
+    Mixture(Vec<PartEntry>),
+    Material(String),
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FilmEntry {
+    film: Medium,
+    thickness_um: f64,
+    substrate: Medium,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SlabEntry {
+    medium: Medium,
+    thickness_um: f64,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct CavityEntry {
+    area_ratio: f64,
+    of: Box<ModelEntry>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PartEntry {
+    parts: f64,
+    of: ModelEntry,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum Medium {
+    Nk(String),
+    Drude(Drude),
+    Lorentz(Lorentz),
+    Factorised(Factorised),
+    Gaussian(Gaussian),
+}
+
+/// Where a manifest's files and earlier materials come from.
+pub(super) struct Surroundings<'a> {
+    /// The text of a file named in the manifest.
+    pub(super) file: &'a dyn Fn(&str) -> Result<Cow<'static, str>>,
+    /// The model of a material of a library added before.
+    pub(super) known: &'a dyn Fn(&str) -> Result<Arc<Model>>,
+}
+
+/// Reads a manifest; `path` is what errors call it.
+///
+/// # Errors
+/// TOML or keys that are wrong, another version, a missing file or material, a parameter out of range; each
+/// with the line or the material it is in.
+pub(super) fn parse(text: &str, path: &Path, around: &Surroundings<'_>) -> Result<Vec<Material>> {
+    let manifest: Manifest = toml::from_str(text).map_err(|error| syntax(text, &error).in_file(path))?;
+    if manifest.version != VERSION {
+        return Err(Error::malformed(
+            format!("version {} of the manifest format", manifest.version),
+            format!("write version = {VERSION}"),
+        )
+        .for_key("version")
+        .in_file(path));
+    }
+    let mut materials: Vec<Material> = Vec::with_capacity(manifest.material.len());
+    for entry in manifest.material {
+        let name = entry.name.clone();
+        let built = build(entry, &materials, around)
+            .map_err(|error| error.for_key(format!("material `{name}`")).in_file(path))?;
+        materials.push(built);
+    }
+    Ok(materials)
+}
+
+/// A TOML error on one line, with its place.
+fn syntax(text: &str, error: &toml::de::Error) -> Error {
+    let message = error.message().lines().collect::<Vec<_>>().join(", ");
+    let wrong = Error::malformed(message, "see the keys of a manifest in spectra/README.md");
+    match error.span().and_then(|span| text.get(..span.start)) {
+        Some(before) => wrong.on_line(before.matches('\n').count() + 1),
+        None => wrong,
+    }
+}
+
+fn build(entry: Entry, earlier: &[Material], around: &Surroundings<'_>) -> Result<Material> {
+    if entry.name != read::kebab_case(&entry.name) || entry.name.is_empty() {
+        return Err(Error::malformed(
+            format!("the name `{}` is not in kebab-case", entry.name),
+            format!("write `{}`", read::kebab_case(&entry.name)),
+        ));
+    }
+    if earlier.iter().any(|material| material.name() == entry.name) {
+        return Err(Error::malformed("this name is there twice", "give every material its own name"));
+    }
+    let builder = Builder { earlier, around };
+    let mut model = builder.model(entry.model)?;
+    if let Some([low, high]) = entry.range_cm1 {
+        model = Arc::new(Model::within(low, high, model)?);
+    }
+    Ok(Material {
+        name: entry.name,
+        provenance: Provenance {
+            description: entry.description,
+            category: entry.category,
+            basis: entry.basis,
+            source: entry.source,
+            licence: entry.licence,
+            note: entry.note,
+        },
+        model,
+        extrapolation: None,
+        warnings: Vec::new(),
+    })
+}
+
+struct Builder<'a> {
+    earlier: &'a [Material],
+    around: &'a Surroundings<'a>,
+}
+
+impl Builder<'_> {
+    fn model(&self, entry: ModelEntry) -> Result<Arc<Model>> {
+        let model = match entry {
+            ModelEntry::Constant(emissivity) => Model::constant(emissivity)?,
+            ModelEntry::Polynomial(polynomial) => Model::polynomial(polynomial)?,
+            ModelEntry::Table(file) => {
+                let materials = read::from_text(&(self.around.file)(&file)?, Path::new(&file))?;
+                match materials.as_slice() {
+                    [one] => return Ok(one.model.clone()),
+                    many => {
+                        return Err(Error::malformed(
+                            format!("{file} holds {} materials", many.len()),
+                            "name a file with two columns",
+                        ));
+                    }
+                }
+            }
+            ModelEntry::HalfSpace(medium) => Model::HalfSpace(self.medium(medium)?),
+            ModelEntry::Film(FilmEntry { film, thickness_um, substrate }) => {
+                Model::film(self.medium(film)?, thickness_um, self.medium(substrate)?)?
+            }
+            ModelEntry::Slab(SlabEntry { medium, thickness_um }) => {
+                Model::slab(self.medium(medium)?, thickness_um)?
+            }
+            ModelEntry::Cavity(CavityEntry { area_ratio, of }) => {
+                Model::cavity(area_ratio, self.model(*of)?)?
+            }
+            ModelEntry::Mixture(parts) => Model::mean(
+                parts
+                    .into_iter()
+                    .map(|PartEntry { parts, of }| Ok((parts, self.model(of)?)))
+                    .collect::<Result<_>>()?,
+            )?,
+            ModelEntry::Material(name) => {
+                return match self.earlier.iter().find(|material| material.name() == name) {
+                    Some(material) => Ok(material.model.clone()),
+                    None => (self.around.known)(&name),
+                };
+            }
+        };
+        Ok(Arc::new(model))
+    }
+
+    fn medium(&self, medium: Medium) -> Result<Dielectric> {
+        Ok(match medium {
+            Medium::Nk(file) => {
+                let text = (self.around.file)(&file)?;
+                Dielectric::Constants(read::optical_constants(&text, Path::new(&file))?)
+            }
+            Medium::Drude(drude) => Dielectric::Drude(drude),
+            Medium::Lorentz(lorentz) => Dielectric::Lorentz(lorentz),
+            Medium::Factorised(factorised) => Dielectric::Factorised(factorised),
+            Medium::Gaussian(gaussian) => Dielectric::Gaussian(gaussian),
+        })
+    }
+}

@@ -1,0 +1,67 @@
+//! How a spectrum is known: what it is, on what basis, from which source, under which licence.
+
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// The kind of knowledge a spectrum rests on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub enum Basis {
+    /// n and k measured and tabulated; the emissivity follows by Fresnel's equations.
+    #[serde(rename = "measured optical constants")]
+    MeasuredOpticalConstants,
+    /// A formula whose parameters were fitted to measurements and published.
+    #[serde(rename = "published model")]
+    PublishedModel,
+    /// One number for all wavenumbers.
+    #[serde(rename = "constant")]
+    Constant,
+    /// A surface put together by hand from others (roughness, area fractions): plausible, not measured.
+    #[serde(rename = "model surface")]
+    ModelSurface,
+    /// A file or rows that the user supplied.
+    #[serde(rename = "user file")]
+    UserFile,
+}
+
+impl fmt::Display for Basis {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::MeasuredOpticalConstants => "measured optical constants",
+            Self::PublishedModel => "published model",
+            Self::Constant => "constant",
+            Self::ModelSurface => "model surface",
+            Self::UserFile => "user file",
+        })
+    }
+}
+
+/// What a material is and how it is known. All fields are one line of text; empty where nothing is known.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Provenance {
+    /// What the surface is.
+    pub description: String,
+    /// Group in lists, e.g. `metal`.
+    pub category: String,
+    /// Kind of knowledge.
+    pub basis: Basis,
+    /// Publication or file.
+    pub source: String,
+    /// Terms under which the numbers may be passed on.
+    pub licence: String,
+    /// Assumptions, and what a user should know before trusting it.
+    pub note: String,
+}
+
+impl Provenance {
+    /// Provenance of something the caller made.
+    pub(super) fn given(basis: Basis, description: &str) -> Self {
+        Self {
+            description: description.to_owned(),
+            category: "user".to_owned(),
+            basis,
+            source: "given by the user".to_owned(),
+            licence: String::new(),
+            note: String::new(),
+        }
+    }
+}

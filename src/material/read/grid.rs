@@ -1,0 +1,86 @@
+//! A CSV file of numbers: comment lines, one header line, rows that all have as many cells as the header.
+
+use crate::error::{Error, Result};
+
+/// What a file should begin with, for messages.
+pub(super) const EXAMPLE: &str = "begin the file with a line such as wavenumber_cm1,emissivity";
+
+/// The header and the numbers, with the line (from 1) that each row stands on.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Grid {
+    pub(super) header: Vec<String>,
+    pub(super) header_line: usize,
+    pub(super) rows: Vec<(usize, Vec<f64>)>,
+}
+
+impl Grid {
+    /// Reads the text of a CSV file.
+    ///
+    /// # Errors
+    /// No header, a row of another length, a cell that is not a finite number.
+    pub(super) fn parse(text: &str) -> Result<Self> {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let mut lines = text
+            .lines()
+            .enumerate()
+            .map(|(index, line)| (index + 1, line.trim()))
+            .filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
+        let Some((header_line, first)) = lines.next() else {
+            return Err(Error::malformed("the file has no rows", EXAMPLE));
+        };
+        let header: Vec<String> = cells(first).map(str::to_owned).collect();
+        check_header(&header, first).map_err(|error| error.on_line(header_line))?;
+        let rows = lines
+            .map(|(line, row)| Ok((line, numbers(row, &header).map_err(|error| error.on_line(line))?)))
+            .collect::<Result<_>>()?;
+        Ok(Self { header, header_line, rows })
+    }
+}
+
+fn cells(line: &str) -> impl Iterator<Item = &str> {
+    line.split(',').map(|cell| cell.trim().trim_matches('"').trim())
+}
+
+fn check_header(header: &[String], line: &str) -> Result<()> {
+    if header.first().is_some_and(|cell| cell.parse::<f64>().is_ok()) {
+        return Err(Error::malformed("there is no header, only numbers", EXAMPLE));
+    }
+    if header.len() < 2 {
+        let shown: String = line.chars().take(40).collect();
+        let instead = if line.contains([';', '\t', ' ']) {
+            "write commas between the columns, as in wavenumber_cm1,emissivity"
+        } else {
+            EXAMPLE
+        };
+        return Err(Error::malformed(format!("`{shown}` is not the header of a spectrum"), instead));
+    }
+    Ok(())
+}
+
+fn numbers(row: &str, header: &[String]) -> Result<Vec<f64>> {
+    let found = cells(row).count();
+    if found != header.len() {
+        return Err(Error::malformed(
+            format!("{found} cells where the header has {}", header.len()),
+            "write one number for every column",
+        ));
+    }
+    cells(row).zip(header).map(|(cell, column)| number(cell).map_err(|error| error.for_key(column))).collect()
+}
+
+/// A finite number.
+pub(super) fn number(cell: &str) -> Result<f64> {
+    match cell.parse::<f64>() {
+        Ok(value) if value.is_finite() => Ok(value),
+        _ if cell.is_empty() => {
+            Err(Error::malformed("the cell is empty", "write a number or delete the row"))
+        }
+        _ => {
+            let shown: String = cell.chars().take(40).collect();
+            Err(Error::malformed(
+                format!("`{shown}` is not a finite number"),
+                "write a number such as 0.95 or delete the row",
+            ))
+        }
+    }
+}

@@ -1,0 +1,65 @@
+//! Writing a material out again: as a CSV that [`super::read`] takes, and as a summary for lists.
+
+use super::{Material, Provenance};
+use crate::error::Result;
+use serde::Serialize;
+use std::fmt::Write;
+
+/// What a list or an import says about a material.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Summary {
+    /// Name.
+    pub name: String,
+    /// What it is and how it is known.
+    pub provenance: Provenance,
+    /// Rows of the tables it is computed from; 0 for a formula.
+    pub rows: usize,
+    /// Wavenumbers between which it is known, cm⁻¹; `None` is everywhere.
+    pub range_cm1: Option<(f64, f64)>,
+    /// What a user should know before trusting it.
+    pub warnings: Vec<String>,
+}
+
+impl Material {
+    /// Name, provenance, rows, range and warnings.
+    #[must_use]
+    pub fn summary(&self) -> Summary {
+        Summary {
+            name: self.name.clone(),
+            provenance: self.provenance.clone(),
+            rows: self.rows(),
+            range_cm1: self.range_cm1(),
+            warnings: self.warnings.clone(),
+        }
+    }
+
+    /// The two-column CSV of the emissivity at wavenumbers in cm⁻¹, with the provenance as comments. Reading it
+    /// back gives every number to the last bit.
+    ///
+    /// # Errors
+    /// As [`Material::emissivity`].
+    pub fn to_csv(&self, wavenumbers_cm1: &[f64]) -> Result<String> {
+        let emissivities = self.emissivity(wavenumbers_cm1)?;
+        let provenance = &self.provenance;
+        let mut text = String::new();
+        let basis = provenance.basis.to_string();
+        for (key, value) in [
+            ("material", &self.name),
+            ("description", &provenance.description),
+            ("basis", &basis),
+            ("source", &provenance.source),
+            ("licence", &provenance.licence),
+            ("note", &provenance.note),
+        ] {
+            if !value.is_empty() {
+                let value = value.lines().collect::<Vec<_>>().join(" ");
+                let _ = writeln!(text, "# {key}: {value}");
+            }
+        }
+        text.push_str("wavenumber_cm1,emissivity\n");
+        for (wavenumber, emissivity) in wavenumbers_cm1.iter().zip(emissivities) {
+            let _ = writeln!(text, "{wavenumber},{emissivity}");
+        }
+        Ok(text)
+    }
+}
