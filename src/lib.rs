@@ -3,6 +3,7 @@
 pub mod error;
 pub mod fisher;
 pub mod identifiability;
+pub mod instrument;
 pub mod material;
 pub mod planck;
 pub mod scenario;

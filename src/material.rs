@@ -47,6 +47,20 @@ pub enum Extrapolation {
     Linear,
 }
 
+impl Extrapolation {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Hold, Self::Linear];
+
+    /// The name in scenario files and manifests.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Hold => "hold",
+            Self::Linear => "linear",
+        }
+    }
+}
+
 /// A surface with a spectral emissivity and where that is known from.
 ///
 /// ```

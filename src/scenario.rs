@@ -13,6 +13,7 @@ use std::path::{Path, PathBuf};
 
 use crate::error::{Place, Result};
 pub use crate::fisher::Nuisance;
+pub use crate::material::Extrapolation;
 
 pub mod bands;
 pub mod camera;
@@ -116,29 +117,6 @@ pub enum MaterialRef {
     Name(String),
     /// Absolute path of a CSV or ECOSTRESS file.
     File(PathBuf),
-}
-
-/// What stands for a spectrum outside its data; without it, leaving the data is an error.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Extrapolation {
-    /// The value of the nearest row.
-    Hold,
-    /// The straight line through the two nearest rows.
-    Linear,
-}
-
-impl Extrapolation {
-    /// Both.
-    pub const ALL: [Self; 2] = [Self::Hold, Self::Linear];
-
-    /// The name in a scenario.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Hold => "hold",
-            Self::Linear => "linear",
-        }
-    }
 }
 
 /// The object that is there (`[target]`).

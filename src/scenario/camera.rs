@@ -2,6 +2,7 @@
 
 use super::section::{ABOVE_ZERO, ABSOLUTE_TEMPERATURE, Entry, FROM_ZERO, Rule, SHARE};
 use crate::error::Result;
+pub use crate::instrument::Readout;
 use crate::units::Dimension;
 
 const F_NUMBER: Rule =
@@ -70,29 +71,6 @@ pub struct CameraSpec {
     pub field_of_view_rad: Option<f64>,
     /// Pixels across the field of view; at least 1.
     pub pixels: Option<u32>,
-}
-
-/// When the bands are exposed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Readout {
-    /// All in the same exposure.
-    Simultaneous,
-    /// One after the other, an exposure each.
-    Sequential,
-}
-
-impl Readout {
-    /// Both.
-    pub const ALL: [Self; 2] = [Self::Simultaneous, Self::Sequential];
-
-    /// The name in a scenario.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Simultaneous => "simultaneous",
-            Self::Sequential => "sequential",
-        }
-    }
 }
 
 impl CameraSpec {
