@@ -6,6 +6,7 @@ pub mod identifiability;
 pub mod instrument;
 pub mod material;
 pub mod planck;
+pub mod policy;
 pub mod scenario;
 pub mod scene;
 mod simd;

@@ -1,7 +1,7 @@
 //! Electronic noise of a band reading, from what data sheets state.
 //!
-//! * NETD: σ = NETD · dN/dT, N the photons of a blackbody at the stated temperature, f-number and optics
-//!   efficiency in all of the detector's spectral range, per exposure;
+//! * NETD: σ = NETD · dN/dT, N the photons of a blackbody at the stated temperature, f-number, pixel and
+//!   optics efficiency in all of the detector's spectral range, per exposure;
 //! * specific detectivity: σ_w = √(A_p Δf)/D* · t/(hcν_w), Δf = 1/(2t) (photon noise-equivalent of the NEP);
 //! * counts: as given.
 //!
@@ -32,6 +32,8 @@ pub enum NoiseSpec {
         f_number: f64,
         /// Optics efficiency with which its photons are counted.
         optics_efficiency: f64,
+        /// Side of the pixel for which it is stated, m.
+        pixel_m: f64,
     },
     /// Specific detectivity D*.
     Detectivity {
@@ -46,10 +48,26 @@ pub enum NoiseSpec {
 }
 
 impl NoiseSpec {
+    /// The same kind of noise with a deviation σ `factor` times as large.
+    #[must_use]
+    pub fn scaled(self, factor: f64) -> Self {
+        match self {
+            Self::None => Self::None,
+            Self::Netd { netd_k, temperature_k, f_number, optics_efficiency, pixel_m } => {
+                Self::Netd { netd_k: netd_k * factor, temperature_k, f_number, optics_efficiency, pixel_m }
+            }
+            Self::Detectivity { detectivity_cm_hz05_w } => {
+                Self::Detectivity { detectivity_cm_hz05_w: detectivity_cm_hz05_w / factor }
+            }
+            Self::Counts { sigma_counts } => Self::Counts { sigma_counts: sigma_counts * factor },
+        }
+    }
+
     pub(super) fn check(&self) -> Result<()> {
         match *self {
             Self::None => {}
-            Self::Netd { netd_k, temperature_k, f_number, optics_efficiency } => {
+            Self::Netd { netd_k, temperature_k, f_number, optics_efficiency, pixel_m } => {
+                check::positive("pixel of the NETD", pixel_m, "m")?;
                 check::positive("netd", netd_k, "K")?;
                 check::positive("netd_temperature", temperature_k, "K")?;
                 check::positive("netd_f_number", f_number, "")?;
@@ -77,10 +95,11 @@ pub(super) fn reading_sigma(camera: &Camera, bands: &Bands) -> Option<Vec<f64>> 
     match camera.noise {
         NoiseSpec::None => None,
         NoiseSpec::Counts { sigma_counts } => Some(vec![sigma_counts; bands.len()]),
-        NoiseSpec::Netd { netd_k, temperature_k, f_number, optics_efficiency } => {
+        NoiseSpec::Netd { netd_k, temperature_k, f_number, optics_efficiency, pixel_m } => {
             let stated = Camera {
                 f_number,
                 optics_efficiency,
+                pixel_m,
                 exposure_s: camera.noise_exposure_s,
                 frames: 1,
                 ..camera.clone()

@@ -1,0 +1,137 @@
+//! Bounds turned into requirements: what a camera must have for a task.
+//!
+//! A task demands a statistical distance d_req. Its photons come from N = Φ·(π/4)·η·t A_p/F² for a far
+//! target (S7), Φ = ΣS the photon radiance, so that d = √(N/(1+γ))·d₀ ≥ d_req reads
+//!
+//! H = t A_p/((1 + γ)F²) ≥ H_req = d_req²/(d₀² Φ π/4)      (lossless optics)
+//!
+//! That inequality is a shortcut: γ spreads the electronic noise over the bands as the photons are, and
+//! takes d₀ as it is without noise. Verdicts and solutions use the exact distance at the camera's noise
+//! instead, re-evaluated at every trial value ([`solve`]), so a flicker floor shows as
+//! 'no exposure is long enough'.
+//!
+//! Source: paper, Methods 'Guiding public policy'; S7, S27, S29; γ = γ₀ + γ₁N.
+
+pub mod solve;
+
+pub use solve::{Quantity, Solution};
+
+use crate::error::{Error, Result};
+use std::f64::consts::FRAC_PI_4;
+
+/// Photons needed for a statistical distance of `required` at a distance d₀ per √photon, shot noise only;
+/// `None` where d₀ is 0 and no number of photons suffices.
+///
+/// ```
+/// let photons = hadar::policy::photons_required(1.0, 8.85216582834686e-4).unwrap();
+/// assert!((photons / 1.276e6 - 1.0).abs() < 1e-3);
+/// ```
+#[must_use]
+pub fn photons_required(required: f64, distance_per_sqrt_photon: f64) -> Option<f64> {
+    let ratio = required / distance_per_sqrt_photon;
+    (distance_per_sqrt_photon > 0.0 && ratio.is_finite()).then(|| ratio * ratio)
+}
+
+/// H_req in m² s for `photons` needed from a scene of photon radiance Φ (photons s⁻¹ m⁻² sr⁻¹).
+#[must_use]
+pub fn hardware_required_m2_s(photons: f64, photon_radiance: f64) -> f64 {
+    photons / (photon_radiance * FRAC_PI_4)
+}
+
+/// The least distance d₀ that a camera with N photons and noise ratio γ resolves: d_req √((1+γ)/N).
+#[must_use]
+pub fn least_distance(required: f64, photons: f64, gamma: f64) -> f64 {
+    required * ((1.0 + gamma) / photons).sqrt()
+}
+
+/// Apparent motion during an exposure in pixels, Δ = v t L/(r θ) (SII E): speed v (m s⁻¹), time t (s), L pixels
+/// across a field of view θ (rad), range r (m).
+#[must_use]
+pub fn motion_blur_pixels(
+    speed_m_s: f64,
+    time_s: f64,
+    pixels: u32,
+    distance_m: f64,
+    field_of_view_rad: f64,
+) -> f64 {
+    speed_m_s * time_s * f64::from(pixels) / (distance_m * field_of_view_rad)
+}
+
+/// Where an increasing function of x crosses zero, to the last few bits of x.
+///
+/// # Errors
+/// An error of `f`, or ends that do not bracket the crossing.
+pub(crate) fn crossing(low: f64, high: f64, mut f: impl FnMut(f64) -> Result<f64>) -> Result<f64> {
+    // Chandrupatla's method: inverse quadratic interpolation where it is safe, else bisection
+    // (Adv. Eng. Softw. 28, 145 (1997), doi:10.1016/S0965-9978(96)00051-8).
+    let (mut a, mut b) = (low, high);
+    let (mut fa, mut fb) = (f(a)?, f(b)?);
+    if fa == 0.0 || fb == 0.0 {
+        return Ok(if fa == 0.0 { a } else { b });
+    }
+    if !(fa < 0.0 && fb > 0.0) {
+        return Err(Error::malformed(
+            "a requirement without a crossing in its range",
+            "report this as a bug",
+        ));
+    }
+    let (mut c, mut fc);
+    let mut share = 0.5;
+    for _ in 0..200 {
+        let x = a + share * (b - a);
+        let fx = f(x)?;
+        if (fx < 0.0) == (fa < 0.0) {
+            (c, fc) = (a, fa);
+        } else {
+            (c, fc, b, fb) = (b, fb, a, fa);
+        }
+        (a, fa) = (x, fx);
+        let (best, f_best) = if fa.abs() < fb.abs() { (a, fa) } else { (b, fb) };
+        let tolerance = 2.0 * f64::EPSILON * best.abs() + f64::MIN_POSITIVE;
+        let share_least = tolerance / (b - a).abs();
+        if share_least > 0.5 || f_best == 0.0 {
+            return Ok(best);
+        }
+        let (xi, phi) = ((a - b) / (c - b), (fa - fb) / (fc - fb));
+        share = if phi * phi < xi && (1.0 - phi) * (1.0 - phi) < 1.0 - xi {
+            fa / (fb - fa) * (fc / (fb - fc)) + (c - a) / (b - a) * (fa / (fc - fa)) * (fb / (fc - fb))
+        } else {
+            0.5
+        };
+        share = share.clamp(share_least, 1.0 - share_least);
+    }
+    Ok(if fa.abs() < fb.abs() { a } else { b })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_inequality_of_the_paper() {
+        // d₀ and Φ of the human-robot scene to 30 digits; the paper prints ≥ 5e-16.
+        let photons = photons_required(1.0, 8.852_165_828_346_861e-4).unwrap();
+        let hardware = hardware_required_m2_s(photons, 3.376_641_989_197_634e21);
+        assert!((hardware / 4.81e-16 - 1.0).abs() < 1e-3, "{hardware}");
+        assert_eq!(photons_required(1.0, 0.0), None);
+        // Literal inputs of the paper for the bolometer: 0.0158 (reproduction of its 0.0078).
+        let least = (hardware / 1.53e-18).sqrt() * 8.852e-4;
+        assert!((least / 0.0157 - 1.0).abs() < 0.01);
+    }
+
+    #[test]
+    fn thirty_miles_per_hour_at_thirty_metres() {
+        let speed = 13.4112 * (25f64.to_radians()).sin();
+        let blur = motion_blur_pixels(speed, 12e-3, 320, 30.0, 50f64.to_radians());
+        assert!((blur / 0.831 - 1.0).abs() < 1e-3, "{blur}");
+    }
+
+    #[test]
+    fn crossings_are_found_to_the_last_bits() {
+        for root in [-3.7, 1e-9, 0.25, 12.0] {
+            let x = crossing(-20.0, 20.0, |x| Ok((x - root).powi(3) + 1e-3 * (x - root))).unwrap();
+            assert!((x - root).abs() <= 1e-15 * root.abs() + 1e-15, "{x} {root}");
+        }
+        assert!(crossing(0.0, 1.0, |x| Ok(x + 1.0)).is_err());
+    }
+}

@@ -1,0 +1,272 @@
+//! One hardware quantity solved for, the others held: the value at which the task is just met.
+//!
+//! The statistical distance d is a monotone function of each quantity; it is evaluated exactly, with the
+//! camera's noise at every trial value, and its crossing with d_req is found in the logarithm of the
+//! quantity to the last bits. What limits a quantity is told as a reason: the flicker floor
+//! (d → d_∞ as t → ∞), shot noise (d at zero electronic noise), or the fastest lens in air.
+
+use super::crossing;
+use crate::error::Result;
+use crate::fisher::Counting;
+use crate::instrument::{Camera, FASTEST_F_NUMBER};
+use crate::spectrum::Bands;
+
+/// Factors between 10⁻³⁰ and 10³⁰ of the camera's own value are searched.
+const LOG_RANGE: f64 = 69.0;
+
+/// A quantity that can be solved for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Quantity {
+    /// Exposure of a frame, s.
+    Exposure,
+    /// Side of the pixel, m.
+    Pixel,
+    /// f-number.
+    FNumber,
+    /// Electronic noise of a band reading, counts at the camera's exposure.
+    Noise,
+    /// Number of averaged frames.
+    Frames,
+}
+
+impl Quantity {
+    /// All of them, in the order of reports.
+    pub const ALL: [Self; 5] = [Self::Exposure, Self::Pixel, Self::FNumber, Self::Noise, Self::Frames];
+
+    /// Key in the JSON, with its unit.
+    #[must_use]
+    pub const fn key(self) -> &'static str {
+        match self {
+            Self::Exposure => "exposure_s",
+            Self::Pixel => "pixel_m",
+            Self::FNumber => "f_number",
+            Self::Noise => "noise_counts",
+            Self::Frames => "frames",
+        }
+    }
+
+    /// Name in a sentence.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Exposure => "exposure",
+            Self::Pixel => "pixel",
+            Self::FNumber => "f-number",
+            Self::Noise => "noise per reading",
+            Self::Frames => "frames",
+        }
+    }
+}
+
+/// The value of a quantity at which the task is just met, or why there is none.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct Solution {
+    /// The value (largest f-number or noise, least of the others); `None` if no value suffices.
+    pub value: Option<f64>,
+    /// The camera's own value.
+    pub camera: f64,
+    /// Statistical distance at that value, or the best that the quantity alone can reach.
+    pub statistical_distance: f64,
+    /// Why no value suffices.
+    pub reason: Option<String>,
+}
+
+/// A camera in front of a task.
+#[derive(Debug, Clone)]
+pub struct Sizing<'a> {
+    /// The camera.
+    pub camera: &'a Camera,
+    /// Bands.
+    pub bands: &'a Bands,
+    /// Distance of the target, m.
+    pub distance_m: Option<f64>,
+    /// Statistical distance d_req that the task demands.
+    pub required: f64,
+}
+
+impl Sizing<'_> {
+    /// Solves for `quantity`; `distance` evaluates the statistical distance at a given counting.
+    ///
+    /// # Errors
+    /// An error of `distance`.
+    pub fn solve(
+        &self,
+        quantity: Quantity,
+        mut distance: impl FnMut(&Counting) -> Result<f64>,
+    ) -> Result<Solution> {
+        let camera = self.value(self.camera, quantity);
+        // d as a function of how much better the quantity is than the camera's, as a logarithm.
+        let mut at = |log: f64| distance(&self.counting(quantity, log.exp()));
+        let mut best = LOG_RANGE;
+        let mut cap = None;
+        if quantity == Quantity::FNumber {
+            best = self.log_of_fastest_lens();
+            cap = Some(format!("no lens in air is faster than f/{FASTEST_F_NUMBER}"));
+        }
+        if quantity == Quantity::Noise && camera == 0.0 {
+            let reached = at(0.0)?;
+            let reason = (reached < self.required).then(|| "the detector has no electronic noise".to_owned());
+            let value = reason.is_none().then_some(0.0);
+            return Ok(Solution { value, camera, statistical_distance: reached, reason });
+        }
+        let ceiling = at(best)?;
+        if ceiling < self.required {
+            let reason = cap.unwrap_or_else(|| match quantity {
+                Quantity::Exposure => {
+                    "flicker noise grows as fast as the signal: no exposure is long enough".into()
+                }
+                Quantity::Frames => {
+                    "flicker noise does not average out: no number of frames is enough".into()
+                }
+                Quantity::Noise => "shot noise alone is too much: no detector is quiet enough".into(),
+                Quantity::Pixel | Quantity::FNumber => "the two cannot be told apart".into(),
+            });
+            return Ok(Solution { value: None, camera, statistical_distance: ceiling, reason: Some(reason) });
+        }
+        if at(-LOG_RANGE)? >= self.required {
+            // Any value does: the pair differs without limit.
+            let value = self.scaled(quantity, (-LOG_RANGE).exp());
+            return Ok(Solution {
+                value: Some(value),
+                camera,
+                statistical_distance: self.required,
+                reason: None,
+            });
+        }
+        let log = crossing(-LOG_RANGE, best, |log| Ok((at(log)? / self.required).ln().max(-1e3)))?;
+        let value = self.scaled(quantity, log.exp());
+        // Whole frames, unless rounding alone is what makes one more of them.
+        let value = if quantity == Quantity::Frames { (value * (1.0 - 1e-9)).ceil().max(1.0) } else { value };
+        let reached = distance(&self.counting(quantity, self.factor(quantity, value)))?;
+        Ok(Solution { value: Some(value), camera, statistical_distance: reached, reason: None })
+    }
+
+    /// The camera with one quantity set to a value.
+    #[must_use]
+    pub fn forward(&self, quantity: Quantity, value: f64) -> Camera {
+        let mut camera = self.camera.clone();
+        match quantity {
+            Quantity::Exposure => camera.exposure_s = value,
+            Quantity::Pixel => camera.pixel_m = value,
+            Quantity::FNumber => camera.f_number = value,
+            Quantity::Noise => {
+                let now = self.value(self.camera, Quantity::Noise);
+                camera.noise = camera.noise.scaled(if now > 0.0 { value / now } else { 0.0 });
+            }
+            // A cast saturates: more frames than fit are as good as endless.
+            Quantity::Frames => camera.frames = value as u32,
+        }
+        camera
+    }
+
+    /// Counting when the quantity is `factor` times better than the camera's.
+    fn counting(&self, quantity: Quantity, factor: f64) -> Counting {
+        if quantity == Quantity::Frames {
+            // Frames act as one longer exposure; in between whole numbers the function is smooth.
+            let exposure_s = self.camera.integration_s() * factor;
+            let long = Camera { exposure_s, frames: 1, ..self.camera.clone() };
+            return long.counting(self.bands, self.distance_m);
+        }
+        self.forward(quantity, self.scaled(quantity, factor)).counting(self.bands, self.distance_m)
+    }
+
+    /// The value that is `factor` times better than the camera's.
+    fn scaled(&self, quantity: Quantity, factor: f64) -> f64 {
+        let now = self.value(self.camera, quantity);
+        match quantity {
+            Quantity::Exposure | Quantity::Pixel | Quantity::Frames => now * factor,
+            Quantity::FNumber | Quantity::Noise => now / factor,
+        }
+    }
+
+    /// How many times better than the camera's a value is.
+    fn factor(&self, quantity: Quantity, value: f64) -> f64 {
+        let now = self.value(self.camera, quantity);
+        match quantity {
+            Quantity::Exposure | Quantity::Pixel | Quantity::Frames => value / now,
+            Quantity::FNumber | Quantity::Noise => now / value,
+        }
+    }
+
+    fn log_of_fastest_lens(&self) -> f64 {
+        (self.camera.f_number / FASTEST_F_NUMBER).ln()
+    }
+
+    fn value(&self, camera: &Camera, quantity: Quantity) -> f64 {
+        match quantity {
+            Quantity::Exposure => camera.exposure_s,
+            Quantity::Pixel => camera.pixel_m,
+            Quantity::FNumber => camera.f_number,
+            Quantity::Frames => f64::from(camera.frames),
+            Quantity::Noise => {
+                let counting = camera.counting(self.bands, self.distance_m);
+                let var: f64 = (0..self.bands.len()).map(|w| counting.var_electronic(w)).sum();
+                (var / self.bands.len() as f64).sqrt()
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::instrument::presets;
+
+    /// d² = N²/(N + σ²)·10⁻⁶ for one band: closed form of every solution.
+    fn one_band(counting: &Counting) -> Result<f64> {
+        let photons = counting.counts_per_radiance * 1e21;
+        Ok(1e-3 * photons / (photons + counting.var_electronic(0)).sqrt())
+    }
+
+    fn sizing<'a>(camera: &'a Camera, bands: &'a Bands, required: f64) -> Sizing<'a> {
+        Sizing { camera, bands, distance_m: Some(30.0), required }
+    }
+
+    #[test]
+    fn every_solution_fed_forward_gives_the_demanded_distance() {
+        let mut camera = presets::get("flir-a325sc").unwrap();
+        camera.flicker_fraction = 0.01;
+        let bands = Bands::from_rows([(900.0, 1.0)]).unwrap();
+        let now = one_band(&camera.counting(&bands, Some(30.0))).unwrap();
+        for required in [0.2 * now, now, 1.3 * now] {
+            let sizing = sizing(&camera, &bands, required);
+            for quantity in Quantity::ALL {
+                let solution = sizing.solve(quantity, one_band).unwrap();
+                let value = solution.value.unwrap_or_else(|| panic!("{quantity:?}: {solution:?}"));
+                let camera = sizing.forward(quantity, value);
+                let reached = one_band(&camera.counting(&bands, Some(30.0))).unwrap();
+                if quantity == Quantity::Frames {
+                    assert!(reached >= required * (1.0 - 1e-9));
+                } else {
+                    assert!((reached / required - 1.0).abs() < 1e-9, "{quantity:?} {reached} {required}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_flicker_floor_is_found_exactly() {
+        let camera = presets::get("flir-a325sc").unwrap();
+        let bands = Bands::from_rows([(900.0, 1.0)]).unwrap();
+        // t → ∞: d → 10⁻³ N/σ_F, σ_F² = φσ² at the stated exposure.
+        let counting = camera.counting(&bands, Some(30.0));
+        let floor = 1e-3 * counting.counts_per_radiance * 1e21 / (0.5 * counting.var_electronic(0)).sqrt();
+        let below = sizing(&camera, &bands, 0.999_999 * floor).solve(Quantity::Exposure, one_band).unwrap();
+        assert!(below.value.is_some());
+        let above = sizing(&camera, &bands, 1.000_001 * floor).solve(Quantity::Exposure, one_band).unwrap();
+        assert!(above.value.is_none() && above.reason.unwrap().contains("flicker"));
+        assert!((above.statistical_distance / floor - 1.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn no_lens_is_faster_than_half() {
+        let camera = presets::get("ideal-pnrd").unwrap();
+        let bands = Bands::from_rows([(900.0, 1.0)]).unwrap();
+        let now = one_band(&camera.counting(&bands, Some(30.0))).unwrap();
+        // d ∝ 1/F for shot noise: f/1.3 → f/0.5 gains 2.6.
+        let solution = sizing(&camera, &bands, 2.7 * now).solve(Quantity::FNumber, one_band).unwrap();
+        assert!(solution.value.is_none() && solution.reason.unwrap().contains("f/0.5"));
+        let solution = sizing(&camera, &bands, 2.0 * now).solve(Quantity::FNumber, one_band).unwrap();
+        assert!((solution.value.unwrap() / 0.65 - 1.0).abs() < 1e-6);
+    }
+}
