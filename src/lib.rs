@@ -2,6 +2,7 @@
 
 pub mod error;
 pub mod fisher;
+mod grid;
 pub mod identifiability;
 pub mod instrument;
 pub mod material;
@@ -11,6 +12,7 @@ pub mod scenario;
 pub mod scene;
 mod simd;
 pub mod spectrum;
+pub mod study;
 mod sum;
 pub mod units;
 

@@ -11,6 +11,7 @@
 
 mod bands;
 mod integrate;
+mod read;
 
 pub use bands::{Band, Bands, FilterCurve};
 pub use integrate::INTEGRATION_TOLERANCE;

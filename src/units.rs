@@ -214,6 +214,14 @@ impl Spectral {
         }
     }
 
+    /// The number on its own axis, cm⁻¹ or µm.
+    #[must_use]
+    pub const fn number(self) -> f64 {
+        match self {
+            Self::Wavenumber(value) | Self::Wavelength(value) => value,
+        }
+    }
+
     /// As a wavenumber, cm⁻¹ (a position, not a step).
     #[must_use]
     pub fn wavenumber_cm1(self) -> f64 {

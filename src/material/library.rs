@@ -143,9 +143,9 @@ impl Library {
     }
 
     fn add_manifest(&mut self, path: &Path, directory: &Path) -> Result<()> {
-        let text = read::text_of_file(path, "read the manifest")?;
+        let text = crate::grid::text_of_file(path, "read the manifest")?;
         let file = |name: &str| {
-            read::text_of_file(&directory.join(name), "read a file of the manifest").map(Cow::Owned)
+            crate::grid::text_of_file(&directory.join(name), "read a file of the manifest").map(Cow::Owned)
         };
         for material in self.manifest(&text, path, &file)? {
             self.add(material);

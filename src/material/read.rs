@@ -11,11 +11,11 @@
 
 mod columns;
 mod ecostress;
-mod grid;
 
 use super::Material;
 use super::dielectric::OpticalConstants;
 use crate::error::{Error, Result};
+use crate::grid::{Grid, text_of_file};
 use std::path::Path;
 
 /// What a file turned out to hold.
@@ -69,7 +69,7 @@ fn content(text: &str, source: &Path) -> Result<Content> {
     let content = if ecostress::is_one(text) {
         ecostress::parse(text, source)
     } else {
-        grid::Grid::parse(text).and_then(|grid| columns::materials(&grid, source)).map(Content::Materials)
+        Grid::parse(text).and_then(|grid| columns::materials(&grid, source)).map(Content::Materials)
     };
     match content {
         Ok(Content::NoEmissivity(error)) => Ok(Content::NoEmissivity(error.in_file(source))),
@@ -79,26 +79,9 @@ fn content(text: &str, source: &Path) -> Result<Content> {
 
 /// Reads the columns `n` and `k`.
 pub(super) fn optical_constants(text: &str, source: &Path) -> Result<OpticalConstants> {
-    grid::Grid::parse(text)
+    Grid::parse(text)
         .and_then(|grid| columns::optical_constants(&grid))
         .map_err(|error| error.in_file(source))
-}
-
-/// Text of a file, as UTF-8 or else Latin-1.
-///
-/// # Errors
-/// No such file, a directory, or no permission; the message says what `action` could not be done.
-pub(super) fn text_of_file(path: &Path, action: &str) -> Result<String> {
-    if path.is_dir() {
-        return Err(Error::file(action, path, "this is a directory; name a file, or give it to --library"));
-    }
-    let bytes = std::fs::read(path).map_err(|error| match error.kind() {
-        std::io::ErrorKind::NotFound => Error::file(action, path, "there is no such file; check the name"),
-        _ => Error::file(action, path, error),
-    })?;
-    // Latin-1 is the first 256 code points
-    Ok(String::from_utf8(bytes)
-        .unwrap_or_else(|error| error.as_bytes().iter().map(|&b| char::from(b)).collect()))
 }
 
 /// A name in kebab-case: `tilePavement` → `tile-pavement`, `Fused silica` → `fused-silica`. Qualified

@@ -106,7 +106,7 @@ fn grid(section: &Section<'_>) -> Result<BandSource> {
         return Err(section.fail(key, Error::malformed(found, instead)));
     }
     let [start, stop, step] = keys.map(|(_, _, value)| value);
-    let (low, high, width) = (number(start), number(stop), number(step));
+    let (low, high, width) = (start.number(), stop.number(), step.number());
     let refuse =
         |key: &str, found: String, instead: &str| Err(section.fail(key, Error::malformed(found, instead)));
     if high <= low {
@@ -141,7 +141,7 @@ fn range(entry: &Entry<'_>) -> Result<[Spectral; 2]> {
         let found = format!("the range goes from {} to {}", low.format(), high.format());
         return refuse(found, "write both ends in cm^-1, or both in um or nm");
     }
-    if number(high) <= number(low) {
+    if high.number() <= low.number() {
         let found = format!("the range goes from {} to {}", low.format(), high.format());
         return refuse(found, "write the lower end first");
     }
@@ -152,17 +152,10 @@ fn range(entry: &Entry<'_>) -> Result<[Spectral; 2]> {
 fn spectral(entry: &Entry<'_>) -> Result<Spectral> {
     let text = entry.quantity_text()?;
     let value = Spectral::parse(&text).map_err(|error| entry.fail(error))?;
-    if number(value).is_finite() && number(value) > 0.0 {
+    if value.number().is_finite() && value.number() > 0.0 {
         return Ok(value);
     }
     Err(entry.fail(Error::malformed(format!("`{}` is out of range", text.trim()), "it must be above 0")))
-}
-
-/// The number on its own axis.
-fn number(value: Spectral) -> f64 {
-    match value {
-        Spectral::Wavenumber(value) | Spectral::Wavelength(value) => value,
-    }
 }
 
 fn same_axis(a: Spectral, b: Spectral) -> bool {

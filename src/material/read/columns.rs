@@ -1,6 +1,6 @@
 //! What the columns of a CSV file mean: axis first, then emissivity, reflectance, n and k, or materials.
 
-use super::grid::Grid;
+use crate::grid::Grid;
 use super::{kebab_case, stem};
 use crate::error::{Error, Result, check};
 use crate::material::Material;

@@ -1,16 +1,17 @@
-//! A CSV file of numbers: comment lines, one header line, rows that all have as many cells as the header.
+//! Files of numbers: CSV with comment lines, one header line, and rows as long as the header.
 
 use crate::error::{Error, Result};
+use std::path::Path;
 
 /// What a file should begin with, for messages.
-pub(super) const EXAMPLE: &str = "begin the file with a line such as wavenumber_cm1,emissivity";
+pub(crate) const EXAMPLE: &str = "begin the file with a line such as wavenumber_cm1,emissivity";
 
 /// The header and the numbers, with the line (from 1) that each row stands on.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Grid {
-    pub(super) header: Vec<String>,
-    pub(super) header_line: usize,
-    pub(super) rows: Vec<(usize, Vec<f64>)>,
+pub(crate) struct Grid {
+    pub(crate) header: Vec<String>,
+    pub(crate) header_line: usize,
+    pub(crate) rows: Vec<(usize, Vec<f64>)>,
 }
 
 impl Grid {
@@ -18,7 +19,7 @@ impl Grid {
     ///
     /// # Errors
     /// No header, a row of another length, a cell that is not a finite number.
-    pub(super) fn parse(text: &str) -> Result<Self> {
+    pub(crate) fn parse(text: &str) -> Result<Self> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let mut lines = text
             .lines()
@@ -69,7 +70,7 @@ fn numbers(row: &str, header: &[String]) -> Result<Vec<f64>> {
 }
 
 /// A finite number.
-pub(super) fn number(cell: &str) -> Result<f64> {
+pub(crate) fn number(cell: &str) -> Result<f64> {
     match cell.parse::<f64>() {
         Ok(value) if value.is_finite() => Ok(value),
         _ if cell.is_empty() => {
@@ -83,4 +84,21 @@ pub(super) fn number(cell: &str) -> Result<f64> {
             ))
         }
     }
+}
+
+/// Text of a file, as UTF-8 or else Latin-1.
+///
+/// # Errors
+/// No such file, a directory, or no permission; the message says what `action` could not be done.
+pub(crate) fn text_of_file(path: &Path, action: &str) -> Result<String> {
+    if path.is_dir() {
+        return Err(Error::file(action, path, "this is a directory; name a file, or give it to --library"));
+    }
+    let bytes = std::fs::read(path).map_err(|error| match error.kind() {
+        std::io::ErrorKind::NotFound => Error::file(action, path, "there is no such file; check the name"),
+        _ => Error::file(action, path, error),
+    })?;
+    // Latin-1 is the first 256 code points
+    Ok(String::from_utf8(bytes)
+        .unwrap_or_else(|error| error.as_bytes().iter().map(|&b| char::from(b)).collect()))
 }

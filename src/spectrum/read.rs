@@ -1,0 +1,145 @@
+//! Bands and filters from CSV files.
+//!
+//! Rows: `wavenumber_cm1` or `wavelength_um`, and optionally `width_cm1` or `width_um`, one band per row in
+//! any order. Filters: the same first column, then one column of transmittances per filter.
+
+use super::{Bands, FilterCurve};
+use crate::error::{Error, Result, check};
+use crate::grid::{Grid, text_of_file};
+use std::path::Path;
+
+impl Bands {
+    /// Reads a file with one row per band.
+    ///
+    /// # Errors
+    /// A file that cannot be read, columns of another name, cells that are not numbers above 0, a centre
+    /// that comes twice; with file and line.
+    pub fn from_rows_file(path: &Path) -> Result<Self> {
+        let text = text_of_file(path, "read the bands")?;
+        rows(&text).map_err(|error| error.in_file(path))
+    }
+
+    /// Reads a file with one column per filter.
+    ///
+    /// # Errors
+    /// As [`Bands::from_rows_file`], and a transmittance outside [0, 1].
+    pub fn from_filters_file(path: &Path) -> Result<Self> {
+        let text = text_of_file(path, "read the filters")?;
+        filters(&text).and_then(Self::from_filters).map_err(|error| error.in_file(path))
+    }
+}
+
+fn rows(text: &str) -> Result<Bands> {
+    // A single column has no comma, so the widths' column is what tells a table from a list.
+    let listed = text.lines().find(|line| !line.trim().is_empty() && !line.starts_with('#'));
+    let padded;
+    let text = if listed.is_some_and(|header| !header.contains(',')) {
+        padded = text
+            .lines()
+            .map(|line| if line.trim().is_empty() || line.starts_with('#') { line.to_owned() } else { format!("{line},{line}") })
+            .collect::<Vec<_>>()
+            .join("\n");
+        padded.as_str()
+    } else {
+        text
+    };
+    let grid = Grid::parse(text)?;
+    let centers = axis(&grid)?;
+    let width = grid.header.get(1).map_or("", String::as_str);
+    match width {
+        "width_cm1" | "width_um" => {}
+        same if grid.header.first().is_some_and(|first| first == same) => return Bands::from_centers(&centers),
+        other => {
+            return Err(Error::malformed(format!("a second column `{other}`"), "name it width_cm1 or width_um")
+                .for_key(other)
+                .on_line(grid.header_line));
+        }
+    }
+    let banded = centers.iter().zip(&grid.rows).map(|(&center, (line, cells))| {
+        let value = cells.get(1).copied().unwrap_or(f64::NAN);
+        check::positive(width, value, "").map_err(|error| error.for_key(width).on_line(*line))?;
+        // dν = 10⁴ dλ/λ² = ν² dλ/10⁴.
+        let width_cm1 = if width == "width_um" { center * center * value / 1e4 } else { value };
+        Ok((center, width_cm1))
+    });
+    Bands::from_rows(banded.collect::<Result<Vec<_>>>()?)
+}
+
+fn filters(text: &str) -> Result<Vec<FilterCurve>> {
+    let grid = Grid::parse(text)?;
+    let axis = axis(&grid)?;
+    (1..grid.header.len())
+        .map(|column| {
+            let name = grid.header[column].clone();
+            let rows: Result<Vec<(f64, f64)>> = axis
+                .iter()
+                .zip(&grid.rows)
+                .map(|(&wavenumber, (line, cells))| {
+                    let value = cells.get(column).copied().unwrap_or(f64::NAN);
+                    check::unit_interval("transmittance", value)
+                        .map(|value| (wavenumber, value))
+                        .map_err(|error| error.for_key(name.clone()).on_line(*line))
+                })
+                .collect();
+            FilterCurve::new(name.clone(), rows?)
+        })
+        .collect()
+}
+
+/// Wavenumbers of the rows, cm⁻¹, each only once.
+fn axis(grid: &Grid) -> Result<Vec<f64>> {
+    let name = grid.header.first().map_or("", String::as_str);
+    if !matches!(name, "wavenumber_cm1" | "wavelength_um") {
+        return Err(Error::malformed(
+            format!("a first column `{name}`"),
+            "name it wavenumber_cm1 or wavelength_um",
+        )
+        .for_key(name)
+        .on_line(grid.header_line));
+    }
+    let mut seen: Vec<(f64, usize)> = Vec::new();
+    for (line, cells) in &grid.rows {
+        let value = cells.first().copied().unwrap_or(f64::NAN);
+        check::positive(name, value, "").map_err(|error| error.for_key(name).on_line(*line))?;
+        seen.push((if name == "wavelength_um" { 1e4 / value } else { value }, *line));
+    }
+    let axis = seen.iter().map(|row| row.0).collect();
+    seen.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    if let Some(twins) = seen.windows(2).find(|pair| pair[0].0 == pair[1].0) {
+        return Err(Error::malformed(
+            format!("wavenumber {} cm^-1 is there already on line {}", twins[1].0, twins[0].1),
+            "keep one of the two rows",
+        )
+        .for_key(name)
+        .on_line(twins[1].1));
+    }
+    Ok(axis)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_with_and_without_widths_in_either_unit() {
+        let bands = rows("wavenumber_cm1,width_cm1\n900,2\n800,4\n").unwrap();
+        assert_eq!((bands.nodes_cm1(), bands.widths_cm1()), ([800.0, 900.0].as_slice(), vec![4.0, 2.0]));
+        let bands = rows("# centres\nwavenumber_cm1\n800\n810\n").unwrap();
+        assert_eq!(bands.widths_cm1(), [10.0, 10.0]);
+        let bands = rows("wavelength_um,width_um\n10,0.1\n").unwrap();
+        assert!((bands.widths_cm1()[0] - 10.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn filters_column_by_column_and_their_mistakes() {
+        let two = filters("wavelength_um,a,b\n8,0,1\n9,1,0\n10,0,0\n").unwrap();
+        assert_eq!(two.len(), 2);
+        for (text, found) in [
+            ("wavelength_um,a\n8,0\n8,1\n", "line 3: wavelength_um: wavenumber 1250 cm^-1 is there already on line 2; keep one of the two rows"),
+            ("wavelength_um,a\n8,0\n9,1.2\n", "line 3: a: transmittance is 1.2; it must be between 0 and 1"),
+            ("nm,a\n8,0\n", "line 1: nm: a first column `nm`; name it wavenumber_cm1 or wavelength_um"),
+        ] {
+            assert_eq!(filters(text).unwrap_err().to_string(), found);
+        }
+    }
+}

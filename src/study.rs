@@ -1,0 +1,30 @@
+//! A scenario answered: from names and files to physics, and from physics to results as data.
+//!
+//! [`Study`] is the scenario with its materials, bands, surroundings and camera looked up. Its
+//! [`Study::identify`] gives the distances to every alternative, [`Study::size`] the verdict on the camera and what
+//! each hardware quantity would have to be. Results are plain data that serialise to the JSON of the
+//! command line; text, tables and plots only render them.
+
+mod identify;
+mod resolve;
+mod size;
+mod warn;
+
+pub use identify::{Identification, NearestState, PairResult};
+pub use resolve::{Study, Surface};
+pub use size::{CameraResult, RequirementResult, Sizing, Verdict};
+
+/// Something the reader of a result must know, with a code that programs can rely on.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
+pub struct Warning {
+    /// Stable code, e.g. `nearest-at-edge`.
+    pub code: &'static str,
+    /// One sentence.
+    pub message: String,
+}
+
+impl Warning {
+    pub(crate) fn new(code: &'static str, message: impl Into<String>) -> Self {
+        Self { code, message: message.into() }
+    }
+}
