@@ -82,7 +82,6 @@ pub fn render_png(figure: &Figure) -> Result<Vec<u8>> {
 }
 
 fn scene(figure: &Figure) -> Result<scene::Scene> {
-    text::register()?;
     match figure {
         Figure::Line(figure) => lines::scene(figure),
         Figure::HeatMap(map) => heat::scene(map),

@@ -41,8 +41,14 @@ pub(super) struct Vertical {
 impl Vertical {
     pub(super) fn new(axis: &Axis, ruler: Ruler, height: f64) -> Self {
         let spacing = if axis.scale == Scale::Log { 26.0 } else { 48.0 };
-        let ticks = Ticks::new(&ruler, (height / spacing) as usize);
-        Self { ruler, ticks, title: text::wrap_at_most(&axis.title, AXIS_TITLE, height + 20.0, 3) }
+        let mut wanted = (height / spacing) as usize;
+        let mut ticks = Ticks::new(&ruler, wanted);
+        // One or two numbers do not make a scale.
+        while ticks.major.len() < 3 && (wanted as f64) < height / (2.0 * TICK) {
+            wanted += 1;
+            ticks = Ticks::new(&ruler, wanted);
+        }
+        Self { ruler, ticks, title: broken_title(&axis.title, height + 20.0) }
     }
 
     fn labels_width(&self) -> f64 {
@@ -136,7 +142,7 @@ impl Horizontal {
             ticks = Ticks::new(&ruler, wanted);
         }
         let aside = ticks.multiplier.as_ref().map_or(0.0, |factor| 2.0 * text::width(factor, TICK) + 20.0);
-        let title = text::wrap_at_most(&axis.title, AXIS_TITLE, width - aside, 3);
+        let title = broken_title(&axis.title, width - aside);
         Self { ruler, ticks, title, secondary: axis.secondary.clone() }
     }
 
@@ -213,6 +219,17 @@ impl Horizontal {
             let at = (0.5 * (frame.left + frame.right), frame.top - LABEL_GAP - 16.0);
             scene.text(at, line, AXIS_TITLE, INK, Anchor::Middle);
         }
+    }
+}
+
+/// An axis title in lines; one that is too long breaks before its unit.
+fn broken_title(title: &str, limit: f64) -> Vec<String> {
+    let whole = text::wrap_at_most(title, AXIS_TITLE, limit, 3);
+    match title.split_once(" (") {
+        Some((name, unit)) if whole.len() > 1 => {
+            text::wrap_at_most(&format!("{name}\n({unit}"), AXIS_TITLE, limit, 3)
+        }
+        _ => whole,
     }
 }
 

@@ -7,6 +7,8 @@ use super::text;
 pub(super) const SIZE: f64 = 11.0;
 const PADDING: f64 = 2.5;
 const LONGEST: f64 = 210.0;
+/// Radius of the symbol of a marker.
+pub(super) const RIM: f64 = 6.5;
 
 /// Lines of a label and the room they need.
 #[derive(Debug, Clone)]
@@ -66,11 +68,6 @@ impl Placer {
         }
     }
 
-    /// Notes a place that labels may not touch.
-    pub(super) fn avoid(&mut self, area: Rect) {
-        self.taken.push(area);
-    }
-
     /// The first of the least bad places, which is then taken.
     fn best(&mut self, places: impl IntoIterator<Item = Rect>) -> Option<Rect> {
         let mut best: Option<(f64, Rect)> = None;
@@ -108,7 +105,7 @@ impl Placer {
         let Some(label) = Label::new(text) else { return };
         let (w, h) = (label.width, label.height);
         let mut places = Vec::new();
-        for gap in [7.0, 18.0, 36.0, 60.0] {
+        for gap in [10.0, 20.0, 38.0, 62.0] {
             let diagonal = 0.7 * gap;
             places.extend([
                 label.at(x + gap, y - 0.5 * h),
@@ -121,11 +118,13 @@ impl Placer {
                 label.at(x - 0.5 * w, y + gap),
             ]);
         }
-        self.avoid(Rect { left: x, top: y, right: x, bottom: y }.grown(5.0));
+        self.taken.push(Rect { left: x, top: y, right: x, bottom: y }.grown(RIM));
         let Some(area) = self.best(places) else { return };
         let near = (x.clamp(area.left, area.right), y.clamp(area.top, area.bottom));
-        if (near.0 - x).hypot(near.1 - y) > 10.0 {
-            scene.line((x, y), near, 0.8, INK);
+        let distance = (near.0 - x).hypot(near.1 - y);
+        if distance > 13.0 {
+            let rim = RIM / distance;
+            scene.line((x + rim * (near.0 - x), y + rim * (near.1 - y)), near, 0.8, INK);
         }
         label.draw(scene, area, INK);
     }

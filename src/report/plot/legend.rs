@@ -46,8 +46,8 @@ pub(super) struct Legend {
 }
 
 impl Legend {
-    /// Chooses side and lines for a figure of this `width`; `height` is that of the plot.
-    pub(super) fn new(entries: Vec<Entry>, width: f64, height: f64) -> Self {
+    /// Chooses side and lines: rows of this `width`, or a column no higher than `highest`.
+    pub(super) fn new(entries: Vec<Entry>, width: f64, highest: f64) -> Self {
         let mut entries: Vec<Entry> =
             entries.into_iter().filter(|entry| !text::clean(&entry.label).is_empty()).collect();
         let more = entries.len().saturating_sub(MOST);
@@ -58,11 +58,13 @@ impl Legend {
         };
         if entries.len() > 4 {
             let legend = Self { entries: broken(COLUMN), more, side: Side::Right };
-            if legend.lines() as f64 * LINE <= 1.35 * height {
+            if legend.column_height() <= highest {
                 return legend;
             }
         }
-        Self { entries: broken(width - KEY - 3.0 * GAP), more, side: Side::Below }
+        // Many entries share rows; a few may have a row each.
+        let columns = if entries.len() > 4 { 3.0 } else { 1.0 };
+        Self { entries: broken(width / columns - KEY - 4.0 * GAP), more, side: Side::Below }
     }
 
     fn lines(&self) -> usize {
@@ -97,13 +99,13 @@ impl Legend {
         if self.side == Side::Right || self.entries.is_empty() {
             return top;
         }
-        // Columns of one width look tidy; as many as the widest entry allows.
-        let widest = self.entries.iter().map(entry_width).fold(0.0, f64::max) + 3.0 * GAP;
-        let columns = (((right - left) / widest).floor() as usize).clamp(1, self.entries.len());
+        let widths = self.columns(right - left);
         let mut y = top;
-        for row in self.entries.chunks(columns) {
-            for (i, (key, lines)) in row.iter().enumerate() {
-                entry(scene, key, lines, (left + i as f64 * widest, y));
+        for row in self.entries.chunks(widths.len()) {
+            let mut x = left;
+            for ((key, lines), width) in row.iter().zip(&widths) {
+                entry(scene, key, lines, (x, y));
+                x += width;
             }
             y += LINE * row.iter().map(|(_, lines)| lines.len()).max().unwrap_or(1) as f64;
         }
@@ -112,6 +114,19 @@ impl Legend {
             y += LINE;
         }
         y
+    }
+
+    /// Widths of as many columns as fit, at least one.
+    fn columns(&self, room: f64) -> Vec<f64> {
+        let widths = |count: usize| -> Vec<f64> {
+            let widest = |column: usize| {
+                self.entries.iter().skip(column).step_by(count).map(entry_width).fold(0.0, f64::max)
+            };
+            (0..count).map(|column| widest(column) + 4.0 * GAP).collect()
+        };
+        let fitting =
+            (2..=self.entries.len().min(8)).rev().map(widths).find(|w| w.iter().sum::<f64>() <= room);
+        fitting.unwrap_or_else(|| vec![room])
     }
 
     fn remark(&self, scene: &mut Scene, (left, top): Point) {
@@ -140,7 +155,10 @@ fn entry(scene: &mut Scene, key: &Key, lines: &[String], (left, top): Point) {
             scene.marks.push(Mark::Disc { centre, radius: 3.0, colour: *colour });
         }
         Key::Area { colour } => scene.fill(area, *colour),
-        Key::Hatched => hatch(scene, area),
+        Key::Hatched => {
+            hatch(scene, area);
+            scene.outline(area, 0.7, GREY);
+        }
     }
     for (i, line) in lines.iter().enumerate() {
         let baseline = top + 11.5 + i as f64 * LINE;
@@ -161,5 +179,4 @@ pub(super) fn hatch(scene: &mut Scene, area: Rect) {
             scene.marks.push(Mark::Stroke { points, width: 0.7, colour: GREY.opacity(0.75) });
         }
     }
-    scene.outline(area, 0.7, GREY);
 }

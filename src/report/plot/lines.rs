@@ -16,20 +16,25 @@ const LOWER_HEIGHT: f64 = 135.0;
 const SOLID: &[f64] = &[];
 const DASHES: [&[f64]; 5] = [SOLID, &[7.0, 4.0], &[0.5, 3.8], &[9.0, 3.5, 0.5, 3.5], &[3.5, 3.0]];
 
+/// A panel grows up to this height where the legend beside it needs that.
+const HIGHEST: f64 = 560.0;
+
 pub(super) fn scene(figure: &LineFigure) -> Result<Scene> {
-    let panels: Vec<(&Panel, f64)> = match &figure.lower {
+    let mut panels: Vec<(&Panel, f64)> = match &figure.lower {
         Some(lower) => vec![(&figure.panel, UPPER_HEIGHT), (lower, LOWER_HEIGHT)],
         None => vec![(&figure.panel, HEIGHT)],
     };
     panels.iter().try_for_each(|(panel, _)| panel.check())?;
 
+    let legend = Legend::new(entries(&panels), frame::WIDTH - 90.0, HIGHEST);
+    if let Some((_, height)) = panels.first_mut().filter(|_| figure.lower.is_none()) {
+        *height = height.max(legend.column_height());
+    }
     let x_ruler = x_ruler(&figure.x, &panels);
     let axes: Vec<(&Panel, Vertical, f64)> = panels
         .iter()
         .map(|(panel, height)| (*panel, Vertical::new(&panel.y, y_ruler(panel, &x_ruler), *height), *height))
         .collect();
-    let plot_height: f64 = panels.iter().map(|(_, height)| height).sum();
-    let legend = Legend::new(entries(&panels), frame::WIDTH - 90.0, plot_height);
     let left = axes.iter().map(|(_, y, _)| y.room()).fold(50.0, f64::max);
     // The last label may stick out, unless a legend stands there anyway.
     let trial = Horizontal::new(&figure.x, x_ruler, frame::WIDTH - left - 24.0);
@@ -249,8 +254,7 @@ fn draw_band(scene: &mut Scene, band: &Band, place: &impl Fn(f64, f64) -> Option
     }
 }
 
-/// A ring that is seen on any ground.
-pub(super) fn draw_marker(scene: &mut Scene, centre: Point) {
+fn draw_marker(scene: &mut Scene, centre: Point) {
     for (radius, colour) in [(6.0, WHITE), (5.0, INK), (3.6, WHITE), (1.8, INK)] {
         scene.marks.push(Mark::Disc { centre, radius, colour });
     }

@@ -1,12 +1,12 @@
 //! Paints a scene as PNG, at three pixels per logical pixel.
 
 use plotters::backend::{BitMapBackend, DrawingBackend};
-use plotters::style::{Color, FontTransform};
+use plotters::style::Color;
 
 use super::colour::Colour;
 use super::mask::Mask;
-use super::scene::{Mark, Point, Rect, Scene};
-use super::svg::{failure, rgba, text_style};
+use super::scene::{Anchor, Mark, Point, Rect, Scene};
+use super::svg::{failure, rgba};
 use super::text;
 use crate::Result;
 
@@ -14,7 +14,6 @@ const SCALE: f64 = 3.0;
 
 /// The file.
 pub(super) fn paint(scene: &Scene) -> Result<Vec<u8>> {
-    text::register()?;
     let (width, height) = ((scene.width * SCALE).ceil() as u32, (scene.height * SCALE).ceil() as u32);
     let mut pixels = vec![0xFF; 3 * width as usize * height as usize];
     let mut backend = BitMapBackend::with_buffer_and_format(&mut pixels, (width, height)).map_err(failure)?;
@@ -30,8 +29,9 @@ fn encode(pixels: &[u8], width: u32, height: u32) -> std::result::Result<Vec<u8>
     let mut encoder = ::png::Encoder::new(&mut file, width, height);
     encoder.set_color(::png::ColorType::Rgb);
     encoder.set_depth(::png::BitDepth::Eight);
-    encoder.set_compression(::png::Compression::Fast);
-    encoder.set_filter(::png::FilterType::Up);
+    // White ground and flat colours: whole rows repeat, which a filter would hide from the compressor.
+    encoder.set_compression(::png::Compression::Default);
+    encoder.set_filter(::png::FilterType::NoFilter);
     let mut writer = encoder.write_header()?;
     writer.write_image_data(pixels)?;
     writer.finish()?;
@@ -40,7 +40,7 @@ fn encode(pixels: &[u8], width: u32, height: u32) -> std::result::Result<Vec<u8>
 
 fn draw(backend: &mut BitMapBackend<'_>, mask: &mut Mask, mark: &Mark) -> Result<()> {
     match mark {
-        Mark::Rect { area, colour, .. } => fill(backend, area, *colour),
+        Mark::Rect { area, colour } => fill(backend, area, *colour),
         Mark::Stroke { points, width, colour } => {
             if points.len() <= 5 && is_upright(points) {
                 return points
@@ -61,16 +61,19 @@ fn draw(backend: &mut BitMapBackend<'_>, mask: &mut Mask, mark: &Mark) -> Result
             blend(backend, mask, *colour)
         }
         Mark::Text { at: (x, y), text, size, colour, anchor, turned } => {
-            // The rasteriser takes ascent + descent as the size and puts the baseline half of it down.
-            let height = size * SCALE * text::HEIGHT_PER_EM;
-            let (x, y) = at((*x, *y));
-            let (from, turn) = if *turned {
-                ((x - 0.5 * height, y), FontTransform::Rotate270)
-            } else {
-                ((x, y - 0.5 * height), FontTransform::None)
+            let length = text::width(text, size * SCALE);
+            let back = match anchor {
+                Anchor::Start => 0.0,
+                Anchor::Middle => 0.5 * length,
+                Anchor::End => length,
             };
-            let style = text_style(text::font(height).transform(turn), *colour, *anchor);
-            backend.draw_text(text, &style, (from.0.round() as i32, from.1.round() as i32)).map_err(failure)
+            let (x, y) = at((*x, *y));
+            let (x, y) = if *turned { (x, y + back) } else { (x - back, y) };
+            let (x, y) = (x.round() as i32, y.round() as i32);
+            text::rasterise(text, size * SCALE, |(along, down), part| {
+                let pixel = if *turned { (x + down, y - 1 - along) } else { (x + along, y + down) };
+                dot(backend, pixel, *colour, part)
+            })
         }
     }
 }
@@ -99,9 +102,10 @@ fn fill(backend: &mut BitMapBackend<'_>, area: &Rect, colour: Colour) -> Result<
 }
 
 fn blend(backend: &mut BitMapBackend<'_>, mask: &mut Mask, colour: Colour) -> Result<()> {
-    let Colour { rgb, opacity } = colour;
-    mask.drain(|pixel, part| {
-        let alpha = opacity * part;
-        backend.draw_pixel(pixel, rgba(Colour { rgb, opacity: alpha }).to_backend_color()).map_err(failure)
-    })
+    mask.drain(|pixel, part| dot(backend, pixel, colour, part))
+}
+
+fn dot(backend: &mut BitMapBackend<'_>, pixel: (i32, i32), colour: Colour, part: f64) -> Result<()> {
+    let colour = colour.opacity(part * colour.opacity);
+    backend.draw_pixel(pixel, rgba(colour).to_backend_color()).map_err(failure)
 }

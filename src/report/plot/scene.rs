@@ -56,9 +56,8 @@ pub(super) enum Anchor {
 /// One thing to paint.
 #[derive(Debug, Clone)]
 pub(super) enum Mark {
-    /// A filled rectangle; one that `bleeds` may run a little under its right and lower neighbours, so
-    /// that no seam shows between cells.
-    Rect { area: Rect, colour: Colour, bleeds: bool },
+    /// A filled rectangle.
+    Rect { area: Rect, colour: Colour },
     /// A line with round joins and ends.
     Stroke { points: Vec<Point>, width: f64, colour: Colour },
     /// The area between two lines with common x, from left to right.
@@ -88,7 +87,7 @@ impl Scene {
     }
 
     pub(super) fn fill(&mut self, area: Rect, colour: Colour) {
-        self.marks.push(Mark::Rect { area, colour, bleeds: false });
+        self.marks.push(Mark::Rect { area, colour });
     }
 
     pub(super) fn outline(&mut self, area: Rect, width: f64, colour: Colour) {

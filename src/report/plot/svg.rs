@@ -5,7 +5,9 @@
 
 use plotters::backend::{DrawingBackend, SVGBackend};
 use plotters::style::text_anchor::{HPos, Pos, VPos};
-use plotters::style::{Color, FontTransform, RGBAColor, ShapeStyle, TextStyle};
+use plotters::style::{
+    Color, FontDesc, FontFamily, FontStyle, FontTransform, RGBAColor, ShapeStyle, TextStyle,
+};
 
 use super::colour::{Colour, WHITE};
 use super::scene::{Anchor, Mark, Point, Rect, Scene};
@@ -13,17 +15,14 @@ use super::text;
 use crate::{Error, Result};
 
 const SCALE: f64 = 10.0;
-/// How far a cell runs under its neighbours, in logical pixels.
-const BLEED: f64 = 0.3;
 
 /// The document.
 pub(super) fn paint(scene: &Scene) -> Result<String> {
-    text::register()?;
     let size = ((scene.width * SCALE).ceil() as u32, (scene.height * SCALE).ceil() as u32);
     let mut body = String::new();
     let mut backend = SVGBackend::with_string(&mut body, size);
     let area = Rect { left: 0.0, top: 0.0, right: scene.width, bottom: scene.height };
-    draw(&mut backend, &Mark::Rect { area, colour: WHITE, bleeds: false })?;
+    draw(&mut backend, &Mark::Rect { area, colour: WHITE })?;
     scene.marks.iter().try_for_each(|mark| draw(&mut backend, mark))?;
     backend.present().map_err(failure)?;
     drop(backend);
@@ -43,9 +42,8 @@ pub(super) fn paint(scene: &Scene) -> Result<String> {
 
 fn draw(backend: &mut SVGBackend<'_>, mark: &Mark) -> Result<()> {
     match mark {
-        Mark::Rect { area, colour, bleeds } => {
-            let more = if *bleeds { BLEED } else { 0.0 };
-            let (from, to) = (at((area.left, area.top)), at((area.right + more, area.bottom + more)));
+        Mark::Rect { area, colour } => {
+            let (from, to) = (at((area.left, area.top)), at((area.right, area.bottom)));
             backend.draw_rect(from, to, &shape(*colour, 0.0), true)
         }
         Mark::Stroke { points, width, colour } => {
@@ -68,8 +66,15 @@ fn draw(backend: &mut SVGBackend<'_>, mark: &Mark) -> Result<()> {
             } else {
                 (at((*x, y - drop)), FontTransform::None)
             };
-            let font = text::font(size * SCALE * 1.24).transform(turn);
-            backend.draw_text(text, &text_style(font, *colour, *anchor), from)
+            let across = match anchor {
+                Anchor::Start => HPos::Left,
+                Anchor::Middle => HPos::Center,
+                Anchor::End => HPos::Right,
+            };
+            let family = FontFamily::Name(text::FAMILY);
+            let font = FontDesc::new(family, size * SCALE * 1.24, FontStyle::Normal).transform(turn);
+            let pos = Pos::new(across, VPos::Top);
+            backend.draw_text(text, &TextStyle { font, color: rgba(*colour).to_backend_color(), pos }, from)
         }
     }
     .map_err(failure)
@@ -90,19 +95,6 @@ fn shape(colour: Colour, width: f64) -> ShapeStyle {
 
 pub(super) fn rgba(Colour { rgb: (r, g, b), opacity }: Colour) -> RGBAColor {
     RGBAColor(r, g, b, opacity)
-}
-
-pub(super) fn text_style(
-    font: plotters::style::FontDesc<'static>,
-    colour: Colour,
-    anchor: Anchor,
-) -> TextStyle<'static> {
-    let across = match anchor {
-        Anchor::Start => HPos::Left,
-        Anchor::Middle => HPos::Center,
-        Anchor::End => HPos::Right,
-    };
-    TextStyle { font, color: rgba(colour).to_backend_color(), pos: Pos::new(across, VPos::Top) }
 }
 
 fn escape(text: &str) -> String {

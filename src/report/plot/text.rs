@@ -5,41 +5,64 @@
 
 use std::sync::OnceLock;
 
-use plotters::style::{FontDesc, FontFamily, FontStyle, register_font};
+use ab_glyph::{Font, FontRef, Glyph, PxScale, ScaleFont, point};
 
 use crate::{Error, Result};
 
+/// Names for documents that leave the font to the viewer.
 pub(super) const FAMILY: &str = "DejaVu Sans, Verdana, sans-serif";
-/// Ascent plus descent of DejaVu Sans in em: what the rasteriser of `plotters` takes as the size.
-pub(super) const HEIGHT_PER_EM: f64 = 2384.0 / 2048.0;
+/// Ascent plus descent of DejaVu Sans in em, which is how the rasteriser states a size.
+const HEIGHT_PER_EM: f64 = 2384.0 / 2048.0;
 /// Distance of lines in em.
 pub(super) const LEADING: f64 = 1.3;
 
-/// Makes the font known to `plotters`, once per process.
-pub(super) fn register() -> Result<()> {
-    static REGISTERED: OnceLock<bool> = OnceLock::new();
-    let known =
-        REGISTERED.get_or_init(|| register_font(FAMILY, FontStyle::Normal, dejavu::sans::regular()).is_ok());
-    if *known {
-        Ok(())
-    } else {
-        Err(Error::malformed("the embedded font cannot be read", "build hadar again from clean sources"))
-    }
+fn font() -> Option<&'static FontRef<'static>> {
+    static FONT: OnceLock<Option<FontRef<'static>>> = OnceLock::new();
+    FONT.get_or_init(|| FontRef::try_from_slice(dejavu::sans::regular()).ok()).as_ref()
 }
 
-pub(super) fn font(size: f64) -> FontDesc<'static> {
-    FontDesc::new(FontFamily::Name(FAMILY), size, FontStyle::Normal)
+/// Letters of a line that starts at the origin, at `size` pixels per em, and where the line ends.
+fn set(font: &FontRef<'static>, text: &str, size: f64) -> (Vec<Glyph>, f32) {
+    let scale = PxScale::from((size * HEIGHT_PER_EM) as f32);
+    let scaled = font.as_scaled(scale);
+    let (mut x, mut before) = (0.0, None);
+    let mut glyphs = Vec::with_capacity(text.len());
+    for letter in text.chars() {
+        let id = scaled.glyph_id(letter);
+        x += before.map_or(0.0, |before| scaled.kern(before, id));
+        glyphs.push(id.with_scale_and_position(scale, point(x, 0.0)));
+        x += scaled.h_advance(id);
+        before = Some(id);
+    }
+    (glyphs, x)
 }
 
 /// Width of a line of text at `size` pixels per em, in pixels.
 pub(super) fn width(text: &str, size: f64) -> f64 {
-    // The width comes in whole pixels: measure large, then scale down.
-    const LARGE: f64 = 1000.0;
-    let pixels = match font(LARGE * HEIGHT_PER_EM).layout_box(text) {
-        Ok((_, (pixels, _))) => f64::from(pixels),
-        Err(_) => 0.65 * LARGE * text.chars().count() as f64,
-    };
-    pixels * size / LARGE
+    font().map_or(0.0, |font| f64::from(set(font, text, size).1))
+}
+
+/// Calls `paint` for each pixel that a line of text covers, with its place relative to the start of the
+/// baseline and the part of it that is covered.
+pub(super) fn rasterise(
+    text: &str,
+    size: f64,
+    mut paint: impl FnMut((i32, i32), f64) -> Result<()>,
+) -> Result<()> {
+    let font = font().ok_or_else(|| {
+        Error::malformed("the embedded font cannot be read", "build hadar again from clean sources")
+    })?;
+    let mut outcome = Ok(());
+    for outline in set(font, text, size).0.into_iter().filter_map(|glyph| font.outline_glyph(glyph)) {
+        let corner = outline.px_bounds().min;
+        outline.draw(|x, y, part| {
+            let pixel = (corner.x as i32 + x as i32, corner.y as i32 + y as i32);
+            if outcome.is_ok() && part > 0.0 {
+                outcome = paint(pixel, f64::from(part.min(1.0)));
+            }
+        });
+    }
+    outcome
 }
 
 /// Text without characters that no picture can show.
@@ -97,14 +120,12 @@ mod tests {
 
     #[test]
     fn widths_are_those_of_the_font() {
-        register().unwrap();
         // Advance of `m` in DejaVu Sans: 1995 of 2048 units per em.
-        assert!((width("mmmm", 10.0) - 40.0 * 1995.0 / 2048.0).abs() < 0.02);
+        assert!((width("mmmm", 10.0) - 40.0 * 1995.0 / 2048.0).abs() < 1e-4);
     }
 
     #[test]
     fn lines_stay_within_the_limit_and_lose_no_letter() {
-        register().unwrap();
         let text = "an ordinary sentence and averyveryverylongwordthatfitsnowhere";
         let lines = wrap(text, 10.0, 90.0);
         assert!(lines.iter().all(|line| width(line, 10.0) <= 90.0));
