@@ -30,7 +30,7 @@ pub struct Series {
     pub y: Vec<f64>,
     /// Line or points.
     pub style: Style,
-    /// Index into the palette; the place among the series of the panel where `None`. Beyond the seven
+    /// Index into the palette; the place among the series of the figure where `None`. Beyond the seven
     /// colours the palette starts again with another dash.
     pub colour: Option<usize>,
 }

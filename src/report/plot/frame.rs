@@ -99,7 +99,7 @@ impl Vertical {
         }
     }
 
-    /// Ticks, labels and title at the right of a colour bar; returns nothing, needs [`Self::room`].
+    /// Ticks, labels and title at the right of a colour bar; they take [`Self::room`].
     pub(super) fn draw_right(&self, scene: &mut Scene, bar: &Rect) {
         for at in &self.ticks.minor {
             let (x, y) = bar.at(1.0, *at);

@@ -19,41 +19,54 @@ const DASHES: [&[f64]; 5] = [SOLID, &[7.0, 4.0], &[0.5, 3.8], &[9.0, 3.5, 0.5, 3
 /// A panel grows up to this height where the legend beside it needs that.
 const HIGHEST: f64 = 560.0;
 
-pub(super) fn scene(figure: &LineFigure) -> Result<Scene> {
-    let mut panels: Vec<(&Panel, f64)> = match &figure.lower {
-        Some(lower) => vec![(&figure.panel, UPPER_HEIGHT), (lower, LOWER_HEIGHT)],
-        None => vec![(&figure.panel, HEIGHT)],
-    };
-    panels.iter().try_for_each(|(panel, _)| panel.check())?;
+/// A panel with its height, and how many colours the panels above it have used.
+struct Part<'a> {
+    panel: &'a Panel,
+    height: f64,
+    colours_from: usize,
+}
 
-    let legend = Legend::new(entries(&panels), frame::WIDTH - 90.0, HIGHEST);
-    if let Some((_, height)) = panels.first_mut().filter(|_| figure.lower.is_none()) {
-        *height = height.max(legend.column_height());
+pub(super) fn scene(figure: &LineFigure) -> Result<Scene> {
+    let upper = &figure.panel;
+    let mut parts = match &figure.lower {
+        Some(lower) => vec![
+            Part { panel: upper, height: UPPER_HEIGHT, colours_from: 0 },
+            Part { panel: lower, height: LOWER_HEIGHT, colours_from: upper.series.len() },
+        ],
+        None => vec![Part { panel: upper, height: HEIGHT, colours_from: 0 }],
+    };
+    parts.iter().try_for_each(|part| part.panel.check())?;
+
+    let entries = entries(&parts);
+    if let [only] = parts.as_mut_slice() {
+        let column = Legend::new(entries.clone(), frame::WIDTH, HIGHEST).column_height();
+        only.height = only.height.max(column);
     }
-    let x_ruler = x_ruler(&figure.x, &panels);
-    let axes: Vec<(&Panel, Vertical, f64)> = panels
+    let x_ruler = x_ruler(&figure.x, &parts);
+    let axes: Vec<(&Part, Vertical)> = parts
         .iter()
-        .map(|(panel, height)| (*panel, Vertical::new(&panel.y, y_ruler(panel, &x_ruler), *height), *height))
+        .map(|part| (part, Vertical::new(&part.panel.y, y_ruler(part.panel, &x_ruler), part.height)))
         .collect();
-    let left = axes.iter().map(|(_, y, _)| y.room()).fold(50.0, f64::max);
+    let left = axes.iter().map(|(_, y)| y.room()).fold(50.0, f64::max);
+    let legend = Legend::new(entries, frame::WIDTH - 12.0 - left, HIGHEST);
     // The last label may stick out, unless a legend stands there anyway.
     let trial = Horizontal::new(&figure.x, x_ruler, frame::WIDTH - left - 24.0);
     let right = frame::WIDTH - trial.room().max(24.0) - legend.width();
     let x = Horizontal::new(&figure.x, x_ruler, right - left);
 
     let mut scene = Scene::new(&figure.title, frame::WIDTH);
-    let factor = if axes.first().is_some_and(|(_, y, _)| y.has_multiplier()) { 16.0 } else { 0.0 };
+    let factor = if axes.first().is_some_and(|(_, y)| y.has_multiplier()) { 16.0 } else { 0.0 };
     let top = frame::heading(&mut scene, &figure.title, &figure.subtitle) + x.room_above().max(factor) + 6.0;
     let mut bottom = top;
-    for (i, (panel, y, height)) in axes.iter().enumerate() {
+    for (i, (part, y)) in axes.iter().enumerate() {
         let gap = match i {
             0 => 0.0,
             _ if y.has_multiplier() => 28.0,
             _ => 18.0,
         };
-        let area = Rect { left, right, top: bottom + gap, bottom: bottom + gap + height };
+        let area = Rect { left, right, top: bottom + gap, bottom: bottom + gap + part.height };
         bottom = area.bottom;
-        draw_panel(&mut scene, panel, &x, y, area);
+        draw_panel(&mut scene, part, &x, y, area);
         if i == 0 {
             x.draw_secondary(&mut scene, &area);
         }
@@ -67,10 +80,10 @@ pub(super) fn scene(figure: &LineFigure) -> Result<Scene> {
     Ok(scene)
 }
 
-fn x_ruler(axis: &Axis, panels: &[(&Panel, f64)]) -> Ruler {
+fn x_ruler(axis: &Axis, parts: &[Part]) -> Ruler {
     let mut values = Vec::new();
     let mut any_points = false;
-    for (panel, _) in panels {
+    for Part { panel, .. } in parts {
         values.extend(panel.series.iter().flat_map(|series| &series.x));
         values.extend(panel.bands.iter().flat_map(|band| &band.x));
         values.extend(panel.markers.iter().map(|marker| marker.x));
@@ -127,10 +140,10 @@ fn series_look(index: usize, series: &Series) -> (Colour, &'static [f64]) {
 }
 
 /// Curves first, then bands; what appears in both panels under one name is listed once.
-fn entries(panels: &[(&Panel, f64)]) -> Vec<Entry> {
-    let series = panels.iter().flat_map(|(panel, _)| {
-        panel.series.iter().enumerate().map(|(i, series)| {
-            let (colour, dash) = series_look(i, series);
+fn entries(parts: &[Part]) -> Vec<Entry> {
+    let series = parts.iter().flat_map(|part| {
+        part.panel.series.iter().enumerate().map(|(i, series)| {
+            let (colour, dash) = series_look(part.colours_from + i, series);
             let key = match series.style {
                 Style::Points => Key::Points { colour },
                 _ => Key::Line { colour, dash },
@@ -138,7 +151,7 @@ fn entries(panels: &[(&Panel, f64)]) -> Vec<Entry> {
             Entry { key, label: series.label.clone() }
         })
     });
-    let bands = panels.iter().flat_map(|(panel, _)| {
+    let bands = parts.iter().flat_map(|Part { panel, .. }| {
         panel
             .bands
             .iter()
@@ -153,7 +166,8 @@ fn entries(panels: &[(&Panel, f64)]) -> Vec<Entry> {
     entries
 }
 
-fn draw_panel(scene: &mut Scene, panel: &Panel, x: &Horizontal, y: &Vertical, area: Rect) {
+fn draw_panel(scene: &mut Scene, part: &Part, x: &Horizontal, y: &Vertical, area: Rect) {
+    let panel = part.panel;
     let place = |at: f64, value: f64| -> Option<Point> {
         Some(area.at(x.ruler.fraction(at)?, y.ruler.fraction(value)?))
     };
@@ -177,7 +191,7 @@ fn draw_panel(scene: &mut Scene, panel: &Panel, x: &Horizontal, y: &Vertical, ar
     }
     let width = if panel.series.len() > 10 { 1.3 } else { 1.8 };
     for (i, series) in panel.series.iter().enumerate() {
-        let (colour, dash) = series_look(i, series);
+        let (colour, dash) = series_look(part.colours_from + i, series);
         let points = series.x.iter().zip(&series.y).map(|(x, y)| place(*x, *y));
         if series.style == Style::Points {
             for centre in points.flatten().filter(|point| area.grown(0.01).contains(*point)) {
