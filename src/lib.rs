@@ -8,6 +8,7 @@ pub mod instrument;
 pub mod material;
 pub mod planck;
 pub mod policy;
+pub mod report;
 pub mod scenario;
 pub mod scene;
 mod simd;

@@ -1,0 +1,3 @@
+//! Results made readable. Physics never imports this module; it imports no physics.
+
+pub mod plot;

@@ -1,0 +1,89 @@
+//! Figures: one description, drawn as SVG and as PNG with the same look.
+//!
+//! A [`Figure`] is plain data: titles, axes, numbers. [`render_svg`] and [`render_png`] lay it out
+//! once (text measured with the embedded font, so that nothing is clipped or overlaps) into a list of
+//! marks, which two painters draw through the backends of `plotters`. White background, one font
+//! (DejaVu Sans), colours that the colour-blind can tell apart (Okabe and Ito, *Color Universal
+//! Design*, 2008), legends outside the data.
+//!
+//! A number that cannot be drawn (NaN, infinite, zero or below on a logarithmic axis) is a gap in a
+//! curve and a cell without value in a map, never an error.
+//!
+//! ```
+//! use hadar::report::plot::{Axis, Figure, LineFigure, Series, render_svg};
+//! let figure = LineFigure::new("Two materials", Axis::linear("wavenumber (cm⁻¹)"), Axis::linear("emissivity"))
+//!     .series(Series::line("skin", vec![715.0, 1250.0], vec![0.97, 0.98]).colour(0))
+//!     .series(Series::line("aluminium", vec![715.0, 1250.0], vec![0.2, 0.1]).colour(1));
+//! let svg = render_svg(&Figure::from(figure))?;
+//! assert!(svg.starts_with("<svg"));
+//! # Ok::<(), hadar::Error>(())
+//! ```
+
+mod axis;
+mod colour;
+mod contour;
+mod figure;
+mod frame;
+mod geometry;
+mod heat;
+mod heatmap;
+mod label;
+mod legend;
+mod lines;
+mod mask;
+mod png;
+mod scene;
+mod svg;
+mod text;
+mod ticks;
+
+pub use axis::{Axis, Scale, Secondary};
+pub use figure::{Band, LineFigure, Marker, Panel, Rule, Series, Style};
+pub use heatmap::HeatMap;
+
+use crate::Result;
+
+/// Anything that can be drawn.
+#[derive(Debug, Clone)]
+pub enum Figure {
+    /// Curves and points over one or two panels.
+    Line(LineFigure),
+    /// A quantity over a plane, in colours.
+    HeatMap(HeatMap),
+}
+
+impl From<LineFigure> for Figure {
+    fn from(figure: LineFigure) -> Self {
+        Self::Line(figure)
+    }
+}
+
+impl From<HeatMap> for Figure {
+    fn from(figure: HeatMap) -> Self {
+        Self::HeatMap(figure)
+    }
+}
+
+/// The figure as an SVG document, 800 px wide.
+///
+/// # Errors
+/// [`crate::Error::Length`] where lists that belong together differ in length, and
+/// [`crate::Error::Malformed`] where the cells of a heat map are not in rising order.
+pub fn render_svg(figure: &Figure) -> Result<String> {
+    svg::paint(&scene(figure)?)
+}
+
+/// The figure as a PNG file, 2400 pixels wide.
+///
+/// # Errors
+/// As [`render_svg`].
+pub fn render_png(figure: &Figure) -> Result<Vec<u8>> {
+    png::paint(&scene(figure)?)
+}
+
+fn scene(figure: &Figure) -> Result<scene::Scene> {
+    match figure {
+        Figure::Line(figure) => lines::scene(figure),
+        Figure::HeatMap(map) => heat::scene(map),
+    }
+}
