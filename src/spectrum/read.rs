@@ -36,7 +36,13 @@ fn rows(text: &str) -> Result<Bands> {
     let text = if listed.is_some_and(|header| !header.contains(',')) {
         padded = text
             .lines()
-            .map(|line| if line.trim().is_empty() || line.starts_with('#') { line.to_owned() } else { format!("{line},{line}") })
+            .map(|line| {
+                if line.trim().is_empty() || line.starts_with('#') {
+                    line.to_owned()
+                } else {
+                    format!("{line},{line}")
+                }
+            })
             .collect::<Vec<_>>()
             .join("\n");
         padded.as_str()
@@ -48,11 +54,16 @@ fn rows(text: &str) -> Result<Bands> {
     let width = grid.header.get(1).map_or("", String::as_str);
     match width {
         "width_cm1" | "width_um" => {}
-        same if grid.header.first().is_some_and(|first| first == same) => return Bands::from_centers(&centers),
+        same if grid.header.first().is_some_and(|first| first == same) => {
+            return Bands::from_centers(&centers);
+        }
         other => {
-            return Err(Error::malformed(format!("a second column `{other}`"), "name it width_cm1 or width_um")
-                .for_key(other)
-                .on_line(grid.header_line));
+            return Err(Error::malformed(
+                format!("a second column `{other}`"),
+                "name it width_cm1 or width_um",
+            )
+            .for_key(other)
+            .on_line(grid.header_line));
         }
     }
     let banded = centers.iter().zip(&grid.rows).map(|(&center, (line, cells))| {
@@ -135,7 +146,10 @@ mod tests {
         let two = filters("wavelength_um,a,b\n8,0,1\n9,1,0\n10,0,0\n").unwrap();
         assert_eq!(two.len(), 2);
         for (text, found) in [
-            ("wavelength_um,a\n8,0\n8,1\n", "line 3: wavelength_um: wavenumber 1250 cm^-1 is there already on line 2; keep one of the two rows"),
+            (
+                "wavelength_um,a\n8,0\n8,1\n",
+                "line 3: wavelength_um: wavenumber 1250 cm^-1 is there already on line 2; keep one of the two rows",
+            ),
             ("wavelength_um,a\n8,0\n9,1.2\n", "line 3: a: transmittance is 1.2; it must be between 0 and 1"),
             ("nm,a\n8,0\n", "line 1: nm: a first column `nm`; name it wavenumber_cm1 or wavelength_um"),
         ] {

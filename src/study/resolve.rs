@@ -65,7 +65,8 @@ impl Study {
     pub fn new(scenario: &Scenario, library: &Library) -> Result<Self> {
         let mut scenario = scenario.clone();
         let mut finder = Finder { scenario: &scenario, library, warnings: Vec::new() };
-        let target = finder.find("target.material", &scenario.target.material, scenario.target.extrapolate)?;
+        let target =
+            finder.find("target.material", &scenario.target.material, scenario.target.extrapolate)?;
         let environment = scenario
             .environment
             .iter()
@@ -119,8 +120,10 @@ impl Study {
         let camera = scenario.camera.as_ref().map(|spec| camera(spec, &scenario)).transpose()?;
         let required = match scenario.requirement.reliability {
             Reliability::Distance(distance) => distance,
-            Reliability::DetectionProbability(probability) => detection::distance_for_probability(probability)
-                .map_err(|error| error.at(scenario.place("requirement.detection_probability")))?,
+            Reliability::DetectionProbability(probability) => {
+                detection::distance_for_probability(probability)
+                    .map_err(|error| error.at(scenario.place("requirement.detection_probability")))?
+            }
         };
         let unknowns = unknowns(&scenario).map_err(|error| error.at(scenario.place("unknown")))?;
         let range = state_range(&scenario);
@@ -217,7 +220,9 @@ impl<'a> Finder<'a> {
         let found = match reference {
             MaterialRef::Name(name) => self.library.get(name).map(Cow::Borrowed),
             // A file's own mistakes are told with the file's place, not the scenario's.
-            MaterialRef::File(path) => return Material::from_file(path).map(|m| self.accept(Cow::Owned(m), extrapolate)),
+            MaterialRef::File(path) => {
+                return Material::from_file(path).map(|m| self.accept(Cow::Owned(m), extrapolate));
+            }
         };
         found
             .map(|material| self.accept(material, extrapolate))
@@ -258,13 +263,17 @@ impl<'a> Finder<'a> {
                 let material = self.accept(Cow::Borrowed(material), wanted.extrapolate);
                 found.push(material);
             } else {
-                let message = format!("{} is left out: its spectrum does not cover the bands", material.name());
+                let message =
+                    format!("{} is left out: its spectrum does not cover the bands", material.name());
                 self.warnings.push(Warning::new("material-skipped", message));
             }
         }
         if found.is_empty() {
-            return Err(Error::malformed("no material of the library covers the bands", "name alternatives.materials")
-                .at(self.scenario.place("alternatives")));
+            return Err(Error::malformed(
+                "no material of the library covers the bands",
+                "name alternatives.materials",
+            )
+            .at(self.scenario.place("alternatives")));
         }
         Ok(found)
     }
@@ -315,7 +324,8 @@ fn integrated(
     }
     let low = bands.bands().iter().map(|band| band.low_cm1).fold(f64::INFINITY, f64::min);
     let high = bands.bands().iter().map(|band| band.high_cm1).fold(0.0, f64::max);
-    let kinks: Vec<f64> = everything.iter().flat_map(|material| material.breakpoints_cm1(low, high)).collect();
+    let kinks: Vec<f64> =
+        everything.iter().flat_map(|material| material.breakpoints_cm1(low, high)).collect();
     let environment: Vec<(f64, f64)> =
         scenario.environment.iter().map(|object| (object.temperature_k, object.lighting)).collect();
     let temperature_k = scenario.target.temperature_k;
@@ -375,7 +385,8 @@ fn camera(spec: &CameraSpec, scenario: &Scenario) -> Result<Camera> {
     let exposure_s = need("exposure", spec.exposure_s, from.map(|c| c.exposure_s), "\"12 ms\"")?;
     let pixel_m = need("pixel", spec.pixel_m, from.map(|c| c.pixel_m), "\"12 um\"")?;
     let f_number = need("f_number", spec.f_number, from.map(|c| c.f_number), "1.3")?;
-    let focal_length_m = need("focal_length", spec.focal_length_m, from.map(|c| c.focal_length_m), "\"18 mm\"")?;
+    let focal_length_m =
+        need("focal_length", spec.focal_length_m, from.map(|c| c.focal_length_m), "\"18 mm\"")?;
     let optics_efficiency = spec.optics_efficiency.or(from.map(|c| c.optics_efficiency)).unwrap_or(1.0);
     let reference_temperature_k = from.map_or(303.15, |c| c.reference_temperature_k);
     let own_noise = if let Some(netd_k) = spec.netd_k {
@@ -391,12 +402,16 @@ fn camera(spec: &CameraSpec, scenario: &Scenario) -> Result<Camera> {
     } else {
         spec.noise_electrons.map(|sigma_counts| NoiseSpec::Counts { sigma_counts })
     };
-    for (key, given) in
-        [("netd_temperature", spec.netd_temperature_k.is_some()), ("netd_f_number", spec.netd_f_number.is_some())]
-    {
+    for (key, given) in [
+        ("netd_temperature", spec.netd_temperature_k.is_some()),
+        ("netd_f_number", spec.netd_f_number.is_some()),
+    ] {
         if given && spec.netd_k.is_none() {
-            return Err(Error::malformed(format!("{key} without a netd"), "write netd = \"50 mK\" beside it")
-                .at(place(key)));
+            return Err(Error::malformed(
+                format!("{key} without a netd"),
+                "write netd = \"50 mK\" beside it",
+            )
+            .at(place(key)));
         }
     }
     let noise = match (own_noise, from) {

@@ -1,8 +1,8 @@
 //! What the columns of a CSV file mean: axis first, then emissivity, reflectance, n and k, or materials.
 
-use crate::grid::Grid;
 use super::{kebab_case, stem};
 use crate::error::{Error, Result, check};
+use crate::grid::Grid;
 use crate::material::Material;
 use crate::material::dielectric::{Dielectric, OpticalConstants};
 use crate::material::model::Model;

@@ -11,8 +11,8 @@
 //! Remote Sens. Environ. 113, 711 (2009), doi:10.1016/j.rse.2008.11.007. Layout from the files themselves.
 
 use super::{Content, kebab_case, stem};
-use crate::grid;
 use crate::error::{Error, Result, check};
+use crate::grid;
 use crate::material::Material;
 use crate::material::model::Model;
 use crate::material::provenance::{Basis, Provenance};

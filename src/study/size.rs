@@ -1,0 +1,307 @@
+//! The main job: does the camera meet the requirement, and what would it have to be.
+
+use super::identify::{PairResult, PhotonsRequired};
+use super::{Study, Surface, Warning, warn};
+use crate::error::Result;
+use crate::fisher::{Counting, Nuisance};
+use crate::identifiability::detection;
+use crate::identifiability::local::LocalSolver;
+use crate::identifiability::nearest::NearestSolver;
+use crate::instrument::{Camera, NoiseLine, gamma_per_band};
+use crate::policy::{self, Quantity, Solution, solve};
+use crate::scenario::{DistanceKind, Scenario};
+use crate::scene::State;
+use serde::ser::{SerializeMap, Serializer};
+
+/// Relative difference between a refined and a fully searched nearest distance that is rounding.
+const SAME: f64 = 1e-10;
+
+/// The answer to 'can this camera do it'.
+#[derive(Debug, Clone, serde::Serialize)]
+pub struct Sizing {
+    /// The scenario with its defaults filled in.
+    pub scenario: Scenario,
+    /// Yes or no, in a sentence and in numbers.
+    pub verdict: Verdict,
+    /// What the task demands of any camera.
+    pub requirement: RequirementResult,
+    /// What this camera delivers; `None` without a camera.
+    pub camera: Option<CameraResult>,
+    /// Each hardware quantity with the others held, for the limiting alternative; `None` without a camera.
+    pub solve_for: Option<Solutions>,
+    /// ΣS·Δν of the target, photons s⁻¹ m⁻² sr⁻¹.
+    pub photon_radiance: f64,
+    /// All alternatives.
+    pub pairs: Vec<PairResult>,
+    /// The alternative that is hardest to tell apart.
+    pub limiting: String,
+    /// What the reader must know.
+    pub warnings: Vec<Warning>,
+}
+
+/// Yes or no.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct Verdict {
+    /// Whether the requirement is met; `None` without a camera.
+    pub met: Option<bool>,
+    /// The answer in a sentence.
+    pub sentence: String,
+    /// Statistical distance that the camera reaches against the limiting alternative.
+    pub statistical_distance: Option<f64>,
+    /// Statistical distance demanded.
+    pub required_distance: f64,
+    /// The first over the second.
+    pub margin: Option<f64>,
+}
+
+/// What the task demands of any camera, against the limiting alternative.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct RequirementResult {
+    /// Which distance decides.
+    pub by: &'static str,
+    /// Statistical distance demanded.
+    pub distance: f64,
+    /// Detection probability demanded, Φ of it.
+    pub detection_probability: f64,
+    /// Photons at the detector, shot noise only.
+    pub photons: Option<f64>,
+    /// H_req = t A_p/((1+γ)F²) by the paper's inequality, m² s, lossless optics.
+    pub hardware_m2_s: Option<f64>,
+    /// Photons by each reading of the distance.
+    pub photons_by: PhotonsRequired,
+    /// H_req by each reading, m² s.
+    pub hardware_by_m2_s: PhotonsRequired,
+}
+
+/// What the camera delivers in the scene.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct CameraResult {
+    /// Its figures.
+    #[serde(flatten)]
+    pub camera: Camera,
+    /// Photons of the target in all bands of all frames.
+    pub photons: f64,
+    /// Photons of the brightest band in one exposure: what the full well must hold.
+    pub brightest_reading: f64,
+    /// Electronic noise of a band (root mean square over the bands, all frames), counts.
+    pub noise_counts: f64,
+    /// γ = Σσ²/ΣN of the scene.
+    pub gamma_per_band: f64,
+    /// Étendue of a pixel, m² sr.
+    pub etendue_m2_sr: f64,
+    /// H = t A_p/((1+γ)F²), m² s.
+    pub hardware_m2_s: f64,
+    /// Least distance per √photon it resolves, d_req √((1+γ)/N).
+    pub least_distance: f64,
+    /// Time until all bands of all frames are read, s.
+    pub acquisition_s: f64,
+    /// Side of a pixel's footprint at the target, m.
+    pub footprint_m: Option<f64>,
+    /// Apparent motion during an exposure, pixels.
+    pub motion_blur_pixels: Option<f64>,
+    /// Variance of an average band, line by line.
+    pub noise_budget: Vec<NoiseLine>,
+}
+
+/// Solutions by quantity, in the order of [`Quantity::ALL`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct Solutions(pub Vec<(Quantity, Solution)>);
+
+impl serde::Serialize for Solutions {
+    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(Some(self.0.len()))?;
+        for (quantity, solution) in &self.0 {
+            map.serialize_entry(quantity.key(), solution)?;
+        }
+        map.end()
+    }
+}
+
+impl Study {
+    /// The verdict on the scenario's camera, the requirement, and every hardware quantity solved for.
+    ///
+    /// # Errors
+    /// As [`Study::identify`].
+    pub fn size(&self) -> Result<Sizing> {
+        let identification = self.identify()?;
+        let mut warnings = identification.warnings.clone();
+        let limiting = identification
+            .pairs
+            .iter()
+            .zip(&self.alternatives)
+            .find(|(pair, _)| pair.alternative == identification.limiting);
+        let Some((pair, surface)) = limiting else {
+            return Err(crate::Error::malformed(
+                "there is no alternative",
+                "name one in alternatives.materials",
+            ));
+        };
+        let requirement = self.requirement(pair, identification.photon_radiance);
+        let camera = self.camera_result(identification.photon_radiance);
+        let solve_for = self.camera.as_ref().map(|camera| self.solutions(camera, surface)).transpose()?;
+        if let Some(camera) = &camera {
+            warnings.extend(warn::of_camera_result(camera, pair, &self.scenario));
+        }
+        let verdict = self.verdict(pair, &requirement);
+        Ok(Sizing {
+            scenario: identification.scenario,
+            verdict,
+            requirement,
+            camera,
+            solve_for,
+            photon_radiance: identification.photon_radiance,
+            pairs: identification.pairs,
+            limiting: identification.limiting,
+            warnings,
+        })
+    }
+
+    fn requirement(&self, pair: &PairResult, photon_radiance: f64) -> RequirementResult {
+        let hardware = |photons: Option<f64>| {
+            photons.map(|photons| policy::hardware_required_m2_s(photons, photon_radiance))
+        };
+        let by = pair.photons_required_by;
+        RequirementResult {
+            by: self.scenario.requirement.by.name(),
+            distance: self.required,
+            detection_probability: detection::probability(self.required),
+            photons: pair.photons_required,
+            hardware_m2_s: hardware(pair.photons_required),
+            photons_by: by,
+            hardware_by_m2_s: PhotonsRequired {
+                nearest: hardware(by.nearest),
+                local: hardware(by.local),
+                local_unknown_gain: hardware(by.local_unknown_gain),
+            },
+        }
+    }
+
+    fn camera_result(&self, photon_radiance: f64) -> Option<CameraResult> {
+        let camera = self.camera.as_ref()?;
+        let counting = self.counting()?;
+        let signal = self.target_signal();
+        let photons = counting.counts_per_radiance * photon_radiance;
+        let gamma = gamma_per_band(&counting, &signal);
+        let distance_m = self.scenario.target.distance_m;
+        let blur = match (
+            self.scenario.requirement.speed_m_s,
+            camera.pixels,
+            camera.field_of_view_rad,
+            distance_m,
+        ) {
+            (Some(speed), Some(pixels), Some(view), Some(distance)) => {
+                let time_s = camera.acquisition_s(self.bands.len()) / f64::from(camera.frames);
+                // SII E: the transverse part of the speed is at most v sin(θ/2).
+                let transverse = speed * (0.5 * view).sin();
+                Some(policy::motion_blur_pixels(transverse, time_s, pixels, distance, view))
+            }
+            _ => None,
+        };
+        let var: f64 = (0..self.bands.len()).map(|w| counting.var_electronic(w)).sum();
+        let brightest = signal.iter().copied().fold(0.0, f64::max);
+        Some(CameraResult {
+            photons,
+            brightest_reading: brightest * counting.counts_per_radiance / f64::from(camera.frames),
+            noise_counts: (var / self.bands.len() as f64).sqrt(),
+            gamma_per_band: gamma,
+            etendue_m2_sr: camera.etendue_m2_sr(distance_m),
+            hardware_m2_s: camera.hardware_m2_s(gamma),
+            least_distance: policy::least_distance(self.required, photons, gamma),
+            acquisition_s: camera.acquisition_s(self.bands.len()),
+            footprint_m: distance_m.map(|z| camera.pixel_m * z / camera.focal_length_m),
+            motion_blur_pixels: blur,
+            noise_budget: camera.noise_budget(&self.bands, &signal, distance_m),
+            camera: camera.clone(),
+        })
+    }
+
+    fn solutions(&self, camera: &Camera, alternative: &Surface) -> Result<Solutions> {
+        let sizing = solve::Sizing {
+            camera,
+            bands: &self.bands,
+            distance_m: self.scenario.target.distance_m,
+            required: self.required,
+        };
+        let solved: Result<Vec<(Quantity, Solution)>> = Quantity::ALL
+            .into_iter()
+            .map(|quantity| Ok((quantity, self.solution(&sizing, quantity, alternative)?)))
+            .collect();
+        solved.map(Solutions)
+    }
+
+    /// One quantity; the nearest state is followed from trial to trial and searched anew at the end.
+    fn solution(
+        &self,
+        sizing: &solve::Sizing<'_>,
+        quantity: Quantity,
+        alternative: &Surface,
+    ) -> Result<Solution> {
+        let kind = self.scenario.requirement.by;
+        let (target, other) = (&self.target.emissivity, &alternative.emissivity);
+        if kind != DistanceKind::Nearest {
+            let unknowns = match kind {
+                DistanceKind::LocalUnknownGain => self.unknowns.with(Nuisance::Gain),
+                _ => self.unknowns.clone(),
+            };
+            let mut solver = LocalSolver::new(&self.bands, &self.surroundings, unknowns);
+            return sizing.solve(quantity, |counting| {
+                solver.with_counting(target, other, &self.state, counting).map(|local| local.distance)
+            });
+        }
+        let mut solver =
+            NearestSolver::new(&self.bands, &self.surroundings, self.unknowns.clone(), self.range);
+        let mut followed: Option<State> = None;
+        for _ in 0..4 {
+            let solution = sizing.solve(quantity, |counting: &Counting| {
+                let nearest = match &followed {
+                    Some(start) => {
+                        solver.refine_with_counting(target, other, &self.state, counting, start)?
+                    }
+                    None => solver.with_counting(target, other, &self.state, counting)?,
+                };
+                followed = Some(nearest.state);
+                Ok(nearest.distance)
+            })?;
+            let Some(value) = solution.value else { return Ok(solution) };
+            let counting = sizing.forward(quantity, value).counting(sizing.bands, sizing.distance_m);
+            let anew = solver.with_counting(target, other, &self.state, &counting)?;
+            if anew.distance >= solution.statistical_distance * (1.0 - SAME) {
+                return Ok(solution);
+            }
+            // Another state is nearer at this noise: follow that one.
+            followed = Some(anew.state);
+        }
+        sizing.solve(quantity, |counting| self.statistical_distance(kind, alternative, counting))
+    }
+
+    fn verdict(&self, pair: &PairResult, requirement: &RequirementResult) -> Verdict {
+        let reached = pair.statistical_distance;
+        let met = reached.map(|reached| reached >= self.required);
+        let (target, other) = (&pair.target, &pair.alternative);
+        let percent = 100.0 * requirement.detection_probability;
+        let camera = self.camera.as_ref().map_or("", |camera| camera.name.as_str());
+        let sentence = match (reached, requirement.photons) {
+            (_, None) => {
+                format!("No camera can tell {target} from {other} here: nothing in the spectrum differs.")
+            }
+            (None, Some(photons)) => format!(
+                "Telling {target} from {other} with {percent:.1} % reliability takes at least {photons:.2e} photons."
+            ),
+            (Some(d), Some(_)) => {
+                let (yes, what) = if d >= self.required { ("Yes", "can") } else { ("No", "cannot") };
+                let probability = 100.0 * detection::probability(d);
+                format!(
+                    "{yes}: {camera} {what} tell {target} from {other} with {percent:.1} % reliability; \
+                     it reaches {probability:.1} % at most."
+                )
+            }
+        };
+        Verdict {
+            met,
+            sentence,
+            statistical_distance: reached,
+            required_distance: self.required,
+            margin: reached.map(|reached| reached / self.required),
+        }
+    }
+}

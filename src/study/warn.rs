@@ -1,0 +1,144 @@
+//! What the reader of a result must know, with stable codes.
+
+use super::identify::{PairResult, parameter_name};
+use super::size::CameraResult;
+use super::{Study, Warning};
+use crate::identifiability::Status;
+use crate::identifiability::local::LocalDistance;
+use crate::identifiability::nearest::NearestDistance;
+use crate::instrument::{Camera, Readout};
+use crate::planck;
+use crate::scenario::{DistanceKind, Scenario};
+
+/// Ratio of local and nearest distance beyond which the linear picture has failed.
+const LINEAR_FACTOR: f64 = 2.0;
+/// Share of a distance that emissivity errors of 0.1 % can make up before a word of caution is due.
+const FRAGILE_RATIO: f64 = 50.0;
+/// Relative difference between shortcut and exact statistical distance worth a word.
+const SHORTCUT: f64 = 0.1;
+/// Photons per mode beyond which bunching is no longer negligible.
+const OCCUPANCY: f64 = 0.1;
+
+/// Warnings on one pair.
+pub(super) fn of_pair(
+    pair: &PairResult,
+    local: &LocalDistance,
+    nearest: &NearestDistance,
+    kind: DistanceKind,
+) -> Vec<Warning> {
+    let mut warnings = Vec::new();
+    let mut warn = |code, message: String| {
+        warnings.push(Warning::new(code, format!("{} against {}: {message}", pair.target, pair.alternative)));
+    };
+    match pair.status {
+        Status::Ok => {}
+        Status::Identical => warn("identical", "the two emissivities are equal in every band".into()),
+        Status::Equilibrium => warn(
+            "equilibrium",
+            "target and surroundings are in thermal equilibrium; every material looks like a blackbody"
+                .into(),
+        ),
+        Status::Blind => {
+            warn("blind", "a change of the unknowns looks exactly like the change of material".into());
+        }
+    }
+    if !pair.nearest_at_edge.is_empty() && pair.status == Status::Ok {
+        let message = format!(
+            "the nearest state stands at the edge of its range ({}); the range decides the answer",
+            pair.nearest_at_edge.join(", ")
+        );
+        warn("nearest-at-edge", message);
+    }
+    if !nearest.converged {
+        warn("nearest-not-converged", "the search for the nearest state stopped early".into());
+    }
+    let (d_local, d_nearest) = (pair.distance_local, pair.distance_nearest);
+    let ratio = (d_local / d_nearest).max(d_nearest / d_local);
+    if pair.status == Status::Ok && ratio > LINEAR_FACTOR {
+        let message = format!(
+            "local ({d_local:.2e}) and nearest ({d_nearest:.2e}) distance differ by a factor {ratio:.1}; \
+             only the nearest one is a limit"
+        );
+        warn("local-differs", message);
+    }
+    if pair.status == Status::Ok && local.distance_no_nuisance > FRAGILE_RATIO * pair.distance(kind) {
+        warn(
+            "fragile",
+            "the spectra are nearly featureless: errors of 0.1 % in the emissivities can change this distance several times over".into(),
+        );
+    }
+    if !local.dropped.is_empty() && pair.status == Status::Ok {
+        let names: Vec<String> = local.dropped.iter().map(|parameter| parameter_name(*parameter)).collect();
+        warn("unknown-without-effect", format!("{} changes nothing in this scene", names.join(", ")));
+    }
+    warnings
+}
+
+/// Warnings on the camera in the scene, against the limiting alternative.
+pub(super) fn of_camera_result(
+    camera: &CameraResult,
+    pair: &PairResult,
+    scenario: &Scenario,
+) -> Vec<Warning> {
+    let mut warnings = Vec::new();
+    if let (Some(exact), Some(shortcut)) = (pair.statistical_distance, pair.statistical_distance_shortcut)
+        && exact > 0.0
+        && (shortcut / exact - 1.0).abs() > SHORTCUT
+    {
+        let percent = 100.0 * (shortcut / exact - 1.0);
+        let message =
+            format!("the shortcut sqrt(N/(1+gamma)) d0 is off by {percent:+.0} %; the exact value is used");
+        warnings.push(Warning::new("gamma-shortcut", message));
+    }
+    if let Some(blur) = camera.motion_blur_pixels
+        && blur >= 1.0
+    {
+        let message =
+            format!("the target moves {blur:.1} pixels during an exposure; the bound assumes less than 1");
+        warnings.push(Warning::new("motion-blur", message));
+    }
+    if let Some(full) = camera.camera.full_well
+        && camera.brightest_reading > full
+    {
+        let counts = camera.brightest_reading;
+        let message = format!("{counts:.2e} photons in one reading exceed the full well of {full:.2e}");
+        warnings.push(Warning::new("full-well", message));
+    }
+    if scenario.requirement.speed_m_s.is_some() && camera.motion_blur_pixels.is_none() {
+        let message =
+            "a speed is given, but motion blur needs camera.pixels, camera.field_of_view and target.distance";
+        warnings.push(Warning::new("motion-blur-unknown", message));
+    }
+    warnings
+}
+
+impl Study {
+    /// Warnings that hold for every pair.
+    pub(super) fn camera_warnings(&self) -> Vec<Warning> {
+        let mut warnings = Vec::new();
+        let hottest = self.state.environment_k.iter().copied().fold(self.state.temperature_k, f64::max);
+        let (low, _) = self.bands.range_cm1();
+        // Occupancy of a mode: 1/(eˣ − 1) = B/(2cν²).
+        let occupancy = planck::occupancy(low, hottest);
+        if occupancy > OCCUPANCY {
+            let message = format!(
+                "{occupancy:.2} photons per mode at {low:.0} cm^-1: bunching, which is neglected, raises the noise by as much"
+            );
+            warnings.push(Warning::new("bunching", message));
+        }
+        if let Some(camera) = &self.camera {
+            warnings.extend(sequential(camera, self.bands.len()));
+        }
+        warnings
+    }
+}
+
+fn sequential(camera: &Camera, bands: usize) -> Option<Warning> {
+    (camera.readout == Readout::Sequential && bands > 1).then(|| {
+        let message = format!(
+            "bands are read one after the other: {:.3e} s until all {bands} are there, during which nothing may change",
+            camera.acquisition_s(bands)
+        );
+        Warning::new("sequential-readout", message)
+    })
+}
