@@ -1,5 +1,6 @@
 //! Physical limits of seeing by heat.
 
+pub mod cli;
 pub mod error;
 pub mod fisher;
 mod grid;

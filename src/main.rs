@@ -1,1 +1,7 @@
-fn main() {}
+//! The `hadar` command.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    hadar::cli::main()
+}

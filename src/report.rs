@@ -1,3 +1,7 @@
-//! Results made readable. Physics never imports this module; it imports no physics.
+//! Results made readable: files, tables, plots and text. Physics never imports this module.
 
+pub mod bundle;
+pub mod figures;
 pub mod plot;
+pub mod table;
+pub mod text;

@@ -5,11 +5,13 @@
 //! each hardware quantity would have to be. Results are plain data that serialise to the JSON of the
 //! command line; text, tables and plots only render them.
 
+mod curves;
 mod identify;
 mod resolve;
 mod size;
 mod warn;
 
+pub use curves::{InformationCurves, PhotonMap, Spectra};
 pub use identify::{Identification, NearestState, PairResult};
 pub use resolve::{Study, Surface};
 pub use size::{CameraResult, RequirementResult, Sizing, Verdict};

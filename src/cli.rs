@@ -1,0 +1,175 @@
+//! The command line: parse, run, print.
+//!
+//! Exit codes: 0 done; 1 the input is wrong (one message on stderr); 2 usage; 3 requirement not met with
+//! `--check`. With `--json` stdout is one object and nothing else.
+
+mod cameras;
+mod identify;
+mod materials;
+mod plots;
+mod size;
+
+use crate::error::{Error, Result};
+use crate::material::Library;
+use crate::report::bundle::Bundle;
+use crate::scenario::Scenario;
+use crate::study::{Study, Warning};
+use clap::{Args, Parser, Subcommand};
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// The physical limits of seeing by heat: can this thermal camera tell one material from another?
+#[derive(Debug, Parser)]
+#[command(name = "hadar", version, about)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+    #[command(flatten)]
+    global: Global,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// The main job: verdict on a camera, requirement, margins, what would have to change
+    Size(size::SizeArgs),
+    /// Distances from the target to every alternative
+    Identify(identify::IdentifyArgs),
+    /// The materials: list, show, plot, import
+    Materials(materials::MaterialsArgs),
+    /// The known cameras: list, show
+    Cameras(cameras::CamerasArgs),
+}
+
+/// Options of every command.
+#[derive(Debug, Args)]
+struct Global {
+    /// Print one JSON object on stdout and nothing else
+    #[arg(long, global = true)]
+    json: bool,
+    /// Write scenario, tables and plots into this folder
+    #[arg(long, global = true, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Materials of your own, a folder or a file; may be given several times
+    #[arg(long, global = true, value_name = "DIR")]
+    library: Vec<PathBuf>,
+    /// Number of threads (default: all cores); the result does not depend on it
+    #[arg(long, global = true, value_name = "N")]
+    threads: Option<usize>,
+    /// Print nothing on stderr but errors
+    #[arg(short, long, global = true)]
+    quiet: bool,
+}
+
+/// Runs the command line of this process.
+#[must_use]
+pub fn main() -> ExitCode {
+    let cli = Cli::parse();
+    if let Some(threads) = cli.global.threads {
+        // Fails only if a pool is there already, which is then the one that is used.
+        let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
+    }
+    match run(&cli) {
+        Ok(code) => code,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::from(1)
+        }
+    }
+}
+
+fn run(cli: &Cli) -> Result<ExitCode> {
+    if let Some(out) = &cli.global.out {
+        Bundle::check_destination(out)?;
+    }
+    match &cli.command {
+        Command::Size(args) => size::run(args, &cli.global),
+        Command::Identify(args) => identify::run(args, &cli.global),
+        Command::Materials(args) => materials::run(args, &cli.global),
+        Command::Cameras(args) => cameras::run(args, &cli.global),
+    }
+}
+
+impl Global {
+    /// The embedded library with the user's own materials, and what is to be said about them.
+    fn library(&self) -> Result<Library> {
+        let mut library = Library::embedded()?;
+        for path in &self.library {
+            library.add_path(path)?;
+        }
+        for warning in library.warnings() {
+            self.note(&format!("warning: {warning}"));
+        }
+        Ok(library)
+    }
+
+    /// A line on stderr, unless quiet.
+    fn note(&self, text: &str) {
+        if !self.quiet {
+            eprintln!("{text}");
+        }
+    }
+
+    /// Prints a result: JSON with `--json`, else the text.
+    fn print(&self, json: &impl serde::Serialize, text: &str) -> Result<()> {
+        let text = if self.json {
+            serde_json::to_string_pretty(json)
+                .map_err(|error| Error::malformed(error.to_string(), "report this as a bug"))?
+        } else {
+            text.trim_end().to_owned()
+        };
+        match writeln!(std::io::stdout(), "{text}") {
+            // A reader that has seen enough (`| head`) is no error.
+            Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+                Err(Error::file("print the result", Path::new("stdout"), error))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn study(&self, path: &Path, by: Option<crate::scenario::DistanceKind>) -> Result<Study> {
+        let mut scenario = Scenario::from_file(path)?;
+        if let Some(by) = by {
+            scenario.requirement.by = by;
+        }
+        Study::new(&scenario, &self.library()?)
+    }
+
+    /// Writes the files and says where.
+    fn write(&self, bundle: &Bundle, out: &Path) -> Result<()> {
+        bundle.write(out)?;
+        let names: Vec<&str> = bundle.names().collect();
+        self.note(&format!("wrote {} to {}", names.join(", "), out.display()));
+        Ok(())
+    }
+}
+
+/// The distance that decides, as a flag.
+#[derive(Debug, Clone, Copy, clap::ValueEnum)]
+enum By {
+    /// To the nearest state of the alternative: the limit
+    Nearest,
+    /// The paper's local distance, calibrated camera (S27)
+    Local,
+    /// The paper's local distance with unknown gain (S29)
+    LocalUnknownGain,
+}
+
+impl From<By> for crate::scenario::DistanceKind {
+    fn from(by: By) -> Self {
+        match by {
+            By::Nearest => Self::Nearest,
+            By::Local => Self::Local,
+            By::LocalUnknownGain => Self::LocalUnknownGain,
+        }
+    }
+}
+
+/// Warnings as a table.
+fn warnings_table(warnings: &[Warning]) -> crate::report::table::Table {
+    let mut table = crate::report::table::Table::new(["code", "message"]);
+    for warning in warnings {
+        table.push(vec![warning.code.into(), warning.message.clone()]);
+    }
+    table
+}

@@ -1,0 +1,309 @@
+//! Results as text for people: the answer in a sentence, then the numbers, then what they rest on.
+
+use crate::instrument::{Camera, Figures, NoiseSpec};
+use crate::policy::Quantity;
+use crate::study::{Identification, PairResult, Sizing, Study, Warning};
+use std::fmt::Write as _;
+
+/// A number with `digits` significant digits, plain where that is short, else in powers of ten.
+#[must_use]
+pub fn significant(value: f64, digits: usize) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return format!("{value}");
+    }
+    let exponent = value.abs().log10().floor() as i32;
+    let last = digits.saturating_sub(1);
+    if (-4..6).contains(&exponent) {
+        let decimals = usize::try_from(last as i32 - exponent).unwrap_or(0);
+        format!("{value:.decimals$}")
+    } else {
+        format!("{value:.last$e}")
+    }
+}
+
+/// A length, time or such with a unit that keeps the number short.
+#[must_use]
+pub fn quantity(value: f64, unit: &str) -> String {
+    for (factor, prefix) in [(1.0, ""), (1e3, "m"), (1e6, "u"), (1e9, "n")] {
+        if value * factor >= 1.0 {
+            return format!("{} {prefix}{unit}", significant(value * factor, 3));
+        }
+    }
+    format!("{} {unit}", significant(value, 3))
+}
+
+fn photons(count: Option<f64>) -> String {
+    count.map_or_else(|| "no number suffices".into(), |count| format!("{count:.2e}"))
+}
+
+fn celsius(kelvin: f64) -> String {
+    format!("{:.2} degC", kelvin - 273.15)
+}
+
+/// The verdict and everything behind it.
+#[must_use]
+pub fn sizing(result: &Sizing, study: &Study) -> String {
+    let mut out = String::new();
+    let _ = writeln!(out, "{}\n", result.verdict.sentence);
+    let limiting = result.pairs.iter().find(|pair| pair.alternative == result.limiting);
+    if let Some(pair) = limiting {
+        out.push_str(&readings(pair, result));
+    }
+    if let (Some(camera), Some(pair)) = (&result.camera, limiting) {
+        let _ = writeln!(out, "Camera {} in this scene", camera.camera.name);
+        let mut line = |label: &str, text: String| {
+            let _ = writeln!(out, "  {label:<34} {text}");
+        };
+        line("photons at the detector, all bands", format!("{:.3e}", camera.photons));
+        line("electronic noise of a band reading", format!("{:.3e} counts", camera.noise_counts));
+        line("gamma, noise / photons of a band", significant(camera.gamma_per_band, 3));
+        line("t A_p / ((1+gamma) F^2)", format!("{:.3e} m^2 s", camera.hardware_m2_s));
+        if let Some(d) = pair.statistical_distance {
+            line(
+                "statistical distance reached",
+                format!(
+                    "{} (required {})",
+                    significant(d, 3),
+                    significant(result.verdict.required_distance, 4)
+                ),
+            );
+        }
+        if let (Some(p), Some(miss), Some(bits)) =
+            (pair.detection_probability, pair.miss_probability, pair.information_bits)
+        {
+            line(
+                "detection probability at most",
+                format!("{} (error {})", significant(p, 4), significant(miss, 3)),
+            );
+            line("information log2 2P", format!("{} bit", significant(bits, 3)));
+        }
+        line("least distance it resolves", format!("{:.2e} per sqrt(photon)", camera.least_distance));
+        if let Some(footprint) = camera.footprint_m {
+            line("pixel footprint at the target", quantity(footprint, "m"));
+        }
+        if let Some(blur) = camera.motion_blur_pixels {
+            line("motion during an exposure", format!("{} pixel at most", significant(blur, 2)));
+        }
+        out.push('\n');
+    }
+    out.push_str(&solutions(result));
+    if result.pairs.len() > 1 {
+        out.push_str("All alternatives, hardest first\n");
+        out.push_str(&pair_table(&result.pairs));
+        out.push('\n');
+    }
+    out.push_str(&assumptions(study));
+    out.push_str(&warnings(&result.warnings));
+    out
+}
+
+/// The three readings of the distance, side by side.
+fn readings(pair: &PairResult, result: &Sizing) -> String {
+    let mut out = String::new();
+    let requirement = &result.requirement;
+    let _ = writeln!(
+        out,
+        "What it takes to tell {} from {} with d = {} (probability {}), by three readings",
+        pair.target,
+        pair.alternative,
+        significant(requirement.distance, 4),
+        significant(requirement.detection_probability, 4)
+    );
+    let _ =
+        writeln!(out, "  {:<34} {:>10}  {:>18}  {:>14}", "reading", "distance", "photons", "H_req [m^2 s]");
+    let (n, h) = (requirement.photons_by, requirement.hardware_by_m2_s);
+    let rows = [
+        ("nearest", "nearest state (the limit)", pair.distance_nearest, n.nearest, h.nearest),
+        ("local", "local, calibrated (S27)", pair.distance_local, n.local, h.local),
+        (
+            "local-unknown-gain",
+            "local, unknown gain (S29)",
+            pair.distance_local_unknown_gain,
+            n.local_unknown_gain,
+            h.local_unknown_gain,
+        ),
+    ];
+    for (key, label, distance, count, hardware) in rows {
+        let mark = if key == requirement.by { "* " } else { "  " };
+        let hardware = hardware.map_or_else(|| "-".into(), |h| format!("{h:.1e}"));
+        let _ = writeln!(out, "{mark}{label:<34} {distance:>10.2e}  {:>18}  {hardware:>14}", photons(count));
+    }
+    let state = &pair.nearest_state;
+    let lighting: Vec<String> = state.lighting.iter().map(|v| format!("{v:.3}")).collect();
+    let _ = writeln!(
+        out,
+        "  * decides. Nearest state of {}: {}, lighting {}.\n",
+        pair.alternative,
+        celsius(state.temperature_k),
+        lighting.join(", ")
+    );
+    out
+}
+
+fn solutions(result: &Sizing) -> String {
+    let Some(solutions) = &result.solve_for else { return String::new() };
+    let mut out =
+        String::from("What would meet the requirement, each with the rest of the camera as it is\n");
+    for (quantity_solved, solution) in &solutions.0 {
+        let show = |value: f64| match quantity_solved {
+            Quantity::Exposure => quantity(value, "s"),
+            Quantity::Pixel => quantity(value, "m"),
+            Quantity::FNumber => format!("f/{}", significant(value, 3)),
+            Quantity::Noise => format!("{value:.2e} counts"),
+            Quantity::Frames => format!("{value:.0}"),
+        };
+        let answer = match (solution.value, &solution.reason) {
+            (Some(value), _) => format!("{:<18} (now {})", show(value), show(solution.camera)),
+            (None, Some(reason)) => format!(
+                "none suffices: {reason} (reaches d = {})",
+                significant(solution.statistical_distance, 2)
+            ),
+            (None, None) => "none suffices".into(),
+        };
+        let _ = writeln!(out, "  {:<34} {answer}", quantity_solved.name());
+    }
+    out.push('\n');
+    out
+}
+
+/// Distances to all alternatives.
+#[must_use]
+pub fn identification(result: &Identification, study: &Study) -> String {
+    let mut out = String::new();
+    let hardest = result.pairs.iter().find(|pair| pair.alternative == result.limiting);
+    if let Some(pair) = hardest {
+        let needed = match pair.photons_required {
+            Some(count) => format!("it takes at least {count:.2e} photons"),
+            None => "no number of photons suffices".into(),
+        };
+        let _ = writeln!(out, "{} is hardest to tell from {}: {needed}.\n", pair.target, pair.alternative);
+    }
+    out.push_str(&pair_table(&result.pairs));
+    out.push('\n');
+    out.push_str(&assumptions(study));
+    out.push_str(&warnings(&result.warnings));
+    out
+}
+
+fn pair_table(pairs: &[PairResult]) -> String {
+    let with_camera = pairs.iter().any(|pair| pair.statistical_distance.is_some());
+    let width = pairs.iter().map(|pair| pair.alternative.len()).max().unwrap_or(0).max(11);
+    let mut out = String::new();
+    let _ = write!(
+        out,
+        "  {:<width$}  {:>9}  {:>9}  {:>9}  {:>18}  {:>24}",
+        "alternative", "nearest", "local", "S29", "photons required", "nearest state"
+    );
+    let _ = writeln!(out, "{}", if with_camera { "    camera d" } else { "" });
+    let mut sorted: Vec<&PairResult> = pairs.iter().collect();
+    sorted.sort_by(|a, b| a.distance_nearest.total_cmp(&b.distance_nearest));
+    for pair in sorted {
+        let lighting: Vec<String> = pair.nearest_state.lighting.iter().map(|v| format!("{v:.2}")).collect();
+        let state = format!("{}, V {}", celsius(pair.nearest_state.temperature_k), lighting.join(" "));
+        let _ = write!(
+            out,
+            "  {:<width$}  {:>9.2e}  {:>9.2e}  {:>9.2e}  {:>18}  {state:>24}",
+            pair.alternative,
+            pair.distance_nearest,
+            pair.distance_local,
+            pair.distance_local_unknown_gain,
+            photons(pair.photons_required)
+        );
+        let reached = pair.statistical_distance.map_or_else(String::new, |d| format!("  {d:>10.2e}"));
+        let _ = writeln!(out, "{reached}");
+    }
+    out
+}
+
+fn assumptions(study: &Study) -> String {
+    let scenario = study.scenario();
+    let names: Vec<&str> = scenario.unknown.nuisances.iter().map(|nuisance| nuisance.name()).collect();
+    let unknown = if names.is_empty() { "nothing but the material".to_owned() } else { names.join(", ") };
+    let (low, high) = study.bands().range_cm1();
+    let mut out = String::from("Assumptions\n");
+    let _ = writeln!(out, "  unknown besides the material: {unknown}");
+    let count = study.bands().len();
+    let _ =
+        writeln!(out, "  {count} band{} between {low} and {high} cm^-1", if count == 1 { "" } else { "s" });
+    out.push_str(
+        "  opaque Lambertian target that fills the pixel, one scattering, no atmosphere on the path\n",
+    );
+    out.push_str(
+        "  counts large enough to be Gaussian; two equally likely materials; d is a limit, not a promise\n",
+    );
+    if study.camera().is_some() {
+        out.push_str("  every band is read by every pixel with the whole exposure; all photons are counted (quantum efficiency 1)\n");
+    }
+    out
+}
+
+fn warnings(warnings: &[Warning]) -> String {
+    if warnings.is_empty() {
+        return String::new();
+    }
+    let mut out = String::from("Warnings\n");
+    for warning in warnings {
+        let _ = writeln!(out, "  [{}] {}", warning.code, warning.message);
+    }
+    out
+}
+
+/// A camera with its figures and where they are from.
+#[must_use]
+pub fn camera(camera: &Camera, figures: &Figures) -> String {
+    let mut out = format!("{}: {}\n\n", camera.name, camera.description);
+    let mut line = |label: &str, text: String| {
+        let _ = writeln!(out, "  {label:<34} {text}");
+    };
+    line("exposure", quantity(camera.exposure_s, "s"));
+    line("pixel", quantity(camera.pixel_m, "m"));
+    line("f-number", format!("f/{}", camera.f_number));
+    line("focal length", quantity(camera.focal_length_m, "m"));
+    line("optics efficiency", format!("{}", camera.optics_efficiency));
+    line("noise", noise(camera));
+    line("flicker share of the noise variance", format!("{}", camera.flicker_fraction));
+    line("readout", camera.readout.name().into());
+    let [low, high] = camera.spectral_range_cm1;
+    line("spectral range", format!("{low} to {high} cm^-1"));
+    let _ = writeln!(out, "\nOne exposure of a blackbody at {}", celsius(figures.reference_temperature_k));
+    let mut line = |label: &str, text: String| {
+        let _ = writeln!(out, "  {label:<34} {text}");
+    };
+    line("photons", format!("{:.2e}", figures.photons));
+    line("noise of a band reading", format!("{:.2e} counts", figures.noise_counts));
+    line(&format!("gamma, of {} bands", figures.bands), significant(figures.gamma_per_band, 2));
+    line("t A_p / ((1+gamma) F^2)", format!("{:.2e} m^2 s", figures.hardware_m2_s));
+    out.push_str("\nProvenance\n");
+    for note in &camera.provenance {
+        let _ = writeln!(out, "  - {note}");
+    }
+    out
+}
+
+fn noise(camera: &Camera) -> String {
+    match camera.noise {
+        NoiseSpec::None => "none".into(),
+        NoiseSpec::Netd { netd_k, temperature_k, .. } => {
+            format!("NETD {} at {}", quantity(netd_k, "K"), celsius(temperature_k))
+        }
+        NoiseSpec::Detectivity { detectivity_cm_hz05_w } => {
+            format!("D* {detectivity_cm_hz05_w:.2e} cm Hz^0.5/W")
+        }
+        NoiseSpec::Counts { sigma_counts } => format!("{sigma_counts:.2e} counts"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short_and_keep_their_digits() {
+        assert_eq!(significant(0.056_23, 3), "0.0562");
+        assert_eq!(significant(663_212.0, 3), "663212");
+        assert_eq!(significant(6.632e8, 3), "6.63e8");
+        assert_eq!(quantity(12e-6, "m"), "12.0 um");
+        assert_eq!(quantity(0.012, "s"), "12.0 ms");
+        assert_eq!(quantity(0.0, "s"), "0 s");
+    }
+}
