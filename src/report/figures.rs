@@ -4,6 +4,7 @@
 
 use super::plot::{Axis, Band, Figure, HeatMap, LineFigure, Marker, Panel, Rule, Series, Style};
 use super::table::Table;
+use super::text::significant;
 use crate::study::{InformationCurves, PhotonMap, Spectra, Surface};
 
 /// A figure and the numbers in it.
@@ -109,14 +110,6 @@ pub fn spectra(spectra: &Spectra, target: &str, alternative: &str) -> Plot {
     let mut lower = Panel::new(Axis::linear("difference (%)"));
     if noisy {
         let limits = |sigma: &[f64]| (sigma.iter().map(|s| -s).collect::<Vec<f64>>(), sigma.to_vec());
-        // Both noises on one axis would hide the smaller: the shot noise is what every camera shares.
-        let largest = relative.iter().fold(0.0_f64, |most, r| most.max(r.abs()));
-        let camera_fits = total.iter().fold(0.0_f64, |most, s| most.max(*s)) < 50.0 * largest.max(1e-12);
-        if camera_fits {
-            let (low, high) = limits(&total);
-            lower =
-                lower.band(Band::new("± noise of one reading of the camera", x.clone(), low, high).colour(2));
-        }
         let (low, high) = limits(&shot);
         lower = lower.band(Band::new("± shot noise of one reading", x.clone(), low, high));
     }
@@ -124,11 +117,11 @@ pub fn spectra(spectra: &Spectra, target: &str, alternative: &str) -> Plot {
     let camera_note = match (spectra.sigma.first(), total.is_empty()) {
         (Some(_), false) => {
             let mean = total.iter().sum::<f64>() / total.len() as f64;
-            format!(" Noise of one camera reading: {mean:.3} % of the signal.")
+            format!(" Noise of one reading of the camera: {} % of the signal.", significant(mean, 2))
         }
         _ => String::new(),
     };
-    let figure = LineFigure::new(
+    let mut figure = LineFigure::new(
         format!("What the camera receives: {target} and the nearest {alternative}"),
         wavenumber_axis(x),
         Axis::linear("photon radiance (photons s⁻¹ m⁻² sr⁻¹ per cm⁻¹)"),
@@ -144,6 +137,14 @@ pub fn spectra(spectra: &Spectra, target: &str, alternative: &str) -> Plot {
             .colour(1),
     )
     .lower(lower);
+    if noisy {
+        let edge = |sign: f64| -> Vec<f64> {
+            spectra.target.iter().zip(&spectra.sigma).map(|(own, sigma)| own + sign * sigma).collect()
+        };
+        figure = figure.band(
+            Band::new("± noise of one reading of the camera", x.clone(), edge(-1.0), edge(1.0)).colour(2),
+        );
+    }
     Plot { name: "incident_spectra", figure: figure.into(), table }
 }
 

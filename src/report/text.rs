@@ -56,7 +56,7 @@ pub fn sizing(result: &Sizing, study: &Study) -> String {
         };
         line("photons at the detector, all bands", format!("{:.3e}", camera.photons));
         line("electronic noise of a band reading", format!("{:.3e} counts", camera.noise_counts));
-        line("gamma, noise / photons of a band", significant(camera.gamma_per_band, 3));
+        line("gamma, noise / photons of a band", format!("{:.2e}", camera.gamma_per_band));
         line("t A_p / ((1+gamma) F^2)", format!("{:.3e} m^2 s", camera.hardware_m2_s));
         if let Some(d) = pair.statistical_distance {
             line(
@@ -261,7 +261,7 @@ pub fn camera(camera: &Camera, figures: &Figures) -> String {
     line("focal length", quantity(camera.focal_length_m, "m"));
     line("optics efficiency", format!("{}", camera.optics_efficiency));
     line("noise", noise(camera));
-    line("flicker share of the noise variance", format!("{}", camera.flicker_fraction));
+    line("flicker share of noise variance", format!("{}", camera.flicker_fraction));
     line("readout", camera.readout.name().into());
     let [low, high] = camera.spectral_range_cm1;
     line("spectral range", format!("{low} to {high} cm^-1"));
@@ -271,7 +271,7 @@ pub fn camera(camera: &Camera, figures: &Figures) -> String {
     };
     line("photons", format!("{:.2e}", figures.photons));
     line("noise of a band reading", format!("{:.2e} counts", figures.noise_counts));
-    line(&format!("gamma, of {} bands", figures.bands), significant(figures.gamma_per_band, 2));
+    line(&format!("gamma of a band, {} bands", figures.bands), format!("{:.1e}", figures.gamma_per_band));
     line("t A_p / ((1+gamma) F^2)", format!("{:.2e} m^2 s", figures.hardware_m2_s));
     out.push_str("\nProvenance\n");
     for note in &camera.provenance {
