@@ -6,14 +6,13 @@
 mod cameras;
 mod identify;
 mod materials;
-mod plots;
 mod size;
 
 use crate::error::{Error, Result};
 use crate::material::Library;
 use crate::report::bundle::Bundle;
 use crate::scenario::Scenario;
-use crate::study::{Study, Warning};
+use crate::study::Study;
 use clap::{Args, Parser, Subcommand};
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -163,13 +162,4 @@ impl From<By> for crate::scenario::DistanceKind {
             By::LocalUnknownGain => Self::LocalUnknownGain,
         }
     }
-}
-
-/// Warnings as a table.
-fn warnings_table(warnings: &[Warning]) -> crate::report::table::Table {
-    let mut table = crate::report::table::Table::new(["code", "message"]);
-    for warning in warnings {
-        table.push(vec![warning.code.into(), warning.message.clone()]);
-    }
-    table
 }

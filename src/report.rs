@@ -3,5 +3,7 @@
 pub mod bundle;
 pub mod figures;
 pub mod plot;
+pub mod sizing;
 pub mod table;
+pub mod tables;
 pub mod text;

@@ -1,9 +1,9 @@
 //! `hadar identify`: distances from the target to every alternative.
 
-use super::{By, Global, plots, warnings_table};
+use super::{By, Global};
 use crate::error::Result;
 use crate::report::bundle::Bundle;
-use crate::report::text;
+use crate::report::{tables, text};
 use clap::Args;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -23,8 +23,8 @@ pub(super) fn run(args: &IdentifyArgs, global: &Global) -> Result<ExitCode> {
     if let Some(out) = &global.out {
         let mut bundle = Bundle::default();
         bundle.add("scenario.toml", study.scenario().to_toml_beside(out));
-        bundle.add("pairs.csv", plots::pairs(&result.pairs).to_csv()?);
-        bundle.add("warnings.csv", warnings_table(&result.warnings).to_csv()?);
+        bundle.add("pairs.csv", tables::pairs(&result.pairs).to_csv()?);
+        bundle.add("warnings.csv", tables::warnings(&result.warnings).to_csv()?);
         global.write(&bundle, out)?;
     }
     global.print(&result, &text::identification(&result, &study))?;

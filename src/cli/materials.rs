@@ -1,6 +1,6 @@
 //! `hadar materials`: the library.
 
-use super::{Global, plots};
+use super::Global;
 use crate::error::{Error, Result};
 use crate::material::{Library, Material, Summary, read};
 use crate::report::bundle::Bundle;
@@ -142,7 +142,7 @@ fn plot(library: &Library, names: &[String], global: &Global) -> Result<()> {
     let Some((first, others)) = surfaces.split_first() else { return Ok(()) };
     let others: Vec<&Surface> = others.iter().collect();
     let mut bundle = Bundle::default();
-    plots::add(&mut bundle, &[figures::emissivities(&nodes, first, &others)])?;
+    bundle.add_plots(&[figures::emissivities(&nodes, first, &others)])?;
     global.write(&bundle, out)?;
     let drawn: Vec<Summary> = materials.iter().map(|material| material.summary()).collect();
     global.print(&serde_json::json!({ "materials": drawn }), &format!("drew {}", names.join(", ")))

@@ -3,7 +3,10 @@
 //! Everything is written into a fresh folder beside the destination first and moved into place only when
 //! the last file is complete, so that a full disk or a missing permission leaves nothing half-written.
 
+use super::figures::Plot;
+use super::plot::{render_png, render_svg};
 use crate::error::{Error, Result};
+use rayon::prelude::*;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -17,6 +20,23 @@ impl Bundle {
     /// Adds a file.
     pub fn add(&mut self, name: impl Into<String>, content: impl Into<Vec<u8>>) {
         self.files.push((name.into(), content.into()));
+    }
+
+    /// Adds SVG, PNG and CSV of every plot, rendered in parallel.
+    ///
+    /// # Errors
+    /// A figure that cannot be drawn.
+    pub fn add_plots(&mut self, plots: &[Plot]) -> Result<()> {
+        let rendered: Result<Vec<(String, Vec<u8>, String)>> = plots
+            .par_iter()
+            .map(|plot| Ok((render_svg(&plot.figure)?, render_png(&plot.figure)?, plot.table.to_csv()?)))
+            .collect();
+        for (plot, (svg, png, csv)) in plots.iter().zip(rendered?) {
+            self.add(format!("{}.svg", plot.name), svg);
+            self.add(format!("{}.png", plot.name), png);
+            self.add(format!("{}.csv", plot.name), csv);
+        }
+        Ok(())
     }
 
     /// Names of the files, in the order they were added.

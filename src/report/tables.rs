@@ -1,29 +1,11 @@
-//! Plots and tables into a bundle, rendered in parallel.
+//! Tables that several commands write.
 
-use crate::error::Result;
-use crate::report::bundle::Bundle;
-use crate::report::figures::Plot;
-use crate::report::plot::{render_png, render_svg};
-use crate::report::table::{Table, number, optional};
-use crate::study::PairResult;
-use rayon::prelude::*;
-
-/// Adds SVG, PNG and CSV of every plot.
-pub(super) fn add(bundle: &mut Bundle, plots: &[Plot]) -> Result<()> {
-    let rendered: Result<Vec<(String, Vec<u8>, String)>> = plots
-        .par_iter()
-        .map(|plot| Ok((render_svg(&plot.figure)?, render_png(&plot.figure)?, plot.table.to_csv()?)))
-        .collect();
-    for (plot, (svg, png, csv)) in plots.iter().zip(rendered?) {
-        bundle.add(format!("{}.svg", plot.name), svg);
-        bundle.add(format!("{}.png", plot.name), png);
-        bundle.add(format!("{}.csv", plot.name), csv);
-    }
-    Ok(())
-}
+use super::table::{Table, number, optional};
+use crate::study::{PairResult, Warning};
 
 /// All pairs as a table.
-pub(super) fn pairs(pairs: &[PairResult]) -> Table {
+#[must_use]
+pub fn pairs(pairs: &[PairResult]) -> Table {
     let mut table = Table::new([
         "target",
         "alternative",
@@ -66,6 +48,16 @@ pub(super) fn pairs(pairs: &[PairResult]) -> Table {
             optional(pair.condition_number),
             number(pair.relative_error),
         ]);
+    }
+    table
+}
+
+/// Warnings with their codes.
+#[must_use]
+pub fn warnings(warnings: &[Warning]) -> Table {
+    let mut table = Table::new(["code", "message"]);
+    for warning in warnings {
+        table.push(vec![warning.code.into(), warning.message.clone()]);
     }
     table
 }
