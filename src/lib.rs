@@ -1,4 +1,4 @@
-//! Physical limits of seeing by heat.
+#![doc = include_str!("../README.md")]
 
 pub mod cli;
 pub mod error;
