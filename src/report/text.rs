@@ -219,12 +219,17 @@ fn assumptions(study: &Study) -> String {
     let scenario = study.scenario();
     let names: Vec<&str> = scenario.unknown.nuisances.iter().map(|nuisance| nuisance.name()).collect();
     let unknown = if names.is_empty() { "nothing but the material".to_owned() } else { names.join(", ") };
-    let (low, high) = study.bands().range_cm1();
+    let bands = study.bands().bands();
+    let (low, high) =
+        (bands.first().map_or(0.0, |b| b.center_cm1), bands.last().map_or(0.0, |b| b.center_cm1));
     let mut out = String::from("Assumptions\n");
     let _ = writeln!(out, "  unknown besides the material: {unknown}");
     let count = study.bands().len();
-    let _ =
-        writeln!(out, "  {count} band{} between {low} and {high} cm^-1", if count == 1 { "" } else { "s" });
+    let _ = writeln!(
+        out,
+        "  {count} band{} centred from {low:.1} to {high:.1} cm^-1",
+        if count == 1 { "" } else { "s" }
+    );
     out.push_str(
         "  opaque Lambertian target that fills the pixel, one scattering, no atmosphere on the path\n",
     );
@@ -242,8 +247,15 @@ fn warnings(warnings: &[Warning]) -> String {
         return String::new();
     }
     let mut out = String::from("Warnings\n");
-    for warning in warnings {
-        let _ = writeln!(out, "  [{}] {}", warning.code, warning.message);
+    // One line per code: a whole library would otherwise bury the answer.
+    for (i, warning) in warnings.iter().enumerate() {
+        if warnings[..i].iter().any(|earlier| earlier.code == warning.code) {
+            continue;
+        }
+        let more = warnings[i + 1..].iter().filter(|later| later.code == warning.code).count();
+        let rest =
+            if more > 0 { format!(" (and {more} more of this kind, see --json)") } else { String::new() };
+        let _ = writeln!(out, "  [{}] {}{rest}", warning.code, warning.message);
     }
     out
 }
