@@ -47,7 +47,7 @@ impl MapScene<'_> {
         state
     }
 
-    /// Local distances, row-major [temperature][lighting].
+    /// Local distances, temperature after temperature (rows), lighting within.
     ///
     /// # Errors
     /// As [`LocalSolver::per_photon`], at the first point that fails.
@@ -73,7 +73,7 @@ impl MapScene<'_> {
         rows.map(|rows| rows.concat())
     }
 
-    /// Nearest distances, row-major [temperature][lighting].
+    /// Nearest distances, temperature after temperature (rows), lighting within.
     ///
     /// # Errors
     /// As [`NearestSolver::per_photon`], at the first point that fails.

@@ -111,7 +111,7 @@ pub fn spectra(spectra: &Spectra, target: &str, alternative: &str) -> Plot {
     if noisy {
         let limits = |sigma: &[f64]| (sigma.iter().map(|s| -s).collect::<Vec<f64>>(), sigma.to_vec());
         let (low, high) = limits(&shot);
-        lower = lower.band(Band::new("± shot noise of one reading", x.clone(), low, high));
+        lower = lower.band(Band::new("± shot noise, one reading", x.clone(), low, high));
     }
     lower = lower.series(Series::line("nearest − target", x.clone(), relative).colour(1));
     let camera_note = match (spectra.sigma.first(), total.is_empty()) {
@@ -141,9 +141,8 @@ pub fn spectra(spectra: &Spectra, target: &str, alternative: &str) -> Plot {
         let edge = |sign: f64| -> Vec<f64> {
             spectra.target.iter().zip(&spectra.sigma).map(|(own, sigma)| own + sign * sigma).collect()
         };
-        figure = figure.band(
-            Band::new("± noise of one reading of the camera", x.clone(), edge(-1.0), edge(1.0)).colour(2),
-        );
+        figure =
+            figure.band(Band::new("± camera noise, one reading", x.clone(), edge(-1.0), edge(1.0)).colour(2));
     }
     Plot { name: "incident_spectra", figure: figure.into(), table }
 }
