@@ -5,6 +5,8 @@
 //! each hardware quantity would have to be. Results are plain data that serialise to the JSON of the
 //! command line; text, tables and plots only render them.
 
+mod bands;
+mod camera;
 mod curves;
 mod identify;
 mod resolve;

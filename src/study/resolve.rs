@@ -1,16 +1,15 @@
 //! Names and files of a scenario looked up: materials on the nodes of the bands, surroundings, camera.
 
-use super::Warning;
+use super::{Warning, bands, camera};
 use crate::error::{Error, Result};
 use crate::fisher::{Nuisance, Unknowns};
 use crate::identifiability::detection;
 use crate::identifiability::nearest::StateRange;
-use crate::instrument::{Camera, NoiseSpec, presets};
+use crate::instrument::Camera;
 use crate::material::{Library, Material};
-use crate::scenario::{BandSource, CameraSpec, MaterialRef, Reliability, Scenario};
+use crate::scenario::{MaterialRef, Reliability, Scenario};
 use crate::scene::{EnvironmentObject, State, Surroundings};
 use crate::spectrum::Bands;
-use crate::units::Spectral;
 use std::borrow::Cow;
 
 /// A material on the nodes of the bands.
@@ -78,14 +77,13 @@ impl Study {
                 found.transpose()
             })
             .collect::<Result<Vec<_>>>()?;
-        let bands = centre_bands(&scenario)?;
+        let bands = bands::at_centres(&scenario)?;
         let alternatives = finder.alternatives(&target, &bands)?;
         let warnings = finder.warnings;
 
-        let mut everything: Vec<&Material> = alternatives.iter().map(AsRef::as_ref).collect();
-        everything.push(target.as_ref());
-        everything.extend(environment.iter().flatten().map(AsRef::as_ref));
-        let bands = integrated(&scenario, bands, &everything, &target, &alternatives)?;
+        let materials =
+            bands::Materials { target: &target, alternatives: &alternatives, environment: &environment };
+        let bands = bands::integrated(&scenario, bands, &materials)?;
 
         let nodes = bands.nodes_cm1();
         let on_nodes = |material: &Material, key: &str| {
@@ -117,7 +115,7 @@ impl Study {
             .enumerate()
             .map(|(i, material)| on_nodes(material, &format!("alternatives.materials[{i}]")))
             .collect::<Result<Vec<_>>>()?;
-        let camera = scenario.camera.as_ref().map(|spec| camera(spec, &scenario)).transpose()?;
+        let camera = scenario.camera.as_ref().map(|spec| camera::resolved(spec, &scenario)).transpose()?;
         let required = match scenario.requirement.reliability {
             Reliability::Distance(distance) => distance,
             Reliability::DetectionProbability(probability) => {
@@ -288,64 +286,6 @@ fn alternatives_as_written(alternatives: &[Surface]) -> Vec<String> {
     alternatives.iter().map(|surface| surface.name.clone()).collect()
 }
 
-/// The bands of the scenario as the paper samples them: at band centres.
-fn centre_bands(scenario: &Scenario) -> Result<Bands> {
-    let made = match &scenario.bands.source {
-        BandSource::Grid { start, stop, step } => match (start, stop, step) {
-            (Spectral::Wavelength(start), Spectral::Wavelength(stop), Spectral::Wavelength(step)) => {
-                Bands::uniform_wavelength(*start, *stop, *step)
-            }
-            _ => Bands::uniform(start.number(), stop.number(), step.number()),
-        },
-        BandSource::Rows(path) => return Bands::from_rows_file(path),
-        BandSource::Filters(path) => return Bands::from_filters_file(path),
-        BandSource::Ranges(ranges) => {
-            let edges: Vec<(f64, f64)> = ranges
-                .iter()
-                .map(|[a, b]| (a.wavenumber_cm1(), b.wavenumber_cm1()))
-                .map(|(a, b)| (a.min(b), a.max(b)))
-                .collect();
-            Bands::from_ranges(&edges)
-        }
-    };
-    made.map_err(|error| error.at(scenario.place("bands")))
-}
-
-/// The same bands integrating the spectra of target and alternatives, where the scenario asks for it.
-fn integrated(
-    scenario: &Scenario,
-    bands: Bands,
-    everything: &[&Material],
-    target: &Material,
-    alternatives: &[Cow<'_, Material>],
-) -> Result<Bands> {
-    if !scenario.bands.integrate {
-        return Ok(bands);
-    }
-    let low = bands.bands().iter().map(|band| band.low_cm1).fold(f64::INFINITY, f64::min);
-    let high = bands.bands().iter().map(|band| band.high_cm1).fold(0.0, f64::max);
-    let kinks: Vec<f64> =
-        everything.iter().flat_map(|material| material.breakpoints_cm1(low, high)).collect();
-    let environment: Vec<(f64, f64)> =
-        scenario.environment.iter().map(|object| (object.temperature_k, object.lighting)).collect();
-    let temperature_k = scenario.target.temperature_k;
-    bands
-        .integrated(&kinks, scenario.bands.tolerance, |nodes| {
-            let objects = environment
-                .iter()
-                .map(|&(temperature_k, _)| EnvironmentObject { temperature_k, emissivity: None })
-                .collect();
-            let surroundings = Surroundings::new(nodes, objects)?;
-            let lighting: Vec<f64> = environment.iter().map(|&(_, lighting)| lighting).collect();
-            let state = surroundings.state(temperature_k, &lighting)?;
-            std::iter::once(target)
-                .chain(alternatives.iter().map(AsRef::as_ref))
-                .map(|material| Ok(surroundings.signal(&material.emissivity(nodes)?, &state)))
-                .collect()
-        })
-        .map_err(|error| error.at(scenario.place("bands.integrate")))
-}
-
 fn unknowns(scenario: &Scenario) -> Result<Unknowns> {
     let unknown = &scenario.unknown;
     let mut unknowns =
@@ -363,90 +303,6 @@ fn state_range(scenario: &Scenario) -> StateRange {
         lighting: scenario.alternatives.lighting_range.unwrap_or(default.lighting),
         lighting_sum: default.lighting_sum,
     }
-}
-
-/// The preset with what the scenario overrides; without a preset everything must be said.
-fn camera(spec: &CameraSpec, scenario: &Scenario) -> Result<Camera> {
-    let place = |key: &str| scenario.place(&format!("camera.{key}"));
-    let preset = match &spec.preset {
-        Some(name) => Some(presets::get(name).map_err(|error| error.at(place("preset")))?),
-        None => None,
-    };
-    let need = |key: &'static str, own: Option<f64>, preset: Option<f64>, example: &str| {
-        own.or(preset).ok_or_else(|| {
-            Error::malformed(
-                format!("neither a preset nor camera.{key} is given"),
-                format!("write {key} = {example}, or preset = \"flir-a325sc\""),
-            )
-            .at(place(key))
-        })
-    };
-    let from = preset.as_ref();
-    let exposure_s = need("exposure", spec.exposure_s, from.map(|c| c.exposure_s), "\"12 ms\"")?;
-    let pixel_m = need("pixel", spec.pixel_m, from.map(|c| c.pixel_m), "\"12 um\"")?;
-    let f_number = need("f_number", spec.f_number, from.map(|c| c.f_number), "1.3")?;
-    let focal_length_m =
-        need("focal_length", spec.focal_length_m, from.map(|c| c.focal_length_m), "\"18 mm\"")?;
-    let optics_efficiency = spec.optics_efficiency.or(from.map(|c| c.optics_efficiency)).unwrap_or(1.0);
-    let reference_temperature_k = from.map_or(303.15, |c| c.reference_temperature_k);
-    let own_noise = if let Some(netd_k) = spec.netd_k {
-        Some(NoiseSpec::Netd {
-            netd_k,
-            temperature_k: spec.netd_temperature_k.unwrap_or(reference_temperature_k),
-            f_number: spec.netd_f_number.unwrap_or(f_number),
-            optics_efficiency,
-            pixel_m,
-        })
-    } else if let Some(detectivity_cm_hz05_w) = spec.detectivity_cm_hz05_w {
-        Some(NoiseSpec::Detectivity { detectivity_cm_hz05_w })
-    } else {
-        spec.noise_electrons.map(|sigma_counts| NoiseSpec::Counts { sigma_counts })
-    };
-    for (key, given) in [
-        ("netd_temperature", spec.netd_temperature_k.is_some()),
-        ("netd_f_number", spec.netd_f_number.is_some()),
-    ] {
-        if given && spec.netd_k.is_none() {
-            return Err(Error::malformed(
-                format!("{key} without a netd"),
-                "write netd = \"50 mK\" beside it",
-            )
-            .at(place(key)));
-        }
-    }
-    let noise = match (own_noise, from) {
-        (Some(noise), _) => noise,
-        (None, Some(preset)) => preset.noise,
-        (None, None) => {
-            return Err(Error::malformed(
-                "the camera's noise is not given",
-                "write netd = \"50 mK\", detectivity = \"4.7e10 cm Hz^0.5/W\" or noise_electrons = 0",
-            )
-            .at(place("netd")));
-        }
-    };
-    let camera = Camera {
-        name: spec.preset.clone().unwrap_or_else(|| "camera".into()),
-        description: from.map_or_else(String::new, |c| c.description.clone()),
-        provenance: from.map_or_else(Vec::new, |c| c.provenance.clone()),
-        exposure_s,
-        pixel_m,
-        f_number,
-        focal_length_m,
-        optics_efficiency,
-        noise,
-        // Noise that comes with the preset is stated at the preset's exposure.
-        noise_exposure_s: from.filter(|_| own_noise.is_none()).map_or(exposure_s, |c| c.noise_exposure_s),
-        flicker_fraction: spec.flicker_fraction.or(from.map(|c| c.flicker_fraction)).unwrap_or(0.0),
-        full_well: spec.full_well.or(from.and_then(|c| c.full_well)),
-        readout: spec.readout.or(from.map(|c| c.readout)).unwrap_or(crate::instrument::Readout::Simultaneous),
-        frames: spec.frames.or(from.map(|c| c.frames)).unwrap_or(1),
-        field_of_view_rad: spec.field_of_view_rad.or(from.and_then(|c| c.field_of_view_rad)),
-        pixels: spec.pixels.or(from.and_then(|c| c.pixels)),
-        reference_temperature_k,
-        spectral_range_cm1: from.map_or([715.0, 1250.0], |c| c.spectral_range_cm1),
-    };
-    camera.checked().map_err(|error| error.at(place("preset")))
 }
 
 /// Fills in what the scenario left silent and others knew, so that its echo says everything.
