@@ -134,6 +134,15 @@ impl Surroundings {
         radiance
     }
 
+    /// εₖB(Tₖ) at the nodes for the temperature the state gives object k.
+    pub(crate) fn object_signal(&self, object: usize, state: &State) -> Vec<f64> {
+        let mut radiance = self.object_blackbody(object, state);
+        if let Some(emissivity) = &self.objects[object].emissivity {
+            radiance.iter_mut().zip(emissivity).for_each(|(radiance, e)| *radiance *= e);
+        }
+        radiance
+    }
+
     /// Signal S at the nodes of a surface of emissivity `emissivity` (values at the nodes) in `state`.
     #[must_use]
     pub fn signal(&self, emissivity: &[f64], state: &State) -> Vec<f64> {

@@ -292,6 +292,35 @@ impl Bands {
         self.nodes_cm1.len() == self.bands.len()
     }
 
+    /// First node, nodes and weights of each band.
+    pub(crate) fn nodes_and_weights(&self) -> impl Iterator<Item = (usize, &[f64], &[f64])> {
+        self.first_node.windows(2).map(|nodes| {
+            let range = nodes[0]..nodes[1];
+            (nodes[0], &self.nodes_cm1[range.clone()], &self.weights_cm1[range])
+        })
+    }
+
+    /// Every `stride`-th band, and where its nodes stand among those of the whole.
+    pub(crate) fn every(&self, stride: usize) -> (Self, Vec<usize>) {
+        let mut kept = Self {
+            bands: Vec::new(),
+            shapes: Vec::new(),
+            nodes_cm1: Vec::new(),
+            weights_cm1: Vec::new(),
+            first_node: vec![0],
+        };
+        let mut places = Vec::new();
+        for (q, (first, nodes, weights)) in self.nodes_and_weights().enumerate().step_by(stride) {
+            kept.bands.push(self.bands[q].clone());
+            kept.shapes.push(self.shapes[q].clone());
+            kept.nodes_cm1.extend_from_slice(nodes);
+            kept.weights_cm1.extend_from_slice(weights);
+            kept.first_node.push(kept.nodes_cm1.len());
+            places.extend(first..first + nodes.len());
+        }
+        (kept, places)
+    }
+
     /// Effective width Σ_j w_j of each band, cm⁻¹.
     #[must_use]
     pub fn widths_cm1(&self) -> Vec<f64> {
