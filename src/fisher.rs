@@ -14,6 +14,7 @@
 
 mod bound;
 
+pub(crate) use bound::Reduced;
 pub use bound::{Projection, Projector};
 
 use crate::error::{Error, Result, check};

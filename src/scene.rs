@@ -13,6 +13,7 @@
 
 mod jacobian;
 
+pub(crate) use jacobian::Columns;
 pub use jacobian::{Jacobian, Parameter};
 
 use crate::error::{Error, Result, check};

@@ -39,3 +39,101 @@ macro_rules! output {
 }
 
 pub(crate) use {dispatched, output};
+
+/// Doubles per cache line, and per chunk of a loop with sums.
+pub(crate) const LANES: usize = 8;
+
+/// Values that are worked on side by side. They are passed by value: then the compiler keeps them in
+/// registers of any width.
+pub(crate) type Chunk = [f64; LANES];
+
+/// a·b.
+#[inline(always)]
+pub(crate) fn product(a: Chunk, b: Chunk) -> Chunk {
+    std::array::from_fn(|i| a[i] * b[i])
+}
+
+/// a·b + c.
+#[inline(always)]
+pub(crate) fn added(a: Chunk, b: Chunk, c: Chunk) -> Chunk {
+    std::array::from_fn(|i| a[i].mul_add(b[i], c[i]))
+}
+
+/// factor·a + b.
+#[inline(always)]
+pub(crate) fn fused(factor: f64, a: Chunk, b: Chunk) -> Chunk {
+    std::array::from_fn(|i| factor.mul_add(a[i], b[i]))
+}
+
+/// Fewer than [`LANES`] values, followed by zeros.
+#[inline(always)]
+pub(crate) fn padded(rest: &[f64]) -> Chunk {
+    let mut chunk = [0.0; LANES];
+    for (to, from) in chunk.iter_mut().zip(rest) {
+        *to = *from;
+    }
+    chunk
+}
+
+/// Room for `len` doubles such that arrays laid out one after the other do not start at nearly the same
+/// place in a page of 512 doubles: a processor takes a load for one of a store not yet done if their places in the
+/// page agree, and waits.
+pub(crate) fn spaced(len: usize) -> usize {
+    const PAGE: usize = 512;
+    const APART: usize = 64;
+    let whole = len.next_multiple_of(LANES);
+    match whole % PAGE {
+        _ if len <= APART => whole,
+        near if near < APART => whole + APART - near,
+        near if near > PAGE - APART => whole + PAGE + APART - near,
+        _ => whole,
+    }
+}
+
+/// A slice of doubles that starts at a cache line, so that no full-width access straddles two lines.
+///
+/// Only speed depends on the alignment, never a result.
+#[derive(Debug, Default)]
+pub(crate) struct Aligned {
+    storage: Vec<f64>,
+    start: usize,
+    len: usize,
+}
+
+impl Aligned {
+    /// `len` zeros.
+    pub(crate) fn zeros(len: usize) -> Self {
+        let storage = vec![0.0; spaced(len) + LANES - 1];
+        let start = storage.as_ptr().align_offset(LANES * size_of::<f64>()).min(LANES - 1);
+        Self { storage, start, len }
+    }
+
+    /// Changes the length; what the values are afterwards is not said.
+    pub(crate) fn set_len(&mut self, len: usize) {
+        if self.len != len {
+            *self = Self::zeros(len);
+        }
+    }
+}
+
+impl Clone for Aligned {
+    fn clone(&self) -> Self {
+        let mut copy = Self::zeros(self.len);
+        copy.copy_from_slice(self);
+        copy
+    }
+}
+
+impl std::ops::Deref for Aligned {
+    type Target = [f64];
+
+    fn deref(&self) -> &[f64] {
+        &self.storage[self.start..self.start + self.len]
+    }
+}
+
+impl std::ops::DerefMut for Aligned {
+    fn deref_mut(&mut self) -> &mut [f64] {
+        &mut self.storage[self.start..self.start + self.len]
+    }
+}

@@ -1,14 +1,14 @@
 //! Sums whose rounding error does not grow with the number of terms.
 //!
-//! Terms are added in eight independent lanes over blocks of [`BLOCK`] and the block sums are added with
-//! the error-free transformation of Knuth (TwoSum), so the error stays below about
-//! (BLOCK/8 + 3) u Σ|x| for any length, u = 2⁻⁵³. The lanes are written out, so every processor
-//! adds in the same order and gives the same bits.
+//! Terms are added in eight independent lanes over blocks of [`BLOCK`]; the lanes of the blocks are added
+//! with the error-free transformation of Knuth (TwoSum), lane by lane, and folded once at the end, so the
+//! error stays below about (BLOCK/8 + 3) u Σ|x| for any length, u = 2⁻⁵³. The lanes are written out, so
+//! every processor adds in the same order and gives the same bits.
 //!
 //! Source: Ogita, Rump, Oishi, SIAM J. Sci. Comput. 26, 1955 (2005), doi:10.1137/030601818.
 
-/// Independent partial sums.
-pub(crate) const LANES: usize = 8;
+use crate::simd::{Chunk, LANES, added, dispatched, padded};
+
 /// Terms per block; a multiple of [`LANES`].
 pub(crate) const BLOCK: usize = 128;
 
@@ -35,51 +35,73 @@ impl Compensated {
     }
 }
 
+/// [`Compensated`] sums in every lane.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct CompensatedLanes {
+    sum: Chunk,
+    error: Chunk,
+}
+
+impl CompensatedLanes {
+    #[inline(always)]
+    pub(crate) fn add(&mut self, terms: Chunk) {
+        let (old, error) = (self.sum, self.error);
+        let sum: Chunk = std::array::from_fn(|i| old[i] + terms[i]);
+        self.error = std::array::from_fn(|i| {
+            let virtual_term = sum[i] - old[i];
+            error[i] + ((old[i] - (sum[i] - virtual_term)) + (terms[i] - virtual_term))
+        });
+        self.sum = sum;
+    }
+
+    /// Never inlined: the sums then go through memory all at once, which keeps the loops before in
+    /// full-width registers instead of the pairs that the folding asks for.
+    #[inline(never)]
+    pub(crate) fn value(&self) -> f64 {
+        let sum = fold(&self.sum);
+        if sum.is_finite() { sum + fold(&self.error) } else { sum }
+    }
+}
+
 /// Adds the lanes pairwise.
 #[inline(always)]
-pub(crate) fn fold(lanes: [f64; LANES]) -> f64 {
+pub(crate) fn fold(lanes: &Chunk) -> f64 {
     ((lanes[0] + lanes[4]) + (lanes[2] + lanes[6])) + ((lanes[1] + lanes[5]) + (lanes[3] + lanes[7]))
 }
 
-/// Σ aᵢ bᵢ over the shorter of the two.
-#[inline(always)]
-pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let mut total = Compensated::default();
-    for (a, b) in a.chunks(BLOCK).zip(b.chunks(BLOCK)) {
-        let mut lanes = [0.0; LANES];
-        let (a8, b8) = (a.chunks_exact(LANES), b.chunks_exact(LANES));
-        let tail = a8.remainder().iter().zip(b8.remainder());
-        for (lane, (x, y)) in lanes.iter_mut().zip(tail) {
-            *lane = x * y;
-        }
-        for (x, y) in a8.zip(b8) {
-            for i in 0..LANES {
-                lanes[i] = x[i].mul_add(y[i], lanes[i]);
+dispatched! {
+    /// Σ aᵢ bᵢ over the shorter of the two.
+    pub(crate) fn dot<'a>(a: &'a [f64], b: &'a [f64]) -> f64 {
+        let n = a.len().min(b.len());
+        let ((a8, a_rest), (b8, b_rest)) = (a[..n].as_chunks::<LANES>(), b[..n].as_chunks::<LANES>());
+        let mut total = CompensatedLanes::default();
+        for (a, b) in a8.chunks(BLOCK / LANES).zip(b8.chunks(BLOCK / LANES)) {
+            let mut lanes = [0.0; LANES];
+            for (a, b) in a.iter().zip(b) {
+                lanes = added(*a, *b, lanes);
             }
+            total.add(lanes);
         }
-        total.add(fold(lanes));
+        total.add(added(padded(a_rest), padded(b_rest), [0.0; LANES]));
+        total.value()
     }
-    total.value()
 }
 
-/// Σ xᵢ.
-#[inline(always)]
-pub(crate) fn sum(x: &[f64]) -> f64 {
-    let mut total = Compensated::default();
-    for block in x.chunks(BLOCK) {
-        let mut lanes = [0.0; LANES];
-        let eights = block.chunks_exact(LANES);
-        for (lane, x) in lanes.iter_mut().zip(eights.remainder()) {
-            *lane = *x;
-        }
-        for x in eights {
-            for i in 0..LANES {
-                lanes[i] += x[i];
+dispatched! {
+    /// Σ xᵢ.
+    pub(crate) fn sum<'a>(x: &'a [f64]) -> f64 {
+        let (eights, rest) = x.as_chunks::<LANES>();
+        let mut total = CompensatedLanes::default();
+        for block in eights.chunks(BLOCK / LANES) {
+            let mut lanes: Chunk = [0.0; LANES];
+            for x in block {
+                lanes = std::array::from_fn(|i| lanes[i] + x[i]);
             }
+            total.add(lanes);
         }
-        total.add(fold(lanes));
+        total.add(padded(rest));
+        total.value()
     }
-    total.value()
 }
 
 #[cfg(test)]

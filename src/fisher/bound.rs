@@ -15,8 +15,10 @@
 //! Sources: paper S25–S29; Björck, Linear Algebra Appl. 197, 297 (1994), doi:10.1016/0024-3795(94)90493-6;
 //! Giraud, Langou, Rozložník, Numer. Math. 101, 87 (2005), doi:10.1007/s00211-005-0615-4.
 
-use crate::simd::dispatched;
-use crate::sum::{BLOCK, Compensated, LANES, fold};
+mod passes;
+
+use self::passes::{Pass, eliminate, reduce_last};
+use crate::scene::Columns;
 
 /// Share of a nuisance column below which what is left of it is rounding noise.
 const DEPENDENT: f64 = 1e-14;
@@ -64,136 +66,153 @@ impl Projection {
     }
 }
 
-/// Workspace that projects columns again and again without allocating.
+/// What [`Projector::reduce`] finds; the rest of a [`Projection`] stays in the projector.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Reduced {
+    pub(crate) residual: f64,
+    pub(crate) norm: f64,
+    pub(crate) relative_error: f64,
+}
+
+/// Workspace that projects columns again and again without allocating much.
 #[derive(Debug, Clone, Default)]
 pub struct Projector {
-    columns: Vec<f64>,
-    weights: Vec<f64>,
-    /// Dot products of the pivot with itself and the later columns.
+    /// Inner products of the pivot with the columns, and the shares of it that are taken off them.
     dots: Vec<f64>,
+    shares: Vec<f64>,
+    /// ‖aᵢ‖², of what is left of each nuisance column; 0 if it was dropped.
+    squares: Vec<f64>,
+    /// ‖aᵢ‖ of the columns as they came.
+    lengths: Vec<f64>,
+    /// As in [`Projection`].
+    triangle: Vec<f64>,
+    norms: Vec<f64>,
+    coefficients: Vec<f64>,
+    dropped: Vec<usize>,
 }
 
 impl Projector {
-    /// Projects the last of `columns` (column after column, each as long as `weights`) off the others.
+    /// Projects the last of `columns` (column after column, each as long as `weights`) off the others,
+    /// in place: afterwards the columns are orthogonal to each other.
     ///
     /// `weights` are the u_w ≥ 0. `cancellation` ≥ 1 tells by how much the elements of the last column
     /// are less accurate than a few ulp.
     #[must_use]
-    pub fn project(&mut self, columns: &[f64], weights: &[f64], cancellation: f64) -> Projection {
-        let rows = weights.len();
-        let count = if rows == 0 { 0 } else { columns.len() / rows };
-        if count == 0 {
-            return Projection {
-                residual: 0.0,
-                norm: 0.0,
-                coefficients: Vec::new(),
-                dropped: Vec::new(),
-                relative_error: 0.0,
-                triangle: Vec::new(),
-                norms: Vec::new(),
-            };
-        }
-        self.columns.clear();
-        self.columns.extend_from_slice(&columns[..count * rows]);
-        self.weights.clear();
-        self.weights.extend_from_slice(weights);
-        self.dots.resize(count, 0.0);
+    pub fn project(&mut self, columns: &mut [f64], weights: &[f64], cancellation: f64) -> Projection {
+        let columns = Columns { values: columns, stride: weights.len() };
+        let found = self.reduce(columns, weights, cancellation);
+        self.projection(found)
+    }
 
-        let last = count - 1;
-        let mut triangle = vec![0.0; count * count];
-        let mut norms = vec![0.0; count];
-        let mut lengths = vec![0.0; count];
-        let mut dropped = Vec::new();
-        for (i, length) in lengths.iter_mut().enumerate() {
-            let column = &columns[i * rows..(i + 1) * rows];
-            *length = square(column, weights).sqrt();
+    /// All there is to know about the last [`Projector::reduce`].
+    pub(crate) fn projection(&self, found: Reduced) -> Projection {
+        let Reduced { residual, norm, relative_error } = found;
+        Projection {
+            residual,
+            norm,
+            coefficients: self.coefficients.clone(),
+            dropped: self.dropped.clone(),
+            relative_error,
+            triangle: self.triangle.clone(),
+            norms: self.norms.clone(),
         }
+    }
+
+    /// [`Projector::project`] without making a [`Projection`] of it.
+    pub(crate) fn reduce(&mut self, columns: Columns<'_>, weights: &[f64], cancellation: f64) -> Reduced {
+        let Columns { values: columns, stride } = columns;
+        let count = if stride == 0 { 0 } else { columns.len() / stride };
+        self.clear(count);
+        if count == 0 {
+            return Reduced { residual: 0.0, norm: 0.0, relative_error: 0.0 };
+        }
+        let columns = &mut columns[..count * stride];
+        let last = count - 1;
         for pivot in 0..last {
-            let (head, tail) = self.columns.split_at_mut((pivot + 1) * rows);
-            let column = &head[pivot * rows..];
-            let squared = square(column, &self.weights);
-            triangle[pivot * count + pivot] = 1.0;
+            eliminate(Pass { columns, stride, weights, pivot, shares: &self.shares, dots: &mut self.dots });
+            let squared = self.dots[pivot];
+            self.lengths[pivot] = length(&self.triangle, &self.norms, pivot, squared);
+            self.triangle[pivot * count + pivot] = 1.0;
+            self.shares.fill(0.0);
             let left = squared.sqrt();
             // Scaled before it is compared: the threshold is a share of the column's own length.
-            if left.is_nan() || left <= DEPENDENT * lengths[pivot] {
-                dropped.push(pivot);
+            if left.is_nan() || left <= DEPENDENT * self.lengths[pivot] {
+                self.dropped.push(pivot);
+                // It need not be finite, so that no share of it is small enough.
+                columns[pivot * stride..(pivot + 1) * stride].fill(0.0);
                 continue;
             }
-            norms[pivot] = left;
-            for (i, other) in tail.chunks_exact_mut(rows).enumerate() {
-                let factor = weighted_dot(column, other, &self.weights) / squared;
-                subtract(column, factor, other);
-                triangle[pivot * count + pivot + 1 + i] = factor;
+            (self.norms[pivot], self.squares[pivot]) = (left, squared);
+            for i in pivot + 1..count {
+                self.shares[i] = self.dots[i] / squared;
+                self.triangle[pivot * count + i] = self.shares[i];
             }
         }
-        // Once more for the last column: the first pass leaves a share of u·condition of the nuisances in it.
-        let (nuisances, goal) = self.columns.split_at_mut(last * rows);
-        for (pivot, column) in nuisances.chunks_exact(rows).enumerate() {
-            if norms[pivot] > 0.0 {
-                let factor = weighted_dot(column, goal, &self.weights) / (norms[pivot] * norms[pivot]);
-                subtract(column, factor, goal);
-                triangle[pivot * count + last] += factor;
-            }
+        // The last pivot is still to be taken off the last column, and then all of them once more, since the
+        // first time leaves a share of u·condition of the nuisances in it.
+        let share = self.shares[last];
+        self.shares.fill(0.0);
+        if let Some(last_pivot) = self.shares[..last].last_mut() {
+            *last_pivot = share;
         }
-        let residual = square(goal, &self.weights).sqrt();
-        norms[last] = residual;
-        triangle[count * count - 1] = 1.0;
+        let squared = reduce_last(columns, stride, weights, &self.shares[..last], &mut self.dots);
+        self.lengths[last] = length(&self.triangle, &self.norms, last, squared);
+        let norm = self.lengths[last];
+        for pivot in 0..last {
+            let squared = self.squares[pivot];
+            self.shares[pivot] = if squared > 0.0 { self.dots[pivot] / squared } else { 0.0 };
+            self.triangle[pivot * count + last] += self.shares[pivot];
+        }
+        let left = if last == 0 {
+            squared
+        } else {
+            reduce_last(columns, stride, weights, &self.shares[..last], &mut self.dots)
+        };
+        let residual = left.sqrt();
+        self.triangle[count * count - 1] = 1.0;
+        self.norms[last] = residual;
 
-        let coefficients = back_substitute(&triangle, &norms, last);
-        let carried: f64 = coefficients.iter().zip(&lengths).map(|(c, length)| (c * length).abs()).sum();
-        let noise = ROUNDINGS * UNIT_ROUNDOFF * (cancellation * lengths[last] + carried);
-        let relative_error = if residual > 0.0 { noise / residual } else { 0.0 };
-        Projection { residual, norm: lengths[last], coefficients, dropped, relative_error, triangle, norms }
+        back_substitute(&self.triangle, &self.norms, &mut self.coefficients);
+        let carried: f64 =
+            self.coefficients.iter().zip(&self.lengths).map(|(c, length)| (c * length).abs()).sum();
+        let noise = ROUNDINGS * UNIT_ROUNDOFF * (cancellation * norm + carried);
+        Reduced { residual, norm, relative_error: if residual > 0.0 { noise / residual } else { 0.0 } }
+    }
+
+    /// Zeros for `count` columns.
+    fn clear(&mut self, count: usize) {
+        for work in [&mut self.dots, &mut self.shares, &mut self.squares, &mut self.lengths, &mut self.norms]
+        {
+            work.clear();
+            work.resize(count, 0.0);
+        }
+        self.triangle.clear();
+        self.triangle.resize(count * count, 0.0);
+        self.coefficients.clear();
+        self.coefficients.resize(count.saturating_sub(1), 0.0);
+        self.dropped.clear();
     }
 }
 
-/// Coefficients of the last column on the first `last`, from the unit upper triangle.
-fn back_substitute(triangle: &[f64], norms: &[f64], last: usize) -> Vec<f64> {
-    let count = last + 1;
-    let mut coefficients: Vec<f64> = (0..last).map(|row| triangle[row * count + last]).collect();
+/// ‖aᵢ‖ by Pythagoras, from the parts of it along the pivots and the square of what is left.
+fn length(triangle: &[f64], norms: &[f64], column: usize, squared: f64) -> f64 {
+    let parts = norms[..column].iter().enumerate().map(|(pivot, norm)| {
+        let part = triangle[pivot * norms.len() + column] * norm;
+        part * part
+    });
+    (squared + parts.sum::<f64>()).sqrt()
+}
+
+/// Coefficients of the last column on the others, from the unit upper triangle.
+fn back_substitute(triangle: &[f64], norms: &[f64], coefficients: &mut [f64]) {
+    let (last, count) = (coefficients.len(), norms.len());
     for row in (0..last).rev() {
         if norms[row] == 0.0 {
-            coefficients[row] = 0.0;
             continue;
         }
         let known: f64 =
             (row + 1..last).map(|column| triangle[row * count + column] * coefficients[column]).sum();
-        coefficients[row] -= known;
-    }
-    coefficients
-}
-
-dispatched! {
-    /// Σ u a b.
-    fn weighted_dot<'a>(a: &'a [f64], b: &'a [f64], weights: &'a [f64]) -> f64 {
-        let mut total = Compensated::default();
-        for ((a, b), u) in a.chunks(BLOCK).zip(b.chunks(BLOCK)).zip(weights.chunks(BLOCK)) {
-            let mut lanes = [0.0; LANES];
-            let (a8, b8, u8) = (a.chunks_exact(LANES), b.chunks_exact(LANES), u.chunks_exact(LANES));
-            let tail = a8.remainder().iter().zip(b8.remainder()).zip(u8.remainder());
-            for (lane, ((a, b), u)) in lanes.iter_mut().zip(tail) {
-                *lane = (a * u) * b;
-            }
-            for ((a, b), u) in a8.zip(b8).zip(u8) {
-                for i in 0..LANES {
-                    lanes[i] = (a[i] * u[i]).mul_add(b[i], lanes[i]);
-                }
-            }
-            total.add(fold(lanes));
-        }
-        total.value()
-    }
-}
-
-fn square(a: &[f64], weights: &[f64]) -> f64 {
-    weighted_dot(a, a, weights)
-}
-
-dispatched! {
-    fn subtract<'a>(column: &'a [f64], factor: f64, from: &'a mut [f64]) {
-        for (from, column) in from.iter_mut().zip(column) {
-            *from = (-factor).mul_add(*column, *from);
-        }
+        coefficients[row] = triangle[row * count + last] - known;
     }
 }
 
@@ -204,8 +223,8 @@ mod tests {
     #[test]
     fn a_plane_and_a_point_above_it() {
         // Columns (1,0,0), (1,1,0) and (3,4,5): what is left is 5; coefficients −1 and 4.
-        let columns = [1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 3.0, 4.0, 5.0];
-        let p = Projector::default().project(&columns, &[1.0; 3], 1.0);
+        let mut columns = [1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 3.0, 4.0, 5.0];
+        let p = Projector::default().project(&mut columns, &[1.0; 3], 1.0);
         assert!((p.residual - 5.0).abs() < 1e-15 && (p.norm - 50f64.sqrt()).abs() < 1e-14);
         assert!((p.coefficients[0] + 1.0).abs() < 1e-15 && (p.coefficients[1] - 4.0).abs() < 1e-15);
         assert!(p.dropped.is_empty());
@@ -213,8 +232,8 @@ mod tests {
 
     #[test]
     fn zero_and_dependent_nuisances_are_dropped_and_reported() {
-        let columns = [0.0, 0.0, 0.0, 1.0, 2.0, 3.0, -2e100, -4e100, -6e100, 3.0, 2.0, 1.0];
-        let p = Projector::default().project(&columns, &[1.0; 3], 1.0);
+        let mut columns = [0.0, 0.0, 0.0, 1.0, 2.0, 3.0, -2e100, -4e100, -6e100, 3.0, 2.0, 1.0];
+        let p = Projector::default().project(&mut columns, &[1.0; 3], 1.0);
         assert_eq!(p.dropped, [0, 2]);
         // |(3,2,1) − (10/14)(1,2,3)|² = 14 − 100/14.
         assert!((p.residual - (14.0 - 100.0 / 14.0_f64).sqrt()).abs() < 1e-15);
@@ -223,8 +242,8 @@ mod tests {
     #[test]
     fn the_scaled_condition_number_of_two_columns_is_that_of_their_angle() {
         let angle: f64 = 1e-3;
-        let columns = [1e9, 0.0, 1e-7 * angle.cos(), 1e-7 * angle.sin()];
-        let p = Projector::default().project(&columns, &[1.0; 2], 1.0);
+        let mut columns = [1e9, 0.0, 1e-7 * angle.cos(), 1e-7 * angle.sin()];
+        let p = Projector::default().project(&mut columns, &[1.0; 2], 1.0);
         let exact = ((1.0 + angle.cos()) / (1.0 - angle.cos())).sqrt();
         assert!((p.condition_number() / exact - 1.0).abs() < 1e-6);
     }

@@ -8,9 +8,9 @@
 
 use super::Status;
 use crate::error::{Error, Result};
-use crate::fisher::{Counting, Projection, Projector, Unknowns};
-use crate::scene::{Jacobian, Parameter, State, Surroundings};
-use crate::simd::dispatched;
+use crate::fisher::{Counting, Projection, Projector, Reduced, Unknowns};
+use crate::scene::{Columns, Jacobian, Parameter, State, Surroundings};
+use crate::simd::{Aligned, dispatched};
 use crate::spectrum::Bands;
 
 /// Sums of the signal outside this range are brought back by a power of two before they are squared.
@@ -70,7 +70,9 @@ pub struct LocalSolver<'a> {
     jacobian: Jacobian<'a>,
     projector: Projector,
     columns: Vec<f64>,
-    weights: Vec<f64>,
+    weights: Aligned,
+    /// Weights with those of the rows of priors.
+    more_weights: Vec<f64>,
 }
 
 impl<'a> LocalSolver<'a> {
@@ -85,7 +87,8 @@ impl<'a> LocalSolver<'a> {
             jacobian: Jacobian::new(bands, surroundings),
             projector: Projector::default(),
             columns: Vec::new(),
-            weights: Vec::new(),
+            weights: Aligned::zeros(bands.len()),
+            more_weights: Vec::new(),
         }
     }
 
@@ -101,10 +104,22 @@ impl<'a> LocalSolver<'a> {
         state: &State,
         photons: f64,
     ) -> Result<LocalDistance> {
-        let total = self.evaluate(emissivity, alternative, state)?;
-        let scale = safe_scale(total);
-        shot_weights(self.jacobian.signal(), scale, total * scale, &mut self.weights);
-        self.project(emissivity, alternative, state, scale, total, photons.sqrt())
+        let (total, scale) = self.weigh_per_photon(emissivity, alternative, state)?;
+        let found = self.reduce(scale, photons.sqrt())?;
+        Ok(self.judge(found, emissivity, alternative, state, total))
+    }
+
+    /// The distance and the photon radiance of [`LocalSolver::per_photon`] with infinitely many photons.
+    pub(super) fn point(
+        &mut self,
+        emissivity: &[f64],
+        alternative: &[f64],
+        state: &State,
+    ) -> Result<(f64, f64)> {
+        let (total, scale) = self.weigh_per_photon(emissivity, alternative, state)?;
+        let found = self.reduce(scale, f64::INFINITY)?;
+        let status = self.status(&found, emissivity, alternative, state);
+        Ok((if status == Status::Ok { 0.5 * found.residual } else { 0.0 }, total))
     }
 
     /// Statistical distance d with the camera's own noise (S27 at N photons).
@@ -120,14 +135,13 @@ impl<'a> LocalSolver<'a> {
     ) -> Result<LocalDistance> {
         let total = self.evaluate(emissivity, alternative, state)?;
         let counts = counting.counts_per_radiance;
-        self.weights.clear();
-        let signal = self.jacobian.signal().iter().enumerate();
-        self.weights.extend(signal.map(|(w, signal)| {
+        for (w, (weight, signal)) in self.weights.iter_mut().zip(self.jacobian.signal()).enumerate() {
             // κ²/(κS + σ²) with one κ taken out, so that nothing overflows before it must.
             let variance = signal + counting.var_electronic(w) / counts;
-            if variance > 0.0 { counts / variance } else { 0.0 }
-        }));
-        self.project(emissivity, alternative, state, 1.0, total, 1.0)
+            *weight = if variance > 0.0 { counts / variance } else { 0.0 };
+        }
+        let found = self.reduce(1.0, 1.0)?;
+        Ok(self.judge(found, emissivity, alternative, state, total))
     }
 
     /// Signal of each band at the last evaluation.
@@ -151,29 +165,32 @@ impl<'a> LocalSolver<'a> {
         ))
     }
 
-    fn project(
+    /// Signals, derivatives and the weights u = 1/(S ΣS); ΣS and the power of two that scales it.
+    fn weigh_per_photon(
         &mut self,
         emissivity: &[f64],
         alternative: &[f64],
         state: &State,
-        scale: f64,
-        total: f64,
-        sqrt_photons: f64,
-    ) -> Result<LocalDistance> {
+    ) -> Result<(f64, f64)> {
+        let total = self.evaluate(emissivity, alternative, state)?;
+        let scale = safe_scale(total);
+        reciprocal_into(self.jacobian.signal(), scale * (total * scale), &mut self.weights);
+        Ok((total, scale))
+    }
+
+    fn reduce(&mut self, scale: f64, sqrt_photons: f64) -> Result<Reduced> {
         self.check_rank()?;
-        let plain = scale == 1.0 && !(self.unknowns.has_priors() && sqrt_photons.is_finite());
-        let projection = if plain {
-            self.projector.project(self.jacobian.columns(), &self.weights, self.jacobian.cancellation())
-        } else {
-            self.append_priors(scale, sqrt_photons);
-            self.projector.project(&self.columns, &self.weights, self.jacobian.cancellation())
-        };
-        Ok(self.judge(projection, emissivity, alternative, state, total))
+        let cancellation = self.jacobian.cancellation();
+        if scale == 1.0 && !(self.unknowns.has_priors() && sqrt_photons.is_finite()) {
+            return Ok(self.projector.reduce(self.jacobian.columns_mut(), &self.weights, cancellation));
+        }
+        self.append_priors(scale, sqrt_photons);
+        let columns = Columns { values: &mut self.columns, stride: self.more_weights.len() };
+        Ok(self.projector.reduce(columns, &self.more_weights, cancellation))
     }
 
     /// Columns scaled by a power of two, with one more row for every prior.
     fn append_priors(&mut self, scale: f64, sqrt_photons: f64) {
-        let bands = self.jacobian.bands().len();
         let priors: Vec<(usize, f64)> = self
             .parameters
             .iter()
@@ -181,8 +198,8 @@ impl<'a> LocalSolver<'a> {
             .filter_map(|(i, parameter)| self.unknowns.sigma_prior(*parameter).map(|sigma| (i, sigma)))
             .collect();
         self.columns.clear();
-        for (i, column) in self.jacobian.columns().chunks(bands).enumerate() {
-            self.columns.extend(column.iter().map(|value| value * scale));
+        for i in 0..self.parameters.len() {
+            self.columns.extend(self.jacobian.column(i).iter().map(|value| value * scale));
             self.columns.extend(
                 priors.iter().map(
                     |&(owner, sigma)| {
@@ -191,7 +208,8 @@ impl<'a> LocalSolver<'a> {
                 ),
             );
         }
-        self.weights.extend(priors.iter().map(|_| 1.0));
+        self.more_weights.clear();
+        self.more_weights.extend(self.weights.iter().copied().chain(priors.iter().map(|_| 1.0)));
     }
 
     fn check_rank(&self) -> Result<()> {
@@ -212,21 +230,14 @@ impl<'a> LocalSolver<'a> {
 
     fn judge(
         &self,
-        projection: Projection,
+        found: Reduced,
         emissivity: &[f64],
         alternative: &[f64],
         state: &State,
         total: f64,
     ) -> LocalDistance {
-        let status = if emissivity == alternative {
-            Status::Identical
-        } else if projection.norm == 0.0 && self.in_equilibrium(state) {
-            Status::Equilibrium
-        } else if projection.norm == 0.0 || projection.relative_error >= 1.0 || projection.residual == 0.0 {
-            Status::Blind
-        } else {
-            Status::Ok
-        };
+        let status = self.status(&found, emissivity, alternative, state);
+        let projection = self.projector.projection(found);
         let imitation =
             self.parameters.iter().copied().zip(projection.coefficients.iter().copied()).collect();
         let dropped = projection.dropped.iter().map(|&i| self.parameters[i]).collect();
@@ -239,6 +250,18 @@ impl<'a> LocalSolver<'a> {
             dropped,
             photon_radiance: total,
             projection,
+        }
+    }
+
+    fn status(&self, found: &Reduced, emissivity: &[f64], alternative: &[f64], state: &State) -> Status {
+        if emissivity == alternative {
+            Status::Identical
+        } else if found.norm == 0.0 && self.in_equilibrium(state) {
+            Status::Equilibrium
+        } else if found.norm == 0.0 || found.relative_error >= 1.0 || found.residual == 0.0 {
+            Status::Blind
+        } else {
+            Status::Ok
         }
     }
 
@@ -262,14 +285,8 @@ fn safe_scale(total: f64) -> f64 {
     }
 }
 
-/// u = 1/(S ΣS) with both scaled; 0 for a band without photons, which tells nothing.
-fn shot_weights(signal: &[f64], scale: f64, scaled_total: f64, weights: &mut Vec<f64>) {
-    weights.clear();
-    weights.resize(signal.len(), 0.0);
-    reciprocal_into(signal, scale * scaled_total, weights);
-}
-
 dispatched! {
+    /// 1/(factor·value), and 0 for a value of 0: a band without photons tells nothing.
     fn reciprocal_into<'a>(values: &'a [f64], factor: f64, out: &'a mut [f64]) {
         for (out, value) in out.iter_mut().zip(values) {
             let product = factor * value;

@@ -63,9 +63,9 @@ impl MapScene<'_> {
                         if let Some(first) = state.lighting.first_mut() {
                             *first = lighting;
                         }
-                        let local =
-                            solver.per_photon(self.emissivity, self.alternative, &state, f64::INFINITY)?;
-                        Ok(MapPoint { distance: local.distance, photon_radiance: local.photon_radiance })
+                        let (distance, photon_radiance) =
+                            solver.point(self.emissivity, self.alternative, &state)?;
+                        Ok(MapPoint { distance, photon_radiance })
                     })
                     .collect()
             })

@@ -10,9 +10,15 @@
 //! exact to a few ulp, so that nothing is lost as T → Tₖ and ΣV → 1. With a known total of the lighting
 //! (S48) the last factor is the total minus the others, and ∂S/∂Vₖ = G(1 − e)[εₖB(Tₖ) − ε_K B(T_K)].
 
+mod kernels;
+
+use self::kernels::{
+    LightObject, LightSpectra, OneObject, add_darkness, add_object, add_scaled, largest, largest_by_one,
+    light_by_one, mixing_into, product_into, scale_by, scattered_into, signal_and_mixing_by_one, signal_into,
+};
 use super::{State, Surroundings, unlit};
 use crate::planck::{self, NearPair};
-use crate::simd::dispatched;
+use crate::simd::{Aligned, spaced};
 use crate::spectrum::Bands;
 
 /// What a column of a [`Jacobian`] is the derivative with respect to.
@@ -40,23 +46,84 @@ pub struct Jacobian<'a> {
     bands: &'a Bands,
     surroundings: &'a Surroundings,
     parameters: Vec<Parameter>,
-    signal: Vec<f64>,
-    columns: Vec<f64>,
+    signal: Aligned,
+    columns: Aligned,
+    stride: usize,
     cancellation: f64,
     /// The target and environment temperatures that the spectra below belong to.
     temperature_k: f64,
     environment_k: Vec<f64>,
     /// B(T) and ∂B/∂T at the nodes.
-    value: Vec<f64>,
-    slope: Vec<f64>,
+    value: Aligned,
+    slope: Aligned,
     /// B(Tₖ) and B(T) − B(Tₖ) at the nodes, object by object.
-    base: Vec<f64>,
-    difference: Vec<f64>,
+    base: Aligned,
+    difference: Aligned,
     /// The contrast C, the lighting ΣVₖεₖB(Tₖ) and scratch.
-    contrast: Vec<f64>,
-    lit: Vec<f64>,
-    scratch: Vec<f64>,
-    column: Vec<f64>,
+    contrast: Aligned,
+    lit: Aligned,
+    scratch: Aligned,
+    column: Aligned,
+    sampling: Sampling,
+}
+
+/// Σ|terms| ÷ |sum|, and 1 where there is nothing.
+fn ratio(terms: f64, sum: f64) -> f64 {
+    if sum > 0.0 { terms / sum } else { 1.0 }
+}
+
+/// How spectra at the nodes become band signals.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Sampling {
+    /// One node of weight 1 per band: node values are band signals.
+    Unit,
+    /// One node per band.
+    Scaled,
+    /// A weighted sum over several nodes.
+    Integrated,
+}
+
+/// Columns to be worked on in place, each beginning `stride` after the one before.
+#[derive(Debug)]
+pub(crate) struct Columns<'a> {
+    pub(crate) values: &'a mut [f64],
+    pub(crate) stride: usize,
+}
+
+/// Where the spectrum stands that the surface scatters.
+#[derive(Debug, Clone, Copy)]
+enum Incident {
+    /// The blackbody radiance of object k.
+    Blackbody(usize),
+    /// The scratch spectrum.
+    Scratch,
+}
+
+impl Sampling {
+    fn of(bands: &Bands) -> Self {
+        if !bands.one_node_per_band() {
+            Self::Integrated
+        } else if bands.weights_cm1().iter().all(|&weight| weight == 1.0) {
+            Self::Unit
+        } else {
+            Self::Scaled
+        }
+    }
+
+    /// Band signals of the spectrum that `write` puts into the slice it is given.
+    fn sample(self, bands: &Bands, scratch: &mut [f64], out: &mut [f64], write: impl FnOnce(&mut [f64])) {
+        match self {
+            Self::Unit => write(out),
+            Self::Scaled => {
+                write(out);
+                scale_by(bands.weights_cm1(), out);
+            }
+            Self::Integrated => {
+                write(scratch);
+                bands.weigh_into(scratch, out);
+            }
+        }
+    }
 }
 
 impl<'a> Jacobian<'a> {
@@ -69,19 +136,21 @@ impl<'a> Jacobian<'a> {
             bands,
             surroundings,
             parameters: Vec::new(),
-            signal: vec![0.0; bands.len()],
-            columns: Vec::new(),
+            signal: Aligned::zeros(bands.len()),
+            columns: Aligned::default(),
+            stride: spaced(bands.len()),
             cancellation: 1.0,
             temperature_k: f64::NAN,
             environment_k: vec![f64::NAN; objects],
-            value: vec![0.0; nodes],
-            slope: vec![0.0; nodes],
-            base: vec![0.0; nodes * objects],
-            difference: vec![0.0; nodes * objects],
-            contrast: vec![0.0; nodes],
-            lit: vec![0.0; nodes],
-            scratch: vec![0.0; nodes],
-            column: vec![0.0; nodes],
+            value: Aligned::zeros(nodes),
+            slope: Aligned::zeros(nodes),
+            base: Aligned::zeros(nodes * objects),
+            difference: Aligned::zeros(nodes * objects),
+            contrast: Aligned::zeros(nodes),
+            lit: Aligned::zeros(nodes),
+            scratch: Aligned::zeros(nodes),
+            column: Aligned::zeros(nodes),
+            sampling: Sampling::of(bands),
         }
     }
 
@@ -112,13 +181,17 @@ impl<'a> Jacobian<'a> {
     /// Derivative with respect to parameter i; empty if there is none.
     #[must_use]
     pub fn column(&self, i: usize) -> &[f64] {
-        self.columns.chunks(self.bands.len()).nth(i).unwrap_or_default()
+        self.columns
+            .chunks(self.stride)
+            .nth(i)
+            .and_then(|column| column.get(..self.bands.len()))
+            .unwrap_or_default()
     }
 
-    /// All columns, one after the other.
-    #[must_use]
-    pub fn columns(&self) -> &[f64] {
-        &self.columns
+    /// All columns, each beginning `stride` after the one before, to be worked on in place: the next
+    /// evaluation writes them anew.
+    pub(crate) fn columns_mut(&mut self) -> Columns<'_> {
+        Columns { values: &mut self.columns, stride: self.stride }
     }
 
     /// Factor by which rounding errors of ∂S/∂g may exceed a few ulp of it: 1 unless T < some Tₖ.
@@ -132,7 +205,7 @@ impl<'a> Jacobian<'a> {
         &self.value
     }
 
-    /// The contrast C at the nodes, of the last evaluation.
+    /// The contrast C at the nodes, of the last evaluation that had no `Parameter::Material`.
     pub(crate) fn contrast(&self) -> &[f64] {
         &self.contrast
     }
@@ -148,12 +221,11 @@ impl<'a> Jacobian<'a> {
     ) {
         let nodes = out.len();
         out.fill(0.0);
-        for k in 0..state.lighting.len() {
+        for (k, object) in self.surroundings.objects.iter().enumerate() {
             let span = k * nodes..(k + 1) * nodes;
+            let emissivity = object.emissivity.as_deref();
             let change = state.lighting[k] - other_state.lighting[k];
-            for (j, (out, base)) in out.iter_mut().zip(&self.base[span.clone()]).enumerate() {
-                *out += change * self.surroundings.object_emissivity(k, j) * base;
-            }
+            add_scaled(change, emissivity, &self.base[span.clone()], out);
             let (t, other_k) = (state.environment_k[k], other_state.environment_k[k]);
             if t == other_k {
                 continue;
@@ -161,9 +233,7 @@ impl<'a> Jacobian<'a> {
             let nu = &self.surroundings.nodes_cm1;
             let mut warmer = vec![0.0; nodes];
             planck::photon_radiance_difference_into(nu, other_k, t - other_k, &other.base[span], &mut warmer);
-            for (j, (out, warmer)) in out.iter_mut().zip(&warmer).enumerate() {
-                *out += other_state.lighting[k] * self.surroundings.object_emissivity(k, j) * warmer;
-            }
+            add_scaled(other_state.lighting[k], emissivity, &warmer, out);
         }
     }
 
@@ -182,31 +252,47 @@ impl<'a> Jacobian<'a> {
         let bands = self.bands;
         self.parameters.clear();
         self.parameters.extend_from_slice(parameters);
-        self.columns.resize(bands.len() * parameters.len(), 0.0);
+        self.columns.set_len(self.stride * parameters.len());
         self.update_radiances(state);
-        self.light(state);
-        signal_into(emissivity, &self.value, &self.lit, state.gain, &mut self.column);
-        bands.weigh_into(&self.column, &mut self.signal);
+        let (sampling, gain) = (self.sampling, state.gain);
+        let mut parameters = parameters;
+        match (self.one_black_object(state), parameters.split_last()) {
+            (Some(factor), Some((Parameter::Material, others))) if sampling != Sampling::Integrated => {
+                parameters = others;
+                self.signal_and_mixing(emissivity, alternative, factor, state);
+            }
+            _ => {
+                self.light(state);
+                sampling.sample(bands, &mut self.column, &mut self.signal, |out| {
+                    signal_into(emissivity, &self.value, &self.lit, gain, out);
+                });
+            }
+        }
         for (i, parameter) in parameters.iter().enumerate() {
-            let gain = state.gain;
-            match *parameter {
-                Parameter::Temperature => product_into(emissivity, &self.slope, gain, &mut self.column),
-                Parameter::Gain => signal_into(emissivity, &self.value, &self.lit, gain, &mut self.column),
-                Parameter::Material => {
-                    mixing_into(emissivity, alternative, &self.contrast, gain, &mut self.column);
-                }
-                Parameter::Lighting(k) => {
-                    self.lighting(state, k, lighting_total_known);
-                    scattered_into(emissivity, &self.scratch, gain, &mut self.column);
-                }
+            let incident = match *parameter {
+                Parameter::Lighting(k) => self.lighting(state, k, lighting_total_known),
+                Parameter::EnvironmentTemperature(k) => self.environment_slope(state, k),
+                Parameter::Temperature | Parameter::Gain | Parameter::Material => Incident::Scratch,
+            };
+            let incident = match incident {
+                Incident::Blackbody(k) => &self.base[k * self.value.len()..(k + 1) * self.value.len()],
+                Incident::Scratch => &self.scratch,
+            };
+            let Some(out) = self.columns.chunks_mut(self.stride).nth(i) else { continue };
+            let out = &mut out[..bands.len()];
+            if *parameter == Parameter::Gain {
+                out.copy_from_slice(&self.signal);
+                continue;
+            }
+            sampling.sample(bands, &mut self.column, out, |out| match *parameter {
+                Parameter::Temperature => product_into(emissivity, &self.slope, gain, out),
+                Parameter::Gain => {}
+                Parameter::Material => mixing_into(emissivity, alternative, &self.contrast, gain, out),
+                Parameter::Lighting(_) => scattered_into(emissivity, incident, gain, out),
                 Parameter::EnvironmentTemperature(k) => {
-                    self.environment_slope(state, k);
-                    scattered_into(emissivity, &self.scratch, gain * state.lighting[k], &mut self.column);
+                    scattered_into(emissivity, incident, gain * state.lighting[k], out);
                 }
-            }
-            if let Some(out) = self.columns.chunks_mut(bands.len()).nth(i) {
-                bands.weigh_into(&self.column, out);
-            }
+            });
         }
     }
 
@@ -241,35 +327,78 @@ impl<'a> Jacobian<'a> {
         self.environment_k.copy_from_slice(&state.environment_k);
     }
 
+    /// The lighting factor, where there is a single object that is black.
+    fn one_black_object(&self, state: &State) -> Option<f64> {
+        match (self.surroundings.objects.as_slice(), state.lighting.as_slice()) {
+            ([object], [factor]) if object.emissivity.is_none() => Some(*factor),
+            _ => None,
+        }
+    }
+
+    /// Signal and the last column, ∂S/∂g, in one pass that leaves lighting and contrast as they were.
+    fn signal_and_mixing(&mut self, emissivity: &[f64], alternative: &[f64], factor: f64, state: &State) {
+        let rest = unlit(&state.lighting);
+        let start = self.columns.len() - self.stride;
+        let mixing = &mut self.columns[start..start + self.bands.len()];
+        signal_and_mixing_by_one(OneObject {
+            factor,
+            rest,
+            gain: state.gain,
+            value: &self.value,
+            base: &self.base,
+            difference: &self.difference,
+            emissivity,
+            alternative,
+            signal: &mut self.signal,
+            mixing: &mut *mixing,
+        });
+        if self.sampling == Sampling::Scaled {
+            scale_by(self.bands.weights_cm1(), &mut self.signal);
+            scale_by(self.bands.weights_cm1(), mixing);
+        }
+        self.cancellation = self.cancellation_by_one(factor, rest, state);
+    }
+
     /// The contrast C and the lighting ΣVₖεₖB(Tₖ).
     fn light(&mut self, state: &State) {
         let nodes = self.value.len();
         let rest = unlit(&state.lighting);
-        self.cancellation = 1.0;
-        let colder = state.environment_k.iter().any(|&base_k| base_k > state.temperature_k);
         let black = self.surroundings.objects.iter().all(|object| object.emissivity.is_none());
-        if let ([factor], true, false) = (state.lighting.as_slice(), black, colder) {
+        if let ([factor], true) = (state.lighting.as_slice(), black) {
             light_by_one(*factor, rest, self.light_spectra());
+            self.cancellation = self.cancellation_by_one(*factor, rest, state);
             return;
         }
-        let (mut largest_term, mut largest_sum): (f64, f64) = (0.0, 0.0);
-        for j in 0..nodes {
-            let (mut lit, mut contrast, mut dark, mut terms) = (0.0, 0.0, rest, 0.0);
-            for (k, factor) in state.lighting.iter().enumerate() {
-                let e = self.surroundings.object_emissivity(k, j);
-                lit += factor * e * self.base[k * nodes + j];
-                contrast += factor * e * self.difference[k * nodes + j];
-                terms += (factor * e * self.difference[k * nodes + j]).abs();
-                dark += factor * (1.0 - e);
-            }
-            self.lit[j] = lit;
-            self.contrast[j] = contrast + dark * self.value[j];
-            largest_term = largest_term.max(terms + dark * self.value[j]);
-            largest_sum = largest_sum.max(self.contrast[j].abs());
+        let (dark, terms) = (&mut self.scratch, &mut self.column);
+        dark.fill(rest);
+        for zero in [&mut self.lit, &mut self.contrast, &mut *terms] {
+            zero.fill(0.0);
         }
-        if largest_sum > 0.0 {
-            self.cancellation = largest_term / largest_sum;
+        for (k, factor) in state.lighting.iter().enumerate() {
+            let span = k * nodes..(k + 1) * nodes;
+            add_object(LightObject {
+                factor: *factor,
+                emissivity: self.surroundings.objects[k].emissivity.as_deref(),
+                base: &self.base[span.clone()],
+                difference: &self.difference[span],
+                lit: &mut self.lit,
+                contrast: &mut self.contrast,
+                terms,
+                dark,
+            });
         }
+        add_darkness(dark, &self.value, terms, &mut self.contrast);
+        self.cancellation = ratio(largest(terms), largest(&self.contrast));
+    }
+
+    /// How far the terms of the contrast of a single black object cancel: not at all unless it is warmer
+    /// than the target.
+    fn cancellation_by_one(&self, factor: f64, rest: f64, state: &State) -> f64 {
+        if state.environment_k.first().is_none_or(|&base_k| base_k <= state.temperature_k) {
+            return 1.0;
+        }
+        let (term, sum) = largest_by_one(factor, rest, &self.difference, &self.value);
+        ratio(term, sum)
     }
 
     fn light_spectra(&mut self) -> LightSpectra<'_> {
@@ -282,96 +411,43 @@ impl<'a> Jacobian<'a> {
         }
     }
 
-    /// εₖB(Tₖ), or its difference from the last object's, into the scratch spectrum.
-    fn lighting(&mut self, state: &State, k: usize, total_known: bool) {
+    /// εₖB(Tₖ), or its difference from the last object's.
+    fn lighting(&mut self, state: &State, k: usize, total_known: bool) -> Incident {
         let nodes = self.value.len();
-        let last = state.lighting.len() - 1;
-        let emissivity = |object, j| self.surroundings.object_emissivity(object, j);
+        let objects = &self.surroundings.objects;
+        let last = objects.len() - 1;
+        let own = objects[k].emissivity.as_deref();
         if !total_known || k == last {
-            for (j, out) in self.scratch.iter_mut().enumerate() {
-                *out = emissivity(k, j) * self.base[k * nodes + j];
-            }
-            return;
+            let Some(own) = own else { return Incident::Blackbody(k) };
+            product_into(own, &self.base[k * nodes..(k + 1) * nodes], 1.0, &mut self.scratch);
+            return Incident::Scratch;
         }
         let nu = &self.surroundings.nodes_cm1;
         let base = &self.base[last * nodes..];
         let (t, last_k) = (state.environment_k[k], state.environment_k[last]);
         planck::photon_radiance_difference_into(nu, last_k, t - last_k, base, &mut self.column);
-        for (j, out) in self.scratch.iter_mut().enumerate() {
-            *out = emissivity(k, j) * self.column[j] + (emissivity(k, j) - emissivity(last, j)) * base[j];
+        // εₖ[B(Tₖ) − B(T_K)] + (εₖ − ε_K)B(T_K).
+        self.scratch.fill(0.0);
+        add_scaled(1.0, own, &self.column, &mut self.scratch);
+        match (own, objects[last].emissivity.as_deref()) {
+            (None, None) => {}
+            (own, other) => {
+                for (j, (out, base)) in self.scratch.iter_mut().zip(base).enumerate() {
+                    let at = |emissivity: Option<&[f64]>| emissivity.map_or(1.0, |e| e[j]);
+                    *out += (at(own) - at(other)) * base;
+                }
+            }
         }
+        Incident::Scratch
     }
 
-    /// εₖ ∂B/∂T(Tₖ) into the scratch spectrum.
-    fn environment_slope(&mut self, state: &State, k: usize) {
-        let nu = &self.surroundings.nodes_cm1;
-        planck::photon_radiance_and_slope_into(
-            nu,
-            state.environment_k[k],
-            &mut self.column,
-            &mut self.scratch,
-        );
-        for (j, out) in self.scratch.iter_mut().enumerate() {
-            *out *= self.surroundings.object_emissivity(k, j);
+    /// εₖ ∂B/∂T(Tₖ).
+    fn environment_slope(&mut self, state: &State, k: usize) -> Incident {
+        let (nu, t) = (&self.surroundings.nodes_cm1, state.environment_k[k]);
+        planck::photon_radiance_and_slope_into(nu, t, &mut self.column, &mut self.scratch);
+        if let Some(emissivity) = &self.surroundings.objects[k].emissivity {
+            scale_by(emissivity, &mut self.scratch);
         }
-    }
-}
-
-/// Spectra that [`light_by_one`] reads and writes.
-struct LightSpectra<'a> {
-    value: &'a [f64],
-    base: &'a [f64],
-    difference: &'a [f64],
-    lit: &'a mut [f64],
-    contrast: &'a mut [f64],
-}
-
-dispatched! {
-    /// Lighting and contrast for the common case of a single black object.
-    fn light_by_one<'a>(factor: f64, rest: f64, spectra: LightSpectra<'a>) {
-        let LightSpectra { value, base, difference, lit, contrast } = spectra;
-        let nodes = lit.iter_mut().zip(contrast).zip(base).zip(difference).zip(value);
-        for ((((lit, contrast), base), difference), value) in nodes {
-            *lit = factor * base;
-            *contrast = factor.mul_add(*difference, rest * value);
-        }
-    }
-}
-
-dispatched! {
-    fn signal_into<'a>(emissivity: &'a [f64], value: &'a [f64], lit: &'a [f64], gain: f64, out: &'a mut [f64]) {
-        for (((out, e), value), lit) in out.iter_mut().zip(emissivity).zip(value).zip(lit) {
-            *out = gain * e.mul_add(*value, (1.0 - e) * lit);
-        }
-    }
-}
-
-dispatched! {
-    fn product_into<'a>(a: &'a [f64], b: &'a [f64], factor: f64, out: &'a mut [f64]) {
-        for ((out, a), b) in out.iter_mut().zip(a).zip(b) {
-            *out = factor * (a * b);
-        }
-    }
-}
-
-dispatched! {
-    fn scattered_into<'a>(emissivity: &'a [f64], incident: &'a [f64], factor: f64, out: &'a mut [f64]) {
-        for ((out, e), incident) in out.iter_mut().zip(emissivity).zip(incident) {
-            *out = factor * ((1.0 - e) * incident);
-        }
-    }
-}
-
-dispatched! {
-    fn mixing_into<'a>(
-        emissivity: &'a [f64],
-        alternative: &'a [f64],
-        contrast: &'a [f64],
-        gain: f64,
-        out: &'a mut [f64],
-    ) {
-        for (((out, e), other), contrast) in out.iter_mut().zip(emissivity).zip(alternative).zip(contrast) {
-            *out = gain * ((other - e) * contrast);
-        }
+        Incident::Scratch
     }
 }

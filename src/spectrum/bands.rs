@@ -321,6 +321,11 @@ impl Bands {
         (kept, places)
     }
 
+    /// Weight of each node, cm⁻¹.
+    pub(crate) fn weights_cm1(&self) -> &[f64] {
+        &self.weights_cm1
+    }
+
     /// Effective width Σ_j w_j of each band, cm⁻¹.
     #[must_use]
     pub fn widths_cm1(&self) -> Vec<f64> {
