@@ -80,6 +80,9 @@ fn stage(directory: &Path) -> Result<PathBuf> {
     if directory.is_file() {
         return Err(Error::file("write the report", directory, "this is a file; name a folder"));
     }
+    if directory.ancestors().any(Path::is_file) {
+        return Err(refused(directory, &std::io::ErrorKind::NotADirectory.into()));
+    }
     let beside = directory.ancestors().find(|folder| folder.is_dir());
     let home = match beside {
         Some(folder) if !folder.as_os_str().is_empty() => folder.to_owned(),
