@@ -237,8 +237,7 @@ pub fn photon_map(map: &PhotonMap, target: &str, alternative: &str, here: (f64, 
         (Axis::log("required photons").range(low, high), map.photons.clone()),
     )
     .subtitle(format!(
-        "By the {by} distance, shot noise only. At V = 1 and T = {:.1} °C target and surroundings are in equilibrium: no \
-         number of photons suffices.",
+        "By the {by} distance, shot noise only. In equilibrium (V = 1, T = {:.1} °C) no number of photons suffices.",
         map.equilibrium_k - 273.15
     ))
     .no_value("no number of photons suffices")

@@ -14,7 +14,7 @@ use crate::scene::State;
 /// Points of a curve over photons.
 const CURVE_POINTS: usize = 81;
 /// Half the points of a map along temperature and the points along lighting.
-const MAP_HALF: i32 = 30;
+const MAP_HALF: i32 = 40;
 const MAP_LIGHTINGS: u32 = 51;
 /// The map reaches this far beyond the temperatures of the scene, K.
 const MAP_MARGIN_K: f64 = 15.0;
