@@ -130,3 +130,59 @@ fn the_valley_beside_the_equilibrium_temperature_is_found() {
     assert!((nearest.distance / 2.459_58e-4 - 1.0).abs() < 1e-4, "{nearest:?}");
     assert!((nearest.state.temperature_k - 284.89).abs() < 0.02);
 }
+
+/// The definition of the nearest distance, written again and minimised by a program that knows nothing of ours.
+struct Fit {
+    nu: Vec<f64>,
+    signal: Vec<f64>,
+    robot: Vec<f64>,
+}
+
+fn planck(nu: f64, temperature_k: f64) -> f64 {
+    nu * nu / (1.438_776_877 * nu / temperature_k).exp_m1()
+}
+
+impl rmpfit::MPFitter for Fit {
+    fn eval(&mut self, params: &[f64], deviates: &mut [f64]) -> rmpfit::MPResult<()> {
+        for (j, deviate) in deviates.iter_mut().enumerate() {
+            let (nu, e) = (self.nu[j], self.robot[j]);
+            let other = e * planck(nu, params[0]) + (1.0 - e) * params[1] * planck(nu, 293.15);
+            *deviate = self.signal[j].sqrt() - other.max(0.0).sqrt();
+        }
+        Ok(())
+    }
+
+    fn number_of_points(&self) -> usize {
+        self.nu.len()
+    }
+}
+
+/// rmpfit differentiates numerically: its state is good to about 1e-5, and the distance, stationary there, to 1e-8.
+#[test]
+fn a_published_least_squares_program_finds_the_same_robot() {
+    let nu: Vec<f64> = (0..536).map(|i| 715.0 + f64::from(i)).collect();
+    let t = |nu: f64| (nu - 985.0) / 265.0;
+    let robot: Vec<f64> = nu.iter().map(|&nu| 0.49287 - 0.0782 * t(nu) + 0.00892 * t(nu) * t(nu)).collect();
+    for temperature_k in [305.0, 310.15, 333.15] {
+        let signal: Vec<f64> =
+            nu.iter().map(|&nu| 0.95 * planck(nu, temperature_k) + 0.05 * 0.5 * planck(nu, 293.15)).collect();
+        let mut fit = Fit { nu: nu.clone(), signal: signal.clone(), robot: robot.clone() };
+        let mut params = [350.0, 0.3];
+        rmpfit::MPFitter::mpfit(&mut fit, &mut params).unwrap();
+        let mut deviates = vec![0.0; nu.len()];
+        rmpfit::MPFitter::eval(&mut fit, &params, &mut deviates).unwrap();
+        let total: f64 = signal.iter().sum();
+        let distance = (deviates.iter().map(|d| d * d).sum::<f64>() / total).sqrt();
+
+        let bands = Bands::uniform(715.0, 1250.0, 1.0).unwrap();
+        let object = EnvironmentObject { temperature_k: 293.15, emissivity: None };
+        let surroundings = Surroundings::new(bands.nodes_cm1(), vec![object]).unwrap();
+        let unknowns = Unknowns::new([Nuisance::Temperature, Nuisance::Lighting]).unwrap();
+        let mut solver = NearestSolver::new(&bands, &surroundings, unknowns, StateRange::default());
+        let state = surroundings.state(temperature_k, &[0.5]).unwrap();
+        let nearest = solver.per_photon(&vec![0.95; bands.len()], &robot, &state, f64::INFINITY).unwrap();
+        assert!((nearest.distance / distance - 1.0).abs() < 1e-8, "{} {distance}", nearest.distance);
+        assert!((nearest.state.temperature_k / params[0] - 1.0).abs() < 1e-5);
+        assert!((nearest.state.lighting[0] / params[1] - 1.0).abs() < 1e-4);
+    }
+}
