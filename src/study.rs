@@ -7,6 +7,7 @@
 
 mod curves;
 mod identify;
+mod magnitudes;
 mod resolve;
 mod size;
 mod warn;

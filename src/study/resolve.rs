@@ -13,9 +13,6 @@ use crate::spectrum::Bands;
 use crate::units::Spectral;
 use std::borrow::Cow;
 
-/// Counts outside this range are a slip of the pen, and their squares no longer numbers.
-const MAGNITUDES: std::ops::Range<f64> = 1e-60..1e60;
-
 /// A material on the nodes of the bands.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Surface {
@@ -146,28 +143,6 @@ impl Study {
         };
         study.check_magnitudes()?;
         Ok(study)
-    }
-
-    /// A target that radiates at all, and a camera whose counts and noise can be squared.
-    fn check_magnitudes(&self) -> Result<()> {
-        let radiance = self.photon_radiance();
-        if !(radiance > 0.0 && radiance.is_finite()) {
-            let expected = "above 0: a warmer scene, or bands at lower wavenumbers";
-            let unit = "photons s^-1 m^-2 sr^-1";
-            return Err(Error::out_of_range("photon radiance of the target", radiance, unit, expected)
-                .at(self.scenario.place("target.temperature")));
-        }
-        let Some(counting) = self.counting() else { return Ok(()) };
-        let photons = counting.counts_per_radiance * radiance;
-        let noise = counting.var_electronic.iter().copied().fold(0.0, f64::max).sqrt();
-        if MAGNITUDES.contains(&photons) && noise < MAGNITUDES.end {
-            return Ok(());
-        }
-        Err(Error::malformed(
-            format!("the camera would count {photons:.0e} photons with a noise of {noise:.0e}"),
-            "check the units of its exposure, pixel, noise and frames",
-        )
-        .at(self.scenario.place("camera")))
     }
 
     /// The scenario with its defaults filled in.
