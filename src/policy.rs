@@ -29,7 +29,7 @@ use std::f64::consts::FRAC_PI_4;
 #[must_use]
 pub fn photons_required(required: f64, distance_per_sqrt_photon: f64) -> Option<f64> {
     let ratio = required / distance_per_sqrt_photon;
-    (distance_per_sqrt_photon > 0.0 && ratio.is_finite()).then(|| ratio * ratio)
+    (distance_per_sqrt_photon > 0.0 && ratio.is_finite()).then_some(ratio * ratio)
 }
 
 /// H_req in m² s for `photons` needed from a scene of photon radiance Φ (photons s⁻¹ m⁻² sr⁻¹).
