@@ -47,7 +47,7 @@ impl fmt::Display for Place {
 #[non_exhaustive]
 pub enum Error {
     /// A number outside the range in which it has a meaning.
-    #[error("{quantity} is {value}{}; it must be {expected}", unit_suffix(.unit))]
+    #[error("{quantity} is {}{}; it must be {expected}", short(*.value), unit_suffix(.unit))]
     OutOfRange {
         /// Name of the quantity, e.g. `temperature`.
         quantity: String,
@@ -190,6 +190,16 @@ impl Error {
     }
 }
 
+/// A number in the shortest form that gives it back.
+fn short(value: f64) -> String {
+    let size = value.abs();
+    if size != 0.0 && size.is_finite() && !(1e-5..1e16).contains(&size) {
+        format!("{value:e}")
+    } else {
+        format!("{value}")
+    }
+}
+
 fn unit_suffix(unit: &str) -> String {
     if unit.is_empty() { String::new() } else { format!(" {unit}") }
 }
@@ -246,6 +256,14 @@ mod tests {
             error.to_string(),
             "a.toml:4: target.temperature: temperature is -3 K; it must be above 0 K"
         );
+    }
+
+    #[test]
+    fn a_number_beyond_all_measure_stays_short() {
+        let message = |value| Error::out_of_range("t", value, "K", "less").to_string();
+        assert_eq!(message(1e300), "t is 1e300 K; it must be less");
+        assert_eq!(message(-2.5e-9), "t is -2.5e-9 K; it must be less");
+        assert_eq!(message(0.0), "t is 0 K; it must be less");
     }
 
     #[test]

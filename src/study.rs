@@ -9,6 +9,7 @@ mod bands;
 mod camera;
 mod curves;
 mod identify;
+mod magnitudes;
 mod resolve;
 mod size;
 mod warn;

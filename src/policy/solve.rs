@@ -13,6 +13,8 @@ use crate::spectrum::Bands;
 
 /// Factors between 10⁻³⁰ and 10³⁰ of the camera's own value are searched.
 const LOG_RANGE: f64 = 69.0;
+/// Why no value suffices where the distance is 0.
+const NEVER: &str = "the two cannot be told apart";
 
 /// A quantity that can be solved for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -23,7 +25,7 @@ pub enum Quantity {
     Pixel,
     /// f-number.
     FNumber,
-    /// Electronic noise of a band reading, counts at the camera's exposure.
+    /// Electronic noise of a band reading in one frame, counts at the camera's exposure.
     Noise,
     /// Number of averaged frames.
     Frames,
@@ -111,7 +113,8 @@ impl Sizing<'_> {
         }
         let ceiling = at(best)?;
         if ceiling < self.required {
-            let reason = cap.unwrap_or_else(|| match quantity {
+            let never = (ceiling == 0.0).then(|| NEVER.to_owned());
+            let reason = never.or(cap).unwrap_or_else(|| match quantity {
                 Quantity::Exposure => {
                     "flicker noise grows as fast as the signal: no exposure is long enough".into()
                 }
@@ -119,7 +122,7 @@ impl Sizing<'_> {
                     "flicker noise does not average out: no number of frames is enough".into()
                 }
                 Quantity::Noise => "shot noise alone is too much: no detector is quiet enough".into(),
-                Quantity::Pixel | Quantity::FNumber => "the two cannot be told apart".into(),
+                Quantity::Pixel | Quantity::FNumber => NEVER.into(),
             });
             return Ok(Solution { value: None, camera, statistical_distance: ceiling, reason: Some(reason) });
         }
@@ -199,7 +202,9 @@ impl Sizing<'_> {
             Quantity::FNumber => camera.f_number,
             Quantity::Frames => f64::from(camera.frames),
             Quantity::Noise => {
-                let counting = camera.counting(self.bands, self.distance_m);
+                // Of one reading, as it is stated and as a detector is bought, however many frames there are.
+                let one = Camera { frames: 1, ..camera.clone() };
+                let counting = one.counting(self.bands, self.distance_m);
                 let var: f64 = (0..self.bands.len()).map(|w| counting.var_electronic(w)).sum();
                 (var / self.bands.len() as f64).sqrt()
             }
@@ -256,6 +261,31 @@ mod tests {
         let above = sizing(&camera, &bands, 1.000_001 * floor).solve(Quantity::Exposure, one_band).unwrap();
         assert!(above.value.is_none() && above.reason.unwrap().contains("flicker"));
         assert!((above.statistical_distance / floor - 1.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn what_cannot_be_told_apart_is_said_to_be_so() {
+        let camera = presets::get("flir-a325sc").unwrap();
+        let bands = Bands::from_rows([(900.0, 1.0)]).unwrap();
+        for quantity in Quantity::ALL {
+            let solution = sizing(&camera, &bands, 1.0).solve(quantity, |_| Ok(0.0)).unwrap();
+            assert_eq!((solution.value, solution.reason.as_deref()), (None, Some(NEVER)), "{quantity:?}");
+        }
+    }
+
+    /// d² = N²/(N + σ²)·10⁻⁶ of n frames: N = nN₁ and, without flicker, σ² = nσ₁².
+    #[test]
+    fn noise_is_that_of_one_reading() {
+        let mut camera = presets::get("flir-a325sc").unwrap();
+        (camera.flicker_fraction, camera.frames) = (0.0, 100);
+        let bands = Bands::from_rows([(900.0, 1.0)]).unwrap();
+        let photons = camera.counting(&bands, Some(30.0)).counts_per_radiance * 1e21;
+        let required = 1e-3 * (photons / 5.0).sqrt();
+        let solution = sizing(&camera, &bands, required).solve(Quantity::Noise, one_band).unwrap();
+        // N²/(N + nσ₁²) = N/5, so σ₁² = 4N/n.
+        let exact = (4.0 * photons / 100.0).sqrt();
+        assert!((solution.value.unwrap() / exact - 1.0).abs() < 1e-9, "{solution:?} {exact}");
+        assert!((solution.camera / 1.769e6 - 1.0).abs() < 1e-3);
     }
 
     #[test]

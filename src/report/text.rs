@@ -2,6 +2,7 @@
 
 use crate::instrument::{Camera, Figures, NoiseSpec};
 use crate::policy::Quantity;
+use crate::scenario::{Nuisance, Unknown};
 use crate::study::{Identification, PairResult, Sizing, Study, Warning};
 use std::fmt::Write as _;
 
@@ -32,6 +33,11 @@ pub fn quantity(value: f64, unit: &str) -> String {
     format!("{} {unit}", significant(value, 3))
 }
 
+/// A number in powers of ten with `decimals` decimals; a plain 0.
+fn exponential(value: f64, decimals: usize) -> String {
+    if value == 0.0 { "0".into() } else { format!("{value:.decimals$e}") }
+}
+
 fn photons(count: Option<f64>) -> String {
     count.map_or_else(|| "no number suffices".into(), |count| format!("{count:.2e}"))
 }
@@ -54,9 +60,13 @@ pub fn sizing(result: &Sizing, study: &Study) -> String {
         let mut line = |label: &str, text: String| {
             let _ = writeln!(out, "  {label:<34} {text}");
         };
-        line("photons at the detector, all bands", format!("{:.3e}", camera.photons));
-        line("electronic noise of a band reading", format!("{:.3e} counts", camera.noise_counts));
-        line("gamma, noise / photons of a band", format!("{:.2e}", camera.gamma_per_band));
+        line("photons at the detector, all bands", exponential(camera.photons, 3));
+        let of_band = match camera.camera.frames {
+            1 => "electronic noise of a band reading",
+            _ => "electronic noise of a band",
+        };
+        line(of_band, format!("{} counts", exponential(camera.noise_counts, 3)));
+        line("gamma, noise / photons of a band", exponential(camera.gamma_per_band, 2));
         line("t A_p / ((1+gamma) F^2)", format!("{:.3e} m^2 s", camera.hardware_m2_s));
         if let Some(d) = pair.statistical_distance {
             line(
@@ -89,7 +99,7 @@ pub fn sizing(result: &Sizing, study: &Study) -> String {
     out.push_str(&solutions(result));
     if result.pairs.len() > 1 {
         out.push_str("All alternatives, hardest first\n");
-        out.push_str(&pair_table(&result.pairs));
+        out.push_str(&pair_table(&result.pairs, study));
         out.push('\n');
     }
     out.push_str(&assumptions(study));
@@ -129,15 +139,20 @@ fn readings(pair: &PairResult, result: &Sizing) -> String {
         let _ = writeln!(out, "{mark}{label:<34} {distance:>10.2e}  {:>18}  {hardware:>14}", photons(count));
     }
     let state = &pair.nearest_state;
-    let lighting: Vec<String> = state.lighting.iter().map(|v| format!("{v:.3}")).collect();
     let _ = writeln!(
         out,
-        "  * decides. Nearest state of {}: {}, lighting {}.\n",
+        "  * decides. Nearest state of {}: {}{}.\n",
         pair.alternative,
         celsius(state.temperature_k),
-        lighting.join(", ")
+        listed(", lighting ", &state.lighting, 3)
     );
     out
+}
+
+/// Numbers with `decimals` decimals behind a label; nothing where there are none.
+fn listed(label: &str, values: &[f64], decimals: usize) -> String {
+    let values: Vec<String> = values.iter().map(|value| format!("{value:.decimals$}")).collect();
+    if values.is_empty() { String::new() } else { format!("{label}{}", values.join(" ")) }
 }
 
 fn solutions(result: &Sizing) -> String {
@@ -149,7 +164,7 @@ fn solutions(result: &Sizing) -> String {
             Quantity::Exposure => quantity(value, "s"),
             Quantity::Pixel => quantity(value, "m"),
             Quantity::FNumber => format!("f/{}", significant(value, 3)),
-            Quantity::Noise => format!("{value:.2e} counts"),
+            Quantity::Noise => format!("{} counts", exponential(value, 2)),
             Quantity::Frames => format!("{value:.0}"),
         };
         let answer = match (solution.value, &solution.reason) {
@@ -178,14 +193,17 @@ pub fn identification(result: &Identification, study: &Study) -> String {
         };
         let _ = writeln!(out, "{} is hardest to tell from {}: {needed}.\n", pair.target, pair.alternative);
     }
-    out.push_str(&pair_table(&result.pairs));
+    out.push_str(&pair_table(&result.pairs, study));
     out.push('\n');
     out.push_str(&assumptions(study));
     out.push_str(&warnings(&result.warnings));
     out
 }
 
-fn pair_table(pairs: &[PairResult]) -> String {
+/// The pairs, that which is hardest to tell apart by the distance that decides first.
+fn pair_table(pairs: &[PairResult], study: &Study) -> String {
+    let kind = study.scenario().requirement.by;
+    let decisive = |pair: &PairResult| pair.statistical_distance.unwrap_or_else(|| pair.distance(kind));
     let with_camera = pairs.iter().any(|pair| pair.statistical_distance.is_some());
     let width = pairs.iter().map(|pair| pair.alternative.len()).max().unwrap_or(0).max(11);
     let mut out = String::new();
@@ -196,10 +214,10 @@ fn pair_table(pairs: &[PairResult]) -> String {
     );
     let _ = writeln!(out, "{}", if with_camera { "    camera d" } else { "" });
     let mut sorted: Vec<&PairResult> = pairs.iter().collect();
-    sorted.sort_by(|a, b| a.distance_nearest.total_cmp(&b.distance_nearest));
+    sorted.sort_by(|a, b| decisive(a).total_cmp(&decisive(b)));
     for pair in sorted {
-        let lighting: Vec<String> = pair.nearest_state.lighting.iter().map(|v| format!("{v:.2}")).collect();
-        let state = format!("{}, V {}", celsius(pair.nearest_state.temperature_k), lighting.join(" "));
+        let nearest = &pair.nearest_state;
+        let state = celsius(nearest.temperature_k) + &listed(", V ", &nearest.lighting, 2);
         let _ = write!(
             out,
             "  {:<width$}  {:>9.2e}  {:>9.2e}  {:>9.2e}  {:>18}  {state:>24}",
@@ -215,10 +233,29 @@ fn pair_table(pairs: &[PairResult]) -> String {
     out
 }
 
+/// What is unknown, and what is known of it beforehand.
+fn unknown(unknown: &Unknown) -> String {
+    let named = unknown.nuisances.iter().map(|nuisance| {
+        let unit = match nuisance {
+            Nuisance::Temperature | Nuisance::EnvironmentTemperature => " K",
+            Nuisance::Lighting | Nuisance::Gain => "",
+        };
+        let prior = unknown.priors.get(nuisance).map(|sigma| format!("known to +- {sigma}{unit}"));
+        let total = unknown.lighting_total.filter(|_| *nuisance == Nuisance::Lighting);
+        let total = total.map(|total| format!("total known to be {total}"));
+        let known: Vec<String> = [prior, total].into_iter().flatten().collect();
+        match known.as_slice() {
+            [] => nuisance.name().to_owned(),
+            known => format!("{} ({})", nuisance.name(), known.join(", ")),
+        }
+    });
+    let named: Vec<String> = named.collect();
+    if named.is_empty() { "nothing but the material".into() } else { named.join(", ") }
+}
+
 fn assumptions(study: &Study) -> String {
     let scenario = study.scenario();
-    let names: Vec<&str> = scenario.unknown.nuisances.iter().map(|nuisance| nuisance.name()).collect();
-    let unknown = if names.is_empty() { "nothing but the material".to_owned() } else { names.join(", ") };
+    let unknown = unknown(&scenario.unknown);
     let bands = study.bands().bands();
     let (low, high) =
         (bands.first().map_or(0.0, |b| b.center_cm1), bands.last().map_or(0.0, |b| b.center_cm1));

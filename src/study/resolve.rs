@@ -126,7 +126,7 @@ impl Study {
         let unknowns = unknowns(&scenario).map_err(|error| error.at(scenario.place("unknown")))?;
         let range = state_range(&scenario);
         fill(&mut scenario, &alternatives_as_written(&alternatives), camera.as_ref(), &range);
-        Ok(Self {
+        let study = Self {
             scenario,
             bands,
             surroundings,
@@ -138,7 +138,9 @@ impl Study {
             camera,
             required,
             warnings,
-        })
+        };
+        study.check_magnitudes()?;
+        Ok(study)
     }
 
     /// The scenario with its defaults filled in.

@@ -4,9 +4,9 @@ use super::identify::{PairResult, PhotonsRequired};
 use super::{Study, Surface, Warning, warn};
 use crate::error::Result;
 use crate::fisher::{Counting, Nuisance};
-use crate::identifiability::detection;
 use crate::identifiability::local::LocalSolver;
 use crate::identifiability::nearest::NearestSolver;
+use crate::identifiability::{Status, detection};
 use crate::instrument::{Camera, NoiseLine, gamma_per_band};
 use crate::policy::{self, Quantity, Solution, solve};
 use crate::scenario::{DistanceKind, Scenario};
@@ -282,7 +282,11 @@ impl Study {
         let camera = self.camera.as_ref().map_or("", |camera| camera.name.as_str());
         let sentence = match (reached, requirement.photons) {
             (_, None) => {
-                format!("No camera can tell {target} from {other} here: nothing in the spectrum differs.")
+                let why = match pair.status {
+                    Status::Identical | Status::Equilibrium => "nothing in the spectrum differs",
+                    Status::Ok | Status::Blind => "the unknowns explain every difference in the spectrum",
+                };
+                format!("No camera can tell {target} from {other} here: {why}.")
             }
             (None, Some(photons)) => format!(
                 "Telling {target} from {other} with {percent:.1} % reliability takes at least {photons:.2e} photons."
