@@ -8,8 +8,8 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 
-/// Halvings of the multiplier of the sum constraint: enough for its last bit.
-const HALVINGS: usize = 200;
+/// Attempts at the multiplier of the sum constraint; a handful are enough.
+const ATTEMPTS: usize = 200;
 
 /// The problem: H, g, bounds, and the members and limit of the sum constraint.
 pub(super) struct BoundedStep<'a> {
@@ -35,26 +35,45 @@ impl BoundedStep<'_> {
             }
             self.in_box(&gradient)
         };
+        let excess = |step: &DVector<f64>| self.summed_part(step) - self.sum_limit;
         let (mut low, mut high) = (0.0, self.gradient.amax().max(f64::MIN_POSITIVE));
-        while self.summed_part(&tilted(high)?) > self.sum_limit {
+        let mut above = excess(&free);
+        let mut step = tilted(high)?;
+        let mut below = excess(&step);
+        while below > 0.0 {
             if !high.is_finite() {
                 return None;
             }
-            low = high;
+            (low, above) = (high, below);
             high *= 4.0;
+            step = tilted(high)?;
+            below = excess(&step);
         }
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (low + high);
-            if middle <= low || middle >= high {
+        // The excess falls piecewise linearly: the secant through both ends, the staying end's excess halved
+        // (Illinois rule) so that no end stays for long.
+        let mut stays = 0;
+        for _ in 0..ATTEMPTS {
+            let size: f64 = step.iter().map(|value| value.abs()).sum();
+            if excess(&step).abs() <= 4.0 * f64::EPSILON * (size + self.sum_limit) {
                 break;
             }
-            if self.summed_part(&tilted(middle)?) > self.sum_limit {
-                low = middle;
+            let middle = (low * below - high * above) / (below - above);
+            if !(middle > low && middle < high) {
+                break;
+            }
+            let at = tilted(middle)?;
+            let value = excess(&at);
+            if value > 0.0 {
+                (low, above) = (middle, value);
+                below *= if stays == 1 { 0.5 } else { 1.0 };
+                stays = 1;
             } else {
-                high = middle;
+                (high, below, step) = (middle, value, at);
+                above *= if stays == -1 { 0.5 } else { 1.0 };
+                stays = -1;
             }
         }
-        tilted(high)
+        Some(step)
     }
 
     fn summed_part(&self, step: &DVector<f64>) -> f64 {

@@ -13,12 +13,12 @@
 mod kernels;
 
 use self::kernels::{
-    LightObject, LightSpectra, OneObject, add_darkness, add_object, add_scaled, largest, largest_by_one,
-    light_by_one, mixing_into, product_into, scale_by, scattered_into, signal_and_mixing_by_one, signal_into,
+    LightObject, LightSpectra, OneObject, add_darkness, add_object, add_scaled, largest_by_one, light_by_one,
+    mixing_into, product_into, scale_by, scattered_into, signal_and_mixing_by_one, signal_into,
 };
 use super::{State, Surroundings, unlit};
 use crate::planck::{self, NearPair};
-use crate::simd::{Aligned, spaced};
+use crate::simd::{Aligned, largest, spaced};
 use crate::spectrum::Bands;
 
 /// What a column of a [`Jacobian`] is the derivative with respect to.
@@ -192,6 +192,13 @@ impl<'a> Jacobian<'a> {
     /// evaluation writes them anew.
     pub(crate) fn columns_mut(&mut self) -> Columns<'_> {
         Columns { values: &mut self.columns, stride: self.stride }
+    }
+
+    /// Multiplies column i by `factors`, band by band; the next evaluation writes it anew.
+    pub(crate) fn scale_column(&mut self, i: usize, factors: &[f64]) {
+        if let Some(column) = self.columns.chunks_mut(self.stride).nth(i) {
+            scale_by(factors, column);
+        }
     }
 
     /// Factor by which rounding errors of ∂S/∂g may exceed a few ulp of it: 1 unless T < some Tₖ.
