@@ -29,13 +29,20 @@ use crate::spectrum::Bands;
 use nalgebra::{DMatrix, DVector};
 
 /// Minima of the grid that are refined.
-const REFINED: usize = 3;
+const REFINED: usize = 4;
 /// Iterations of a refinement.
-const ITERATIONS: usize = 100;
+const ITERATIONS: usize = 2000;
 /// Relative step at which a refinement has converged.
 const STEP_TOLERANCE: f64 = 1e-11;
+/// Share of the cost that a step must promise to take off: less changes neither distance nor state.
+const GAIN_TOLERANCE: f64 = 1e-18;
 /// Relative difference below which two states lead to the same minimum.
-const NEAR: f64 = 1e-6;
+const NEAR: f64 = 1e-4;
+/// Damping at the start, and that below which the length of a step is its own.
+const DAMPING: f64 = 1e-7;
+const FREE: f64 = 1e-3;
+/// How often a refinement whose steps have become short by damping alone begins anew.
+const FRESH_STARTS: usize = 3;
 /// Share of its range within which a parameter counts as standing at the edge.
 const EDGE: f64 = 1e-9;
 
@@ -244,33 +251,34 @@ impl<'a> NearestSolver<'a> {
         found: &[State],
         iterations: &mut usize,
     ) -> Option<NearestDistance> {
-        let mut state = self.into_range(&start);
+        let mut state = self.brought_into_range(&start);
         let mut at = self.linearise(target, &state);
-        let (mut damping, mut converged) = (1e-7, self.parameters.is_empty());
+        let (mut damping, mut converged, mut fresh_starts) = (DAMPING, self.parameters.is_empty(), 0);
         let last = *iterations + ITERATIONS;
         while !converged && *iterations < last {
             let Some(step) = self.step(&at, &state, damping, false) else { break };
             let size = self.relative_size(&step, &state);
-            if size < STEP_TOLERANCE {
-                converged = true;
-                break;
+            let promised = -(2.0 * at.gradient.dot(&step) + step.dot(&(&at.hessian * &step)));
+            converged = size < STEP_TOLERANCE || promised <= GAIN_TOLERANCE * at.cost;
+            if !converged {
+                *iterations += 1;
+                let moved = self.moved(&state, &step);
+                let next = self.linearise(target, &moved);
+                if next.cost <= at.cost {
+                    (state, at) = (moved, next);
+                    damping = (damping * 0.05).max(1e-15);
+                    if found.iter().any(|found| self.is_near(&state, found)) {
+                        return None;
+                    }
+                } else {
+                    // Below this the cost changes only by rounding.
+                    converged = size < 1e3 * STEP_TOLERANCE;
+                    damping = (damping * 20.0).max(1e-9);
+                }
             }
-            *iterations += 1;
-            let moved = self.moved(&state, &step);
-            let next = self.linearise(target, &moved);
-            if next.cost <= at.cost {
-                (state, at) = (moved, next);
-                damping = (damping * 0.05).max(1e-15);
-                if found.iter().any(|found| self.is_near(&state, found)) {
-                    return None;
-                }
-            } else {
-                // Below this the cost changes only by rounding.
-                converged = size < 1e3 * STEP_TOLERANCE;
-                damping = (damping * 20.0).max(1e-9);
-                if damping > 1e12 {
-                    break;
-                }
+            // A step that is short because it is damped proves nothing.
+            if converged && damping > FREE && fresh_starts < FRESH_STARTS {
+                (converged, damping, fresh_starts) = (false, DAMPING, fresh_starts + 1);
             }
         }
         let at_edge = self.edges(&state);

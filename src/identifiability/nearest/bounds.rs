@@ -6,6 +6,9 @@ use crate::identifiability::step::BoundedStep;
 use crate::scene::{Parameter, State};
 use nalgebra::{DMatrix, DVector};
 
+/// Largest factor by which a step may change a temperature.
+const LEAP: f64 = 1.5;
+
 impl NearestSolver<'_> {
     /// Step that minimises the damped quadratic model within the bounds; T′ may be held where it is.
     pub(super) fn step(
@@ -24,9 +27,14 @@ impl NearestSolver<'_> {
         let mut lit = 0.0;
         for (i, parameter) in self.parameters.iter().enumerate() {
             let now = value(state, *parameter);
-            let [low, high] = self.bounds(*parameter);
+            let [mut low, mut high] = self.bounds(*parameter);
+            if matches!(parameter, Parameter::Temperature | Parameter::EnvironmentTemperature(_)) {
+                // Not too far at once: where nothing is emitted there is no slope that leads back.
+                (low, high) = (low.max(now / LEAP), high.min(now * LEAP));
+            }
             if !(hold_temperature && *parameter == Parameter::Temperature) && at.hessian[(i, i)] > 0.0 {
-                (lower[i], upper[i]) = ((low - now).min(0.0), (high - now).max(0.0));
+                let unit = unit(state, *parameter);
+                (lower[i], upper[i]) = (((low - now) / unit).min(0.0), ((high - now) / unit).max(0.0));
             }
             if matches!(parameter, Parameter::Lighting(_)) {
                 summed[i] = true;
@@ -85,7 +93,8 @@ impl NearestSolver<'_> {
         let mut moved = state.clone();
         for (parameter, change) in self.parameters.iter().zip(step.iter()) {
             let [low, high] = self.bounds(*parameter);
-            set(&mut moved, *parameter, (value(state, *parameter) + change).clamp(low, high));
+            let to = unit(state, *parameter).mul_add(*change, value(state, *parameter));
+            set(&mut moved, *parameter, to.clamp(low, high));
         }
         self.close_total(&mut moved);
         moved
@@ -103,7 +112,7 @@ impl NearestSolver<'_> {
         }
     }
 
-    pub(super) fn into_range(&self, state: &State) -> State {
+    pub(super) fn brought_into_range(&self, state: &State) -> State {
         let mut inside = state.clone();
         for parameter in &self.parameters {
             let [low, high] = self.bounds(*parameter);
@@ -125,7 +134,7 @@ impl NearestSolver<'_> {
             .zip(step.iter())
             .map(|(parameter, change)| {
                 let size = match parameter {
-                    Parameter::Lighting(_) => 1.0,
+                    Parameter::Lighting(_) | Parameter::Gain => 1.0,
                     other => value(state, *other).abs(),
                 };
                 (change / size).abs()
@@ -147,6 +156,11 @@ impl NearestSolver<'_> {
         };
         self.parameters.iter().filter(at_edge).copied().collect()
     }
+}
+
+/// What a step of 1 adds to a parameter: steps of the gain are relative, as its derivative is.
+pub(super) fn unit(state: &State, parameter: Parameter) -> f64 {
+    if parameter == Parameter::Gain { state.gain } else { 1.0 }
 }
 
 /// Value of a parameter.

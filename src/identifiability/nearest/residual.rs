@@ -1,6 +1,6 @@
 //! The distance between the target's counts and those of a state of the alternative, and its derivatives.
 
-use super::bounds::value;
+use super::bounds::{unit, value};
 use super::{Linearised, Metric, NearestSolver, Target};
 use crate::planck;
 use crate::scene::State;
@@ -56,10 +56,12 @@ impl NearestSolver<'_> {
             Metric::PerPhoton { photons } => 0.5 / (sigma * photons.sqrt()),
             Metric::Counting(_) => 0.5 / sigma,
         };
-        let row = weight * (value(state, self.parameters[i]) - value(target.state, self.parameters[i]));
+        let parameter = self.parameters[i];
+        let row = weight * (value(state, parameter) - value(target.state, parameter));
+        let slope = weight * unit(state, parameter);
         cost.add(row * row);
-        gradient[i] += weight * row;
-        hessian[(i, i)] += weight * weight;
+        gradient[i] += slope * row;
+        hessian[(i, i)] += slope * slope;
     }
 
     /// Band integrals of S − S′ from differences that lose no digits.

@@ -9,7 +9,7 @@ use crate::sum::{dot, sum};
 use nalgebra::{DMatrix, DVector};
 
 /// Temperatures of the grid.
-const GRID: usize = 24;
+const GRID: usize = 32;
 /// About as many nodes are enough to tell how much a surface emits.
 const FEW: usize = 32;
 /// Halvings of the range of ln T that ends of the grid are found by: to 3e-4.
@@ -18,7 +18,7 @@ const HALVINGS: usize = 16;
 impl NearestSolver<'_> {
     /// The best minima of the temperature grid, and the target's own state brought into the range.
     pub(super) fn starts(&mut self, target: &Target<'_>) -> Vec<State> {
-        let own = self.into_range(target.state);
+        let own = self.brought_into_range(target.state);
         if !self.unknowns.contains(Nuisance::Temperature) {
             return vec![own];
         }
@@ -46,11 +46,11 @@ impl NearestSolver<'_> {
         !self.unknowns.has_priors() && self.parameters.iter().all(linear)
     }
 
-    /// Cost and state after two Gauss–Newton steps in the other unknowns, T′ held: they are (bi)linear.
+    /// Cost and state after three Gauss–Newton steps in the other unknowns, T′ held: they are (bi)linear.
     fn fit_at(&mut self, target: &Target<'_>, own: &State, temperature_k: f64) -> (f64, State) {
         let mut state = State { temperature_k, ..own.clone() };
         let mut cost = f64::INFINITY;
-        for _ in 0..2 {
+        for _ in 0..3 {
             let at = self.linearise(target, &state);
             cost = at.cost;
             let Some(step) = self.step(&at, &state, 1e-9, true) else { break };
@@ -103,13 +103,12 @@ impl NearestSolver<'_> {
                 });
                 let cost = dot(&self.separation, &self.separation);
                 let at = Linearised { cost, gradient, hessian: hessian.clone() };
-                match self.step(&at, &state, 1e-9, true) {
-                    Some(step) => {
-                        let cost = cost + 2.0 * at.gradient.dot(&step) + step.dot(&(&at.hessian * &step));
-                        (cost, self.moved(&state, &step))
-                    }
-                    None => (cost, state),
+                let Some(step) = self.step(&at, &state, 1e-9, true) else { return (cost, state) };
+                for (i, change) in step.iter().enumerate().filter(|(i, _)| !fixed[*i]) {
+                    add_into(*change, self.surface.column(i), &mut self.separation);
                 }
+                straighten(&self.target_root, &mut self.separation);
+                (dot(&self.separation, &self.separation), self.moved(&state, &step))
             })
             .collect()
     }
@@ -149,7 +148,7 @@ impl NearestSolver<'_> {
             }
             0.5 * (a + b)
         };
-        let bottom = solve(1e-3 * signal);
+        let bottom = solve(1e-5 * signal);
         let top = solve(4.0 * signal).max(bottom);
         (0..GRID).map(|i| (bottom + (top - bottom) * i as f64 / (GRID - 1) as f64).exp()).collect()
     }
@@ -168,6 +167,25 @@ dispatched! {
     fn slopes_into<'a>(counts: f64, roots: &'a [f64], out: &'a mut [f64]) {
         for (out, root) in out.iter_mut().zip(roots) {
             *out = if *root > 0.0 { -0.5 * counts / root } else { 0.0 };
+        }
+    }
+}
+
+dispatched! {
+    fn add_into<'a>(factor: f64, a: &'a [f64], to: &'a mut [f64]) {
+        for (to, a) in to.iter_mut().zip(a) {
+            *to = factor.mul_add(*a, *to);
+        }
+    }
+}
+
+dispatched! {
+    /// From (N − N′)/(2√(N + σ²)), linear in S′, to √(N + σ²) − √(N′ + σ²).
+    fn straighten<'a>(target_root: &'a [f64], residual: &'a mut [f64]) {
+        for (residual, root) in residual.iter_mut().zip(target_root) {
+            let double = 2.0 * root * *residual;
+            let sum = root + root.mul_add(*root, -double).max(0.0).sqrt();
+            *residual = if sum > 0.0 { double / sum } else { 0.0 };
         }
     }
 }
