@@ -147,11 +147,17 @@ impl Aligned {
     }
 }
 
+impl From<&[f64]> for Aligned {
+    fn from(values: &[f64]) -> Self {
+        let mut copy = Self::zeros(values.len());
+        copy.copy_from_slice(values);
+        copy
+    }
+}
+
 impl Clone for Aligned {
     fn clone(&self) -> Self {
-        let mut copy = Self::zeros(self.len);
-        copy.copy_from_slice(self);
-        copy
+        Self::from(&**self)
     }
 }
 
