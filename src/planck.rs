@@ -15,7 +15,7 @@
 //! Sources: SI constants (2019); paper S2; exponential after Cody and Waite, 'Software Manual for the
 //! Elementary Functions' (1980), with a Taylor polynomial on |r| ≤ ln2/2.
 
-use crate::simd::dispatched;
+use crate::simd::{dispatched, largest};
 use crate::units::{SECOND_RADIATION_CM_K, SECOND_RADIATION_REST_CM_K, SPEED_OF_LIGHT_M_S};
 
 /// 2c in cm s⁻¹ times cm² per m²: turns ν² (cm⁻²) into photons s⁻¹ m⁻² sr⁻¹ per cm⁻¹.
@@ -185,7 +185,7 @@ pub fn photon_radiance_difference_into(
     let warmer_k = temperature_k + difference_k;
     let inverse = inverse_thermal(warmer_k);
     let delta_per_cm1 = inverse.high * (difference_k / temperature_k);
-    if delta_per_cm1.abs() * wavenumbers_cm1.iter().copied().fold(0.0, f64::max) > 30.0 {
+    if delta_per_cm1.abs() * largest(wavenumbers_cm1) > 30.0 {
         // e^δ may overflow, but then the two radiances have no digit in common to cancel.
         photon_radiance_into(wavenumbers_cm1, warmer_k, out);
         for (out, base) in out.iter_mut().zip(base) {

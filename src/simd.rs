@@ -75,6 +75,37 @@ pub(crate) fn padded(rest: &[f64]) -> Chunk {
     chunk
 }
 
+/// The largest magnitude so far, in every lane.
+#[derive(Default)]
+pub(crate) struct Largest(Chunk);
+
+impl Largest {
+    #[inline(always)]
+    pub(crate) fn see(&mut self, x: Chunk) {
+        let so_far = self.0;
+        self.0 = std::array::from_fn(|i| if x[i].abs() > so_far[i] { x[i].abs() } else { so_far[i] });
+    }
+
+    /// Never inlined, for the reason given at [`crate::sum::CompensatedLanes::value`].
+    #[inline(never)]
+    pub(crate) fn value(&self) -> f64 {
+        self.0.iter().fold(0.0, |largest, x| x.max(largest))
+    }
+}
+
+dispatched! {
+    /// Largest |x|.
+    pub(crate) fn largest<'a>(x: &'a [f64]) -> f64 {
+        let (eights, rest) = x.as_chunks::<LANES>();
+        let mut largest = Largest::default();
+        for x in eights {
+            largest.see(*x);
+        }
+        largest.see(padded(rest));
+        largest.value()
+    }
+}
+
 /// Room for `len` doubles such that arrays laid out one after the other do not start at nearly the same
 /// place in a page of 512 doubles: a processor takes a load for one of a store not yet done if their places in the
 /// page agree, and waits.
@@ -116,11 +147,17 @@ impl Aligned {
     }
 }
 
+impl From<&[f64]> for Aligned {
+    fn from(values: &[f64]) -> Self {
+        let mut copy = Self::zeros(values.len());
+        copy.copy_from_slice(values);
+        copy
+    }
+}
+
 impl Clone for Aligned {
     fn clone(&self) -> Self {
-        let mut copy = Self::zeros(self.len);
-        copy.copy_from_slice(self);
-        copy
+        Self::from(&**self)
     }
 }
 

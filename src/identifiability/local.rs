@@ -10,8 +10,9 @@ use super::Status;
 use crate::error::{Error, Result};
 use crate::fisher::{Counting, Projection, Projector, Reduced, Unknowns};
 use crate::scene::{Columns, Jacobian, Parameter, State, Surroundings};
-use crate::simd::{Aligned, dispatched};
+use crate::simd::{Aligned, Chunk, LANES, dispatched, padded};
 use crate::spectrum::Bands;
+use crate::sum::{BLOCK, CompensatedLanes};
 
 /// Sums of the signal outside this range are brought back by a power of two before they are squared.
 const SAFE_RANGE: std::ops::Range<f64> = 1e-100..1e100;
@@ -104,8 +105,7 @@ impl<'a> LocalSolver<'a> {
         state: &State,
         photons: f64,
     ) -> Result<LocalDistance> {
-        let (total, scale) = self.weigh_per_photon(emissivity, alternative, state)?;
-        let found = self.reduce(scale, photons.sqrt())?;
+        let (total, found) = self.reduce_per_photon(emissivity, alternative, state, photons.sqrt())?;
         Ok(self.judge(found, emissivity, alternative, state, total))
     }
 
@@ -116,8 +116,7 @@ impl<'a> LocalSolver<'a> {
         alternative: &[f64],
         state: &State,
     ) -> Result<(f64, f64)> {
-        let (total, scale) = self.weigh_per_photon(emissivity, alternative, state)?;
-        let found = self.reduce(scale, f64::INFINITY)?;
+        let (total, found) = self.reduce_per_photon(emissivity, alternative, state, f64::INFINITY)?;
         let status = self.status(&found, emissivity, alternative, state);
         Ok((if status == Status::Ok { 0.5 * found.residual } else { 0.0 }, total))
     }
@@ -133,7 +132,8 @@ impl<'a> LocalSolver<'a> {
         state: &State,
         counting: &Counting,
     ) -> Result<LocalDistance> {
-        let total = self.evaluate(emissivity, alternative, state)?;
+        self.evaluate(emissivity, alternative, state);
+        let total = positive(crate::sum::sum(self.jacobian.signal()))?;
         let counts = counting.counts_per_radiance;
         for (w, (weight, signal)) in self.weights.iter_mut().zip(self.jacobian.signal()).enumerate() {
             // κ²/(κS + σ²) with one κ taken out, so that nothing overflows before it must.
@@ -150,32 +150,31 @@ impl<'a> LocalSolver<'a> {
         self.jacobian.signal()
     }
 
-    fn evaluate(&mut self, emissivity: &[f64], alternative: &[f64], state: &State) -> Result<f64> {
+    fn evaluate(&mut self, emissivity: &[f64], alternative: &[f64], state: &State) {
         let total_known = self.unknowns.known_lighting_total().is_some();
         self.jacobian.evaluate(emissivity, alternative, state, &self.parameters, total_known);
-        let total = crate::sum::sum(self.jacobian.signal());
-        if total > 0.0 && total.is_finite() {
-            return Ok(total);
-        }
-        Err(Error::out_of_range(
-            "photon radiance of the target",
-            total,
-            "photons s^-1 m^-2 sr^-1",
-            "above 0: a warmer scene, or bands at lower wavenumbers",
-        ))
     }
 
-    /// Signals, derivatives and the weights u = 1/(S ΣS); ΣS and the power of two that scales it.
-    fn weigh_per_photon(
+    /// ΣS, and the projection with the weights u = 1/(S ΣS).
+    fn reduce_per_photon(
         &mut self,
         emissivity: &[f64],
         alternative: &[f64],
         state: &State,
-    ) -> Result<(f64, f64)> {
-        let total = self.evaluate(emissivity, alternative, state)?;
+        sqrt_photons: f64,
+    ) -> Result<(f64, Reduced)> {
+        self.evaluate(emissivity, alternative, state);
+        let total = positive(reciprocals_and_sum(self.jacobian.signal(), &mut self.weights))?;
         let scale = safe_scale(total);
+        if scale == 1.0 && !(self.unknowns.has_priors() && sqrt_photons.is_finite()) {
+            // ΣS comes in at the end, since it scales all the same.
+            let Reduced { residual, norm, relative_error } = self.reduce(scale, sqrt_photons)?;
+            let per_photon = 1.0 / total.sqrt();
+            let (residual, norm) = (per_photon * residual, per_photon * norm);
+            return Ok((total, Reduced { residual, norm, relative_error }));
+        }
         reciprocal_into(self.jacobian.signal(), scale * (total * scale), &mut self.weights);
-        Ok((total, scale))
+        Ok((total, self.reduce(scale, sqrt_photons)?))
     }
 
     fn reduce(&mut self, scale: f64, sqrt_photons: f64) -> Result<Reduced> {
@@ -276,12 +275,48 @@ impl<'a> LocalSolver<'a> {
     }
 }
 
+/// ΣS of a scene with photons.
+fn positive(total: f64) -> Result<f64> {
+    if total > 0.0 && total.is_finite() {
+        return Ok(total);
+    }
+    Err(Error::out_of_range(
+        "photon radiance of the target",
+        total,
+        "photons s^-1 m^-2 sr^-1",
+        "above 0: a warmer scene, or bands at lower wavenumbers",
+    ))
+}
+
 /// A power of two that brings `total` near 1, or 1 if squares are safe as they are.
 fn safe_scale(total: f64) -> f64 {
     if SAFE_RANGE.contains(&total) {
         1.0
     } else {
         total.log2().floor().clamp(-1000.0, 1000.0).mul_add(-1.0, 0.0).exp2()
+    }
+}
+
+dispatched! {
+    /// 1/value, 0 for a value of 0, and Σ values.
+    fn reciprocals_and_sum<'a>(values: &'a [f64], out: &'a mut [f64]) -> f64 {
+        let ((v8, v_rest), (o8, o_rest)) = (values.as_chunks::<LANES>(), out.as_chunks_mut::<LANES>());
+        let reciprocal = |value: f64| if value > 0.0 { 1.0 / value } else { 0.0 };
+        let mut total = CompensatedLanes::default();
+        for (v, o) in v8.chunks(BLOCK / LANES).zip(o8.chunks_mut(BLOCK / LANES)) {
+            let mut lanes: Chunk = [0.0; LANES];
+            for (v, o) in v.iter().zip(o) {
+                let v = *v;
+                *o = v.map(reciprocal);
+                lanes = std::array::from_fn(|i| lanes[i] + v[i]);
+            }
+            total.add(lanes);
+        }
+        total.add(padded(v_rest));
+        for (value, out) in v_rest.iter().zip(o_rest) {
+            *out = reciprocal(*value);
+        }
+        total.value()
     }
 }
 

@@ -9,6 +9,7 @@ use super::nearest::{NearestSolver, StateRange};
 use crate::error::Result;
 use crate::fisher::Unknowns;
 use crate::scene::{State, Surroundings};
+use crate::simd::Aligned;
 use crate::spectrum::Bands;
 use rayon::prelude::*;
 
@@ -53,6 +54,7 @@ impl MapScene<'_> {
     /// As [`LocalSolver::per_photon`], at the first point that fails.
     pub fn local(&self, temperatures_k: &[f64], lightings: &[f64]) -> Result<Vec<MapPoint>> {
         let solver = || LocalSolver::new(self.bands, self.surroundings, self.unknowns.clone());
+        let (emissivity, alternative) = (Aligned::from(self.emissivity), Aligned::from(self.alternative));
         let rows: Result<Vec<Vec<MapPoint>>> = temperatures_k
             .par_iter()
             .map_init(solver, |solver, &temperature_k| {
@@ -63,8 +65,7 @@ impl MapScene<'_> {
                         if let Some(first) = state.lighting.first_mut() {
                             *first = lighting;
                         }
-                        let (distance, photon_radiance) =
-                            solver.point(self.emissivity, self.alternative, &state)?;
+                        let (distance, photon_radiance) = solver.point(&emissivity, &alternative, &state)?;
                         Ok(MapPoint { distance, photon_radiance })
                     })
                     .collect()

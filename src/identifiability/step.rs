@@ -8,8 +8,8 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector};
 
-/// Halvings of the multiplier of the sum constraint: enough for its last bit.
-const HALVINGS: usize = 200;
+/// Attempts at the multiplier of the sum constraint; a handful are enough.
+const ATTEMPTS: usize = 200;
 
 /// The problem: H, g, bounds, and the members and limit of the sum constraint.
 pub(super) struct BoundedStep<'a> {
@@ -35,26 +35,44 @@ impl BoundedStep<'_> {
             }
             self.in_box(&gradient)
         };
+        let excess = |step: &DVector<f64>| self.summed_part(step) - self.sum_limit;
         let (mut low, mut high) = (0.0, self.gradient.amax().max(f64::MIN_POSITIVE));
-        while self.summed_part(&tilted(high)?) > self.sum_limit {
+        let mut above = excess(&free);
+        let mut step = tilted(high)?;
+        let mut below = excess(&step);
+        while below > 0.0 {
             if !high.is_finite() {
                 return None;
             }
-            low = high;
+            (low, above) = (high, below);
             high *= 4.0;
+            step = tilted(high)?;
+            below = excess(&step);
         }
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (low + high);
-            if middle <= low || middle >= high {
+        // The excess falls piecewise linearly: the secant through both ends, the staying end's excess halved
+        // (Illinois rule) so that no end stays for long.
+        let mut stays = 0;
+        for _ in 0..ATTEMPTS {
+            let size: f64 = step.iter().map(|value| value.abs()).sum();
+            if excess(&step).abs() <= 4.0 * f64::EPSILON * (size + self.sum_limit) {
                 break;
             }
-            if self.summed_part(&tilted(middle)?) > self.sum_limit {
-                low = middle;
+            let inside = |at: f64| (at > low && at < high).then_some(at);
+            let secant = (low * below - high * above) / (below - above);
+            let Some(middle) = inside(secant).or_else(|| inside(0.5 * (low + high))) else { break };
+            let at = tilted(middle)?;
+            let value = excess(&at);
+            if value > 0.0 {
+                (low, above) = (middle, value);
+                below *= if stays == 1 { 0.5 } else { 1.0 };
+                stays = 1;
             } else {
-                high = middle;
+                (high, below, step) = (middle, value, at);
+                above *= if stays == -1 { 0.5 } else { 1.0 };
+                stays = -1;
             }
         }
-        tilted(high)
+        Some(step)
     }
 
     fn summed_part(&self, step: &DVector<f64>) -> f64 {
@@ -158,5 +176,60 @@ mod tests {
         // p₁ + p₂ = ½: Lagrange gives p₁ = ⅜ , p₂ = ⅛ (1 − p₁ − p₂/2 = 1 − p₁/2 − 2p₂).
         assert!(close(&solve(&[-9.0; 2], &[9.0; 2], 0.5), [0.375, 0.125]));
         assert!(close(&solve(&[0.0; 2], &[0.0; 2], 9.0), [0.0, 0.0]));
+    }
+
+    /// Against many random feasible points: none may be better than the minimiser.
+    #[test]
+    fn no_feasible_point_is_better() {
+        let mut seed = 1_u64;
+        let mut draw = move || {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+        };
+        for case in 0..300 {
+            // Columns that are nearly parallel, as those of temperature and lighting are.
+            let root = DMatrix::from_fn(3, 3, |i, j| {
+                if i == 0 {
+                    1.0
+                } else {
+                    0.1_f64.powi(case % 4) * draw() + f64::from(u8::from(i == j)) * 1e-3
+                }
+            });
+            let hessian = root.transpose() * root;
+            let gradient = DVector::from_fn(3, |_, _| draw());
+            let (lower, upper) = ([-0.3, -0.4, -0.5], [0.6, 0.5, 0.4]);
+            let summed = [true, true, false];
+            let sum_limit = if case % 2 == 0 { 0.0 } else { 0.2 };
+            let problem = BoundedStep {
+                hessian: &hessian,
+                gradient: &gradient,
+                lower: &lower,
+                upper: &upper,
+                summed: &summed,
+                sum_limit,
+            };
+            let step = problem.solve().unwrap();
+            let model = |p: &DVector<f64>| 0.5 * p.dot(&(&hessian * p)) + gradient.dot(p);
+            let least = model(&step);
+            assert!(step[0] + step[1] <= sum_limit + 1e-12, "{case}");
+            for scale in [1.0, 0.1, 1e-2, 1e-3] {
+                for _ in 0..300 {
+                    let mut p =
+                        DVector::from_fn(3, |i, _| (step[i] + scale * draw()).clamp(lower[i], upper[i]));
+                    let excess = p[0] + p[1] - sum_limit;
+                    if excess > 0.0 {
+                        p[0] -= excess;
+                        if p[0] < lower[0] {
+                            continue;
+                        }
+                    }
+                    assert!(
+                        model(&p) >= least - 1e-9 * least.abs(),
+                        "{case} {scale}: {} < {least}, {p} {step}",
+                        model(&p)
+                    );
+                }
+            }
+        }
     }
 }

@@ -11,14 +11,16 @@
 //! (S48) the last factor is the total minus the others, and ∂S/∂Vₖ = G(1 − e)[εₖB(Tₖ) − ε_K B(T_K)].
 
 mod kernels;
+mod sampling;
 
 use self::kernels::{
-    LightObject, LightSpectra, OneObject, add_darkness, add_object, add_scaled, largest, largest_by_one,
-    light_by_one, mixing_into, product_into, scale_by, scattered_into, signal_and_mixing_by_one, signal_into,
+    LightObject, LightSpectra, OneObject, add_darkness, add_object, add_scaled, largest_by_one, light_by_one,
+    mixing_into, product_into, scale_by, scattered_into, signal_and_mixing_by_one, signal_into,
 };
+use self::sampling::Sampling;
 use super::{State, Surroundings, unlit};
 use crate::planck::{self, NearPair};
-use crate::simd::{Aligned, spaced};
+use crate::simd::{Aligned, largest, spaced};
 use crate::spectrum::Bands;
 
 /// What a column of a [`Jacobian`] is the derivative with respect to.
@@ -72,17 +74,6 @@ fn ratio(terms: f64, sum: f64) -> f64 {
     if sum > 0.0 { terms / sum } else { 1.0 }
 }
 
-/// How spectra at the nodes become band signals.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Sampling {
-    /// One node of weight 1 per band: node values are band signals.
-    Unit,
-    /// One node per band.
-    Scaled,
-    /// A weighted sum over several nodes.
-    Integrated,
-}
-
 /// Columns to be worked on in place, each beginning `stride` after the one before.
 #[derive(Debug)]
 pub(crate) struct Columns<'a> {
@@ -97,33 +88,6 @@ enum Incident {
     Blackbody(usize),
     /// The scratch spectrum.
     Scratch,
-}
-
-impl Sampling {
-    fn of(bands: &Bands) -> Self {
-        if !bands.one_node_per_band() {
-            Self::Integrated
-        } else if bands.weights_cm1().iter().all(|&weight| weight == 1.0) {
-            Self::Unit
-        } else {
-            Self::Scaled
-        }
-    }
-
-    /// Band signals of the spectrum that `write` puts into the slice it is given.
-    fn sample(self, bands: &Bands, scratch: &mut [f64], out: &mut [f64], write: impl FnOnce(&mut [f64])) {
-        match self {
-            Self::Unit => write(out),
-            Self::Scaled => {
-                write(out);
-                scale_by(bands.weights_cm1(), out);
-            }
-            Self::Integrated => {
-                write(scratch);
-                bands.weigh_into(scratch, out);
-            }
-        }
-    }
 }
 
 impl<'a> Jacobian<'a> {

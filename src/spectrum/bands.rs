@@ -1,6 +1,7 @@
 //! Bands and the nodes that sample them.
 
 use crate::error::{Error, Result, check};
+use crate::simd::dispatched;
 
 /// Widest stretch of a range or filter that one midpoint node may stand for, cm⁻¹: the paper's step.
 const NODE_SPACING_CM1: f64 = 1.0;
@@ -350,14 +351,20 @@ impl Bands {
     /// [`Bands::weigh`] into a slice of one value per band.
     pub fn weigh_into(&self, values: &[f64], out: &mut [f64]) {
         if self.one_node_per_band() {
-            for ((out, value), weight) in out.iter_mut().zip(values).zip(&self.weights_cm1) {
-                *out = value * weight;
-            }
+            product_into(values, &self.weights_cm1, out);
             return;
         }
         for (out, nodes) in out.iter_mut().zip(self.first_node.windows(2)) {
             let range = nodes[0]..nodes[1];
             *out = crate::sum::dot(&values[range.clone()], &self.weights_cm1[range]);
+        }
+    }
+}
+
+dispatched! {
+    fn product_into<'a>(a: &'a [f64], b: &'a [f64], out: &'a mut [f64]) {
+        for ((out, a), b) in out.iter_mut().zip(a).zip(b) {
+            *out = a * b;
         }
     }
 }

@@ -186,8 +186,8 @@ fn run<const N: usize, const SUBTRACT: bool>(
             }
         }
         sums.square.add(square);
-        for n in 0..N {
-            sums.dots[n].add(dots[n]);
+        for (sum, lanes) in sums.dots.iter_mut().zip(dots) {
+            sum.add(lanes);
         }
     }
 }
@@ -247,8 +247,8 @@ fn run_off<const N: usize>(
             }
         }
         sums.square.add(square);
-        for n in 0..N {
-            sums.dots[n].add(dots[n]);
+        for (sum, lanes) in sums.dots.iter_mut().zip(dots) {
+            sum.add(lanes);
         }
     }
 }

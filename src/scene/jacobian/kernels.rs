@@ -2,7 +2,7 @@
 //!
 //! Symbols as there: e, e′ emissivities; C contrast; X = ΣVₖεₖB(Tₖ) lighting; G gain. Everything is per node.
 
-use crate::simd::{Chunk, LANES, dispatched, padded};
+use crate::simd::{LANES, Largest, dispatched};
 
 /// Spectra that [`light_by_one`] reads and writes.
 pub(super) struct LightSpectra<'a> {
@@ -132,37 +132,6 @@ dispatched! {
             *contrast += dark * value;
             *terms += dark * value;
         }
-    }
-}
-
-dispatched! {
-    /// Largest |x|.
-    pub(super) fn largest<'a>(x: &'a [f64]) -> f64 {
-        let (eights, rest) = x.as_chunks::<LANES>();
-        let mut largest = Largest::default();
-        for x in eights {
-            largest.see(*x);
-        }
-        largest.see(padded(rest));
-        largest.value()
-    }
-}
-
-/// The largest magnitude so far, in every lane.
-#[derive(Default)]
-struct Largest(Chunk);
-
-impl Largest {
-    #[inline(always)]
-    fn see(&mut self, x: Chunk) {
-        let so_far = self.0;
-        self.0 = std::array::from_fn(|i| if x[i].abs() > so_far[i] { x[i].abs() } else { so_far[i] });
-    }
-
-    /// Never inlined, for the reason given at [`crate::sum::CompensatedLanes::value`].
-    #[inline(never)]
-    fn value(&self) -> f64 {
-        self.0.iter().fold(0.0, |largest, x| x.max(largest))
     }
 }
 
