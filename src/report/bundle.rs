@@ -51,6 +51,12 @@ impl Bundle {
 
     fn publish(&self, staging: &Path, directory: &Path) -> std::io::Result<()> {
         fs::create_dir_all(directory)?;
+        // A file cannot take the place of a folder: found out before the first one is moved.
+        if let Some(name) = self.names().find(|name| directory.join(name).is_dir()) {
+            return Err(std::io::Error::other(format!(
+                "its `{name}` is a folder, which no file may replace"
+            )));
+        }
         self.files.iter().try_for_each(|(name, _)| fs::rename(staging.join(name), directory.join(name)))
     }
 }
@@ -112,5 +118,11 @@ mod tests {
         let target = home.path().join("out");
         assert!(bundle.write(&target).is_err());
         assert!(!target.exists());
+        let mut bundle = Bundle::default();
+        bundle.add("a.csv", "1\n");
+        bundle.add("b.csv", "2\n");
+        fs::create_dir_all(target.join("b.csv")).unwrap();
+        assert!(bundle.write(&target).unwrap_err().to_string().contains("`b.csv` is a folder"));
+        assert!(!target.join("a.csv").exists());
     }
 }
