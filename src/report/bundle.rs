@@ -66,10 +66,11 @@ fn stage(directory: &Path) -> Result<PathBuf> {
     if directory.is_file() {
         return Err(Error::file("write the report", directory, "this is a file; name a folder"));
     }
-    let beside = directory.ancestors().find(|folder| folder.is_dir());
-    let home = match beside {
-        Some(folder) if !folder.as_os_str().is_empty() => folder.to_owned(),
-        _ => PathBuf::from("."),
+    // The part of the path that is there already; a relative path ends in an empty one, the current folder.
+    let home = match directory.ancestors().find(|part| part.exists()) {
+        Some(part) if part.is_dir() => part.to_owned(),
+        Some(_) => return Err(refused(directory, &std::io::ErrorKind::NotADirectory.into())),
+        None => PathBuf::from("."),
     };
     let staging = home.join(format!(".hadar-{}.tmp", std::process::id()));
     fs::create_dir_all(&staging).map_err(|error| refused(directory, &error))?;
