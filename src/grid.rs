@@ -6,6 +6,9 @@ use std::path::Path;
 /// What a file should begin with, for messages.
 pub(crate) const EXAMPLE: &str = "begin the file with a line such as wavenumber_cm1,emissivity";
 
+/// What reading a material is called in messages.
+pub(crate) const READ_SPECTRUM: &str = "read the spectrum";
+
 /// The header and the numbers, with the line (from 1) that each row stands on.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Grid {
@@ -92,7 +95,8 @@ pub(crate) fn number(cell: &str) -> Result<f64> {
 /// No such file, a directory, or no permission; the message says what `action` could not be done.
 pub(crate) fn text_of_file(path: &Path, action: &str) -> Result<String> {
     if path.is_dir() {
-        return Err(Error::file(action, path, "this is a directory; name a file, or give it to --library"));
+        let library = if action == READ_SPECTRUM { ", or give it to --library" } else { "" };
+        return Err(Error::file(action, path, format!("this is a directory; name a file{library}")));
     }
     let bytes = std::fs::read(path).map_err(|error| match error.kind() {
         std::io::ErrorKind::NotFound => Error::file(action, path, "there is no such file; check the name"),

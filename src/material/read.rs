@@ -61,7 +61,7 @@ pub fn from_text(text: &str, source: &Path) -> Result<Vec<Material>> {
 }
 
 pub(super) fn content_of_file(path: &Path) -> Result<Content> {
-    content(&text_of_file(path, "read the spectrum")?, path)
+    content(&text_of_file(path, crate::grid::READ_SPECTRUM)?, path)
 }
 
 fn content(text: &str, source: &Path) -> Result<Content> {

@@ -71,6 +71,12 @@ impl Bundle {
 
     fn publish(&self, staging: &Path, directory: &Path) -> std::io::Result<()> {
         fs::create_dir_all(directory)?;
+        // A file cannot take the place of a folder: found out before the first one is moved.
+        if let Some(name) = self.names().find(|name| directory.join(name).is_dir()) {
+            return Err(std::io::Error::other(format!(
+                "its `{name}` is a folder, which no file may replace"
+            )));
+        }
         self.files.iter().try_for_each(|(name, _)| fs::rename(staging.join(name), directory.join(name)))
     }
 }
@@ -80,13 +86,11 @@ fn stage(directory: &Path) -> Result<PathBuf> {
     if directory.is_file() {
         return Err(Error::file("write the report", directory, "this is a file; name a folder"));
     }
-    if directory.ancestors().any(Path::is_file) {
-        return Err(refused(directory, &std::io::ErrorKind::NotADirectory.into()));
-    }
-    let beside = directory.ancestors().find(|folder| folder.is_dir());
-    let home = match beside {
-        Some(folder) if !folder.as_os_str().is_empty() => folder.to_owned(),
-        _ => PathBuf::from("."),
+    // The part of the path that is there already; a relative path ends in an empty one, the current folder.
+    let home = match directory.ancestors().find(|part| part.exists()) {
+        Some(part) if part.is_dir() => part.to_owned(),
+        Some(_) => return Err(refused(directory, &std::io::ErrorKind::NotADirectory.into())),
+        None => PathBuf::from("."),
     };
     let staging = home.join(format!(".hadar-{}.tmp", std::process::id()));
     fs::create_dir_all(&staging).map_err(|error| refused(directory, &error))?;
@@ -135,5 +139,11 @@ mod tests {
         let target = home.path().join("out");
         assert!(bundle.write(&target).is_err());
         assert!(!target.exists());
+        let mut bundle = Bundle::default();
+        bundle.add("a.csv", "1\n");
+        bundle.add("b.csv", "2\n");
+        fs::create_dir_all(target.join("b.csv")).unwrap();
+        assert!(bundle.write(&target).unwrap_err().to_string().contains("`b.csv` is a folder"));
+        assert!(!target.join("a.csv").exists());
     }
 }

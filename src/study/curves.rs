@@ -56,7 +56,7 @@ pub struct PhotonMap {
     pub temperatures_k: Vec<f64>,
     /// Lighting factors of the first environment object.
     pub lightings: Vec<f64>,
-    /// Photons for the requirement, lighting after lighting (rows), temperature within; infinite where none suffice.
+    /// Photons for the requirement, row-major `[lighting][temperature]`; infinite where none suffice.
     pub photons: Vec<f64>,
     /// Temperature of the first environment object, K: with lighting 1 the equilibrium singularity.
     pub equilibrium_k: f64,

@@ -1,0 +1,99 @@
+//! The program run in a folder of its own.
+
+use assert_cmd::Command;
+use serde_json::Value;
+use std::fs;
+use std::path::{Path, PathBuf};
+use tempfile::TempDir;
+
+/// A small scenario that every test changes to its needs.
+pub const SCENARIO: &str = r#"[target]
+material = "skin"
+temperature = "37 degC"
+[[environment]]
+temperature = "20 degC"
+lighting = 0.5
+[alternatives]
+materials = ["aluminium"]
+[bands]
+step = "5 cm^-1"
+[camera]
+preset = "flir-a325sc"
+"#;
+
+/// A folder with `a.toml` in it, in which the program runs.
+pub struct Folder(TempDir);
+
+/// What the program left behind.
+pub struct Outcome {
+    pub code: i32,
+    pub stdout: String,
+    pub stderr: String,
+}
+
+impl Folder {
+    pub fn with(scenario: &str) -> Self {
+        let folder = Self(tempfile::tempdir().unwrap());
+        folder.file("a.toml", scenario);
+        folder
+    }
+
+    pub fn path(&self) -> &Path {
+        self.0.path()
+    }
+
+    pub fn file(&self, name: &str, content: &str) -> PathBuf {
+        let path = self.path().join(name);
+        fs::write(&path, content).unwrap();
+        path
+    }
+
+    pub fn run(&self, arguments: &[&str]) -> Outcome {
+        let output = Command::new(assert_cmd::cargo::cargo_bin!("hadar"))
+            .current_dir(self.path())
+            .args(arguments)
+            .output()
+            .unwrap();
+        Outcome {
+            code: output.status.code().unwrap_or(-1),
+            stdout: String::from_utf8(output.stdout).unwrap(),
+            stderr: String::from_utf8(output.stderr).unwrap(),
+        }
+    }
+
+    pub fn json(&self, arguments: &[&str]) -> Value {
+        let outcome = self.run(&[arguments, &["--json"]].concat());
+        assert_eq!(outcome.code, 0, "{arguments:?}: {}", outcome.stderr);
+        serde_json::from_str(&outcome.stdout).unwrap_or_else(|error| panic!("{error}: {}", outcome.stdout))
+    }
+
+    /// Names of all files below, sorted.
+    pub fn files(&self) -> Vec<String> {
+        let mut found = Vec::new();
+        let mut folders = vec![self.path().to_owned()];
+        while let Some(folder) = folders.pop() {
+            for entry in fs::read_dir(folder).unwrap() {
+                let path = entry.unwrap().path();
+                if path.is_dir() {
+                    folders.push(path.clone());
+                }
+                found.push(path.strip_prefix(self.path()).unwrap().display().to_string());
+            }
+        }
+        found.sort();
+        found
+    }
+
+    /// The one line said about a mistake; nothing on stdout, nothing written.
+    #[track_caller]
+    pub fn refusal(&self, arguments: &[&str]) -> String {
+        let before = self.files();
+        let outcome = self.run(arguments);
+        assert_eq!(outcome.code, 1, "{arguments:?}: {}{}", outcome.stdout, outcome.stderr);
+        assert_eq!(outcome.stdout, "", "{arguments:?}");
+        assert_eq!(self.files(), before, "{arguments:?} wrote something");
+        let line = outcome.stderr.strip_suffix('\n').unwrap_or_default();
+        assert!(!line.is_empty() && !line.contains('\n'), "{arguments:?}: {}", outcome.stderr);
+        line.strip_prefix("error: ").expect("it begins with error:").to_owned()
+    }
+}
