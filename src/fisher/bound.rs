@@ -61,8 +61,11 @@ impl Projection {
             let length = factor.column(column).norm();
             factor.column_mut(column).unscale_mut(length);
         }
-        let values = factor.singular_values();
-        values.max() / values.min()
+        // With a limit on its iterations, which no number that is one ever reaches.
+        match nalgebra::SVD::try_new(factor, false, false, f64::EPSILON, 1000) {
+            Some(svd) => svd.singular_values.max() / svd.singular_values.min(),
+            None => f64::INFINITY,
+        }
     }
 }
 

@@ -32,6 +32,8 @@ use nalgebra::{DMatrix, DVector};
 const ITERATIONS: usize = 100;
 /// Relative step at which a refinement has converged.
 const STEP_TOLERANCE: f64 = 1e-11;
+/// Share of the separation at the target's own state below which a distance is rounding noise.
+const ROUNDING: f64 = 1e-14;
 /// Largest |ln G′|.
 const LOG_GAIN: f64 = 14.0;
 /// Share of its range within which a parameter counts as standing at the edge.
@@ -190,8 +192,13 @@ impl<'a> NearestSolver<'a> {
                 best = Some(candidate);
             }
         }
+        // What is left of the separation at the target's own state when only rounding is left of it.
+        let own = self.linearise(&target, state).cost.sqrt();
         match best {
-            Some(best) => Ok(NearestDistance { iterations, ..best }),
+            Some(best) => {
+                let distance = if best.distance <= ROUNDING * own { 0.0 } else { best.distance };
+                Ok(NearestDistance { distance, iterations, ..best })
+            }
             None => Err(Error::malformed("the alternative has no state in its range", "widen the range")),
         }
     }
@@ -224,8 +231,21 @@ impl<'a> NearestSolver<'a> {
         NearestDistance { distance: at.cost.sqrt(), state, at_edge, iterations, converged }
     }
 
+    /// Newton's step within the bounds, or where the second derivatives are not positive definite, Gauss's.
     fn step(
         &self,
+        at: &Linearised,
+        state: &State,
+        damping: f64,
+        hold_temperature: bool,
+    ) -> Option<DVector<f64>> {
+        self.damped(&at.hessian, at, state, damping, hold_temperature)
+            .or_else(|| self.damped(&at.gauss_newton, at, state, damping, hold_temperature))
+    }
+
+    fn damped(
+        &self,
+        matrix: &DMatrix<f64>,
         at: &Linearised,
         state: &State,
         damping: f64,
@@ -236,12 +256,12 @@ impl<'a> NearestSolver<'a> {
         let mut summed = vec![false; n];
         // Unit diagonal: parameters of any unit become comparable.
         let scale: Vec<f64> =
-            (0..n).map(|i| at.hessian[(i, i)].sqrt()).map(|s| if s > 0.0 { s } else { 1.0 }).collect();
+            (0..n).map(|i| at.gauss_newton[(i, i)].sqrt()).map(|s| if s > 0.0 { s } else { 1.0 }).collect();
         let mut lit = 0.0;
         for (i, parameter) in self.parameters.iter().enumerate() {
             let now = value(state, *parameter);
             let [low, high] = self.bounds(*parameter);
-            if !(hold_temperature && *parameter == Parameter::Temperature) && at.hessian[(i, i)] > 0.0 {
+            if !(hold_temperature && *parameter == Parameter::Temperature) && at.gauss_newton[(i, i)] > 0.0 {
                 (lower[i], upper[i]) = ((low - now).min(0.0), (high - now).max(0.0));
             }
             if matches!(parameter, Parameter::Lighting(_)) {
@@ -254,9 +274,10 @@ impl<'a> NearestSolver<'a> {
         let shared = scale.iter().zip(&summed).filter(|(_, s)| **s).map(|(s, _)| *s).fold(0.0, f64::max);
         let scale: Vec<f64> =
             scale.iter().zip(&summed).map(|(s, lit)| if *lit { shared } else { *s }).collect();
-        let mut hessian = DMatrix::from_fn(n, n, |i, j| at.hessian[(i, j)] / (scale[i] * scale[j]));
+        let mut hessian = DMatrix::from_fn(n, n, |i, j| matrix[(i, j)] / (scale[i] * scale[j]));
         for i in 0..n {
-            hessian[(i, i)] += damping * hessian[(i, i)].max(f64::EPSILON);
+            let own = at.gauss_newton[(i, i)] / (scale[i] * scale[i]);
+            hessian[(i, i)] += damping * own.max(f64::EPSILON);
         }
         let gradient = DVector::from_fn(n, |i, _| at.gradient[i] / scale[i]);
         for i in 0..n {

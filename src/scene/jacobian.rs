@@ -169,6 +169,11 @@ impl<'a> Jacobian<'a> {
         &self.value
     }
 
+    /// ∂B/∂T at the nodes, of the last evaluation.
+    pub(crate) fn radiance_slope(&self) -> &[f64] {
+        &self.slope
+    }
+
     /// The contrast C at the nodes, of the last evaluation that had no `Parameter::Material`.
     pub(crate) fn contrast(&self) -> &[f64] {
         &self.contrast

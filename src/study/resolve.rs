@@ -125,6 +125,7 @@ impl Study {
         };
         let unknowns = unknowns(&scenario).map_err(|error| error.at(scenario.place("unknown")))?;
         let range = state_range(&scenario);
+        check_range(&scenario, &range)?;
         fill(&mut scenario, &alternatives_as_written(&alternatives), camera.as_ref(), &range);
         let study = Self {
             scenario,
@@ -305,6 +306,18 @@ fn state_range(scenario: &Scenario) -> StateRange {
         lighting: scenario.alternatives.lighting_range.unwrap_or(default.lighting),
         lighting_sum: default.lighting_sum,
     }
+}
+
+/// The least lighting of all objects together must fit into what they may sum to.
+fn check_range(scenario: &Scenario, range: &StateRange) -> Result<()> {
+    let least = range.lighting[0] * scenario.environment.len() as f64;
+    let most = scenario.unknown.lighting_total.unwrap_or(range.lighting_sum);
+    if least <= most {
+        return Ok(());
+    }
+    let found = format!("a lighting of at least {} for each object makes {least} in all", range.lighting[0]);
+    let error = Error::malformed(found, format!("lower it, so that all together stay at or below {most}"));
+    Err(error.at(scenario.place("alternatives.lighting")))
 }
 
 /// Fills in what the scenario left silent and others knew, so that its echo says everything.

@@ -3,6 +3,7 @@
 use super::identify::{PairResult, parameter_name};
 use super::size::CameraResult;
 use super::{Study, Warning};
+use crate::fisher::Nuisance;
 use crate::identifiability::Status;
 use crate::identifiability::local::LocalDistance;
 use crate::identifiability::nearest::NearestDistance;
@@ -125,6 +126,11 @@ impl Study {
                 "{occupancy:.2} photons per mode at {low:.0} cm^-1: bunching, which is neglected, raises the noise by as much"
             );
             warnings.push(Warning::new("bunching", message));
+        }
+        if self.is_unknown(Nuisance::EnvironmentTemperature) {
+            let message = "with the temperatures of the surroundings unknown there are many similar states; the search \
+                           for the nearest one missed it in up to a quarter of random scenes, so the nearest distance may be too large";
+            warnings.push(Warning::new("nearest-search", message));
         }
         if let Some(camera) = &self.camera {
             warnings.extend(sequential(camera, self.bands.len()));

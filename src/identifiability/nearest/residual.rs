@@ -1,10 +1,17 @@
-//! The residual r = √(N + σ²) − √(N′ + σ²) of a candidate state, its gradient and Gauss–Newton matrix.
+//! The residual r = √(N + σ²) − √(N′ + σ²) of a candidate state, its gradient and second derivatives.
+//!
+//! With ρ = √(κS′ + σ²) and s = ∂r/∂S′ = −κ/(2ρ), half the cost has the second derivatives
+//! Σ s²(1 + r/ρ) S′ᵢS′ⱼ + Σ r s S′ᵢⱼ. The first sum without r/ρ is the Gauss–Newton matrix; where temperature and
+//! lighting of the alternative are nearly degenerate it alone converges slowly, so the rest is added:
+//! S′_TT = G e′ B″ with B″ = (B′/T)(2TB′/B − x − 2), x = hcν/kT, and S′_gj = S′ⱼ for the logarithm g of the gain.
+//! (Second derivatives along environment temperatures are left out.)
 
 use super::{Metric, NearestSolver, value};
 use crate::planck;
-use crate::scene::State;
+use crate::scene::{Parameter, State};
 use crate::simd::dispatched;
 use crate::sum;
+use crate::units::SECOND_RADIATION_CM_K;
 use nalgebra::{DMatrix, DVector};
 
 /// The target as every candidate state is compared with it.
@@ -17,10 +24,11 @@ pub(super) struct Target<'t> {
     pub(super) metric: Metric<'t>,
 }
 
-/// Cost ‖r‖², gradient and Gauss–Newton matrix of half the cost at a candidate state.
+/// Cost ‖r‖², and gradient, Gauss–Newton matrix and second derivatives of half the cost at a candidate state.
 pub(super) struct Linearised {
     pub(super) cost: f64,
     pub(super) gradient: DVector<f64>,
+    pub(super) gauss_newton: DMatrix<f64>,
     pub(super) hessian: DMatrix<f64>,
 }
 
@@ -36,9 +44,13 @@ pub(super) struct Workspace {
     /// r and ∂r/∂S′ of each band.
     residual: Vec<f64>,
     slope: Vec<f64>,
-    /// One column times ∂r/∂S′, and again.
+    /// r ∂r/∂S′, and s² r/ρ.
+    pull: Vec<f64>,
+    bend: Vec<f64>,
+    /// One column times ∂r/∂S′, and again, and times s² r/ρ.
     column: Vec<f64>,
     squared: Vec<f64>,
+    bent: Vec<f64>,
     /// B(T) − B(T′) and X − X′ at the nodes.
     difference: Vec<f64>,
     lighting: Vec<f64>,
@@ -54,8 +66,11 @@ impl Workspace {
             separation: band.clone(),
             residual: band.clone(),
             slope: band.clone(),
+            pull: band.clone(),
+            bend: band.clone(),
             column: band.clone(),
-            squared: band,
+            squared: band.clone(),
+            bent: band,
             difference: node.clone(),
             lighting: node,
         }
@@ -96,13 +111,38 @@ impl NearestSolver<'_> {
             separation: &work.separation,
             residual: &mut work.residual,
             slope: &mut work.slope,
+            pull: &mut work.pull,
+            bend: &mut work.bend,
         });
-        let (mut gradient, mut hessian) = (DVector::zeros(n), DMatrix::zeros(n, n));
+        let (mut gradient, mut gauss_newton, mut hessian) =
+            (DVector::zeros(n), DMatrix::zeros(n, n), DMatrix::zeros(n, n));
         for i in 0..n {
             scale_twice(self.surface.column(i), &work.slope, &mut work.column, &mut work.squared);
+            scale_by(self.surface.column(i), &work.bend, &mut work.bent);
             gradient[i] = dot(&work.column, &work.residual);
             for j in i..n {
-                hessian[(i, j)] = dot(&work.squared, self.surface.column(j));
+                let column = self.surface.column(j);
+                gauss_newton[(i, j)] = dot(&work.squared, column);
+                gauss_newton[(j, i)] = gauss_newton[(i, j)];
+                hessian[(i, j)] = gauss_newton[(i, j)] + dot(&work.bent, column);
+                // ∂²S′/∂g∂θⱼ = ∂S′/∂θⱼ.
+                if self.parameters[i] == Parameter::Gain || self.parameters[j] == Parameter::Gain {
+                    let other = if self.parameters[i] == Parameter::Gain { j } else { i };
+                    hessian[(i, j)] += dot(&work.pull, self.surface.column(other));
+                }
+                if i == j && self.parameters[i] == Parameter::Temperature {
+                    curvature_into(Curvature {
+                        nu: self.surface.surroundings().nodes_cm1(),
+                        temperature_k: state.temperature_k,
+                        gain: state.gain,
+                        emissivity: target.alternative,
+                        value: self.surface.radiance(),
+                        slope: self.surface.radiance_slope(),
+                        out: &mut work.node,
+                    });
+                    self.surface.bands().weigh_into(&work.node, &mut work.column);
+                    hessian[(i, i)] += dot(&work.pull, &work.column);
+                }
                 hessian[(j, i)] = hessian[(i, j)];
             }
             let Some(sigma) = self.unknowns.sigma_prior(self.parameters[i]) else { continue };
@@ -115,9 +155,10 @@ impl NearestSolver<'_> {
             let row = weight * (value(state, parameter) - value(target.state, parameter));
             cost += row * row;
             gradient[i] += weight * row;
+            gauss_newton[(i, i)] += weight * weight;
             hessian[(i, i)] += weight * weight;
         }
-        Linearised { cost, gradient, hessian }
+        Linearised { cost, gradient, gauss_newton, hessian }
     }
 
     /// Band integrals of S − S′ from differences that lose no digits.
@@ -179,21 +220,28 @@ struct Residuals<'a> {
     separation: &'a [f64],
     residual: &'a mut [f64],
     slope: &'a mut [f64],
+    pull: &'a mut [f64],
+    bend: &'a mut [f64],
 }
 
 dispatched! {
     /// r = κ(S − S′)/(√(κS+σ²) + √(κS′+σ²)) and ∂r/∂S′ = −κ/(2√(κS′+σ²)) of each band; returns ‖r‖².
     fn residuals<'a>(bands: Residuals<'a>) -> f64 {
-        let Residuals { counts, signal, noise, root, separation, residual, slope } = bands;
+        let Residuals { counts, signal, noise, root, separation, residual, slope, pull, bend } = bands;
         let own = root.iter().zip(separation);
         let other = signal.iter().zip(noise);
-        for (((residual, slope), (root, separation)), (signal, noise)) in
-            residual.iter_mut().zip(slope.iter_mut()).zip(own).zip(other)
+        let first = residual.iter_mut().zip(slope.iter_mut());
+        let second = pull.iter_mut().zip(bend.iter_mut());
+        for ((((residual, slope), (pull, bend)), (root, separation)), (signal, noise)) in
+            first.zip(second).zip(own).zip(other)
         {
             let other_root = counts.mul_add(*signal, *noise).sqrt();
             let both = root + other_root;
             *residual = if both > 0.0 { counts * separation / both } else { 0.0 };
-            *slope = if other_root > 0.0 { -0.5 * counts / other_root } else { 0.0 };
+            let inverse = if other_root > 0.0 { 1.0 / other_root } else { 0.0 };
+            *slope = -0.5 * counts * inverse;
+            *pull = *residual * *slope;
+            *bend = *pull * (*slope * inverse);
         }
         sum::dot(residual, residual)
     }
@@ -204,6 +252,38 @@ dispatched! {
         for (((once, twice), column), slope) in once.iter_mut().zip(twice).zip(column).zip(slope) {
             *once = column * slope;
             *twice = *once * slope;
+        }
+    }
+}
+
+dispatched! {
+    fn scale_by<'a>(column: &'a [f64], factors: &'a [f64], out: &'a mut [f64]) {
+        for ((out, column), factor) in out.iter_mut().zip(column).zip(factors) {
+            *out = column * factor;
+        }
+    }
+}
+
+struct Curvature<'a> {
+    nu: &'a [f64],
+    temperature_k: f64,
+    gain: f64,
+    emissivity: &'a [f64],
+    value: &'a [f64],
+    slope: &'a [f64],
+    out: &'a mut [f64],
+}
+
+dispatched! {
+    /// G e′ B″(T′), from B and B′; 0 where B underflows.
+    fn curvature_into<'a>(spectra: Curvature<'a>) {
+        let Curvature { nu, temperature_k, gain, emissivity, value, slope, out } = spectra;
+        let per_kelvin = 1.0 / temperature_k;
+        let radiance = value.iter().zip(slope);
+        for (((out, nu), e), (value, slope)) in out.iter_mut().zip(nu).zip(emissivity).zip(radiance) {
+            let x = SECOND_RADIATION_CM_K * nu * per_kelvin;
+            let relative = if *value > 0.0 { temperature_k * slope / value } else { 0.0 };
+            *out = gain * e * (slope * per_kelvin) * (2.0 * relative - x - 2.0);
         }
     }
 }

@@ -6,8 +6,8 @@
 //! rising; a narrow valley beside a high pass is then found although neither point is low. Many bands
 //! are thinned for this: it only says where to start.
 //!
-//! Unknown gain keeps the problem linear, in G′ and G′V′. Where environment temperatures, priors or a known
-//! total of the lighting are in play, the full linearised problem is used instead.
+//! Unknown gain keeps the problem linear, in G′ and G′V′; unknown environment temperatures are tried at a few
+//! values. With priors or a known total of the lighting the full linearised problem is used instead.
 
 use super::residual::{Target, dot};
 use super::{NearestSolver, State};
@@ -23,6 +23,8 @@ use nalgebra::{DMatrix, DVector};
 const GRID: usize = 56;
 /// More of them around the temperatures of the scene, as shares of these.
 const AROUND: [f64; 7] = [-0.03, -0.01, -0.003, 0.0, 0.003, 0.01, 0.03];
+/// Where environment temperatures are unknown, the grid is made for surroundings this many times as warm.
+const WARMTHS: [f64; 7] = [0.75, 0.85, 0.93, 1.0, 1.07, 1.17, 1.3];
 /// Bands that are enough to find where minima are.
 const ENOUGH_BANDS: usize = 128;
 /// Minima that are refined at most.
@@ -45,17 +47,19 @@ impl NearestSolver<'_> {
         if !self.unknowns.contains(Nuisance::Temperature) {
             return vec![own];
         }
-        let linear = self.parameters.iter().all(|parameter| {
-            matches!(parameter, Parameter::Temperature | Parameter::Lighting(_) | Parameter::Gain)
-        }) && !self.unknowns.has_priors()
-            && self.unknowns.known_lighting_total().is_none();
         let temperatures = self.temperatures(target);
-        let grid = if linear {
-            self.quadratic_grid(target, &own, &temperatures)
+        let linear = !self.unknowns.has_priors() && self.unknowns.known_lighting_total().is_none();
+        let mut minima: Vec<Point> = if linear {
+            let unknown = self.unknowns.contains(Nuisance::EnvironmentTemperature);
+            let warmths = if unknown { &WARMTHS[..] } else { &[1.0] };
+            let grids = warmths.iter().map(|warmth| {
+                let environment_k = own.environment_k.iter().map(|t| t * warmth).collect();
+                self.quadratic_grid(target, &State { environment_k, ..own.clone() }, &temperatures)
+            });
+            grids.flat_map(|grid| minima(&grid)).collect()
         } else {
-            self.linearised_grid(target, &own, &temperatures)
+            minima(&self.linearised_grid(target, &own, &temperatures))
         };
-        let mut minima = minima(&grid);
         minima.sort_by(|a, b| a.cost.total_cmp(&b.cost));
         minima.truncate(REFINED);
         let own_cost = self.linearise(target, &own).cost;
