@@ -48,7 +48,7 @@ impl MapScene<'_> {
         state
     }
 
-    /// Local distances, row-major [temperature][lighting].
+    /// Local distances, row-major: a row per temperature, a column per lighting factor.
     ///
     /// # Errors
     /// As [`LocalSolver::per_photon`], at the first point that fails.
@@ -74,7 +74,7 @@ impl MapScene<'_> {
         rows.map(|rows| rows.concat())
     }
 
-    /// Nearest distances, row-major [temperature][lighting].
+    /// Nearest distances, row-major: a row per temperature, a column per lighting factor.
     ///
     /// # Errors
     /// As [`NearestSolver::per_photon`], at the first point that fails.
