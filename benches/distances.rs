@@ -2,11 +2,12 @@
 //!
 //! `cargo bench --bench distances`. The cases are those a NumPy user would vectorise; the first includes
 //! everything (Planck, scores, orthogonalisation), with temperature and lighting unknown over 536 bands.
+//! The results are printed first, to be compared with those of `numpy_peer.py` beside this file.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use hadar::fisher::{Nuisance, Unknowns};
 use hadar::identifiability::local::LocalSolver;
-use hadar::identifiability::map::MapScene;
+use hadar::identifiability::map::{MapPoint, MapScene};
 use hadar::identifiability::nearest::{NearestSolver, StateRange};
 use hadar::scene::{EnvironmentObject, Surroundings};
 use hadar::spectrum::Bands;
@@ -52,6 +53,17 @@ fn distances(criterion: &mut Criterion) {
     };
     let temperatures: Vec<f64> = (0..300).map(|i| 280.0 + 60.0 * f64::from(i) / 299.0).collect();
     let lightings: Vec<f64> = (0..300).map(|i| 0.01 + 0.98 * f64::from(i) / 299.0).collect();
+    let sum = |points: Vec<MapPoint>| points.iter().map(|point| point.distance).sum::<f64>();
+    let result =
+        |name: &str, value: hadar::Result<f64>| println!("{name}: {:.12}", value.expect("a valid scene"));
+    let mut once = LocalSolver::new(&bands, &surroundings, unknowns.clone());
+    result("local", once.per_photon(&skin, &robot, &state, f64::INFINITY).map(|local| local.distance));
+    result(
+        "nearest",
+        nearest.per_photon(&skin, &robot, &state, f64::INFINITY).map(|nearest| nearest.distance),
+    );
+    result("sum of the map", scene.local(&temperatures, &lightings).map(sum));
+
     let mut group = criterion.benchmark_group("maps");
     group.sample_size(20);
     group.bench_function("local distance, 300 x 300 map", |bencher| {

@@ -3,7 +3,8 @@
 //! d = ‖P⊥ a_g‖ in the inner product ⟨a,b⟩ = Σ u_w a_w b_w, P⊥ removing the span of the nuisance columns:
 //! 1/d² is the Cramér–Rao bound of g with the nuisances unknown, [J⁻¹]_gg, without forming J or an
 //! inverse, whose condition number is the square of this one's. Modified Gram–Schmidt, the last column
-//! orthogonalised twice ('twice is enough'). Scale-free: a column may be in any unit.
+//! orthogonalised twice ('twice is enough'). Scale-free: a column may be in any unit. Lengths of the columns
+//! come from the triangular factor, by Pythagoras.
 //!
 //! A nuisance column that is zero, or of which less than [`DEPENDENT`] is left after removing the others,
 //! is dropped and reported.

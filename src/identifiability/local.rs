@@ -10,9 +10,8 @@ use super::Status;
 use crate::error::{Error, Result};
 use crate::fisher::{Counting, Projection, Projector, Reduced, Unknowns};
 use crate::scene::{Columns, Jacobian, Parameter, State, Surroundings};
-use crate::simd::{Aligned, Chunk, LANES, dispatched, padded};
+use crate::simd::{Aligned, dispatched};
 use crate::spectrum::Bands;
-use crate::sum::{BLOCK, CompensatedLanes};
 
 /// Sums of the signal outside this range are brought back by a power of two before they are squared.
 const SAFE_RANGE: std::ops::Range<f64> = 1e-100..1e100;
@@ -164,11 +163,15 @@ impl<'a> LocalSolver<'a> {
         sqrt_photons: f64,
     ) -> Result<(f64, Reduced)> {
         self.evaluate(emissivity, alternative, state);
-        let total = positive(reciprocals_and_sum(self.jacobian.signal(), &mut self.weights))?;
+        let total = positive(crate::sum::sum(self.jacobian.signal()))?;
         let scale = safe_scale(total);
         if scale == 1.0 && !(self.unknowns.has_priors() && sqrt_photons.is_finite()) {
+            self.check_rank()?;
+            let cancellation = self.jacobian.cancellation();
+            let (columns, inverse) = self.jacobian.columns_and_inverse();
+            let Reduced { residual, norm, relative_error } =
+                self.projector.reduce(columns, inverse, cancellation);
             // ΣS comes in at the end, since it scales all the same.
-            let Reduced { residual, norm, relative_error } = self.reduce(scale, sqrt_photons)?;
             let per_photon = 1.0 / total.sqrt();
             let (residual, norm) = (per_photon * residual, per_photon * norm);
             return Ok((total, Reduced { residual, norm, relative_error }));
@@ -177,6 +180,7 @@ impl<'a> LocalSolver<'a> {
         Ok((total, self.reduce(scale, sqrt_photons)?))
     }
 
+    /// Projection with the weights that stand ready.
     fn reduce(&mut self, scale: f64, sqrt_photons: f64) -> Result<Reduced> {
         self.check_rank()?;
         let cancellation = self.jacobian.cancellation();
@@ -294,29 +298,6 @@ fn safe_scale(total: f64) -> f64 {
         1.0
     } else {
         total.log2().floor().clamp(-1000.0, 1000.0).mul_add(-1.0, 0.0).exp2()
-    }
-}
-
-dispatched! {
-    /// 1/value, 0 for a value of 0, and Σ values.
-    fn reciprocals_and_sum<'a>(values: &'a [f64], out: &'a mut [f64]) -> f64 {
-        let ((v8, v_rest), (o8, o_rest)) = (values.as_chunks::<LANES>(), out.as_chunks_mut::<LANES>());
-        let reciprocal = |value: f64| if value > 0.0 { 1.0 / value } else { 0.0 };
-        let mut total = CompensatedLanes::default();
-        for (v, o) in v8.chunks(BLOCK / LANES).zip(o8.chunks_mut(BLOCK / LANES)) {
-            let mut lanes: Chunk = [0.0; LANES];
-            for (v, o) in v.iter().zip(o) {
-                let v = *v;
-                *o = v.map(reciprocal);
-                lanes = std::array::from_fn(|i| lanes[i] + v[i]);
-            }
-            total.add(lanes);
-        }
-        total.add(padded(v_rest));
-        for (value, out) in v_rest.iter().zip(o_rest) {
-            *out = reciprocal(*value);
-        }
-        total.value()
     }
 }
 

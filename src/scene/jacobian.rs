@@ -14,8 +14,8 @@ mod kernels;
 mod sampling;
 
 use self::kernels::{
-    LightObject, LightSpectra, OneObject, add_darkness, add_object, add_scaled, largest_by_one, light_by_one,
-    mixing_into, product_into, scale_by, scattered_into, signal_and_mixing_by_one, signal_into,
+    LightObject, LightSpectra, OneObject, add_darkness, add_object, add_scaled, inverse_into, largest_by_one,
+    light_by_one, mixing_into, product_into, scale_by, scattered_into, signal_and_mixing_by_one, signal_into,
 };
 use self::sampling::Sampling;
 use super::{State, Surroundings, unlit};
@@ -49,6 +49,9 @@ pub struct Jacobian<'a> {
     surroundings: &'a Surroundings,
     parameters: Vec<Parameter>,
     signal: Aligned,
+    /// 1/S of each band, where it was formed on the way.
+    inverse: Aligned,
+    inverse_known: bool,
     columns: Aligned,
     stride: usize,
     cancellation: f64,
@@ -101,6 +104,8 @@ impl<'a> Jacobian<'a> {
             surroundings,
             parameters: Vec::new(),
             signal: Aligned::zeros(bands.len()),
+            inverse: Aligned::zeros(bands.len()),
+            inverse_known: false,
             columns: Aligned::default(),
             stride: spaced(bands.len()),
             cancellation: 1.0,
@@ -156,6 +161,15 @@ impl<'a> Jacobian<'a> {
     /// evaluation writes them anew.
     pub(crate) fn columns_mut(&mut self) -> Columns<'_> {
         Columns { values: &mut self.columns, stride: self.stride }
+    }
+
+    /// [`Jacobian::columns_mut`], and 1/S of each band (0 where S is 0).
+    pub(crate) fn columns_and_inverse(&mut self) -> (Columns<'_>, &[f64]) {
+        if !self.inverse_known {
+            inverse_into(&self.signal, &mut self.inverse);
+            self.inverse_known = true;
+        }
+        (Columns { values: &mut self.columns, stride: self.stride }, &self.inverse)
     }
 
     /// Factor by which rounding errors of ∂S/∂g may exceed a few ulp of it: 1 unless T < some Tₖ.
@@ -224,6 +238,7 @@ impl<'a> Jacobian<'a> {
         self.columns.set_len(self.stride * parameters.len());
         self.update_radiances(state);
         let (sampling, gain) = (self.sampling, state.gain);
+        self.inverse_known = false;
         let mut parameters = parameters;
         match (self.one_black_object(state), parameters.split_last()) {
             (Some(factor), Some((Parameter::Material, others))) if sampling != Sampling::Integrated => {
@@ -320,7 +335,9 @@ impl<'a> Jacobian<'a> {
             alternative,
             signal: &mut self.signal,
             mixing: &mut *mixing,
+            inverse: &mut self.inverse,
         });
+        self.inverse_known = self.sampling == Sampling::Unit;
         if self.sampling == Sampling::Scaled {
             scale_by(self.bands.weights_cm1(), &mut self.signal);
             scale_by(self.bands.weights_cm1(), mixing);

@@ -36,22 +36,32 @@ pub(super) struct OneObject<'a> {
     pub(super) difference: &'a [f64],
     pub(super) emissivity: &'a [f64],
     pub(super) alternative: &'a [f64],
-    /// S and ∂S/∂g.
+    /// S, ∂S/∂g and 1/S.
     pub(super) signal: &'a mut [f64],
     pub(super) mixing: &'a mut [f64],
+    pub(super) inverse: &'a mut [f64],
 }
 
 dispatched! {
-    /// [`light_by_one`], [`signal_into`] and [`mixing_into`] in one pass, to the same bits.
+    /// [`light_by_one`], [`signal_into`], [`mixing_into`] and [`inverse_into`] in one pass, to the same bits:
+    /// the divisions cost nothing while memory is waited for.
     pub(super) fn signal_and_mixing_by_one<'a>(work: OneObject<'a>) {
-        let OneObject { factor, rest, gain, value, base, difference, emissivity, alternative, signal, mixing } =
-            work;
+        let OneObject { factor, rest, gain, value, base, difference, emissivity, alternative, .. } = work;
         let spectra = value.iter().zip(base).zip(difference).zip(emissivity).zip(alternative);
-        for ((signal, mixing), ((((value, base), difference), e), other)) in
-            signal.iter_mut().zip(mixing).zip(spectra)
-        {
+        let out = work.signal.iter_mut().zip(work.mixing).zip(work.inverse);
+        for (((signal, mixing), inverse), ((((value, base), difference), e), other)) in out.zip(spectra) {
             *signal = gain * e.mul_add(*value, (1.0 - e) * (factor * base));
             *mixing = gain * ((other - e) * factor.mul_add(*difference, rest * value));
+            *inverse = if *signal > 0.0 { 1.0 / *signal } else { 0.0 };
+        }
+    }
+}
+
+dispatched! {
+    /// 1/value, and 0 for a value of 0.
+    pub(super) fn inverse_into<'a>(values: &'a [f64], out: &'a mut [f64]) {
+        for (out, value) in out.iter_mut().zip(values) {
+            *out = if *value > 0.0 { 1.0 / value } else { 0.0 };
         }
     }
 }
