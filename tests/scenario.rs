@@ -233,7 +233,7 @@ fn unknown() -> impl Strategy<Value = Unknown> {
 prop_compose! {
     fn camera()(
         preset in proptest::option::of("[a-z][a-z0-9-]{0,12}"),
-        quantities in proptest::collection::vec(proptest::option::of(above_zero()), 8),
+        quantities in proptest::collection::vec(proptest::option::of(above_zero()), 10),
         shares in proptest::collection::vec(proptest::option::of(1e-9..=1.0), 2),
         f_numbers in proptest::collection::vec(proptest::option::of(0.5..1e3), 2),
         noise in 0..4usize,
@@ -252,6 +252,8 @@ prop_compose! {
             focal_length_m: quantities[5],
             netd_temperature_k: quantities[6],
             full_well: quantities[7],
+            netd_pixel_m: quantities[8],
+            noise_exposure_s: quantities[9],
             f_number: f_numbers[0],
             netd_f_number: f_numbers[1],
             optics_efficiency: shares[0],

@@ -278,7 +278,7 @@ fn a_camera_is_possible() {
         "[camera]\nfnumber = 1.3" =>
             "a.toml:5: camera: there is no key `fnumber`; the nearest are `f_number`, `frames`",
         "[camera]\ngain = 1.3" =>
-            "a.toml:5: camera: there is no key `gain`; what may stand here is `preset`, `exposure`, `pixel`, `f_number`, `focal_length`, `optics_efficiency`, `netd`, `netd_temperature`, `netd_f_number`, `detectivity`, `noise_electrons`, `flicker_fraction`, `full_well`, `readout`, `frames`, `field_of_view` or `pixels`",
+            "a.toml:5: camera: there is no key `gain`; what may stand here is `preset`, `exposure`, `pixel`, `f_number`, `focal_length`, `optics_efficiency`, `netd`, `netd_temperature`, `netd_f_number`, `netd_pixel`, `detectivity`, `noise_electrons`, `noise_exposure`, `flicker_fraction`, `full_well`, `readout`, `frames`, `field_of_view` or `pixels`",
         "[camera]\nflicker_fraction = 1.1" =>
             "a.toml:5: camera.flicker_fraction: flicker_fraction is 1.1; it must be between 0 and 1",
         "[camera]\npreset = true" =>

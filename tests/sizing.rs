@@ -230,3 +230,45 @@ fn the_units_of_temperatures_and_priors_do_not_matter() {
     let (a, b) = (size(PAIR), size(&kelvin));
     assert!((a.pairs[0].distance_nearest / b.pairs[0].distance_nearest - 1.0).abs() < 1e-9);
 }
+
+/// A camera of the scenario's own, not a preset: its NETD is stated under the conditions it was written with, so the
+/// filled-in scenario with only the solved quantity changed gives the demanded distance.
+#[test]
+fn a_camera_of_ones_own_can_be_fed_back() {
+    let text = r#"
+        [target]
+        material = "skin"
+        temperature = "37 degC"
+        [[environment]]
+        temperature = "20 degC"
+        lighting = 0.5
+        [alternatives]
+        materials = ["aluminium"]
+        [camera]
+        exposure = "12 ms"
+        pixel = "12 um"
+        f_number = 1.3
+        focal_length = "18 mm"
+        netd = "50 mK"
+    "#;
+    let library = Library::embedded().unwrap();
+    let study = Study::new(&Scenario::from_toml(text, None).unwrap(), &library).unwrap();
+    let result = study.size().unwrap();
+    for (quantity, solution) in &result.solve_for.as_ref().unwrap().0 {
+        let mut filled = Scenario::from_toml(&result.scenario.to_toml(), None).unwrap();
+        let camera = filled.camera.as_mut().unwrap();
+        let Some(value) = solution.value else { continue };
+        match quantity {
+            Quantity::Exposure => camera.exposure_s = Some(value),
+            Quantity::Pixel => camera.pixel_m = Some(value),
+            Quantity::FNumber => camera.f_number = Some(value),
+            Quantity::Noise => camera.netd_k = camera.netd_k.map(|netd| netd * value / solution.camera),
+            Quantity::Frames => camera.frames = Some(value as u32),
+        }
+        let reached =
+            Study::new(&filled, &library).unwrap().size().unwrap().verdict.statistical_distance.unwrap();
+        let short =
+            if *quantity == Quantity::Frames { reached < 1.0 - 1e-9 } else { (reached - 1.0).abs() > 1e-9 };
+        assert!(!short, "{quantity:?}: {reached}");
+    }
+}

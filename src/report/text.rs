@@ -259,12 +259,14 @@ fn assumptions(study: &Study) -> String {
     let bands = study.bands().bands();
     let (low, high) =
         (bands.first().map_or(0.0, |b| b.center_cm1), bands.last().map_or(0.0, |b| b.center_cm1));
+    // As short as they were written, without the digits of a converted wavelength.
+    let (low, high) = ((low * 100.0).round() / 100.0, (high * 100.0).round() / 100.0);
     let mut out = String::from("Assumptions\n");
     let _ = writeln!(out, "  unknown besides the material: {unknown}");
     let count = study.bands().len();
     let _ = writeln!(
         out,
-        "  {count} band{} centred from {low:.1} to {high:.1} cm^-1",
+        "  {count} band{} centred from {low} to {high} cm^-1",
         if count == 1 { "" } else { "s" }
     );
     out.push_str(

@@ -24,8 +24,10 @@ const KEYS: &[&str] = &[
     "netd",
     "netd_temperature",
     "netd_f_number",
+    "netd_pixel",
     "detectivity",
     "noise_electrons",
+    "noise_exposure",
     "flicker_fraction",
     "full_well",
     "readout",
@@ -55,10 +57,14 @@ pub struct CameraSpec {
     pub netd_temperature_k: Option<f64>,
     /// f-number at which the NETD is stated; at least 0.5.
     pub netd_f_number: Option<f64>,
+    /// Side of the pixel for which the NETD is stated, m; above 0.
+    pub netd_pixel_m: Option<f64>,
     /// Specific detectivity D*, cm √Hz W⁻¹; above 0. At most one of the three noises.
     pub detectivity_cm_hz05_w: Option<f64>,
     /// Standard deviation of a band reading's electronic noise, in counts; 0 or above. At most one of the three.
     pub noise_electrons: Option<f64>,
+    /// Exposure for which the noise is stated, s; above 0.
+    pub noise_exposure_s: Option<f64>,
     /// Share of the electronic noise variance that is flicker, in [0, 1].
     pub flicker_fraction: Option<f64>,
     /// Counts at which a pixel is full; above 0.
@@ -92,8 +98,10 @@ impl CameraSpec {
                 ABSOLUTE_TEMPERATURE,
             )?,
             netd_f_number: section.number("netd_f_number", "1.0", F_NUMBER)?,
+            netd_pixel_m: section.quantity("netd_pixel", Dimension::Length, ABOVE_ZERO)?,
             detectivity_cm_hz05_w: section.quantity("detectivity", Dimension::Detectivity, ABOVE_ZERO)?,
             noise_electrons: section.number("noise_electrons", "1000", FROM_ZERO)?,
+            noise_exposure_s: section.quantity("noise_exposure", Dimension::Time, ABOVE_ZERO)?,
             flicker_fraction: section.number("flicker_fraction", "0.5", SHARE)?,
             full_well: section.number("full_well", "1e7", ABOVE_ZERO)?,
             readout: section.choice("readout", &Readout::ALL.map(|readout| (readout.name(), readout)))?,

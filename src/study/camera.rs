@@ -34,7 +34,7 @@ pub(super) fn resolved(spec: &CameraSpec, scenario: &Scenario) -> Result<Camera>
             temperature_k: spec.netd_temperature_k.unwrap_or(reference_temperature_k),
             f_number: spec.netd_f_number.unwrap_or(f_number),
             optics_efficiency,
-            pixel_m,
+            pixel_m: spec.netd_pixel_m.unwrap_or(pixel_m),
         })
     } else if let Some(detectivity_cm_hz05_w) = spec.detectivity_cm_hz05_w {
         Some(NoiseSpec::Detectivity { detectivity_cm_hz05_w })
@@ -44,14 +44,16 @@ pub(super) fn resolved(spec: &CameraSpec, scenario: &Scenario) -> Result<Camera>
     for (key, given) in [
         ("netd_temperature", spec.netd_temperature_k.is_some()),
         ("netd_f_number", spec.netd_f_number.is_some()),
+        ("netd_pixel", spec.netd_pixel_m.is_some()),
     ] {
         if given && spec.netd_k.is_none() {
-            return Err(Error::malformed(
-                format!("{key} without a netd"),
-                "write netd = \"50 mK\" beside it",
-            )
-            .at(place(key)));
+            let error = Error::malformed(format!("{key} without a netd"), "write netd = \"50 mK\" beside it");
+            return Err(error.at(place(key)));
         }
+    }
+    if spec.noise_exposure_s.is_some() && own_noise.is_none() {
+        let instead = "write netd, detectivity or noise_electrons beside it";
+        return Err(Error::malformed("noise_exposure without a noise", instead).at(place("noise_exposure")));
     }
     let noise = match (own_noise, from) {
         (Some(noise), _) => noise,
@@ -74,8 +76,11 @@ pub(super) fn resolved(spec: &CameraSpec, scenario: &Scenario) -> Result<Camera>
         focal_length_m,
         optics_efficiency,
         noise,
-        // Noise that comes with the preset is stated at the preset's exposure.
-        noise_exposure_s: from.filter(|_| own_noise.is_none()).map_or(exposure_s, |c| c.noise_exposure_s),
+        // Noise that comes with the preset is stated at the preset's exposure, other noise at its own.
+        noise_exposure_s: match (from, own_noise) {
+            (Some(preset), None) => preset.noise_exposure_s,
+            _ => spec.noise_exposure_s.unwrap_or(exposure_s),
+        },
         flicker_fraction: spec.flicker_fraction.or(from.map(|c| c.flicker_fraction)).unwrap_or(0.0),
         full_well: spec.full_well.or(from.and_then(|c| c.full_well)),
         readout: spec.readout.or(from.map(|c| c.readout)).unwrap_or(Readout::Simultaneous),

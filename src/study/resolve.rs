@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 use crate::fisher::{Nuisance, Unknowns};
 use crate::identifiability::detection;
 use crate::identifiability::nearest::StateRange;
-use crate::instrument::Camera;
+use crate::instrument::{Camera, NoiseSpec};
 use crate::material::{Library, Material};
 use crate::scenario::{MaterialRef, Reliability, Scenario};
 use crate::scene::{EnvironmentObject, State, Surroundings};
@@ -329,7 +329,23 @@ fn fill(scenario: &mut Scenario, alternatives: &[String], camera: Option<&Camera
     scenario.alternatives.temperature_range_k = Some(range.temperature_k);
     scenario.alternatives.lighting_range = Some(range.lighting);
     if let (Some(spec), Some(camera)) = (scenario.camera.as_mut(), camera) {
-        // The noise stays the preset's: its NETD is stated under the preset's own conditions.
+        // A preset's noise stays the preset's, stated under the preset's own conditions. Noise of the
+        // scenario's own is written with its conditions, so that it stays what it is when the rest is changed.
+        match camera.noise {
+            NoiseSpec::Netd { temperature_k, f_number, pixel_m, .. } if spec.netd_k.is_some() => {
+                spec.netd_temperature_k = Some(temperature_k);
+                spec.netd_f_number = Some(f_number);
+                spec.netd_pixel_m = Some(pixel_m);
+                spec.noise_exposure_s = Some(camera.noise_exposure_s);
+            }
+            NoiseSpec::Detectivity { .. } if spec.detectivity_cm_hz05_w.is_some() => {
+                spec.noise_exposure_s = Some(camera.noise_exposure_s);
+            }
+            NoiseSpec::Counts { .. } if spec.noise_electrons.is_some() => {
+                spec.noise_exposure_s = Some(camera.noise_exposure_s);
+            }
+            _ => {}
+        }
         spec.exposure_s = Some(camera.exposure_s);
         spec.pixel_m = Some(camera.pixel_m);
         spec.f_number = Some(camera.f_number);
