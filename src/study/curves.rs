@@ -13,9 +13,10 @@ use crate::scene::State;
 
 /// Points of a curve over photons.
 const CURVE_POINTS: usize = 81;
-/// Half the points of a map along temperature and the points along lighting.
-const MAP_HALF: i32 = 40;
-const MAP_LIGHTINGS: u32 = 51;
+/// Half the points of a map along temperature and the points along lighting; fewer of both where the
+/// temperatures of the surroundings are unknown, since every nearest state then takes ten times as long.
+const MAP: (i32, u32) = (40, 51);
+const COARSE_MAP: (i32, u32) = (12, 16);
 /// The map reaches this far beyond the temperatures of the scene, K.
 const MAP_MARGIN_K: f64 = 15.0;
 
@@ -165,11 +166,12 @@ impl Study {
     /// As [`Study::identify`].
     pub fn photon_map(&self, alternative: &Surface) -> Result<Option<PhotonMap>> {
         let Some(&equilibrium_k) = self.state.environment_k.first() else { return Ok(None) };
-        let temperatures_k = map_temperatures(equilibrium_k, self.state.temperature_k);
+        let coarse = self.is_unknown(Nuisance::EnvironmentTemperature);
+        let (half, count) = if coarse { COARSE_MAP } else { MAP };
+        let temperatures_k = map_temperatures(equilibrium_k, self.state.temperature_k, half);
         let others: f64 = self.state.lighting.iter().skip(1).sum();
         let top = 1.0 - others;
-        let lightings: Vec<f64> =
-            (0..MAP_LIGHTINGS).map(|i| top * f64::from(i) / f64::from(MAP_LIGHTINGS - 1)).collect();
+        let lightings: Vec<f64> = (0..count).map(|i| top * f64::from(i) / f64::from(count - 1)).collect();
         let kind = self.scenario.requirement.by;
         let unknowns = match kind {
             DistanceKind::LocalUnknownGain => self.unknowns.with(Nuisance::Gain),
@@ -200,8 +202,8 @@ impl Study {
 }
 
 /// Temperatures around those of the scene, one of them exactly that of the environment.
-fn map_temperatures(equilibrium_k: f64, target_k: f64) -> Vec<f64> {
+fn map_temperatures(equilibrium_k: f64, target_k: f64, half: i32) -> Vec<f64> {
     let reach = (target_k - equilibrium_k).abs() + MAP_MARGIN_K;
-    let step = reach.min(0.9 * equilibrium_k) / f64::from(MAP_HALF);
-    (-MAP_HALF..=MAP_HALF).map(|i| f64::from(i).mul_add(step, equilibrium_k)).collect()
+    let step = reach.min(0.9 * equilibrium_k) / f64::from(half);
+    (-half..=half).map(|i| f64::from(i).mul_add(step, equilibrium_k)).collect()
 }
