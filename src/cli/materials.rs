@@ -142,7 +142,7 @@ fn plot(library: &Library, names: &[String], global: &Global) -> Result<()> {
     let Some((first, others)) = surfaces.split_first() else { return Ok(()) };
     let others: Vec<&Surface> = others.iter().collect();
     let mut bundle = Bundle::default();
-    bundle.add_plots(&[figures::emissivities(&nodes, first, &others)])?;
+    bundle.add_plots(&[figures::emissivities("Emissivities", &nodes, first, &others)])?;
     global.write(&bundle, out)?;
     let drawn: Vec<Summary> = materials.iter().map(|material| material.summary()).collect();
     global.print(&serde_json::json!({ "materials": drawn }), &format!("drew {}", names.join(", ")))

@@ -26,6 +26,9 @@ pub(super) fn run(args: &SizeArgs, global: &Global) -> Result<ExitCode> {
         global.write(&sizing::bundle(&study, &result, out)?, out)?;
     }
     global.print(&result, &text::sizing(&result, &study))?;
+    if global.out.is_none() && !global.json {
+        global.note("for plots and tables add --out DIR");
+    }
     let failed = args.check && result.verdict.met != Some(true);
     Ok(if failed { ExitCode::from(3) } else { ExitCode::SUCCESS })
 }

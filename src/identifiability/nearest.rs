@@ -10,8 +10,8 @@
 //! A prior of deviation σ_p on a parameter adds the row (θ′ − θ)/(2σ_p), whose tangent is the local bound's.
 //!
 //! Search: where T′ is free, a dense grid of it with the other unknowns fitted at each point; between two
-//! points the derivative of the fitted cost along T′ tells of a minimum ([`search`]). Every minimum is then
-//! refined by Levenberg–Marquardt within the bounds, and so is the target's own state. The search is
+//! points the derivative of the fitted cost along T′ tells of a minimum (`search`). Every minimum is then
+//! refined by damped Newton steps within the bounds (`residual`), and so is the target's own state. The search is
 //! dense, not a proof: two extremes between neighbouring points would be missed together. (Of 3000 random
 //! pairs, 10 ended above a brute-force lattice of starts by more than 1e-6, the worst by 0.2 %.)
 //!
@@ -203,7 +203,7 @@ impl<'a> NearestSolver<'a> {
         }
     }
 
-    /// Levenberg–Marquardt within the bounds.
+    /// Newton's method within the bounds, damped as by Levenberg and Marquardt.
     fn refine(&mut self, target: &Target<'_>, start: State) -> NearestDistance {
         let mut state = self.within_range(&start);
         let mut at = self.linearise(target, &state);

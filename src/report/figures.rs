@@ -45,9 +45,14 @@ fn wavenumber_axis(wavenumbers_cm1: &[f64]) -> Axis {
     Axis::linear("wavenumber (cm⁻¹)").range(low, high).secondary("wavelength (µm)", ticks)
 }
 
-/// Emissivities of the target and the alternatives (at most `most` of them) at the nodes.
+/// Emissivities of a first surface and of others at the nodes.
 #[must_use]
-pub fn emissivities(wavenumbers_cm1: &[f64], target: &Surface, alternatives: &[&Surface]) -> Plot {
+pub fn emissivities(
+    title: &str,
+    wavenumbers_cm1: &[f64],
+    target: &Surface,
+    alternatives: &[&Surface],
+) -> Plot {
     let mut header = vec!["wavenumber_cm1".to_owned(), format!("emissivity_{}", target.name)];
     header.extend(alternatives.iter().map(|surface| format!("emissivity_{}", surface.name)));
     let mut table = Table::new(header);
@@ -56,10 +61,6 @@ pub fn emissivities(wavenumbers_cm1: &[f64], target: &Surface, alternatives: &[&
         row.extend(alternatives.iter().map(|surface| surface.emissivity[j]));
         table.push_numbers(&row);
     }
-    let title = match alternatives {
-        [one] => format!("Emissivities of {} and {}", target.name, one.name),
-        _ => format!("Emissivities of {} and its alternatives", target.name),
-    };
     let mut figure =
         LineFigure::new(title, wavenumber_axis(wavenumbers_cm1), Axis::linear("emissivity").range(0.0, 1.0))
             .series(Series::line(&target.name, wavenumbers_cm1.to_vec(), target.emissivity.clone()));

@@ -40,7 +40,11 @@ fn drawn(study: &Study, result: &Sizing) -> Result<Vec<Plot>> {
     ranked.sort_by(|a, b| a.0.distance_nearest.total_cmp(&b.0.distance_nearest));
     let nodes = study.surroundings().nodes_cm1();
     let closest: Vec<_> = ranked.iter().take(DRAWN).map(|(_, surface)| *surface).collect();
-    let mut drawn = vec![figures::emissivities(nodes, study.target(), &closest)];
+    let title = match closest.as_slice() {
+        [one] => format!("Emissivities of {} and {}", study.target().name, one.name),
+        _ => format!("Emissivities of {} and its alternatives", study.target().name),
+    };
+    let mut drawn = vec![figures::emissivities(&title, nodes, study.target(), &closest)];
     let limiting =
         result.pairs.iter().zip(study.alternatives()).find(|(pair, _)| pair.alternative == result.limiting);
     let Some((pair, surface)) = limiting else { return Ok(drawn) };
