@@ -4,6 +4,7 @@ use super::{By, Global};
 use crate::error::Result;
 use crate::report::{sizing, text};
 use clap::Args;
+use std::io::IsTerminal as _;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -26,7 +27,7 @@ pub(super) fn run(args: &SizeArgs, global: &Global) -> Result<ExitCode> {
         global.write(&sizing::bundle(&study, &result, out)?, out)?;
     }
     global.print(&result, &text::sizing(&result, &study))?;
-    if global.out.is_none() && !global.json {
+    if global.out.is_none() && !global.json && std::io::stderr().is_terminal() {
         global.note("for plots and tables add --out DIR");
     }
     let failed = args.check && result.verdict.met != Some(true);
