@@ -89,9 +89,8 @@ fn both(case: &Case) -> (f64, f64, State) {
     (found.distance, best.0, best.1)
 }
 
-/// The search is dense, not exhaustive: of 3000 random pairs 10 ended above the lattice by more than 1e-6, the
-/// worst by 0.2 %, all with the alternative so cold or so far off that the target's weights mislead the
-/// grid. Of these 300 (fixed seed, so no false alarms) at most 3 may, and none by 0.5 %.
+/// The search is dense, not exhaustive: of 3000 random pairs one ended above the lattice by more than 1e-6,
+/// none by 1e-5. Of these 300 (fixed seed, so no false alarms) one may, and none by 1e-4.
 #[test]
 fn the_search_is_as_good_as_a_dense_lattice_of_starts() {
     let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &[7; 32]);
@@ -101,13 +100,13 @@ fn the_search_is_as_good_as_a_dense_lattice_of_starts() {
         let case = cases().new_tree(&mut runner).unwrap().current();
         let (found, brute, state) = both(&case);
         assert!(
-            found <= 1.005 * brute + 1e-15,
+            found <= 1.0001 * brute + 1e-15,
             "{found:e} found, {brute:e} at {state:?} by the lattice: {case:?}"
         );
         above += usize::from(found > brute * (1.0 + 1e-6) + 1e-15);
     }
     println!("{above} of 300 above the lattice");
-    assert!(above <= 3, "{above} of 300 above the lattice");
+    assert!(above <= 1, "{above} of 300 above the lattice");
 }
 
 /// Beside the equilibrium temperature two valleys lie close together; a coarse grid misses the deeper one.
