@@ -10,8 +10,10 @@
 //! Bands are kept in ascending wavenumber whatever the order of the input rows.
 
 mod bands;
+mod filter;
 mod integrate;
 mod read;
 
-pub use bands::{Band, Bands, FilterCurve};
+pub use bands::{Band, Bands};
+pub use filter::FilterCurve;
 pub use integrate::INTEGRATION_TOLERANCE;
