@@ -75,7 +75,7 @@ pub struct Solution {
 
 /// A camera in front of a task.
 #[derive(Debug, Clone)]
-pub struct Sizing<'a> {
+pub struct CameraTask<'a> {
     /// The camera.
     pub camera: &'a Camera,
     /// Bands.
@@ -86,7 +86,7 @@ pub struct Sizing<'a> {
     pub required: f64,
 }
 
-impl Sizing<'_> {
+impl CameraTask<'_> {
     /// Solves for `quantity`; `distance` evaluates the statistical distance at a given counting.
     ///
     /// # Errors
@@ -223,8 +223,8 @@ mod tests {
         Ok(1e-3 * photons / (photons + counting.var_electronic(0)).sqrt())
     }
 
-    fn sizing<'a>(camera: &'a Camera, bands: &'a Bands, required: f64) -> Sizing<'a> {
-        Sizing { camera, bands, distance_m: Some(30.0), required }
+    fn task<'a>(camera: &'a Camera, bands: &'a Bands, required: f64) -> CameraTask<'a> {
+        CameraTask { camera, bands, distance_m: Some(30.0), required }
     }
 
     #[test]
@@ -234,11 +234,11 @@ mod tests {
         let bands = Bands::from_rows([(900.0, 1.0)]).unwrap();
         let now = one_band(&camera.counting(&bands, Some(30.0))).unwrap();
         for required in [0.2 * now, now, 1.3 * now] {
-            let sizing = sizing(&camera, &bands, required);
+            let task = task(&camera, &bands, required);
             for quantity in Quantity::ALL {
-                let solution = sizing.solve(quantity, one_band).unwrap();
+                let solution = task.solve(quantity, one_band).unwrap();
                 let value = solution.value.unwrap_or_else(|| panic!("{quantity:?}: {solution:?}"));
-                let camera = sizing.forward(quantity, value);
+                let camera = task.forward(quantity, value);
                 let reached = one_band(&camera.counting(&bands, Some(30.0))).unwrap();
                 if quantity == Quantity::Frames {
                     assert!(reached >= required * (1.0 - 1e-9));
@@ -256,9 +256,9 @@ mod tests {
         // t → ∞: d → 10⁻³ N/σ_F, σ_F² = φσ² at the stated exposure.
         let counting = camera.counting(&bands, Some(30.0));
         let floor = 1e-3 * counting.counts_per_radiance * 1e21 / (0.5 * counting.var_electronic(0)).sqrt();
-        let below = sizing(&camera, &bands, 0.999_999 * floor).solve(Quantity::Exposure, one_band).unwrap();
+        let below = task(&camera, &bands, 0.999_999 * floor).solve(Quantity::Exposure, one_band).unwrap();
         assert!(below.value.is_some());
-        let above = sizing(&camera, &bands, 1.000_001 * floor).solve(Quantity::Exposure, one_band).unwrap();
+        let above = task(&camera, &bands, 1.000_001 * floor).solve(Quantity::Exposure, one_band).unwrap();
         assert!(above.value.is_none() && above.reason.unwrap().contains("flicker"));
         assert!((above.statistical_distance / floor - 1.0).abs() < 1e-9);
     }
@@ -268,7 +268,7 @@ mod tests {
         let camera = presets::get("flir-a325sc").unwrap();
         let bands = Bands::from_rows([(900.0, 1.0)]).unwrap();
         for quantity in Quantity::ALL {
-            let solution = sizing(&camera, &bands, 1.0).solve(quantity, |_| Ok(0.0)).unwrap();
+            let solution = task(&camera, &bands, 1.0).solve(quantity, |_| Ok(0.0)).unwrap();
             assert_eq!((solution.value, solution.reason.as_deref()), (None, Some(NEVER)), "{quantity:?}");
         }
     }
@@ -281,7 +281,7 @@ mod tests {
         let bands = Bands::from_rows([(900.0, 1.0)]).unwrap();
         let photons = camera.counting(&bands, Some(30.0)).counts_per_radiance * 1e21;
         let required = 1e-3 * (photons / 5.0).sqrt();
-        let solution = sizing(&camera, &bands, required).solve(Quantity::Noise, one_band).unwrap();
+        let solution = task(&camera, &bands, required).solve(Quantity::Noise, one_band).unwrap();
         // N²/(N + nσ₁²) = N/5, so σ₁² = 4N/n.
         let exact = (4.0 * photons / 100.0).sqrt();
         assert!((solution.value.unwrap() / exact - 1.0).abs() < 1e-9, "{solution:?} {exact}");
@@ -294,9 +294,9 @@ mod tests {
         let bands = Bands::from_rows([(900.0, 1.0)]).unwrap();
         let now = one_band(&camera.counting(&bands, Some(30.0))).unwrap();
         // d ∝ 1/F for shot noise: f/1.3 → f/0.5 gains 2.6.
-        let solution = sizing(&camera, &bands, 2.7 * now).solve(Quantity::FNumber, one_band).unwrap();
+        let solution = task(&camera, &bands, 2.7 * now).solve(Quantity::FNumber, one_band).unwrap();
         assert!(solution.value.is_none() && solution.reason.unwrap().contains("f/0.5"));
-        let solution = sizing(&camera, &bands, 2.0 * now).solve(Quantity::FNumber, one_band).unwrap();
+        let solution = task(&camera, &bands, 2.0 * now).solve(Quantity::FNumber, one_band).unwrap();
         assert!((solution.value.unwrap() / 0.65 - 1.0).abs() < 1e-6);
     }
 }

@@ -141,7 +141,7 @@ fn readings(pair: &PairResult, result: &Sizing) -> String {
     let state = &pair.nearest_state;
     let _ = writeln!(
         out,
-        "  * decides. Nearest state of {}: {}{}.\n",
+        "  * decides. Nearest state of {} by shot noise: {}{}.\n",
         pair.alternative,
         celsius(state.temperature_k),
         listed(", lighting ", &state.lighting, 3)

@@ -216,7 +216,7 @@ impl Study {
     }
 
     fn solutions(&self, camera: &Camera, alternative: &Surface) -> Result<Solutions> {
-        let sizing = solve::Sizing {
+        let task = solve::CameraTask {
             camera,
             bands: &self.bands,
             distance_m: self.scenario.target.distance_m,
@@ -224,7 +224,7 @@ impl Study {
         };
         let solved: Result<Vec<(Quantity, Solution)>> = Quantity::ALL
             .into_iter()
-            .map(|quantity| Ok((quantity, self.solution(&sizing, quantity, alternative)?)))
+            .map(|quantity| Ok((quantity, self.solution(&task, quantity, alternative)?)))
             .collect();
         solved.map(Solutions)
     }
@@ -232,7 +232,7 @@ impl Study {
     /// One quantity; the nearest state is followed from trial to trial and searched anew at the end.
     fn solution(
         &self,
-        sizing: &solve::Sizing<'_>,
+        task: &solve::CameraTask<'_>,
         quantity: Quantity,
         alternative: &Surface,
     ) -> Result<Solution> {
@@ -244,7 +244,7 @@ impl Study {
                 _ => self.unknowns.clone(),
             };
             let mut solver = LocalSolver::new(&self.bands, &self.surroundings, unknowns);
-            return sizing.solve(quantity, |counting| {
+            return task.solve(quantity, |counting| {
                 solver.with_counting(target, other, &self.state, counting).map(|local| local.distance)
             });
         }
@@ -252,7 +252,7 @@ impl Study {
             NearestSolver::new(&self.bands, &self.surroundings, self.unknowns.clone(), self.range);
         let mut followed: Option<State> = None;
         for _ in 0..4 {
-            let solution = sizing.solve(quantity, |counting: &Counting| {
+            let solution = task.solve(quantity, |counting: &Counting| {
                 let nearest = match &followed {
                     Some(start) => {
                         solver.refine_with_counting(target, other, &self.state, counting, start)?
@@ -263,7 +263,7 @@ impl Study {
                 Ok(nearest.distance)
             })?;
             let Some(value) = solution.value else { return Ok(solution) };
-            let counting = sizing.forward(quantity, value).counting(sizing.bands, sizing.distance_m);
+            let counting = task.forward(quantity, value).counting(task.bands, task.distance_m);
             let anew = solver.with_counting(target, other, &self.state, &counting)?;
             if anew.distance >= solution.statistical_distance * (1.0 - SAME) {
                 return Ok(solution);
@@ -271,7 +271,7 @@ impl Study {
             // Another state is nearer at this noise: follow that one.
             followed = Some(anew.state);
         }
-        sizing.solve(quantity, |counting| self.statistical_distance(kind, alternative, counting))
+        task.solve(quantity, |counting| self.statistical_distance(kind, alternative, counting))
     }
 
     fn verdict(&self, pair: &PairResult, requirement: &RequirementResult) -> Verdict {
