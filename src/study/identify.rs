@@ -53,6 +53,18 @@ pub struct PhotonsRequired {
     pub local_unknown_gain: Option<f64>,
 }
 
+impl PhotonsRequired {
+    /// By the distance of a kind.
+    #[must_use]
+    pub const fn of(&self, kind: DistanceKind) -> Option<f64> {
+        match kind {
+            DistanceKind::Nearest => self.nearest,
+            DistanceKind::Local => self.local,
+            DistanceKind::LocalUnknownGain => self.local_unknown_gain,
+        }
+    }
+}
+
 /// One target against one alternative.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct PairResult {
@@ -167,26 +179,31 @@ impl Study {
         let signal = self.target_signal();
         let photon_radiance: f64 = signal.iter().sum();
         let camera_photons = counting.as_ref().map(|counting| counting.counts_per_radiance * photon_radiance);
-        let required_by = PhotonsRequired {
-            nearest: self.photons_required(DistanceKind::Nearest, alternative)?,
-            local: self.photons_required(DistanceKind::Local, alternative)?,
-            local_unknown_gain: self.photons_required(DistanceKind::LocalUnknownGain, alternative)?,
-        };
-        let chosen = match kind {
-            DistanceKind::Nearest => required_by.nearest,
-            DistanceKind::Local => required_by.local,
-            DistanceKind::LocalUnknownGain => required_by.local_unknown_gain,
-        };
         // Priors weigh by the number of photons they compete with: the camera's, else those required.
-        let photons = camera_photons.or(chosen).unwrap_or(f64::INFINITY);
+        let with_priors = if self.unknowns.has_priors() {
+            Some(PhotonsRequired {
+                nearest: self.photons_with_priors(DistanceKind::Nearest, alternative)?,
+                local: self.photons_with_priors(DistanceKind::Local, alternative)?,
+                local_unknown_gain: self.photons_with_priors(DistanceKind::LocalUnknownGain, alternative)?,
+            })
+        } else {
+            None
+        };
+        let photons = camera_photons.or(with_priors.and_then(|by| by.of(kind))).unwrap_or(f64::INFINITY);
         let local = self.local(self.unknowns.clone(), alternative, photons)?;
         let nearest = self.nearest(alternative, photons)?;
+        let unknown_gain = self.local_unknown_gain(alternative, photons)?;
+        let required = |distance: f64| policy::photons_required(self.required, distance);
+        let required_by = with_priors.unwrap_or_else(|| PhotonsRequired {
+            nearest: required(nearest.distance),
+            local: required(local.distance),
+            local_unknown_gain: required(unknown_gain),
+        });
         let back = self.return_distance(alternative, &nearest)?;
         let statistical = counting
             .as_ref()
             .map(|counting| self.statistical_distance(kind, alternative, counting))
             .transpose()?;
-        let unknown_gain = self.local_unknown_gain(alternative, photons)?;
         let shortcut = counting.as_ref().map(|counting| {
             let gamma = crate::instrument::gamma_per_band(counting, &signal);
             let distance = match kind {
@@ -217,7 +234,7 @@ impl Study {
             },
             nearest_at_edge: nearest.at_edge.iter().map(|parameter| parameter_name(*parameter)).collect(),
             distance_return: back.distance,
-            photons_required: chosen,
+            photons_required: required_by.of(kind),
             photons_required_by: required_by,
             statistical_distance: statistical,
             statistical_distance_shortcut: shortcut,
@@ -304,8 +321,8 @@ impl Study {
         }
     }
 
-    /// Photons at which √N d₀(N) meets the requirement; d₀ depends on N only through priors.
-    fn photons_required(&self, kind: DistanceKind, alternative: &Surface) -> Result<Option<f64>> {
+    /// Photons at which √N d₀(N) meets the requirement, d₀ depending on N through the priors.
+    fn photons_with_priors(&self, kind: DistanceKind, alternative: &Surface) -> Result<Option<f64>> {
         let per_photon = |photons: f64| match kind {
             DistanceKind::Nearest => self.nearest(alternative, photons).map(|nearest| nearest.distance),
             DistanceKind::Local => {
@@ -313,9 +330,6 @@ impl Study {
             }
             DistanceKind::LocalUnknownGain => self.local_unknown_gain(alternative, photons),
         };
-        if !self.unknowns.has_priors() {
-            return Ok(policy::photons_required(self.required, per_photon(f64::INFINITY)?));
-        }
         let excess = |log: f64| {
             let photons = log.exp();
             Ok((photons.sqrt() * per_photon(photons)? / self.required).max(1e-300).ln())
