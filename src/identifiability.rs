@@ -8,6 +8,7 @@ pub mod detection;
 pub mod local;
 pub mod map;
 pub mod nearest;
+mod space;
 mod step;
 
 /// What kind of answer a distance is.

@@ -14,6 +14,7 @@ pub mod scenario;
 pub mod scene;
 mod simd;
 pub mod spectrum;
+pub mod statistics;
 pub mod study;
 mod sum;
 pub mod units;

@@ -21,13 +21,13 @@
 mod residual;
 mod search;
 
-use self::residual::{Linearised, Target, Workspace};
-use super::step::BoundedStep;
+use self::residual::{Target, Workspace};
+pub use super::space::StateRange;
+use super::space::StateSpace;
 use crate::error::{Error, Result};
-use crate::fisher::{Counting, Nuisance, Unknowns};
+use crate::fisher::{Counting, Unknowns};
 use crate::scene::{Jacobian, Parameter, State, Surroundings};
 use crate::spectrum::Bands;
-use nalgebra::{DMatrix, DVector};
 
 /// Iterations of a refinement.
 const ITERATIONS: usize = 100;
@@ -35,28 +35,6 @@ const ITERATIONS: usize = 100;
 const STEP_TOLERANCE: f64 = 1e-11;
 /// Share of the separation at the target's own state below which a distance is rounding noise.
 const ROUNDING: f64 = 1e-14;
-/// Largest |ln G′|.
-const LOG_GAIN: f64 = 14.0;
-/// Share of its range within which a parameter counts as standing at the edge.
-const EDGE: f64 = 1e-9;
-
-/// The physical range of the alternative's state.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct StateRange {
-    /// Lowest and highest temperature T′, K.
-    pub temperature_k: [f64; 2],
-    /// Lowest and highest lighting factor of each environment object.
-    pub lighting: [f64; 2],
-    /// Largest sum of the lighting factors.
-    pub lighting_sum: f64,
-}
-
-impl Default for StateRange {
-    /// All that physics allows: any temperature, 0 ≤ V, ΣV ≤ 1.
-    fn default() -> Self {
-        Self { temperature_k: [0.1, 1e6], lighting: [0.0, 1.0], lighting_sum: 1.0 }
-    }
-}
 
 /// The nearest state of the alternative and its distance.
 #[derive(Debug, Clone, PartialEq)]
@@ -85,9 +63,7 @@ enum Metric<'a> {
 /// Finds nearest states in fixed bands and surroundings.
 #[derive(Debug, Clone)]
 pub struct NearestSolver<'a> {
-    unknowns: Unknowns,
-    range: StateRange,
-    parameters: Vec<Parameter>,
+    space: StateSpace,
     surface: Jacobian<'a>,
     target: Jacobian<'a>,
     work: Workspace,
@@ -102,11 +78,8 @@ impl<'a> NearestSolver<'a> {
         unknowns: Unknowns,
         range: StateRange,
     ) -> Self {
-        let parameters = unknowns.parameters(surroundings.objects().len());
         Self {
-            unknowns,
-            range,
-            parameters,
+            space: StateSpace::new(unknowns, range, surroundings.objects().len()),
             surface: Jacobian::new(bands, surroundings),
             target: Jacobian::new(bands, surroundings),
             work: Workspace::new(bands.len(), surroundings.nodes_cm1().len()),
@@ -206,14 +179,14 @@ impl<'a> NearestSolver<'a> {
 
     /// Newton's method within the bounds, damped as by Levenberg and Marquardt.
     fn refine(&mut self, target: &Target<'_>, start: State) -> NearestDistance {
-        let mut state = self.within_range(&start);
+        let mut state = self.space.within_range(&start);
         let mut at = self.linearise(target, &state);
-        let (mut damping, mut converged, mut iterations) = (1e-7, self.parameters.is_empty(), 0);
+        let (mut damping, mut converged, mut iterations) = (1e-7, self.space.parameters.is_empty(), 0);
         while !converged && iterations < ITERATIONS {
             iterations += 1;
-            let Some(step) = self.step(&at, &state, damping, false) else { break };
-            let moved = self.moved(&state, &step);
-            let size = self.relative_size(&step, &state);
+            let Some(step) = self.space.step(&at.quadratic, &state, damping, false) else { break };
+            let moved = self.space.moved(&state, &step);
+            let size = self.space.relative_size(&step, &state);
             let next = self.linearise(target, &moved);
             if next.cost <= at.cost {
                 (state, at) = (moved, next);
@@ -228,177 +201,7 @@ impl<'a> NearestSolver<'a> {
                 }
             }
         }
-        let at_edge = self.edges(&state);
+        let at_edge = self.space.edges(&state);
         NearestDistance { distance: at.cost.sqrt(), state, at_edge, iterations, converged }
-    }
-
-    /// Newton's step within the bounds, or where the second derivatives are not positive definite, Gauss's.
-    fn step(
-        &self,
-        at: &Linearised,
-        state: &State,
-        damping: f64,
-        hold_temperature: bool,
-    ) -> Option<DVector<f64>> {
-        self.damped(&at.hessian, at, state, damping, hold_temperature)
-            .or_else(|| self.damped(&at.gauss_newton, at, state, damping, hold_temperature))
-    }
-
-    fn damped(
-        &self,
-        matrix: &DMatrix<f64>,
-        at: &Linearised,
-        state: &State,
-        damping: f64,
-        hold_temperature: bool,
-    ) -> Option<DVector<f64>> {
-        let n = self.parameters.len();
-        let (mut lower, mut upper) = (vec![0.0; n], vec![0.0; n]);
-        let mut summed = vec![false; n];
-        // Unit diagonal: parameters of any unit become comparable.
-        let scale: Vec<f64> =
-            (0..n).map(|i| at.gauss_newton[(i, i)].sqrt()).map(|s| if s > 0.0 { s } else { 1.0 }).collect();
-        let mut lit = 0.0;
-        for (i, parameter) in self.parameters.iter().enumerate() {
-            let now = value(state, *parameter);
-            let [low, high] = self.bounds(*parameter);
-            if !(hold_temperature && *parameter == Parameter::Temperature) && at.gauss_newton[(i, i)] > 0.0 {
-                (lower[i], upper[i]) = ((low - now).min(0.0), (high - now).max(0.0));
-            }
-            if matches!(parameter, Parameter::Lighting(_)) {
-                summed[i] = true;
-                lit += now;
-            }
-        }
-        let sum_limit = (self.lighting_sum() - lit).max(0.0);
-        // The sum constraint is written for unscaled steps, so all lighting columns share one scale.
-        let shared = scale.iter().zip(&summed).filter(|(_, s)| **s).map(|(s, _)| *s).fold(0.0, f64::max);
-        let scale: Vec<f64> =
-            scale.iter().zip(&summed).map(|(s, lit)| if *lit { shared } else { *s }).collect();
-        let mut hessian = DMatrix::from_fn(n, n, |i, j| matrix[(i, j)] / (scale[i] * scale[j]));
-        for i in 0..n {
-            let own = at.gauss_newton[(i, i)] / (scale[i] * scale[i]);
-            hessian[(i, i)] += damping * own.max(f64::EPSILON);
-        }
-        let gradient = DVector::from_fn(n, |i, _| at.gradient[i] / scale[i]);
-        for i in 0..n {
-            lower[i] *= scale[i];
-            upper[i] *= scale[i];
-        }
-        let problem = BoundedStep {
-            hessian: &hessian,
-            gradient: &gradient,
-            lower: &lower,
-            upper: &upper,
-            summed: &summed,
-            sum_limit: sum_limit * shared,
-        };
-        let mut step = problem.solve()?;
-        for i in 0..n {
-            step[i] /= scale[i];
-        }
-        step.iter().all(|value| value.is_finite()).then_some(step)
-    }
-
-    fn bounds(&self, parameter: Parameter) -> [f64; 2] {
-        match parameter {
-            Parameter::Temperature => self.range.temperature_k,
-            Parameter::Lighting(_) => self.range.lighting,
-            Parameter::Gain => [-LOG_GAIN, LOG_GAIN],
-            Parameter::EnvironmentTemperature(_) => [0.1, 1e6],
-            Parameter::Material => [0.0, 0.0],
-        }
-    }
-
-    fn lighting_sum(&self) -> f64 {
-        self.unknowns.known_lighting_total().unwrap_or(self.range.lighting_sum)
-    }
-
-    fn moved(&self, state: &State, step: &DVector<f64>) -> State {
-        let mut moved = state.clone();
-        for (parameter, change) in self.parameters.iter().zip(step.iter()) {
-            let [low, high] = self.bounds(*parameter);
-            set(&mut moved, *parameter, (value(state, *parameter) + change).clamp(low, high));
-        }
-        self.close_total(&mut moved);
-        moved
-    }
-
-    /// With a known total the last factor is what the others leave of it.
-    fn close_total(&self, state: &mut State) {
-        if !self.unknowns.contains(Nuisance::Lighting) {
-            return;
-        }
-        if let (Some(total), [others @ .., last]) =
-            (self.unknowns.known_lighting_total(), state.lighting.as_mut_slice())
-        {
-            *last = (total - others.iter().sum::<f64>()).max(0.0);
-        }
-    }
-
-    fn within_range(&self, state: &State) -> State {
-        let mut inside = state.clone();
-        for parameter in &self.parameters {
-            let [low, high] = self.bounds(*parameter);
-            set(&mut inside, *parameter, value(state, *parameter).clamp(low, high));
-        }
-        if self.unknowns.contains(Nuisance::Lighting) {
-            let sum: f64 = inside.lighting.iter().sum();
-            if sum > self.lighting_sum() {
-                inside.lighting.iter_mut().for_each(|factor| *factor *= self.lighting_sum() / sum);
-            }
-        }
-        self.close_total(&mut inside);
-        inside
-    }
-
-    fn relative_size(&self, step: &DVector<f64>, state: &State) -> f64 {
-        self.parameters
-            .iter()
-            .zip(step.iter())
-            .map(|(parameter, change)| {
-                let size = match parameter {
-                    Parameter::Lighting(_) | Parameter::Gain => 1.0,
-                    other => value(state, *other).abs(),
-                };
-                (change / size).abs()
-            })
-            .fold(0.0, f64::max)
-    }
-
-    fn edges(&self, state: &State) -> Vec<Parameter> {
-        let lit: f64 = state.lighting.iter().sum();
-        let full =
-            self.unknowns.known_lighting_total().is_none() && lit >= self.lighting_sum() * (1.0 - EDGE);
-        let at_edge = |parameter: &&Parameter| {
-            let [low, high] = self.bounds(**parameter);
-            let now = value(state, **parameter);
-            let margin = EDGE * now.abs().max((high - low).min(1.0));
-            now <= low + margin
-                || now >= high - margin
-                || (full && matches!(parameter, Parameter::Lighting(_)))
-        };
-        self.parameters.iter().filter(at_edge).copied().collect()
-    }
-}
-
-fn value(state: &State, parameter: Parameter) -> f64 {
-    match parameter {
-        Parameter::Temperature => state.temperature_k,
-        Parameter::Lighting(k) => state.lighting[k],
-        // The columns are derivatives along ln G.
-        Parameter::Gain => state.gain.ln(),
-        Parameter::EnvironmentTemperature(k) => state.environment_k[k],
-        Parameter::Material => 0.0,
-    }
-}
-
-fn set(state: &mut State, parameter: Parameter, to: f64) {
-    match parameter {
-        Parameter::Temperature => state.temperature_k = to,
-        Parameter::Lighting(k) => state.lighting[k] = to,
-        Parameter::Gain => state.gain = to.exp(),
-        Parameter::EnvironmentTemperature(k) => state.environment_k[k] = to,
-        Parameter::Material => {}
     }
 }

@@ -6,7 +6,8 @@
 //! S′_TT = G e′ B″ with B″ = (B′/T)(2TB′/B − x − 2), x = hcν/kT, and S′_gj = S′ⱼ for the logarithm g of the gain.
 //! (Second derivatives along environment temperatures are left out.)
 
-use super::{Metric, NearestSolver, value};
+use super::{Metric, NearestSolver};
+use crate::identifiability::space::{Quadratic, value};
 use crate::planck;
 use crate::scene::{Parameter, State};
 use crate::simd::dispatched;
@@ -24,12 +25,10 @@ pub(super) struct Target<'t> {
     pub(super) metric: Metric<'t>,
 }
 
-/// Cost ‖r‖², and gradient, Gauss–Newton matrix and second derivatives of half the cost at a candidate state.
+/// Cost ‖r‖², and half of it to second order, at a candidate state.
 pub(super) struct Linearised {
     pub(super) cost: f64,
-    pub(super) gradient: DVector<f64>,
-    pub(super) gauss_newton: DMatrix<f64>,
-    pub(super) hessian: DMatrix<f64>,
+    pub(super) quadratic: Quadratic,
 }
 
 /// Spectra kept between calls so that none allocates.
@@ -98,10 +97,16 @@ impl Workspace {
 impl NearestSolver<'_> {
     /// Cost, gradient and Gauss–Newton matrix at a state of the alternative.
     pub(super) fn linearise(&mut self, target: &Target<'_>, state: &State) -> Linearised {
-        let total_known = self.unknowns.known_lighting_total().is_some();
-        self.surface.evaluate(target.alternative, target.alternative, state, &self.parameters, total_known);
+        let total_known = self.space.unknowns.known_lighting_total().is_some();
+        self.surface.evaluate(
+            target.alternative,
+            target.alternative,
+            state,
+            &self.space.parameters,
+            total_known,
+        );
         self.separate(target, state);
-        let n = self.parameters.len();
+        let n = self.space.parameters.len();
         let work = &mut self.work;
         let mut cost = residuals(Residuals {
             counts: target.counts,
@@ -126,11 +131,12 @@ impl NearestSolver<'_> {
                 gauss_newton[(j, i)] = gauss_newton[(i, j)];
                 hessian[(i, j)] = gauss_newton[(i, j)] + dot(&work.bent, column);
                 // ∂²S′/∂g∂θⱼ = ∂S′/∂θⱼ.
-                if self.parameters[i] == Parameter::Gain || self.parameters[j] == Parameter::Gain {
-                    let other = if self.parameters[i] == Parameter::Gain { j } else { i };
+                if self.space.parameters[i] == Parameter::Gain || self.space.parameters[j] == Parameter::Gain
+                {
+                    let other = if self.space.parameters[i] == Parameter::Gain { j } else { i };
                     hessian[(i, j)] += dot(&work.pull, self.surface.column(other));
                 }
-                if i == j && self.parameters[i] == Parameter::Temperature {
+                if i == j && self.space.parameters[i] == Parameter::Temperature {
                     curvature_into(Curvature {
                         nu: self.surface.surroundings().nodes_cm1(),
                         temperature_k: state.temperature_k,
@@ -145,20 +151,20 @@ impl NearestSolver<'_> {
                 }
                 hessian[(j, i)] = hessian[(i, j)];
             }
-            let Some(sigma) = self.unknowns.sigma_prior(self.parameters[i]) else { continue };
+            let Some(sigma) = self.space.unknowns.sigma_prior(self.space.parameters[i]) else { continue };
             // The row (θ′ − θ)/(2σ_p) of a prior.
             let weight = match target.metric {
                 Metric::PerPhoton { photons } => 0.5 / (sigma * photons.sqrt()),
                 Metric::Counting(_) => 0.5 / sigma,
             };
-            let parameter = self.parameters[i];
+            let parameter = self.space.parameters[i];
             let row = weight * (value(state, parameter) - value(target.state, parameter));
             cost += row * row;
             gradient[i] += weight * row;
             gauss_newton[(i, i)] += weight * weight;
             hessian[(i, i)] += weight * weight;
         }
-        Linearised { cost, gradient, gauss_newton, hessian }
+        Linearised { cost, quadratic: Quadratic { gradient, gauss_newton, hessian } }
     }
 
     /// Band integrals of S − S′ from differences that lose no digits.

@@ -43,14 +43,15 @@ struct Point {
 impl NearestSolver<'_> {
     /// States to refine from: the target's own, and one for every minimum along T′.
     pub(super) fn starts(&mut self, target: &Target<'_>) -> Vec<State> {
-        let own = self.within_range(target.state);
-        if !self.unknowns.contains(Nuisance::Temperature) {
+        let own = self.space.within_range(target.state);
+        if !self.space.unknowns.contains(Nuisance::Temperature) {
             return vec![own];
         }
         let temperatures = self.temperatures(target);
-        let linear = !self.unknowns.has_priors() && self.unknowns.known_lighting_total().is_none();
+        let linear =
+            !self.space.unknowns.has_priors() && self.space.unknowns.known_lighting_total().is_none();
         let mut minima: Vec<Point> = if linear {
-            let unknown = self.unknowns.contains(Nuisance::EnvironmentTemperature);
+            let unknown = self.space.unknowns.contains(Nuisance::EnvironmentTemperature);
             let warmths = if unknown { &WARMTHS[..] } else { &[1.0] };
             let grids = warmths.iter().map(|warmth| {
                 let environment_k = own.environment_k.iter().map(|t| t * warmth).collect();
@@ -91,7 +92,7 @@ impl NearestSolver<'_> {
             .collect();
         let (nu, weights): (Vec<f64>, Vec<f64>) = sampled.into_iter().unzip();
         let mut radiance = vec![0.0; nu.len()];
-        let [low, high] = self.range.temperature_k;
+        let [low, high] = self.space.range.temperature_k;
         let mut solve = |goal: f64| {
             let (mut a, mut b) = (low.ln(), high.ln());
             for _ in 0..16 {
@@ -103,7 +104,7 @@ impl NearestSolver<'_> {
             0.5 * (a + b)
         };
         let (mut bottom, mut top) = (solve(1e-6 * signal), solve(4.0 * signal));
-        if self.unknowns.contains(Nuisance::Gain) {
+        if self.space.unknowns.contains(Nuisance::Gain) {
             // The scale says nothing of T′ then, only the shape: from deep in the Wien tail to Rayleigh–Jeans.
             let (first, last) = bands.range_cm1();
             bottom = bottom.min((SECOND_RADIATION_CM_K * first / 60.0).ln()).max(low.ln());
@@ -124,6 +125,7 @@ impl NearestSolver<'_> {
     fn quadratic_grid(&self, target: &Target<'_>, own: &State, temperatures: &[f64]) -> Vec<Point> {
         let thin = Thinned::new(self, target);
         let lit: Vec<usize> = self
+            .space
             .parameters
             .iter()
             .filter_map(|parameter| if let Parameter::Lighting(k) = parameter { Some(*k) } else { None })
@@ -142,31 +144,31 @@ impl NearestSolver<'_> {
             free,
             lit,
             known,
-            range: self.range.lighting,
-            sum_limit: self.lighting_sum() - known_sum,
-            gain: self.unknowns.contains(Nuisance::Gain),
+            range: self.space.range.lighting,
+            sum_limit: self.space.lighting_sum() - known_sum,
+            gain: self.space.unknowns.contains(Nuisance::Gain),
         };
         temperatures.iter().map(|&t| fit.point(&thin, own, t)).collect()
     }
 
     /// The grid by full linearisation: a few steps in the other unknowns with T′ held.
     fn linearised_grid(&mut self, target: &Target<'_>, own: &State, temperatures: &[f64]) -> Vec<Point> {
-        let along = self.parameters.iter().position(|parameter| *parameter == Parameter::Temperature);
+        let along = self.space.parameters.iter().position(|parameter| *parameter == Parameter::Temperature);
         temperatures
             .iter()
             .map(|&temperature_k| {
                 let mut state = State { temperature_k, ..own.clone() };
                 let mut at = self.linearise(target, &state);
                 for _ in 0..3 {
-                    let Some(step) = self.step(&at, &state, 1e-9, true) else { break };
-                    let moved = self.moved(&state, &step);
+                    let Some(step) = self.space.step(&at.quadratic, &state, 1e-9, true) else { break };
+                    let moved = self.space.moved(&state, &step);
                     let next = self.linearise(target, &moved);
                     if next.cost > at.cost {
                         break;
                     }
                     (state, at) = (moved, next);
                 }
-                Point { state, cost: at.cost, slope: along.map_or(0.0, |i| at.gradient[i]) }
+                Point { state, cost: at.cost, slope: along.map_or(0.0, |i| at.quadratic.gradient[i]) }
             })
             .collect()
     }

@@ -1,0 +1,227 @@
+//! The alternative's own free state: which parameters it has, their physical range, and steps within it.
+//!
+//! Parameters are T′ (K), Vₖ′, ln G′ and Tₖ′ (K), as far as they are unknown. A step minimises the quadratic model
+//! ½ pᵀHp + gᵀp of a cost within the box and ΣV ≤ limit (`step`), its diagonal raised by a damping as by
+//! Levenberg and Marquardt; parameters of any unit are made comparable by the diagonal of the positive
+//! definite part.
+
+use super::step::BoundedStep;
+use crate::fisher::{Nuisance, Unknowns};
+use crate::scene::{Parameter, State};
+use nalgebra::{DMatrix, DVector};
+
+/// Largest |ln G′|.
+const LOG_GAIN: f64 = 14.0;
+/// Share of its range within which a parameter counts as standing at the edge.
+const EDGE: f64 = 1e-9;
+
+/// The physical range of the alternative's state.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StateRange {
+    /// Lowest and highest temperature T′, K.
+    pub temperature_k: [f64; 2],
+    /// Lowest and highest lighting factor of each environment object.
+    pub lighting: [f64; 2],
+    /// Largest sum of the lighting factors.
+    pub lighting_sum: f64,
+}
+
+impl Default for StateRange {
+    /// All that physics allows: any temperature, 0 ≤ V, ΣV ≤ 1.
+    fn default() -> Self {
+        Self { temperature_k: [0.1, 1e6], lighting: [0.0, 1.0], lighting_sum: 1.0 }
+    }
+}
+
+/// Half a cost to second order at a state: gradient, positive semidefinite part, and all of the second derivatives.
+#[derive(Debug, Clone)]
+pub(super) struct Quadratic {
+    pub(super) gradient: DVector<f64>,
+    pub(super) gauss_newton: DMatrix<f64>,
+    pub(super) hessian: DMatrix<f64>,
+}
+
+/// What is free in the alternative's state, and how far.
+#[derive(Debug, Clone)]
+pub(super) struct StateSpace {
+    pub(super) unknowns: Unknowns,
+    pub(super) range: StateRange,
+    pub(super) parameters: Vec<Parameter>,
+}
+
+impl StateSpace {
+    pub(super) fn new(unknowns: Unknowns, range: StateRange, objects: usize) -> Self {
+        let parameters = unknowns.parameters(objects);
+        Self { unknowns, range, parameters }
+    }
+
+    /// Newton's step within the bounds, or where the second derivatives are not positive definite, Gauss's.
+    pub(super) fn step(
+        &self,
+        at: &Quadratic,
+        state: &State,
+        damping: f64,
+        hold_temperature: bool,
+    ) -> Option<DVector<f64>> {
+        self.damped(&at.hessian, at, state, damping, hold_temperature)
+            .or_else(|| self.damped(&at.gauss_newton, at, state, damping, hold_temperature))
+    }
+
+    fn damped(
+        &self,
+        matrix: &DMatrix<f64>,
+        at: &Quadratic,
+        state: &State,
+        damping: f64,
+        hold_temperature: bool,
+    ) -> Option<DVector<f64>> {
+        let n = self.parameters.len();
+        let (mut lower, mut upper) = (vec![0.0; n], vec![0.0; n]);
+        let mut summed = vec![false; n];
+        // Unit diagonal: parameters of any unit become comparable.
+        let scale: Vec<f64> =
+            (0..n).map(|i| at.gauss_newton[(i, i)].sqrt()).map(|s| if s > 0.0 { s } else { 1.0 }).collect();
+        let mut lit = 0.0;
+        for (i, parameter) in self.parameters.iter().enumerate() {
+            let now = value(state, *parameter);
+            let [low, high] = self.bounds(*parameter);
+            if !(hold_temperature && *parameter == Parameter::Temperature) && at.gauss_newton[(i, i)] > 0.0 {
+                (lower[i], upper[i]) = ((low - now).min(0.0), (high - now).max(0.0));
+            }
+            if matches!(parameter, Parameter::Lighting(_)) {
+                summed[i] = true;
+                lit += now;
+            }
+        }
+        let sum_limit = (self.lighting_sum() - lit).max(0.0);
+        // The sum constraint is written for unscaled steps, so all lighting columns share one scale.
+        let shared = scale.iter().zip(&summed).filter(|(_, s)| **s).map(|(s, _)| *s).fold(0.0, f64::max);
+        let scale: Vec<f64> =
+            scale.iter().zip(&summed).map(|(s, lit)| if *lit { shared } else { *s }).collect();
+        let mut hessian = DMatrix::from_fn(n, n, |i, j| matrix[(i, j)] / (scale[i] * scale[j]));
+        for i in 0..n {
+            let own = at.gauss_newton[(i, i)] / (scale[i] * scale[i]);
+            hessian[(i, i)] += damping * own.max(f64::EPSILON);
+        }
+        let gradient = DVector::from_fn(n, |i, _| at.gradient[i] / scale[i]);
+        for i in 0..n {
+            lower[i] *= scale[i];
+            upper[i] *= scale[i];
+        }
+        let problem = BoundedStep {
+            hessian: &hessian,
+            gradient: &gradient,
+            lower: &lower,
+            upper: &upper,
+            summed: &summed,
+            sum_limit: sum_limit * shared,
+        };
+        let mut step = problem.solve()?;
+        for i in 0..n {
+            step[i] /= scale[i];
+        }
+        step.iter().all(|value| value.is_finite()).then_some(step)
+    }
+
+    pub(super) fn bounds(&self, parameter: Parameter) -> [f64; 2] {
+        match parameter {
+            Parameter::Temperature => self.range.temperature_k,
+            Parameter::Lighting(_) => self.range.lighting,
+            Parameter::Gain => [-LOG_GAIN, LOG_GAIN],
+            Parameter::EnvironmentTemperature(_) => [0.1, 1e6],
+            Parameter::Material => [0.0, 0.0],
+        }
+    }
+
+    pub(super) fn lighting_sum(&self) -> f64 {
+        self.unknowns.known_lighting_total().unwrap_or(self.range.lighting_sum)
+    }
+
+    pub(super) fn moved(&self, state: &State, step: &DVector<f64>) -> State {
+        let mut moved = state.clone();
+        for (parameter, change) in self.parameters.iter().zip(step.iter()) {
+            let [low, high] = self.bounds(*parameter);
+            set(&mut moved, *parameter, (value(state, *parameter) + change).clamp(low, high));
+        }
+        self.close_total(&mut moved);
+        moved
+    }
+
+    /// With a known total the last factor is what the others leave of it.
+    fn close_total(&self, state: &mut State) {
+        if !self.unknowns.contains(Nuisance::Lighting) {
+            return;
+        }
+        if let (Some(total), [others @ .., last]) =
+            (self.unknowns.known_lighting_total(), state.lighting.as_mut_slice())
+        {
+            *last = (total - others.iter().sum::<f64>()).max(0.0);
+        }
+    }
+
+    pub(super) fn within_range(&self, state: &State) -> State {
+        let mut inside = state.clone();
+        for parameter in &self.parameters {
+            let [low, high] = self.bounds(*parameter);
+            set(&mut inside, *parameter, value(state, *parameter).clamp(low, high));
+        }
+        if self.unknowns.contains(Nuisance::Lighting) {
+            let sum: f64 = inside.lighting.iter().sum();
+            if sum > self.lighting_sum() {
+                inside.lighting.iter_mut().for_each(|factor| *factor *= self.lighting_sum() / sum);
+            }
+        }
+        self.close_total(&mut inside);
+        inside
+    }
+
+    pub(super) fn relative_size(&self, step: &DVector<f64>, state: &State) -> f64 {
+        self.parameters
+            .iter()
+            .zip(step.iter())
+            .map(|(parameter, change)| {
+                let size = match parameter {
+                    Parameter::Lighting(_) | Parameter::Gain => 1.0,
+                    other => value(state, *other).abs(),
+                };
+                (change / size).abs()
+            })
+            .fold(0.0, f64::max)
+    }
+
+    pub(super) fn edges(&self, state: &State) -> Vec<Parameter> {
+        let lit: f64 = state.lighting.iter().sum();
+        let full =
+            self.unknowns.known_lighting_total().is_none() && lit >= self.lighting_sum() * (1.0 - EDGE);
+        let at_edge = |parameter: &&Parameter| {
+            let [low, high] = self.bounds(**parameter);
+            let now = value(state, **parameter);
+            let margin = EDGE * now.abs().max((high - low).min(1.0));
+            now <= low + margin
+                || now >= high - margin
+                || (full && matches!(parameter, Parameter::Lighting(_)))
+        };
+        self.parameters.iter().filter(at_edge).copied().collect()
+    }
+}
+
+pub(super) fn value(state: &State, parameter: Parameter) -> f64 {
+    match parameter {
+        Parameter::Temperature => state.temperature_k,
+        Parameter::Lighting(k) => state.lighting[k],
+        // The columns are derivatives along ln G.
+        Parameter::Gain => state.gain.ln(),
+        Parameter::EnvironmentTemperature(k) => state.environment_k[k],
+        Parameter::Material => 0.0,
+    }
+}
+
+pub(super) fn set(state: &mut State, parameter: Parameter, to: f64) {
+    match parameter {
+        Parameter::Temperature => state.temperature_k = to,
+        Parameter::Lighting(k) => state.lighting[k] = to,
+        Parameter::Gain => state.gain = to.exp(),
+        Parameter::EnvironmentTemperature(k) => state.environment_k[k] = to,
+        Parameter::Material => {}
+    }
+}
