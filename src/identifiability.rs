@@ -7,6 +7,7 @@
 pub mod detection;
 pub mod local;
 pub mod map;
+pub mod multi;
 pub mod nearest;
 mod space;
 mod step;

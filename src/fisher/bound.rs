@@ -108,6 +108,22 @@ impl Projector {
         self.projection(found)
     }
 
+    /// Makes the columns orthogonal to each other, in place, to rounding whatever their angles; returns their
+    /// lengths, 0 for those dropped as zero or dependent (which are cleared).
+    pub(crate) fn orthogonalise(&mut self, values: &mut [f64], stride: usize, weights: &[f64]) -> &[f64] {
+        let last = values.len().checked_div(stride).unwrap_or(0).saturating_sub(1);
+        // Once leaves u·condition of the earlier ones in the later; the second time starts from that.
+        for _ in 0..2 {
+            let Reduced { residual, norm, .. } = self.reduce(Columns { values, stride }, weights, 1.0);
+            if (residual.is_nan() || residual <= DEPENDENT * norm)
+                && let Some(column) = values.get_mut(last * stride..)
+            {
+                column.fill(0.0);
+            }
+        }
+        &self.norms
+    }
+
     /// All there is to know about the last [`Projector::reduce`].
     pub(crate) fn projection(&self, found: Reduced) -> Projection {
         let Reduced { residual, norm, relative_error } = found;

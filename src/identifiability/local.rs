@@ -14,7 +14,7 @@ use crate::simd::{Aligned, dispatched};
 use crate::spectrum::Bands;
 
 /// Sums of the signal outside this range are brought back by a power of two before they are squared.
-const SAFE_RANGE: std::ops::Range<f64> = 1e-100..1e100;
+pub(super) const SAFE_RANGE: std::ops::Range<f64> = 1e-100..1e100;
 
 /// Local distance of a pair of materials.
 #[derive(Debug, Clone, PartialEq)]

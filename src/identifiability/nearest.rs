@@ -22,6 +22,7 @@ mod residual;
 mod search;
 
 use self::residual::{Target, Workspace};
+use self::search::EmissionTable;
 pub use super::space::StateRange;
 use super::space::StateSpace;
 use crate::error::{Error, Result};
@@ -32,7 +33,9 @@ use crate::spectrum::Bands;
 /// Iterations of a refinement.
 const ITERATIONS: usize = 100;
 /// Relative step at which a refinement has converged.
-const STEP_TOLERANCE: f64 = 1e-11;
+const STEP_TOLERANCE: f64 = 1e-9;
+/// Relative separation at which two refinements have come to the same minimum.
+const SAME_MINIMUM: f64 = 1e-5;
 /// Share of the separation at the target's own state below which a distance is rounding noise.
 const ROUNDING: f64 = 1e-14;
 
@@ -67,6 +70,8 @@ pub struct NearestSolver<'a> {
     surface: Jacobian<'a>,
     target: Jacobian<'a>,
     work: Workspace,
+    /// What the searches before have computed that the next one can use.
+    table: Option<EmissionTable>,
 }
 
 impl<'a> NearestSolver<'a> {
@@ -83,6 +88,7 @@ impl<'a> NearestSolver<'a> {
             surface: Jacobian::new(bands, surroundings),
             target: Jacobian::new(bands, surroundings),
             work: Workspace::new(bands.len(), surroundings.nodes_cm1().len()),
+            table: None,
         }
     }
 
@@ -160,7 +166,7 @@ impl<'a> NearestSolver<'a> {
         let mut best: Option<NearestDistance> = None;
         let mut iterations = 0;
         for start in starts {
-            let candidate = self.refine(&target, start);
+            let candidate = self.refine(&target, start, best.as_ref().map(|best| &best.state));
             iterations += candidate.iterations;
             if best.as_ref().is_none_or(|best| candidate.distance < best.distance) {
                 best = Some(candidate);
@@ -177,8 +183,9 @@ impl<'a> NearestSolver<'a> {
         }
     }
 
-    /// Newton's method within the bounds, damped as by Levenberg and Marquardt.
-    fn refine(&mut self, target: &Target<'_>, start: State) -> NearestDistance {
+    /// Newton's method within the bounds, damped as by Levenberg and Marquardt. It ends early where it has come
+    /// to a minimum that is `known`.
+    fn refine(&mut self, target: &Target<'_>, start: State, known: Option<&State>) -> NearestDistance {
         let mut state = self.space.within_range(&start);
         let mut at = self.linearise(target, &state);
         let (mut damping, mut converged, mut iterations) = (1e-7, self.space.parameters.is_empty(), 0);
@@ -191,10 +198,11 @@ impl<'a> NearestSolver<'a> {
             if next.cost <= at.cost {
                 (state, at) = (moved, next);
                 damping = (damping * 0.05).max(1e-15);
-                converged = size < STEP_TOLERANCE;
+                converged = size < STEP_TOLERANCE
+                    || known.is_some_and(|known| self.space.separation(&state, known) < SAME_MINIMUM);
             } else {
                 // Below this the cost changes only by rounding.
-                converged = size < 1e3 * STEP_TOLERANCE;
+                converged = size < 10.0 * STEP_TOLERANCE;
                 damping = (damping * 20.0).max(1e-9);
                 if damping > 1e12 {
                     break;

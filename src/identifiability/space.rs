@@ -175,18 +175,17 @@ impl StateSpace {
         inside
     }
 
+    /// Largest relative change that a step makes.
     pub(super) fn relative_size(&self, step: &DVector<f64>, state: &State) -> f64 {
-        self.parameters
-            .iter()
-            .zip(step.iter())
-            .map(|(parameter, change)| {
-                let size = match parameter {
-                    Parameter::Lighting(_) | Parameter::Gain => 1.0,
-                    other => value(state, *other).abs(),
-                };
-                (change / size).abs()
-            })
-            .fold(0.0, f64::max)
+        let changes = self.parameters.iter().zip(step.iter());
+        changes.map(|(parameter, change)| relative(*parameter, *change, state)).fold(0.0, f64::max)
+    }
+
+    /// Largest relative difference between two states in what is free.
+    pub(super) fn separation(&self, a: &State, b: &State) -> f64 {
+        let changes =
+            self.parameters.iter().map(|parameter| (*parameter, value(b, *parameter) - value(a, *parameter)));
+        changes.map(|(parameter, change)| relative(parameter, change, a)).fold(0.0, f64::max)
     }
 
     pub(super) fn edges(&self, state: &State) -> Vec<Parameter> {
@@ -203,6 +202,15 @@ impl StateSpace {
         };
         self.parameters.iter().filter(at_edge).copied().collect()
     }
+}
+
+/// Size of a change of a parameter: relative for temperatures, as it is for lighting and ln G.
+fn relative(parameter: Parameter, change: f64, state: &State) -> f64 {
+    let size = match parameter {
+        Parameter::Lighting(_) | Parameter::Gain => 1.0,
+        other => value(state, other).abs(),
+    };
+    (change / size).abs()
 }
 
 pub(super) fn value(state: &State, parameter: Parameter) -> f64 {

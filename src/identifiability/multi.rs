@@ -1,0 +1,5 @@
+//! Many materials: distances of each against all.
+
+mod local;
+
+pub use local::LocalMatrix;

@@ -1,0 +1,503 @@
+//! Local distances of every material against every other one, in one scene.
+//!
+//! All that depends on the target alone is done once per target: signal, weights u, the nuisance columns
+//! orthogonalised to q̂ᵢ. For an alternative e′ the score of the material is v = (e′ − e)·c with c = G w C (C contrast),
+//! so that with Δ = e′ − e
+//!
+//!   4d² = Σ m Δ² − Σᵢ (Σ kᵢ Δ)²,   m = u c²,  kᵢ = u c q̂ᵢ
+//!
+//! is one pass over the bands with 2 + n multiplications each. The subtraction loses u·(none/d)² of d, none the
+//! distance with no nuisance; where it would lose more than [`ONE_PASS`] allows, the residual is formed
+//! band by band in a second pass, and beyond [`TWO_PASSES`] the pair goes to [`LocalSolver`], which judges rank
+//! and rounding. Results agree with those of [`LocalSolver`] to 1e-14·none/d.
+//!
+//! Assumption: all targets in the same state. Source: paper S27–S30, Algorithm 3.
+
+use crate::error::Result;
+use crate::fisher::{Counting, Projector, Unknowns};
+use crate::identifiability::local::{LocalSolver, SAFE_RANGE};
+use crate::scene::{Jacobian, Parameter, State, Surroundings};
+use crate::simd::{Aligned, Chunk, LANES, added, dispatched, fused, padded, product};
+use crate::spectrum::Bands;
+use crate::sum::{Compensated, CompensatedLanes, fold};
+use rayon::prelude::*;
+
+/// Largest none/d for which the one-pass difference of squares keeps 1e-14·none/d: 2u·(none/d)² below it.
+const ONE_PASS: f64 = 16.0;
+/// Largest none/d for which a residual once projected is good; beyond it rank and rounding are judged too.
+const TWO_PASSES: f64 = 1e5;
+/// Nuisances the shared kernels take; more of them go pair by pair.
+const MOST_NUISANCES: usize = 4;
+/// Chunks in a block of a compensated sum: more than elsewhere, since a group of pairs ends a dozen of them.
+const BLOCK_CHUNKS: usize = 64;
+/// Alternatives worked on together.
+const TOGETHER: usize = 5;
+/// Bands × materials² beyond which threads are worth their while.
+const WORTH_THREADS: usize = 2_000_000;
+
+/// Which noise weighs the bands.
+#[derive(Debug, Clone, Copy)]
+enum Weights<'c> {
+    PerPhoton,
+    Counting(&'c Counting),
+}
+
+/// Local distances of materials against each other, row by row of the target.
+///
+/// ```
+/// use hadar::fisher::{Nuisance, Unknowns};
+/// use hadar::identifiability::multi::LocalMatrix;
+/// use hadar::scene::{EnvironmentObject, Surroundings};
+/// use hadar::spectrum::Bands;
+///
+/// let bands = Bands::uniform(715.0, 1250.0, 5.0)?;
+/// let object = EnvironmentObject { temperature_k: 293.15, emissivity: None };
+/// let surroundings = Surroundings::new(bands.nodes_cm1(), vec![object])?;
+/// let state = surroundings.state(310.15, &[0.5])?;
+/// let grey = vec![0.95; bands.len()];
+/// let sloped: Vec<f64> = bands.nodes_cm1().iter().map(|nu| 0.9 - 1e-7 * (nu - 900.0).powi(2)).collect();
+/// let unknowns = Unknowns::new([Nuisance::Temperature, Nuisance::Lighting])?;
+/// let matrix = LocalMatrix::new(&bands, &surroundings, unknowns).per_photon(&[&grey, &sloped], &state)?;
+/// assert!(matrix[0] == 0.0 && matrix[1] > 0.0 && matrix[1] != matrix[2]);
+/// # Ok::<(), hadar::Error>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct LocalMatrix<'a> {
+    unknowns: Unknowns,
+    parameters: Vec<Parameter>,
+    jacobian: Jacobian<'a>,
+    pair: LocalSolver<'a>,
+    projector: Projector,
+    shared: Shared,
+}
+
+/// What one target lends to all its pairs.
+#[derive(Debug, Clone)]
+struct Shared {
+    /// u and c of each band.
+    weights: Aligned,
+    contrast: Aligned,
+    /// m, and k₁, k₂… one after the other.
+    square: Aligned,
+    directions: Aligned,
+    /// Bands rounded up.
+    stride: usize,
+    /// Nuisances that are left, and which column each is.
+    live: Vec<(usize, f64)>,
+    /// Factor from the norm to the distance.
+    half: f64,
+}
+
+impl<'a> LocalMatrix<'a> {
+    /// A workspace for one set of bands, surroundings and unknowns.
+    #[must_use]
+    pub fn new(bands: &'a Bands, surroundings: &'a Surroundings, unknowns: Unknowns) -> Self {
+        let count = bands.len();
+        Self {
+            parameters: unknowns.parameters(surroundings.objects().len()),
+            jacobian: Jacobian::new(bands, surroundings),
+            pair: LocalSolver::new(bands, surroundings, unknowns.clone()),
+            projector: Projector::default(),
+            shared: Shared {
+                weights: Aligned::zeros(count),
+                contrast: Aligned::zeros(count),
+                square: Aligned::zeros(count),
+                directions: Aligned::default(),
+                stride: count.next_multiple_of(LANES),
+                live: Vec::new(),
+                half: 0.5,
+            },
+            unknowns,
+        }
+    }
+
+    /// d₀ per √photon of every target (row) against every alternative (column), shot noise only; 0 on the
+    /// diagonal. Priors count for nothing.
+    ///
+    /// # Errors
+    /// As [`LocalSolver::per_photon`], for the first target that fails.
+    pub fn per_photon(&mut self, emissivities: &[&[f64]], state: &State) -> Result<Vec<f64>> {
+        self.matrix(emissivities, state, Weights::PerPhoton)
+    }
+
+    /// The same as statistical distances d with the camera's own noise.
+    ///
+    /// # Errors
+    /// As [`LocalSolver::with_counting`], for the first target that fails.
+    pub fn with_counting(
+        &mut self,
+        emissivities: &[&[f64]],
+        state: &State,
+        counting: &Counting,
+    ) -> Result<Vec<f64>> {
+        self.matrix(emissivities, state, Weights::Counting(counting))
+    }
+
+    fn matrix(&mut self, emissivities: &[&[f64]], state: &State, weights: Weights<'_>) -> Result<Vec<f64>> {
+        let count = emissivities.len();
+        let mut distances = vec![0.0; count * count];
+        if count < 2 {
+            return Ok(distances);
+        }
+        let rows = distances.chunks_mut(count).enumerate();
+        if count * count * self.jacobian.bands().len() < WORTH_THREADS || rayon::current_num_threads() == 1 {
+            for (target, row) in rows {
+                self.row(emissivities, target, state, weights, row)?;
+            }
+        } else {
+            rows.collect::<Vec<_>>().into_par_iter().try_for_each_init(
+                || self.clone(),
+                |own, (target, row)| own.row(emissivities, target, state, weights, row),
+            )?;
+        }
+        Ok(distances)
+    }
+
+    /// Distances of one target to all.
+    fn row(
+        &mut self,
+        emissivities: &[&[f64]],
+        target: usize,
+        state: &State,
+        weights: Weights<'_>,
+        out: &mut [f64],
+    ) -> Result<()> {
+        let own = emissivities[target];
+        if !self.share(own, state, weights) {
+            for (alternative, out) in out.iter_mut().enumerate() {
+                *out = if alternative == target {
+                    0.0
+                } else {
+                    self.alone(own, emissivities[alternative], state, weights)?
+                };
+            }
+            return Ok(());
+        }
+        let columns = self.jacobian.columns_mut();
+        let row = Row { shared: &self.shared, own, columns: columns.values, stride: columns.stride };
+        for (group, out) in emissivities.chunks(TOGETHER).zip(out.chunks_mut(TOGETHER)) {
+            row.distances(group, out);
+        }
+        for (alternative, out) in out.iter_mut().enumerate() {
+            if alternative == target {
+                *out = 0.0;
+            } else if out.is_nan() {
+                *out = self.alone(own, emissivities[alternative], state, weights)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// One pair, judged with all care.
+    fn alone(&mut self, own: &[f64], other: &[f64], state: &State, weights: Weights<'_>) -> Result<f64> {
+        match weights {
+            Weights::PerPhoton => self.pair.point(own, other, state).map(|point| point.0),
+            Weights::Counting(counting) => {
+                self.pair.with_counting(own, other, state, counting).map(|local| local.distance)
+            }
+        }
+    }
+
+    /// Forms what the target lends to its pairs; false if they must go pair by pair.
+    fn share(&mut self, own: &[f64], state: &State, weights: Weights<'_>) -> bool {
+        let bands = self.jacobian.bands();
+        let priors = matches!(weights, Weights::Counting(_)) && self.unknowns.has_priors();
+        let count = self.parameters.len();
+        if priors || count > MOST_NUISANCES || bands.len() <= count || !bands.one_node_per_band() {
+            return false;
+        }
+        let total_known = self.unknowns.known_lighting_total().is_some();
+        self.jacobian.evaluate(own, own, state, &self.parameters, total_known);
+        let total = crate::sum::sum(self.jacobian.signal());
+        if !SAFE_RANGE.contains(&total) {
+            return false;
+        }
+        let shared = &mut self.shared;
+        match weights {
+            Weights::PerPhoton => {
+                shared.half = 0.5 / total.sqrt();
+                shared.weights.copy_from_slice(self.jacobian.columns_and_inverse().1);
+            }
+            Weights::Counting(counting) => {
+                shared.half = 0.5;
+                let counts = counting.counts_per_radiance;
+                for (w, (u, s)) in shared.weights.iter_mut().zip(self.jacobian.signal()).enumerate() {
+                    let variance = s + counting.var_electronic(w) / counts;
+                    *u = if variance > 0.0 { counts / variance } else { 0.0 };
+                }
+            }
+        }
+        contrast_into(Contrast {
+            gain: state.gain,
+            contrast: self.jacobian.contrast(),
+            widths: bands.weights_cm1(),
+            u: &shared.weights,
+            c: &mut shared.contrast,
+            m: &mut shared.square,
+        });
+        shared.live.clear();
+        if count > 0 {
+            let columns = self.jacobian.columns_mut();
+            let norms = self.projector.orthogonalise(columns.values, columns.stride, &shared.weights);
+            shared.live.extend(norms.iter().copied().enumerate().filter(|(_, norm)| *norm > 0.0));
+            shared.directions.set_len(shared.stride * shared.live.len());
+            let outs = shared.directions.chunks_mut(shared.stride);
+            for (&(column, norm), out) in shared.live.iter().zip(outs) {
+                let start = column * columns.stride;
+                let column = &columns.values[start..start + bands.len()];
+                direction_into(column, &shared.weights, &shared.contrast, 1.0 / norm, out);
+            }
+        }
+        true
+    }
+}
+
+/// A target against groups of alternatives.
+struct Row<'r> {
+    shared: &'r Shared,
+    own: &'r [f64],
+    /// The orthogonal nuisance columns, each beginning `stride` after the one before.
+    columns: &'r [f64],
+    stride: usize,
+}
+
+impl Row<'_> {
+    /// Distances to up to [`TOGETHER`] alternatives; NaN where the pair must be judged on its own.
+    fn distances(&self, group: &[&[f64]], out: &mut [f64]) {
+        let mut others = [self.own; TOGETHER];
+        for (other, given) in others.iter_mut().zip(group) {
+            *other = given;
+        }
+        let shared = self.shared;
+        let k = |i: usize| shared.directions.chunks(shared.stride).nth(i).unwrap_or_default();
+        let lent = Lent { own: self.own, square: &shared.square, directions: [k(0), k(1), k(2), k(3)] };
+        let (squares, dots) = projections(lent, others, shared.live.len());
+        for (i, (out, other)) in out.iter_mut().zip(group).enumerate() {
+            let dots = dots[i];
+            let along: f64 = dots.iter().map(|dot| dot * dot).sum();
+            let left = squares[i] - along;
+            *out = if squares[i] == 0.0 {
+                0.0
+            } else if left * (ONE_PASS * ONE_PASS) >= squares[i] {
+                shared.half * left.sqrt()
+            } else {
+                let left = self.residual(other, dots);
+                let good = left * (TWO_PASSES * TWO_PASSES) >= squares[i];
+                if good { shared.half * left.sqrt() } else { f64::NAN }
+            };
+        }
+    }
+
+    /// Σ u r² with the residual r formed band by band.
+    fn residual(&self, other: &[f64], dots: [f64; MOST_NUISANCES]) -> f64 {
+        let mut taken = [(0.0, self.own); MOST_NUISANCES];
+        for ((taken, (column, norm)), dot) in taken.iter_mut().zip(&self.shared.live).zip(dots) {
+            *taken = (dot / norm, &self.columns[column * self.stride..][..self.own.len()]);
+        }
+        let count = self.shared.live.len();
+        residual_square(self.own, other, &self.shared.contrast, &self.shared.weights, taken, count)
+    }
+}
+
+/// Spectra of the target that a pass over the bands reads.
+#[derive(Clone, Copy)]
+struct Lent<'a> {
+    own: &'a [f64],
+    square: &'a [f64],
+    directions: [&'a [f64]; MOST_NUISANCES],
+}
+
+struct Contrast<'a> {
+    gain: f64,
+    contrast: &'a [f64],
+    widths: &'a [f64],
+    u: &'a [f64],
+    c: &'a mut [f64],
+    m: &'a mut [f64],
+}
+
+dispatched! {
+    /// c = G w C and m = u c² of each band.
+    fn contrast_into<'a>(spectra: Contrast<'a>) {
+        let Contrast { gain, contrast, widths, u, c, m } = spectra;
+        let given = contrast.iter().zip(widths).zip(u);
+        for ((c, m), ((contrast, width), u)) in c.iter_mut().zip(m).zip(given) {
+            *c = gain * contrast * width;
+            *m = u * *c * *c;
+        }
+    }
+}
+
+dispatched! {
+    /// u c q/‖q‖ of each band.
+    fn direction_into<'a>(column: &'a [f64], u: &'a [f64], c: &'a [f64], scale: f64, out: &'a mut [f64]) {
+        for (((out, q), u), c) in out.iter_mut().zip(column).zip(u).zip(c) {
+            *out = u * c * (q * scale);
+        }
+    }
+}
+
+/// Σ m Δ² of each alternative, and Σ kᵢ Δ of each alternative along each direction.
+type Projections = ([f64; TOGETHER], [[f64; MOST_NUISANCES]; TOGETHER]);
+
+dispatched! {
+    /// [`Projections`] on the first `count` directions.
+    fn projections<'a>(lent: Lent<'a>, others: [&'a [f64]; TOGETHER], count: usize) -> Projections {
+        match count {
+            0 => project::<0>(lent, others),
+            1 => project::<1>(lent, others),
+            2 => project::<2>(lent, others),
+            3 => project::<3>(lent, others),
+            _ => project::<4>(lent, others),
+        }
+    }
+}
+
+/// Sums over the bands of a group of pairs.
+struct Sums<const N: usize> {
+    squares: [Compensated; TOGETHER],
+    dots: [[Compensated; N]; TOGETHER],
+}
+
+impl<const N: usize> Sums<N> {
+    /// Adds the lanes of a block. Never inlined: the lanes then go through memory all at once, which keeps the
+    /// loop before in full-width registers.
+    #[inline(never)]
+    fn add(&mut self, squares: &[Chunk; TOGETHER], dots: &[[Chunk; N]; TOGETHER]) {
+        for a in 0..TOGETHER {
+            self.squares[a].add(fold(&squares[a]));
+            for i in 0..N {
+                self.dots[a][i].add(fold(&dots[a][i]));
+            }
+        }
+    }
+}
+
+#[inline(always)]
+fn project<const N: usize>(lent: Lent<'_>, others: [&[f64]; TOGETHER]) -> Projections {
+    let bands = lent.own.len();
+    let (e, e_rest) = lent.own.as_chunks();
+    let (m, m_rest) = lent.square[..bands].as_chunks();
+    let k: [_; N] = std::array::from_fn(|i| lent.directions[i][..bands].as_chunks());
+    let o = others.map(|other| other[..bands].as_chunks());
+    let mut sums =
+        Sums { squares: [Compensated::default(); TOGETHER], dots: [[Compensated::default(); N]; TOGETHER] };
+    run(e, m, k.map(|k| k.0), o.map(|o| o.0), &mut sums);
+    if !e_rest.is_empty() {
+        let (k, o) = (k.map(|k| [padded(k.1)]), o.map(|o| [padded(o.1)]));
+        let (k, o) = (k.each_ref().map(|k| &k[..]), o.each_ref().map(|o| &o[..]));
+        run(&[padded(e_rest)], &[padded(m_rest)], k, o, &mut sums);
+    }
+    let mut along = [[0.0; MOST_NUISANCES]; TOGETHER];
+    for (along, dots) in along.iter_mut().zip(&sums.dots) {
+        for (along, dot) in along.iter_mut().zip(dots) {
+            *along = dot.value();
+        }
+    }
+    (sums.squares.map(|square| square.value()), along)
+}
+
+/// The bands of [`project`] in whole chunks. Values pass through locals, chunk by chunk: only then are they
+/// kept in full-width registers.
+#[inline(always)]
+fn run<const N: usize>(
+    own: &[Chunk],
+    square: &[Chunk],
+    directions: [&[Chunk]; N],
+    others: [&[Chunk]; TOGETHER],
+    sums: &mut Sums<N>,
+) {
+    let count = own.len();
+    let square = &square[..count];
+    let directions = directions.map(|k| &k[..count]);
+    let others = others.map(|other| &other[..count]);
+    for start in (0..count).step_by(BLOCK_CHUNKS) {
+        let (mut squares, mut dots) = ([[0.0; LANES]; TOGETHER], [[[0.0; LANES]; N]; TOGETHER]);
+        for c in start..(start + BLOCK_CHUNKS).min(count) {
+            let (e, m) = (own[c], square[c]);
+            for a in 0..TOGETHER {
+                let delta = less(others[a][c], e);
+                squares[a] = added(product(m, delta), delta, squares[a]);
+                for i in 0..N {
+                    dots[a][i] = added(directions[i][c], delta, dots[a][i]);
+                }
+            }
+        }
+        sums.add(&squares, &dots);
+    }
+}
+
+/// a − b.
+#[inline(always)]
+fn less(a: Chunk, b: Chunk) -> Chunk {
+    std::array::from_fn(|i| a[i] - b[i])
+}
+
+dispatched! {
+    /// Σ u (Δ c − Σ aᵢ qᵢ)² over the first `count` of (aᵢ, qᵢ).
+    fn residual_square<'a>(
+        own: &'a [f64],
+        other: &'a [f64],
+        c: &'a [f64],
+        u: &'a [f64],
+        taken: [(f64, &'a [f64]); MOST_NUISANCES],
+        count: usize,
+    ) -> f64 {
+        match count {
+            0 | 1 => left_over::<1>(own, other, c, u, taken),
+            2 => left_over::<2>(own, other, c, u, taken),
+            3 => left_over::<3>(own, other, c, u, taken),
+            _ => left_over::<4>(own, other, c, u, taken),
+        }
+    }
+}
+
+#[inline(always)]
+fn left_over<const N: usize>(
+    own: &[f64],
+    other: &[f64],
+    c: &[f64],
+    u: &[f64],
+    taken: [(f64, &[f64]); MOST_NUISANCES],
+) -> f64 {
+    let bands = own.len();
+    let shares: [f64; N] = std::array::from_fn(|i| taken[i].0);
+    let q: [_; N] = std::array::from_fn(|i| taken[i].1[..bands].as_chunks());
+    let (e, e_rest) = own.as_chunks();
+    let (o, o_rest) = other[..bands].as_chunks();
+    let (c, c_rest) = c[..bands].as_chunks();
+    let (u, u_rest) = u[..bands].as_chunks();
+    let mut total = CompensatedLanes::default();
+    run_off([e, o, c, u], q.map(|q| q.0), shares, &mut total);
+    if !e_rest.is_empty() {
+        let rest = [e_rest, o_rest, c_rest, u_rest].map(|rest| [padded(rest)]);
+        let q = q.map(|q| [padded(q.1)]);
+        let (rest, q) = (rest.each_ref().map(|rest| &rest[..]), q.each_ref().map(|q| &q[..]));
+        run_off(rest, q, shares, &mut total);
+    }
+    total.value()
+}
+
+/// The bands of [`left_over`] in whole chunks: target, alternative, c and u; and the columns taken off.
+#[inline(always)]
+fn run_off<const N: usize>(
+    spectra: [&[Chunk]; 4],
+    columns: [&[Chunk]; N],
+    shares: [f64; N],
+    total: &mut CompensatedLanes,
+) {
+    let count = spectra[0].len();
+    let [own, other, contrast, weights] = spectra.map(|spectrum| &spectrum[..count]);
+    let columns = columns.map(|column| &column[..count]);
+    for start in (0..count).step_by(BLOCK_CHUNKS) {
+        let mut sum = [0.0; LANES];
+        for c in start..(start + BLOCK_CHUNKS).min(count) {
+            let mut r = product(less(other[c], own[c]), contrast[c]);
+            for i in 0..N {
+                r = fused(-shares[i], columns[i][c], r);
+            }
+            sum = added(product(weights[c], r), r, sum);
+        }
+        total.add(sum);
+    }
+}
