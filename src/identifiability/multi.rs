@@ -1,5 +1,20 @@
-//! Many materials: distances of each against all.
+//! Many materials: distances of each against all, what they predict, and which can be told apart.
+//!
+//! Algorithm 3 of the paper: the distances from a target to every alternative, the least of which decides whether it is
+//! identifiable (S33). All against all, everything that depends on the target alone is computed once
+//! ([`LocalMatrix`], [`LibraryScene`]); where only a yes or no is asked for, [`LibraryScene::told_apart`] stops at the
+//! first proof of either.
+//!
+//! Source: paper SII B, S32–S34, Algorithm 3.
 
+mod decide;
 mod local;
+mod nearest;
+mod predict;
+mod scaling;
 
+pub use decide::{Decisions, Skipping, Work};
 pub use local::LocalMatrix;
+pub use nearest::LibraryScene;
+pub use predict::{clusters, prediction};
+pub use scaling::expected_minimum;

@@ -54,6 +54,15 @@ pub struct NearestDistance {
     pub converged: bool,
 }
 
+/// Whether a state nearer than a limit was found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Nearer {
+    /// One is.
+    Somewhere,
+    /// The nearest one is not.
+    Nowhere,
+}
+
 /// What the counts are compared in.
 #[derive(Debug, Clone, Copy)]
 enum Metric<'a> {
@@ -103,7 +112,7 @@ impl<'a> NearestSolver<'a> {
         state: &State,
         photons: f64,
     ) -> Result<NearestDistance> {
-        self.search(emissivity, alternative, state, Metric::PerPhoton { photons }, None)
+        self.search(emissivity, alternative, state, Metric::PerPhoton { photons }, None, 0.0)
     }
 
     /// Nearest statistical distance d with the camera's own noise.
@@ -117,7 +126,7 @@ impl<'a> NearestSolver<'a> {
         state: &State,
         counting: &Counting,
     ) -> Result<NearestDistance> {
-        self.search(emissivity, alternative, state, Metric::Counting(counting), None)
+        self.search(emissivity, alternative, state, Metric::Counting(counting), None, 0.0)
     }
 
     /// As [`NearestSolver::with_counting`], but only refined from a state known to be near the answer.
@@ -132,17 +141,51 @@ impl<'a> NearestSolver<'a> {
         counting: &Counting,
         start: &State,
     ) -> Result<NearestDistance> {
-        self.search(emissivity, alternative, state, Metric::Counting(counting), Some(start))
+        self.search(emissivity, alternative, state, Metric::Counting(counting), Some(start), 0.0)
     }
 
-    fn search(
+    /// Whether any state of the alternative is nearer than `limit`, with the camera's own noise: the search
+    /// ends at the first one.
+    ///
+    /// # Errors
+    /// A scene without photons.
+    pub fn nearer_than(
         &mut self,
         emissivity: &[f64],
         alternative: &[f64],
         state: &State,
-        metric: Metric<'_>,
-        start: Option<&State>,
-    ) -> Result<NearestDistance> {
+        counting: &Counting,
+        limit: f64,
+    ) -> Result<Nearer> {
+        let found = self.search(emissivity, alternative, state, Metric::Counting(counting), None, limit)?;
+        Ok(if found.distance < limit { Nearer::Somewhere } else { Nearer::Nowhere })
+    }
+
+    /// Statistical distance to the alternative in the target's own state (as far as that is within the
+    /// alternative's range): an upper bound on the nearest one.
+    ///
+    /// # Errors
+    /// A scene without photons.
+    pub fn own_state_distance(
+        &mut self,
+        emissivity: &[f64],
+        alternative: &[f64],
+        state: &State,
+        counting: &Counting,
+    ) -> Result<f64> {
+        let target = self.aim(emissivity, alternative, state, Metric::Counting(counting))?;
+        let own = self.space.within_range(state);
+        Ok(self.linearise(&target, &own).cost.sqrt())
+    }
+
+    /// Evaluates the target, with which every candidate is compared.
+    fn aim<'t>(
+        &mut self,
+        emissivity: &'t [f64],
+        alternative: &'t [f64],
+        state: &'t State,
+        metric: Metric<'t>,
+    ) -> Result<Target<'t>> {
         self.target.evaluate(emissivity, alternative, state, &[], false);
         let total = crate::sum::sum(self.target.signal());
         if !(total > 0.0 && total.is_finite()) {
@@ -159,6 +202,20 @@ impl<'a> NearestSolver<'a> {
         };
         let target = Target { emissivity, alternative, state, counts, metric };
         self.work.weigh_target(&target, self.target.signal());
+        Ok(target)
+    }
+
+    /// The nearest state, or the first one found that is nearer than `enough`.
+    fn search(
+        &mut self,
+        emissivity: &[f64],
+        alternative: &[f64],
+        state: &State,
+        metric: Metric<'_>,
+        start: Option<&State>,
+        enough: f64,
+    ) -> Result<NearestDistance> {
+        let target = self.aim(emissivity, alternative, state, metric)?;
         let starts = match start {
             Some(start) => vec![start.clone()],
             None => self.starts(&target),
@@ -166,8 +223,11 @@ impl<'a> NearestSolver<'a> {
         let mut best: Option<NearestDistance> = None;
         let mut iterations = 0;
         for start in starts {
-            let candidate = self.refine(&target, start, best.as_ref().map(|best| &best.state));
+            let candidate = self.refine(&target, start, best.as_ref().map(|best| &best.state), enough);
             iterations += candidate.iterations;
+            if candidate.distance < enough {
+                return Ok(candidate);
+            }
             if best.as_ref().is_none_or(|best| candidate.distance < best.distance) {
                 best = Some(candidate);
             }
@@ -184,12 +244,18 @@ impl<'a> NearestSolver<'a> {
     }
 
     /// Newton's method within the bounds, damped as by Levenberg and Marquardt. It ends early where it has come
-    /// to a minimum that is `known`.
-    fn refine(&mut self, target: &Target<'_>, start: State, known: Option<&State>) -> NearestDistance {
+    /// to a minimum that is `known`, or nearer than `enough`.
+    fn refine(
+        &mut self,
+        target: &Target<'_>,
+        start: State,
+        known: Option<&State>,
+        enough: f64,
+    ) -> NearestDistance {
         let mut state = self.space.within_range(&start);
         let mut at = self.linearise(target, &state);
         let (mut damping, mut converged, mut iterations) = (1e-7, self.space.parameters.is_empty(), 0);
-        while !converged && iterations < ITERATIONS {
+        while !converged && iterations < ITERATIONS && at.cost >= enough * enough {
             iterations += 1;
             let Some(step) = self.space.step(&at.quadratic, &state, damping, false) else { break };
             let moved = self.space.moved(&state, &step);
