@@ -52,6 +52,12 @@ struct Global {
     /// Materials of your own, a folder or a file; may be given several times
     #[arg(long, global = true, value_name = "DIR")]
     library: Vec<PathBuf>,
+    /// Use the materials of --library alone, not the built-in ones
+    #[arg(long, global = true)]
+    only_library: bool,
+    /// Leave out alternatives whose spectra do not cover the bands, with a warning
+    #[arg(long, global = true)]
+    skip_uncovered: bool,
     /// Number of threads (default: all cores); the result does not depend on it
     #[arg(long, global = true, value_name = "N")]
     threads: Option<usize>,
@@ -92,9 +98,13 @@ fn run(cli: &Cli) -> Result<ExitCode> {
 impl Global {
     /// The embedded library with the user's own materials, and what is to be said about them.
     fn library(&self) -> Result<Library> {
-        let mut library = Library::embedded()?;
+        let mut library = if self.only_library { Library::empty() } else { Library::embedded()? };
         for path in &self.library {
             library.add_path(path)?;
+        }
+        if library.iter().next().is_none() {
+            let instead = "add spectra with --library DIR, or leave out --only-library";
+            return Err(Error::malformed("the library is empty", instead));
         }
         for warning in library.warnings() {
             self.note(&format!("warning: {warning}"));
@@ -131,6 +141,7 @@ impl Global {
         if let Some(by) = by {
             scenario.requirement.by = by;
         }
+        scenario.alternatives.skip_uncovered |= self.skip_uncovered;
         Study::new(&scenario, &self.library()?)
     }
 

@@ -2,6 +2,7 @@
 
 pub mod bundle;
 pub mod figures;
+pub mod library;
 pub mod plot;
 pub mod sizing;
 pub mod table;

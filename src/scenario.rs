@@ -156,6 +156,8 @@ pub struct Alternatives {
     pub lighting_range: Option<[f64; 2]>,
     /// How the spectra of the alternatives are continued beyond their data.
     pub extrapolate: Option<Extrapolation>,
+    /// Whether materials that do not cover the bands are left out, with a warning, instead of refused.
+    pub skip_uncovered: bool,
 }
 
 /// What is not known beforehand (`[unknown]`).

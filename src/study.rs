@@ -5,18 +5,24 @@
 //! each hardware quantity would have to be. Results are plain data that serialise to the JSON of the
 //! command line; text, tables and plots only render them.
 
+mod answers;
 mod bands;
 mod camera;
 mod curves;
 mod identify;
 mod magnitudes;
+mod matrix;
 mod resolve;
+mod scaling;
 mod size;
 mod warn;
 
+pub use answers::{Answers, Asked};
 pub use curves::{InformationCurves, PhotonMap, Spectra};
-pub use identify::{Identification, NearestState, PairResult};
+pub use identify::{Identifiability, Identification, NearestState, PairResult, Prediction};
+pub use matrix::{Apart, Check, Matrix, Rows, TargetVerdict};
 pub use resolve::{Study, Surface};
+pub use scaling::{BandNumber, LibrarySize, Scaling};
 pub use size::{CameraResult, RequirementResult, Sizing, Verdict};
 
 /// Something the reader of a result must know, with a code that programs can rely on.

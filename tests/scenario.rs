@@ -297,6 +297,7 @@ prop_compose! {
             above_zero().prop_map(Reliability::Distance),
         ],
         by in proptest::sample::select(DistanceKind::ALL.to_vec()),
+        skip_uncovered in any::<bool>(),
         speed_m_s in proptest::option::of(above_zero()),
     ) -> Scenario {
         let (material, temperature_k, distance_m, target_extrapolate) = target;
@@ -308,7 +309,13 @@ prop_compose! {
             title,
             target: Target { material, temperature_k, distance_m, extrapolate: target_extrapolate },
             environment,
-            alternatives: Alternatives { materials, temperature_range_k, lighting_range, extrapolate },
+            alternatives: Alternatives {
+                materials,
+                temperature_range_k,
+                lighting_range,
+                extrapolate,
+                skip_uncovered,
+            },
             bands,
             unknown,
             camera,

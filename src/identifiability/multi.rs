@@ -16,5 +16,5 @@ mod scaling;
 pub use decide::{Decisions, Skipping, Work};
 pub use local::LocalMatrix;
 pub use nearest::LibraryScene;
-pub use predict::{clusters, prediction};
+pub use predict::{chains, clusters, prediction};
 pub use scaling::expected_minimum;

@@ -2,6 +2,10 @@
 //!
 //! Every function takes results and gives a figure with the CSV of just what it shows.
 
+mod scaling;
+
+pub use scaling::{band_number, library_size};
+
 use super::plot::{Axis, Band, Figure, HeatMap, LineFigure, Marker, Panel, Rule, Series, Style};
 use super::table::Table;
 use super::text::significant;

@@ -1,5 +1,9 @@
 //! Results as text for people: the answer in a sentence, then the numbers, then what they rest on.
 
+mod many;
+
+pub use many::{answers, check, work};
+
 use crate::instrument::{Camera, Figures, NoiseSpec};
 use crate::policy::Quantity;
 use crate::scenario::{Nuisance, Unknown};
@@ -182,22 +186,17 @@ fn solutions(result: &Sizing) -> String {
 }
 
 /// Distances to all alternatives.
-#[must_use]
-pub fn identification(result: &Identification, study: &Study) -> String {
-    let mut out = String::new();
-    let hardest = result.pairs.iter().find(|pair| pair.alternative == result.limiting);
-    if let Some(pair) = hardest {
-        let needed = match pair.photons_required {
-            Some(count) => format!("it takes at least {count:.2e} photons"),
-            None => "no number of photons suffices".into(),
-        };
-        let _ = writeln!(out, "{} is hardest to tell from {}: {needed}.\n", pair.target, pair.alternative);
-    }
+fn identification(result: &Identification, study: &Study) -> String {
+    let mut out = many::verdict(result, study);
     out.push_str(&pair_table(&result.pairs, study));
+    out.push_str(&many::prediction(result));
     out.push('\n');
-    out.push_str(&assumptions(study));
-    out.push_str(&warnings(&result.warnings));
     out
+}
+
+/// What results rest on, and what the reader must know.
+fn footing(result: &Identification, study: &Study) -> String {
+    assumptions(study) + &warnings(&result.warnings)
 }
 
 /// The pairs, that which is hardest to tell apart by the distance that decides first.
@@ -212,7 +211,7 @@ fn pair_table(pairs: &[PairResult], study: &Study) -> String {
         "  {:<width$}  {:>9}  {:>9}  {:>9}  {:>18}  {:>24}",
         "alternative", "nearest", "local", "S29", "photons required", "nearest state"
     );
-    let _ = writeln!(out, "{}", if with_camera { "    camera d" } else { "" });
+    let _ = writeln!(out, "{}", if with_camera { "    camera d  told apart" } else { "" });
     let mut sorted: Vec<&PairResult> = pairs.iter().collect();
     sorted.sort_by(|a, b| decisive(a).total_cmp(&decisive(b)));
     for pair in sorted {
@@ -228,7 +227,8 @@ fn pair_table(pairs: &[PairResult], study: &Study) -> String {
             photons(pair.photons_required)
         );
         let reached = pair.statistical_distance.map_or_else(String::new, |d| format!("  {d:>10.2e}"));
-        let _ = writeln!(out, "{reached}");
+        let told = pair.told_apart.map_or("", |told| if told { "         yes" } else { "          no" });
+        let _ = writeln!(out, "{reached}{told}");
     }
     out
 }

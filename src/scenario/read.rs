@@ -170,7 +170,8 @@ fn rounded(sum: f64) -> f64 {
 }
 
 fn alternatives(entry: &Entry<'_>) -> Result<Alternatives> {
-    let section = entry.section(&["materials", "temperature", "lighting", "extrapolate"])?;
+    let section =
+        entry.section(&["materials", "temperature", "lighting", "extrapolate", "skip_uncovered"])?;
     let materials = section.read("materials", |entry| {
         let items = entry.items("materials = [\"aluminium\"]")?;
         if items.is_empty() {
@@ -189,6 +190,7 @@ fn alternatives(entry: &Entry<'_>) -> Result<Alternatives> {
         lighting_range: section
             .read("lighting", |entry| range(entry, "[0.0, 1.0]", |end| end.number("0.5", SHARE)))?,
         extrapolate: extrapolation(&section)?,
+        skip_uncovered: section.read("skip_uncovered", Entry::boolean)?.unwrap_or(false),
     })
 }
 

@@ -182,6 +182,7 @@ fn alternatives(alternatives: &Alternatives, paths: Paths<'_>) -> Entries {
         .put_if("temperature", alternatives.temperature_range_k.map(kelvins))
         .put_if("lighting", alternatives.lighting_range.map(|range| range.to_vec()))
         .put_if("extrapolate", alternatives.extrapolate.map(Extrapolation::name))
+        .put_if("skip_uncovered", alternatives.skip_uncovered.then_some(true))
 }
 
 fn bands(bands: &BandsSpec, paths: Paths<'_>) -> Entries {

@@ -272,6 +272,34 @@ impl Bands {
         (kept, places)
     }
 
+    /// Every `group` neighbouring bands joined to one, the last one of what is left.
+    pub(crate) fn merged(&self, group: usize) -> Self {
+        let group = group.max(1);
+        if group == 1 {
+            return self.clone();
+        }
+        let bands: Vec<Band> = self
+            .bands
+            .chunks(group)
+            .map(|parts| {
+                let low_cm1 = parts.iter().map(|band| band.low_cm1).fold(f64::INFINITY, f64::min);
+                let high_cm1 = parts.iter().map(|band| band.high_cm1).fold(0.0, f64::max);
+                Band { center_cm1: 0.5 * (low_cm1 + high_cm1), low_cm1, high_cm1, name: None }
+            })
+            .collect();
+        let mut first_node: Vec<usize> = self.first_node.iter().copied().step_by(group).collect();
+        if first_node.len() == bands.len() {
+            first_node.push(self.nodes_cm1.len());
+        }
+        Self {
+            shapes: vec![Shape::TopHat; bands.len()],
+            bands,
+            nodes_cm1: self.nodes_cm1.clone(),
+            weights_cm1: self.weights_cm1.clone(),
+            first_node,
+        }
+    }
+
     /// Weight of each node, cm⁻¹.
     pub(crate) fn weights_cm1(&self) -> &[f64] {
         &self.weights_cm1

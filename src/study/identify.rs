@@ -6,6 +6,7 @@ use crate::fisher::{Counting, Nuisance, Unknowns};
 use crate::identifiability::Status;
 use crate::identifiability::detection::{self, ErrorBracket};
 use crate::identifiability::local::{LocalDistance, LocalSolver};
+use crate::identifiability::multi;
 use crate::identifiability::nearest::{NearestDistance, NearestSolver};
 use crate::policy;
 use crate::scenario::{DistanceKind, Scenario};
@@ -24,8 +25,38 @@ pub struct Identification {
     pub pairs: Vec<PairResult>,
     /// The alternative that is hardest to tell apart.
     pub limiting: String,
+    /// The target against the library as a whole (Algorithm 3).
+    pub identifiability: Identifiability,
     /// What the reader must know.
     pub warnings: Vec<Warning>,
+}
+
+/// A target against all its alternatives (Algorithm 3): the one hardest to tell apart decides.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct Identifiability {
+    /// Least distance per √photon, by the distance that decides (S33).
+    pub distance_minimum: f64,
+    /// Least statistical distance with the camera.
+    pub statistical_distance_minimum: Option<f64>,
+    /// Φ of it.
+    pub detection_probability_minimum: Option<f64>,
+    /// Identifiability log₂ 2P of the paper, bits.
+    pub identifiability_bits: Option<f64>,
+    /// Whether the camera tells the target from every alternative as reliably as required.
+    pub identifiable: Option<bool>,
+    /// Alternatives that it tells the target from.
+    pub told_from: Option<usize>,
+    /// The paper's prediction vector S32, target first: a heuristic, no bound and no test's probability.
+    pub prediction_heuristic: Option<Vec<Prediction>>,
+}
+
+/// An entry of the prediction vector S32.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct Prediction {
+    /// The material.
+    pub material: String,
+    /// Its share by S32.
+    pub probability: f64,
 }
 
 /// The state of the alternative that looks most like the target.
@@ -92,6 +123,8 @@ pub struct PairResult {
     pub photons_required_by: PhotonsRequired,
     /// Statistical distance of the camera by the chosen distance, with its noise.
     pub statistical_distance: Option<f64>,
+    /// Whether that reaches the requirement.
+    pub told_apart: Option<bool>,
     /// What the paper's shortcut √(N/(1+γ))·d₀ makes of it.
     pub statistical_distance_shortcut: Option<f64>,
     /// Φ(d).
@@ -149,10 +182,33 @@ impl Study {
         Ok(Identification {
             scenario: self.scenario.clone(),
             photon_radiance: self.photon_radiance(),
+            identifiability: self.identifiability(&pairs),
             pairs,
             limiting,
             warnings,
         })
+    }
+
+    /// What the pairs say together.
+    fn identifiability(&self, pairs: &[PairResult]) -> Identifiability {
+        let kind = self.scenario.requirement.by;
+        let least = |values: Vec<f64>| values.into_iter().fold(f64::INFINITY, f64::min);
+        let statistical: Option<Vec<f64>> = pairs.iter().map(|pair| pair.statistical_distance).collect();
+        let minimum = statistical.clone().map(least);
+        let prediction = statistical.as_ref().map(|distances| {
+            let names = std::iter::once(&self.target.name).chain(pairs.iter().map(|pair| &pair.alternative));
+            let shares = names.zip(multi::prediction(distances));
+            shares.map(|(name, probability)| Prediction { material: name.clone(), probability }).collect()
+        });
+        Identifiability {
+            distance_minimum: least(pairs.iter().map(|pair| pair.distance(kind)).collect()),
+            statistical_distance_minimum: minimum,
+            detection_probability_minimum: minimum.map(detection::probability),
+            identifiability_bits: minimum.map(detection::information_bits),
+            identifiable: minimum.map(|d| d >= self.required),
+            told_from: statistical.map(|d| d.iter().filter(|d| **d >= self.required).count()),
+            prediction_heuristic: prediction,
+        }
     }
 
     /// ΣS·Δν of the target, photons s⁻¹ m⁻² sr⁻¹.
@@ -237,6 +293,7 @@ impl Study {
             photons_required: required_by.of(kind),
             photons_required_by: required_by,
             statistical_distance: statistical,
+            told_apart: statistical.map(|d| d >= self.required),
             statistical_distance_shortcut: shortcut,
             detection_probability: statistical.map(detection::probability),
             miss_probability: statistical.map(detection::miss_probability),
@@ -269,7 +326,8 @@ impl Study {
         Ok(self.local(unknowns, alternative, photons)?.distance)
     }
 
-    fn enough_bands(&self, unknowns: &Unknowns) -> bool {
+    /// Whether there are more bands than unknowns without a prior.
+    pub(super) fn enough_bands(&self, unknowns: &Unknowns) -> bool {
         let parameters = unknowns.parameters(self.surroundings.objects().len());
         let free = parameters.iter().filter(|parameter| unknowns.sigma_prior(**parameter).is_none()).count();
         self.bands.len() > free
@@ -321,18 +379,37 @@ impl Study {
         }
     }
 
-    /// Photons at which √N d₀(N) meets the requirement, d₀ depending on N through the priors.
-    fn photons_with_priors(&self, kind: DistanceKind, alternative: &Surface) -> Result<Option<f64>> {
-        let per_photon = |photons: f64| match kind {
+    /// Distance per √photon of a kind, priors counting as among `photons` photons.
+    pub(super) fn distance_per_photon(
+        &self,
+        kind: DistanceKind,
+        alternative: &Surface,
+        photons: f64,
+    ) -> Result<f64> {
+        match kind {
             DistanceKind::Nearest => self.nearest(alternative, photons).map(|nearest| nearest.distance),
             DistanceKind::Local => {
                 self.local(self.unknowns.clone(), alternative, photons).map(|local| local.distance)
             }
             DistanceKind::LocalUnknownGain => self.local_unknown_gain(alternative, photons),
-        };
+        }
+    }
+
+    /// What is unknown for the distance that decides.
+    pub(super) fn decisive_unknowns(&self) -> Unknowns {
+        match self.scenario.requirement.by {
+            DistanceKind::LocalUnknownGain => self.unknowns.with(Nuisance::Gain),
+            DistanceKind::Nearest | DistanceKind::Local => self.unknowns.clone(),
+        }
+    }
+
+    /// Photons at which √N d₀(N) meets the requirement, d₀ depending on N through the priors.
+    fn photons_with_priors(&self, kind: DistanceKind, alternative: &Surface) -> Result<Option<f64>> {
         let excess = |log: f64| {
             let photons = log.exp();
-            Ok((photons.sqrt() * per_photon(photons)? / self.required).max(1e-300).ln())
+            Ok((photons.sqrt() * self.distance_per_photon(kind, alternative, photons)? / self.required)
+                .max(1e-300)
+                .ln())
         };
         // From a millionth of a photon to 10⁶⁰ of them.
         let (low, high) = (-14.0, 138.0);

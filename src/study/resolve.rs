@@ -244,39 +244,71 @@ impl<'a> Finder<'a> {
         }
     }
 
-    /// The alternatives named, or every other surface of the library that covers the bands.
+    /// The alternatives named, or every other surface of the library. Those that do not cover the bands are
+    /// refused, or left out with a warning where the scenario asks for it.
     fn alternatives(&mut self, target: &Material, bands: &Bands) -> Result<Vec<Cow<'a, Material>>> {
         let wanted = &self.scenario.alternatives;
-        if let Some(materials) = &wanted.materials {
-            let found = materials.iter().enumerate().map(|(i, material)| {
-                self.find(&format!("alternatives.materials[{i}]"), material, wanted.extrapolate)
-            });
-            return found.collect();
+        let found: Vec<Cow<'a, Material>> = match &wanted.materials {
+            Some(materials) => {
+                let found = materials.iter().enumerate().map(|(i, material)| {
+                    self.find(&format!("alternatives.materials[{i}]"), material, wanted.extrapolate)
+                });
+                found.collect::<Result<_>>()?
+            }
+            None => self
+                .library
+                .iter()
+                .filter(|material| material.name() != target.name() && is_surface(material))
+                .map(|material| self.accept(Cow::Borrowed(material), wanted.extrapolate))
+                .collect(),
+        };
+        if found.is_empty() {
+            let instead = "name alternatives.materials, or add spectra with --library";
+            let error = Error::malformed("the library has no other material than the target", instead);
+            return Err(error.at(self.scenario.place("alternatives")));
+        }
+        if wanted.materials.is_some() && !wanted.skip_uncovered {
+            // Said of each by name and key when it is sampled.
+            return Ok(found);
         }
         let (low, high) = bands.range_cm1();
-        let mut found = Vec::new();
-        for material in self.library.iter() {
-            if material.name() == target.name() || !is_surface(material) {
-                continue;
-            }
-            let covers = material.range_cm1().is_none_or(|(first, last)| first <= low && last >= high);
-            if covers || wanted.extrapolate.is_some() {
-                let material = self.accept(Cow::Borrowed(material), wanted.extrapolate);
-                found.push(material);
+        let (kept, left): (Vec<_>, Vec<_>) = found.into_iter().partition(|material| {
+            let range = material.range_cm1();
+            wanted.extrapolate.is_some() || range.is_none_or(|(first, last)| first <= low && last >= high)
+        });
+        let names: Vec<&str> = left.iter().map(|material| material.name()).collect();
+        if names.is_empty() {
+            return Ok(kept);
+        }
+        if !wanted.skip_uncovered || kept.is_empty() {
+            let found = format!(
+                "{} of {} alternatives do not cover the bands ({low} to {high} cm^-1): {}",
+                names.len(),
+                names.len() + kept.len(),
+                shortened(&names)
+            );
+            let instead = if kept.is_empty() {
+                "choose bands that the spectra cover, or alternatives.extrapolate = \"hold\""
             } else {
-                let message =
-                    format!("{} is left out: its spectrum does not cover the bands", material.name());
-                self.warnings.push(Warning::new("material-skipped", message));
-            }
+                "leave them out with --skip-uncovered, name alternatives.materials, or choose other bands"
+            };
+            return Err(Error::malformed(found, instead).at(self.scenario.place("alternatives")));
         }
-        if found.is_empty() {
-            return Err(Error::malformed(
-                "no material of the library covers the bands",
-                "name alternatives.materials",
-            )
-            .at(self.scenario.place("alternatives")));
+        for name in names {
+            let message = format!("{name} is left out: its spectrum does not cover the bands");
+            self.warnings.push(Warning::new("material-skipped", message));
         }
-        Ok(found)
+        Ok(kept)
+    }
+}
+
+/// The first few of many names.
+fn shortened(names: &[&str]) -> String {
+    const SHOWN: usize = 6;
+    let shown = names.iter().take(SHOWN).copied().collect::<Vec<_>>().join(", ");
+    match names.len().checked_sub(SHOWN) {
+        Some(more) if more > 0 => format!("{shown} and {more} more"),
+        _ => shown,
     }
 }
 

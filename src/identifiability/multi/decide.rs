@@ -42,8 +42,9 @@ pub struct Work {
     pub decided_by_few_bands: usize,
     /// Decided by a search that ended at the first state nearer than required.
     pub decided_on_the_way: usize,
-    /// Not asked, since the other direction had decided.
-    pub decided_by_other_direction: usize,
+    /// Not asked, since another distance had decided the question: the other direction of the pair, or another
+    /// alternative that is too near.
+    pub decided_by_another: usize,
     /// Computed in full.
     pub in_full: usize,
 }
@@ -55,7 +56,7 @@ impl Work {
             decided_at_own_state: self.decided_at_own_state + other.decided_at_own_state,
             decided_by_few_bands: self.decided_by_few_bands + other.decided_by_few_bands,
             decided_on_the_way: self.decided_on_the_way + other.decided_on_the_way,
-            decided_by_other_direction: self.decided_by_other_direction + other.decided_by_other_direction,
+            decided_by_another: self.decided_by_another + other.decided_by_another,
             in_full: self.in_full + other.in_full,
         }
     }
@@ -156,6 +157,40 @@ impl LibraryScene<'_> {
     }
 }
 
+impl LibraryScene<'_> {
+    /// The first alternative found that a camera does not tell from `target`; `None` if it tells all. Those that
+    /// look most like it in its own state are asked first, and the first proof ends the work.
+    ///
+    /// # Errors
+    /// As [`NearestSolver::with_counting`].
+    pub fn first_not_told_from(
+        &self,
+        target: usize,
+        emissivities: &[&[f64]],
+        counting: &Counting,
+        required: f64,
+    ) -> Result<(Option<usize>, Work)> {
+        let few = Few::of(self, emissivities, counting)?;
+        let question = Question { scene: self, emissivities, counting, required, few: few.as_ref() };
+        let mut solvers = question.solvers();
+        let mut ranked = Vec::new();
+        for other in (0..emissivities.len()).filter(|&other| other != target) {
+            let (own, other_e) = (emissivities[target], emissivities[other]);
+            let distance = solvers.all.own_state_distance(own, other_e, self.state, counting)?;
+            ranked.push((distance, other));
+        }
+        ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut work = Work { distances: ranked.len(), ..Work::default() };
+        for (asked, (_, other)) in ranked.iter().enumerate() {
+            if !question.reaches(&mut solvers, target, *other, &mut work)? {
+                work.decided_by_another = ranked.len() - asked - 1;
+                return Ok((Some(*other), work));
+            }
+        }
+        Ok((None, work))
+    }
+}
+
 /// What is asked of every pair.
 struct Question<'q> {
     scene: &'q LibraryScene<'q>,
@@ -193,7 +228,7 @@ impl<'q> Question<'q> {
         let mut work = Work { distances: 2, ..Work::default() };
         for (asked, (a, b)) in [(a, b), (b, a)].into_iter().enumerate() {
             if !self.reaches(solvers, a, b, &mut work)? {
-                work.decided_by_other_direction = 1 - asked;
+                work.decided_by_another = 1 - asked;
                 return Ok((false, work));
             }
         }

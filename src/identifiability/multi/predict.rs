@@ -23,10 +23,30 @@ pub fn prediction(distances: &[f64]) -> Vec<f64> {
     std::iter::once(1.0).chain(rivals).map(|epsilon| epsilon / total).collect()
 }
 
-/// Groups of two and more that hang together by pairs that are `alike` (a chain of them is enough), in the
-/// order of their first members.
+/// Disjoint groups of two and more of which no two members can be told apart, each material in the first group
+/// that takes it, those that are `alike` to most others first.
+///
+/// Being alike does not carry over: two members of different groups may be alike too (see [`chains`]).
 #[must_use]
 pub fn clusters(count: usize, alike: impl Fn(usize, usize) -> bool) -> Vec<Vec<usize>> {
+    let alike = |a: usize, b: usize| alike(a, b) || alike(b, a);
+    let mut order: Vec<usize> = (0..count).collect();
+    let neighbours: Vec<usize> =
+        (0..count).map(|a| (0..count).filter(|&b| b != a && alike(a, b)).count()).collect();
+    order.sort_by_key(|&a| (std::cmp::Reverse(neighbours[a]), a));
+    let mut groups: Vec<Vec<usize>> = Vec::new();
+    for material in order {
+        match groups.iter_mut().find(|group| group.iter().all(|&member| alike(member, material))) {
+            Some(group) => group.push(material),
+            None => groups.push(vec![material]),
+        }
+    }
+    tidied(groups)
+}
+
+/// Groups of two and more that hang together by pairs that are `alike`: a chain of them is enough.
+#[must_use]
+pub fn chains(count: usize, alike: impl Fn(usize, usize) -> bool) -> Vec<Vec<usize>> {
     let mut free = vec![true; count];
     let mut found = Vec::new();
     for first in 0..count {
@@ -43,12 +63,17 @@ pub fn clusters(count: usize, alike: impl Fn(usize, usize) -> bool) -> Vec<Vec<u
                 }
             }
         }
-        if members.len() > 1 {
-            members.sort_unstable();
-            found.push(members);
-        }
+        found.push(members);
     }
-    found
+    tidied(found)
+}
+
+/// Groups of two and more, sorted within, the largest first.
+fn tidied(mut groups: Vec<Vec<usize>>) -> Vec<Vec<usize>> {
+    groups.retain(|group| group.len() > 1);
+    groups.iter_mut().for_each(|group| group.sort_unstable());
+    groups.sort_by_key(|group| (std::cmp::Reverse(group.len()), group[0]));
+    groups
 }
 
 #[cfg(test)]
@@ -68,10 +93,12 @@ mod tests {
     }
 
     #[test]
-    fn chains_make_one_cluster() {
+    fn a_chain_hangs_together_but_is_no_cluster() {
         let pairs = [(0, 3), (3, 5), (1, 4)];
-        let found = clusters(6, |a, b| pairs.contains(&(a, b)));
-        assert_eq!(found, [vec![0, 3, 5], vec![1, 4]]);
-        assert!(clusters(3, |_, _| false).is_empty());
+        let alike = |a: usize, b: usize| pairs.contains(&(a, b));
+        assert_eq!(chains(6, alike), [vec![0, 3, 5], vec![1, 4]]);
+        assert_eq!(clusters(6, alike), [vec![0, 3], vec![1, 4]]);
+        assert!(clusters(3, |_, _| false).is_empty() && chains(3, |_, _| false).is_empty());
+        assert_eq!(clusters(4, |a, b| a != b), [vec![0, 1, 2, 3]]);
     }
 }

@@ -1,0 +1,96 @@
+//! The files of `identify`: tables and plots of a target against a library, and of all against all.
+
+use super::bundle::Bundle;
+use super::figures::{self, Plot};
+use super::table::{Table, number, optional};
+use super::tables;
+use crate::error::Result;
+use crate::study::{Answers, Apart, Matrix, Rows, Study};
+use std::path::Path;
+
+/// All files of the answers; paths in the scenario are written relative to `out` where they lie below it.
+///
+/// # Errors
+/// A figure that cannot be drawn.
+pub fn bundle(study: &Study, answers: &Answers, out: &Path) -> Result<Bundle> {
+    let mut bundle = Bundle::default();
+    let result = &answers.identification;
+    bundle.add("scenario.toml", study.scenario().to_toml_beside(out));
+    bundle.add("pairs.csv", tables::pairs(&result.pairs).to_csv()?);
+    bundle.add("warnings.csv", tables::warnings(&result.warnings).to_csv()?);
+    if let Some(prediction) = &result.identifiability.prediction_heuristic {
+        let mut table = Table::new(["material", "prediction_s32_heuristic"]);
+        for entry in prediction {
+            table.push(vec![entry.material.clone(), number(entry.probability)]);
+        }
+        bundle.add("prediction.csv", table.to_csv()?);
+    }
+    let mut plots: Vec<Plot> = Vec::new();
+    if let Some(matrix) = &answers.matrix {
+        bundle.add("matrix_nearest.csv", square(matrix, &matrix.distance_nearest).to_csv()?);
+        bundle.add("matrix_local.csv", square(matrix, &matrix.distance_local).to_csv()?);
+        if let Some(statistical) = &matrix.statistical_distance {
+            bundle.add("matrix_camera.csv", square(matrix, statistical).to_csv()?);
+        }
+        bundle.add("targets.csv", targets(matrix).to_csv()?);
+    }
+    if let Some(apart) = answers.apart.as_ref().or(answers.matrix.as_ref().and_then(|m| m.apart.as_ref())) {
+        bundle.add("told_apart.csv", told_apart(apart).to_csv()?);
+        bundle.add("clusters.csv", clusters(apart).to_csv()?);
+    }
+    if let Some(scaling) = &answers.scaling {
+        plots.push(figures::library_size(scaling, &study.target().name));
+        plots.push(figures::band_number(scaling, &study.target().name));
+    }
+    bundle.add_plots(&plots)?;
+    Ok(bundle)
+}
+
+/// A matrix with the names of its rows and columns.
+fn square(matrix: &Matrix, rows: &Rows) -> Table {
+    let mut table = Table::new(std::iter::once("target").chain(matrix.materials.iter().map(String::as_str)));
+    for (name, row) in matrix.materials.iter().zip(rows) {
+        table.push(std::iter::once(name.clone()).chain(row.iter().map(|d| optional(*d))).collect());
+    }
+    table
+}
+
+fn targets(matrix: &Matrix) -> Table {
+    let mut table = Table::new([
+        "target",
+        "hardest_alternative",
+        "distance_minimum_per_sqrt_photon",
+        "statistical_distance_minimum_camera",
+        "identifiable",
+    ]);
+    for target in &matrix.targets {
+        table.push(vec![
+            target.material.clone(),
+            target.limiting.clone(),
+            number(target.distance_minimum),
+            optional(target.statistical_distance_minimum),
+            target.identifiable.map_or("", |yes| if yes { "yes" } else { "no" }).into(),
+        ]);
+    }
+    table
+}
+
+fn told_apart(apart: &Apart) -> Table {
+    let mut table = Table::new(["material", "other", "told_apart"]);
+    for (pairs, told) in [(&apart.told_apart, "yes"), (&apart.not_told_apart, "no")] {
+        for [a, b] in pairs {
+            table.push(vec![a.clone(), b.clone(), told.into()]);
+        }
+    }
+    table
+}
+
+fn clusters(apart: &Apart) -> Table {
+    let mut table = Table::new(["cluster", "material"]);
+    for (i, members) in apart.clusters.iter().enumerate() {
+        for member in members {
+            table.push(vec![(i + 1).to_string(), member.clone()]);
+        }
+    }
+    table
+}

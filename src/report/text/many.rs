@@ -1,0 +1,200 @@
+//! What is said of many materials.
+
+use super::{photons, significant};
+use crate::identifiability::detection;
+use crate::identifiability::multi::Work;
+use crate::study::{Answers, Apart, Check, Identification, Matrix, Scaling, Study};
+use std::fmt::Write as _;
+
+/// Names listed in one line at most; all of them are in the tables.
+const LISTED: usize = 12;
+/// Entries of the prediction vector that are shown.
+const SHOWN: usize = 5;
+
+/// All that was asked for, the target against its alternatives first.
+#[must_use]
+pub fn answers(answers: &Answers, study: &Study) -> String {
+    let mut out = super::identification(&answers.identification, study);
+    if let Some(found) = &answers.matrix {
+        out.push_str(&matrix(found, study));
+    }
+    if let Some(found) = &answers.apart {
+        out.push_str(&apart(found, study));
+    }
+    if let Some(found) = &answers.scaling {
+        out.push_str(&scaling(found, &study.target().name));
+    }
+    out + &super::footing(&answers.identification, study)
+}
+
+/// The answer in a sentence, and the hardest alternative.
+pub(super) fn verdict(result: &Identification, study: &Study) -> String {
+    let mut out = String::new();
+    let Some(pair) = result.pairs.iter().find(|pair| pair.alternative == result.limiting) else {
+        return out;
+    };
+    let (target, all) = (&pair.target, result.pairs.len());
+    let percent = 100.0 * detection::probability(study.required_distance());
+    if let (Some(camera), Some(told)) = (study.camera(), result.identifiability.told_from) {
+        let name = &camera.name;
+        let sentence = match (all, told) {
+            (1, 1) => format!("Yes: {name} tells {target} from {}", pair.alternative),
+            (1, _) => format!("No: {name} cannot tell {target} from {}", pair.alternative),
+            (_, told) if told == all => format!("Yes: {name} tells {target} from all {all} alternatives"),
+            (_, told) => format!("No: {name} tells {target} from {told} of {all} alternatives only"),
+        };
+        let _ = writeln!(out, "{sentence} with {percent:.1} % reliability.");
+    }
+    let needed = match pair.photons_required {
+        Some(_) => format!("it takes at least {} photons", photons(pair.photons_required)),
+        None => "no number of photons suffices".into(),
+    };
+    let _ = writeln!(out, "{target} is hardest to tell from {}: {needed}.\n", pair.alternative);
+    out
+}
+
+/// The largest entries of the prediction vector.
+pub(super) fn prediction(result: &Identification) -> String {
+    let Some(all) = &result.identifiability.prediction_heuristic else { return String::new() };
+    let mut sorted: Vec<_> = all.iter().collect();
+    sorted.sort_by(|a, b| b.probability.total_cmp(&a.probability));
+    let shown: Vec<String> = sorted
+        .iter()
+        .take(SHOWN)
+        .map(|entry| format!("{} {}", entry.material, significant(entry.probability, 2)))
+        .collect();
+    format!(
+        "\nPrediction vector S32 of the paper (a heuristic: no bound, and no test's probability)\n  {}\n",
+        shown.join(", ")
+    )
+}
+
+/// A list of names, cut short where it is long.
+fn listed(names: &[String]) -> String {
+    match names.len().checked_sub(LISTED) {
+        Some(more) if more > 0 => format!("{} and {more} more", names[..LISTED].join(", ")),
+        _ => names.join(", "),
+    }
+}
+
+/// Which materials can be told apart, and which cannot.
+fn apart(apart: &Apart, study: &Study) -> String {
+    let camera = study.camera().map_or("the camera", |camera| camera.name.as_str());
+    let pairs = apart.told_apart.len() + apart.not_told_apart.len();
+    let percent = 100.0 * detection::probability(study.required_distance());
+    let mut out = format!(
+        "{camera} tells {} of {pairs} pairs apart with {percent:.1} % reliability, either of them the target\n",
+        apart.told_apart.len()
+    );
+    if apart.told_apart.is_empty() {
+        return out + "  not one pair\n\n";
+    }
+    let names =
+        |pairs: &[[String; 2]]| -> Vec<String> { pairs.iter().map(|[a, b]| format!("{a} | {b}")).collect() };
+    let _ = writeln!(out, "  told apart      {}", listed(&names(&apart.told_apart)));
+    if !apart.not_told_apart.is_empty() {
+        let _ = writeln!(out, "  not told apart  {}", listed(&names(&apart.not_told_apart)));
+    }
+    if !apart.clusters.is_empty() {
+        out.push_str("Clusters of which no two members are told apart\n");
+    }
+    for (i, cluster) in apart.clusters.iter().enumerate() {
+        let _ = writeln!(out, "  {:<3} ({}) {}", i + 1, cluster.len(), listed(cluster));
+    }
+    out.push('\n');
+    out
+}
+
+/// Every material as a target, the hardest first.
+fn matrix(matrix: &Matrix, study: &Study) -> String {
+    let mut out = format!("Every material as the target, by the {} distance\n", matrix.by);
+    let width = matrix.materials.iter().map(String::len).max().unwrap_or(0).max(8);
+    let with_camera = matrix.statistical_distance.is_some();
+    let _ = write!(out, "  {:<width$}  {:<width$}  {:>12}", "target", "hardest", "per photon^.5");
+    let _ = writeln!(out, "{}", if with_camera { "    camera d  identifiable" } else { "" });
+    let mut targets: Vec<_> = matrix.targets.iter().collect();
+    targets.sort_by(|a, b| a.distance_minimum.total_cmp(&b.distance_minimum));
+    for target in targets {
+        let _ = write!(
+            out,
+            "  {:<width$}  {:<width$}  {:>13.2e}",
+            target.material, target.limiting, target.distance_minimum
+        );
+        if let (Some(d), Some(yes)) = (target.statistical_distance_minimum, target.identifiable) {
+            let _ = write!(out, "  {d:>10.2e}  {:>12}", if yes { "yes" } else { "no" });
+        }
+        out.push('\n');
+    }
+    out.push('\n');
+    if let Some(found) = &matrix.apart {
+        out.push_str(&apart(found, study));
+    }
+    out
+}
+
+/// The answer of a check.
+#[must_use]
+pub fn check(result: &Check, study: &Study) -> String {
+    let target = &study.target().name;
+    let camera = study.camera().map_or("the camera", |camera| camera.name.as_str());
+    let percent = 100.0 * detection::probability(study.required_distance());
+    match &result.not_told_from {
+        Some(other) => {
+            format!("No: {camera} cannot tell {target} from {other} with {percent:.1} % reliability.\n")
+        }
+        None => format!(
+            "Yes: {camera} tells {target} from all {} alternatives with {percent:.1} % reliability.\n",
+            result.work.distances
+        ),
+    }
+}
+
+/// How distances scale with materials and bands.
+fn scaling(scaling: &Scaling, target: &str) -> String {
+    let mut out = format!("Scaling of the least {} distance of {target}\n", scaling.by);
+    let library = &scaling.library;
+    if let (Some(first), Some(last), Some(size)) =
+        (library.target.first(), library.target.last(), library.materials.last())
+    {
+        let _ = writeln!(
+            out,
+            "  least     {first:.2e} per sqrt(photon) against 1 alternative on average, {last:.2e} against {}",
+            size - 1
+        );
+    }
+    let bands = &scaling.bands;
+    let span = |values: &[f64], what: &str| {
+        let best = values.iter().copied().fold(0.0, f64::max);
+        let at = values.iter().position(|v| *v == best).and_then(|i| bands.bands.get(i));
+        match (values.first(), values.last(), at, bands.bands.first(), bands.bands.last()) {
+            (Some(first), Some(last), Some(at), Some(few), Some(many)) if best > 0.0 => format!(
+                "  {what}  {first:.2e} in {few} bands, {last:.2e} in {many}; most in {at}: {best:.2e}\n"
+            ),
+            _ => format!("  {what}  0 in any number of bands\n"),
+        }
+    };
+    out.push_str(&span(&bands.shot_noise, "least, shot noise alone (per sqrt(photon)) "));
+    out.push_str(&span(&bands.shot_noise_median, "median, shot noise alone (per sqrt(photon))"));
+    if !bands.camera.is_empty() {
+        out.push_str(&span(&bands.camera, "least, the camera's noise per reading (d)  "));
+        out.push_str(&span(&bands.camera_median, "median, the camera's noise per reading (d) "));
+    }
+    out.push('\n');
+    out
+}
+
+/// What was computed and what was not.
+#[must_use]
+pub fn work(work: &Work) -> String {
+    let skipped = work.distances - work.in_full - work.decided_on_the_way;
+    format!(
+        "work: {} distances asked for, {skipped} not searched in all bands ({} decided at the target's own state, \
+         {} by a few of the bands, {} by another distance), {} searches ended at the first state nearer than required, {} in full",
+        work.distances,
+        work.decided_at_own_state,
+        work.decided_by_few_bands,
+        work.decided_by_another,
+        work.decided_on_the_way,
+        work.in_full
+    )
+}

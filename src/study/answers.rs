@@ -1,0 +1,50 @@
+//! What can be asked of a library besides the distances to the target, and the answers together.
+
+use super::{Apart, Identification, Matrix, Scaling, Study};
+use crate::error::Result;
+use crate::identifiability::multi::Skipping;
+
+/// What is asked besides the distances to every alternative: nothing else is computed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Asked {
+    /// All materials against all.
+    pub matrix: bool,
+    /// Only which of them can be told apart.
+    pub apart: bool,
+    /// Whether pairs that a cheap bound decides are skipped.
+    pub skipping: Skipping,
+    /// The scaling laws.
+    pub scaling: bool,
+}
+
+/// The distances to every alternative and whatever else was asked for, in one object.
+#[derive(Debug, Clone, serde::Serialize)]
+pub struct Answers {
+    /// The target against every alternative.
+    #[serde(flatten)]
+    pub identification: Identification,
+    /// All materials against all.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub matrix: Option<Matrix>,
+    /// Which of them can be told apart.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub apart: Option<Apart>,
+    /// The scaling laws.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub scaling: Option<Scaling>,
+}
+
+impl Study {
+    /// Answers all that is asked, and computes no more.
+    ///
+    /// # Errors
+    /// As [`Study::identify`], [`Study::matrix`] and [`Study::told_apart`].
+    pub fn answer(&self, asked: &Asked) -> Result<Answers> {
+        Ok(Answers {
+            identification: self.identify()?,
+            matrix: asked.matrix.then(|| self.matrix()).transpose()?,
+            apart: asked.apart.then(|| self.told_apart(asked.skipping)).transpose()?,
+            scaling: asked.scaling.then(|| self.scaling()).transpose()?,
+        })
+    }
+}

@@ -1,0 +1,170 @@
+//! How distances scale: with the size of the library, and with the number of bands.
+//!
+//! More materials can only bring the least distance down. More bands can only bring it up as long as photons are all
+//! there is; with electronic noise of every reading, finer bands share the photons among more readings and
+//! can lose.
+
+use super::Study;
+use crate::error::Result;
+use crate::fisher::Counting;
+use crate::identifiability::local::LocalSolver;
+use crate::identifiability::multi::expected_minimum;
+use crate::identifiability::nearest::NearestSolver;
+use crate::scenario::DistanceKind;
+use rayon::prelude::*;
+
+/// Most numbers of bands that are tried.
+const NUMBERS_OF_BANDS: usize = 16;
+
+/// Expected least distance against the size of the library.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct LibrarySize {
+    /// Materials in the library, the target among them.
+    pub materials: Vec<usize>,
+    /// Expected least distance per √photon of the scenario's target over all libraries of that size.
+    pub target: Vec<f64>,
+    /// The same of each material as the target: 10 %, 50 % and 90 % quantiles over the materials.
+    pub quantiles: Vec<[f64; 3]>,
+    /// Least distance of all pairs of the whole library.
+    pub whole_library: f64,
+}
+
+/// Least distance from the target to any alternative against the number of bands.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct BandNumber {
+    /// Bands, each as wide as the next (but for the last).
+    pub bands: Vec<usize>,
+    /// Least distance per √photon: shot noise alone, photons fixed.
+    pub shot_noise: Vec<f64>,
+    /// Median over the alternatives of the distance per √photon, shot noise alone.
+    pub shot_noise_median: Vec<f64>,
+    /// Least statistical distance with the camera, whose noise is the same in every reading; empty without one.
+    pub camera: Vec<f64>,
+    /// Median over the alternatives with the camera; empty without one.
+    pub camera_median: Vec<f64>,
+}
+
+/// Both scaling laws.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct Scaling {
+    /// Which distance they are of.
+    pub by: &'static str,
+    /// Against the size of the library.
+    pub library: LibrarySize,
+    /// Against the number of bands.
+    pub bands: BandNumber,
+}
+
+impl Study {
+    /// The scaling laws of the least distance, by the distance that decides.
+    ///
+    /// # Errors
+    /// As [`Study::matrix`].
+    pub fn scaling(&self) -> Result<Scaling> {
+        let kind = self.scenario.requirement.by;
+        Ok(Scaling { by: kind.name(), library: self.library_size(kind)?, bands: self.band_number(kind)? })
+    }
+
+    fn library_size(&self, kind: DistanceKind) -> Result<LibrarySize> {
+        let materials = self.materials()?;
+        let emissivities: Vec<&[f64]> = materials.iter().map(|m| m.emissivity.as_slice()).collect();
+        let count = materials.len();
+        let distances = self.all_distances(kind, &emissivities, None)?;
+        let curves: Vec<Vec<f64>> = (0..count)
+            .map(|target| {
+                let row = &distances[target * count..(target + 1) * count];
+                let rivals: Vec<f64> =
+                    row.iter().enumerate().filter(|(other, _)| *other != target).map(|(_, d)| *d).collect();
+                expected_minimum(&rivals)
+            })
+            .collect();
+        let quantiles = (0..count - 1)
+            .map(|k| {
+                let mut values: Vec<f64> = curves.iter().map(|curve| curve[k]).collect();
+                values.sort_by(f64::total_cmp);
+                [0.1, 0.5, 0.9].map(|share| quantile(&values, share))
+            })
+            .collect();
+        let off_diagonal = distances.iter().enumerate().filter(|(i, _)| i % (count + 1) != 0);
+        let whole_library = off_diagonal.map(|(_, d)| *d).fold(f64::INFINITY, f64::min);
+        let target = curves.into_iter().next().unwrap_or_default();
+        Ok(LibrarySize { materials: (2..=count).collect(), target, quantiles, whole_library })
+    }
+
+    fn band_number(&self, kind: DistanceKind) -> Result<BandNumber> {
+        let mut found = BandNumber {
+            bands: Vec::new(),
+            shot_noise: Vec::new(),
+            shot_noise_median: Vec::new(),
+            camera: Vec::new(),
+            camera_median: Vec::new(),
+        };
+        let whole = self.bands.len();
+        let mut groups = vec![1];
+        while let Some(&group) = groups.last()
+            && group < whole
+            && groups.len() < NUMBERS_OF_BANDS
+        {
+            groups.push((group * 3).div_ceil(2));
+        }
+        for group in groups.into_iter().rev() {
+            let bands = self.bands.merged(group);
+            let study = Self { bands, ..self.clone() };
+            if !study.enough_bands(&study.decisive_unknowns()) {
+                continue;
+            }
+            let (least, median) = study.least_and_median(kind, None)?;
+            found.bands.push(study.bands.len());
+            found.shot_noise.push(least);
+            found.shot_noise_median.push(median);
+            if let Some(counting) = study.counting() {
+                let (least, median) = study.least_and_median(kind, Some(&counting))?;
+                found.camera.push(least);
+                found.camera_median.push(median);
+            }
+        }
+        Ok(found)
+    }
+}
+
+impl Study {
+    /// Least and median distance from the target to the alternatives.
+    fn least_and_median(&self, kind: DistanceKind, counting: Option<&Counting>) -> Result<(f64, f64)> {
+        let (own, state, photons) = (&self.target.emissivity, &self.state, f64::INFINITY);
+        let local = || LocalSolver::new(&self.bands, &self.surroundings, self.decisive_unknowns());
+        let nearest =
+            || NearestSolver::new(&self.bands, &self.surroundings, self.unknowns.clone(), self.range);
+        let all = self.alternatives.par_iter();
+        let found: Result<Vec<f64>> = match kind {
+            DistanceKind::Nearest => all
+                .map_init(nearest, |solver, other| {
+                    let other = &other.emissivity;
+                    match counting {
+                        Some(counting) => solver.with_counting(own, other, state, counting),
+                        None => solver.per_photon(own, other, state, photons),
+                    }
+                    .map(|nearest| nearest.distance)
+                })
+                .collect(),
+            DistanceKind::Local | DistanceKind::LocalUnknownGain => all
+                .map_init(local, |solver, other| {
+                    let other = &other.emissivity;
+                    match counting {
+                        Some(counting) => solver.with_counting(own, other, state, counting),
+                        None => solver.per_photon(own, other, state, photons),
+                    }
+                    .map(|local| local.distance)
+                })
+                .collect(),
+        };
+        let mut distances = found?;
+        distances.sort_by(f64::total_cmp);
+        Ok((quantile(&distances, 0.0), quantile(&distances, 0.5)))
+    }
+}
+
+/// The value below which this share of sorted values lies.
+fn quantile(sorted: &[f64], share: f64) -> f64 {
+    let last = sorted.len().saturating_sub(1);
+    sorted.get((share * last as f64).round() as usize).copied().unwrap_or(f64::NAN)
+}
