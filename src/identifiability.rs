@@ -11,6 +11,7 @@
 pub mod bracket;
 pub mod detection;
 
+pub mod lattice;
 pub mod linear;
 pub mod local;
 pub mod map;
