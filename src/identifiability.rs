@@ -8,6 +8,7 @@
 //! * [`bracket`]: rigorous bounds on the error between known states, two or many;
 //! * [`bayes`]: what priors do to the distance and to the probability.
 
+pub mod bayes;
 pub mod bracket;
 pub mod detection;
 
