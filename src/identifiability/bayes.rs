@@ -5,40 +5,45 @@
 //!
 //! J_H = Σ_k w_k Σ_w ∂S_w(θ_k) ∂S_w(θ_k)ᵀ/[S_w(θ_k) ΣS(θ₀)] + diag(1/(N σ_p²)),
 //!
-//! the Fisher matrix averaged over the prior of the target's state (nodes θ_k, weights w_k, nominal state θ₀) plus the
-//! prior's own precision, σ_p the deviations, N the photons. No unbiased estimate of g has a variance below
-//! [J_H⁻¹]_gg/N, and d_B = ½/√[J_H⁻¹]_gg is the distance per √photon that goes with it. J_H is never formed: the columns of all
-//! nodes stand under each other, weighted by w_k, with one row more per prior, and the material's is projected off the others
-//! ([`crate::fisher`]).
+//! the Fisher matrix averaged over the prior of the target's state (nodes θ_k, weights w_k, nominal state
+//! θ₀) plus the prior's own precision, σ_p the deviations, N the photons. No unbiased estimate of g has a
+//! variance below [J_H⁻¹]_gg/N, and d_B = ½/√[J_H⁻¹]_gg is the distance per √photon that goes with it. J_H
+//! is never formed: the columns of all nodes stand under each other, weighted by w_k, with one row more per
+//! prior, and the material's is projected off the others ([`crate::fisher`]).
 //!
 //! * Without priors, or with priors so narrow that a parameter is known, d_B is the local distance.
 //! * At thermal equilibrium (T = T₀, V = 1) the local distance is 0, for any number of photons. With a
 //!   prior of deviation σ_T the target is a little off equilibrium nearly always, ∂S/∂g ∝ T − T₀, so
 //!   d_B ∝ σ_T and the photons needed ∝ 1/σ_T²: large but finite.
-//! * The bound is optimistic: information is averaged before it is inverted, so that d_B² is at least the mean
-//!   of the local d² over the prior. The other average says what a user will see: P̄(N) = E[Φ(d(θ))], d the
-//!   local or nearest statistical distance of each state. Near equilibrium d = c|T − T₀| and P̄ = ½ + arctan(cσ_T)/π.
+//! * The bound is optimistic: information is averaged before it is inverted, so that d_B² is at least the
+//!   mean of the local d² over the prior. The other average says what a user will see: P̄(N) = E[Φ(d(θ))],
+//!   d the local or nearest statistical distance of each state. Near equilibrium d = c|T − T₀| and P̄ = ½ +
+//!   arctan(cσ_T)/π.
 //!
-//! Averages: Gauss–Legendre on either side of the mean, within 7σ_p and the physical range (T > 0, 0 ≤ V, ΣV ≤ 1), so that
-//! a kink at the mean, as at equilibrium, costs nothing. The prior is truncated to that range and renormalised, not
-//! reflected. Where several lighting factors have a prior, nodes of the product rule with ΣV > 1 are left out,
-//! which converges slowly; every result tells its change from a rule of half the order.
+//! Averages: Gauss–Legendre on either side of the mean, within 7σ_p and the physical range (T > 0, 0 ≤ V,
+//! ΣV ≤ 1), so that a kink at the mean, as at equilibrium, costs nothing. The prior is truncated to that
+//! range and renormalised, not reflected. Where several lighting factors have a prior, nodes of the product
+//! rule with ΣV > 1 are left out, which converges slowly; every result tells its change from a rule of half
+//! the order.
 //!
-//! Sources: van Trees, 'Detection, Estimation, and Modulation Theory', part I (1968), section 2.4; Rockah and Schultheiss,
-//! IEEE Trans. Acoust. Speech Signal Process. 35, 286 (1987); Messer, 'The hybrid Cramér–Rao lower bound: from
-//! practice to theory', IEEE SAM (2006). Equilibrium singularity: paper, SII A.
+//! Sources: van Trees, 'Detection, Estimation, and Modulation Theory', part I (1968), section 2.4; Rockah
+//! and Schultheiss, IEEE Trans. Acoust. Speech Signal Process. 35, 286 (1987); Messer, 'The hybrid
+//! Cramér–Rao lower bound: from practice to theory', IEEE SAM (2006). Equilibrium singularity: paper, SII
+//! A.
 
 mod prior;
+mod stack;
 
 use self::prior::Node;
+use self::stack::Stack;
 use super::detection;
 use super::local::LocalSolver;
 use super::nearest::{NearestSolver, StateRange};
 use super::space;
 use crate::error::{Error, Result, check};
-use crate::fisher::{Counting, Projector, Unknowns};
+use crate::fisher::{Counting, Unknowns};
 use crate::policy::crossing;
-use crate::scene::{Jacobian, Parameter, State, Surroundings};
+use crate::scene::{Jacobian, State, Surroundings};
 use crate::spectrum::Bands;
 use crate::sum::Compensated;
 
@@ -83,7 +88,8 @@ pub enum Distances {
     Nearest(StateRange),
 }
 
-/// The task of a [`BayesianBound`]: the pair of materials and the nominal state, about which the priors are centred.
+/// The task of a [`BayesianBound`]: the pair of materials and the nominal state, about which the priors are
+/// centred.
 #[derive(Debug, Clone, Copy)]
 pub struct Pair<'a> {
     /// Emissivity of the target at the nodes of the bands.
@@ -147,8 +153,8 @@ impl<'a> BayesianBound<'a> {
         Ok(Self { order: Some(order), ..self })
     }
 
-    /// d_B per √photon when the nominal state sends `photons`; infinitely many leave the prior's own precision
-    /// out, but not the average.
+    /// d_B per √photon when the nominal state sends `photons`; infinitely many leave the prior's own
+    /// precision out, but not the average.
     ///
     /// # Errors
     /// A scene without photons, photons that are not positive, or more nodes than can be held.
@@ -273,81 +279,9 @@ impl<'a> BayesianBound<'a> {
         ))
     }
 
-    /// The columns of all nodes under each other.
     fn stack(&self, pair: Pair<'_>, order: usize) -> Result<Stack> {
-        let mut parameters = self.unknowns.parameters(self.surroundings.objects().len());
-        let priors: Vec<(usize, f64)> = parameters
-            .iter()
-            .enumerate()
-            .filter_map(|(i, parameter)| self.unknowns.sigma_prior(*parameter).map(|sigma| (i, sigma)))
-            .collect();
-        parameters.push(Parameter::Material);
         let total = self.photon_radiance(pair)?;
-        let limit = MAX_STACK / (self.bands.len() * parameters.len());
-        let nodes = prior::nodes(&self.unknowns, pair.state, order, limit)?;
-        let mut jacobian = Jacobian::new(self.bands, self.surroundings);
-        let mut stack = Stack {
-            columns: vec![Vec::with_capacity(nodes.len() * self.bands.len()); parameters.len()],
-            weights: Vec::with_capacity(nodes.len() * self.bands.len()),
-            cancellation: 1.0,
-            priors,
-            nodes: nodes.len(),
-        };
-        let total_known = self.unknowns.known_lighting_total().is_some();
-        for Node { state, weight } in &nodes {
-            jacobian.evaluate(pair.emissivity, pair.alternative, state, &parameters, total_known);
-            for (i, column) in stack.columns.iter_mut().enumerate() {
-                column.extend_from_slice(jacobian.column(i));
-            }
-            stack.weights.extend(jacobian.signal().iter().map(|&signal| {
-                let weight = weight / signal / total;
-                if weight.is_finite() { weight } else { 0.0 }
-            }));
-            // Where a state is at equilibrium all of its column is rounding, and so is its share.
-            let cancellation = jacobian.cancellation();
-            if cancellation.is_finite() {
-                stack.cancellation = stack.cancellation.max(cancellation.min(1.0 / f64::EPSILON));
-            }
-        }
-        Ok(stack)
-    }
-}
-
-/// Whitened columns of all nodes: nuisances in their order, the material last.
-struct Stack {
-    columns: Vec<Vec<f64>>,
-    weights: Vec<f64>,
-    cancellation: f64,
-    /// (column, deviation) of each prior.
-    priors: Vec<(usize, f64)>,
-    nodes: usize,
-}
-
-impl Stack {
-    /// Projects the material's column off the others, each prior a row more that holds 1/(σ_p √N) in its own
-    /// column alone.
-    fn project(&self, photons: f64) -> BayesianDistance {
-        let mut columns = Vec::with_capacity(self.columns.len() * (self.weights.len() + self.priors.len()));
-        for (i, column) in self.columns.iter().enumerate() {
-            columns.extend_from_slice(column);
-            columns.extend(
-                self.priors.iter().map(
-                    |&(owner, sigma)| {
-                        if owner == i { 1.0 / (sigma * photons.sqrt()) } else { 0.0 }
-                    },
-                ),
-            );
-        }
-        let mut weights = self.weights.clone();
-        weights.resize(self.weights.len() + self.priors.len(), 1.0);
-        let found = Projector::default().project(&mut columns, &weights, self.cancellation);
-        let known = found.relative_error < 1.0 && found.residual > 0.0;
-        BayesianDistance {
-            distance: if known { 0.5 * found.residual } else { 0.0 },
-            nodes: self.nodes,
-            quadrature_change: 0.0,
-            relative_error: if known { found.relative_error } else { 0.0 },
-        }
+        Stack::new(self, pair, total, order)
     }
 }
 

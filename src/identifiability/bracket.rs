@@ -6,12 +6,13 @@
 //! * above: min(p, q) ≤ p^{1−s}q^s, so ε ≤ ½e^{−C(s)} for any s in [0, 1]; s = ½ is Bhattacharyya's
 //!   ρ = e^{−C(½)}, the best s* Chernoff's;
 //! * below: ½(1 − √(1−ρ²)) ≤ ε (Kailath), whose exponent is twice too large when ε is small;
-//! * below, with the right exponent: let Q_s be the tilted law p^{1−s}q^s e^{C} and Λ = ln(q/p), of mean μ′ and variance
-//!   μ″ under Q_s. Then p = Q_s e^{−C−sΛ} and q = Q_s e^{−C+(1−s)Λ}, and Chebyshev leaves at least 1 − 1/k² of
-//!   Q_s within |Λ − μ′| ≤ k√μ″, so for any k > 1 and s
-//!   ε ≥ ½(1 − 1/k²) exp(−C − max[s(μ′ + k√μ″), −(1−s)(μ′ − k√μ″)]).
-//!   At s* μ′ = 0; k solves k³ − k = 2/h, h = max(s, 1−s)√μ″, which makes the bound largest. This is the argument of
+//! * below, with the right exponent: let Q_s be the tilted law p^{1−s}q^s e^{C} and Λ = ln(q/p), of mean μ′
+//!   and variance μ″ under Q_s. Then p = Q_s e^{−C−sΛ} and q = Q_s e^{−C+(1−s)Λ}, and Chebyshev leaves at
+//!   least 1 − 1/k² of Q_s within |Λ − μ′| ≤ k√μ″. For any s and any k > 1 this gives the bound below. At
+//!   s* μ′ = 0, and with h = max(s, 1−s)√μ″ the bound is largest where k³ − k = 2/h. It is the argument of
 //!   Shannon, Gallager and Berlekamp (their theorem 5) with k free instead of √2.
+//!
+//! ε ≥ ½(1 − 1/k²) exp(−C − max[s(μ′ + k√μ″), (1−s)(k√μ″ − μ′)])
 //!
 //! [`detection::error_bracket`] is the same Bhattacharyya bracket as a function of a distance: for Poisson
 //! C(½) = ½Σ(√N − √N′)² = d²/2 exactly, d the distance of [`super::nearest`] at that state; for the
@@ -19,20 +20,22 @@
 //!
 //! M equally likely known states, ε_ij the error of the pair alone:
 //!
-//! * averaged over the states, the best test errs no more often than (1/M)Σ_{i<j} e^{−C_ij} (the chance that j beats
-//!   i given i plus the reverse is 2ε_ij ≤ e^{−C_ij}; sum over pairs) and than 1 − 1/M, by guessing;
+//! * averaged over the states, the best test errs no more often than (1/M)Σ_{i<j} e^{−C_ij} (the chance
+//!   that j beats i given i plus the reverse is 2ε_ij ≤ e^{−C_ij}; sum over pairs) and than 1 − 1/M, by
+//!   guessing;
 //! * averaged, no test errs less often than (2/M) max ε_ij, nor than the mean of ε_ij over all pairs: a test
 //!   among M is also one between i and j, in which any third answer is an error, so e_i + e_j ≥ 2ε_ij;
 //!   every state is in M − 1 pairs;
 //! * one state alone: the maximum-likelihood test errs on i no more often than Σ_{j≠i} e^{−C_ij} (without
 //!   the ½). No bound below holds for one state: a test that always names it never errs on it.
 //!
-//! Rigorous up to rounding, relative 1e-15·(10 + C)(1 + a), a the largest occupancy per mode of bunched light.
-//! States are known: nothing is fitted, so these are bounds for the nearest states, not of a likelihood-ratio test
-//! of best fits.
+//! Rigorous up to rounding, relative 1e-15·(10 + C)(1 + a), a the largest occupancy per mode of bunched
+//! light. States are known: nothing is fitted, so these are bounds for the nearest states, not of a
+//! likelihood-ratio test of best fits.
 //!
 //! Sources: Chernoff, Ann. Math. Stat. 23, 493 (1952), doi:10.1214/aoms/1177729330; Kailath, IEEE Trans.
-//! Commun. 15, 52 (1967), doi:10.1109/TCOM.1967.1089532; Shannon, Gallager, Berlekamp, Inf. Control 10, 65 (1967).
+//! Commun. 15, 52 (1967), doi:10.1109/TCOM.1967.1089532; Shannon, Gallager, Berlekamp, Inf. Control 10, 65
+//! (1967).
 
 mod tilted;
 

@@ -1,25 +1,26 @@
 //! Algorithm 1: the exact detection probability on a lattice of counts, for up to three bands.
 //!
-//! A target in a known state sends counts n = (n₁…n_W) with probability 𝒫(n). To every n the decision is the
-//! material whose surface (all states of its unknown temperature, lighting and gain) contains the state that
-//! is the most likely to have sent n; P(m) is the sum of 𝒫(n) over the n that are decided for m. Ties are
-//! split evenly. That is the paper's 'exact' probability: of this rule (the likelihood ratio of best fits) and
-//! up to the two meshes.
+//! A target in a known state sends counts n = (n₁…n_W) with probability 𝒫(n). To every n the decision is
+//! the material whose surface (all states of its unknown temperature, lighting and gain) contains the state
+//! that is the most likely to have sent n; P(m) is the sum of 𝒫(n) over the n that are decided for m. Ties
+//! are split evenly. That is the paper's 'exact' probability: of this rule (the likelihood ratio of best
+//! fits) and up to the two meshes.
 //!
-//! Counts: for the discrete laws every whole number of a box that leaves out no more than a stated tail of 𝒫; where that is more
-//! than the cells asked for, equal groups of whole numbers, decided at their middle, with the exact sum of
-//! 𝒫 over the group. Gaussian counts are continuous, so they always come in cells, with the exact integral of
-//! 𝒫. States: a product mesh over the range of the unknowns, equally spaced (gain: logarithmically). A Gaussian
-//! prior on an unknown, centred at the target's state, adds its −½(θ′ − θ)²/σ_p² to the log-likelihood.
+//! Counts: for the discrete laws every whole number of a box that leaves out no more than a stated tail of
+//! 𝒫; where that is more than the cells asked for, equal groups of whole numbers, decided at their middle,
+//! with the exact sum of 𝒫 over the group. Gaussian counts are continuous, so they always come in cells,
+//! with the exact integral of 𝒫. States: a product mesh over the range of the unknowns, equally spaced
+//! (gain: logarithmically). A Gaussian prior on an unknown, centred at the target's state, adds its −½(θ′ −
+//! θ)²/σ_p² to the log-likelihood.
 //!
 //! Cost: the paper's loops take M W G^{W+2} steps. The same decisions are found by halving boxes of counts:
-//! the log-likelihood of a state is linear (Gaussian: quadratic) in each nₗ, so that its largest excess over
-//! that of a reference state is known exactly on a box, and states that can win nowhere in the box are struck
-//! out. A box in which states of one material are left is decided at once; only boxes that a decision boundary crosses are
-//! divided further, about G^{W−1} of them, with few states left in each.
+//! the log-likelihood of a state is linear (Gaussian: quadratic) in each nₗ, so that its largest excess
+//! over that of a reference state is known exactly on a box, and states that can win nowhere in the box are
+//! struck out. A box in which states of one material are left is decided at once; only boxes that a
+//! decision boundary crosses are divided further, about G^{W−1} of them, with few states left in each.
 //!
-//! With as many unknowns as bands a surface fills the space of counts: almost every n can be explained
-//! by every material, and the decision is left to the edges of the ranges and to the mesh. The result says so.
+//! With as many unknowns as bands a surface fills the space of counts: almost every n can be explained by
+//! every material, and the decision is left to the edges of the ranges and to the mesh. The result says so.
 //!
 //! Source: paper, Algorithm 1, S16.
 
@@ -41,6 +42,8 @@ use crate::statistics::Statistics;
 pub const MAX_BANDS: usize = 3;
 /// Most points of a mesh along one unknown or band.
 const MAX_MESH: usize = 1_000_000;
+/// Squares of more photons than this, over variances, would not be numbers.
+const MAX_PHOTONS: f64 = 1e80;
 
 /// How finely states and counts are meshed.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -87,7 +90,8 @@ pub struct LatticeDetection {
     pub probabilities: Vec<f64>,
     /// Probability of the counts outside the box.
     pub tail: f64,
-    /// Largest change of a P(m) from a mesh twice as coarse (states, and cells unless they are whole numbers).
+    /// Largest change of a P(m) from a mesh twice as coarse (states, and cells unless they are whole
+    /// numbers).
     pub mesh_change: f64,
     /// Probability of the cells that a decision boundary crosses: rigorous bound of what the cells alone
     /// can be wrong by. 0 where every whole number is a cell.
@@ -161,7 +165,8 @@ impl<'a> LatticeDetector<'a> {
     /// The same with another mesh.
     ///
     /// # Errors
-    /// A mesh without states or cells or with more than 10⁶ along one axis, a tail outside [1e-15, 0.1], or gains that are no range.
+    /// A mesh without states or cells or with more than 10⁶ along one axis, a tail outside [1e-15, 0.1], or
+    /// gains that are no range.
     pub fn with_mesh(self, mesh: LatticeMesh) -> Result<Self> {
         for (what, number) in [
             ("temperatures of the mesh", mesh.temperatures),
@@ -183,9 +188,9 @@ impl<'a> LatticeDetector<'a> {
         Ok(Self { mesh, ..self })
     }
 
-    /// Decides for one of `library` (emissivities at the nodes) when the target is material number `target` in
-    /// `state` and sends `photons` counts on average, all bands together. The mesh asked for is the coarse one; the
-    /// probabilities are those of the fine one.
+    /// Decides for one of `library` (emissivities at the nodes) when the target is material number `target`
+    /// in `state` and sends `photons` counts on average, all bands together. The mesh asked for is the
+    /// coarse one; the probabilities are those of the fine one.
     ///
     /// # Errors
     /// A target that is not in the library, an emissivity that does not fit the bands, a scene without
@@ -198,6 +203,14 @@ impl<'a> LatticeDetector<'a> {
         photons: f64,
     ) -> Result<LatticeDetection> {
         check::positive("photons", photons, "counts")?;
+        if photons > MAX_PHOTONS {
+            return Err(Error::out_of_range(
+                "photons",
+                photons,
+                "counts",
+                format!("at most {MAX_PHOTONS:e}"),
+            ));
+        }
         for emissivity in library {
             check_emissivity(emissivity, self.surroundings.nodes_cm1().len())?;
         }

@@ -38,8 +38,8 @@ pub struct LinearDetection {
     pub dropped: Vec<usize>,
 }
 
-/// Detection probability of the linear model: `material` is A, `nuisances` are the columns of B (counts per unit of
-/// each unknown), `sigma` the deviations σ_w (counts).
+/// Detection probability of the linear model: `material` is A, `nuisances` are the columns of B (counts per
+/// unit of each unknown), `sigma` the deviations σ_w (counts).
 ///
 /// ```
 /// // One band, nothing unknown but the material: P = Φ(A/2σ).

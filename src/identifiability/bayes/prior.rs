@@ -15,7 +15,8 @@ pub(super) struct Node {
     pub(super) weight: f64,
 }
 
-/// States that stand for the priors about `state`, weights adding up to 1; `state` alone where there are no priors.
+/// States that stand for the priors about `state`, weights adding up to 1; `state` alone where there are no
+/// priors.
 pub(super) fn nodes(unknowns: &Unknowns, state: &State, order: usize, limit: usize) -> Result<Vec<Node>> {
     let mut nodes = vec![Node { state: state.clone(), weight: 1.0 }];
     for parameter in unknowns.parameters(state.lighting.len()) {

@@ -80,7 +80,8 @@ fn a_narrow_prior_makes_a_parameter_known() {
     close(found.distance, scene.local(&free(&[]), &state, f64::INFINITY), 1e-8);
 }
 
-/// A moderate prior away from equilibrium: the average changes little, the prior's precision as LocalSolver's.
+/// A moderate prior away from equilibrium: the average changes little, the prior's precision as
+/// LocalSolver's.
 #[test]
 fn a_prior_counts_as_it_does_locally() {
     let scene = scene();
@@ -135,7 +136,8 @@ fn the_quadrature_converges_as_it_says() {
     assert!(fine.quadrature_change < 1e-9 && fine.nodes == 64 * 64);
 }
 
-/// At equilibrium nothing is finite without a prior; with one, d_B = ½σ_T‖(e′−e)∂B/∂T‖ per √photon for σ_T → 0.
+/// At equilibrium nothing is finite without a prior; with one, d_B = ½σ_T‖(e′−e)∂B/∂T‖ per √photon for σ_T
+/// → 0.
 #[test]
 fn a_prior_ends_the_equilibrium_singularity() {
     let scene = scene();
@@ -171,7 +173,8 @@ fn a_prior_ends_the_equilibrium_singularity() {
     }
 }
 
-/// E[Φ(a|x|)] = ½ + arctan(a)/π over a standard normal x, a = √N c σ_T; c from a state 0.01 K off equilibrium.
+/// E[Φ(a|x|)] = ½ + arctan(a)/π over a standard normal x, a = √N c σ_T; c from a state 0.01 K off
+/// equilibrium.
 #[test]
 fn the_averaged_probability_near_equilibrium_is_an_arctangent() {
     let scene = scene();

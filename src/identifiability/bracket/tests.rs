@@ -10,6 +10,7 @@ struct Reference {
     laws: [[f64; 4]; 3],
 }
 
+#[allow(clippy::excessive_precision, reason = "all digits that were made")]
 const REFERENCES: [Reference; 4] = [
     Reference {
         means: [100.0, 50.0, 3.5],

@@ -13,9 +13,9 @@
 //!   μ′ = m[xλ − ln((1+a′)/(1+a))], μ″ = m x(1+x)λ².
 //!
 //! Near equality each C is a difference of nearly equal numbers. All of them are weighted arithmetic over
-//! geometric means, AM/GM − 1 = (1−s)φ(−sL) + sφ((1−s)L) with φ(x) = eˣ − 1 − x ≥ 0 and L the logarithm of the ratio:
-//! two positive terms, since the linear parts cancel exactly. What is left is a loss of a factor 1 + a for
-//! bunched light.
+//! geometric means, AM/GM − 1 = (1−s)φ(−sL) + sφ((1−s)L) with φ(x) = eˣ − 1 − x ≥ 0 and L the logarithm of
+//! the ratio: two positive terms, since the linear parts cancel exactly. What is left is a loss of a factor
+//! 1 + a for bunched light.
 
 use crate::error::{Error, Result, check};
 use crate::statistics::Statistics;

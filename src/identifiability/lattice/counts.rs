@@ -1,9 +1,9 @@
 //! The counts of one band, in cells, with the probability of each under the target's law.
 //!
 //! Discrete laws: probabilities of neighbouring counts have a known ratio, N/(n+1) for Poisson and
-//! (n+m)N/[(n+1)(N+m)] for the negative binomial, so they are built outwards from the mode until nothing is left
-//! and divided by their sum: no Γ function, and every probability good to a few ulp times its distance from
-//! the mode. Gaussian: differences of Φ.
+//! (n+m)N/[(n+1)(N+m)] for the negative binomial, so they are built outwards from the mode until nothing is
+//! left and divided by their sum: no Γ function, and every probability good to a few ulp times its distance
+//! from the mode. Gaussian: differences of Φ.
 
 use super::super::detection;
 use crate::error::{Error, Result};

@@ -1,9 +1,10 @@
 //! Deciding a box of counts by halving it until every part is decided.
 //!
-//! In a box the state that is the likeliest at the middle strikes out every state that is less likely than it
-//! everywhere in the box. States of one surface left: the whole box is decided. One cell left: it is decided at its middle. Boxes are halved along the axis
-//! that is the longest in standard deviations. The first 64 boxes are spread over the threads and added up in their
-//! order, so the result does not depend on the number of threads.
+//! In a box the state that is the likeliest at the middle strikes out every state that is less likely than
+//! it everywhere in the box. States of one surface left: the whole box is decided. One cell left: it is
+//! decided at its middle. Boxes are halved along the axis that is the longest in standard deviations. The
+//! first 64 boxes are spread over the threads and added up in their order, so the result does not depend on
+//! the number of threads.
 
 use super::MAX_BANDS;
 use super::counts::Axis;

@@ -1,7 +1,7 @@
 //! The states of all materials as log-likelihoods that are polynomials of the counts.
 //!
-//! With x = n − N, N the target's mean in a band, and N′ that of a state, the log-likelihood of the state less that of the
-//! target's (which is the same for all states) is a + l x + q x², summed over bands:
+//! With x = n − N, N the target's mean in a band, and N′ that of a state, the log-likelihood of the state
+//! less that of the target's (which is the same for all states) is a + l x + q x², summed over bands:
 //!
 //! * Poisson: l = ln(N′/N), q = 0, a = N l − (N′ − N);
 //! * negative binomial, m modes: l = ln(N′/N) − λ, λ = ln[(N′ + m)/(N + m)], a = N l − m λ;
@@ -19,8 +19,8 @@ use rayon::prelude::*;
 
 /// More states than this are not held.
 const MAX_STATES: usize = 20_000_000;
-/// What stands for a mean of zero, so that its logarithm is a number.
-const DARK: f64 = 1e-300;
+/// What stands for a mean of zero, so that its logarithm and the inverse of its variance are numbers.
+const DARK: f64 = 1e-100;
 
 /// Log-likelihood of one state as a polynomial of the counts. Bands that are not there have zeros.
 #[derive(Debug, Clone, Copy, Default)]
@@ -71,7 +71,7 @@ impl Likelihood {
                 }
                 Statistics::NegativeBinomial { modes } => {
                     let m = modes[w];
-                    let dark = ((mean + m) / (own + m)).ln();
+                    let dark = (change / (own + m)).ln_1p();
                     let log = (mean / own).ln() - dark;
                     (own * log - m * dark, log, 0.0)
                 }

@@ -182,8 +182,8 @@ fn a_simulated_decision_is_right_as_often() {
     }
 }
 
-/// Nearly equal materials, two bands, temperature unknown: nearly parallel lines, so Theorem 1 holds. 1 %: the lines'
-/// angle and the change of the variance along them.
+/// Nearly equal materials, two bands, temperature unknown: nearly parallel lines, so Theorem 1 holds. 1 %:
+/// the lines' angle and the change of the variance along them.
 #[test]
 fn nearly_parallel_lines_follow_theorem_one() {
     let scene = scene(&[800.0, 1200.0], 315.0);
