@@ -291,3 +291,50 @@ fn what_cannot_be_meshed_is_refused() {
     assert!(detector.detect(&[vec![0.5; 2]], 0, &two.state, 1e30).is_err());
     assert!(detector.detect(&[vec![0.5; 3]], 0, &two.state, 10.0).is_err());
 }
+
+/// Nothing unknown but the gain, over a factor 2 either way: the loops once more.
+#[test]
+fn gains_are_meshed_evenly_in_the_logarithm() {
+    let scene = scene(&[850.0, 1150.0], 310.15);
+    let library = [vec![0.95, 0.93], vec![0.7, 0.95]];
+    let mesh = LatticeMesh { gains: 3, ..LatticeMesh::default() };
+    let found = scene
+        .detector(&free(&[Nuisance::Gain]), &Statistics::Poisson, mesh)
+        .detect(&library, 0, &scene.state, 60.0)
+        .unwrap();
+    let counts = scene.counts(&library[0], 60.0);
+    let means = |e: &Vec<f64>| scene.means(e, &scene.state, counts);
+    let gains = |e: &Vec<f64>| -> Vec<Vec<f64>> {
+        (-2..=2).map(|k| means(e).iter().map(|n| n * 0.5_f64.exp2().powi(k)).collect()).collect()
+    };
+    let surfaces: Vec<Vec<Vec<f64>>> = library.iter().map(gains).collect();
+    let own = means(&library[0]);
+    let mut exact = 0.0;
+    for n1 in (0..130).map(f64::from) {
+        for n2 in (0..90).map(f64::from) {
+            let mass =
+                ln_mass(&Statistics::Poisson, 0, n1, own[0]) + ln_mass(&Statistics::Poisson, 1, n2, own[1]);
+            exact += if decide(&Statistics::Poisson, &surfaces, &[n1, n2]) == 0 { mass.exp() } else { 0.0 };
+        }
+    }
+    assert!(found.states == 10 && (found.probabilities[0] - exact).abs() < 2e-9, "{found:?} {exact}");
+}
+
+#[test]
+fn lighting_stays_within_its_sum() {
+    let bands = Bands::from_rows([(800.0, 40.0), (1000.0, 40.0), (1200.0, 40.0)]).unwrap();
+    let object = |t| EnvironmentObject { temperature_k: t, emissivity: None };
+    let surroundings = Surroundings::new(bands.nodes_cm1(), vec![object(260.0), object(300.0)]).unwrap();
+    let state = surroundings.state(310.0, &[0.3, 0.5]).unwrap();
+    let states = |unknowns: Unknowns| {
+        let mesh = LatticeMesh { lightings: 5, ..LatticeMesh::default() };
+        LatticeDetector::new(&bands, &surroundings, unknowns, StateRange::default(), Statistics::Poisson)
+            .and_then(|detector| detector.with_mesh(mesh))
+            .and_then(|detector| detector.detect(&[vec![0.9; 3]], 0, &state, 100.0))
+            .unwrap()
+            .states
+    };
+    // Steps of 1/8: pairs with a sum of at most 1, or the first of two whose sum is 0.8.
+    assert_eq!(states(free(&[Nuisance::Lighting])), 45);
+    assert_eq!(states(free(&[Nuisance::Lighting]).lighting_total(Some(0.8)).unwrap()), 7);
+}
