@@ -2,9 +2,18 @@
 //!
 //! * [`local`]: the paper's semantic distance d₀, the tangent at the target (Algorithm 2);
 //! * [`nearest`]: half the separation from the nearest state of the alternative, in units of the noise;
-//! * [`detection`]: probability, information and rigorous brackets from a statistical distance d.
+//! * [`detection`]: probability, information and rigorous brackets from a statistical distance d;
+//! * [`linear`]: Theorem 1, exact for parallel surfaces;
+//! * [`lattice`]: Algorithm 1, exact for up to three bands;
+//! * [`bracket`]: rigorous bounds on the error between known states, two or many;
+//! * [`bayes`]: what priors do to the distance and to the probability.
 
+pub mod bayes;
+pub mod bracket;
 pub mod detection;
+
+pub mod lattice;
+pub mod linear;
 pub mod local;
 pub mod map;
 pub mod multi;

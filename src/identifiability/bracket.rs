@@ -1,0 +1,230 @@
+//! Rigorous bounds on the error of telling known states apart: two of them, or many.
+//!
+//! Two equally likely product laws p and q over the counts of W bands. The best test errs with
+//! probability ε = ½Σ min(p, q). With C(s) = −ln Σ p^{1−s}q^s (sums over bands; `tilted`):
+//!
+//! * above: min(p, q) ≤ p^{1−s}q^s, so ε ≤ ½e^{−C(s)} for any s in [0, 1]; s = ½ is Bhattacharyya's
+//!   ρ = e^{−C(½)}, the best s* Chernoff's;
+//! * below: ½(1 − √(1−ρ²)) ≤ ε (Kailath), whose exponent is twice too large when ε is small;
+//! * below, with the right exponent: let Q_s be the tilted law p^{1−s}q^s e^{C} and Λ = ln(q/p), of mean μ′
+//!   and variance μ″ under Q_s. Then p = Q_s e^{−C−sΛ} and q = Q_s e^{−C+(1−s)Λ}, and Chebyshev leaves at
+//!   least 1 − 1/k² of Q_s within |Λ − μ′| ≤ k√μ″. For any s and any k > 1 this gives the bound below. At
+//!   s* μ′ = 0, and with h = max(s, 1−s)√μ″ the bound is largest where k³ − k = 2/h. It is the argument of
+//!   Shannon, Gallager and Berlekamp (their theorem 5) with k free instead of √2.
+//!
+//! ε ≥ ½(1 − 1/k²) exp(−C − max[s(μ′ + k√μ″), (1−s)(k√μ″ − μ′)])
+//!
+//! [`detection::error_bracket`] is the same Bhattacharyya bracket as a function of a distance: for Poisson
+//! C(½) = ½Σ(√N − √N′)² = d²/2 exactly, d the distance of [`super::nearest`] at that state; for the
+//! other laws d = √(2C(½)) defines what it is asked for here.
+//!
+//! M equally likely known states, ε_ij the error of the pair alone:
+//!
+//! * averaged over the states, the best test errs no more often than (1/M)Σ_{i<j} e^{−C_ij} (the chance
+//!   that j beats i given i plus the reverse is 2ε_ij ≤ e^{−C_ij}; sum over pairs) and than 1 − 1/M, by
+//!   guessing;
+//! * averaged, no test errs less often than (2/M) max ε_ij, nor than the mean of ε_ij over all pairs: a test
+//!   among M is also one between i and j, in which any third answer is an error, so e_i + e_j ≥ 2ε_ij;
+//!   every state is in M − 1 pairs;
+//! * one state alone: the maximum-likelihood test errs on i no more often than Σ_{j≠i} e^{−C_ij} (without
+//!   the ½). No bound below holds for one state: a test that always names it never errs on it.
+//!
+//! Rigorous up to rounding, relative 1e-15·(10 + C)(1 + a), a the largest occupancy per mode of bunched
+//! light. States are known: nothing is fitted, so these are bounds for the nearest states, not of a
+//! likelihood-ratio test of best fits.
+//!
+//! Sources: Chernoff, Ann. Math. Stat. 23, 493 (1952), doi:10.1214/aoms/1177729330; Kailath, IEEE Trans.
+//! Commun. 15, 52 (1967), doi:10.1109/TCOM.1967.1089532; Shannon, Gallager, Berlekamp, Inf. Control 10, 65
+//! (1967).
+
+mod tilted;
+
+use self::tilted::{Moments, Tilted};
+use super::detection;
+use crate::error::{Error, Result};
+use crate::policy::crossing;
+use crate::statistics::Statistics;
+use crate::sum::Compensated;
+use std::f64::consts::LN_2;
+
+/// Bounds on the error of the best test between two known, equally likely states.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+pub struct KnownStatesBracket {
+    /// −ln ρ of the Bhattacharyya coefficient ρ.
+    pub bhattacharyya: f64,
+    /// C(s*), the largest C(s).
+    pub chernoff: f64,
+    /// Where C is largest, in [0, 1].
+    pub chernoff_s: f64,
+    /// No test errs less often.
+    pub lower: f64,
+    /// The likelihood-ratio test errs no more often.
+    pub upper: f64,
+    /// Natural logarithms of the two, where they would underflow.
+    pub ln_lower: f64,
+    /// See `ln_lower`.
+    pub ln_upper: f64,
+}
+
+/// Two known states: the laws of their counts, band by band.
+///
+/// ```
+/// use hadar::identifiability::bracket::KnownStates;
+/// use hadar::statistics::Statistics;
+/// let states = KnownStates::new(&[100.0, 50.0], &[144.0, 50.0], &Statistics::Poisson)?;
+/// let bracket = states.bracket();
+/// assert!((bracket.bhattacharyya - 2.0).abs() < 1e-14);
+/// assert!(bracket.lower < bracket.upper && bracket.upper < 0.5 * (-2.0_f64).exp());
+/// # Ok::<(), hadar::Error>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct KnownStates {
+    bands: Vec<Tilted>,
+}
+
+impl KnownStates {
+    /// States with mean counts `means` and `others` in the bands.
+    ///
+    /// # Errors
+    /// Lengths that differ, a mean that is negative or not finite, a Gaussian law without variance.
+    pub fn new(means: &[f64], others: &[f64], statistics: &Statistics) -> Result<Self> {
+        if means.len() != others.len() {
+            return Err(Error::Length {
+                what: "bands of the other state".into(),
+                found: others.len(),
+                expected: means.len(),
+            });
+        }
+        statistics.check_bands(means.len())?;
+        let bands = means
+            .iter()
+            .zip(others)
+            .enumerate()
+            .map(|(band, (&mean, &other))| Tilted::new(statistics, band, mean, other))
+            .collect::<Result<_>>()?;
+        Ok(Self { bands })
+    }
+
+    /// C(s) = −ln Σ p^{1−s}q^s for s in [0, 1]; ½e^{−C(s)} bounds the error from above.
+    #[must_use]
+    pub fn exponent(&self, s: f64) -> f64 {
+        self.at(s.clamp(0.0, 1.0)).exponent
+    }
+
+    fn at(&self, s: f64) -> Moments {
+        let mut sums = [Compensated::default(); 3];
+        for band in &self.bands {
+            let Moments { exponent, slope, variance } = band.at(s);
+            for (sum, term) in sums.iter_mut().zip([exponent, slope, variance]) {
+                sum.add(term);
+            }
+        }
+        let [exponent, slope, variance] = sums.map(Compensated::value);
+        Moments { exponent, slope, variance }
+    }
+
+    /// All bounds on the error of the best test.
+    #[must_use]
+    pub fn bracket(&self) -> KnownStatesBracket {
+        let half = self.at(0.5);
+        let (mut chernoff_s, mut best) = (0.5, half);
+        let s = self.steepest();
+        let found = self.at(s);
+        if found.exponent > half.exponent {
+            (chernoff_s, best) = (s, found);
+        }
+        let kailath = detection::error_bracket((2.0 * half.exponent).sqrt()).lower.ln();
+        let ln_upper = -LN_2 - best.exponent;
+        // Two bounds that meet may cross by rounding.
+        let ln_lower = kailath.max(ln_lower_bound(chernoff_s, best)).min(ln_upper);
+        KnownStatesBracket {
+            bhattacharyya: half.exponent,
+            chernoff: best.exponent,
+            chernoff_s,
+            lower: ln_lower.exp(),
+            upper: ln_upper.exp(),
+            ln_lower,
+            ln_upper,
+        }
+    }
+
+    /// Where μ′ crosses zero; μ is convex.
+    fn steepest(&self) -> f64 {
+        if self.at(0.0).slope >= 0.0 {
+            return 0.0;
+        }
+        if self.at(1.0).slope <= 0.0 {
+            return 1.0;
+        }
+        // Any s gives a valid bound; ½ is a good one.
+        crossing(0.0, 1.0, |s| Ok(self.at(s).slope)).unwrap_or(0.5)
+    }
+}
+
+/// Logarithm of the lower bound with the right exponent.
+fn ln_lower_bound(s: f64, at: Moments) -> f64 {
+    let spread = at.variance.sqrt();
+    let h = s.max(1.0 - s) * spread;
+    if h == 0.0 {
+        return -LN_2 - at.exponent - (s * at.slope).max(-(1.0 - s) * at.slope);
+    }
+    // From above Newton's method descends to the root of k³ − k − 2/h without passing it.
+    let mut k = 1.0 + (2.0 / h).cbrt();
+    for _ in 0..50 {
+        let next = k - (k * k * k - k - 2.0 / h) / (3.0 * k * k - 1.0);
+        if next.is_nan() || next >= k {
+            break;
+        }
+        k = next;
+    }
+    let reach = k * spread;
+    let loss = (s * (at.slope + reach)).max((1.0 - s) * (reach - at.slope));
+    (-1.0 / (k * k)).ln_1p() - LN_2 - at.exponent - loss
+}
+
+/// Bounds on the error among M known, equally likely states.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct ManyStatesBracket {
+    /// Averaged over the states, no test errs less often.
+    pub average_lower: f64,
+    /// Averaged over the states, the maximum-likelihood test errs no more often.
+    pub average_upper: f64,
+    /// On each state alone, the maximum-likelihood test errs no more often.
+    pub state_upper: Vec<f64>,
+    /// The two states that are the hardest to tell apart (largest lower bound).
+    pub hardest: Option<(usize, usize)>,
+}
+
+/// Bounds for the states whose mean counts are the rows of `means`.
+///
+/// # Errors
+/// As [`KnownStates::new`].
+pub fn many_known_states(means: &[Vec<f64>], statistics: &Statistics) -> Result<ManyStatesBracket> {
+    let count = means.len();
+    let mut state_upper = vec![0.0; count];
+    let (mut hardest, mut largest, mut lowers, mut uppers) = (None, 0.0, 0.0, 0.0);
+    for (i, first) in means.iter().enumerate() {
+        for (j, second) in means.iter().enumerate().skip(i + 1) {
+            let pair = KnownStates::new(first, second, statistics)?.bracket();
+            let confusion = 2.0 * pair.upper;
+            state_upper[i] += confusion;
+            state_upper[j] += confusion;
+            uppers += confusion;
+            lowers += pair.lower;
+            if hardest.is_none() || pair.lower > largest {
+                (hardest, largest) = (Some((i, j)), pair.lower);
+            }
+        }
+    }
+    let m = count.max(1) as f64;
+    let mean = if count > 1 { 2.0 * lowers / (m * (m - 1.0)) } else { 0.0 };
+    Ok(ManyStatesBracket {
+        average_lower: mean.max(2.0 * largest / m),
+        average_upper: (uppers / m).min(1.0 - 1.0 / m),
+        state_upper: state_upper.into_iter().map(|upper: f64| upper.min(1.0)).collect(),
+        hardest,
+    })
+}
+
+#[cfg(test)]
+mod tests;
