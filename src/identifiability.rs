@@ -1,6 +1,7 @@
 //! How far apart two materials are when temperature and lighting are unknown.
 //!
 //! * [`local`]: the paper's semantic distance d₀, the tangent at the target (Algorithm 2);
+//! * [`multi`]: all materials against all, and which can be told apart;
 //! * [`nearest`]: half the separation from the nearest state of the alternative, in units of the noise;
 //! * [`detection`]: probability, information and rigorous brackets from a statistical distance d;
 //! * [`linear`]: Theorem 1, exact for parallel surfaces;
@@ -11,7 +12,6 @@
 pub mod bayes;
 pub mod bracket;
 pub mod detection;
-
 pub mod lattice;
 pub mod linear;
 pub mod local;

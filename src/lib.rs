@@ -10,6 +10,7 @@ pub mod material;
 pub mod planck;
 pub mod policy;
 pub mod report;
+mod root;
 pub mod scenario;
 pub mod scene;
 mod simd;

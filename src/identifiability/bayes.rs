@@ -42,7 +42,7 @@ use super::nearest::{NearestSolver, StateRange};
 use super::space;
 use crate::error::{Error, Result, check};
 use crate::fisher::{Counting, Unknowns};
-use crate::policy::crossing;
+use crate::root::crossing;
 use crate::scene::{Jacobian, State, Surroundings};
 use crate::spectrum::Bands;
 use crate::sum::Compensated;

@@ -42,7 +42,7 @@ mod tilted;
 use self::tilted::{Moments, Tilted};
 use super::detection;
 use crate::error::{Error, Result};
-use crate::policy::crossing;
+use crate::root::crossing;
 use crate::statistics::Statistics;
 use crate::sum::Compensated;
 use std::f64::consts::LN_2;

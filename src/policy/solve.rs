@@ -5,10 +5,10 @@
 //! quantity to the last bits. What limits a quantity is told as a reason: the flicker floor
 //! (d → d_∞ as t → ∞), shot noise (d at zero electronic noise), or the fastest lens in air.
 
-use super::crossing;
 use crate::error::Result;
 use crate::fisher::Counting;
 use crate::instrument::{Camera, FASTEST_F_NUMBER};
+use crate::root::crossing;
 use crate::spectrum::Bands;
 
 /// Factors between 10⁻³⁰ and 10³⁰ of the camera's own value are searched.

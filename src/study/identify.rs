@@ -419,7 +419,7 @@ impl Study {
         if excess(low)? >= 0.0 {
             return Ok(Some(0.0));
         }
-        policy::crossing(low, high, excess).map(|log| Some(log.exp()))
+        crate::root::crossing(low, high, excess).map(|log| Some(log.exp()))
     }
 }
 

@@ -13,25 +13,23 @@
 //!
 //! Assumption: all targets in the same state. Source: paper S27–S30, Algorithm 3.
 
+mod kernels;
+
+use self::kernels::{
+    Contrast, Lent, MOST_NUISANCES, TOGETHER, contrast_into, direction_into, projections, residual_square,
+};
 use crate::error::Result;
 use crate::fisher::{Counting, Projector, Unknowns};
 use crate::identifiability::local::{LocalSolver, SAFE_RANGE};
 use crate::scene::{Jacobian, Parameter, State, Surroundings};
-use crate::simd::{Aligned, Chunk, LANES, added, dispatched, fused, padded, product};
+use crate::simd::{Aligned, LANES};
 use crate::spectrum::Bands;
-use crate::sum::{Compensated, CompensatedLanes, fold};
 use rayon::prelude::*;
 
 /// Largest none/d for which the one-pass difference of squares keeps 1e-14·none/d: 2u·(none/d)² below it.
 const ONE_PASS: f64 = 16.0;
 /// Largest none/d for which a residual once projected is good; beyond it rank and rounding are judged too.
 const TWO_PASSES: f64 = 1e5;
-/// Nuisances the shared kernels take; more of them go pair by pair.
-const MOST_NUISANCES: usize = 4;
-/// Chunks in a block of a compensated sum: more than elsewhere, since a group of pairs ends a dozen of them.
-const BLOCK_CHUNKS: usize = 64;
-/// Alternatives worked on together.
-const TOGETHER: usize = 5;
 /// Bands × materials² beyond which threads are worth their while.
 const WORTH_THREADS: usize = 2_000_000;
 
@@ -296,208 +294,5 @@ impl Row<'_> {
         }
         let count = self.shared.live.len();
         residual_square(self.own, other, &self.shared.contrast, &self.shared.weights, taken, count)
-    }
-}
-
-/// Spectra of the target that a pass over the bands reads.
-#[derive(Clone, Copy)]
-struct Lent<'a> {
-    own: &'a [f64],
-    square: &'a [f64],
-    directions: [&'a [f64]; MOST_NUISANCES],
-}
-
-struct Contrast<'a> {
-    gain: f64,
-    contrast: &'a [f64],
-    widths: &'a [f64],
-    u: &'a [f64],
-    c: &'a mut [f64],
-    m: &'a mut [f64],
-}
-
-dispatched! {
-    /// c = G w C and m = u c² of each band.
-    fn contrast_into<'a>(spectra: Contrast<'a>) {
-        let Contrast { gain, contrast, widths, u, c, m } = spectra;
-        let given = contrast.iter().zip(widths).zip(u);
-        for ((c, m), ((contrast, width), u)) in c.iter_mut().zip(m).zip(given) {
-            *c = gain * contrast * width;
-            *m = u * *c * *c;
-        }
-    }
-}
-
-dispatched! {
-    /// u c q/‖q‖ of each band.
-    fn direction_into<'a>(column: &'a [f64], u: &'a [f64], c: &'a [f64], scale: f64, out: &'a mut [f64]) {
-        for (((out, q), u), c) in out.iter_mut().zip(column).zip(u).zip(c) {
-            *out = u * c * (q * scale);
-        }
-    }
-}
-
-/// Σ m Δ² of each alternative, and Σ kᵢ Δ of each alternative along each direction.
-type Projections = ([f64; TOGETHER], [[f64; MOST_NUISANCES]; TOGETHER]);
-
-dispatched! {
-    /// [`Projections`] on the first `count` directions.
-    fn projections<'a>(lent: Lent<'a>, others: [&'a [f64]; TOGETHER], count: usize) -> Projections {
-        match count {
-            0 => project::<0>(lent, others),
-            1 => project::<1>(lent, others),
-            2 => project::<2>(lent, others),
-            3 => project::<3>(lent, others),
-            _ => project::<4>(lent, others),
-        }
-    }
-}
-
-/// Sums over the bands of a group of pairs.
-struct Sums<const N: usize> {
-    squares: [Compensated; TOGETHER],
-    dots: [[Compensated; N]; TOGETHER],
-}
-
-impl<const N: usize> Sums<N> {
-    /// Adds the lanes of a block. Never inlined: the lanes then go through memory all at once, which keeps the
-    /// loop before in full-width registers.
-    #[inline(never)]
-    fn add(&mut self, squares: &[Chunk; TOGETHER], dots: &[[Chunk; N]; TOGETHER]) {
-        for a in 0..TOGETHER {
-            self.squares[a].add(fold(&squares[a]));
-            for i in 0..N {
-                self.dots[a][i].add(fold(&dots[a][i]));
-            }
-        }
-    }
-}
-
-#[inline(always)]
-fn project<const N: usize>(lent: Lent<'_>, others: [&[f64]; TOGETHER]) -> Projections {
-    let bands = lent.own.len();
-    let (e, e_rest) = lent.own.as_chunks();
-    let (m, m_rest) = lent.square[..bands].as_chunks();
-    let k: [_; N] = std::array::from_fn(|i| lent.directions[i][..bands].as_chunks());
-    let o = others.map(|other| other[..bands].as_chunks());
-    let mut sums =
-        Sums { squares: [Compensated::default(); TOGETHER], dots: [[Compensated::default(); N]; TOGETHER] };
-    run(e, m, k.map(|k| k.0), o.map(|o| o.0), &mut sums);
-    if !e_rest.is_empty() {
-        let (k, o) = (k.map(|k| [padded(k.1)]), o.map(|o| [padded(o.1)]));
-        let (k, o) = (k.each_ref().map(|k| &k[..]), o.each_ref().map(|o| &o[..]));
-        run(&[padded(e_rest)], &[padded(m_rest)], k, o, &mut sums);
-    }
-    let mut along = [[0.0; MOST_NUISANCES]; TOGETHER];
-    for (along, dots) in along.iter_mut().zip(&sums.dots) {
-        for (along, dot) in along.iter_mut().zip(dots) {
-            *along = dot.value();
-        }
-    }
-    (sums.squares.map(|square| square.value()), along)
-}
-
-/// The bands of [`project`] in whole chunks. Values pass through locals, chunk by chunk: only then are they
-/// kept in full-width registers.
-#[inline(always)]
-fn run<const N: usize>(
-    own: &[Chunk],
-    square: &[Chunk],
-    directions: [&[Chunk]; N],
-    others: [&[Chunk]; TOGETHER],
-    sums: &mut Sums<N>,
-) {
-    let count = own.len();
-    let square = &square[..count];
-    let directions = directions.map(|k| &k[..count]);
-    let others = others.map(|other| &other[..count]);
-    for start in (0..count).step_by(BLOCK_CHUNKS) {
-        let (mut squares, mut dots) = ([[0.0; LANES]; TOGETHER], [[[0.0; LANES]; N]; TOGETHER]);
-        for c in start..(start + BLOCK_CHUNKS).min(count) {
-            let (e, m) = (own[c], square[c]);
-            for a in 0..TOGETHER {
-                let delta = less(others[a][c], e);
-                squares[a] = added(product(m, delta), delta, squares[a]);
-                for i in 0..N {
-                    dots[a][i] = added(directions[i][c], delta, dots[a][i]);
-                }
-            }
-        }
-        sums.add(&squares, &dots);
-    }
-}
-
-/// a − b.
-#[inline(always)]
-fn less(a: Chunk, b: Chunk) -> Chunk {
-    std::array::from_fn(|i| a[i] - b[i])
-}
-
-dispatched! {
-    /// Σ u (Δ c − Σ aᵢ qᵢ)² over the first `count` of (aᵢ, qᵢ).
-    fn residual_square<'a>(
-        own: &'a [f64],
-        other: &'a [f64],
-        c: &'a [f64],
-        u: &'a [f64],
-        taken: [(f64, &'a [f64]); MOST_NUISANCES],
-        count: usize,
-    ) -> f64 {
-        match count {
-            0 | 1 => left_over::<1>(own, other, c, u, taken),
-            2 => left_over::<2>(own, other, c, u, taken),
-            3 => left_over::<3>(own, other, c, u, taken),
-            _ => left_over::<4>(own, other, c, u, taken),
-        }
-    }
-}
-
-#[inline(always)]
-fn left_over<const N: usize>(
-    own: &[f64],
-    other: &[f64],
-    c: &[f64],
-    u: &[f64],
-    taken: [(f64, &[f64]); MOST_NUISANCES],
-) -> f64 {
-    let bands = own.len();
-    let shares: [f64; N] = std::array::from_fn(|i| taken[i].0);
-    let q: [_; N] = std::array::from_fn(|i| taken[i].1[..bands].as_chunks());
-    let (e, e_rest) = own.as_chunks();
-    let (o, o_rest) = other[..bands].as_chunks();
-    let (c, c_rest) = c[..bands].as_chunks();
-    let (u, u_rest) = u[..bands].as_chunks();
-    let mut total = CompensatedLanes::default();
-    run_off([e, o, c, u], q.map(|q| q.0), shares, &mut total);
-    if !e_rest.is_empty() {
-        let rest = [e_rest, o_rest, c_rest, u_rest].map(|rest| [padded(rest)]);
-        let q = q.map(|q| [padded(q.1)]);
-        let (rest, q) = (rest.each_ref().map(|rest| &rest[..]), q.each_ref().map(|q| &q[..]));
-        run_off(rest, q, shares, &mut total);
-    }
-    total.value()
-}
-
-/// The bands of [`left_over`] in whole chunks: target, alternative, c and u; and the columns taken off.
-#[inline(always)]
-fn run_off<const N: usize>(
-    spectra: [&[Chunk]; 4],
-    columns: [&[Chunk]; N],
-    shares: [f64; N],
-    total: &mut CompensatedLanes,
-) {
-    let count = spectra[0].len();
-    let [own, other, contrast, weights] = spectra.map(|spectrum| &spectrum[..count]);
-    let columns = columns.map(|column| &column[..count]);
-    for start in (0..count).step_by(BLOCK_CHUNKS) {
-        let mut sum = [0.0; LANES];
-        for c in start..(start + BLOCK_CHUNKS).min(count) {
-            let mut r = product(less(other[c], own[c]), contrast[c]);
-            for i in 0..N {
-                r = fused(-shares[i], columns[i][c], r);
-            }
-            sum = added(product(weights[c], r), r, sum);
-        }
-        total.add(sum);
     }
 }

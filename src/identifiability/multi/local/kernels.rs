@@ -1,0 +1,216 @@
+//! Passes over the bands of one target with several alternatives, compiled per instruction set.
+//!
+//! Symbols as in [`super`]: u weights, c = G w C, m = u c², kᵢ = u c q̂ᵢ, Δ = e′ − e.
+
+use crate::simd::{Chunk, LANES, added, dispatched, fused, padded, product};
+use crate::sum::{Compensated, CompensatedLanes, fold};
+
+/// Alternatives worked on together.
+pub(super) const TOGETHER: usize = 5;
+/// Nuisances the shared kernels take; more of them go pair by pair.
+pub(super) const MOST_NUISANCES: usize = 4;
+/// Chunks in a block of a compensated sum: more than elsewhere, since a group of pairs ends a dozen of them.
+const BLOCK_CHUNKS: usize = 64;
+
+/// Spectra of the target that a pass over the bands reads.
+#[derive(Clone, Copy)]
+pub(super) struct Lent<'a> {
+    pub(super) own: &'a [f64],
+    pub(super) square: &'a [f64],
+    pub(super) directions: [&'a [f64]; MOST_NUISANCES],
+}
+
+pub(super) struct Contrast<'a> {
+    pub(super) gain: f64,
+    pub(super) contrast: &'a [f64],
+    pub(super) widths: &'a [f64],
+    pub(super) u: &'a [f64],
+    pub(super) c: &'a mut [f64],
+    pub(super) m: &'a mut [f64],
+}
+
+dispatched! {
+    /// c = G w C and m = u c² of each band.
+    pub(super) fn contrast_into<'a>(spectra: Contrast<'a>) {
+        let Contrast { gain, contrast, widths, u, c, m } = spectra;
+        let given = contrast.iter().zip(widths).zip(u);
+        for ((c, m), ((contrast, width), u)) in c.iter_mut().zip(m).zip(given) {
+            *c = gain * contrast * width;
+            *m = u * *c * *c;
+        }
+    }
+}
+
+dispatched! {
+    /// u c q/‖q‖ of each band.
+    pub(super) fn direction_into<'a>(column: &'a [f64], u: &'a [f64], c: &'a [f64], scale: f64, out: &'a mut [f64]) {
+        for (((out, q), u), c) in out.iter_mut().zip(column).zip(u).zip(c) {
+            *out = u * c * (q * scale);
+        }
+    }
+}
+
+/// Σ m Δ² of each alternative, and Σ kᵢ Δ of each alternative along each direction.
+pub(super) type Projections = ([f64; TOGETHER], [[f64; MOST_NUISANCES]; TOGETHER]);
+
+dispatched! {
+    /// [`Projections`] on the first `count` directions.
+    pub(super) fn projections<'a>(lent: Lent<'a>, others: [&'a [f64]; TOGETHER], count: usize) -> Projections {
+        match count {
+            0 => project::<0>(lent, others),
+            1 => project::<1>(lent, others),
+            2 => project::<2>(lent, others),
+            3 => project::<3>(lent, others),
+            _ => project::<4>(lent, others),
+        }
+    }
+}
+
+/// Sums over the bands of a group of pairs.
+struct Sums<const N: usize> {
+    squares: [Compensated; TOGETHER],
+    dots: [[Compensated; N]; TOGETHER],
+}
+
+impl<const N: usize> Sums<N> {
+    /// Adds the lanes of a block. Never inlined: the lanes then go through memory all at once, which keeps the
+    /// loop before in full-width registers.
+    #[inline(never)]
+    fn add(&mut self, squares: &[Chunk; TOGETHER], dots: &[[Chunk; N]; TOGETHER]) {
+        for a in 0..TOGETHER {
+            self.squares[a].add(fold(&squares[a]));
+            for i in 0..N {
+                self.dots[a][i].add(fold(&dots[a][i]));
+            }
+        }
+    }
+}
+
+#[inline(always)]
+fn project<const N: usize>(lent: Lent<'_>, others: [&[f64]; TOGETHER]) -> Projections {
+    let bands = lent.own.len();
+    let (e, e_rest) = lent.own.as_chunks();
+    let (m, m_rest) = lent.square[..bands].as_chunks();
+    let k: [_; N] = std::array::from_fn(|i| lent.directions[i][..bands].as_chunks());
+    let o = others.map(|other| other[..bands].as_chunks());
+    let mut sums =
+        Sums { squares: [Compensated::default(); TOGETHER], dots: [[Compensated::default(); N]; TOGETHER] };
+    run(e, m, k.map(|k| k.0), o.map(|o| o.0), &mut sums);
+    if !e_rest.is_empty() {
+        let (k, o) = (k.map(|k| [padded(k.1)]), o.map(|o| [padded(o.1)]));
+        let (k, o) = (k.each_ref().map(|k| &k[..]), o.each_ref().map(|o| &o[..]));
+        run(&[padded(e_rest)], &[padded(m_rest)], k, o, &mut sums);
+    }
+    let mut along = [[0.0; MOST_NUISANCES]; TOGETHER];
+    for (along, dots) in along.iter_mut().zip(&sums.dots) {
+        for (along, dot) in along.iter_mut().zip(dots) {
+            *along = dot.value();
+        }
+    }
+    (sums.squares.map(|square| square.value()), along)
+}
+
+/// The bands of [`project`] in whole chunks. Values pass through locals, chunk by chunk: only then are they
+/// kept in full-width registers.
+#[inline(always)]
+fn run<const N: usize>(
+    own: &[Chunk],
+    square: &[Chunk],
+    directions: [&[Chunk]; N],
+    others: [&[Chunk]; TOGETHER],
+    sums: &mut Sums<N>,
+) {
+    let count = own.len();
+    let square = &square[..count];
+    let directions = directions.map(|k| &k[..count]);
+    let others = others.map(|other| &other[..count]);
+    for start in (0..count).step_by(BLOCK_CHUNKS) {
+        let (mut squares, mut dots) = ([[0.0; LANES]; TOGETHER], [[[0.0; LANES]; N]; TOGETHER]);
+        for c in start..(start + BLOCK_CHUNKS).min(count) {
+            let (e, m) = (own[c], square[c]);
+            for a in 0..TOGETHER {
+                let delta = less(others[a][c], e);
+                squares[a] = added(product(m, delta), delta, squares[a]);
+                for i in 0..N {
+                    dots[a][i] = added(directions[i][c], delta, dots[a][i]);
+                }
+            }
+        }
+        sums.add(&squares, &dots);
+    }
+}
+
+/// a − b.
+#[inline(always)]
+fn less(a: Chunk, b: Chunk) -> Chunk {
+    std::array::from_fn(|i| a[i] - b[i])
+}
+
+dispatched! {
+    /// Σ u (Δ c − Σ aᵢ qᵢ)² over the first `count` of (aᵢ, qᵢ).
+    pub(super) fn residual_square<'a>(
+        own: &'a [f64],
+        other: &'a [f64],
+        c: &'a [f64],
+        u: &'a [f64],
+        taken: [(f64, &'a [f64]); MOST_NUISANCES],
+        count: usize,
+    ) -> f64 {
+        match count {
+            0 | 1 => left_over::<1>(own, other, c, u, taken),
+            2 => left_over::<2>(own, other, c, u, taken),
+            3 => left_over::<3>(own, other, c, u, taken),
+            _ => left_over::<4>(own, other, c, u, taken),
+        }
+    }
+}
+
+#[inline(always)]
+fn left_over<const N: usize>(
+    own: &[f64],
+    other: &[f64],
+    c: &[f64],
+    u: &[f64],
+    taken: [(f64, &[f64]); MOST_NUISANCES],
+) -> f64 {
+    let bands = own.len();
+    let shares: [f64; N] = std::array::from_fn(|i| taken[i].0);
+    let q: [_; N] = std::array::from_fn(|i| taken[i].1[..bands].as_chunks());
+    let (e, e_rest) = own.as_chunks();
+    let (o, o_rest) = other[..bands].as_chunks();
+    let (c, c_rest) = c[..bands].as_chunks();
+    let (u, u_rest) = u[..bands].as_chunks();
+    let mut total = CompensatedLanes::default();
+    run_off([e, o, c, u], q.map(|q| q.0), shares, &mut total);
+    if !e_rest.is_empty() {
+        let rest = [e_rest, o_rest, c_rest, u_rest].map(|rest| [padded(rest)]);
+        let q = q.map(|q| [padded(q.1)]);
+        let (rest, q) = (rest.each_ref().map(|rest| &rest[..]), q.each_ref().map(|q| &q[..]));
+        run_off(rest, q, shares, &mut total);
+    }
+    total.value()
+}
+
+/// The bands of [`left_over`] in whole chunks: target, alternative, c and u; and the columns taken off.
+#[inline(always)]
+fn run_off<const N: usize>(
+    spectra: [&[Chunk]; 4],
+    columns: [&[Chunk]; N],
+    shares: [f64; N],
+    total: &mut CompensatedLanes,
+) {
+    let count = spectra[0].len();
+    let [own, other, contrast, weights] = spectra.map(|spectrum| &spectrum[..count]);
+    let columns = columns.map(|column| &column[..count]);
+    for start in (0..count).step_by(BLOCK_CHUNKS) {
+        let mut sum = [0.0; LANES];
+        for c in start..(start + BLOCK_CHUNKS).min(count) {
+            let mut r = product(less(other[c], own[c]), contrast[c]);
+            for i in 0..N {
+                r = fused(-shares[i], columns[i][c], r);
+            }
+            sum = added(product(weights[c], r), r, sum);
+        }
+        total.add(sum);
+    }
+}
