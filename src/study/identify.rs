@@ -1,6 +1,6 @@
 //! Distances from the target to every alternative, and what a camera makes of them.
 
-use super::{Study, Surface, Warning, warn};
+use super::{PriorAverage, Study, Surface, Warning, warn};
 use crate::error::Result;
 use crate::fisher::{Counting, Nuisance, Unknowns};
 use crate::identifiability::Status;
@@ -27,6 +27,8 @@ pub struct Identification {
     pub limiting: String,
     /// The target against the library as a whole (Algorithm 3).
     pub identifiability: Identifiability,
+    /// The hardest alternative on average over the priors; `None` without priors.
+    pub prior_average: Option<PriorAverage>,
     /// What the reader must know.
     pub warnings: Vec<Warning>,
 }
@@ -183,6 +185,10 @@ impl Study {
             scenario: self.scenario.clone(),
             photon_radiance: self.photon_radiance(),
             identifiability: self.identifiability(&pairs),
+            prior_average: match self.alternative(&limiting) {
+                Some(alternative) => self.prior_average(alternative)?,
+                None => None,
+            },
             pairs,
             limiting,
             warnings,

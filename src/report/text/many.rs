@@ -49,7 +49,16 @@ pub(super) fn verdict(result: &Identification, study: &Study) -> String {
         Some(_) => format!("it takes at least {} photons", photons(pair.photons_required)),
         None => "no number of photons suffices".into(),
     };
-    let _ = writeln!(out, "{target} is hardest to tell from {}: {needed}.\n", pair.alternative);
+    let _ = writeln!(out, "{target} is hardest to tell from {}: {needed}.", pair.alternative);
+    if let Some(average) = &result.prior_average {
+        let _ = writeln!(
+            out,
+            "Averaged over the priors: {} photons for as many right answers (hybrid Cramer-Rao bound, optimistic: {}).",
+            photons(average.photons_required),
+            photons(average.photons_required_hybrid_bound)
+        );
+    }
+    out.push('\n');
     out
 }
 
