@@ -2,12 +2,14 @@
 //!
 //! * [`local`]: the paper's semantic distance d₀, the tangent at the target (Algorithm 2);
 //! * [`nearest`]: half the separation from the nearest state of the alternative, in units of the noise;
+//! * [`selection`]: which bands or filters tell the most, and what the best few of them keep;
 //! * [`detection`]: probability, information and rigorous brackets from a statistical distance d.
 
 pub mod detection;
 pub mod local;
 pub mod map;
 pub mod nearest;
+pub mod selection;
 mod space;
 mod step;
 
