@@ -3,6 +3,7 @@
 //! * [`local`]: the paper's semantic distance d₀, the tangent at the target (Algorithm 2);
 //! * [`multi`]: all materials against all, and which can be told apart;
 //! * [`nearest`]: half the separation from the nearest state of the alternative, in units of the noise;
+//! * [`selection`]: which bands or filters tell the most, and what the best few of them keep;
 //! * [`detection`]: probability, information and rigorous brackets from a statistical distance d;
 //! * [`linear`]: Theorem 1, exact for parallel surfaces;
 //! * [`lattice`]: Algorithm 1, exact for up to three bands;
@@ -18,6 +19,7 @@ pub mod local;
 pub mod map;
 pub mod multi;
 pub mod nearest;
+pub mod selection;
 mod space;
 mod step;
 

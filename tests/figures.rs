@@ -6,7 +6,8 @@ use std::fs;
 use std::path::Path;
 
 use hadar::report::plot::{
-    Axis, Band, Figure, HeatMap, LineFigure, Marker, Panel, Rule, Series, Style, render_png, render_svg,
+    Axis, Band, Figure, HeatMap, LineFigure, Marker, Matrix, Panel, Rule, Series, Style, render_png,
+    render_svg,
 };
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -164,6 +165,53 @@ fn odds_and_ends() -> [Figure; 2] {
     [lines.into(), map.into()]
 }
 
+/// Distances among the first materials of the embedded library (made up, with a few that are alike).
+fn confusability(count: usize) -> Matrix {
+    let library = hadar::material::Library::embedded().expect("the embedded library");
+    let names: Vec<String> = library.names().take(count).map(str::to_owned).collect();
+    let mut values = Vec::new();
+    for i in 0..names.len() {
+        for j in 0..names.len() {
+            let apart = (i as f64 - j as f64).abs();
+            let value =
+                3e-5 * apart.powf(1.2) * (1.5 + (0.9 * i as f64).sin() * (1.7 * j as f64).cos()).powi(3);
+            values.push(match (i, j) {
+                (3, 2) | (2, 3) => 0.0,
+                (1, 4) => f64::NAN,
+                _ => value,
+            });
+        }
+    }
+    let axis = Axis::log("distance d₀ (per √photon)");
+    Matrix::new(
+        "Which materials can be told apart",
+        ("target", names.clone()),
+        ("alternative", names),
+        (axis, values),
+    )
+    .subtitle("nearest distance, target at 37 °C, environment at 20 °C, lighting 0.50, 715–1250 cm⁻¹")
+    .threshold(6.3e-4, "too alike for the camera: distance below the required 6.3×10⁻⁴")
+    .no_value("not computed")
+    .groups((1..count).filter(|i| i % 9 == 4).collect())
+}
+
+/// More columns than rows, other names, long ones, no titles, numbers below and above the range.
+fn ragged() -> Matrix {
+    let rows: Vec<String> =
+        ["skin", "a rather long material name, weathered, oxidised and wetted by rain", ""]
+            .map(str::to_owned)
+            .into();
+    let columns: Vec<String> = (0..40).map(|i| format!("filter {i} of the wheel")).collect();
+    let values = (0..120).map(|i| f64::from(i) - 30.0).collect();
+    Matrix::new(
+        "Signed numbers",
+        ("", rows),
+        ("", columns),
+        (Axis::linear("excess (%)").range(0.0, 50.0), values),
+    )
+    .threshold(10.0, "below 10 %")
+}
+
 fn check_svg(svg: &str) {
     assert!(svg.starts_with("<svg ") && svg.ends_with("</svg>\n"), "{}", &svg[svg.len() - 40..]);
     assert!(!svg.contains("\"NaN\"") && !svg.contains("\"inf\""));
@@ -200,6 +248,12 @@ fn sample_figures_are_drawn() {
         ("identifiability", identifiability()),
         ("required_photons", required_photons()),
         ("library", library()),
+        ("matrix_2", confusability(2).into()),
+        ("matrix_5", confusability(5).into()),
+        ("matrix_12", confusability(12).into()),
+        ("matrix_28", confusability(28).into()),
+        ("matrix_68", confusability(68).into()),
+        ("matrix_ragged", ragged().into()),
     ] {
         let start = std::time::Instant::now();
         let svg = render_svg(&figure).expect("an SVG");
@@ -309,11 +363,29 @@ fn heat_map() -> impl Strategy<Value = Figure> {
     )
 }
 
+fn matrix() -> impl Strategy<Value = Figure> {
+    let names = || prop::collection::vec(words(), 0..12);
+    let threshold = prop::option::of((number(), words()));
+    (words(), (words(), names()), (words(), names()), axis(), numbers(144), threshold).prop_map(
+        |(title, rows, columns, colour, mut values, threshold)| {
+            values.resize(rows.1.len() * columns.1.len(), 1.5);
+            let groups = |count: usize| (0..count).step_by(3).collect();
+            let (row_groups, column_groups) = (groups(rows.1.len()), groups(columns.1.len()));
+            let matrix = Matrix::new(title, rows, columns, (colour, values));
+            let matrix = match threshold {
+                Some((value, meaning)) => matrix.threshold(value, meaning),
+                None => matrix,
+            };
+            Matrix { row_groups, column_groups, ..matrix }.into()
+        },
+    )
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { rng_seed: RngSeed::Fixed(7), cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn any_numbers_give_a_valid_svg(figure in prop_oneof![line_figure(), heat_map()]) {
+    fn any_numbers_give_a_valid_svg(figure in prop_oneof![line_figure(), heat_map(), matrix()]) {
         check_svg(&render_svg(&figure).expect("an SVG"));
     }
 }
@@ -322,7 +394,7 @@ proptest! {
     #![proptest_config(ProptestConfig { rng_seed: RngSeed::Fixed(7), cases: 8, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn any_numbers_give_a_png_with_nothing_cut_off(figure in prop_oneof![line_figure(), heat_map()]) {
+    fn any_numbers_give_a_png_with_nothing_cut_off(figure in prop_oneof![line_figure(), heat_map(), matrix()]) {
         check_png(&render_png(&figure).expect("a PNG"));
     }
 }
@@ -354,4 +426,42 @@ fn lists_of_different_length_are_errors() {
     ));
     let error = render_svg(&figure.into()).expect_err("one value is missing").to_string();
     assert_eq!(error, "vertical positions of the series `skin`: 1 values where 2 are needed");
+}
+
+#[test]
+fn a_matrix_shows_every_name_and_marks_what_is_below_the_threshold() {
+    let matrix = confusability(28);
+    let svg = render_svg(&matrix.clone().into()).expect("an SVG");
+    for name in &matrix.rows {
+        // Once beside its row and once, turned, above its column.
+        assert_eq!(svg.matches(&format!("\n{name}\n")).count(), 2, "{name}");
+    }
+    // The mark of each cell below the threshold (none for NaN or the diagonal), and that of the legend.
+    let places = (0..28).flat_map(|row| (0..28).map(move |column| (row, column)));
+    let below = places.filter(|(row, column)| row != column && matrix.values[row * 28 + column] < 6.3e-4);
+    assert_eq!(svg.matches("<circle ").count(), below.count() + 1);
+    assert!(svg.contains("too alike for the camera") && svg.contains("not computed"));
+    // Without threshold no mark and no legend entry.
+    let plain = render_svg(&Matrix { threshold: None, ..matrix }.into()).expect("an SVG");
+    assert!(!plain.contains("<circle ") && !plain.contains("too alike"));
+}
+
+#[test]
+fn no_text_of_a_matrix_leaves_the_figure() {
+    for count in [0, 1, 2, 5, 12, 28, 68, 130, 300] {
+        let names: Vec<String> =
+            (0..count).map(|i| format!("a long name of a material, number {i}")).collect();
+        let values = vec![1.0; count * count];
+        let matrix =
+            Matrix::new("many", ("target", names.clone()), ("alternative", names), (Axis::log("d"), values));
+        check_png(&render_png(&matrix.into()).expect("a PNG"));
+    }
+}
+
+#[test]
+fn a_matrix_of_wrong_size_is_an_error() {
+    let matrix = Matrix { values: vec![1.0; 3], ..confusability(2) };
+    let error = render_svg(&matrix.into()).expect_err("one value is missing").to_string();
+    assert_eq!(error, "cells of the matrix `Which materials can be told apart`: 3 values where 4 are needed");
+    assert!(render_png(&confusability(3).groups(vec![3]).into()).is_err());
 }

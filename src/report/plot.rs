@@ -25,12 +25,14 @@ mod contour;
 mod figure;
 mod frame;
 mod geometry;
+mod grid;
 mod heat;
 mod heatmap;
 mod label;
 mod legend;
 mod lines;
 mod mask;
+mod matrix;
 mod png;
 mod scene;
 mod svg;
@@ -40,6 +42,7 @@ mod ticks;
 pub use axis::{Axis, Scale, Secondary};
 pub use figure::{Band, LineFigure, Marker, Panel, Rule, Series, Style};
 pub use heatmap::HeatMap;
+pub use matrix::{Matrix, Threshold};
 
 use crate::Result;
 
@@ -50,6 +53,8 @@ pub enum Figure {
     Line(LineFigure),
     /// A quantity over a plane, in colours.
     HeatMap(HeatMap),
+    /// A quantity for every pair of names, in colours.
+    Matrix(Matrix),
 }
 
 impl From<LineFigure> for Figure {
@@ -64,11 +69,17 @@ impl From<HeatMap> for Figure {
     }
 }
 
+impl From<Matrix> for Figure {
+    fn from(figure: Matrix) -> Self {
+        Self::Matrix(figure)
+    }
+}
+
 /// The figure as an SVG document, 800 px wide.
 ///
 /// # Errors
 /// [`crate::Error::Length`] where lists that belong together differ in length, and
-/// [`crate::Error::Malformed`] where the cells of a heat map are not in rising order.
+/// [`crate::Error::Malformed`] where the cells of a heat map or the groups of a matrix are not in rising order.
 pub fn render_svg(figure: &Figure) -> Result<String> {
     svg::paint(&scene(figure)?)
 }
@@ -85,5 +96,6 @@ fn scene(figure: &Figure) -> Result<scene::Scene> {
     match figure {
         Figure::Line(figure) => lines::scene(figure),
         Figure::HeatMap(map) => heat::scene(map),
+        Figure::Matrix(matrix) => grid::scene(matrix),
     }
 }

@@ -13,8 +13,8 @@ pub(super) const WIDTH: f64 = 800.0;
 pub(super) const TICK: f64 = 11.5;
 const TITLE: f64 = 16.0;
 const SUBTITLE: f64 = 11.5;
-const AXIS_TITLE: f64 = 12.5;
-const EDGE: f64 = 12.0;
+pub(super) const AXIS_TITLE: f64 = 12.5;
+pub(super) const EDGE: f64 = 12.0;
 /// From the frame to the tick labels.
 const LABEL_GAP: f64 = 8.0;
 

@@ -50,7 +50,8 @@ pub(super) fn scene(map: &HeatMap) -> Result<Scene> {
         draw_ring(&mut scene, at);
         placer.point(&mut scene, at, &marker.label);
     }
-    draw_bar(&mut scene, map, &bar, &Rect { left: right + 18.0, right: right + 18.0 + BAR, ..area });
+    let values = map.values.iter().copied();
+    draw_bar(&mut scene, values, &bar, &Rect { left: right + 18.0, right: right + 18.0 + BAR, ..area });
 
     let below = x.draw_labels(&mut scene, &area);
     let missing = missing.map(|key| Entry { key, label: map.no_value.clone() });
@@ -227,7 +228,8 @@ fn draw_contours(
     }
 }
 
-fn draw_bar(scene: &mut Scene, map: &HeatMap, axis: &Vertical, bar: &Rect) {
+/// The colour bar with its scale, and tips where there are values beyond it.
+pub(super) fn draw_bar(scene: &mut Scene, values: impl Iterator<Item = f64>, axis: &Vertical, bar: &Rect) {
     const STRIPS: u16 = 96;
     for i in (0..STRIPS).rev() {
         let part = |i: u16| f64::from(i) / f64::from(STRIPS);
@@ -237,10 +239,13 @@ fn draw_bar(scene: &mut Scene, map: &HeatMap, axis: &Vertical, bar: &Rect) {
     }
     scene.outline(*bar, 0.9, INK);
     // A tip at an end of the bar: there are values beyond it.
-    let parts = || map.values.iter().filter_map(|value| axis.ruler.fraction(*value));
+    let (mut least, mut most) = (0.0f64, 1.0f64);
+    for part in values.filter_map(|value| axis.ruler.fraction(value)) {
+        (least, most) = (least.min(part), most.max(part));
+    }
     let middle = 0.5 * (bar.left + bar.right);
     let x = vec![bar.left, middle, bar.right];
-    if parts().any(|part| part > 1.0 + 1e-9) {
+    if most > 1.0 + 1e-9 {
         let base = bar.top - 2.0;
         let upper = vec![base, base - 9.0, base];
         scene.marks.push(Mark::Area {
@@ -250,7 +255,7 @@ fn draw_bar(scene: &mut Scene, map: &HeatMap, axis: &Vertical, bar: &Rect) {
             colour: colour::quantity(1.0),
         });
     }
-    if parts().any(|part| part < -1e-9) {
+    if least < -1e-9 {
         let base = bar.bottom + 2.0;
         let lower = vec![base, base + 9.0, base];
         scene.marks.push(Mark::Area { x, upper: vec![base; 3], lower, colour: colour::quantity(0.0) });

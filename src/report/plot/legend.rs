@@ -17,10 +17,22 @@ const MOST: usize = 120;
 /// What an entry looks like in the plot.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Key {
-    Line { colour: Colour, dash: &'static [f64] },
-    Points { colour: Colour },
-    Area { colour: Colour },
+    Line {
+        colour: Colour,
+        dash: &'static [f64],
+    },
+    Points {
+        colour: Colour,
+    },
+    Area {
+        colour: Colour,
+    },
     Hatched,
+    /// A patch of colour with a dot.
+    Dotted {
+        colour: Colour,
+        ink: Colour,
+    },
 }
 
 /// A legend entry before it has a place.
@@ -158,6 +170,11 @@ fn entry(scene: &mut Scene, key: &Key, lines: &[String], (left, top): Point) {
         Key::Hatched => {
             hatch(scene, area);
             scene.outline(area, 0.7, GREY);
+        }
+        Key::Dotted { colour, ink } => {
+            scene.fill(area, *colour);
+            let centre = (0.5 * (area.left + area.right), middle);
+            scene.marks.push(Mark::Disc { centre, radius: 2.4, colour: *ink });
         }
     }
     for (i, line) in lines.iter().enumerate() {
