@@ -2,9 +2,12 @@
 //!
 //! * [`local`]: the paper's semantic distance d₀, the tangent at the target (Algorithm 2);
 //! * [`nearest`]: half the separation from the nearest state of the alternative, in units of the noise;
+//! * [`likelihood`]: the state of a material that explains given counts best;
 //! * [`detection`]: probability, information and rigorous brackets from a statistical distance d.
 
+mod curvature;
 pub mod detection;
+pub mod likelihood;
 pub mod local;
 pub mod map;
 pub mod nearest;

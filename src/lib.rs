@@ -13,6 +13,7 @@ pub mod report;
 pub mod scenario;
 pub mod scene;
 mod simd;
+pub mod simulate;
 pub mod spectrum;
 pub mod statistics;
 pub mod study;

@@ -137,25 +137,10 @@ impl<'a> NearestSolver<'a> {
         metric: Metric<'_>,
         start: Option<&State>,
     ) -> Result<NearestDistance> {
-        self.target.evaluate(emissivity, alternative, state, &[], false);
-        let total = crate::sum::sum(self.target.signal());
-        if !(total > 0.0 && total.is_finite()) {
-            return Err(Error::out_of_range(
-                "photon radiance of the target",
-                total,
-                "photons s^-1 m^-2 sr^-1",
-                "above 0: a warmer scene, or bands at lower wavenumbers",
-            ));
-        }
-        let counts = match metric {
-            Metric::PerPhoton { .. } => 1.0 / total,
-            Metric::Counting(counting) => counting.counts_per_radiance,
-        };
-        let target = Target { emissivity, alternative, state, counts, metric };
-        self.work.weigh_target(&target, self.target.signal());
+        let target = self.prepared(emissivity, alternative, state, metric)?;
         let starts = match start {
             Some(start) => vec![start.clone()],
-            None => self.starts(&target),
+            None => self.starts(&target, 0.0),
         };
         let mut best: Option<NearestDistance> = None;
         let mut iterations = 0;
@@ -175,6 +160,60 @@ impl<'a> NearestSolver<'a> {
             }
             None => Err(Error::malformed("the alternative has no state in its range", "widen the range")),
         }
+    }
+
+    /// Looks at the target: what every candidate state is compared with.
+    fn prepared<'t>(
+        &mut self,
+        emissivity: &'t [f64],
+        alternative: &'t [f64],
+        state: &'t State,
+        metric: Metric<'t>,
+    ) -> Result<Target<'t>> {
+        self.target.evaluate(emissivity, alternative, state, &[], false);
+        let total = crate::sum::sum(self.target.signal());
+        if !(total > 0.0 && total.is_finite()) {
+            return Err(Error::out_of_range(
+                "photon radiance of the target",
+                total,
+                "photons s^-1 m^-2 sr^-1",
+                "above 0: a warmer scene, or bands at lower wavenumbers",
+            ));
+        }
+        let counts = match metric {
+            Metric::PerPhoton { .. } => 1.0 / total,
+            Metric::Counting(counting) => counting.counts_per_radiance,
+        };
+        let target = Target { emissivity, alternative, state, counts, metric };
+        self.work.weigh_target(&target, self.target.signal());
+        Ok(target)
+    }
+
+    /// States at minima of the distance, nearest first, that lie no more than `reach` beyond the least one.
+    ///
+    /// # Errors
+    /// A scene without photons.
+    pub(crate) fn minima_with_counting(
+        &mut self,
+        emissivity: &[f64],
+        alternative: &[f64],
+        state: &State,
+        counting: &Counting,
+        reach: f64,
+    ) -> Result<Vec<NearestDistance>> {
+        let target = self.prepared(emissivity, alternative, state, Metric::Counting(counting))?;
+        let starts = self.starts(&target, reach);
+        let mut minima: Vec<NearestDistance> =
+            starts.into_iter().map(|start| self.refine(&target, start)).collect();
+        minima.sort_by(|a, b| a.distance.total_cmp(&b.distance));
+        let farthest = minima.first().map_or(0.0, |least| least.distance + reach);
+        let mut distinct: Vec<NearestDistance> = Vec::new();
+        for minimum in minima.into_iter().filter(|minimum| minimum.distance <= farthest) {
+            if distinct.iter().all(|known| !self.space.same(&known.state, &minimum.state)) {
+                distinct.push(minimum);
+            }
+        }
+        Ok(distinct)
     }
 
     /// Newton's method within the bounds, damped as by Levenberg and Marquardt.

@@ -14,6 +14,8 @@ use nalgebra::{DMatrix, DVector};
 const LOG_GAIN: f64 = 14.0;
 /// Share of its range within which a parameter counts as standing at the edge.
 const EDGE: f64 = 1e-9;
+/// Relative difference up to which two states are one.
+const SAME: f64 = 1e-4;
 
 /// The physical range of the alternative's state.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -187,6 +189,12 @@ impl StateSpace {
                 (change / size).abs()
             })
             .fold(0.0, f64::max)
+    }
+
+    /// Whether two states are one as far as a fit that starts from either is concerned.
+    pub(super) fn same(&self, a: &State, b: &State) -> bool {
+        let change = self.parameters.iter().map(|parameter| value(b, *parameter) - value(a, *parameter));
+        self.relative_size(&DVector::from_iterator(self.parameters.len(), change), a) < SAME
     }
 
     pub(super) fn edges(&self, state: &State) -> Vec<Parameter> {
