@@ -4,9 +4,11 @@
 //! the material's free parameters (T, V, ln gain, Tₖ: those that are unknown). Minimised is −ln L + ½Σ((θ − θ₀)/σ_p)²,
 //! the sum over the parameters that have a prior, θ₀ their known value; without priors it is plain maximum likelihood.
 //!
-//! From each start Newton's steps within the range, with the exact second derivatives where these are positive
-//! definite and the Fisher matrix elsewhere (scoring), damped where a step does not go down (`space`). It ends when
-//! what another step may gain in ln L is below [`GAIN`], which no decision between materials can feel.
+//! From each start Newton's steps within the range (`space`), with the exact second derivatives where these are
+//! positive definite and the Fisher matrix elsewhere (scoring). Temperature and lighting are often nearly degenerate, and
+//! the likelihood a narrow ridge that bends: a step that leaves it is led back by a second one with T held, which
+//! needs no new radiances, and shortened if that does not help. It ends when what another step may gain in ln L is
+//! below [`GAIN`], which no decision between materials can feel.
 //!
 //! ln L is counted from a value that depends on the counts alone (`terms`), so that two materials fitted to the same
 //! counts can be compared however many photons there are.
@@ -27,6 +29,7 @@ use crate::scene::{Jacobian, Parameter, State, Surroundings};
 use crate::simd::Aligned;
 use crate::spectrum::Bands;
 use crate::statistics::Statistics;
+use nalgebra::DVector;
 
 /// A fit ends when another step is expected to raise ln L by less than this.
 pub const GAIN: f64 = 1e-9;
@@ -34,7 +37,11 @@ pub const GAIN: f64 = 1e-9;
 const ROUNDING: f64 = 1e-14;
 /// Iterations from one start.
 const ITERATIONS: usize = 80;
-/// Damping for a singular matrix, after a first step that did not go down, and where no step is worth trying.
+/// A step and parts of it that are tried, each a share of the one before, and the share of the expected gain that is
+/// enough at once.
+const SHARES: [f64; 5] = [1.0, 0.3, 0.3, 0.3, 0.1];
+const SUFFICIENT: f64 = 0.3;
+/// Damping for a singular matrix, for one whose steps do not go down, and where no step is worth trying.
 const SINGULAR: f64 = 1e-12;
 const UPHILL: f64 = 1e-3;
 const HOPELESS: f64 = 1e12;
@@ -80,6 +87,8 @@ pub struct Fit {
 #[derive(Debug, Clone)]
 pub struct MaximumLikelihood<'a> {
     space: StateSpace,
+    /// Whether temperature is free beside something else.
+    bends: bool,
     surface: Jacobian<'a>,
     statistics: Statistics,
     counts_per_radiance: f64,
@@ -102,8 +111,10 @@ impl<'a> MaximumLikelihood<'a> {
     ) -> Result<Self> {
         check::positive("counts per unit of band signal", counts_per_radiance, "m^2 sr s")?;
         statistics.check_bands(bands.len())?;
+        let space = StateSpace::new(unknowns, range, surroundings.objects().len());
         Ok(Self {
-            space: StateSpace::new(unknowns, range, surroundings.objects().len()),
+            bends: space.parameters.len() > 1 && space.parameters.contains(&Parameter::Temperature),
+            space,
             surface: Jacobian::new(bands, surroundings),
             statistics,
             counts_per_radiance,
@@ -133,7 +144,7 @@ impl<'a> MaximumLikelihood<'a> {
         best
     }
 
-    /// Newton's method within the bounds, damped as by Levenberg and Marquardt.
+    /// Newton's method within the bounds.
     fn climb(&mut self, task: &Task<'_>, start: &State) -> Fit {
         let mut state = task.known.clone();
         for parameter in &self.space.parameters {
@@ -141,38 +152,63 @@ impl<'a> MaximumLikelihood<'a> {
         }
         state = self.space.within_range(&state);
         let mut loss = self.loss(task, &state);
-        let (mut damping, mut iterations) = (0.0, 0);
-        if self.space.parameters.is_empty() {
-            return Fit { log_likelihood: -loss, state, converged: true, iterations };
-        }
+        let (mut damping, mut iterations, mut converged) = (0.0, 0, self.space.parameters.is_empty());
         let mut at = self.quadratic(task, &state);
-        let mut converged = false;
         while !converged && iterations < ITERATIONS && damping < HOPELESS {
             iterations += 1;
             let Some(step) = self.space.step(&at, &state, damping, false) else {
-                damping = (20.0 * damping).max(SINGULAR);
+                damping = (100.0 * damping).max(SINGULAR);
                 continue;
             };
             // At least this much by the quadratic model, and at most twice as much.
             let gain = -0.5 * at.gradient.dot(&step);
             let enough = ROUNDING.mul_add(loss.abs(), GAIN);
-            if damping < UPHILL && gain < enough {
-                converged = true;
+            converged = gain < enough;
+            if converged {
                 break;
             }
-            let moved = self.space.moved(&state, &step);
-            let next = self.loss(task, &moved);
-            if next < loss {
-                (state, loss) = (moved, next);
-                at = self.quadratic(task, &state);
-                damping = if damping > UPHILL { 0.05 * damping } else { 0.0 };
-            } else {
+            match self.search(task, (&state, loss), step, gain) {
+                Some(found) => (state, loss, at) = found,
                 // Rounding decides whether so small a step goes down.
-                converged = damping < UPHILL && gain < 1e3 * enough;
-                damping = (20.0 * damping).max(UPHILL);
+                None if gain < 1e3 * enough => converged = true,
+                None => damping = (100.0 * damping).max(UPHILL),
             }
         }
         Fit { log_likelihood: -loss, state, converged, iterations }
+    }
+
+    /// A lower place along a step, the loss there and the loss to second order.
+    fn search(
+        &mut self,
+        task: &Task<'_>,
+        (state, loss): (&State, f64),
+        mut step: DVector<f64>,
+        gain: f64,
+    ) -> Option<(State, f64, Quadratic)> {
+        for share in SHARES {
+            step *= share;
+            let moved = self.space.moved(state, &step);
+            let next = self.loss(task, &moved);
+            if next < loss - SUFFICIENT * gain {
+                let at = self.quadratic(task, &moved);
+                return Some((moved, next, at));
+            }
+            // The step has left a narrow valley that bends: back into it with T held.
+            if self.bends {
+                let at = self.quadratic(task, &moved);
+                let back = self.space.step(&at, &moved, 0.0, true);
+                let inside = back.map_or_else(|| moved.clone(), |back| self.space.moved(&moved, &back));
+                let next = self.loss(task, &inside);
+                if next < loss {
+                    let at = self.quadratic(task, &inside);
+                    return Some((inside, next, at));
+                }
+            } else if next < loss {
+                let at = self.quadratic(task, &moved);
+                return Some((moved, next, at));
+            }
+        }
+        None
     }
 
     /// What is minimised, at a state.

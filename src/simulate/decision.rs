@@ -167,11 +167,25 @@ impl DecisionScene<'_> {
             means: means.to_vec(),
             terms: Terms::new(self.bands.len()),
         };
-        let tests = [
-            Test { truth: 0, draws: Draws::new(self.statistics, &means[0])?, rule: rule(), counts: means[0].clone() },
-            Test { truth: 1, draws: Draws::new(self.statistics, &means[1])?, rule: rule(), counts: means[1].clone() },
-        ];
+        let test = |truth: usize| -> Result<Test<'_>> {
+            let draws = Draws::new(self.statistics, &means[truth])?;
+            Ok(Test { truth, draws, rule: rule(), counts: means[truth].clone() })
+        };
+        let tests = [test(0)?, test(1)?];
         Ok(balanced(tests, alternative.1.clone(), distance, plan))
+    }
+
+    /// States of `other` from which it is fitted to counts of `emissivity` in `state`: its nearest ones; none if it is
+    /// out of reach.
+    ///
+    /// # Errors
+    /// As [`DecisionScene::detection`].
+    pub fn starts(&self, emissivity: &[f64], other: &[f64], state: &State) -> Result<Vec<State>> {
+        let counting = self.counting(&self.means(emissivity, state)?);
+        check_emissivity(other, self.bands.nodes_cm1().len())?;
+        let minima = self.solver().minima_with_counting(emissivity, other, state, &counting, REACH)?;
+        let within = minima.into_iter().filter(|minimum| minimum.distance <= OUT_OF_REACH);
+        Ok(within.map(|minimum| minimum.state).collect())
     }
 
     /// Counts from material `truth` in `state`, judged by fits of all `materials`.
@@ -184,28 +198,21 @@ impl DecisionScene<'_> {
             });
         };
         let means = self.means(emissivity, state)?;
-        let counting = self.counting(&means);
-        let mut solver = self.solver();
         let mut candidates = Vec::with_capacity(materials.len());
         for (i, &other) in materials.iter().enumerate() {
-            check_emissivity(other, self.bands.nodes_cm1().len())?;
-            let minima = solver.minima_with_counting(emissivity, other, state, &counting, REACH)?;
-            let within = minima.into_iter().filter(|minimum| minimum.distance <= OUT_OF_REACH);
-            let mut starts: Vec<State> = within.map(|minimum| minimum.state).collect();
+            let mut starts = self.starts(emissivity, other, state)?;
             if i == truth {
                 starts.insert(0, state.clone());
             }
             candidates.push(Candidate { emissivity: other, starts });
         }
-        let (range, counts_per_radiance) = (self.range, self.counts_per_radiance);
-        let (unknowns, statistics) = (self.unknowns.clone(), self.statistics.clone());
         let fits = MaximumLikelihood::new(
             self.bands,
             self.surroundings,
-            unknowns,
-            range,
-            counts_per_radiance,
-            statistics,
+            self.unknowns.clone(),
+            self.range,
+            self.counts_per_radiance,
+            self.statistics.clone(),
         )?;
         let rule = Rule::Fitted { fits: Box::new(fits), candidates, known: state.clone() };
         Ok(Test { draws: Draws::new(self.statistics, &means)?, truth, rule, counts: means })

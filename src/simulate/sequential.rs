@@ -68,10 +68,7 @@ impl Interval {
         let n = trials as f64;
         let tail = 0.5 * (1.0 - level);
         // P(X ≤ x) at p is P(X ≥ n − x) at 1 − p.
-        Self {
-            low: lowest(successes.floor(), n, tail),
-            high: 1.0 - lowest((n - successes).floor(), n, tail),
-        }
+        Self { low: lowest(successes.floor(), n, tail), high: 1.0 - lowest((n - successes).floor(), n, tail) }
     }
 
     /// The interval of the mean of two independent estimates.

@@ -193,7 +193,11 @@ mod tests {
             for x in [x, -x] {
                 if x > -1.0 {
                     let exact = x.ln_1p();
-                    assert!((ln_1p(x) - exact).abs() <= 5e-16 * exact.abs(), "{x:e} {:e} {exact:e}", ln_1p(x));
+                    assert!(
+                        (ln_1p(x) - exact).abs() <= 5e-16 * exact.abs(),
+                        "{x:e} {:e} {exact:e}",
+                        ln_1p(x)
+                    );
                 }
             }
         }
