@@ -249,3 +249,6 @@ struct Task<'t> {
     counts: &'t [f64],
     known: &'t State,
 }
+
+#[cfg(test)]
+mod tests;
