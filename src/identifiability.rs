@@ -6,14 +6,17 @@
 //! * [`selection`]: which bands or filters tell the most, and what the best few of them keep;
 //! * [`detection`]: probability, information and rigorous brackets from a statistical distance d;
 //! * [`linear`]: Theorem 1, exact for parallel surfaces;
+//! * [`likelihood`]: the state of a material that explains given counts best;
 //! * [`lattice`]: Algorithm 1, exact for up to three bands;
 //! * [`bracket`]: rigorous bounds on the error between known states, two or many;
 //! * [`bayes`]: what priors do to the distance and to the probability.
 
 pub mod bayes;
 pub mod bracket;
+mod curvature;
 pub mod detection;
 pub mod lattice;
+pub mod likelihood;
 pub mod linear;
 pub mod local;
 pub mod map;

@@ -14,6 +14,7 @@ mod root;
 pub mod scenario;
 pub mod scene;
 mod simd;
+pub mod simulate;
 pub mod spectrum;
 pub mod statistics;
 pub mod study;

@@ -36,6 +36,8 @@ const ITERATIONS: usize = 100;
 const STEP_TOLERANCE: f64 = 1e-9;
 /// Relative separation at which two refinements have come to the same minimum.
 const SAME_MINIMUM: f64 = 1e-5;
+/// Relative separation up to which two states are one as far as a fit that starts from either is concerned.
+const SAME_STATE: f64 = 1e-4;
 /// Share of the separation at the target's own state below which a distance is rounding noise.
 const ROUNDING: f64 = 1e-14;
 
@@ -218,7 +220,7 @@ impl<'a> NearestSolver<'a> {
         let target = self.aim(emissivity, alternative, state, metric)?;
         let starts = match start {
             Some(start) => vec![start.clone()],
-            None => self.starts(&target),
+            None => self.starts(&target, 0.0),
         };
         let mut best: Option<NearestDistance> = None;
         let mut iterations = 0;
@@ -241,6 +243,34 @@ impl<'a> NearestSolver<'a> {
             }
             None => Err(Error::malformed("the alternative has no state in its range", "widen the range")),
         }
+    }
+
+    /// States at minima of the distance, nearest first, that lie no more than `reach` beyond the least one.
+    ///
+    /// # Errors
+    /// A scene without photons.
+    pub(crate) fn minima_with_counting(
+        &mut self,
+        emissivity: &[f64],
+        alternative: &[f64],
+        state: &State,
+        counting: &Counting,
+        reach: f64,
+    ) -> Result<Vec<NearestDistance>> {
+        let target = self.aim(emissivity, alternative, state, Metric::Counting(counting))?;
+        let starts = self.starts(&target, reach);
+        let mut minima: Vec<NearestDistance> =
+            starts.into_iter().map(|start| self.refine(&target, start, None, 0.0)).collect();
+        minima.sort_by(|a, b| a.distance.total_cmp(&b.distance));
+        let farthest = minima.first().map_or(0.0, |least| least.distance + reach);
+        let mut distinct: Vec<NearestDistance> = Vec::new();
+        for minimum in minima.into_iter().filter(|minimum| minimum.distance <= farthest) {
+            if distinct.iter().all(|known| self.space.separation(&known.state, &minimum.state) >= SAME_STATE)
+            {
+                distinct.push(minimum);
+            }
+        }
+        Ok(distinct)
     }
 
     /// Newton's method within the bounds, damped as by Levenberg and Marquardt. It ends early where it has come

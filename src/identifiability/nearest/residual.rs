@@ -3,16 +3,16 @@
 //! With ρ = √(κS′ + σ²) and s = ∂r/∂S′ = −κ/(2ρ), half the cost has the second derivatives
 //! Σ s²(1 + r/ρ) S′ᵢS′ⱼ + Σ r s S′ᵢⱼ. The first sum without r/ρ is the Gauss–Newton matrix; where temperature and
 //! lighting of the alternative are nearly degenerate it alone converges slowly, so the rest is added:
-//! S′_TT = G e′ B″ with B″ = (B′/T)(2TB′/B − x − 2), x = hcν/kT, and S′_gj = S′ⱼ for the logarithm g of the gain.
+//! S′_TT = G e′ B″ (`curvature`), and S′_gj = S′ⱼ for the logarithm g of the gain.
 //! (Second derivatives along environment temperatures are left out.)
 
 use super::{Metric, NearestSolver};
+use crate::identifiability::curvature::{Curvature, curvature_into};
 use crate::identifiability::space::{Quadratic, value};
 use crate::planck;
 use crate::scene::{Parameter, State};
 use crate::simd::dispatched;
 use crate::sum;
-use crate::units::SECOND_RADIATION_CM_K;
 use nalgebra::{DMatrix, DVector};
 
 /// The target as every candidate state is compared with it.
@@ -266,30 +266,6 @@ dispatched! {
     fn scale_by<'a>(column: &'a [f64], factors: &'a [f64], out: &'a mut [f64]) {
         for ((out, column), factor) in out.iter_mut().zip(column).zip(factors) {
             *out = column * factor;
-        }
-    }
-}
-
-struct Curvature<'a> {
-    nu: &'a [f64],
-    temperature_k: f64,
-    gain: f64,
-    emissivity: &'a [f64],
-    value: &'a [f64],
-    slope: &'a [f64],
-    out: &'a mut [f64],
-}
-
-dispatched! {
-    /// G e′ B″(T′), from B and B′; 0 where B underflows.
-    fn curvature_into<'a>(spectra: Curvature<'a>) {
-        let Curvature { nu, temperature_k, gain, emissivity, value, slope, out } = spectra;
-        let per_kelvin = 1.0 / temperature_k;
-        let radiance = value.iter().zip(slope);
-        for (((out, nu), e), (value, slope)) in out.iter_mut().zip(nu).zip(emissivity).zip(radiance) {
-            let x = SECOND_RADIATION_CM_K * nu * per_kelvin;
-            let relative = if *value > 0.0 { temperature_k * slope / value } else { 0.0 };
-            *out = gain * e * (slope * per_kelvin) * (2.0 * relative - x - 2.0);
         }
     }
 }

@@ -38,8 +38,9 @@ struct Start {
 }
 
 impl NearestSolver<'_> {
-    /// States to refine from: the target's own, and one for every minimum along T′.
-    pub(super) fn starts(&mut self, target: &Target<'_>) -> Vec<State> {
+    /// States to refine from: the target's own, and one for every minimum along T′. Left out are those that are both
+    /// many times as costly as the cheapest and more than `reach` farther away.
+    pub(super) fn starts(&mut self, target: &Target<'_>, reach: f64) -> Vec<State> {
         let own = self.space.within_range(target.state);
         if !self.space.unknowns.contains(Nuisance::Temperature) {
             return vec![own];
@@ -55,9 +56,10 @@ impl NearestSolver<'_> {
         minima.truncate(REFINED);
         let own_cost = self.linearise(target, &own).cost;
         let cheapest = minima.first().map_or(f64::INFINITY, |start| start.cost);
-        minima.retain(|start| start.cost <= WORTH_REFINING * cheapest);
+        let worth = (WORTH_REFINING * cheapest).max((cheapest.sqrt() + reach).powi(2));
+        minima.retain(|start| start.cost <= worth);
         let mut starts: Vec<State> = minima.into_iter().map(|start| start.state).collect();
-        if own_cost <= WORTH_REFINING * cheapest || starts.is_empty() {
+        if own_cost <= worth || starts.is_empty() {
             starts.push(own);
         }
         starts

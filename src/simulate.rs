@@ -1,0 +1,12 @@
+//! Monte Carlo witnesses: what a test that draws its own counts really achieves, beside the bounds.
+//!
+//! * [`draws`]: counts about given means by the laws of [`crate::statistics`];
+//! * [`sequential`]: how sure a proportion of trials is, and when there have been enough;
+//! * [`decision`]: the maximum-likelihood decision among materials whose states are not known.
+//!
+//! Bounds never make use of simulations. Every block of trials has a stream of random numbers of its own, so results
+//! do not depend on the number of threads, and a seed brings them back.
+
+pub mod decision;
+pub mod draws;
+pub mod sequential;
