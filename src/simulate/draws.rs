@@ -201,7 +201,10 @@ mod tests {
             Draws::new(&statistics, means).unwrap().draw_into(&mut generator(20, 7), &mut counts);
             counts
         };
-        assert_eq!(first(Statistics::Poisson, &[0.5, 9.0, 40.0, 1e6, 1e12]), [1.0, 7.0, 37.0, 1_000_922.0, 999_998_480_959.0]);
+        assert_eq!(
+            first(Statistics::Poisson, &[0.5, 9.0, 40.0, 1e6, 1e12]),
+            [1.0, 7.0, 37.0, 1_000_922.0, 999_998_480_959.0]
+        );
         let bunched = Statistics::negative_binomial(vec![0.5, 30.0]).unwrap();
         assert_eq!(first(bunched, &[9.0, 1e4]), [10.0, 9274.0]);
         let normal = Statistics::gaussian(vec![0.0, 4.0]).unwrap();
