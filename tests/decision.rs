@@ -18,6 +18,11 @@ use std::path::Path;
 #[allow(dead_code)]
 mod scenes;
 
+/// Fewer trials where the code is not optimised: the intervals know of it.
+fn trials(full: u64) -> u64 {
+    if cfg!(debug_assertions) { full / 10 } else { full }
+}
+
 fn free() -> Unknowns {
     Unknowns::new([Nuisance::Temperature, Nuisance::Lighting]).unwrap()
 }
@@ -63,7 +68,7 @@ impl Published {
             counts_per_radiance: photons / signal,
             statistics: &Statistics::Poisson,
         };
-        scene.balanced((&target, &other), &state, &Plan::new(1, 0.001, 3000).unwrap()).unwrap()
+        scene.balanced((&target, &other), &state, &Plan::new(1, 0.001, trials(3000)).unwrap()).unwrap()
     }
 }
 
@@ -152,7 +157,7 @@ fn recipes(count: usize) -> Vec<scenes::Recipe> {
 
 #[test]
 fn the_same_material_is_guessed_and_another_one_far_away_recognised() {
-    let plan = Plan::new(3, 0.01, 500).unwrap();
+    let plan = Plan::new(3, 0.01, 200).unwrap();
     for recipe in recipes(4) {
         let far = Drawn::new(&recipe, 40.0);
         let (e, other) = far.pair();
@@ -170,10 +175,10 @@ fn the_same_material_is_guessed_and_another_one_far_away_recognised() {
         }
         let scene = far.with(&Statistics::Poisson);
         let detection = scene.detection(&[other, e], 1, state, &plan).unwrap();
-        assert_eq!((detection.probability, detection.trials), (1.0, 500));
+        assert_eq!((detection.probability, detection.trials), (1.0, 200));
         assert_eq!(detection.out_of_reach, [0]);
-        assert_eq!(detection.decisions, [0.0, 500.0]);
-        assert!(detection.interval.low > 0.99 && detection.interval.high == 1.0);
+        assert_eq!(detection.decisions, [0.0, 200.0]);
+        assert!(detection.interval.low > 0.98 && detection.interval.high == 1.0);
         let near = Drawn::new(&recipe, 6.0);
         let both = near.with(&Statistics::Poisson).detection(&[other, e], 1, state, &plan).unwrap();
         assert!(both.probability > 0.99 && both.out_of_reach.is_empty());
@@ -184,7 +189,7 @@ fn the_same_material_is_guessed_and_another_one_far_away_recognised() {
 /// deviations of the trials (by chance 6e-5 each).
 #[test]
 fn known_states_are_told_apart_as_often_as_the_distance_says() {
-    let plan = Plan::new(4, 0.001, 8000).unwrap();
+    let plan = Plan::new(4, 0.001, trials(8000)).unwrap();
     for (recipe, distance) in recipes(4).into_iter().zip([0.5, 1.0, 1.5, 2.0]) {
         let mut drawn = Drawn::new(&recipe, 1.0);
         let (e, state) = (drawn.scene.emissivity.clone(), drawn.scene.state.clone());
@@ -205,7 +210,7 @@ fn known_states_are_told_apart_as_often_as_the_distance_says() {
             let found = drawn.with(&statistics).known_states((&e, &state), (&other, &state), &plan).unwrap();
             let expected = detection::probability(found.distance);
             assert!((found.distance / distance - 1.0).abs() < 1e-3, "{}", found.distance);
-            let deviation = (expected * (1.0 - expected) / 16_000.0).sqrt();
+            let deviation = (expected * (1.0 - expected) / (2 * trials(8000)) as f64).sqrt();
             let off = (found.probability - expected) / deviation;
             println!(
                 "{} d = {distance}: {:.4}, {expected:.4}, {off:.1} deviations",
@@ -221,7 +226,7 @@ fn known_states_are_told_apart_as_often_as_the_distance_says() {
 /// A test of known states errs no more often than ½ρ.
 #[test]
 fn nothing_beats_the_bracket() {
-    let plan = Plan::new(5, 0.001, 1500).unwrap().at_level(0.9999).unwrap();
+    let plan = Plan::new(5, 0.001, trials(1500)).unwrap().at_level(0.9999).unwrap();
     for recipe in recipes(12) {
         for distance in [0.4, 1.0, 1.8] {
             let drawn = Drawn::new(&recipe, distance);
@@ -242,7 +247,7 @@ fn nothing_beats_the_bracket() {
 #[test]
 fn the_number_of_threads_does_not_matter() {
     let drawn = Drawn::new(&recipes(1)[0], 1.0);
-    let plan = Plan::new(6, 0.02, 3000).unwrap();
+    let plan = Plan::new(6, 0.03, 1500).unwrap();
     let on = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
@@ -251,7 +256,7 @@ fn the_number_of_threads_does_not_matter() {
     };
     let (one, two) = (on(1), on(2));
     assert_eq!(one, two);
-    assert!(one.interval.half_width() <= 0.02 || one.classes[0].trials == 3000);
+    assert!(one.interval.half_width() <= 0.03 || one.classes[0].trials == 1500);
 }
 
 #[test]

@@ -73,7 +73,7 @@ fn compare(
     draws.draw_into(&mut generator(seed, 0), &mut counts);
     for (own, surface) in [(true, &scene.emissivity), (false, &scene.alternative)] {
         let mut starts = decision.starts(&scene.emissivity, surface, state).unwrap();
-        if own {
+        if own && !starts.contains(state) {
             starts.insert(0, state.clone());
         }
         let fit = fits.fit(surface, &counts, state, &starts);
@@ -89,29 +89,20 @@ fn compare(
             }
         }
         let brute = fits.fit(surface, &counts, state, &lattice);
-        if brute.log_likelihood - fit.log_likelihood > SAME {
-            println!(
-                "law {law} gain {gain} d {distance} own {own} {:e} photons {} bands {} objs true {:?} starts {:?} fit {:?} brute {:?}",
-                photons,
-                means.len(),
-                state.lighting.len(),
-                state,
-                starts,
-                fit,
-                brute
-            );
-        }
         tried.push(Outcome { missed: brute.log_likelihood - fit.log_likelihood, fit });
     }
 }
 
-/// All three laws, distances from 0.7 to 5, temperature and lighting unknown and every fourth time gain.
+/// All three laws, distances from 0.7 to 5, temperature and lighting unknown and every fourth time gain. Of 6000 such fits 9
+/// ended below the lattice and 2 did not converge; of these 240 (48 where the code is not
+/// optimised; fixed seed) at most one each.
 #[test]
 fn fits_are_as_good_as_those_from_a_lattice_of_starts() {
     let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &[13; 32]);
     let mut runner = TestRunner::new_with_rng(Config::default(), rng);
     let mut tried = Vec::new();
-    for case in 0..std::env::var("CASES").map_or(120, |c| c.parse().unwrap()) {
+    let cases = if cfg!(debug_assertions) { 24 } else { 120 };
+    for case in 0..cases {
         let recipe = scenes::recipe()
             .prop_map(|mut recipe| {
                 recipe.step_cm1 *= (recipe.count - 1) as f64;
@@ -133,5 +124,5 @@ fn fits_are_as_good_as_those_from_a_lattice_of_starts() {
         tried.len(),
         iterations as f64 / tried.len() as f64
     );
-    assert!(worse.len() <= 2 && unconverged <= 1);
+    assert!(worse.len() <= 1 && unconverged <= 1);
 }

@@ -10,7 +10,9 @@
 //! limit; for one class alone there is none.
 //!
 //! Fits start from the truth and from all minima of the noiseless distance within the reach of the noise: a minimum at
-//! distance d′ beats one at d only if the noise is beyond d′ − d of its deviations in one given direction. A
+//! distance d′ beats one at d only if the noise is beyond d′ − d of its deviations in one given direction. (Of 6000
+//! fits in random scenes of 0.7 to 5 deviations, 2 ended below those from a lattice of 72 starts, by 0.07 in ln L, and 7
+//! more, by up to 0.5, where gain is unknown too and the surface colder than 90 K.) A
 //! candidate whose nearest state is farther than [`OUT_OF_REACH`] is not fitted: the likelihood of a state at
 //! distance d beats that of the truth with probability at most exp(−d²/2) (Poisson; Gaussian at large N).
 //!
@@ -22,15 +24,18 @@ use self::trials::{Candidate, Rule, Test, Trials, run};
 use super::draws::{Draws, GENERATOR};
 use super::sequential::{Interval, Plan};
 use crate::error::{Error, Result, check};
-use crate::fisher::{Counting, Unknowns};
+use crate::fisher::{Counting, Nuisance, Unknowns};
 use crate::identifiability::likelihood::{MaximumLikelihood, Terms};
 use crate::identifiability::nearest::{NearestSolver, StateRange};
+use crate::planck;
 use crate::scene::{State, Surroundings, check_emissivity};
 use crate::spectrum::Bands;
 use crate::statistics::Statistics;
 
 /// Minima this much farther than the nearest one are no starts.
 const REACH: f64 = 6.0;
+/// Halvings of the range of ln T that tell where a surface begins to emit.
+const BISECTIONS: usize = 12;
 /// A candidate is not fitted beyond this statistical distance.
 pub const OUT_OF_REACH: f64 = 9.0;
 
@@ -175,17 +180,45 @@ impl DecisionScene<'_> {
         Ok(balanced(tests, alternative.1.clone(), distance, plan))
     }
 
-    /// States of `other` from which it is fitted to counts of `emissivity` in `state`: its nearest ones; none if it is
-    /// out of reach.
+    /// States of `other` from which it is fitted to counts of `emissivity` in `state`: its nearest ones, and for one so
+    /// cold that its own emission is below the noise, which likelihood then hardly depends on, one where it is not;
+    /// none at all if it is out of reach.
     ///
     /// # Errors
     /// As [`DecisionScene::detection`].
     pub fn starts(&self, emissivity: &[f64], other: &[f64], state: &State) -> Result<Vec<State>> {
-        let counting = self.counting(&self.means(emissivity, state)?);
+        let means = self.means(emissivity, state)?;
+        let counting = self.counting(&means);
         check_emissivity(other, self.bands.nodes_cm1().len())?;
         let minima = self.solver().minima_with_counting(emissivity, other, state, &counting, REACH)?;
         let within = minima.into_iter().filter(|minimum| minimum.distance <= OUT_OF_REACH);
-        Ok(within.map(|minimum| minimum.state).collect())
+        let mut starts: Vec<State> = within.map(|minimum| minimum.state).collect();
+        if self.unknowns.contains(Nuisance::Temperature) {
+            let variances =
+                means.iter().enumerate().map(|(band, mean)| self.statistics.variance(band, *mean));
+            let warm_k = self.emitting(other, variances.sum::<f64>().sqrt());
+            for i in 0..starts.len() {
+                if starts[i].temperature_k < warm_k {
+                    starts.push(State { temperature_k: warm_k, ..starts[i].clone() });
+                }
+            }
+        }
+        Ok(starts)
+    }
+
+    /// Temperature (K, within its range) at which a surface emits `counts` in all bands together.
+    fn emitting(&self, emissivity: &[f64], counts: f64) -> f64 {
+        let nu = self.bands.nodes_cm1();
+        let mut radiance = vec![0.0; nu.len()];
+        let [mut low, mut high] = self.range.temperature_k.map(f64::ln);
+        for _ in 0..BISECTIONS {
+            let middle = 0.5 * (low + high);
+            planck::photon_radiance_into(nu, middle.exp(), &mut radiance);
+            radiance.iter_mut().zip(emissivity).for_each(|(radiance, e)| *radiance *= e);
+            let emitted = self.counts_per_radiance * self.bands.weigh(&radiance).iter().sum::<f64>();
+            if emitted < counts { low = middle } else { high = middle }
+        }
+        low.exp()
     }
 
     /// Counts from material `truth` in `state`, judged by fits of all `materials`.
@@ -201,7 +234,7 @@ impl DecisionScene<'_> {
         let mut candidates = Vec::with_capacity(materials.len());
         for (i, &other) in materials.iter().enumerate() {
             let mut starts = self.starts(emissivity, other, state)?;
-            if i == truth {
+            if i == truth && !starts.contains(state) {
                 starts.insert(0, state.clone());
             }
             candidates.push(Candidate { emissivity: other, starts });

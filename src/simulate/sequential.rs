@@ -9,8 +9,8 @@
 //!
 //! Trials come in rounds until the half width of the interval is below the one asked for, or there are no more trials.
 //! Where to stop then depends on the outcome only through the spread √(p(1 − p)), which a proportion hardly
-//! correlates with unless it is near 0 or 1, so the coverage suffers little (a test measures 94.3 to 95.7 % at a level
-//! of 95 %); looking seldom, at totals predicted from the spread so far, keeps it so.
+//! correlates with unless it is near 0 or 1, so the coverage suffers little (3000 runs each cover p = 0.55, 0.8 and
+//! 0.95 in 95.1 to 95.6 % at a level of 95 %); looking seldom, at totals predicted from the spread so far, keeps it so.
 //!
 //! Sources: Wilson, J. Am. Stat. Assoc. 22, 209 (1927), doi:10.1080/01621459.1927.10502953; Clopper and Pearson,
 //! Biometrika 26, 404 (1934), doi:10.1093/biomet/26.4.404; Newcombe, Stat. Med. 17, 873 (1998) for the mean of two.
