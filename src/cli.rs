@@ -6,6 +6,7 @@
 mod cameras;
 mod identify;
 mod materials;
+mod progress;
 mod size;
 
 use crate::error::{Error, Result};
@@ -58,6 +59,9 @@ struct Global {
     /// Leave out alternatives whose spectra do not cover the bands, with a warning
     #[arg(long, global = true)]
     skip_uncovered: bool,
+    /// Seed of random numbers; the same seed gives the same result, for any number of threads
+    #[arg(long, global = true, value_name = "N", default_value_t = 1)]
+    seed: u64,
     /// Number of threads (default: all cores); the result does not depend on it
     #[arg(long, global = true, value_name = "N")]
     threads: Option<usize>,
@@ -110,6 +114,11 @@ impl Global {
             self.note(&format!("warning: {warning}"));
         }
         Ok(library)
+    }
+
+    /// A bar on stderr for long work; nothing where stderr is no terminal, or quiet.
+    fn progress(&self, what: &'static str) -> progress::Bar {
+        progress::Bar::new(what, self.quiet)
     }
 
     /// A line on stderr, unless quiet.

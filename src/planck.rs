@@ -111,7 +111,13 @@ pub fn photon_radiance_slope(wavenumber_cm1: f64, temperature_k: f64) -> f64 {
 /// Photons per mode 1/(eˣ − 1) at wavenumber ν (cm⁻¹) and temperature T (K): how strongly they bunch.
 #[must_use]
 pub fn occupancy(wavenumber_cm1: f64, temperature_k: f64) -> f64 {
-    photon_radiance(wavenumber_cm1, temperature_k) / (PREFACTOR * wavenumber_cm1 * wavenumber_cm1)
+    photon_radiance(wavenumber_cm1, temperature_k) / mode_density(wavenumber_cm1)
+}
+
+/// Modes 2cν² per second, m², sr and cm⁻¹, both polarisations: the photon radiance of one photon per mode.
+#[must_use]
+pub fn mode_density(wavenumber_cm1: f64) -> f64 {
+    PREFACTOR * wavenumber_cm1 * wavenumber_cm1
 }
 
 /// ∂ln B/∂T in K⁻¹: x/(T(1 − e⁻ˣ)), well defined also where B itself underflows.

@@ -7,8 +7,10 @@
 
 mod answers;
 mod bands;
+mod bands_that_matter;
 mod camera;
 mod curves;
+mod exact;
 mod identify;
 mod magnitudes;
 mod matrix;
@@ -19,7 +21,9 @@ mod size;
 mod warn;
 
 pub use answers::{Answers, Asked};
+pub use bands_that_matter::{BandsThatMatter, Choice, Passband};
 pub use curves::{InformationCurves, PhotonMap, Spectra};
+pub use exact::{Exact, ExactLibrary, ExactPair, Law, Trial};
 pub use identify::{Identifiability, Identification, NearestState, PairResult, Prediction};
 pub use matrix::{Apart, Check, Matrix, Rows, TargetVerdict};
 pub use priors::PriorAverage;

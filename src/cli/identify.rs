@@ -1,10 +1,11 @@
 //! `hadar identify`: distances from the target to every alternative, and all against all.
 
 use super::{By, Global};
-use crate::error::Result;
+use crate::error::{Result, check};
 use crate::identifiability::multi::Skipping;
 use crate::report::{library, text};
-use crate::study::{Asked, Study};
+use crate::simulate::sequential::Plan;
+use crate::study::{Asked, Law, Study, Trial};
 use clap::Args;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -25,8 +26,29 @@ pub(super) struct IdentifyArgs {
     /// How the least distance changes with the size of the library and the number of bands
     #[arg(long)]
     scaling: bool,
+    /// Which bands matter, and the best K single bands for telling the target from all alternatives
+    #[arg(long, value_name = "K")]
+    bands: Option<usize>,
+    /// Which bands matter, and the best K contiguous filters
+    #[arg(long, value_name = "K")]
+    filters: Option<usize>,
+    /// Simulate the maximum-likelihood decision over all states, and hold it against the limits
+    #[arg(long)]
+    exact: bool,
+    /// How counts scatter in the simulation (default: gaussian with a noisy camera, else poisson)
+    #[arg(long, requires = "exact")]
+    statistics: Option<Statistics>,
+    /// Photons of the target in the simulation (default: the camera's; without one those required)
+    #[arg(long, value_name = "N", requires = "exact")]
+    photons: Option<f64>,
+    /// Half width of the 95 % interval at which the simulation stops
+    #[arg(long, value_name = "P", default_value_t = 0.01, requires = "exact")]
+    half_width: f64,
+    /// Most trials of a state in the simulation
+    #[arg(long, value_name = "N", default_value_t = 1_000_000, requires = "exact")]
+    trials: u64,
     /// Answer only whether the camera tells the target from every alternative; exit with code 3 if not
-    #[arg(long, conflicts_with_all = ["matrix", "apart", "scaling"])]
+    #[arg(long, conflicts_with_all = ["matrix", "apart", "scaling", "bands", "filters", "exact"])]
     check: bool,
     /// Compute pairs that a cheap bound decides all the same (the answer does not change)
     #[arg(long)]
@@ -39,11 +61,21 @@ pub(super) struct IdentifyArgs {
 pub(super) fn run(args: &IdentifyArgs, global: &Global) -> Result<ExitCode> {
     let study = global.study(&args.scenario, args.by.map(Into::into))?;
     if args.check {
-        return check(args, &study, global);
+        return only_check(args, &study, global);
     }
     let skipping = if args.no_skip { Skipping::Off } else { Skipping::On };
-    let asked = Asked { matrix: args.matrix, apart: args.apart, skipping, scaling: args.scaling };
-    let answers = study.answer(&asked)?;
+    let chosen = args.bands.is_some() || args.filters.is_some();
+    let asked = Asked {
+        matrix: args.matrix,
+        apart: args.apart,
+        skipping,
+        scaling: args.scaling,
+        bands: chosen.then_some((args.bands, args.filters)),
+        exact: args.exact.then(|| trial(args, global)).transpose()?,
+    };
+    let bar = global.progress("pairs simulated");
+    let answers = study.answer(&asked, &|done, total| bar.set(done, total))?;
+    bar.finish();
     if let Some(out) = &global.out {
         global.write(&library::bundle(&study, &answers, out)?, out)?;
     }
@@ -54,8 +86,32 @@ pub(super) fn run(args: &IdentifyArgs, global: &Global) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
+/// Laws of counting, as a flag.
+#[derive(Debug, Clone, Copy, clap::ValueEnum)]
+enum Statistics {
+    /// Shot noise alone
+    Poisson,
+    /// Shot noise and the camera's electronic noise
+    Gaussian,
+    /// Bunched photons of thermal light
+    NegativeBinomial,
+}
+
+fn trial(args: &IdentifyArgs, global: &Global) -> Result<Trial> {
+    let law = args.statistics.map(|statistics| match statistics {
+        Statistics::Poisson => Law::Poisson,
+        Statistics::Gaussian => Law::Gaussian,
+        Statistics::NegativeBinomial => Law::NegativeBinomial,
+    });
+    if let Some(photons) = args.photons {
+        check::positive("--photons", photons, "")?;
+    }
+    let plan = Plan::new(global.seed, args.half_width, args.trials)?;
+    Ok(Trial { law, photons: args.photons, plan })
+}
+
 /// The answer to one question, at the first proof.
-fn check(args: &IdentifyArgs, study: &Study, global: &Global) -> Result<ExitCode> {
+fn only_check(args: &IdentifyArgs, study: &Study, global: &Global) -> Result<ExitCode> {
     let result = study.check()?;
     if args.stats {
         global.note(&text::work(&result.work));

@@ -2,8 +2,12 @@
 //!
 //! Every function takes results and gives a figure with the CSV of just what it shows.
 
+mod bands;
+mod library;
 mod scaling;
 
+pub use bands::bands_that_matter;
+pub use library::distance_matrix;
 pub use scaling::{band_number, library_size};
 
 use super::plot::{Axis, Band, Figure, HeatMap, LineFigure, Marker, Panel, Rule, Series, Style};

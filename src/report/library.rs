@@ -5,7 +5,7 @@ use super::figures::{self, Plot};
 use super::table::{Table, number, optional};
 use super::tables;
 use crate::error::Result;
-use crate::study::{Answers, Apart, Matrix, Rows, Study};
+use crate::study::{Answers, Apart, BandsThatMatter, Exact, Matrix, Rows, Study};
 use std::path::Path;
 
 /// All files of the answers; paths in the scenario are written relative to `out` where they lie below it.
@@ -33,6 +33,7 @@ pub fn bundle(study: &Study, answers: &Answers, out: &Path) -> Result<Bundle> {
             bundle.add("matrix_camera.csv", square(matrix, statistical).to_csv()?);
         }
         bundle.add("targets.csv", targets(matrix).to_csv()?);
+        plots.push(figures::distance_matrix(matrix));
     }
     if let Some(apart) = answers.apart.as_ref().or(answers.matrix.as_ref().and_then(|m| m.apart.as_ref())) {
         bundle.add("told_apart.csv", told_apart(apart).to_csv()?);
@@ -41,6 +42,13 @@ pub fn bundle(study: &Study, answers: &Answers, out: &Path) -> Result<Bundle> {
     if let Some(scaling) = &answers.scaling {
         plots.push(figures::library_size(scaling, &study.target().name));
         plots.push(figures::band_number(scaling, &study.target().name));
+    }
+    if let Some(bands) = &answers.bands_that_matter {
+        bundle.add("best_bands.csv", best_bands(bands).to_csv()?);
+        plots.push(figures::bands_that_matter(bands, &study.target().name));
+    }
+    if let Some(exact) = &answers.exact {
+        bundle.add("exact.csv", self::exact(exact).to_csv()?);
     }
     bundle.add_plots(&plots)?;
     Ok(bundle)
@@ -91,6 +99,85 @@ fn clusters(apart: &Apart) -> Table {
         for member in members {
             table.push(vec![(i + 1).to_string(), member.clone()]);
         }
+    }
+    table
+}
+
+fn best_bands(found: &BandsThatMatter) -> Table {
+    let mut table = Table::new([
+        "choice",
+        "low_cm1",
+        "high_cm1",
+        "center_cm1",
+        "distance",
+        "kept_of_all_bands",
+        "bound",
+        "proven_best",
+    ]);
+    for (choice, what) in [(&found.bands, "band"), (&found.filters, "filter")] {
+        let Some(choice) = choice else { continue };
+        for passband in &choice.passbands {
+            table.push(vec![
+                what.into(),
+                number(passband.low_cm1),
+                number(passband.high_cm1),
+                number(passband.center_cm1),
+                number(choice.distance),
+                number(choice.kept),
+                number(choice.bound),
+                if choice.exact { "yes" } else { "no" }.into(),
+            ]);
+        }
+    }
+    table
+}
+
+fn exact(found: &Exact) -> Table {
+    let mut table = Table::new([
+        "alternative",
+        "photons",
+        "balanced_accuracy",
+        "interval_low",
+        "interval_high",
+        "target_right",
+        "alternative_right",
+        "limit_nearest",
+        "estimate_best_fits",
+        "limit_local",
+        "statistical_distance_nearest",
+        "statistical_distance_local",
+        "error_lower_bound",
+        "error_upper_bound_known_states",
+        "lattice_target_right",
+        "trials",
+        "unconverged_fits",
+        "statistics",
+        "seed",
+        "generator",
+    ]);
+    for pair in &found.pairs {
+        let lattice = pair.lattice.as_ref().and_then(|lattice| lattice.probabilities.first().copied());
+        let numbers = [
+            pair.photons,
+            pair.balanced,
+            pair.balanced_interval.low,
+            pair.balanced_interval.high,
+            pair.classes[0],
+            pair.classes[1],
+            pair.limit,
+            pair.two_sided,
+            pair.local,
+            pair.statistical_distance_nearest,
+            pair.statistical_distance_local,
+            pair.error_lower,
+            pair.error_upper,
+        ];
+        let mut row = vec![pair.alternative.clone()];
+        row.extend(numbers.map(number));
+        row.push(optional(lattice));
+        row.extend([pair.trials.to_string(), pair.unconverged.to_string()]);
+        row.extend([found.statistics.into(), found.seed.to_string(), found.generator.into()]);
+        table.push(row);
     }
     table
 }

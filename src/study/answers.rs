@@ -1,6 +1,6 @@
 //! What can be asked of a library besides the distances to the target, and the answers together.
 
-use super::{Apart, Identification, Matrix, Scaling, Study};
+use super::{Apart, BandsThatMatter, Exact, Identification, Matrix, Scaling, Study, Trial};
 use crate::error::Result;
 use crate::identifiability::multi::Skipping;
 
@@ -15,6 +15,10 @@ pub struct Asked {
     pub skipping: Skipping,
     /// The scaling laws.
     pub scaling: bool,
+    /// Which bands matter, and the best so many single bands and contiguous filters.
+    pub bands: Option<(Option<usize>, Option<usize>)>,
+    /// What a test that knows no state achieves, by simulation.
+    pub exact: Option<Trial>,
 }
 
 /// The distances to every alternative and whatever else was asked for, in one object.
@@ -32,19 +36,31 @@ pub struct Answers {
     /// The scaling laws.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub scaling: Option<Scaling>,
+    /// The bands that matter.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bands_that_matter: Option<BandsThatMatter>,
+    /// Simulated decisions.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub exact: Option<Exact>,
 }
 
 impl Study {
-    /// Answers all that is asked, and computes no more.
+    /// Answers all that is asked, and computes no more. `progress` is called with the simulated pairs done and
+    /// their number.
     ///
     /// # Errors
     /// As [`Study::identify`], [`Study::matrix`] and [`Study::told_apart`].
-    pub fn answer(&self, asked: &Asked) -> Result<Answers> {
+    pub fn answer(&self, asked: &Asked, progress: &dyn Fn(usize, usize)) -> Result<Answers> {
         Ok(Answers {
             identification: self.identify()?,
             matrix: asked.matrix.then(|| self.matrix()).transpose()?,
             apart: asked.apart.then(|| self.told_apart(asked.skipping)).transpose()?,
             scaling: asked.scaling.then(|| self.scaling()).transpose()?,
+            bands_that_matter: asked
+                .bands
+                .map(|(bands, filters)| self.bands_that_matter(bands, filters))
+                .transpose()?,
+            exact: asked.exact.map(|trial| self.exact(&trial, progress)).transpose()?,
         })
     }
 }

@@ -3,13 +3,17 @@
 use super::{photons, significant};
 use crate::identifiability::detection;
 use crate::identifiability::multi::Work;
-use crate::study::{Answers, Apart, Check, Identification, Matrix, Scaling, Study};
+use crate::study::{
+    Answers, Apart, BandsThatMatter, Check, Exact, ExactPair, Identification, Matrix, Scaling, Study,
+};
 use std::fmt::Write as _;
 
 /// Names listed in one line at most; all of them are in the tables.
 const LISTED: usize = 12;
 /// Entries of the prediction vector that are shown.
 const SHOWN: usize = 5;
+/// Probabilities from here on are 1 to three digits.
+const CERTAIN: f64 = 0.9995;
 
 /// All that was asked for, the target against its alternatives first.
 #[must_use]
@@ -23,6 +27,12 @@ pub fn answers(answers: &Answers, study: &Study) -> String {
     }
     if let Some(found) = &answers.scaling {
         out.push_str(&scaling(found, &study.target().name));
+    }
+    if let Some(found) = &answers.bands_that_matter {
+        out.push_str(&bands(found, study));
+    }
+    if let Some(found) = &answers.exact {
+        out.push_str(&exact(found, study));
     }
     out + &super::footing(&answers.identification, study)
 }
@@ -189,6 +199,119 @@ fn scaling(scaling: &Scaling, target: &str) -> String {
         out.push_str(&span(&bands.camera_median, "median, the camera's noise per reading (d) "));
     }
     out.push('\n');
+    out
+}
+
+/// Which bands matter, and what the best few keep.
+fn bands(found: &BandsThatMatter, study: &Study) -> String {
+    let target = &study.target().name;
+    let against = match found.alternatives.as_slice() {
+        [one] => one.clone(),
+        all => format!("{} alternatives", all.len()),
+    };
+    let mut out = format!("Bands that matter for telling {target} from {against}, by the local distance\n");
+    if !found.left_out.is_empty() {
+        let _ = writeln!(out, "  left out, since not even all bands tell them: {}", listed(&found.left_out));
+    }
+    for (choice, what) in [(&found.bands, "bands"), (&found.filters, "contiguous filters")] {
+        let Some(choice) = choice else { continue };
+        let count = choice.passbands.len();
+        if choice.distance == 0.0 {
+            let _ = writeln!(
+                out,
+                "  {count} {what} tell nothing: it takes {} or more, one more than there are unknowns",
+                choice.fewest
+            );
+            continue;
+        }
+        let share = |distance: f64| {
+            let ratio = distance / choice.distance_all_bands;
+            if ratio < 1.5 {
+                format!("{} %", significant(100.0 * ratio, 3))
+            } else {
+                format!("{} times", significant(ratio, 3))
+            }
+        };
+        let proof = if choice.exact {
+            "no others give more".to_owned()
+        } else {
+            format!("no others give more than {}", share(choice.bound))
+        };
+        let limiting = choice.limiting.as_deref().unwrap_or(&found.alternative);
+        let _ = writeln!(
+            out,
+            "  best {count} {what}: {} the distance of all {} bands read one by one ({:.2e}, not {:.2e}; worst against {limiting}); {proof}",
+            share(choice.distance),
+            found.center_cm1.len(),
+            choice.distance,
+            choice.distance_all_bands
+        );
+        let places: Vec<String> = choice
+            .passbands
+            .iter()
+            .map(|band| match what {
+                "bands" => format!("{:.0}", band.center_cm1),
+                _ => format!("{:.1}-{:.1}", band.low_cm1, band.high_cm1),
+            })
+            .collect();
+        let _ = writeln!(out, "    at {} cm^-1", places.join(", "));
+    }
+    out.push('\n');
+    out
+}
+
+/// The simulated decisions beside their limits.
+fn exact(found: &Exact, study: &Study) -> String {
+    let percent = 100.0 * found.level;
+    let mut out = format!(
+        "Maximum-likelihood decision, states unknown, {} counts (seed {}, {percent:.0} % intervals)\n",
+        found.statistics, found.seed
+    );
+    let width = found.pairs.iter().map(|pair| pair.alternative.len()).max().unwrap_or(0).max(11);
+    let _ = writeln!(
+        out,
+        "  {:<width$}  {:>9}  {:>18}  {:>11}  {:>11}  {:>9}  {:>17}",
+        "alternative", "photons", "right decisions", "limit Phi(d)", "best fits", "local", "rigorous limits"
+    );
+    let shown = |pair: &&ExactPair| pair.limit < CERTAIN || pair.balanced < CERTAIN;
+    let certain = found.pairs.iter().filter(|pair| !shown(pair)).count();
+    for pair in found.pairs.iter().filter(shown) {
+        let _ = write!(
+            out,
+            "  {:<width$}  {:>9.2e}  {:>9.3} +- {:.3}    {:>12.3}  {:>11.3}  {:>9.3}  {:>8.3} to {:.3}",
+            pair.alternative,
+            pair.photons,
+            pair.balanced,
+            pair.balanced_interval.half_width(),
+            pair.limit,
+            pair.two_sided,
+            pair.local,
+            1.0 - pair.error_upper,
+            1.0 - pair.error_lower
+        );
+        if let Some(lattice) = &pair.lattice {
+            let p = lattice.probabilities.first().copied().unwrap_or(f64::NAN);
+            let _ = write!(out, "  lattice: {} {p:.3}", study.target().name);
+        }
+        out.push('\n');
+    }
+    if certain > 0 {
+        let _ = writeln!(out, "  {certain} told apart with certainty, to three digits");
+    }
+    if let Some(library) = &found.library {
+        let _ = writeln!(
+            out,
+            "  among all at once {} is recognised in {:.3} +- {:.3} of {} trials; with all states known in at least {:.3}",
+            study.target().name,
+            library.probability,
+            library.interval.half_width(),
+            library.trials,
+            library.union_bound
+        );
+    }
+    out.push_str(
+        "  right decisions: averaged over the target's state and the alternative's nearest; the rigorous limits are those of\n  the best test between these two known states, which no test exceeds\n\n",
+    );
     out
 }
 

@@ -1,0 +1,68 @@
+//! A library drawn: all materials against all.
+
+use super::Plot;
+use crate::report::plot::{Axis, Figure, Matrix as NamedMatrix};
+use crate::report::table::{Table, optional};
+use crate::study::Matrix;
+
+/// All against all by the distance that decides: statistical with a camera, else per √photon. Rows and columns are
+/// ordered by clusters.
+#[must_use]
+pub fn distance_matrix(matrix: &Matrix) -> Plot {
+    let (order, starts) = by_clusters(matrix);
+    let nearest_decides = matrix.by == "nearest";
+    let rows = match &matrix.statistical_distance {
+        Some(rows) => rows,
+        None if nearest_decides => &matrix.distance_nearest,
+        None => &matrix.distance_local,
+    };
+    let with_camera = matrix.statistical_distance.is_some();
+    let names: Vec<String> = order.iter().map(|&i| matrix.materials[i].clone()).collect();
+    let mut table = Table::new(std::iter::once("target".to_owned()).chain(names.iter().cloned()));
+    for &i in &order {
+        let row = order.iter().map(|&j| optional(rows[i][j]));
+        table.push(std::iter::once(matrix.materials[i].clone()).chain(row).collect());
+    }
+    let values: Vec<f64> =
+        order.iter().flat_map(|&i| order.iter().map(move |&j| rows[i][j].unwrap_or(f64::NAN))).collect();
+    let mut finite: Vec<f64> = values.iter().copied().filter(|d| d.is_finite() && *d > 0.0).collect();
+    finite.sort_by(f64::total_cmp);
+    let last = finite.len().saturating_sub(1);
+    let at = |share: f64| finite.get((share * last as f64) as usize).copied().unwrap_or(1.0);
+    // A few nearly identical pairs must not use up the colours.
+    let (low, high) = (at(0.02), at(1.0));
+    let title = if with_camera {
+        "Statistical distance d of every material from every other"
+    } else {
+        "Distance of every material from every other"
+    };
+    let unit = if with_camera { "statistical distance d" } else { "distance (per √photon)" };
+    let mut figure = NamedMatrix::new(
+        title,
+        ("target", names.clone()),
+        ("alternative", names),
+        (Axis::log(unit).range(low, high.max(2.0 * low)), values),
+    )
+    .subtitle(format!("By the {} distance; every target in the scenario's state.", matrix.by))
+    .groups(starts);
+    if with_camera {
+        let required = matrix.required_distance;
+        figure = figure.threshold(required, format!("not told apart: d below {required:.3}"));
+    }
+    Plot { name: "distance_matrix", figure: Figure::from(figure), table }
+}
+
+/// Materials cluster by cluster, then the others, and where each group begins.
+fn by_clusters(matrix: &Matrix) -> (Vec<usize>, Vec<usize>) {
+    let place = |name: &String| matrix.materials.iter().position(|known| known == name);
+    let (mut order, mut starts): (Vec<usize>, Vec<usize>) = (Vec::new(), Vec::new());
+    for cluster in matrix.apart.iter().flat_map(|apart| &apart.clusters) {
+        starts.push(order.len());
+        order.extend(cluster.iter().filter_map(place));
+    }
+    starts.push(order.len());
+    let rest: Vec<usize> = (0..matrix.materials.len()).filter(|i| !order.contains(i)).collect();
+    order.extend(rest);
+    starts.retain(|&start| start > 0 && start < order.len());
+    (order, starts)
+}

@@ -1,0 +1,300 @@
+//! What a test that knows no state achieves, by simulation, beside the limits it is held against.
+//!
+//! The maximum-likelihood decision over all states of two materials is drawn many times; its balanced accuracy
+//! (target in its state, alternative in its nearest) stands beside the limit Φ(d), the estimate for tests of best fits
+//! and the rigorous bracket. In up to three bands Algorithm 1 of the paper gives the same decision on a lattice.
+
+use super::{Study, Surface};
+use crate::error::{Error, Result};
+use crate::fisher::{Counting, Nuisance};
+use crate::identifiability::bracket::KnownStates;
+use crate::identifiability::detection;
+use crate::identifiability::lattice::{LatticeDetection, LatticeDetector};
+use crate::identifiability::local::LocalSolver;
+use crate::identifiability::nearest::{NearestSolver, StateRange};
+use crate::planck;
+use crate::policy;
+use crate::scenario::DistanceKind;
+use crate::simulate::decision::{Balanced, DecisionScene};
+use crate::simulate::draws::GENERATOR;
+use crate::simulate::sequential::{Interval, Plan};
+use crate::statistics::Statistics;
+
+/// Most photons for which the lattice of counts is laid.
+const LATTICE_PHOTONS: f64 = 1e5;
+
+/// Law of counting by its name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Law {
+    /// Shot noise alone.
+    Poisson,
+    /// Shot noise and the camera's electronic noise.
+    Gaussian,
+    /// Bunched photons of thermal light.
+    NegativeBinomial,
+}
+
+/// How the simulation is to be made.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Trial {
+    /// Law of counting; where `None` Gaussian with a camera's electronic noise, else Poisson.
+    pub law: Option<Law>,
+    /// Photons of the target in all bands; the camera's where `None`, or without a camera those at which the
+    /// nearest distance meets the requirement.
+    pub photons: Option<f64>,
+    /// Seed, interval and limit of trials.
+    pub plan: Plan,
+}
+
+/// The simulated decision of one pair beside its limits.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct ExactPair {
+    /// The alternative.
+    pub alternative: String,
+    /// Photons of the target.
+    pub photons: f64,
+    /// Statistical distance to the nearest state.
+    pub statistical_distance_nearest: f64,
+    /// Local statistical distance.
+    pub statistical_distance_local: f64,
+    /// Φ of the nearest distance: the limit of the balanced accuracy at large N.
+    pub limit: f64,
+    /// Φ of the local distance: what the paper's distance promises.
+    pub local: f64,
+    /// Estimate for a test of best fits, from the return distance.
+    pub two_sided: f64,
+    /// Rigorous bounds on the error between the two states, by Bhattacharyya, Chernoff and others.
+    pub error_lower: f64,
+    /// See `error_lower`.
+    pub error_upper: f64,
+    /// Simulated share of right decisions, averaged over the two states.
+    pub balanced: f64,
+    /// Its confidence interval.
+    pub balanced_interval: Interval,
+    /// Share of right decisions with the target true, and with the alternative true.
+    pub classes: [f64; 2],
+    /// Trials of both classes.
+    pub trials: u64,
+    /// Fits that did not converge.
+    pub unconverged: u64,
+    /// Algorithm 1 on a lattice, in up to three bands.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lattice: Option<LatticeDetection>,
+}
+
+/// The simulated decision among all materials at once.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct ExactLibrary {
+    /// Share of trials in which the target is recognised among all alternatives.
+    pub probability: f64,
+    /// Its confidence interval.
+    pub interval: Interval,
+    /// Share of decisions for each material, the target first.
+    pub decisions: Vec<(String, f64)>,
+    /// Union bound: 1 less the sum of the pairs' upper bounds on missing the target.
+    pub union_bound: f64,
+    /// Trials.
+    pub trials: u64,
+}
+
+/// All simulated decisions.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct Exact {
+    /// Law of counting.
+    pub statistics: &'static str,
+    /// Random generator, with its version.
+    pub generator: &'static str,
+    /// Seed.
+    pub seed: u64,
+    /// Confidence level of the intervals.
+    pub level: f64,
+    /// Pair by pair, the hardest first.
+    pub pairs: Vec<ExactPair>,
+    /// Among all of them; `None` for a single alternative.
+    pub library: Option<ExactLibrary>,
+}
+
+impl Study {
+    /// Simulates the decision between the target and every alternative, and among all of them. `progress` is
+    /// called with the pairs done and their number.
+    ///
+    /// # Errors
+    /// A scene without photons, or too many of them to draw; electronic noise without a camera.
+    pub fn exact(&self, trial: &Trial, progress: &dyn Fn(usize, usize)) -> Result<Exact> {
+        let hardest_first = self.hardest_first()?;
+        let photons = match (trial.photons, self.counting()) {
+            (Some(photons), _) => photons,
+            (None, Some(counting)) => counting.counts_per_radiance * self.photon_radiance(),
+            (None, None) => self.photons_for_the_hardest(&hardest_first)?,
+        };
+        let counts_per_radiance = photons / self.photon_radiance();
+        let statistics = self.statistics(trial.law, counts_per_radiance)?;
+        let scene = DecisionScene {
+            bands: &self.bands,
+            surroundings: &self.surroundings,
+            unknowns: &self.unknowns,
+            range: self.range,
+            counts_per_radiance,
+            statistics: &statistics,
+        };
+        let total = hardest_first.len();
+        let mut pairs = Vec::with_capacity(total);
+        for (done, alternative) in hardest_first.iter().enumerate() {
+            progress(done, total);
+            pairs.push(self.exact_pair(alternative, &scene, photons, &trial.plan)?);
+        }
+        progress(total, total);
+        let library = if total > 1 {
+            Some(self.exact_library(&hardest_first, &pairs, &scene, &trial.plan)?)
+        } else {
+            None
+        };
+        Ok(Exact {
+            statistics: statistics.name(),
+            generator: GENERATOR,
+            seed: trial.plan.seed(),
+            level: trial.plan.level(),
+            pairs,
+            library,
+        })
+    }
+
+    /// The alternatives, nearest first.
+    fn hardest_first(&self) -> Result<Vec<&Surface>> {
+        let mut ranked = Vec::new();
+        for alternative in &self.alternatives {
+            let distance = self.distance_per_photon(DistanceKind::Nearest, alternative, f64::INFINITY)?;
+            ranked.push((distance, alternative));
+        }
+        ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
+        Ok(ranked.into_iter().map(|(_, alternative)| alternative).collect())
+    }
+
+    /// Photons at which the nearest alternative that differs at all is told apart as required.
+    fn photons_for_the_hardest(&self, hardest_first: &[&Surface]) -> Result<f64> {
+        for alternative in hardest_first {
+            let distance = self.distance_per_photon(DistanceKind::Nearest, alternative, f64::INFINITY)?;
+            if let Some(photons) = policy::photons_required(self.required, distance) {
+                return Ok(photons);
+            }
+        }
+        let found = "no number of photons tells the target from any alternative";
+        Err(Error::malformed(found, "change the scene or the alternatives").at(self.scenario.place("target")))
+    }
+
+    fn statistics(&self, law: Option<Law>, counts_per_radiance: f64) -> Result<Statistics> {
+        let noisy = self.counting().filter(|counting| !counting.var_electronic.is_empty());
+        let silent = if noisy.is_some() { Law::Gaussian } else { Law::Poisson };
+        match law.unwrap_or(silent) {
+            Law::Poisson => Ok(Statistics::Poisson),
+            Law::Gaussian => {
+                let Some(counting) = noisy else {
+                    let found =
+                        "gaussian statistics are those of a camera's electronic noise, and there is none";
+                    let instead = "add a [camera] with noise, or use --statistics poisson";
+                    return Err(Error::malformed(found, instead).at(self.scenario.place("camera")));
+                };
+                Statistics::gaussian(counting.var_electronic)
+            }
+            Law::NegativeBinomial => {
+                let nodes = self.bands.nodes_cm1();
+                let density: Vec<f64> = nodes.iter().map(|&nu| planck::mode_density(nu)).collect();
+                let modes = self.bands.weigh(&density).iter().map(|m| counts_per_radiance * m).collect();
+                Statistics::negative_binomial(modes)
+            }
+        }
+    }
+
+    fn exact_pair(
+        &self,
+        alternative: &Surface,
+        scene: &DecisionScene<'_>,
+        photons: f64,
+        plan: &Plan,
+    ) -> Result<ExactPair> {
+        let (own, other) = (&self.target.emissivity, &alternative.emissivity);
+        let counting = Counting {
+            counts_per_radiance: scene.counts_per_radiance,
+            var_electronic: match scene.statistics {
+                Statistics::Gaussian { var_electronic } => var_electronic.clone(),
+                Statistics::Poisson | Statistics::NegativeBinomial { .. } => Vec::new(),
+            },
+        };
+        let Balanced { probability, interval, classes, alternative_state, distance } =
+            scene.balanced((own, other), &self.state, plan)?;
+        let mut solver =
+            NearestSolver::new(&self.bands, &self.surroundings, self.unknowns.clone(), self.range);
+        let back = solver.with_counting(other, own, &alternative_state, &counting)?;
+        let ratio = if distance > 0.0 { (back.distance / distance).min(1.0) } else { 1.0 };
+        let local = LocalSolver::new(&self.bands, &self.surroundings, self.unknowns.clone()).with_counting(
+            own,
+            other,
+            &self.state,
+            &counting,
+        )?;
+        let means = |emissivity: &[f64], state| -> Vec<f64> {
+            let signal = self.bands.weigh(&self.surroundings.signal(emissivity, state));
+            signal.iter().map(|s| s * scene.counts_per_radiance).collect()
+        };
+        let states = [means(own, &self.state), means(other, &alternative_state)];
+        let bracket = KnownStates::new(&states[0], &states[1], scene.statistics)?.bracket();
+        Ok(ExactPair {
+            alternative: alternative.name.clone(),
+            photons,
+            statistical_distance_nearest: distance,
+            statistical_distance_local: local.distance,
+            limit: detection::probability(distance),
+            local: detection::probability(local.distance),
+            two_sided: detection::two_sided_probability(distance, ratio),
+            error_lower: bracket.lower,
+            error_upper: bracket.upper,
+            balanced: probability,
+            balanced_interval: interval,
+            trials: classes.iter().map(|class| class.trials).sum(),
+            unconverged: classes.iter().map(|class| class.unconverged).sum(),
+            classes: classes.map(|class| class.probability),
+            lattice: self.lattice(alternative, scene.statistics, photons)?,
+        })
+    }
+
+    /// Algorithm 1 where it is feasible: up to three bands, few photons, and a range of temperatures to mesh.
+    fn lattice(
+        &self,
+        alternative: &Surface,
+        statistics: &Statistics,
+        photons: f64,
+    ) -> Result<Option<LatticeDetection>> {
+        let unbounded = self.range.temperature_k == StateRange::default().temperature_k
+            && self.is_unknown(Nuisance::Temperature);
+        if self.bands.len() > 3 || photons > LATTICE_PHOTONS || unbounded {
+            return Ok(None);
+        }
+        let library = [self.target.emissivity.clone(), alternative.emissivity.clone()];
+        let unknowns = self.unknowns.clone();
+        LatticeDetector::new(&self.bands, &self.surroundings, unknowns, self.range, statistics.clone())?
+            .detect(&library, 0, &self.state, photons)
+            .map(Some)
+    }
+
+    fn exact_library(
+        &self,
+        alternatives: &[&Surface],
+        pairs: &[ExactPair],
+        scene: &DecisionScene<'_>,
+        plan: &Plan,
+    ) -> Result<ExactLibrary> {
+        let all = || std::iter::once(&self.target).chain(alternatives.iter().copied());
+        let emissivities: Vec<&[f64]> = all().map(|surface| surface.emissivity.as_slice()).collect();
+        let found = scene.detection(&emissivities, 0, &self.state, plan)?;
+        let trials = found.trials as f64;
+        let decisions = all().zip(&found.decisions).map(|(surface, n)| (surface.name.clone(), n / trials));
+        let confused: f64 = pairs.iter().map(|pair| 2.0 * pair.error_upper).sum();
+        Ok(ExactLibrary {
+            probability: found.probability,
+            interval: found.interval,
+            decisions: decisions.collect(),
+            union_bound: (1.0 - confused).max(0.0),
+            trials: found.trials,
+        })
+    }
+}
