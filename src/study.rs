@@ -16,6 +16,7 @@ mod magnitudes;
 mod matrix;
 mod priors;
 mod resolve;
+mod samples;
 mod scaling;
 mod size;
 mod warn;
@@ -28,6 +29,7 @@ pub use identify::{Identifiability, Identification, NearestState, PairResult, Pr
 pub use matrix::{Apart, Check, Matrix, Rows, TargetVerdict};
 pub use priors::PriorAverage;
 pub use resolve::{Study, Surface};
+pub use samples::SampleSpectra;
 pub use scaling::{BandNumber, LibrarySize, Scaling};
 pub use size::{CameraResult, RequirementResult, Sizing, Verdict};
 

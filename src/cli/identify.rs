@@ -77,7 +77,7 @@ pub(super) fn run(args: &IdentifyArgs, global: &Global) -> Result<ExitCode> {
     let answers = study.answer(&asked, &|done, total| bar.set(done, total))?;
     bar.finish();
     if let Some(out) = &global.out {
-        global.write(&library::bundle(&study, &answers, out)?, out)?;
+        global.write(&library::bundle(&study, &answers, global.seed, out)?, out)?;
     }
     if let (true, Some(work)) = (args.stats, answers.apart.as_ref().and_then(|apart| apart.work)) {
         global.note(&text::work(&work));

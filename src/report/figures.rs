@@ -7,7 +7,7 @@ mod library;
 mod scaling;
 
 pub use bands::bands_that_matter;
-pub use library::distance_matrix;
+pub use library::{distance_matrix, sample_spectra};
 pub use scaling::{band_number, library_size};
 
 use super::plot::{Axis, Band, Figure, HeatMap, LineFigure, Marker, Panel, Rule, Series, Style};

@@ -9,10 +9,11 @@ use crate::study::{Answers, Apart, BandsThatMatter, Exact, Matrix, Rows, Study};
 use std::path::Path;
 
 /// All files of the answers; paths in the scenario are written relative to `out` where they lie below it.
+/// `seed` is that of sample spectra.
 ///
 /// # Errors
 /// A figure that cannot be drawn.
-pub fn bundle(study: &Study, answers: &Answers, out: &Path) -> Result<Bundle> {
+pub fn bundle(study: &Study, answers: &Answers, seed: u64, out: &Path) -> Result<Bundle> {
     let mut bundle = Bundle::default();
     let result = &answers.identification;
     bundle.add("scenario.toml", study.scenario().to_toml_beside(out));
@@ -34,6 +35,9 @@ pub fn bundle(study: &Study, answers: &Answers, out: &Path) -> Result<Bundle> {
         }
         bundle.add("targets.csv", targets(matrix).to_csv()?);
         plots.push(figures::distance_matrix(matrix));
+        if let Some(spectra) = study.sample_spectra(seed)? {
+            plots.push(figures::sample_spectra(&spectra));
+        }
     }
     if let Some(apart) = answers.apart.as_ref().or(answers.matrix.as_ref().and_then(|m| m.apart.as_ref())) {
         bundle.add("told_apart.csv", told_apart(apart).to_csv()?);

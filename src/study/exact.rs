@@ -183,7 +183,7 @@ impl Study {
     }
 
     fn statistics(&self, law: Option<Law>, counts_per_radiance: f64) -> Result<Statistics> {
-        let noisy = self.counting().filter(|counting| !counting.var_electronic.is_empty());
+        let noisy = self.counting().filter(|counting| counting.var_electronic.iter().any(|&var| var > 0.0));
         let silent = if noisy.is_some() { Law::Gaussian } else { Law::Poisson };
         match law.unwrap_or(silent) {
             Law::Poisson => Ok(Statistics::Poisson),

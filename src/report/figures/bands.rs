@@ -27,12 +27,13 @@ pub fn bands_that_matter(found: &BandsThatMatter, target: &str) -> Plot {
         Axis::linear("share of the squared distance (% per band)").range(0.0, 1.05 * top),
     )
     .subtitle("What each band adds to the square of the distance once the unknowns are fitted.");
+    let reach = x.last().copied().unwrap_or(0.0) - x.first().copied().unwrap_or(0.0);
     let filters = found.filters.iter().flat_map(|choice| &choice.passbands);
     for (i, filter) in filters.enumerate() {
         let count = found.filters.as_ref().map_or(0, |choice| choice.passbands.len());
         let label = if i == 0 { format!("best {count} filters") } else { String::new() };
-        // Neighbours are told apart by a gap of a fiftieth of their width.
-        let inset = 0.02 * (filter.high_cm1 - filter.low_cm1);
+        // Neighbours are told apart by a small gap.
+        let inset = (0.02 * (filter.high_cm1 - filter.low_cm1)).min(0.002 * reach);
         let span = vec![filter.low_cm1 + inset, filter.high_cm1 - inset];
         figure = figure.band(Band::new(label, span, vec![0.0; 2], vec![1.05 * top; 2]).colour(2));
     }

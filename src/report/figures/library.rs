@@ -1,9 +1,10 @@
 //! A library drawn: all materials against all.
 
-use super::Plot;
-use crate::report::plot::{Axis, Figure, Matrix as NamedMatrix};
+use super::{Plot, wavenumber_axis};
+use crate::report::plot::{Axis, Figure, LineFigure, Matrix as NamedMatrix, Series, Style};
 use crate::report::table::{Table, optional};
-use crate::study::Matrix;
+use crate::report::text::significant;
+use crate::study::{Matrix, SampleSpectra};
 
 /// All against all by the distance that decides: statistical with a camera, else per √photon. Rows and columns are
 /// ordered by clusters.
@@ -47,9 +48,42 @@ pub fn distance_matrix(matrix: &Matrix) -> Plot {
     .groups(starts);
     if with_camera {
         let required = matrix.required_distance;
-        figure = figure.threshold(required, format!("not told apart: d below {required:.3}"));
+        figure = figure.threshold(required, format!("not told apart: d below {}", significant(required, 3)));
     }
     Plot { name: "distance_matrix", figure: Figure::from(figure), table }
+}
+
+/// Most materials whose readings are drawn into one plot.
+const READINGS_DRAWN: usize = 6;
+
+/// One reading of each of the first few materials, and its mean.
+#[must_use]
+pub fn sample_spectra(spectra: &SampleSpectra) -> Plot {
+    let shown = &spectra.materials[..spectra.materials.len().min(READINGS_DRAWN)];
+    let mut header = vec!["wavenumber_cm1".to_owned()];
+    header.extend(
+        shown.iter().flat_map(|(name, ..)| [format!("mean_{name}_counts"), format!("drawn_{name}_counts")]),
+    );
+    let mut table = Table::new(header);
+    let x = &spectra.wavenumber_cm1;
+    for (band, nu) in x.iter().enumerate() {
+        let mut row = vec![*nu];
+        row.extend(shown.iter().flat_map(|(_, mean, counts)| [mean[band], counts[band]]));
+        table.push_numbers(&row);
+    }
+    let mut figure =
+        LineFigure::new("One reading of each material", wavenumber_axis(x), Axis::linear("counts in a band"))
+            .subtitle(format!(
+                "Thin: one reading drawn at random (seed {}). Dashed: its mean. All in the scenario's state.",
+                spectra.seed
+            ));
+    for (i, (name, _, counts)) in shown.iter().enumerate() {
+        figure = figure.series(Series::line(name, x.clone(), counts.clone()).colour(i));
+    }
+    for (i, (_, mean, _)) in shown.iter().enumerate() {
+        figure = figure.series(Series::line("", x.clone(), mean.clone()).style(Style::Dashed).colour(i));
+    }
+    Plot { name: "sample_spectra", figure: figure.into(), table }
 }
 
 /// Materials cluster by cluster, then the others, and where each group begins.

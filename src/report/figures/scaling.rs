@@ -64,21 +64,22 @@ pub fn band_number(scaling: &Scaling, target: &str) -> Plot {
         Axis::log("bands"),
         Axis::log("distance, relative to all bands"),
     )
-    .subtitle("Neighbouring bands joined. Photons are the same for any number of bands; the camera's noise is added to every reading.")
-    .series(Series::line("least, shot noise alone", x.clone(), relative(&bands.shot_noise)).colour(0))
-    .series(
-        Series::line("median, shot noise alone", x.clone(), relative(&bands.shot_noise_median))
-            .style(Style::Dashed)
-            .colour(0),
-    );
+    .subtitle("Neighbouring bands joined. Photons are the same for any number of bands; the camera's noise is added to every reading.");
+    let mut curves = vec![
+        ("least, shot noise alone", &bands.shot_noise, 0),
+        ("median, shot noise alone", &bands.shot_noise_median, 0),
+    ];
     if with_camera {
-        figure = figure
-            .series(Series::line("least, noise of the camera", x.clone(), relative(&bands.camera)).colour(1))
-            .series(
-                Series::line("median, noise of the camera", x, relative(&bands.camera_median))
-                    .style(Style::Dashed)
-                    .colour(1),
-            );
+        curves.push(("least, noise of the camera", &bands.camera, 1));
+        curves.push(("median, noise of the camera", &bands.camera_median, 1));
+    }
+    for (label, values, colour) in curves {
+        // An alternative that is the same leaves nothing in any number of bands.
+        if values.iter().any(|value| *value > 0.0) {
+            let style = if label.starts_with("median") { Style::Dashed } else { Style::Line };
+            figure =
+                figure.series(Series::line(label, x.clone(), relative(values)).style(style).colour(colour));
+        }
     }
     Plot { name: "band_number", figure: figure.into(), table }
 }

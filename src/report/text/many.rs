@@ -240,8 +240,9 @@ fn bands(found: &BandsThatMatter, study: &Study) -> String {
         let limiting = choice.limiting.as_deref().unwrap_or(&found.alternative);
         let _ = writeln!(
             out,
-            "  best {count} {what}: {} the distance of all {} bands read one by one ({:.2e}, not {:.2e}; worst against {limiting}); {proof}",
+            "  best {count} {what}: {}{} the distance of all {} bands read one by one ({:.2e}, not {:.2e}; worst against {limiting}); {proof}",
             share(choice.distance),
+            if choice.kept < 1.5 { " of" } else { "" },
             found.center_cm1.len(),
             choice.distance,
             choice.distance_all_bands
@@ -301,12 +302,16 @@ fn exact(found: &Exact, study: &Study) -> String {
     if let Some(library) = &found.library {
         let _ = writeln!(
             out,
-            "  among all at once {} is recognised in {:.3} +- {:.3} of {} trials; with all states known in at least {:.3}",
+            "  among all at once {} is recognised in {:.3} +- {:.3} of {} trials{}",
             study.target().name,
             library.probability,
             library.interval.half_width(),
             library.trials,
-            library.union_bound
+            if library.union_bound > 0.0 {
+                format!("; were all states known, in at least {:.3} (union bound)", library.union_bound)
+            } else {
+                String::new()
+            }
         );
     }
     out.push_str(
