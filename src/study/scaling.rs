@@ -38,7 +38,8 @@ pub struct BandNumber {
     pub shot_noise: Vec<f64>,
     /// Median over the alternatives of the distance per √photon, shot noise alone.
     pub shot_noise_median: Vec<f64>,
-    /// Least statistical distance with the camera, whose noise is the same in every reading; empty without one.
+    /// Least statistical distance with the camera, whose noise is the same in every reading; empty without electronic
+    /// noise, when it would be that of shot noise.
     pub camera: Vec<f64>,
     /// Median over the alternatives with the camera; empty without one.
     pub camera_median: Vec<f64>,
@@ -117,7 +118,8 @@ impl Study {
             found.bands.push(study.bands.len());
             found.shot_noise.push(least);
             found.shot_noise_median.push(median);
-            if let Some(counting) = study.counting() {
+            let noisy = |counting: &Counting| counting.var_electronic.iter().any(|&var| var > 0.0);
+            if let Some(counting) = study.counting().filter(noisy) {
                 let (least, median) = study.least_and_median(kind, Some(&counting))?;
                 found.camera.push(least);
                 found.camera_median.push(median);

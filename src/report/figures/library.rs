@@ -71,12 +71,15 @@ pub fn sample_spectra(spectra: &SampleSpectra) -> Plot {
         row.extend(shown.iter().flat_map(|(_, mean, counts)| [mean[band], counts[band]]));
         table.push_numbers(&row);
     }
-    let mut figure =
-        LineFigure::new("One reading of each material", wavenumber_axis(x), Axis::linear("counts in a band"))
-            .subtitle(format!(
-                "Thin: one reading drawn at random (seed {}). Dashed: its mean. All in the scenario's state.",
-                spectra.seed
-            ));
+    let mut figure = LineFigure::new(
+        "One reading of each material",
+        wavenumber_axis(x),
+        Axis::linear("counts in a band"),
+    )
+    .subtitle(format!(
+        "Solid: one reading drawn at random (seed {}). Dashed: its mean. All in the scenario's state.",
+        spectra.seed
+    ));
     for (i, (name, _, counts)) in shown.iter().enumerate() {
         figure = figure.series(Series::line(name, x.clone(), counts.clone()).colour(i));
     }
