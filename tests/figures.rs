@@ -2,15 +2,16 @@
 //!
 //! The samples are written to `target/tmp/figures`, to be looked at.
 
-use std::fs;
-use std::path::Path;
+#[path = "support/figures.rs"]
+mod support;
 
 use hadar::report::plot::{
-    Axis, Band, Figure, HeatMap, LineFigure, Marker, Matrix, NamedSeries, NamedValues, Panel, Rule, Series,
-    Style, render_png, render_svg,
+    Axis, Band, Figure, HeatMap, LineFigure, Marker, Matrix, Panel, Rule, Series, Style, render_png,
+    render_svg,
 };
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
+use support::{axis, check_png, check_svg, number, sample, words};
 
 fn wavenumbers() -> Axis {
     let microns = (80..=140).step_by(5).map(|tenth| {
@@ -212,97 +213,8 @@ fn ragged() -> Matrix {
     .threshold(10.0, "below 10 %")
 }
 
-/// Distances of the first materials of the embedded library (made up), the first ones zero.
-fn nearest(count: usize, zeros: usize) -> NamedValues {
-    let library = hadar::material::Library::embedded().expect("the embedded library");
-    let more = (0..count).map(|i| format!("made-up material {i}"));
-    let names: Vec<String> = library.names().map(str::to_owned).chain(more).take(count).collect();
-    let value = |i: usize| {
-        let x = i as f64;
-        if i < zeros { 0.0 } else { 10f64.powf(-3.4 + 0.018 * x + 0.7 * (0.9 * x).sin()) }
-    };
-    let values = (0..count).map(value).collect();
-    NamedValues::new(
-        "How far each material is from the one most like it",
-        names,
-        Axis::log("distance d₀ (per √photon)"),
-    )
-    .subtitle("nearest distance, target at 37 °C, environment at 20 °C, lighting 0.50, 715–1250 cm⁻¹")
-    .series(NamedSeries::new("camera calibrated", values))
-    .threshold(6.3e-4, "required: 6.3×10⁻⁴")
-    .below("too alike for the camera")
-}
-
-fn scaled(values: &[f64], by: impl Fn(usize) -> f64) -> Vec<f64> {
-    values.iter().enumerate().map(|(i, value)| value * by(i)).collect()
-}
-
-/// As [`nearest`], with intervals.
-fn uncertain(count: usize, zeros: usize) -> NamedValues {
-    let mut figure = nearest(count, zeros).interval_meaning("central 95 % of the draws");
-    let only = figure.series.remove(0);
-    let spread = |i: usize| 1.2 + 0.5 * (i as f64).cos().abs();
-    let low = scaled(&only.values, |i| 1.0 / spread(i));
-    let high = scaled(&only.values, spread);
-    figure.series(only.intervals(low, high))
-}
-
-/// As [`nearest`] or [`uncertain`], with a second series whose every ninth value is missing.
-fn two_series(figure: NamedValues) -> NamedValues {
-    let mut second = figure.series[0].clone();
-    let factor = |i: usize| if i % 9 == 5 { f64::NAN } else { 0.35 + 0.3 * (1.3 * i as f64).sin() };
-    second.label = "gain unknown".to_owned();
-    second.values = scaled(&second.values, factor);
-    second.intervals = second.intervals.map(|(low, high)| (scaled(&low, factor), scaled(&high, factor)));
-    figure.series(second)
-}
-
-/// Four series on a linear axis with a range, infinite numbers, a row without value, long names, another axis.
-fn named_odds() -> NamedValues {
-    let names = ["skin", "a rather long material name, weathered, oxidised and wetted by rain", "", "glass"];
-    let row = |values: [f64; 4]| values.to_vec();
-    NamedValues::new("Bias of the temperature", names.map(str::to_owned).into(), {
-        let ticks = (-2..=2).map(|k| (f64::from(k), format!("{:.1}", f64::from(k) * 1.8))).collect();
-        Axis::linear("bias (K)").range(-2.0, 2.0).secondary("bias (°F)", ticks)
-    })
-    .series(
-        NamedSeries::new("one", row([0.0, 1.0, f64::NAN, 5.0]))
-            .intervals(row([-1.0; 4]), row([1.0, 9.0, f64::NAN, 9.0])),
-    )
-    .series(NamedSeries::new("two", row([0.1, 1.0, f64::NAN, f64::INFINITY])))
-    .series(NamedSeries::new("three", row([0.0, f64::NAN, f64::NAN, -3.0])))
-    .series(NamedSeries::new("four", row([0.0, -1.0, f64::NAN, f64::NEG_INFINITY])))
-    .threshold(-0.5, "least bias that is allowed")
-    .no_value("not simulated")
-}
-
-fn check_svg(svg: &str) {
-    assert!(svg.starts_with("<svg ") && svg.ends_with("</svg>\n"), "{}", &svg[svg.len() - 40..]);
-    assert!(!svg.contains("\"NaN\"") && !svg.contains("\"inf\""));
-    // Every mark is a self-closing element; only texts, the title and the root have an end.
-    let opened = svg.matches("<text ").count() + 2;
-    assert_eq!(svg.matches("</").count(), opened);
-    assert_eq!(svg.matches('<').count(), svg.matches("/>").count() + 2 * opened);
-}
-
-fn check_png(bytes: &[u8]) {
-    let mut reader = png::Decoder::new(bytes).read_info().expect("a PNG header");
-    let mut pixels = vec![0; reader.output_buffer_size()];
-    let info = reader.next_frame(&mut pixels).expect("PNG data");
-    assert_eq!(info.width, 2400);
-    // The margin stays white: nothing is clipped at the edges.
-    let row = 3 * info.width as usize;
-    let edge = |y: usize| pixels[y * row..(y + 1) * row].iter().all(|byte| *byte == 0xFF);
-    assert!(edge(0) && edge(info.height as usize - 1));
-    assert!(
-        pixels.chunks(row).all(|line| line[..6].iter().chain(&line[row - 6..]).all(|byte| *byte == 0xFF))
-    );
-}
-
 #[test]
 fn sample_figures_are_drawn() {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("figures");
-    fs::create_dir_all(&folder).expect("a folder for the samples");
     let [points, unknown] = odds_and_ends();
     for (name, figure) in [
         ("points", points),
@@ -318,65 +230,13 @@ fn sample_figures_are_drawn() {
         ("matrix_28", confusability(28).into()),
         ("matrix_68", confusability(68).into()),
         ("matrix_ragged", ragged().into()),
-        ("named_1", nearest(1, 0).into()),
-        ("named_2", nearest(2, 0).into()),
-        ("named_6", uncertain(6, 0).into()),
-        ("named_6_two", two_series(uncertain(6, 1)).into()),
-        ("named_30", nearest(30, 2).into()),
-        ("named_30_two", two_series(uncertain(30, 2)).into()),
-        ("named_70", uncertain(70, 3).into()),
-        ("named_70_two", two_series(uncertain(70, 3)).into()),
-        ("named_odds", named_odds().into()),
     ] {
-        let start = std::time::Instant::now();
-        let svg = render_svg(&figure).expect("an SVG");
-        let middle = start.elapsed();
-        let png = render_png(&figure).expect("a PNG");
-        let all = start.elapsed();
-        println!(
-            "{name}: SVG {} kB in {middle:?}, PNG {} kB in {:?}",
-            svg.len() / 1000,
-            png.len() / 1000,
-            all - middle
-        );
-        check_svg(&svg);
-        check_png(&png);
-        assert!(svg.len() < 1_000_000);
-        fs::write(folder.join(format!("{name}.svg")), svg).expect("writing the SVG");
-        fs::write(folder.join(format!("{name}.png")), png).expect("writing the PNG");
+        sample(name, &figure);
     }
-}
-
-/// Any number at all, ordinary ones more often.
-fn number() -> impl Strategy<Value = f64> {
-    prop_oneof![
-        4 => -100.0..100.0f64,
-        2 => Just(0.5),
-        1 => (-320.0..308.0f64).prop_map(|e| 10f64.powf(e)),
-        1 => any::<f64>(),
-        1 => prop::sample::select(vec![f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 0.0, -0.0, f64::MAX, f64::MIN]),
-    ]
 }
 
 fn numbers(most: usize) -> impl Strategy<Value = Vec<f64>> {
     prop::collection::vec(number(), 0..=most)
-}
-
-fn words() -> impl Strategy<Value = String> {
-    prop_oneof![3 => Just("a quantity (unit)".to_owned()), 1 => any::<String>(), 1 => "[ -~]{0,300}"]
-}
-
-fn axis() -> impl Strategy<Value = Axis> {
-    let range = prop::option::of((number(), number()));
-    let ticks = prop::option::of(prop::collection::vec((number(), words()), 0..5));
-    (words(), any::<bool>(), range, ticks).prop_map(|(title, log, range, ticks)| {
-        let axis = if log { Axis::log(&title) } else { Axis::linear(&title) };
-        let axis = Axis { range, ..axis };
-        match ticks {
-            Some(ticks) => axis.secondary(title, ticks),
-            None => axis,
-        }
-    })
 }
 
 fn panel() -> impl Strategy<Value = Panel> {
@@ -454,31 +314,11 @@ fn matrix() -> impl Strategy<Value = Figure> {
     )
 }
 
-fn named() -> impl Strategy<Value = Figure> {
-    let rows = prop::collection::vec((words(), number(), number(), number(), number()), 0..20);
-    let threshold = prop::option::of((number(), words()));
-    (words(), rows, axis(), 0..6usize, threshold).prop_map(|(title, rows, axis, count, threshold)| {
-        let names = rows.iter().map(|row| row.0.clone()).collect();
-        let column = |pick: fn(&(String, f64, f64, f64, f64)) -> f64| rows.iter().map(pick).collect();
-        let series = |i: usize| {
-            let values = column(if i % 2 == 0 { |row| row.1 } else { |row| row.2 });
-            let series = NamedSeries::new(format!("{title} {i}"), values);
-            if i > 2 { series } else { series.intervals(column(|row| row.3), column(|row| row.4)) }
-        };
-        let figure = NamedValues::new(&title, names, axis).interval_meaning(&title);
-        let figure = (0..count).map(series).fold(figure, NamedValues::series);
-        match threshold {
-            Some((value, label)) => figure.threshold(value, label).into(),
-            None => figure.into(),
-        }
-    })
-}
-
 proptest! {
     #![proptest_config(ProptestConfig { rng_seed: RngSeed::Fixed(7), cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn any_numbers_give_a_valid_svg(figure in prop_oneof![line_figure(), heat_map(), matrix(), named()]) {
+    fn any_numbers_give_a_valid_svg(figure in prop_oneof![line_figure(), heat_map(), matrix()]) {
         check_svg(&render_svg(&figure).expect("an SVG"));
     }
 }
@@ -487,7 +327,7 @@ proptest! {
     #![proptest_config(ProptestConfig { rng_seed: RngSeed::Fixed(7), cases: 8, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn any_numbers_give_a_png_with_nothing_cut_off(figure in prop_oneof![line_figure(), heat_map(), matrix(), named()]) {
+    fn any_numbers_give_a_png_with_nothing_cut_off(figure in prop_oneof![line_figure(), heat_map(), matrix()]) {
         check_png(&render_png(&figure).expect("a PNG"));
     }
 }
@@ -557,69 +397,4 @@ fn a_matrix_of_wrong_size_is_an_error() {
     let error = render_svg(&matrix.into()).expect_err("one value is missing").to_string();
     assert_eq!(error, "cells of the matrix `Which materials can be told apart`: 3 values where 4 are needed");
     assert!(render_png(&confusability(3).groups(vec![3]).into()).is_err());
-}
-
-/// Vertical places of the lines of text that are one of these names, in the order of the document.
-fn baselines(svg: &str, name: &str) -> Vec<f64> {
-    let texts = svg.split("<text ").skip(1).filter(|text| text.contains(&format!("\n{name}\n")));
-    texts
-        .map(|text| text.split(" y=\"").nth(1).and_then(|rest| rest.split('"').next()?.parse().ok()))
-        .map(|y| y.expect("a text has a place"))
-        .collect()
-}
-
-#[test]
-fn named_values_show_every_name_from_the_top_and_a_symbol_for_every_value() {
-    let figure = nearest(60, 3);
-    let svg = render_svg(&figure.clone().into()).expect("an SVG");
-    let places: Vec<f64> = figure
-        .names
-        .iter()
-        .map(|name| match baselines(&svg, name).as_slice() {
-            [y] => *y,
-            other => panic!("{name}: {other:?}"),
-        })
-        .collect();
-    assert!(places.windows(2).all(|pair| pair[0] < pair[1]));
-    // The outer disc of every symbol that has a place on the axis, and that of the legend; the three zeros
-    // are arrows, explained by one more.
-    let blue = |mark: &str| svg.lines().filter(|l| l.starts_with(mark) && l.contains("\"#0072B2\"")).count();
-    assert_eq!((blue("<circle "), blue("<polygon ")), (60 - 3 + 1, 3 + 1));
-    assert_eq!(baselines(&svg, "0").len(), 1);
-    for words in ["required: 6.3×10⁻⁴", "too alike for the camera"] {
-        assert_eq!(baselines(&svg, words).len(), 1, "{words}");
-    }
-    // One series needs no name, more do; without threshold nothing is too alike.
-    assert!(!svg.contains("camera calibrated"));
-    let two = render_svg(&two_series(figure.clone()).into()).expect("an SVG");
-    assert!(two.contains("camera calibrated") && two.contains("gain unknown"));
-    let plain = render_svg(&NamedValues { threshold: None, ..figure }.into()).expect("an SVG");
-    assert!(!plain.contains("required") && !plain.contains("too alike"));
-}
-
-#[test]
-fn named_values_without_place_are_explained() {
-    let svg = render_svg(&named_odds().into()).expect("an SVG");
-    for words in ["not simulated", "∞ or beyond the axis", "−∞ or beyond the axis", "below the threshold"]
-    {
-        assert_eq!(baselines(&svg, words).len(), 1, "{words}");
-    }
-}
-
-#[test]
-fn nothing_of_named_values_leaves_the_figure() {
-    for count in [0, 1, 5, 70, 400] {
-        for figure in [nearest(count, 0), two_series(uncertain(count, 2.min(count)))] {
-            let long =
-                figure.names.iter().map(|name| format!("{name}, weathered and wetted by rain")).collect();
-            check_png(&render_png(&NamedValues { names: long, ..figure }.into()).expect("a PNG"));
-        }
-    }
-}
-
-#[test]
-fn named_values_of_wrong_length_are_an_error() {
-    let figure = nearest(2, 0).series(NamedSeries::new("other", vec![1.0; 3]));
-    let error = render_svg(&figure.into()).expect_err("a value too many").to_string();
-    assert_eq!(error, "values of the series `other`: 3 values where 2 are needed");
 }

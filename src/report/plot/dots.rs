@@ -4,26 +4,28 @@
 //! from there on the figure grows. The legend stands above the rows, from where a long list is read.
 
 use super::axis::{Ruler, Scale};
-use super::colour::{self, Colour, GREY, GRID, INK, SHADE};
+use super::colour::{self, Colour, GREY, INK, SHADE, WHITE};
 use super::frame::{self, EDGE, Horizontal};
 use super::geometry;
 use super::label;
 use super::legend::{Entry, Key, Legend};
 use super::named::{NamedSeries, NamedValues};
 use super::names::Names;
-use super::scene::{Anchor, Mark, Rect, Scene};
+use super::scene::{Anchor, Mark, Point, Rect, Scene};
 use super::symbol::{Shape, Symbol};
 use super::text;
 use crate::Result;
 
 /// From the frame to the names.
 const NAME_GAP: f64 = 8.0;
-/// Distances of rows: the ones aimed at, by height of all rows, and the least for each series.
+/// Distances of rows for one series, what each further one adds where there is room, and its least share.
 const PITCH: std::ops::RangeInclusive<f64> = 13.5..=22.0;
+const MORE_PITCH: f64 = 6.0;
+const SERIES_PITCH: f64 = 8.0;
+/// Height of all rows up to which they stand widely.
 const TALL: f64 = 620.0;
-const SERIES_PITCH: f64 = 6.5;
 /// Height of all rows at which letters become smaller, whatever the rows.
-const TALLEST: f64 = 4000.0;
+const TALLEST: f64 = 2700.0;
 /// Height from which on the labels of the axis are printed above the rows, too.
 const LABELS_TWICE: f64 = 480.0;
 const LARGEST_SYMBOL: f64 = 3.6;
@@ -220,11 +222,12 @@ struct Rows {
 impl Rows {
     fn new(figure: &NamedValues) -> Self {
         let (rows, series) = (figure.names.len().max(1) as f64, figure.series.len().max(1) as f64);
-        let pitch = (TALL / rows).clamp(*PITCH.start(), *PITCH.end()).max(SERIES_PITCH * series + 2.0);
+        let widest = PITCH.end() + MORE_PITCH * (series - 1.0);
+        let pitch = (TALL / rows).clamp(*PITCH.start(), widest).max(SERIES_PITCH * series);
         let pitch = pitch.min(TALLEST / rows);
         let step = 0.8 * pitch / series;
-        // Symbols of neighbouring series at the same value just touch.
-        Self { pitch, step, radius: (0.27 * pitch).min(0.5 * step).min(LARGEST_SYMBOL) }
+        // Symbols of neighbouring series at the same value do not touch.
+        Self { pitch, step, radius: (0.27 * pitch).min(0.46 * step).min(LARGEST_SYMBOL) }
     }
 
     fn middle(&self, row: usize, area: &Rect) -> f64 {
@@ -249,7 +252,7 @@ impl Rows {
     fn draw_guides(&self, scene: &mut Scene, area: &Rect) {
         let count = (area.height() / self.pitch).round() as usize;
         for y in (0..count).map(|row| self.middle(row, area)) {
-            scene.line((area.left - 3.0, y), (area.right, y), 0.7, GRID);
+            scene.line((area.left - 3.0, y), (area.right, y), 0.7, GREY.opacity(0.22));
         }
     }
 
@@ -264,24 +267,30 @@ impl Rows {
                 let symbol = symbol(i, series, figure.is_below(value));
                 let ends = interval.and_then(|(a, b)| Some((end(ruler, a)?, end(ruler, b)?)));
                 if let Some((a, b)) = ends.filter(|(a, b)| a != b) {
-                    scene.line((area.at(a, 0.0).0, y), (area.at(b, 0.0).0, y), WHISKER, symbol.colour);
+                    // The round ends stay inside the frame.
+                    let at =
+                        |part: f64| area.at(part, 0.0).0.clamp(area.left + WHISKER, area.right - WHISKER);
+                    scene.line((at(a), y), (at(b), y), WHISKER, symbol.colour);
                     empty = false;
                 }
-                symbols.extend(place(ruler, value).map(|place| (place, y, symbol)));
+                symbols.extend(place(ruler, value).map(|place| self.placed(place, y, symbol, area)));
             }
-            for (place, y, symbol) in &symbols {
-                match *place {
-                    Place::At(part) => symbol.draw(scene, (area.at(part, 0.0).0, *y), self.radius),
-                    Place::Beyond(part, _) => {
-                        // The tip of the arrow is at the frame.
-                        let inwards = (1.5 * self.radius + 1.0) * (1.0 - 2.0 * part);
-                        let at = (area.at(part, 0.0).0 + inwards, *y);
-                        arrow(part, symbol.colour).draw(scene, at, self.radius);
-                    }
-                }
-            }
+            // A rim must not cut into the symbol of another series.
+            symbols.iter().for_each(|(symbol, at)| symbol.draw_rim(scene, *at, self.radius));
+            symbols.iter().for_each(|(symbol, at)| symbol.draw(scene, *at, self.radius));
             if empty && symbols.is_empty() {
                 self.draw_nothing(scene, &figure.no_value, self.middle(row, area), area);
+            }
+        }
+    }
+
+    /// A symbol at its place, or an arrow instead whose tip, with its rim, is at the frame.
+    fn placed(&self, place: Place, y: f64, symbol: Symbol, area: &Rect) -> (Symbol, Point) {
+        match place {
+            Place::At(part) => (symbol, (area.at(part, 0.0).0, y)),
+            Place::Beyond(part, _) => {
+                let inwards = (1.4 * self.radius + 2.2) * (1.0 - 2.0 * part);
+                (arrow(part, symbol.colour), (area.at(part, 0.0).0 + inwards, y))
             }
         }
     }
@@ -290,6 +299,8 @@ impl Rows {
     fn draw_nothing(&self, scene: &mut Scene, words: &str, y: f64, area: &Rect) {
         let size = (0.76 * self.pitch).min(10.0);
         if let Some(line) = text::wrap_at_most(words, size, area.width() - 16.0, 1).first() {
+            let (left, right) = (area.left + 5.0, area.left + 11.0 + text::width(line, size));
+            scene.fill(Rect { left, right, top: y - 0.5 * size, bottom: y + 0.5 * size }, WHITE);
             scene.text((area.left + 8.0, y + 0.36 * size), line, size, GREY, Anchor::Start);
         }
     }

@@ -3,7 +3,7 @@
 use super::colour::{Colour, WHITE};
 use super::scene::{Mark, Point, Rect, Scene};
 
-/// Width of the line of an open symbol, and of the white rim that keeps symbols apart.
+/// Width of the line of an open symbol, and of the white rim around symbols.
 const LINE: f64 = 1.3;
 const RIM: f64 = 0.8;
 
@@ -87,11 +87,16 @@ pub(super) struct Symbol {
 }
 
 impl Symbol {
+    /// Draws what keeps the symbol apart from lines below it.
+    pub(super) fn draw_rim(&self, scene: &mut Scene, centre: Point, radius: f64) {
+        let (reach, inwards) = self.shape.size();
+        scene.marks.push(self.shape.mark(centre, reach * radius + inwards * RIM, WHITE));
+    }
+
     /// Draws the symbol about as large as a disc of this radius.
     pub(super) fn draw(&self, scene: &mut Scene, centre: Point, radius: f64) {
         let (reach, inwards) = self.shape.size();
         let reach = reach * radius;
-        scene.marks.push(self.shape.mark(centre, reach + inwards * RIM, WHITE));
         scene.marks.push(self.shape.mark(centre, reach, self.colour));
         let inner = reach - inwards * LINE;
         if self.open && inner > 0.0 {
