@@ -2,8 +2,8 @@
 //!
 //! The samples are written to `target/tmp/figures`, to be looked at.
 
-use std::fs;
-use std::path::Path;
+#[path = "support/figures.rs"]
+mod support;
 
 use hadar::report::plot::{
     Axis, Band, Figure, HeatMap, LineFigure, Marker, Matrix, Panel, Rule, Series, Style, render_png,
@@ -11,6 +11,7 @@ use hadar::report::plot::{
 };
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
+use support::{axis, check_png, check_svg, number, sample, words};
 
 fn wavenumbers() -> Axis {
     let microns = (80..=140).step_by(5).map(|tenth| {
@@ -212,33 +213,8 @@ fn ragged() -> Matrix {
     .threshold(10.0, "below 10 %")
 }
 
-fn check_svg(svg: &str) {
-    assert!(svg.starts_with("<svg ") && svg.ends_with("</svg>\n"), "{}", &svg[svg.len() - 40..]);
-    assert!(!svg.contains("\"NaN\"") && !svg.contains("\"inf\""));
-    // Every mark is a self-closing element; only texts, the title and the root have an end.
-    let opened = svg.matches("<text ").count() + 2;
-    assert_eq!(svg.matches("</").count(), opened);
-    assert_eq!(svg.matches('<').count(), svg.matches("/>").count() + 2 * opened);
-}
-
-fn check_png(bytes: &[u8]) {
-    let mut reader = png::Decoder::new(bytes).read_info().expect("a PNG header");
-    let mut pixels = vec![0; reader.output_buffer_size()];
-    let info = reader.next_frame(&mut pixels).expect("PNG data");
-    assert_eq!(info.width, 2400);
-    // The margin stays white: nothing is clipped at the edges.
-    let row = 3 * info.width as usize;
-    let edge = |y: usize| pixels[y * row..(y + 1) * row].iter().all(|byte| *byte == 0xFF);
-    assert!(edge(0) && edge(info.height as usize - 1));
-    assert!(
-        pixels.chunks(row).all(|line| line[..6].iter().chain(&line[row - 6..]).all(|byte| *byte == 0xFF))
-    );
-}
-
 #[test]
 fn sample_figures_are_drawn() {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("figures");
-    fs::create_dir_all(&folder).expect("a folder for the samples");
     let [points, unknown] = odds_and_ends();
     for (name, figure) in [
         ("points", points),
@@ -255,55 +231,12 @@ fn sample_figures_are_drawn() {
         ("matrix_68", confusability(68).into()),
         ("matrix_ragged", ragged().into()),
     ] {
-        let start = std::time::Instant::now();
-        let svg = render_svg(&figure).expect("an SVG");
-        let middle = start.elapsed();
-        let png = render_png(&figure).expect("a PNG");
-        let all = start.elapsed();
-        println!(
-            "{name}: SVG {} kB in {middle:?}, PNG {} kB in {:?}",
-            svg.len() / 1000,
-            png.len() / 1000,
-            all - middle
-        );
-        check_svg(&svg);
-        check_png(&png);
-        assert!(svg.len() < 1_000_000);
-        fs::write(folder.join(format!("{name}.svg")), svg).expect("writing the SVG");
-        fs::write(folder.join(format!("{name}.png")), png).expect("writing the PNG");
+        sample(name, &figure);
     }
-}
-
-/// Any number at all, ordinary ones more often.
-fn number() -> impl Strategy<Value = f64> {
-    prop_oneof![
-        4 => -100.0..100.0f64,
-        2 => Just(0.5),
-        1 => (-320.0..308.0f64).prop_map(|e| 10f64.powf(e)),
-        1 => any::<f64>(),
-        1 => prop::sample::select(vec![f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 0.0, -0.0, f64::MAX, f64::MIN]),
-    ]
 }
 
 fn numbers(most: usize) -> impl Strategy<Value = Vec<f64>> {
     prop::collection::vec(number(), 0..=most)
-}
-
-fn words() -> impl Strategy<Value = String> {
-    prop_oneof![3 => Just("a quantity (unit)".to_owned()), 1 => any::<String>(), 1 => "[ -~]{0,300}"]
-}
-
-fn axis() -> impl Strategy<Value = Axis> {
-    let range = prop::option::of((number(), number()));
-    let ticks = prop::option::of(prop::collection::vec((number(), words()), 0..5));
-    (words(), any::<bool>(), range, ticks).prop_map(|(title, log, range, ticks)| {
-        let axis = if log { Axis::log(&title) } else { Axis::linear(&title) };
-        let axis = Axis { range, ..axis };
-        match ticks {
-            Some(ticks) => axis.secondary(title, ticks),
-            None => axis,
-        }
-    })
 }
 
 fn panel() -> impl Strategy<Value = Panel> {

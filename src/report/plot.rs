@@ -7,7 +7,8 @@
 //! Design*, 2008), legends outside the data.
 //!
 //! A number that cannot be drawn (NaN, infinite, zero or below on a logarithmic axis) is a gap in a
-//! curve and a cell without value in a map, never an error.
+//! curve and a cell without value in a map, never an error. Beside a name it is an arrow at the edge of the
+//! axis, or the words "no value".
 //!
 //! ```
 //! use hadar::report::plot::{Axis, Figure, LineFigure, Series, render_svg};
@@ -22,6 +23,7 @@
 mod axis;
 mod colour;
 mod contour;
+mod dots;
 mod figure;
 mod frame;
 mod geometry;
@@ -33,9 +35,12 @@ mod legend;
 mod lines;
 mod mask;
 mod matrix;
+mod named;
+mod names;
 mod png;
 mod scene;
 mod svg;
+mod symbol;
 mod text;
 mod ticks;
 
@@ -43,6 +48,7 @@ pub use axis::{Axis, Scale, Secondary};
 pub use figure::{Band, LineFigure, Marker, Panel, Rule, Series, Style};
 pub use heatmap::HeatMap;
 pub use matrix::{Matrix, Threshold};
+pub use named::{NamedSeries, NamedValues};
 
 use crate::Result;
 
@@ -55,6 +61,8 @@ pub enum Figure {
     HeatMap(HeatMap),
     /// A quantity for every pair of names, in colours.
     Matrix(Matrix),
+    /// Quantities of every name, as points on one axis.
+    Named(NamedValues),
 }
 
 impl From<LineFigure> for Figure {
@@ -72,6 +80,12 @@ impl From<HeatMap> for Figure {
 impl From<Matrix> for Figure {
     fn from(figure: Matrix) -> Self {
         Self::Matrix(figure)
+    }
+}
+
+impl From<NamedValues> for Figure {
+    fn from(figure: NamedValues) -> Self {
+        Self::Named(figure)
     }
 }
 
@@ -97,5 +111,6 @@ fn scene(figure: &Figure) -> Result<scene::Scene> {
         Figure::Line(figure) => lines::scene(figure),
         Figure::HeatMap(map) => heat::scene(map),
         Figure::Matrix(matrix) => grid::scene(matrix),
+        Figure::Named(named) => dots::scene(named),
     }
 }

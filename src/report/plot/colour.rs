@@ -27,6 +27,7 @@ pub(super) const INK: Colour = Colour::hex(0x1A1A1A);
 pub(super) const GREY: Colour = Colour::hex(0x5F6368);
 pub(super) const GRID: Colour = Colour::hex(0xE4E6E8);
 pub(super) const FINE_GRID: Colour = Colour::hex(0xF2F3F4);
+pub(super) const SHADE: Colour = Colour::hex(0xECEDEF);
 pub(super) const NO_VALUE: Colour = Colour::hex(0xD6D6D6);
 
 /// Blue, vermillion, bluish green, reddish purple, orange, sky blue, black.

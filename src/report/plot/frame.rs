@@ -195,6 +195,27 @@ impl Horizontal {
         y + 10.0
     }
 
+    /// Height that [`Self::draw_labels_above`] needs.
+    pub(super) fn room_for_labels(&self) -> f64 {
+        // A common power of ten would have to be repeated as well.
+        if self.secondary.is_some() || self.ticks.multiplier.is_some() { 0.0 } else { LABEL_GAP + TICK }
+    }
+
+    /// The labels once more above a tall frame, where there is room; none near the position given.
+    pub(super) fn draw_labels_above(&self, scene: &mut Scene, frame: &Rect, taken: Option<f64>) {
+        if self.room_for_labels() == 0.0 {
+            return;
+        }
+        for (at, label) in &self.ticks.major {
+            let (x, y) = frame.at(*at, 1.0);
+            scene.line((x, y - 4.5), (x, y), 0.7, INK);
+            let half = 0.5 * text::width(label, TICK) + 4.0;
+            if taken.is_none_or(|taken| (taken - x).abs() > half) {
+                scene.text((x, y - LABEL_GAP), label, TICK, INK, Anchor::Middle);
+            }
+        }
+    }
+
     /// The second reading above the frame; labels that would touch their neighbour are left out.
     pub(super) fn draw_secondary(&self, scene: &mut Scene, frame: &Rect) {
         let Some(Secondary { title, ticks }) = &self.secondary else { return };

@@ -1,8 +1,7 @@
 //! Lays out a matrix of named rows and columns.
 //!
 //! The names get the room that they need at a size that follows from the cells, which get what is left. Names
-//! of columns are turned unless all fit above their cells. Where even the smallest letters would
-//! touch, only every second (third, …) name is printed.
+//! of columns are turned unless all fit above their cells.
 
 use super::axis::{Ruler, Scale};
 use super::colour::{self, Colour, INK, NO_VALUE, WHITE};
@@ -10,6 +9,7 @@ use super::frame::{self, AXIS_TITLE, EDGE, TICK, Vertical};
 use super::heat;
 use super::legend::{self, Entry, Key, Legend};
 use super::matrix::Matrix;
+use super::names::{Names, SHARE};
 use super::scene::{Anchor, Mark, Rect, Scene};
 use super::text;
 use super::ticks;
@@ -21,11 +21,6 @@ const BAR_GAP: f64 = 18.0;
 const BAR_HEIGHT: std::ops::Range<f64> = 150.0..420.0;
 /// From the cells to the names.
 const NAME_GAP: f64 = 5.0;
-/// Longest name; longer ones are cut with an ellipsis.
-const LONGEST: f64 = 190.0;
-/// Smallest letters, and those of a name as a share of the distance of names.
-const SMALLEST: f64 = 4.6;
-const SHARE: f64 = 0.84;
 /// Widest and highest cell.
 const WIDEST: f64 = 150.0;
 const HIGHEST: f64 = 75.0;
@@ -95,39 +90,6 @@ fn title_room(title: &str) -> f64 {
 /// To a whole pixel of the PNG.
 fn snapped(value: f64, round: fn(f64) -> f64) -> f64 {
     round(value * PIXELS) / PIXELS
-}
-
-/// Names along one side, cut to what fits.
-struct Names {
-    lines: Vec<String>,
-    size: f64,
-    /// Every how many names one is printed.
-    stride: usize,
-    /// Room across the side.
-    room: f64,
-    turned: bool,
-}
-
-impl Names {
-    /// Names at distances of `pitch`; beside their cells, or across them where there is `width` for each.
-    fn new(names: &[String], pitch: f64, width: Option<f64>) -> Self {
-        let size = (SHARE * pitch).min(TICK);
-        let stride = (SMALLEST / size).ceil().max(1.0) as usize;
-        let size = (size * stride as f64).min(TICK);
-        let cut = |name: &String| text::wrap_at_most(name, size, LONGEST, 1).into_iter().next();
-        let lines: Vec<String> = names.iter().map(|name| cut(name).unwrap_or_default()).collect();
-        let longest = lines.iter().map(|line| text::width(line, size)).fold(0.0, f64::max);
-        match width {
-            Some(width) if longest + 8.0 <= width => {
-                Self { lines, size: TICK.min(size), stride, room: size * text::LEADING, turned: false }
-            }
-            _ => Self { lines, size, stride, room: longest, turned: true },
-        }
-    }
-
-    fn printed(&self) -> impl Iterator<Item = (usize, &String)> {
-        self.lines.iter().enumerate().step_by(self.stride)
-    }
 }
 
 /// Sizes of everything that depends on everything else.

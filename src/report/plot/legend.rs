@@ -3,6 +3,7 @@
 use super::colour::{Colour, GREY, INK};
 use super::geometry;
 use super::scene::{Anchor, Mark, Point, Rect, Scene};
+use super::symbol::Symbol;
 use super::text;
 
 const SIZE: f64 = 11.5;
@@ -32,6 +33,15 @@ pub(super) enum Key {
     Dotted {
         colour: Colour,
         ink: Colour,
+    },
+    /// A symbol, on a patch of colour where `ground` is given.
+    Symbol {
+        symbol: Symbol,
+        ground: Option<Colour>,
+    },
+    /// A thin line with a point.
+    Whisker {
+        colour: Colour,
     },
 }
 
@@ -175,6 +185,17 @@ fn entry(scene: &mut Scene, key: &Key, lines: &[String], (left, top): Point) {
             scene.fill(area, *colour);
             let centre = (0.5 * (area.left + area.right), middle);
             scene.marks.push(Mark::Disc { centre, radius: 2.4, colour: *ink });
+        }
+        Key::Symbol { symbol, ground } => {
+            if let Some(colour) = ground {
+                scene.fill(area, *colour);
+            }
+            symbol.draw(scene, (0.5 * (area.left + area.right), middle), 3.8);
+        }
+        Key::Whisker { colour } => {
+            scene.line((left, middle), (left + KEY, middle), 1.1, *colour);
+            let centre = (left + 0.5 * KEY, middle);
+            scene.marks.push(Mark::Disc { centre, radius: 2.6, colour: *colour });
         }
     }
     for (i, line) in lines.iter().enumerate() {
