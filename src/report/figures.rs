@@ -7,7 +7,7 @@ mod library;
 mod scaling;
 
 pub use bands::bands_that_matter;
-pub use library::{distance_matrix, sample_spectra};
+pub use library::{distance_matrix, minimum_distances, sample_spectra};
 pub use scaling::{band_number, library_size};
 
 use super::plot::{Axis, Band, Figure, HeatMap, LineFigure, Marker, Panel, Rule, Series, Style};

@@ -35,6 +35,7 @@ pub fn bundle(study: &Study, answers: &Answers, seed: u64, out: &Path) -> Result
         }
         bundle.add("targets.csv", targets(matrix).to_csv()?);
         plots.push(figures::distance_matrix(matrix));
+        plots.push(figures::minimum_distances(matrix));
         if let Some(spectra) = study.sample_spectra(seed)? {
             plots.push(figures::sample_spectra(&spectra));
         }

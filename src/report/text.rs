@@ -60,7 +60,12 @@ pub fn sizing(result: &Sizing, study: &Study) -> String {
         out.push_str(&readings(pair, result));
     }
     if let (Some(camera), Some(pair)) = (&result.camera, limiting) {
-        let _ = writeln!(out, "Camera {} in this scene", camera.camera.name);
+        let name = if study.scenario().camera.as_ref().is_some_and(|spec| spec.preset.is_some()) {
+            format!("Camera {}", camera.camera.name)
+        } else {
+            "The camera".to_owned()
+        };
+        let _ = writeln!(out, "{name} in this scene");
         let mut line = |label: &str, text: String| {
             let _ = writeln!(out, "  {label:<34} {text}");
         };

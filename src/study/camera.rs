@@ -67,7 +67,7 @@ pub(super) fn resolved(spec: &CameraSpec, scenario: &Scenario) -> Result<Camera>
         }
     };
     let camera = Camera {
-        name: spec.preset.clone().unwrap_or_else(|| "camera".into()),
+        name: spec.preset.clone().unwrap_or_else(|| "the camera".into()),
         description: from.map_or_else(String::new, |c| c.description.clone()),
         provenance: from.map_or_else(Vec::new, |c| c.provenance.clone()),
         exposure_s,

@@ -47,6 +47,24 @@ pub struct TargetVerdict {
     pub identifiable: Option<bool>,
 }
 
+impl TargetVerdict {
+    /// The statistical distance with a camera, else that per √photon.
+    #[must_use]
+    pub fn decisive_minimum(&self) -> f64 {
+        self.statistical_distance_minimum.unwrap_or(self.distance_minimum)
+    }
+}
+
+impl Matrix {
+    /// The targets, the least identifiable first.
+    #[must_use]
+    pub fn hardest_first(&self) -> Vec<&TargetVerdict> {
+        let mut targets: Vec<&TargetVerdict> = self.targets.iter().collect();
+        targets.sort_by(|a, b| a.decisive_minimum().total_cmp(&b.decisive_minimum()));
+        targets
+    }
+}
+
 /// Pairs that can be told apart, those that cannot, and the groups that these make.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Apart {

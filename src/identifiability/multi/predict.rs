@@ -56,9 +56,9 @@ pub fn chains(count: usize, alike: impl Fn(usize, usize) -> bool) -> Vec<Vec<usi
         let (mut members, mut next) = (vec![first], 0);
         while let Some(&member) = members.get(next) {
             next += 1;
-            for other in 0..count {
-                if free[other] && (alike(member, other) || alike(other, member)) {
-                    free[other] = false;
+            for (other, free) in free.iter_mut().enumerate() {
+                if *free && (alike(member, other) || alike(other, member)) {
+                    *free = false;
                     members.push(other);
                 }
             }

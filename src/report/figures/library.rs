@@ -1,10 +1,12 @@
 //! A library drawn: all materials against all.
 
 use super::{Plot, wavenumber_axis};
-use crate::report::plot::{Axis, Figure, LineFigure, Matrix as NamedMatrix, Series, Style};
-use crate::report::table::{Table, optional};
+use crate::report::plot::{
+    Axis, Figure, LineFigure, Matrix as NamedMatrix, NamedSeries, NamedValues, Series, Style,
+};
+use crate::report::table::{Table, number, optional};
 use crate::report::text::significant;
-use crate::study::{Matrix, SampleSpectra};
+use crate::study::{Matrix, SampleSpectra, TargetVerdict};
 
 /// All against all by the distance that decides: statistical with a camera, else per √photon. Rows and columns are
 /// ordered by clusters.
@@ -51,6 +53,31 @@ pub fn distance_matrix(matrix: &Matrix) -> Plot {
         figure = figure.threshold(required, format!("not told apart: d below {}", significant(required, 3)));
     }
     Plot { name: "distance_matrix", figure: Figure::from(figure), table }
+}
+
+/// Distance of every material to the one hardest to tell it from, the least identifiable first: the paper's Extended
+/// Data Fig. 6b for any library.
+#[must_use]
+pub fn minimum_distances(matrix: &Matrix) -> Plot {
+    let with_camera = matrix.statistical_distance.is_some();
+    let targets = matrix.hardest_first();
+    let value = TargetVerdict::decisive_minimum;
+    let unit = if with_camera { "statistical_distance" } else { "distance_per_sqrt_photon" };
+    let mut table =
+        Table::new(["target".to_owned(), "hardest_alternative".into(), format!("minimum_{unit}")]);
+    for target in &targets {
+        table.push(vec![target.material.clone(), target.limiting.clone(), number(value(target))]);
+    }
+    let names = targets.iter().map(|target| format!("{} – {}", target.material, target.limiting)).collect();
+    let axis = if with_camera { "least statistical distance d" } else { "least distance (per √photon)" };
+    let mut figure =
+        NamedValues::new("Each material and the one hardest to tell it from", names, Axis::log(axis))
+            .subtitle(format!("By the {} distance; every target in the scenario's state.", matrix.by))
+            .series(NamedSeries::new("", targets.iter().map(|target| value(target)).collect()));
+    if with_camera {
+        figure = figure.threshold(matrix.required_distance, "required").below("not identifiable");
+    }
+    Plot { name: "minimum_distances", figure: figure.into(), table }
 }
 
 /// Most materials whose readings are drawn into one plot.

@@ -12,6 +12,8 @@ use std::fmt::Write as _;
 const LISTED: usize = 12;
 /// Entries of the prediction vector that are shown.
 const SHOWN: usize = 5;
+/// Entries below this are not worth a name.
+const LEAST_SHOWN: f64 = 1e-3;
 /// Probabilities from here on are 1 to three digits.
 const CERTAIN: f64 = 0.9995;
 
@@ -80,10 +82,12 @@ pub(super) fn prediction(result: &Identification) -> String {
     let shown: Vec<String> = sorted
         .iter()
         .take(SHOWN)
+        .filter(|entry| entry.probability >= LEAST_SHOWN)
         .map(|entry| format!("{} {}", entry.material, significant(entry.probability, 2)))
         .collect();
+    let rest = if shown.len() < all.len() { ", less for the others" } else { "" };
     format!(
-        "\nPrediction vector S32 of the paper (a heuristic: no bound, and no test's probability)\n  {}\n",
+        "\nPrediction vector S32 of the paper (a heuristic: no bound, and no test's probability)\n  {}{rest}\n",
         shown.join(", ")
     )
 }
@@ -102,7 +106,7 @@ fn apart(apart: &Apart, study: &Study) -> String {
     let pairs = apart.told_apart.len() + apart.not_told_apart.len();
     let percent = 100.0 * detection::probability(study.required_distance());
     let mut out = format!(
-        "{camera} tells {} of {pairs} pairs apart with {percent:.1} % reliability, either of them the target\n",
+        "Of {pairs} pairs {camera} tells {} apart with {percent:.1} % reliability, either of them the target\n",
         apart.told_apart.len()
     );
     if apart.told_apart.is_empty() {
@@ -131,9 +135,7 @@ fn matrix(matrix: &Matrix, study: &Study) -> String {
     let with_camera = matrix.statistical_distance.is_some();
     let _ = write!(out, "  {:<width$}  {:<width$}  {:>12}", "target", "hardest", "per photon^.5");
     let _ = writeln!(out, "{}", if with_camera { "    camera d  identifiable" } else { "" });
-    let mut targets: Vec<_> = matrix.targets.iter().collect();
-    targets.sort_by(|a, b| a.distance_minimum.total_cmp(&b.distance_minimum));
-    for target in targets {
+    for target in matrix.hardest_first() {
         let _ = write!(
             out,
             "  {:<width$}  {:<width$}  {:>13.2e}",

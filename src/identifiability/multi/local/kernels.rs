@@ -77,11 +77,11 @@ impl<const N: usize> Sums<N> {
     /// loop before in full-width registers.
     #[inline(never)]
     fn add(&mut self, squares: &[Chunk; TOGETHER], dots: &[[Chunk; N]; TOGETHER]) {
-        for a in 0..TOGETHER {
-            self.squares[a].add(fold(&squares[a]));
-            for i in 0..N {
-                self.dots[a][i].add(fold(&dots[a][i]));
-            }
+        for (sum, square) in self.squares.iter_mut().zip(squares) {
+            sum.add(fold(square));
+        }
+        for (sum, dot) in self.dots.iter_mut().flatten().zip(dots.iter().flatten()) {
+            sum.add(fold(dot));
         }
     }
 }
