@@ -237,6 +237,63 @@ dispatched! {
     }
 }
 
+/// What [`beside_into`] writes: B(T), ∂B/∂T at T, and B(T₀) − B(T).
+#[derive(Debug)]
+pub(crate) struct Beside<'a> {
+    pub(crate) value: &'a mut [f64],
+    pub(crate) slope: &'a mut [f64],
+    pub(crate) difference: &'a mut [f64],
+}
+
+/// B(T), ∂B/∂T and B(T₀) − B(T) of a whole spectrum by one exponential per wavenumber, given T₀ and B(T₀); all exact to
+/// a few ulp however close the two temperatures are.
+pub(crate) fn beside_into(
+    wavenumbers_cm1: &[f64],
+    (base_k, base): (f64, &[f64]),
+    temperature_k: f64,
+    out: Beside<'_>,
+) {
+    let delta_per_cm1 = inverse_thermal(base_k).high * ((temperature_k - base_k) / temperature_k);
+    if is_near_pair(base_k, temperature_k) && delta_per_cm1.abs() * largest(wavenumbers_cm1) <= 30.0 {
+        near_beside(wavenumbers_cm1, delta_per_cm1, base, temperature_k, out);
+    } else {
+        // So far apart that no more than two or three bits cancel.
+        photon_radiance_and_slope_into(wavenumbers_cm1, temperature_k, out.value, out.slope);
+        subtract(base, out.value, out.difference);
+    }
+}
+
+dispatched! {
+    /// With M = 2cν² and n₀ = B(T₀)/M photons per mode, 1/(1 − e⁻ˣ) = (1 + n₀)/(1 − n₀E) = (M + B₀)/(M − B₀E).
+    fn near_beside<'a>(
+        wavenumbers_cm1: &'a [f64],
+        delta_per_cm1: f64,
+        base: &'a [f64],
+        temperature_k: f64,
+        out: Beside<'a>,
+    ) {
+        let x_ratio = SECOND_RADIATION_CM_K / (temperature_k * temperature_k);
+        let spectra = out.value.iter_mut().zip(out.slope).zip(out.difference);
+        for (((value, slope), difference), (&wavenumber, base)) in spectra.zip(wavenumbers_cm1.iter().zip(base)) {
+            let e = exp_minus_one(wavenumber * delta_per_cm1);
+            let modes = PREFACTOR * wavenumber * wavenumber;
+            let inverse_p = (modes + base) / (-base).mul_add(e, modes);
+            let warmer = base * (e * inverse_p);
+            *value = base + warmer;
+            *slope = *value * (wavenumber * x_ratio) * inverse_p;
+            *difference = -warmer;
+        }
+    }
+}
+
+dispatched! {
+    fn subtract<'a>(a: &'a [f64], b: &'a [f64], out: &'a mut [f64]) {
+        for ((out, a), b) in out.iter_mut().zip(a).zip(b) {
+            *out = a - b;
+        }
+    }
+}
+
 dispatched! {
     fn near_differences<'a>(
         wavenumbers_cm1: &'a [f64],
