@@ -230,3 +230,72 @@ fn sum(a: Chunk, b: Chunk) -> Chunk {
 fn times(factor: f64, a: Chunk) -> Chunk {
     std::array::from_fn(|i| factor * a[i])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fisher::{Nuisance, Unknowns};
+    use crate::scene::{EnvironmentObject, Surroundings};
+    use crate::spectrum::Bands;
+
+    /// Against sums written out as they are defined, for every number of columns and bands that fill no whole chunk.
+    #[test]
+    fn sums_are_what_they_are_defined_as() {
+        let bands = Bands::uniform(700.0, 1249.0, 1.0).unwrap();
+        let n = bands.len();
+        for objects in 1..=3 {
+            let object = |k: i32| {
+                let wave = |nu: &f64| 0.6 + 0.3 * (nu / 40.0 + f64::from(k)).sin();
+                let emissivity = Some(bands.nodes_cm1().iter().map(wave).collect());
+                EnvironmentObject { temperature_k: 280.0 + 15.0 * f64::from(k), emissivity }
+            };
+            let objects: Vec<_> = (0..objects).map(object).collect();
+            let lighting = vec![0.3; objects.len()];
+            let surroundings = Surroundings::new(bands.nodes_cm1(), objects).unwrap();
+            let state = surroundings.state(310.0, &lighting).unwrap();
+            let all =
+                [Nuisance::Temperature, Nuisance::Lighting, Nuisance::Gain, Nuisance::EnvironmentTemperature];
+            let unknowns = Unknowns::new(all).unwrap();
+            let parameters = unknowns.parameters(lighting.len());
+            let own: Vec<f64> = (0..n).map(|i| 0.7 + 0.2 * (i as f64 / 50.0).cos()).collect();
+            let mut surface = Jacobian::new(&bands, &surroundings);
+            for count in 1..=parameters.len() {
+                surface.evaluate(&own, &own, &state, &parameters[..count], false);
+                let total: f64 = surface.signal().iter().sum();
+                let spectrum =
+                    |a: f64, b: f64| (0..n).map(|i| a + b * (i as f64).sin()).collect::<Vec<f64>>();
+                let (root, noise) = (spectrum(0.05, 0.01), spectrum(3e-4, 1e-4));
+                let (separation, curvature) = (spectrum(0.0, 1e-4 * total), spectrum(1.0, 2.0));
+                let lines = Lines {
+                    counts: 1.0 / total,
+                    root: &root,
+                    noise: &noise,
+                    separation: &separation,
+                    curvature: &curvature,
+                    signal: surface.signal(),
+                };
+                let found = sums(lines, &surface);
+                let rho: Vec<f64> = (0..n).map(|w| (surface.signal()[w] / total + noise[w]).sqrt()).collect();
+                let r: Vec<f64> = (0..n).map(|w| separation[w] / total / (root[w] + rho[w])).collect();
+                let slope = |w: usize| -0.5 / (total * rho[w]);
+                let close = |a: f64, f: &dyn Fn(usize) -> f64| {
+                    let (b, size): (f64, f64) = ((0..n).map(f).sum(), (0..n).map(|w| f(w).abs()).sum());
+                    assert!((a - b).abs() < 1e-13 * size, "{count}: {a} {b}");
+                };
+                close(found.cost, &|w| r[w] * r[w]);
+                close(cost(lines), &|w| r[w] * r[w]);
+                close(found.curvature, &|w| r[w] * slope(w) * curvature[w]);
+                for i in 0..count {
+                    let a = surface.column(i);
+                    close(found.quadratic.gradient[i], &|w| r[w] * slope(w) * a[w]);
+                    for j in 0..count {
+                        let b = surface.column(j);
+                        let square = |w: usize| slope(w).powi(2) * a[w] * b[w];
+                        close(found.quadratic.gauss_newton[(i, j)], &square);
+                        close(found.quadratic.hessian[(i, j)], &|w| square(w) * (1.0 + r[w] / rho[w]));
+                    }
+                }
+            }
+        }
+    }
+}
