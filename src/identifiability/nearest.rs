@@ -219,6 +219,12 @@ impl<'a> NearestSolver<'a> {
     ) -> Result<NearestDistance> {
         let target = self.aim(emissivity, alternative, state, metric)?;
         let own_cost = self.cost(&target, state);
+        if own_cost < enough * enough && self.space.within_range(state) == *state {
+            // The target's own state is near enough.
+            let at_edge = self.space.edges(state);
+            let (distance, state) = (own_cost.sqrt(), state.clone());
+            return Ok(NearestDistance { distance, state, at_edge, iterations: 0, converged: false });
+        }
         let starts = match start {
             Some(start) => vec![start.clone()],
             None => self.starts(&target, own_cost, 0.0),
