@@ -1,14 +1,16 @@
-//! How long a distance takes: one pair, a map over temperature and lighting, nearest states.
+//! How long a distance takes: one pair, a map over temperature and lighting, nearest states, a library of materials.
 //!
 //! `cargo bench --bench distances`. The cases are those a NumPy user would vectorise; the first includes
 //! everything (Planck, scores, orthogonalisation), with temperature and lighting unknown over 536 bands.
 //! The results are printed first, to be compared with those of `numpy_peer.py` beside this file.
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use hadar::fisher::{Nuisance, Unknowns};
+use hadar::fisher::{Counting, Nuisance, Unknowns};
 use hadar::identifiability::local::LocalSolver;
 use hadar::identifiability::map::{MapPoint, MapScene};
+use hadar::identifiability::multi::{LibraryScene, LocalMatrix, Skipping};
 use hadar::identifiability::nearest::{NearestSolver, StateRange};
+use hadar::planck::photon_radiance;
 use hadar::scene::{EnvironmentObject, Surroundings};
 use hadar::spectrum::Bands;
 use std::hint::black_box;
@@ -72,5 +74,75 @@ fn distances(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, distances);
+/// Thirty made-up materials.
+fn library(bands: &Bands) -> Vec<Vec<f64>> {
+    let emissivity = |material: i32, nu: f64| {
+        let place = (nu - 985.0) / 265.0;
+        let waves = (1..=5).map(|j| {
+            let phase = f64::from(j) * std::f64::consts::PI * (place + 1.0);
+            0.1 * (1.7 * f64::from(material * 5 + j)).sin() * phase.cos()
+        });
+        (0.8 + waves.sum::<f64>()).clamp(0.05, 0.99)
+    };
+    (0..30).map(|material| bands.nodes_cm1().iter().map(|&nu| emissivity(material, nu)).collect()).collect()
+}
+
+fn libraries(criterion: &mut Criterion) {
+    let bands = Bands::uniform(715.0, 1250.0, 1.0).expect("valid bands");
+    let object = EnvironmentObject { temperature_k: 293.15, emissivity: None };
+    let surroundings = Surroundings::new(bands.nodes_cm1(), vec![object]).expect("valid surroundings");
+    let unknowns = Unknowns::new([Nuisance::Temperature, Nuisance::Lighting]).expect("distinct");
+    let state = surroundings.state(333.15, &[0.5]).expect("valid state");
+    let materials = library(&bands);
+    let materials: Vec<&[f64]> = materials.iter().map(Vec::as_slice).collect();
+    // 1e6 photons from a blackbody in the target's place, 10 electrons of noise in every band.
+    let black: f64 = bands.nodes_cm1().iter().map(|&nu| photon_radiance(nu, 333.15)).sum();
+    let counting = Counting { counts_per_radiance: 1e6 / black, var_electronic: vec![100.0; bands.len()] };
+    let range = StateRange::default();
+    let scene = LibraryScene {
+        bands: &bands,
+        surroundings: &surroundings,
+        unknowns: &unknowns,
+        range,
+        state: &state,
+    };
+
+    let mut local = LocalMatrix::new(&bands, &surroundings, unknowns.clone());
+    let sum: f64 = local.per_photon(&materials, &state).expect("a valid scene").iter().sum();
+    println!("sum of the local matrix: {sum:.12}");
+    let nearest = scene.nearest_per_photon(&materials).expect("a valid scene");
+    let sum: f64 = nearest.iter().flatten().map(|nearest| nearest.distance).sum();
+    println!("sum of the nearest matrix: {sum:.12}");
+    for required in [1.0, 40.0] {
+        let told = scene.told_apart(&materials, &counting, required, Skipping::On).expect("a valid scene");
+        let apart = |a: usize| (a + 1..30).filter(|&b| told.told_apart(a, b)).count();
+        println!("told apart at d = {required}: {}, {:?}", (0..30).map(apart).sum::<usize>(), told.work);
+    }
+
+    criterion.bench_function("30 x 30 local matrix, 536 bands", |bencher| {
+        let mut warmer = state.clone();
+        warmer.temperature_k += 1.0;
+        let mut flip = false;
+        bencher.iter(|| {
+            flip = !flip;
+            local.per_photon(black_box(&materials), if flip { &warmer } else { &state })
+        });
+    });
+    let mut group = criterion.benchmark_group("libraries");
+    group.sample_size(20);
+    group.bench_function("30 x 30 nearest matrix, 536 bands", |bencher| {
+        bencher.iter(|| scene.nearest_per_photon(black_box(&materials)));
+    });
+    for (required, skipping) in
+        [(1.0, Skipping::On), (1.0, Skipping::Off), (40.0, Skipping::On), (40.0, Skipping::Off)]
+    {
+        let name = format!("which of 30 can be told apart at d = {required}, skipping {skipping:?}");
+        group.bench_function(name, |bencher| {
+            bencher.iter(|| scene.told_apart(black_box(&materials), &counting, required, skipping));
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, distances, libraries);
 criterion_main!(benches);

@@ -243,6 +243,67 @@ dispatched! {
     }
 }
 
+/// What [`beside_into`] writes: B(T), ∂B/∂T at T, and B(T₀) − B(T).
+#[derive(Debug)]
+pub(crate) struct Beside<'a> {
+    pub(crate) value: &'a mut [f64],
+    pub(crate) slope: &'a mut [f64],
+    pub(crate) difference: &'a mut [f64],
+}
+
+/// B(T), ∂B/∂T and B(T₀) − B(T) of a whole spectrum by one exponential per wavenumber, given T₀ and B(T₀); all exact to
+/// a few ulp however close the two temperatures are.
+pub(crate) fn beside_into(
+    wavenumbers_cm1: &[f64],
+    (base_k, base): (f64, &[f64]),
+    temperature_k: f64,
+    out: Beside<'_>,
+) {
+    let delta_per_cm1 = inverse_thermal(base_k).high * ((temperature_k - base_k) / temperature_k);
+    if is_near_pair(base_k, temperature_k) && delta_per_cm1.abs() * largest(wavenumbers_cm1) <= 30.0 {
+        near_beside(wavenumbers_cm1, delta_per_cm1, base, temperature_k, out);
+    } else {
+        // So far apart that no more than two or three bits cancel.
+        photon_radiance_and_slope_into(wavenumbers_cm1, temperature_k, out.value, out.slope);
+        subtract(base, out.value, out.difference);
+    }
+}
+
+dispatched! {
+    /// With M = 2cν² and n₀ = B(T₀)/M photons per mode, 1/(1 − e⁻ˣ) = (1 + n₀)/(1 − n₀E) = (M + B₀)/(M − B₀E),
+    /// and B = B₀(E + 1)M/(M − B₀E).
+    fn near_beside<'a>(
+        wavenumbers_cm1: &'a [f64],
+        delta_per_cm1: f64,
+        base: &'a [f64],
+        temperature_k: f64,
+        out: Beside<'a>,
+    ) {
+        let x_ratio = SECOND_RADIATION_CM_K / (temperature_k * temperature_k);
+        let spectra = out.value.iter_mut().zip(out.slope).zip(out.difference);
+        for (((value, slope), difference), (&wavenumber, base)) in spectra.zip(wavenumbers_cm1.iter().zip(base)) {
+            let (scale, head) = reduced_exp(wavenumber * delta_per_cm1, 0.0);
+            // E, and E + 1 with all its digits where E is nearly −1.
+            let (e, grown) = (scale.mul_add(head, scale - 1.0), scale.mul_add(head, scale));
+            let modes = PREFACTOR * wavenumber * wavenumber;
+            let share = 1.0 / (-base).mul_add(e, modes);
+            let inverse_p = (modes + base) * share;
+            let warmer = base * (e * inverse_p);
+            *value = base * grown * (modes * share);
+            *slope = *value * (wavenumber * x_ratio) * inverse_p;
+            *difference = -warmer;
+        }
+    }
+}
+
+dispatched! {
+    fn subtract<'a>(a: &'a [f64], b: &'a [f64], out: &'a mut [f64]) {
+        for ((out, a), b) in out.iter_mut().zip(a).zip(b) {
+            *out = a - b;
+        }
+    }
+}
+
 dispatched! {
     fn near_differences<'a>(
         wavenumbers_cm1: &'a [f64],
@@ -323,6 +384,37 @@ mod tests {
             for (i, difference) in difference.iter().enumerate() {
                 let direct = photon_radiance(nu[i], t0 + dt) - base[i];
                 assert!((difference / direct - 1.0).abs() < 2e-13, "{dt} {i}");
+            }
+        }
+    }
+
+    #[test]
+    fn beside_agrees_with_the_radiances_themselves() {
+        let nu: Vec<f64> = (0..2000).map(|i| 5.0 + 5.0 * f64::from(i)).collect();
+        for (base_k, t) in
+            [(333.15, 333.15), (333.15, 333.150_001), (300.0, 250.0), (300.0, 374.0), (4.0, 4.9)]
+                .into_iter()
+                .chain([(300.0, 40.0), (300.0, 1e5), (0.2, 0.24), (300.0, 375.1)])
+        {
+            let zeros = || vec![0.0; nu.len()];
+            let (mut base, mut value, mut slope, mut difference) = (zeros(), zeros(), zeros(), zeros());
+            photon_radiance_into(&nu, base_k, &mut base);
+            let out = Beside { value: &mut value, slope: &mut slope, difference: &mut difference };
+            beside_into(&nu, (base_k, &base), t, out);
+            let mut colder = zeros();
+            photon_radiance_difference_into(&nu, t, base_k - t, &value, &mut colder);
+            for (i, &nu) in nu.iter().enumerate() {
+                // As much as x shifts by a rounding error of the temperatures; nothing where B underflows.
+                let tolerance = 1e-15 * (3.0 + SECOND_RADIATION_CM_K * nu / t.min(base_k));
+                let close = |a: f64, b: f64| (a - b).abs() <= tolerance * b.abs() + 1e-280;
+                assert!(close(value[i], photon_radiance(nu, t)), "{base_k} {t} {nu}");
+                assert!(close(slope[i], photon_radiance_slope(nu, t)), "{base_k} {t} {nu}");
+                assert!(
+                    close(difference[i], colder[i]),
+                    "{base_k} {t} {nu}: {} {}",
+                    difference[i],
+                    colder[i]
+                );
             }
         }
     }

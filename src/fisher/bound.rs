@@ -112,8 +112,10 @@ impl Projector {
     /// lengths, 0 for those dropped as zero or dependent (which are cleared).
     pub(crate) fn orthogonalise(&mut self, values: &mut [f64], stride: usize, weights: &[f64]) -> &[f64] {
         let last = values.len().checked_div(stride).unwrap_or(0).saturating_sub(1);
-        // Once leaves u·condition of the earlier ones in the later; the second time starts from that.
-        for _ in 0..2 {
+        // Once leaves u·condition of the earlier ones in the later, except in the last, which is reduced twice as it
+        // is; the second time starts from that.
+        let rounds = if last < 2 { 1 } else { 2 };
+        for _ in 0..rounds {
             let Reduced { residual, norm, .. } = self.reduce(Columns { values, stride }, weights, 1.0);
             if (residual.is_nan() || residual <= DEPENDENT * norm)
                 && let Some(column) = values.get_mut(last * stride..)

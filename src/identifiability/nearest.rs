@@ -177,7 +177,7 @@ impl<'a> NearestSolver<'a> {
     ) -> Result<f64> {
         let target = self.aim(emissivity, alternative, state, Metric::Counting(counting))?;
         let own = self.space.within_range(state);
-        Ok(self.linearise(&target, &own).cost.sqrt())
+        Ok(self.cost(&target, &own).sqrt())
     }
 
     /// Evaluates the target, with which every candidate is compared.
@@ -218,14 +218,21 @@ impl<'a> NearestSolver<'a> {
         enough: f64,
     ) -> Result<NearestDistance> {
         let target = self.aim(emissivity, alternative, state, metric)?;
+        let own_cost = self.cost(&target, state);
+        if own_cost < enough * enough && self.space.within_range(state) == *state {
+            // The target's own state is near enough.
+            let at_edge = self.space.edges(state);
+            let (distance, state) = (own_cost.sqrt(), state.clone());
+            return Ok(NearestDistance { distance, state, at_edge, iterations: 0, converged: false });
+        }
         let starts = match start {
             Some(start) => vec![start.clone()],
-            None => self.starts(&target, 0.0),
+            None => self.starts(&target, own_cost, 0.0),
         };
         let mut best: Option<NearestDistance> = None;
         let mut iterations = 0;
         for start in starts {
-            let candidate = self.refine(&target, start, best.as_ref().map(|best| &best.state), enough);
+            let candidate = self.refine(&target, start, best.as_ref(), enough);
             iterations += candidate.iterations;
             if candidate.distance < enough {
                 return Ok(candidate);
@@ -234,11 +241,11 @@ impl<'a> NearestSolver<'a> {
                 best = Some(candidate);
             }
         }
-        // What is left of the separation at the target's own state when only rounding is left of it.
-        let own = self.linearise(&target, state).cost.sqrt();
         match best {
             Some(best) => {
-                let distance = if best.distance <= ROUNDING * own { 0.0 } else { best.distance };
+                // What is left of the separation at the target's own state when only rounding is left of it.
+                let nothing = best.distance <= ROUNDING * own_cost.sqrt();
+                let distance = if nothing { 0.0 } else { best.distance };
                 Ok(NearestDistance { distance, iterations, ..best })
             }
             None => Err(Error::malformed("the alternative has no state in its range", "widen the range")),
@@ -258,7 +265,8 @@ impl<'a> NearestSolver<'a> {
         reach: f64,
     ) -> Result<Vec<NearestDistance>> {
         let target = self.aim(emissivity, alternative, state, Metric::Counting(counting))?;
-        let starts = self.starts(&target, reach);
+        let own_cost = self.cost(&target, state);
+        let starts = self.starts(&target, own_cost, reach);
         let mut minima: Vec<NearestDistance> =
             starts.into_iter().map(|start| self.refine(&target, start, None, 0.0)).collect();
         minima.sort_by(|a, b| a.distance.total_cmp(&b.distance));
@@ -279,7 +287,7 @@ impl<'a> NearestSolver<'a> {
         &mut self,
         target: &Target<'_>,
         start: State,
-        known: Option<&State>,
+        known: Option<&NearestDistance>,
         enough: f64,
     ) -> NearestDistance {
         let mut state = self.space.within_range(&start);
@@ -290,12 +298,25 @@ impl<'a> NearestSolver<'a> {
             let Some(step) = self.space.step(&at.quadratic, &state, damping, false) else { break };
             let moved = self.space.moved(&state, &step);
             let size = self.space.relative_size(&step, &state);
+            if size < STEP_TOLERANCE {
+                // The last step, whether it is taken or only rounding: the cost tells.
+                let cost = self.cost(target, &moved);
+                if cost <= at.cost {
+                    (state, at.cost) = (moved, cost);
+                }
+                converged = true;
+                break;
+            }
+            if known.is_some_and(|known| {
+                known.distance * known.distance <= at.cost
+                    && self.space.separation(&moved, &known.state) < SAME_MINIMUM
+            }) {
+                break;
+            }
             let next = self.linearise(target, &moved);
             if next.cost <= at.cost {
                 (state, at) = (moved, next);
                 damping = (damping * 0.05).max(1e-15);
-                converged = size < STEP_TOLERANCE
-                    || known.is_some_and(|known| self.space.separation(&state, known) < SAME_MINIMUM);
             } else {
                 // Below this the cost changes only by rounding.
                 converged = size < 10.0 * STEP_TOLERANCE;

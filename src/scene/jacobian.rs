@@ -11,6 +11,7 @@
 //! (S48) the last factor is the total minus the others, and ∂S/∂Vₖ = G(1 − e)[εₖB(Tₖ) − ε_K B(T_K)].
 
 mod kernels;
+mod radiances;
 mod sampling;
 
 use self::kernels::{
@@ -19,7 +20,7 @@ use self::kernels::{
 };
 use self::sampling::Sampling;
 use super::{State, Surroundings, unlit};
-use crate::planck::{self, NearPair};
+use crate::planck;
 use crate::simd::{Aligned, largest, spaced};
 use crate::spectrum::Bands;
 
@@ -193,33 +194,6 @@ impl<'a> Jacobian<'a> {
         &self.contrast
     }
 
-    /// X − X′ at the nodes: the lighting of this one's last `state` less that of `other` in `other_state`,
-    /// as Σ (Vₖ − Vₖ′)εₖB(Tₖ) + Vₖ′εₖ[B(Tₖ) − B(Tₖ′)], which keeps its digits as the two become equal.
-    pub(crate) fn lighting_difference_into(
-        &self,
-        state: &State,
-        other: &Self,
-        other_state: &State,
-        out: &mut [f64],
-    ) {
-        let nodes = out.len();
-        out.fill(0.0);
-        for (k, object) in self.surroundings.objects.iter().enumerate() {
-            let span = k * nodes..(k + 1) * nodes;
-            let emissivity = object.emissivity.as_deref();
-            let change = state.lighting[k] - other_state.lighting[k];
-            add_scaled(change, emissivity, &self.base[span.clone()], out);
-            let (t, other_k) = (state.environment_k[k], other_state.environment_k[k]);
-            if t == other_k {
-                continue;
-            }
-            let nu = &self.surroundings.nodes_cm1;
-            let mut warmer = vec![0.0; nodes];
-            planck::photon_radiance_difference_into(nu, other_k, t - other_k, &other.base[span], &mut warmer);
-            add_scaled(other_state.lighting[k], emissivity, &warmer, out);
-        }
-    }
-
     /// Evaluates signal and derivatives of a surface `emissivity` in `state`; `alternative` is the material
     /// that g mixes in. Emissivities are values at the nodes.
     ///
@@ -232,26 +206,47 @@ impl<'a> Jacobian<'a> {
         parameters: &[Parameter],
         lighting_total_known: bool,
     ) {
-        let bands = self.bands;
-        self.parameters.clear();
-        self.parameters.extend_from_slice(parameters);
-        self.columns.set_len(self.stride * parameters.len());
+        self.begin(parameters);
         self.update_radiances(state);
-        let (sampling, gain) = (self.sampling, state.gain);
-        self.inverse_known = false;
         let mut parameters = parameters;
         match (self.one_black_object(state), parameters.split_last()) {
-            (Some(factor), Some((Parameter::Material, others))) if sampling != Sampling::Integrated => {
+            (Some(factor), Some((Parameter::Material, others))) if self.sampling != Sampling::Integrated => {
                 parameters = others;
                 self.signal_and_mixing(emissivity, alternative, factor, state);
             }
             _ => {
                 self.light(state);
-                sampling.sample(bands, &mut self.column, &mut self.signal, |out| {
-                    signal_into(emissivity, &self.value, &self.lit, gain, out);
-                });
+                self.see(emissivity, state.gain);
             }
         }
+        self.differentiate(emissivity, alternative, state, parameters, lighting_total_known);
+    }
+
+    /// What every evaluation begins with.
+    fn begin(&mut self, parameters: &[Parameter]) {
+        self.parameters.clear();
+        self.parameters.extend_from_slice(parameters);
+        self.columns.set_len(self.stride * parameters.len());
+        self.inverse_known = false;
+    }
+
+    /// The signal, from radiance and lighting.
+    fn see(&mut self, emissivity: &[f64], gain: f64) {
+        self.sampling.sample(self.bands, &mut self.column, &mut self.signal, |out| {
+            signal_into(emissivity, &self.value, &self.lit, gain, out);
+        });
+    }
+
+    /// The first columns, one for each of `parameters`.
+    fn differentiate(
+        &mut self,
+        emissivity: &[f64],
+        alternative: &[f64],
+        state: &State,
+        parameters: &[Parameter],
+        lighting_total_known: bool,
+    ) {
+        let (bands, sampling, gain) = (self.bands, self.sampling, state.gain);
         for (i, parameter) in parameters.iter().enumerate() {
             let incident = match *parameter {
                 Parameter::Lighting(k) => self.lighting(state, k, lighting_total_known),
@@ -278,37 +273,6 @@ impl<'a> Jacobian<'a> {
                 }
             });
         }
-    }
-
-    /// B(T), ∂B/∂T, B(Tₖ) and B(T) − B(Tₖ), where a temperature has changed.
-    fn update_radiances(&mut self, state: &State) {
-        let t = state.temperature_k;
-        if self.temperature_k == t && self.environment_k == state.environment_k {
-            return;
-        }
-        let nu = &self.surroundings.nodes_cm1;
-        let mut value_known = false;
-        for (k, &base_k) in state.environment_k.iter().enumerate() {
-            let span = k * nu.len()..(k + 1) * nu.len();
-            let (base, difference) = (&mut self.base[span.clone()], &mut self.difference[span]);
-            if planck::is_near_pair(base_k, t) {
-                let (value, slope) = (&mut self.value, &mut self.slope);
-                planck::near_pair_into(nu, base_k, t, NearPair { base, value, slope, difference });
-                value_known = true;
-                continue;
-            }
-            if base_k == self.surroundings.objects[k].temperature_k {
-                base.copy_from_slice(&self.surroundings.blackbody[k]);
-            } else {
-                planck::photon_radiance_into(nu, base_k, base);
-            }
-            planck::photon_radiance_difference_into(nu, base_k, t - base_k, base, difference);
-        }
-        if !value_known {
-            planck::photon_radiance_and_slope_into(nu, t, &mut self.value, &mut self.slope);
-        }
-        self.temperature_k = t;
-        self.environment_k.copy_from_slice(&state.environment_k);
     }
 
     /// The lighting factor, where there is a single object that is black.

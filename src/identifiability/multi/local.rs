@@ -72,7 +72,8 @@ pub struct LocalMatrix<'a> {
 /// What one target lends to all its pairs.
 #[derive(Debug, Clone)]
 struct Shared {
-    /// u and c of each band.
+    /// σ²/κ, u and c of each band.
+    noise: Aligned,
     weights: Aligned,
     contrast: Aligned,
     /// m, and k₁, k₂… one after the other.
@@ -97,6 +98,7 @@ impl<'a> LocalMatrix<'a> {
             pair: LocalSolver::new(bands, surroundings, unknowns.clone()),
             projector: Projector::default(),
             shared: Shared {
+                noise: Aligned::zeros(count),
                 weights: Aligned::zeros(count),
                 contrast: Aligned::zeros(count),
                 square: Aligned::zeros(count),
@@ -211,25 +213,28 @@ impl<'a> LocalMatrix<'a> {
             return false;
         }
         let shared = &mut self.shared;
-        match weights {
+        let counts = match weights {
             Weights::PerPhoton => {
                 shared.half = 0.5 / total.sqrt();
-                shared.weights.copy_from_slice(self.jacobian.columns_and_inverse().1);
+                shared.noise.fill(0.0);
+                1.0
             }
             Weights::Counting(counting) => {
                 shared.half = 0.5;
-                let counts = counting.counts_per_radiance;
-                for (w, (u, s)) in shared.weights.iter_mut().zip(self.jacobian.signal()).enumerate() {
-                    let variance = s + counting.var_electronic(w) / counts;
-                    *u = if variance > 0.0 { counts / variance } else { 0.0 };
+                for (w, noise) in shared.noise.iter_mut().enumerate() {
+                    *noise = counting.var_electronic(w) / counting.counts_per_radiance;
                 }
+                counting.counts_per_radiance
             }
-        }
+        };
         contrast_into(Contrast {
             gain: state.gain,
+            counts,
             contrast: self.jacobian.contrast(),
             widths: bands.weights_cm1(),
-            u: &shared.weights,
+            signal: self.jacobian.signal(),
+            noise: &shared.noise,
+            u: &mut shared.weights,
             c: &mut shared.contrast,
             m: &mut shared.square,
         });

@@ -6,14 +6,14 @@
 //! S′_TT = G e′ B″ (`curvature`), and S′_gj = S′ⱼ for the logarithm g of the gain.
 //! (Second derivatives along environment temperatures are left out.)
 
+mod sums;
+
+use self::sums::{Lines, Sums};
 use super::{Metric, NearestSolver};
 use crate::identifiability::curvature::{Curvature, curvature_into};
 use crate::identifiability::space::{Quadratic, value};
-use crate::planck;
 use crate::scene::{Parameter, State};
-use crate::simd::dispatched;
-use crate::sum;
-use nalgebra::{DMatrix, DVector};
+use crate::simd::{Aligned, dispatched};
 
 /// The target as every candidate state is compared with it.
 pub(super) struct Target<'t> {
@@ -35,43 +35,29 @@ pub(super) struct Linearised {
 #[derive(Debug, Clone)]
 pub(super) struct Workspace {
     /// σ²_w of each band, and √(N + σ²) of the target.
-    noise: Vec<f64>,
-    root: Vec<f64>,
-    /// S − S′ at the nodes and in the bands.
-    node: Vec<f64>,
-    separation: Vec<f64>,
-    /// r and ∂r/∂S′ of each band.
-    residual: Vec<f64>,
-    slope: Vec<f64>,
-    /// r ∂r/∂S′, and s² r/ρ.
-    pull: Vec<f64>,
-    bend: Vec<f64>,
-    /// One column times ∂r/∂S′, and again, and times s² r/ρ.
-    column: Vec<f64>,
-    squared: Vec<f64>,
-    bent: Vec<f64>,
+    noise: Aligned,
+    root: Aligned,
+    /// S − S′ and G e′B″ in the bands.
+    separation: Aligned,
+    curvature: Aligned,
     /// B(T) − B(T′) and X − X′ at the nodes.
-    difference: Vec<f64>,
-    lighting: Vec<f64>,
+    difference: Aligned,
+    lighting: Aligned,
+    /// Spectra at the nodes on their way to the bands.
+    node: Aligned,
 }
 
 impl Workspace {
     pub(super) fn new(bands: usize, nodes: usize) -> Self {
-        let (band, node) = (vec![0.0; bands], vec![0.0; nodes]);
+        let (band, node) = (|| Aligned::zeros(bands), || Aligned::zeros(nodes));
         Self {
-            noise: band.clone(),
-            root: band.clone(),
-            node: node.clone(),
-            separation: band.clone(),
-            residual: band.clone(),
-            slope: band.clone(),
-            pull: band.clone(),
-            bend: band.clone(),
-            column: band.clone(),
-            squared: band.clone(),
-            bent: band,
-            difference: node.clone(),
-            lighting: node,
+            noise: band(),
+            root: band(),
+            separation: band(),
+            curvature: band(),
+            difference: node(),
+            lighting: node(),
+            node: node(),
         }
     }
 
@@ -83,7 +69,7 @@ impl Workspace {
                 Metric::Counting(counting) => counting.var_electronic(band),
             };
         }
-        for ((root, signal), noise) in self.root.iter_mut().zip(signal).zip(&self.noise) {
+        for ((root, signal), noise) in self.root.iter_mut().zip(signal).zip(&*self.noise) {
             *root = (target.counts * signal + noise).sqrt();
         }
     }
@@ -95,96 +81,97 @@ impl Workspace {
 }
 
 impl NearestSolver<'_> {
-    /// Cost, gradient and Gauss–Newton matrix at a state of the alternative.
+    /// Cost, gradient and second derivatives at a state of the alternative.
     pub(super) fn linearise(&mut self, target: &Target<'_>, state: &State) -> Linearised {
-        let total_known = self.space.unknowns.known_lighting_total().is_some();
-        self.surface.evaluate(
-            target.alternative,
-            target.alternative,
-            state,
-            &self.space.parameters,
-            total_known,
-        );
-        self.separate(target, state);
-        let n = self.space.parameters.len();
-        let work = &mut self.work;
-        let mut cost = residuals(Residuals {
-            counts: target.counts,
-            signal: self.surface.signal(),
-            noise: &work.noise,
-            root: &work.root,
-            separation: &work.separation,
-            residual: &mut work.residual,
-            slope: &mut work.slope,
-            pull: &mut work.pull,
-            bend: &mut work.bend,
-        });
-        let (mut gradient, mut gauss_newton, mut hessian) =
-            (DVector::zeros(n), DMatrix::zeros(n, n), DMatrix::zeros(n, n));
-        for i in 0..n {
-            scale_twice(self.surface.column(i), &work.slope, &mut work.column, &mut work.squared);
-            scale_by(self.surface.column(i), &work.bend, &mut work.bent);
-            gradient[i] = dot(&work.column, &work.residual);
-            for j in i..n {
-                let column = self.surface.column(j);
-                gauss_newton[(i, j)] = dot(&work.squared, column);
-                gauss_newton[(j, i)] = gauss_newton[(i, j)];
-                hessian[(i, j)] = gauss_newton[(i, j)] + dot(&work.bent, column);
-                // ∂²S′/∂g∂θⱼ = ∂S′/∂θⱼ.
-                if self.space.parameters[i] == Parameter::Gain || self.space.parameters[j] == Parameter::Gain
-                {
-                    let other = if self.space.parameters[i] == Parameter::Gain { j } else { i };
-                    hessian[(i, j)] += dot(&work.pull, self.surface.column(other));
+        self.separate(target, state, true);
+        let along = self.space.parameters.iter().position(|parameter| *parameter == Parameter::Temperature);
+        let (surface, work) = (&self.surface, &mut self.work);
+        if along.is_some() {
+            surface.sampling().sample(surface.bands(), &mut work.node, &mut work.curvature, |out| {
+                curvature_into(Curvature {
+                    nu: surface.surroundings().nodes_cm1(),
+                    temperature_k: state.temperature_k,
+                    gain: state.gain,
+                    emissivity: target.alternative,
+                    value: surface.radiance(),
+                    slope: surface.radiance_slope(),
+                    out,
+                });
+            });
+        }
+        let Sums { mut cost, curvature, mut quadratic } = sums::sums(self.lines(target), &self.surface);
+        let Quadratic { gradient, gauss_newton, hessian } = &mut quadratic;
+        if let Some(i) = along {
+            hessian[(i, i)] += curvature;
+        }
+        if let Some(i) = self.space.parameters.iter().position(|parameter| *parameter == Parameter::Gain) {
+            // ∂²S′/∂g∂θⱼ = ∂S′/∂θⱼ.
+            for j in 0..gradient.len() {
+                hessian[(i, j)] += gradient[j];
+                if i != j {
+                    hessian[(j, i)] += gradient[j];
                 }
-                if i == j && self.space.parameters[i] == Parameter::Temperature {
-                    curvature_into(Curvature {
-                        nu: self.surface.surroundings().nodes_cm1(),
-                        temperature_k: state.temperature_k,
-                        gain: state.gain,
-                        emissivity: target.alternative,
-                        value: self.surface.radiance(),
-                        slope: self.surface.radiance_slope(),
-                        out: &mut work.node,
-                    });
-                    self.surface.bands().weigh_into(&work.node, &mut work.column);
-                    hessian[(i, i)] += dot(&work.pull, &work.column);
-                }
-                hessian[(j, i)] = hessian[(i, j)];
             }
-            let Some(sigma) = self.space.unknowns.sigma_prior(self.space.parameters[i]) else { continue };
-            // The row (θ′ − θ)/(2σ_p) of a prior.
-            let weight = match target.metric {
-                Metric::PerPhoton { photons } => 0.5 / (sigma * photons.sqrt()),
-                Metric::Counting(_) => 0.5 / sigma,
-            };
-            let parameter = self.space.parameters[i];
-            let row = weight * (value(state, parameter) - value(target.state, parameter));
+        }
+        for (i, weight, row) in self.prior_rows(target, state) {
             cost += row * row;
             gradient[i] += weight * row;
             gauss_newton[(i, i)] += weight * weight;
             hessian[(i, i)] += weight * weight;
         }
-        Linearised { cost, quadratic: Quadratic { gradient, gauss_newton, hessian } }
+        Linearised { cost, quadratic }
     }
 
-    /// Band integrals of S − S′ from differences that lose no digits.
-    fn separate(&mut self, target: &Target<'_>, state: &State) {
+    /// The cost alone.
+    pub(super) fn cost(&mut self, target: &Target<'_>, state: &State) -> f64 {
+        self.separate(target, state, false);
+        let bands = sums::cost(self.lines(target));
+        bands + self.prior_rows(target, state).map(|(_, _, row)| row * row).sum::<f64>()
+    }
+
+    fn lines(&self, target: &Target<'_>) -> Lines<'_> {
+        Lines {
+            counts: target.counts,
+            root: &self.work.root,
+            noise: &self.work.noise,
+            separation: &self.work.separation,
+            curvature: &self.work.curvature,
+            signal: self.surface.signal(),
+        }
+    }
+
+    /// Index, weight 1/(2σ_p) and row (θ′ − θ)/(2σ_p) of every parameter with a prior.
+    fn prior_rows(&self, target: &Target<'_>, state: &State) -> impl Iterator<Item = (usize, f64, f64)> {
+        self.space.parameters.iter().enumerate().filter_map(move |(i, &parameter)| {
+            let sigma = self.space.unknowns.sigma_prior(parameter)?;
+            let weight = match target.metric {
+                Metric::PerPhoton { photons } => 0.5 / (sigma * photons.sqrt()),
+                Metric::Counting(_) => 0.5 / sigma,
+            };
+            Some((i, weight, weight * (value(state, parameter) - value(target.state, parameter))))
+        })
+    }
+
+    /// Evaluates the alternative, with its columns or without, and the band integrals of S − S′ from differences that
+    /// lose no digits.
+    fn separate(&mut self, target: &Target<'_>, state: &State, columns: bool) {
         let (own, work) = (target.state, &mut self.work);
-        let nu = self.target.surroundings().nodes_cm1();
-        let warmer = own.temperature_k - state.temperature_k;
-        let base = self.surface.radiance();
-        planck::photon_radiance_difference_into(nu, state.temperature_k, warmer, base, &mut work.difference);
+        let total_known = self.space.unknowns.known_lighting_total().is_some();
+        let parameters = if columns { &self.space.parameters[..] } else { &[] };
+        let (alternative, difference) = (target.alternative, &mut work.difference);
+        self.surface.evaluate_beside(&self.target, alternative, state, parameters, total_known, difference);
         self.target.lighting_difference_into(own, &self.surface, state, &mut work.lighting);
-        separation_into(Separation {
-            gain: own.gain,
-            emissivity: target.emissivity,
-            alternative: target.alternative,
-            contrast: self.target.contrast(),
-            difference: &work.difference,
-            lighting: &work.lighting,
-            out: &mut work.node,
+        self.target.sampling().sample(self.target.bands(), &mut work.node, &mut work.separation, |out| {
+            separation_into(Separation {
+                gain: own.gain,
+                emissivity: target.emissivity,
+                alternative,
+                contrast: self.target.contrast(),
+                difference: &work.difference,
+                lighting: &work.lighting,
+                out,
+            });
         });
-        self.target.bands().weigh_into(&work.node, &mut work.separation);
         let gain = state.gain - own.gain;
         if gain != 0.0 {
             for (separation, other) in work.separation.iter_mut().zip(self.surface.signal()) {
@@ -215,63 +202,5 @@ dispatched! {
             let mixed = (e - other).mul_add(*contrast, other * difference);
             *out = gain * (1.0 - other).mul_add(*lighting, mixed);
         }
-    }
-}
-
-struct Residuals<'a> {
-    counts: f64,
-    signal: &'a [f64],
-    noise: &'a [f64],
-    root: &'a [f64],
-    separation: &'a [f64],
-    residual: &'a mut [f64],
-    slope: &'a mut [f64],
-    pull: &'a mut [f64],
-    bend: &'a mut [f64],
-}
-
-dispatched! {
-    /// r = κ(S − S′)/(√(κS+σ²) + √(κS′+σ²)) and ∂r/∂S′ = −κ/(2√(κS′+σ²)) of each band; returns ‖r‖².
-    fn residuals<'a>(bands: Residuals<'a>) -> f64 {
-        let Residuals { counts, signal, noise, root, separation, residual, slope, pull, bend } = bands;
-        let own = root.iter().zip(separation);
-        let other = signal.iter().zip(noise);
-        let first = residual.iter_mut().zip(slope.iter_mut());
-        let second = pull.iter_mut().zip(bend.iter_mut());
-        for ((((residual, slope), (pull, bend)), (root, separation)), (signal, noise)) in
-            first.zip(second).zip(own).zip(other)
-        {
-            let other_root = counts.mul_add(*signal, *noise).sqrt();
-            let both = root + other_root;
-            *residual = if both > 0.0 { counts * separation / both } else { 0.0 };
-            let inverse = if other_root > 0.0 { 1.0 / other_root } else { 0.0 };
-            *slope = -0.5 * counts * inverse;
-            *pull = *residual * *slope;
-            *bend = *pull * (*slope * inverse);
-        }
-        sum::dot(residual, residual)
-    }
-}
-
-dispatched! {
-    fn scale_twice<'a>(column: &'a [f64], slope: &'a [f64], once: &'a mut [f64], twice: &'a mut [f64]) {
-        for (((once, twice), column), slope) in once.iter_mut().zip(twice).zip(column).zip(slope) {
-            *once = column * slope;
-            *twice = *once * slope;
-        }
-    }
-}
-
-dispatched! {
-    fn scale_by<'a>(column: &'a [f64], factors: &'a [f64], out: &'a mut [f64]) {
-        for ((out, column), factor) in out.iter_mut().zip(column).zip(factors) {
-            *out = column * factor;
-        }
-    }
-}
-
-dispatched! {
-    pub(super) fn dot<'a>(a: &'a [f64], b: &'a [f64]) -> f64 {
-        sum::dot(a, b)
     }
 }

@@ -38,10 +38,11 @@ struct Start {
 }
 
 impl NearestSolver<'_> {
-    /// States to refine from: the target's own, and one for every minimum along T′. Left out are those that are both
+    /// States to refine from: the target's own, which costs `own_cost`, and one for every minimum along T′. Left out are those that are both
     /// many times as costly as the cheapest and more than `reach` farther away.
-    pub(super) fn starts(&mut self, target: &Target<'_>, reach: f64) -> Vec<State> {
+    pub(super) fn starts(&mut self, target: &Target<'_>, own_cost: f64, reach: f64) -> Vec<State> {
         let own = self.space.within_range(target.state);
+        let own_cost = if own == *target.state { own_cost } else { self.cost(target, &own) };
         if !self.space.unknowns.contains(Nuisance::Temperature) {
             return vec![own];
         }
@@ -54,7 +55,6 @@ impl NearestSolver<'_> {
         self.table = Some(table);
         minima.sort_by(|a, b| a.cost.total_cmp(&b.cost));
         minima.truncate(REFINED);
-        let own_cost = self.linearise(target, &own).cost;
         let cheapest = minima.first().map_or(f64::INFINITY, |start| start.cost);
         let worth = (WORTH_REFINING * cheapest).max((cheapest.sqrt() + reach).powi(2));
         minima.retain(|start| start.cost <= worth);

@@ -5,7 +5,7 @@ use crate::spectrum::Bands;
 
 /// How spectra at the nodes become band signals.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Sampling {
+pub(crate) enum Sampling {
     /// One node of weight 1 per band: node values are band signals.
     Unit,
     /// One node per band.
@@ -26,7 +26,7 @@ impl Sampling {
     }
 
     /// Band signals of the spectrum that `write` puts into the slice it is given.
-    pub(super) fn sample(
+    pub(crate) fn sample(
         self,
         bands: &Bands,
         scratch: &mut [f64],

@@ -22,21 +22,28 @@ pub(super) struct Lent<'a> {
 
 pub(super) struct Contrast<'a> {
     pub(super) gain: f64,
+    /// κ, or 1 for weights per unit of band signal.
+    pub(super) counts: f64,
     pub(super) contrast: &'a [f64],
     pub(super) widths: &'a [f64],
-    pub(super) u: &'a [f64],
+    pub(super) signal: &'a [f64],
+    /// σ²/κ of each band.
+    pub(super) noise: &'a [f64],
+    pub(super) u: &'a mut [f64],
     pub(super) c: &'a mut [f64],
     pub(super) m: &'a mut [f64],
 }
 
 dispatched! {
-    /// c = G w C and m = u c² of each band.
+    /// u = κ/(S + σ²/κ), c = G w C and m = u c² of each band.
     pub(super) fn contrast_into<'a>(spectra: Contrast<'a>) {
-        let Contrast { gain, contrast, widths, u, c, m } = spectra;
-        let given = contrast.iter().zip(widths).zip(u);
-        for ((c, m), ((contrast, width), u)) in c.iter_mut().zip(m).zip(given) {
+        let Contrast { gain, counts, contrast, widths, signal, noise, u, c, m } = spectra;
+        let given = contrast.iter().zip(widths).zip(signal).zip(noise);
+        for (((u, c), m), (((contrast, width), signal), noise)) in u.iter_mut().zip(c).zip(m).zip(given) {
+            let variance = signal + noise;
+            *u = if variance > 0.0 { counts / variance } else { 0.0 };
             *c = gain * contrast * width;
-            *m = u * *c * *c;
+            *m = *u * *c * *c;
         }
     }
 }

@@ -7,10 +7,9 @@
 use super::table::{Emission, Thinned};
 use super::whitened::Whitened;
 use crate::identifiability::nearest::State;
-use crate::identifiability::nearest::residual::dot;
 use crate::identifiability::step::BoundedStep;
 use crate::simd::{Aligned, Chunk, LANES, added, dispatched, fused, padded, product};
-use crate::sum::fold;
+use crate::sum::{dot, fold};
 use nalgebra::{DMatrix, DVector};
 
 /// Cost of a fit, and half its derivative along T′.
