@@ -12,6 +12,7 @@ use hadar::spectrum::Bands;
 use hadar::statistics::Statistics;
 
 /// Bands amid surroundings at 20 °C; temperature and lighting of every material are unknown.
+#[derive(Clone)]
 pub struct PaperScene {
     pub bands: Bands,
     pub surroundings: Surroundings,
