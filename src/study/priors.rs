@@ -15,7 +15,8 @@ pub struct PriorAverage {
     /// Photons at which the detection probability, averaged over the prior, is that of the requirement; none
     /// suffice where `None`.
     pub photons_required: Option<f64>,
-    /// Photons by the hybrid Cramér–Rao bound, which is optimistic: no unbiased estimate does with fewer.
+    /// Photons by the hybrid Cramér–Rao bound of estimates of the material fraction: a local figure that averages
+    /// information, no limit of decisions, which may need far more (near equilibrium) or fewer.
     pub photons_required_hybrid_bound: Option<f64>,
 }
 

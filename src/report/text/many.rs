@@ -65,7 +65,7 @@ pub(super) fn verdict(result: &Identification, study: &Study) -> String {
     if let Some(average) = &result.prior_average {
         let _ = writeln!(
             out,
-            "Averaged over the priors: {} photons for as many right answers (hybrid Cramer-Rao bound, optimistic: {}).",
+            "Averaged over the priors: {} photons for as many right answers (hybrid Cramer-Rao bound of estimates, no limit of decisions: {}).",
             photons(average.photons_required),
             photons(average.photons_required_hybrid_bound)
         );
