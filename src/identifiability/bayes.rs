@@ -15,9 +15,9 @@
 //! * At thermal equilibrium (T = T₀, V = 1) the local distance is 0, for any number of photons. With a
 //!   prior of deviation σ_T the target is a little off equilibrium nearly always, ∂S/∂g ∝ T − T₀, so
 //!   d_B ∝ σ_T and the photons needed ∝ 1/σ_T²: large but finite.
-//! * It bounds estimates of g, not decisions, and is optimistic as a bound: information is averaged before it is inverted, so that d_B² is at least the
-//!   mean of the local d² over the prior. The other average says what a user will see: P̄(N) = E[Φ(d(θ))],
-//!   d the local or nearest statistical distance of each state. Near equilibrium d = c|T − T₀| and P̄ = ½ +
+//! * It bounds estimates of g, not decisions, and is optimistic as a bound: information is averaged before it
+//!   is inverted, so that d_B² is at least the mean of the local d² over the prior. The other average says what
+//!   a user will see: P̄(N) = E[Φ(d(θ))], d the local or nearest statistical distance of each state. Near equilibrium d = c|T − T₀| and P̄ = ½ +
 //!   arctan(cσ_T)/π.
 //!
 //! Averages: Gauss–Legendre on either side of the mean, within 7σ_p and the physical range (T > 0, 0 ≤ V,
