@@ -63,15 +63,15 @@ impl Workspace {
 
     /// Noise and √(N + σ²) of the target, once per search.
     pub(super) fn weigh_target(&mut self, target: &Target<'_>, signal: &[f64]) {
-        for (band, noise) in self.noise.iter_mut().enumerate() {
-            *noise = match target.metric {
-                Metric::PerPhoton { .. } => 0.0,
-                Metric::Counting(counting) => counting.var_electronic(band),
-            };
+        match target.metric {
+            Metric::PerPhoton { .. } => self.noise.fill(0.0),
+            Metric::Counting(counting) => {
+                for (band, noise) in self.noise.iter_mut().enumerate() {
+                    *noise = counting.var_electronic(band);
+                }
+            }
         }
-        for ((root, signal), noise) in self.root.iter_mut().zip(signal).zip(&*self.noise) {
-            *root = (target.counts * signal + noise).sqrt();
-        }
+        roots_into(target.counts, signal, &self.noise, &mut self.root);
     }
 
     /// σ²_w of each band.
@@ -178,6 +178,15 @@ impl NearestSolver<'_> {
                 // S = G s and S′ = G′ s′: S − S′ = G(s − s′) − (G′ − G)s′.
                 *separation -= gain * other / state.gain;
             }
+        }
+    }
+}
+
+dispatched! {
+    /// √(κS + σ²) of each band.
+    fn roots_into<'a>(counts: f64, signal: &'a [f64], noise: &'a [f64], out: &'a mut [f64]) {
+        for ((root, signal), noise) in out.iter_mut().zip(signal).zip(noise) {
+            *root = (counts * signal + noise).sqrt();
         }
     }
 }

@@ -83,6 +83,7 @@ impl<const N: usize> Sums<N> {
     /// Adds the lanes of a block. Never inlined: the lanes then go through memory all at once, which keeps the
     /// loop before in full-width registers.
     #[inline(never)]
+    #[allow(clippy::needless_range_loop, reason = "two arrays of arrays side by side")]
     fn add(&mut self, squares: &[Chunk; TOGETHER], dots: &[[Chunk; N]; TOGETHER]) {
         for (sum, square) in self.squares.iter_mut().zip(squares) {
             sum.add(fold(square));

@@ -6,7 +6,7 @@
 
 use crate::identifiability::space::Quadratic;
 use crate::scene::Jacobian;
-use crate::simd::{Chunk, LANES, added, dispatched, padded, product};
+use crate::simd::{Chunk, LANES, added, dispatched, fused, padded, product};
 use crate::sum::{Compensated, fold};
 use nalgebra::{DMatrix, DVector};
 
@@ -171,6 +171,7 @@ fn all<const N: usize>(lines: Lines<'_>, columns: [&[f64]; TOGETHER]) -> Found {
 
 /// The bands of [`all`] in whole chunks: the spectra of [`Lines`] in the order they stand in there. Values pass through
 /// locals, chunk by chunk: only then are they kept in full-width registers.
+#[allow(clippy::needless_range_loop, reason = "two columns at a time")]
 #[inline(always)]
 fn run<const N: usize>(
     counts: f64,
@@ -184,7 +185,7 @@ fn run<const N: usize>(
     for start in (0..count).step_by(BLOCK_CHUNKS) {
         let mut block = Total::of([0.0; LANES]);
         for c in start..(start + BLOCK_CHUNKS).min(count) {
-            let (own, other) = (root[c], square_root(crate::simd::fused(counts, signal[c], noise[c])));
+            let (own, other) = (root[c], square_root(fused(counts, signal[c], noise[c])));
             let residual = quotient(times(counts, separation[c]), sum(own, other));
             block.cost = added(residual, residual, block.cost);
             if N == 0 {

@@ -8,7 +8,7 @@ use super::table::{Emission, Thinned};
 use super::whitened::Whitened;
 use crate::identifiability::nearest::State;
 use crate::identifiability::step::BoundedStep;
-use crate::simd::{Aligned, Chunk, LANES, added, dispatched, fused, padded, product};
+use crate::simd::{Aligned, Chunk, LANES, added, dispatched, fused, product};
 use crate::sum::{dot, fold};
 use nalgebra::{DMatrix, DVector};
 
@@ -72,19 +72,20 @@ impl Fit {
         }
         let [low, high] = self.range;
         let high = high.min(self.sum_limit).max(low);
-        let mut goal = Aligned::from(&*whitened.signal);
+        // Zeros up to a whole chunk add nothing to any sum.
+        let zeros = || Aligned::zeros(strength.len().next_multiple_of(LANES));
+        let (mut goal, mut column, mut scaled) = (zeros(), zeros(), zeros());
+        add(&mut goal, 1.0, &whitened.signal);
         add(&mut goal, -own.gain, &self.known);
-        let column = match self.free.first() {
-            Some(column) => column.iter().map(|c| own.gain * c).collect(),
-            None => vec![0.0; goal.len()],
-        };
-        let (column, strength) = (Aligned::from(&column[..]), strength.iter().map(|s| own.gain * s));
-        let strength: Vec<f64> = strength.collect();
+        if let Some(free) = self.free.first() {
+            add(&mut column, own.gain, free);
+        }
+        add(&mut scaled, own.gain, strength);
         let size = dot(&column, &column);
         let reach = if size > 0.0 { 1.0 / size } else { 0.0 };
         let fits = grid.iter().map(|emission| {
             let spectra =
-                Spectra { goal: &goal, strength: &strength, value: &emission.value, slope: &emission.slope };
+                Spectra { goal: &goal, strength: &scaled, value: &emission.value, slope: &emission.slope };
             fit_one(spectra, &column, reach, [low, high])
         });
         Some(fits.map(|(factor, cost, slope)| (factor, Fitted { cost, slope })).collect())
@@ -159,7 +160,7 @@ fn add(to: &mut [f64], factor: f64, column: &[f64]) {
     }
 }
 
-/// Whitened spectra of a fit with one node per band.
+/// Whitened spectra of a fit with one node per band, in whole chunks.
 struct Spectra<'a> {
     goal: &'a [f64],
     strength: &'a [f64],
@@ -177,15 +178,12 @@ dispatched! {
         limits: [f64; 2],
     ) -> (f64, f64, f64) {
         let Spectra { goal, strength, value, slope } = spectra;
-        let ((g, g_rest), (s, s_rest)) = (goal.as_chunks(), strength.as_chunks());
-        let ((b, b_rest), (d, d_rest)) = (value.as_chunks(), slope.as_chunks());
-        let (c, c_rest) = column.as_chunks();
-        let rest = [padded(g_rest), padded(s_rest), padded(b_rest), padded(d_rest), padded(c_rest)];
+        let ((g, _), (s, _)) = (goal.as_chunks(), strength.as_chunks());
+        let ((b, _), (d, _), (c, _)) = (value.as_chunks(), slope.as_chunks(), column.as_chunks());
         let mut pull = [0.0; LANES];
         for (((g, s), b), c) in g.iter().zip(s).zip(b).zip(c) {
             pull = added(left(*g, *s, *b), *c, pull);
         }
-        pull = added(left(rest[0], rest[1], rest[2]), rest[4], pull);
         let factor = (total(&pull) * reach).clamp(limits[0], limits[1]);
         let (mut cost, mut along) = ([0.0; LANES], [0.0; LANES]);
         for ((((g, s), b), d), c) in g.iter().zip(s).zip(b).zip(d).zip(c) {
@@ -193,9 +191,6 @@ dispatched! {
             cost = added(r, r, cost);
             along = added(product(r, *s), *d, along);
         }
-        let r = fused(-factor, rest[4], left(rest[0], rest[1], rest[2]));
-        cost = added(r, r, cost);
-        along = added(product(r, rest[1]), rest[3], along);
         (factor, total(&cost), -total(&along))
     }
 }

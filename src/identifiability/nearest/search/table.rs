@@ -4,7 +4,7 @@
 //! has computed serves the next ones; around the temperatures of a scene there are more of them.
 
 use crate::planck;
-use crate::simd::Aligned;
+use crate::simd::{Aligned, LANES};
 use crate::spectrum::Bands;
 
 /// Bands that are enough to find where minima are.
@@ -15,7 +15,7 @@ const STEPS_PER_E: f64 = 32.0;
 /// More of them around the temperatures of the scene, as shares of these.
 const AROUND: [f64; 7] = [-0.03, -0.01, -0.003, 0.0, 0.003, 0.01, 0.03];
 
-/// Blackbody radiance and its slope along T at the thinned nodes.
+/// Blackbody radiance and its slope along T at the thinned nodes, followed by zeros up to a whole chunk.
 #[derive(Debug, Clone)]
 pub(super) struct Emission {
     pub(super) temperature_k: f64,
@@ -25,7 +25,8 @@ pub(super) struct Emission {
 
 impl Emission {
     fn of(nodes_cm1: &[f64], temperature_k: f64) -> Self {
-        let (mut value, mut slope) = (Aligned::zeros(nodes_cm1.len()), Aligned::zeros(nodes_cm1.len()));
+        let whole = || Aligned::zeros(nodes_cm1.len().next_multiple_of(LANES));
+        let (mut value, mut slope) = (whole(), whole());
         planck::photon_radiance_and_slope_into(nodes_cm1, temperature_k, &mut value, &mut slope);
         Self { temperature_k, value, slope }
     }
