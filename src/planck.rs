@@ -214,8 +214,15 @@ pub(crate) struct NearPair<'a> {
     pub(crate) difference: &'a mut [f64],
 }
 
-/// Whether [`near_pair_into`] may be used.
-pub(crate) fn is_near_pair(base_k: f64, temperature_k: f64) -> bool {
+/// Whether [`near_pair_into`] may be used: B(T) as B(T₀) and the difference loses |x − x₀| in its digits where
+/// T < T₀, so that this stays below 2 at the highest wavenumber.
+pub(crate) fn is_near_pair(wavenumbers_cm1: &[f64], base_k: f64, temperature_k: f64) -> bool {
+    let apart = (temperature_k - base_k).abs() / temperature_k;
+    near(base_k, temperature_k) && SECOND_RADIATION_CM_K / base_k * apart * largest(wavenumbers_cm1) <= 2.0
+}
+
+/// Whether the difference of two radiances needs a form of its own.
+fn near(base_k: f64, temperature_k: f64) -> bool {
     (temperature_k - base_k).abs() <= 0.25 * base_k
 }
 
@@ -260,7 +267,7 @@ pub(crate) fn beside_into(
     out: Beside<'_>,
 ) {
     let delta_per_cm1 = inverse_thermal(base_k).high * ((temperature_k - base_k) / temperature_k);
-    if is_near_pair(base_k, temperature_k) && delta_per_cm1.abs() * largest(wavenumbers_cm1) <= 30.0 {
+    if near(base_k, temperature_k) && delta_per_cm1.abs() * largest(wavenumbers_cm1) <= 30.0 {
         near_beside(wavenumbers_cm1, delta_per_cm1, base, temperature_k, out);
     } else {
         // So far apart that no more than two or three bits cancel.
@@ -417,5 +424,37 @@ mod tests {
                 );
             }
         }
+    }
+
+    /// Where one exponential serves two temperatures, both radiances are those of their own: also for a
+    /// target much colder than its surroundings at high wavenumbers, where B(T) is a small part of B(T₀).
+    #[test]
+    fn a_near_pair_keeps_the_digits_of_the_colder_radiance() {
+        let nu: Vec<f64> = (1..=60).map(|i| 100.0 * f64::from(i)).collect();
+        let mut used = 0;
+        for (base_k, t) in [(300.0, 250.0), (300.0, 280.0), (300.0, 299.0), (293.15, 310.15), (400.0, 301.0)]
+        {
+            for nu in nu.chunks(3) {
+                if !is_near_pair(nu, base_k, t) {
+                    continue;
+                }
+                used += 1;
+                let zeros = || vec![0.0; nu.len()];
+                let (mut base, mut value, mut slope, mut difference) = (zeros(), zeros(), zeros(), zeros());
+                let out = NearPair {
+                    base: &mut base,
+                    value: &mut value,
+                    slope: &mut slope,
+                    difference: &mut difference,
+                };
+                near_pair_into(nu, base_k, t, out);
+                for (i, &nu) in nu.iter().enumerate() {
+                    let exact = photon_radiance(nu, t);
+                    let tolerance = 2e-16 * (10.0 + SECOND_RADIATION_CM_K * nu / t);
+                    assert!((value[i] / exact - 1.0).abs() <= tolerance, "{base_k} {t} {nu}");
+                }
+            }
+        }
+        assert!(used > 50);
     }
 }

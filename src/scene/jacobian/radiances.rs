@@ -17,7 +17,7 @@ impl Jacobian<'_> {
         for (k, &base_k) in state.environment_k.iter().enumerate() {
             let span = k * nu.len()..(k + 1) * nu.len();
             let (base, difference) = (&mut self.base[span.clone()], &mut self.difference[span]);
-            if planck::is_near_pair(base_k, t) {
+            if planck::is_near_pair(nu, base_k, t) {
                 let (value, slope) = (&mut self.value, &mut self.slope);
                 planck::near_pair_into(nu, base_k, t, NearPair { base, value, slope, difference });
                 value_known = true;
