@@ -217,7 +217,7 @@ fn nearly_blind_pairs_are_judged_on_their_own() {
         let found = matrix.per_photon(&[own, &near], &state).unwrap();
         let local = pair.per_photon(own, &near, &state, f64::INFINITY).unwrap();
         let none = local.distance_no_nuisance;
-        println!("{other:e}: none/d = {:.1e}", none / local.distance);
+        println!("{other:e}: none/d = {:.1e}, {:?}", none / local.distance, matrix.passes());
         assert!((found[1] - local.distance).abs() <= 2e-14 * none, "{other:e}: {found:?} {local:?}");
     }
 }

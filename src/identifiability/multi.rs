@@ -14,7 +14,7 @@ mod predict;
 mod scaling;
 
 pub use decide::{Decisions, Skipping, Work};
-pub use local::LocalMatrix;
+pub use local::{LocalMatrix, Passes};
 pub use nearest::LibraryScene;
 pub use predict::{chains, clusters, prediction};
 pub use scaling::expected_minimum;

@@ -61,12 +61,37 @@ enum Weights<'c> {
 /// ```
 #[derive(Debug, Clone)]
 pub struct LocalMatrix<'a> {
+    passes: Passes,
     unknowns: Unknowns,
     parameters: Vec<Parameter>,
     jacobian: Jacobian<'a>,
     pair: LocalSolver<'a>,
     projector: Projector,
     shared: Shared,
+}
+
+/// How the pairs of a matrix were computed: what was shared, and what that left to do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
+pub struct Passes {
+    /// Targets whose signal, weights and orthogonal nuisances served all their pairs.
+    pub shared_targets: usize,
+    /// Pairs for which one pass over the bands kept all digits.
+    pub one_pass: usize,
+    /// Pairs that lost digits to the subtraction and took a second pass.
+    pub two_passes: usize,
+    /// Pairs that were judged on their own.
+    pub alone: usize,
+}
+
+impl Passes {
+    fn and(self, other: Self) -> Self {
+        Self {
+            shared_targets: self.shared_targets + other.shared_targets,
+            one_pass: self.one_pass + other.one_pass,
+            two_passes: self.two_passes + other.two_passes,
+            alone: self.alone + other.alone,
+        }
+    }
 }
 
 /// What one target lends to all its pairs.
@@ -93,6 +118,7 @@ impl<'a> LocalMatrix<'a> {
     pub fn new(bands: &'a Bands, surroundings: &'a Surroundings, unknowns: Unknowns) -> Self {
         let count = bands.len();
         Self {
+            passes: Passes::default(),
             parameters: unknowns.parameters(surroundings.objects().len()),
             jacobian: Jacobian::new(bands, surroundings),
             pair: LocalSolver::new(bands, surroundings, unknowns.clone()),
@@ -133,6 +159,12 @@ impl<'a> LocalMatrix<'a> {
         self.matrix(emissivities, state, Weights::Counting(counting))
     }
 
+    /// How the last matrix was computed.
+    #[must_use]
+    pub fn passes(&self) -> Passes {
+        self.passes
+    }
+
     fn matrix(&mut self, emissivities: &[&[f64]], state: &State, weights: Weights<'_>) -> Result<Vec<f64>> {
         let count = emissivities.len();
         let mut distances = vec![0.0; count * count];
@@ -140,16 +172,22 @@ impl<'a> LocalMatrix<'a> {
             return Ok(distances);
         }
         let rows = distances.chunks_mut(count).enumerate();
-        if count * count * self.jacobian.bands().len() < WORTH_THREADS || rayon::current_num_threads() == 1 {
+        let few = count * count * self.jacobian.bands().len() < WORTH_THREADS;
+        self.passes = if few || rayon::current_num_threads() == 1 {
+            let mut passes = Passes::default();
             for (target, row) in rows {
-                self.row(emissivities, target, state, weights, row)?;
+                passes = passes.and(self.row(emissivities, target, state, weights, row)?);
             }
+            passes
         } else {
-            rows.collect::<Vec<_>>().into_par_iter().try_for_each_init(
-                || self.clone(),
-                |own, (target, row)| own.row(emissivities, target, state, weights, row),
-            )?;
-        }
+            rows.collect::<Vec<_>>()
+                .into_par_iter()
+                .map_init(
+                    || self.clone(),
+                    |own, (target, row)| own.row(emissivities, target, state, weights, row),
+                )
+                .try_reduce(Passes::default, |a, b| Ok(a.and(b)))?
+        };
         Ok(distances)
     }
 
@@ -161,8 +199,9 @@ impl<'a> LocalMatrix<'a> {
         state: &State,
         weights: Weights<'_>,
         out: &mut [f64],
-    ) -> Result<()> {
+    ) -> Result<Passes> {
         let own = emissivities[target];
+        let others = out.len() - 1;
         if !self.share(own, state, weights) {
             for (alternative, out) in out.iter_mut().enumerate() {
                 *out = if alternative == target {
@@ -171,21 +210,24 @@ impl<'a> LocalMatrix<'a> {
                     self.alone(own, emissivities[alternative], state, weights)?
                 };
             }
-            return Ok(());
+            return Ok(Passes { alone: others, ..Passes::default() });
         }
+        let mut passes = Passes { shared_targets: 1, ..Passes::default() };
         let columns = self.jacobian.columns_mut();
         let row = Row { shared: &self.shared, own, columns: columns.values, stride: columns.stride };
         for (group, out) in emissivities.chunks(TOGETHER).zip(out.chunks_mut(TOGETHER)) {
-            row.distances(group, out);
+            passes.two_passes += row.distances(group, out);
         }
         for (alternative, out) in out.iter_mut().enumerate() {
             if alternative == target {
                 *out = 0.0;
             } else if out.is_nan() {
                 *out = self.alone(own, emissivities[alternative], state, weights)?;
+                (passes.two_passes, passes.alone) = (passes.two_passes - 1, passes.alone + 1);
             }
         }
-        Ok(())
+        passes.one_pass = others - passes.two_passes - passes.alone;
+        Ok(passes)
     }
 
     /// One pair, judged with all care.
@@ -265,8 +307,9 @@ struct Row<'r> {
 }
 
 impl Row<'_> {
-    /// Distances to up to [`TOGETHER`] alternatives; NaN where the pair must be judged on its own.
-    fn distances(&self, group: &[&[f64]], out: &mut [f64]) {
+    /// Distances to up to [`TOGETHER`] alternatives, NaN where the pair must be judged on its own; how many took a
+    /// second pass.
+    fn distances(&self, group: &[&[f64]], out: &mut [f64]) -> usize {
         let mut others = [self.own; TOGETHER];
         for (other, given) in others.iter_mut().zip(group) {
             *other = given;
@@ -275,6 +318,7 @@ impl Row<'_> {
         let k = |i: usize| shared.directions.chunks(shared.stride).nth(i).unwrap_or_default();
         let lent = Lent { own: self.own, square: &shared.square, directions: [k(0), k(1), k(2), k(3)] };
         let (squares, dots) = projections(lent, others, shared.live.len());
+        let mut second = 0;
         for (i, (out, other)) in out.iter_mut().zip(group).enumerate() {
             let dots = dots[i];
             let along: f64 = dots.iter().map(|dot| dot * dot).sum();
@@ -284,11 +328,13 @@ impl Row<'_> {
             } else if left * (ONE_PASS * ONE_PASS) >= squares[i] {
                 shared.half * left.sqrt()
             } else {
+                second += 1;
                 let left = self.residual(other, dots);
                 let good = left * (TWO_PASSES * TWO_PASSES) >= squares[i];
                 if good { shared.half * left.sqrt() } else { f64::NAN }
             };
         }
+        second
     }
 
     /// Σ u r² with the residual r formed band by band.
