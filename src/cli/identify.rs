@@ -1,7 +1,7 @@
 //! `hadar identify`: distances from the target to every alternative, and all against all.
 
 use super::{By, Global};
-use crate::error::{Result, check};
+use crate::error::{Error, Place, Result, check};
 use crate::identifiability::multi::Skipping;
 use crate::report::{library, text};
 use crate::simulate::sequential::Plan;
@@ -39,10 +39,10 @@ pub(super) struct IdentifyArgs {
     #[arg(long, requires = "exact")]
     statistics: Option<Statistics>,
     /// Photons of the target in the simulation (default: the camera's; without one those required)
-    #[arg(long, value_name = "N", requires = "exact")]
+    #[arg(long, value_name = "N", requires = "exact", allow_negative_numbers = true)]
     photons: Option<f64>,
     /// Half width of the 95 % interval at which the simulation stops
-    #[arg(long, value_name = "P", default_value_t = 0.01, requires = "exact")]
+    #[arg(long, value_name = "P", default_value_t = 0.01, requires = "exact", allow_negative_numbers = true)]
     half_width: f64,
     /// Most trials of a state in the simulation
     #[arg(long, value_name = "N", default_value_t = 1_000_000, requires = "exact")]
@@ -50,8 +50,8 @@ pub(super) struct IdentifyArgs {
     /// Answer only whether the camera tells the target from every alternative; exit with code 3 if not
     #[arg(long, conflicts_with_all = ["matrix", "apart", "scaling", "bands", "filters", "exact"])]
     check: bool,
-    /// Compute pairs that a cheap bound decides all the same (the answer does not change)
-    #[arg(long)]
+    /// With --apart, compute pairs that a cheap bound decides all the same (the answer does not change)
+    #[arg(long, requires = "apart", conflicts_with = "check")]
     no_skip: bool,
     /// Say on stderr what was computed and what was not
     #[arg(long)]
@@ -63,6 +63,9 @@ pub(super) fn run(args: &IdentifyArgs, global: &Global) -> Result<ExitCode> {
     if args.check {
         return only_check(args, &study, global);
     }
+    let most = study.bands().len();
+    number_of("--bands", args.bands, most)?;
+    number_of("--filters", args.filters, most)?;
     let skipping = if args.no_skip { Skipping::Off } else { Skipping::On };
     let chosen = args.bands.is_some() || args.filters.is_some();
     let asked = Asked {
@@ -79,11 +82,25 @@ pub(super) fn run(args: &IdentifyArgs, global: &Global) -> Result<ExitCode> {
     if let Some(out) = &global.out {
         global.write(&library::bundle(&study, &answers, global.seed, out)?, out)?;
     }
-    if let (true, Some(work)) = (args.stats, answers.apart.as_ref().and_then(|apart| apart.work)) {
-        global.note(&text::work(&work));
+    if args.stats {
+        let work = answers.apart.as_ref().and_then(|apart| apart.work);
+        let all =
+            || "work: every distance was computed; only --apart and --check can do with less".to_owned();
+        global.note(&work.map_or_else(all, |work| text::work(&work)));
     }
     global.print(&answers, &text::answers(&answers, &study))?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// How many bands or filters can be asked for.
+fn number_of(flag: &str, asked: Option<usize>, most: usize) -> Result<()> {
+    match asked {
+        Some(k) if k == 0 || k > most => {
+            let expected = format!("from 1 to the number of bands, {most}");
+            Err(Error::out_of_range(flag, k as f64, "", expected))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Laws of counting, as a flag.
@@ -106,12 +123,17 @@ fn trial(args: &IdentifyArgs, global: &Global) -> Result<Trial> {
     if let Some(photons) = args.photons {
         check::positive("--photons", photons, "")?;
     }
-    let plan = Plan::new(global.seed, args.half_width, args.trials)?;
+    let at_flag = |error: Error| error.at(Place { key: Some("--exact".into()), ..Place::default() });
+    let plan = Plan::new(global.seed, args.half_width, args.trials).map_err(at_flag)?;
     Ok(Trial { law, photons: args.photons, plan })
 }
 
 /// The answer to one question, at the first proof.
 fn only_check(args: &IdentifyArgs, study: &Study, global: &Global) -> Result<ExitCode> {
+    if global.out.is_some() {
+        let found = "--check answers yes or no and has nothing to write into --out";
+        return Err(Error::malformed(found, "leave out --out, or --check to have the files"));
+    }
     let result = study.check()?;
     if args.stats {
         global.note(&text::work(&result.work));

@@ -30,6 +30,9 @@ pub fn bundle(study: &Study, answers: &Answers, seed: u64, out: &Path) -> Result
     if let Some(matrix) = &answers.matrix {
         bundle.add("matrix_nearest.csv", square(matrix, &matrix.distance_nearest).to_csv()?);
         bundle.add("matrix_local.csv", square(matrix, &matrix.distance_local).to_csv()?);
+        if let Some(unknown_gain) = &matrix.distance_local_unknown_gain {
+            bundle.add("matrix_local_unknown_gain.csv", square(matrix, unknown_gain).to_csv()?);
+        }
         if let Some(statistical) = &matrix.statistical_distance {
             bundle.add("matrix_camera.csv", square(matrix, statistical).to_csv()?);
         }
@@ -148,7 +151,7 @@ fn exact(found: &Exact) -> Table {
         "alternative_right",
         "limit_nearest",
         "estimate_best_fits",
-        "limit_local",
+        "by_local_distance",
         "statistical_distance_nearest",
         "statistical_distance_local",
         "error_lower_bound",

@@ -224,14 +224,15 @@ fn pair_table(pairs: &[PairResult], study: &Study) -> String {
         let state = celsius(nearest.temperature_k) + &listed(", V ", &nearest.lighting, 2);
         let _ = write!(
             out,
-            "  {:<width$}  {:>9.2e}  {:>9.2e}  {:>9.2e}  {:>18}  {state:>24}",
+            "  {:<width$}  {:>9}  {:>9}  {:>9}  {:>18}  {state:>24}",
             pair.alternative,
-            pair.distance_nearest,
-            pair.distance_local,
-            pair.distance_local_unknown_gain,
+            exponential(pair.distance_nearest, 2),
+            exponential(pair.distance_local, 2),
+            exponential(pair.distance_local_unknown_gain, 2),
             photons(pair.photons_required)
         );
-        let reached = pair.statistical_distance.map_or_else(String::new, |d| format!("  {d:>10.2e}"));
+        let reached =
+            pair.statistical_distance.map_or_else(String::new, |d| format!("  {:>10}", exponential(d, 2)));
         let told = pair.told_apart.map_or("", |told| if told { "         yes" } else { "          no" });
         let _ = writeln!(out, "{reached}{told}");
     }

@@ -14,7 +14,7 @@ pub struct Passband {
     pub low_cm1: f64,
     /// Upper edge, cm⁻¹.
     pub high_cm1: f64,
-    /// Middle, cm⁻¹.
+    /// Centre of a single band, else the middle, cm⁻¹.
     pub center_cm1: f64,
 }
 
@@ -145,6 +145,11 @@ impl Study {
         let bands = self.bands.bands().get(range).unwrap_or_default();
         let low_cm1 = bands.iter().map(|band| band.low_cm1).fold(f64::INFINITY, f64::min);
         let high_cm1 = bands.iter().map(|band| band.high_cm1).fold(0.0, f64::max);
-        Passband { low_cm1, high_cm1, center_cm1: 0.5 * (low_cm1 + high_cm1) }
+        // A single band has a centre of its own, which a filter's curve need not have in the middle.
+        let center_cm1 = match bands {
+            [band] => band.center_cm1,
+            _ => 0.5 * (low_cm1 + high_cm1),
+        };
+        Passband { low_cm1, high_cm1, center_cm1 }
     }
 }

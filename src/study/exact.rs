@@ -9,19 +9,22 @@ use crate::error::{Error, Result};
 use crate::fisher::{Counting, Nuisance};
 use crate::identifiability::bracket::KnownStates;
 use crate::identifiability::detection;
-use crate::identifiability::lattice::{LatticeDetection, LatticeDetector};
+use crate::identifiability::lattice::{LatticeDetection, LatticeDetector, LatticeMesh};
 use crate::identifiability::local::LocalSolver;
 use crate::identifiability::nearest::{NearestSolver, StateRange};
 use crate::planck;
 use crate::policy;
 use crate::scenario::DistanceKind;
 use crate::simulate::decision::{Balanced, DecisionScene};
-use crate::simulate::draws::GENERATOR;
+use crate::simulate::draws::{GENERATOR, LARGEST_MEAN};
 use crate::simulate::sequential::{Interval, Plan};
 use crate::statistics::Statistics;
 
 /// Most photons for which the lattice of counts is laid.
 const LATTICE_PHOTONS: f64 = 1e5;
+/// Cells along the counts of each of three bands, the coarse mesh of two: decision boundaries cross their square, and with
+/// electronic noise, whose counts are continuous, no box is too small to be divided.
+const CELLS_OF_THREE_BANDS: [usize; 2] = [256, 24];
 
 /// Law of counting by its name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -127,6 +130,11 @@ impl Study {
             (None, Some(counting)) => counting.counts_per_radiance * self.photon_radiance(),
             (None, None) => self.photons_for_the_hardest(&hardest_first)?,
         };
+        if photons > LARGEST_MEAN {
+            let found = format!("{photons:.2e} photons are too many to draw");
+            let instead = format!("ask for at most {LARGEST_MEAN:e} with --photons");
+            return Err(Error::malformed(found, instead));
+        }
         let counts_per_radiance = photons / self.photon_radiance();
         let statistics = self.statistics(trial.law, counts_per_radiance)?;
         let scene = DecisionScene {
@@ -266,12 +274,24 @@ impl Study {
     ) -> Result<Option<LatticeDetection>> {
         let unbounded = self.range.temperature_k == StateRange::default().temperature_k
             && self.is_unknown(Nuisance::Temperature);
-        if self.bands.len() > 3 || photons > LATTICE_PHOTONS || unbounded {
+        // With noise above all the light every state looks alike, and there is nothing to decide.
+        let drowned = match statistics {
+            Statistics::Gaussian { var_electronic } => var_electronic.iter().any(|var| var.sqrt() > photons),
+            Statistics::Poisson | Statistics::NegativeBinomial { .. } => false,
+        };
+        if self.bands.len() > 3 || photons > LATTICE_PHOTONS || unbounded || drowned {
             return Ok(None);
         }
         let library = [self.target.emissivity.clone(), alternative.emissivity.clone()];
         let unknowns = self.unknowns.clone();
+        let [whole, continuous] = CELLS_OF_THREE_BANDS;
+        let mesh = match (self.bands.len(), statistics) {
+            (3, Statistics::Gaussian { .. }) => LatticeMesh { cells: continuous, ..LatticeMesh::default() },
+            (3, _) => LatticeMesh { cells: whole, ..LatticeMesh::default() },
+            _ => LatticeMesh::default(),
+        };
         LatticeDetector::new(&self.bands, &self.surroundings, unknowns, self.range, statistics.clone())?
+            .with_mesh(mesh)?
             .detect(&library, 0, &self.state, photons)
             .map(Some)
     }

@@ -22,6 +22,9 @@ pub struct Matrix {
     pub distance_nearest: Rows,
     /// Local distance per √photon.
     pub distance_local: Rows,
+    /// Local distance with unknown gain per √photon, where that decides.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub distance_local_unknown_gain: Option<Rows>,
     /// Statistical distance of the camera by the distance that decides; `None` without a camera.
     pub statistical_distance: Option<Rows>,
     /// Statistical distance demanded.
@@ -175,6 +178,8 @@ impl Study {
             by: kind.name(),
             distance_nearest: rows(&nearest, count),
             distance_local: rows(&local, count),
+            distance_local_unknown_gain: (kind == DistanceKind::LocalUnknownGain)
+                .then(|| rows(&by_kind, count)),
             statistical_distance: statistical.map(|d| rows(&d, count)),
             required_distance: required,
             targets,

@@ -2,7 +2,7 @@
 //!
 //! More materials can only bring the least distance down. More bands can only bring it up as long as photons are all
 //! there is; with electronic noise of every reading, finer bands share the photons among more readings and
-//! can lose.
+//! can lose. Bands are joined two by two, over and over, so that every number of bands refines the one before.
 
 use super::Study;
 use crate::error::Result;
@@ -12,9 +12,6 @@ use crate::identifiability::multi::expected_minimum;
 use crate::identifiability::nearest::NearestSolver;
 use crate::scenario::DistanceKind;
 use rayon::prelude::*;
-
-/// Most numbers of bands that are tried.
-const NUMBERS_OF_BANDS: usize = 16;
 
 /// Expected least distance against the size of the library.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -101,13 +98,8 @@ impl Study {
             camera_median: Vec::new(),
         };
         let whole = self.bands.len();
-        let mut groups = vec![1];
-        while let Some(&group) = groups.last()
-            && group < whole
-            && groups.len() < NUMBERS_OF_BANDS
-        {
-            groups.push((group * 3).div_ceil(2));
-        }
+        let groups: Vec<usize> =
+            std::iter::successors(Some(1), |group| (*group < whole).then_some(2 * group)).collect();
         for group in groups.into_iter().rev() {
             let bands = self.bands.merged(group);
             let study = Self { bands, ..self.clone() };

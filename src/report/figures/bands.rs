@@ -28,10 +28,12 @@ pub fn bands_that_matter(found: &BandsThatMatter, target: &str) -> Plot {
     )
     .subtitle("What each band adds to the square of the distance once the unknowns are fitted.");
     let reach = x.last().copied().unwrap_or(0.0) - x.first().copied().unwrap_or(0.0);
-    let filters = found.filters.iter().flat_map(|choice| &choice.passbands);
+    // A choice that tells nothing is no best one.
+    let filters = found.filters.iter().filter(|choice| choice.distance > 0.0);
+    let filters = filters.flat_map(|choice| &choice.passbands);
     for (i, filter) in filters.enumerate() {
         let count = found.filters.as_ref().map_or(0, |choice| choice.passbands.len());
-        let label = if i == 0 { format!("best {count} filters") } else { String::new() };
+        let label = if i == 0 { best(count, "filter") } else { String::new() };
         // Neighbours are told apart by a small gap.
         let inset = (0.02 * (filter.high_cm1 - filter.low_cm1)).min(0.002 * reach);
         let span = vec![filter.low_cm1 + inset, filter.high_cm1 - inset];
@@ -40,14 +42,18 @@ pub fn bands_that_matter(found: &BandsThatMatter, target: &str) -> Plot {
     figure = figure
         .series(Series::line("local distance", x.clone(), local.clone()).colour(0))
         .series(Series::line("nearest state", x.clone(), nearest).style(Style::Dashed).colour(1));
-    if let Some(choice) = &found.bands {
+    if let Some(choice) = found.bands.as_ref().filter(|choice| choice.distance > 0.0) {
         let at: Vec<f64> = choice.passbands.iter().map(|band| band.center_cm1).collect();
         let share = at.iter().map(|at| {
             let here = x.iter().position(|x| (x - at).abs() < 1e-6 * at);
             here.map_or(f64::NAN, |i| local[i])
         });
-        let label = format!("best {} bands", at.len());
+        let label = best(at.len(), "band");
         figure = figure.series(Series::points(label, at.clone(), share.collect()).colour(3));
     }
     Plot { name: "bands_that_matter", figure: figure.into(), table }
+}
+
+fn best(count: usize, what: &str) -> String {
+    if count == 1 { format!("best {what}") } else { format!("best {count} {what}s") }
 }

@@ -14,10 +14,10 @@ use crate::study::{Matrix, SampleSpectra, TargetVerdict};
 pub fn distance_matrix(matrix: &Matrix) -> Plot {
     let (order, starts) = by_clusters(matrix);
     let nearest_decides = matrix.by == "nearest";
-    let rows = match &matrix.statistical_distance {
-        Some(rows) => rows,
-        None if nearest_decides => &matrix.distance_nearest,
-        None => &matrix.distance_local,
+    let rows = match (&matrix.statistical_distance, &matrix.distance_local_unknown_gain) {
+        (Some(rows), _) | (None, Some(rows)) => rows,
+        (None, None) if nearest_decides => &matrix.distance_nearest,
+        (None, None) => &matrix.distance_local,
     };
     let with_camera = matrix.statistical_distance.is_some();
     let names: Vec<String> = order.iter().map(|&i| matrix.materials[i].clone()).collect();
@@ -98,15 +98,15 @@ pub fn sample_spectra(spectra: &SampleSpectra) -> Plot {
         row.extend(shown.iter().flat_map(|(_, mean, counts)| [mean[band], counts[band]]));
         table.push_numbers(&row);
     }
-    let mut figure = LineFigure::new(
-        "One reading of each material",
-        wavenumber_axis(x),
-        Axis::linear("counts in a band"),
-    )
-    .subtitle(format!(
-        "Solid: one reading drawn at random (seed {}). Dashed: its mean. All in the scenario's state.",
-        spectra.seed
-    ));
+    let title = match spectra.materials.len() {
+        all if all > shown.len() => format!("One reading of each of {} of the {all} materials", shown.len()),
+        _ => "One reading of each material".into(),
+    };
+    let mut figure =
+        LineFigure::new(title, wavenumber_axis(x), Axis::linear("counts in a band")).subtitle(format!(
+            "Solid: one reading drawn at random (seed {}). Dashed: its mean. All in the scenario's state.",
+            spectra.seed
+        ));
     for (i, (name, _, counts)) in shown.iter().enumerate() {
         figure = figure.series(Series::line(name, x.clone(), counts.clone()).colour(i));
     }

@@ -23,12 +23,13 @@ pub fn library_size(scaling: &Scaling, target: &str) -> Plot {
     let of = |i: usize| library.quantiles.iter().map(|q| q[i]).collect::<Vec<f64>>();
     let figure = LineFigure::new(
         "More materials, less distance between them",
-        Axis::linear("materials in the library"),
+        Axis::log("materials in the library"),
         Axis::log("least distance (per √photon)"),
     )
     .subtitle(format!(
-        "Expected {} distance from a target to the nearest of its alternatives, over all libraries of that size.",
-        scaling.by
+        "Expected {} distance from a target to the nearest of its alternatives, over all libraries of that size.{}",
+        scaling.by,
+        if of(2).iter().all(|d| *d == 0.0) { " All are 0." } else { "" }
     ))
     .band(Band::new("10 % to 90 % of the targets", x.clone(), of(0), of(2)))
     .series(Series::line("median target", x.clone(), of(1)).colour(0))
@@ -64,7 +65,10 @@ pub fn band_number(scaling: &Scaling, target: &str) -> Plot {
         Axis::log("bands"),
         Axis::log("distance, relative to all bands"),
     )
-    .subtitle("Neighbouring bands joined. Photons are the same for any number of bands; the camera's noise is added to every reading.");
+    .subtitle(format!(
+        "Neighbouring bands joined. Photons are the same for any number of bands{}.",
+        if with_camera { "; the camera's noise is added to every reading" } else { "" }
+    ));
     let mut curves = vec![
         ("least, shot noise alone", &bands.shot_noise, 0),
         ("median, shot noise alone", &bands.shot_noise_median, 0),

@@ -1,6 +1,6 @@
 //! What is said of many materials.
 
-use super::{photons, significant};
+use super::{exponential, photons, significant};
 use crate::identifiability::detection;
 use crate::identifiability::multi::Work;
 use crate::study::{
@@ -39,6 +39,14 @@ pub fn answers(answers: &Answers, study: &Study) -> String {
     out + &super::footing(&answers.identification, study)
 }
 
+/// The camera by its name, where it has one.
+fn camera(study: &Study) -> &str {
+    match study.camera().map(|camera| camera.name.as_str()) {
+        None | Some("camera") => "the camera",
+        Some(name) => name,
+    }
+}
+
 /// The answer in a sentence, and the hardest alternative.
 pub(super) fn verdict(result: &Identification, study: &Study) -> String {
     let mut out = String::new();
@@ -47,18 +55,21 @@ pub(super) fn verdict(result: &Identification, study: &Study) -> String {
     };
     let (target, all) = (&pair.target, result.pairs.len());
     let percent = 100.0 * detection::probability(study.required_distance());
-    if let (Some(camera), Some(told)) = (study.camera(), result.identifiability.told_from) {
-        let name = &camera.name;
+    if let Some(told) = result.identifiability.told_from {
+        let name = camera(study);
         let sentence = match (all, told) {
             (1, 1) => format!("Yes: {name} tells {target} from {}", pair.alternative),
             (1, _) => format!("No: {name} cannot tell {target} from {}", pair.alternative),
             (_, told) if told == all => format!("Yes: {name} tells {target} from all {all} alternatives"),
+            (_, 0) => format!("No: {name} tells {target} from none of {all} alternatives"),
             (_, told) => format!("No: {name} tells {target} from {told} of {all} alternatives only"),
         };
         let _ = writeln!(out, "{sentence} with {percent:.1} % reliability.");
     }
     let needed = match pair.photons_required {
-        Some(_) => format!("it takes at least {} photons", photons(pair.photons_required)),
+        Some(_) => {
+            format!("it takes at least {} photons, by shot noise alone", photons(pair.photons_required))
+        }
         None => "no number of photons suffices".into(),
     };
     let _ = writeln!(out, "{target} is hardest to tell from {}: {needed}.", pair.alternative);
@@ -102,7 +113,10 @@ fn listed(names: &[String]) -> String {
 
 /// Which materials can be told apart, and which cannot.
 fn apart(apart: &Apart, study: &Study) -> String {
-    let camera = study.camera().map_or("the camera", |camera| camera.name.as_str());
+    let camera = match camera(study) {
+        "the camera" => "The camera",
+        name => name,
+    };
     let pairs = apart.told_apart.len() + apart.not_told_apart.len();
     let percent = 100.0 * detection::probability(study.required_distance());
     let mut out = format!(
@@ -138,11 +152,14 @@ fn matrix(matrix: &Matrix, study: &Study) -> String {
     for target in matrix.hardest_first() {
         let _ = write!(
             out,
-            "  {:<width$}  {:<width$}  {:>13.2e}",
-            target.material, target.limiting, target.distance_minimum
+            "  {:<width$}  {:<width$}  {:>13}",
+            target.material,
+            target.limiting,
+            exponential(target.distance_minimum, 2)
         );
         if let (Some(d), Some(yes)) = (target.statistical_distance_minimum, target.identifiable) {
-            let _ = write!(out, "  {d:>10.2e}  {:>12}", if yes { "yes" } else { "no" });
+            let answer = if yes { "yes" } else { "no" };
+            let _ = write!(out, "  {:>10}  {answer:>12}", exponential(d, 2));
         }
         out.push('\n');
     }
@@ -157,29 +174,34 @@ fn matrix(matrix: &Matrix, study: &Study) -> String {
 #[must_use]
 pub fn check(result: &Check, study: &Study) -> String {
     let target = &study.target().name;
-    let camera = study.camera().map_or("the camera", |camera| camera.name.as_str());
+    let camera = camera(study);
     let percent = 100.0 * detection::probability(study.required_distance());
     match &result.not_told_from {
         Some(other) => {
             format!("No: {camera} cannot tell {target} from {other} with {percent:.1} % reliability.\n")
         }
-        None => format!(
-            "Yes: {camera} tells {target} from all {} alternatives with {percent:.1} % reliability.\n",
-            result.work.distances
-        ),
+        None => {
+            let all = match study.alternatives() {
+                [one] => one.name.clone(),
+                all => format!("all {} alternatives", all.len()),
+            };
+            format!("Yes: {camera} tells {target} from {all} with {percent:.1} % reliability.\n")
+        }
     }
 }
 
 /// How distances scale with materials and bands.
 fn scaling(scaling: &Scaling, target: &str) -> String {
-    let mut out = format!("Scaling of the least {} distance of {target}\n", scaling.by);
+    let mut out = format!("Scaling of the distance of {target} ({})\n", scaling.by);
     let library = &scaling.library;
     if let (Some(first), Some(last), Some(size)) =
         (library.target.first(), library.target.last(), library.materials.last())
     {
         let _ = writeln!(
             out,
-            "  least     {first:.2e} per sqrt(photon) against 1 alternative on average, {last:.2e} against {}",
+            "  least     {} per sqrt(photon) against 1 alternative on average, {} against {}",
+            exponential(*first, 2),
+            exponential(*last, 2),
             size - 1
         );
     }
@@ -189,7 +211,10 @@ fn scaling(scaling: &Scaling, target: &str) -> String {
         let at = values.iter().position(|v| *v == best).and_then(|i| bands.bands.get(i));
         match (values.first(), values.last(), at, bands.bands.first(), bands.bands.last()) {
             (Some(first), Some(last), Some(at), Some(few), Some(many)) if best > 0.0 => format!(
-                "  {what}  {first:.2e} in {few} bands, {last:.2e} in {many}; most in {at}: {best:.2e}\n"
+                "  {what}  {} in {few} band{}, {} in {many}; most in {at}: {best:.2e}\n",
+                exponential(*first, 2),
+                if *few == 1 { "" } else { "s" },
+                exponential(*last, 2)
             ),
             _ => format!("  {what}  0 in any number of bands\n"),
         }
@@ -215,13 +240,14 @@ fn bands(found: &BandsThatMatter, study: &Study) -> String {
     if !found.left_out.is_empty() {
         let _ = writeln!(out, "  left out, since not even all bands tell them: {}", listed(&found.left_out));
     }
-    for (choice, what) in [(&found.bands, "bands"), (&found.filters, "contiguous filters")] {
+    for (choice, what) in [(&found.bands, "band"), (&found.filters, "contiguous filter")] {
         let Some(choice) = choice else { continue };
         let count = choice.passbands.len();
+        let plural = if count == 1 { "" } else { "s" };
         if choice.distance == 0.0 {
             let _ = writeln!(
                 out,
-                "  {count} {what} tell nothing: it takes {} or more, one more than there are unknowns",
+                "  so few {what}s tell nothing: it takes {} or more, one more than there are unknowns",
                 choice.fewest
             );
             continue;
@@ -240,9 +266,10 @@ fn bands(found: &BandsThatMatter, study: &Study) -> String {
             format!("no others give more than {}", share(choice.bound))
         };
         let limiting = choice.limiting.as_deref().unwrap_or(&found.alternative);
+        let unit = if study.camera().is_some() { "camera d" } else { "per sqrt(photon)" };
         let _ = writeln!(
             out,
-            "  best {count} {what}: {}{} the distance of all {} bands read one by one ({:.2e}, not {:.2e}; worst against {limiting}); {proof}",
+            "  best {count} {what}{plural}: {}{} the distance of all {} bands read one by one ({unit} {:.2e}, all bands {:.2e}; worst against {limiting}); {proof}",
             share(choice.distance),
             if choice.kept < 1.5 { " of" } else { "" },
             found.center_cm1.len(),
@@ -253,7 +280,9 @@ fn bands(found: &BandsThatMatter, study: &Study) -> String {
             .passbands
             .iter()
             .map(|band| match what {
-                "bands" => format!("{:.0}", band.center_cm1),
+                // As many digits as tell neighbours apart.
+                "band" if band.high_cm1 - band.low_cm1 < 1.0 => format!("{:.2}", band.center_cm1),
+                "band" => format!("{:.0}", band.center_cm1),
                 _ => format!("{:.1}-{:.1}", band.low_cm1, band.high_cm1),
             })
             .collect();
@@ -294,12 +323,12 @@ fn exact(found: &Exact, study: &Study) -> String {
         );
         if let Some(lattice) = &pair.lattice {
             let p = lattice.probabilities.first().copied().unwrap_or(f64::NAN);
-            let _ = write!(out, "  lattice: {} {p:.3}", study.target().name);
+            let _ = write!(out, "  Algorithm 1: {p:.3}");
         }
         out.push('\n');
     }
     if certain > 0 {
-        let _ = writeln!(out, "  {certain} told apart with certainty, to three digits");
+        let _ = writeln!(out, "  {certain} more, of limit and right decisions both 1.000 to three digits");
     }
     if let Some(library) = &found.library {
         let _ = writeln!(
@@ -317,8 +346,16 @@ fn exact(found: &Exact, study: &Study) -> String {
         );
     }
     out.push_str(
-        "  right decisions: averaged over the target's state and the alternative's nearest; the rigorous limits are those of\n  the best test between these two known states, which no test exceeds\n\n",
+        "  right decisions: averaged over the target's state and the alternative's nearest; the rigorous limits are those of\n  the best test between these two known states, which no test exceeds\n",
     );
+    if found.pairs.iter().any(|pair| pair.lattice.is_some()) {
+        let target = &study.target().name;
+        let _ = writeln!(
+            out,
+            "  Algorithm 1: share of right decisions with {target} true (not averaged), all states on a mesh"
+        );
+    }
+    out.push('\n');
     out
 }
 
