@@ -120,7 +120,7 @@ fn apart(apart: &Apart, study: &Study) -> String {
     let pairs = apart.told_apart.len() + apart.not_told_apart.len();
     let percent = 100.0 * detection::probability(study.required_distance());
     let mut out = format!(
-        "Of {pairs} pairs {camera} tells {} apart with {percent:.1} % reliability, either of them the target\n",
+        "{camera} tells {} of {pairs} pairs apart with {percent:.1} % reliability, either of them the target\n",
         apart.told_apart.len()
     );
     if apart.told_apart.is_empty() {
