@@ -80,7 +80,8 @@ pub enum Error {
     },
     /// A spectrum is asked for outside the range in which it is known.
     #[error(
-        "`{name}` is known from {known_min} to {known_max} cm^-1 but is needed at {needed} cm^-1; narrow the bands, or add extrapolate = \"hold\" or \"linear\" if you accept a guess"
+        "`{name}` is known from {} to {} cm^-1 but is needed at {} cm^-1; narrow the bands, or add extrapolate = \"hold\" or \"linear\" if you accept a guess",
+        converted(*known_min), converted(*known_max), converted(*needed)
     )]
     OutsideSpectrum {
         /// Name of the spectrum.
@@ -198,6 +199,11 @@ fn short(value: f64) -> String {
     } else {
         format!("{value}")
     }
+}
+
+/// A wavenumber without the last digits of one that was converted from a wavelength.
+fn converted(wavenumber_cm1: f64) -> String {
+    short((wavenumber_cm1 * 1e6).round() / 1e6)
 }
 
 fn unit_suffix(unit: &str) -> String {

@@ -46,6 +46,7 @@ use crate::root::crossing;
 use crate::scene::{Jacobian, State, Surroundings};
 use crate::spectrum::Bands;
 use crate::sum::Compensated;
+use rayon::prelude::*;
 
 /// More numbers than this are not stacked.
 const MAX_STACK: usize = 100_000_000;
@@ -241,22 +242,26 @@ impl<'a> BayesianBound<'a> {
         let nodes = prior::nodes(&self.unknowns, pair.state, order, MAX_STACK)?;
         let total = self.photon_radiance(pair)?;
         let counting = Counting { counts_per_radiance: photons / total, var_electronic: Vec::new() };
-        let mut local = LocalSolver::new(self.bands, self.surroundings, self.unknowns.clone());
-        let range = match distances {
-            Distances::Local => StateRange::default(),
-            Distances::Nearest(range) => range,
+        let (own, other) = (pair.emissivity, pair.alternative);
+        let found: Result<Vec<f64>> = match distances {
+            Distances::Local => nodes
+                .par_iter()
+                .map_init(
+                    || LocalSolver::new(self.bands, self.surroundings, self.unknowns.clone()),
+                    |solver, node| Ok(solver.with_counting(own, other, &node.state, &counting)?.distance),
+                )
+                .collect(),
+            Distances::Nearest(range) => nodes
+                .par_iter()
+                .map_init(
+                    || NearestSolver::new(self.bands, self.surroundings, self.unknowns.clone(), range),
+                    |solver, node| Ok(solver.with_counting(own, other, &node.state, &counting)?.distance),
+                )
+                .collect(),
         };
-        let mut nearest = NearestSolver::new(self.bands, self.surroundings, self.unknowns.clone(), range);
+        // In the order of the nodes, so that the number of threads changes no bit.
         let mut sum = Compensated::default();
-        for Node { state, weight } in &nodes {
-            let distance = match distances {
-                Distances::Local => {
-                    local.with_counting(pair.emissivity, pair.alternative, state, &counting)?.distance
-                }
-                Distances::Nearest(_) => {
-                    nearest.with_counting(pair.emissivity, pair.alternative, state, &counting)?.distance
-                }
-            };
+        for (Node { weight, .. }, distance) in nodes.iter().zip(found?) {
             sum.add(weight * detection::miss_probability(distance));
         }
         Ok((sum.value(), nodes.len()))

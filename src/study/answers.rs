@@ -1,6 +1,6 @@
 //! What can be asked of a library besides the distances to the target, and the answers together.
 
-use super::{Apart, BandsThatMatter, Exact, Identification, Matrix, Scaling, Study, Trial};
+use super::{Apart, BandsThatMatter, Exact, Identification, Matrix, Scaling, Study, Trial, Warning};
 use crate::error::Result;
 use crate::identifiability::multi::Skipping;
 
@@ -51,8 +51,14 @@ impl Study {
     /// # Errors
     /// As [`Study::identify`], [`Study::matrix`] and [`Study::told_apart`].
     pub fn answer(&self, asked: &Asked, progress: &dyn Fn(usize, usize)) -> Result<Answers> {
+        let mut identification = self.identify()?;
+        if asked.matrix && self.unknowns.has_priors() {
+            let message = "the matrix's distances per sqrt(photon) are those of many photons, where priors count for nothing; \
+                           its statistical distances have them";
+            identification.warnings.push(Warning::new("matrix-priors", message));
+        }
         Ok(Answers {
-            identification: self.identify()?,
+            identification,
             matrix: asked.matrix.then(|| self.matrix()).transpose()?,
             apart: asked.apart.then(|| self.told_apart(asked.skipping)).transpose()?,
             scaling: asked.scaling.then(|| self.scaling()).transpose()?,

@@ -66,8 +66,9 @@ pub fn band_number(scaling: &Scaling, target: &str) -> Plot {
         Axis::log("distance, relative to all bands"),
     )
     .subtitle(format!(
-        "Neighbouring bands joined. Photons are the same for any number of bands{}.",
-        if with_camera { "; the camera's noise is added to every reading" } else { "" }
+        "Neighbouring bands joined. Photons are the same for any number of bands{}.{}",
+        if with_camera { "; the camera's noise is added to every reading" } else { "" },
+        if bands.shot_noise_median.iter().all(|d| *d == 0.0) { " All are 0." } else { "" }
     ));
     let mut curves = vec![
         ("least, shot noise alone", &bands.shot_noise, 0),
