@@ -83,10 +83,7 @@ pub(super) fn run(args: &IdentifyArgs, global: &Global) -> Result<ExitCode> {
         global.write(&library::bundle(&study, &answers, global.seed, out)?, out)?;
     }
     if args.stats {
-        let work = answers.apart.as_ref().and_then(|apart| apart.work);
-        let all =
-            || "work: every distance was computed; only --apart and --check can do with less".to_owned();
-        global.note(&work.map_or_else(all, |work| text::work(&work)));
+        global.note(&text::work_of(&answers));
     }
     global.print(&answers, &text::answers(&answers, &study))?;
     Ok(ExitCode::SUCCESS)

@@ -2,7 +2,7 @@
 
 mod many;
 
-pub use many::{answers, check, work};
+pub use many::{answers, check, work, work_of};
 
 use crate::instrument::{Camera, Figures, NoiseSpec};
 use crate::policy::Quantity;

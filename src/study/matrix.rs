@@ -3,7 +3,7 @@
 use super::{Study, Surface};
 use crate::error::{Error, Result};
 use crate::fisher::{Counting, Nuisance, Unknowns};
-use crate::identifiability::multi::{self, Decisions, LibraryScene, LocalMatrix, Skipping, Work};
+use crate::identifiability::multi::{self, Decisions, LibraryScene, LocalMatrix, Passes, Skipping, Work};
 use crate::identifiability::nearest::NearestDistance;
 use crate::scenario::{DistanceKind, Scenario};
 
@@ -33,6 +33,8 @@ pub struct Matrix {
     pub targets: Vec<TargetVerdict>,
     /// What the camera makes of every pair; `None` without one.
     pub apart: Option<Apart>,
+    /// How the local distances per √photon were computed: what the targets lent to their pairs.
+    pub passes: Passes,
 }
 
 /// One material against all others.
@@ -144,7 +146,11 @@ impl Study {
         let (count, kind) = (names.len(), self.scenario.requirement.by);
         let counting = self.counting();
         let of = |kind, counting: Option<&Counting>| self.all_distances(kind, &emissivities, counting);
-        let (local, nearest) = (of(DistanceKind::Local, None)?, of(DistanceKind::Nearest, None)?);
+        let mut solver = LocalMatrix::new(&self.bands, &self.surroundings, self.unknowns.clone());
+        let local = solver
+            .per_photon(&emissivities, &self.state)
+            .map_err(|error| error.at(self.scenario.place("bands")))?;
+        let nearest = of(DistanceKind::Nearest, None)?;
         let statistical = counting.as_ref().map(|counting| of(kind, Some(counting))).transpose()?;
         let by_kind = match kind {
             DistanceKind::Nearest => nearest.clone(),
@@ -184,6 +190,7 @@ impl Study {
             required_distance: required,
             targets,
             apart,
+            passes: solver.passes(),
             materials: names,
         })
     }

@@ -2,7 +2,7 @@
 
 use super::{exponential, photons, significant};
 use crate::identifiability::detection;
-use crate::identifiability::multi::Work;
+use crate::identifiability::multi::{Passes, Work};
 use crate::study::{
     Answers, Apart, BandsThatMatter, Check, Exact, ExactPair, Identification, Matrix, Scaling, Study,
 };
@@ -357,6 +357,25 @@ fn exact(found: &Exact, study: &Study) -> String {
     }
     out.push('\n');
     out
+}
+
+/// What the answers took.
+#[must_use]
+pub fn work_of(answers: &Answers) -> String {
+    if let Some(done) = answers.apart.as_ref().and_then(|apart| apart.work) {
+        return work(&done);
+    }
+    let every = "work: every distance was computed; only --apart and --check can do with less";
+    let Some(Passes { shared_targets, one_pass, two_passes, alone }) =
+        answers.matrix.as_ref().map(|m| m.passes)
+    else {
+        return every.into();
+    };
+    format!(
+        "{every}. Of the {} local ones {one_pass} took one pass over the bands and {two_passes} a second one, \
+         with what {shared_targets} targets lent them; {alone} were judged on their own",
+        one_pass + two_passes + alone
+    )
 }
 
 /// What was computed and what was not.

@@ -83,7 +83,10 @@ impl<const N: usize> Sums<N> {
     /// Adds the lanes of a block. Never inlined: the lanes then go through memory all at once, which keeps the
     /// loop before in full-width registers.
     #[inline(never)]
-    #[allow(clippy::needless_range_loop, reason = "as nested iterators it takes a sixth of the time of a whole matrix more")]
+    #[allow(
+        clippy::needless_range_loop,
+        reason = "as nested iterators it takes a sixth of the time of a whole matrix more"
+    )]
     fn add(&mut self, squares: &[Chunk; TOGETHER], dots: &[[Chunk; N]; TOGETHER]) {
         for a in 0..TOGETHER {
             self.squares[a].add(fold(&squares[a]));
