@@ -198,6 +198,22 @@ impl Counting {
         Self { counts_per_radiance: photons / crate::sum::sum(signal), var_electronic: Vec::new() }
     }
 
+    /// Makes sure that the noise is possible: of every band, or of none.
+    ///
+    /// # Errors
+    /// A list of another length, a variance that is negative or no number, counts that are not positive.
+    pub fn check(&self, bands: usize) -> Result<()> {
+        check::positive("counts per radiance", self.counts_per_radiance, "m^2 sr s")?;
+        let found = self.var_electronic.len();
+        if found != 0 && found != bands {
+            let what = "variances of electronic noise".into();
+            return Err(Error::Length { what, found, expected: bands });
+        }
+        let var = self.var_electronic.iter();
+        var.map(|&var| check::non_negative("variance of electronic noise", var, "counts^2").map(drop))
+            .collect()
+    }
+
     /// σ²_w of band w.
     #[must_use]
     pub fn var_electronic(&self, band: usize) -> f64 {

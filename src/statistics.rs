@@ -66,15 +66,21 @@ impl Statistics {
         }
     }
 
-    /// Makes sure that there is one figure for each of `bands` bands.
+    /// Makes sure that there is one possible figure for each of `bands` bands.
     ///
     /// # Errors
-    /// A list of another length.
+    /// A list of another length, a negative variance, modes that are not positive, or no number.
     pub fn check_bands(&self, bands: usize) -> Result<()> {
         let (what, found) = match self {
             Self::Poisson => return Ok(()),
-            Self::Gaussian { var_electronic } => ("variances of electronic noise", var_electronic.len()),
-            Self::NegativeBinomial { modes } => ("modes of the bands", modes.len()),
+            Self::Gaussian { var_electronic } => {
+                Self::gaussian(var_electronic.clone())?;
+                ("variances of electronic noise", var_electronic.len())
+            }
+            Self::NegativeBinomial { modes } => {
+                Self::negative_binomial(modes.clone())?;
+                ("modes of the bands", modes.len())
+            }
         };
         if found == bands {
             return Ok(());

@@ -124,7 +124,7 @@ fn every_section_has_the_agreed_keys_and_is_there_only_if_asked_for() {
             "unconverged",
         ],
     );
-    has(&exact["library"], &["probability", "interval", "decisions", "union_bound", "trials"]);
+    has(&exact["library"], &["probability", "interval", "decisions", "union_bound_known_states", "trials"]);
 }
 
 /// Paths at which there is nothing; a number that is none would be written so too.

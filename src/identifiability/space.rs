@@ -6,6 +6,7 @@
 //! definite part.
 
 use super::step::BoundedStep;
+use crate::error::{Error, Result, check};
 use crate::fisher::{Nuisance, Unknowns};
 use crate::scene::{Parameter, State};
 use nalgebra::{DMatrix, DVector};
@@ -30,6 +31,26 @@ impl Default for StateRange {
     /// All that physics allows: any temperature, 0 ≤ V, ΣV ≤ 1.
     fn default() -> Self {
         Self { temperature_k: [0.1, 1e6], lighting: [0.0, 1.0], lighting_sum: 1.0 }
+    }
+}
+
+impl StateRange {
+    /// Makes sure that there is something within the range.
+    ///
+    /// # Errors
+    /// Ends that are no numbers, in the wrong order, or beyond what is physical.
+    pub fn check(&self) -> Result<()> {
+        let [[cold, hot], [dim, bright]] = [self.temperature_k, self.lighting];
+        check::positive("lowest temperature of the range", cold, "K")?;
+        check::positive("highest temperature of the range", hot, "K")?;
+        check::non_negative("least lighting of the range", dim, "")?;
+        check::non_negative("most lighting of the range", bright, "")?;
+        check::non_negative("sum of the lighting", self.lighting_sum, "")?;
+        if cold <= hot && dim <= bright {
+            return Ok(());
+        }
+        let found = format!("a range of {cold} to {hot} K and of {dim} to {bright} in lighting");
+        Err(Error::malformed(found, "give the lower end first"))
     }
 }
 
@@ -121,6 +142,16 @@ impl StateSpace {
             step[i] /= scale[i];
         }
         step.iter().all(|value| value.is_finite()).then_some(step)
+    }
+
+    /// What is free as in `start`, what is known as in `known`.
+    pub(super) fn free_of(&self, start: &State, known: &State) -> State {
+        let mut state = known.clone();
+        for parameter in &self.parameters {
+            set(&mut state, *parameter, value(start, *parameter));
+        }
+        self.close_total(&mut state);
+        state
     }
 
     pub(super) fn bounds(&self, parameter: Parameter) -> [f64; 2] {

@@ -57,9 +57,15 @@ impl Study {
                            its statistical distances have them";
             identification.warnings.push(Warning::new("matrix-priors", message));
         }
+        let matrix = asked.matrix.then(|| self.matrix()).transpose()?;
+        if let Some(stopped) = matrix.as_ref().map(|matrix| matrix.unconverged).filter(|&stopped| stopped > 0)
+        {
+            let message = format!("{stopped} searches for the nearest states of the matrix stopped early");
+            identification.warnings.push(Warning::new("nearest-not-converged", message));
+        }
         Ok(Answers {
             identification,
-            matrix: asked.matrix.then(|| self.matrix()).transpose()?,
+            matrix,
             apart: asked.apart.then(|| self.told_apart(asked.skipping)).transpose()?,
             scaling: asked.scaling.then(|| self.scaling()).transpose()?,
             bands_that_matter: asked

@@ -94,8 +94,9 @@ pub struct ExactLibrary {
     pub interval: Interval,
     /// Share of decisions for each material, the target first.
     pub decisions: Vec<(String, f64)>,
-    /// Union bound: 1 less the sum of the pairs' upper bounds on missing the target.
-    pub union_bound: f64,
+    /// Union bound of a test that knows all states, the alternatives in their nearest: 1 less the sum of the pairs'
+    /// upper bounds on missing the target. No bound of `probability`.
+    pub union_bound_known_states: f64,
     /// Trials.
     pub trials: u64,
 }
@@ -221,30 +222,32 @@ impl Study {
         plan: &Plan,
     ) -> Result<ExactPair> {
         let (own, other) = (&self.target.emissivity, &alternative.emissivity);
-        let counting = Counting {
+        // All noise beyond that of the photons: electronic, or that of bunching about the state's own means.
+        let counting = |means: &[f64]| Counting {
             counts_per_radiance: scene.counts_per_radiance,
-            var_electronic: match scene.statistics {
-                Statistics::Gaussian { var_electronic } => var_electronic.clone(),
-                Statistics::Poisson | Statistics::NegativeBinomial { .. } => Vec::new(),
-            },
+            var_electronic: means
+                .iter()
+                .enumerate()
+                .map(|(band, mean)| (scene.statistics.variance(band, *mean) - mean).max(0.0))
+                .collect(),
         };
         let Balanced { probability, interval, classes, alternative_state, distance } =
             scene.balanced((own, other), &self.state, plan)?;
-        let mut solver =
-            NearestSolver::new(&self.bands, &self.surroundings, self.unknowns.clone(), self.range);
-        let back = solver.with_counting(other, own, &alternative_state, &counting)?;
-        let ratio = if distance > 0.0 { (back.distance / distance).min(1.0) } else { 1.0 };
-        let local = LocalSolver::new(&self.bands, &self.surroundings, self.unknowns.clone()).with_counting(
-            own,
-            other,
-            &self.state,
-            &counting,
-        )?;
         let means = |emissivity: &[f64], state| -> Vec<f64> {
             let signal = self.bands.weigh(&self.surroundings.signal(emissivity, state));
             signal.iter().map(|s| s * scene.counts_per_radiance).collect()
         };
         let states = [means(own, &self.state), means(other, &alternative_state)];
+        let mut solver =
+            NearestSolver::new(&self.bands, &self.surroundings, self.unknowns.clone(), self.range);
+        let back = solver.with_counting(other, own, &alternative_state, &counting(&states[1]))?;
+        let ratio = if distance > 0.0 { (back.distance / distance).min(1.0) } else { 1.0 };
+        let local = LocalSolver::new(&self.bands, &self.surroundings, self.unknowns.clone()).with_counting(
+            own,
+            other,
+            &self.state,
+            &counting(&states[0]),
+        )?;
         let bracket = KnownStates::new(&states[0], &states[1], scene.statistics)?.bracket();
         Ok(ExactPair {
             alternative: alternative.name.clone(),
@@ -313,7 +316,7 @@ impl Study {
             probability: found.probability,
             interval: found.interval,
             decisions: decisions.collect(),
-            union_bound: (1.0 - confused).max(0.0),
+            union_bound_known_states: (1.0 - confused).max(0.0),
             trials: found.trials,
         })
     }

@@ -33,6 +33,8 @@ pub struct Matrix {
     pub targets: Vec<TargetVerdict>,
     /// What the camera makes of every pair; `None` without one.
     pub apart: Option<Apart>,
+    /// Searches for a nearest state that stopped early.
+    pub unconverged: usize,
     /// How the local distances per √photon were computed: what the targets lent to their pairs.
     pub passes: Passes,
 }
@@ -150,7 +152,9 @@ impl Study {
         let local = solver
             .per_photon(&emissivities, &self.state)
             .map_err(|error| error.at(self.scenario.place("bands")))?;
-        let nearest = of(DistanceKind::Nearest, None)?;
+        let found = self.library_scene().nearest_per_photon(&emissivities)?;
+        let unconverged = found.iter().flatten().filter(|nearest| !nearest.converged).count();
+        let nearest = distances(&found);
         let statistical = counting.as_ref().map(|counting| of(kind, Some(counting))).transpose()?;
         let by_kind = match kind {
             DistanceKind::Nearest => nearest.clone(),
@@ -190,6 +194,7 @@ impl Study {
             required_distance: required,
             targets,
             apart,
+            unconverged,
             passes: solver.passes(),
             materials: names,
         })

@@ -253,7 +253,18 @@ impl<'a> Finder<'a> {
                 let found = materials.iter().enumerate().map(|(i, material)| {
                     self.find(&format!("alternatives.materials[{i}]"), material, wanted.extrapolate)
                 });
-                found.collect::<Result<_>>()?
+                let mut found: Vec<Cow<'a, Material>> = found.collect::<Result<_>>()?;
+                // The target cannot be told from itself; alone it stays, so that the answer says so.
+                let own = materials.iter().position(|material| *material == self.scenario.target.material);
+                if let Some(own) = own
+                    && found.len() > 1
+                {
+                    found.remove(own);
+                    let message =
+                        format!("{} is left out of the alternatives: it is the target", target.name());
+                    self.warnings.push(Warning::new("target-among-alternatives", message));
+                }
+                found
             }
             None => self
                 .library

@@ -12,10 +12,10 @@
 //! One direction that fails decides the pair. Proofs are as good as the search for the nearest state is.
 
 use super::LibraryScene;
-use crate::error::Result;
+use crate::error::{Error, Result, check};
 use crate::fisher::Counting;
 use crate::identifiability::nearest::{Nearer, NearestSolver};
-use crate::scene::{EnvironmentObject, State, Surroundings};
+use crate::scene::{EnvironmentObject, State, Surroundings, check_emissivity};
 use crate::spectrum::Bands;
 use rayon::prelude::*;
 
@@ -73,10 +73,10 @@ pub struct Decisions {
 }
 
 impl Decisions {
-    /// Whether materials a and b can be told apart.
+    /// Whether materials a and b can be told apart; false for one that is not there.
     #[must_use]
     pub fn told_apart(&self, a: usize, b: usize) -> bool {
-        self.apart[a * self.count + b]
+        b < self.count && self.apart.get(a * self.count + b).is_some_and(|told| *told)
     }
 }
 
@@ -96,6 +96,8 @@ struct Few {
 
 impl Few {
     fn of(scene: &LibraryScene<'_>, emissivities: &[&[f64]], counting: &Counting) -> Result<Option<Self>> {
+        let nodes = scene.surroundings.nodes_cm1().len();
+        emissivities.iter().try_for_each(|emissivity| check_emissivity(emissivity, nodes))?;
         let stride = scene.bands.len() / FEW_BANDS;
         if stride < 2 {
             return Ok(None);
@@ -129,6 +131,7 @@ impl LibraryScene<'_> {
         required: f64,
         skipping: Skipping,
     ) -> Result<Decisions> {
+        check::positive("required distance", required, "")?;
         let count = emissivities.len();
         let few = match skipping {
             Skipping::On => Few::of(self, emissivities, counting)?,
@@ -170,6 +173,11 @@ impl LibraryScene<'_> {
         counting: &Counting,
         required: f64,
     ) -> Result<(Option<usize>, Work)> {
+        check::positive("required distance", required, "")?;
+        if target >= emissivities.len() {
+            let found = emissivities.len();
+            return Err(Error::Length { what: "materials".into(), found, expected: target + 1 });
+        }
         let few = Few::of(self, emissivities, counting)?;
         let question = Question { scene: self, emissivities, counting, required, few: few.as_ref() };
         let mut solvers = question.solvers();

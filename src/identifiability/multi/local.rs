@@ -18,7 +18,7 @@ mod kernels;
 use self::kernels::{
     Contrast, Lent, MOST_NUISANCES, TOGETHER, contrast_into, direction_into, projections, residual_square,
 };
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::fisher::{Counting, Projector, Unknowns};
 use crate::identifiability::local::{LocalSolver, SAFE_RANGE};
 use crate::scene::{Jacobian, Parameter, State, Surroundings};
@@ -167,6 +167,11 @@ impl<'a> LocalMatrix<'a> {
 
     fn matrix(&mut self, emissivities: &[&[f64]], state: &State, weights: Weights<'_>) -> Result<Vec<f64>> {
         let count = emissivities.len();
+        let nodes = self.jacobian.surroundings().nodes_cm1().len();
+        if let Some(other) = emissivities.iter().find(|emissivity| emissivity.len() != nodes) {
+            let (what, found) = ("emissivity".into(), other.len());
+            return Err(Error::Length { what, found, expected: nodes });
+        }
         let mut distances = vec![0.0; count * count];
         if count < 2 {
             return Ok(distances);
@@ -223,10 +228,11 @@ impl<'a> LocalMatrix<'a> {
                 *out = 0.0;
             } else if out.is_nan() {
                 *out = self.alone(own, emissivities[alternative], state, weights)?;
-                (passes.two_passes, passes.alone) = (passes.two_passes - 1, passes.alone + 1);
+                passes.alone += 1;
+                passes.two_passes = passes.two_passes.saturating_sub(1);
             }
         }
-        passes.one_pass = others - passes.two_passes - passes.alone;
+        passes.one_pass = others.saturating_sub(passes.two_passes + passes.alone);
         Ok(passes)
     }
 

@@ -71,7 +71,7 @@ impl NearestSolver<'_> {
         let unknowns = &self.space.unknowns;
         let linear = !unknowns.has_priors() && unknowns.known_lighting_total().is_none();
         let unknown_surroundings = unknowns.contains(Nuisance::EnvironmentTemperature);
-        let steps = self.steps(table, &whitened);
+        let steps = self.steps(table, &whitened, own.gain);
         let range = self.space.range.temperature_k;
         let scene: Vec<f64> = std::iter::once(target.state.temperature_k)
             .chain(target.state.environment_k.iter().copied())
@@ -91,9 +91,16 @@ impl NearestSolver<'_> {
 
     /// Steps of the grid between which the alternative's own emission goes from next to nothing of the target's
     /// photons to far too many.
-    fn steps(&self, table: &mut EmissionTable, whitened: &Whitened) -> std::ops::RangeInclusive<usize> {
+    fn steps(
+        &self,
+        table: &mut EmissionTable,
+        whitened: &Whitened,
+        gain: f64,
+    ) -> std::ops::RangeInclusive<usize> {
         let weights = whitened.emitted(&table.thinned);
         let signal: f64 = self.target.signal().iter().step_by(table.thinned.stride).sum();
+        // The emission is that of gain 1.
+        let signal = signal / gain;
         let [low, high] = self.space.range.temperature_k;
         let mut bottom = table.step_of_emission(&weights, 1e-6 * signal, low, high);
         let mut top = table.step_of_emission(&weights, 4.0 * signal, low, high);

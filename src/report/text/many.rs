@@ -338,8 +338,11 @@ fn exact(found: &Exact, study: &Study) -> String {
             library.probability,
             library.interval.half_width(),
             library.trials,
-            if library.union_bound > 0.0 {
-                format!("; were all states known, in at least {:.3} (union bound)", library.union_bound)
+            if library.union_bound_known_states > 0.0 {
+                format!(
+                    "; were all states known, in at least {:.3} (union bound)",
+                    library.union_bound_known_states
+                )
             } else {
                 String::new()
             }
@@ -381,7 +384,7 @@ pub fn work_of(answers: &Answers) -> String {
 /// What was computed and what was not.
 #[must_use]
 pub fn work(work: &Work) -> String {
-    let skipped = work.distances - work.in_full - work.decided_on_the_way;
+    let skipped = work.distances.saturating_sub(work.in_full + work.decided_on_the_way);
     format!(
         "work: {} distances asked for, {skipped} not searched in all bands ({} decided at the target's own state, \
          {} by a few of the bands, {} by another distance), {} searches ended at the first state nearer than required, {} in full",
