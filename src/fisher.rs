@@ -209,9 +209,10 @@ impl Counting {
             let what = "variances of electronic noise".into();
             return Err(Error::Length { what, found, expected: bands });
         }
-        let var = self.var_electronic.iter();
-        var.map(|&var| check::non_negative("variance of electronic noise", var, "counts^2").map(drop))
-            .collect()
+        for &var in &self.var_electronic {
+            check::non_negative("variance of electronic noise", var, "counts^2")?;
+        }
+        Ok(())
     }
 
     /// σ²_w of band w.
