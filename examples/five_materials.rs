@@ -46,11 +46,11 @@ fn run(out: &Path) -> hadar::Result<()> {
         format!(
             "# Five materials at 60 °C\n\n\
              Made by `cargo run --release --example five_materials -- reports/five_materials` from `scenario.toml`; \
-             `hadar identify examples/five_materials.toml --matrix --scaling --bands 6 --filters 5 --exact` prints the same.\n\
+             `hadar identify examples/five_materials.toml --matrix --scaling --bands 6 --filters 5 --exact --half-width 0.005` prints the same.\n\
              Paper: Bao et al., Nature 619, 743 (2023), doi:10.1038/s41586-023-06174-6, Extended Data Fig. 6: T = 60 °C, \
              T₀ = 20 °C, V = 0.5. Its photon number and spectra are not given; ours are the built-in library's, and an exposure \
              at which the paper's verdicts can be compared.\n\n\
-             | paper | here | identifiable in the paper | identifiable here |\n|---|---|---|---|\n{rows}\n\
+             | paper | here | identifiable in the paper | here, as the target |\n|---|---|---|---|\n{rows}\n\
              ![One reading of each material](sample_spectra.png)\n\n\
              ![Least distance of each material](minimum_distances.png)\n\n\
              ![All against all](distance_matrix.png)\n\n\

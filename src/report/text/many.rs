@@ -3,6 +3,7 @@
 use super::{exponential, photons, significant};
 use crate::identifiability::detection;
 use crate::identifiability::multi::{Passes, Work};
+use crate::scenario::DistanceKind;
 use crate::study::{
     Answers, Apart, BandsThatMatter, Check, Exact, ExactPair, Identification, Matrix, Scaling, Study,
 };
@@ -62,9 +63,9 @@ pub(super) fn verdict(result: &Identification, study: &Study) -> String {
             (1, _) => format!("No: {name} cannot tell {target} from {}", pair.alternative),
             (_, told) if told == all => format!("Yes: {name} tells {target} from all {all} alternatives"),
             (_, 0) => format!("No: {name} tells {target} from none of {all} alternatives"),
-            (_, told) => format!("No: {name} tells {target} from {told} of {all} alternatives only"),
+            (_, told) => format!("No: {name} tells {target} from only {told} of {all} alternatives"),
         };
-        let _ = writeln!(out, "{sentence} with {percent:.1} % reliability.");
+        let _ = writeln!(out, "{sentence} with {percent:.1} % reliability{}.", no_limit(study));
     }
     let needed = match pair.photons_required {
         Some(_) => {
@@ -72,17 +73,29 @@ pub(super) fn verdict(result: &Identification, study: &Study) -> String {
         }
         None => "no number of photons suffices".into(),
     };
-    let _ = writeln!(out, "{target} is hardest to tell from {}: {needed}.", pair.alternative);
+    let _ =
+        writeln!(out, "{target} is hardest to tell from {}: {needed}{}.", pair.alternative, no_limit(study));
     if let Some(average) = &result.prior_average {
         let _ = writeln!(
             out,
-            "Averaged over the priors: {} photons for as many right answers (hybrid Cramer-Rao bound of estimates, no limit of decisions: {}).",
+            "Averaged over the priors: {} photons for {percent:.1} % right answers (hybrid Cramer-Rao bound of estimates, no limit of decisions: {}).",
             photons(average.photons_required),
             photons(average.photons_required_hybrid_bound)
         );
     }
     out.push('\n');
     out
+}
+
+/// What must be added to an answer that is not by the nearest distance.
+fn no_limit(study: &Study) -> &'static str {
+    match study.scenario().requirement.by {
+        DistanceKind::Nearest => "",
+        DistanceKind::Local => ", by the local distance, which is no limit and can err either way",
+        DistanceKind::LocalUnknownGain => {
+            ", by the local distance with unknown gain (S29), which is no limit"
+        }
+    }
 }
 
 /// The largest entries of the prediction vector.
@@ -148,7 +161,7 @@ fn matrix(matrix: &Matrix, study: &Study) -> String {
     let width = matrix.materials.iter().map(String::len).max().unwrap_or(0).max(8);
     let with_camera = matrix.statistical_distance.is_some();
     let _ = write!(out, "  {:<width$}  {:<width$}  {:>12}", "target", "hardest", "per photon^.5");
-    let _ = writeln!(out, "{}", if with_camera { "    camera d  identifiable" } else { "" });
+    let _ = writeln!(out, "{}", if with_camera { "    camera d   as a target" } else { "" });
     for target in matrix.hardest_first() {
         let _ = write!(
             out,
@@ -303,7 +316,7 @@ fn exact(found: &Exact, study: &Study) -> String {
     let _ = writeln!(
         out,
         "  {:<width$}  {:>9}  {:>18}  {:>11}  {:>11}  {:>9}  {:>17}",
-        "alternative", "photons", "right decisions", "limit Phi(d)", "best fits", "local", "rigorous limits"
+        "alternative", "photons", "right decisions", "limit Phi(d)", "two-sided", "local", "rigorous limits"
     );
     let shown = |pair: &&ExactPair| pair.limit < CERTAIN || pair.balanced < CERTAIN;
     let certain = found.pairs.iter().filter(|pair| !shown(pair)).count();
