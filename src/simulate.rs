@@ -7,6 +7,8 @@
 //! Bounds never make use of simulations. Every block of trials has a stream of random numbers of its own, so results
 //! do not depend on the number of threads, and a seed brings them back.
 
+pub mod classifier;
 pub mod decision;
 pub mod draws;
 pub mod sequential;
+pub mod spectra;

@@ -67,6 +67,12 @@ impl Draws {
         Ok(Self { bands: bands.collect::<Result<_>>()? })
     }
 
+    /// How many bands a spectrum has.
+    #[must_use]
+    pub fn bands(&self) -> usize {
+        self.bands.len()
+    }
+
     /// Draws one spectrum into `counts`.
     pub fn draw_into(&self, rng: &mut ChaCha8Rng, counts: &mut [f64]) {
         for (count, band) in counts.iter_mut().zip(&self.bands) {

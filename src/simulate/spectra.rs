@@ -1,0 +1,181 @@
+//! Labelled spectra of counts: drawn about the means of every class, parted into training, validation and test.
+//!
+//! Spectrum i of class c has the stream of random numbers c·2⁴⁰ + i of its own, so that neither the number of threads
+//! nor the number of spectra changes any of them.
+
+use super::draws::{Draws, generator};
+use crate::error::{Error, Result};
+use rayon::prelude::*;
+
+/// Streams of random numbers set aside for the spectra of one class.
+const STREAMS: u64 = 1 << 40;
+
+/// Spectra of counts, each with the class it is from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LabelledSpectra {
+    bands: usize,
+    classes: usize,
+    /// Spectrum after spectrum.
+    counts: Vec<f64>,
+    labels: Vec<usize>,
+}
+
+impl LabelledSpectra {
+    /// Spectra one after the other in `counts`, `bands` counts each, and their `labels` below `classes`.
+    ///
+    /// # Errors
+    /// Lists whose lengths do not fit together, a label of no class, a count that is no number.
+    pub fn new(bands: usize, classes: usize, counts: Vec<f64>, labels: Vec<usize>) -> Result<Self> {
+        if counts.len() != labels.len() * bands || bands == 0 {
+            return Err(Error::Length {
+                what: "counts of the labelled spectra".into(),
+                found: counts.len(),
+                expected: labels.len() * bands.max(1),
+            });
+        }
+        if let Some(&label) = labels.iter().find(|&&label| label >= classes) {
+            let expected = format!("below the number of classes, {classes}");
+            return Err(Error::out_of_range("label", label as f64, "", expected));
+        }
+        if let Some(&count) = counts.iter().find(|count| !count.is_finite()) {
+            return Err(Error::out_of_range("count", count, "", "a finite number"));
+        }
+        Ok(Self { bands, classes, counts, labels })
+    }
+
+    /// Spectra `range` of every class, drawn by the laws of `draws`, one of each class; class by class in turn.
+    #[must_use]
+    pub fn draw(draws: &[Draws], range: std::ops::Range<usize>, seed: u64) -> Self {
+        let (bands, classes) = (draws.first().map_or(0, Draws::bands), draws.len());
+        let mut counts = vec![0.0; bands * classes * range.len()];
+        counts.par_chunks_mut((bands * classes).max(1)).zip(range.clone()).for_each(|(chunk, i)| {
+            for (class, (spectrum, draws)) in chunk.chunks_mut(bands).zip(draws).enumerate() {
+                draws.draw_into(&mut generator(seed, class as u64 * STREAMS + i as u64), spectrum);
+            }
+        });
+        let labels = range.flat_map(|_| 0..classes).collect();
+        Self { bands, classes, counts, labels }
+    }
+
+    /// How many spectra there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.labels.len()
+    }
+
+    /// Whether there are none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.labels.is_empty()
+    }
+
+    /// Bands of a spectrum.
+    #[must_use]
+    pub fn bands(&self) -> usize {
+        self.bands
+    }
+
+    /// Classes they are from.
+    #[must_use]
+    pub fn classes(&self) -> usize {
+        self.classes
+    }
+
+    /// Class of every spectrum.
+    #[must_use]
+    pub fn labels(&self) -> &[usize] {
+        &self.labels
+    }
+
+    /// The counts of all spectra, one after the other.
+    #[must_use]
+    pub fn counts(&self) -> &[f64] {
+        &self.counts
+    }
+
+    /// Every spectrum with its class.
+    pub fn iter(&self) -> impl Iterator<Item = (&[f64], usize)> {
+        self.counts.chunks_exact(self.bands.max(1)).zip(self.labels.iter().copied())
+    }
+}
+
+/// Spectra for training, for validation and for the test, in the shares of the paper: 25, 25 and 50 %.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Split {
+    /// What parameters are fitted to.
+    pub training: LabelledSpectra,
+    /// What says when to stop.
+    pub validation: LabelledSpectra,
+    /// What the accuracy is measured on; no classifier sees it before.
+    pub test: LabelledSpectra,
+}
+
+impl Split {
+    /// Draws `per_class` spectra of every class.
+    ///
+    /// # Errors
+    /// Fewer than 4 spectra of a class, which leave one of the parts empty, or laws for different numbers of bands.
+    pub fn draw(draws: &[Draws], per_class: usize, seed: u64) -> Result<Self> {
+        if per_class < 4 {
+            let expected = "at least 4: a quarter each for training and validation, half for the test";
+            return Err(Error::out_of_range("spectra of each class", per_class as f64, "", expected));
+        }
+        let bands = draws.first().map_or(0, Draws::bands);
+        if bands == 0 {
+            return Err(Error::malformed("there are no bands or classes to draw", "give at least one"));
+        }
+        if let Some(other) = draws.iter().find(|other| other.bands() != bands) {
+            return Err(Error::Length {
+                what: "bands of a class".into(),
+                found: other.bands(),
+                expected: bands,
+            });
+        }
+        let quarter = per_class / 4;
+        let part = |range| LabelledSpectra::draw(draws, range, seed);
+        Ok(Self {
+            training: part(0..quarter),
+            validation: part(quarter..2 * quarter),
+            test: part(2 * quarter..per_class),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::statistics::Statistics;
+
+    fn two() -> Vec<Draws> {
+        let draws = |means: &[f64]| Draws::new(&Statistics::Poisson, means).unwrap();
+        vec![draws(&[10.0, 1e6]), draws(&[20.0, 1e6])]
+    }
+
+    /// A spectrum depends on its class and its number alone.
+    #[test]
+    fn a_spectrum_is_the_same_however_many_are_drawn() {
+        let (few, many) = (LabelledSpectra::draw(&two(), 3..5, 7), LabelledSpectra::draw(&two(), 0..9, 7));
+        assert_eq!(few.counts(), &many.counts()[3 * 4..5 * 4]);
+        assert_ne!(few.counts()[..2], few.counts()[4..6]);
+        assert_eq!(many.labels()[..4], [0, 1, 0, 1]);
+    }
+
+    /// Parts do not overlap and have the paper's shares.
+    #[test]
+    fn parts_are_25_25_and_50_percent() {
+        let split = Split::draw(&two(), 40, 1).unwrap();
+        assert_eq!([split.training.len(), split.validation.len(), split.test.len()], [20, 20, 40]);
+        let whole = LabelledSpectra::draw(&two(), 0..40, 1);
+        let parts = [&split.training, &split.validation, &split.test].map(LabelledSpectra::counts).concat();
+        assert_eq!(parts, whole.counts());
+    }
+
+    #[test]
+    fn what_does_not_fit_is_refused() {
+        assert!(Split::draw(&two(), 3, 1).is_err());
+        assert!(Split::draw(&[], 8, 1).is_err());
+        assert!(LabelledSpectra::new(2, 2, vec![1.0; 4], vec![0, 2]).is_err());
+        assert!(LabelledSpectra::new(2, 2, vec![1.0; 3], vec![0, 1]).is_err());
+        assert!(LabelledSpectra::new(1, 1, vec![f64::NAN], vec![0]).is_err());
+    }
+}
