@@ -20,12 +20,13 @@
 
 mod trials;
 
-use self::trials::{Candidate, Rule, Test, Trials, run};
+use self::trials::{Test, Trials, run};
+use super::classifier::{BestFits, Candidate, LikelihoodRatio};
 use super::draws::{Draws, GENERATOR};
 use super::sequential::{Interval, Plan};
 use crate::error::{Error, Result, check};
 use crate::fisher::{Counting, Nuisance, Unknowns};
-use crate::identifiability::likelihood::{MaximumLikelihood, Terms};
+use crate::identifiability::likelihood::MaximumLikelihood;
 use crate::identifiability::nearest::{NearestSolver, StateRange};
 use crate::planck;
 use crate::scene::{State, Surroundings, check_emissivity};
@@ -34,6 +35,8 @@ use crate::statistics::Statistics;
 
 /// Minima this much farther than the nearest one are no starts.
 const REACH: f64 = 6.0;
+/// Relative difference of states below which fits start from one of them only.
+const ALIKE: f64 = 1e-6;
 /// Halvings of the range of ln T that tell where a surface begins to emit.
 const BISECTIONS: usize = 12;
 /// A candidate is not fitted beyond this statistical distance.
@@ -94,7 +97,7 @@ pub struct Detection {
     pub decisions: Vec<f64>,
     /// Trials made.
     pub trials: u64,
-    /// Fits that did not converge (their best state so far counts).
+    /// Trials in which a fit did not converge (its best state so far counts).
     pub unconverged: u64,
     /// Candidates too far away to be fitted.
     pub out_of_reach: Vec<usize>,
@@ -167,17 +170,37 @@ impl DecisionScene<'_> {
             ((a - b) / ((a + var).sqrt() + (b + var).sqrt()).max(f64::MIN_POSITIVE)).powi(2)
         });
         let distance = square.sum::<f64>().sqrt();
-        let rule = || Rule::Known {
-            statistics: self.statistics,
-            means: means.to_vec(),
-            terms: Terms::new(self.bands.len()),
-        };
         let test = |truth: usize| -> Result<Test<'_>> {
             let draws = Draws::new(self.statistics, &means[truth])?;
-            Ok(Test { truth, draws, rule: rule(), counts: means[truth].clone() })
+            let rule = Box::new(LikelihoodRatio::new(self.statistics, &means)?);
+            Ok(Test { truth, draws, rule, out_of_reach: Vec::new() })
         };
         let tests = [test(0)?, test(1)?];
         Ok(balanced(tests, alternative.1.clone(), distance, plan))
+    }
+
+    /// The rule that knows the materials but none of their states, for counts that come from any of `classes`, each a
+    /// material in a state. What is not unknown has its value in the state of the first.
+    ///
+    /// # Errors
+    /// As [`DecisionScene::detection`]; no classes.
+    pub fn best_fits<'m>(&'m self, classes: &[(&'m [f64], &State)]) -> Result<BestFits<'m>> {
+        let Some((_, known)) = classes.first() else {
+            return Err(Error::malformed("there are no materials to tell apart", "give two"));
+        };
+        let mut candidates = Vec::with_capacity(classes.len());
+        for &(own, state) in classes {
+            let mut starts = vec![state.clone()];
+            for &(emissivity, truth) in classes {
+                for start in self.starts(emissivity, own, truth)? {
+                    if !starts.iter().any(|known| alike(known, &start)) {
+                        starts.push(start);
+                    }
+                }
+            }
+            candidates.push(Candidate { emissivity: own, starts });
+        }
+        Ok(BestFits::new(self.fits()?, candidates, (*known).clone(), self.bands.len()))
     }
 
     /// States of `other` from which it is fitted to counts of `emissivity` in `state`: its nearest ones, and for one so
@@ -239,16 +262,20 @@ impl DecisionScene<'_> {
             }
             candidates.push(Candidate { emissivity: other, starts });
         }
-        let fits = MaximumLikelihood::new(
+        let rule = BestFits::new(self.fits()?, candidates, state.clone(), self.bands.len());
+        let out_of_reach = rule.out_of_reach();
+        Ok(Test { draws: Draws::new(self.statistics, &means)?, truth, rule: Box::new(rule), out_of_reach })
+    }
+
+    fn fits(&self) -> Result<MaximumLikelihood<'_>> {
+        MaximumLikelihood::new(
             self.bands,
             self.surroundings,
             self.unknowns.clone(),
             self.range,
             self.counts_per_radiance,
             self.statistics.clone(),
-        )?;
-        let rule = Rule::Fitted { fits: Box::new(fits), candidates, known: state.clone() };
-        Ok(Test { draws: Draws::new(self.statistics, &means)?, truth, rule, counts: means })
+        )
     }
 
     fn solver(&self) -> NearestSolver<'_> {
@@ -286,20 +313,24 @@ impl DecisionScene<'_> {
     }
 }
 
+/// Whether fits from two states are one and the same.
+fn alike(a: &State, b: &State) -> bool {
+    let near = |a: f64, b: f64| (a - b).abs() <= ALIKE * (1.0 + a.abs().max(b.abs()));
+    let all = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| near(*a, *b));
+    near(a.temperature_k, b.temperature_k)
+        && near(a.gain, b.gain)
+        && all(&a.lighting, &b.lighting)
+        && all(&a.environment_k, &b.environment_k)
+}
+
 fn detection(test: Test<'_>, trials: Trials, plan: &Plan) -> Detection {
-    let out_of_reach = match test.rule {
-        Rule::Known { .. } => Vec::new(),
-        Rule::Fitted { candidates, .. } => {
-            (0..candidates.len()).filter(|&i| candidates[i].starts.is_empty()).collect()
-        }
-    };
     Detection {
         probability: trials.share(test.truth),
         interval: trials.interval(test.truth, plan),
         decisions: trials.decisions,
         trials: trials.trials,
         unconverged: trials.unconverged,
-        out_of_reach,
+        out_of_reach: test.out_of_reach,
         plan: *plan,
         generator: GENERATOR,
     }

@@ -1,11 +1,8 @@
 //! Trials of a decision, block by block.
 
-use crate::identifiability::likelihood::{MaximumLikelihood, Terms};
-use crate::scene::State;
+use crate::simulate::classifier::{Classifier, Judge};
 use crate::simulate::draws::{Draws, generator};
 use crate::simulate::sequential::{BLOCK, Interval, Plan};
-use crate::statistics::Statistics;
-use rand::rngs::ChaCha8Rng;
 use rayon::prelude::*;
 
 /// Likelihoods closer than this are a tie: fits end within 1e-9 of the largest likelihood.
@@ -13,30 +10,14 @@ const TIE: f64 = 1e-6;
 /// Streams of random numbers set aside for the trials of one truth.
 const STREAMS: u64 = 1 << 40;
 
-/// A material and the states its fits start from; one without any is not fitted.
-#[derive(Debug, Clone)]
-pub(super) struct Candidate<'a> {
-    pub(super) emissivity: &'a [f64],
-    pub(super) starts: Vec<State>,
-}
-
-/// What the likelihoods of the candidates are.
-#[derive(Debug, Clone)]
-pub(super) enum Rule<'a> {
-    /// The largest over the free states.
-    Fitted { fits: Box<MaximumLikelihood<'a>>, candidates: Vec<Candidate<'a>>, known: State },
-    /// Those of given means.
-    Known { statistics: &'a Statistics, means: Vec<Vec<f64>>, terms: Terms },
-}
-
 /// Counts from one truth, and how they are judged.
-#[derive(Debug, Clone)]
 pub(super) struct Test<'a> {
     pub(super) draws: Draws,
     /// Which candidate is true.
     pub(super) truth: usize,
-    pub(super) rule: Rule<'a>,
-    pub(super) counts: Vec<f64>,
+    pub(super) rule: Box<dyn Classifier + 'a>,
+    /// Candidates that are not fitted.
+    pub(super) out_of_reach: Vec<usize>,
 }
 
 /// What came of them.
@@ -82,38 +63,16 @@ impl Trials {
 }
 
 impl Test<'_> {
-    fn block(&mut self, seed: u64, block: u64, trials: u64) -> Trials {
+    fn block(&self, judge: &mut dyn Judge, seed: u64, block: u64, trials: u64) -> Trials {
         let mut rng = generator(seed, self.truth as u64 * STREAMS + block);
         let mut outcome = Trials::default();
-        let mut log_likelihoods = Vec::new();
+        let (mut counts, mut scores) = (vec![0.0; self.draws.bands()], vec![0.0; self.rule.classes()]);
         for _ in 0..trials {
-            log_likelihoods.clear();
-            self.trial(&mut rng, &mut log_likelihoods, &mut outcome.unconverged);
-            outcome.decide(&log_likelihoods);
+            self.draws.draw_into(&mut rng, &mut counts);
+            outcome.unconverged += u64::from(!judge.score(&counts, &mut scores));
+            outcome.decide(&scores);
         }
         outcome
-    }
-
-    fn trial(&mut self, rng: &mut ChaCha8Rng, log_likelihoods: &mut Vec<f64>, unconverged: &mut u64) {
-        let counts = &mut self.counts;
-        self.draws.draw_into(rng, counts);
-        match &mut self.rule {
-            Rule::Known { statistics, means, terms } => {
-                let losses = means.iter().map(|means| terms.evaluate(statistics, 1.0, means, counts));
-                log_likelihoods.extend(losses.map(|loss| -loss));
-            }
-            Rule::Fitted { fits, candidates, known } => {
-                for candidate in candidates.iter() {
-                    if candidate.starts.is_empty() {
-                        log_likelihoods.push(f64::NEG_INFINITY);
-                        continue;
-                    }
-                    let fit = fits.fit(candidate.emissivity, counts, known, &candidate.starts);
-                    *unconverged += u64::from(!fit.converged);
-                    log_likelihoods.push(fit.log_likelihood);
-                }
-            }
-        }
     }
 }
 
@@ -131,8 +90,10 @@ pub(super) fn run<const TRUTHS: usize>(
             let blocks: Vec<Trials> = (done / BLOCK..total.div_ceil(BLOCK))
                 .into_par_iter()
                 .map_init(
-                    || test.clone(),
-                    |test, block| test.block(plan.seed(), block, BLOCK.min(total - block * BLOCK)),
+                    || test.rule.judge(),
+                    |judge, block| {
+                        test.block(judge.as_mut(), plan.seed(), block, BLOCK.min(total - block * BLOCK))
+                    },
                 )
                 .collect();
             blocks.iter().for_each(|block| sum.add(block));
