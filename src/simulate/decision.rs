@@ -339,7 +339,7 @@ fn detection(test: Test<'_>, trials: Trials, plan: &Plan) -> Detection {
 fn balanced(tests: [Test<'_>; 2], alternative_state: State, distance: f64, plan: &Plan) -> Balanced {
     let estimate = |trials: &[Trials; 2]| {
         let intervals = [trials[0].interval(0, plan), trials[1].interval(1, plan)];
-        Interval::of_mean([trials[0].share(0), trials[1].share(1)], intervals)
+        Interval::of_mean(&[trials[0].share(0), trials[1].share(1)], &intervals)
     };
     let trials = run(plan, &tests, estimate);
     let interval = estimate(&trials);

@@ -5,7 +5,7 @@
 //! * Wilson: [x + z²/2 ± z√(x(n − x)/n + z²/4)]/(n + z²), all p whose own deviation reaches x; the default;
 //! * Clopper–Pearson: all p for which neither P(X ≥ x) nor P(X ≤ x) is below half of 1 − level. Its coverage is never
 //!   below the level, and mostly above;
-//! * the mean of two proportions: estimate ∓ ½√(δ₁² + δ₂²), δ the reaches of the two intervals on that side.
+//! * the mean of m proportions: estimate ∓ √(Σδ²)/m, δ the reaches of their intervals on that side.
 //!
 //! Trials come in rounds until the half width of the interval is below the one asked for, or there are no more trials.
 //! Where to stop then depends on the outcome only through the spread √(p(1 − p)), which a proportion hardly
@@ -71,16 +71,16 @@ impl Interval {
         Self { low: lowest(successes.floor(), n, tail), high: 1.0 - lowest((n - successes).floor(), n, tail) }
     }
 
-    /// The interval of the mean of two independent estimates.
+    /// The interval of the mean of independent estimates.
     #[must_use]
-    pub fn of_mean(estimates: [f64; 2], intervals: [Self; 2]) -> Self {
-        let [a, b] = estimates;
-        let [of_a, of_b] = intervals;
-        let middle = 0.5 * (a + b);
-        Self {
-            low: middle - 0.5 * (a - of_a.low).hypot(b - of_b.low),
-            high: middle + 0.5 * (of_a.high - a).hypot(of_b.high - b),
-        }
+    pub fn of_mean(estimates: &[f64], intervals: &[Self]) -> Self {
+        let n = estimates.len().max(1) as f64;
+        let middle = estimates.iter().sum::<f64>() / n;
+        let reach = |side: fn(f64, &Self) -> f64| {
+            let squares = estimates.iter().zip(intervals).map(|(&x, interval)| side(x, interval).powi(2));
+            squares.sum::<f64>().sqrt() / n
+        };
+        Self { low: middle - reach(|x, of| x - of.low), high: middle + reach(|x, of| of.high - x) }
     }
 }
 

@@ -13,14 +13,13 @@
 //!
 //! Source: Neyman and Pearson, Phil. Trans. R. Soc. A 231, 289 (1933), doi:10.1098/rsta.1933.0009.
 
+use super::affine::Affine;
 use super::{Classifier, Judge};
 use crate::error::{Error, Result, check};
 use crate::statistics::Statistics;
 
 /// Weight of a count that a class cannot have.
 const EXCLUDES: f64 = -1e280;
-/// Partial sums, so that products need not wait for each other.
-const LANES: usize = 8;
 
 /// The likelihood ratio between classes of known mean counts.
 ///
@@ -37,18 +36,15 @@ const LANES: usize = 8;
 #[derive(Debug, Clone)]
 pub struct LikelihoodRatio {
     bands: usize,
-    classes: Vec<Class>,
+    scores: Scores,
 }
 
-/// What the counts of one class are weighed with.
+/// ln-likelihoods as functions of the counts.
 #[derive(Debug, Clone)]
-struct Class {
-    constant: f64,
-    /// What is taken off the counts of each band.
-    centre: Vec<f64>,
-    /// Weight of what is left of them, and of its square.
-    linear: Vec<f64>,
-    square: Vec<f64>,
+enum Scores {
+    Linear(Affine),
+    /// Of each class: −½Σ ln v, and N and −½/v of each band.
+    Square(Vec<(f64, Vec<(f64, f64)>)>),
 }
 
 impl LikelihoodRatio {
@@ -75,31 +71,49 @@ impl LikelihoodRatio {
                 check::non_negative("mean counts of a band", mean, "counts")?;
             }
         }
-        let classes = means.iter().map(|class| Class::new(statistics, class, means));
-        Ok(Self { bands, classes: classes.collect::<Result<_>>()? })
+        let scores = match statistics {
+            Statistics::Gaussian { .. } => {
+                Scores::Square(means.iter().map(|class| square(statistics, class)).collect::<Result<_>>()?)
+            }
+            Statistics::Poisson | Statistics::NegativeBinomial { .. } => {
+                Scores::Linear(linear(statistics, means, bands))
+            }
+        };
+        Ok(Self { bands, scores })
     }
 }
 
-impl Class {
-    fn new(statistics: &Statistics, own: &[f64], all: &[Vec<f64>]) -> Result<Self> {
-        let bands = own.len();
-        let mut class =
-            Self { constant: 0.0, centre: vec![0.0; bands], linear: vec![0.0; bands], square: Vec::new() };
-        for (band, &mean) in own.iter().enumerate() {
-            let among = all.iter().map(|class| class[band]);
-            let middle = among.clone().sum::<f64>() / all.len() as f64;
-            if let Statistics::Gaussian { .. } = statistics {
-                let var = check::positive("variance of a band", statistics.variance(band, mean), "counts^2")?;
-                class.centre[band] = mean;
-                class.square.push(-0.5 / var);
-                class.constant -= 0.5 * var.ln();
-                continue;
-            }
-            if middle == 0.0 {
-                continue;
-            }
+/// Normal counts of one class.
+fn square(statistics: &Statistics, means: &[f64]) -> Result<(f64, Vec<(f64, f64)>)> {
+    let mut constant = 0.0;
+    let band = |(band, &mean): (usize, &f64)| {
+        let var = check::positive("variance of a band", statistics.variance(band, mean), "counts^2")?;
+        constant -= 0.5 * var.ln();
+        Ok((mean, -0.5 / var))
+    };
+    let bands = means.iter().enumerate().map(band).collect::<Result<_>>()?;
+    Ok((constant, bands))
+}
+
+/// Photons that are counted one by one: weights, and what the centre of the counts leaves.
+fn linear(statistics: &Statistics, means: &[Vec<f64>], bands: usize) -> Affine {
+    let classes = means.len();
+    let mut affine = Affine {
+        centre: vec![0.0; bands],
+        weights: vec![vec![0.0; bands]; classes],
+        constants: vec![0.0; classes],
+    };
+    for band in 0..bands {
+        let middle = means.iter().map(|class| class[band]).sum::<f64>() / classes as f64;
+        if middle == 0.0 {
+            continue;
+        }
+        let dark = means.iter().any(|class| class[band] == 0.0);
+        affine.centre[band] = if dark { 0.0 } else { middle };
+        for (c, class) in means.iter().enumerate() {
+            let mean = class[band];
             // ln[(m + N)/(m + M)], and m times it; their limits for many modes are 0 and N − M.
-            let (dark_log, dark) = match statistics {
+            let (dark_log, none) = match statistics {
                 Statistics::NegativeBinomial { modes } => {
                     let m = modes[band];
                     let log = ((mean - middle) / (m + middle)).ln_1p();
@@ -107,38 +121,13 @@ impl Class {
                 }
                 Statistics::Poisson | Statistics::Gaussian { .. } => (0.0, mean - middle),
             };
-            if among.clone().any(|mean| mean == 0.0) {
-                class.linear[band] = if mean == 0.0 { EXCLUDES } else { (mean / middle).ln() - dark_log };
-                class.constant -= dark;
-            } else {
-                let weight = ((mean - middle) / middle).ln_1p() - dark_log;
-                class.centre[band] = middle;
-                class.linear[band] = weight;
-                class.constant += middle.mul_add(weight, -dark);
-            }
+            let ratio = ((mean - middle) / middle).ln_1p();
+            let weight = if mean == 0.0 { EXCLUDES } else { ratio - dark_log };
+            affine.weights[c][band] = weight;
+            affine.constants[c] += if dark { -none } else { middle.mul_add(weight, -none) };
         }
-        Ok(class)
     }
-
-    fn score(&self, counts: &[f64]) -> f64 {
-        let mut sums = [0.0; LANES];
-        if self.square.is_empty() {
-            let bands = counts.chunks(LANES).zip(self.centre.chunks(LANES)).zip(self.linear.chunks(LANES));
-            for ((counts, centre), linear) in bands {
-                for (sum, ((n, m), a)) in sums.iter_mut().zip(counts.iter().zip(centre).zip(linear)) {
-                    *sum += (n - m) * a;
-                }
-            }
-        } else {
-            let bands = counts.chunks(LANES).zip(self.centre.chunks(LANES)).zip(self.square.chunks(LANES));
-            for ((counts, centre), square) in bands {
-                for (sum, ((n, m), a)) in sums.iter_mut().zip(counts.iter().zip(centre).zip(square)) {
-                    *sum += (n - m) * (n - m) * a;
-                }
-            }
-        }
-        self.constant + sums.iter().sum::<f64>()
-    }
+    affine
 }
 
 impl Classifier for LikelihoodRatio {
@@ -147,7 +136,10 @@ impl Classifier for LikelihoodRatio {
     }
 
     fn classes(&self) -> usize {
-        self.classes.len()
+        match &self.scores {
+            Scores::Linear(affine) => affine.constants.len(),
+            Scores::Square(classes) => classes.len(),
+        }
     }
 
     fn bands(&self) -> usize {
@@ -155,13 +147,22 @@ impl Classifier for LikelihoodRatio {
     }
 
     fn judge(&self) -> Box<dyn Judge + '_> {
-        Box::new(self)
+        match &self.scores {
+            Scores::Linear(affine) => Box::new(affine),
+            Scores::Square(classes) => Box::new(Normal(classes)),
+        }
     }
 }
 
-impl Judge for &LikelihoodRatio {
+/// Scores of normal counts.
+struct Normal<'r>(&'r [(f64, Vec<(f64, f64)>)]);
+
+impl Judge for Normal<'_> {
     fn score(&mut self, counts: &[f64], scores: &mut [f64]) -> bool {
-        scores.iter_mut().zip(&self.classes).for_each(|(score, class)| *score = class.score(counts));
+        for (score, (constant, bands)) in scores.iter_mut().zip(self.0) {
+            let square = counts.iter().zip(bands).map(|(n, (mean, weight))| (n - mean).powi(2) * weight);
+            *score = constant + square.sum::<f64>();
+        }
         true
     }
 }

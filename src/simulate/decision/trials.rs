@@ -1,12 +1,10 @@
 //! Trials of a decision, block by block.
 
-use crate::simulate::classifier::{Classifier, Judge};
+use crate::simulate::classifier::{Classifier, Judge, share};
 use crate::simulate::draws::{Draws, generator};
 use crate::simulate::sequential::{BLOCK, Interval, Plan};
 use rayon::prelude::*;
 
-/// Likelihoods closer than this are a tie: fits end within 1e-9 of the largest likelihood.
-const TIE: f64 = 1e-6;
 /// Streams of random numbers set aside for the trials of one truth.
 const STREAMS: u64 = 1 << 40;
 
@@ -52,12 +50,7 @@ impl Trials {
     /// Decides for the largest likelihood; those that tie share the decision.
     fn decide(&mut self, log_likelihoods: &[f64]) {
         self.decisions.resize(log_likelihoods.len(), 0.0);
-        let largest = log_likelihoods.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let wins = |value: f64| value >= largest - TIE;
-        let winners = log_likelihoods.iter().filter(|value| wins(**value)).count();
-        for (decided, value) in self.decisions.iter_mut().zip(log_likelihoods) {
-            *decided += if wins(*value) { 1.0 / winners as f64 } else { 0.0 };
-        }
+        share(log_likelihoods, &mut self.decisions);
         self.trials += 1;
     }
 }

@@ -1,0 +1,105 @@
+//! How often a classifier takes each class for each.
+
+use super::Classifier;
+use crate::error::{Error, Result};
+use crate::simulate::sequential::Interval;
+use crate::simulate::spectra::LabelledSpectra;
+use rayon::prelude::*;
+
+/// Spectra that one thread judges at a time.
+const CHUNK: usize = 256;
+/// Likelihoods closer than this are a tie: fits end within 1e-9 of the largest likelihood.
+pub(in crate::simulate) const TIE: f64 = 1e-6;
+
+/// Decisions counted by true and by chosen class; those that tie share one.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct Confusion {
+    /// `decisions[true][chosen]`.
+    pub decisions: Vec<Vec<f64>>,
+    /// Spectra whose scores were not as good as they should be.
+    pub unconverged: u64,
+}
+
+impl Confusion {
+    /// Judges all `spectra`. The result does not depend on the number of threads.
+    ///
+    /// # Errors
+    /// Spectra of other bands or classes than the classifier's.
+    pub fn of(classifier: &dyn Classifier, spectra: &LabelledSpectra) -> Result<Self> {
+        let (bands, classes) = (classifier.bands(), classifier.classes());
+        for (what, found, expected) in
+            [("bands", spectra.bands(), bands), ("classes", spectra.classes(), classes)]
+        {
+            if found != expected {
+                let what = format!("{what} of the spectra for the classifier `{}`", classifier.name());
+                return Err(Error::Length { what, found, expected });
+            }
+        }
+        let empty = || Self { decisions: vec![vec![0.0; classes]; classes], unconverged: 0 };
+        let parts: Vec<Self> = spectra
+            .counts()
+            .par_chunks(CHUNK * bands)
+            .zip(spectra.labels().par_chunks(CHUNK))
+            .map_init(
+                || classifier.judge(),
+                |judge, (counts, labels)| {
+                    let (mut part, mut scores) = (empty(), vec![0.0; classes]);
+                    for (counts, &label) in counts.chunks_exact(bands).zip(labels) {
+                        part.unconverged += u64::from(!judge.score(counts, &mut scores));
+                        share(&scores, &mut part.decisions[label]);
+                    }
+                    part
+                },
+            )
+            .collect();
+        let mut sum = empty();
+        for part in &parts {
+            let cells = sum.decisions.iter_mut().flatten().zip(part.decisions.iter().flatten());
+            cells.for_each(|(sum, more)| *sum += more);
+            sum.unconverged += part.unconverged;
+        }
+        Ok(sum)
+    }
+
+    /// Spectra of each class.
+    #[must_use]
+    pub fn spectra(&self) -> Vec<f64> {
+        self.decisions.iter().map(|row| row.iter().sum()).collect()
+    }
+
+    /// Share of right decisions of each class.
+    #[must_use]
+    pub fn shares(&self) -> Vec<f64> {
+        let share = |(class, spectra): (usize, f64)| self.decisions[class][class] / spectra.max(1.0);
+        self.spectra().into_iter().enumerate().map(share).collect()
+    }
+
+    /// Balanced accuracy: the mean over the classes of the share of right decisions.
+    #[must_use]
+    pub fn accuracy(&self) -> f64 {
+        let shares = self.shares();
+        shares.iter().sum::<f64>() / shares.len().max(1) as f64
+    }
+
+    /// Interval of the balanced accuracy at a level, from Wilson's of every class.
+    #[must_use]
+    pub fn interval(&self, level: f64) -> Interval {
+        let intervals: Vec<Interval> = self
+            .spectra()
+            .into_iter()
+            .enumerate()
+            .map(|(class, spectra)| Interval::wilson(self.decisions[class][class], spectra as u64, level))
+            .collect();
+        Interval::of_mean(&self.shares(), &intervals)
+    }
+}
+
+/// Adds one decision to the class of the largest score; those that tie share it.
+pub(in crate::simulate) fn share(scores: &[f64], decisions: &mut [f64]) {
+    let largest = scores.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let wins = |score: f64| score >= largest - TIE;
+    let winners = scores.iter().filter(|score| wins(**score)).count().max(1);
+    for (decided, score) in decisions.iter_mut().zip(scores) {
+        *decided += if wins(*score) { 1.0 / winners as f64 } else { 0.0 };
+    }
+}
