@@ -2,7 +2,9 @@
 //!
 //! * [`draws`]: counts about given means by the laws of [`crate::statistics`];
 //! * [`sequential`]: how sure a proportion of trials is, and when there have been enough;
-//! * [`decision`]: the maximum-likelihood decision among materials whose states are not known.
+//! * [`classifier`]: rules of decision, those that know the physics and those that learn, behind one trait;
+//! * [`decision`]: the maximum-likelihood decision among materials whose states are not known;
+//! * [`spectra`], [`experiment`]: labelled spectra, and how often each classifier is right about them.
 //!
 //! Bounds never make use of simulations. Every block of trials has a stream of random numbers of its own, so results
 //! do not depend on the number of threads, and a seed brings them back.
@@ -10,5 +12,6 @@
 pub mod classifier;
 pub mod decision;
 pub mod draws;
+pub mod experiment;
 pub mod sequential;
 pub mod spectra;

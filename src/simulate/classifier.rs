@@ -9,6 +9,7 @@ mod confusion;
 mod discriminant;
 mod likelihood_ratio;
 mod logistic;
+mod model;
 
 pub use best_fits::{BestFits, Candidate};
 pub use confusion::Confusion;
@@ -16,6 +17,7 @@ pub(super) use confusion::share;
 pub use discriminant::{Discriminant, SHRINKAGES};
 pub use likelihood_ratio::LikelihoodRatio;
 pub use logistic::Logistic;
+pub use model::{Method, SavedModel, Trained};
 
 use super::spectra::LabelledSpectra;
 use crate::error::{Error, Result};

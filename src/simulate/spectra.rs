@@ -6,6 +6,7 @@
 use super::draws::{Draws, generator};
 use crate::error::{Error, Result};
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Streams of random numbers set aside for the spectra of one class.
 const STREAMS: u64 = 1 << 40;
@@ -44,17 +45,19 @@ impl LabelledSpectra {
     }
 
     /// Spectra `range` of every class, drawn by the laws of `draws`, one of each class; class by class in turn.
-    #[must_use]
-    pub fn draw(draws: &[Draws], range: std::ops::Range<usize>, seed: u64) -> Self {
-        let (bands, classes) = (draws.first().map_or(0, Draws::bands), draws.len());
+    ///
+    /// # Errors
+    /// No classes, or laws for different numbers of bands.
+    pub fn draw(draws: &[Draws], range: Range<usize>, seed: u64) -> Result<Self> {
+        let (bands, classes) = (check_laws(draws)?, draws.len());
         let mut counts = vec![0.0; bands * classes * range.len()];
-        counts.par_chunks_mut((bands * classes).max(1)).zip(range.clone()).for_each(|(chunk, i)| {
-            for (class, (spectrum, draws)) in chunk.chunks_mut(bands).zip(draws).enumerate() {
-                draws.draw_into(&mut generator(seed, class as u64 * STREAMS + i as u64), spectrum);
+        counts.par_chunks_mut(bands * classes).zip(range.clone()).for_each(|(chunk, i)| {
+            for (class, spectrum) in chunk.chunks_mut(bands).enumerate() {
+                draw_one(draws, class, i, seed, spectrum);
             }
         });
         let labels = range.flat_map(|_| 0..classes).collect();
-        Self { bands, classes, counts, labels }
+        Ok(Self { bands, classes, counts, labels })
     }
 
     /// How many spectra there are.
@@ -99,14 +102,58 @@ impl LabelledSpectra {
     }
 }
 
-/// Spectra for training, for validation and for the test, in the shares of the paper: 25, 25 and 50 %.
+/// Draws spectrum `i` of one class.
+pub(super) fn draw_one(draws: &[Draws], class: usize, i: usize, seed: u64, counts: &mut [f64]) {
+    let stream = class as u64 * STREAMS + i as u64;
+    draws[class].draw_into(&mut generator(seed, stream), counts);
+}
+
+/// Makes sure that there are classes of as many bands each; returns the bands.
+pub(super) fn check_laws(draws: &[Draws]) -> Result<usize> {
+    let expected = draws.first().map_or(0, Draws::bands);
+    if expected == 0 {
+        return Err(Error::malformed("there are no bands or classes to draw", "give at least one"));
+    }
+    match draws.iter().map(Draws::bands).find(|bands| *bands != expected) {
+        Some(found) => Err(Error::Length { what: "bands of a class".into(), found, expected }),
+        None => Ok(expected),
+    }
+}
+
+/// Which spectra of each class are for training, for validation and for the test: 25, 25 and 50 %, as in the paper.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Parts {
+    /// What parameters are fitted to.
+    pub training: Range<usize>,
+    /// What says when to stop.
+    pub validation: Range<usize>,
+    /// What the accuracy is measured on; no classifier sees it before.
+    pub test: Range<usize>,
+}
+
+impl Parts {
+    /// Parts of `per_class` spectra.
+    ///
+    /// # Errors
+    /// Fewer than 4, which leave a part empty.
+    pub fn of(per_class: usize) -> Result<Self> {
+        if per_class < 4 {
+            let expected = "at least 4: a quarter each for training and validation, half for the test";
+            return Err(Error::out_of_range("spectra of each class", per_class as f64, "", expected));
+        }
+        let quarter = per_class / 4;
+        Ok(Self { training: 0..quarter, validation: quarter..2 * quarter, test: 2 * quarter..per_class })
+    }
+}
+
+/// Spectra for training, for validation and for the test.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Split {
-    /// What parameters are fitted to.
+    /// See [`Parts`].
     pub training: LabelledSpectra,
-    /// What says when to stop.
+    /// See [`Parts`].
     pub validation: LabelledSpectra,
-    /// What the accuracy is measured on; no classifier sees it before.
+    /// See [`Parts`].
     pub test: LabelledSpectra,
 }
 
@@ -114,29 +161,14 @@ impl Split {
     /// Draws `per_class` spectra of every class.
     ///
     /// # Errors
-    /// Fewer than 4 spectra of a class, which leave one of the parts empty, or laws for different numbers of bands.
+    /// As [`Parts::of`] and [`LabelledSpectra::draw`].
     pub fn draw(draws: &[Draws], per_class: usize, seed: u64) -> Result<Self> {
-        if per_class < 4 {
-            let expected = "at least 4: a quarter each for training and validation, half for the test";
-            return Err(Error::out_of_range("spectra of each class", per_class as f64, "", expected));
-        }
-        let bands = draws.first().map_or(0, Draws::bands);
-        if bands == 0 {
-            return Err(Error::malformed("there are no bands or classes to draw", "give at least one"));
-        }
-        if let Some(other) = draws.iter().find(|other| other.bands() != bands) {
-            return Err(Error::Length {
-                what: "bands of a class".into(),
-                found: other.bands(),
-                expected: bands,
-            });
-        }
-        let quarter = per_class / 4;
+        let parts = Parts::of(per_class)?;
         let part = |range| LabelledSpectra::draw(draws, range, seed);
         Ok(Self {
-            training: part(0..quarter),
-            validation: part(quarter..2 * quarter),
-            test: part(2 * quarter..per_class),
+            training: part(parts.training)?,
+            validation: part(parts.validation)?,
+            test: part(parts.test)?,
         })
     }
 }
@@ -154,7 +186,7 @@ mod tests {
     /// A spectrum depends on its class and its number alone.
     #[test]
     fn a_spectrum_is_the_same_however_many_are_drawn() {
-        let (few, many) = (LabelledSpectra::draw(&two(), 3..5, 7), LabelledSpectra::draw(&two(), 0..9, 7));
+        let [few, many] = [3..5, 0..9].map(|range| LabelledSpectra::draw(&two(), range, 7).unwrap());
         assert_eq!(few.counts(), &many.counts()[3 * 4..5 * 4]);
         assert_ne!(few.counts()[..2], few.counts()[4..6]);
         assert_eq!(many.labels()[..4], [0, 1, 0, 1]);
@@ -165,7 +197,7 @@ mod tests {
     fn parts_are_25_25_and_50_percent() {
         let split = Split::draw(&two(), 40, 1).unwrap();
         assert_eq!([split.training.len(), split.validation.len(), split.test.len()], [20, 20, 40]);
-        let whole = LabelledSpectra::draw(&two(), 0..40, 1);
+        let whole = LabelledSpectra::draw(&two(), 0..40, 1).unwrap();
         let parts = [&split.training, &split.validation, &split.test].map(LabelledSpectra::counts).concat();
         assert_eq!(parts, whole.counts());
     }

@@ -1,10 +1,12 @@
 //! How often a classifier takes each class for each.
 
-use super::Classifier;
+use super::{Classifier, Judge};
 use crate::error::{Error, Result};
+use crate::simulate::draws::Draws;
 use crate::simulate::sequential::Interval;
-use crate::simulate::spectra::LabelledSpectra;
+use crate::simulate::spectra::{LabelledSpectra, check_laws, draw_one};
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Spectra that one thread judges at a time.
 const CHUNK: usize = 256;
@@ -26,16 +28,8 @@ impl Confusion {
     /// # Errors
     /// Spectra of other bands or classes than the classifier's.
     pub fn of(classifier: &dyn Classifier, spectra: &LabelledSpectra) -> Result<Self> {
-        let (bands, classes) = (classifier.bands(), classifier.classes());
-        for (what, found, expected) in
-            [("bands", spectra.bands(), bands), ("classes", spectra.classes(), classes)]
-        {
-            if found != expected {
-                let what = format!("{what} of the spectra for the classifier `{}`", classifier.name());
-                return Err(Error::Length { what, found, expected });
-            }
-        }
-        let empty = || Self { decisions: vec![vec![0.0; classes]; classes], unconverged: 0 };
+        let (bands, classes) = (spectra.bands(), spectra.classes());
+        check(classifier, bands, classes)?;
         let parts: Vec<Self> = spectra
             .counts()
             .par_chunks(CHUNK * bands)
@@ -43,22 +37,70 @@ impl Confusion {
             .map_init(
                 || classifier.judge(),
                 |judge, (counts, labels)| {
-                    let (mut part, mut scores) = (empty(), vec![0.0; classes]);
+                    let (mut part, mut scores) = (Self::empty(classes), vec![0.0; classes]);
                     for (counts, &label) in counts.chunks_exact(bands).zip(labels) {
-                        part.unconverged += u64::from(!judge.score(counts, &mut scores));
-                        share(&scores, &mut part.decisions[label]);
+                        part.judge(judge.as_mut(), counts, label, &mut scores);
                     }
                     part
                 },
             )
             .collect();
-        let mut sum = empty();
-        for part in &parts {
+        Ok(Self::sum(classes, parts.iter()))
+    }
+
+    /// Draws spectra `range` of every class by `draws`, has each judged by all `classifiers`, and forgets it.
+    ///
+    /// # Errors
+    /// No classes, laws for different numbers of bands, a classifier of other bands or classes.
+    pub fn of_draws(
+        classifiers: &[&dyn Classifier],
+        draws: &[Draws],
+        range: Range<usize>,
+        seed: u64,
+    ) -> Result<Vec<Self>> {
+        let (bands, classes) = (check_laws(draws)?, draws.len());
+        classifiers.iter().try_for_each(|classifier| check(*classifier, bands, classes))?;
+        let chunks: Vec<Range<usize>> =
+            range.clone().step_by(CHUNK).map(|first| first..(first + CHUNK).min(range.end)).collect();
+        let parts: Vec<Vec<Self>> = chunks
+            .into_par_iter()
+            .map_init(
+                || classifiers.iter().map(|classifier| classifier.judge()).collect::<Vec<_>>(),
+                |judges, chunk| {
+                    let mut parts = vec![Self::empty(classes); classifiers.len()];
+                    let (mut counts, mut scores) = (vec![0.0; bands], vec![0.0; classes]);
+                    for i in chunk {
+                        for class in 0..classes {
+                            draw_one(draws, class, i, seed, &mut counts);
+                            for (part, judge) in parts.iter_mut().zip(judges.iter_mut()) {
+                                part.judge(judge.as_mut(), &counts, class, &mut scores);
+                            }
+                        }
+                    }
+                    parts
+                },
+            )
+            .collect();
+        Ok((0..classifiers.len()).map(|i| Self::sum(classes, parts.iter().map(|part| &part[i]))).collect())
+    }
+
+    fn empty(classes: usize) -> Self {
+        Self { decisions: vec![vec![0.0; classes]; classes], unconverged: 0 }
+    }
+
+    fn judge(&mut self, judge: &mut dyn Judge, counts: &[f64], class: usize, scores: &mut [f64]) {
+        self.unconverged += u64::from(!judge.score(counts, scores));
+        share(scores, &mut self.decisions[class]);
+    }
+
+    fn sum<'p>(classes: usize, parts: impl Iterator<Item = &'p Self>) -> Self {
+        let mut sum = Self::empty(classes);
+        for part in parts {
             let cells = sum.decisions.iter_mut().flatten().zip(part.decisions.iter().flatten());
             cells.for_each(|(sum, more)| *sum += more);
             sum.unconverged += part.unconverged;
         }
-        Ok(sum)
+        sum
     }
 
     /// Spectra of each class.
@@ -92,6 +134,19 @@ impl Confusion {
             .collect();
         Interval::of_mean(&self.shares(), &intervals)
     }
+}
+
+/// Makes sure that spectra are of the classifier's bands and classes.
+fn check(classifier: &dyn Classifier, bands: usize, classes: usize) -> Result<()> {
+    for (what, found, expected) in
+        [("bands", bands, classifier.bands()), ("classes", classes, classifier.classes())]
+    {
+        if found != expected {
+            let what = format!("{what} of the spectra for the classifier `{}`", classifier.name());
+            return Err(Error::Length { what, found, expected });
+        }
+    }
+    Ok(())
 }
 
 /// Adds one decision to the class of the largest score; those that tie share it.

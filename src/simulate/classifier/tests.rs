@@ -59,13 +59,13 @@ fn many_bands_cost_what_theory_says() {
     for distance in [0.7_f64, 1.5] {
         let means = two(bands, distance);
         let draws = draws(&means);
-        let test = LabelledSpectra::draw(&draws, 0..5000, 12);
+        let test = LabelledSpectra::draw(&draws, 0..5000, 12).unwrap();
         let ratio = bands as f64 / 400.0;
         let learnt = distance / (1.0 + ratio / (distance * distance)).sqrt();
         for (shrinkage, expected) in [(0.0, learnt * (1.0 - ratio).sqrt()), (1.0, learnt)] {
             let rights: Vec<f64> = (0..sets)
                 .map(|seed| {
-                    let training = LabelledSpectra::draw(&draws, 0..200, 100 + seed);
+                    let training = LabelledSpectra::draw(&draws, 0..200, 100 + seed).unwrap();
                     let trained = Discriminant::train(&training, &training, &[shrinkage]).unwrap();
                     Confusion::of(&trained, &test).unwrap().accuracy()
                 })
@@ -126,6 +126,15 @@ fn several_classes_and_dead_bands() {
         assert!(confusion.accuracy() > best - 0.01, "{}: {}", trained.name(), confusion.accuracy());
         assert_eq!(confusion.spectra(), [4000.0; 3]);
     }
+}
+
+/// Spectra that are drawn, judged and forgotten are those that are drawn and kept.
+#[test]
+fn kept_or_forgotten_spectra_are_the_same() {
+    let means = two(4, 0.6);
+    let (draws, rule) = (draws(&means), LikelihoodRatio::new(&Statistics::Poisson, &means).unwrap());
+    let kept = Confusion::of(&rule, &LabelledSpectra::draw(&draws, 100..900, 3).unwrap()).unwrap();
+    assert_eq!(Confusion::of_draws(&[&rule, &rule], &draws, 100..900, 3).unwrap(), [kept.clone(), kept]);
 }
 
 #[test]

@@ -1,0 +1,105 @@
+//! One experiment: spectra of known classes drawn, classifiers trained on a part of them, all judged on the rest.
+//!
+//! Spectra 0 … n/4 of each class are for training, the next quarter for validation, the other half for the test, as in
+//! the paper. Test spectra are drawn, judged by every classifier and forgotten, so that their number takes no memory;
+//! training spectra are drawn only if something is trained.
+
+use super::classifier::{BestFits, Classifier, Confusion, LikelihoodRatio, Method, Trained};
+use super::draws::Draws;
+use super::sequential::Interval;
+use super::spectra::{LabelledSpectra, Parts};
+use crate::error::{Error, Result};
+use crate::statistics::Statistics;
+
+/// What is drawn, and how it is judged.
+pub struct Experiment<'a> {
+    /// The law of each class's counts.
+    pub draws: &'a [Draws],
+    /// Mean counts of each class.
+    pub means: &'a [Vec<f64>],
+    /// The law that the likelihood ratio takes the counts to follow.
+    pub statistics: &'a Statistics,
+    /// The rule of best fits, where it takes part.
+    pub best_fits: Option<&'a BestFits<'a>>,
+    /// Classifiers trained before, which take part as they are.
+    pub trained: &'a [Trained],
+}
+
+/// How it is made.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Design {
+    /// Spectra of each class: a quarter each for training and validation, half for the test.
+    pub per_class: usize,
+    /// Who takes part.
+    pub methods: Vec<Method>,
+    /// Seed of everything that is drawn.
+    pub seed: u64,
+    /// Level of the confidence intervals.
+    pub level: f64,
+}
+
+/// How often one classifier was right on the test spectra.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct Performance {
+    /// Which.
+    pub method: Method,
+    /// Balanced accuracy: share of right decisions, averaged over the classes.
+    pub accuracy: f64,
+    /// Its confidence interval.
+    pub interval: Interval,
+    /// Share of right decisions of each class, and of wrong ones for each.
+    pub confusion: Confusion,
+    /// How training went.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub training: Option<String>,
+}
+
+impl Experiment<'_> {
+    /// Trains and judges. The trained classifiers come with their performances, all in the order of the design, those
+    /// that were trained before last.
+    ///
+    /// # Errors
+    /// Fewer than 4 spectra of a class; best fits asked for that are not given; classes that do not fit together.
+    pub fn run(&self, design: &Design) -> Result<(Vec<Performance>, Vec<Trained>)> {
+        let parts = Parts::of(design.per_class)?;
+        let mut learnt = Vec::new();
+        if design.methods.iter().any(|method| method.is_trained()) {
+            let training = LabelledSpectra::draw(self.draws, parts.training.clone(), design.seed)?;
+            let validation = LabelledSpectra::draw(self.draws, parts.validation.clone(), design.seed)?;
+            for method in &design.methods {
+                learnt.extend(method.train(&training, &validation, design.seed)?);
+            }
+        }
+        let ratio = LikelihoodRatio::new(self.statistics, self.means)?;
+        let mut rules: Vec<(Method, &dyn Classifier, Option<String>)> = Vec::new();
+        let mut waiting = learnt.iter();
+        for &method in &design.methods {
+            match method {
+                Method::LikelihoodRatio => rules.push((method, &ratio, None)),
+                Method::BestFits => {
+                    let Some(fits) = self.best_fits else {
+                        let found = "best fits take part, but no materials to fit are given";
+                        return Err(Error::malformed(found, "give them"));
+                    };
+                    rules.push((method, fits, None));
+                }
+                _ => rules.extend(waiting.next().map(|t| (method, t as &dyn Classifier, Some(t.training())))),
+            }
+        }
+        rules.extend(self.trained.iter().map(|t| (t.method(), t as &dyn Classifier, Some(t.training()))));
+        let classifiers: Vec<&dyn Classifier> = rules.iter().map(|rule| rule.1).collect();
+        let confusions = Confusion::of_draws(&classifiers, self.draws, parts.test, design.seed)?;
+        let performances = rules
+            .into_iter()
+            .zip(confusions)
+            .map(|((method, _, training), confusion)| Performance {
+                method,
+                accuracy: confusion.accuracy(),
+                interval: confusion.interval(design.level),
+                confusion,
+                training,
+            })
+            .collect();
+        Ok((performances, learnt))
+    }
+}
