@@ -7,6 +7,8 @@ mod cameras;
 mod identify;
 mod materials;
 mod progress;
+mod reproduce;
+mod simulate;
 mod size;
 
 use crate::error::{Error, Result};
@@ -35,6 +37,10 @@ enum Command {
     Size(size::SizeArgs),
     /// Distances from the target to every alternative
     Identify(identify::IdentifyArgs),
+    /// Draw spectra, train and judge classifiers, and hold them against the limit
+    Simulate(simulate::SimulateArgs),
+    /// The paper's figures and tables made again, with a ledger of what agrees
+    Reproduce(reproduce::ReproduceArgs),
     /// The materials: list, show, plot, import
     Materials(materials::MaterialsArgs),
     /// The known cameras: list, show
@@ -94,6 +100,8 @@ fn run(cli: &Cli) -> Result<ExitCode> {
     match &cli.command {
         Command::Size(args) => size::run(args, &cli.global),
         Command::Identify(args) => identify::run(args, &cli.global),
+        Command::Simulate(args) => simulate::run(args, &cli.global),
+        Command::Reproduce(args) => reproduce::run(args, &cli.global),
         Command::Materials(args) => materials::run(args, &cli.global),
         Command::Cameras(args) => cameras::run(args, &cli.global),
     }

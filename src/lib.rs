@@ -10,6 +10,7 @@ pub mod material;
 pub mod planck;
 pub mod policy;
 pub mod report;
+pub mod reproduce;
 mod root;
 pub mod scenario;
 pub mod scene;

@@ -4,6 +4,7 @@ pub mod bundle;
 pub mod figures;
 pub mod library;
 pub mod plot;
+pub mod simulation;
 pub mod sizing;
 pub mod table;
 pub mod tables;

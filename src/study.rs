@@ -14,10 +14,12 @@ mod exact;
 mod identify;
 mod magnitudes;
 mod matrix;
+mod noise_curves;
 mod priors;
 mod resolve;
 mod samples;
 mod scaling;
+mod simulation;
 mod size;
 mod warn;
 
@@ -27,10 +29,14 @@ pub use curves::{InformationCurves, PhotonMap, Spectra};
 pub use exact::{Exact, ExactLibrary, ExactPair, Law, Trial};
 pub use identify::{Identifiability, Identification, NearestState, PairResult, Prediction};
 pub use matrix::{Apart, Check, Matrix, Rows, TargetVerdict};
+pub use noise_curves::{NoiseCurve, NoiseCurves};
 pub use priors::PriorAverage;
 pub use resolve::{Study, Surface};
 pub use samples::SampleSpectra;
 pub use scaling::{BandNumber, LibrarySize, Scaling};
+pub use simulation::{
+    PhotonLaw, SimulatedClass, SimulatedPerformance, SimulatedPoint, Simulation, SimulationPlan, Standing,
+};
 pub use size::{CameraResult, RequirementResult, Sizing, Verdict};
 
 /// Something the reader of a result must know, with a code that programs can rely on.

@@ -1,8 +1,10 @@
 //! Results as text for people: the answer in a sentence, then the numbers, then what they rest on.
 
 mod many;
+mod simulation;
 
 pub use many::{answers, check, work, work_of};
+pub use simulation::simulation;
 
 use crate::instrument::{Camera, Figures, NoiseSpec};
 use crate::policy::Quantity;

@@ -122,15 +122,13 @@ impl Study {
             .fold(0.0, f64::max);
         let low = if least.is_finite() { least } else { own.unwrap_or(1e6) } * 1e-3;
         let high = most.max(own.unwrap_or(0.0)).max(low * 1e3) * 1e3;
-        let photons: Vec<f64> = (0..CURVE_POINTS)
-            .map(|i| (low.ln() + (high / low).ln() * i as f64 / (CURVE_POINTS - 1) as f64).exp())
-            .collect();
+        let photons = logarithmic([low, high], CURVE_POINTS);
         let shot = |distance: f64| -> Vec<f64> {
             photons.iter().map(|n| detection::information_bits(n.sqrt() * distance)).collect()
         };
-        let camera_bits = match (&self.camera, own) {
-            (Some(camera), Some(own)) => self.camera_bits(camera, alternative, &photons, own)?,
-            _ => Vec::new(),
+        let camera_bits = match &self.camera {
+            Some(camera) => self.camera_bits(camera, alternative, &photons)?,
+            None => Vec::new(),
         };
         Ok(InformationCurves {
             nearest_bits: shot(distance_nearest),
@@ -145,15 +143,12 @@ impl Study {
         camera: &Camera,
         alternative: &Surface,
         photons: &[f64],
-        own: f64,
     ) -> Result<Vec<f64>> {
         let kind = self.scenario.requirement.by;
         photons
             .iter()
             .map(|n| {
-                let exposure_s = camera.integration_s() * n / own;
-                let exposed = Camera { exposure_s, frames: 1, ..camera.clone() };
-                let counting = exposed.counting(&self.bands, self.scenario.target.distance_m);
+                let counting = self.counting_with(camera, *n);
                 self.statistical_distance(kind, alternative, &counting).map(detection::information_bits)
             })
             .collect()
@@ -199,6 +194,12 @@ impl Study {
         }
         Ok(Some(PhotonMap { temperatures_k, lightings, photons, equilibrium_k }))
     }
+}
+
+/// So many values from the first to the second, evenly spread in the logarithm.
+pub(super) fn logarithmic([low, high]: [f64; 2], points: usize) -> Vec<f64> {
+    let last = points.saturating_sub(1).max(1) as f64;
+    (0..points).map(|i| (low.ln() + (high / low).ln() * i as f64 / last).exp()).collect()
 }
 
 /// Temperatures around those of the scene, one of them exactly that of the environment.

@@ -33,6 +33,18 @@ impl Method {
         }
     }
 
+    /// What it is called in a figure.
+    #[must_use]
+    pub const fn words(self) -> &'static str {
+        match self {
+            Self::LikelihoodRatio => "likelihood ratio, states known",
+            Self::BestFits => "best fits, states unknown",
+            Self::Discriminant => "linear discriminant",
+            Self::Logistic => "logistic regression",
+            Self::Network => "convolutional network",
+        }
+    }
+
     /// Whether it learns from spectra instead of knowing the physics.
     #[must_use]
     pub const fn is_trained(self) -> bool {

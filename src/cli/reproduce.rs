@@ -1,0 +1,123 @@
+//! `hadar reproduce`: the paper's figures and tables made again, with a ledger of what agrees.
+
+use super::Global;
+use crate::error::{Error, Result};
+use crate::report::bundle::Bundle;
+use crate::reproduce::{Effort, Item, Line, Order, Verdict, markdown, table};
+use clap::Args;
+use std::process::ExitCode;
+use std::time::Instant;
+
+#[derive(Debug, Args)]
+pub(super) struct ReproduceArgs {
+    /// Figures and tables: fig3b, figs7, fig3c, edfig6, edfig9, tabs2, policy, or all
+    #[arg(value_name = "ID", default_value = "all")]
+    items: Vec<String>,
+    /// Some of the experiments only: within a minute on two cores
+    #[arg(long)]
+    quick: bool,
+}
+
+/// What is printed with `--json`.
+#[derive(serde::Serialize)]
+struct Output {
+    effort: &'static str,
+    seed: u64,
+    ledger: Vec<Line>,
+}
+
+pub(super) fn run(args: &ReproduceArgs, global: &Global) -> Result<ExitCode> {
+    let items = items(&args.items)?;
+    let effort = if args.quick { Effort::Quick } else { Effort::Full };
+    let order = Order { effort, seed: global.seed };
+    let mut ledger = Vec::new();
+    for (i, item) in items.iter().enumerate() {
+        let start = Instant::now();
+        let bar = global.progress(item.name());
+        let folder = global.out.as_ref().map(|out| out.join(item.name()));
+        let place = folder.clone().unwrap_or_default();
+        let made = item.make(order, &place, &|done, total| bar.set(done, total))?;
+        bar.finish();
+        let took = start.elapsed().as_secs_f64();
+        global.note(&format!("{} of {}: {}, {took:.1} s", i + 1, items.len(), item.title()));
+        if let Some(folder) = folder {
+            global.write(&made.bundle, &folder)?;
+        }
+        ledger.extend(made.lines);
+    }
+    if let Some(out) = global.out.as_ref().filter(|_| items.len() == Item::ALL.len()) {
+        let mut bundle = Bundle::default();
+        bundle.add("ledger.csv", table(&ledger).to_csv()?);
+        bundle.add("README.md", overview(&items, &ledger));
+        global.write(&bundle, out)?;
+    }
+    let text = text(&items, &ledger);
+    let effort = if args.quick { "quick" } else { "full" };
+    global.print(&Output { effort, seed: global.seed, ledger }, &text)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn items(names: &[String]) -> Result<Vec<Item>> {
+    if names.iter().any(|name| name == "all") {
+        if names.len() > 1 {
+            return Err(Error::malformed("`all` beside other names", "write `all` alone, or the names"));
+        }
+        return Ok(Item::ALL.to_vec());
+    }
+    let mut items = Vec::new();
+    for name in names {
+        let item = Item::from_name(name)?;
+        if !items.contains(&item) {
+            items.push(item);
+        }
+    }
+    Ok(items)
+}
+
+fn counts(ledger: &[Line]) -> String {
+    let of = |verdict: Verdict| ledger.iter().filter(|line| line.verdict == verdict).count();
+    format!(
+        "Of {} values {} are reproduced and {} more under a stated choice; {} are not, {} are errors in the paper; for {} it \
+         prints no value.",
+        ledger.len(),
+        of(Verdict::Reproduced),
+        of(Verdict::UnderAChoice),
+        of(Verdict::NotReproduced),
+        of(Verdict::PaperInError),
+        of(Verdict::NoValuePrinted)
+    )
+}
+
+fn text(items: &[Item], ledger: &[Line]) -> String {
+    let names: Vec<&str> = items.iter().map(|item| item.title()).collect();
+    let mut text = format!("{}\n\n{}\n", counts(ledger), names.join("\n"));
+    for line in ledger {
+        text.push_str(&format!(
+            "\n{}: {}\n  paper  {}\n  ours   {}\n  {}: {}\n",
+            line.place,
+            line.quantity,
+            line.paper,
+            line.ours,
+            line.verdict.words(),
+            line.why
+        ));
+    }
+    text
+}
+
+fn overview(items: &[Item], ledger: &[Line]) -> String {
+    let mut page = format!(
+        "# What of the paper comes out again\n\nMade by `hadar reproduce all --out reports`. Paper: Bao et al., \
+         Nature 619, 743 (2023), doi:10.1038/s41586-023-06174-6.\n\n{}\n\n",
+        counts(ledger)
+    );
+    for item in items {
+        page.push_str(&format!("* [{}]({}/README.md)\n", item.title(), item.name()));
+    }
+    page.push_str(
+        "\nFurther studies, made by the programs of `examples/`: [exact decisions](exact_probability/README.md), \
+         [the paper's own library](library_figures/README.md), [priors](priors/README.md).\n\n",
+    );
+    page.push_str(&markdown(ledger));
+    page
+}

@@ -1,0 +1,144 @@
+//! `hadar simulate`: spectra drawn, classifiers trained and judged, held against the limit.
+
+use super::Global;
+use crate::error::{Error, Result};
+use crate::grid::text_of_file;
+use crate::report::bundle::Bundle;
+use crate::report::{simulation, text};
+use crate::simulate::classifier::{Method, SavedModel};
+use crate::simulate::experiment::Design;
+use crate::study::{PhotonLaw, SimulationPlan, Study};
+use clap::Args;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// Normalised photon numbers N d₀² that a sweep covers, and its curves.
+const SWEEP: [f64; 2] = [0.01, 10.0];
+const CURVES: [f64; 2] = [0.01, 1e8];
+const CURVE_POINTS: usize = 101;
+
+#[derive(Debug, Args)]
+pub(super) struct SimulateArgs {
+    /// The scenario file (TOML)
+    scenario: PathBuf,
+    /// Who takes part: likelihood-ratio, best-fits, discriminant, logistic, network (default: all)
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', help_heading = "Classifiers")]
+    classifiers: Vec<String>,
+    /// Spectra of each class: a quarter for training, a quarter for validation, half for the test
+    #[arg(long, value_name = "N", default_value_t = 5000, help_heading = "Spectra")]
+    spectra: usize,
+    /// Photons of the target, one experiment each (default: the camera's; without one those required)
+    #[arg(
+        long,
+        value_name = "N",
+        value_delimiter = ',',
+        allow_negative_numbers = true,
+        help_heading = "Spectra"
+    )]
+    photons: Vec<f64>,
+    /// K experiments with N d0^2 from 0.01 to 10, d0 the nearest distance in shot noise
+    #[arg(long, value_name = "K", conflicts_with = "photons", help_heading = "Spectra")]
+    sweep: Option<usize>,
+    /// How photons are counted
+    #[arg(long, value_enum, default_value_t = Statistics::Poisson, help_heading = "Spectra")]
+    statistics: Statistics,
+    /// Leave out the camera's electronic noise
+    #[arg(long, help_heading = "Spectra")]
+    shot_noise_only: bool,
+    /// Alternatives that are classes beside the target (default: the one nearest to it); `all` for all of them
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', help_heading = "Spectra")]
+    against: Vec<String>,
+    /// Write the trained classifiers of the last experiment into this folder
+    #[arg(long, value_name = "DIR", help_heading = "Classifiers")]
+    save_models: Option<PathBuf>,
+    /// A saved classifier that takes part as it is; may be given several times
+    #[arg(long, value_name = "FILE", help_heading = "Classifiers")]
+    model: Vec<PathBuf>,
+    /// Exit with code 3 if a classifier was right more often than the limit allows
+    #[arg(long)]
+    check: bool,
+}
+
+/// Laws of photons, as a flag.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Statistics {
+    /// Each on its own
+    Poisson,
+    /// Bunched, as thermal light is
+    NegativeBinomial,
+    /// As many in every spectrum: multinomial
+    FixedTotal,
+}
+
+pub(super) fn run(args: &SimulateArgs, global: &Global) -> Result<ExitCode> {
+    let study = global.study(&args.scenario, None)?;
+    let plan = plan(args, &study, global)?;
+    if let Some(folder) = &args.save_models {
+        Bundle::check_destination(folder)?;
+    }
+    let bar = global.progress("experiments");
+    let (result, models) = study.simulate(&plan, &|done, total| bar.set(done, total))?;
+    bar.finish();
+    if let Some(folder) = &args.save_models {
+        let mut bundle = Bundle::default();
+        for saved in &models {
+            bundle.add(format!("{}.json", saved.model.method().name()), saved.to_json()?);
+        }
+        global.write(&bundle, folder)?;
+    }
+    if let Some(out) = &global.out {
+        let rival = result.points.first().and_then(|point| point.classes.get(1));
+        let rival = rival.filter(|_| args.sweep.is_some()).and_then(|class| study.alternative(&class.material));
+        let noise = rival
+            .map(|rival| study.noise_curves(rival, CURVES, CURVE_POINTS))
+            .transpose()?;
+        global.write(&simulation::bundle(&study, &result, noise.as_ref(), &models, out)?, out)?;
+    }
+    global.print(&result, &text::simulation(&result, &study))?;
+    let failed = args.check && !result.limit_holds;
+    Ok(if failed { ExitCode::from(3) } else { ExitCode::SUCCESS })
+}
+
+fn plan(args: &SimulateArgs, study: &Study, global: &Global) -> Result<SimulationPlan> {
+    let methods = if args.classifiers.is_empty() && args.model.is_empty() {
+        Method::ALL.to_vec()
+    } else {
+        let mut methods = Vec::new();
+        for name in &args.classifiers {
+            let method = Method::from_name(name.trim())?;
+            if !methods.contains(&method) {
+                methods.push(method);
+            }
+        }
+        methods
+    };
+    let against = if args.against == ["all"] {
+        study.alternatives().iter().map(|surface| surface.name.clone()).collect()
+    } else {
+        args.against.clone()
+    };
+    let photons = match args.sweep {
+        Some(0) => {
+            return Err(Error::out_of_range("--sweep", 0.0, "", "at least 1 experiment"));
+        }
+        Some(experiments) => study.sweep(SWEEP, experiments, &against)?,
+        None => args.photons.clone(),
+    };
+    Ok(SimulationPlan {
+        photons,
+        law: match args.statistics {
+            Statistics::Poisson => PhotonLaw::Poisson,
+            Statistics::NegativeBinomial => PhotonLaw::NegativeBinomial,
+            Statistics::FixedTotal => PhotonLaw::FixedTotal,
+        },
+        camera_noise: !args.shot_noise_only,
+        against,
+        design: Design { per_class: args.spectra, methods, seed: global.seed, level: 0.95 },
+        models: args.model.iter().map(|path| saved(path)).collect::<Result<_>>()?,
+    })
+}
+
+fn saved(path: &Path) -> Result<SavedModel> {
+    let text = text_of_file(path, "read the model")?;
+    SavedModel::from_json(&text).map_err(|error| error.in_file(path))
+}

@@ -1,0 +1,192 @@
+//! Classifiers against the limit: over photons, or side by side at one number of them.
+
+use super::Plot;
+use crate::identifiability::detection;
+use crate::report::plot::{Axis, Band, LineFigure, NamedSeries, NamedValues, Rule, Series, Style};
+use crate::report::table::{Table, number, optional};
+use crate::simulate::classifier::Method;
+use crate::study::{NoiseCurves, SimulatedPoint, Simulation};
+
+/// Steps in which a dense sweep's points are drawn beside the curve.
+const LIMIT_COLOUR: usize = 0;
+
+/// All experiments and classifiers as a table, a row each.
+#[must_use]
+pub fn simulation_table(result: &Simulation) -> Table {
+    let mut table = Table::new([
+        "photons",
+        "normalised_photons_n_d0_squared",
+        "gamma_per_band",
+        "statistical_distance",
+        "statistical_distance_local",
+        "limit_accuracy",
+        "limit_accuracy_many_photons",
+        "accuracy_promised_by_local_distance",
+        "classifier",
+        "accuracy",
+        "accuracy_low",
+        "accuracy_high",
+        "information_bits",
+        "share_of_photons_used",
+        "share_of_photons_used_low",
+        "share_of_photons_used_high",
+        "against_the_limit",
+        "training",
+    ]);
+    for point in &result.points {
+        for found in &point.performances {
+            let performance = &found.performance;
+            table.push(vec![
+                number(point.photons),
+                number(point.normalised_photons),
+                number(point.gamma),
+                number(point.statistical_distance),
+                number(point.statistical_distance_local),
+                optional(point.limit),
+                number(point.limit_normal),
+                number(point.local),
+                performance.method.name().into(),
+                number(performance.accuracy),
+                number(performance.interval.low),
+                number(performance.interval.high),
+                number(found.information_bits),
+                optional(found.photon_share),
+                optional(found.photon_share_low),
+                optional(found.photon_share_high),
+                found.standing.map_or("", |standing| standing.name()).into(),
+                performance.training.clone().unwrap_or_default(),
+            ]);
+        }
+    }
+    table
+}
+
+/// What a figure of experiments over photons shows besides the points.
+#[derive(Debug, Clone, Default)]
+pub struct SimulationCurves<'a> {
+    /// Title.
+    pub title: String,
+    /// Limits under each kind of noise.
+    pub noise: Option<&'a NoiseCurves>,
+    /// Another simulation drawn with open symbols: with the camera's noise, say.
+    pub other: Option<(&'a Simulation, &'static str)>,
+    /// File name without ending.
+    pub name: &'static str,
+}
+
+/// Information that each classifier retrieves against the normalised photon number, with the limits.
+#[must_use]
+pub fn classifiers(result: &Simulation, curves: &SimulationCurves<'_>) -> Plot {
+    let points = &result.points;
+    let x: Vec<f64> = points.iter().map(|point| point.normalised_photons).collect();
+    let limit: Vec<f64> = points.iter().map(|point| bits(limit_of(point))).collect();
+    let mut figure = LineFigure::new(
+        curves.title.clone(),
+        Axis::log("normalised photon number N d₀²"),
+        Axis::linear("information log₂ 2P (bits)").range(0.0, 1.05),
+    );
+    let test = (result.spectra_per_class - 2 * (result.spectra_per_class / 4)) as f64;
+    if points.len() > 2 {
+        let reach = |point: &SimulatedPoint, sign: f64| {
+            let p = limit_of(point);
+            // Two classes of so many test spectra each.
+            bits((p + sign * 1.96 * (p * (1.0 - p) / (2.0 * test)).sqrt()).clamp(0.5, 1.0))
+        };
+        let edge = |sign: f64| points.iter().map(|point| reach(point, sign)).collect();
+        let label = "where 95 % of an ideal classifier's points lie";
+        figure = figure.band(Band::new(label, x.clone(), edge(-1.0), edge(1.0)).colour(LIMIT_COLOUR));
+    }
+    match curves.noise {
+        Some(noise) => {
+            for (i, curve) in noise.curves.iter().enumerate() {
+                let style = [Style::Line, Style::Dashed, Style::Dotted, Style::Line][i.min(3)];
+                let colour = if i == 0 { LIMIT_COLOUR } else { NOISE_COLOUR };
+                let label = if i == 0 { "limit, shot noise".to_owned() } else { format!("limit, {}", curve.name) };
+                figure = figure.series(
+                    Series::line(label, noise.normalised_photons.clone(), curve.information_bits())
+                        .style(style)
+                        .colour(colour),
+                );
+            }
+        }
+        None => {
+            figure = figure.series(Series::line("limit", x.clone(), limit).colour(LIMIT_COLOUR));
+        }
+    }
+    let promised: Vec<f64> = points.iter().map(|point| bits(point.local)).collect();
+    figure = figure.series(
+        Series::line("what the local distance would have promised", x.clone(), promised)
+            .style(Style::Dashed)
+            .colour(LOCAL_COLOUR),
+    );
+    for method in methods(result) {
+        figure = figure.series(series(result, method, "").colour(method_colour(method)));
+    }
+    if let Some((other, words)) = curves.other {
+        for method in methods(other) {
+            figure = figure.series(series(other, method, words).colour(method_colour(method)));
+        }
+    }
+    let criterion = detection::information_bits(1.0);
+    figure = figure.rule(Rule::horizontal(criterion, "identifiable: d = 1"));
+    Plot { name: curves.name, figure: figure.into(), table: simulation_table(result) }
+}
+
+const NOISE_COLOUR: usize = 2;
+const LOCAL_COLOUR: usize = 6;
+
+/// Each classifier's colour, the same in every figure.
+fn method_colour(method: Method) -> usize {
+    match method {
+        Method::LikelihoodRatio => 0,
+        Method::BestFits => 3,
+        Method::Discriminant => 4,
+        Method::Logistic => 5,
+        Method::Network => 1,
+    }
+}
+
+fn methods(result: &Simulation) -> Vec<Method> {
+    let first = result.points.first();
+    first.map_or_else(Vec::new, |point| point.performances.iter().map(|f| f.performance.method).collect())
+}
+
+fn series(result: &Simulation, method: Method, words: &str) -> Series {
+    let of = |point: &SimulatedPoint| {
+        let found = point.performances.iter().find(|found| found.performance.method == method);
+        found.map_or(f64::NAN, |found| found.information_bits.max(0.0))
+    };
+    let x = result.points.iter().map(|point| point.normalised_photons).collect();
+    let y = result.points.iter().map(of).collect();
+    Series::points(format!("{}{words}", method.words()), x, y)
+}
+
+fn limit_of(point: &SimulatedPoint) -> f64 {
+    point.limit.unwrap_or(point.limit_normal)
+}
+
+fn bits(probability: f64) -> f64 {
+    (2.0 * probability).log2()
+}
+
+/// Accuracies of all classifiers in one experiment, beside the limit.
+#[must_use]
+pub fn accuracies(result: &Simulation, point: &SimulatedPoint, pair: &str) -> Plot {
+    let found = || point.performances.iter().map(|found| &found.performance);
+    let values = found().map(|performance| performance.accuracy).collect();
+    let intervals = (
+        found().map(|performance| performance.interval.low).collect(),
+        found().map(|performance| performance.interval.high).collect(),
+    );
+    let mut figure = NamedValues::new(
+        format!("How often each classifier tells {pair}"),
+        Axis::linear("share of right decisions, averaged over the classes"),
+        found().map(|performance| performance.method.words().to_owned()).collect(),
+    )
+    .series(NamedSeries::new("balanced accuracy", values).intervals(intervals.0, intervals.1))
+    .interval_meaning(format!("{} % interval", 100.0 * result.level));
+    if let Some(limit) = point.limit {
+        figure = figure.threshold(limit, "limit of the likelihood ratio");
+    }
+    Plot { name: "accuracies", figure: figure.into(), table: simulation_table(result) }
+}

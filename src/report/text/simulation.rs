@@ -1,0 +1,166 @@
+//! What a simulation found, as text.
+
+use super::{assumptions, celsius, significant, warnings};
+use crate::report::simulation::pair;
+use crate::study::{PhotonLaw, SimulatedPerformance, SimulatedPoint, Simulation, Standing, Study};
+use std::fmt::Write as _;
+
+/// Experiments that are printed; of more the first, the last and some between.
+const SHOWN: usize = 5;
+
+/// The answer, the experiments, and what they rest on.
+#[must_use]
+pub fn simulation(result: &Simulation, study: &Study) -> String {
+    let mut out = format!("{}\n\n", sentence(result));
+    let points = &result.points;
+    let shown: Vec<usize> = if points.len() <= SHOWN {
+        (0..points.len()).collect()
+    } else {
+        (0..SHOWN).map(|i| i * (points.len() - 1) / (SHOWN - 1)).collect()
+    };
+    if shown.len() < points.len() {
+        let _ = writeln!(out, "{} of {} experiments; --out DIR has them all\n", shown.len(), points.len());
+    }
+    for i in shown {
+        out.push_str(&experiment(&points[i], result));
+        out.push('\n');
+    }
+    let law = match result.photon_law {
+        PhotonLaw::Poisson => "photons counted one by one (Poisson)",
+        PhotonLaw::NegativeBinomial => "bunched photons of thermal light (negative binomial)",
+        PhotonLaw::FixedTotal => "as many photons in every spectrum (multinomial)",
+    };
+    let noise = if result.camera_noise { ", and the camera's electronic noise" } else { "" };
+    let _ = writeln!(
+        out,
+        "Drawn: {} spectra of each class, a quarter for training, a quarter for validation, half for the test;\n  \
+         {law}{noise}; likelihoods take counts to be {}; seed {}, {}",
+        result.spectra_per_class, result.judged_as, result.seed, result.generator
+    );
+    out.push_str(&assumptions(study));
+    out.push_str(&warnings(&result.warnings));
+    out
+}
+
+/// The answer in a sentence.
+fn sentence(result: &Simulation) -> String {
+    let apart = pair(result);
+    if result.comparisons == 0 {
+        let best = result.points.iter().flat_map(|point| &point.performances);
+        let best = best.max_by(|a, b| a.performance.accuracy.total_cmp(&b.performance.accuracy));
+        return best.map_or_else(String::new, |best| {
+            let right = percent(best.performance.accuracy);
+            format!("The best classifier tells {apart} with {right} right decisions.")
+        });
+    }
+    let beyond = of_standing(result, Standing::Beyond);
+    if beyond > 0 {
+        return format!(
+            "The limit does not hold: {beyond} of {} times a classifier told {apart} more often than it allows.",
+            result.comparisons
+        );
+    }
+    match result.points.as_slice() {
+        [point] => {
+            let limit = percent(point.limit.unwrap_or(point.limit_normal));
+            let best = point.performances.iter().max_by(|a, b| a.performance.accuracy.total_cmp(&b.performance.accuracy));
+            best.map_or_else(String::new, |best| {
+                format!(
+                    "No classifier beats the limit: the best of {} tells {apart} in {} of the cases, {limit} is the most there is.",
+                    point.performances.len(),
+                    percent(best.performance.accuracy)
+                )
+            })
+        }
+        points => format!(
+            "No classifier beats the limit: none of {} at {} photon numbers tells {apart} more often than it allows.",
+            points.first().map_or(0, |point| point.performances.len()),
+            points.len()
+        ),
+    }
+}
+
+fn of_standing(result: &Simulation, standing: Standing) -> usize {
+    let all = result.points.iter().flat_map(|point| &point.performances);
+    all.filter(|found| found.standing == Some(standing)).count()
+}
+
+fn percent(share: f64) -> String {
+    format!("{:.1} %", 100.0 * share)
+}
+
+/// One experiment as a table.
+fn experiment(point: &SimulatedPoint, result: &Simulation) -> String {
+    let mut out = format!(
+        "{} photons of the target, N d0^2 = {}, statistical distance {}\n",
+        significant(point.photons, 3),
+        significant(point.normalised_photons, 3),
+        significant(point.statistical_distance, 3)
+    );
+    for class in &point.classes {
+        let lighting: Vec<String> = class.lighting.iter().map(|v| format!("{v:.3}")).collect();
+        let _ = writeln!(
+            out,
+            "  {:<16} {}, lighting {}, {} photons",
+            class.material,
+            celsius(class.temperature_k),
+            lighting.join(", "),
+            significant(class.photons, 4)
+        );
+    }
+    let _ = writeln!(
+        out,
+        "  {:<32} {:>8}  {:<19} {:<22} {}",
+        "classifier",
+        "right",
+        format!("{} % interval", 100.0 * result.level),
+        "photons made use of",
+        "against the limit"
+    );
+    for found in &point.performances {
+        let performance = &found.performance;
+        let _ = writeln!(
+            out,
+            "  {:<32} {:>8}  {:<19} {:<22} {}",
+            performance.method.words(),
+            percent(performance.accuracy),
+            format!("{} to {}", percent(performance.interval.low), percent(performance.interval.high)),
+            used(found),
+            against(found, point)
+        );
+        if performance.confusion.unconverged > 0 {
+            let _ = writeln!(out, "    {} fits stopped early", performance.confusion.unconverged);
+        }
+    }
+    if let Some(limit) = point.limit {
+        let _ = writeln!(out, "  {:<32} {:>8}  computed, no spectrum drawn", "limit", percent(limit));
+        let _ = writeln!(out, "  {:<32} {:>8}", "promised by the local distance", percent(point.local));
+    } else if point.classes.len() == 2 {
+        let _ = writeln!(out, "  {:<32} {:>8}  for many photons", "limit", percent(point.limit_normal));
+    }
+    out
+}
+
+fn used(found: &SimulatedPerformance) -> String {
+    match (found.photon_share, found.photon_share_low, found.photon_share_high) {
+        (Some(share), Some(low), high) => {
+            let percent = |share: f64| format!("{:.0}", 100.0 * share);
+            let high = high.map_or_else(|| "?".to_owned(), percent);
+            format!("{} % ({} to {high})", percent(share), percent(low))
+        }
+        _ => "-".to_owned(),
+    }
+}
+
+fn against(found: &SimulatedPerformance, point: &SimulatedPoint) -> String {
+    let limit = point.limit.unwrap_or(point.limit_normal);
+    match found.standing {
+        Some(Standing::Beyond) => "BEYOND the limit".to_owned(),
+        Some(Standing::Reaches) => "reaches it".to_owned(),
+        Some(Standing::Undecided) => "within it; too few spectra to say more".to_owned(),
+        Some(Standing::Below) => {
+            format!("{:.1} points below", 100.0 * (limit - found.performance.accuracy))
+        }
+        None => "-".to_owned(),
+    }
+}

@@ -1,0 +1,86 @@
+//! Information against photons, with each kind of the camera's noise alone and with all of them.
+//!
+//! Photons N grow with the exposure. Johnson noise has a variance ∝ t, so γ₀ = σ²/N stays; flicker noise one ∝ t², so
+//! γ = γ₁N grows, and no exposure is long enough (paper, Fig. 3b and Fig. S7). Limits are those to the nearest state
+//! of the alternative under the noise at hand; the paper's shortcut d = √(N/(1 + γ)) d₀ stands beside them.
+
+use super::curves::logarithmic;
+use super::{Study, Surface};
+use crate::error::Result;
+use crate::identifiability::detection;
+use crate::identifiability::nearest::NearestSolver;
+use crate::instrument::{Camera, gamma_per_band};
+
+/// Statistical distances to one alternative, at photon numbers in rising order.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NoiseCurves {
+    /// Nearest distance per √photon without electronic noise.
+    pub distance: f64,
+    /// N·d₀².
+    pub normalised_photons: Vec<f64>,
+    /// Name of the noise, γ and statistical distance at each number of photons.
+    pub curves: Vec<NoiseCurve>,
+}
+
+/// One kind of noise.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NoiseCurve {
+    /// What noise.
+    pub name: &'static str,
+    /// γ of a band.
+    pub gamma: Vec<f64>,
+    /// Statistical distance to the nearest state.
+    pub distance: Vec<f64>,
+}
+
+impl NoiseCurve {
+    /// Information log₂ 2Φ(d), bits.
+    #[must_use]
+    pub fn information_bits(&self) -> Vec<f64> {
+        self.distance.iter().map(|&d| detection::information_bits(d)).collect()
+    }
+}
+
+impl Study {
+    /// Curves of shot noise alone and, with a noisy camera, of its Johnson noise, its flicker noise and both; at so
+    /// many points with N d₀² in `range`.
+    ///
+    /// # Errors
+    /// As [`Study::identify`].
+    pub fn noise_curves(&self, alternative: &Surface, range: [f64; 2], points: usize) -> Result<NoiseCurves> {
+        let normalised_photons = logarithmic(range, points);
+        let mut solver = NearestSolver::new(&self.bands, &self.surroundings, self.unknowns.clone(), self.range);
+        let (own, other) = (&self.target.emissivity, &alternative.emissivity);
+        let distance = solver.per_photon(own, other, &self.state, f64::INFINITY)?.distance;
+        let roots: Vec<f64> = normalised_photons.iter().map(|n| n.sqrt()).collect();
+        let mut curves =
+            vec![NoiseCurve { name: "shot noise", gamma: vec![0.0; roots.len()], distance: roots }];
+        let camera = self.camera.as_ref().filter(|_| distance > 0.0);
+        let noisy = |camera: &&Camera| {
+            camera.reading_sigma(&self.bands).is_some_and(|sigma| sigma.iter().any(|&s| s > 0.0))
+        };
+        if let Some(camera) = camera.filter(noisy) {
+            let flicker = camera.flicker_fraction;
+            let alone = |share: f64, flicker_fraction: f64| Camera {
+                noise: camera.noise.scaled(share.sqrt()),
+                flicker_fraction,
+                ..camera.clone()
+            };
+            let signal = self.target_signal();
+            for (name, camera) in [
+                ("Johnson noise", alone(1.0 - flicker, 0.0)),
+                ("flicker noise", alone(flicker, 1.0)),
+                ("mixed noise", camera.clone()),
+            ] {
+                let mut curve = NoiseCurve { name, gamma: Vec::new(), distance: Vec::new() };
+                for n in &normalised_photons {
+                    let counting = self.counting_with(&camera, n / (distance * distance));
+                    curve.gamma.push(gamma_per_band(&counting, &signal));
+                    curve.distance.push(solver.with_counting(own, other, &self.state, &counting)?.distance);
+                }
+                curves.push(curve);
+            }
+        }
+        Ok(NoiseCurves { distance, normalised_photons, curves })
+    }
+}
