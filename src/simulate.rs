@@ -10,5 +10,6 @@
 pub mod classifier;
 pub mod decision;
 pub mod draws;
+pub mod efficiency;
 pub mod sequential;
 pub mod spectra;
