@@ -2,7 +2,9 @@
 //!
 //! * [`draws`]: counts about given means by the laws of [`crate::statistics`];
 //! * [`sequential`]: how sure a proportion of trials is, and when there have been enough;
-//! * [`decision`]: the maximum-likelihood decision among materials whose states are not known.
+//! * [`decision`]: the maximum-likelihood decision among materials whose states are not known;
+//! * [`thermometry`]: temperatures read by maximum likelihood and by thermal imaging;
+//! * [`efficiency`]: whether an estimator or a classifier reaches its bound.
 //!
 //! Bounds never make use of simulations. Every block of trials has a stream of random numbers of its own, so results
 //! do not depend on the number of threads, and a seed brings them back.
@@ -13,3 +15,4 @@ pub mod draws;
 pub mod efficiency;
 pub mod sequential;
 pub mod spectra;
+pub mod thermometry;
