@@ -13,6 +13,7 @@
 //! own dependence on the parameters left out, as in the paper.
 
 mod bound;
+pub mod precision;
 
 pub(crate) use bound::Reduced;
 pub use bound::{Projection, Projector};

@@ -4,7 +4,9 @@
 //! * [`sequential`]: how sure a proportion of trials is, and when there have been enough;
 //! * [`classifier`]: rules of decision, those that know the physics and those that learn, behind one trait;
 //! * [`decision`]: the maximum-likelihood decision among materials whose states are not known;
-//! * [`spectra`], [`experiment`]: labelled spectra, and how often each classifier is right about them.
+//! * [`spectra`], [`experiment`]: labelled spectra, and how often each classifier is right about them;
+//! * [`thermometry`]: temperatures read by maximum likelihood and by thermal imaging;
+//! * [`efficiency`]: whether an estimator or a classifier reaches its bound.
 //!
 //! Bounds never make use of simulations. Every block of trials has a stream of random numbers of its own, so results
 //! do not depend on the number of threads, and a seed brings them back.
@@ -12,6 +14,8 @@
 pub mod classifier;
 pub mod decision;
 pub mod draws;
+pub mod efficiency;
 pub mod experiment;
 pub mod sequential;
 pub mod spectra;
+pub mod thermometry;

@@ -46,6 +46,11 @@ pub struct Projection {
 }
 
 impl Projection {
+    /// Unit upper triangle, row by row, and the lengths its rows are to be multiplied by.
+    pub(super) fn factor(&self) -> (&[f64], &[f64]) {
+        (&self.triangle, &self.norms)
+    }
+
     /// Ratio of the largest to the smallest singular value of all columns scaled to unit length;
     /// infinite if a column was dropped or nothing is left.
     #[must_use]
