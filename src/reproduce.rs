@@ -8,7 +8,6 @@
 //! form, so that a quick run can be held against committed files.
 
 mod edfig6;
-mod edfig9;
 mod fig3b;
 mod fig3c;
 mod ledger;
@@ -121,7 +120,10 @@ impl Item {
     pub fn from_name(name: &str) -> Result<Self> {
         Self::ALL.into_iter().find(|item| item.name() == name).ok_or_else(|| {
             let names = Self::ALL.map(Self::name).join(", ");
-            Error::malformed(format!("unknown figure or table `{name}`"), format!("choose among {names}, all"))
+            Error::malformed(
+                format!("unknown figure or table `{name}`"),
+                format!("choose among {names}, all"),
+            )
         })
     }
 
@@ -135,7 +137,7 @@ impl Item {
             Self::FigS7 => fig3b::three_bands(order, out, progress)?,
             Self::Fig3c => fig3c::make(out)?,
             Self::EdFig6 => edfig6::make(order, out, progress)?,
-            Self::EdFig9 => edfig9::make(order, out, progress)?,
+            Self::EdFig9 => tabs2::make(out)?,
             Self::TabS2 => tabs2::make(out)?,
             Self::Policy => policy::make(out)?,
         };

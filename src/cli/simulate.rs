@@ -88,11 +88,10 @@ pub(super) fn run(args: &SimulateArgs, global: &Global) -> Result<ExitCode> {
     }
     if let Some(out) = &global.out {
         let rival = result.points.first().and_then(|point| point.classes.get(1));
-        let rival = rival.filter(|_| args.sweep.is_some()).and_then(|class| study.alternative(&class.material));
-        let noise = rival
-            .map(|rival| study.noise_curves(rival, CURVES, CURVE_POINTS))
-            .transpose()?;
-        global.write(&simulation::bundle(&study, &result, noise.as_ref(), &models, out)?, out)?;
+        let rival =
+            rival.filter(|_| args.sweep.is_some()).and_then(|class| study.alternative(&class.material));
+        let noise = rival.map(|rival| study.noise_curves(rival, CURVES, CURVE_POINTS)).transpose()?;
+        global.write(&simulation::bundle(&study, &result, noise.as_ref(), out)?, out)?;
     }
     global.print(&result, &text::simulation(&result, &study))?;
     let failed = args.check && !result.limit_holds;

@@ -1,11 +1,10 @@
-//! The files of `simulate`: scenario, tables, plots, and trained models.
+//! The files of `simulate`: scenario, tables and plots.
 
 use super::bundle::Bundle;
 use super::figures::{self, SimulationCurves};
 use super::table::{Table, number};
 use super::tables;
 use crate::error::Result;
-use crate::simulate::classifier::SavedModel;
 use crate::study::{NoiseCurves, Simulation, Study};
 use std::path::Path;
 
@@ -13,21 +12,12 @@ use std::path::Path;
 ///
 /// # Errors
 /// A figure that cannot be drawn.
-pub fn bundle(
-    study: &Study,
-    result: &Simulation,
-    noise: Option<&NoiseCurves>,
-    models: &[SavedModel],
-    out: &Path,
-) -> Result<Bundle> {
+pub fn bundle(study: &Study, result: &Simulation, noise: Option<&NoiseCurves>, out: &Path) -> Result<Bundle> {
     let mut bundle = Bundle::default();
     bundle.add("scenario.toml", study.scenario().to_toml_beside(out));
     bundle.add("simulation.csv", figures::simulation_table(result).to_csv()?);
     bundle.add("confusion.csv", confusion(result).to_csv()?);
     bundle.add("warnings.csv", tables::warnings(&result.warnings).to_csv()?);
-    for saved in models {
-        bundle.add(format!("model-{}.json", saved.model.method().name()), saved.to_json()?);
-    }
     let pair = pair(result);
     let plot = match result.points.as_slice() {
         [point] => figures::accuracies(result, point, &pair),
@@ -87,7 +77,9 @@ pub fn curves(noise: &NoiseCurves) -> Table {
     let mut header = vec!["normalised_photons_n_d0_squared".to_owned()];
     for curve in &noise.curves {
         let name = curve.name.replace(' ', "_");
-        header.extend(["gamma_per_band", "statistical_distance", "information_bits"].map(|q| format!("{q}_{name}")));
+        header.extend(
+            ["gamma_per_band", "statistical_distance", "information_bits"].map(|q| format!("{q}_{name}")),
+        );
     }
     let mut table = Table::new(header);
     let bits: Vec<Vec<f64>> = noise.curves.iter().map(|curve| curve.information_bits()).collect();

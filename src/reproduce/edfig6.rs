@@ -21,10 +21,11 @@ pub(super) fn make(order: Order, out: &Path, progress: Progress<'_>) -> Result<M
         skipping: Skipping::On,
         scaling: true,
         bands: Some((Some(6), Some(5))),
-        exact: full
-            .then(|| Plan::new(order.seed, HALF_WIDTH, TRIALS))
-            .transpose()?
-            .map(|plan| Trial { law: None, photons: None, plan }),
+        exact: full.then(|| Plan::new(order.seed, HALF_WIDTH, TRIALS)).transpose()?.map(|plan| Trial {
+            law: None,
+            photons: None,
+            plan,
+        }),
     };
     let answers = study.answer(&asked, &|done, total| progress(done, total))?;
     let answer = text::answers(&answers, &study);

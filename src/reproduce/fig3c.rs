@@ -17,7 +17,7 @@ pub(super) fn make(out: &Path) -> Result<Made> {
     {
         let state = study.state();
         let here = (state.temperature_k, state.lighting.first().copied().unwrap_or(0.0));
-        let by = study.scenario().requirement.by;
+        let by = study.scenario().requirement.by.name();
         bundle.add_plots(&[figures::photon_map(&map, &study.target().name, &rival.name, here, by)])?;
         let endless = map.photons.iter().filter(|photons| photons.is_infinite()).count();
         let least = map.photons.iter().copied().fold(f64::INFINITY, f64::min);

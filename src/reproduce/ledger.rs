@@ -80,7 +80,8 @@ pub fn table(lines: &[Line]) -> Table {
 /// The ledger in Markdown.
 #[must_use]
 pub fn markdown(lines: &[Line]) -> String {
-    let mut text = String::from("| place | quantity | paper | ours | verdict | why |\n|---|---|---|---|---|---|\n");
+    let mut text =
+        String::from("| place | quantity | paper | ours | verdict | why |\n|---|---|---|---|---|---|\n");
     for line in lines {
         let cells = line.cells().map(|cell| cell.replace('|', "\\|"));
         text.push_str(&format!("| {} |\n", cells.join(" | ")));

@@ -37,7 +37,8 @@ pub(super) fn make(out: &Path) -> Result<Made> {
 fn verdicts(result: &Sizing) -> Option<Vec<Line>> {
     let pair = result.pairs.iter().find(|pair| pair.alternative == result.limiting)?;
     let (n, h) = (result.requirement.photons_by, result.requirement.hardware_by_m2_s);
-    let short = |value: Option<f64>, digits: usize| value.map_or("-".into(), |value| format!("{value:.digits$e}"));
+    let short =
+        |value: Option<f64>, digits: usize| value.map_or("-".into(), |value| format!("{value:.digits$e}"));
     let readings = |nearest: String, local: String, unknown_gain: String| {
         format!("{nearest} nearest; {local} local (S27); {unknown_gain} local, unknown gain (S29)")
     };

@@ -41,7 +41,13 @@ fn microbolometer(flir: &Camera) -> Result<Vec<Line>> {
             Verdict::Reproduced,
             "12 um, f/1.3, efficiency 0.99, 12 ms, 715 to 1250 cm^-1; a pixel of 25 um gives 1.08e10",
         ),
-        line("the same in one band", "4.69e6 (implied)", format!("{:.2e}", photons / bands), Verdict::Reproduced, &of_bands),
+        line(
+            "the same in one band",
+            "4.69e6 (implied)",
+            format!("{:.2e}", photons / bands),
+            Verdict::Reproduced,
+            &of_bands,
+        ),
         line("sigma, counts", "1.77e6", format!("{:.3e}", figures.noise_counts), Verdict::Reproduced, netd),
         line("gamma", "6.68e5", format!("{gamma:.2e}"), Verdict::Reproduced, twice),
         line(
@@ -76,7 +82,12 @@ fn mct(spectrometer: &Camera) -> Result<Vec<Line>> {
             format!("{at_10_um:.2e} at 10 um"),
             "sqrt(A/2t)/D* x t/(h c nu); no unique factor explains 0.35 (1/(2 sqrt 2) at 10 um fits, so do others)",
         ),
-        line("dark counts", "-1.46e8", "-".into(), "calibration data: 0.14 of the photons at 30 degC; a 77 K body gives 1e4"),
+        line(
+            "dark counts",
+            "-1.46e8",
+            "-".into(),
+            "calibration data: 0.14 of the photons at 30 degC; a 77 K body gives 1e4",
+        ),
     ])
 }
 
@@ -89,7 +100,7 @@ fn occupancies(flir: &Camera, spectrometer: &Camera) -> Result<Vec<Line>> {
         let lambda = |radiance: &f64| radiance * camera.etendue_m2_sr(None) / (100.0 * SPEED_OF_LIGHT_M_S);
         let all = radiance.iter().map(lambda);
         let (low, high) = (all.clone().fold(f64::INFINITY, f64::min), all.fold(0.0, f64::max));
-        (format!("{low:.2} to {high:.2}", ), high)
+        (format!("{low:.2} to {high:.2}",), high)
     };
     let line = |camera: &str, (ours, high): (String, f64)| {
         let quantity = format!("{camera}: photons of a coherence time, 300 K");

@@ -138,12 +138,7 @@ impl Study {
         })
     }
 
-    fn camera_bits(
-        &self,
-        camera: &Camera,
-        alternative: &Surface,
-        photons: &[f64],
-    ) -> Result<Vec<f64>> {
+    fn camera_bits(&self, camera: &Camera, alternative: &Surface, photons: &[f64]) -> Result<Vec<f64>> {
         let kind = self.scenario.requirement.by;
         photons
             .iter()

@@ -49,7 +49,8 @@ impl Study {
     /// As [`Study::identify`].
     pub fn noise_curves(&self, alternative: &Surface, range: [f64; 2], points: usize) -> Result<NoiseCurves> {
         let normalised_photons = logarithmic(range, points);
-        let mut solver = NearestSolver::new(&self.bands, &self.surroundings, self.unknowns.clone(), self.range);
+        let mut solver =
+            NearestSolver::new(&self.bands, &self.surroundings, self.unknowns.clone(), self.range);
         let (own, other) = (&self.target.emissivity, &alternative.emissivity);
         let distance = solver.per_photon(own, other, &self.state, f64::INFINITY)?.distance;
         let roots: Vec<f64> = normalised_photons.iter().map(|n| n.sqrt()).collect();

@@ -16,6 +16,7 @@ use crate::identifiability::nearest::NearestSolver;
 use crate::identifiability::{detection, ratio};
 use crate::instrument::Camera;
 use crate::planck;
+use crate::policy;
 use crate::scenario::DistanceKind;
 use crate::scene::State;
 use crate::simulate::classifier::{Method, SavedModel, Trained};
@@ -186,6 +187,7 @@ impl Study {
     ) -> Result<(Simulation, Vec<SavedModel>)> {
         let rivals = self.rivals(&plan.against)?;
         let photons = self.photon_numbers(plan, &rivals)?;
+        let rivals: Vec<&Surface> = rivals.into_iter().map(|(_, rival)| rival).collect();
         let names: Vec<String> =
             std::iter::once(&self.target).chain(rivals.iter().copied()).map(|s| s.name.clone()).collect();
         let centres: Vec<f64> = self.bands.bands().iter().map(|band| band.center_cm1).collect();
@@ -232,34 +234,34 @@ impl Study {
         ))
     }
 
-    /// The alternatives that are classes.
-    fn rivals(&self, against: &[String]) -> Result<Vec<&Surface>> {
+    /// The alternatives that are classes, with their nearest distances per √photon in shot noise.
+    fn rivals(&self, against: &[String]) -> Result<Vec<(f64, &Surface)>> {
+        let with_distance = |alternative| {
+            let distance = self.distance_per_photon(DistanceKind::Nearest, alternative, f64::INFINITY)?;
+            Ok((distance, alternative))
+        };
         if against.is_empty() {
-            let mut nearest: Option<(f64, &Surface)> = None;
-            for alternative in &self.alternatives {
-                let distance =
-                    self.distance_per_photon(DistanceKind::Nearest, alternative, f64::INFINITY)?;
-                if nearest.is_none_or(|(least, _)| distance < least) {
-                    nearest = Some((distance, alternative));
-                }
-            }
-            return Ok(nearest.into_iter().map(|(_, alternative)| alternative).collect());
+            let all: Vec<(f64, &Surface)> =
+                self.alternatives.iter().map(with_distance).collect::<Result<_>>()?;
+            return Ok(all.into_iter().min_by(|a, b| a.0.total_cmp(&b.0)).into_iter().collect());
         }
         let find = |name: &String| {
-            self.alternative(name).ok_or_else(|| {
-                let names: Vec<&str> = self.alternatives.iter().map(|surface| surface.name.as_str()).collect();
+            let found = self.alternative(name).ok_or_else(|| {
+                let names: Vec<&str> =
+                    self.alternatives.iter().map(|surface| surface.name.as_str()).collect();
                 let found = format!("`{name}` is none of the alternatives");
                 Error::malformed(found, format!("choose among {}", names.join(", ")))
-            })
+            });
+            with_distance(found?)
         };
         against.iter().map(find).collect()
     }
 
     /// Photons of each experiment.
-    fn photon_numbers(&self, plan: &SimulationPlan, rivals: &[&Surface]) -> Result<Vec<f64>> {
+    fn photon_numbers(&self, plan: &SimulationPlan, rivals: &[(f64, &Surface)]) -> Result<Vec<f64>> {
         let numbers = match (plan.photons.as_slice(), self.counting()) {
             ([], Some(counting)) => vec![counting.counts_per_radiance * self.photon_radiance()],
-            ([], None) => vec![self.photons_for_the_hardest(rivals)?],
+            ([], None) => vec![self.photons_for(rivals)?],
             (given, _) => given.to_vec(),
         };
         for &photons in &numbers {
@@ -272,19 +274,29 @@ impl Study {
         Ok(numbers)
     }
 
+    /// Photons at which the nearest of the rivals that differs at all is told apart as required.
+    fn photons_for(&self, rivals: &[(f64, &Surface)]) -> Result<f64> {
+        let needed =
+            rivals.iter().filter_map(|(distance, _)| policy::photons_required(self.required, *distance));
+        let most = needed.fold(0.0, f64::max);
+        if most > 0.0 {
+            return Ok(most);
+        }
+        let found = "no number of photons tells the target from the alternative";
+        let instead = "change the scene or the alternatives, or name a number of photons";
+        Err(Error::malformed(found, instead).at(self.scenario.place("target")))
+    }
+
     /// Photons at which N d₀² has `experiments` values spread evenly in the logarithm over `normalised`, d₀ the
     /// nearest distance in shot noise to the nearest of the alternatives `against` (of all where empty).
     ///
     /// # Errors
     /// An unknown alternative; one that no number of photons tells from the target.
     pub fn sweep(&self, normalised: [f64; 2], experiments: usize, against: &[String]) -> Result<Vec<f64>> {
-        let mut least = f64::INFINITY;
-        for rival in self.rivals(against)? {
-            least = least.min(self.distance_per_photon(DistanceKind::Nearest, rival, f64::INFINITY)?);
-        }
+        let least = self.rivals(against)?.iter().map(|rival| rival.0).fold(f64::INFINITY, f64::min);
         if !(least > 0.0 && least.is_finite()) {
             let found = "no number of photons tells the target from the alternative";
-            return Err(Error::malformed(found, "change the scene, or name --photons instead of a sweep"));
+            return Err(Error::malformed(found, "change the scene, or name the photons instead of a sweep"));
         }
         Ok(logarithmic(normalised, experiments).iter().map(|n| n / (least * least)).collect())
     }
@@ -353,7 +365,8 @@ impl Study {
             law => signal.iter().enumerate().map(|(w, s)| law.variance(w, s * scale) - s * scale).collect(),
         };
         let noise = Counting { counts_per_radiance: scale, var_electronic: excess };
-        let mut surfaces: Vec<(&Surface, State, f64)> = vec![(&self.target, self.state.clone(), f64::INFINITY)];
+        let mut surfaces: Vec<(&Surface, State, f64)> =
+            vec![(&self.target, self.state.clone(), f64::INFINITY)];
         let (own, silent) = (&self.target.emissivity, self.counting_at(photons, false));
         for &rival in rivals {
             let mut solver =
@@ -416,7 +429,8 @@ impl Study {
             &self.state,
             &noise,
         )?;
-        let mut quiet = NearestSolver::new(&self.bands, &self.surroundings, self.unknowns.clone(), self.range);
+        let mut quiet =
+            NearestSolver::new(&self.bands, &self.surroundings, self.unknowns.clone(), self.range);
         let normalised = quiet.with_counting(own, &rival.emissivity, &self.state, &silent)?.distance.powi(2);
         let limit = match (means.as_slice(), plan.law) {
             ([target, rival], PhotonLaw::Poisson | PhotonLaw::NegativeBinomial) => {
@@ -432,9 +446,8 @@ impl Study {
         });
         let gamma = crate::instrument::gamma_per_band(&counting, &signal);
         let pair = (rivals.len() == 1).then(|| limit.unwrap_or(detection::probability(statistical_distance)));
-        let held = |performance| {
-            held_against(performance, pair, statistical_distance, (level, plan.design.level))
-        };
+        let held =
+            |performance| held_against(performance, pair, statistical_distance, (level, plan.design.level));
         let performances = performances.into_iter().map(held).collect::<Result<_>>()?;
         Ok((
             SimulatedPoint {

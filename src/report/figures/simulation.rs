@@ -2,12 +2,11 @@
 
 use super::Plot;
 use crate::identifiability::detection;
-use crate::report::plot::{Axis, Band, LineFigure, NamedSeries, NamedValues, Rule, Series, Style};
+use crate::report::plot::{Axis, Band, LineFigure, NamedSeries, NamedValues, Panel, Rule, Series, Style};
 use crate::report::table::{Table, number, optional};
 use crate::simulate::classifier::Method;
 use crate::study::{NoiseCurves, SimulatedPoint, Simulation};
 
-/// Steps in which a dense sweep's points are drawn beside the curve.
 const LIMIT_COLOUR: usize = 0;
 
 /// All experiments and classifiers as a table, a row each.
@@ -68,7 +67,7 @@ pub struct SimulationCurves<'a> {
     pub title: String,
     /// Limits under each kind of noise.
     pub noise: Option<&'a NoiseCurves>,
-    /// Another simulation drawn with open symbols: with the camera's noise, say.
+    /// Another simulation, with the camera's noise say, and what the legend says of its points.
     pub other: Option<(&'a Simulation, &'static str)>,
     /// File name without ending.
     pub name: &'static str,
@@ -101,7 +100,8 @@ pub fn classifiers(result: &Simulation, curves: &SimulationCurves<'_>) -> Plot {
             for (i, curve) in noise.curves.iter().enumerate() {
                 let style = [Style::Line, Style::Dashed, Style::Dotted, Style::Line][i.min(3)];
                 let colour = if i == 0 { LIMIT_COLOUR } else { NOISE_COLOUR };
-                let label = if i == 0 { "limit, shot noise".to_owned() } else { format!("limit, {}", curve.name) };
+                let label =
+                    if i == 0 { "limit, shot noise".to_owned() } else { format!("limit, {}", curve.name) };
                 figure = figure.series(
                     Series::line(label, noise.normalised_photons.clone(), curve.information_bits())
                         .style(style)
@@ -120,16 +120,46 @@ pub fn classifiers(result: &Simulation, curves: &SimulationCurves<'_>) -> Plot {
             .colour(LOCAL_COLOUR),
     );
     for method in methods(result) {
-        figure = figure.series(series(result, method, "").colour(method_colour(method)));
+        figure = figure.series(series(result, method).colour(method_colour(method)));
     }
     if let Some((other, words)) = curves.other {
         for method in methods(other) {
-            figure = figure.series(series(other, method, words).colour(method_colour(method)));
+            let label = if method == Method::LikelihoodRatio { words } else { "" };
+            figure = figure.series(
+                Series { label: label.into(), ..series(other, method) }.colour(method_colour(method)),
+            );
         }
     }
+    figure = figure.lower(lower(result, curves.other.map(|other| other.0)));
     let criterion = detection::information_bits(1.0);
     figure = figure.rule(Rule::horizontal(criterion, "identifiable: d = 1"));
     Plot { name: curves.name, figure: figure.into(), table: simulation_table(result) }
+}
+
+/// Accuracies less the limit, in hundredths: what the information cannot show where points lie on the curve.
+fn lower(result: &Simulation, other: Option<&Simulation>) -> Panel {
+    let mut panel = Panel::new(Axis::linear("accuracy − limit (%)"));
+    for result in std::iter::once(result).chain(other) {
+        let x: Vec<f64> = result.points.iter().map(|point| point.normalised_photons).collect();
+        let test = (result.spectra_per_class - 2 * (result.spectra_per_class / 4)) as f64;
+        let reach = |point: &SimulatedPoint| {
+            let p = limit_of(point);
+            100.0 * 1.96 * (p * (1.0 - p) / (2.0 * test)).sqrt()
+        };
+        let edge = |sign: f64| result.points.iter().map(|point| sign * reach(point)).collect();
+        if x.len() > 2 {
+            panel = panel.band(Band::new("", x.clone(), edge(-1.0), edge(1.0)).colour(LIMIT_COLOUR));
+        }
+        for method in methods(result) {
+            let of = |point: &SimulatedPoint| {
+                let found = point.performances.iter().find(|found| found.performance.method == method);
+                found.map_or(f64::NAN, |found| 100.0 * (found.performance.accuracy - limit_of(point)))
+            };
+            let y = result.points.iter().map(of).collect();
+            panel = panel.series(Series::points("", x.clone(), y).colour(method_colour(method)));
+        }
+    }
+    panel
 }
 
 const NOISE_COLOUR: usize = 2;
@@ -142,7 +172,6 @@ fn method_colour(method: Method) -> usize {
         Method::BestFits => 3,
         Method::Discriminant => 4,
         Method::Logistic => 5,
-        Method::Network => 1,
     }
 }
 
@@ -151,14 +180,14 @@ fn methods(result: &Simulation) -> Vec<Method> {
     first.map_or_else(Vec::new, |point| point.performances.iter().map(|f| f.performance.method).collect())
 }
 
-fn series(result: &Simulation, method: Method, words: &str) -> Series {
+fn series(result: &Simulation, method: Method) -> Series {
     let of = |point: &SimulatedPoint| {
         let found = point.performances.iter().find(|found| found.performance.method == method);
         found.map_or(f64::NAN, |found| found.information_bits.max(0.0))
     };
     let x = result.points.iter().map(|point| point.normalised_photons).collect();
     let y = result.points.iter().map(of).collect();
-    Series::points(format!("{}{words}", method.words()), x, y)
+    Series::points(method.words(), x, y)
 }
 
 fn limit_of(point: &SimulatedPoint) -> f64 {
@@ -180,13 +209,13 @@ pub fn accuracies(result: &Simulation, point: &SimulatedPoint, pair: &str) -> Pl
     );
     let mut figure = NamedValues::new(
         format!("How often each classifier tells {pair}"),
-        Axis::linear("share of right decisions, averaged over the classes"),
         found().map(|performance| performance.method.words().to_owned()).collect(),
+        Axis::linear("share of right decisions, averaged over the classes"),
     )
     .series(NamedSeries::new("balanced accuracy", values).intervals(intervals.0, intervals.1))
     .interval_meaning(format!("{} % interval", 100.0 * result.level));
     if let Some(limit) = point.limit {
-        figure = figure.threshold(limit, "limit of the likelihood ratio");
+        figure = figure.threshold(limit, "limit of the likelihood ratio").below("below the limit");
     }
     Plot { name: "accuracies", figure: figure.into(), table: simulation_table(result) }
 }

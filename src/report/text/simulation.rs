@@ -63,7 +63,10 @@ fn sentence(result: &Simulation) -> String {
     match result.points.as_slice() {
         [point] => {
             let limit = percent(point.limit.unwrap_or(point.limit_normal));
-            let best = point.performances.iter().max_by(|a, b| a.performance.accuracy.total_cmp(&b.performance.accuracy));
+            let best = point
+                .performances
+                .iter()
+                .max_by(|a, b| a.performance.accuracy.total_cmp(&b.performance.accuracy));
             best.map_or_else(String::new, |best| {
                 format!(
                     "No classifier beats the limit: the best of {} tells {apart} in {} of the cases, {limit} is the most there is.",

@@ -41,7 +41,6 @@ impl Method {
             Self::BestFits => "best fits, states unknown",
             Self::Discriminant => "linear discriminant",
             Self::Logistic => "logistic regression",
-            Self::Network => "convolutional network",
         }
     }
 
