@@ -9,6 +9,7 @@
 //! * [`likelihood`]: the state of a material that explains given counts best;
 //! * [`lattice`]: Algorithm 1, exact for up to three bands;
 //! * [`bracket`]: rigorous bounds on the error between known states, two or many;
+//! * [`ratio`]: the error between two known states itself, from the law of their likelihood ratio;
 //! * [`bayes`]: what priors do to the distance and to the probability.
 
 pub mod bayes;
@@ -22,6 +23,7 @@ pub mod local;
 pub mod map;
 pub mod multi;
 pub mod nearest;
+pub mod ratio;
 pub mod selection;
 mod space;
 mod step;

@@ -1,6 +1,7 @@
 //! Monte Carlo witnesses: what a test that draws its own counts really achieves, beside the bounds.
 //!
 //! * [`draws`]: counts about given means by the laws of [`crate::statistics`];
+//! * [`ratio`]: trials between two known states, from the law of their likelihood ratio;
 //! * [`sequential`]: how sure a proportion of trials is, and when there have been enough;
 //! * [`classifier`]: rules of decision, those that know the physics and those that learn, behind one trait;
 //! * [`decision`]: the maximum-likelihood decision among materials whose states are not known;
@@ -16,6 +17,7 @@ pub mod decision;
 pub mod draws;
 pub mod efficiency;
 pub mod experiment;
+pub mod ratio;
 pub mod sequential;
 pub mod spectra;
 pub mod thermometry;

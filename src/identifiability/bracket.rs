@@ -37,7 +37,7 @@
 //! Commun. 15, 52 (1967), doi:10.1109/TCOM.1967.1089532; Shannon, Gallager, Berlekamp, Inf. Control 10, 65
 //! (1967).
 
-mod tilted;
+pub(super) mod tilted;
 
 use self::tilted::{Moments, Tilted};
 use super::detection;
@@ -111,7 +111,13 @@ impl KnownStates {
         self.at(s.clamp(0.0, 1.0)).exponent
     }
 
-    fn at(&self, s: f64) -> Moments {
+    /// The bands between the two states.
+    pub(super) fn bands(&self) -> &[Tilted] {
+        &self.bands
+    }
+
+    /// C, μ′ and μ″ of all bands.
+    pub(super) fn at(&self, s: f64) -> Moments {
         let mut sums = [Compensated::default(); 3];
         for band in &self.bands {
             let Moments { exponent, slope, variance } = band.at(s);

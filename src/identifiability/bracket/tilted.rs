@@ -25,7 +25,7 @@ const FAR: f64 = 30.0;
 
 /// One band.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Tilted {
+pub(in crate::identifiability) enum Tilted {
     /// p and q are the same.
     Same,
     /// One of them counts nothing, ever: the supports share n = 0 only. −ln of the other's chance of it,
@@ -41,10 +41,10 @@ pub(super) enum Tilted {
 
 /// C(s), μ′(s) and μ″(s).
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Moments {
-    pub(super) exponent: f64,
-    pub(super) slope: f64,
-    pub(super) variance: f64,
+pub(in crate::identifiability) struct Moments {
+    pub(in crate::identifiability) exponent: f64,
+    pub(in crate::identifiability) slope: f64,
+    pub(in crate::identifiability) variance: f64,
 }
 
 impl Tilted {
@@ -94,7 +94,7 @@ impl Tilted {
     }
 
     /// C, μ′ and μ″ at s in [0, 1], by continuity at the ends.
-    pub(super) fn at(&self, s: f64) -> Moments {
+    pub(in crate::identifiability) fn at(&self, s: f64) -> Moments {
         let t = 1.0 - s;
         match *self {
             Self::Same => Moments::default(),
@@ -164,7 +164,7 @@ fn log_ratio(x: f64, change: f64) -> f64 {
 }
 
 /// x^{1−s}y^s with ln(y/x) known.
-fn geometric(x: f64, y: f64, log: f64, s: f64) -> f64 {
+pub(in crate::identifiability) fn geometric(x: f64, y: f64, log: f64, s: f64) -> f64 {
     if log.abs() <= FAR { x * (s * log).exp() } else { ((1.0 - s) * x.ln() + s * y.ln()).exp() }
 }
 
