@@ -19,6 +19,7 @@ mod resolve;
 mod samples;
 mod scaling;
 mod size;
+mod thermometry;
 mod warn;
 
 pub use answers::{Answers, Asked};
@@ -32,6 +33,7 @@ pub use resolve::{Study, Surface};
 pub use samples::SampleSpectra;
 pub use scaling::{BandNumber, LibrarySize, Scaling};
 pub use size::{CameraResult, RequirementResult, Sizing, Verdict};
+pub use thermometry::{FIXED_EMISSIVITY, ImagerErrors, Reader, Thermometry, ThermometryRow};
 
 /// Something the reader of a result must know, with a code that programs can rely on.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
