@@ -9,3 +9,4 @@ pub mod sizing;
 pub mod table;
 pub mod tables;
 pub mod text;
+pub mod thermometry;

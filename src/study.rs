@@ -21,6 +21,7 @@ mod samples;
 mod scaling;
 mod simulation;
 mod size;
+mod thermometry;
 mod warn;
 
 pub use answers::{Answers, Asked};
@@ -38,6 +39,7 @@ pub use simulation::{
     PhotonLaw, SimulatedClass, SimulatedPerformance, SimulatedPoint, Simulation, SimulationPlan, Standing,
 };
 pub use size::{CameraResult, RequirementResult, Sizing, Verdict};
+pub use thermometry::{FIXED_EMISSIVITY, ImagerErrors, Reader, Thermometry, ThermometryRow};
 
 /// Something the reader of a result must know, with a code that programs can rely on.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]

@@ -13,7 +13,7 @@
 //! is subtracted after the calibration) is assumed as written here.
 
 use super::ThermometryScene;
-use crate::error::{Error, Result, check};
+use crate::error::{Result, check};
 use crate::planck;
 use crate::root::crossing;
 use crate::scene::{State, Surroundings};

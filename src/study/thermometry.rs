@@ -1,0 +1,383 @@
+//! Temperature of the scenario's target, read by its camera at a series of true temperatures: the paper's Extended Data
+//! Fig. 9e, f.
+//!
+//! At every temperature the same spectra are read by maximum likelihood with lighting known and unknown, and by thermal
+//! imaging from the sum of the counts with a fixed emissivity of 0.95 and with one entered by hand, calibrated at the
+//! lowest temperature (`simulate::thermometry`). Beside them stand the Cramér–Rao bounds (`fisher::precision`) and whether
+//! they are reached (`simulate::efficiency`).
+//!
+//! The bound for unbiased estimates does not hold where the range of the lighting, 0 ≤ V ≤ 1, stops the fits: there
+//! [`Reader::at_edge`] counts them, and a bound for any estimator stands beside it
+//! ([`ThermometryRow::bound_range_k`]): van Trees' inequality with the law 2cos²(π(V − ½w)/w)/w of V over a range of
+//! width w, whose information is (2π/w)², limits the error averaged over that law (of K objects w is at most 1/K, a box
+//! within ΣV ≤ 1). It is taken with the information at the scenario's own V.
+//!
+//! Known: emissivity, temperature of the surroundings, the camera's response. Besides temperature and lighting unknown is
+//! what the scenario says, with its priors.
+//!
+//! Source: paper, Methods 'HADAR thermography', Extended Data Fig. 9; van Trees, 'Detection, Estimation, and Modulation
+//! Theory' I (1968), section 2.4; Gill and Levit, Bernoulli 1, 59 (1995), doi:10.2307/3318681.
+
+use super::{Study, Warning};
+use crate::error::{Error, Result};
+use crate::fisher::precision::{JointBound, Precision, Sight};
+use crate::fisher::{Nuisance, Unknowns};
+use crate::scene::{Parameter, State};
+use crate::simulate::draws::GENERATOR;
+use crate::simulate::efficiency::{Criteria, Efficiency, Errors, JointEfficiency, ParameterEfficiency};
+use crate::simulate::thermometry::{Conventional, Fits, Reading, Run, ThermometryScene};
+
+/// The default emissivity of a thermal imager, as in the paper's figure.
+pub const FIXED_EMISSIVITY: f64 = 0.95;
+/// Most temperatures of a series.
+const MOST_ROWS: usize = 10_000;
+/// Share of the fits that are stopped by the range before the bound is said not to apply.
+const HELD: f64 = 1e-3;
+
+/// A series of true temperatures and what is read at each.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct Thermometry {
+    /// The target.
+    pub target: String,
+    /// The camera.
+    pub camera: String,
+    /// Law of the counts.
+    pub statistics: &'static str,
+    /// True lighting factors.
+    pub lighting: Vec<f64>,
+    /// Temperatures of the surroundings, K.
+    pub environment_k: Vec<f64>,
+    /// Spectra at each temperature.
+    pub trials: usize,
+    /// Seed.
+    pub seed: u64,
+    /// Generator that the seed belongs to.
+    pub generator: &'static str,
+    /// What intervals and verdicts rest on.
+    pub criteria: Criteria,
+    /// The imager with the default emissivity.
+    pub fixed: Conventional,
+    /// The imager with the emissivity entered by hand.
+    pub manual: Conventional,
+    /// Temperature at which that one is calibrated, K.
+    pub calibrated_k: f64,
+    /// Temperature by temperature, in the order asked for.
+    pub rows: Vec<ThermometryRow>,
+    /// What the reader must know.
+    pub warnings: Vec<Warning>,
+}
+
+/// One true temperature.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct ThermometryRow {
+    /// True temperature, K.
+    pub temperature_k: f64,
+    /// Photons of a spectrum, all bands together.
+    pub photons: f64,
+    /// Maximum likelihood with the lighting known.
+    pub lighting_known: Reader,
+    /// Maximum likelihood with the lighting unknown; `None` without surroundings.
+    pub lighting_unknown: Option<Reader>,
+    /// Bound on any estimate's error with lighting unknown but within its range, averaged over that range, K; `None`
+    /// without surroundings, or where nothing is seen.
+    pub bound_range_k: Option<f64>,
+    /// Thermal imaging with the default emissivity.
+    pub fixed: ImagerErrors,
+    /// Thermal imaging with the emissivity entered by hand.
+    pub manual: ImagerErrors,
+}
+
+/// Maximum-likelihood estimates of the temperature beside their bound.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct Reader {
+    /// Cramér–Rao bound of an unbiased estimate's deviation, K; `None` if it is infinite.
+    pub bound_k: Option<f64>,
+    /// Estimated relative rounding error of the bound.
+    pub bound_relative_error: f64,
+    /// Whether temperature is seen at all.
+    pub sight: Sight,
+    /// Bias and errors, K.
+    pub errors: Errors,
+    /// Variance beside the bound's, and the verdict; `None` without a bound.
+    pub efficiency: Option<ParameterEfficiency>,
+    /// The same over all unknown parameters together; `None` if one of them is not seen.
+    pub joint: Option<JointEfficiency>,
+    /// Share of the fits that ended at the edge of the parameters' range.
+    pub at_edge: f64,
+    /// Fits that did not converge.
+    pub unconverged: usize,
+}
+
+/// Errors of a thermal imager.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+pub struct ImagerErrors {
+    /// Bias and errors of the readings, K; `None` if there are fewer than two.
+    pub errors: Option<Errors>,
+    /// Spectra that no temperature explains; not among the readings.
+    pub without_reading: usize,
+}
+
+impl Study {
+    /// Reads the temperature of the target from `trials` spectra of the camera at each true temperature. `progress` is
+    /// called with the temperatures done and their number.
+    ///
+    /// # Errors
+    /// No camera; no temperatures, or one that is not positive or outside of the range of states; fewer than two trials;
+    /// too many photons to draw.
+    ///
+    /// ```
+    /// use hadar::{material::Library, scenario::Scenario, study::Study};
+    /// let text = r#"
+    ///     [target]
+    ///     material = "silicon-carbide"
+    ///     temperature = "60 degC"
+    ///     [[environment]]
+    ///     temperature = "20 degC"
+    ///     lighting = 0.5
+    ///     [alternatives]
+    ///     materials = ["aluminium"]
+    ///     [bands]
+    ///     start = "720 cm^-1"
+    ///     stop = "1250 cm^-1"
+    ///     step = "10 cm^-1"
+    ///     [camera]
+    ///     preset = "nicolet-is50"
+    /// "#;
+    /// let study = Study::new(&Scenario::from_toml(text, None)?, &Library::embedded()?)?;
+    /// let found = study.thermometry(&[303.15, 373.15], 100, 1, &|_, _| {})?;
+    /// // The emissivity entered by hand reads a hot target too cold.
+    /// assert!(found.rows[1].manual.errors.is_some_and(|errors| errors.bias < -3.0));
+    /// # Ok::<(), hadar::Error>(())
+    /// ```
+    pub fn thermometry(
+        &self,
+        temperatures_k: &[f64],
+        trials: usize,
+        seed: u64,
+        progress: &dyn Fn(usize, usize),
+    ) -> Result<Thermometry> {
+        let Some((counting, camera)) = self.counting().zip(self.camera.as_ref()) else {
+            let error = Error::malformed("thermometry without a camera", "add a [camera] to the scenario");
+            return Err(error.at(self.scenario.place("camera")));
+        };
+        let total = temperatures_k.len();
+        if !(1..=MOST_ROWS).contains(&total) {
+            let expected = format!("1 to {MOST_ROWS}");
+            return Err(Error::out_of_range("number of temperatures", total as f64, "", expected));
+        }
+        if trials < 2 {
+            return Err(Error::out_of_range("number of trials", trials as f64, "", "at least 2"));
+        }
+        let states: Vec<State> = (temperatures_k.iter())
+            .map(|&t| self.surroundings.state(t, &self.state.lighting))
+            .collect::<Result<_>>()?;
+        let scene = ThermometryScene {
+            bands: &self.bands,
+            surroundings: &self.surroundings,
+            emissivity: &self.target.emissivity,
+            range: self.range,
+            counting: &counting,
+        };
+        let coldest = states.iter().min_by(|a, b| a.temperature_k.total_cmp(&b.temperature_k));
+        let coldest = coldest.unwrap_or(&self.state);
+        let unknowns = [self.thermometry_unknowns(false)?, self.thermometry_unknowns(true)?];
+        let objects = self.surroundings.objects().len();
+        let readers = if objects > 0 { 2 } else { 1 };
+        let series = Series {
+            study: self,
+            scene,
+            unknowns,
+            criteria: Criteria { together: readers * total, ..Criteria::default() },
+            fixed: Conventional::with_surroundings(FIXED_EMISSIVITY, &self.surroundings)?,
+            manual: Conventional::calibrated(&scene, coldest)?,
+        };
+        let mut rows = Vec::with_capacity(total);
+        for (index, state) in states.iter().enumerate() {
+            progress(index, total);
+            rows.push(series.row(state, Run { index: index as u32, trials, seed })?);
+        }
+        progress(total, total);
+        let warnings = warnings(&rows);
+        Ok(Thermometry {
+            target: self.target.name.clone(),
+            camera: camera.name.clone(),
+            statistics: scene.statistics()?.name(),
+            lighting: self.state.lighting.clone(),
+            environment_k: self.state.environment_k.clone(),
+            trials,
+            seed,
+            generator: GENERATOR,
+            criteria: series.criteria,
+            fixed: series.fixed,
+            manual: series.manual,
+            calibrated_k: coldest.temperature_k,
+            rows,
+            warnings,
+        })
+    }
+
+    /// The scenario's unknowns with temperature among them, lighting added or taken out.
+    fn thermometry_unknowns(&self, with_lighting: bool) -> Result<Unknowns> {
+        let others = self.unknowns.nuisances().iter().copied().filter(|n| *n != Nuisance::Lighting);
+        let mut unknowns = Unknowns::new(others)?.with(Nuisance::Temperature);
+        if with_lighting {
+            unknowns =
+                unknowns.with(Nuisance::Lighting).lighting_total(self.unknowns.known_lighting_total())?;
+        }
+        for nuisance in unknowns.nuisances().to_vec() {
+            if let Some(sigma) = self.unknowns.sigma_prior(parameter(nuisance)) {
+                unknowns = unknowns.prior(nuisance, sigma)?;
+            }
+        }
+        Ok(unknowns)
+    }
+}
+
+/// The first parameter of a kind.
+fn parameter(nuisance: Nuisance) -> Parameter {
+    match nuisance {
+        Nuisance::Temperature => Parameter::Temperature,
+        Nuisance::Lighting => Parameter::Lighting(0),
+        Nuisance::Gain => Parameter::Gain,
+        Nuisance::EnvironmentTemperature => Parameter::EnvironmentTemperature(0),
+    }
+}
+
+/// What all rows share.
+struct Series<'a> {
+    study: &'a Study,
+    scene: ThermometryScene<'a>,
+    /// Lighting known, and unknown.
+    unknowns: [Unknowns; 2],
+    criteria: Criteria,
+    fixed: Conventional,
+    manual: Conventional,
+}
+
+impl Series<'_> {
+    fn row(&self, state: &State, run: Run) -> Result<ThermometryRow> {
+        let [known, unknown] = &self.unknowns;
+        let lit = !self.study.surroundings.objects().is_empty();
+        Ok(ThermometryRow {
+            temperature_k: state.temperature_k,
+            photons: crate::sum::sum(&self.scene.means(state)?),
+            lighting_known: self.reader(known, state, run)?,
+            lighting_unknown: if lit { Some(self.reader(unknown, state, run)?) } else { None },
+            bound_range_k: if lit { self.bound_range_k(state)? } else { None },
+            fixed: self.imager(&self.fixed, state, run)?,
+            manual: self.imager(&self.manual, state, run)?,
+        })
+    }
+
+    fn reader(&self, unknowns: &Unknowns, state: &State, run: Run) -> Result<Reader> {
+        let bound = self.scene.bound(unknowns, state)?;
+        let Some(own) = bound.each.iter().find(|one| one.parameter == Parameter::Temperature) else {
+            return Err(Error::malformed("a fit without temperature", "report this as a bug"));
+        };
+        let fits = self.scene.fits(unknowns, state, run)?;
+        let estimates = fits.of(Parameter::Temperature);
+        let truth = state.temperature_k;
+        let errors = Errors::of(&estimates, truth, self.criteria.level)?;
+        let joint = match &bound.joint {
+            Some(joint) => Some(Efficiency::of(&fits.estimates, &fits.truth, joint, &self.criteria)?.joint),
+            None => None,
+        };
+        let Fits { at_edge, unconverged, trials, .. } = fits;
+        Ok(Reader {
+            bound_k: finite(own),
+            bound_relative_error: own.relative_error,
+            sight: own.sight,
+            errors,
+            efficiency: self.efficiency(own, &estimates, truth)?,
+            joint,
+            at_edge: at_edge as f64 / trials as f64,
+            unconverged,
+        })
+    }
+
+    fn efficiency(
+        &self,
+        bound: &Precision,
+        estimates: &[f64],
+        truth: f64,
+    ) -> Result<Option<ParameterEfficiency>> {
+        let Some(sigma) = finite(bound) else { return Ok(None) };
+        let bound = JointBound::from_sigma(sigma)?;
+        let found = Efficiency::of(estimates, &[truth], &bound, &self.criteria)?;
+        Ok(found.parameters.first().copied())
+    }
+
+    /// The bound with the range of the lighting as what is known of it beforehand.
+    fn bound_range_k(&self, state: &State) -> Result<Option<f64>> {
+        let [_, unknown] = &self.unknowns;
+        let [low, high] = self.study.range.lighting;
+        // Of several objects a box within what they may sum to.
+        let objects = self.study.surroundings.objects().len().max(1) as f64;
+        let sum = unknown.known_lighting_total().unwrap_or(self.study.range.lighting_sum);
+        let width = high.min(sum / objects) - low;
+        if width <= 0.0 {
+            return Ok(None);
+        }
+        let of_range = width / std::f64::consts::TAU;
+        let sigma = match unknown.sigma_prior(Parameter::Lighting(0)) {
+            Some(prior) => of_range * prior / of_range.hypot(prior),
+            None => of_range,
+        };
+        let unknowns = unknown.clone().prior(Nuisance::Lighting, sigma)?;
+        let bound = self.scene.bound(&unknowns, state)?;
+        Ok(bound.each.iter().find(|one| one.parameter == Parameter::Temperature).and_then(finite))
+    }
+
+    fn imager(&self, imager: &Conventional, state: &State, run: Run) -> Result<ImagerErrors> {
+        let readings = self.scene.readings(imager, state, run)?;
+        let kelvin: Vec<f64> = (readings.iter())
+            .filter_map(|reading| if let Reading::Kelvin(t) = reading { Some(*t) } else { None })
+            .collect();
+        let errors = match kelvin.len() {
+            0 | 1 => None,
+            _ => Some(Errors::of(&kelvin, state.temperature_k, self.criteria.level)?),
+        };
+        Ok(ImagerErrors { errors, without_reading: readings.len() - kelvin.len() })
+    }
+}
+
+fn finite(bound: &Precision) -> Option<f64> {
+    (bound.sight == Sight::Seen && bound.sigma.is_finite() && bound.sigma > 0.0).then_some(bound.sigma)
+}
+
+/// What the numbers do not say by themselves.
+fn warnings(rows: &[ThermometryRow]) -> Vec<Warning> {
+    let mut warnings = Vec::new();
+    let readers =
+        || rows.iter().flat_map(|row| std::iter::once(&row.lighting_known).chain(&row.lighting_unknown));
+    let held = readers().filter(|reader| reader.at_edge > HELD);
+    let (count, most) = held.fold((0, 0.0_f64), |(n, most), reader| (n + 1, most.max(reader.at_edge)));
+    if count > 0 {
+        let message = format!(
+            "up to {:.0} % of the fits end at the edge of the physical range (0 to 1 for lighting): they are biased and \
+             their errors bounded by the range, so that the Cramer-Rao bound for unbiased estimates does not apply there",
+            100.0 * most
+        );
+        warnings.push(Warning::new("range-holds-the-estimates", message));
+    }
+    let unconverged: usize = readers().map(|reader| reader.unconverged).sum();
+    if unconverged > 0 {
+        let message = format!("{unconverged} fits did not converge; their best state so far counts");
+        warnings.push(Warning::new("unconverged-fits", message));
+    }
+    let without: usize = rows.iter().map(|row| row.fixed.without_reading + row.manual.without_reading).sum();
+    if without > 0 {
+        let message = format!(
+            "{without} sums of counts are explained by no temperature; thermal imaging is without them"
+        );
+        warnings.push(Warning::new("no-reading", message));
+    }
+    if readers().any(|reader| reader.sight != Sight::Seen) {
+        let message = "the spectrum tells nothing of the temperature, or nothing that the other unknowns do not imitate";
+        warnings.push(Warning::new("temperature-not-seen", message));
+    }
+    warnings
+}
+
+#[cfg(test)]
+mod tests;
