@@ -8,6 +8,7 @@
 //! form, so that a quick run can be held against committed files.
 
 mod edfig6;
+mod edfig9;
 mod fig3b;
 mod fig3c;
 mod ledger;
@@ -137,7 +138,7 @@ impl Item {
             Self::FigS7 => fig3b::three_bands(order, out, progress)?,
             Self::Fig3c => fig3c::make(out)?,
             Self::EdFig6 => edfig6::make(order, out, progress)?,
-            Self::EdFig9 => tabs2::make(out)?,
+            Self::EdFig9 => edfig9::make(order, out, progress)?,
             Self::TabS2 => tabs2::make(out)?,
             Self::Policy => policy::make(out)?,
         };
