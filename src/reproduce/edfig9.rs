@@ -15,9 +15,9 @@ use std::path::Path;
 /// Heating powers.
 const POWERS: usize = 16;
 /// Spectra at each.
-const TRIALS: usize = 4000;
+const TRIALS: usize = 12_000;
 /// Of the temperatures, the quick form makes so many, from the coldest on.
-const QUICK: usize = 3;
+const QUICK: usize = 2;
 /// Ranges of the true temperature, °C: a heating plate, and people.
 const PLATE_C: [f64; 2] = [30.0, 105.0];
 const PEOPLE_C: [f64; 2] = [33.0, 40.5];

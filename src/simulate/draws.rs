@@ -67,14 +67,6 @@ impl Draws {
         Ok(Self { bands: bands.collect::<Result<_>>()? })
     }
 
-    /// STUB
-    pub fn with_electronic_noise(self, _var: &[f64]) -> Result<Self> {
-        Ok(self)
-    }
-    /// STUB
-    pub fn multinomial(_n: f64, means: &[f64]) -> Result<Self> {
-        Self::new(&Statistics::Poisson, means)
-    }
     /// How many bands a spectrum has.
     #[must_use]
     pub fn bands(&self) -> usize {
