@@ -17,7 +17,7 @@ use self::footing::{assumptions, warnings};
 use self::numbers::{celsius, exponential, numbers, photons};
 use self::pairs::pair_table;
 use crate::policy::Quantity;
-use crate::study::{PairResult, Sizing, Study};
+use crate::study::{self, PairResult, Sizing, Study};
 use std::fmt::Write as _;
 
 /// The verdict and everything behind it.
@@ -57,12 +57,12 @@ pub fn sizing(result: &Sizing, study: &Study) -> String {
                 ),
             );
         }
-        if let (Some(p), Some(miss), Some(bits)) =
-            (pair.detection_probability, pair.miss_probability, pair.information_bits)
+        if let (Some(d), Some(miss), Some(bits)) =
+            (pair.statistical_distance, pair.miss_probability, pair.information_bits)
         {
             line(
                 "detection probability at most",
-                format!("{} (error {})", significant(p, 4), significant(miss, 3)),
+                format!("{} (error {})", study::probability(d, 4), significant(miss, 3)),
             );
             line("information log2 2P", format!("{} bit", significant(bits, 3)));
         }
@@ -96,7 +96,7 @@ fn readings(pair: &PairResult, result: &Sizing) -> String {
         pair.target,
         pair.alternative,
         significant(requirement.distance, 4),
-        significant(requirement.detection_probability, 4)
+        study::probability(requirement.distance, 4)
     );
     let _ =
         writeln!(out, "  {:<34} {:>10}  {:>18}  {:>14}", "reading", "distance", "photons", "H_req [m^2 s]");

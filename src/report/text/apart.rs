@@ -2,8 +2,7 @@
 
 use super::many::camera;
 use super::numbers::{exponential, listed};
-use crate::identifiability::detection;
-use crate::study::{Apart, Matrix, Study};
+use crate::study::{self, Apart, Matrix, Study};
 use std::fmt::Write as _;
 
 /// Which materials can be told apart, and which cannot.
@@ -13,9 +12,9 @@ pub(super) fn apart(apart: &Apart, study: &Study) -> String {
         name => name,
     };
     let pairs = apart.told_apart.len() + apart.not_told_apart.len();
-    let percent = 100.0 * detection::probability(study.required_distance());
+    let reliability = study::reliability(study.required_distance());
     let mut out = format!(
-        "{camera} tells {} of {pairs} pairs apart with {percent:.1} % reliability, either of them the target\n",
+        "{camera} tells {} of {pairs} pairs apart with {reliability} reliability, either of them the target\n",
         apart.told_apart.len()
     );
     if apart.told_apart.is_empty() {

@@ -6,10 +6,9 @@ use super::exact::exact;
 use super::footing::footing;
 use super::numbers::{photons, significant};
 use super::pairs::pair_table;
-use crate::identifiability::detection;
 use crate::identifiability::multi::{Passes, Work};
 use crate::scenario::DistanceKind;
-use crate::study::{Answers, Check, Identification, Study};
+use crate::study::{self, Answers, Check, Identification, Study};
 use std::fmt::Write as _;
 
 /// Entries of the prediction vector that are shown.
@@ -62,7 +61,7 @@ fn verdict(result: &Identification, study: &Study) -> String {
         return out;
     };
     let (target, all) = (&pair.target, result.pairs.len());
-    let percent = 100.0 * detection::probability(study.required_distance());
+    let reliability = study::reliability(study.required_distance());
     if let Some(told) = result.identifiability.told_from {
         let name = camera(study);
         let sentence = match (all, told) {
@@ -72,7 +71,7 @@ fn verdict(result: &Identification, study: &Study) -> String {
             (_, 0) => format!("No: {name} tells {target} from none of {all} alternatives"),
             (_, told) => format!("No: {name} tells {target} from only {told} of {all} alternatives"),
         };
-        let _ = writeln!(out, "{sentence} with {percent:.1} % reliability{}.", no_limit(study));
+        let _ = writeln!(out, "{sentence} with {reliability} reliability{}.", no_limit(study));
     }
     let needed = match pair.photons_required {
         Some(_) => {
@@ -85,7 +84,7 @@ fn verdict(result: &Identification, study: &Study) -> String {
     if let Some(average) = &result.prior_average {
         let _ = writeln!(
             out,
-            "Averaged over the priors: {} photons for {percent:.1} % right answers (hybrid Cramer-Rao bound of estimates, no limit of decisions: {}).",
+            "Averaged over the priors: {} photons for {reliability} right answers (hybrid Cramer-Rao bound of estimates, no limit of decisions: {}).",
             photons(average.photons_required),
             photons(average.photons_required_hybrid_bound)
         );
@@ -128,17 +127,17 @@ fn prediction(result: &Identification) -> String {
 pub fn check(result: &Check, study: &Study) -> String {
     let target = &study.target().name;
     let camera = camera(study);
-    let percent = 100.0 * detection::probability(study.required_distance());
+    let reliability = study::reliability(study.required_distance());
     match &result.not_told_from {
         Some(other) => {
-            format!("No: {camera} cannot tell {target} from {other} with {percent:.1} % reliability.\n")
+            format!("No: {camera} cannot tell {target} from {other} with {reliability} reliability.\n")
         }
         None => {
             let all = match study.alternatives() {
                 [one] => one.name.clone(),
                 all => format!("all {} alternatives", all.len()),
             };
-            format!("Yes: {camera} tells {target} from {all} with {percent:.1} % reliability.\n")
+            format!("Yes: {camera} tells {target} from {all} with {reliability} reliability.\n")
         }
     }
 }
