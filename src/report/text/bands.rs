@@ -100,7 +100,7 @@ pub(super) fn bands(found: &BandsThatMatter, study: &Study) -> String {
                 _ => format!("{:.1}-{:.1}", band.low_cm1, band.high_cm1),
             })
             .collect();
-        let _ = writeln!(out, "    at {} cm^-1", places.join(", "));
+        let _ = writeln!(out, "    at {} cm^-1", listed(&places));
     }
     out.push('\n');
     out

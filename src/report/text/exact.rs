@@ -1,5 +1,6 @@
 //! Simulated decisions beside their limits.
 
+use super::numbers::shortened;
 use crate::study::{Exact, ExactPair, Study};
 use std::fmt::Write as _;
 
@@ -13,7 +14,8 @@ pub(super) fn exact(found: &Exact, study: &Study) -> String {
         "Maximum-likelihood decision, states unknown, {} counts (seed {}, {percent:.0} % intervals)\n",
         found.statistics, found.seed
     );
-    let width = found.pairs.iter().map(|pair| pair.alternative.len()).max().unwrap_or(0).max(11);
+    let short = shortened(found.pairs.iter().map(|pair| pair.alternative.as_str()));
+    let width = short.width().max(11);
     let _ = writeln!(
         out,
         "  {:<width$}  {:>9}  {:>18}  {:>11}  {:>11}  {:>9}  {:>17}",
@@ -25,7 +27,7 @@ pub(super) fn exact(found: &Exact, study: &Study) -> String {
         let _ = write!(
             out,
             "  {:<width$}  {:>9.2e}  {:>9.3} +- {:.3}    {:>12.3}  {:>11.3}  {:>9.3}  {:>8.3} to {:.3}",
-            pair.alternative,
+            short.of(&pair.alternative),
             pair.photons,
             pair.balanced,
             pair.balanced_interval.half_width(),

@@ -4,7 +4,7 @@ use super::apart::{apart, matrix};
 use super::bands::{bands, scaling};
 use super::exact::exact;
 use super::footing::footing;
-use super::numbers::{photons, significant};
+use super::numbers::{celsius, numbers, photons, significant};
 use super::pairs::pair_table;
 use crate::identifiability::multi::{Passes, Work};
 use crate::scenario::DistanceKind;
@@ -15,15 +15,18 @@ use std::fmt::Write as _;
 const SHOWN: usize = 5;
 /// Entries below this are not worth a name.
 const LEAST_SHOWN: f64 = 1e-3;
-/// All that was asked for, the target against its alternatives first.
+
+/// All that was asked for. All against all come first where they were asked for; `apart` alone has no table of the
+/// target's.
 #[must_use]
 pub fn answers(answers: &Answers, study: &Study) -> String {
-    let mut out = identification(&answers.identification, study);
+    let mut out = String::new();
     if let Some(found) = &answers.matrix {
         out.push_str(&matrix(found, study));
     }
-    if let Some(found) = &answers.apart {
-        out.push_str(&apart(found, study));
+    match &answers.apart {
+        Some(found) => out.push_str(&apart(found, study)),
+        None => out.push_str(&identification(&answers.identification, study)),
     }
     if let Some(found) = &answers.scaling {
         out.push_str(&scaling(found, &study.target().name));
@@ -62,6 +65,23 @@ fn verdict(result: &Identification, study: &Study) -> String {
     };
     let (target, all) = (&pair.target, result.pairs.len());
     let reliability = study::reliability(study.required_distance());
+    // The average is finite also where the state that stands in the scenario is one of equilibrium.
+    if let Some(average) = &result.prior_average {
+        let _ = writeln!(
+            out,
+            "Averaged over the priors {target} is told from {} with {reliability} right answers by {} (hybrid Cramer-Rao bound of estimates, no limit of decisions: {}).",
+            average.alternative,
+            number_of_photons(average.photons_required),
+            number_of_photons(average.photons_required_hybrid_bound)
+        );
+        let state = study.state();
+        let _ = writeln!(
+            out,
+            "At exactly {}{}:",
+            celsius(state.temperature_k),
+            numbers(" and V ", &state.lighting, 2)
+        );
+    }
     if let Some(told) = result.identifiability.told_from {
         let name = camera(study);
         let sentence = match (all, told) {
@@ -81,20 +101,16 @@ fn verdict(result: &Identification, study: &Study) -> String {
     };
     let _ =
         writeln!(out, "{target} is hardest to tell from {}: {needed}{}.", pair.alternative, no_limit(study));
-    if let Some(average) = &result.prior_average {
-        let _ = writeln!(
-            out,
-            "Averaged over the priors: {} photons for {reliability} right answers (hybrid Cramer-Rao bound of estimates, no limit of decisions: {}).",
-            photons(average.photons_required),
-            photons(average.photons_required_hybrid_bound)
-        );
-    }
     out.push('\n');
     out
 }
 
+fn number_of_photons(count: Option<f64>) -> String {
+    count.map_or_else(|| "no number of photons".into(), |count| format!("{count:.2e} photons"))
+}
+
 /// What must be added to an answer that is not by the nearest distance.
-fn no_limit(study: &Study) -> &'static str {
+pub(super) fn no_limit(study: &Study) -> &'static str {
     match study.scenario().requirement.by {
         DistanceKind::Nearest => "",
         DistanceKind::Local => ", by the local distance, which is no limit and can err either way",

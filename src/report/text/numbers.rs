@@ -1,5 +1,7 @@
 //! Numbers and names as text: as short as they can be without losing what matters.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 /// A number with `digits` significant digits, plain where that is short, else in powers of ten.
 #[must_use]
 pub fn significant(value: f64, digits: usize) -> String {
@@ -48,13 +50,54 @@ pub(super) fn numbers(label: &str, values: &[f64], decimals: usize) -> String {
 
 /// Names listed in one line at most; all of them are in the tables.
 const LISTED: usize = 12;
+/// Characters of a name in a table at most.
+const NAME: usize = 32;
 
-/// A list of names, cut short where it is long.
-pub(super) fn listed(names: &[String]) -> String {
-    match names.len().checked_sub(LISTED) {
-        Some(more) if more > 0 => format!("{} and {more} more", names[..LISTED].join(", ")),
-        _ => names.join(", "),
+/// A list, cut short where it is long.
+pub(super) fn listed<S: AsRef<str>>(all: &[S]) -> String {
+    let shown: Vec<&str> = all.iter().take(LISTED).map(AsRef::as_ref).collect();
+    match all.len().checked_sub(LISTED) {
+        Some(more) if more > 0 => format!("{} and {more} more", shown.join(", ")),
+        _ => shown.join(", "),
     }
+}
+
+/// Names as they fit into a table.
+pub(super) struct Shortened<'a>(BTreeMap<&'a str, String>);
+
+impl<'a> Shortened<'a> {
+    /// The name as it is shown.
+    pub(super) fn of(&self, name: &'a str) -> &str {
+        self.0.get(name).map_or(name, String::as_str)
+    }
+
+    /// Characters of the longest one.
+    pub(super) fn width(&self) -> usize {
+        self.0.values().map(|name| name.chars().count()).max().unwrap_or(0)
+    }
+}
+
+/// Long names cut in the middle, since they differ at their ends; whole where two would become the same.
+pub(super) fn shortened<'a>(names: impl IntoIterator<Item = &'a str>) -> Shortened<'a> {
+    let names: BTreeSet<&str> = names.into_iter().collect();
+    let mut found: BTreeMap<String, usize> = BTreeMap::new();
+    for name in &names {
+        *found.entry(cut(name)).or_default() += 1;
+    }
+    let shown = |name: &str| Some(cut(name)).filter(|short| found.get(short) == Some(&1));
+    let pairs = names.iter().map(|name| (*name, shown(name).unwrap_or_else(|| (*name).to_owned())));
+    Shortened(pairs.collect())
+}
+
+fn cut(name: &str) -> String {
+    let characters: Vec<char> = name.chars().collect();
+    if characters.len() <= NAME {
+        return name.to_owned();
+    }
+    let kept = NAME - 3;
+    let (start, end) = (kept / 2, characters.len() - (kept - kept / 2));
+    let part = |range: &[char]| range.iter().collect::<String>();
+    format!("{}...{}", part(&characters[..start]), part(&characters[end..]))
 }
 
 #[cfg(test)]
@@ -69,5 +112,17 @@ mod tests {
         assert_eq!(quantity(12e-6, "m"), "12.0 um");
         assert_eq!(quantity(0.012, "s"), "12.0 ms");
         assert_eq!(quantity(0.0, "s"), "0 s");
+    }
+
+    #[test]
+    fn long_names_are_cut_in_the_middle_unless_they_become_the_same() {
+        let long = "rock-igneous-mafic-solid-basalt-nicolet-h1";
+        let names = shortened([long, "skin"]);
+        assert_eq!(names.of(long), "rock-igneous-m...alt-nicolet-h1");
+        assert_eq!((names.of("skin"), names.of("other"), names.width()), ("skin", "other", 32));
+        let twin = "rock-igneous-mantle-peridotite-basalt-nicolet-h1";
+        assert_eq!(shortened([long, twin]).of(twin), twin);
+        assert_eq!(listed(&["b"; 14]), "b, ".repeat(11) + "b and 2 more");
+        assert_eq!(shortened(["ä".repeat(40).as_str()]).width(), 32);
     }
 }

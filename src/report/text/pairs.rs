@@ -1,6 +1,6 @@
 //! The target against its alternatives, one line each.
 
-use super::numbers::{celsius, exponential, numbers, photons};
+use super::numbers::{celsius, exponential, numbers, photons, shortened, significant};
 use crate::study::{PairResult, Study};
 use std::fmt::Write as _;
 
@@ -9,8 +9,14 @@ pub(super) fn pair_table(pairs: &[PairResult], study: &Study) -> String {
     let kind = study.scenario().requirement.by;
     let decisive = |pair: &PairResult| pair.statistical_distance.unwrap_or_else(|| pair.distance(kind));
     let with_camera = pairs.iter().any(|pair| pair.statistical_distance.is_some());
-    let width = pairs.iter().map(|pair| pair.alternative.len()).max().unwrap_or(0).max(11);
-    let mut out = String::new();
+    let short = shortened(pairs.iter().map(|pair| pair.alternative.as_str()));
+    let width = short.width().max(11);
+    let mut out = String::from("  distances per sqrt(photon); photons by shot noise alone");
+    if with_camera {
+        let required = significant(study.required_distance(), 4);
+        let _ = write!(out, "; camera d: statistical distance, required {required}");
+    }
+    out.push('\n');
     let _ = write!(
         out,
         "  {:<width$}  {:>9}  {:>9}  {:>9}  {:>18}  {:>24}",
@@ -25,7 +31,7 @@ pub(super) fn pair_table(pairs: &[PairResult], study: &Study) -> String {
         let _ = write!(
             out,
             "  {:<width$}  {:>9}  {:>9}  {:>9}  {:>18}  {state:>24}",
-            pair.alternative,
+            short.of(&pair.alternative),
             exponential(pair.distance_nearest, 2),
             exponential(pair.distance_local, 2),
             exponential(pair.distance_local_unknown_gain, 2),
