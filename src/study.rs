@@ -10,6 +10,7 @@ mod bands;
 mod bands_that_matter;
 mod camera;
 mod curves;
+mod distances;
 mod exact;
 mod identify;
 mod magnitudes;

@@ -1,5 +1,6 @@
 //! What results rest on, and what their reader must know.
 
+use super::numbers::listed;
 use crate::scenario::{Nuisance, Unknown};
 use crate::study::{Identification, Study, Warning};
 use std::fmt::Write as _;
@@ -51,6 +52,14 @@ pub(super) fn assumptions(study: &Study) -> String {
     out.push_str(
         "  counts large enough to be Gaussian; two equally likely materials; d is a limit, not a promise\n",
     );
+    let skies = study.skies_left_out();
+    if !skies.is_empty() {
+        let _ = writeln!(
+            out,
+            "  skies of the library are surroundings, no alternatives: left out {}",
+            listed(skies)
+        );
+    }
     if study.camera().is_some() {
         out.push_str("  every band is read by every pixel with the whole exposure; all photons are counted (quantum efficiency 1)\n");
     }
