@@ -164,13 +164,13 @@ impl Study {
             status: local.status,
             blind_direction: blind,
         };
-        let warnings = warn::of_pair(&result, &local, &nearest, kind);
+        let warnings = warn::of_pair(&result, &local, &nearest, kind, &self.range);
         Ok((result, warnings))
     }
 }
 
 /// Name of a parameter as it stands in results.
-pub(super) fn parameter_name(parameter: Parameter) -> String {
+fn parameter_name(parameter: Parameter) -> String {
     match parameter {
         Parameter::Temperature => "temperature_k".into(),
         Parameter::Lighting(k) => format!("lighting[{k}]"),
