@@ -3,6 +3,7 @@
 use super::filter::FilterCurve;
 use crate::error::{Error, Result, check};
 use crate::simd::dispatched;
+use std::ops::Range;
 
 /// Widest stretch of a range or filter that one midpoint node may stand for, cm⁻¹: the paper's step.
 const NODE_SPACING_CM1: f64 = 1.0;
@@ -243,16 +244,15 @@ impl Bands {
         self.nodes_cm1.len() == self.bands.len()
     }
 
-    /// First node, nodes and weights of each band.
-    pub(crate) fn nodes_and_weights(&self) -> impl Iterator<Item = (usize, &[f64], &[f64])> {
-        self.first_node.windows(2).map(|nodes| {
-            let range = nodes[0]..nodes[1];
-            (nodes[0], &self.nodes_cm1[range.clone()], &self.weights_cm1[range])
-        })
-    }
-
     /// Every `stride`-th band, and where its nodes stand among those of the whole.
     pub(crate) fn every(&self, stride: usize) -> (Self, Vec<usize>) {
+        let places: Vec<Range<usize>> = (0..self.len()).step_by(stride.max(1)).map(|q| q..q + 1).collect();
+        self.chosen(&places)
+    }
+
+    /// Runs of neighbouring bands (rising, within the whole), each joined to one, and where their nodes stand among
+    /// those of the whole.
+    pub(crate) fn chosen(&self, runs: &[Range<usize>]) -> (Self, Vec<usize>) {
         let mut kept = Self {
             bands: Vec::new(),
             shapes: Vec::new(),
@@ -261,13 +261,18 @@ impl Bands {
             first_node: vec![0],
         };
         let mut places = Vec::new();
-        for (q, (first, nodes, weights)) in self.nodes_and_weights().enumerate().step_by(stride) {
-            kept.bands.push(self.bands[q].clone());
-            kept.shapes.push(self.shapes[q].clone());
-            kept.nodes_cm1.extend_from_slice(nodes);
-            kept.weights_cm1.extend_from_slice(weights);
+        for run in runs {
+            let (band, shape) = match (&self.bands[run.clone()], &self.shapes[run.clone()]) {
+                ([band], [shape]) => (band.clone(), shape.clone()),
+                (bands, _) => (joined(bands), Shape::TopHat),
+            };
+            let nodes = self.first_node[run.start]..self.first_node[run.end];
+            kept.bands.push(band);
+            kept.shapes.push(shape);
+            kept.nodes_cm1.extend_from_slice(&self.nodes_cm1[nodes.clone()]);
+            kept.weights_cm1.extend_from_slice(&self.weights_cm1[nodes.clone()]);
             kept.first_node.push(kept.nodes_cm1.len());
-            places.extend(first..first + nodes.len());
+            places.extend(nodes);
         }
         (kept, places)
     }
@@ -278,15 +283,7 @@ impl Bands {
         if group == 1 {
             return self.clone();
         }
-        let bands: Vec<Band> = self
-            .bands
-            .chunks(group)
-            .map(|parts| {
-                let low_cm1 = parts.iter().map(|band| band.low_cm1).fold(f64::INFINITY, f64::min);
-                let high_cm1 = parts.iter().map(|band| band.high_cm1).fold(0.0, f64::max);
-                Band { center_cm1: 0.5 * (low_cm1 + high_cm1), low_cm1, high_cm1, name: None }
-            })
-            .collect();
+        let bands: Vec<Band> = self.bands.chunks(group).map(joined).collect();
         let mut first_node: Vec<usize> = self.first_node.iter().copied().step_by(group).collect();
         if first_node.len() == bands.len() {
             first_node.push(self.nodes_cm1.len());
@@ -345,6 +342,13 @@ dispatched! {
             *out = a * b;
         }
     }
+}
+
+/// What spans some bands.
+fn joined(parts: &[Band]) -> Band {
+    let low_cm1 = parts.iter().map(|band| band.low_cm1).fold(f64::INFINITY, f64::min);
+    let high_cm1 = parts.iter().map(|band| band.high_cm1).fold(0.0, f64::max);
+    Band { center_cm1: 0.5 * (low_cm1 + high_cm1), low_cm1, high_cm1, name: None }
 }
 
 /// Where a band must be cut so that its transmittance is a straight line on every piece.

@@ -33,6 +33,9 @@ pub(super) fn scaling(scaling: &Scaling, target: &str) -> String {
             _ => format!("  {what}  0 in any number of bands\n"),
         }
     };
+    if !bands.left_out.is_empty() {
+        let _ = writeln!(out, "  bands: {}", beyond_reach(&bands.left_out));
+    }
     out.push_str(&span(&bands.shot_noise, "least, shot noise alone (per sqrt(photon)) "));
     out.push_str(&span(&bands.shot_noise_median, "median, shot noise alone (per sqrt(photon))"));
     if !bands.camera.is_empty() {
@@ -41,6 +44,11 @@ pub(super) fn scaling(scaling: &Scaling, target: &str) -> String {
     }
     out.push('\n');
     out
+}
+
+/// Why alternatives do not count in a choice of bands.
+fn beyond_reach(names: &[String]) -> String {
+    format!("without {}, which not even all bands with shot noise alone tell as required", listed(names))
 }
 
 /// Which bands matter, and what the best few keep.
@@ -53,6 +61,9 @@ pub(super) fn bands(found: &BandsThatMatter, study: &Study) -> String {
     let mut out = format!("Bands that matter for telling {target} from {against}, by the local distance\n");
     if !found.left_out.is_empty() {
         let _ = writeln!(out, "  left out, since not even all bands tell them: {}", listed(&found.left_out));
+    }
+    if !found.out_of_reach.is_empty() {
+        let _ = writeln!(out, "  {}", beyond_reach(&found.out_of_reach));
     }
     for (choice, what) in [(&found.bands, "band"), (&found.filters, "contiguous filter")] {
         let Some(choice) = choice else { continue };
@@ -101,6 +112,24 @@ pub(super) fn bands(found: &BandsThatMatter, study: &Study) -> String {
             })
             .collect();
         let _ = writeln!(out, "    at {} cm^-1", listed(&places));
+        if count < choice.asked {
+            let _ = writeln!(
+                out,
+                "    {} were asked for: more than {count} would add less than 0.1 %",
+                choice.asked
+            );
+        }
+        if let Some(reached) = &choice.reached {
+            let d = reached.statistical_distance;
+            let _ = writeln!(
+                out,
+                "    with these alone the camera reaches d = {} against {} by the nearest distance, {} than the required {}",
+                significant(d, 3),
+                reached.limiting,
+                if d >= reached.required { "no less" } else { "less" },
+                significant(reached.required, 4)
+            );
+        }
     }
     out.push('\n');
     out
