@@ -50,8 +50,8 @@ pub(super) fn numbers(label: &str, values: &[f64], decimals: usize) -> String {
 
 /// Names listed in one line at most; all of them are in the tables.
 const LISTED: usize = 12;
-/// Characters of a name in a table at most.
-const NAME: usize = 32;
+/// Characters of a name in a table: at its start and at its end, where files of a library differ.
+const NAME: [usize; 2] = [12, 29];
 
 /// A list, cut short where it is long.
 pub(super) fn listed<S: AsRef<str>>(all: &[S]) -> String {
@@ -91,13 +91,12 @@ pub(super) fn shortened<'a>(names: impl IntoIterator<Item = &'a str>) -> Shorten
 
 fn cut(name: &str) -> String {
     let characters: Vec<char> = name.chars().collect();
-    if characters.len() <= NAME {
+    let [first, last] = NAME;
+    if characters.len() <= first + 3 + last {
         return name.to_owned();
     }
-    let kept = NAME - 3;
-    let (start, end) = (kept / 2, characters.len() - (kept - kept / 2));
     let part = |range: &[char]| range.iter().collect::<String>();
-    format!("{}...{}", part(&characters[..start]), part(&characters[end..]))
+    format!("{}...{}", part(&characters[..first]), part(&characters[characters.len() - last..]))
 }
 
 #[cfg(test)]
@@ -116,13 +115,13 @@ mod tests {
 
     #[test]
     fn long_names_are_cut_in_the_middle_unless_they_become_the_same() {
-        let long = "rock-igneous-mafic-solid-basalt-nicolet-h1";
+        let long = "basalt@rock-igneous-mafic-solid-basalt-h1-jhu-nicolet";
         let names = shortened([long, "skin"]);
-        assert_eq!(names.of(long), "rock-igneous-m...alt-nicolet-h1");
-        assert_eq!((names.of("skin"), names.of("other"), names.width()), ("skin", "other", 32));
-        let twin = "rock-igneous-mantle-peridotite-basalt-nicolet-h1";
+        assert_eq!(names.of(long), "basalt@rock-...c-solid-basalt-h1-jhu-nicolet");
+        assert_eq!((names.of("skin"), names.of("other"), names.width()), ("skin", "other", 44));
+        let twin = "basalt@rock-igneous-felsic-solid-basalt-h1-jhu-nicolet";
         assert_eq!(shortened([long, twin]).of(twin), twin);
         assert_eq!(listed(&["b"; 14]), "b, ".repeat(11) + "b and 2 more");
-        assert_eq!(shortened(["ä".repeat(40).as_str()]).width(), 32);
+        assert_eq!(shortened(["ä".repeat(60).as_str()]).width(), 44);
     }
 }
