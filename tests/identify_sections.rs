@@ -96,7 +96,8 @@ fn simulated_decisions_stay_below_the_limit() {
     }
 }
 
-/// Algorithm 1 stands beside the simulation in up to three bands, with electronic noise as well, in a time one can wait.
+/// Algorithm 1 stands beside the simulation in up to three bands, with electronic noise as well, in a time one can
+/// wait.
 #[test]
 fn algorithm_1_joins_in_three_bands() {
     let bands = "ranges = [[\"8 um\", \"9 um\"], [\"9 um\", \"10.5 um\"], [\"10.5 um\", \"13.5 um\"]]";

@@ -47,8 +47,8 @@ where
 }
 
 impl Study {
-    /// Least nearest statistical distance with nothing but `runs` of bands, each summed and read once with the electronic
-    /// noise its bands have on average; `None` without a camera.
+    /// Least nearest statistical distance with nothing but `runs` of bands, each summed and read once with the
+    /// electronic noise its bands have on average; `None` without a camera.
     pub(super) fn reached_with(
         &self,
         runs: &[Range<usize>],

@@ -27,8 +27,8 @@ use rayon::prelude::*;
 
 /// Most photons for which the lattice of counts is laid.
 const LATTICE_PHOTONS: f64 = 1e5;
-/// Cells along the counts of each of three bands, the coarse mesh of two: decision boundaries cross their square, and with
-/// electronic noise, whose counts are continuous, no box is too small to be divided.
+/// Cells along the counts of each of three bands, the coarse mesh of two: decision boundaries cross their square, and
+/// with electronic noise, whose counts are continuous, no box is too small to be divided.
 const CELLS_OF_THREE_BANDS: [usize; 2] = [256, 24];
 
 /// Law of counting by its name.

@@ -29,8 +29,8 @@ pub struct LibrarySize {
 /// Least distance from the target to any alternative against the number of bands.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct BandNumber {
-    /// Alternatives left out since not even all bands with shot noise alone tell them as required; none where that holds
-    /// for all.
+    /// Alternatives left out since not even all bands with shot noise alone tell them as required; none where that
+    /// holds for all.
     pub left_out: Vec<String>,
     /// Bands, each as wide as the next (but for the last).
     pub bands: Vec<usize>,

@@ -9,8 +9,8 @@ use crate::fisher::Counting;
 use rayon::prelude::*;
 
 impl Study {
-    /// Indices of the alternatives that the camera's photons tell as required in all bands with shot noise alone, by the
-    /// distance that decides, and of the others. All are of the first kind without a camera.
+    /// Indices of the alternatives that the camera's photons tell as required in all bands with shot noise alone, by
+    /// the distance that decides, and of the others. All are of the first kind without a camera.
     pub(super) fn within_reach(&self) -> Result<(Vec<usize>, Vec<usize>)> {
         let Some(Counting { counts_per_radiance, .. }) = self.counting() else {
             return Ok(((0..self.alternatives.len()).collect(), Vec::new()));
