@@ -110,7 +110,7 @@ fn changed(camera: &Camera, preset: &Camera) -> Vec<&'static str> {
     };
     let noise = match (camera.noise, preset.noise) {
         (NoiseSpec::None, NoiseSpec::None) => None,
-        (NoiseSpec::Counts { sigma_counts }, NoiseSpec::None) if sigma_counts == 0.0 => None,
+        (NoiseSpec::Counts { sigma_counts: 0.0 }, NoiseSpec::None) => None,
         (
             NoiseSpec::Netd { netd_k: a, temperature_k: t, f_number: f, pixel_m: p, .. },
             NoiseSpec::Netd { netd_k: b, temperature_k: at, f_number: of, pixel_m: by, .. },

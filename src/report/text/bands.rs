@@ -113,11 +113,8 @@ pub(super) fn bands(found: &BandsThatMatter, study: &Study) -> String {
             .collect();
         let _ = writeln!(out, "    at {} cm^-1", listed(&places));
         if count < choice.asked {
-            let _ = writeln!(
-                out,
-                "    {} were asked for: more than {count} would add less than 0.1 %",
-                choice.asked
-            );
+            let _ =
+                writeln!(out, "    {} were asked for, which would give less than 0.1 % more", choice.asked);
         }
         if let Some(reached) = &choice.reached {
             let d = reached.statistical_distance;
