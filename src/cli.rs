@@ -35,7 +35,10 @@ struct Cli {
 enum Command {
     /// The main job: verdict on a camera, requirement, margins, what would have to change
     Size(size::SizeArgs),
-    /// Distances from the target to every alternative
+    /// What can be told apart: the target from every alternative, all materials from each other, and by which bands
+    ///
+    /// Without a flag: the distance from the target to every alternative, the photons it takes, and with a camera which
+    /// of them it tells the target from. Flags add what else is to be computed, and can be combined.
     Identify(identify::IdentifyArgs),
     /// Draw spectra, train and judge classifiers, and hold them against the limit
     Simulate(simulate::SimulateArgs),

@@ -1,4 +1,5 @@
-//! Every mistake on the command line and in its files: exit code, one line that says where and what instead, nothing written.
+//! Every mistake on the command line and in its files: exit code, one line that says where and what instead, nothing
+//! written.
 
 #[path = "support/folder.rs"]
 #[allow(dead_code)]

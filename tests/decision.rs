@@ -72,8 +72,8 @@ impl Published {
     }
 }
 
-/// Poisson draws, temperature and lighting free ('The local CRB is not a detection limit'). The notes' figures come from
-/// 2000 draws and are printed to three or two digits: combined 95 % interval, and half a digit.
+/// Poisson draws, temperature and lighting free ('The local CRB is not a detection limit'). The notes' figures come
+/// from 2000 draws and are printed to three or two digits: combined 95 % interval, and half a digit.
 #[test]
 fn the_simulated_figures_of_the_notes() {
     let Some(scene) = Published::read() else { return };

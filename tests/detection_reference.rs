@@ -21,8 +21,8 @@ fn relative(value: f64, exact: f64) -> f64 {
     if value == exact { 0.0 } else { (value / exact - 1.0).abs() }
 }
 
-/// Tolerance 1e-15·(10 + d²): a rounding of d alone moves the tail by d² u, the rest is a handful of operations. It is a
-/// relative one throughout, so the miss probability must hold its digits at 5.7e-300 and the information
+/// Tolerance 1e-15·(10 + d²): a rounding of d alone moves the tail by d² u, the rest is a handful of operations. It is
+/// a relative one throughout, so the miss probability must hold its digits at 5.7e-300 and the information
 /// at 1.2e-12 bit.
 #[test]
 fn probabilities_and_information_agree_with_thirty_digit_references() {

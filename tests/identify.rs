@@ -197,8 +197,8 @@ fn the_matrix_is_that_of_its_pairs() {
     }
 }
 
-/// From a camera that tells next to nothing to one that tells nearly all: the decision is that of the full distances, with
-/// and without shortcuts, and groups are disjoint and hold only pairs that are not told apart.
+/// From a camera that tells next to nothing to one that tells nearly all: the decision is that of the full distances,
+/// with and without shortcuts, and groups are disjoint and hold only pairs that are not told apart.
 #[test]
 fn who_is_told_apart_is_the_same_by_every_way() {
     for exposure in ["100 us", "100 ms", "1 s"] {

@@ -12,8 +12,8 @@ use folder::Folder;
 use serde_json::Value;
 use std::fs;
 
-/// Extended Data Fig. 6: at the photons of the example silica and paint are identifiable among the five, skin and aluminium are
-/// not told apart.
+/// Extended Data Fig. 6: at the photons of the example silica and paint are identifiable among the five, skin and
+/// aluminium are not told apart.
 #[test]
 fn the_five_materials_fall_apart_as_in_the_paper() {
     let result = Folder::with("").json(&["identify", &example(), "--matrix"]);
@@ -63,7 +63,8 @@ fn measured_spectra_fall_apart_as_in_the_paper() {
     assert!(pairs(&matrix["apart"]["not_told_apart"]).contains(&("aluminium".to_owned(), "skin".to_owned())));
 }
 
-/// A person among all of the authors' 54-channel table, through the command line: rows 5a–5d of `../shared/reproduction.md`.
+/// A person among all of the authors' 54-channel table, through the command line: rows 5a–5d of
+/// `../shared/reproduction.md`.
 #[test]
 fn the_authors_library_from_the_command_line() {
     let Some(table) = shared("hadar-library/emissivity_54.csv") else { return };

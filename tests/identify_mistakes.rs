@@ -112,11 +112,19 @@ fn every_mistake_in_a_flag_is_one_line_that_names_it() {
             vec!["--filters", "999"],
             "--filters is 999; it must be from 1 to the number of bands, 108",
         ),
-        (&without, vec!["--exact", "--half-width", "0"], "half width is 0; it must be above 0 and below 0.5"),
-        (&without, vec!["--exact", "--half-width", "1"], "half width is 1; it must be above 0 and below 0.5"),
+        (
+            &without,
+            vec!["--exact", "--half-width", "0"],
+            "--half-width: half width is 0; it must be above 0 and below 0.5",
+        ),
+        (
+            &without,
+            vec!["--exact", "--half-width", "1"],
+            "--half-width: half width is 1; it must be above 0 and below 0.5",
+        ),
         (&without, vec!["--exact", "--half-width", "-1"], "half width is -1; it must be above 0"),
         (&without, vec!["--exact", "--half-width", "nan"], "half width is NaN; it must be above 0"),
-        (&without, vec!["--exact", "--trials", "0"], "--exact: limit of trials is 0; it must be at least 1"),
+        (&without, vec!["--exact", "--trials", "0"], "--trials: limit of trials is 0; it must be at least 1"),
         (&without, vec!["--exact", "--photons", "-1"], "--photons is -1; it must be a finite number above 0"),
         (&without, vec!["--exact", "--photons", "0"], "--photons is 0; it must be a finite number above 0"),
         (

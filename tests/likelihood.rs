@@ -93,8 +93,8 @@ fn compare(
     }
 }
 
-/// All three laws, distances from 0.7 to 5, temperature and lighting unknown and every fourth time gain. Of 6000 such fits 9
-/// ended below the lattice and 2 did not converge; of these 240 (48 where the code is not
+/// All three laws, distances from 0.7 to 5, temperature and lighting unknown and every fourth time gain. Of 6000 such
+/// fits 9 ended below the lattice and 2 did not converge; of these 240 (48 where the code is not
 /// optimised; fixed seed) at most one each.
 #[test]
 fn fits_are_as_good_as_those_from_a_lattice_of_starts() {

@@ -43,8 +43,8 @@ fn found_and_least(
     (found / photons.sqrt(), least / photons.sqrt())
 }
 
-/// The paper's pair around the temperature of its surroundings: below it a cold, well-lit robot competes with a hot, dim one.
-/// Found to 1e-9 of the least of 45 starts, at each of 11 × 11 states.
+/// The paper's pair around the temperature of its surroundings: below it a cold, well-lit robot competes with a hot,
+/// dim one. Found to 1e-9 of the least of 45 starts, at each of 11 × 11 states.
 #[test]
 fn the_papers_pair_around_equilibrium() {
     let bands = Bands::uniform(715.0, 1250.0, 5.0).unwrap();

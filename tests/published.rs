@@ -1,8 +1,8 @@
 //! The published numbers, by the product.
 //!
-//! Bao et al., Nature 619, 743 (2023), doi:10.1038/s41586-023-06174-6, and what an independent recomputation with the authors' own
-//! spectra found (`../shared/reproduction.md`; the rows are named as there). A number agrees if it rounds to what is
-//! printed, digit for digit, unless a test says why it may not.
+//! Bao et al., Nature 619, 743 (2023), doi:10.1038/s41586-023-06174-6, and what an independent recomputation with the
+//! authors' own spectra found (`../shared/reproduction.md`; the rows are named as there). A number agrees if it rounds
+//! to what is printed, digit for digit, unless a test says why it may not.
 
 use hadar::fisher::{Counting, Nuisance, Unknowns};
 use hadar::identifiability::detection;
@@ -199,8 +199,8 @@ fn free() -> Unknowns {
     Unknowns::new([Nuisance::Temperature, Nuisance::Lighting]).unwrap()
 }
 
-/// Row 5d: the paper's robot, 83.46 °C and V = 0.17, is the unweighted fit of absolute spectra. With a constant electronic
-/// noise far above the shot noise the nearest state is that fit. The notes find 83.49 and 0.169 with the
+/// Row 5d: the paper's robot, 83.46 °C and V = 0.17, is the unweighted fit of absolute spectra. With a constant
+/// electronic noise far above the shot noise the nearest state is that fit. The notes find 83.49 and 0.169 with the
 /// authors' table (83.38–83.53, 0.168–0.172 by grid and extrapolation), 83.56 and 0.167 with the quadratic.
 #[test]
 fn the_papers_robot_is_the_unweighted_fit() {
@@ -249,9 +249,10 @@ fn chords_to_the_papers_states() {
     prints("5c glass, that V", nearest.state.lighting[0], "1.29");
 }
 
-/// All 756 ordered pairs of the authors' table, target at 60 °C and V = 0.5, T′ in 250–450 K: the local distance is off by more
-/// than a factor 2 in 38 % of them, the photons it demands by more than 10 in 22 %. Tolerance 1.5 %: half of the last digit,
-/// and one in a hundred pairs for another reading of 'nearest' (a chord to first order), since it only counts.
+/// All 756 ordered pairs of the authors' table, target at 60 °C and V = 0.5, T′ in 250–450 K: the local distance is off
+/// by more than a factor 2 in 38 % of them, the photons it demands by more than 10 in 22 %. Tolerance 1.5 %: half of
+/// the last digit, and one in a hundred pairs for another reading of 'nearest' (a chord to first order), since it only
+/// counts.
 #[test]
 fn how_often_the_local_distance_is_no_limit() {
     let Some(library) = published("emissivity_54.csv") else { return };

@@ -148,7 +148,8 @@ proptest! {
         }
     }
 
-    /// Longer exposure, larger pixel, faster lens, more frames, less noise: none ever lowers the distance. 1e-9 is the search's.
+    /// Longer exposure, larger pixel, faster lens, more frames, less noise: none ever lowers the distance. 1e-9 is the
+    /// search's.
     #[test]
     fn a_better_camera_is_never_worse(task in task(), better in 1.0f64..20.0) {
         prop_assume!(task.preset != "ideal-pnrd");

@@ -1,4 +1,4 @@
-//! `hadar identify`: distances from the target to every alternative, and all against all.
+//! `hadar identify`: distances from the target to every alternative, all against all, bands, simulated decisions.
 
 use super::{By, Global};
 use crate::error::{Error, Place, Result, check};
@@ -10,6 +10,10 @@ use clap::Args;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+const ALL: &str = "All against all";
+const BANDS: &str = "Bands and the size of the library";
+const EXACT: &str = "Simulated decisions";
+
 #[derive(Debug, Args)]
 pub(super) struct IdentifyArgs {
     /// The scenario file (TOML)
@@ -18,40 +22,40 @@ pub(super) struct IdentifyArgs {
     #[arg(long)]
     by: Option<By>,
     /// All materials against all: distances, which the camera tells apart, clusters it cannot
-    #[arg(long)]
+    #[arg(long, help_heading = ALL)]
     matrix: bool,
     /// Only which materials the camera tells apart, each pair by the first proof
-    #[arg(long, conflicts_with = "matrix")]
+    #[arg(long, conflicts_with = "matrix", help_heading = ALL)]
     apart: bool,
     /// How the least distance changes with the size of the library and the number of bands
-    #[arg(long)]
+    #[arg(long, help_heading = BANDS)]
     scaling: bool,
     /// Which bands matter, and the best K single bands for telling the target from all alternatives
-    #[arg(long, value_name = "K")]
+    #[arg(long, value_name = "K", help_heading = BANDS)]
     bands: Option<usize>,
-    /// Which bands matter, and the best K contiguous filters
-    #[arg(long, value_name = "K")]
+    /// Which bands matter, and the best K contiguous filters, or fewer that do as well
+    #[arg(long, value_name = "K", help_heading = BANDS)]
     filters: Option<usize>,
     /// Simulate the maximum-likelihood decision over all states, and hold it against the limits
-    #[arg(long)]
+    #[arg(long, help_heading = EXACT)]
     exact: bool,
     /// How counts scatter in the simulation (default: gaussian with a noisy camera, else poisson)
-    #[arg(long, requires = "exact")]
+    #[arg(long, requires = "exact", help_heading = EXACT)]
     statistics: Option<Statistics>,
     /// Photons of the target in the simulation (default: the camera's; without one those required)
-    #[arg(long, value_name = "N", requires = "exact", allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", requires = "exact", allow_negative_numbers = true, help_heading = EXACT)]
     photons: Option<f64>,
     /// Half width of the 95 % interval at which the simulation stops
-    #[arg(long, value_name = "P", default_value_t = 0.01, requires = "exact", allow_negative_numbers = true)]
+    #[arg(long, value_name = "P", default_value_t = 0.01, requires = "exact", allow_negative_numbers = true, help_heading = EXACT)]
     half_width: f64,
     /// Most trials of a state in the simulation
-    #[arg(long, value_name = "N", default_value_t = 1_000_000, requires = "exact")]
+    #[arg(long, value_name = "N", default_value_t = 1_000_000, requires = "exact", help_heading = EXACT)]
     trials: u64,
     /// Answer only whether the camera tells the target from every alternative; exit with code 3 if not
     #[arg(long, conflicts_with_all = ["matrix", "apart", "scaling", "bands", "filters", "exact"])]
     check: bool,
     /// With --apart, compute pairs that a cheap bound decides all the same (the answer does not change)
-    #[arg(long, requires = "apart", conflicts_with = "check")]
+    #[arg(long, requires = "apart", conflicts_with = "check", help_heading = ALL)]
     no_skip: bool,
     /// Say on stderr what was computed and what was not
     #[arg(long)]
@@ -120,7 +124,8 @@ fn trial(args: &IdentifyArgs, global: &Global) -> Result<Trial> {
     if let Some(photons) = args.photons {
         check::positive("--photons", photons, "")?;
     }
-    let at_flag = |error: Error| error.at(Place { key: Some("--exact".into()), ..Place::default() });
+    let flag = if args.trials == 0 { "--trials" } else { "--half-width" };
+    let at_flag = |error: Error| error.at(Place { key: Some(flag.into()), ..Place::default() });
     let plan = Plan::new(global.seed, args.half_width, args.trials).map_err(at_flag)?;
     Ok(Trial { law, photons: args.photons, plan })
 }

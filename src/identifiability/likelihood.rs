@@ -5,8 +5,8 @@
 //! the sum over the parameters that have a prior, θ₀ their known value; without priors it is plain maximum likelihood.
 //!
 //! From each start Newton's steps within the range (`space`), with the exact second derivatives where these are
-//! positive definite and the Fisher matrix elsewhere (scoring). Temperature and lighting are often nearly degenerate, and
-//! the likelihood a narrow ridge that bends: a step that leaves it is led back by a second one with T held, which
+//! positive definite and the Fisher matrix elsewhere (scoring). Temperature and lighting are often nearly degenerate,
+//! and the likelihood a narrow ridge that bends: a step that leaves it is led back by a second one with T held, which
 //! needs no new radiances, and shortened if that does not help. It ends when what another step may gain in ln L is
 //! below [`GAIN`], which no decision between materials can feel.
 //!

@@ -77,8 +77,8 @@ impl Dielectric {
     }
 }
 
-/// The root with n ≥ 0 and k ≥ 0 of a number with Im ≥ 0. The smaller of n and k comes from the imaginary part, so that neither loses
-/// digits to the other (a metal has k ≫ n, a window n ≫ k).
+/// The root with n ≥ 0 and k ≥ 0 of a number with Im ≥ 0. The smaller of n and k comes from the imaginary part, so that
+/// neither loses digits to the other (a metal has k ≫ n, a window n ≫ k).
 fn square_root(permittivity: Complex<f64>) -> Complex<f64> {
     let Complex { re, im } = permittivity;
     let larger = ((re.hypot(im) + re.abs()) / 2.0).sqrt();

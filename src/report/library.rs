@@ -28,13 +28,13 @@ pub fn bundle(study: &Study, answers: &Answers, seed: u64, out: &Path) -> Result
     }
     let mut plots: Vec<Plot> = Vec::new();
     if let Some(matrix) = &answers.matrix {
-        bundle.add("matrix_nearest.csv", square(matrix, &matrix.distance_nearest).to_csv()?);
-        bundle.add("matrix_local.csv", square(matrix, &matrix.distance_local).to_csv()?);
+        bundle.add("matrix_nearest.csv", square(matrix, &matrix.distance_nearest, PER_PHOTON).to_csv()?);
+        bundle.add("matrix_local.csv", square(matrix, &matrix.distance_local, PER_PHOTON).to_csv()?);
         if let Some(unknown_gain) = &matrix.distance_local_unknown_gain {
-            bundle.add("matrix_local_unknown_gain.csv", square(matrix, unknown_gain).to_csv()?);
+            bundle.add("matrix_local_unknown_gain.csv", square(matrix, unknown_gain, PER_PHOTON).to_csv()?);
         }
         if let Some(statistical) = &matrix.statistical_distance {
-            bundle.add("matrix_camera.csv", square(matrix, statistical).to_csv()?);
+            bundle.add("matrix_camera.csv", square(matrix, statistical, STATISTICAL).to_csv()?);
         }
         bundle.add("targets.csv", targets(matrix).to_csv()?);
         plots.push(figures::distance_matrix(matrix));
@@ -52,7 +52,7 @@ pub fn bundle(study: &Study, answers: &Answers, seed: u64, out: &Path) -> Result
         plots.push(figures::band_number(scaling, &study.target().name));
     }
     if let Some(bands) = &answers.bands_that_matter {
-        bundle.add("best_bands.csv", best_bands(bands).to_csv()?);
+        bundle.add("best_bands.csv", best_bands(bands, study.camera().is_some()).to_csv()?);
         plots.push(figures::bands_that_matter(bands, &study.target().name));
     }
     if let Some(exact) = &answers.exact {
@@ -62,9 +62,14 @@ pub fn bundle(study: &Study, answers: &Answers, seed: u64, out: &Path) -> Result
     Ok(bundle)
 }
 
-/// A matrix with the names of its rows and columns.
-fn square(matrix: &Matrix, rows: &Rows) -> Table {
-    let mut table = Table::new(std::iter::once("target").chain(matrix.materials.iter().map(String::as_str)));
+/// What a distance is measured in, as it stands in the heads of columns.
+const PER_PHOTON: &str = "distance_per_sqrt_photon";
+const STATISTICAL: &str = "statistical_distance";
+
+/// A matrix with the names of its rows and columns, these with the unit.
+fn square(matrix: &Matrix, rows: &Rows, unit: &str) -> Table {
+    let columns = matrix.materials.iter().map(|name| format!("{unit}_{name}"));
+    let mut table = Table::new(std::iter::once("target".to_owned()).chain(columns));
     for (name, row) in matrix.materials.iter().zip(rows) {
         table.push(std::iter::once(name.clone()).chain(row.iter().map(|d| optional(*d))).collect());
     }
@@ -111,16 +116,18 @@ fn clusters(apart: &Apart) -> Table {
     table
 }
 
-fn best_bands(found: &BandsThatMatter) -> Table {
+fn best_bands(found: &BandsThatMatter, with_camera: bool) -> Table {
+    let unit = if with_camera { "statistical_distance_camera" } else { PER_PHOTON };
     let mut table = Table::new([
-        "choice",
-        "low_cm1",
-        "high_cm1",
-        "center_cm1",
-        "distance",
-        "kept_of_all_bands",
-        "bound",
-        "proven_best",
+        "choice".to_owned(),
+        "low_cm1".into(),
+        "high_cm1".into(),
+        "center_cm1".into(),
+        format!("local_{unit}"),
+        "kept_of_all_bands".into(),
+        format!("bound_local_{unit}"),
+        "proven_best".into(),
+        "nearest_statistical_distance_camera".into(),
     ]);
     for (choice, what) in [(&found.bands, "band"), (&found.filters, "filter")] {
         let Some(choice) = choice else { continue };
@@ -134,6 +141,7 @@ fn best_bands(found: &BandsThatMatter) -> Table {
                 number(choice.kept),
                 number(choice.bound),
                 if choice.exact { "yes" } else { "no" }.into(),
+                optional(choice.reached.as_ref().map(|reached| reached.statistical_distance)),
             ]);
         }
     }

@@ -63,6 +63,10 @@ impl Study {
             let message = format!("{stopped} searches for the nearest states of the matrix stopped early");
             identification.warnings.push(Warning::new("nearest-not-converged", message));
         }
+        let exact = asked.exact.map(|trial| self.exact(&trial, progress)).transpose()?;
+        if let (Some(exact), Some(trial)) = (&exact, asked.exact) {
+            identification.warnings.extend(exact.ended_early(&trial.plan));
+        }
         Ok(Answers {
             identification,
             matrix,
@@ -72,7 +76,7 @@ impl Study {
                 .bands
                 .map(|(bands, filters)| self.bands_that_matter(bands, filters))
                 .transpose()?,
-            exact: asked.exact.map(|trial| self.exact(&trial, progress)).transpose()?,
+            exact,
         })
     }
 }

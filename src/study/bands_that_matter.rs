@@ -1,11 +1,15 @@
 //! Which bands matter for the scenario's task, and what the best few bands or filters keep of the distance.
 
+use super::chosen_bands::{Reached, fewest_as_good};
 use super::{Study, Surface};
 use crate::error::{Error, Result};
-use crate::identifiability::selection::{Quality, Scores, best_bands, best_filters, shares_between};
+use crate::identifiability::selection::{
+    FilterSelection, Quality, Scores, best_bands, best_filters, shares_between,
+};
 use crate::identifiability::{Status, local::LocalSolver};
 use crate::scene::State;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// A band, or a filter made of neighbouring bands.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -29,23 +33,30 @@ pub struct Choice {
     pub distance_all_bands: f64,
     /// The first over the second.
     pub kept: f64,
-    /// No choice of as many has a greater distance.
+    /// How many were asked for; fewer are chosen where more would add less than 0.1 %.
+    pub asked: usize,
+    /// No choice of as many as were asked for has a greater distance.
     pub bound: f64,
-    /// Whether the choice is proven to be the best.
+    /// Whether the choice is proven to be the best of as many as were asked for.
     pub exact: bool,
     /// The alternative that fares worst with the choice.
     pub limiting: Option<String>,
     /// Fewest that tell anything: one more than there are unknowns.
     pub fewest: usize,
+    /// What the camera reaches with these alone; `None` without a camera, or where they tell nothing.
+    pub reached: Option<Reached>,
 }
 
 /// Information band by band, and the choices asked for.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct BandsThatMatter {
-    /// Alternatives that are counted; the others not even all bands tell apart.
+    /// Alternatives that are counted.
     pub alternatives: Vec<String>,
-    /// Those left out.
+    /// Those left out since not even all bands tell them apart.
     pub left_out: Vec<String>,
+    /// Those left out since not even all bands with shot noise alone tell them as required. None is left out for that
+    /// where it holds for all.
+    pub out_of_reach: Vec<String>,
     /// The alternative the shares below are of: the hardest of those counted.
     pub alternative: String,
     /// Centres of the bands, cm⁻¹.
@@ -88,8 +99,13 @@ impl Study {
             .collect::<Result<_>>()?;
         let (useful, blind): (Vec<usize>, Vec<usize>) =
             (0..scores.len()).partition(|&i| self.is_told_by_all_bands(&self.alternatives[i]));
+        let (_, beyond) = self.within_reach()?;
+        let (out_of_reach, reachable): (Vec<usize>, Vec<usize>) =
+            useful.iter().partition(|i| beyond.contains(i));
+        let (counted, out_of_reach) =
+            if reachable.is_empty() { (useful, Vec::new()) } else { (reachable, out_of_reach) };
         let told: Vec<(&Surface, &Scores)> =
-            useful.iter().map(|&i| (&self.alternatives[i], &scores[i])).collect();
+            counted.iter().map(|&i| (&self.alternatives[i], &scores[i])).collect();
         let information: Vec<_> = told.par_iter().map(|(_, scores)| scores.information()).collect();
         let hardest = (0..told.len())
             .min_by(|&a, &b| information[a].distance.total_cmp(&information[b].distance))
@@ -100,30 +116,45 @@ impl Study {
             })?;
         let scores: Vec<Scores> = told.iter().map(|(_, scores)| (*scores).clone()).collect();
         let name = |index: Option<usize>| index.map(|i| told[i].0.name.clone());
-        let choice = |quality: Quality, passbands: Vec<Passband>| Choice {
-            passbands,
-            distance: quality.distance,
-            distance_all_bands: quality.distance_all_bands,
-            kept: quality.kept,
-            bound: quality.bound,
-            exact: quality.exact,
-            limiting: name(quality.limiting_pair),
-            fewest: quality.fewest,
+        let counted: Vec<&Surface> = told.iter().map(|(surface, _)| *surface).collect();
+        let choice = |quality: Quality, runs: &[Range<usize>], asked: usize| -> Result<Choice> {
+            let tells = quality.distance > 0.0;
+            Ok(Choice {
+                passbands: runs.iter().map(|run| self.passband(run.clone())).collect(),
+                asked,
+                reached: if tells { self.reached_with(runs, &counted)? } else { None },
+                distance: quality.distance,
+                distance_all_bands: quality.distance_all_bands,
+                kept: quality.kept,
+                bound: quality.bound,
+                exact: quality.exact,
+                limiting: name(quality.limiting_pair),
+                fewest: quality.fewest,
+            })
         };
-        let chosen_bands = bands.map(|k| best_bands(&scores, k)).transpose()?.map(|found| {
-            let passbands = found.bands.iter().map(|&band| self.passband(band..band + 1)).collect();
-            choice(found.quality, passbands)
-        });
-        let chosen_filters = filters.map(|k| best_filters(&scores, k)).transpose()?.map(|found| {
-            let passbands = found.filters.iter().map(|filter| self.passband(filter.clone())).collect();
-            choice(found.quality, passbands)
-        });
+        let best_single = |k: usize| -> Result<Choice> {
+            let found = best_bands(&scores, k)?;
+            let runs: Vec<Range<usize>> = found.bands.iter().map(|&band| band..band + 1).collect();
+            choice(found.quality, &runs, k)
+        };
+        let best_few = |k: usize| -> Result<Choice> {
+            let distance = |found: &FilterSelection| found.quality.distance;
+            let (few, whole) = fewest_as_good(k, |k| best_filters(&scores, k), distance)?;
+            let FilterSelection { filters, mut quality } = few;
+            // What bounds as many as were asked for bounds the fewer too.
+            quality.exact = whole.quality.exact && quality.distance >= whole.quality.distance;
+            quality.bound = whole.quality.bound;
+            choice(quality, &filters, k)
+        };
+        let chosen_bands = bands.map(best_single).transpose()?;
+        let chosen_filters = filters.map(best_few).transpose()?;
         let alternative = told[hardest].0;
         let state: State = self.spectra(alternative)?.state;
         let nearest = self.bands.weigh(&self.surroundings.signal(&alternative.emissivity, &state));
         Ok(BandsThatMatter {
             alternatives: told.iter().map(|(surface, _)| surface.name.clone()).collect(),
-            left_out: blind.iter().map(|&i| self.alternatives[i].name.clone()).collect(),
+            left_out: self.names_of(&blind),
+            out_of_reach: self.names_of(&out_of_reach),
             alternative: alternative.name.clone(),
             center_cm1: self.bands.bands().iter().map(|band| band.center_cm1).collect(),
             share_local: information[hardest].share.clone(),
@@ -141,7 +172,7 @@ impl Study {
             .is_ok_and(|local| local.status == Status::Ok)
     }
 
-    fn passband(&self, range: std::ops::Range<usize>) -> Passband {
+    fn passband(&self, range: Range<usize>) -> Passband {
         let bands = self.bands.bands().get(range).unwrap_or_default();
         let low_cm1 = bands.iter().map(|band| band.low_cm1).fold(f64::INFINITY, f64::min);
         let high_cm1 = bands.iter().map(|band| band.high_cm1).fold(0.0, f64::max);

@@ -66,8 +66,8 @@ pub(super) fn resolved(spec: &CameraSpec, scenario: &Scenario) -> Result<Camera>
             .at(place("netd")));
         }
     };
-    let camera = Camera {
-        name: spec.preset.clone().unwrap_or_else(|| "the camera".into()),
+    let mut camera = Camera {
+        name: String::new(),
         description: from.map_or_else(String::new, |c| c.description.clone()),
         provenance: from.map_or_else(Vec::new, |c| c.provenance.clone()),
         exposure_s,
@@ -90,5 +90,93 @@ pub(super) fn resolved(spec: &CameraSpec, scenario: &Scenario) -> Result<Camera>
         reference_temperature_k,
         spectral_range_cm1: from.map_or([715.0, 1250.0], |c| c.spectral_range_cm1),
     };
+    camera.name = match (&spec.preset, from) {
+        (Some(name), Some(preset)) => match changed(&camera, preset).as_slice() {
+            [] => name.clone(),
+            keys => format!("{name} with {} changed", keys.join(", ")),
+        },
+        _ => "the camera".into(),
+    };
     camera.checked().map_err(|error| error.at(place("preset")))
+}
+
+/// Keys of the figures in which a camera is not its preset, but for the rounding of a conversion of units.
+fn changed(camera: &Camera, preset: &Camera) -> Vec<&'static str> {
+    const ROUNDING: f64 = 1e-9;
+    let same = |a: f64, b: f64| (a - b).abs() <= ROUNDING * a.abs().max(b.abs());
+    let same_or_none = |a: Option<f64>, b: Option<f64>| match (a, b) {
+        (Some(a), Some(b)) => same(a, b),
+        (a, b) => a.is_none() && b.is_none(),
+    };
+    let noise = match (camera.noise, preset.noise) {
+        (NoiseSpec::None, NoiseSpec::None) => None,
+        (NoiseSpec::Counts { sigma_counts: 0.0 }, NoiseSpec::None) => None,
+        (
+            NoiseSpec::Netd { netd_k: a, temperature_k: t, f_number: f, pixel_m: p, .. },
+            NoiseSpec::Netd { netd_k: b, temperature_k: at, f_number: of, pixel_m: by, .. },
+        ) => (!(same(a, b) && same(t, at) && same(f, of) && same(p, by))).then_some("netd"),
+        (
+            NoiseSpec::Detectivity { detectivity_cm_hz05_w: a },
+            NoiseSpec::Detectivity { detectivity_cm_hz05_w: b },
+        ) => (!same(a, b)).then_some("detectivity"),
+        (NoiseSpec::Counts { sigma_counts: a }, NoiseSpec::Counts { sigma_counts: b }) => {
+            (!same(a, b)).then_some("noise_electrons")
+        }
+        (NoiseSpec::Netd { .. }, _) => Some("netd"),
+        (NoiseSpec::Detectivity { .. }, _) => Some("detectivity"),
+        (NoiseSpec::Counts { .. } | NoiseSpec::None, _) => Some("noise_electrons"),
+    };
+    let noiseless = matches!(camera.noise, NoiseSpec::None);
+    let figures = [
+        ("exposure", same(camera.exposure_s, preset.exposure_s)),
+        ("pixel", same(camera.pixel_m, preset.pixel_m)),
+        ("f_number", same(camera.f_number, preset.f_number)),
+        ("focal_length", same(camera.focal_length_m, preset.focal_length_m)),
+        ("optics_efficiency", same(camera.optics_efficiency, preset.optics_efficiency)),
+        (noise.unwrap_or_default(), noise.is_none()),
+        // Noise of the same figures at another exposure is another noise, where there is any.
+        (
+            "noise_exposure",
+            noiseless || noise.is_some() || same(camera.noise_exposure_s, preset.noise_exposure_s),
+        ),
+        ("flicker_fraction", same(camera.flicker_fraction, preset.flicker_fraction)),
+        ("full_well", same_or_none(camera.full_well, preset.full_well)),
+        ("readout", camera.readout == preset.readout),
+        ("frames", camera.frames == preset.frames),
+        ("field_of_view", same_or_none(camera.field_of_view_rad, preset.field_of_view_rad)),
+        ("pixels", camera.pixels == preset.pixels),
+    ];
+    figures.into_iter().filter(|(_, same)| !same).map(|(key, _)| key).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_preset_that_was_changed_says_in_what() {
+        let scenario = Scenario::from_toml(
+            "[target]\nmaterial = \"skin\"\ntemperature = \"37 degC\"\n[camera]\npreset = \"flir-a325sc\"\n",
+            None,
+        )
+        .unwrap();
+        let name = |change: &dyn Fn(&mut CameraSpec)| {
+            let mut spec = scenario.camera.clone().unwrap();
+            change(&mut spec);
+            resolved(&spec, &scenario).unwrap().name
+        };
+        let own = presets::get("flir-a325sc").unwrap();
+        assert_eq!(name(&|_| ()), "flir-a325sc");
+        assert_eq!(name(&|spec| spec.pixel_m = Some(own.pixel_m * (1.0 + 1e-12))), "flir-a325sc");
+        let changed = name(&|spec| {
+            spec.exposure_s = Some(2.0 * own.exposure_s);
+            spec.netd_k = Some(0.2);
+        });
+        assert_eq!(changed, "flir-a325sc with exposure, netd changed");
+        assert_eq!(
+            name(&|spec| spec.noise_electrons = Some(7.0)),
+            "flir-a325sc with noise_electrons changed"
+        );
+        assert_eq!(name(&|spec| spec.frames = Some(16)), "flir-a325sc with frames changed");
+    }
 }

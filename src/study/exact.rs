@@ -4,6 +4,10 @@
 //! (target in its state, alternative in its nearest) stands beside the limit Φ(d), the estimate for tests of best fits
 //! and the rigorous bracket. In up to three bands Algorithm 1 of the paper gives the same decision on a lattice.
 
+mod results;
+
+pub use results::{Exact, ExactLibrary, ExactPair};
+
 use super::{Study, Surface};
 use crate::error::{Error, Result};
 use crate::fisher::{Counting, Nuisance};
@@ -17,13 +21,14 @@ use crate::policy;
 use crate::scenario::DistanceKind;
 use crate::simulate::decision::{Balanced, DecisionScene};
 use crate::simulate::draws::{GENERATOR, LARGEST_MEAN};
-use crate::simulate::sequential::{Interval, Plan};
+use crate::simulate::sequential::Plan;
 use crate::statistics::Statistics;
+use rayon::prelude::*;
 
 /// Most photons for which the lattice of counts is laid.
 const LATTICE_PHOTONS: f64 = 1e5;
-/// Cells along the counts of each of three bands, the coarse mesh of two: decision boundaries cross their square, and with
-/// electronic noise, whose counts are continuous, no box is too small to be divided.
+/// Cells along the counts of each of three bands, the coarse mesh of two: decision boundaries cross their square, and
+/// with electronic noise, whose counts are continuous, no box is too small to be divided.
 const CELLS_OF_THREE_BANDS: [usize; 2] = [256, 24];
 
 /// Law of counting by its name.
@@ -49,75 +54,6 @@ pub struct Trial {
     pub plan: Plan,
 }
 
-/// The simulated decision of one pair beside its limits.
-#[derive(Debug, Clone, PartialEq, serde::Serialize)]
-pub struct ExactPair {
-    /// The alternative.
-    pub alternative: String,
-    /// Photons of the target.
-    pub photons: f64,
-    /// Statistical distance to the nearest state.
-    pub statistical_distance_nearest: f64,
-    /// Local statistical distance.
-    pub statistical_distance_local: f64,
-    /// Φ of the nearest distance: the limit of the balanced accuracy at large N.
-    pub limit: f64,
-    /// Φ of the local distance: what the paper's distance promises.
-    pub local: f64,
-    /// Estimate for a test of best fits, from the return distance.
-    pub two_sided: f64,
-    /// Rigorous bounds on the error between the two states, by Bhattacharyya, Chernoff and others.
-    pub error_lower: f64,
-    /// See `error_lower`.
-    pub error_upper: f64,
-    /// Simulated share of right decisions, averaged over the two states.
-    pub balanced: f64,
-    /// Its confidence interval.
-    pub balanced_interval: Interval,
-    /// Share of right decisions with the target true, and with the alternative true.
-    pub classes: [f64; 2],
-    /// Trials of both classes.
-    pub trials: u64,
-    /// Fits that did not converge.
-    pub unconverged: u64,
-    /// Algorithm 1 on a lattice, in up to three bands.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub lattice: Option<LatticeDetection>,
-}
-
-/// The simulated decision among all materials at once.
-#[derive(Debug, Clone, PartialEq, serde::Serialize)]
-pub struct ExactLibrary {
-    /// Share of trials in which the target is recognised among all alternatives.
-    pub probability: f64,
-    /// Its confidence interval.
-    pub interval: Interval,
-    /// Share of decisions for each material, the target first.
-    pub decisions: Vec<(String, f64)>,
-    /// Union bound of a test that knows all states, the alternatives in their nearest: 1 less the sum of the pairs'
-    /// upper bounds on missing the target. No bound of `probability`.
-    pub union_bound_known_states: f64,
-    /// Trials.
-    pub trials: u64,
-}
-
-/// All simulated decisions.
-#[derive(Debug, Clone, PartialEq, serde::Serialize)]
-pub struct Exact {
-    /// Law of counting.
-    pub statistics: &'static str,
-    /// Random generator, with its version.
-    pub generator: &'static str,
-    /// Seed.
-    pub seed: u64,
-    /// Confidence level of the intervals.
-    pub level: f64,
-    /// Pair by pair, the hardest first.
-    pub pairs: Vec<ExactPair>,
-    /// Among all of them; `None` for a single alternative.
-    pub library: Option<ExactLibrary>,
-}
-
 impl Study {
     /// Simulates the decision between the target and every alternative, and among all of them. `progress` is
     /// called with the pairs done and their number.
@@ -131,6 +67,8 @@ impl Study {
             (None, Some(counting)) => counting.counts_per_radiance * self.photon_radiance(),
             (None, None) => self.photons_for_the_hardest(&hardest_first)?,
         };
+        let hardest_first: Vec<&Surface> =
+            hardest_first.into_iter().map(|(_, alternative)| alternative).collect();
         if photons > LARGEST_MEAN {
             let found = format!("{photons:.2e} photons are too many to draw");
             let instead = format!("ask for at most {LARGEST_MEAN:e} with --photons");
@@ -168,27 +106,25 @@ impl Study {
         })
     }
 
-    /// The alternatives, nearest first.
-    fn hardest_first(&self) -> Result<Vec<&Surface>> {
-        let mut ranked = Vec::new();
-        for alternative in &self.alternatives {
+    /// The alternatives with their nearest distances per √photon, nearest first.
+    fn hardest_first(&self) -> Result<Vec<(f64, &Surface)>> {
+        let ranked = self.alternatives.par_iter().map(|alternative| {
             let distance = self.distance_per_photon(DistanceKind::Nearest, alternative, f64::INFINITY)?;
-            ranked.push((distance, alternative));
-        }
+            Ok((distance, alternative))
+        });
+        let mut ranked = ranked.collect::<Result<Vec<(f64, &Surface)>>>()?;
         ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
-        Ok(ranked.into_iter().map(|(_, alternative)| alternative).collect())
+        Ok(ranked)
     }
 
     /// Photons at which the nearest alternative that differs at all is told apart as required.
-    fn photons_for_the_hardest(&self, hardest_first: &[&Surface]) -> Result<f64> {
-        for alternative in hardest_first {
-            let distance = self.distance_per_photon(DistanceKind::Nearest, alternative, f64::INFINITY)?;
-            if let Some(photons) = policy::photons_required(self.required, distance) {
-                return Ok(photons);
-            }
-        }
-        let found = "no number of photons tells the target from any alternative";
-        Err(Error::malformed(found, "change the scene or the alternatives").at(self.scenario.place("target")))
+    fn photons_for_the_hardest(&self, hardest_first: &[(f64, &Surface)]) -> Result<f64> {
+        let photons =
+            hardest_first.iter().find_map(|(distance, _)| policy::photons_required(self.required, *distance));
+        photons.ok_or_else(|| {
+            let found = "no number of photons tells the target from any alternative";
+            Error::malformed(found, "change the scene or the alternatives").at(self.scenario.place("target"))
+        })
     }
 
     fn statistics(&self, law: Option<Law>, counts_per_radiance: f64) -> Result<Statistics> {

@@ -4,7 +4,7 @@
 //! there is; with electronic noise of every reading, finer bands share the photons among more readings and
 //! can lose. Bands are joined two by two, over and over, so that every number of bands refines the one before.
 
-use super::Study;
+use super::{Study, Surface};
 use crate::error::Result;
 use crate::fisher::Counting;
 use crate::identifiability::local::LocalSolver;
@@ -29,6 +29,9 @@ pub struct LibrarySize {
 /// Least distance from the target to any alternative against the number of bands.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct BandNumber {
+    /// Alternatives left out since not even all bands with shot noise alone tell them as required; none where that
+    /// holds for all.
+    pub left_out: Vec<String>,
     /// Bands, each as wide as the next (but for the last).
     pub bands: Vec<usize>,
     /// Least distance per √photon: shot noise alone, photons fixed.
@@ -90,7 +93,12 @@ impl Study {
     }
 
     fn band_number(&self, kind: DistanceKind) -> Result<BandNumber> {
+        let (within, beyond) = self.within_reach()?;
+        let beyond = if within.is_empty() { Vec::new() } else { beyond };
+        let counted = self.alternatives.iter().enumerate().filter(|(i, _)| !beyond.contains(i));
+        let counted: Vec<Surface> = counted.map(|(_, surface)| surface.clone()).collect();
         let mut found = BandNumber {
+            left_out: self.names_of(&beyond),
             bands: Vec::new(),
             shot_noise: Vec::new(),
             shot_noise_median: Vec::new(),
@@ -102,7 +110,7 @@ impl Study {
             std::iter::successors(Some(1), |group| (*group < whole).then_some(2 * group)).collect();
         for group in groups.into_iter().rev() {
             let bands = self.bands.merged(group);
-            let study = Self { bands, ..self.clone() };
+            let study = Self { bands, alternatives: counted.clone(), ..self.clone() };
             if !study.enough_bands(&study.decisive_unknowns()) {
                 continue;
             }

@@ -1,7 +1,7 @@
 //! The main job: does the camera meet the requirement, and what would it have to be.
 
 use super::identify::{PairResult, PhotonsRequired};
-use super::{Study, Surface, Warning, warn};
+use super::{Study, Surface, Warning, reliability, warn};
 use crate::error::Result;
 use crate::fisher::{Counting, Nuisance};
 use crate::identifiability::local::LocalSolver;
@@ -278,7 +278,7 @@ impl Study {
         let reached = pair.statistical_distance;
         let met = reached.map(|reached| reached >= self.required);
         let (target, other) = (&pair.target, &pair.alternative);
-        let percent = 100.0 * requirement.detection_probability;
+        let wanted = reliability(self.required);
         let camera = self.camera.as_ref().map_or("", |camera| camera.name.as_str());
         let sentence = match (reached, requirement.photons) {
             (_, None) => {
@@ -289,14 +289,14 @@ impl Study {
                 format!("No camera can tell {target} from {other} here: {why}.")
             }
             (None, Some(photons)) => format!(
-                "Telling {target} from {other} with {percent:.1} % reliability takes at least {photons:.2e} photons."
+                "Telling {target} from {other} with {wanted} reliability takes at least {photons:.2e} photons."
             ),
             (Some(d), Some(_)) => {
                 let (yes, what) = if d >= self.required { ("Yes", "can") } else { ("No", "cannot") };
-                let probability = 100.0 * detection::probability(d);
+                let reached = reliability(d);
                 format!(
-                    "{yes}: {camera} {what} tell {target} from {other} with {percent:.1} % reliability; \
-                     it reaches {probability:.1} % at most."
+                    "{yes}: {camera} {what} tell {target} from {other} with {wanted} reliability; \
+                     it reaches {reached} at most."
                 )
             }
         };

@@ -1,15 +1,16 @@
 //! What the reader of a result must know, with stable codes.
 
-use super::identify::{PairResult, parameter_name};
+use super::identify::PairResult;
 use super::size::CameraResult;
 use super::{Study, Warning};
 use crate::fisher::Nuisance;
 use crate::identifiability::Status;
 use crate::identifiability::local::LocalDistance;
-use crate::identifiability::nearest::NearestDistance;
+use crate::identifiability::nearest::{NearestDistance, StateRange};
 use crate::instrument::{Camera, Readout};
 use crate::planck;
 use crate::scenario::{DistanceKind, Scenario};
+use crate::scene::{Parameter, State};
 
 /// Ratio of local and nearest distance beyond which the linear picture has failed.
 const LINEAR_FACTOR: f64 = 2.0;
@@ -26,6 +27,7 @@ pub(super) fn of_pair(
     local: &LocalDistance,
     nearest: &NearestDistance,
     kind: DistanceKind,
+    range: &StateRange,
 ) -> Vec<Warning> {
     let mut warnings = Vec::new();
     let mut warn = |code, message: String| {
@@ -43,10 +45,17 @@ pub(super) fn of_pair(
             warn("blind", "a change of the unknowns looks exactly like the change of material".into());
         }
     }
-    if !pair.nearest_at_edge.is_empty() && pair.status == Status::Ok {
+    // Where physics ends there is no further state to be asked for.
+    let chosen: Vec<String> = nearest
+        .at_edge
+        .iter()
+        .filter(|parameter| stands_where_asked(**parameter, &nearest.state, range))
+        .map(|parameter| in_words(*parameter, nearest.state.lighting.len()))
+        .collect();
+    if !chosen.is_empty() && pair.status == Status::Ok {
         let message = format!(
             "the nearest state stands at the edge of its range ({}); the range decides the answer",
-            pair.nearest_at_edge.join(", ")
+            chosen.join(", ")
         );
         warn("nearest-at-edge", message);
     }
@@ -69,10 +78,47 @@ pub(super) fn of_pair(
         );
     }
     if !local.dropped.is_empty() && pair.status == Status::Ok {
-        let names: Vec<String> = local.dropped.iter().map(|parameter| parameter_name(*parameter)).collect();
-        warn("unknown-without-effect", format!("{} changes nothing in this scene", names.join(", ")));
+        let objects = nearest.state.lighting.len();
+        let names: Vec<String> =
+            local.dropped.iter().map(|parameter| in_words(*parameter, objects)).collect();
+        let change = if names.len() == 1 { "changes" } else { "change" };
+        warn("unknown-without-effect", format!("{} {change} nothing in this scene", names.join(", ")));
     }
     warnings
+}
+
+/// Whether a parameter at the edge of its range stands at an end that the scenario set, not physics.
+fn stands_where_asked(parameter: Parameter, state: &State, range: &StateRange) -> bool {
+    let physical = StateRange::default();
+    let (value, asked, physical) = match parameter {
+        Parameter::Temperature => (state.temperature_k, range.temperature_k, physical.temperature_k),
+        Parameter::Lighting(k) => {
+            let Some(factor) = state.lighting.get(k) else { return false };
+            (*factor, range.lighting, physical.lighting)
+        }
+        Parameter::Gain | Parameter::EnvironmentTemperature(_) | Parameter::Material => return false,
+    };
+    // Not at either end where it is the sum of the lighting that is full.
+    let near = |end: f64| (value - end).abs() <= 1e-6 * end.abs().max(1e-3);
+    asked.into_iter().zip(physical).any(|(asked, physical)| asked != physical && near(asked))
+}
+
+/// A parameter as a reader calls it.
+fn in_words(parameter: Parameter, objects: usize) -> String {
+    let of = |what: &str, k: usize| {
+        if objects > 1 {
+            format!("{what} of environment[{k}]")
+        } else {
+            format!("{what} of the surroundings")
+        }
+    };
+    match parameter {
+        Parameter::Temperature => "temperature".into(),
+        Parameter::Lighting(k) => of("lighting", k),
+        Parameter::Gain => "gain".into(),
+        Parameter::EnvironmentTemperature(k) => of("temperature", k),
+        Parameter::Material => "material".into(),
+    }
 }
 
 /// Warnings on the camera in the scene, against the limiting alternative.

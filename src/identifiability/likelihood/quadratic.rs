@@ -1,8 +1,8 @@
 //! Gradient and second derivatives of the loss along the free parameters, from those along the bands' signals.
 //!
 //! With p, E and O the derivatives of a band's loss along its signal S (`terms`): gradient Σ p Sᵢ, Fisher matrix
-//! Σ E Sᵢ Sⱼ, Hessian Σ O Sᵢ Sⱼ + Σ p Sᵢⱼ, where Sᵢⱼ is known along T and along the logarithm of the gain (`curvature`);
-//! those along environment temperatures are left out.
+//! Σ E Sᵢ Sⱼ, Hessian Σ O Sᵢ Sⱼ + Σ p Sᵢⱼ, where Sᵢⱼ is known along T and along the logarithm of the gain
+//! (`curvature`); those along environment temperatures are left out.
 
 use super::terms::Terms;
 use crate::identifiability::curvature::{Curvature, curvature_into};

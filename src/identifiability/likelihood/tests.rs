@@ -141,7 +141,8 @@ fn the_best_gain_is_the_ratio_of_the_counts() {
     assert!((fit.log_likelihood - exact).abs() < 1e-7, "{} {exact}", fit.log_likelihood);
 }
 
-/// A state out of its range is not found, the edge is; nothing unknown is no fit at all; no counts at all are no trouble.
+/// A state out of its range is not found, the edge is; nothing unknown is no fit at all; no counts at all are no
+/// trouble.
 #[test]
 fn edges_and_empty_cases() {
     let scene = Scene::new();

@@ -1,8 +1,8 @@
 //! Local distances of every material against every other one, in one scene.
 //!
 //! All that depends on the target alone is done once per target: signal, weights u, the nuisance columns
-//! orthogonalised to q̂ᵢ. For an alternative e′ the score of the material is v = (e′ − e)·c with c = G w C (C contrast),
-//! so that with Δ = e′ − e
+//! orthogonalised to q̂ᵢ. For an alternative e′ the score of the material is v = (e′ − e)·c with c = G w C (C
+//! contrast), so that with Δ = e′ − e
 //!
 //!   4d² = Σ m Δ² − Σᵢ (Σ kᵢ Δ)²,   m = u c²,  kᵢ = u c q̂ᵢ
 //!

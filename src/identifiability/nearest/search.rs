@@ -38,8 +38,8 @@ struct Start {
 }
 
 impl NearestSolver<'_> {
-    /// States to refine from: the target's own, which costs `own_cost`, and one for every minimum along T′. Left out are those that are both
-    /// many times as costly as the cheapest and more than `reach` farther away.
+    /// States to refine from: the target's own, which costs `own_cost`, and one for every minimum along T′. Left out
+    /// are those that are both many times as costly as the cheapest and more than `reach` farther away.
     pub(super) fn starts(&mut self, target: &Target<'_>, own_cost: f64, reach: f64) -> Vec<State> {
         let own = self.space.within_range(target.state);
         let own_cost = if own == *target.state { own_cost } else { self.cost(target, &own) };

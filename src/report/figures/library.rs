@@ -21,7 +21,9 @@ pub fn distance_matrix(matrix: &Matrix) -> Plot {
     };
     let with_camera = matrix.statistical_distance.is_some();
     let names: Vec<String> = order.iter().map(|&i| matrix.materials[i].clone()).collect();
-    let mut table = Table::new(std::iter::once("target".to_owned()).chain(names.iter().cloned()));
+    let column = if with_camera { "statistical_distance" } else { "distance_per_sqrt_photon" };
+    let columns = names.iter().map(|name| format!("{column}_{name}"));
+    let mut table = Table::new(std::iter::once("target".to_owned()).chain(columns));
     for &i in &order {
         let row = order.iter().map(|&j| optional(rows[i][j]));
         table.push(std::iter::once(matrix.materials[i].clone()).chain(row).collect());
@@ -46,11 +48,18 @@ pub fn distance_matrix(matrix: &Matrix) -> Plot {
         ("alternative", names),
         (Axis::log(unit).range(low, high.max(2.0 * low)), values),
     )
-    .subtitle(format!("By the {} distance; every target in the scenario's state.", matrix.by))
+    .subtitle(format!(
+        "By the {} distance; every target in the scenario's state.{}",
+        matrix.by,
+        if with_camera { " A pair counts as told apart only if it is both ways." } else { "" }
+    ))
     .groups(starts);
     if with_camera {
-        let required = matrix.required_distance;
-        figure = figure.threshold(required, format!("not told apart: d below {}", significant(required, 3)));
+        let required = significant(matrix.required_distance, 3);
+        figure = figure.threshold(
+            matrix.required_distance,
+            format!("target not told from the other: d below {required}"),
+        );
     }
     Plot { name: "distance_matrix", figure: Figure::from(figure), table }
 }

@@ -1,0 +1,85 @@
+//! What results rest on, and what their reader must know.
+
+use super::numbers::listed;
+use crate::scenario::{Nuisance, Unknown};
+use crate::study::{Identification, Study, Warning};
+use std::fmt::Write as _;
+
+/// What results rest on, and what the reader must know.
+pub(super) fn footing(result: &Identification, study: &Study) -> String {
+    assumptions(study) + &warnings(&result.warnings)
+}
+
+/// What is unknown, and what is known of it beforehand.
+fn unknown(unknown: &Unknown) -> String {
+    let named = unknown.nuisances.iter().map(|nuisance| {
+        let unit = match nuisance {
+            Nuisance::Temperature | Nuisance::EnvironmentTemperature => " K",
+            Nuisance::Lighting | Nuisance::Gain => "",
+        };
+        let prior = unknown.priors.get(nuisance).map(|sigma| format!("known to +- {sigma}{unit}"));
+        let total = unknown.lighting_total.filter(|_| *nuisance == Nuisance::Lighting);
+        let total = total.map(|total| format!("total known to be {total}"));
+        let known: Vec<String> = [prior, total].into_iter().flatten().collect();
+        match known.as_slice() {
+            [] => nuisance.name().to_owned(),
+            known => format!("{} ({})", nuisance.name(), known.join(", ")),
+        }
+    });
+    let named: Vec<String> = named.collect();
+    if named.is_empty() { "nothing but the material".into() } else { named.join(", ") }
+}
+
+pub(super) fn assumptions(study: &Study) -> String {
+    let scenario = study.scenario();
+    let unknown = unknown(&scenario.unknown);
+    let bands = study.bands().bands();
+    let (low, high) =
+        (bands.first().map_or(0.0, |b| b.center_cm1), bands.last().map_or(0.0, |b| b.center_cm1));
+    // As short as they were written, without the digits of a converted wavelength.
+    let (low, high) = ((low * 100.0).round() / 100.0, (high * 100.0).round() / 100.0);
+    let mut out = String::from("Assumptions\n");
+    let _ = writeln!(out, "  unknown besides the material: {unknown}");
+    let count = study.bands().len();
+    let _ = writeln!(
+        out,
+        "  {count} band{} centred from {low} to {high} cm^-1",
+        if count == 1 { "" } else { "s" }
+    );
+    out.push_str(
+        "  opaque Lambertian target that fills the pixel, one scattering, no atmosphere on the path\n",
+    );
+    out.push_str(
+        "  counts large enough to be Gaussian; two equally likely materials; d is a limit, not a promise\n",
+    );
+    let skies = study.skies_left_out();
+    if !skies.is_empty() {
+        let _ = writeln!(
+            out,
+            "  skies of the library are surroundings, no alternatives: left out {}",
+            listed(skies)
+        );
+    }
+    if study.camera().is_some() {
+        out.push_str("  every band is read by every pixel with the whole exposure; all photons are counted (quantum efficiency 1)\n");
+    }
+    out
+}
+
+pub(super) fn warnings(warnings: &[Warning]) -> String {
+    if warnings.is_empty() {
+        return String::new();
+    }
+    let mut out = String::from("Warnings\n");
+    // One line per code: a whole library would otherwise bury the answer.
+    for (i, warning) in warnings.iter().enumerate() {
+        if warnings[..i].iter().any(|earlier| earlier.code == warning.code) {
+            continue;
+        }
+        let more = warnings[i + 1..].iter().filter(|later| later.code == warning.code).count();
+        let rest =
+            if more > 0 { format!(" (and {more} more of this kind, see --json)") } else { String::new() };
+        let _ = writeln!(out, "  [{}] {}{rest}", warning.code, warning.message);
+    }
+    out
+}
