@@ -20,6 +20,7 @@ pub mod electronic;
 pub mod gaussian;
 pub mod multinomial;
 
+use self::multinomial::Multinomial;
 use crate::error::{Error, Result, check};
 use crate::statistics::Statistics;
 use rand::SeedableRng;
@@ -28,7 +29,7 @@ use rand_distr::{Distribution, Gamma, Normal, Poisson};
 
 /// What random numbers are made with; the seed then says which ones. A test holds the first draws fast.
 pub const GENERATOR: &str =
-    "ChaCha8 (rand 0.10, seed_from_u64, one stream per block of trials), rand_distr 0.6.0";
+    "ChaCha8 (rand 0.10, seed_from_u64, a stream per spectrum or block of trials), rand_distr 0.6.0";
 
 /// Largest mean that can be drawn about.
 pub const LARGEST_MEAN: f64 = 1e18;
@@ -36,7 +37,7 @@ pub const LARGEST_MEAN: f64 = 1e18;
 /// Largest mean about which every whole number is a double: 2⁵³.
 pub const LARGEST_EXACT: f64 = 9_007_199_254_740_992.0;
 
-/// The generator of one block of trials.
+/// The generator of one spectrum or one block of trials.
 #[must_use]
 pub fn generator(seed: u64, stream: u64) -> ChaCha8Rng {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
@@ -57,7 +58,8 @@ pub fn generator(seed: u64, stream: u64) -> ChaCha8Rng {
 /// ```
 #[derive(Debug, Clone)]
 pub struct Draws {
-    bands: Vec<Band>,
+    bands: usize,
+    photons: Photons,
     largest_mean: f64,
     /// Added to exact counts; empty without electronic noise.
     readings: Vec<Reading>,
@@ -68,6 +70,15 @@ pub struct Draws {
 struct Reading {
     var: f64,
     noise: Normal<f64>,
+}
+
+/// The law of the photons.
+#[derive(Debug, Clone)]
+enum Photons {
+    /// Each band on its own.
+    Bands(Vec<Band>),
+    /// A fixed number over all bands.
+    Total(Multinomial),
 }
 
 /// One band's law.
@@ -88,7 +99,21 @@ impl Draws {
         statistics.check_bands(means.len())?;
         let bands = means.iter().enumerate().map(|(band, &mean)| Band::new(statistics, band, mean));
         let largest_mean = means.iter().copied().fold(0.0, f64::max);
-        Ok(Self { bands: bands.collect::<Result<_>>()?, largest_mean, readings: Vec::new() })
+        let photons = Photons::Bands(bands.collect::<Result<_>>()?);
+        Ok(Self { bands: means.len(), photons, largest_mean, readings: Vec::new() })
+    }
+
+    /// A fixed number of photons, `total` rounded to a whole one, over bands of probabilities proportional to `weights`.
+    ///
+    /// # Errors
+    /// A number of photons that is negative, no number or above 2⁵³; weights as in [`Multinomial::new`].
+    pub fn fixed_total(total: f64, weights: &[f64]) -> Result<Self> {
+        check::non_negative("photons of a spectrum", total, "")?;
+        if total > LARGEST_EXACT {
+            return Err(Error::out_of_range("photons of a spectrum", total, "", "at most 2^53"));
+        }
+        let photons = Photons::Total(Multinomial::new(total.round() as u64, weights)?);
+        Ok(Self { bands: weights.len(), photons, largest_mean: total, readings: Vec::new() })
     }
 
     /// Adds to the counts of every band a normal reading error of variance `var_electronic`, counts², independent in
@@ -107,17 +132,18 @@ impl Draws {
     /// # Errors
     /// A variance that is negative or not finite; another number of bands; Gaussian counts, which have it already.
     pub fn with_electronic_noise(mut self, var_electronic: &[f64]) -> Result<Self> {
-        if self.bands.iter().any(|band| matches!(band, Band::Normal(_))) {
+        let is_normal = |band: &Band| matches!(band, Band::Normal(_));
+        if matches!(&self.photons, Photons::Bands(bands) if bands.iter().any(is_normal)) {
             return Err(Error::malformed(
                 "electronic noise is added to Gaussian counts, whose variance has it already",
                 "draw Poisson or negative binomial counts, or give it to the Gaussian law alone",
             ));
         }
-        if var_electronic.len() != self.bands.len() {
+        if var_electronic.len() != self.bands {
             return Err(Error::Length {
                 what: "variances of electronic noise".into(),
                 found: var_electronic.len(),
-                expected: self.bands.len(),
+                expected: self.bands,
             });
         }
         let mut readings = Vec::with_capacity(var_electronic.len());
@@ -142,25 +168,16 @@ impl Draws {
     /// How many bands a spectrum has.
     #[must_use]
     pub fn bands(&self) -> usize {
-        self.bands.len()
+        self.bands
     }
 
     /// Draws one spectrum into `counts`.
     pub fn draw_into(&self, rng: &mut ChaCha8Rng, counts: &mut [f64]) {
-        for (count, band) in counts.iter_mut().zip(&self.bands) {
-            *count = match band {
-                Band::Dark => 0.0,
-                Band::Poisson(poisson) => poisson.sample(rng),
-                Band::Normal(normal) => normal.sample(rng),
-                Band::Bunched(intensity) => {
-                    let mean = intensity.sample(rng);
-                    match Poisson::new(mean) {
-                        Ok(poisson) => poisson.sample(rng),
-                        // An intensity that underflowed, or one whose shot noise is below 1e-9 of it.
-                        Err(_) => mean.floor(),
-                    }
-                }
-            };
+        match &self.photons {
+            Photons::Bands(bands) => {
+                counts.iter_mut().zip(bands).for_each(|(count, band)| *count = band.draw(rng));
+            }
+            Photons::Total(multinomial) => multinomial.draw_into(rng, counts),
         }
         for (count, reading) in counts.iter_mut().zip(&self.readings) {
             *count += reading.noise.sample(rng);
@@ -169,6 +186,22 @@ impl Draws {
 }
 
 impl Band {
+    fn draw(&self, rng: &mut ChaCha8Rng) -> f64 {
+        match self {
+            Self::Dark => 0.0,
+            Self::Poisson(poisson) => poisson.sample(rng),
+            Self::Normal(normal) => normal.sample(rng),
+            Self::Bunched(intensity) => {
+                let mean = intensity.sample(rng);
+                match Poisson::new(mean) {
+                    Ok(poisson) => poisson.sample(rng),
+                    // An intensity that underflowed, or one whose shot noise is below 1e-9 of it.
+                    Err(_) => mean.floor(),
+                }
+            }
+        }
+    }
+
     fn new(statistics: &Statistics, band: usize, mean: f64) -> Result<Self> {
         check::non_negative("mean counts of a band", mean, "counts")?;
         let refused = || Error::out_of_range("mean counts of a band", mean, "counts", "at most 1e18");

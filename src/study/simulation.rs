@@ -21,7 +21,7 @@ use crate::scenario::DistanceKind;
 use crate::scene::State;
 use crate::simulate::classifier::{Method, SavedModel, Trained};
 use crate::simulate::decision::DecisionScene;
-use crate::simulate::draws::{Draws, GENERATOR, LARGEST_MEAN};
+use crate::simulate::draws::{Draws, GENERATOR, LARGEST_EXACT, LARGEST_MEAN};
 use crate::simulate::efficiency::PhotonShare;
 use crate::simulate::experiment::{Design, Experiment, Performance};
 use crate::statistics::Statistics;
@@ -386,11 +386,14 @@ impl Study {
         }
         let law = self.photon_statistics(plan.law, scale)?;
         let draw = |means: &Vec<f64>| -> Result<Draws> {
-            let photons_drawn = match plan.law {
-                PhotonLaw::FixedTotal => Draws::multinomial(photons, means)?,
+            let draws = match plan.law {
+                PhotonLaw::FixedTotal => Draws::fixed_total(photons, means)?,
                 PhotonLaw::Poisson | PhotonLaw::NegativeBinomial => Draws::new(&law, means)?,
             };
-            photons_drawn.with_electronic_noise(&counting.var_electronic)
+            match counting.var_electronic.as_slice() {
+                [] => Ok(draws),
+                var_electronic => draws.with_electronic_noise(var_electronic),
+            }
         };
         let draws: Vec<Draws> = means.iter().map(draw).collect::<Result<_>>()?;
         let scene = DecisionScene {
@@ -476,7 +479,7 @@ impl Study {
             let message = format!("with {fewest:.2e} photons most spectra are empty in every band");
             warnings.push(Warning::new("spectra-empty", message));
         }
-        if most / bands > MANY_COUNTS {
+        if most / bands > LARGEST_EXACT {
             let message = format!(
                 "with {most:.1e} photons counts of a band leave the whole numbers that 64-bit floating point holds: \
                  they are rounded to it"
@@ -534,8 +537,6 @@ fn held_against(
     })
 }
 
-/// Above it counts are no exact integers: 2⁵³.
-const MANY_COUNTS: f64 = 9_007_199_254_740_992.0;
 /// Below it a normal law is a poor likelihood for a band's photons.
 const FEW_COUNTS: f64 = 100.0;
 

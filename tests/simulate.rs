@@ -1,0 +1,216 @@
+//! `hadar simulate`: the limit is kept, results do not depend on threads, models come back, and every mistake is one line.
+
+#[path = "support/folder.rs"]
+#[allow(dead_code)]
+mod folder;
+
+use folder::Folder;
+use serde_json::Value;
+use std::fs;
+
+/// A person and a robot in three bands, no camera.
+const THREE: &str = r#"[target]
+material = "skin"
+temperature = "37 degC"
+[[environment]]
+temperature = "20 degC"
+lighting = 0.5
+[alternatives]
+materials = ["aluminium", "pmma"]
+[bands]
+ranges = [["714.5 cm^-1", "893.5 cm^-1"], ["893.5 cm^-1", "1072.5 cm^-1"], ["1072.5 cm^-1", "1250.5 cm^-1"]]
+"#;
+
+fn simulate(folder: &Folder, more: &[&str]) -> Value {
+    folder.json(&[&["simulate", "a.toml"], more].concat())
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("not a number: {value}"))
+}
+
+fn performance<'v>(point: &'v Value, method: &str) -> &'v Value {
+    let all = point["performances"].as_array().unwrap();
+    all.iter().find(|found| found["method"] == method).unwrap_or_else(|| panic!("no {method} in {point}"))
+}
+
+/// In three bands, at the distance of the requirement, each classifier is within 2 points of Φ(1) = 0.8413; half a point is one
+/// deviation of 20 000 test spectra of each class, so that the likelihood ratio alone would fail once in 10⁴ seeds.
+#[test]
+fn the_limit_is_reached_in_three_bands() {
+    let folder = Folder::with(THREE);
+    let found = simulate(
+        &folder,
+        &["--spectra", "20000", "--classifiers", "likelihood-ratio,best-fits,discriminant,logistic"],
+    );
+    assert_eq!(found["limit_holds"], true);
+    assert_eq!(found["comparisons"], 4);
+    let point = &found["points"][0];
+    assert!((number(&point["statistical_distance"]) - 1.0).abs() < 1e-6);
+    // 1.3e6 photons in each band: exact and asymptotic limit differ by the third moment, 1e-4 at most.
+    assert!((number(&point["limit"]) - 0.841_344_75).abs() < 1e-4);
+    assert_eq!(point["classes"][1]["material"], "aluminium");
+    assert!((number(&point["classes"][1]["temperature_k"]) - 355.97).abs() < 0.05);
+    for method in ["likelihood-ratio", "best-fits", "discriminant", "logistic"] {
+        let right = number(&performance(point, method)["accuracy"]);
+        assert!((right - 0.8413).abs() < 0.02, "{method}: {right}");
+        let rows = &performance(point, method)["confusion"]["decisions"];
+        let sum: f64 = (0..2).flat_map(|a| (0..2).map(move |b| number(&rows[a][b]))).sum();
+        assert_eq!(sum, 20_000.0);
+    }
+    // The local distance promises less than what is reached: it is no limit.
+    let local = number(&point["local"]);
+    assert!(local < number(&performance(point, "likelihood-ratio")["interval"]["low"]), "{local}");
+}
+
+/// Same seed, same bits: for any number of threads, and for a photon number alone or in a list.
+#[test]
+fn a_seed_brings_everything_back() {
+    let folder = Folder::with(THREE);
+    let flags = |photons: &'static str, threads: &'static str| {
+        let all = ["--spectra", "400", "--seed", "5", "--photons", photons, "--threads", threads];
+        simulate(&folder, &all)
+    };
+    let (one, three) = (flags("1e5,1e6", "1"), flags("1e5,1e6", "3"));
+    assert_eq!(one, three);
+    assert_eq!(one["points"][1], flags("1e6", "2")["points"][0]);
+    assert_eq!(one["seed"], 5);
+    assert!(one["generator"].as_str().unwrap().contains("ChaCha8"));
+    let other = simulate(&folder, &["--spectra", "400", "--seed", "6", "--photons", "1e6"]);
+    assert_ne!(other["points"][0]["performances"], one["points"][1]["performances"]);
+}
+
+/// A saved classifier judges as it did, and refuses other bands and other classes.
+#[test]
+fn models_are_saved_and_come_back() {
+    let folder = Folder::with(THREE);
+    let common = ["--spectra", "2000", "--photons", "2.6e6"];
+    let trained = simulate(
+        &folder,
+        &[&common[..], &["--save-models", "models", "--classifiers", "discriminant,logistic"]].concat(),
+    );
+    let again = simulate(
+        &folder,
+        &[&common[..], &["--model", "models/discriminant.json", "--model", "models/logistic.json"]].concat(),
+    );
+    for method in ["discriminant", "logistic"] {
+        let (a, b) = (performance(&trained["points"][0], method), performance(&again["points"][0], method));
+        assert_eq!(a["confusion"], b["confusion"], "{method}");
+    }
+    let refused = |more: &[&str]| {
+        folder.refusal(&[&["simulate", "a.toml", "--model", "models/logistic.json"], more].concat())
+    };
+    assert!(
+        refused(&["--against", "pmma"])
+            .contains("the saved model tells apart skin, aluminium; the scenario has skin, pmma")
+    );
+    folder.file("a.toml", &THREE.replace("[\"714.5 cm^-1\", \"893.5 cm^-1\"], ", ""));
+    assert!(
+        refused(&[]).contains("the saved model has 3 bands from 804 to 1161.5 cm^-1, the scenario 2 bands")
+    );
+    folder.file("a.toml", THREE);
+    let text = fs::read_to_string(folder.path().join("models/logistic.json")).unwrap();
+    for (damaged, said) in [
+        (text.replacen("\"format\":1", "\"format\":9", 1), "a saved model of format 9"),
+        (text.replacen("\"constants\":[0.0,", "\"constants\":[", 1), "no saved model"),
+        (text.replacen("logistic", "oracle", 1), "no saved model"),
+        (String::new(), "no saved model"),
+    ] {
+        folder.file("models/logistic.json", &damaged);
+        let message = refused(&[]);
+        assert!(message.contains(said) && message.contains("logistic.json"), "{message}");
+    }
+}
+
+#[test]
+fn every_mistake_is_one_line() {
+    let folder = Folder::with(THREE);
+    for (flags, said) in [
+        (vec!["--spectra", "0"], "spectra of each class = 0: must be at least 4"),
+        (vec!["--photons", "0"], "number of photons = 0"),
+        (vec!["--photons", "-5"], "number of photons = -5"),
+        (vec!["--photons", "NaN"], "number of photons = NaN"),
+        (vec!["--photons", "1e6,inf"], "number of photons = inf"),
+        (vec!["--photons", "1e19"], "number of photons = 1e19"),
+        (vec!["--statistics", "fixed-total", "--photons", "1e16"], "at most 2^53"),
+        (
+            vec!["--classifiers", "oracle"],
+            "unknown classifier `oracle`; choose among likelihood-ratio, best-fits",
+        ),
+        (vec!["--sweep", "0"], "--sweep = 0"),
+        (vec!["--against", "gold"], "`gold` is none of the alternatives; choose among aluminium, pmma"),
+        (vec!["--model", "nothing.json"], "nothing.json"),
+    ] {
+        let message = folder.refusal(&[&["simulate", "a.toml"], flags.as_slice()].concat());
+        assert!(message.contains(said), "{flags:?}: {message}");
+    }
+}
+
+/// So few photons that every spectrum is empty, and so many that counts are no whole numbers any more: answers with warnings.
+#[test]
+fn extremes_are_answered() {
+    let folder = Folder::with(THREE);
+    for (photons, code) in [("1e-6", "spectra-empty"), ("5e17", "counts-rounded")] {
+        let found = simulate(&folder, &["--spectra", "40", "--photons", photons]);
+        let codes: Vec<&str> =
+            found["warnings"].as_array().unwrap().iter().map(|w| w["code"].as_str().unwrap()).collect();
+        assert!(codes.contains(&code), "{photons}: {codes:?}");
+        let point = &found["points"][0];
+        let (limit, right) =
+            (number(&point["limit"]), number(&performance(point, "likelihood-ratio")["accuracy"]));
+        if photons == "1e-6" {
+            // Nothing is seen: a coin.
+            assert!((limit - 0.5).abs() < 1e-5 && right == 0.5, "{limit} {right}");
+        } else {
+            assert!(limit == 1.0 && right == 1.0, "{limit} {right}");
+        }
+    }
+}
+
+/// Every law of photons, a camera's noise, three classes at once.
+#[test]
+fn laws_and_classes() {
+    let folder = Folder::with(THREE);
+    let flags = ["--spectra", "2000", "--photons", "2.6e6"];
+    for law in ["poisson", "negative-binomial", "fixed-total"] {
+        let found = simulate(&folder, &[&flags[..], &["--statistics", law]].concat());
+        assert_eq!(found["photon_law"], law);
+        assert_eq!(found["limit_holds"], true, "{law}");
+    }
+    let all = simulate(&folder, &[&flags[..], &["--against", "all"]].concat());
+    let point = &all["points"][0];
+    assert_eq!(point["classes"].as_array().unwrap().len(), 3);
+    assert!(point["limit"].is_null());
+    let best = number(&performance(point, "likelihood-ratio")["accuracy"]);
+    // pmma is far away; the pair of skin and aluminium is right in 84 % of two thirds of the spectra.
+    assert!((best - (2.0 * 0.8413 + 1.0) / 3.0).abs() < 0.03, "{best}");
+
+    let noisy = Folder::with(&format!("{THREE}[camera]\npreset = \"flir-a325sc\"\n"));
+    let found = simulate(&noisy, &["--spectra", "4000"]);
+    assert_eq!(found["camera_noise"], true);
+    assert_eq!(found["judged_as"], "gaussian");
+    assert!(number(&found["points"][0]["gamma"]) > 1e3);
+    let silent = simulate(&noisy, &["--spectra", "400", "--shot-noise-only", "--photons", "1e6"]);
+    assert_eq!(silent["camera_noise"], false);
+}
+
+/// A sweep covers N d₀² from 0.01 to 10 and writes its curves.
+#[test]
+fn a_sweep_writes_its_files() {
+    let folder = Folder::with(THREE);
+    let found = simulate(&folder, &["--spectra", "200", "--sweep", "3", "--out", "out"]);
+    for (i, expected) in [0.01, 0.316_227_766, 10.0].into_iter().enumerate() {
+        let normalised = number(&found["points"][i]["normalised_photons"]);
+        assert!((normalised / expected - 1.0).abs() < 1e-6, "{normalised}");
+    }
+    for name in [
+        "scenario.toml",
+        "simulation.csv",
+        "confusion.csv",
+        "warnings.csv",
+        "noise_curves.csv",
+        "classifiers.png",
+    ] {
+        assert!(fs::metadata(folder.path().join("out").join(name)).unwrap().len() > 0, "{name}");
+    }
+}
