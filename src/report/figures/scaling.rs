@@ -60,13 +60,18 @@ pub fn band_number(scaling: &Scaling, target: &str) -> Plot {
         let last = values.last().copied().unwrap_or(1.0);
         values.iter().map(|value| value / last).collect()
     };
+    let left_out = match bands.left_out.as_slice() {
+        [] => String::new(),
+        [one] => format!(" Without {one}, which light alone does not tell as required."),
+        more => format!(" Without {} alternatives that light alone does not tell as required.", more.len()),
+    };
     let mut figure = LineFigure::new(
         format!("How many bands it takes to tell {target} from the library"),
         Axis::log("bands"),
         Axis::log("distance, relative to all bands"),
     )
     .subtitle(format!(
-        "Neighbouring bands joined. Photons are the same for any number of bands{}.{}",
+        "Neighbouring bands joined. Photons are the same for any number of bands{}.{left_out}{}",
         if with_camera { "; the camera's noise is added to every reading" } else { "" },
         if bands.shot_noise_median.iter().all(|d| *d == 0.0) { " All are 0." } else { "" }
     ));
