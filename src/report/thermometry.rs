@@ -47,6 +47,7 @@ pub fn table(result: &Thermometry) -> Table {
             "variance_over_bound_low",
             "variance_over_bound_high",
             "verdict",
+            "bound_applies",
             "share_of_fits_at_edge",
             "unconverged_fits",
         ] {
@@ -80,7 +81,7 @@ pub fn table(result: &Thermometry) -> Table {
 }
 
 fn reader_cells(reader: Option<&Reader>) -> Vec<String> {
-    let Some(reader) = reader else { return vec![String::new(); 13] };
+    let Some(reader) = reader else { return vec![String::new(); 14] };
     let Errors { bias, bias_interval, rmse, rmse_interval, .. } = reader.errors;
     let efficiency = reader.efficiency;
     vec![
@@ -95,6 +96,7 @@ fn reader_cells(reader: Option<&Reader>) -> Vec<String> {
         optional(efficiency.map(|e| e.ratio_interval.low)),
         optional(efficiency.map(|e| e.ratio_interval.high)),
         efficiency.map_or("", |e| e.verdict.text()).into(),
+        if reader.bound_applies { "yes" } else { "no" }.into(),
         number(reader.at_edge),
         reader.unconverged.to_string(),
     ]
@@ -144,9 +146,9 @@ pub fn errors(result: &Thermometry) -> Plot {
     let (factor, unit) = if largest < 1.0 { (1e3, "mK") } else { (1.0, "K") };
     let scaled = |values: &[f64]| values.iter().map(|x| factor * x).collect::<Vec<f64>>();
     let lower = Panel::new(Axis::linear(format!("mean error ({unit})")))
-        .band(Band::new("95 % of it", celsius.clone(), scaled(&low), scaled(&high)).colour(0))
+        .band(Band::new("95 % interval of the mean", celsius.clone(), scaled(&low), scaled(&high)).colour(1))
         .rule(Rule::horizontal(0.0, ""))
-        .series(Series::line("maximum likelihood", celsius.clone(), scaled(&own)).colour(0));
+        .series(Series::line("maximum likelihood", celsius.clone(), scaled(&own)).colour(1));
     let lighting =
         if rows.iter().any(|row| row.lighting_unknown.is_some()) { ", lighting unknown" } else { "" };
     let figure = LineFigure::new(
@@ -163,16 +165,16 @@ pub fn errors(result: &Thermometry) -> Plot {
         result.calibrated_k - 273.15
     ))
     .rule(Rule::horizontal(0.0, ""))
-    .series(Series::line("maximum likelihood", celsius.clone(), own).colour(0))
+    .series(Series::line("maximum likelihood", celsius.clone(), own).colour(1))
     .series(Series::line(
         format!("thermal imaging, emissivity {}", result.fixed.emissivity),
         celsius.clone(),
         fixed,
-    ).colour(1))
+    ).colour(2))
     .series(
         Series::line("thermal imaging, emissivity entered by hand", celsius, manual)
             .style(Style::Dashed)
-            .colour(2),
+            .colour(3),
     )
     .lower(lower);
     Plot { name: "temperature_error", figure: figure.into(), table }
@@ -196,7 +198,7 @@ pub fn rmse(result: &Thermometry) -> Plot {
             1,
             of(&|row| row.lighting_unknown.as_ref().map(|reader| reader.errors.rmse)),
         ),
-        ("bound, lighting between 0 and 1", Style::Dotted, 1, of(&|row| row.bound_range_k)),
+        ("bound, lighting within its range", Style::Dotted, 1, of(&|row| row.bound_range_k)),
         ("imaging, fixed emissivity", Style::Dashed, 2, of(&|row| row.fixed.errors.map(|e| e.rmse))),
         ("imaging, manual emissivity", Style::Dashed, 3, of(&|row| row.manual.errors.map(|e| e.rmse))),
     ];
@@ -209,10 +211,20 @@ pub fn rmse(result: &Thermometry) -> Plot {
         "bound_lighting_within_range_mk",
         "rmse_fixed_emissivity_mk",
         "rmse_manual_emissivity_mk",
+        "rmse_lighting_known_low_mk",
+        "rmse_lighting_known_high_mk",
+        "rmse_lighting_unknown_low_mk",
+        "rmse_lighting_unknown_high_mk",
     ]);
     for (i, row) in rows.iter().enumerate() {
         let mut cells = vec![row.temperature_k];
         cells.extend(columns.iter().map(|(.., values)| values[i]));
+        for reader in [Some(&row.lighting_known), row.lighting_unknown.as_ref()] {
+            let interval = reader.map(|reader| reader.errors.rmse_interval);
+            cells.extend(
+                [interval.map(|i| i.low), interval.map(|i| i.high)].map(|k| k.map_or(f64::NAN, |k| 1e3 * k)),
+            );
+        }
         table.push_numbers(&cells);
     }
     let mut figure = LineFigure::new(
@@ -222,15 +234,46 @@ pub fn rmse(result: &Thermometry) -> Plot {
     )
     .subtitle(format!(
         "{}, {} spectra at each temperature. Bounds are Cramér-Rao's, for unbiased estimates; the dotted one is van Trees' for \
-         any estimate, averaged over the lighting.",
-        result.camera, result.trials
+         any estimate, averaged over the lighting.{}",
+        result.camera,
+        result.trials,
+        if rows.iter().all(|row| decisive(row).bound_applies) {
+            ""
+        } else {
+            " Fits held by the range of the lighting are biased: no bound of theirs is Cramér-Rao's."
+        }
     ));
     for (label, style, colour, values) in columns {
         if values.iter().any(|value| value.is_finite()) {
             figure = figure.series(Series::line(label, celsius.clone(), values).style(style).colour(colour));
         }
     }
-    Plot { name: "temperature_rmse", figure: figure.into(), table }
+    Plot { name: "temperature_rmse", figure: figure.lower(over_bound(&rows, &celsius)).into(), table }
+}
+
+/// Errors over the bounds that apply to them: 1 is as good as unbiased estimates can be.
+fn over_bound(rows: &[&ThermometryRow], celsius: &[f64]) -> Panel {
+    let known: Vec<Option<&Reader>> = rows.iter().map(|row| Some(&row.lighting_known)).collect();
+    let unknown: Vec<Option<&Reader>> = rows.iter().map(|row| row.lighting_unknown.as_ref()).collect();
+    let mut panel = Panel::new(Axis::linear("error over bound")).rule(Rule::horizontal(1.0, ""));
+    let likelihoods = [("likelihood, lighting known", known), ("likelihood, lighting unknown", unknown)];
+    for (colour, (label, readers)) in likelihoods.into_iter().enumerate() {
+        let over = |what: &dyn Fn(&Errors) -> f64| -> Vec<f64> {
+            let ratio = |reader: &Reader| Some(what(&reader.errors) / reader.bound_k?);
+            let applying = readers.iter().map(|reader| reader.filter(|reader| reader.bound_applies));
+            applying.map(|reader| reader.and_then(ratio).unwrap_or(f64::NAN)).collect()
+        };
+        let values = over(&|errors| errors.rmse);
+        if values.iter().any(|value| value.is_finite()) {
+            let low = over(&|errors| errors.rmse_interval.low);
+            let high = over(&|errors| errors.rmse_interval.high);
+            let meaning = if colour == 0 { "95 % interval of error" } else { "" };
+            panel = panel
+                .band(Band::new(meaning, celsius.to_vec(), low, high).colour(colour))
+                .series(Series::points(label, celsius.to_vec(), values).colour(colour));
+        }
+    }
+    panel
 }
 
 /// Least and largest of some numbers in words; nothing if there are none.
@@ -309,9 +352,11 @@ fn headline(result: &Thermometry, rows: &[&ThermometryRow]) -> String {
     let celsius: Vec<f64> = rows.iter().map(|row| row.temperature_k - 273.15).collect();
     let own: Vec<f64> = rows.iter().map(|row| decisive(row).errors.rmse).collect();
     let count = |verdict: Verdict| {
-        rows.iter().filter(|row| decisive(row).efficiency.is_some_and(|e| e.verdict == verdict)).count()
+        let own = rows.iter().map(|row| decisive(row)).filter(|reader| reader.bound_applies);
+        own.filter(|reader| reader.efficiency.is_some_and(|e| e.verdict == verdict)).count()
     };
-    let verdicts: Vec<String> =
+    let held = rows.iter().filter(|row| !decisive(row).bound_applies).count();
+    let mut verdicts: Vec<String> =
         [Verdict::Reaches, Verdict::Undecided, Verdict::Biased, Verdict::Exceeds, Verdict::Below]
             .into_iter()
             .filter(|verdict| count(*verdict) > 0)
@@ -321,11 +366,15 @@ fn headline(result: &Thermometry, rows: &[&ThermometryRow]) -> String {
                     Verdict::Undecided => "is too close to it to say with so few trials",
                     Verdict::Biased => "is biased",
                     Verdict::Exceeds => "exceeds the Cramer-Rao bound",
-                    Verdict::Below => "is below a bound that does not hold for it",
+                    Verdict::Below => "is below the Cramer-Rao bound, as only a biased estimate can be,",
                 };
                 format!("{what} at {} of {} temperatures", count(verdict), rows.len())
             })
             .collect();
+    if held > 0 {
+        let what = "is held by the range of the lighting, where that bound does not apply,";
+        verdicts.push(format!("{what} at {held} of {} temperatures", rows.len()));
+    }
     let verdicts = if verdicts.is_empty() { "has no bound to reach".to_owned() } else { verdicts.join(", ") };
     let worst = |imager: &dyn Fn(&ThermometryRow) -> Option<Errors>| {
         let biases = rows.iter().filter_map(|row| imager(row)).map(|errors| errors.bias.abs());
@@ -386,7 +435,7 @@ mod tests {
         let (study, found) = result();
         let csv = table(&found).to_csv().unwrap();
         let columns: Vec<usize> = csv.lines().map(|line| line.split(',').count()).collect();
-        assert_eq!(columns, [37, 37, 37]);
+        assert_eq!(columns, [39, 39, 39]);
         let names: Vec<String> =
             bundle(&study, &found, Path::new("out")).unwrap().names().map(str::to_owned).collect();
         for name in ["thermometry.csv", "temperature_error.png", "temperature_rmse.svg", "scenario.toml"] {

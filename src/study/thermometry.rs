@@ -31,7 +31,7 @@ use crate::simulate::thermometry::{Conventional, Fits, Reading, Run, Thermometry
 pub const FIXED_EMISSIVITY: f64 = 0.95;
 /// Most temperatures of a series.
 const MOST_ROWS: usize = 10_000;
-/// Share of the fits that are stopped by the range before the bound is said not to apply.
+/// Share of the fits stopped by the range above which the bound is said not to apply.
 const HELD: f64 = 1e-3;
 
 /// A series of true temperatures and what is read at each.
@@ -104,6 +104,8 @@ pub struct Reader {
     pub joint: Option<JointEfficiency>,
     /// Share of the fits that ended at the edge of the parameters' range.
     pub at_edge: f64,
+    /// Whether the bound, which is for unbiased estimates, says anything of these: fewer than 1 in 1000 ended at an edge.
+    pub bound_applies: bool,
     /// Fits that did not converge.
     pub unconverged: usize,
 }
@@ -283,6 +285,7 @@ impl Series<'_> {
             None => None,
         };
         let Fits { at_edge, unconverged, trials, .. } = fits;
+        let at_edge = at_edge as f64 / trials as f64;
         Ok(Reader {
             bound_k: finite(own),
             bound_relative_error: own.relative_error,
@@ -290,7 +293,8 @@ impl Series<'_> {
             errors,
             efficiency: self.efficiency(own, &estimates, truth)?,
             joint,
-            at_edge: at_edge as f64 / trials as f64,
+            at_edge,
+            bound_applies: at_edge <= HELD,
             unconverged,
         })
     }
@@ -350,7 +354,7 @@ fn warnings(rows: &[ThermometryRow]) -> Vec<Warning> {
     let mut warnings = Vec::new();
     let readers =
         || rows.iter().flat_map(|row| std::iter::once(&row.lighting_known).chain(&row.lighting_unknown));
-    let held = readers().filter(|reader| reader.at_edge > HELD);
+    let held = readers().filter(|reader| !reader.bound_applies);
     let (count, most) = held.fold((0, 0.0_f64), |(n, most), reader| (n + 1, most.max(reader.at_edge)));
     if count > 0 {
         let message = format!(
