@@ -139,7 +139,7 @@ pub fn rmse(result: &Thermometry) -> Plot {
         if rows.iter().all(|row| decisive(row).bound_applies) {
             ""
         } else {
-            " Fits held by the range of the lighting are biased: no bound of theirs is Cramér-Rao's."
+            " It is the one for fits held by the range of the lighting, as here; Cramér-Rao's is not theirs."
         }
     ));
     for (label, style, colour, values) in columns {

@@ -112,8 +112,8 @@ fn efficiency(setup: &Setup, unknowns: &Unknowns, run: Run) -> Efficiency {
 }
 
 /// Many photons: the variance is the bound's within 4.5 of its deviations (7e-6 each), with shot noise alone, with
-/// electronic noise, and with a prior that tells about as much as the counts do. (With 200000 trials of each, once: 0.9945 to
-/// 1.0032 ± 0.0062.)
+/// electronic noise, and with a prior that tells about as much as the counts do. (With 200000 trials of each, once:
+/// 0.9945 to 1.0032 ± 0.0062.)
 #[test]
 fn maximum_likelihood_reaches_the_bound() {
     let trials = 10_000;

@@ -15,8 +15,8 @@ fn study(target: &str, extra: &str, camera: &str) -> Study {
 
 const SPECTROMETER: &str = "[camera]\npreset = \"nicolet-is50\"\nframes = 10";
 
-/// Where many photons tell lighting and temperature apart, maximum likelihood has the bound's variance, within 4.5 of its
-/// deviations (7e-6 for each of the four), and thermal imaging is off by what no number of photons mends.
+/// Where many photons tell lighting and temperature apart, maximum likelihood has the bound's variance, within 4.5 of
+/// its deviations (7e-6 for each of the four), and thermal imaging is off by what no number of photons mends.
 #[test]
 fn a_reflecting_target_is_read_as_precisely_as_photons_allow() {
     let study = study("silicon-carbide", "", SPECTROMETER);
