@@ -1,15 +1,15 @@
 //! Temperatures read from noisy spectra, by maximum likelihood and as thermal imaging does, by Monte Carlo.
 //!
-//! A target of known emissivity in a known true state is looked at again and again; every spectrum of counts (N + noise,
-//! `draws`) is read by
+//! A target of known emissivity in a known true state is looked at again and again; every spectrum of counts (N +
+//! noise, `draws`) is read by
 //!
 //! * maximum likelihood over the unknown parameters within their physical range ([`ThermometryScene::fits`]), from a
 //!   start that knows the counts alone;
 //! * the sum of its counts with a stated emissivity ([`ThermometryScene::readings`], [`Conventional`]).
 //!
-//! All of them read the same spectra: trial i of a run has the stream of random numbers run·2⁴⁰ + i of its own, whose first
-//! draws are the counts. A parameter with a prior has the prior's centre drawn about its true value in every trial,
-//! since that is what the bound with a prior is an average over.
+//! All of them read the same spectra: trial i of a run has the stream of random numbers run·2⁴⁰ + i of its own, whose
+//! first draws are the counts. A parameter with a prior has the prior's centre drawn about its true value in every
+//! trial, since that is what the bound with a prior is an average over.
 //!
 //! Assumptions: known emissivity, surroundings' temperature and response; counts with electronic noise are normal of
 //! variance N + σ², without it Poisson.

@@ -3,8 +3,8 @@
 //!
 //! At every temperature the same spectra are read by maximum likelihood with lighting known and unknown, and by thermal
 //! imaging from the sum of the counts with a fixed emissivity of 0.95 and with one entered by hand, calibrated at the
-//! lowest temperature (`simulate::thermometry`). Beside them stand the Cramér–Rao bounds (`fisher::precision`) and whether
-//! they are reached (`simulate::efficiency`).
+//! lowest temperature (`simulate::thermometry`). Beside them stand the Cramér–Rao bounds (`fisher::precision`) and
+//! whether they are reached (`simulate::efficiency`).
 //!
 //! The bound for unbiased estimates does not hold where the range of the lighting, 0 ≤ V ≤ 1, stops the fits: there
 //! [`Reader::at_edge`] counts them, and a bound for any estimator stands beside it
@@ -12,8 +12,8 @@
 //! width w, whose information is (2π/w)², limits the error averaged over that law (of K objects w is at most 1/K, a box
 //! within ΣV ≤ 1). It is taken with the information at the scenario's own V.
 //!
-//! Known: emissivity, temperature of the surroundings, the camera's response. Besides temperature and lighting unknown is
-//! what the scenario says, with its priors.
+//! Known: emissivity, temperature of the surroundings, the camera's response. Besides temperature and lighting unknown
+//! is what the scenario says, with its priors.
 //!
 //! Source: paper, Methods 'HADAR thermography', Extended Data Fig. 9; van Trees, 'Detection, Estimation, and Modulation
 //! Theory' I (1968), section 2.4; Gill and Levit, Bernoulli 1, 59 (1995), doi:10.2307/3318681.
@@ -31,7 +31,7 @@ use crate::simulate::thermometry::{Conventional, Fits, Reading, Run, Thermometry
 pub const FIXED_EMISSIVITY: f64 = 0.95;
 /// Most temperatures of a series.
 const MOST_ROWS: usize = 10_000;
-/// Share of the fits that are stopped by the range before the bound is said not to apply.
+/// Share of the fits stopped by the range above which the bound is said not to apply.
 const HELD: f64 = 1e-3;
 
 /// A series of true temperatures and what is read at each.
@@ -104,6 +104,9 @@ pub struct Reader {
     pub joint: Option<JointEfficiency>,
     /// Share of the fits that ended at the edge of the parameters' range.
     pub at_edge: f64,
+    /// Whether the bound, which is for unbiased estimates, says anything of these: fewer than 1 in 1000 ended at an
+    /// edge.
+    pub bound_applies: bool,
     /// Fits that did not converge.
     pub unconverged: usize,
 }
@@ -122,8 +125,8 @@ impl Study {
     /// called with the temperatures done and their number.
     ///
     /// # Errors
-    /// No camera; no temperatures, or one that is not positive or outside of the range of states; fewer than two trials;
-    /// too many photons to draw.
+    /// No camera; no temperatures, or one that is not positive or outside of the range of states; fewer than two
+    /// trials; too many photons to draw.
     ///
     /// ```
     /// use hadar::{material::Library, scenario::Scenario, study::Study};
@@ -283,6 +286,7 @@ impl Series<'_> {
             None => None,
         };
         let Fits { at_edge, unconverged, trials, .. } = fits;
+        let at_edge = at_edge as f64 / trials as f64;
         Ok(Reader {
             bound_k: finite(own),
             bound_relative_error: own.relative_error,
@@ -290,7 +294,8 @@ impl Series<'_> {
             errors,
             efficiency: self.efficiency(own, &estimates, truth)?,
             joint,
-            at_edge: at_edge as f64 / trials as f64,
+            at_edge,
+            bound_applies: at_edge <= HELD,
             unconverged,
         })
     }
@@ -350,12 +355,12 @@ fn warnings(rows: &[ThermometryRow]) -> Vec<Warning> {
     let mut warnings = Vec::new();
     let readers =
         || rows.iter().flat_map(|row| std::iter::once(&row.lighting_known).chain(&row.lighting_unknown));
-    let held = readers().filter(|reader| reader.at_edge > HELD);
+    let held = readers().filter(|reader| !reader.bound_applies);
     let (count, most) = held.fold((0, 0.0_f64), |(n, most), reader| (n + 1, most.max(reader.at_edge)));
     if count > 0 {
         let message = format!(
-            "up to {:.0} % of the fits end at the edge of the physical range (0 to 1 for lighting): they are biased and \
-             their errors bounded by the range, so that the Cramer-Rao bound for unbiased estimates does not apply there",
+            "up to {:.0} % of the fits end at the edge of the physical range (0 to 1 for lighting): they may be biased, \
+             and the range limits their errors, so that the Cramer-Rao bound for unbiased estimates does not apply there",
             100.0 * most
         );
         warnings.push(Warning::new("range-holds-the-estimates", message));

@@ -1,8 +1,8 @@
 //! How many of the photons a classifier makes use of.
 //!
 //! The best decision between two classes is right with probability Φ(d), d ∝ √N in shot noise: one that is right with
-//! probability P does as well as the best does with the share η = (Φ⁻¹(P)/d)² of the photons. Its interval is that of P,
-//! by Wilson, sent through the same function, which rises.
+//! probability P does as well as the best does with the share η = (Φ⁻¹(P)/d)² of the photons. Its interval is that of
+//! P, by Wilson, sent through the same function, which rises.
 //!
 //! Assumption: d² grows with the photons, as it does where their own noise dominates.
 

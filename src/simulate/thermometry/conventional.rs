@@ -9,8 +9,8 @@
 //! * [`Conventional::calibrated`]: e entered by hand such that the reading is right in one state, with scattered signal
 //!   ignored: e = S/ΣB(T). It deviates in every other state, since the scattered part does not grow with the target's.
 //!
-//! Both are exact models of what is done in the figure's description; what is not stated there (T₀, whether any reflection
-//! is subtracted after the calibration) is assumed as written here.
+//! Both are exact models of what is done in the figure's description; what is not stated there (T₀, whether any
+//! reflection is subtracted after the calibration) is assumed as written here.
 
 use super::ThermometryScene;
 use crate::error::{Result, check};

@@ -112,8 +112,8 @@ fn efficiency(setup: &Setup, unknowns: &Unknowns, run: Run) -> Efficiency {
 }
 
 /// Many photons: the variance is the bound's within 4.5 of its deviations (7e-6 each), with shot noise alone, with
-/// electronic noise, and with a prior that tells about as much as the counts do. (With 200000 trials of each, once: 0.9945 to
-/// 1.0032 ± 0.0062.)
+/// electronic noise, and with a prior that tells about as much as the counts do. (With 200000 trials of each, once:
+/// 0.9945 to 1.0032 ± 0.0062.)
 #[test]
 fn maximum_likelihood_reaches_the_bound() {
     let trials = 10_000;
@@ -182,7 +182,7 @@ fn neither_threads_nor_starts_change_an_estimate() {
     let mut counts = vec![0.0; setup.bands.len()];
     for trial in 0..200 {
         draws.draw_into(&mut generator(5, 2 * STREAMS + trial as u64), &mut counts);
-        let fit = fits.fit(scene.emissivity, &counts, &state, &[state.clone()]);
+        let fit = fits.fit(scene.emissivity, &counts, &state, std::slice::from_ref(&state));
         // Fits end within 1e-9 of the largest ln L: √(2e-9) deviations of the bound.
         assert!((fit.state.temperature_k - one.estimates[2 * trial]).abs() < 1e-4 * sigma, "{trial}");
     }

@@ -15,8 +15,8 @@ fn study(target: &str, extra: &str, camera: &str) -> Study {
 
 const SPECTROMETER: &str = "[camera]\npreset = \"nicolet-is50\"\nframes = 10";
 
-/// Where many photons tell lighting and temperature apart, maximum likelihood has the bound's variance, within 4.5 of its
-/// deviations (7e-6 for each of the four), and thermal imaging is off by what no number of photons mends.
+/// Where many photons tell lighting and temperature apart, maximum likelihood has the bound's variance, within 4.5 of
+/// its deviations (7e-6 for each of the four), and thermal imaging is off by what no number of photons mends.
 #[test]
 fn a_reflecting_target_is_read_as_precisely_as_photons_allow() {
     let study = study("silicon-carbide", "", SPECTROMETER);
@@ -29,7 +29,12 @@ fn a_reflecting_target_is_read_as_precisely_as_photons_allow() {
             let efficiency = reader.efficiency.unwrap();
             assert!((efficiency.ratio - 1.0).abs() < within, "{efficiency:?}");
             assert!(matches!(efficiency.verdict, Verdict::Reaches | Verdict::Undecided), "{efficiency:?}");
-            assert!(reader.at_edge == 0.0 && reader.unconverged == 0 && reader.bound_relative_error < 1e-9);
+            assert!(
+                reader.bound_applies
+                    && reader.at_edge == 0.0
+                    && reader.unconverged == 0
+                    && reader.bound_relative_error < 1e-9
+            );
             let joint = reader.joint.unwrap();
             assert!((joint.ratio - 1.0).abs() < within, "{joint:?}");
         }
@@ -52,6 +57,7 @@ fn where_the_range_tells_more_than_the_camera_it_is_said() {
         .unwrap();
     let unknown = found.rows[0].lighting_unknown.as_ref().unwrap();
     assert!(unknown.at_edge > 0.3 && unknown.efficiency.unwrap().verdict == Verdict::Below, "{unknown:?}");
+    assert!(!unknown.bound_applies && found.rows[0].lighting_known.bound_applies);
     assert!(found.warnings.iter().any(|warning| warning.code == "range-holds-the-estimates"));
     // Averaged over the range no estimator beats this one; at the middle of it this one does not either.
     assert!(unknown.errors.rmse > found.rows[0].bound_range_k.unwrap());
