@@ -3,6 +3,8 @@
 //! Every rule gives each class a score, and decides for the largest: ln-likelihoods for rules that know the physics,
 //! the logarithm of a probability, or anything that grows with it, for those that were trained.
 
+pub mod network;
+
 /// A rule that decides between classes of spectra; it may be used from several threads at once.
 pub trait Classifier: Send + Sync {
     /// The name used on the command line and in results.

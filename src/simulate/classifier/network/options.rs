@@ -1,0 +1,98 @@
+//! What the network looks like and how it is trained.
+
+use super::layers::BLOCK;
+use crate::error::{Error, Result, check};
+
+/// Sizes and training of a network, as they are written; [`NetworkOptions`] once they have been checked.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Settings {
+    /// Channels of every convolution, a multiple of 8.
+    pub channels: usize,
+    /// Taps of every convolution, an odd number.
+    pub taps: usize,
+    /// Every how many positions a convolution is taken, in layers of 16 positions and more.
+    pub stride: usize,
+    /// Step of Adam at the beginning; it falls linearly to 0 over the epochs.
+    pub learning_rate: f64,
+    /// Spectra per step, a multiple of 16.
+    pub batch: usize,
+    /// Largest number of times that all spectra are gone through.
+    pub epochs: usize,
+    /// Epochs without a smaller validation loss after which training stops.
+    pub patience: usize,
+    /// Share of the weights, times the learning rate, that every step takes away.
+    pub weight_decay: f64,
+    /// Seed of the first weights and of the order of the spectra.
+    pub seed: u64,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            channels: 8,
+            taps: 5,
+            stride: 2,
+            learning_rate: 1e-3,
+            batch: 64,
+            epochs: 30,
+            patience: 10,
+            weight_decay: 0.0,
+            seed: 1,
+        }
+    }
+}
+
+/// [`Settings`] that can be used.
+///
+/// ```
+/// use hadar::simulate::classifier::network::{NetworkOptions, Settings};
+/// let options = NetworkOptions::new(Settings { seed: 7, ..Settings::default() })?;
+/// assert!(NetworkOptions::new(Settings { taps: 4, ..*options.settings() }).is_err());
+/// # Ok::<(), hadar::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(try_from = "Settings", into = "Settings")]
+pub struct NetworkOptions(Settings);
+
+impl NetworkOptions {
+    /// Checks `settings`.
+    ///
+    /// # Errors
+    /// Sizes of 0, above 1024, or that are no multiple of what they have to be; a step or decay that is no number.
+    pub fn new(settings: Settings) -> Result<Self> {
+        let whole = |what: &str, value: usize, ok: bool, expected: &str| {
+            if ok { Ok(()) } else { Err(Error::out_of_range(what, value as f64, "", expected)) }
+        };
+        let Settings { channels, taps, stride, learning_rate, batch, epochs, weight_decay, .. } = settings;
+        let multiple = |value: usize, of: usize| (of..=1024).contains(&value) && value.is_multiple_of(of);
+        whole("channels", channels, multiple(channels, BLOCK), "a multiple of 8 up to 1024")?;
+        whole("taps", taps, taps % 2 == 1 && taps < 1024, "an odd number below 1024")?;
+        whole("stride", stride, (1..=1024).contains(&stride), "between 1 and 1024")?;
+        whole("batch", batch, multiple(batch, super::training::LANES), "a multiple of 16 up to 1024")?;
+        whole("epochs", epochs, epochs > 0, "at least 1")?;
+        check::positive("learning rate", learning_rate, "")?;
+        check::non_negative("weight decay", weight_decay, "")?;
+        Ok(Self(settings))
+    }
+
+    /// What was checked.
+    #[must_use]
+    pub fn settings(&self) -> &Settings {
+        &self.0
+    }
+}
+
+impl TryFrom<Settings> for NetworkOptions {
+    type Error = Error;
+
+    fn try_from(settings: Settings) -> Result<Self> {
+        Self::new(settings)
+    }
+}
+
+impl From<NetworkOptions> for Settings {
+    fn from(options: NetworkOptions) -> Self {
+        options.0
+    }
+}
