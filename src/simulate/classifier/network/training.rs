@@ -9,8 +9,9 @@
 //! Sources: Kingma and Ba, ICLR 2015, arXiv:1412.6980 (Adam); Loshchilov and Hutter, ICLR 2019, arXiv:1711.05101
 //! (decay beside Adam); He et al., ICCV 2015, doi:10.1109/ICCV.2015.123 (first weights).
 
-use super::layers::{Layers, Real, Workspace};
+use super::layers::{Layers, Workspace};
 use super::options::Settings;
+use super::real::Real;
 use super::{Outcome, Standard};
 use crate::simulate::draws::generator;
 use crate::simulate::spectra::LabelledSpectra;
@@ -122,7 +123,7 @@ pub(super) fn train<T: Real>(
     let mut step = 0;
     let mut best = (weights.clone(), f64::INFINITY, 0);
     let mut epochs = 0;
-    while epochs < settings.epochs && epochs - best.2 <= settings.patience {
+    while epochs < settings.epochs && epochs - best.2 < settings.patience {
         order.shuffle(&mut rng);
         for batch in order.chunks(settings.batch) {
             each(layers, &mut workspaces, batch, |workspace, chosen| {
@@ -142,7 +143,6 @@ pub(super) fn train<T: Real>(
         }
         epochs += 1;
         let loss = loss(layers, &weights, &validation, &all, &mut workspaces);
-        if std::env::var("NETTRACE").is_ok() { eprintln!("{epochs} {loss}"); }
         if loss < best.1 {
             best = (weights.clone(), loss, epochs);
         }
@@ -165,7 +165,10 @@ fn each<T: Real, const L: usize>(
     if size < WORTH_A_THREAD {
         workspaces.iter_mut().zip(batch.chunks(L)).for_each(|(workspace, chosen)| work(workspace, chosen));
     } else {
-        workspaces.par_iter_mut().zip(batch.par_chunks(L)).for_each(|(workspace, chosen)| work(workspace, chosen));
+        workspaces
+            .par_iter_mut()
+            .zip(batch.par_chunks(L))
+            .for_each(|(workspace, chosen)| work(workspace, chosen));
     }
 }
 
