@@ -80,11 +80,6 @@ impl Layers {
     pub(super) fn channels(&self) -> usize {
         self.convolutions[0].channels
     }
-
-    #[cfg(test)]
-    pub(super) fn dense(&self) -> Range<usize> {
-        self.dense.clone()
-    }
 }
 
 /// Room for the layers of `L` spectra, and what came of them.
