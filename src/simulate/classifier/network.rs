@@ -108,7 +108,8 @@ impl Network {
     /// Trains on one part of the spectra until those of the other show no more progress; `progress` is told after
     /// every epoch how many are done and how many there are at most.
     ///
-    /// The weights have the same bits for any number of threads.
+    /// The weights have the same bits for any number of threads. A training uses several of them for many bands, but
+    /// one if it is called from a thread of rayon: then it is the trainings that are many.
     ///
     /// # Errors
     /// No spectra, fewer than two classes, parts that do not fit together, counts whose variance overflows, or a
@@ -134,7 +135,10 @@ impl Network {
         let layers = Layers::checked(training.bands(), training.classes(), options.settings())?;
         let standard = Standard::new(training)?;
         let parts = [training, validation];
-        let (weights, outcome) = training::train(&layers, parts, &standard, options.settings(), progress);
+        let train =
+            |parallel| training::train(&layers, parts, &standard, options.settings(), parallel, progress);
+        let (weights, outcome) =
+            if training::parallel(&layers) { rayon::scope(|_| train(true)) } else { train(false) };
         let mut numbers = weights.iter().copied().map(f64::from).chain([outcome.validation_loss]);
         if let Some(number) = numbers.find(|number| !number.is_finite()) {
             let expected = "finite; take a smaller learning rate";

@@ -36,8 +36,9 @@ impl Convolution {
     fn reached_by(&self, tap: usize) -> Range<usize> {
         let before = self.taps / 2;
         let start = before.saturating_sub(tap).div_ceil(self.stride);
-        let end = (self.positions_in + before).saturating_sub(tap).div_ceil(self.stride);
-        start..end.min(self.positions).max(start)
+        let end = (self.positions_in + before).saturating_sub(tap).div_ceil(self.stride).min(self.positions);
+        // Short inputs have taps that never lie within.
+        start.min(end)..end
     }
 
     #[inline(always)]
@@ -84,7 +85,7 @@ impl Convolution {
             let x = x.get(first..).unwrap_or_default().iter().step_by(self.stride * self.inputs);
             for (block, out) in kernel.iter_mut().enumerate() {
                 let mut sum = [[T::ZERO; L]; BLOCK];
-                let g = g[positions.start * blocks + block..].iter().step_by(blocks);
+                let g = g.get(positions.start * blocks + block..).unwrap_or_default().iter().step_by(blocks);
                 for (x, g) in x.clone().zip(g).take(positions.len()) {
                     for (sum, g) in sum.iter_mut().zip(g) {
                         T::product(simd, x, g, sum);

@@ -41,14 +41,17 @@ fn right(network: &Network, means: &[Vec<f64>; 2], test: &LabelledSpectra) -> [f
     right
 }
 
-/// Every weight and bias of every layer, at strides 1 and 3, with lanes left over. Central differences of step h are
+/// Every weight and bias of every layer, with strides, more taps than bands, two blocks of channels, and a lane left
+/// over. Central differences of step h are
 /// good to h² and 1e-16/h, together 1e-10 of the loss for h = 1e-5: 1e-6 of the gradient, or 1e-8 of the largest one
 /// where it nearly vanishes. Weights in whose step a ReLU has its kink are left out, and are few.
 #[test]
 fn gradients_are_those_of_central_differences() {
     const STEP: f64 = 1e-5;
-    for (bands, stride) in [(3, 3), (29, 3), (40, 2)] {
-        let layers = Layers::new(bands, 3, 8, 5, stride);
+    for (bands, channels, taps, stride) in
+        [(1, 8, 7, 3), (2, 8, 7, 1), (3, 8, 5, 3), (29, 8, 5, 3), (40, 16, 3, 2)]
+    {
+        let layers = Layers::new(bands, 3, channels, taps, stride);
         let mut rng = generator(5, bands as u64);
         let mut normal = || -> f64 { StandardNormal.sample(&mut rng) };
         // Biases and the last layer are 0 at first; here nothing is.
@@ -159,21 +162,27 @@ fn classes_far_apart_are_all_told_apart() {
     assert_eq!((network.classes(), network.bands(), network.name()), (5, 20, "network"));
 }
 
-/// Enough bands for the parts of a batch to go to several threads, and a last batch that is not full.
+/// A last batch that is not full; one thread, two, and the way that a caller gets.
 #[test]
 fn bits_do_not_depend_on_the_number_of_threads() {
-    let n = vec![1e4; 200];
     let direction: Vec<f64> = (0..200).map(|i| (i as f64 / 9.0).sin()).collect();
-    let split = split(&means(&n, &direction, 2.0), 420, 2);
-    let with = |threads| {
+    let split = split(&means(&[1e4; 200], &direction, 2.0), 420, 2);
+    let settings = Settings { epochs: 3, ..Settings::default() };
+    let network = trained(&split, settings);
+    assert!(training::parallel(&network.layers));
+    for threads in [1, 2] {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| trained(&split, Settings { epochs: 3, ..Settings::default() }))
-    };
-    let (one, two) = (with(1), with(2));
-    let bits = |network: &Network| network.weights.iter().map(|w| w.to_bits()).collect::<Vec<_>>();
-    assert_eq!(bits(&one), bits(&two));
-    assert_eq!(one, two);
-    assert!(one.weights.iter().any(|w| *w != 0.0) && one.outcome.best_epoch > 0);
+        let Network { layers, standard, .. } = &network;
+        for parallel in [false, true] {
+            let parts = [&split.training, &split.validation];
+            let (weights, outcome) = pool
+                .install(|| training::train::<f32>(layers, parts, standard, &settings, parallel, &|_, _| ()));
+            let bits = |weights: &[f32]| weights.iter().map(|w| w.to_bits()).collect::<Vec<_>>();
+            assert_eq!(bits(&weights), bits(&network.weights), "{threads} {parallel}");
+            assert_eq!(outcome, network.outcome);
+        }
+    }
+    assert!(network.outcome.best_epoch > 0);
 }
 
 #[test]

@@ -22,8 +22,6 @@ use rayon::prelude::*;
 
 /// Spectra that are worked on side by side.
 pub(super) const LANES: usize = 16;
-/// Bands × channels from which the parts of a batch are worth a thread each.
-const WORTH_A_THREAD: usize = 1024;
 /// Streams of random numbers that no spectrum has.
 const STREAM: u64 = 1 << 63;
 
@@ -102,12 +100,20 @@ pub(super) fn first_weights<T: Real>(layers: &Layers, seed: u64) -> Vec<T> {
     weights
 }
 
+/// Whether the parts of a batch go to several threads: not if they are too small for it, nor on a thread that already
+/// is one of several. There a training would wait for its parts while its thread takes up another whole training.
+pub(super) fn parallel(layers: &Layers) -> bool {
+    const WORTH_A_THREAD: usize = 1024;
+    layers.bands * layers.channels() >= WORTH_A_THREAD && rayon::current_thread_index().is_none()
+}
+
 /// The weights with the smallest validation loss.
 pub(super) fn train<T: Real>(
     layers: &Layers,
     spectra: [&LabelledSpectra; 2],
     standard: &Standard,
     settings: &Settings,
+    parallel: bool,
     progress: &(dyn Fn(usize, usize) + Sync),
 ) -> (Vec<T>, Outcome) {
     let [training, validation] = spectra.map(|spectra| Set::<T>::new(spectra, standard));
@@ -126,7 +132,7 @@ pub(super) fn train<T: Real>(
     while epochs < settings.epochs && epochs - best.2 < settings.patience {
         order.shuffle(&mut rng);
         for batch in order.chunks(settings.batch) {
-            each(layers, &mut workspaces, batch, |workspace, chosen| {
+            each(parallel, &mut workspaces, batch, |workspace, chosen| {
                 training.load(chosen, &mut workspace.x[0]);
                 workspace.backward(layers, &weights, training.labels(chosen, &mut [0; LANES]));
             });
@@ -142,7 +148,7 @@ pub(super) fn train<T: Real>(
             step += 1;
         }
         epochs += 1;
-        let loss = loss(layers, &weights, &validation, &all, &mut workspaces);
+        let loss = loss(layers, &weights, &validation, &all, &mut workspaces, parallel);
         if loss < best.1 {
             best = (weights.clone(), loss, epochs);
         }
@@ -153,22 +159,19 @@ pub(super) fn train<T: Real>(
     (weights, Outcome { epochs, best_epoch, validation_loss, weights: count })
 }
 
-/// Works on the parts of a batch, a workspace for each. Which thread does it changes nothing in them; parts that are
-/// too small for it are not handed on.
+/// Works on the parts of a batch, a workspace for each. Which thread does it changes nothing in them.
 fn each<T: Real, const L: usize>(
-    layers: &Layers,
+    parallel: bool,
     workspaces: &mut [Workspace<T, L>],
     batch: &[usize],
     work: impl Fn(&mut Workspace<T, L>, &[usize]) + Sync,
 ) {
-    let size = layers.bands * layers.channels();
-    if size < WORTH_A_THREAD {
-        workspaces.iter_mut().zip(batch.chunks(L)).for_each(|(workspace, chosen)| work(workspace, chosen));
+    if parallel {
+        let parts = workspaces.par_iter_mut().zip(batch.par_chunks(L));
+        parts.for_each(|(workspace, chosen)| work(workspace, chosen));
     } else {
-        workspaces
-            .par_iter_mut()
-            .zip(batch.par_chunks(L))
-            .for_each(|(workspace, chosen)| work(workspace, chosen));
+        let parts = workspaces.iter_mut().zip(batch.chunks(L));
+        parts.for_each(|(workspace, chosen)| work(workspace, chosen));
     }
 }
 
@@ -179,10 +182,11 @@ fn loss<T: Real>(
     set: &Set<T>,
     all: &[usize],
     workspaces: &mut [Workspace<T, LANES>],
+    parallel: bool,
 ) -> f64 {
     let mut sum = 0.0;
     for batch in all.chunks(workspaces.len() * LANES) {
-        each(layers, workspaces, batch, |workspace, chosen| {
+        each(parallel, workspaces, batch, |workspace, chosen| {
             set.load(chosen, &mut workspace.x[0]);
             workspace.forward(layers, weights);
         });
