@@ -10,6 +10,7 @@ mod discriminant;
 mod likelihood_ratio;
 mod logistic;
 mod model;
+pub mod network;
 
 pub use best_fits::{BestFits, Candidate};
 pub use confusion::Confusion;
@@ -18,6 +19,7 @@ pub use discriminant::{Discriminant, SHRINKAGES};
 pub use likelihood_ratio::LikelihoodRatio;
 pub use logistic::Logistic;
 pub use model::{Method, SavedModel, Trained};
+pub use network::Network;
 
 use super::spectra::LabelledSpectra;
 use crate::error::{Error, Result};

@@ -172,6 +172,7 @@ fn method_colour(method: Method) -> usize {
         Method::BestFits => 3,
         Method::Discriminant => 4,
         Method::Logistic => 5,
+        Method::Network => 1,
     }
 }
 

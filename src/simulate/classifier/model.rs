@@ -1,5 +1,6 @@
 //! Classifiers by name, trained ones as data that a file can hold.
 
+use super::network::{Network, NetworkOptions, Settings};
 use super::{Classifier, Discriminant, Judge, Logistic, SHRINKAGES};
 use crate::error::{Error, Result};
 use crate::simulate::spectra::LabelledSpectra;
@@ -16,11 +17,14 @@ pub enum Method {
     Discriminant,
     /// Logistic regression, trained.
     Logistic,
+    /// The paper's small convolutional network, trained.
+    Network,
 }
 
 impl Method {
     /// All of them.
-    pub const ALL: [Self; 4] = [Self::LikelihoodRatio, Self::BestFits, Self::Discriminant, Self::Logistic];
+    pub const ALL: [Self; 5] =
+        [Self::LikelihoodRatio, Self::BestFits, Self::Discriminant, Self::Logistic, Self::Network];
 
     /// The name on the command line.
     #[must_use]
@@ -30,6 +34,7 @@ impl Method {
             Self::BestFits => "best-fits",
             Self::Discriminant => "discriminant",
             Self::Logistic => "logistic",
+            Self::Network => "network",
         }
     }
 
@@ -41,6 +46,7 @@ impl Method {
             Self::BestFits => "best fits, states unknown",
             Self::Discriminant => "linear discriminant",
             Self::Logistic => "logistic regression",
+            Self::Network => "convolutional network",
         }
     }
 
@@ -78,13 +84,16 @@ impl Method {
         validation: &LabelledSpectra,
         seed: u64,
     ) -> Result<Option<Trained>> {
-        let _ = seed;
         Ok(match self {
             Self::LikelihoodRatio | Self::BestFits => None,
             Self::Discriminant => {
                 Some(Trained::Discriminant(Discriminant::train(training, validation, &SHRINKAGES)?))
             }
             Self::Logistic => Some(Trained::Logistic(Logistic::train(training, validation)?)),
+            Self::Network => {
+                let options = NetworkOptions::new(Settings { seed, ..Settings::default() })?;
+                Some(Trained::Network(Network::train(training, validation, &options, &|_, _| {})?))
+            }
         })
     }
 }
@@ -97,6 +106,8 @@ pub enum Trained {
     Discriminant(Discriminant),
     /// Logistic regression.
     Logistic(Logistic),
+    /// Convolutional network.
+    Network(Network),
 }
 
 impl Trained {
@@ -106,6 +117,7 @@ impl Trained {
         match self {
             Self::Discriminant(_) => Method::Discriminant,
             Self::Logistic(_) => Method::Logistic,
+            Self::Network(_) => Method::Network,
         }
     }
 
@@ -113,6 +125,7 @@ impl Trained {
         match self {
             Self::Discriminant(trained) => trained,
             Self::Logistic(trained) => trained,
+            Self::Network(trained) => trained,
         }
     }
 
@@ -122,6 +135,10 @@ impl Trained {
         match self {
             Self::Discriminant(trained) => format!("shrinkage {}", trained.shrinkage()),
             Self::Logistic(trained) => format!("{} steps", trained.steps()),
+            Self::Network(trained) => {
+                let outcome = trained.outcome();
+                format!("{} weights, epoch {} of {}", outcome.weights, outcome.best_epoch, outcome.epochs)
+            }
         }
     }
 }
