@@ -2,7 +2,7 @@
 //!
 //! * [`right_decisions`]: of n trials, each right with probability P on its own, Binomial(n, P) are right;
 //! * [`RatioDraws`]: values of Λ = ln(q/p) themselves, by the cheapest way that is exact:
-//!   the inverse of the distribution function of [`crate::identifiability::ratio`], where it is smooth (to 10⁻¹⁰ of
+//!   the inverse of the distribution function of [`crate::identifiability::ratio`], where it is smooth (to 10⁻⁶ of
 //!   probability); photon by photon, the number of them Poisson about ΣN and each from band w with probability
 //!   N_w/ΣN, where photons are few; else counts of every band.
 //!
