@@ -20,8 +20,8 @@
 //! The numerical error of each is estimated: rounding, what halving the step changes, what revivals of the
 //! characteristic function may add.
 //!
-//! Symbols: N, N′ mean counts of a band, n its counts, z = s + iτ. Sources: Helstrom, 'Elements of Signal Detection
-//! and Estimation' (1995), chapter 5; Lugannani and Rice, Adv. Appl. Probab. 12, 475 (1980) for the saddle point.
+//! Symbols: N, N′ mean counts of a band, n its counts, z = s + iτ. Source: Helstrom, 'Elements of Signal Detection and
+//! Estimation' (1995), chapter 5; the rest is derived here or named where it is done.
 
 mod distribution;
 mod enumeration;

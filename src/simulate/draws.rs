@@ -12,9 +12,9 @@
 //!
 //! Counts are doubles: whole numbers up to 2⁵³ ([`LARGEST_EXACT`]), beyond which only multiples of 2, 4, … are met.
 //!
-//! Sources: Ahrens and Dieter, ACM Trans. Math. Softw. 8, 163 (1982), doi:10.1145/355993.355997 (Poisson); Marsaglia and
-//! Tsang, ACM Trans. Math. Softw. 26, 363 (2000), doi:10.1145/358407.358414 (gamma); generator: Bernstein, 'ChaCha, a
-//! variant of Salsa20' (2008).
+//! Sources: Ahrens and Dieter, ACM Trans. Math. Softw. 8, 163 (1982), doi:10.1145/355993.355997 (Poisson); Marsaglia
+//! and Tsang, ACM Trans. Math. Softw. 26, 363 (2000), doi:10.1145/358407.358414 (gamma); generator: Bernstein,
+//! 'ChaCha, a variant of Salsa20' (2008).
 
 pub mod electronic;
 pub mod gaussian;

@@ -2,13 +2,14 @@
 //!
 //! * [`right_decisions`]: of n trials, each right with probability P on its own, Binomial(n, P) are right;
 //! * [`RatioDraws`]: values of Λ = ln(q/p) themselves, by the cheapest way that is exact:
-//!   the inverse of the distribution function of [`crate::identifiability::ratio`], where it is smooth (to 10⁻¹⁰ of
+//!   the inverse of the distribution function of [`crate::identifiability::ratio`], where it is smooth (to 10⁻⁶ of
 //!   probability); photon by photon, the number of them Poisson about ΣN and each from band w with probability
 //!   N_w/ΣN, where photons are few; else counts of every band.
 //!
 //! Both are as good as drawing every band of every spectrum, and hundreds of times as fast. Values come in blocks
 //! with a stream of random numbers each.
 
+use super::draws::multinomial::{MOST, binomial};
 use super::draws::{Draws, generator};
 use crate::error::{Error, Result, check};
 use crate::identifiability::ratio::{RatioDistribution, RatioLaw, State};
@@ -16,7 +17,7 @@ use crate::statistics::Statistics;
 use rand::RngExt;
 use rand::rngs::ChaCha8Rng;
 use rand_distr::weighted::WeightedAliasIndex;
-use rand_distr::{Binomial, Distribution, Poisson};
+use rand_distr::{Distribution, Poisson};
 use rayon::prelude::*;
 
 /// Values of Λ that share a stream of random numbers.
@@ -37,12 +38,10 @@ const PHOTONS_PER_BAND: f64 = 2.0;
 /// A probability outside [0, 1]; trials above 2⁵³.
 pub fn right_decisions(rng: &mut ChaCha8Rng, trials: u64, probability: f64) -> Result<u64> {
     check::unit_interval("probability of a right decision", probability)?;
-    if trials > 1 << 53 {
+    if trials > MOST {
         return Err(Error::out_of_range("trials", trials as f64, "", "at most 2^53"));
     }
-    let law = Binomial::new(trials, probability)
-        .map_err(|_| Error::out_of_range("probability of a right decision", probability, "", "0 to 1"))?;
-    Ok(law.sample(rng))
+    Ok(binomial(rng, trials, probability, 1.0 - probability))
 }
 
 /// Draws of Λ = ln(q/p) while one of the two states is true.

@@ -6,12 +6,13 @@
 //!   of the frame, and the noise of reading it);
 //! * x: flicker, normal and stationary of variance σ_F², independent in every band: K Ornstein–Uhlenbeck processes of
 //!   equal variance σ_F²/K, whose relaxation times τ_k divide the logarithm of (τ_min, τ_max) evenly. Covariance
-//!   c(Δ) = (σ_F²/K) Σ e^{−|Δ|/τ_k}, spectrum (one-sided) (σ_F²/K) Σ 4τ_k/[1 + (2πfτ_k)²], which is σ_F²/[f ln(τ_max/τ_min)]
-//!   between 1/(2πτ_max) and 1/(2πτ_min).
+//!   c(Δ) = (σ_F²/K) Σ e^{−|Δ|/τ_k}, one-sided spectrum (σ_F²/K) Σ 4τ_k/[1 + (2πfτ_k)²], which is
+//!   σ_F²/[f ln(τ_max/τ_min)] between 1/(2πτ_max) and 1/(2πτ_min).
 //!
 //! From frame to frame x_k → ρx_k + √(1 − ρ²) σ_k z, ρ = e^{−Δ/τ_k}: exact for any spacing Δ, the first frame already
 //! stationary. Flicker within the exposure of one frame counts as constant. A single reading has variance
-//! σ_J² + σ_R² + σ_F², as [`super::Draws::with_electronic_noise`] draws it; the average of M frames does not gain √M over flicker:
+//! σ_J² + σ_R² + σ_F², as [`super::Draws::with_electronic_noise`] draws it; the average of M frames does not gain √M
+//! over flicker:
 //!
 //! var = (σ_J² + σ_R²)/M + (1/M²) Σ_k σ_k² [M + 2 Σ_{l<M} (M − l) ρ_k^l].
 //!

@@ -1,7 +1,7 @@
 //! How far the Gaussian law of counts, variance N + σ², is from the law it stands for.
 //!
-//! The law it stands for: Poisson counts of mean N plus a normal reading error of variance σ². With v = N + σ², skewness
-//! γ = N/v^{3/2} and the standard normal density φ, the distribution functions differ by
+//! The law it stands for: Poisson counts of mean N plus a normal reading error of variance σ². With v = N + σ²,
+//! skewness γ = N/v^{3/2} and the standard normal density φ, the distribution functions differ by
 //!
 //! F − Φ = −(γ/6)(x² − 1)φ(x) + (steps of whole counts) + O(1/v),
 //!

@@ -6,8 +6,8 @@
 //! Binomial(N, p_w); two have covariance −N p_v p_w.
 //!
 //! Binomials: inversion where the rarer outcome is expected fewer than 10 times, else rejection (rand_distr). That
-//! crate's own inversion takes (1 − p)^N from the rounded 1 − p, which for 10¹⁵ trials is wrong by up to a quarter; here
-//! it is e^{N ln(1 − p)}. Sources: Devroye, 'Non-Uniform Random Variate Generation' (1986), chapters X.4 and XI.1;
+//! crate's own inversion takes (1 − p)^N from the rounded 1 − p, which for 10¹⁵ trials is wrong by up to a quarter;
+//! here it is e^{N ln(1 − p)}. Sources: Devroye, 'Non-Uniform Random Variate Generation' (1986), chapters X.4 and XI.1;
 //! Kachitvichyanukul and Schmeiser, Commun. ACM 31, 216 (1988), doi:10.1145/42372.42381.
 
 use crate::error::{Error, Result, check};
@@ -41,7 +41,7 @@ impl Multinomial {
     /// `total` photons over bands of probabilities proportional to `weights`.
     ///
     /// # Errors
-    /// More than [`MOST`] photons; a weight that is negative or not finite; no weight above 0; a sum beyond all numbers.
+    /// More than [`MOST`] photons; a weight that is negative or not finite; no weight above 0; a sum that overflows.
     pub fn new(total: u64, weights: &[f64]) -> Result<Self> {
         if total > MOST {
             return Err(Error::out_of_range("photons of a spectrum", total as f64, "", "at most 2^53"));
@@ -76,7 +76,7 @@ impl Multinomial {
 }
 
 /// Successes of `trials`, of probability p = 1 − q; both are given, so that the smaller is known well.
-fn binomial(rng: &mut ChaCha8Rng, trials: u64, p: f64, q: f64) -> u64 {
+pub(in crate::simulate) fn binomial(rng: &mut ChaCha8Rng, trials: u64, p: f64, q: f64) -> u64 {
     let rarer = p.min(q);
     let of_rarer = if trials == 0 || rarer == 0.0 {
         0
