@@ -4,10 +4,11 @@ use super::Global;
 use crate::error::{Error, Result};
 use crate::grid::text_of_file;
 use crate::report::bundle::Bundle;
-use crate::report::{simulation, text};
+use crate::report::{simulation, text, thermometry as thermometry_report};
 use crate::simulate::classifier::{Method, SavedModel};
 use crate::simulate::experiment::Design;
 use crate::study::{PhotonLaw, SimulationPlan, Study};
+use crate::units::Dimension;
 use clap::Args;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -54,10 +55,40 @@ pub(super) struct SimulateArgs {
     /// A saved classifier that takes part as it is; may be given several times
     #[arg(long, value_name = "FILE", help_heading = "Classifiers")]
     model: Vec<PathBuf>,
+    /// Draw the likelihood ratio itself instead of spectra: as good where it alone takes part, and far quicker
+    #[arg(long, help_heading = "Spectra")]
+    skip_spectra: bool,
+    /// Read the target's temperature instead: by maximum likelihood and by thermal imaging at true temperatures
+    /// such as "30 degC..105 degC", or at a single one; --spectra are drawn at each
+    #[arg(long, value_name = "RANGE", conflicts_with_all = CLASSIFYING, help_heading = "Thermometry")]
+    thermometry: Option<String>,
+    /// How many true temperatures there are in the range
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 16,
+        requires = "thermometry",
+        help_heading = "Thermometry"
+    )]
+    temperatures: usize,
     /// Exit with code 3 if a classifier was right more often than the limit allows
     #[arg(long)]
     check: bool,
 }
+
+/// Flags that say how classifiers are judged, and nothing to thermometry.
+const CLASSIFYING: [&str; 10] = [
+    "classifiers",
+    "photons",
+    "sweep",
+    "statistics",
+    "shot_noise_only",
+    "against",
+    "save_models",
+    "model",
+    "check",
+    "skip_spectra",
+];
 
 /// Laws of photons, as a flag.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -72,6 +103,9 @@ enum Statistics {
 
 pub(super) fn run(args: &SimulateArgs, global: &Global) -> Result<ExitCode> {
     let study = global.study(&args.scenario, None)?;
+    if let Some(range) = &args.thermometry {
+        return thermometry(range, args, &study, global);
+    }
     let plan = plan(args, &study, global)?;
     if let Some(folder) = &args.save_models {
         Bundle::check_destination(folder)?;
@@ -98,8 +132,35 @@ pub(super) fn run(args: &SimulateArgs, global: &Global) -> Result<ExitCode> {
     Ok(if failed { ExitCode::from(3) } else { ExitCode::SUCCESS })
 }
 
+fn thermometry(range: &str, args: &SimulateArgs, study: &Study, global: &Global) -> Result<ExitCode> {
+    let at_flag = |error: Error| error.for_key("--thermometry");
+    let temperature = |text: &str| Dimension::Temperature.parse(text).map_err(at_flag);
+    let temperatures = match (range.split_once(".."), args.temperatures) {
+        (None, _) => vec![temperature(range)?],
+        (Some(_), rows @ (0 | 1)) => {
+            return Err(Error::out_of_range("--temperatures", rows as f64, "", "at least 2 for a range"));
+        }
+        (Some((low, high)), rows) => {
+            let (low, high) = (temperature(low)?, temperature(high)?);
+            let step = (high - low) / (rows - 1) as f64;
+            (0..rows).map(|i| (i as f64).mul_add(step, low)).collect()
+        }
+    };
+    let bar = global.progress("temperatures");
+    let result =
+        study.thermometry(&temperatures, args.spectra, global.seed, &|done, total| bar.set(done, total))?;
+    bar.finish();
+    if let Some(out) = &global.out {
+        global.write(&thermometry_report::bundle(study, &result, out)?, out)?;
+    }
+    global.print(&result, &thermometry_report::text(&result))?;
+    Ok(ExitCode::SUCCESS)
+}
+
 fn plan(args: &SimulateArgs, study: &Study, global: &Global) -> Result<SimulationPlan> {
-    let methods = if args.classifiers.is_empty() && args.model.is_empty() {
+    let methods = if args.classifiers.is_empty() && args.skip_spectra {
+        vec![Method::LikelihoodRatio]
+    } else if args.classifiers.is_empty() && args.model.is_empty() {
         Method::ALL.to_vec()
     } else {
         let mut methods = Vec::new();
@@ -132,7 +193,13 @@ fn plan(args: &SimulateArgs, study: &Study, global: &Global) -> Result<Simulatio
         },
         camera_noise: !args.shot_noise_only,
         against,
-        design: Design { per_class: args.spectra, methods, seed: global.seed, level: 0.95 },
+        design: Design {
+            per_class: args.spectra,
+            methods,
+            seed: global.seed,
+            level: 0.95,
+            skip_spectra: args.skip_spectra,
+        },
         models: args.model.iter().map(|path| saved(path)).collect::<Result<_>>()?,
     })
 }

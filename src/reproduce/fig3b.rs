@@ -94,7 +94,13 @@ fn experiments(
     if order.effort == Effort::Quick {
         photons = photons.into_iter().skip(QUICK / 2).step_by(QUICK).collect();
     }
-    let design = Design { per_class: SPECTRA, methods: Method::ALL.to_vec(), seed: order.seed, level: 0.95 };
+    let design = Design {
+        per_class: SPECTRA,
+        methods: Method::ALL.to_vec(),
+        seed: order.seed,
+        level: 0.95,
+        skip_spectra: false,
+    };
     let (law, against) = (PhotonLaw::Poisson, Vec::new());
     let plan = SimulationPlan { photons, law, camera_noise, against, design, models: Vec::new() };
     study.simulate(&plan, progress).map(|(result, _)| result)

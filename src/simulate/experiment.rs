@@ -4,11 +4,13 @@
 //! the paper. Test spectra are drawn, judged by every classifier and forgotten, so that their number takes no memory;
 //! training spectra are drawn only if something is trained.
 
-use super::classifier::{BestFits, Classifier, Confusion, LikelihoodRatio, Method, Trained};
+use super::classifier::{BestFits, Classifier, Confusion, LikelihoodRatio, Method, Trained, share};
 use super::draws::Draws;
+use super::ratio::RatioDraws;
 use super::sequential::Interval;
-use super::spectra::{LabelledSpectra, Parts};
+use super::spectra::{LabelledSpectra, Parts, STREAMS};
 use crate::error::{Error, Result};
+use crate::identifiability::ratio::State;
 use crate::statistics::Statistics;
 
 /// What is drawn, and how it is judged.
@@ -36,6 +38,9 @@ pub struct Design {
     pub seed: u64,
     /// Level of the confidence intervals.
     pub level: f64,
+    /// Whether the likelihood ratio itself is drawn instead of spectra, where it alone takes part and there are two
+    /// classes: as good, and hundreds of times as fast.
+    pub skip_spectra: bool,
 }
 
 /// How often one classifier was right on the test spectra.
@@ -62,6 +67,9 @@ impl Experiment<'_> {
     /// Fewer than 4 spectra of a class; best fits asked for that are not given; classes that do not fit together.
     pub fn run(&self, design: &Design) -> Result<(Vec<Performance>, Vec<Trained>)> {
         let parts = Parts::of(design.per_class)?;
+        if design.skip_spectra {
+            return Ok((vec![self.without_spectra(design, parts.test.len())?], Vec::new()));
+        }
         let mut learnt = Vec::new();
         if design.methods.iter().any(|method| method.is_trained()) {
             let training = LabelledSpectra::draw(self.draws, parts.training.clone(), design.seed)?;
@@ -101,5 +109,35 @@ impl Experiment<'_> {
             })
             .collect();
         Ok((performances, learnt))
+    }
+
+    /// The likelihood ratio of two classes from draws of itself.
+    fn without_spectra(&self, design: &Design, tests: usize) -> Result<Performance> {
+        let ([first, second], [Method::LikelihoodRatio], []) =
+            (self.means, design.methods.as_slice(), self.trained)
+        else {
+            let found = "spectra can be skipped for the likelihood ratio of two classes alone";
+            return Err(Error::malformed(
+                found,
+                "leave the other classifiers and classes out, or draw spectra",
+            ));
+        };
+        let mut decisions = Vec::with_capacity(2);
+        for (class, truth) in [State::First, State::Second].into_iter().enumerate() {
+            let draws = RatioDraws::new(first, second, self.statistics, truth)?;
+            let mut row = vec![0.0; 2];
+            for ratio in draws.values(design.seed, class as u64 * STREAMS, tests) {
+                share(&[0.0, ratio], &mut row);
+            }
+            decisions.push(row);
+        }
+        let confusion = Confusion { decisions, unconverged: 0 };
+        Ok(Performance {
+            method: Method::LikelihoodRatio,
+            accuracy: confusion.accuracy(),
+            interval: confusion.interval(design.level),
+            confusion,
+            training: None,
+        })
     }
 }

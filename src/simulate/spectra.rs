@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use std::ops::Range;
 
 /// Streams of random numbers set aside for the spectra of one class.
-const STREAMS: u64 = 1 << 40;
+pub(super) const STREAMS: u64 = 1 << 40;
 
 /// Spectra of counts, each with the class it is from.
 #[derive(Debug, Clone, PartialEq)]

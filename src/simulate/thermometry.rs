@@ -224,7 +224,11 @@ impl ThermometryScene<'_> {
     }
 
     fn draws(&self, state: &State) -> Result<Draws> {
-        Draws::new(&self.statistics()?, &self.means(state)?)
+        let photons = Draws::new(&Statistics::Poisson, &self.means(state)?)?;
+        match self.statistics()? {
+            Statistics::Gaussian { var_electronic } => photons.with_electronic_noise(&var_electronic),
+            Statistics::Poisson | Statistics::NegativeBinomial { .. } => Ok(photons),
+        }
     }
 
     /// Every trial's outcome, in their order.
