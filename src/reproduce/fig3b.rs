@@ -65,7 +65,7 @@ pub(super) fn three_bands(order: Order, out: &Path, progress: Progress<'_>) -> R
         let noise = study.noise_curves(rival, CURVES, CURVE_POINTS)?;
         bundle.add("noise_curves.csv", curves(&noise).to_csv()?);
         let title = "Person or robot, three bands: classifiers reach the limit".to_owned();
-        let other = Some((&noisy, "the same with mixed noise"));
+        let other = Some((&noisy, "all of them with mixed noise, below"));
         let plot = SimulationCurves { title, noise: Some(&noise), other, name: "figs7" };
         bundle.add_plots(&[figures::classifiers(&result, &plot)])?;
         bundle.add("figs7_mixed_noise.csv", figures::simulation_table(&noisy).to_csv()?);
@@ -230,7 +230,7 @@ fn expected(place: &str, method: Method, reached: bool) -> (&'static str, Verdic
         (Method::Network, _) => (
             "perfect agreement",
             if reached { Verdict::Reproduced } else { Verdict::NotReproduced },
-            "three bands leave nothing to learn by heart",
+            "an ideal classifier's interval reaches up to the limit in 97.5 % of the experiments; at least 90 % count as agreement",
         ),
     }
 }

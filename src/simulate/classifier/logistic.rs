@@ -3,7 +3,7 @@
 //! ln P(c|x) = b_c + w_cᵀx − ln Σ_k exp(b_k + w_kᵀx), x the counts in units of each band's deviation; the first class
 //! has b = w = 0. Minimised is the mean of −ln P of the right class over the training spectra: a convex function whose
 //! curvature is at most ½λ_max, λ_max the largest eigenvalue of XXᵀ/n (¼ for two classes), which makes 1 over it
-//! a safe step. Nesterov's accelerated descent starts at 0; the weights that are best on the validation part are
+//! a safe step, of which a part is taken. Nesterov's accelerated descent starts at 0; the weights that are best on the validation part are
 //! kept, and training ends when they have not improved for a while: stopping early is what keeps many bands from
 //! being learnt by heart.
 //!
@@ -18,7 +18,10 @@ use nalgebra::{DMatrix, DVector};
 
 /// Most steps, and steps without gain on the validation part after which training ends.
 const STEPS: usize = 1000;
-const PATIENCE: usize = 25;
+const PATIENCE: usize = 40;
+/// Share of the safe step that is taken: where many bands tell little, the best weights are a small part of the first
+/// full step, which would miss them.
+const CAUTION: f64 = 0.05;
 /// Iterations of the power method for the largest eigenvalue, and by how much its result may fall short.
 const POWER: usize = 30;
 const MARGIN: f64 = 1.2;
@@ -61,7 +64,7 @@ impl Logistic {
         let others = training.classes() - 1;
         let (x, x_validation) = (with_ones(scale.apply(training)), with_ones(scale.apply(validation)));
         let curvature = if others == 1 { 0.25 } else { 0.5 };
-        let step = 1.0 / (curvature * MARGIN * largest_eigenvalue(&x));
+        let step = CAUTION / (curvature * MARGIN * largest_eigenvalue(&x));
         let mut weights = DMatrix::<f64>::zeros(x.nrows(), others);
         let (mut ahead, mut best) = (weights.clone(), weights.clone());
         let (mut best_loss, mut best_step, mut momentum) = (f64::INFINITY, 0, 1.0_f64);

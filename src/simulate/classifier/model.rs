@@ -91,7 +91,8 @@ impl Method {
             }
             Self::Logistic => Some(Trained::Logistic(Logistic::train(training, validation)?)),
             Self::Network => {
-                let options = NetworkOptions::new(Settings { seed, ..Settings::default() })?;
+                let options =
+                    NetworkOptions::new(Settings { seed, ..Settings::for_bands(training.bands()) })?;
                 Some(Trained::Network(Network::train(training, validation, &options, &|_, _| {})?))
             }
         })
