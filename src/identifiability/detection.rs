@@ -10,6 +10,7 @@
 //! Relative errors stay below 1e-15·(10 + d²), also of miss probabilities down to 1e-300.
 
 use crate::error::{Error, Result};
+use crate::fisher::Counting;
 use special::Error as _;
 use std::f64::consts::{FRAC_1_SQRT_2, LN_2, SQRT_2};
 
@@ -89,6 +90,16 @@ pub fn error_bracket(distance: f64) -> ErrorBracket {
 pub fn two_sided_probability(distance: f64, return_ratio: f64) -> f64 {
     let h = (0.5 * (1.0 + return_ratio)).sqrt();
     0.5 * (probability(distance / h) + probability(return_ratio * distance / h))
+}
+
+/// Half the separation of two mean spectra in units of the noise: ‖√(N + σ²) − √(N′ + σ²)‖, σ² that of `counting`.
+#[must_use]
+pub fn half_separation(means: &[f64], others: &[f64], counting: &Counting) -> f64 {
+    let band = |(w, (a, b)): (usize, (&f64, &f64))| {
+        let var = counting.var_electronic(w);
+        ((a - b) / ((a + var).sqrt() + (b + var).sqrt()).max(f64::MIN_POSITIVE)).powi(2)
+    };
+    means.iter().zip(others).enumerate().map(band).sum::<f64>().sqrt()
 }
 
 #[cfg(test)]

@@ -26,6 +26,7 @@ use super::draws::{Draws, GENERATOR};
 use super::sequential::{Interval, Plan};
 use crate::error::{Error, Result, check};
 use crate::fisher::{Counting, Nuisance, Unknowns};
+use crate::identifiability::detection;
 use crate::identifiability::likelihood::MaximumLikelihood;
 use crate::identifiability::nearest::{NearestSolver, StateRange};
 use crate::planck;
@@ -165,11 +166,7 @@ impl DecisionScene<'_> {
     ) -> Result<Balanced> {
         let means = [self.means(target.0, target.1)?, self.means(alternative.0, alternative.1)?];
         let counting = self.counting(&means[0]);
-        let square = means[0].iter().zip(&means[1]).enumerate().map(|(band, (a, b))| {
-            let var = counting.var_electronic(band);
-            ((a - b) / ((a + var).sqrt() + (b + var).sqrt()).max(f64::MIN_POSITIVE)).powi(2)
-        });
-        let distance = square.sum::<f64>().sqrt();
+        let distance = detection::half_separation(&means[0], &means[1], &counting);
         let test = |truth: usize| -> Result<Test<'_>> {
             let draws = Draws::new(self.statistics, &means[truth])?;
             let rule = Box::new(LikelihoodRatio::new(self.statistics, &means)?);

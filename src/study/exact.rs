@@ -16,13 +16,13 @@ use crate::identifiability::detection;
 use crate::identifiability::lattice::{LatticeDetection, LatticeDetector, LatticeMesh};
 use crate::identifiability::local::LocalSolver;
 use crate::identifiability::nearest::{NearestSolver, StateRange};
-use crate::planck;
 use crate::policy;
 use crate::scenario::DistanceKind;
 use crate::simulate::decision::{Balanced, DecisionScene};
 use crate::simulate::draws::{GENERATOR, LARGEST_MEAN};
 use crate::simulate::sequential::Plan;
 use crate::statistics::Statistics;
+use crate::study::simulation::normal_error;
 use rayon::prelude::*;
 
 /// Most photons for which the lattice of counts is laid.
@@ -98,6 +98,10 @@ impl Study {
         };
         Ok(Exact {
             statistics: statistics.name(),
+            normal_error: normal_error(
+                &statistics,
+                &[self.target_signal().iter().map(|s| s * counts_per_radiance).collect()],
+            )?,
             generator: GENERATOR,
             seed: trial.plan.seed(),
             level: trial.plan.level(),
@@ -141,12 +145,7 @@ impl Study {
                 };
                 Statistics::gaussian(counting.var_electronic)
             }
-            Law::NegativeBinomial => {
-                let nodes = self.bands.nodes_cm1();
-                let density: Vec<f64> = nodes.iter().map(|&nu| planck::mode_density(nu)).collect();
-                let modes = self.bands.weigh(&density).iter().map(|m| counts_per_radiance * m).collect();
-                Statistics::negative_binomial(modes)
-            }
+            Law::NegativeBinomial => self.bunched(counts_per_radiance),
         }
     }
 

@@ -10,8 +10,11 @@ const CERTAIN: f64 = 0.9995;
 /// The simulated decisions beside their limits.
 pub(super) fn exact(found: &Exact, study: &Study) -> String {
     let percent = 100.0 * found.level;
+    let normal = found.normal_error.map_or_else(String::new, |error| {
+        format!(", distribution function of a band off by at most {error:.0e}")
+    });
     let mut out = format!(
-        "Maximum-likelihood decision, states unknown, {} counts (seed {}, {percent:.0} % intervals)\n",
+        "Maximum-likelihood decision, states unknown, {} counts{normal} (seed {}, {percent:.0} % intervals)\n",
         found.statistics, found.seed
     );
     let short = shortened(found.pairs.iter().map(|pair| pair.alternative.as_str()));

@@ -31,11 +31,24 @@ pub fn simulation(result: &Simulation, study: &Study) -> String {
         PhotonLaw::FixedTotal => "as many photons in every spectrum (multinomial)",
     };
     let noise = if result.camera_noise { ", and the camera's electronic noise" } else { "" };
+    let drawn = if result.skipped_spectra {
+        "the likelihood ratio itself, half as often for each class as there would be spectra".to_owned()
+    } else {
+        format!(
+            "{} spectra of each class, a quarter for training, a quarter for validation, half for the test",
+            result.spectra_per_class
+        )
+    };
+    let error = result.points.iter().filter_map(|point| point.normal_error).fold(0.0, f64::max);
+    let judged = if result.points.iter().any(|point| point.normal_error.is_some()) {
+        format!("normal (distribution function off by at most {error:.0e})")
+    } else {
+        result.judged_as.to_owned()
+    };
     let _ = writeln!(
         out,
-        "Drawn: {} spectra of each class, a quarter for training, a quarter for validation, half for the test;\n  \
-         {law}{noise}; likelihoods take counts to be {}; seed {}, {}",
-        result.spectra_per_class, result.judged_as, result.seed, result.generator
+        "Drawn: {drawn};\n  {law}{noise}; likelihoods take counts to be {judged};\n  seed {}, {}\n",
+        result.seed, result.generator
     );
     out.push_str(&assumptions(study));
     out.push_str(&warnings(&result.warnings));
@@ -68,10 +81,13 @@ fn sentence(result: &Simulation) -> String {
                 .iter()
                 .max_by(|a, b| a.performance.accuracy.total_cmp(&b.performance.accuracy));
             best.map_or_else(String::new, |best| {
+                let interval = best.performance.interval;
                 format!(
-                    "No classifier beats the limit: the best of {} tells {apart} in {} of the cases, {limit} is the most there is.",
+                    "No classifier beats the limit of {limit}: the best of {} tells {apart} in {} of the cases ({} to {}).",
                     point.performances.len(),
-                    percent(best.performance.accuracy)
+                    percent(best.performance.accuracy),
+                    percent(interval.low),
+                    percent(interval.high)
                 )
             })
         }
@@ -113,12 +129,11 @@ fn experiment(point: &SimulatedPoint, result: &Simulation) -> String {
     }
     let _ = writeln!(
         out,
-        "  {:<32} {:>8}  {:<19} {:<22} {}",
+        "  {:<32} {:>8}  {:<19} {:<22} against the limit",
         "classifier",
         "right",
         format!("{} % interval", 100.0 * result.level),
-        "photons made use of",
-        "against the limit"
+        "photons made use of"
     );
     for found in &point.performances {
         let performance = &found.performance;

@@ -51,8 +51,12 @@ pub fn text(result: &Thermometry) -> String {
         if environment.is_empty() { "without radiation".to_owned() } else { environment.join(", ") }
     ));
     line(format!(
-        "{} spectra at each temperature, {} counts, seed {} ({})",
-        result.trials, result.statistics, result.seed, result.generator
+        "{} spectra at each temperature: photons counted one by one{}; likelihoods take counts to be {}; seed {} ({})",
+        result.trials,
+        if result.statistics == "poisson" { "" } else { " with the camera's electronic noise" },
+        result.statistics,
+        result.seed,
+        result.generator
     ));
     line(format!(
         "intervals at {} %; the {} verdicts are right all together at that level",

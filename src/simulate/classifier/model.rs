@@ -93,7 +93,7 @@ impl Method {
             Self::Network => {
                 let options =
                     NetworkOptions::new(Settings { seed, ..Settings::for_bands(training.bands()) })?;
-                Some(Trained::Network(Network::train(training, validation, &options, &|_, _| {})?))
+                Some(Trained::Network(Box::new(Network::train(training, validation, &options, &|_, _| {})?)))
             }
         })
     }
@@ -108,7 +108,7 @@ pub enum Trained {
     /// Logistic regression.
     Logistic(Logistic),
     /// Convolutional network.
-    Network(Network),
+    Network(Box<Network>),
 }
 
 impl Trained {
@@ -126,7 +126,7 @@ impl Trained {
         match self {
             Self::Discriminant(trained) => trained,
             Self::Logistic(trained) => trained,
-            Self::Network(trained) => trained,
+            Self::Network(trained) => trained.as_ref(),
         }
     }
 

@@ -10,7 +10,7 @@ use crate::statistics::Statistics;
 /// its sign from band to band.
 fn two(bands: usize, distance: f64) -> Vec<Vec<f64>> {
     let mean = |w: usize| 1e6 * (1.0 + 0.3 * (w as f64).sin());
-    let sign = |w: usize| if w % 2 == 0 { 1.0 } else { -1.0 };
+    let sign = |w: usize| if w.is_multiple_of(2) { 1.0 } else { -1.0 };
     let off = |w: usize| sign(w) * distance * (mean(w) / bands as f64).sqrt();
     vec![(0..bands).map(|w| mean(w) - off(w)).collect(), (0..bands).map(|w| mean(w) + off(w)).collect()]
 }

@@ -61,6 +61,10 @@ pub struct ExactLibrary {
 pub struct Exact {
     /// Law of counting.
     pub statistics: &'static str,
+    /// Where counts are drawn by the Gaussian law: how far its distribution function is from that of photons with
+    /// electronic noise, at most.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub normal_error: Option<f64>,
     /// Random generator, with its version.
     pub generator: &'static str,
     /// Seed.

@@ -1,0 +1,120 @@
+//! Photons of an experiment, and the counts and noise that a camera makes of them.
+
+use super::SimulationPlan;
+use crate::error::{Error, Result, check};
+use crate::fisher::Counting;
+use crate::instrument::Camera;
+use crate::planck;
+use crate::policy;
+use crate::scenario::DistanceKind;
+use crate::simulate::draws::LARGEST_MEAN;
+use crate::statistics::Statistics;
+use crate::study::curves::logarithmic;
+use crate::study::{Study, Surface};
+
+impl Study {
+    /// The alternatives that are classes, with their nearest distances per √photon in shot noise.
+    pub(super) fn rivals(&self, against: &[String]) -> Result<Vec<(f64, &Surface)>> {
+        let with_distance = |alternative| {
+            let distance = self.distance_per_photon(DistanceKind::Nearest, alternative, f64::INFINITY)?;
+            Ok((distance, alternative))
+        };
+        if against.is_empty() {
+            let all: Vec<(f64, &Surface)> =
+                self.alternatives.iter().map(with_distance).collect::<Result<_>>()?;
+            return Ok(all.into_iter().min_by(|a, b| a.0.total_cmp(&b.0)).into_iter().collect());
+        }
+        let find = |name: &String| {
+            let found = self.alternative(name).ok_or_else(|| {
+                let names: Vec<&str> =
+                    self.alternatives.iter().map(|surface| surface.name.as_str()).collect();
+                let found = format!("`{name}` is none of the alternatives");
+                Error::malformed(found, format!("choose among {}", names.join(", ")))
+            });
+            with_distance(found?)
+        };
+        against.iter().map(find).collect()
+    }
+
+    /// Photons of each experiment.
+    pub(super) fn photon_numbers(
+        &self,
+        plan: &SimulationPlan,
+        rivals: &[(f64, &Surface)],
+    ) -> Result<Vec<f64>> {
+        let numbers = match (plan.photons.as_slice(), self.counting()) {
+            ([], Some(counting)) => vec![counting.counts_per_radiance * self.photon_radiance()],
+            ([], None) => vec![self.photons_for(rivals)?],
+            (given, _) => given.to_vec(),
+        };
+        for &photons in &numbers {
+            check::positive("number of photons", photons, "")?;
+            if photons > LARGEST_MEAN {
+                let expected = format!("at most {LARGEST_MEAN:e}");
+                return Err(Error::out_of_range("number of photons", photons, "", expected));
+            }
+        }
+        Ok(numbers)
+    }
+
+    /// Photons at which the nearest of the rivals that differs at all is told apart as required.
+    fn photons_for(&self, rivals: &[(f64, &Surface)]) -> Result<f64> {
+        let needed =
+            rivals.iter().filter_map(|(distance, _)| policy::photons_required(self.required, *distance));
+        let most = needed.fold(0.0, f64::max);
+        if most > 0.0 {
+            return Ok(most);
+        }
+        let found = "no number of photons tells the target from the alternative";
+        let instead = "change the scene or the alternatives, or name a number of photons";
+        Err(Error::malformed(found, instead).at(self.scenario.place("target")))
+    }
+
+    /// Photons at which N d₀² has `experiments` values spread evenly in the logarithm over `normalised`, d₀ the
+    /// nearest distance in shot noise to the nearest of the alternatives `against` (of all where empty).
+    ///
+    /// # Errors
+    /// An unknown alternative; one that no number of photons tells from the target.
+    pub fn sweep(&self, normalised: [f64; 2], experiments: usize, against: &[String]) -> Result<Vec<f64>> {
+        let least = self.rivals(against)?.iter().map(|rival| rival.0).fold(f64::INFINITY, f64::min);
+        if !(least > 0.0 && least.is_finite()) {
+            let found = "no number of photons tells the target from the alternative";
+            return Err(Error::malformed(found, "change the scene, or name the photons instead of a sweep"));
+        }
+        Ok(logarithmic(normalised, experiments).iter().map(|n| n / (least * least)).collect())
+    }
+
+    /// Counts and noise when the target sends so many photons: the exposure is made as long as that takes.
+    pub(in crate::study) fn counting_at(&self, photons: f64, camera_noise: bool) -> Counting {
+        let counts_per_radiance = photons / self.photon_radiance();
+        let silent = Counting { counts_per_radiance, var_electronic: Vec::new() };
+        match self.camera.as_ref().filter(|_| camera_noise) {
+            Some(camera) => self.counting_with(camera, photons),
+            None => silent,
+        }
+    }
+
+    /// The same with the noise of `camera`.
+    pub(in crate::study) fn counting_with(&self, camera: &Camera, photons: f64) -> Counting {
+        let counts_per_radiance = photons / self.photon_radiance();
+        let distance_m = self.scenario.target.distance_m;
+        let second = Camera { exposure_s: 1.0, frames: 1, ..camera.clone() };
+        let exposure_s = counts_per_radiance / second.counting(&self.bands, distance_m).counts_per_radiance;
+        let exposed = Camera { exposure_s, ..second };
+        Counting { counts_per_radiance, ..exposed.counting(&self.bands, distance_m) }
+    }
+
+    /// The law of thermal light that is bunched in the modes of each band.
+    pub(in crate::study) fn bunched(&self, counts_per_radiance: f64) -> Result<Statistics> {
+        let nodes = self.bands.nodes_cm1();
+        let density: Vec<f64> = nodes.iter().map(|&nu| planck::mode_density(nu)).collect();
+        let modes = self.bands.weigh(&density).iter().map(|m| counts_per_radiance * m).collect();
+        Statistics::negative_binomial(modes)
+    }
+}
+
+/// The seed of the experiment with so many photons: experiments of one simulation share no random numbers, and each is
+/// the same alone and among others. (Odd constant: 2⁶⁴ over the golden ratio, which spreads neighbouring values.)
+pub(super) fn seed_of(seed: u64, photons: f64) -> u64 {
+    seed.wrapping_add(photons.to_bits().wrapping_mul(0x9E37_79B9_7F4A_7C15))
+}
