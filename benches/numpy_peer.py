@@ -163,6 +163,18 @@ def told_apart(required):
     return np.triu(apart, 1).sum()
 
 
+def drawn_and_judged(spectra=5000):
+    """Share of right decisions of the likelihood ratio on Poisson spectra of the person and the nearest robot, d = 1."""
+    rng = np.random.default_rng(1)
+    around, _ = radiance(surroundings_k)
+    person = skin * radiance(310.15)[0] + (1.0 - skin) * 0.5 * around
+    other = robot * radiance(355.951)[0] + (1.0 - robot) * 0.1867 * around
+    means = [signal * 1.2763e6 / person.sum() for signal in (person, other)]
+    weights, offset = np.log(means[1] / means[0]), means[1].sum() - means[0].sum()
+    ratios = [rng.poisson(mean, (spectra, nu.size)) @ weights - offset for mean in means]
+    return 0.5 * ((ratios[0] < 0).mean() + (ratios[1] > 0).mean())
+
+
 def best(function, runs):
     """Shortest of several runs, in microseconds, and the last result."""
     shortest = np.inf
@@ -183,6 +195,7 @@ if __name__ == "__main__":
         ("nearest, 30 x 30", lambda: nearest_matrix().sum(), 5),
         ("told apart at d = 1", lambda: told_apart(1.0), 5),
         ("told apart at d = 40", lambda: told_apart(40.0), 5),
+        ("10 000 spectra judged", drawn_and_judged, 5),
     ]:
         microseconds, result = best(function, runs)
         print(f"{name:24} {microseconds:12.1f} us   {result:.12g}")
