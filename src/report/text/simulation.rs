@@ -1,10 +1,13 @@
 //! What a simulation found, as text.
 
+use super::numbers::shortened;
 use super::{assumptions, celsius, significant, warnings};
 use crate::report::simulation::pair;
 use crate::study::{PhotonLaw, SimulatedPerformance, SimulatedPoint, Simulation, Standing, Study};
 use std::fmt::Write as _;
 
+/// Columns that a confusion matrix may take.
+const MATRIX_WIDTH: usize = 64;
 /// Experiments that are printed; of more the first, the last and some between.
 const SHOWN: usize = 5;
 
@@ -24,6 +27,9 @@ pub fn simulation(result: &Simulation, study: &Study) -> String {
     for i in shown {
         out.push_str(&experiment(&points[i], result));
         out.push('\n');
+    }
+    if let [point] = points.as_slice() {
+        out.push_str(&confusions(point));
     }
     let law = match result.photon_law {
         PhotonLaw::Poisson => "photons counted one by one (Poisson)",
@@ -159,6 +165,36 @@ fn experiment(point: &SimulatedPoint, result: &Simulation) -> String {
     out
 }
 
+/// Which class is taken for which, in percent of the true one; nothing for more classes than fit a line.
+fn confusions(point: &SimulatedPoint) -> String {
+    let names = shortened(point.classes.iter().map(|class| class.material.as_str()));
+    let width = names.width().max(9);
+    if point.classes.len() * (width + 2) > MATRIX_WIDTH {
+        return String::new();
+    }
+    let mut out =
+        "Confusion: of the spectra of each true class (rows), % taken for each (columns)\n".to_owned();
+    let _ = write!(out, "  {:<32} {:<width$}", "classifier", "true");
+    for class in &point.classes {
+        let _ = write!(out, "  {:>width$}", names.of(&class.material));
+    }
+    out.push('\n');
+    for found in &point.performances {
+        let confusion = &found.performance.confusion;
+        for (i, (row, spectra)) in confusion.decisions.iter().zip(confusion.spectra()).enumerate() {
+            let classifier = if i == 0 { found.performance.method.words() } else { "" };
+            let name = point.classes.get(i).map_or("", |class| names.of(&class.material));
+            let _ = write!(out, "  {classifier:<32} {name:<width$}");
+            for decisions in row {
+                let _ = write!(out, "  {:>width$.1}", 100.0 * decisions / spectra.max(1.0));
+            }
+            out.push('\n');
+        }
+    }
+    out.push('\n');
+    out
+}
+
 fn used(found: &SimulatedPerformance) -> String {
     match (found.photon_share, found.photon_share_low, found.photon_share_high) {
         (Some(share), Some(low), high) => {
@@ -175,7 +211,7 @@ fn against(found: &SimulatedPerformance, point: &SimulatedPoint) -> String {
     match found.standing {
         Some(Standing::Beyond) => "BEYOND the limit".to_owned(),
         Some(Standing::Reaches) => "reaches it".to_owned(),
-        Some(Standing::Undecided) => "within it; too few spectra to say more".to_owned(),
+        Some(Standing::Undecided) => "may reach it; more spectra would tell".to_owned(),
         Some(Standing::Below) => {
             format!("{:.1} points below", 100.0 * (limit - found.performance.accuracy))
         }

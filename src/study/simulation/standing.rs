@@ -4,8 +4,8 @@ use crate::error::Result;
 use crate::simulate::efficiency::PhotonShare;
 use crate::simulate::experiment::Performance;
 
-/// An interval with a half width above this is too wide to say that a limit is reached.
-const NARROW: f64 = 0.02;
+/// An interval with a half width above this share of what the limit has over guessing is too wide to say that it is reached.
+const NARROW: f64 = 0.25;
 /// What one classifier achieved, held against the limit.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct SimulatedPerformance {
@@ -67,13 +67,14 @@ pub(super) fn held_against(
         Some(_) if distance > 0.0 => Some(PhotonShare::of(right, spectra as u64, distance, level)?),
         _ => None,
     };
+    let guessing = 1.0 / confusion.spectra().len().max(1) as f64;
     let standing = limit.map(|limit| {
         let interval = performance.interval;
         if confusion.interval(together).low > limit {
             Standing::Beyond
         } else if interval.high < limit {
             Standing::Below
-        } else if interval.half_width() > NARROW {
+        } else if interval.half_width() > NARROW * (limit - guessing) {
             Standing::Undecided
         } else {
             Standing::Reaches
