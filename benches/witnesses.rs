@@ -39,7 +39,7 @@ fn witnesses(criterion: &mut Criterion) {
     let law = Statistics::Poisson;
     let draws = means.each_ref().map(|means| Draws::new(&law, means).expect("means to draw about"));
     let rule = LikelihoodRatio::new(&law, &means).expect("two classes");
-    let judged = || Confusion::of_draws(&[&rule], &draws, 0..SPECTRA, 1).expect("classes that fit");
+    let judged = || Confusion::of_draws(&[&rule], &draws, 0..SPECTRA as u64, 1).expect("classes that fit");
     println!("likelihood ratio, {SPECTRA} spectra of each class: {:.4} right", judged()[0].accuracy());
     criterion.bench_function("10 000 spectra of 536 bands drawn and judged", |bencher| {
         bencher.iter(|| black_box(judged()));

@@ -79,11 +79,18 @@ struct Global {
     quiet: bool,
 }
 
+/// Most threads that can be asked for.
+const MOST_THREADS: usize = 1024;
+
 /// Runs the command line of this process.
 #[must_use]
 pub fn main() -> ExitCode {
     let cli = Cli::parse();
     if let Some(threads) = cli.global.threads {
+        if threads > MOST_THREADS {
+            eprintln!("error: --threads is {threads}; it must be at most {MOST_THREADS}, or 0 for all cores");
+            return ExitCode::from(1);
+        }
         // Fails only if a pool is there already, which is then the one that is used.
         let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
     }

@@ -143,7 +143,7 @@ impl Item {
             Self::Policy => policy::make(out)?,
         };
         bundle.add("ledger.csv", table(&lines).to_csv()?);
-        bundle.add("README.md", page(self, &lines, &figures));
+        bundle.add("README.md", page(self, order.effort, &lines, &figures));
         Ok(Reproduction { item: self, bundle, lines })
     }
 }
@@ -158,10 +158,14 @@ struct Figures {
 /// Files, lines of the ledger and what its page shows.
 type Made = (Bundle, Vec<Line>, Figures);
 
-fn page(item: Item, lines: &[Line], figures: &Figures) -> String {
+fn page(item: Item, effort: Effort, lines: &[Line], figures: &Figures) -> String {
     let name = item.name();
+    let made = match effort {
+        Effort::Full => format!("Made by `hadar reproduce {name}`"),
+        Effort::Quick => format!("Some of the experiments only, made by `hadar reproduce {name} --quick`"),
+    };
     let mut page = format!(
-        "# {}\n\nMade by `hadar reproduce {name} --out reports` from the scenarios beside it.\n\
+        "# {}\n\n{made} from the scenarios beside it.\n\
          Paper: Bao et al., Nature 619, 743 (2023), doi:10.1038/s41586-023-06174-6.\n\n{}",
         item.title(),
         markdown(lines)

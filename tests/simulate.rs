@@ -34,8 +34,8 @@ fn performance<'v>(point: &'v Value, method: &str) -> &'v Value {
     all.iter().find(|found| found["method"] == method).unwrap_or_else(|| panic!("no {method} in {point}"))
 }
 
-/// In three bands, at the distance of the requirement, each classifier is within 2 points of Φ(1) = 0.8413; half a point is one
-/// deviation of 20 000 test spectra of each class, so that the likelihood ratio alone would fail once in 10⁴ seeds.
+/// In three bands, at the distance of the requirement, each classifier is within 1 point of Φ(1) = 0.8413. The 10 000 test
+/// spectra of each class leave a deviation of 0.26 points: an optimal one would fail once in 7000 seeds.
 #[test]
 fn the_limit_is_reached_in_three_bands() {
     let folder = Folder::with(THREE);
@@ -48,18 +48,18 @@ fn the_limit_is_reached_in_three_bands() {
     let point = &found["points"][0];
     assert!((number(&point["statistical_distance"]) - 1.0).abs() < 1e-6);
     // 1.3e6 photons in each band: exact and asymptotic limit differ by the third moment, 1e-4 at most.
-    assert!((number(&point["limit"]) - 0.841_344_75).abs() < 1e-4);
+    assert!((number(&point["limit_accuracy"]) - 0.841_344_75).abs() < 1e-4);
     assert_eq!(point["classes"][1]["material"], "aluminium");
     assert!((number(&point["classes"][1]["temperature_k"]) - 355.97).abs() < 0.05);
     for method in ["likelihood-ratio", "best-fits", "discriminant", "logistic"] {
         let right = number(&performance(point, method)["accuracy"]);
-        assert!((right - 0.8413).abs() < 0.02, "{method}: {right}");
+        assert!((right - 0.8413).abs() < 0.01, "{method}: {right}");
         let rows = &performance(point, method)["confusion"]["decisions"];
         let sum: f64 = (0..2).flat_map(|a| (0..2).map(move |b| number(&rows[a][b]))).sum();
         assert_eq!(sum, 20_000.0);
     }
     // The local distance promises less than what is reached: it is no limit.
-    let local = number(&point["local"]);
+    let local = number(&point["local_accuracy"]);
     assert!(local < number(&performance(point, "likelihood-ratio")["interval"]["low"]), "{local}");
 }
 
@@ -78,6 +78,23 @@ fn a_seed_brings_everything_back() {
     assert!(one["generator"].as_str().unwrap().contains("ChaCha8"));
     let other = simulate(&folder, &["--spectra", "400", "--seed", "6", "--photons", "1e6"]);
     assert_ne!(other["points"][0]["performances"], one["points"][1]["performances"]);
+}
+
+/// A classifier trained on four times the spectra has seen none of the test: it stays below the limit.
+#[test]
+fn a_model_of_a_larger_run_has_not_seen_the_test() {
+    let folder = Folder::with(&THREE.replace(
+        "ranges = [[\"714.5 cm^-1\", \"893.5 cm^-1\"], [\"893.5 cm^-1\", \"1072.5 cm^-1\"], [\"1072.5 cm^-1\", \"1250.5 cm^-1\"]]",
+        "start = \"715 cm^-1\"\nstop = \"1250 cm^-1\"\nstep = \"1 cm^-1\"",
+    ));
+    let common = ["--photons", "3e5", "--classifiers"];
+    let trained = ["discriminant", "--spectra", "20000", "--save-models", "models"];
+    simulate(&folder, &[&common[..], &trained].concat());
+    let again = ["likelihood-ratio", "--spectra", "5000", "--model", "models/discriminant.json", "--check"];
+    let found = simulate(&folder, &[&common[..], &again].concat());
+    let right = number(&performance(&found["points"][0], "discriminant")["accuracy"]);
+    // 2500 test spectra of each class: 0.66 points; the discriminant of 5000 for training misses 3 in theory.
+    assert!(right < number(&found["points"][0]["limit_accuracy"]), "{right}");
 }
 
 /// A saved classifier judges as it did, and refuses other bands and other classes.
@@ -138,7 +155,19 @@ fn every_mistake_is_one_line() {
             vec!["--classifiers", "oracle"],
             "unknown classifier `oracle`; choose among likelihood-ratio, best-fits",
         ),
-        (vec!["--sweep", "0"], "--sweep is 0"),
+        (vec!["--sweep", "0"], "experiments of a sweep is 0"),
+        (vec!["--sweep", "1000000000000"], "experiments of a sweep is 1000000000000"),
+        (vec!["--spectra", "18446744073709551615"], "spectra of each class is"),
+        (vec!["--spectra", "90000000", "--classifiers", "logistic"], "training spectra of each class is"),
+        (vec!["--skip-spectra", "--spectra", "4000000000000000000"], "spectra of each class is"),
+        (vec!["--skip-spectra", "--statistics", "fixed-total"], "judges by another law"),
+        (vec!["--photons", "1e-300"], "number of photons is"),
+        (vec!["--check", "--against", "all"], "--check holds two classes"),
+        (vec!["--threads", "1000000"], "--threads is 1000000"),
+        (
+            vec!["--thermometry", "-10 degC..20 degC", "--temperatures", "100000000000"],
+            "--temperatures is 100000000000",
+        ),
         (vec!["--against", "gold"], "`gold` is none of the alternatives; choose among aluminium, concrete"),
         (vec!["--model", "nothing.json"], "nothing.json"),
         (
@@ -165,7 +194,7 @@ fn extremes_are_answered() {
         assert!(codes.contains(&code), "{photons}: {codes:?}");
         let point = &found["points"][0];
         let (limit, right) =
-            (number(&point["limit"]), number(&performance(point, "likelihood-ratio")["accuracy"]));
+            (number(&point["limit_accuracy"]), number(&performance(point, "likelihood-ratio")["accuracy"]));
         if photons == "1e-6" {
             // Nothing is seen: a coin.
             assert!((limit - 0.5).abs() < 1e-5 && right == 0.5, "{limit} {right}");
@@ -187,7 +216,7 @@ fn without_spectra_the_accuracy_is_the_same() {
         .map(|found| number(&performance(&found["points"][0], "likelihood-ratio")["accuracy"]));
     let sigma = (2.0 * a * (1.0 - a) / 1e5_f64).sqrt();
     assert!((a - b).abs() < 3.0 * sigma && a != b, "{a} {b} {sigma}");
-    assert_eq!(drawn["points"][0]["limit"], skipped["points"][0]["limit"]);
+    assert_eq!(drawn["points"][0]["limit_accuracy"], skipped["points"][0]["limit_accuracy"]);
 }
 
 /// Maximum likelihood reads the temperature of a camera's target with the error that is the least there is.
@@ -216,14 +245,17 @@ fn laws_and_classes() {
         let found = simulate(&folder, &[&flags[..], &["--statistics", law]].concat());
         assert_eq!(found["photon_law"], law);
         assert_eq!(found["limit_holds"], true, "{law}");
+        // Of a fixed total only the limit of many photons is known, against which nothing is held.
+        assert_eq!(found["comparisons"], if law == "fixed-total" { 0 } else { 5 }, "{law}");
     }
     let all = simulate(&folder, &[&flags[..], &["--against", "all"]].concat());
     let point = &all["points"][0];
     assert_eq!(point["classes"].as_array().unwrap().len(), 3);
-    assert!(point["limit"].is_null());
+    assert!(point["limit_accuracy"].is_null());
     let best = number(&performance(point, "likelihood-ratio")["accuracy"]);
     // Concrete is far away; the pair of skin and aluminium is right in 84 % of two thirds of the spectra.
-    assert!((best - (2.0 * 0.8413 + 1.0) / 3.0).abs() < 0.03, "{best}");
+    // 1000 test spectra of each class: a deviation of 0.6 points; 3.3 of them.
+    assert!((best - (2.0 * 0.8413 + 1.0) / 3.0).abs() < 0.02, "{best}");
 
     let noisy = Folder::with(&format!("{THREE}[camera]\npreset = \"flir-a325sc\"\n"));
     let found = simulate(&noisy, &["--spectra", "4000"]);

@@ -27,6 +27,10 @@ struct Output {
 }
 
 pub(super) fn run(args: &ReproduceArgs, global: &Global) -> Result<ExitCode> {
+    if global.only_library || !global.library.is_empty() {
+        let found = "the paper's figures are made with the built-in library";
+        return Err(Error::malformed(found, "leave out --library and --only-library"));
+    }
     let items = items(&args.items)?;
     let effort = if args.quick { Effort::Quick } else { Effort::Full };
     let order = Order { effort, seed: global.seed };
@@ -48,7 +52,7 @@ pub(super) fn run(args: &ReproduceArgs, global: &Global) -> Result<ExitCode> {
     if let Some(out) = global.out.as_ref().filter(|_| items.len() == Item::ALL.len()) {
         let mut bundle = Bundle::default();
         bundle.add("ledger.csv", table(&ledger).to_csv()?);
-        bundle.add("README.md", overview(&items, &ledger));
+        bundle.add("README.md", overview(&items, effort, &ledger));
         global.write(&bundle, out)?;
     }
     let text = text(&items, &ledger);
@@ -75,17 +79,23 @@ fn items(names: &[String]) -> Result<Vec<Item>> {
 }
 
 fn counts(ledger: &[Line]) -> String {
-    let of = |verdict: Verdict| ledger.iter().filter(|line| line.verdict == verdict).count();
-    format!(
-        "Of {} values {} are reproduced and {} more under a stated choice; {} are not, {} are errors in the paper; for {} it \
-         prints no value.",
-        ledger.len(),
-        of(Verdict::Reproduced),
-        of(Verdict::UnderAChoice),
-        of(Verdict::NotReproduced),
-        of(Verdict::PaperInError),
-        of(Verdict::NoValuePrinted)
-    )
+    let of = |verdicts: &[Verdict]| ledger.iter().filter(|line| verdicts.contains(&line.verdict)).count();
+    let compared = ledger.len() - of(&[Verdict::NoValuePrinted, Verdict::NotInThePaper]);
+    let mut counts = format!(
+        "Of {compared} values and statements of the paper {} come out again, {} more under a choice that it does not state, {} do not",
+        of(&[Verdict::Reproduced]),
+        of(&[Verdict::UnderAChoice]),
+        of(&[Verdict::NotReproduced])
+    );
+    for (verdict, words) in [
+        (Verdict::PaperInError, "in error in the paper"),
+        (Verdict::TooFewToSay, "left open by too few experiments"),
+    ] {
+        if of(&[verdict]) > 0 {
+            counts.push_str(&format!(", {} {words}", of(&[verdict])));
+        }
+    }
+    counts + "."
 }
 
 fn text(items: &[Item], ledger: &[Line]) -> String {
@@ -105,15 +115,23 @@ fn text(items: &[Item], ledger: &[Line]) -> String {
     text
 }
 
-fn overview(items: &[Item], ledger: &[Line]) -> String {
+fn overview(items: &[Item], effort: Effort, ledger: &[Line]) -> String {
+    let made = match effort {
+        Effort::Full => "Made by `hadar reproduce all`",
+        Effort::Quick => "Some of the experiments only, made by `hadar reproduce all --quick`",
+    };
     let mut page = format!(
-        "# What of the paper comes out again\n\nMade by `hadar reproduce all --out reports`. Paper: Bao et al., \
+        "# What of the paper comes out again\n\n{made}. Paper: Bao et al., \
          Nature 619, 743 (2023), doi:10.1038/s41586-023-06174-6.\n\n{}\n\n",
         counts(ledger)
     );
     for item in items {
         page.push_str(&format!("* [{}]({}/README.md)\n", item.title(), item.name()));
     }
+    page.push_str(
+        "\nNot made again here: Fig. 3a's 72.5 degC, the formulas S28, S31 to S36 and S43, ranging (Fig. 4, Tables S4 and S5). A \
+         verdict of numbers is computed: the same within the tolerance printed beside it.\n",
+    );
     page.push_str(
         "\nFurther studies, made by the programs of `examples/`: [exact decisions](exact_probability/README.md), \
          [the paper's own library](library_figures/README.md), [priors](priors/README.md).\n\n",

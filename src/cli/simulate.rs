@@ -13,6 +13,9 @@ use clap::Args;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+/// Most true temperatures, and most spectra at each.
+const MOST_TEMPERATURES: usize = 10_000;
+const MOST_READINGS: usize = 10_000_000;
 /// Normalised photon numbers N d₀² that a sweep covers, and its curves.
 const SWEEP: [f64; 2] = [0.01, 10.0];
 const CURVES: [f64; 2] = [0.01, 1e8];
@@ -37,7 +40,7 @@ pub(super) struct SimulateArgs {
         help_heading = "Spectra"
     )]
     photons: Vec<f64>,
-    /// K experiments with N d0^2 from 0.01 to 10, d0 the nearest distance in shot noise
+    /// K experiments with N d0^2/(1+gamma) from 0.01 to 10, d0 the nearest distance in shot noise, gamma that of the camera
     #[arg(long, value_name = "K", conflicts_with = "photons", help_heading = "Spectra")]
     sweep: Option<usize>,
     /// How photons are counted
@@ -55,12 +58,12 @@ pub(super) struct SimulateArgs {
     /// A saved classifier that takes part as it is; may be given several times
     #[arg(long, value_name = "FILE", help_heading = "Classifiers")]
     model: Vec<PathBuf>,
-    /// Draw the likelihood ratio itself instead of spectra: as good where it alone takes part, and far quicker
+    /// Draw the likelihood ratio itself instead of spectra: far quicker where it alone takes part, and as good
     #[arg(long, help_heading = "Spectra")]
     skip_spectra: bool,
     /// Read the target's temperature instead: by maximum likelihood and by thermal imaging at true temperatures
     /// such as "30 degC..105 degC", or at a single one; --spectra are drawn at each
-    #[arg(long, value_name = "RANGE", conflicts_with_all = CLASSIFYING, help_heading = "Thermometry")]
+    #[arg(long, value_name = "RANGE", allow_hyphen_values = true, conflicts_with_all = CLASSIFYING, help_heading = "Thermometry")]
     thermometry: Option<String>,
     /// How many true temperatures there are in the range
     #[arg(
@@ -110,6 +113,10 @@ pub(super) fn run(args: &SimulateArgs, global: &Global) -> Result<ExitCode> {
     if let Some(folder) = &args.save_models {
         Bundle::check_destination(folder)?;
     }
+    if args.check && (plan.against.len() > 1 || plan.law == PhotonLaw::FixedTotal) {
+        let found = "--check holds two classes against their limit, which is not known here";
+        return Err(Error::malformed(found, "name one alternative with --against, or leave out fixed-total"));
+    }
     let bar = global.progress("experiments");
     let (result, models) = study.simulate(&plan, &|done, total| bar.set(done, total))?;
     bar.finish();
@@ -142,10 +149,18 @@ fn thermometry(range: &str, args: &SimulateArgs, study: &Study, global: &Global)
         }
         (Some((low, high)), rows) => {
             let (low, high) = (temperature(low)?, temperature(high)?);
+            if rows > MOST_TEMPERATURES {
+                let expected = format!("at most {MOST_TEMPERATURES}");
+                return Err(Error::out_of_range("--temperatures", rows as f64, "", expected));
+            }
             let step = (high - low) / (rows - 1) as f64;
             (0..rows).map(|i| (i as f64).mul_add(step, low)).collect()
         }
     };
+    if args.spectra > MOST_READINGS {
+        let expected = format!("at most {MOST_READINGS} at each temperature");
+        return Err(Error::out_of_range("--spectra", args.spectra as f64, "", expected));
+    }
     let bar = global.progress("temperatures");
     let result =
         study.thermometry(&temperatures, args.spectra, global.seed, &|done, total| bar.set(done, total))?;
@@ -178,10 +193,7 @@ fn plan(args: &SimulateArgs, study: &Study, global: &Global) -> Result<Simulatio
         args.against.clone()
     };
     let photons = match args.sweep {
-        Some(0) => {
-            return Err(Error::out_of_range("--sweep", 0.0, "", "at least 1 experiment"));
-        }
-        Some(experiments) => study.sweep(SWEEP, experiments, &against)?,
+        Some(experiments) => study.sweep(SWEEP, experiments, &against, !args.shot_noise_only)?,
         None => args.photons.clone(),
     };
     Ok(SimulationPlan {

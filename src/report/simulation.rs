@@ -8,6 +8,9 @@ use crate::error::Result;
 use crate::study::{NoiseCurves, Simulation, Study};
 use std::path::Path;
 
+/// Classes that are named in a sentence beside the target.
+const NAMED: usize = 4;
+
 /// All files of a simulation; paths in the scenario are written relative to `out` where they lie below it.
 ///
 /// # Errors
@@ -39,6 +42,9 @@ pub fn pair(result: &Simulation) -> String {
     let classes = result.points.first().map(|point| point.classes.as_slice()).unwrap_or_default();
     match classes {
         [target, other] => format!("{} from {}", target.material, other.material),
+        [target, others @ ..] if others.len() > NAMED => {
+            format!("{} and {} others apart", target.material, others.len())
+        }
         [target, others @ ..] => {
             let names: Vec<&str> = others.iter().map(|class| class.material.as_str()).collect();
             format!("{}, {} apart", target.material, names.join(", "))
@@ -58,7 +64,7 @@ fn confusion(result: &Simulation) -> Table {
                 for (chosen, decisions) in row.iter().enumerate() {
                     table.push(vec![
                         number(point.photons),
-                        found.performance.method.name().into(),
+                        found.performance.name(),
                         name(class).into(),
                         name(chosen).into(),
                         number(*decisions),
@@ -76,7 +82,7 @@ fn confusion(result: &Simulation) -> Table {
 pub fn curves(noise: &NoiseCurves) -> Table {
     let mut header = vec!["normalised_photons_n_d0_squared".to_owned()];
     for curve in &noise.curves {
-        let name = curve.name.replace(' ', "_");
+        let name = curve.name.replace(' ', "_").to_lowercase();
         header.extend(
             ["gamma_per_band", "statistical_distance", "information_bits"].map(|q| format!("{q}_{name}")),
         );

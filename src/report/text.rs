@@ -15,7 +15,7 @@ pub use many::{answers, check, work, work_of};
 pub use numbers::{quantity, significant};
 pub use simulation::simulation;
 
-use self::footing::{assumptions, warnings};
+use self::footing::{GAUSSIAN, assumptions, warnings};
 use self::numbers::{celsius, exponential, numbers, photons};
 use self::pairs::pair_table;
 use crate::policy::Quantity;
@@ -83,7 +83,7 @@ pub fn sizing(result: &Sizing, study: &Study) -> String {
         out.push_str(&pair_table(&result.pairs, study));
         out.push('\n');
     }
-    out.push_str(&assumptions(study));
+    out.push_str(&assumptions(study, GAUSSIAN));
     out.push_str(&warnings(&result.warnings));
     out
 }

@@ -16,6 +16,10 @@ pub enum Verdict {
     PaperInError,
     /// The paper prints no value.
     NoValuePrinted,
+    /// Nothing of the kind is in the paper: a check of our own.
+    NotInThePaper,
+    /// Too few experiments to say.
+    TooFewToSay,
 }
 
 impl Verdict {
@@ -28,6 +32,8 @@ impl Verdict {
             Self::NotReproduced => "not reproduced",
             Self::PaperInError => "error in the paper",
             Self::NoValuePrinted => "no value printed",
+            Self::NotInThePaper => "not in the paper",
+            Self::TooFewToSay => "too few experiments to say",
         }
     }
 }
@@ -43,6 +49,8 @@ pub struct Line {
     pub paper: String,
     /// As it comes out here.
     pub ours: String,
+    /// Relative difference up to which they count as the same, where numbers were compared.
+    pub tolerance: Option<f64>,
     /// Whether they agree.
     pub verdict: Verdict,
     /// Why, or under which choice.
@@ -50,6 +58,24 @@ pub struct Line {
 }
 
 impl Line {
+    /// A line whose verdict is that of two numbers, the paper's and ours: the same within `tolerance`, relative;
+    /// `under_a_choice` says that ours rests on one that the paper does not state.
+    pub(super) fn compared(
+        place: &'static str,
+        quantity: impl Into<String>,
+        (paper, paper_value): (&str, f64),
+        (ours, our_value): (impl Into<String>, f64),
+        (tolerance, under_a_choice): (f64, bool),
+        why: impl Into<String>,
+    ) -> Self {
+        let verdict = match (our_value / paper_value - 1.0).abs() <= tolerance {
+            true if under_a_choice => Verdict::UnderAChoice,
+            true => Verdict::Reproduced,
+            false => Verdict::NotReproduced,
+        };
+        Self { tolerance: Some(tolerance), ..Self::new(place, quantity, paper, ours, verdict, why) }
+    }
+
     /// A line.
     pub(super) fn new(
         place: &'static str,
@@ -60,19 +86,21 @@ impl Line {
         why: impl Into<String>,
     ) -> Self {
         let (quantity, paper, ours) = (quantity.into(), paper.into(), ours.into());
-        Self { place, quantity, paper, ours, verdict, why: why.into() }
+        Self { place, quantity, paper, ours, tolerance: None, verdict, why: why.into() }
     }
 
-    fn cells(&self) -> [String; 6] {
+    fn cells(&self) -> [String; 7] {
         let [place, verdict] = [self.place, self.verdict.words()].map(str::to_owned);
-        [place, self.quantity.clone(), self.paper.clone(), self.ours.clone(), verdict, self.why.clone()]
+        let tolerance = self.tolerance.map_or_else(String::new, |t| format!("{} %", 100.0 * t));
+        let (quantity, paper, ours) = (self.quantity.clone(), self.paper.clone(), self.ours.clone());
+        [place, quantity, paper, ours, tolerance, verdict, self.why.clone()]
     }
 }
 
 /// The ledger as CSV.
 #[must_use]
 pub fn table(lines: &[Line]) -> Table {
-    let mut table = Table::new(["place", "quantity", "paper", "ours", "verdict", "why"]);
+    let mut table = Table::new(["place", "quantity", "paper", "ours", "tolerance", "verdict", "why"]);
     lines.iter().for_each(|line| table.push(line.cells().to_vec()));
     table
 }
@@ -80,8 +108,9 @@ pub fn table(lines: &[Line]) -> Table {
 /// The ledger in Markdown.
 #[must_use]
 pub fn markdown(lines: &[Line]) -> String {
-    let mut text =
-        String::from("| place | quantity | paper | ours | verdict | why |\n|---|---|---|---|---|---|\n");
+    let mut text = String::from(
+        "| place | quantity | paper | ours | tolerance | verdict | why |\n|---|---|---|---|---|---|---|\n",
+    );
     for line in lines {
         let cells = line.cells().map(|cell| cell.replace('|', "\\|"));
         text.push_str(&format!("| {} |\n", cells.join(" | ")));

@@ -37,6 +37,9 @@ pub const LARGEST_MEAN: f64 = 1e18;
 /// Largest mean about which every whole number is a double: 2⁵³.
 pub const LARGEST_EXACT: f64 = 9_007_199_254_740_992.0;
 
+/// Streams set aside for the spectra or trials of one class.
+pub(crate) const STREAMS: u64 = 1 << 40;
+
 /// The generator of one spectrum or one block of trials.
 #[must_use]
 pub fn generator(seed: u64, stream: u64) -> ChaCha8Rng {

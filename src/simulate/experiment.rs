@@ -1,14 +1,13 @@
 //! One experiment: spectra of known classes drawn, classifiers trained on a part of them, all judged on the rest.
 //!
-//! Spectra 0 … n/4 of each class are for training, the next quarter for validation, the other half for the test, as in
-//! the paper. Test spectra are drawn, judged by every classifier and forgotten, so that their number takes no memory;
+//! A quarter of the spectra of each class is for training, a quarter for validation, half for the test, as in the paper. Test spectra are drawn, judged by every classifier and forgotten, so that their number takes no memory;
 //! training spectra are drawn only if something is trained.
 
 use super::classifier::{BestFits, Classifier, Confusion, LikelihoodRatio, Method, Trained, share};
-use super::draws::Draws;
+use super::draws::{Draws, STREAMS};
 use super::ratio::RatioDraws;
 use super::sequential::Interval;
-use super::spectra::{LabelledSpectra, Parts, STREAMS};
+use super::spectra::{LabelledSpectra, Parts};
 use crate::error::{Error, Result};
 use crate::identifiability::ratio::State;
 use crate::statistics::Statistics;
@@ -38,8 +37,8 @@ pub struct Design {
     pub seed: u64,
     /// Level of the confidence intervals.
     pub level: f64,
-    /// Whether the likelihood ratio itself is drawn instead of spectra, where it alone takes part and there are two
-    /// classes: as good, and hundreds of times as fast.
+    /// Whether the likelihood ratio itself is drawn instead of spectra, where it alone takes part, there are two classes,
+    /// and counts follow the law by which it judges: as good, and hundreds of times as fast.
     pub skip_spectra: bool,
 }
 
@@ -48,6 +47,8 @@ pub struct Design {
 pub struct Performance {
     /// Which.
     pub method: Method,
+    /// Whether it was trained before, and taken from a file.
+    pub saved: bool,
     /// Balanced accuracy: share of right decisions, averaged over the classes.
     pub accuracy: f64,
     /// Its confidence interval.
@@ -59,6 +60,20 @@ pub struct Performance {
     pub training: Option<String>,
 }
 
+impl Performance {
+    /// What it is called in a table.
+    #[must_use]
+    pub fn name(&self) -> String {
+        format!("{}{}", self.method.name(), if self.saved { " (saved)" } else { "" })
+    }
+
+    /// What it is called in a figure.
+    #[must_use]
+    pub fn words(&self) -> String {
+        format!("{}{}", self.method.words(), if self.saved { ", saved" } else { "" })
+    }
+}
+
 impl Experiment<'_> {
     /// Trains and judges. The trained classifiers come with their performances, all in the order of the design, those
     /// that were trained before last.
@@ -68,7 +83,10 @@ impl Experiment<'_> {
     pub fn run(&self, design: &Design) -> Result<(Vec<Performance>, Vec<Trained>)> {
         let parts = Parts::of(design.per_class)?;
         if design.skip_spectra {
-            return Ok((vec![self.without_spectra(design, parts.test.len())?], Vec::new()));
+            return Ok((
+                vec![self.without_spectra(design, (parts.test.end - parts.test.start) as usize)?],
+                Vec::new(),
+            ));
         }
         let mut learnt = Vec::new();
         if design.methods.iter().any(|method| method.is_trained()) {
@@ -79,29 +97,34 @@ impl Experiment<'_> {
             }
         }
         let ratio = LikelihoodRatio::new(self.statistics, self.means)?;
-        let mut rules: Vec<(Method, &dyn Classifier, Option<String>)> = Vec::new();
+        let mut rules: Vec<(Method, bool, &dyn Classifier, Option<String>)> = Vec::new();
         let mut waiting = learnt.iter();
         for &method in &design.methods {
             match method {
-                Method::LikelihoodRatio => rules.push((method, &ratio, None)),
+                Method::LikelihoodRatio => rules.push((method, false, &ratio, None)),
                 Method::BestFits => {
                     let Some(fits) = self.best_fits else {
                         let found = "best fits take part, but no materials to fit are given";
                         return Err(Error::malformed(found, "give them"));
                     };
-                    rules.push((method, fits, None));
+                    rules.push((method, false, fits, None));
                 }
-                _ => rules.extend(waiting.next().map(|t| (method, t as &dyn Classifier, Some(t.training())))),
+                _ => rules.extend(
+                    waiting.next().map(|t| (method, false, t as &dyn Classifier, Some(t.training()))),
+                ),
             }
         }
-        rules.extend(self.trained.iter().map(|t| (t.method(), t as &dyn Classifier, Some(t.training()))));
-        let classifiers: Vec<&dyn Classifier> = rules.iter().map(|rule| rule.1).collect();
+        rules.extend(
+            self.trained.iter().map(|t| (t.method(), true, t as &dyn Classifier, Some(t.training()))),
+        );
+        let classifiers: Vec<&dyn Classifier> = rules.iter().map(|rule| rule.2).collect();
         let confusions = Confusion::of_draws(&classifiers, self.draws, parts.test, design.seed)?;
         let performances = rules
             .into_iter()
             .zip(confusions)
-            .map(|((method, _, training), confusion)| Performance {
+            .map(|((method, saved, _, training), confusion)| Performance {
                 method,
+                saved,
                 accuracy: confusion.accuracy(),
                 interval: confusion.interval(design.level),
                 confusion,
@@ -134,6 +157,7 @@ impl Experiment<'_> {
         let confusion = Confusion { decisions, unconverged: 0 };
         Ok(Performance {
             method: Method::LikelihoodRatio,
+            saved: false,
             accuracy: confusion.accuracy(),
             interval: confusion.interval(design.level),
             confusion,

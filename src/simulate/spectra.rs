@@ -1,15 +1,20 @@
 //! Labelled spectra of counts: drawn about the means of every class, parted into training, validation and test.
 //!
 //! Spectrum i of class c has the stream of random numbers c·2⁴⁰ + i of its own, so that neither the number of threads
-//! nor the number of spectra changes any of them.
+//! nor the number of spectra changes any of them. Training, validation and test have ranges of i that never meet
+//! ([`Parts`]): a classifier that was trained on more spectra has still seen none of the test.
 
-use super::draws::{Draws, generator};
+use super::draws::{Draws, STREAMS, generator};
 use crate::error::{Error, Result};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Streams of random numbers set aside for the spectra of one class.
-pub(super) const STREAMS: u64 = 1 << 40;
+/// Most spectra of one class, and most counts that are kept at once (4 GB).
+pub const MOST_SPECTRA: usize = 100_000_000;
+const MOST_COUNTS: usize = 500_000_000;
+/// Where the spectra for validation and for the test begin; those for training begin at 0.
+const VALIDATION: u64 = 1 << 38;
+const TEST: u64 = 1 << 39;
 
 /// Spectra of counts, each with the class it is from.
 #[derive(Debug, Clone, PartialEq)]
@@ -47,16 +52,24 @@ impl LabelledSpectra {
     /// Spectra `range` of every class, drawn by the laws of `draws`, one of each class; class by class in turn.
     ///
     /// # Errors
-    /// No classes, or laws for different numbers of bands.
-    pub fn draw(draws: &[Draws], range: Range<usize>, seed: u64) -> Result<Self> {
+    /// No classes, laws for different numbers of bands, more counts than memory should hold.
+    pub fn draw(draws: &[Draws], range: Range<u64>, seed: u64) -> Result<Self> {
         let (bands, classes) = (check_laws(draws)?, draws.len());
-        let mut counts = vec![0.0; bands * classes * range.len()];
-        counts.par_chunks_mut(bands * classes).zip(range.clone()).for_each(|(chunk, i)| {
+        let each = (MOST_COUNTS / (bands * classes)) as u64;
+        let spectra = range.end.saturating_sub(range.start);
+        if spectra > each {
+            let expected = format!(
+                "at most {each} with {classes} classes of {bands} bands, as many as are kept in memory"
+            );
+            return Err(Error::out_of_range("training spectra of each class", spectra as f64, "", expected));
+        }
+        let mut counts = vec![0.0; bands * classes * spectra as usize];
+        counts.par_chunks_mut(bands * classes).enumerate().for_each(|(i, chunk)| {
             for (class, spectrum) in chunk.chunks_mut(bands).enumerate() {
-                draw_one(draws, class, i, seed, spectrum);
+                draw_one(draws, class, range.start + i as u64, seed, spectrum);
             }
         });
-        let labels = range.flat_map(|_| 0..classes).collect();
+        let labels = (0..spectra).flat_map(|_| 0..classes).collect();
         Ok(Self { bands, classes, counts, labels })
     }
 
@@ -103,8 +116,8 @@ impl LabelledSpectra {
 }
 
 /// Draws spectrum `i` of one class.
-pub(super) fn draw_one(draws: &[Draws], class: usize, i: usize, seed: u64, counts: &mut [f64]) {
-    let stream = class as u64 * STREAMS + i as u64;
+pub(super) fn draw_one(draws: &[Draws], class: usize, i: u64, seed: u64, counts: &mut [f64]) {
+    let stream = class as u64 * STREAMS + i;
     draws[class].draw_into(&mut generator(seed, stream), counts);
 }
 
@@ -124,25 +137,29 @@ pub(super) fn check_laws(draws: &[Draws]) -> Result<usize> {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Parts {
     /// What parameters are fitted to.
-    pub training: Range<usize>,
+    pub training: Range<u64>,
     /// What says when to stop.
-    pub validation: Range<usize>,
+    pub validation: Range<u64>,
     /// What the accuracy is measured on; no classifier sees it before.
-    pub test: Range<usize>,
+    pub test: Range<u64>,
 }
 
 impl Parts {
     /// Parts of `per_class` spectra.
     ///
     /// # Errors
-    /// Fewer than 4, which leave a part empty.
+    /// Fewer than 4, which leave a part empty, or more than [`MOST_SPECTRA`].
     pub fn of(per_class: usize) -> Result<Self> {
         if per_class < 4 {
             let expected = "at least 4: a quarter each for training and validation, half for the test";
             return Err(Error::out_of_range("spectra of each class", per_class as f64, "", expected));
         }
-        let quarter = per_class / 4;
-        Ok(Self { training: 0..quarter, validation: quarter..2 * quarter, test: 2 * quarter..per_class })
+        if per_class > MOST_SPECTRA {
+            return Err(Error::out_of_range("spectra of each class", per_class as f64, "", "at most 1e8"));
+        }
+        let (quarter, rest) = ((per_class / 4) as u64, (per_class - 2 * (per_class / 4)) as u64);
+        let part = |first: u64, spectra: u64| first..first + spectra;
+        Ok(Self { training: part(0, quarter), validation: part(VALIDATION, quarter), test: part(TEST, rest) })
     }
 }
 
@@ -197,14 +214,19 @@ mod tests {
     fn parts_are_25_25_and_50_percent() {
         let split = Split::draw(&two(), 40, 1).unwrap();
         assert_eq!([split.training.len(), split.validation.len(), split.test.len()], [20, 20, 40]);
-        let whole = LabelledSpectra::draw(&two(), 0..40, 1).unwrap();
-        let parts = [&split.training, &split.validation, &split.test].map(LabelledSpectra::counts).concat();
-        assert_eq!(parts, whole.counts());
+        // Of many more spectra, no spectrum for training is one of the test.
+        let more = Split::draw(&two(), 400, 1).unwrap();
+        assert_eq!(&more.test.counts()[..split.test.counts().len()], split.test.counts());
+        let has = |spectra: &LabelledSpectra, one: &[f64]| spectra.iter().any(|(counts, _)| counts == one);
+        for (one, _) in split.test.iter() {
+            assert!(!has(&more.training, one) && !has(&more.validation, one));
+        }
     }
 
     #[test]
     fn what_does_not_fit_is_refused() {
-        assert!(Split::draw(&two(), 3, 1).is_err());
+        assert!(Split::draw(&two(), 3, 1).is_err() && Split::draw(&two(), usize::MAX, 1).is_err());
+        assert!(LabelledSpectra::draw(&two(), 0..u64::MAX, 1).is_err());
         assert!(Split::draw(&[], 8, 1).is_err());
         assert!(LabelledSpectra::new(2, 2, vec![1.0; 4], vec![0, 2]).is_err());
         assert!(LabelledSpectra::new(2, 2, vec![1.0; 3], vec![0, 1]).is_err());

@@ -22,7 +22,7 @@ mod tests;
 
 pub use conventional::{Conventional, Reading};
 
-use super::draws::{Draws, generator};
+use super::draws::{Draws, STREAMS, generator};
 use crate::error::{Error, Result, check};
 use crate::fisher::precision::{JointPrecision, PrecisionSolver};
 use crate::fisher::{Counting, Unknowns};
@@ -35,8 +35,6 @@ use rand::rngs::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use rayon::prelude::*;
 
-/// Streams of random numbers set aside for the trials of one run.
-const STREAMS: u64 = 1 << 40;
 /// Temperatures that a fit starts from, K, if the counts suggest none.
 const NO_READING_K: f64 = 300.0;
 /// Share of its range within which a parameter counts as held by it.

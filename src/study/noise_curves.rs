@@ -2,7 +2,7 @@
 //!
 //! Photons N grow with the exposure. Johnson noise has a variance ∝ t, so γ₀ = σ²/N stays; flicker noise one ∝ t², so
 //! γ = γ₁N grows, and no exposure is long enough (paper, Fig. 3b and Fig. S7). Limits are those to the nearest state
-//! of the alternative under the noise at hand; the paper's shortcut d = √(N/(1 + γ)) d₀ stands beside them.
+//! of the alternative under the noise at hand. Shot noise is there in every curve.
 
 use super::curves::logarithmic;
 use super::{Study, Surface};

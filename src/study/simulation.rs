@@ -16,6 +16,7 @@ pub use standing::{SimulatedPerformance, Standing};
 
 use super::{Study, Surface, Warning};
 use crate::error::Result;
+use crate::fisher::Unknowns;
 use crate::simulate::classifier::{SavedModel, Trained};
 use crate::simulate::draws::{GENERATOR, LARGEST_EXACT};
 use crate::simulate::experiment::Design;
@@ -82,12 +83,13 @@ pub struct SimulatedPoint {
     pub statistical_distance: f64,
     /// The local statistical distance to the same material.
     pub statistical_distance_local: f64,
-    /// Accuracy of the likelihood ratio of the two, without any draw; `None` for more classes.
-    pub limit: Option<f64>,
+    /// Accuracy of the likelihood ratio of the two, without any draw; `None` for more classes, and for a fixed
+    /// total, whose law is not that of independent bands.
+    pub limit_accuracy: Option<f64>,
     /// Φ of the statistical distance: the limit at many photons.
-    pub limit_normal: f64,
+    pub limit_accuracy_normal: f64,
     /// Φ of the local distance: what it would have promised.
-    pub local: f64,
+    pub local_accuracy: f64,
     /// Where likelihoods take counts for normal: how far the distribution function of a band is from that, at most.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub normal_error: Option<f64>,
@@ -136,6 +138,12 @@ impl Study {
         plan: &SimulationPlan,
         progress: &(dyn Fn(usize, usize) + Sync),
     ) -> Result<(Simulation, Vec<SavedModel>)> {
+        if self.unknowns.has_priors() {
+            let (mut result, models) = self.without_priors()?.simulate(plan, progress)?;
+            let message = "priors are left out: the spectra that are drawn, and what is learnt from them, know nothing of them";
+            result.warnings.push(Warning::new("priors-left-out", message));
+            return Ok((result, models));
+        }
         let rivals = self.rivals(&plan.against)?;
         let photons = self.photon_numbers(plan, &rivals)?;
         let rivals: Vec<&Surface> = rivals.into_iter().map(|(_, rival)| rival).collect();
@@ -145,7 +153,8 @@ impl Study {
         plan.models.iter().try_for_each(|model| model.check_fits(&centres, &names))?;
         // Comparisons of all experiments together.
         let judged = plan.design.methods.len() + plan.models.len();
-        let comparisons = if rivals.len() == 1 { photons.len() * judged } else { 0 };
+        let is_limited = rivals.len() == 1 && plan.law != PhotonLaw::FixedTotal;
+        let comparisons = if is_limited { photons.len() * judged } else { 0 };
         let level = 1.0 - 2.0 * FALSE_ALARM / comparisons.max(1) as f64;
         let done = AtomicUsize::new(0);
         progress(0, photons.len());
@@ -186,6 +195,13 @@ impl Study {
         ))
     }
 
+    /// The same without priors.
+    fn without_priors(&self) -> Result<Self> {
+        let unknowns = Unknowns::new(self.unknowns.nuisances().iter().copied())?
+            .lighting_total(self.unknowns.known_lighting_total())?;
+        Ok(Self { unknowns, ..self.clone() })
+    }
+
     /// What of a simulation is not as simple as it looks.
     fn simulation_warnings(&self, plan: &SimulationPlan, points: &[SimulatedPoint]) -> Vec<Warning> {
         let mut warnings = Vec::new();
@@ -203,7 +219,22 @@ impl Study {
             );
             warnings.push(Warning::new("counts-rounded", message));
         }
-        let noisy = points.iter().any(|point| point.gamma > 0.0);
+        let learns = plan.design.methods.iter().any(|method| method.is_trained());
+        if learns && plan.design.per_class / 4 < FEW_SPECTRA {
+            let message =
+                format!("{} training spectra of each class teach little", plan.design.per_class / 4);
+            warnings.push(Warning::new("few-spectra", message));
+        }
+        for saved in &plan.models {
+            if points.iter().any(|point| (point.photons / saved.photons).ln().abs() > OTHER_PHOTONS) {
+                let method = saved.model.method().words();
+                let message = format!(
+                    "the saved {method} was trained with {:.3e} photons: with others its scale is wrong",
+                    saved.photons
+                );
+                warnings.push(Warning::new("model-photons", message));
+            }
+        }
         let error = points.iter().filter_map(|point| point.normal_error).fold(0.0, f64::max);
         if error > NORMAL {
             let message = format!(
@@ -212,13 +243,17 @@ impl Study {
             );
             warnings.push(Warning::new("normal-likelihood", message));
         }
-        if plan.law == PhotonLaw::FixedTotal && noisy {
-            let message = "with a fixed total and electronic noise the limit is that of many photons";
+        if plan.law == PhotonLaw::FixedTotal {
+            let message =
+                "with a fixed total only the limit of many photons is known; nothing is held against it";
             warnings.push(Warning::new("limit-normal", message));
         }
         warnings
     }
 }
 
+/// Fewer training spectra of a class than this get a warning, and so does a saved model whose photons differ by more.
+const FEW_SPECTRA: usize = 20;
+const OTHER_PHOTONS: f64 = 0.01;
 /// Error of the distribution function above which normal likelihoods are worth a warning.
-const NORMAL: f64 = 1e-3;
+pub(in crate::study) const NORMAL: f64 = 1e-3;

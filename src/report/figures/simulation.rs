@@ -5,7 +5,8 @@ use crate::identifiability::detection;
 use crate::report::plot::{Axis, Band, LineFigure, NamedSeries, NamedValues, Panel, Rule, Series, Style};
 use crate::report::table::{Table, number, optional};
 use crate::simulate::classifier::Method;
-use crate::study::{NoiseCurves, SimulatedPoint, Simulation};
+use crate::simulate::experiment::Performance;
+use crate::study::{NoiseCurves, SimulatedPerformance, SimulatedPoint, Simulation};
 
 const LIMIT_COLOUR: usize = 0;
 
@@ -41,14 +42,14 @@ pub fn simulation_table(result: &Simulation) -> Table {
                 number(point.gamma),
                 number(point.statistical_distance),
                 number(point.statistical_distance_local),
-                optional(point.limit),
-                number(point.limit_normal),
-                number(point.local),
-                performance.method.name().into(),
+                optional(point.limit_accuracy),
+                number(point.limit_accuracy_normal),
+                number(point.local_accuracy),
+                performance.name(),
                 number(performance.accuracy),
                 number(performance.interval.low),
                 number(performance.interval.high),
-                number(found.information_bits),
+                optional(found.information_bits),
                 optional(found.photon_share),
                 optional(found.photon_share_low),
                 optional(found.photon_share_high),
@@ -67,7 +68,7 @@ pub struct SimulationCurves<'a> {
     pub title: String,
     /// Limits under each kind of noise.
     pub noise: Option<&'a NoiseCurves>,
-    /// Another simulation, with the camera's noise say, and what the legend says of its points.
+    /// Another simulation, with the camera's noise say, and what the subtitle says of its points.
     pub other: Option<(&'a Simulation, &'static str)>,
     /// File name without ending.
     pub name: &'static str,
@@ -113,21 +114,19 @@ pub fn classifiers(result: &Simulation, curves: &SimulationCurves<'_>) -> Plot {
             figure = figure.series(Series::line("limit", x.clone(), limit).colour(LIMIT_COLOUR));
         }
     }
-    let promised: Vec<f64> = points.iter().map(|point| bits(point.local)).collect();
+    let promised: Vec<f64> = points.iter().map(|point| bits(point.local_accuracy)).collect();
     figure = figure.series(
         Series::line("what the local distance would have promised", x.clone(), promised)
             .style(Style::Dashed)
             .colour(LOCAL_COLOUR),
     );
-    for method in methods(result) {
-        figure = figure.series(series(result, method).colour(method_colour(method)));
+    for (place, colour, words) in methods(result) {
+        figure = figure.series(series(result, place, words).colour(colour));
     }
     if let Some((other, words)) = curves.other {
-        for method in methods(other) {
-            let label = if method == Method::LikelihoodRatio { words } else { "" };
-            figure = figure.series(
-                Series { label: label.into(), ..series(other, method) }.colour(method_colour(method)),
-            );
+        figure = figure.subtitle(words);
+        for (place, colour, _) in methods(other) {
+            figure = figure.series(series(other, place, String::new()).colour(colour));
         }
     }
     figure = figure.lower(lower(result, curves.other.map(|other| other.0)));
@@ -136,9 +135,9 @@ pub fn classifiers(result: &Simulation, curves: &SimulationCurves<'_>) -> Plot {
     Plot { name: curves.name, figure: figure.into(), table: simulation_table(result) }
 }
 
-/// Accuracies less the limit, in hundredths: what the information cannot show where points lie on the curve.
+/// Accuracies less the limit, in percentage points: what the information cannot show where points lie on the curve.
 fn lower(result: &Simulation, other: Option<&Simulation>) -> Panel {
-    let mut panel = Panel::new(Axis::linear("accuracy − limit (%)"));
+    let mut panel = Panel::new(Axis::linear("accuracy − limit (points)"));
     for result in std::iter::once(result).chain(other) {
         let x: Vec<f64> = result.points.iter().map(|point| point.normalised_photons).collect();
         let test = (result.spectra_per_class - 2 * (result.spectra_per_class / 4)) as f64;
@@ -150,13 +149,13 @@ fn lower(result: &Simulation, other: Option<&Simulation>) -> Panel {
         if x.len() > 2 {
             panel = panel.band(Band::new("", x.clone(), edge(-1.0), edge(1.0)).colour(LIMIT_COLOUR));
         }
-        for method in methods(result) {
+        for (place, colour, _) in methods(result) {
             let of = |point: &SimulatedPoint| {
-                let found = point.performances.iter().find(|found| found.performance.method == method);
+                let found = point.performances.get(place);
                 found.map_or(f64::NAN, |found| 100.0 * (found.performance.accuracy - limit_of(point)))
             };
             let y = result.points.iter().map(of).collect();
-            panel = panel.series(Series::points("", x.clone(), y).colour(method_colour(method)));
+            panel = panel.series(Series::points("", x.clone(), y).colour(colour));
         }
     }
     panel
@@ -176,23 +175,27 @@ fn method_colour(method: Method) -> usize {
     }
 }
 
-fn methods(result: &Simulation) -> Vec<Method> {
-    let first = result.points.first();
-    first.map_or_else(Vec::new, |point| point.performances.iter().map(|f| f.performance.method).collect())
+/// The classifiers, the optimum last so that it is drawn on top: each by its place, colour and name.
+fn methods(result: &Simulation) -> Vec<(usize, usize, String)> {
+    let first = result.points.first().map(|point| point.performances.as_slice());
+    let all = first.unwrap_or_default().iter().enumerate();
+    let named = |(i, found): (usize, &SimulatedPerformance)| {
+        (i, method_colour(found.performance.method), found.performance.words())
+    };
+    all.map(named).rev().collect()
 }
 
-fn series(result: &Simulation, method: Method) -> Series {
+fn series(result: &Simulation, place: usize, label: String) -> Series {
     let of = |point: &SimulatedPoint| {
-        let found = point.performances.iter().find(|found| found.performance.method == method);
-        found.map_or(f64::NAN, |found| found.information_bits.max(0.0))
+        let bits = point.performances.get(place).and_then(|found| found.information_bits);
+        bits.map_or(f64::NAN, |bits| bits.max(0.0))
     };
     let x = result.points.iter().map(|point| point.normalised_photons).collect();
-    let y = result.points.iter().map(of).collect();
-    Series::points(method.words(), x, y)
+    Series::points(label, x, result.points.iter().map(of).collect())
 }
 
 fn limit_of(point: &SimulatedPoint) -> f64 {
-    point.limit.unwrap_or(point.limit_normal)
+    point.limit_accuracy.unwrap_or(point.limit_accuracy_normal)
 }
 
 fn bits(probability: f64) -> f64 {
@@ -208,15 +211,19 @@ pub fn accuracies(result: &Simulation, point: &SimulatedPoint, pair: &str) -> Pl
         found().map(|performance| performance.interval.low).collect(),
         found().map(|performance| performance.interval.high).collect(),
     );
-    let mut figure = NamedValues::new(
+    let figure = NamedValues::new(
         format!("How often each classifier tells {pair}"),
-        found().map(|performance| performance.method.words().to_owned()).collect(),
+        found().map(Performance::words).collect(),
         Axis::linear("share of right decisions, averaged over the classes"),
     )
     .series(NamedSeries::new("balanced accuracy", values).intervals(intervals.0, intervals.1))
     .interval_meaning(format!("{} % interval", 100.0 * result.level));
-    if let Some(limit) = point.limit {
-        figure = figure.threshold(limit, "limit of the likelihood ratio").below("below the limit");
-    }
+    let figure = match point.limit_accuracy {
+        Some(limit) => {
+            let all = vec![limit; point.performances.len()];
+            figure.series(NamedSeries::new("limit of the likelihood ratio", all).colour(LIMIT_COLOUR + 1))
+        }
+        None => figure,
+    };
     Plot { name: "accuracies", figure: figure.into(), table: simulation_table(result) }
 }

@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 
 /// What results rest on, and what the reader must know.
 pub(super) fn footing(result: &Identification, study: &Study) -> String {
-    assumptions(study) + &warnings(&result.warnings)
+    assumptions(study, GAUSSIAN) + &warnings(&result.warnings)
 }
 
 /// What is unknown, and what is known of it beforehand.
@@ -30,7 +30,12 @@ fn unknown(unknown: &Unknown) -> String {
     if named.is_empty() { "nothing but the material".into() } else { named.join(", ") }
 }
 
-pub(super) fn assumptions(study: &Study) -> String {
+/// What distances take counts for.
+pub(super) const GAUSSIAN: &str =
+    "counts large enough to be Gaussian; two equally likely materials; d is a limit, not a promise";
+
+/// What a result rests on; `counts` says what is assumed of them.
+pub(super) fn assumptions(study: &Study, counts: &str) -> String {
     let scenario = study.scenario();
     let unknown = unknown(&scenario.unknown);
     let bands = study.bands().bands();
@@ -49,9 +54,7 @@ pub(super) fn assumptions(study: &Study) -> String {
     out.push_str(
         "  opaque Lambertian target that fills the pixel, one scattering, no atmosphere on the path\n",
     );
-    out.push_str(
-        "  counts large enough to be Gaussian; two equally likely materials; d is a limit, not a promise\n",
-    );
+    let _ = writeln!(out, "  {counts}");
     let skies = study.skies_left_out();
     if !skies.is_empty() {
         let _ = writeln!(

@@ -6,6 +6,8 @@ use crate::report::simulation::pair;
 use crate::study::{PhotonLaw, SimulatedPerformance, SimulatedPoint, Simulation, Standing, Study};
 use std::fmt::Write as _;
 
+/// Shares of photons whose interval ends above this are not printed.
+const WIDEST_SHARE: f64 = 3.0;
 /// Columns that a confusion matrix may take.
 const MATRIX_WIDTH: usize = 64;
 /// Experiments that are printed; of more the first, the last and some between.
@@ -56,7 +58,10 @@ pub fn simulation(result: &Simulation, study: &Study) -> String {
         "Drawn: {drawn};\n  {law}{noise}; likelihoods take counts to be {judged};\n  seed {}, {}\n",
         result.seed, result.generator
     );
-    out.push_str(&assumptions(study));
+    out.push_str(&assumptions(
+        study,
+        "equally likely classes in the states above; likelihoods of single bands multiply",
+    ));
     out.push_str(&warnings(&result.warnings));
     out
 }
@@ -64,13 +69,18 @@ pub fn simulation(result: &Simulation, study: &Study) -> String {
 /// The answer in a sentence.
 fn sentence(result: &Simulation) -> String {
     let apart = pair(result);
+    let all = || result.points.iter().flat_map(|point| &point.performances).map(|found| &found.performance);
+    let Some(best) = all().max_by(|a, b| a.accuracy.total_cmp(&b.accuracy)) else { return String::new() };
+    let often = format!(
+        "{} of the cases ({} to {})",
+        percent(best.accuracy),
+        percent(best.interval.low),
+        percent(best.interval.high)
+    );
+    let judged = result.points.first().map_or(0, |point| point.performances.len());
+    let name = if judged == 1 { best.words() } else { format!("the best of {judged}, {}", best.words()) };
     if result.comparisons == 0 {
-        let best = result.points.iter().flat_map(|point| &point.performances);
-        let best = best.max_by(|a, b| a.performance.accuracy.total_cmp(&b.performance.accuracy));
-        return best.map_or_else(String::new, |best| {
-            let right = percent(best.performance.accuracy);
-            format!("The best classifier tells {apart} with {right} right decisions.")
-        });
+        return format!("In {often} {name}, tells {apart}; there is no limit to hold it against.");
     }
     let beyond = of_standing(result, Standing::Beyond);
     if beyond > 0 {
@@ -81,25 +91,14 @@ fn sentence(result: &Simulation) -> String {
     }
     match result.points.as_slice() {
         [point] => {
-            let limit = percent(point.limit.unwrap_or(point.limit_normal));
-            let best = point
-                .performances
-                .iter()
-                .max_by(|a, b| a.performance.accuracy.total_cmp(&b.performance.accuracy));
-            best.map_or_else(String::new, |best| {
-                let interval = best.performance.interval;
-                format!(
-                    "No classifier beats the limit of {limit}: the best of {} tells {apart} in {} of the cases ({} to {}).",
-                    point.performances.len(),
-                    percent(best.performance.accuracy),
-                    percent(interval.low),
-                    percent(interval.high)
-                )
-            })
+            let limit = percent(point.limit_accuracy.unwrap_or(point.limit_accuracy_normal));
+            format!(
+                "No classifier beats the limit of {limit} by more than chance: {name}, tells {apart} in {often}."
+            )
         }
         points => format!(
-            "No classifier beats the limit: none of {} at {} photon numbers tells {apart} more often than it allows.",
-            points.first().map_or(0, |point| point.performances.len()),
+            "No classifier beats the limit by more than chance: none of {judged} at {} photon numbers tells {apart} more \
+             often than it allows.",
             points.len()
         ),
     }
@@ -117,8 +116,9 @@ fn percent(share: f64) -> String {
 /// One experiment as a table.
 fn experiment(point: &SimulatedPoint, result: &Simulation) -> String {
     let mut out = format!(
-        "{} photons of the target, N d0^2 = {}, statistical distance {}\n",
+        "{} photons of the target{}: N d0^2 = {}, statistical distance {}\n",
         significant(point.photons, 3),
+        if point.classes.len() > 2 { "; to the nearest of the others" } else { "" },
         significant(point.normalised_photons, 3),
         significant(point.statistical_distance, 3)
     );
@@ -146,7 +146,7 @@ fn experiment(point: &SimulatedPoint, result: &Simulation) -> String {
         let _ = writeln!(
             out,
             "  {:<32} {:>8}  {:<19} {:<22} {}",
-            performance.method.words(),
+            performance.words(),
             percent(performance.accuracy),
             format!("{} to {}", percent(performance.interval.low), percent(performance.interval.high)),
             used(found),
@@ -156,11 +156,13 @@ fn experiment(point: &SimulatedPoint, result: &Simulation) -> String {
             let _ = writeln!(out, "    {} fits stopped early", performance.confusion.unconverged);
         }
     }
-    if let Some(limit) = point.limit {
+    if let Some(limit) = point.limit_accuracy {
         let _ = writeln!(out, "  {:<32} {:>8}  computed, no spectrum drawn", "limit", percent(limit));
-        let _ = writeln!(out, "  {:<32} {:>8}", "promised by the local distance", percent(point.local));
+        let _ =
+            writeln!(out, "  {:<32} {:>8}", "promised by the local distance", percent(point.local_accuracy));
     } else if point.classes.len() == 2 {
-        let _ = writeln!(out, "  {:<32} {:>8}  for many photons", "limit", percent(point.limit_normal));
+        let _ =
+            writeln!(out, "  {:<32} {:>8}  for many photons", "limit", percent(point.limit_accuracy_normal));
     }
     out
 }
@@ -182,7 +184,7 @@ fn confusions(point: &SimulatedPoint) -> String {
     for found in &point.performances {
         let confusion = &found.performance.confusion;
         for (i, (row, spectra)) in confusion.decisions.iter().zip(confusion.spectra()).enumerate() {
-            let classifier = if i == 0 { found.performance.method.words() } else { "" };
+            let classifier = if i == 0 { found.performance.words() } else { String::new() };
             let name = point.classes.get(i).map_or("", |class| names.of(&class.material));
             let _ = write!(out, "  {classifier:<32} {name:<width$}");
             for decisions in row {
@@ -197,17 +199,17 @@ fn confusions(point: &SimulatedPoint) -> String {
 
 fn used(found: &SimulatedPerformance) -> String {
     match (found.photon_share, found.photon_share_low, found.photon_share_high) {
-        (Some(share), Some(low), high) => {
+        // An interval as wide as that says nothing.
+        (Some(share), Some(low), Some(high)) if high < WIDEST_SHARE => {
             let percent = |share: f64| format!("{:.0}", 100.0 * share);
-            let high = high.map_or_else(|| "?".to_owned(), percent);
-            format!("{} % ({} to {high})", percent(share), percent(low))
+            format!("{} % ({} to {})", percent(share), percent(low), percent(high))
         }
         _ => "-".to_owned(),
     }
 }
 
 fn against(found: &SimulatedPerformance, point: &SimulatedPoint) -> String {
-    let limit = point.limit.unwrap_or(point.limit_normal);
+    let limit = point.limit_accuracy.unwrap_or(point.limit_accuracy_normal);
     match found.standing {
         Some(Standing::Beyond) => "BEYOND the limit".to_owned(),
         Some(Standing::Reaches) => "reaches it".to_owned(),

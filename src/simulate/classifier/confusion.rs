@@ -55,13 +55,13 @@ impl Confusion {
     pub fn of_draws(
         classifiers: &[&dyn Classifier],
         draws: &[Draws],
-        range: Range<usize>,
+        range: Range<u64>,
         seed: u64,
     ) -> Result<Vec<Self>> {
         let (bands, classes) = (check_laws(draws)?, draws.len());
         classifiers.iter().try_for_each(|classifier| check(*classifier, bands, classes))?;
-        let chunks: Vec<Range<usize>> =
-            range.clone().step_by(CHUNK).map(|first| first..(first + CHUNK).min(range.end)).collect();
+        let chunks: Vec<Range<u64>> =
+            range.clone().step_by(CHUNK).map(|first| first..(first + CHUNK as u64).min(range.end)).collect();
         let parts: Vec<Vec<Self>> = chunks
             .into_par_iter()
             .map_init(
@@ -130,7 +130,9 @@ impl Confusion {
             .spectra()
             .into_iter()
             .enumerate()
-            .map(|(class, spectra)| Interval::wilson(self.decisions[class][class], spectra as u64, level))
+            .map(|(class, spectra)| {
+                Interval::wilson(self.decisions[class][class], spectra.round() as u64, level)
+            })
             .collect();
         Interval::of_mean(&self.shares(), &intervals)
     }
@@ -153,7 +155,12 @@ fn check(classifier: &dyn Classifier, bands: usize, classes: usize) -> Result<()
 pub(in crate::simulate) fn share(scores: &[f64], decisions: &mut [f64]) {
     let largest = scores.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let wins = |score: f64| score >= largest - TIE;
-    let winners = scores.iter().filter(|score| wins(**score)).count().max(1);
+    let winners = scores.iter().filter(|score| wins(**score)).count();
+    if winners == 0 {
+        // Scores that are no numbers tell nothing: a guess.
+        let guess = 1.0 / decisions.len().max(1) as f64;
+        return decisions.iter_mut().for_each(|decided| *decided += guess);
+    }
     for (decided, score) in decisions.iter_mut().zip(scores) {
         *decided += if wins(*score) { 1.0 / winners as f64 } else { 0.0 };
     }

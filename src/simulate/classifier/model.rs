@@ -221,7 +221,7 @@ impl SavedModel {
     /// What no saved model holds.
     pub fn from_json(text: &str) -> Result<Self> {
         let saved: Self = serde_json::from_str(text).map_err(|error| {
-            Error::malformed(format!("no saved model: {error}"), "give a file that --save-model wrote")
+            Error::malformed(format!("no saved model: {error}"), "give a file that --save-models wrote")
         })?;
         saved.checked()
     }
@@ -229,8 +229,9 @@ impl SavedModel {
     fn checked(self) -> Result<Self> {
         if self.format != FORMAT {
             let found = format!("a saved model of format {}, which this version cannot read", self.format);
-            return Err(Error::malformed(found, "train it again with --save-model"));
+            return Err(Error::malformed(found, "train it again with --save-models"));
         }
+        crate::error::check::positive("photons of the saved model", self.photons, "")?;
         for (what, found, expected) in [
             ("bands of the saved model", self.wavenumber_cm1.len(), self.model.bands()),
             ("classes of the saved model", self.classes.len(), self.model.classes()),
@@ -247,7 +248,7 @@ impl SavedModel {
     /// # Errors
     /// Other bands or classes; the message says which.
     pub fn check_fits(&self, wavenumber_cm1: &[f64], classes: &[String]) -> Result<()> {
-        let instead = "use a model trained for this scenario, or train one with --save-model";
+        let instead = "use a model trained for this scenario, or train one with --save-models";
         let own = &self.wavenumber_cm1;
         let same = |(a, b): (&f64, &f64)| (a - b).abs() <= SAME_BAND * b.abs();
         if own.len() != wavenumber_cm1.len() || !own.iter().zip(wavenumber_cm1).all(same) {

@@ -109,7 +109,7 @@ fn logistic_regression_is_the_maximum_of_likelihood() {
     }
     let expected = loss / split.training.len() as f64;
     let excess = trained.validation_loss() - expected;
-    // 1000 accelerated steps leave 2L‖w‖²/k² at most.
+    // The loss is strongly convex on two bands that scatter: accelerated steps come as near as that.
     assert!((-1e-12..1e-6).contains(&excess), "{excess:e} above {expected}");
 }
 

@@ -1,12 +1,9 @@
 //! Trials of a decision, block by block.
 
 use crate::simulate::classifier::{Classifier, Judge, share};
-use crate::simulate::draws::{Draws, generator};
+use crate::simulate::draws::{Draws, STREAMS, generator};
 use crate::simulate::sequential::{BLOCK, Interval, Plan};
 use rayon::prelude::*;
-
-/// Streams of random numbers set aside for the trials of one truth.
-const STREAMS: u64 = 1 << 40;
 
 /// Counts from one truth, and how they are judged.
 pub(super) struct Test<'a> {

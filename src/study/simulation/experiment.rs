@@ -2,7 +2,7 @@
 
 use super::photons::seed_of;
 use super::standing::held_against;
-use super::{PhotonLaw, SimulatedClass, SimulatedPoint, SimulationPlan};
+use super::{NORMAL, PhotonLaw, SimulatedClass, SimulatedPoint, SimulationPlan};
 use crate::error::{Error, Result};
 use crate::fisher::Counting;
 use crate::identifiability::detection::{half_separation, probability};
@@ -78,6 +78,13 @@ impl Study {
             best_fits: best_fits.as_ref(),
             trained: &trained,
         };
+        let error = normal_error(&statistics, &means)?;
+        if plan.design.skip_spectra
+            && (plan.law == PhotonLaw::FixedTotal || error.is_some_and(|e| e > NORMAL))
+        {
+            let found = "the likelihood ratio judges by another law than that of the counts";
+            return Err(Error::malformed(found, "draw spectra: leave out --skip-spectra"));
+        }
         let seed = seed_of(plan.design.seed, photons);
         let (performances, learnt) = experiment.run(&Design { seed, ..plan.design.clone() })?;
 
@@ -85,17 +92,17 @@ impl Study {
             PhotonLaw::FixedTotal => half_separation(&target.means, &rival.means, &noise),
             PhotonLaw::Poisson | PhotonLaw::NegativeBinomial => rival.distance,
         };
-        let limit_normal = probability(statistical_distance);
         let is_pair = classes.len() == 2;
-        let limit = match plan.law {
+        let limit_accuracy = match plan.law {
             PhotonLaw::Poisson | PhotonLaw::NegativeBinomial if is_pair => {
                 Some(RatioLaw::new(&target.means, &rival.means, &statistics)?.accuracy())
             }
             _ => None,
         };
-        let decisive = is_pair.then(|| limit.unwrap_or(limit_normal));
         let levels = (together, plan.design.level);
-        let held = |performance| held_against(performance, decisive, statistical_distance, levels);
+        let gamma = gamma_per_band(&counting, &signal);
+        let of_photons = limit_accuracy.and((gamma == 0.0).then_some(statistical_distance));
+        let held = |performance| held_against(performance, limit_accuracy, of_photons, levels);
         let (own, other) = (&self.target.emissivity, &rival.surface.emissivity);
         let local = LocalSolver::new(&self.bands, &self.surroundings, self.unknowns.clone())
             .with_counting(own, other, &self.state, &noise)?
@@ -105,14 +112,14 @@ impl Study {
         let point = SimulatedPoint {
             photons,
             normalised_photons: normalised,
-            gamma: gamma_per_band(&counting, &signal),
+            gamma,
             classes: classes.iter().map(Class::as_result).collect(),
             statistical_distance,
             statistical_distance_local: local,
-            limit,
-            limit_normal,
-            local: probability(local),
-            normal_error: normal_error(&statistics, &means)?,
+            limit_accuracy,
+            limit_accuracy_normal: probability(statistical_distance),
+            local_accuracy: probability(local),
+            normal_error: error,
             performances: performances.into_iter().map(held).collect::<Result<_>>()?,
         };
         Ok((point, learnt))

@@ -3,7 +3,7 @@
 use super::SimulationPlan;
 use crate::error::{Error, Result, check};
 use crate::fisher::Counting;
-use crate::instrument::Camera;
+use crate::instrument::{Camera, gamma_per_band};
 use crate::planck;
 use crate::policy;
 use crate::scenario::DistanceKind;
@@ -11,6 +11,10 @@ use crate::simulate::draws::LARGEST_MEAN;
 use crate::statistics::Statistics;
 use crate::study::curves::logarithmic;
 use crate::study::{Study, Surface};
+
+/// Fewest photons of an experiment, and most experiments of a sweep.
+const FEWEST: f64 = 1e-9;
+const MOST_EXPERIMENTS: usize = 10_000;
 
 impl Study {
     /// The alternatives that are classes, with their nearest distances per √photon in shot noise.
@@ -33,7 +37,13 @@ impl Study {
             });
             with_distance(found?)
         };
-        against.iter().map(find).collect()
+        let mut found: Vec<(f64, &Surface)> = Vec::new();
+        for name in against {
+            if !found.iter().any(|(_, surface)| surface.name == *name) {
+                found.push(find(name)?);
+            }
+        }
+        Ok(found)
     }
 
     /// Photons of each experiment.
@@ -49,8 +59,8 @@ impl Study {
         };
         for &photons in &numbers {
             check::positive("number of photons", photons, "")?;
-            if photons > LARGEST_MEAN {
-                let expected = format!("at most {LARGEST_MEAN:e}");
+            if !(FEWEST..=LARGEST_MEAN).contains(&photons) {
+                let expected = format!("between {FEWEST:e} and {LARGEST_MEAN:e}");
                 return Err(Error::out_of_range("number of photons", photons, "", expected));
             }
         }
@@ -65,23 +75,45 @@ impl Study {
         if most > 0.0 {
             return Ok(most);
         }
-        let found = "no number of photons tells the target from the alternative";
-        let instead = "change the scene or the alternatives, or name a number of photons";
+        let names: Vec<&str> = rivals.iter().map(|(_, rival)| rival.name.as_str()).collect();
+        let found = format!("no number of photons tells {} from {}", self.target.name, names.join(", "));
+        let instead = "change the scene, name other alternatives with --against, or photons with --photons";
         Err(Error::malformed(found, instead).at(self.scenario.place("target")))
     }
 
     /// Photons at which N d₀² has `experiments` values spread evenly in the logarithm over `normalised`, d₀ the
-    /// nearest distance in shot noise to the nearest of the alternatives `against` (of all where empty).
+    /// nearest distance in shot noise to the nearest of the alternatives `against` (of all where empty); N d₀²/(1 + γ)
+    /// with the camera's noise, γ that of its own exposure.
     ///
     /// # Errors
     /// An unknown alternative; one that no number of photons tells from the target.
-    pub fn sweep(&self, normalised: [f64; 2], experiments: usize, against: &[String]) -> Result<Vec<f64>> {
+    pub fn sweep(
+        &self,
+        normalised: [f64; 2],
+        experiments: usize,
+        against: &[String],
+        camera_noise: bool,
+    ) -> Result<Vec<f64>> {
+        if experiments == 0 || experiments > MOST_EXPERIMENTS {
+            let expected = format!("1 to {MOST_EXPERIMENTS}");
+            return Err(Error::out_of_range("experiments of a sweep", experiments as f64, "", expected));
+        }
         let least = self.rivals(against)?.iter().map(|rival| rival.0).fold(f64::INFINITY, f64::min);
         if !(least > 0.0 && least.is_finite()) {
-            let found = "no number of photons tells the target from the alternative";
-            return Err(Error::malformed(found, "change the scene, or name the photons instead of a sweep"));
+            let found =
+                format!("no number of photons tells {} from the nearest alternative", self.target.name);
+            return Err(Error::malformed(
+                found,
+                "name another with --against, or --photons instead of a sweep",
+            ));
         }
-        Ok(logarithmic(normalised, experiments).iter().map(|n| n / (least * least)).collect())
+        let gamma = match self.counting().filter(|_| camera_noise) {
+            Some(counting) => gamma_per_band(&counting, &self.target_signal()),
+            None => 0.0,
+        };
+        let per_photon = least * least / (1.0 + gamma);
+        let photons = logarithmic(normalised, experiments).into_iter().map(|n| n / per_photon);
+        Ok(photons.map(|photons| photons.min(LARGEST_MEAN)).collect())
     }
 
     /// Counts and noise when the target sends so many photons: the exposure is made as long as that takes.

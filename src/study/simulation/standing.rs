@@ -12,10 +12,11 @@ pub struct SimulatedPerformance {
     /// How often it was right.
     #[serde(flatten)]
     pub performance: Performance,
-    /// Information log₂ 2P of its balanced accuracy P, bits.
-    pub information_bits: f64,
+    /// Information log₂ 2P of its balanced accuracy P, bits; `None` for more than two classes.
+    pub information_bits: Option<f64>,
     /// Share of the photons with which an ideal classifier of known states would have been as accurate, with its
-    /// interval; `None` for more than two classes, and where every decision was right.
+    /// interval; `None` for more than two classes, with electronic noise (whose d² does not grow with the
+    /// photons), and where every decision was right.
     pub photon_share: Option<f64>,
     /// Lower end of its interval.
     pub photon_share_low: Option<f64>,
@@ -31,9 +32,9 @@ pub struct SimulatedPerformance {
 pub enum Standing {
     /// Above it by more than chance explains in all comparisons together: the limit would be wrong.
     Beyond,
-    /// The limit lies within an interval that is narrow enough to mean something.
+    /// An interval that is narrow enough to mean something reaches up to the limit.
     Reaches,
-    /// The limit lies within the interval, which is too wide to mean much.
+    /// The interval reaches up to the limit, but is too wide to mean much.
     Undecided,
     /// Below it.
     Below,
@@ -52,19 +53,19 @@ impl Standing {
     }
 }
 
-/// A performance beside the limit of the accuracy, for a pair of classes so far apart; levels are those of all
-/// comparisons together and of one.
+/// A performance beside the limit of the accuracy of its pair of classes; `distance` is theirs, where the share of
+/// photons can be told from it, levels are those of all comparisons together and of one.
 pub(super) fn held_against(
     performance: Performance,
     limit: Option<f64>,
-    distance: f64,
+    distance: Option<f64>,
     (together, level): (f64, f64),
 ) -> Result<SimulatedPerformance> {
     let confusion = &performance.confusion;
     let spectra: f64 = confusion.spectra().iter().sum();
     let right = performance.accuracy * spectra;
-    let share = match limit {
-        Some(_) if distance > 0.0 => Some(PhotonShare::of(right, spectra as u64, distance, level)?),
+    let share = match distance.filter(|distance| *distance > 0.0) {
+        Some(distance) => Some(PhotonShare::of(right, spectra.round() as u64, distance, level)?),
         _ => None,
     };
     let guessing = 1.0 / confusion.spectra().len().max(1) as f64;
@@ -81,7 +82,7 @@ pub(super) fn held_against(
         }
     });
     Ok(SimulatedPerformance {
-        information_bits: (2.0 * performance.accuracy).log2(),
+        information_bits: (confusion.spectra().len() == 2).then(|| (2.0 * performance.accuracy).log2()),
         photon_share: share.and_then(|share| share.share),
         photon_share_low: share.map(|share| share.share_low),
         photon_share_high: share.and_then(|share| share.share_high),
