@@ -158,7 +158,6 @@ fn every_mistake_is_one_line() {
         (vec!["--sweep", "0"], "experiments of a sweep is 0"),
         (vec!["--sweep", "1000000000000"], "experiments of a sweep is 1000000000000"),
         (vec!["--spectra", "18446744073709551615"], "spectra of each class is"),
-        (vec!["--spectra", "90000000", "--classifiers", "logistic"], "training spectra of each class is"),
         (vec!["--skip-spectra", "--spectra", "4000000000000000000"], "spectra of each class is"),
         (vec!["--skip-spectra", "--statistics", "fixed-total"], "judges by another law"),
         (vec!["--photons", "1e-300"], "number of photons is"),
