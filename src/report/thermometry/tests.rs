@@ -39,13 +39,15 @@ fn every_row_fills_every_column() {
 fn plots_are_the_numbers() {
     let (_, found) = result();
     let csv = rmse(&found).table.to_csv().unwrap();
-    let second: Vec<f64> = csv.lines().nth(1).unwrap().split(',').map(|x| x.parse().unwrap()).collect();
+    let second: Vec<f64> =
+        csv.lines().nth(1).unwrap().split(',').map(|x| x.parse().unwrap_or(f64::NAN)).collect();
     let row = &found.rows[1];
     assert_eq!(second[0], 310.0);
     assert_eq!(second[1], row.lighting_known.bound_k.unwrap());
     assert_eq!(second[4], row.lighting_unknown.as_ref().unwrap().errors.rmse);
     let csv = errors(&found).table.to_csv().unwrap();
-    let second: Vec<f64> = csv.lines().nth(1).unwrap().split(',').map(|x| x.parse().unwrap()).collect();
+    let second: Vec<f64> =
+        csv.lines().nth(1).unwrap().split(',').map(|x| x.parse().unwrap_or(f64::NAN)).collect();
     assert_eq!(second[4], row.fixed.errors.unwrap().bias);
 }
 

@@ -40,16 +40,16 @@ fn trusted(value: f64, interval: Interval) -> String {
     }
 }
 
-/// A ratio and its interval, to as many decimals as the nearer end allows.
+/// A ratio and its interval, each to the decimals that the distance of its own end, or the nearer one, allows.
 fn trusted_ratio(ratio: f64, Interval { low, high }: Interval) -> String {
-    let near = (ratio - low).min(high - ratio);
-    let decimals = if near > 0.0 { (1 - near.log10().floor() as i32).clamp(0, 3) as usize } else { 3 };
-    let show = |x: f64| match x {
+    let show = |x: f64, width: f64| match x {
         x if x.abs() >= 1e5 => significant(x, 2),
         x if x.abs() >= 10.0 => decimal(x, 0),
-        x => decimal(x, decimals),
+        x if width > 0.0 => decimal(x, (1 - width.log10().floor() as i32).clamp(0, 3) as usize),
+        x => decimal(x, 3),
     };
-    format!("{} [{}, {}]", show(ratio), show(low), show(high))
+    let (below, above) = (ratio - low, high - ratio);
+    format!("{} [{}, {}]", show(ratio, below.min(above)), show(low, below), show(high, above))
 }
 
 /// Least and largest of some numbers in words.
@@ -217,7 +217,7 @@ fn likelihood(result: &Thermometry, rows: &[&ThermometryRow]) -> String {
         if unknown && !known.is_empty() {
             let _ = write!(
                 out,
-                " With the lighting known, {} would read {} at {at} to {} (root mean squared error).",
+                " With the lighting known, {} would read {} at {at} with errors of {} (root mean square).",
                 result.camera,
                 result.target,
                 kelvin(&known)
@@ -231,7 +231,7 @@ fn likelihood(result: &Thermometry, rows: &[&ThermometryRow]) -> String {
         (false, true) => "",
     };
     format!(
-        "{} reads {} at {at}{lighting} to {} (root mean squared error): {}.",
+        "{} reads {} at {at}{lighting} with errors of {} (root mean square): {}.",
         result.camera,
         result.target,
         kelvin(&seen),
@@ -307,6 +307,7 @@ mod tests {
         let interval = |low, high| Interval { low, high };
         assert_eq!(trusted_ratio(0.50912, interval(0.1012, 518.723)), "0.51 [0.10, 519]");
         assert_eq!(trusted_ratio(1.0123, interval(0.9861, 1.0398)), "1.012 [0.986, 1.040]");
+        assert_eq!(trusted_ratio(0.0063, interval(0.0012, 5.616)), "0.006 [0.001, 5.6]");
         assert_eq!(trusted_ratio(1234.5, interval(900.4, 1.7e6)), "1234 [900, 1.7e6]");
         assert_eq!(trusted(-3.14159, interval(-3.4, -2.9)), "-3.14");
         assert_eq!(trusted(-3.14159, interval(-6.0, 0.0)), "-3.1");
