@@ -8,12 +8,12 @@
 //! reached (`simulate::efficiency`).
 //!
 //! The bound for unbiased estimates does not hold where the range of the lighting, V₀ ≤ V ≤ V₀ + w, stops the fits:
-//! [`Reader::at_edge`] counts them. Beside it stands a hybrid Cramér–Rao bound ([`ThermometryRow::bound_range_k`]): T is
-//! fixed, V random with the law 2cos²(π(V − V₀ − ½w)/w)/w, whose information is (2π/w)². It limits the error, averaged
-//! over that law, of estimates of T that are unbiased on average over it: not that of any estimate, nor the error at one
-//! V. Of K objects w is the side of a box within the range and ΣV ≤ 1. The information of the counts is taken at the
-//! scenario's own V instead of averaged over the law. With a prior on the lighting there is none: the law would be the
-//! product of the two, whose information is not the sum of theirs.
+//! [`Reader::at_edge`] counts them. Beside it stands a hybrid Cramér–Rao bound ([`ThermometryRow::bound_range_k`]):
+//! T is fixed, V random with the law 2cos²(π(V − V₀ − ½w)/w)/w, whose information is (2π/w)². It limits the error,
+//! averaged over that law, of estimates of T that are unbiased on average over it: not that of any estimate, nor the
+//! error at one V. Of K objects w is the side of a box within the range and ΣV ≤ 1. The information of the counts is
+//! taken at the scenario's own V instead of averaged over the law. With a prior on the lighting there is none: the law
+//! would be the product of the two, whose information is not the sum of theirs.
 //!
 //! Known: the emissivity. Besides the temperature is unknown what the scenario says ([`Thermometry::unknown`]), with
 //! its priors; bounds with a prior are hybrid ones too, for errors averaged over the prior.
@@ -92,8 +92,8 @@ pub struct ThermometryRow {
     /// and surroundings.
     pub lighting_unknown: Option<Reader>,
     /// Hybrid bound with the lighting random within its range: for the error, averaged over that range, of estimates of
-    /// the temperature that are unbiased on average over it, K. `None` with the lighting known or with a prior, or where
-    /// nothing is seen.
+    /// the temperature that are unbiased on average over it, K. `None` with the lighting known or with a prior, or
+    /// where nothing is seen.
     pub bound_range_k: Option<f64>,
     /// Thermal imaging with the default emissivity.
     pub fixed: ImagerErrors,
