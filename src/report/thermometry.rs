@@ -29,7 +29,7 @@ pub fn bundle(study: &Study, result: &Thermometry, out: &Path) -> Result<Bundle>
     Ok(bundle)
 }
 
-/// The reader that stands for what a spectrum tells: lighting unknown where there are surroundings.
+/// The reader that stands for what a spectrum tells: lighting unknown where the scenario has it so.
 fn decisive(row: &ThermometryRow) -> &Reader {
     row.lighting_unknown.as_ref().unwrap_or(&row.lighting_known)
 }

@@ -1,22 +1,27 @@
 //! Temperature of the scenario's target, read by its camera at a series of true temperatures: the paper's Extended Data
 //! Fig. 9e, f.
 //!
-//! At every temperature the same spectra are read by maximum likelihood with lighting known and unknown, and by thermal
-//! imaging from the sum of the counts with a fixed emissivity of 0.95 and with one entered by hand, calibrated at the
-//! lowest temperature (`simulate::thermometry`). Beside them stand the Cramér–Rao bounds (`fisher::precision`) and
-//! whether they are reached (`simulate::efficiency`).
+//! At every temperature the same spectra are read by maximum likelihood with the lighting known, by maximum likelihood
+//! with it unknown if the scenario has it among its unknowns, and by thermal imaging from the sum of the counts with a
+//! fixed emissivity of 0.95 and with one entered by hand, calibrated at the lowest temperature
+//! (`simulate::thermometry`). Beside them stand the Cramér–Rao bounds (`fisher::precision`) and whether they are
+//! reached (`simulate::efficiency`).
 //!
-//! The bound for unbiased estimates does not hold where the range of the lighting, 0 ≤ V ≤ 1, stops the fits: there
-//! [`Reader::at_edge`] counts them, and a bound for any estimator stands beside it
-//! ([`ThermometryRow::bound_range_k`]): van Trees' inequality with the law 2cos²(π(V − ½w)/w)/w of V over a range of
-//! width w, whose information is (2π/w)², limits the error averaged over that law (of K objects w is at most 1/K, a box
-//! within ΣV ≤ 1). It is taken with the information at the scenario's own V.
+//! The bound for unbiased estimates does not hold where the range of the lighting, V₀ ≤ V ≤ V₀ + w, stops the fits:
+//! [`Reader::at_edge`] counts them. Beside it stands a hybrid Cramér–Rao bound ([`ThermometryRow::bound_range_k`]):
+//! T is fixed, V random with the law 2cos²(π(V − V₀ − ½w)/w)/w, whose information is (2π/w)². It limits the error,
+//! averaged over that law, of estimates of T that are unbiased on average over it: not that of any estimate, nor the
+//! error at one V. Of K objects w is the side of a box within the range and ΣV ≤ 1. The information of the counts is
+//! taken at the scenario's own V instead of averaged over the law. With a prior on the lighting there is none: the law
+//! would be the product of the two, whose information is not the sum of theirs.
 //!
-//! Known: emissivity, temperature of the surroundings, the camera's response. Besides temperature and lighting unknown
-//! is what the scenario says, with its priors.
+//! Known: the emissivity. Besides the temperature is unknown what the scenario says ([`Thermometry::unknown`]), with
+//! its priors; bounds with a prior are hybrid ones too, for errors averaged over the prior.
 //!
 //! Source: paper, Methods 'HADAR thermography', Extended Data Fig. 9; van Trees, 'Detection, Estimation, and Modulation
-//! Theory' I (1968), section 2.4; Gill and Levit, Bernoulli 1, 59 (1995), doi:10.2307/3318681.
+//! Theory' I (1968), section 2.4; Rockah and Schultheiss, IEEE
+//! Trans. Acoust. Speech Signal Process. 35, 286 (1987) (hybrid bound); Gill and Levit, Bernoulli 1, 59 (1995),
+//! doi:10.2307/3318681 (law).
 
 use super::{Study, Warning};
 use crate::error::{Error, Result};
@@ -26,12 +31,13 @@ use crate::scene::{Parameter, State};
 use crate::simulate::draws::GENERATOR;
 use crate::simulate::efficiency::{Criteria, Efficiency, Errors, JointEfficiency, ParameterEfficiency};
 use crate::simulate::thermometry::{Conventional, Fits, Reading, Run, ThermometryScene};
+use std::collections::BTreeMap;
 
 /// The default emissivity of a thermal imager, as in the paper's figure.
 pub const FIXED_EMISSIVITY: f64 = 0.95;
 /// Most temperatures of a series.
 const MOST_ROWS: usize = 10_000;
-/// Share of the fits stopped by the range above which the bound is said not to apply.
+/// Share of the fits stopped by the range above which the bound for unbiased estimates is said not to apply.
 const HELD: f64 = 1e-3;
 
 /// A series of true temperatures and what is read at each.
@@ -47,6 +53,12 @@ pub struct Thermometry {
     pub lighting: Vec<f64>,
     /// Temperatures of the surroundings, K.
     pub environment_k: Vec<f64>,
+    /// What is unknown, by the names of scenario files: the temperature and what the scenario says.
+    pub unknown: Vec<&'static str>,
+    /// Deviations of the priors on unknowns, by their names (K, or dimensionless); they lower the bounds.
+    pub priors: BTreeMap<&'static str, f64>,
+    /// The known sum of the lighting factors.
+    pub lighting_total: Option<f64>,
     /// Spectra at each temperature.
     pub trials: usize,
     /// Seed.
@@ -76,10 +88,12 @@ pub struct ThermometryRow {
     pub photons: f64,
     /// Maximum likelihood with the lighting known.
     pub lighting_known: Reader,
-    /// Maximum likelihood with the lighting unknown; `None` without surroundings.
+    /// Maximum likelihood with the lighting unknown; `None` unless the scenario has it among its unknowns
+    /// and surroundings.
     pub lighting_unknown: Option<Reader>,
-    /// Bound on any estimate's error with lighting unknown but within its range, averaged over that range, K; `None`
-    /// without surroundings, or where nothing is seen.
+    /// Hybrid bound with the lighting random within its range: for the error, averaged over that range, of estimates of
+    /// the temperature that are unbiased on average over it, K. `None` with the lighting known or with a prior, or
+    /// where nothing is seen.
     pub bound_range_k: Option<f64>,
     /// Thermal imaging with the default emissivity.
     pub fixed: ImagerErrors,
@@ -90,7 +104,7 @@ pub struct ThermometryRow {
 /// Maximum-likelihood estimates of the temperature beside their bound.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Reader {
-    /// Cramér–Rao bound of an unbiased estimate's deviation, K; `None` if it is infinite.
+    /// Cramér–Rao bound of an unbiased estimate's deviation, K (hybrid, if there are priors); `None` if it is infinite.
     pub bound_k: Option<f64>,
     /// Estimated relative rounding error of the bound.
     pub bound_relative_error: f64,
@@ -104,8 +118,7 @@ pub struct Reader {
     pub joint: Option<JointEfficiency>,
     /// Share of the fits that ended at the edge of the parameters' range.
     pub at_edge: f64,
-    /// Whether the bound, which is for unbiased estimates, says anything of these: fewer than 1 in 1000 ended at an
-    /// edge.
+    /// Whether the bound, which is for unbiased estimates, says anything of these: at most 1 in 1000 ended at an edge.
     pub bound_applies: bool,
     /// Fits that did not converge.
     pub unconverged: usize,
@@ -126,7 +139,7 @@ impl Study {
     ///
     /// # Errors
     /// No camera; no temperatures, or one that is not positive or outside of the range of states; fewer than two
-    /// trials; too many photons to draw.
+    /// spectra at each; too many photons to draw.
     ///
     /// ```
     /// use hadar::{material::Library, scenario::Scenario, study::Study};
@@ -169,7 +182,7 @@ impl Study {
             return Err(Error::out_of_range("number of temperatures", total as f64, "", expected));
         }
         if trials < 2 {
-            return Err(Error::out_of_range("number of trials", trials as f64, "", "at least 2"));
+            return Err(Error::out_of_range("spectra at each temperature", trials as f64, "", "at least 2"));
         }
         let states: Vec<State> = (temperatures_k.iter())
             .map(|&t| self.surroundings.state(t, &self.state.lighting))
@@ -183,13 +196,17 @@ impl Study {
         };
         let coldest = states.iter().min_by(|a, b| a.temperature_k.total_cmp(&b.temperature_k));
         let coldest = coldest.unwrap_or(&self.state);
-        let unknowns = [self.thermometry_unknowns(false)?, self.thermometry_unknowns(true)?];
-        let objects = self.surroundings.objects().len();
-        let readers = if objects > 0 { 2 } else { 1 };
+        let lighting_known = self.thermometry_unknowns(false)?;
+        let lighting_unknown = self.lighting_unknown()?;
+        let readers = if lighting_unknown.is_some() { 2 } else { 1 };
+        let all = lighting_unknown.as_ref().unwrap_or(&lighting_known);
+        let (unknown, priors) = (self.effective(all), self.named_priors(all));
+        let lighting_total = all.known_lighting_total();
         let series = Series {
             study: self,
             scene,
-            unknowns,
+            lighting_known,
+            lighting_unknown,
             criteria: Criteria { together: readers * total, ..Criteria::default() },
             fixed: Conventional::with_surroundings(FIXED_EMISSIVITY, &self.surroundings)?,
             manual: Conventional::calibrated(&scene, coldest)?,
@@ -207,6 +224,9 @@ impl Study {
             statistics: scene.statistics()?.name(),
             lighting: self.state.lighting.clone(),
             environment_k: self.state.environment_k.clone(),
+            unknown: unknown.iter().map(|nuisance| nuisance.name()).collect(),
+            priors,
+            lighting_total,
             trials,
             seed,
             generator: GENERATOR,
@@ -217,6 +237,27 @@ impl Study {
             rows,
             warnings,
         })
+    }
+
+    /// The unknowns of the reader that does not know the lighting; `None` where there is none to know, or the scenario
+    /// knows it.
+    fn lighting_unknown(&self) -> Result<Option<Unknowns>> {
+        let unknowns = self.thermometry_unknowns(true)?;
+        let exists =
+            self.is_unknown(Nuisance::Lighting) && self.effective(&unknowns).contains(&Nuisance::Lighting);
+        Ok(exists.then_some(unknowns))
+    }
+
+    /// Nuisances that are parameters here: without surroundings there is no lighting, say.
+    fn effective(&self, unknowns: &Unknowns) -> Vec<Nuisance> {
+        let parameters = unknowns.parameters(self.surroundings.objects().len());
+        let nuisances = unknowns.nuisances().iter().copied();
+        nuisances.filter(|nuisance| parameters.contains(&parameter(*nuisance))).collect()
+    }
+
+    fn named_priors(&self, unknowns: &Unknowns) -> BTreeMap<&'static str, f64> {
+        let with = |nuisance: Nuisance| Some((nuisance.name(), unknowns.sigma_prior(parameter(nuisance))?));
+        self.effective(unknowns).into_iter().filter_map(with).collect()
     }
 
     /// The scenario's unknowns with temperature among them, lighting added or taken out.
@@ -250,8 +291,8 @@ fn parameter(nuisance: Nuisance) -> Parameter {
 struct Series<'a> {
     study: &'a Study,
     scene: ThermometryScene<'a>,
-    /// Lighting known, and unknown.
-    unknowns: [Unknowns; 2],
+    lighting_known: Unknowns,
+    lighting_unknown: Option<Unknowns>,
     criteria: Criteria,
     fixed: Conventional,
     manual: Conventional,
@@ -259,14 +300,16 @@ struct Series<'a> {
 
 impl Series<'_> {
     fn row(&self, state: &State, run: Run) -> Result<ThermometryRow> {
-        let [known, unknown] = &self.unknowns;
-        let lit = !self.study.surroundings.objects().is_empty();
+        let (lighting_unknown, bound_range_k) = match &self.lighting_unknown {
+            Some(unknown) => (Some(self.reader(unknown, state, run)?), self.bound_range_k(unknown, state)?),
+            None => (None, None),
+        };
         Ok(ThermometryRow {
             temperature_k: state.temperature_k,
             photons: crate::sum::sum(&self.scene.means(state)?),
-            lighting_known: self.reader(known, state, run)?,
-            lighting_unknown: if lit { Some(self.reader(unknown, state, run)?) } else { None },
-            bound_range_k: if lit { self.bound_range_k(state)? } else { None },
+            lighting_known: self.reader(&self.lighting_known, state, run)?,
+            lighting_unknown,
+            bound_range_k,
             fixed: self.imager(&self.fixed, state, run)?,
             manual: self.imager(&self.manual, state, run)?,
         })
@@ -313,8 +356,10 @@ impl Series<'_> {
     }
 
     /// The bound with the range of the lighting as what is known of it beforehand.
-    fn bound_range_k(&self, state: &State) -> Result<Option<f64>> {
-        let [_, unknown] = &self.unknowns;
+    fn bound_range_k(&self, unknown: &Unknowns, state: &State) -> Result<Option<f64>> {
+        if unknown.sigma_prior(Parameter::Lighting(0)).is_some() {
+            return Ok(None);
+        }
         let [low, high] = self.study.range.lighting;
         // Of several objects a box within what they may sum to.
         let objects = self.study.surroundings.objects().len().max(1) as f64;
@@ -323,11 +368,7 @@ impl Series<'_> {
         if width <= 0.0 {
             return Ok(None);
         }
-        let of_range = width / std::f64::consts::TAU;
-        let sigma = match unknown.sigma_prior(Parameter::Lighting(0)) {
-            Some(prior) => of_range * prior / of_range.hypot(prior),
-            None => of_range,
-        };
+        let sigma = width / std::f64::consts::TAU;
         let unknowns = unknown.clone().prior(Nuisance::Lighting, sigma)?;
         let bound = self.scene.bound(&unknowns, state)?;
         Ok(bound.each.iter().find(|one| one.parameter == Parameter::Temperature).and_then(finite))
@@ -359,9 +400,11 @@ fn warnings(rows: &[ThermometryRow]) -> Vec<Warning> {
     let (count, most) = held.fold((0, 0.0_f64), |(n, most), reader| (n + 1, most.max(reader.at_edge)));
     if count > 0 {
         let message = format!(
-            "up to {:.0} % of the fits end at the edge of the physical range (0 to 1 for lighting): they may be biased, \
-             and the range limits their errors, so that the Cramer-Rao bound for unbiased estimates does not apply there",
-            100.0 * most
+            "up to {:.1} % of the fits at a temperature end at the edge of the physical range of lighting or temperature: \
+             they may be biased, and the range limits their errors, so that the Cramer-Rao bound, which is for unbiased \
+             estimates, is not applied where more than {:.1} % do",
+            100.0 * most,
+            100.0 * HELD
         );
         warnings.push(Warning::new("range-holds-the-estimates", message));
     }

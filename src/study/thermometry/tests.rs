@@ -59,7 +59,7 @@ fn where_the_range_tells_more_than_the_camera_it_is_said() {
     assert!(unknown.at_edge > 0.3 && unknown.efficiency.unwrap().verdict == Verdict::Below, "{unknown:?}");
     assert!(!unknown.bound_applies && found.rows[0].lighting_known.bound_applies);
     assert!(found.warnings.iter().any(|warning| warning.code == "range-holds-the-estimates"));
-    // Averaged over the range no estimator beats this one; at the middle of it this one does not either.
+    // The hybrid bound is for errors averaged over the range; at the middle of it this estimate errs more, too.
     assert!(unknown.errors.rmse > found.rows[0].bound_range_k.unwrap());
 }
 
@@ -69,11 +69,35 @@ fn unknowns_are_the_scenario_s() {
     let prior = "[unknown]\nnuisances = [\"lighting\", \"gain\"]\npriors = { lighting = \"0.01\" }";
     let prior = prior.replace("\"0.01\"", "0.01");
     let with = study("silicon-carbide", &prior, SPECTROMETER);
-    let [known, unknown] = [false, true].map(|lighting| with.thermometry_unknowns(lighting).unwrap());
+    let known = with.thermometry_unknowns(false).unwrap();
+    let unknown = with.lighting_unknown().unwrap().unwrap();
     assert_eq!(known.nuisances(), [Nuisance::Temperature, Nuisance::Gain]);
     assert_eq!(unknown.nuisances(), [Nuisance::Temperature, Nuisance::Lighting, Nuisance::Gain]);
     assert_eq!(unknown.sigma_prior(Parameter::Lighting(0)), Some(0.01));
     assert!(!known.has_priors());
+    let found = with.thermometry(&[350.0], 2, 1, &|_, _| {}).unwrap();
+    assert_eq!(found.unknown, ["temperature", "lighting", "gain"]);
+    assert_eq!(found.priors, BTreeMap::from([("lighting", 0.01)]));
+    // The law of the range times that of the prior is neither.
+    assert_eq!(found.rows[0].bound_range_k, None);
+}
+
+/// Where the scenario knows the lighting there is one reader, whose fits are those of the other scenario's.
+#[test]
+fn known_lighting_is_not_read_as_unknown() {
+    let read = |nuisances: &str| {
+        let unknown = format!("[unknown]\nnuisances = [{nuisances}]");
+        study("silicon-carbide", &unknown, SPECTROMETER).thermometry(&[350.0], 50, 1, &|_, _| {}).unwrap()
+    };
+    let both = read("\"temperature\", \"lighting\"");
+    assert_eq!((both.criteria.together, both.unknown.len()), (2, 2));
+    for nuisances in ["", "\"temperature\""] {
+        let found = read(nuisances);
+        assert_eq!(found.unknown, ["temperature"]);
+        assert_eq!((found.criteria.together, found.rows[0].bound_range_k), (1, None));
+        assert!(found.rows[0].lighting_unknown.is_none());
+        assert_eq!(found.rows[0].lighting_known.errors, both.rows[0].lighting_known.errors);
+    }
 }
 
 #[test]
@@ -85,4 +109,6 @@ fn what_cannot_be_read_is_refused() {
     {
         assert!(with.thermometry(temperatures, trials, 1, &|_, _| {}).is_err(), "{temperatures:?}");
     }
+    let one = with.thermometry(&[300.0], 1, 1, &|_, _| {}).unwrap_err().to_string();
+    assert_eq!(one, "spectra at each temperature is 1; it must be at least 2");
 }
