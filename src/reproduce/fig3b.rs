@@ -203,8 +203,10 @@ fn shortfalls(place: &'static str, result: &Simulation) -> Vec<Line> {
         let within = found.iter().filter(has).count();
         let ours = format!(
             "limit within the 95 % interval in {within} of {} experiments; {points:.2} points of accuracy below it on average \
-             ({bits:.3} bit), ± {sigma:.2} by the test spectra",
-            found.len()
+             ({:.3} bit), ± {sigma:.2} by the test spectra",
+            found.len(),
+            // No negative zero.
+            if bits.abs() < 5e-4 { 0.0 } else { bits }
         );
         let shortfall = Shortfall { experiments: found.len(), within, points, sigma };
         let (paper, verdict, why) = expected(place, method, &shortfall);

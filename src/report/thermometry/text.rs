@@ -309,8 +309,8 @@ mod tests {
         assert_eq!(trusted_ratio(1.0123, interval(0.9861, 1.0398)), "1.012 [0.986, 1.040]");
         assert_eq!(trusted_ratio(0.0063, interval(0.0012, 5.616)), "0.006 [0.001, 5.6]");
         assert_eq!(trusted_ratio(1234.5, interval(900.4, 1.7e6)), "1234 [900, 1.7e6]");
-        assert_eq!(trusted(-3.14159, interval(-3.4, -2.9)), "-3.14");
-        assert_eq!(trusted(-3.14159, interval(-6.0, 0.0)), "-3.1");
+        assert_eq!(trusted(-3.1433, interval(-3.4, -2.9)), "-3.14");
+        assert_eq!(trusted(-3.1433, interval(-6.0, 0.0)), "-3.1");
         assert_eq!(
             (trusted(1.2e-4, interval(-0.5, 0.5)), trusted(-0.0, interval(0.0, 0.0))),
             ("0".into(), "0".into())
