@@ -78,9 +78,10 @@ fn sentence(result: &Simulation) -> String {
         percent(best.interval.high)
     );
     let judged = result.points.first().map_or(0, |point| point.performances.len());
-    let name = if judged == 1 { best.words() } else { format!("the best of {judged}, {}", best.words()) };
+    let which = if judged == 1 { "the only one".to_owned() } else { format!("the best of {judged}") };
+    let name = format!("{which} ({})", best.words());
     if result.comparisons == 0 {
-        return format!("In {often} {name}, tells {apart}; there is no limit to hold it against.");
+        return format!("In {often} {name} tells {apart}; there is no limit to hold it against.");
     }
     let beyond = of_standing(result, Standing::Beyond);
     if beyond > 0 {
@@ -93,7 +94,7 @@ fn sentence(result: &Simulation) -> String {
         [point] => {
             let limit = percent(point.limit_accuracy.unwrap_or(point.limit_accuracy_normal));
             format!(
-                "No classifier beats the limit of {limit} by more than chance: {name}, tells {apart} in {often}."
+                "No classifier beats the limit of {limit} by more than chance: {name} tells {apart} in {often}."
             )
         }
         points => format!(
