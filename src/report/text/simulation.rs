@@ -6,6 +6,8 @@ use crate::report::simulation::pair;
 use crate::study::{PhotonLaw, SimulatedPerformance, SimulatedPoint, Simulation, Standing, Study};
 use std::fmt::Write as _;
 
+/// Decimals of a percentage beyond which rounding decides.
+const MOST_DECIMALS: f64 = 12.0;
 /// Shares of photons whose interval ends above this are not printed.
 const WIDEST_SHARE: f64 = 3.0;
 /// Columns that a confusion matrix may take.
@@ -110,8 +112,11 @@ fn of_standing(result: &Simulation, standing: Standing) -> usize {
     all.filter(|found| found.standing == Some(standing)).count()
 }
 
+/// In percent; short of certainty never 100, but with as many nines as it takes.
 fn percent(share: f64) -> String {
-    format!("{:.1} %", 100.0 * share)
+    let missing = 1.0 - share;
+    let decimals = if missing > 0.0 && missing < 5e-4 { (-missing.log10() - 1e-9).ceil() - 2.0 } else { 1.0 };
+    format!("{:.*} %", decimals.clamp(1.0, MOST_DECIMALS) as usize, 100.0 * share)
 }
 
 /// One experiment as a table.
@@ -219,5 +224,20 @@ fn against(found: &SimulatedPerformance, point: &SimulatedPoint) -> String {
             format!("{:.1} points below", 100.0 * (limit - found.performance.accuracy))
         }
         None => "-".to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::percent;
+
+    #[test]
+    fn short_of_certain_is_never_100_percent() {
+        for (share, text) in
+            [(0.8413, "84.1 %"), (1.0, "100.0 %"), (0.99951, "99.95 %"), (0.999_99, "99.999 %")]
+        {
+            assert_eq!(percent(share), text);
+        }
+        assert_ne!(percent(1.0 - 3e-9), percent(1.0));
     }
 }
