@@ -144,8 +144,8 @@ fn models_are_saved_and_come_back() {
 fn every_mistake_is_one_line() {
     let folder = Folder::with(THREE);
     for (flags, said) in [
-        (vec!["--spectra", "0"], "spectra of each class is 0; it must be at least 4"),
-        (vec!["--photons", "0"], "number of photons is 0"),
+        (vec!["--spectra", "0"], "--spectra: spectra of each class is 0; it must be at least 4"),
+        (vec!["--photons", "0"], "--photons: number of photons is 0"),
         (vec!["--photons", "-5"], "number of photons is -5"),
         (vec!["--photons", "NaN"], "number of photons is NaN"),
         (vec!["--photons", "1e6,inf"], "number of photons is inf"),
@@ -155,7 +155,7 @@ fn every_mistake_is_one_line() {
             vec!["--classifiers", "oracle"],
             "unknown classifier `oracle`; choose among likelihood-ratio, best-fits",
         ),
-        (vec!["--sweep", "0"], "experiments of a sweep is 0"),
+        (vec!["--sweep", "0"], "--sweep: experiments of a sweep is 0"),
         (vec!["--sweep", "1000000000000"], "experiments of a sweep is 1000000000000"),
         (vec!["--spectra", "18446744073709551615"], "spectra of each class is"),
         (vec!["--skip-spectra", "--spectra", "4000000000000000000"], "spectra of each class is"),

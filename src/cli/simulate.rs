@@ -1,12 +1,13 @@
 //! `hadar simulate`: spectra drawn, classifiers trained and judged, held against the limit.
 
 use super::Global;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, check};
 use crate::grid::text_of_file;
 use crate::report::bundle::Bundle;
 use crate::report::{simulation, text, thermometry as thermometry_report};
 use crate::simulate::classifier::{Method, SavedModel};
 use crate::simulate::experiment::Design;
+use crate::simulate::spectra::Parts;
 use crate::study::{PhotonLaw, SimulationPlan, Study};
 use crate::units::Dimension;
 use clap::Args;
@@ -192,8 +193,18 @@ fn plan(args: &SimulateArgs, study: &Study, global: &Global) -> Result<Simulatio
     } else {
         args.against.clone()
     };
+    let models: Vec<SavedModel> = args.model.iter().map(|path| saved(path)).collect::<Result<_>>()?;
+    for (saved, path) in models.iter().zip(&args.model) {
+        study.check_model(saved, &against).map_err(|error| error.in_file(path))?;
+    }
+    Parts::of(args.spectra).map_err(|error| error.for_key("--spectra"))?;
+    for &photons in &args.photons {
+        check::positive("number of photons", photons, "").map_err(|error| error.for_key("--photons"))?;
+    }
     let photons = match args.sweep {
-        Some(experiments) => study.sweep(SWEEP, experiments, &against, !args.shot_noise_only)?,
+        Some(experiments) => study
+            .sweep(SWEEP, experiments, &against, !args.shot_noise_only)
+            .map_err(|error| error.for_key("--sweep"))?,
         None => args.photons.clone(),
     };
     Ok(SimulationPlan {
@@ -212,7 +223,7 @@ fn plan(args: &SimulateArgs, study: &Study, global: &Global) -> Result<Simulatio
             level: 0.95,
             skip_spectra: args.skip_spectra,
         },
-        models: args.model.iter().map(|path| saved(path)).collect::<Result<_>>()?,
+        models,
     })
 }
 

@@ -11,8 +11,9 @@
 //! first draws are the counts. A parameter with a prior has the prior's centre drawn about its true value in every
 //! trial, since that is what the bound with a prior is an average over.
 //!
-//! Assumptions: known emissivity, surroundings' temperature and response; counts with electronic noise are normal of
-//! variance N + σ², without it Poisson.
+//! Assumptions: known emissivity, surroundings' temperature and response, as far as they are not among the unknowns.
+//! Photons are drawn exactly (Poisson), electronic noise is normal; likelihoods take their sum for normal of variance
+//! N + σ², counts without electronic noise for Poisson.
 //!
 //! Source: paper, Methods 'HADAR thermography' and Extended Data Fig. 9e, f.
 

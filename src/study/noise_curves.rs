@@ -85,3 +85,31 @@ impl Study {
         Ok(NoiseCurves { distance, normalised_photons, curves })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::material::Library;
+    use crate::scenario::Scenario;
+    use crate::study::Study;
+
+    /// At the camera's own photons the curve of all its noise is the distance that `identify` finds by another way; Johnson and
+    /// flicker noise have half of its γ each there, and at four times the exposure one and four times as much.
+    #[test]
+    fn the_curves_meet_the_camera_where_it_is() {
+        let text = include_str!("../../examples/human_vs_robot.toml");
+        let study =
+            Study::new(&Scenario::from_toml(text, None).unwrap(), &Library::embedded().unwrap()).unwrap();
+        let pair = &study.identify().unwrap().pairs[0];
+        let photons = study.counting().unwrap().counts_per_radiance * study.photon_radiance();
+        let own = photons * pair.distance_nearest.powi(2);
+        let found = study.noise_curves(&study.alternatives()[0], [own, 4.0 * own], 2).unwrap();
+        let near = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-9, "{a} {b}");
+        let [shot, johnson, flicker, mixed] = found.curves.as_slice() else { panic!("four curves") };
+        near(shot.distance[0], own.sqrt());
+        near(mixed.distance[0], pair.statistical_distance.unwrap());
+        near(johnson.gamma[0], 0.5 * mixed.gamma[0]);
+        near(flicker.gamma[0], 0.5 * mixed.gamma[0]);
+        near(johnson.gamma[1], johnson.gamma[0]);
+        near(flicker.gamma[1], 4.0 * flicker.gamma[0]);
+    }
+}

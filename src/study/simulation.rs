@@ -149,7 +149,7 @@ impl Study {
         let rivals: Vec<&Surface> = rivals.into_iter().map(|(_, rival)| rival).collect();
         let names: Vec<String> =
             std::iter::once(&self.target).chain(rivals.iter().copied()).map(|s| s.name.clone()).collect();
-        let centres: Vec<f64> = self.bands.bands().iter().map(|band| band.center_cm1).collect();
+        let centres = self.band_centres_cm1();
         plan.models.iter().try_for_each(|model| model.check_fits(&centres, &names))?;
         // Comparisons of all experiments together.
         let judged = plan.design.methods.len() + plan.models.len();
@@ -193,6 +193,21 @@ impl Study {
             },
             models.into_iter().map(save).collect::<Result<_>>()?,
         ))
+    }
+
+    /// Makes sure that a saved model is one of these bands, and of the target against these alternatives.
+    ///
+    /// # Errors
+    /// Other bands or classes; an unknown alternative.
+    pub fn check_model(&self, saved: &SavedModel, against: &[String]) -> Result<()> {
+        let rivals = self.rivals(against)?;
+        let all = std::iter::once(&self.target).chain(rivals.iter().map(|(_, rival)| *rival));
+        let names: Vec<String> = all.map(|surface| surface.name.clone()).collect();
+        saved.check_fits(&self.band_centres_cm1(), &names)
+    }
+
+    fn band_centres_cm1(&self) -> Vec<f64> {
+        self.bands.bands().iter().map(|band| band.center_cm1).collect()
     }
 
     /// The same without priors.
