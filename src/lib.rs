@@ -9,6 +9,8 @@ pub mod instrument;
 pub mod material;
 pub mod planck;
 pub mod policy;
+pub mod ranging;
+pub mod render;
 pub mod report;
 pub mod reproduce;
 mod root;

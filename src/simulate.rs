@@ -17,6 +17,7 @@ pub mod decision;
 pub mod draws;
 pub mod efficiency;
 pub mod experiment;
+pub mod matching;
 pub mod ratio;
 pub mod sequential;
 pub mod spectra;

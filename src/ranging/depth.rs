@@ -1,0 +1,1 @@
+//! Depth bound: δz, and what a demanded δz asks of the stereo camera.

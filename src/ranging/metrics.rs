@@ -1,0 +1,1 @@
+//! Standard metrics of a depth map.

@@ -1,0 +1,1 @@
+//! What diffraction and the size of the pixel leave of the position of a point source.

@@ -1,0 +1,1 @@
+//! Fisher information about position in a scattered signal that is itself estimated from the bands.

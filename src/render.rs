@@ -1,0 +1,1 @@
+//! Renders stereo pairs of heat cubes from a scene.

@@ -1,0 +1,1 @@
+//! Stereo matching of noisy views, held against its bound.
