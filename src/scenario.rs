@@ -17,6 +17,7 @@ pub use crate::material::Extrapolation;
 
 pub mod bands;
 pub mod camera;
+pub mod ranging;
 mod read;
 mod section;
 pub mod source;
@@ -24,6 +25,7 @@ mod write;
 
 pub use bands::{BandSource, BandsSpec};
 pub use camera::{CameraSpec, Readout};
+pub use ranging::RangeScenario;
 pub use source::Source;
 
 /// Everything a scenario file says, defaults filled in.

@@ -14,3 +14,19 @@ pub enum Derivative {
     /// Of the trigonometric interpolation.
     Fourier,
 }
+
+impl Derivative {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Central, Self::Simoncelli, Self::CubicSpline, Self::Fourier];
+
+    /// The name in a scenario.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Central => "central",
+            Self::Simoncelli => "simoncelli",
+            Self::CubicSpline => "cubic-spline",
+            Self::Fourier => "fourier",
+        }
+    }
+}

@@ -66,3 +66,17 @@ pub enum Joined {
     /// Their photons are read at once: the mean variance of one reading counts.
     OneReading,
 }
+
+impl Joined {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::SumOfReadings, Self::OneReading];
+
+    /// The name in a scenario.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::SumOfReadings => "sum-of-readings",
+            Self::OneReading => "one-reading",
+        }
+    }
+}

@@ -78,7 +78,7 @@ pub(super) fn scenario(text: &str, path: Option<&Path>) -> Result<Scenario> {
 }
 
 /// The table behind the text, or the first thing that is not TOML.
-fn parse<'t>(text: &'t str, source: &Source) -> Result<DeTable<'t>> {
+pub(super) fn parse<'t>(text: &'t str, source: &Source) -> Result<DeTable<'t>> {
     let (document, errors) = DeTable::parse_recoverable(text);
     let offset = |error: &toml::de::Error| error.span().map_or(0, |span| span.start);
     let Some(first) = errors.iter().min_by_key(|error| offset(error)) else {
@@ -194,7 +194,11 @@ fn alternatives(entry: &Entry<'_>) -> Result<Alternatives> {
     })
 }
 
-fn range<'a>(entry: &Entry<'a>, example: &str, read: impl Fn(&Entry<'a>) -> Result<f64>) -> Result<[f64; 2]> {
+pub(super) fn range<'a>(
+    entry: &Entry<'a>,
+    example: &str,
+    read: impl Fn(&Entry<'a>) -> Result<f64>,
+) -> Result<[f64; 2]> {
     let [low, high] = entry.pair(example)?;
     let (low, high) = (read(&low)?, read(&high)?);
     if low < high {
@@ -265,7 +269,7 @@ fn extrapolation(section: &Section<'_>) -> Result<Option<Extrapolation>> {
     section.choice("extrapolate", &Extrapolation::ALL.map(|kind| (kind.name(), kind)))
 }
 
-fn material(entry: &Entry<'_>) -> Result<MaterialRef> {
+pub(super) fn material(entry: &Entry<'_>) -> Result<MaterialRef> {
     let text = entry.text("\"skin\"")?.trim();
     if is_path(text) { file(entry).map(MaterialRef::File) } else { Ok(MaterialRef::Name(text.to_owned())) }
 }

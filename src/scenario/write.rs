@@ -16,7 +16,7 @@ use super::{
 use crate::units::Dimension;
 
 /// One entry of the document.
-enum Part {
+pub(super) enum Part {
     Value(Value),
     Table(Entries),
     Tables(Vec<Entries>),
@@ -24,13 +24,16 @@ enum Part {
 
 /// Keys in the order in which they are written; a silent one is not there.
 #[derive(Default)]
-struct Entries(Vec<(&'static str, Value)>);
+pub(super) struct Entries(Vec<(&'static str, Value)>);
 
 /// How file paths are written.
 #[derive(Clone, Copy)]
-struct Paths<'a> {
-    beside: Option<&'a Path>,
+pub(super) struct Paths<'a> {
+    pub(super) beside: Option<&'a Path>,
 }
+
+/// The parts of a scenario in the order in which they are written.
+pub(super) type Document = Vec<(&'static str, Part)>;
 
 impl Scenario {
     /// The scenario as TOML, every default filled in; reading it gives an equal scenario. What stays silent
@@ -59,20 +62,10 @@ impl Scenario {
     }
 
     fn text(&self, paths: Paths<'_>) -> String {
-        let mut text = String::new();
-        for (name, part) in self.document(paths) {
-            match part {
-                Part::Value(value) => text.push_str(&format!("{name} = {value}\n")),
-                Part::Table(entries) => entries.write(&mut text, &format!("[{name}]")),
-                Part::Tables(tables) => {
-                    tables.iter().for_each(|entries| entries.write(&mut text, &format!("[[{name}]]")));
-                }
-            }
-        }
-        text
+        text(self.document(paths))
     }
 
-    fn document(&self, paths: Paths<'_>) -> Vec<(&'static str, Part)> {
+    fn document(&self, paths: Paths<'_>) -> Document {
         let mut document = Vec::new();
         if let Some(title) = &self.title {
             document.push(("title", Part::Value(title.as_str().into())));
@@ -94,16 +87,36 @@ impl Scenario {
 /// The same keys and values as the TOML, with absolute paths.
 impl Serialize for Scenario {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(None)?;
-        for (name, part) in self.document(Paths { beside: None }) {
-            match part {
-                Part::Value(value) => map.serialize_entry(name, &value)?,
-                Part::Table(entries) => map.serialize_entry(name, &entries)?,
-                Part::Tables(tables) => map.serialize_entry(name, &tables)?,
+        entries(self.document(Paths { beside: None }), serializer)
+    }
+}
+
+/// A document as TOML.
+pub(super) fn text(document: Document) -> String {
+    let mut text = String::new();
+    for (name, part) in document {
+        match part {
+            Part::Value(value) => text.push_str(&format!("{name} = {value}\n")),
+            Part::Table(entries) => entries.write(&mut text, &format!("[{name}]")),
+            Part::Tables(tables) => {
+                tables.iter().for_each(|entries| entries.write(&mut text, &format!("[[{name}]]")));
             }
         }
-        map.end()
     }
+    text
+}
+
+/// A document as a map.
+pub(super) fn entries<S: Serializer>(document: Document, serializer: S) -> Result<S::Ok, S::Error> {
+    let mut map = serializer.serialize_map(None)?;
+    for (name, part) in document {
+        match part {
+            Part::Value(value) => map.serialize_entry(name, &value)?,
+            Part::Table(entries) => map.serialize_entry(name, &entries)?,
+            Part::Tables(tables) => map.serialize_entry(name, &tables)?,
+        }
+    }
+    map.end()
 }
 
 impl Serialize for Entries {
@@ -113,19 +126,19 @@ impl Serialize for Entries {
 }
 
 impl Entries {
-    fn put(mut self, key: &'static str, value: impl Into<Value>) -> Self {
+    pub(super) fn put(mut self, key: &'static str, value: impl Into<Value>) -> Self {
         self.0.push((key, value.into()));
         self
     }
 
-    fn put_if(self, key: &'static str, value: Option<impl Into<Value>>) -> Self {
+    pub(super) fn put_if(self, key: &'static str, value: Option<impl Into<Value>>) -> Self {
         match value {
             Some(value) => self.put(key, value),
             None => self,
         }
     }
 
-    fn put_quantity(self, key: &'static str, dimension: Dimension, value: Option<f64>) -> Self {
+    pub(super) fn put_quantity(self, key: &'static str, dimension: Dimension, value: Option<f64>) -> Self {
         self.put_if(key, value.map(|value| dimension.format(value)))
     }
 
@@ -141,14 +154,14 @@ impl Entries {
 }
 
 impl Paths<'_> {
-    fn file(self, path: &Path) -> String {
+    pub(super) fn file(self, path: &Path) -> String {
         let inside = self.beside.and_then(|directory| path.strip_prefix(directory).ok());
         let text = inside.unwrap_or(path).to_string_lossy().into_owned();
         // A bare `skin` would be read as a name of the library.
         if is_path(&text) { text } else { format!("./{text}") }
     }
 
-    fn material(self, material: &MaterialRef) -> String {
+    pub(super) fn material(self, material: &MaterialRef) -> String {
         match material {
             MaterialRef::Name(name) => name.clone(),
             MaterialRef::File(path) => self.file(path),
@@ -185,7 +198,7 @@ fn alternatives(alternatives: &Alternatives, paths: Paths<'_>) -> Entries {
         .put_if("skip_uncovered", alternatives.skip_uncovered.then_some(true))
 }
 
-fn bands(bands: &BandsSpec, paths: Paths<'_>) -> Entries {
+pub(super) fn bands(bands: &BandsSpec, paths: Paths<'_>) -> Entries {
     let entries = Entries::default();
     let entries = match &bands.source {
         BandSource::Grid { start, stop, step } => {
@@ -220,7 +233,7 @@ fn unknown(unknown: &Unknown) -> Entries {
         .put_if("lighting_total", unknown.lighting_total)
 }
 
-fn camera(camera: &CameraSpec) -> Entries {
+pub(super) fn camera(camera: &CameraSpec) -> Entries {
     Entries::default()
         .put_if("preset", camera.preset.as_deref())
         .put_quantity("exposure", Dimension::Time, camera.exposure_s)

@@ -2,15 +2,15 @@
 
 use crate::error::Result;
 use crate::material::Material;
-use crate::scenario::{BandSource, Scenario};
+use crate::scenario::{BandSource, BandsSpec, Scenario, Source};
 use crate::scene::{EnvironmentObject, Surroundings};
 use crate::spectrum::Bands;
 use crate::units::Spectral;
 use std::borrow::Cow;
 
-/// The bands of the scenario as the paper samples them: at band centres.
-pub(super) fn at_centres(scenario: &Scenario) -> Result<Bands> {
-    let made = match &scenario.bands.source {
+/// The bands of a scenario as the paper samples them: at band centres.
+pub(super) fn at_centres(spec: &BandsSpec, source: &Source) -> Result<Bands> {
+    let made = match &spec.source {
         BandSource::Grid { start, stop, step } => match (start, stop, step) {
             (Spectral::Wavelength(start), Spectral::Wavelength(stop), Spectral::Wavelength(step)) => {
                 Bands::uniform_wavelength(*start, *stop, *step)
@@ -28,7 +28,7 @@ pub(super) fn at_centres(scenario: &Scenario) -> Result<Bands> {
             Bands::from_ranges(&edges)
         }
     };
-    made.map_err(|error| error.at(scenario.place("bands")))
+    made.map_err(|error| error.at(source.place("bands")))
 }
 
 /// The materials of a scenario before they are sampled.

@@ -2,11 +2,11 @@
 
 use crate::error::{Error, Result};
 use crate::instrument::{Camera, NoiseSpec, Readout, presets};
-use crate::scenario::{CameraSpec, Scenario};
+use crate::scenario::{CameraSpec, Source};
 
 /// The preset with what the scenario overrides; without a preset everything must be said.
-pub(super) fn resolved(spec: &CameraSpec, scenario: &Scenario) -> Result<Camera> {
-    let place = |key: &str| scenario.place(&format!("camera.{key}"));
+pub(super) fn resolved(spec: &CameraSpec, source: &Source) -> Result<Camera> {
+    let place = |key: &str| source.place(&format!("camera.{key}"));
     let preset = match &spec.preset {
         Some(name) => Some(presets::get(name).map_err(|error| error.at(place("preset")))?),
         None => None,
@@ -152,6 +152,7 @@ fn changed(camera: &Camera, preset: &Camera) -> Vec<&'static str> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scenario::Scenario;
 
     #[test]
     fn a_preset_that_was_changed_says_in_what() {
@@ -163,7 +164,7 @@ mod tests {
         let name = |change: &dyn Fn(&mut CameraSpec)| {
             let mut spec = scenario.camera.clone().unwrap();
             change(&mut spec);
-            resolved(&spec, &scenario).unwrap().name
+            resolved(&spec, &scenario.source).unwrap().name
         };
         let own = presets::get("flir-a325sc").unwrap();
         assert_eq!(name(&|_| ()), "flir-a325sc");

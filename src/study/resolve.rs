@@ -83,7 +83,7 @@ impl Study {
                 found.transpose()
             })
             .collect::<Result<Vec<_>>>()?;
-        let bands = bands::at_centres(&scenario)?;
+        let bands = bands::at_centres(&scenario.bands, &scenario.source)?;
         let alternatives = finder.alternatives(&target, &bands)?;
         let Finder { warnings, skies, .. } = finder;
 
@@ -121,7 +121,8 @@ impl Study {
             .enumerate()
             .map(|(i, material)| on_nodes(material, &format!("alternatives.materials[{i}]")))
             .collect::<Result<Vec<_>>>()?;
-        let camera = scenario.camera.as_ref().map(|spec| camera::resolved(spec, &scenario)).transpose()?;
+        let camera =
+            scenario.camera.as_ref().map(|spec| camera::resolved(spec, &scenario.source)).transpose()?;
         let required = match scenario.requirement.reliability {
             Reliability::Distance(distance) => distance,
             Reliability::DetectionProbability(probability) => {
