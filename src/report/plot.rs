@@ -37,6 +37,7 @@ mod mask;
 mod matrix;
 mod named;
 mod names;
+mod pictures;
 mod png;
 mod scene;
 mod svg;
@@ -49,6 +50,7 @@ pub use figure::{Band, LineFigure, Marker, Panel, Rule, Series, Style};
 pub use heatmap::HeatMap;
 pub use matrix::{Matrix, Threshold};
 pub use named::{NamedSeries, NamedValues};
+pub use pictures::{Picture, Pictures};
 
 use crate::Result;
 
@@ -63,6 +65,8 @@ pub enum Figure {
     Matrix(Matrix),
     /// Quantities of every name, as points on one axis.
     Named(NamedValues),
+    /// Images side by side.
+    Pictures(Pictures),
 }
 
 impl From<LineFigure> for Figure {
@@ -80,6 +84,12 @@ impl From<HeatMap> for Figure {
 impl From<Matrix> for Figure {
     fn from(figure: Matrix) -> Self {
         Self::Matrix(figure)
+    }
+}
+
+impl From<Pictures> for Figure {
+    fn from(figure: Pictures) -> Self {
+        Self::Pictures(figure)
     }
 }
 
@@ -112,5 +122,6 @@ fn scene(figure: &Figure) -> Result<scene::Scene> {
         Figure::HeatMap(map) => heat::scene(map),
         Figure::Matrix(matrix) => grid::scene(matrix),
         Figure::Named(named) => dots::scene(named),
+        Figure::Pictures(figure) => pictures::scene(figure),
     }
 }

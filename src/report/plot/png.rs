@@ -24,6 +24,13 @@ pub(super) fn paint(scene: &Scene) -> Result<Vec<u8>> {
     encode(&pixels, width, height).map_err(failure)
 }
 
+/// A raster of its own, a pixel each.
+pub(super) fn raster(pixels: &[(u8, u8, u8)], columns: usize) -> Result<Vec<u8>> {
+    let bytes: Vec<u8> = pixels.iter().flat_map(|&(r, g, b)| [r, g, b]).collect();
+    let rows = pixels.len().checked_div(columns).unwrap_or(0);
+    encode(&bytes, columns as u32, rows as u32).map_err(failure)
+}
+
 fn encode(pixels: &[u8], width: u32, height: u32) -> std::result::Result<Vec<u8>, ::png::EncodingError> {
     let mut file = Vec::new();
     let mut encoder = ::png::Encoder::new(&mut file, width, height);
@@ -60,6 +67,7 @@ fn draw(backend: &mut BitMapBackend<'_>, mask: &mut Mask, mark: &Mark) -> Result
             mask.stroke(&[at(*centre)], radius * SCALE);
             blend(backend, mask, *colour)
         }
+        Mark::Image { area, columns, pixels } => image(backend, area, *columns, pixels),
         Mark::Text { at: (x, y), text, size, colour, anchor, turned } => {
             let length = text::width(text, size * SCALE);
             let back = match anchor {
@@ -99,6 +107,29 @@ fn fill(backend: &mut BitMapBackend<'_>, area: &Rect, colour: Colour) -> Result<
     let whole = |x: f64, y: f64| ((x * SCALE).round() as i32, (y * SCALE).round() as i32);
     let (from, to) = (whole(area.left, area.top), whole(area.right, area.bottom));
     backend.draw_rect(from, to, &rgba(colour), true).map_err(failure)
+}
+
+/// Every pixel of the area takes the colour of the raster's pixel below its centre.
+fn image(
+    backend: &mut BitMapBackend<'_>,
+    area: &Rect,
+    columns: usize,
+    pixels: &[(u8, u8, u8)],
+) -> Result<()> {
+    let rows = pixels.len().checked_div(columns).unwrap_or(0);
+    let span = |from: f64, to: f64| ((from * SCALE).round() as i32, (to * SCALE).round() as i32);
+    let ((left, right), (top, bottom)) = (span(area.left, area.right), span(area.top, area.bottom));
+    let below = |at: i32, (from, to): (i32, i32), count: usize| {
+        ((f64::from(at - from) + 0.5) / f64::from(to - from) * count as f64) as usize
+    };
+    for y in top..bottom {
+        let row = below(y, (top, bottom), rows) * columns;
+        for x in left..right {
+            let Some(&rgb) = pixels.get(row + below(x, (left, right), columns)) else { continue };
+            dot(backend, (x, y), Colour { rgb, opacity: 1.0 }, 1.0)?;
+        }
+    }
+    Ok(())
 }
 
 fn blend(backend: &mut BitMapBackend<'_>, mask: &mut Mask, colour: Colour) -> Result<()> {

@@ -64,6 +64,8 @@ pub(super) enum Mark {
     Area { x: Vec<f64>, upper: Vec<f64>, lower: Vec<f64>, colour: Colour },
     /// A filled circle.
     Disc { centre: Point, radius: f64, colour: Colour },
+    /// A raster of colours, row after row from the top.
+    Image { area: Rect, columns: usize, pixels: Vec<(u8, u8, u8)> },
     /// A line of text on a baseline through `at`; upwards when turned.
     Text { at: Point, text: String, size: f64, colour: Colour, anchor: Anchor, turned: bool },
 }
