@@ -7,6 +7,7 @@ mod cameras;
 mod identify;
 mod materials;
 mod progress;
+mod range;
 mod reproduce;
 mod simulate;
 mod size;
@@ -40,6 +41,8 @@ enum Command {
     /// Without a flag: the distance from the target to every alternative, the photons it takes, and with a camera which
     /// of them it tells the target from. Flags add what else is to be computed, and can be combined.
     Identify(identify::IdentifyArgs),
+    /// How well depth can be measured: bounds of stereo ranging from a scene or a heat cube
+    Range(range::RangeArgs),
     /// Draw spectra, train and judge classifiers, and hold them against the limit
     Simulate(simulate::SimulateArgs),
     /// The paper's figures and tables made again, with a ledger of what agrees
@@ -110,6 +113,7 @@ fn run(cli: &Cli) -> Result<ExitCode> {
     match &cli.command {
         Command::Size(args) => size::run(args, &cli.global),
         Command::Identify(args) => identify::run(args, &cli.global),
+        Command::Range(args) => range::run(args, &cli.global),
         Command::Simulate(args) => simulate::run(args, &cli.global),
         Command::Reproduce(args) => reproduce::run(args, &cli.global),
         Command::Materials(args) => materials::run(args, &cli.global),

@@ -23,5 +23,6 @@ pub mod statistics;
 pub mod study;
 mod sum;
 pub mod units;
+mod words;
 
 pub use error::{Error, Result};

@@ -4,6 +4,7 @@ pub mod bundle;
 pub mod figures;
 pub mod library;
 pub mod plot;
+pub mod ranging;
 pub mod simulation;
 pub mod sizing;
 pub mod table;

@@ -18,6 +18,7 @@ mod magnitudes;
 mod matrix;
 mod noise_curves;
 mod priors;
+pub mod ranging;
 mod reliability;
 mod resolve;
 mod samples;

@@ -12,6 +12,7 @@ pub use library::{distance_matrix, minimum_distances, sample_spectra};
 pub use scaling::{band_number, library_size};
 pub use simulation::{SimulationCurves, accuracies, classifiers, simulation_table};
 
+use std::borrow::Cow;
 use super::plot::{Axis, Band, Figure, HeatMap, LineFigure, Marker, Panel, Rule, Series, Style};
 use super::table::Table;
 use super::text::significant;
@@ -21,7 +22,7 @@ use crate::study::{InformationCurves, PhotonMap, Spectra, Surface};
 #[derive(Debug, Clone)]
 pub struct Plot {
     /// File name without ending.
-    pub name: &'static str,
+    pub name: Cow<'static, str>,
     /// What is drawn.
     pub figure: Figure,
     /// What is drawn, as numbers.
@@ -78,7 +79,7 @@ pub fn emissivities(
         figure =
             figure.series(Series::line(&surface.name, wavenumbers_cm1.to_vec(), surface.emissivity.clone()));
     }
-    Plot { name: "emissivities", figure: figure.into(), table }
+    Plot { name: "emissivities".into(), figure: figure.into(), table }
 }
 
 /// The two spectra that look alike, and their difference against the noise of one reading.
@@ -155,7 +156,7 @@ pub fn spectra(spectra: &Spectra, target: &str, alternative: &str) -> Plot {
         figure =
             figure.band(Band::new("± camera noise, one reading", x.clone(), edge(-1.0), edge(1.0)).colour(2));
     }
-    Plot { name: "incident_spectra", figure: figure.into(), table }
+    Plot { name: "incident_spectra".into(), figure: figure.into(), table }
 }
 
 /// What the identifiability plot marks besides its curves.
@@ -216,7 +217,7 @@ pub fn identifiability(
     if let Some((name, photons, bits)) = &marks.camera {
         figure = figure.marker(Marker::new(name.clone(), *photons, *bits));
     }
-    Plot { name: "identifiability", figure: figure.into(), table }
+    Plot { name: "identifiability".into(), figure: figure.into(), table }
 }
 
 /// Required photons over target temperature and lighting; the equilibrium singularity is marked.
@@ -257,5 +258,5 @@ pub fn photon_map(map: &PhotonMap, target: &str, alternative: &str, here: (f64, 
     if top == 1.0 {
         figure = figure.marker(Marker::new("equilibrium", map.equilibrium_k - 273.15, 1.0));
     }
-    Plot { name: "required_photons", figure: figure.into(), table }
+    Plot { name: "required_photons".into(), figure: figure.into(), table }
 }

@@ -15,7 +15,8 @@ pub use many::{answers, check, work, work_of};
 pub use numbers::{quantity, significant};
 pub use simulation::simulation;
 
-use self::footing::{GAUSSIAN, assumptions, warnings};
+pub(super) use self::footing::warnings;
+use self::footing::{GAUSSIAN, assumptions};
 use self::numbers::{celsius, exponential, numbers, photons};
 use self::pairs::pair_table;
 use crate::policy::Quantity;

@@ -47,8 +47,8 @@ pub(super) fn make(order: Order, out: &Path, progress: Progress<'_>) -> Result<M
         bundle.add(format!("{name}_scenario.toml"), study.scenario().to_toml_beside(out));
         bundle.add(format!("{name}_thermometry.csv"), thermometry::table(&result).to_csv()?);
         bundle.add_plots(&[
-            Plot { name: plots[0], ..thermometry::errors(&result) },
-            Plot { name: plots[1], ..thermometry::rmse(&result) },
+            Plot { name: plots[0].into(), ..thermometry::errors(&result) },
+            Plot { name: plots[1].into(), ..thermometry::rmse(&result) },
         ])?;
         text.push_str(&format!("```text\n{}```\n\n", thermometry::text(&result)));
         lines.extend(self::lines(name, &result));

@@ -8,6 +8,7 @@ mod write;
 
 use super::{BandsSpec, CameraSpec, MaterialRef, Source};
 use crate::error::{Place, Result};
+pub use crate::ranging::depth::Demand;
 use crate::ranging::derivative::Derivative;
 use crate::ranging::information::Window;
 use crate::ranging::noise::Joined;
@@ -139,29 +140,9 @@ pub enum Diffraction {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DepthRequirement {
     /// How well depth must be known.
-    pub error: DepthError,
+    pub error: Demand,
     /// Share of the windows that must reach it, in (0, 1].
     pub share: f64,
-}
-
-/// How well depth must be known.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum DepthError {
-    /// δz ≤ this, m.
-    Absolute(f64),
-    /// δz/z ≤ this.
-    Relative(f64),
-}
-
-impl DepthError {
-    /// δz that is allowed at depth `depth_m`, m.
-    #[must_use]
-    pub fn allowed_m(self, depth_m: f64) -> f64 {
-        match self {
-            Self::Absolute(error_m) => error_m,
-            Self::Relative(share) => share * depth_m,
-        }
-    }
 }
 
 impl RangeScenario {

@@ -51,7 +51,7 @@ pub fn bands_that_matter(found: &BandsThatMatter, target: &str) -> Plot {
         let label = best(at.len(), "band");
         figure = figure.series(Series::points(label, at.clone(), share.collect()).colour(3));
     }
-    Plot { name: "bands_that_matter", figure: figure.into(), table }
+    Plot { name: "bands_that_matter".into(), figure: figure.into(), table }
 }
 
 fn best(count: usize, what: &str) -> String {

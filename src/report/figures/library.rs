@@ -61,7 +61,7 @@ pub fn distance_matrix(matrix: &Matrix) -> Plot {
             format!("target not told from the other: d below {required}"),
         );
     }
-    Plot { name: "distance_matrix", figure: Figure::from(figure), table }
+    Plot { name: "distance_matrix".into(), figure: Figure::from(figure), table }
 }
 
 /// Distance of every material to the one hardest to tell it from, the least identifiable first: the paper's Extended
@@ -86,7 +86,7 @@ pub fn minimum_distances(matrix: &Matrix) -> Plot {
     if with_camera {
         figure = figure.threshold(matrix.required_distance, "required").below("not identifiable");
     }
-    Plot { name: "minimum_distances", figure: figure.into(), table }
+    Plot { name: "minimum_distances".into(), figure: figure.into(), table }
 }
 
 /// Most materials whose readings are drawn into one plot.
@@ -122,7 +122,7 @@ pub fn sample_spectra(spectra: &SampleSpectra) -> Plot {
     for (i, (_, mean, _)) in shown.iter().enumerate() {
         figure = figure.series(Series::line("", x.clone(), mean.clone()).style(Style::Dashed).colour(i));
     }
-    Plot { name: "sample_spectra", figure: figure.into(), table }
+    Plot { name: "sample_spectra".into(), figure: figure.into(), table }
 }
 
 /// Materials cluster by cluster, then the others, and where each group begins.

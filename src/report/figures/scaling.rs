@@ -34,7 +34,7 @@ pub fn library_size(scaling: &Scaling, target: &str) -> Plot {
     .band(Band::new("10 % to 90 % of the targets", x.clone(), of(0), of(2)))
     .series(Series::line("median target", x.clone(), of(1)).colour(0))
     .series(Series::line(format!("target {target}"), x, library.target.clone()).colour(1));
-    Plot { name: "library_size", figure: figure.into(), table }
+    Plot { name: "library_size".into(), figure: figure.into(), table }
 }
 
 /// Least and median distance against the number of bands.
@@ -91,5 +91,5 @@ pub fn band_number(scaling: &Scaling, target: &str) -> Plot {
                 figure.series(Series::line(label, x.clone(), relative(values)).style(style).colour(colour));
         }
     }
-    Plot { name: "band_number", figure: figure.into(), table }
+    Plot { name: "band_number".into(), figure: figure.into(), table }
 }

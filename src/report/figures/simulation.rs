@@ -132,7 +132,7 @@ pub fn classifiers(result: &Simulation, curves: &SimulationCurves<'_>) -> Plot {
     figure = figure.lower(lower(result, curves.other.map(|other| other.0)));
     let criterion = detection::information_bits(1.0);
     figure = figure.rule(Rule::horizontal(criterion, "identifiable: d = 1"));
-    Plot { name: curves.name, figure: figure.into(), table: simulation_table(result) }
+    Plot { name: curves.name.into(), figure: figure.into(), table: simulation_table(result) }
 }
 
 /// Accuracies less the limit, in percentage points: what the information cannot show where points lie on the curve.
@@ -225,5 +225,5 @@ pub fn accuracies(result: &Simulation, point: &SimulatedPoint, pair: &str) -> Pl
         }
         None => figure,
     };
-    Plot { name: "accuracies", figure: figure.into(), table: simulation_table(result) }
+    Plot { name: "accuracies".into(), figure: figure.into(), table: simulation_table(result) }
 }

@@ -69,7 +69,7 @@ pub(super) fn assumptions(study: &Study, counts: &str) -> String {
     out
 }
 
-pub(super) fn warnings(warnings: &[Warning]) -> String {
+pub(in crate::report) fn warnings(warnings: &[Warning]) -> String {
     if warnings.is_empty() {
         return String::new();
     }

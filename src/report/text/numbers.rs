@@ -1,33 +1,7 @@
 //! Numbers and names as text: as short as they can be without losing what matters.
 
+pub use crate::words::{quantity, significant};
 use std::collections::{BTreeMap, BTreeSet};
-
-/// A number with `digits` significant digits, plain where that is short, else in powers of ten.
-#[must_use]
-pub fn significant(value: f64, digits: usize) -> String {
-    if value == 0.0 || !value.is_finite() {
-        return format!("{value}");
-    }
-    let exponent = value.abs().log10().floor() as i32;
-    let last = digits.saturating_sub(1);
-    if (-4..6).contains(&exponent) {
-        let decimals = usize::try_from(last as i32 - exponent).unwrap_or(0);
-        format!("{value:.decimals$}")
-    } else {
-        format!("{value:.last$e}")
-    }
-}
-
-/// A length, time or such with a unit that keeps the number short.
-#[must_use]
-pub fn quantity(value: f64, unit: &str) -> String {
-    for (factor, prefix) in [(1.0, ""), (1e3, "m"), (1e6, "u"), (1e9, "n")] {
-        if value * factor >= 1.0 {
-            return format!("{} {prefix}{unit}", significant(value * factor, 3));
-        }
-    }
-    format!("{} {unit}", significant(value, 3))
-}
 
 /// A number in powers of ten with `decimals` decimals; a plain 0.
 pub(super) fn exponential(value: f64, decimals: usize) -> String {
@@ -102,16 +76,6 @@ fn cut(name: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn numbers_are_short_and_keep_their_digits() {
-        assert_eq!(significant(0.056_23, 3), "0.0562");
-        assert_eq!(significant(663_212.0, 3), "663212");
-        assert_eq!(significant(6.632e8, 3), "6.63e8");
-        assert_eq!(quantity(12e-6, "m"), "12.0 um");
-        assert_eq!(quantity(0.012, "s"), "12.0 ms");
-        assert_eq!(quantity(0.0, "s"), "0 s");
-    }
 
     #[test]
     fn long_names_are_cut_in_the_middle_unless_they_become_the_same() {

@@ -91,7 +91,7 @@ pub fn errors(result: &Thermometry) -> Plot {
     .series(Series::line(fixed_label(result), celsius.clone(), fixed).style(FIXED.0).colour(FIXED.1))
     .series(Series::line(MANUAL_LABEL, celsius, manual).style(MANUAL.0).colour(MANUAL.1))
     .lower(lower);
-    Plot { name: "temperature_error", figure: figure.into(), table }
+    Plot { name: "temperature_error".into(), figure: figure.into(), table }
 }
 
 /// Root mean squared error against the true temperature, with the bounds: the paper's Extended Data Fig. 9f.
@@ -156,7 +156,7 @@ pub fn rmse(result: &Thermometry) -> Plot {
             figure = figure.series(Series::line(label, celsius.clone(), values).style(style).colour(colour));
         }
     }
-    Plot { name: "temperature_rmse", figure: figure.lower(over_bound(result, &rows, &celsius)).into(), table }
+    Plot { name: "temperature_rmse".into(), figure: figure.lower(over_bound(result, &rows, &celsius)).into(), table }
 }
 
 /// The bound averaged over the range of the lighting, where that stops the fits; elsewhere it hides under the others.

@@ -4,7 +4,7 @@ use super::super::read::{file, material, parse, range};
 use super::super::section::{ABOVE_ZERO, ABSOLUTE_TEMPERATURE, Entry, FROM_ZERO, Rule, SHARE, Section};
 use super::super::{BandsSpec, CameraSpec, Source};
 use super::{
-    CubeSpec, DepthError, DepthRequirement, DepthSource, Diffraction, NoiseSource, RangeScenario, SceneSpec,
+    CubeSpec, Demand, DepthRequirement, DepthSource, Diffraction, NoiseSource, RangeScenario, SceneSpec,
     Stereo, Subject,
 };
 use crate::error::{Error, Result};
@@ -72,7 +72,7 @@ pub(super) fn scenario(text: &str, path: Option<&Path>) -> Result<RangeScenario>
 
 impl Default for DepthRequirement {
     fn default() -> Self {
-        Self { error: DepthError::Relative(RELATIVE_ERROR), share: 0.5 }
+        Self { error: Demand::Relative(RELATIVE_ERROR), share: 0.5 }
     }
 }
 
@@ -241,8 +241,8 @@ fn requirement(entry: &Entry<'_>) -> Result<DepthRequirement> {
     let relative = section.number("relative_depth_error", "0.05", ABOVE_ZERO)?;
     Ok(DepthRequirement {
         error: match (absolute, relative) {
-            (Some(error_m), _) => DepthError::Absolute(error_m),
-            (None, Some(share)) => DepthError::Relative(share),
+            (Some(error_m), _) => Demand::Absolute(error_m),
+            (None, Some(share)) => Demand::Relative(share),
             (None, None) => default.error,
         },
         share: section.number("share", "0.5", share)?.unwrap_or(default.share),

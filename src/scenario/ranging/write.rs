@@ -2,7 +2,7 @@
 
 use super::super::write::{Document, Entries, Part, Paths, bands, camera, entries, text};
 use super::{
-    CubeSpec, DepthError, DepthRequirement, DepthSource, Diffraction, NoiseSource, RangeScenario, SceneSpec,
+    CubeSpec, Demand, DepthRequirement, DepthSource, Diffraction, NoiseSource, RangeScenario, SceneSpec,
     Stereo, Subject,
 };
 use crate::units::Dimension;
@@ -125,10 +125,10 @@ fn whole(number: usize) -> i64 {
 
 fn requirement(requirement: DepthRequirement) -> Entries {
     let entries = match requirement.error {
-        DepthError::Absolute(error_m) => {
+        Demand::Absolute(error_m) => {
             Entries::default().put_quantity("depth_error", Dimension::Length, Some(error_m))
         }
-        DepthError::Relative(share) => Entries::default().put("relative_depth_error", share),
+        Demand::Relative(share) => Entries::default().put("relative_depth_error", share),
     };
     entries.put("share", requirement.share)
 }

@@ -1,0 +1,60 @@
+//! `hadar range`: bounds of passive stereo ranging from a scene or a heat cube.
+
+use super::Global;
+use crate::error::{Error, Result};
+use crate::report::ranging;
+use crate::scenario::RangeScenario;
+use crate::study::ranging::{RangePlan, RangeStudy};
+use clap::Args;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Most draws of the noise.
+const MOST_TRIALS: usize = 1_000_000;
+
+#[derive(Debug, Args)]
+pub(super) struct RangeArgs {
+    /// The ranging scenario (TOML)
+    scenario: PathBuf,
+    /// Match noisy views N times along the scenario's lines, and whole views once: do matchers reach the bound?
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    trials: usize,
+    /// Print how many samples and windows were computed, and how many were not needed
+    #[arg(long)]
+    stats: bool,
+    /// Compute every window in full where a proof by a part of its samples would do; the answer is the same
+    #[arg(long)]
+    no_skip: bool,
+    /// Answer yes or no alone, by the cheapest proof, and exit with code 3 if the demand is not met
+    #[arg(long, conflicts_with = "trials")]
+    check: bool,
+}
+
+pub(super) fn run(args: &RangeArgs, global: &Global) -> Result<ExitCode> {
+    if args.trials > MOST_TRIALS {
+        let expected = format!("at most {MOST_TRIALS}");
+        return Err(Error::out_of_range("--trials", args.trials as f64, "", expected));
+    }
+    let scenario = RangeScenario::from_file(&args.scenario)?;
+    let study = RangeStudy::new(&scenario, &global.library()?)?;
+    let plan = RangePlan {
+        trials: args.trials,
+        seed: global.seed,
+        skip: !args.no_skip,
+        // A report shows all windows.
+        verdict_alone: args.check && global.out.is_none(),
+    };
+    let bar = global.progress("rows and draws");
+    let result = study.range(&plan, &|done, total| bar.set(done, total))?;
+    bar.finish();
+    if let Some(out) = &global.out {
+        global.write(&ranging::bundle(&result, out)?, out)?;
+    }
+    let mut text = ranging::text(&result);
+    if args.stats {
+        text.push_str(&ranging::stats(&result.stats));
+    }
+    global.print(&result, &text)?;
+    let failed = args.check && result.verdict.met != Some(true);
+    Ok(if failed { ExitCode::from(3) } else { ExitCode::SUCCESS })
+}

@@ -1,0 +1,139 @@
+//! The answer in a sentence, what diffraction adds, and what the reader must know.
+
+use super::RangeStudy;
+use super::results::{DepthVerdict, ObjectBounds, Ranging, Signal, SignalBounds};
+use super::subject::Resolved;
+use crate::error::Result;
+use crate::scenario::ranging::Demand;
+use crate::study::Warning;
+use crate::words::{self, significant};
+use std::f64::consts::PI;
+
+/// A gain of the scattered signal over the heat cube by more than rounding.
+const BEYOND: f64 = 1.0 + 1e-9;
+
+impl RangeStudy {
+    /// σ_d², pixel²: the diffraction that the image does not have in it. The pixel's own size is in the image: it is a mean
+    /// over pixels.
+    pub(super) fn var_diffraction_px2(&self) -> Result<f64> {
+        let aperture_m = self.camera.as_ref().map_or(f64::NAN, |camera| camera.focal_length_m / camera.f_number);
+        let var_m2 = self
+            .var_diffraction_m2(aperture_m)
+            .map_err(|error| error.at(self.scenario.place("stereo.diffraction")))?;
+        let pitch = self.geometry.pitch_m();
+        Ok(var_m2 / (pitch * pitch))
+    }
+
+    pub(super) fn verdict(&self, all: Option<&ObjectBounds>) -> Result<DepthVerdict> {
+        let by = |signal: Signal| all.and_then(|all| all.signals.iter().find(|found| found.signal == signal));
+        let cube = by(Signal::HeatCube);
+        let share = cube.and_then(|found| found.share);
+        let required = self.scenario.requirement.share;
+        let met = share.map(|share| share >= required);
+        let sentence = match (met, cube) {
+            (Some(met), Some(cube)) => self.sentence(met, cube, by(Signal::ThermalImage)),
+            (None, Some(cube)) => format!(
+                "A window's disparity can be known to {} pixels at best (median, heat cube); give the depth for what that means in metres.",
+                short(cube.disparity_error_px)
+            ),
+            (_, None) => "No window has a bound.".to_owned(),
+        };
+        Ok(DepthVerdict { met, sentence, share, required_share: required, signal: Signal::HeatCube })
+    }
+
+    pub(super) fn sentence(&self, met: bool, cube: &SignalBounds, thermal: Option<&SignalBounds>) -> String {
+        let requirement = self.scenario.requirement;
+        let reach = |found: &SignalBounds| words::share(found.share.unwrap_or(f64::NAN));
+        let beside = thermal.map_or_else(String::new, |thermal| {
+            format!("; a thermal image, all bands together, allows it in {}", reach(thermal))
+        });
+        format!(
+            "{}: depth can be measured to within {} in {} of the windows at best, by the heat cube ({} demanded){beside}.",
+            if met { "Yes" } else { "No" },
+            demand(requirement.error),
+            reach(cube),
+            words::share(requirement.share),
+        )
+    }
+}
+
+/// What is demanded, in words.
+pub(crate) fn demand(error: Demand) -> String {
+    match error {
+        Demand::Absolute(error_m) => words::length(error_m),
+        Demand::Relative(share) => format!("{} % of it", significant(100.0 * share, 3)),
+    }
+}
+
+fn short(value: f64) -> String {
+    significant(value, 2)
+}
+
+/// What the reader must know.
+pub(super) fn warnings(study: &RangeStudy, result: &Ranging) -> Vec<Warning> {
+    let mut warnings = Vec::new();
+    let Some(all) = result.objects.first() else { return warnings };
+    let by = |signal: Signal| all.signals.iter().find(|found| found.signal == signal);
+    if let (Some(cube), Some(alone)) = (by(Signal::HeatCube), by(Signal::ScatteredAsMeasured))
+        && alone.disparity_error_px * BEYOND < cube.disparity_error_px
+    {
+        warnings.push(Warning::new(
+            "scattered-as-measured",
+            format!(
+                "the scattered signal as if measured promises {} times less error than the heat cube holds: the photons that are emitted are \
+                 left out there, and no processing of the cube reaches it",
+                short(cube.disparity_error_px / alone.disparity_error_px)
+            ),
+        ));
+    }
+    if let Resolved::Cube(_) = &study.subject
+        && let Some(cube) = by(Signal::HeatCube)
+    {
+        let floor = noise_floor(study, result);
+        if floor > 0.02 * cube.information_per_px2 {
+            warnings.push(Warning::new(
+                "noise-in-counts",
+                format!(
+                    "if these counts are measured, their own noise makes an information of {} pixel^-2 of the {} that were found (median): give expected \
+                     counts, or averages of many frames",
+                    short(floor),
+                    short(cube.information_per_px2)
+                ),
+            ));
+        }
+        if result.objects.iter().all(|object| object.depth_m.is_none()) {
+            let message = "no depth is given: the bounds are on disparity; write depth = \"12 m\" or a file of depths in [cube]";
+            warnings.push(Warning::new("no-depth", message));
+        }
+    }
+    if let Some(ratio) = result.cells.and_then(|cells| cells.other_derivative)
+        && !(0.5..=2.0).contains(&ratio)
+    {
+        warnings.push(Warning::new(
+            "derivative",
+            format!(
+                "texture near the limit of the pixels: another derivative gives {} times the information; bounds are uncertain by the square root of that",
+                short(ratio)
+            ),
+        ));
+    }
+    if study.bands.as_ref().is_some_and(|bands| bands.len() < 3) && by(Signal::Reconstructed).is_some() {
+        let message = "fewer than 3 bands cannot tell emission from scattered light: nothing is reconstructed from them";
+        warnings.push(Warning::new("few-bands", message));
+    }
+    warnings
+}
+
+/// Information that noise of N + σ² in each sample would make, pixel⁻²: Σ of the squared taps for every sample.
+fn noise_floor(study: &RangeStudy, result: &Ranging) -> f64 {
+    // By Parseval: the mean of (ω·response)² over all frequencies.
+    const FREQUENCIES: usize = 1000;
+    let scheme = study.scenario.stereo.derivative;
+    let squared = |i: usize| {
+        let omega = PI * (i as f64 + 0.5) / FREQUENCIES as f64;
+        (omega * scheme.response(omega).unwrap_or(f64::NAN)).powi(2)
+    };
+    let per_sample = (0..FREQUENCIES).map(squared).sum::<f64>() / FREQUENCIES as f64;
+    let window = study.scenario.stereo.window;
+    per_sample * (window.rows() * window.columns() * result.shape.bands()) as f64
+}
