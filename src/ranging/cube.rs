@@ -2,6 +2,20 @@
 //!
 //! A cube is only ever asked for whole rows, in any order and by many threads at once: one that is larger than
 //! memory costs no more than the rows that are in work. Samples are `f32` or `f64`, and stay so.
+//!
+//! From a file: [`Cube::open`]; to one: [`write_npy`]. [`first_invalid`] names the sample that is no count,
+//! [`panchromatic`] adds the bands.
+
+mod band_sum;
+mod invalid;
+mod mat;
+mod npy;
+mod open;
+
+pub use band_sum::panchromatic;
+pub use invalid::first_invalid;
+pub use npy::{write_npy, write_npy_to};
+pub(crate) use open::is_cube;
 
 use crate::error::{Error, Result};
 use std::fmt::Debug;

@@ -8,6 +8,8 @@
 //!
 //! Source: paper S37, Tables S4 and S5.
 
+mod read;
+
 use super::cube::{Cube, Shape};
 use crate::error::{Error, Result, check};
 

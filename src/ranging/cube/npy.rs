@@ -1,0 +1,281 @@
+//! NPY files: read by rows at their place in the file, and written.
+//!
+//! A read goes from the file straight into the caller's buffer; nothing is shared between threads but the file's
+//! descriptor, so that several read at once.
+//!
+//! Source: NumPy, `numpy.lib.format` (versions 1.0, 2.0, 3.0).
+
+use super::{Cube, Rows, Sample, Shape, beyond};
+use crate::error::{Error, Result};
+use npyz::{DType, Endianness, NpyHeader, Order, TypeChar};
+use std::fs::File;
+use std::io::{BufWriter, Read, Seek, SeekFrom, Write};
+use std::marker::PhantomData;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+/// What an NPY file begins with.
+pub(super) const MAGIC: &[u8] = b"\x93NUMPY";
+
+/// Longest header that is looked at, bytes; as NumPy has it.
+const MAX_HEADER: usize = 10_000;
+
+/// A cube in an NPY file.
+#[derive(Debug)]
+struct NpyCube<S> {
+    file: File,
+    path: PathBuf,
+    shape: Shape,
+    /// Place of the first sample in the file.
+    start: u64,
+    /// Whether the bytes of a sample stand in the other order than this processor's.
+    swapped: bool,
+    sample: PhantomData<S>,
+}
+
+/// Opens an NPY file.
+pub(super) fn open(mut file: File, path: &Path) -> Result<Cube> {
+    let unreadable = |error: std::io::Error| Error::file(super::open::READ_CUBE, path, error);
+    let len = file.metadata().map_err(unreadable)?.len();
+    let (header, start) = header(&mut file, len)?;
+    let (double, order) = sample_type(&header.dtype())?;
+    let shape = shape(&header)?;
+    if header.order() == Order::Fortran {
+        return Err(Error::malformed(
+            "the array is in Fortran order, its rows not together",
+            "write it with np.save(path, np.ascontiguousarray(a))",
+        ));
+    }
+    let size = if double { size_of::<f64>() } else { size_of::<f32>() };
+    check_len(len.saturating_sub(start), shape.len() as u64 * size as u64)?;
+    let (path, swapped) = (path.to_owned(), order != Endianness::of_machine());
+    Ok(if double {
+        Cube::F64(Box::new(NpyCube { file, path, shape, start, swapped, sample: PhantomData }))
+    } else {
+        Cube::F32(Box::new(NpyCube { file, path, shape, start, swapped, sample: PhantomData }))
+    })
+}
+
+/// The header, and how many bytes it takes.
+fn header(file: &mut File, len: u64) -> Result<(NpyHeader, u64)> {
+    let cut = || truncated("the file ends within its header".to_owned());
+    let mut bytes = Vec::with_capacity(256);
+    // The first 12 bytes tell how many there are.
+    let mut fill = |bytes: &mut Vec<u8>, upto: u64| -> Result<()> {
+        file.seek(SeekFrom::Start(bytes.len() as u64)).map_err(|_| cut())?;
+        (&*file).take(upto - bytes.len() as u64).read_to_end(bytes).map_err(|_| cut())?;
+        if bytes.len() as u64 == upto { Ok(()) } else { Err(cut()) }
+    };
+    fill(&mut bytes, 12)?;
+    let (before, text) = match bytes[6..12] {
+        [1, _, low, high, ..] => (10, u32::from(u16::from_le_bytes([low, high]))),
+        [2 | 3, _, a, b, c, d] => (12, u32::from_le_bytes([a, b, c, d])),
+        [version, ..] => {
+            return Err(Error::malformed(
+                format!("the file is of version {version} of the NPY format"),
+                "write version 1, 2 or 3, as np.save does",
+            ));
+        }
+        [] => return Err(cut()),
+    };
+    let start = before + u64::from(text);
+    if start > len {
+        return Err(cut());
+    }
+    let strange = |text: &[u8]| {
+        let shown: String = String::from_utf8_lossy(text).trim_end().chars().take(80).collect();
+        Error::malformed(
+            format!("the header `{shown}` is not that of an array of numbers in two or three dimensions"),
+            "write the array with np.save(path, a)",
+        )
+    };
+    if text as usize > MAX_HEADER {
+        return Err(strange(&bytes));
+    }
+    fill(&mut bytes, start.max(12))?;
+    let text = &bytes[before as usize..];
+    // Deep nesting would exhaust the parser's stack, and dimensions of more than 19 digits together its u64.
+    let brackets = text.iter().filter(|byte| b"([{".contains(byte)).count();
+    let digits = text.iter().filter(|byte| byte.is_ascii_digit()).count();
+    if brackets > 64 || digits > 19 {
+        return Err(strange(text));
+    }
+    let header = NpyHeader::from_reader(bytes.as_slice()).map_err(|_| strange(text))?;
+    Ok((header, start))
+}
+
+/// Whether samples are doubles, and the order of their bytes.
+fn sample_type(dtype: &DType) -> Result<(bool, Endianness)> {
+    match dtype {
+        DType::Plain(plain) if plain.type_char() == TypeChar::Float && plain.size_field() == 8 => {
+            Ok((true, plain.endianness()))
+        }
+        DType::Plain(plain) if plain.type_char() == TypeChar::Float && plain.size_field() == 4 => {
+            Ok((false, plain.endianness()))
+        }
+        other => {
+            let name: String = other.descr().chars().take(80).collect();
+            Err(Error::malformed(
+                format!("the samples are of type {name}, not f4 or f8"),
+                "write them with np.save(path, a.astype(np.float32))",
+            ))
+        }
+    }
+}
+
+fn shape(header: &NpyHeader) -> Result<Shape> {
+    let [rows, columns, bands] = match *header.shape() {
+        [rows, columns] => [rows, columns, 1],
+        [rows, columns, bands] => [rows, columns, bands],
+        ref other => return Err(dimensions(other.len())),
+    }
+    .map(|n| usize::try_from(n).unwrap_or(usize::MAX));
+    Shape::new(rows, columns, bands)
+}
+
+/// An array of neither two nor three dimensions.
+pub(super) fn dimensions(found: usize) -> Error {
+    Error::malformed(
+        format!("the array has {found} dimension{}", if found == 1 { "" } else { "s" }),
+        "give [row][column][band], or [row][column] for one band",
+    )
+}
+
+fn truncated(found: String) -> Error {
+    Error::malformed(found, "it was not written or copied to its end; write it again")
+}
+
+fn check_len(found: u64, expected: u64) -> Result<()> {
+    match found.cmp(&expected) {
+        std::cmp::Ordering::Equal => Ok(()),
+        std::cmp::Ordering::Less => Err(truncated(format!(
+            "the file has {found} of the {expected} bytes of samples that its header announces"
+        ))),
+        std::cmp::Ordering::Greater => Err(Error::malformed(
+            format!("the file has {} bytes more than its header announces", found - expected),
+            "write the array alone with np.save(path, a)",
+        )),
+    }
+}
+
+impl<S: Sample> Rows<S> for NpyCube<S> {
+    fn shape(&self) -> Shape {
+        self.shape
+    }
+
+    fn read<'a>(&'a self, rows: Range<usize>, buffer: &'a mut Vec<S>) -> Result<&'a [S]> {
+        if rows.start > rows.end || rows.end > self.shape.rows() {
+            return Err(beyond(&rows, self.shape));
+        }
+        let len = rows.len() * self.shape.row_len();
+        // What is there already is only overwritten: cleared once, not with every read.
+        if buffer.len() < len {
+            buffer.resize(len, S::zeroed());
+        }
+        let samples = &mut buffer[..len];
+        let place = self.start + (rows.start * self.shape.row_len() * size_of::<S>()) as u64;
+        read_at(&self.file, &self.path, bytemuck::cast_slice_mut(samples), place).map_err(|error| {
+            let found = match error.kind() {
+                std::io::ErrorKind::UnexpectedEof => {
+                    "the file has become shorter since it was opened; open it again".to_owned()
+                }
+                _ => error.to_string(),
+            };
+            let action = format!("read rows {} to {} of the cube", rows.start, rows.end);
+            Error::file(action, &self.path, found)
+        })?;
+        if self.swapped {
+            swap_bytes(samples);
+        }
+        Ok(samples)
+    }
+}
+
+#[cfg(unix)]
+fn read_at(file: &File, _path: &Path, bytes: &mut [u8], place: u64) -> std::io::Result<()> {
+    std::os::unix::fs::FileExt::read_exact_at(file, bytes, place)
+}
+
+#[cfg(not(unix))]
+fn read_at(_file: &File, path: &Path, bytes: &mut [u8], place: u64) -> std::io::Result<()> {
+    read_reopened(path, bytes, place)
+}
+
+/// Where the system has no read at a place, every read has its own descriptor, so that threads need not wait.
+#[cfg(any(not(unix), test))]
+fn read_reopened(path: &Path, bytes: &mut [u8], place: u64) -> std::io::Result<()> {
+    let mut file = File::open(path)?;
+    file.seek(SeekFrom::Start(place))?;
+    file.read_exact(bytes)
+}
+
+fn swap_bytes<S: Sample>(samples: &mut [S]) {
+    if size_of::<S>() == size_of::<u32>() {
+        bytemuck::cast_slice_mut::<S, u32>(samples).iter_mut().for_each(|word| *word = word.swap_bytes());
+    } else {
+        bytemuck::cast_slice_mut::<S, u64>(samples).iter_mut().for_each(|word| *word = word.swap_bytes());
+    }
+}
+
+/// Writes samples [row][column][band] to an NPY file (version 1, three dimensions); one that is there is replaced.
+///
+/// # Errors
+/// A number of samples that is not that of the shape; a file that cannot be written.
+///
+/// ```no_run
+/// use hadar::ranging::cube::{Shape, write_npy};
+/// write_npy("scene.npy".as_ref(), Shape::new(1, 2, 2)?, &[10.0_f32, 11.0, 20.0, 21.0])?;
+/// # Ok::<(), hadar::Error>(())
+/// ```
+pub fn write_npy<S: Sample>(path: &Path, shape: Shape, samples: &[S]) -> Result<()> {
+    check_samples(shape, samples)?;
+    let unwritten = |error: std::io::Error| Error::file("write the cube", path, error);
+    let file = File::create(path).map_err(unwritten)?;
+    let mut writer = BufWriter::new(file);
+    put(&mut writer, shape, samples).and_then(|()| writer.flush()).map_err(unwritten)
+}
+
+/// Writes samples [row][column][band] in NPY format (version 1, three dimensions).
+///
+/// # Errors
+/// A number of samples that is not that of the shape; whatever the writer refuses.
+///
+/// ```
+/// use hadar::ranging::cube::{Shape, write_npy_to};
+/// let mut bytes = Vec::new();
+/// write_npy_to(&mut bytes, Shape::new(1, 2, 2)?, &[10.0_f32, 11.0, 20.0, 21.0])?;
+/// assert!(bytes.starts_with(b"\x93NUMPY\x01\x00"));
+/// assert_eq!(bytes.len(), 128 + 4 * 4);
+/// # Ok::<(), hadar::Error>(())
+/// ```
+pub fn write_npy_to<S: Sample>(mut writer: impl Write, shape: Shape, samples: &[S]) -> Result<()> {
+    check_samples(shape, samples)?;
+    put(&mut writer, shape, samples)
+        .map_err(|error| Error::File { action: "write the cube".to_owned(), reason: error.to_string() })
+}
+
+fn check_samples<S: Sample>(shape: Shape, samples: &[S]) -> Result<()> {
+    if samples.len() == shape.len() {
+        return Ok(());
+    }
+    Err(Error::Length { what: "samples of a cube".to_owned(), found: samples.len(), expected: shape.len() })
+}
+
+fn put<S: Sample>(writer: &mut impl Write, shape: Shape, samples: &[S]) -> std::io::Result<()> {
+    let order = Endianness::of_machine().to_str();
+    let (rows, columns, bands) = (shape.rows(), shape.columns(), shape.bands());
+    let size = size_of::<S>();
+    let text = format!(
+        "{{'descr': '{order}f{size}', 'fortran_order': False, 'shape': ({rows}, {columns}, {bands}), }}"
+    );
+    // Blanks and a line feed make 10 bytes and the text a multiple of 64: at most 3·20 digits, far below 2¹⁶.
+    let padded = (10 + text.len() + 1).next_multiple_of(64) - 11;
+    writer.write_all(MAGIC)?;
+    writer.write_all(&[1, 0])?;
+    writer.write_all(&(padded as u16 + 1).to_le_bytes())?;
+    writeln!(writer, "{text:<padded$}")?;
+    writer.write_all(bytemuck::cast_slice(samples))
+}
+
+#[cfg(test)]
+mod tests;
