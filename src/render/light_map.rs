@@ -1,0 +1,94 @@
+//! Vector form factors on the ground, tabulated.
+//!
+//! They are computed at the points of the ground that a camera midway between the two sees at every `step`-th row and
+//! column, and are linear in its image in between: a function of the place on the ground, and so the same
+//! for both cameras.
+
+use super::factor::Factor;
+use super::lighting::{Factors, factors};
+use super::rig::{Camera, Rig};
+use super::scene::{GROUND, SURFACES, Scene};
+use super::vector::{UP, Vector, along};
+use rayon::prelude::*;
+
+/// Pixels between nodes.
+const STEP: f64 = 2.0;
+/// More nodes than this are thinned out.
+const MAX_NODES: f64 = 4e5;
+
+#[derive(Debug)]
+pub(super) struct LightMap {
+    camera: Camera,
+    step: f64,
+    first: [f64; 2],
+    columns: usize,
+    rows: usize,
+    /// Φ above the horizon of every surface beyond the ground, [row][column].
+    nodes: Vec<[Vector; SURFACES]>,
+}
+
+impl LightMap {
+    pub(super) fn new(scene: &Scene, rig: &Rig) -> Self {
+        let camera = rig.camera(0.0);
+        let mut map = Self { camera, step: STEP, first: [0.0; 2], columns: 0, rows: 0, nodes: Vec::new() };
+        // The nearest ground, at the lowest row, is displaced the most.
+        let lowest = camera.direction(0.0, rig.rows as f64);
+        if lowest[1] >= 0.0 || scene.wall.is_some() || scene.lights.is_empty() {
+            return map;
+        }
+        let depth = rig.height_m / -lowest[1];
+        let margin = 0.5 * rig.disparity_px(depth) + 4.0;
+        let (across, down) = (rig.columns as f64 + 2.0 * margin, rig.rows as f64 + 8.0);
+        map.step = STEP.max((across * down / MAX_NODES).sqrt());
+        map.first = [-margin, -4.0];
+        map.columns = (across / map.step).ceil() as usize + 1;
+        map.rows = (down / map.step).ceil() as usize + 1;
+        map.nodes = (0..map.rows * map.columns)
+            .into_par_iter()
+            .map(|i| {
+                let [row, column] = [i / map.columns, i % map.columns].map(|i| i as f64 * map.step);
+                let direction = camera.direction(map.first[0] + column, map.first[1] + row);
+                if direction[1] >= 0.0 {
+                    return [[0.0; 3]; SURFACES];
+                }
+                let mut point = along(camera.origin, -camera.origin[1] / direction[1], direction);
+                point[1] = 0.0;
+                if !point.iter().all(|x| x.is_finite()) {
+                    return [[0.0; 3]; SURFACES];
+                }
+                factors(scene, point, UP, None).map(|factor| factor.above)
+            })
+            .collect();
+        map
+    }
+
+    /// Vector form factors at a point of the ground; none beyond the map.
+    #[inline]
+    pub(super) fn at(&self, point: Vector) -> Factors {
+        let mut factors = Factors::default();
+        let Some([column, row, _]) = self.camera.project(point) else { return factors };
+        let (u, v) = ((column - self.first[0]) / self.step, (row - self.first[1]) / self.step);
+        if !(u >= 0.0 && v >= 0.0) {
+            return factors;
+        }
+        let (i, j) = (u as usize, v as usize);
+        if i + 1 >= self.columns || j + 1 >= self.rows {
+            return factors;
+        }
+        let (s, t) = (u - i as f64, v - j as f64);
+        let (upper, lower) = (j * self.columns + i, (j + 1) * self.columns + i);
+        let corners = [
+            ((1.0 - s) * (1.0 - t), self.nodes.get(upper)),
+            (s * (1.0 - t), self.nodes.get(upper + 1)),
+            ((1.0 - s) * t, self.nodes.get(lower)),
+            (s * t, self.nodes.get(lower + 1)),
+        ];
+        for (weight, node) in corners {
+            let Some(node) = node else { continue };
+            for (Factor { above, .. }, phi) in factors.iter_mut().zip(node).skip(GROUND + 1) {
+                *above = along(*above, weight, *phi);
+            }
+        }
+        factors
+    }
+}

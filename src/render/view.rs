@@ -1,0 +1,133 @@
+//! What one camera of the pair sees.
+
+use super::radiosity::Basis;
+use crate::error::{Error, Result, check};
+use crate::ranging::cube::{MemoryCube, Shape};
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// A part of the heat signal.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Part {
+    /// All of it: what a thermal camera sees.
+    Total,
+    /// e B(T).
+    Emission,
+    /// (1 − e) ΣVS.
+    Scattered,
+}
+
+impl Part {
+    /// All parts.
+    pub const ALL: [Self; 3] = [Self::Total, Self::Emission, Self::Scattered];
+}
+
+/// Mixtures of a row of pixels: one entry for every surface in a pixel.
+#[derive(Debug, Default)]
+pub(super) struct MixedRow {
+    /// One past the last entry of each pixel.
+    pub(super) entries_until: Vec<u32>,
+    /// Surface of each entry.
+    pub(super) surfaces: Vec<u8>,
+    /// Coefficients of the rows of that surface's spectra, entry after entry.
+    pub(super) coefficients: Vec<f64>,
+}
+
+/// What is at the pixel's centre.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Centre {
+    pub(super) depth_m: f64,
+    pub(super) surface: u8,
+    pub(super) texture: f64,
+    pub(super) seen_by_other: bool,
+}
+
+/// One camera's picture, with the truth about it. Maps are [row][column] and tell what is at a pixel's centre; radiance is the mean
+/// over the pixel's area.
+#[derive(Debug)]
+pub struct View {
+    pub(super) shape: Shape,
+    pub(super) basis: Arc<Basis>,
+    pub(super) rows: Vec<MixedRow>,
+    /// Depth along the optical axis, m; infinite in the sky.
+    pub depth_m: Vec<f64>,
+    /// d = x_L − x_R, pixels; 0 in the sky.
+    pub disparity_px: Vec<f64>,
+    /// Temperature, K.
+    pub temperature_k: Vec<f64>,
+    /// Place of the surface in [`Scene::surfaces`](super::Scene::surfaces).
+    pub surface: Vec<u8>,
+    /// Mixing τ of the surface's two emissivities, 0 where it has but one.
+    pub texture: Vec<f64>,
+    /// Thermal lighting factors V, [row][column][surface]; all 0 in the sky.
+    pub lighting: Vec<f64>,
+    /// Whether the other camera sees the same point.
+    pub seen_by_other: Vec<bool>,
+}
+
+impl View {
+    /// Rows, columns and bands.
+    #[must_use]
+    pub fn shape(&self) -> Shape {
+        self.shape
+    }
+
+    /// A part of the signal, photons s⁻¹ m⁻² sr⁻¹ in each band, times `factor`: expected counts if that is
+    /// [`Counting::counts_per_radiance`](crate::fisher::Counting::counts_per_radiance).
+    ///
+    /// # Errors
+    /// A factor that is not positive and finite.
+    pub fn cube(&self, part: Part, factor: f64) -> Result<MemoryCube<f64>> {
+        check::positive("counts per radiance", factor, "")?;
+        let mut samples = vec![0.0; self.shape.len()];
+        samples
+            .par_chunks_mut(self.shape.row_len())
+            .zip(&self.rows)
+            .for_each(|(out, row)| self.fill(part, factor, row, out));
+        if samples.iter().all(|sample| sample.is_finite()) {
+            return MemoryCube::new(self.shape, samples);
+        }
+        Err(Error::malformed(
+            "counts beyond all numbers",
+            "lower the temperatures or the counts per radiance",
+        ))
+    }
+
+    /// A row of a part of the signal times `factor`, [column][band], into `out`; nothing if there is no such row.
+    pub fn row_into(&self, part: Part, factor: f64, row: usize, out: &mut Vec<f64>) {
+        out.clear();
+        if let Some(row) = self.rows.get(row) {
+            out.resize(self.shape.row_len(), 0.0);
+            self.fill(part, factor, row, out);
+        }
+    }
+
+    fn fill(&self, part: Part, factor: f64, row: &MixedRow, out: &mut [f64]) {
+        let bands = self.basis.bands;
+        let (mut entry, mut coefficients) = (0, row.coefficients.as_slice());
+        for (pixel, &until) in out.chunks_exact_mut(bands).zip(&row.entries_until) {
+            while entry < until {
+                let surface = row.surfaces.get(entry as usize).map_or(0, |&surface| usize::from(surface));
+                let (own, rest) = coefficients.split_at(self.basis.rows(surface).min(coefficients.len()));
+                let spectra = self.basis.spectra.get(surface).map_or(&[][..], |spectra| spectra.as_slice());
+                for (i, (&weight, spectrum)) in own.iter().zip(spectra.chunks_exact(bands)).enumerate() {
+                    let emitted = i % (1 + self.basis.sources) == 0;
+                    let wanted = match part {
+                        Part::Total => true,
+                        Part::Emission => emitted,
+                        Part::Scattered => !emitted,
+                    };
+                    if wanted && weight != 0.0 {
+                        for (out, s) in pixel.iter_mut().zip(spectrum) {
+                            *out += weight * s;
+                        }
+                    }
+                }
+                coefficients = rest;
+                entry += 1;
+            }
+            pixel.iter_mut().for_each(|sample| *sample *= factor);
+        }
+    }
+}
