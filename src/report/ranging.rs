@@ -3,7 +3,7 @@
 mod figures;
 mod text;
 
-pub use figures::{bound_maps, derivative_errors, lines, matched_maps, views};
+pub use figures::{bound_maps, derivative_errors, lines, matched_maps, picture_plot, views};
 pub use text::{stats, text};
 
 use super::bundle::Bundle;

@@ -237,3 +237,14 @@ fn plot(
 fn short(value: f64) -> String {
     if value.is_finite() { number(format!("{value:.6e}").parse().unwrap_or(value)) } else { String::new() }
 }
+
+/// Pictures side by side with a table of some of their pixels; each with the head of its column.
+#[must_use]
+pub fn picture_plot(
+    name: &'static str,
+    title: &str,
+    subtitle: String,
+    pictures: Vec<(String, Picture)>,
+) -> Option<Plot> {
+    plot(name, title, subtitle, "no value", pictures, [0, 0])
+}
