@@ -18,6 +18,17 @@
 //!
 //! Source: paper S37–S40, Tables S4 and S5.
 
+mod blocks;
+mod boxes;
+mod checks;
+mod kernels;
+mod pixels;
+mod rows;
+mod samples;
+#[cfg(test)]
+mod tests;
+
+use super::cube::Cube;
 use super::derivative::Derivative;
 use super::noise::{Joined, NoiseVariance};
 use crate::error::{Error, Result};
@@ -140,4 +151,15 @@ impl InformationMap {
             Cell::Full => full,
         }
     }
+}
+
+/// J of every window whose centre lies in the rows asked for.
+///
+/// # Errors
+/// A window or derivative that does not fit into the image; noise that does not fit the cube; a count or variance that is
+/// negative, NaN, infinite or beyond 1e27; a count below 1e-27 without electronic noise; a cube that cannot be read.
+pub fn information(cube: &Cube, request: &Request<'_>) -> Result<InformationMap> {
+    let plan = blocks::Plan::new(cube.shape(), request)?;
+    let sums = samples::band_sums(cube, &plan, 32)?;
+    pixels::windows(&plan, sums)
 }

@@ -1,0 +1,168 @@
+//! Second pass, over the pixels: sums over windows of what the first pass left of each pixel.
+
+use super::blocks::{Plan, run};
+use super::boxes::{Along, Stack, along};
+use super::samples::BandSums;
+use super::{Cell, InformationMap};
+use crate::error::{Error, Result};
+use crate::ranging::derivative::Differentiator;
+use crate::simd::{Aligned, Chunk, LANES};
+use std::ops::Range;
+
+/// Doubles of a pixel: Σ_b (∂N)²/(N + σ²), (Σ_b ∂N)²/Σ_b (N + σ²), Σ_b ∂N, Σ_b N, Σ_b σ², and none.
+const RECORD: usize = LANES;
+
+/// Rows of windows of a block.
+const BLOCK: usize = 64;
+
+struct Block<'a> {
+    tops: Range<usize>,
+    total: &'a mut [f64],
+    spatial: &'a mut [f64],
+    full: &'a mut [f64],
+    photons: &'a mut [f64],
+    var: &'a mut [f64],
+}
+
+#[derive(Default)]
+struct Room {
+    slopes: Option<Differentiator>,
+    stack: Stack,
+    slope: Vec<f64>,
+    sum: Aligned,
+    ends: Aligned,
+    begin: Aligned,
+    windows: Aligned,
+}
+
+/// The second pass.
+pub(super) fn windows(plan: &Plan<'_>, sums: BandSums) -> Result<InformationMap> {
+    let (columns, half) = (plan.centres(), plan.request.window.half_rows());
+    let rows = plan.tops.start + half..plan.tops.end + half;
+    let len = rows.len() * columns.len();
+    let room = |wanted: bool| vec![0.0; if wanted { len } else { 0 }];
+    let [mut total, mut spatial, mut full] =
+        [Cell::Total, Cell::Spatial, Cell::Full].map(|cell| room(plan.wants(cell)));
+    let (mut photons, mut var) = (room(true), room(true));
+    let per_block = (BLOCK * columns.len()).max(1);
+    {
+        fn parts(values: &mut [f64], len: usize) -> impl Iterator<Item = &mut [f64]> {
+            values.chunks_mut(len).chain(std::iter::repeat_with(|| <&mut [f64]>::default()))
+        }
+        let (mut total, mut spatial) = (parts(&mut total, per_block), parts(&mut spatial, per_block));
+        let (mut full, mut var) = (parts(&mut full, per_block), parts(&mut var, per_block));
+        let mut photons = parts(&mut photons, per_block);
+        let blocks: Vec<Block<'_>> = plan
+            .tops
+            .clone()
+            .step_by(BLOCK)
+            .map(|start| Block {
+                tops: start..plan.tops.end.min(start + BLOCK),
+                total: total.next().unwrap_or_default(),
+                spatial: spatial.next().unwrap_or_default(),
+                full: full.next().unwrap_or_default(),
+                photons: photons.next().unwrap_or_default(),
+                var: var.next().unwrap_or_default(),
+            })
+            .collect();
+        run(blocks, |block, room: &mut Room| block.work(plan, &sums, room))?;
+    }
+    let map = InformationMap {
+        rows,
+        columns,
+        information: [total, spatial, sums.spectral, full],
+        photons,
+        var_electronic: var,
+    };
+    finite(map)
+}
+
+/// A map without an infinity: counts at the ends of what is allowed side by side.
+fn finite(map: InformationMap) -> Result<InformationMap> {
+    // A sum of terms that are not negative is finite only if all of them are.
+    let sums = map.information.iter().map(|cell| crate::sum::sum(cell));
+    match sums.into_iter().find(|sum| !sum.is_finite()) {
+        None => Ok(map),
+        Some(sum) => Err(Error::out_of_range(
+            "the information of a window",
+            sum,
+            "pixel^-2",
+            "finite; the counts of neighbouring pixels are too far apart",
+        )),
+    }
+}
+
+impl Block<'_> {
+    fn work(self, plan: &Plan<'_>, sums: &BandSums, room: &mut Room) -> Result<()> {
+        let (window, inner) = (plan.request.window, plan.inner());
+        let columns = plan.shape.columns();
+        if room.slopes.is_none() {
+            room.slopes = Some(Differentiator::new(plan.request.derivative, columns)?);
+        }
+        room.stack.start(window.rows(), inner.len() * RECORD, self.tops.start);
+        room.slope.resize(inner.len(), 0.0);
+        for row in [&mut room.sum, &mut room.ends, &mut room.windows] {
+            row.set_len(inner.len() * RECORD);
+        }
+        room.begin.set_len(RECORD);
+        let place = Along { stride: RECORD, width: window.columns(), first: inner.start };
+        let centres = plan.centres().len();
+        let pixels = (window.rows() * window.columns()) as f64;
+        let bands = plan.shape.bands() as f64;
+        let var_pixel: f64 = crate::sum::sum(&plan.var_band);
+        let (share_pixel, share_window) = (plan.share(bands), plan.share(bands * pixels));
+        let var_window = |sum: f64| if plan.var_band.is_empty() { sum } else { pixels * var_pixel };
+        let Self { tops, total, spatial, full, photons, var } = self;
+        let cells = [plan.wants(Cell::Total), plan.wants(Cell::Spatial), plan.wants(Cell::Full)];
+        for y in tops.start..tops.end + window.rows() - 1 {
+            let row = y - plan.tops.start;
+            let counts = &sums.counts[row * columns..(row + 1) * columns];
+            if let Some(slopes) = &mut room.slopes
+                && (cells[0] || cells[1])
+            {
+                slopes.apply(counts, 1, &mut room.slope)?;
+            }
+            let records = room.stack.row(y).as_chunks_mut::<RECORD>().0;
+            for (x, record) in records.iter_mut().enumerate() {
+                let count = counts[inner.start + x];
+                let own = || sums.variances[row * columns + inner.start + x];
+                let var = if plan.var_band.is_empty() { own() } else { var_pixel };
+                let slope = room.slope[x];
+                let full = if cells[2] { sums.quotients[row * inner.len() + x] } else { 0.0 };
+                let spatial = if cells[1] { slope * slope / share_pixel.mul_add(var, count) } else { 0.0 };
+                let of: Chunk = [full, spatial, slope, count, var, 0.0, 0.0, 0.0];
+                *record = of;
+            }
+            room.stack.push(y);
+            if y + 1 >= tops.start + window.rows() {
+                room.stack.sum(y, &mut room.sum);
+                along(&room.sum, place, &mut room.ends, &mut room.begin, &mut room.windows);
+                let row = (y + 1 - window.rows() - tops.start) * centres;
+                let windows = &room.windows.as_chunks::<RECORD>().0[..centres];
+                for (to, of) in photons[row..].iter_mut().zip(windows) {
+                    *to = of[3];
+                }
+                for (to, of) in var[row..].iter_mut().zip(windows) {
+                    *to = var_window(of[4]);
+                }
+                if cells[0] {
+                    for (to, of) in total[row..].iter_mut().zip(windows) {
+                        *to = of[2] * of[2] / share_window.mul_add(var_window(of[4]), of[3]);
+                    }
+                }
+                if cells[1] {
+                    for (to, of) in spatial[row..].iter_mut().zip(windows) {
+                        *to = of[1];
+                    }
+                }
+                if cells[2] {
+                    for (to, of) in full[row..].iter_mut().zip(windows) {
+                        *to = of[0];
+                    }
+                }
+            }
+            room.stack.finish(y);
+        }
+        Ok(())
+    }
+}

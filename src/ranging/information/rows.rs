@@ -1,0 +1,63 @@
+//! Rows of a cube of either kind of sample, as they were read.
+
+use super::kernels::{Seen, Stored};
+use crate::error::Result;
+use crate::ranging::cube::{Cube, Rows};
+use std::ops::Range;
+
+/// Room for rows that do not lie in memory.
+#[derive(Debug, Default)]
+pub(super) struct Buffer {
+    narrow: Vec<f32>,
+    wide: Vec<f64>,
+}
+
+impl Buffer {
+    /// Reads rows.
+    pub(super) fn read<'a>(&'a mut self, cube: &'a Cube, rows: Range<usize>) -> Result<Raw<'a>> {
+        let len = rows.len() * cube.shape().row_len();
+        match cube {
+            Cube::F32(cube) => exactly(cube.as_ref(), rows, len, &mut self.narrow).map(Raw::F32),
+            Cube::F64(cube) => exactly(cube.as_ref(), rows, len, &mut self.wide).map(Raw::F64),
+        }
+    }
+}
+
+fn exactly<'a, S: Stored>(
+    cube: &'a dyn Rows<S>,
+    rows: Range<usize>,
+    len: usize,
+    buffer: &'a mut Vec<S>,
+) -> Result<&'a [S]> {
+    let samples = cube.read(rows, buffer)?;
+    if samples.len() == len {
+        return Ok(samples);
+    }
+    let what = "samples of rows of a cube".to_owned();
+    Err(crate::Error::Length { what, found: samples.len(), expected: len })
+}
+
+/// Samples of rows, [row][column][band].
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Raw<'a> {
+    F32(&'a [f32]),
+    F64(&'a [f64]),
+}
+
+impl Raw<'_> {
+    /// One sample; NaN beyond the last.
+    pub(super) fn get(self, at: usize) -> f64 {
+        match self {
+            Raw::F32(samples) => samples.get(at).map_or(f64::NAN, |sample| f64::from(*sample)),
+            Raw::F64(samples) => samples.get(at).copied().unwrap_or(f64::NAN),
+        }
+    }
+
+    /// Widens the samples from `start` on to whole vectors per column, as many columns as `to` has room for.
+    pub(super) fn widen(self, start: usize, bands: usize, to: &mut [f64]) -> Seen {
+        match self {
+            Raw::F32(samples) => Stored::widen(&samples[start..], bands, to),
+            Raw::F64(samples) => Stored::widen(&samples[start..], bands, to),
+        }
+    }
+}

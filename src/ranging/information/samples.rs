@@ -1,0 +1,291 @@
+//! First pass, over the samples: of every pixel the sum over bands and the information of its bands, of every window the
+//! information of its bands.
+//!
+//! A block of rows is worked on in strips of columns, so that what is kept of the last rows (as many as a window has) stays in
+//! cache. For the sums over windows see [`super::boxes`].
+
+use super::Cell;
+use super::blocks::{Plan, Strip, run};
+use super::boxes::{Along, Stack, add_to, along};
+use super::checks::Checked;
+use super::kernels::{Quotients, ratios, ratios_central, ratios_ends, totals};
+use super::rows::Buffer;
+use crate::error::Result;
+use crate::ranging::cube::Cube;
+use crate::ranging::derivative::Differentiator;
+use crate::ranging::noise::NoiseVariance;
+use crate::simd::{Aligned, Chunk, LANES};
+use std::ops::Range;
+
+/// Sums over the bands of pixels and of windows.
+#[derive(Debug, Default)]
+pub(super) struct BandSums {
+    /// Σ_b (∂N)²/(N + σ²), [row][column] of the pixels in windows with a derivative; empty unless asked for.
+    pub(super) quotients: Vec<f64>,
+    /// Σ_b N, [row][column], all columns.
+    pub(super) counts: Vec<f64>,
+    /// Σ_b σ², likewise; empty unless every sample has its own.
+    pub(super) variances: Vec<f64>,
+    /// Σ_b (Σ_p ∂N)²/Σ_p (N + σ²), [row][column] of the windows; empty unless asked for.
+    pub(super) spectral: Vec<f64>,
+}
+
+/// Rows of the results that a block makes.
+struct Block<'a> {
+    tops: Range<usize>,
+    owned: Range<usize>,
+    quotients: &'a mut [f64],
+    counts: &'a mut [f64],
+    variances: &'a mut [f64],
+    spectral: &'a mut [f64],
+}
+
+/// Takes the first `len` values off a slice.
+fn take<'a>(rest: &mut &'a mut [f64], len: usize) -> &'a mut [f64] {
+    let len = len.min(rest.len());
+    let (taken, left) = std::mem::take(rest).split_at_mut(len);
+    *rest = left;
+    taken
+}
+
+/// The first pass.
+pub(super) fn band_sums(cube: &Cube, plan: &Plan<'_>, block_rows: usize) -> Result<BandSums> {
+    let (rows, inner) = (plan.rows(), plan.inner().len());
+    let room = |wanted: bool, rows: usize, columns: usize| vec![0.0; if wanted { rows * columns } else { 0 }];
+    let mut sums = BandSums {
+        quotients: room(plan.wants(Cell::Full), rows.len(), inner),
+        counts: room(true, rows.len(), plan.shape.columns()),
+        variances: room(plan.var_band.is_empty(), rows.len(), plan.shape.columns()),
+        spectral: room(plan.wants(Cell::Spectral), plan.tops.len(), plan.centres().len()),
+    };
+    let mut blocks = Vec::new();
+    let (mut quotients, mut counts) = (&mut sums.quotients[..], &mut sums.counts[..]);
+    let (mut variances, mut spectral) = (&mut sums.variances[..], &mut sums.spectral[..]);
+    let mut start = plan.tops.start;
+    while start < plan.tops.end {
+        let end = plan.tops.end.min(start + block_rows);
+        let owned = start..if end == plan.tops.end { rows.end } else { end };
+        blocks.push(Block {
+            tops: start..end,
+            quotients: take(&mut quotients, owned.len() * inner),
+            counts: take(&mut counts, owned.len() * plan.shape.columns()),
+            variances: take(&mut variances, owned.len() * plan.shape.columns()),
+            spectral: take(&mut spectral, (end - start) * plan.centres().len()),
+            owned,
+        });
+        start = end;
+    }
+    let strips = plan.strips();
+    run(blocks, |block, room: &mut Room| block.work(cube, plan, &strips, room))?;
+    Ok(sums)
+}
+
+/// What a thread keeps from block to block.
+#[derive(Default)]
+struct Room {
+    counts: Buffer,
+    variances: Buffer,
+    strip: StripRoom,
+}
+
+#[derive(Default)]
+struct StripRoom {
+    slopes: Option<Differentiator>,
+    counts: Stack,
+    variances: Stack,
+    /// Σ of the counts over the rows of windows.
+    sum: Aligned,
+    /// What stands below the fraction.
+    below: Aligned,
+    slope: Aligned,
+    /// Sums over windows of `below`, and of `slope`.
+    below_sums: Aligned,
+    slope_sums: Aligned,
+    ends: Aligned,
+    begin: Aligned,
+    lanes: Vec<Chunk>,
+}
+
+impl Block<'_> {
+    fn work(mut self, cube: &Cube, plan: &Plan<'_>, strips: &[Strip], room: &mut Room) -> Result<()> {
+        let last =
+            if plan.wants(Cell::Spectral) { self.tops.end + plan.request.window.rows() - 1 } else { 0 };
+        let read = self.owned.start..self.owned.end.max(last);
+        let counts = room.counts.read(cube, read.clone())?;
+        let variances = match plan.request.noise {
+            NoiseVariance::PerSample(cube) => Some(room.variances.read(cube, read.clone())?),
+            _ => None,
+        };
+        let checked = Checked {
+            shape: plan.shape,
+            rows: (read.start, read.end),
+            counts,
+            variances,
+            var_band: &plan.var_band,
+            zero_matters: plan.var_band.is_empty()
+                || plan.var_band.iter().any(|var| *var < super::checks::LEAST),
+        };
+        if !plan.central() && room.strip.slopes.is_none() {
+            room.strip.slopes = Some(Differentiator::new(plan.request.derivative, plan.shape.columns())?);
+        }
+        for strip in strips {
+            room.strip.start(plan, strip, read.start, variances.is_some());
+            for y in read.clone() {
+                self.row(y, plan, strip, &checked, &mut room.strip)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Takes a row of a strip into the sums.
+    fn row(
+        &mut self,
+        y: usize,
+        plan: &Plan<'_>,
+        strip: &Strip,
+        checked: &Checked<'_>,
+        room: &mut StripRoom,
+    ) -> Result<()> {
+        let (stride, bands, columns) = (plan.stride, plan.shape.bands(), plan.shape.columns());
+        let start = (y - checked.rows.0) * plan.shape.row_len() + strip.read.start * bands;
+        let seen = checked.counts.widen(start, bands, room.counts.row(y));
+        let seen_var = checked.variances.map(|raw| raw.widen(start, bands, room.variances.row(y)));
+        checked.look(seen, seen_var)?;
+        if self.owned.contains(&y) {
+            let row = y - self.owned.start;
+            let of = |range: &Range<usize>, first: usize| range.start - first..range.end - first;
+            let local = of(&strip.totals, strip.read.start);
+            let samples = local.start * stride..local.end * stride;
+            let to = row * columns + strip.totals.start..row * columns + strip.totals.end;
+            totals(
+                &room.counts.row(y)[samples.clone()],
+                stride,
+                &mut room.lanes,
+                &mut self.counts[to.clone()],
+            );
+            if checked.variances.is_some() {
+                totals(&room.variances.row(y)[samples], stride, &mut room.lanes, &mut self.variances[to]);
+            }
+            if plan.wants(Cell::Full) {
+                let to = of(&strip.quotients, plan.margin);
+                let inner = plan.inner().len();
+                let to = &mut self.quotients[row * inner + to.start..row * inner + to.end];
+                room.quotients(y, plan, strip, checked.variances.is_some(), to)?;
+            }
+        }
+        if plan.wants(Cell::Spectral) {
+            room.counts.push(y);
+            if checked.variances.is_some() {
+                room.variances.push(y);
+            }
+            let top = (y + 1).checked_sub(plan.request.window.rows()).filter(|top| self.tops.contains(top));
+            if let Some(top) = top {
+                let centres = plan.centres();
+                let row = (top - self.tops.start) * centres.len();
+                let (start, end) = (strip.centres.start - centres.start, strip.centres.end - centres.start);
+                let to = &mut self.spectral[row + start..row + end];
+                room.spectral(y, plan, strip, checked.variances.is_some(), to)?;
+            }
+            room.counts.finish(y);
+            if checked.variances.is_some() {
+                room.variances.finish(y);
+            }
+        }
+        Ok(())
+    }
+}
+
+impl StripRoom {
+    fn start(&mut self, plan: &Plan<'_>, strip: &Strip, first: usize, variances: bool) {
+        let len = strip.read.len() * plan.stride;
+        let height = if plan.wants(Cell::Spectral) { plan.request.window.rows() } else { 1 };
+        self.counts.start(height, len, first);
+        if variances {
+            self.variances.start(height, len, first);
+        }
+        for row in [
+            &mut self.sum,
+            &mut self.below,
+            &mut self.slope,
+            &mut self.below_sums,
+            &mut self.slope_sums,
+            &mut self.ends,
+        ] {
+            row.set_len(len);
+        }
+        self.begin.set_len(plan.stride);
+        self.lanes.resize(strip.read.len(), [0.0; LANES]);
+    }
+
+    /// The quotients of row `y`, over the bands of each pixel.
+    fn quotients(
+        &mut self,
+        y: usize,
+        plan: &Plan<'_>,
+        strip: &Strip,
+        variances: bool,
+        to: &mut [f64],
+    ) -> Result<()> {
+        let stride = plan.stride;
+        let from = strip.quotients.start - strip.read.start;
+        let samples = from * stride..(from + strip.quotients.len()) * stride;
+        let row = &self.counts.row(y)[..];
+        let below = if variances {
+            self.below.copy_from_slice(row);
+            add_to(self.variances.row(y), &mut self.below);
+            &self.below[samples]
+        } else {
+            &row[samples]
+        };
+        let mut of = Quotients { below, var: &plan.var_sample, derivative: &[], stride };
+        if let Some(slopes) = &mut self.slopes {
+            let len = plan.inner().len() * stride;
+            slopes.apply(row, stride, &mut self.slope[..len])?;
+            of.derivative = &self.slope[..len];
+            ratios(of, &mut self.lanes, to);
+        } else {
+            ratios_central(&row[(from - 1) * stride..], of, &mut self.lanes, to);
+        }
+        Ok(())
+    }
+
+    /// The quotients of the windows that end with row `y`, over their bands.
+    fn spectral(
+        &mut self,
+        y: usize,
+        plan: &Plan<'_>,
+        strip: &Strip,
+        variances: bool,
+        to: &mut [f64],
+    ) -> Result<()> {
+        let stride = plan.stride;
+        let width = plan.request.window.columns();
+        self.counts.sum(y, &mut self.sum);
+        let inside = plan.margin * stride..(strip.read.len() - plan.margin) * stride;
+        let below = if variances {
+            let share = plan.share((plan.request.window.rows() * width) as f64);
+            self.variances.sum(y, &mut self.below);
+            for (below, count) in self.below.iter_mut().zip(self.sum.iter()) {
+                *below = share.mul_add(*below, *count);
+            }
+            &self.below[inside]
+        } else {
+            &self.sum[inside]
+        };
+        let place = Along { stride, width, first: strip.read.start + plan.margin };
+        along(below, place, &mut self.ends, &mut self.begin, &mut self.below_sums);
+        let windows = strip.centres.len() * stride;
+        let mut of =
+            Quotients { below: &self.below_sums[..windows], var: &plan.var_window, derivative: &[], stride };
+        if let Some(slopes) = &mut self.slopes {
+            let len = plan.inner().len() * stride;
+            slopes.apply(&self.sum, stride, &mut self.slope[..len])?;
+            along(&self.slope[..len], place, &mut self.ends, &mut self.begin, &mut self.slope_sums);
+            of.derivative = &self.slope_sums[..windows];
+            ratios(of, &mut self.lanes, to);
+        } else {
+            ratios_ends(&self.sum, width, of, &mut self.lanes, to);
+        }
+        Ok(())
+    }
+}
