@@ -11,10 +11,12 @@ mod edfig6;
 mod edfig9;
 mod fig3b;
 mod fig3c;
+mod fig4;
 mod ledger;
 mod policy;
 mod scene;
 mod tabs2;
+mod tabs5;
 
 pub use ledger::{Line, Verdict, markdown, table};
 
@@ -36,8 +38,14 @@ pub enum Item {
     EdFig6,
     /// Thermometry.
     EdFig9,
+    /// Ranging: bounds by signal, and matching beside them.
+    Fig4,
+    /// Measures of texture.
+    FigS12,
     /// Detectors.
     TabS2,
+    /// What resolution is worth in ranging.
+    TabS5,
     /// The policy numbers.
     Policy,
 }
@@ -76,8 +84,18 @@ pub type Progress<'a> = &'a (dyn Fn(usize, usize) + Sync);
 
 impl Item {
     /// All of them, the quickest first.
-    pub const ALL: [Self; 7] =
-        [Self::TabS2, Self::Policy, Self::Fig3c, Self::EdFig6, Self::EdFig9, Self::FigS7, Self::Fig3b];
+    pub const ALL: [Self; 10] = [
+        Self::TabS2,
+        Self::TabS5,
+        Self::Policy,
+        Self::Fig3c,
+        Self::FigS12,
+        Self::Fig4,
+        Self::EdFig6,
+        Self::EdFig9,
+        Self::FigS7,
+        Self::Fig3b,
+    ];
 
     /// The name on the command line, and of its folder.
     #[must_use]
@@ -88,6 +106,9 @@ impl Item {
             Self::Fig3c => "fig3c",
             Self::EdFig6 => "edfig6",
             Self::EdFig9 => "edfig9",
+            Self::Fig4 => "fig4",
+            Self::FigS12 => "figs12",
+            Self::TabS5 => "tabs5",
             Self::TabS2 => "tabs2",
             Self::Policy => "policy",
         }
@@ -102,6 +123,9 @@ impl Item {
             Self::Fig3c => "Fig. 3c: photons required over temperature and lighting",
             Self::EdFig6 => "Extended Data Fig. 6: five materials",
             Self::EdFig9 => "Extended Data Fig. 9f: thermometry against its bound",
+            Self::Fig4 => "Fig. 4: ranging by a thermal image, a heat cube and scattered light",
+            Self::FigS12 => "Fig. S12: measures of texture",
+            Self::TabS5 => "Tables S4 and S5: what resolution is worth",
             Self::TabS2 => "Table S2: detectors",
             Self::Policy => "Policy: can a camera tell a person from a robot?",
         }
@@ -139,6 +163,9 @@ impl Item {
             Self::Fig3c => fig3c::make(out)?,
             Self::EdFig6 => edfig6::make(order, out, progress)?,
             Self::EdFig9 => edfig9::make(order, out, progress)?,
+            Self::Fig4 => fig4::make(order, out, progress)?,
+            Self::FigS12 => fig4::textures(order)?,
+            Self::TabS5 => tabs5::make()?,
             Self::TabS2 => tabs2::make(out)?,
             Self::Policy => policy::make(out)?,
         };

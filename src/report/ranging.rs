@@ -9,7 +9,7 @@ pub use text::{stats, text};
 use super::bundle::Bundle;
 use super::table::{Table, number, optional};
 use super::tables;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::ranging::cube::{Shape, write_npy_to};
 use crate::study::ranging::{Line, Ranging};
 use std::path::Path;
@@ -139,7 +139,3 @@ pub(super) fn lines_table<'a>(lines: impl IntoIterator<Item = &'a Line>) -> Tabl
     table
 }
 
-/// A view without rows or columns has no picture.
-pub(super) fn no_picture() -> Error {
-    Error::malformed("a view without pixels", "report this as a bug")
-}

@@ -24,6 +24,10 @@ impl RangeStudy {
         Ok(var_m2 / (pitch * pitch))
     }
 
+    pub(super) fn verdict_alone(&self, _shape: crate::ranging::cube::Shape) -> Result<Option<Ranging>> {
+        Ok(None)
+    }
+
     pub(super) fn verdict(&self, all: Option<&ObjectBounds>) -> Result<DepthVerdict> {
         let by = |signal: Signal| all.and_then(|all| all.signals.iter().find(|found| found.signal == signal));
         let cube = by(Signal::HeatCube);
