@@ -37,7 +37,7 @@ pub fn first_invalid<S: Sample>(samples: &[S], first_row: usize, shape: Shape) -
 #[inline(always)]
 fn is_count<S: Sample>(sample: S) -> bool {
     let value: f64 = sample.into();
-    (value >= 0.0) & (value < f64::INFINITY)
+    (0.0..f64::INFINITY).contains(&value)
 }
 
 #[cfg(test)]

@@ -58,12 +58,12 @@ pub fn standard_deviation(image: &MemoryCube<f64>, window: Window) -> Result<Tex
 }
 
 /// The rows of results that belong to each row of corners.
-fn bands_of<'a>(
-    mut values: &'a mut [f64],
+fn bands_of(
+    mut values: &mut [f64],
     columns: usize,
     rows: usize,
     height: usize,
-) -> Vec<(usize, Range<usize>, &'a mut [f64])> {
+) -> Vec<(usize, Range<usize>, &mut [f64])> {
     let mut bands = Vec::new();
     for corner in (0..).step_by(height) {
         let tops = holding(corner, height, rows);
