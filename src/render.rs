@@ -9,15 +9,15 @@
 //!   sky (1 + n_y)/2 and ground (1 − n_y)/2, from which boxes and persons take the share they cover (`factor`).
 //! * All scattering before it is between whole surfaces, with factors averaged over each (`radiosity`): S_k is the
 //!   mean radiance that leaves surface k after `bounces` − 1 scatterings.
-//! * A pixel is the mean of a regular grid of rays over its area (`trace`). All of them add to a few coefficients, so that a
-//!   band costs one short sum per pixel, made when it is asked for ([`View::cube`]).
+//! * A pixel is the mean of a regular grid of rays over its area (`trace`). All of them add to a few coefficients,
+//!   so that a band costs one short sum per pixel, made when it is asked for ([`View::cube`]).
 //!
 //! World axes: x to the right (along the baseline), y up from the ground, z ahead; metres. Nothing is random:
 //! a surface point looks the same to both cameras, and every run gives the same bits.
 //!
-//! Assumptions: no atmosphere, thin-lens blur or vignetting; each surface has one temperature; a solid is seen whole by what
-//! it lights, so where solids hide each other or their shadows fall on the ground as a lit surface, factors are approximate;
-//! a person lights others as an upright screen of the same silhouette.
+//! Assumptions: no atmosphere, thin-lens blur or vignetting; each surface has one temperature; a solid is seen
+//! whole by what it lights, so where solids hide each other or their shadows fall on the ground as a lit surface,
+//! factors are approximate; a person lights others as an upright screen of the same silhouette.
 //!
 //! Source: paper S1–S4, Fig. 4, Methods 'Monte Carlo path tracing' (there: path tracing, ray depth 8).
 

@@ -4,9 +4,9 @@
 //!
 //! Φ = (1/π) ∫ ω dΩ = (1/2π) Σ_i Θ_i (r_i × r_{i+1})/|r_i × r_{i+1}|
 //!
-//! where Θ_i is the angle between r_i and r_{i+1}; the factor of a surface with normal n is V = n·Φ if the
-//! polygon is wholly before it. What lies behind the plane through p is cut off first. Φ does not depend on n: a bumpy surface
-//! costs no more than a smooth one.
+//! where Θ_i is the angle between r_i and r_{i+1}; the factor of a surface with normal n is V = n·Φ if the polygon
+//! is wholly before it. What lies behind the plane through p is cut off first. Φ does not depend on n: a bumpy
+//! surface costs no more than a smooth one.
 //!
 //! Source: J. H. Lambert, Photometria (1760); in this form e.g. Baum, Rushmeier, Winget, SIGGRAPH 1989,
 //! doi:10.1145/74333.74367.

@@ -1,12 +1,14 @@
 //! Thermal lighting factors of a surface point.
 //!
-//! Without solids a point with normal n sees the sky with (1 + n_y)/2 and the ground with (1 − n_y)/2. A solid k takes
-//! from the sky what it covers above the horizontal plane through the point, and from the ground what it covers below:
+//! Without solids a point with normal n sees the sky with (1 + n_y)/2 and the ground with (1 − n_y)/2. A solid k
+//! takes from the sky what it covers above the horizontal plane through the point, and from the ground what it
+//! covers below:
 //!
 //! V_sky = (1 + n_y)/2 − Σ_k n·Φ_k,above   V_ground = (1 − n_y)/2 − Σ_k n·Φ_k,below   V_k = n·Φ_k,above + n·Φ_k,below
 //!
-//! so that ΣV = 1 whatever the shapes. Where bumps turn n, the solid is still cut off at the horizon of the smooth surface.
-//! Solids that hide each other count twice; should they then cover more than there is, their shares are scaled down.
+//! so that ΣV = 1 whatever the shapes. Where bumps turn n, the solid is still cut off at the horizon of the smooth
+//! surface. Solids that hide each other count twice; should they then cover more than there is, their shares are
+//! scaled down.
 
 use super::factor::{Factor, Polygon};
 use super::scene::{Form, GROUND, SKY, SURFACES, Scene};
@@ -97,8 +99,8 @@ pub(super) fn shares(factors: &Factors, normal: Vector) -> Shares {
     shares
 }
 
-/// Factors of every surface averaged over each: `[of][seen]`. The ground is endless and sees the sky alone; the sky is not
-/// lit at all.
+/// Factors of every surface averaged over each: `[of][seen]`. The ground is endless and sees the sky alone; the sky
+/// is not lit at all.
 pub(super) fn mean_shares(scene: &Scene, patches_per_side: usize) -> Vec<Shares> {
     let mut sums = vec![Shares::default(); scene.surfaces.len()];
     let mut areas = vec![0.0; scene.surfaces.len()];

@@ -2,9 +2,9 @@
 //!
 //! S_k⁽⁰⁾ = e_k B(T_k),   S_k⁽ˡ⁾ = e_k B(T_k) + (1 − e_k) Σ_j V̄_kj S_j⁽ˡ⁻¹⁾
 //!
-//! with factors V̄ and emissivities averaged over each surface. With `bounces` scatterings in all, the last of them at the
-//! point that is seen, that point is lit by S⁽ᵇᵒᵘⁿᶜᵉˢ⁻¹⁾. In equilibrium what is missing is (1 − e)^bounces of B at the most. The
-//! sky emits e B and scatters nothing.
+//! with factors V̄ and emissivities averaged over each surface. With `bounces` scatterings in all, the last of them
+//! at the point that is seen, that point is lit by S⁽ᵇᵒᵘⁿᶜᵉˢ⁻¹⁾. In equilibrium what is missing is (1 − e)^bounces
+//! of B at the most. The sky emits e B and scatters nothing.
 
 use super::lighting::Shares;
 use super::scene::{SKY, Scene};
@@ -18,8 +18,8 @@ pub(super) struct Basis {
     pub(super) bands: usize,
     /// Number of surfaces.
     pub(super) sources: usize,
-    /// Of each surface, row after row of `bands` values: for each of its emissivities, e B(T), then (1 − e) S_k for every
-    /// surface k. The sky has the first row alone.
+    /// Of each surface, row after row of `bands` values: for each of its emissivities, e B(T), then (1 − e) S_k for
+    /// every surface k. The sky has the first row alone.
     pub(super) spectra: Vec<Vec<f64>>,
 }
 
@@ -57,7 +57,8 @@ impl Basis {
     }
 }
 
-/// Mean radiance that leaves each surface towards the point that is seen, at the nodes; nothing if that scatters nothing.
+/// Mean radiance that leaves each surface towards the point that is seen, at the nodes; nothing if that scatters
+/// nothing.
 pub(super) fn leaving(
     scene: &Scene,
     mean: &[Shares],

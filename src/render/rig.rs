@@ -29,8 +29,8 @@ pub struct Rig {
 }
 
 impl Default for Rig {
-    /// The paper's Fig. 4: b = 0.2 m, f = 1.4 cm, 640 × 480 pixels. Not told there, chosen here: 12 µm pixels (31° across),
-    /// 1.5 m above the ground and 9° down, so that it sees the ground from 4 m to the horizon.
+    /// The paper's Fig. 4: b = 0.2 m, f = 1.4 cm, 640 × 480 pixels. Not told there, chosen here: 12 µm pixels (31°
+    /// across), 1.5 m above the ground and 9° down, so that it sees the ground from 4 m to the horizon.
     fn default() -> Self {
         Self {
             baseline_m: 0.2,

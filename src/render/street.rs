@@ -1,6 +1,6 @@
 //! The street of the paper's Fig. 4: ground, sky, a car and a person.
 
-use super::scene::{Form, GROUND, Light, SKY, Scene, Solid};
+use super::scene::{Form, Light, Scene, Solid};
 use super::shape::Shape;
 use super::surface::{Bump, Emissivity, Road, Surface, Texture};
 use super::vector::{Vector, along};
@@ -112,7 +112,6 @@ impl Scene {
         let sky = Surface::plain("sky", spec.sky_k, &spec.sky_emissivity);
         let tyres = Surface::plain("tyres", spec.tyre_k, &spec.tyre_emissivity);
         let surfaces = vec![sky, ground, car, tyres, person];
-        debug_assert!(surfaces.len() > PERSON && SKY < GROUND);
         surfaces.iter().try_for_each(Surface::check)?;
         let mut scene = Self { surfaces, solids: Vec::new(), lights: Vec::new(), wall: None };
         if spec.car {

@@ -1,8 +1,8 @@
 //! What a surface is made of, and the pattern on it.
 //!
-//! e(ν) = (1 − τ) e₀(ν) + τ e₁(ν) with a texture τ in [0, 1] that is a function of the place on the surface. A texture knows how
-//! far apart the rays are that look at it (the same for both cameras, since it depends on the depth alone), and
-//! leaves out what is finer than they can show.
+//! e(ν) = (1 − τ) e₀(ν) + τ e₁(ν) with a texture τ in [0, 1] that is a function of the place on the surface. A
+//! texture knows how far apart the rays are that look at it (the same for both cameras, since it depends on the
+//! depth alone), and leaves out what is finer than they can show.
 
 use super::noise;
 use super::vector::{Vector, along, dot, unit};

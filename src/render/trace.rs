@@ -1,7 +1,7 @@
 //! Rays through the pixels of both cameras, and what they add up to.
 //!
-//! A pixel is s × s rays at the middles of equal squares. What each of them meets adds its weight 1/s² to the coefficients of e B(T)
-//! and (1 − e) S_k of the surface it belongs to; those are linear in τ, 1 − τ and V.
+//! A pixel is s × s rays at the middles of equal squares. What each of them meets adds its weight 1/s² to the
+//! coefficients of e B(T) and (1 − e) S_k of the surface it belongs to; those are linear in τ, 1 − τ and V.
 
 use super::light_map::LightMap;
 use super::lighting::{Shares, factors, mean_shares, shares};
@@ -255,7 +255,8 @@ impl Tracer<'_> {
         Seen { surface, texture, shares: shares(&factors, object.normal(point, smooth)) }
     }
 
-    /// Distances between rays on the ground: functions of the depth alone, up to rounding, since all of a row have one.
+    /// Distances between rays on the ground: functions of the depth alone, up to rounding, since all of a row have
+    /// one.
     #[inline]
     fn footprint(&self, direction: Vector, depth: f64) -> Footprint {
         let pixel_m = depth / self.camera.focal_px;

@@ -43,8 +43,8 @@ pub(super) struct Centre {
     pub(super) seen_by_other: bool,
 }
 
-/// One camera's picture, with the truth about it. Maps are [row][column] and tell what is at a pixel's centre; radiance is the mean
-/// over the pixel's area.
+/// One camera's picture, with the truth about it. Maps are [row][column] and tell what is at a pixel's centre;
+/// radiance is the mean over the pixel's area.
 #[derive(Debug)]
 pub struct View {
     pub(super) shape: Shape,

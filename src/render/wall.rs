@@ -1,7 +1,8 @@
 //! A textured wall across the optical axis: everything about its image has a closed form.
 //!
-//! A wave of τ with a cycles per pixel in x and b in y, drawn with s × s rays per pixel, is the same wave of pixel values with its amplitude
-//! times D(a) D(b), D(a) = sin(πa)/(s sin(πa/s)), whatever its phase: a shift by any part of a pixel is exact.
+//! A wave of τ with a cycles per pixel in x and b in y, drawn with s × s rays per pixel, is the same wave of pixel
+//! values with its amplitude times D(a) D(b), D(a) = sin(πa)/(s sin(πa/s)), whatever its phase: a shift by any part
+//! of a pixel is exact.
 
 use super::scene::Scene;
 use super::surface::{Emissivity, Surface, Texture, Wave};
