@@ -6,12 +6,12 @@
 //! * [`likelihood`]: least squares weighted by the noise, with the other view interpolated.
 //!
 //! Around them: [`trials`] draws noise about the expected counts of both views and repeats the match at given
-//! centres; [`report`] sets bias and variance beside the bound δd ≥ √(1/J_left + 1/J_right); [`locking`] gives the bias
-//! as a function of the sub-pixel part of the true disparity (pixel locking); [`dense`] makes a disparity map;
-//! [`texture`] makes views whose true disparity is exact.
+//! centres; [`report`] sets bias and variance beside the bound δd ≥ √(1/J_left + 1/J_right); [`locking`] gives
+//! the bias as a function of the sub-pixel part of the true disparity (pixel locking); [`dense`] makes a
+//! disparity map; [`texture`] makes views whose true disparity is exact.
 //!
-//! Conventions: images [row][column][band], row 0 on top; the left camera at −b/2, the right one at +b/2, parallel; d =
-//! x_left − x_right in pixels.
+//! Conventions: images `[row][column][band]`, row 0 on top; the left camera at −b/2, the right one at +b/2,
+//! parallel; d = x_left − x_right in pixels.
 //!
 //! Assumptions: rectified views, the same disparity in all of a window, the same counts in both views at matching
 //! points; photons and electronic noise independent in every sample.
@@ -55,7 +55,7 @@ pub struct StereoPair<'a> {
 }
 
 impl<'a> StereoPair<'a> {
-    /// Views [row][column][band] of the same shape.
+    /// Views `[row][column][band]` of the same shape.
     ///
     /// # Errors
     /// A view whose samples are not as many as the shape has, or one that is not finite.

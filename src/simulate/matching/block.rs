@@ -5,11 +5,12 @@
 //! * parabola: d = d₀ + (s₋ − s₊)/[2(s₋ − 2s₀ + s₊)];
 //! * equiangular lines: d = d₀ + (s₊ − s₋)/[2(s₀ − min(s₋, s₊))].
 //!
-//! Neither is the true shape of the peak: views without noise already have an error b of the sub-pixel part of d (pixel
-//! locking, [`super::locking`]), which the bound knows nothing of. It also changes how far the estimate follows d: the
-//! variance is bounded by (1 + b′)²/J instead of 1/J. A parabola through correlations in 5 × 5 pixels of a texture of up
-//! to 0.25 cycles per pixel: |b| up to 0.03 pixels on average over windows and 0.065 rms; variance 0.7 of 1/J at whole
-//! disparities (1.07 of its own bound) and 2.3 half-way, however many photons there are.
+//! Neither is the true shape of the peak: views without noise already have an error b of the sub-pixel part of
+//! d (pixel locking, [`super::locking`]), which the bound knows nothing of. It also changes how far the
+//! estimate follows d: the variance is bounded by (1 + b′)²/J instead of 1/J. A parabola through correlations
+//! in 5 × 5 pixels of a texture of up to 0.25 cycles per pixel: |b| up to 0.03 pixels on average over windows
+//! and 0.065 rms; variance 0.7 of 1/J at whole disparities (1.07 of its own bound) and 2.3 half-way, however
+//! many photons there are.
 //!
 //! Source: Shimizu and Okutomi, Int. J. Comput. Vis. 63, 207 (2005), doi:10.1007/s11263-005-6878-5 (bias of fits).
 
@@ -23,7 +24,8 @@ use std::ops::Range;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Score {
-    /// Zero-normalised cross-correlation, all bands together, each less its own mean: gain and offset do not matter.
+    /// Zero-normalised cross-correlation, all bands together, each less its own mean: gain and offset do not
+    /// matter.
     #[default]
     Correlation,
     /// Sum of squared differences, negative.
@@ -95,7 +97,7 @@ impl Block {
         if known.len() < 3 {
             return Err(Failure::RangeEnd);
         }
-        if !(best > least) {
+        if best <= least {
             return Err(Failure::Flat);
         }
         match (at.checked_sub(1).and_then(|i| known.get(i)), known.get(at + 1)) {

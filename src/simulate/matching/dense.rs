@@ -1,7 +1,7 @@
 //! Disparity maps by block matching.
 //!
-//! Blocks of rows are worked on in parallel, each with running sums of its own: the cost hardly depends on the window,
-//! and the map not on the number of threads.
+//! Blocks of rows are worked on in parallel, each with running sums of its own: the cost hardly depends on the
+//! window, and the map not on the number of threads.
 
 use super::block::Block;
 use super::layout::{Layout, View};
@@ -20,7 +20,7 @@ pub struct DisparityMap {
     pub rows: Range<usize>,
     /// Columns of the centres.
     pub columns: Range<usize>,
-    /// [row][column] of the centres.
+    /// `[row][column]` of the centres.
     pub matches: Vec<Match>,
 }
 

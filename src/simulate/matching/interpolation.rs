@@ -14,7 +14,8 @@ pub(super) const TAPS: usize = 2 * LOBES;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Interpolation {
-    /// The interpolating cubic spline. Between pixels it smooths noise: half-way white noise has 0.76 of its variance.
+    /// The interpolating cubic spline. Between pixels it smooths noise: half-way white noise has 0.76 of its
+    /// variance.
     CubicSpline,
     /// Sinc under a Lanczos window of 8 lobes, weights divided by their sum: closer to white noise's full variance
     /// everywhere (half-way 0.92), so that no place between pixels is much preferred.

@@ -1,4 +1,5 @@
-//! The rows of a group of windows side by side, [column][row and band], so that sums over rows and bands go on in step.
+//! The rows of a group of windows side by side, `[column][row and band]`, so that sums over rows and bands go on
+//! in step.
 
 use super::layout::View;
 use crate::simd::{Chunk, LANES, added, dispatched, fused, product};

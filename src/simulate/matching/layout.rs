@@ -1,4 +1,5 @@
-//! The parts of an image that are needed, in planes [row][band][column], so that no other sample is drawn or copied.
+//! The parts of an image that are needed, in planes `[row][band][column]`, so that no other sample is drawn or
+//! copied.
 
 use crate::error::Result;
 use crate::ranging::cube::{Cube, Rows, Sample, Shape};
@@ -74,7 +75,7 @@ impl Layout {
         start..start + span.columns.len()
     }
 
-    /// Planes of an image [row][column][band].
+    /// Planes of an image `[row][column][band]`.
     pub(super) fn gather(&self, image: &[f64]) -> Vec<f64> {
         let mut planes = vec![0.0; self.len];
         for (at, span) in self.spans.iter().enumerate() {
@@ -119,7 +120,7 @@ impl Layout {
         Ok(planes)
     }
 
-    /// Turns [column][band] into [band][column].
+    /// Turns `[column][band]` into `[band][column]`.
     fn fill(&self, span: &Span, samples: &[f64], planes: &mut [f64]) {
         let (columns, bands) = (span.columns.len(), self.shape.bands());
         for (column, pixel) in samples.chunks_exact(bands).take(columns).enumerate() {

@@ -1,22 +1,22 @@
 //! Maximum-likelihood matching.
 //!
-//! The disparity d minimises χ² = Σ_p [L_p − R(x_p − d)]²/v_p over the samples p of a window of the left view, R the
-//! right view interpolated along its rows:
+//! The disparity d minimises χ² = Σ_p [L_p − R(x_p − d)]²/v_p over the samples p of a window of the left view,
+//! R the right view interpolated along its rows:
 //!
 //! * both views noisy: v = L + R + 2σ², from the readings at the best whole disparity (sum and difference of two
-//!   readings of the same mean are uncorrelated, so these weights hardly pull the estimate). To first order in the noise
-//!   the variance of d is 1/Σ (∂N)²/(2N + 2σ²) = 1/J_left + 1/J_right: the bound;
+//!   readings of the same mean are uncorrelated, so these weights hardly pull the estimate). To first order in
+//!   the noise the variance of d is 1/Σ (∂N)²/(2N + 2σ²) = 1/J_left + 1/J_right: the bound;
 //! * the right view known, i.e. free of noise: v = R + σ², R at the estimate (iterated): Σ (L − R) R′/v = 0 is the
 //!   equation of the largest likelihood, exactly for Poisson counts; variance 1/J_left.
 //!
-//! First a scan of whole disparities, then Gauss–Newton steps, halved where χ² would rise, within a pixel of the best
-//! one; if they leave it, the least χ² of that pixel by bracketing.
+//! First a scan of whole disparities, then Gauss–Newton steps, halved where χ² would rise, within a pixel of
+//! the best one; if they leave it, the least χ² of that pixel by bracketing.
 //!
-//! What that rests on: with both views noisy the template is itself noisy, and first order means that the slope of the
-//! texture exceeds that of the noise. White noise has a slope of π²/3 times its variance (sinc, at a whole disparity; less
-//! between), so with S = ⟨(∂N)²/(N + σ²)⟩ over the samples the excess over the bound is of the order of (π²/3)/S. Measured,
-//! 5 × 5 pixels, texture up to 0.25 cycles per pixel, sinc, variance over bound at a whole disparity and half-way, share
-//! of matches off by more than a pixel or failed:
+//! What that rests on: with both views noisy the template is itself noisy, and first order means that the
+//! slope of the texture exceeds that of the noise. White noise has a slope of π²/3 times its variance (sinc,
+//! at a whole disparity; less between), so with S = ⟨(∂N)²/(N + σ²)⟩ over the samples the excess over the
+//! bound is of the order of (π²/3)/S. Measured, 5 × 5 pixels, texture up to 0.25 cycles per pixel, sinc,
+//! variance over bound at a whole disparity and half-way, share of matches off by more than a pixel or failed:
 //!
 //! | S    | 6.0  | 6.5  | lost   |
 //! |------|------|------|--------|
@@ -29,8 +29,8 @@
 //! (the last two without what was lost: with it 1.66 and 1.60, 13 and 17). A cubic spline smooths the right view's
 //! noise between pixels: 1.16 and 0.93 at S = 91. A known template has no such excess.
 //!
-//! Left out: ln v of the likelihood, which carries of the order of 1/(2N) of the information. σ² of the right view is
-//! that of the left pixel.
+//! Left out: ln v of the likelihood, which carries of the order of 1/(2N) of the information. σ² of the right
+//! view is that of the left pixel.
 //!
 //! Source: paper SI C, S37–S41; the equation is Fisher's scoring.
 
@@ -114,7 +114,8 @@ impl Likelihood {
         self.interpolation.coefficients_into(right, &mut scratch.coefficients);
     }
 
-    /// To be called then, for windows about the columns `hull` of a row; `var` as the left view's samples or empty.
+    /// To be called then, for windows about the columns `hull` of a row; `var` as the left view's samples or
+    /// empty.
     pub(super) fn row(
         &self,
         scratch: &mut Scratch,
@@ -225,7 +226,7 @@ impl Place<'_> {
     fn refine(&self, weights: &[Chunk], start: f64) -> Match {
         let (mut shift, mut sums) = (start, self.sums(weights, start));
         for _ in 0..STEPS {
-            if !(sums.information > 0.0) {
+            if sums.information.is_nan() || sums.information <= 0.0 {
                 return Err(Failure::Flat);
             }
             let mut step = (-sums.gradient / sums.information).clamp(-0.5, 0.5);

@@ -1,9 +1,10 @@
 //! Pixel locking: the bias of a matcher as a function of the sub-pixel part of the true disparity.
 //!
-//! Of windows of a texture, at every disparity of a list: the mean error without noise (systematic), its root mean square over the
-//! windows (a window's own error may be of either sign), and with noise the mean error with its interval and
-//! the deviation of single matches about the mean of their window. Windows are drawn together (a mean of all windows in
-//! every trial), so the interval of the bias is right though their searches share samples.
+//! Of windows of a texture, at every disparity of a list: the mean error without noise (systematic), its root
+//! mean square over the windows (a window's own error may be of either sign), and with noise the mean error
+//! with its interval and the deviation of single matches about the mean of their window. Windows are drawn
+//! together (a mean of all windows in every trial), so the interval of the bias is right though their searches
+//! share samples.
 
 use super::texture::Texture;
 use super::trials::{Centre, Matches, MatchingTrials, Noisy, Run, Setup};

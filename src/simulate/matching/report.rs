@@ -1,9 +1,9 @@
 //! Bias, spread, outliers and failures of matches, beside the bound.
 //!
 //! Of every window: errors d̂ − d of the trials that gave a disparity, with and without outliers (off by more than
-//! a pixel); the error without noise, which is systematic; and the ratio of variance to the bound's, with its interval and
-//! verdict (`efficiency`). The bound is for unbiased estimates that always come: with failures, or with outliers that the
-//! range of the search cuts off, a ratio is of those that came.
+//! a pixel); the error without noise, which is systematic; and the ratio of variance to the bound's, with its
+//! interval and verdict (`efficiency`). The bound is for unbiased estimates that always come: with failures,
+//! or with outliers that the range of the search cuts off, a ratio is of those that came.
 
 use super::trials::{Centre, Matches};
 use super::{Failure, Match};
@@ -59,7 +59,8 @@ pub struct LineReport {
     pub rms_bound: Option<f64>,
     /// Mean ratio of variance to the bound's (outliers included), over the windows that have one.
     pub mean_ratio: Option<f64>,
-    /// Windows whose variance (outliers included) is said to reach, exceed, be below the bound, be biased, be undecided.
+    /// Windows whose variance (outliers included) is said to reach, exceed, be below the bound, be biased, be
+    /// undecided.
     pub verdicts: [usize; 5],
     /// Share of trials that failed or are outliers.
     pub lost: f64,
@@ -70,8 +71,8 @@ pub const VERDICTS: [Verdict; 5] =
     [Verdict::Reaches, Verdict::Exceeds, Verdict::Below, Verdict::Biased, Verdict::Undecided];
 
 impl Matches {
-    /// The report, beside the deviations `sigma_bound` (pixels) of each window's disparity; NaN or infinity stands for a window
-    /// that has no bound, an empty list for none at all.
+    /// The report, beside the deviations `sigma_bound` (pixels) of each window's disparity; NaN or infinity
+    /// stands for a window that has no bound, an empty list for none at all.
     ///
     /// # Errors
     /// Bounds that are not as many as windows, criteria that are none.

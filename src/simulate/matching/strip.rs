@@ -1,14 +1,17 @@
 //! Scores of all disparities for a row of windows, by running sums.
 //!
-//! Both views less the same offset of each band; of the windows about x (left) and x − d (right) with n pixels each,
+//! Both views less the same offset of each band; of the windows about x (left) and x − d (right) with n pixels
+//! each,
 //!
-//! * zero-normalised cross-correlation C = Σ_b [Σ LR − ΣL ΣR/n]/√(V_L V_R), V = Σ_b [Σ L² − (ΣL)²/n]: every band has
-//!   its own mean taken off, so gain (common to all bands) and offset (of each band) of a view do not matter;
+//! * zero-normalised cross-correlation C = Σ_b [Σ LR − ΣL ΣR/n]/√(V_L V_R), V = Σ_b [Σ L² − (ΣL)²/n]: every
+//!   band has its own mean taken off, so gain (common to all bands) and offset (of each band) of a view do not
+//!   matter;
 //! * squared differences, negative: 2Σ LR − Σ L² − Σ R².
 //!
 //! Σ LR over the rows of the window is a running sum per column (a row in, a row out), started anew by
-//! [`Strip::start`]; over columns, window sums come from sums towards the start of blocks as long as the window and
-//! from their start: three additions whatever the window, and nothing is subtracted. Disparities lie side by side.
+//! [`Strip::start`]; over columns, window sums come from sums towards the start of blocks as long as the
+//! window and from their start: three additions whatever the window, and nothing is subtracted. Disparities
+//! lie side by side.
 
 use super::layout::View;
 use super::{Search, block::Score};
@@ -27,9 +30,9 @@ pub(super) struct Strip {
     score: Score,
     columns: Range<usize>,
     offsets: Vec<f64>,
-    /// Σ LR over the window's rows, [column][disparity].
+    /// Σ LR over the window's rows, `[column][disparity]`.
     products: Vec<Chunk>,
-    /// Scores, [window][disparity].
+    /// Scores, `[window][disparity]`.
     scores: Vec<Chunk>,
     left: Side,
     right: Side,
@@ -45,7 +48,7 @@ struct Side {
     /// Σ², then of zero mean.
     squares: Vec<f64>,
     varied: Vec<f64>,
-    /// Band's window sums, [band][window].
+    /// Band's window sums, `[band][window]`.
     means: Vec<f64>,
     scale: Vec<f64>,
 }

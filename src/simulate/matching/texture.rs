@@ -1,8 +1,8 @@
 //! Views of a plane at one depth whose counts are a sum of waves, so that their shift is exact.
 //!
-//! N_b(x, y) = M_b [1 + Σ_k a cos(2π(u_k x + v_k y) + φ_k)], u and v uniform in ± cutoff (cycles per pixel), φ uniform,
-//! a = c√(2/K): the root mean square contrast is c. As sampled values: what the pixel's size does to a wave is
-//! in its amplitude. A view at disparity d is N(x + d, y), d = 0 the left one.
+//! N_b(x, y) = M_b [1 + Σ_k a cos(2π(u_k x + v_k y) + φ_k)], u and v uniform in ± cutoff (cycles per pixel), φ
+//! uniform, a = c√(2/K): the root mean square contrast is c. As sampled values: what the pixel's size does to
+//! a wave is in its amplitude. A view at disparity d is N(x + d, y), d = 0 the left one.
 
 use crate::error::{Error, Result, check};
 use crate::ranging::cube::Shape;
@@ -29,12 +29,12 @@ pub struct Texture {
 }
 
 impl Texture {
-    /// `waves` random waves of up to `cutoff` cycles per pixel, root mean square `contrast`, about the mean counts of
-    /// each band.
+    /// `waves` random waves of up to `cutoff` cycles per pixel, root mean square `contrast`, about the mean
+    /// counts of each band.
     ///
     /// # Errors
-    /// Means that are negative or not finite; no waves; a cutoff outside (0, 0.5]; a contrast that is not positive, or
-    /// so high that counts could be negative.
+    /// Means that are negative or not finite; no waves; a cutoff outside (0, 0.5]; a contrast that is not
+    /// positive, or so high that counts could be negative.
     pub fn random(seed: u64, means: &[f64], contrast: f64, cutoff: f64, waves: usize) -> Result<Self> {
         means.iter().try_for_each(|&mean| check::non_negative("mean counts", mean, "counts").map(drop))?;
         if !(cutoff > 0.0 && cutoff <= 0.5) {
@@ -57,7 +57,7 @@ impl Texture {
         Ok(Self { means: means.to_vec(), amplitude, waves })
     }
 
-    /// Expected counts [row][column][band] of the view at `disparity` pixels.
+    /// Expected counts `[row][column][band]` of the view at `disparity` pixels.
     ///
     /// # Errors
     /// A shape of another number of bands; a disparity that is not finite.

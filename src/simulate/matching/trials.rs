@@ -1,7 +1,8 @@
 //! Matches of views with noise drawn again and again.
 //!
-//! Every sample that a window, or the search for it, needs is drawn about its expected counts, and no other: Poisson photons and
-//! normal electronic noise. The views of trial i have streams 2i (left) and 2i + 1 (right) of the run's.
+//! Every sample that a window, or the search for it, needs is drawn about its expected counts, and no other:
+//! Poisson photons and normal electronic noise. The views of trial i have streams 2i (left) and 2i + 1 (right)
+//! of the run's.
 
 use super::layout::{Layout, View};
 use super::likelihood::Scratch;
@@ -81,7 +82,7 @@ pub struct Matches {
     pub centres: Vec<Centre>,
     /// Without noise.
     pub noise_free: Vec<Match>,
-    /// [trial][window].
+    /// `[trial][window]`.
     pub trials: Vec<Match>,
 }
 
@@ -145,8 +146,8 @@ impl MatchingTrials {
     /// Prepares them.
     ///
     /// # Errors
-    /// No window at all, one that reaches beyond the left view, or a true disparity outside the search; negative counts or
-    /// noise that does not fit, where they are needed.
+    /// No window at all, one that reaches beyond the left view, or a true disparity outside the search;
+    /// negative counts or noise that does not fit, where they are needed.
     pub fn new(setup: &Setup) -> Result<Self> {
         let (shape, window, search) = (setup.pair.shape(), setup.matcher.window(), setup.search);
         check_window(window, shape)?;

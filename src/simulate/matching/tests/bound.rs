@@ -47,9 +47,9 @@ fn with_a_known_template_the_mean_square_error_is_the_bound() {
     }
 }
 
-/// The other view's window is moved, but has the same counts about it: 1/J_left + 1/J_right = 2/J_left. With 1e6 photons a
-/// pixel the slope of the noise does not matter; with 1e4 it does, by ⟨(π²/3)/S⟩ = 0.051 at a whole disparity (measured
-/// 0.06 to 0.07 with 13 000 matches). Chance: 3.3 deviations, 1e-3.
+/// The other view's window is moved, but has the same counts about it: 1/J_left + 1/J_right = 2/J_left. With
+/// 1e6 photons a pixel the slope of the noise does not matter; with 1e4 it does, by ⟨(π²/3)/S⟩ = 0.051 at a
+/// whole disparity (measured 0.06 to 0.07 with 13 000 matches). Chance: 3.3 deviations, 1e-3.
 #[test]
 fn with_both_views_noisy_strong_texture_reaches_the_bound_and_weak_does_not() {
     for (photons, disparity, low, high) in
@@ -64,8 +64,8 @@ fn with_both_views_noisy_strong_texture_reaches_the_bound_and_weak_does_not() {
     }
 }
 
-/// Block matching has a bias b(d), so its variance obeys (1 + b′)²/J, not 1/J, and is below 1/J at whole disparities. b′ from
-/// matches without noise 0.04 pixels apart.
+/// Block matching has a bias b(d), so its variance obeys (1 + b′)²/J, not 1/J, and is below 1/J at whole
+/// disparities. b′ from matches without noise 0.04 pixels apart.
 #[test]
 fn block_matching_obeys_the_bound_of_its_own_bias() {
     let texture = Texture::random(3, &[1e6], 0.1, 0.25, 40).unwrap();
@@ -83,7 +83,8 @@ fn block_matching_obeys_the_bound_of_its_own_bias() {
     }
 }
 
-/// Largest mean errors over a period, measured, within 10 %; what noise adds is within its interval (99.9 %, two points).
+/// Largest mean errors over a period, measured, within 10 %; what noise adds is within its interval (99.9 %,
+/// two points).
 #[test]
 fn pixel_locking_is_that_of_the_fit() {
     let texture = Texture::random(3, &[1e5], 0.1, 0.25, 40).unwrap();
