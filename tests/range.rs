@@ -82,7 +82,8 @@ fn a_cube_has_the_bound_of_its_closed_form() {
 #[test]
 fn noise_of_every_reading_is_counted_once_for_each() {
     let with_noise = |joined: &str| {
-        let scenario = CUBE.replace("depth", "noise_variance = 4000.0\ndepth").replace("[requirement]", joined);
+        let scenario =
+            CUBE.replace("depth", "noise_variance = 4000.0\ndepth").replace("[requirement]", joined);
         let folder = with_cube(&scenario);
         let signals = folder.json(&["range", "a.toml"])["objects"][0]["signals"].clone();
         [0, 1].map(|i| number(&signals[i]["information_per_px2"]))
@@ -125,11 +126,19 @@ fn a_scene_orders_its_signals_and_repeats_itself() {
     let folder = Folder::with(SCENE);
     let result = folder.json(&["range", "a.toml"]);
     for object in result["objects"].as_array().unwrap() {
-        let information: Vec<f64> =
-            object["signals"].as_array().unwrap().iter().map(|found| number(&found["information_per_px2"])).collect();
+        let information: Vec<f64> = object["signals"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|found| number(&found["information_per_px2"]))
+            .collect();
         let [thermal, cube, known, blind, _] = information[..] else { panic!("{information:?}") };
         // No cell exceeds the cube's, nothing that is estimated from the cube tells more than the cube.
-        assert!(thermal <= cube * (1.0 + 1e-9) && known <= cube * (1.0 + 1e-9), "{}: {information:?}", object["name"]);
+        assert!(
+            thermal <= cube * (1.0 + 1e-9) && known <= cube * (1.0 + 1e-9),
+            "{}: {information:?}",
+            object["name"]
+        );
         assert!(blind <= known * (1.0 + 1e-9), "{}: {information:?}", object["name"]);
         assert!(information.iter().all(|j| j.is_finite()));
     }
@@ -148,7 +157,8 @@ fn at_one_temperature_there_is_nothing_to_see() {
         .replace("-15 degC", "20 degC")
         .replace("size", "ground_temperature = \"20 degC\"\ncar_temperature = \"20 degC\"\nperson_temperature = \"20 degC\"\nbounces = 64\nsize");
     let result = Folder::with(&scene).json(&["range", "a.toml"]);
-    let ground = result["objects"].as_array().unwrap().iter().find(|object| object["name"] == "ground").unwrap();
+    let ground =
+        result["objects"].as_array().unwrap().iter().find(|object| object["name"] == "ground").unwrap();
     let j = |i: usize| number(&ground["signals"][i]["information_per_px2"]);
     let (cube, alone) = (j(1), j(4));
     assert!(cube < 1e-9 * alone, "{cube} beside {alone}");
@@ -190,22 +200,54 @@ fn a_check_says_yes_or_no_by_the_cheapest_proof_and_the_same() {
 fn every_mistake_is_one_line() {
     let mistakes: [(&str, String, &str); 17] = [
         ("zero baseline", CUBE.replace("0.2 m", "0 m"), "stereo.baseline: `0 m` is out of range"),
-        ("even window", CUBE.replace("[requirement]", "window = [4, 5]\n[requirement]"), "a window of 4 x 5 pixels"),
+        (
+            "even window",
+            CUBE.replace("[requirement]", "window = [4, 5]\n[requirement]"),
+            "a window of 4 x 5 pixels",
+        ),
         ("large window", CUBE.replace("[requirement]", "window = [11, 5]\n[requirement]"), "11"),
         ("wide window", CUBE.replace("[requirement]", "window = [5, 39]\n[requirement]"), "39"),
         ("no cube", CUBE.replace("left.npy", "none.npy"), "none.npy"),
         ("neither", "[stereo]\nbaseline = \"0.2 m\"\n".into(), "neither a [scene] nor a [cube]"),
         ("both", format!("[scene]\n{CUBE}"), "`scene` is given as well"),
         ("no stereo", "[cube]\nleft = \"left.npy\"\n".into(), "stereo: the table is missing"),
-        ("no focal length", CUBE.replace("focal_length = \"14 mm\"\n", ""), "write focal_length = \"1.4 cm\""),
-        ("unknown derivative", CUBE.replace("[requirement]", "derivative = \"sobel\"\n[requirement]"), "`sobel` is not known"),
-        ("bands", format!("{CUBE}[bands]\nstart = \"800 cm^-1\"\nstop = \"900 cm^-1\"\nstep = \"100 cm^-1\"\n"), "[bands] are 2, the cube has 3"),
-        ("scene without camera", "[scene]\n[stereo]\nbaseline = \"0.2 m\"\n".into(), "camera: the table is missing"),
-        ("line out of view", CUBE.replace("[requirement]", "lines = [400]\n[requirement]"), "row 400 has no whole window"),
+        (
+            "no focal length",
+            CUBE.replace("focal_length = \"14 mm\"\n", ""),
+            "write focal_length = \"1.4 cm\"",
+        ),
+        (
+            "unknown derivative",
+            CUBE.replace("[requirement]", "derivative = \"sobel\"\n[requirement]"),
+            "`sobel` is not known",
+        ),
+        (
+            "bands",
+            format!("{CUBE}[bands]\nstart = \"800 cm^-1\"\nstop = \"900 cm^-1\"\nstep = \"100 cm^-1\"\n"),
+            "[bands] are 2, the cube has 3",
+        ),
+        (
+            "scene without camera",
+            "[scene]\n[stereo]\nbaseline = \"0.2 m\"\n".into(),
+            "camera: the table is missing",
+        ),
+        (
+            "line out of view",
+            CUBE.replace("[requirement]", "lines = [400]\n[requirement]"),
+            "row 400 has no whole window",
+        ),
         ("negative noise", CUBE.replace("depth", "noise_variance = -1.0\ndepth"), "noise_variance is -1"),
-        ("unknown material", SCENE.replace("size", "person = \"skinn\"\nsize"), "there is no material `skinn`"),
+        (
+            "unknown material",
+            SCENE.replace("size", "person = \"skinn\"\nsize"),
+            "there is no material `skinn`",
+        ),
         ("bounces", SCENE.replace("size", "bounces = 1000\nsize"), "1000 is too many"),
-        ("airy without camera", CUBE.replace("[requirement]", "diffraction = \"airy\"\n[requirement]"), "needs a camera"),
+        (
+            "airy without camera",
+            CUBE.replace("[requirement]", "diffraction = \"airy\"\n[requirement]"),
+            "needs a camera",
+        ),
     ];
     for (what, scenario, said) in mistakes {
         let outcome = with_cube(&scenario).run(&["range", "a.toml"]);
@@ -233,7 +275,10 @@ fn bad_cubes_are_told_by_what_is_wrong_with_them() {
             bad[(4 * COLUMNS + 17) * BANDS + 1] = value;
             write_npy(&folder.join("left.npy"), shape(), &bad).unwrap();
         });
-        assert!(error.contains("row 4") && error.contains("column 17") && error.contains("band 1"), "{error}");
+        assert!(
+            error.contains("row 4") && error.contains("column 17") && error.contains("band 1"),
+            "{error}"
+        );
         assert!(error.contains(words), "{error}");
     }
     let right = CUBE.replace("depth", "right = \"right.npy\"\ndepth");

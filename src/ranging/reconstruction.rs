@@ -20,18 +20,17 @@
 //!
 //! Source: paper eq. 3, Fig. 4, S2, S27, S37; nuisance parameters as in S28.
 
+mod image;
 #[cfg(test)]
 mod tests;
+
+pub use image::{BesideEmission, EmissionImage};
 
 use crate::error::{Error, Result, check};
 use crate::fisher::{Counting, Nuisance, Projector, Unknowns};
 use crate::scene::{Columns, Jacobian, Parameter, State, Surroundings, check_emissivity};
 use crate::spectrum::Bands;
 use crate::sum::Compensated;
-use rayon::prelude::*;
-
-/// Pixels that one task works on.
-const BLOCK: usize = 1024;
 
 /// How precisely one lighting factor of a pixel is known, as 1/variance.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
@@ -294,87 +293,4 @@ impl<'a> LightingSolver<'a> {
         }
         Ok(())
     }
-}
-
-/// The states of an image's pixels.
-#[derive(Debug, Clone, Copy)]
-pub struct PixelStates<'a> {
-    /// Emissivities at the nodes, one per material.
-    pub emissivities: &'a [Vec<f64>],
-    /// Which of them each pixel has.
-    pub material: &'a [usize],
-    /// Temperature of each pixel, K.
-    pub temperature_k: &'a [f64],
-    /// Lighting factors, [pixel][object].
-    pub lighting: &'a [f64],
-}
-
-/// Precision of lighting factor `factor` in every pixel; the same bits for any number of threads.
-///
-/// # Errors
-/// As [`LightingSolver::precision`], with the number of the pixel; lists of different lengths; a material there is not.
-pub fn lighting_precision_map(
-    solver: &LightingSolver<'_>,
-    states: PixelStates<'_>,
-    counting: &Counting,
-    factor: usize,
-) -> Result<Vec<PixelPrecision>> {
-    let surroundings = solver.jacobian.surroundings();
-    let objects = surroundings.objects().len();
-    let pixels = states.material.len();
-    for (what, found, expected) in [
-        ("temperatures of the pixels", states.temperature_k.len(), pixels),
-        ("lighting factors of the pixels", states.lighting.len(), pixels.saturating_mul(objects)),
-    ] {
-        if found != expected {
-            return Err(Error::Length { what: what.into(), found, expected });
-        }
-    }
-    for emissivity in states.emissivities {
-        check_emissivity(emissivity, surroundings.nodes_cm1().len())?;
-    }
-    counting.check(solver.jacobian.bands().len())?;
-    let block = |block: usize| -> Result<Vec<PixelPrecision>> {
-        let mut solver = solver.clone();
-        (block * BLOCK..((block + 1) * BLOCK).min(pixels))
-            .map(|pixel| {
-                let own = states.material[pixel];
-                let lighting = &states.lighting[pixel * objects..(pixel + 1) * objects];
-                let at = |error: Error| error.for_key(format!("pixel {pixel}"));
-                let emissivity = states.emissivities.get(own).ok_or_else(|| {
-                    let found = format!("material {own} of {}", states.emissivities.len());
-                    at(Error::malformed(found, "count materials from 0"))
-                })?;
-                let state = surroundings.state(states.temperature_k[pixel], lighting).map_err(at)?;
-                solver.one_factor(emissivity, &state, counting, factor).map_err(at)
-            })
-            .collect()
-    };
-    let blocks: Vec<Vec<PixelPrecision>> =
-        (0..pixels.div_ceil(BLOCK)).into_par_iter().map(block).collect::<Result<_>>()?;
-    Ok(blocks.concat())
-}
-
-/// Σ (∂V)²·precision over the pixels of a window, pixel⁻²: what a reconstructed lighting factor tells of its position.
-///
-/// # Errors
-/// Lists of different lengths; a precision that is negative, a change that is no number.
-///
-/// ```
-/// let information = hadar::ranging::reconstruction::reconstructed_information(&[1e6, 4e6], &[1e-2, -5e-3])?;
-/// assert!((information - 200.0).abs() < 1e-12);
-/// # Ok::<(), hadar::Error>(())
-/// ```
-pub fn reconstructed_information(precision: &[f64], d_lighting_dx: &[f64]) -> Result<f64> {
-    let (found, expected) = (d_lighting_dx.len(), precision.len());
-    if found != expected {
-        return Err(Error::Length { what: "changes of the lighting".into(), found, expected });
-    }
-    let mut information = Compensated::default();
-    for (precision, change) in precision.iter().zip(d_lighting_dx) {
-        check::non_negative("precision of the lighting", *precision, "")?;
-        check::finite("change of a lighting factor", *change, "per pixel")?;
-        information.add(precision * change * change);
-    }
-    check::non_negative("information", information.value(), "pixel^-2")
 }

@@ -12,11 +12,11 @@ pub use library::{distance_matrix, minimum_distances, sample_spectra};
 pub use scaling::{band_number, library_size};
 pub use simulation::{SimulationCurves, accuracies, classifiers, simulation_table};
 
-use std::borrow::Cow;
 use super::plot::{Axis, Band, Figure, HeatMap, LineFigure, Marker, Panel, Rule, Series, Style};
 use super::table::Table;
 use super::text::significant;
 use crate::study::{InformationCurves, PhotonMap, Spectra, Surface};
+use std::borrow::Cow;
 
 /// A figure and the numbers in it.
 #[derive(Debug, Clone)]

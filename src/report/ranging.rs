@@ -108,16 +108,7 @@ fn cells(result: &Ranging) -> Option<Table> {
 /// Bounds and witnesses along lines, a row for every window.
 pub(super) fn lines_table<'a>(lines: impl IntoIterator<Item = &'a Line>) -> Table {
     let mut table = Table::new([
-        "row",
-        "column",
-        "signal",
-        "method",
-        "depth_m",
-        "bound_m",
-        "rmse_m",
-        "bias_m",
-        "outliers",
-        "trials",
+        "row", "column", "signal", "method", "depth_m", "bound_m", "rmse_m", "bias_m", "outliers", "trials",
     ]);
     for line in lines {
         for (i, column) in line.columns.iter().enumerate() {
@@ -138,4 +129,3 @@ pub(super) fn lines_table<'a>(lines: impl IntoIterator<Item = &'a Line>) -> Tabl
     }
     table
 }
-

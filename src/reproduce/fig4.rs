@@ -9,12 +9,14 @@ use crate::ranging::information::{Cell, Request, Window, information};
 use crate::ranging::noise::{Joined, NoiseVariance};
 use crate::ranging::texture::{global_entropy, local_entropy, standard_deviation};
 use crate::report::bundle::Bundle;
-use crate::report::plot::{Axis, Picture, Pictures};
+use crate::report::plot::{Axis, Picture};
 use crate::report::ranging;
 use crate::scenario::RangeScenario;
 use crate::simulate::draws::{Draws, generator};
 use crate::statistics::Statistics;
-use crate::study::ranging::{PictureKind, RangePlan, RangeStudy, Ranging, Signal, SignalBounds, median, quantile};
+use crate::study::ranging::{
+    PictureKind, RangePlan, RangeStudy, Ranging, Signal, SignalBounds, median, quantile,
+};
 use crate::words::significant;
 use std::path::Path;
 
@@ -41,7 +43,10 @@ pub(super) fn make(order: Order, out: &Path, progress: Progress<'_>) -> Result<M
     bundle.add("night_scenario.toml", night.scenario.to_toml_beside(out));
     bundle.add("night_bounds.csv", ranging::bounds(&night).to_csv()?);
     let mut plots: Vec<_> =
-        [ranging::views(&paper), ranging::bound_maps(&paper), ranging::matched_maps(&paper)].into_iter().flatten().collect();
+        [ranging::views(&paper), ranging::bound_maps(&paper), ranging::matched_maps(&paper)]
+            .into_iter()
+            .flatten()
+            .collect();
     plots.extend(ranging::lines(&paper));
     if let Some(mut plot) = ranging::bound_maps(&night) {
         plot.name = "night_bounds_map".into();
@@ -56,7 +61,10 @@ pub(super) fn make(order: Order, out: &Path, progress: Progress<'_>) -> Result<M
     );
     let line = paper.lines.first().map_or(0, |line| line.row);
     let pictures = vec![
-        ("views.png", "What the left camera sees: the thermal image has no texture on the road, the scattered signal is full of it"),
+        (
+            "views.png",
+            "What the left camera sees: the thermal image has no texture on the road, the scattered signal is full of it",
+        ),
         ("bounds_map.png", "Bounds of depth by signal"),
         (if line == 330 { "line_330.png" } else { "line.png" }, "Bounds and matches along a line"),
         ("matched.png", "Depth by block matching"),
@@ -79,12 +87,15 @@ fn ledger(paper: &Ranging, night: &Ranging) -> Vec<Line> {
         error(result, "ground", Signal::ThermalImage) / error(result, "ground", signal)
     };
     let matched = |signal: Signal| {
-        let line = paper.lines.iter().find(|line| line.signal == signal && line.method == Some("block matching"));
+        let line =
+            paper.lines.iter().find(|line| line.signal == signal && line.method == Some("block matching"));
         line.map_or(f64::NAN, |line| median(&line.rmse_m))
     };
     let by_matching = matched(Signal::ThermalImage) / matched(Signal::ScatteredAsMeasured);
     let ours = |value: f64| format!("{} times", significant(value, 2));
-    let order = |value: f64| if (30.0..=300.0).contains(&value) { Verdict::UnderAChoice } else { Verdict::NotReproduced };
+    let order = |value: f64| {
+        if (30.0..=300.0).contains(&value) { Verdict::UnderAChoice } else { Verdict::NotReproduced }
+    };
     let by_bound = gain(paper, Signal::ScatteredAsMeasured);
     vec![
         Line::new(
@@ -124,7 +135,11 @@ fn ledger(paper: &Ranging, night: &Ranging) -> Vec<Line> {
             "not in the paper",
             "the same for the scattered signal, reconstructed from the bands with its noise / as if measured",
             "-",
-            format!("{} / {}", significant(gain(night, Signal::Reconstructed), 2), ours(gain(night, Signal::ScatteredAsMeasured))),
+            format!(
+                "{} / {}",
+                significant(gain(night, Signal::Reconstructed), 2),
+                ours(gain(night, Signal::ScatteredAsMeasured))
+            ),
             Verdict::NotInThePaper,
             "below 1: reconstruction gives information away, the thermal image itself is sharper",
         ),
@@ -135,8 +150,12 @@ fn ledger(paper: &Ranging, night: &Ranging) -> Vec<Line> {
 pub(super) fn textures(order: Order) -> Result<Made> {
     let paper = study(ONE_TEMPERATURE)?.range(&RangePlan::default(), &|_, _| ())?;
     let columns = paper.shape.columns();
-    let picture = |kind: PictureKind| paper.maps.pictures.iter().find(|(found, _)| *found == kind).map(|(_, values)| values);
-    let (Some(thermal), Some(scattered)) = (picture(PictureKind::ThermalImage), picture(PictureKind::Scattered)) else {
+    let picture = |kind: PictureKind| {
+        paper.maps.pictures.iter().find(|(found, _)| *found == kind).map(|(_, values)| values)
+    };
+    let (Some(thermal), Some(scattered)) =
+        (picture(PictureKind::ThermalImage), picture(PictureKind::Scattered))
+    else {
         return Ok((Bundle::default(), Vec::new(), Figures::default()));
     };
     // The sky scatters nothing: as bright as the dimmest of the rest, it adds no edge of its own kind.
@@ -162,14 +181,39 @@ pub(super) fn textures(order: Order) -> Result<Made> {
             centres: 0..expected.shape().rows(),
         };
         let fisher = information(&Cube::from(expected.clone()), &request)?;
-        let [deviation, deviation_noisy] = [standard_deviation(&expected, window)?, standard_deviation(&noisy, window)?];
+        let [deviation, deviation_noisy] =
+            [standard_deviation(&expected, window)?, standard_deviation(&noisy, window)?];
         let entropy = local_entropy(&noisy, window, None)?;
         let whole = global_entropy(&noisy, None)?;
         let maps = [
-            ("fisher_per_px2", "Fisher information J (of the expected counts)", Axis::log("J (pixel⁻²)"), fisher.columns.len(), fisher.cell(Cell::Full).to_vec()),
-            ("standard_deviation_counts", "Standard deviation, no noise", Axis::log("σ (counts)"), deviation.columns.len(), deviation.values.clone()),
-            ("standard_deviation_with_noise_counts", "Standard deviation, with shot noise", Axis::log("σ (counts)"), deviation_noisy.columns.len(), deviation_noisy.values.clone()),
-            ("entropy_bits", "Local entropy, with shot noise", Axis::linear("entropy (bits)"), entropy.columns.len(), entropy.values.clone()),
+            (
+                "fisher_per_px2",
+                "Fisher information J (of the expected counts)",
+                Axis::log("J (pixel⁻²)"),
+                fisher.columns.len(),
+                fisher.cell(Cell::Full).to_vec(),
+            ),
+            (
+                "standard_deviation_counts",
+                "Standard deviation, no noise",
+                Axis::log("σ (counts)"),
+                deviation.columns.len(),
+                deviation.values.clone(),
+            ),
+            (
+                "standard_deviation_with_noise_counts",
+                "Standard deviation, with shot noise",
+                Axis::log("σ (counts)"),
+                deviation_noisy.columns.len(),
+                deviation_noisy.values.clone(),
+            ),
+            (
+                "entropy_bits",
+                "Local entropy, with shot noise",
+                Axis::linear("entropy (bits)"),
+                entropy.columns.len(),
+                entropy.values.clone(),
+            ),
         ];
         let pictures = maps
             .into_iter()
@@ -178,9 +222,17 @@ pub(super) fn textures(order: Order) -> Result<Made> {
                 (key.to_owned(), Picture::new(title, axis.range(low, high), columns, values))
             })
             .collect();
-        let subtitle = format!("Windows of {SIDE} × {SIDE} pixels. Entropy of the whole image: {} bits.", significant(whole, 3));
+        let subtitle = format!(
+            "Windows of {SIDE} × {SIDE} pixels. Entropy of the whole image: {} bits.",
+            significant(whole, 3)
+        );
         let file = if name == "thermal" { "textures_thermal" } else { "textures_scattered" };
-        plots.extend(ranging::picture_plot(file, &format!("Measures of texture: {title}"), subtitle, pictures));
+        plots.extend(ranging::picture_plot(
+            file,
+            &format!("Measures of texture: {title}"),
+            subtitle,
+            pictures,
+        ));
         let noise = median(&deviation_noisy.values) / median(&deviation.values);
         lines.push(Line::new(
             "Fig. S12",

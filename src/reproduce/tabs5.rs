@@ -36,7 +36,9 @@ pub(super) fn make() -> Result<Made> {
     ]);
     let mut found = Vec::new();
     for (texture, cube) in [("common to all bands", &common), ("turning with the band", &turning)] {
-        for (noise, variance) in [("shot noise", NoiseVariance::None), ("flir-a325sc", NoiseVariance::Uniform(var))] {
+        for (noise, variance) in
+            [("shot noise", NoiseVariance::None), ("flir-a325sc", NoiseVariance::Uniform(var))]
+        {
             for joined in Joined::ALL {
                 let request = Request {
                     window: Window::new(5, 5)?,
@@ -57,7 +59,8 @@ pub(super) fn make() -> Result<Made> {
         }
     }
     let cells = |texture: &str, noise: &str, joined: Joined| {
-        let same = |row: &&(&str, &str, Joined, [f64; 4])| row.0 == texture && row.1 == noise && row.2 == joined;
+        let same =
+            |row: &&(&str, &str, Joined, [f64; 4])| row.0 == texture && row.1 == noise && row.2 == joined;
         found.iter().find(same).map_or([f64::NAN; 4], |row| row.3)
     };
     let gain = |texture: &str, noise: &str, joined: Joined| {
@@ -66,7 +69,9 @@ pub(super) fn make() -> Result<Made> {
     };
     let ordered = |[neither, spatial, spectral, both]: [f64; 4]| {
         const ROUNDING: f64 = 1.0 + 1e-12;
-        neither <= spatial * ROUNDING && neither <= spectral * ROUNDING && spatial.max(spectral) <= both * ROUNDING
+        neither <= spatial * ROUNDING
+            && neither <= spectral * ROUNDING
+            && spatial.max(spectral) <= both * ROUNDING
     };
     let shot = [
         cells("common to all bands", "shot noise", Joined::SumOfReadings),
@@ -88,7 +93,11 @@ pub(super) fn make() -> Result<Made> {
             "Tables S4, S5",
             "spectral resolution gives more information, texture common to 536 bands, noise of flir-a325sc in every reading",
             "more",
-            format!("{} times as much ({} = 1/536)", significant(lost, 3), significant(1.0 / BANDS as f64, 3)),
+            format!(
+                "{} times as much ({} = 1/536)",
+                significant(lost, 3),
+                significant(1.0 / BANDS as f64, 3)
+            ),
             Verdict::PaperInError,
             "true for a fixed gamma alone: 536 readings have 536 times the noise of one",
         ),

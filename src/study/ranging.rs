@@ -177,7 +177,9 @@ impl RangeStudy {
                 let noise = cube.noise_per_unit()?;
                 let of = |cells: &InformationMap| {
                     [(Signal::ThermalImage, Cell::Spatial), (Signal::HeatCube, Cell::Full)]
-                        .map(|(signal, cell)| SignalMap::of(signal, cell, cells).scaled(cube.photons_per_unit))
+                        .map(|(signal, cell)| {
+                            SignalMap::of(signal, cell, cells).scaled(cube.photons_per_unit)
+                        })
                         .to_vec()
                 };
                 let place = |key: &'static str| move |error: crate::Error| error.at(self.scenario.place(key));
@@ -281,15 +283,22 @@ impl RangeStudy {
         let view = &pair.left;
         let summed = |part: Part| {
             let cube = view.cube(part, scene.counting.counts_per_radiance)?;
-            Ok::<_, crate::Error>(cube.samples().chunks_exact(view.shape().bands()).map(|pixel| pixel.iter().sum()).collect())
+            Ok::<_, crate::Error>(
+                cube.samples().chunks_exact(view.shape().bands()).map(|pixel| pixel.iter().sum()).collect(),
+            )
         };
         let sky = |depth: &f64| depth.is_infinite();
         let hidden = |values: Vec<f64>| -> Vec<f64> {
-            values.into_iter().zip(&view.depth_m).map(|(value, z)| if sky(z) { f64::NAN } else { value }).collect()
+            values
+                .into_iter()
+                .zip(&view.depth_m)
+                .map(|(value, z)| if sky(z) { f64::NAN } else { value })
+                .collect()
         };
         let surfaces = view.lighting.len() / view.depth_m.len().max(1);
         // The sky is the first of the surfaces.
-        let not_sky = view.lighting.chunks_exact(surfaces.max(1)).map(|v| 1.0 - v.first().unwrap_or(&0.0)).collect();
+        let not_sky =
+            view.lighting.chunks_exact(surfaces.max(1)).map(|v| 1.0 - v.first().unwrap_or(&0.0)).collect();
         Ok(vec![
             (PictureKind::ThermalImage, summed(Part::Total)?),
             (PictureKind::Scattered, hidden(summed(Part::Scattered)?)),

@@ -25,10 +25,22 @@ pub fn views(result: &Ranging) -> Option<Plot> {
         .iter()
         .map(|(kind, values)| {
             let (title, axis, key) = match kind {
-                PictureKind::ThermalImage => ("Thermal image, all bands", Axis::linear("photons per pixel"), "thermal_photons"),
-                PictureKind::Scattered => ("Scattered signal (no camera measures it alone)", Axis::linear("photons per pixel"), "scattered_photons"),
-                PictureKind::Temperature => ("Temperature T", Axis::linear("temperature (°C)"), "temperature_degc"),
-                PictureKind::Lighting => ("Thermal lighting X: share that is not sky", Axis::linear("1 − V of the sky"), "lighting_not_sky"),
+                PictureKind::ThermalImage => {
+                    ("Thermal image, all bands", Axis::linear("photons per pixel"), "thermal_photons")
+                }
+                PictureKind::Scattered => (
+                    "Scattered signal (no camera measures it alone)",
+                    Axis::linear("photons per pixel"),
+                    "scattered_photons",
+                ),
+                PictureKind::Temperature => {
+                    ("Temperature T", Axis::linear("temperature (°C)"), "temperature_degc")
+                }
+                PictureKind::Lighting => (
+                    "Thermal lighting X: share that is not sky",
+                    Axis::linear("1 − V of the sky"),
+                    "lighting_not_sky",
+                ),
                 PictureKind::Depth => ("Depth", Axis::log("depth (m)"), "depth_m"),
             };
             let axis = clipped(axis, values);
@@ -52,12 +64,15 @@ pub fn bound_maps(result: &Ranging) -> Option<Plot> {
         .disparity_error_px
         .iter()
         .map(|(signal, errors)| {
-            let value = |(error, depth): (&f64, &f64)| if with_depth { error * depth * depth * scale } else { *error };
+            let value = |(error, depth): (&f64, &f64)| {
+                if with_depth { error * depth * depth * scale } else { *error }
+            };
             (*signal, errors.iter().zip(&maps.depth_m).map(value).collect())
         })
         .collect();
     // One scale for all, so that they can be compared.
-    let all: Vec<f64> = per_signal.iter().flat_map(|(_, values)| values).copied().filter(|v| v.is_finite()).collect();
+    let all: Vec<f64> =
+        per_signal.iter().flat_map(|(_, values)| values).copied().filter(|v| v.is_finite()).collect();
     let (low, high) = (quantile(&all, TAIL), quantile(&all, 1.0 - TAIL));
     let unit = if with_depth { "depth error (m)" } else { "disparity error (pixels)" };
     let suffix = if with_depth { "depth_error_m" } else { "disparity_error_px" };
@@ -76,7 +91,14 @@ pub fn bound_maps(result: &Ranging) -> Option<Plot> {
         window.columns()
     );
     let first = [maps.rows.start, maps.columns.start];
-    plot("bounds_map", "How well depth can be measured", subtitle, "sky, not seen by both cameras, or no texture at all", pictures, first)
+    plot(
+        "bounds_map",
+        "How well depth can be measured",
+        subtitle,
+        "sky, not seen by both cameras, or no texture at all",
+        pictures,
+        first,
+    )
 }
 
 /// Depths that block matching finds in one noisy pair.
@@ -105,7 +127,8 @@ pub fn matched_maps(result: &Ranging) -> Option<Plot> {
         return None;
     }
     if let Some((_, values)) = truth {
-        pictures.push(("depth_m_truth".to_owned(), Picture::new("True depth", axis(), columns, values.clone())));
+        pictures
+            .push(("depth_m_truth".to_owned(), Picture::new("True depth", axis(), columns, values.clone())));
     }
     let subtitle = "Block matching of one noisy pair.".to_owned();
     plot("matched", "Depth by matching", subtitle, "sky, or no match", pictures, [0, 0])
@@ -117,7 +140,9 @@ pub fn lines(result: &Ranging) -> Vec<Plot> {
     let mut rows: Vec<usize> = result.lines.iter().map(|line| line.row).collect();
     rows.sort_unstable();
     rows.dedup();
-    rows.into_iter().map(|row| line(row, result.lines.iter().filter(|line| line.row == row).collect())).collect()
+    rows.into_iter()
+        .map(|row| line(row, result.lines.iter().filter(|line| line.row == row).collect()))
+        .collect()
 }
 
 fn line(row: usize, lines: Vec<&Line>) -> Plot {
@@ -139,7 +164,7 @@ fn line(row: usize, lines: Vec<&Line>) -> Plot {
         if let Some(method) = line.method {
             let label = format!("{method}, {}", line.signal.name());
             // The second method of a signal has a colour of its own.
-            let shade = if method.starts_with("block") { colour } else { colour + 4 };
+            let shade = if method.starts_with("block") { colour } else { (colour + 5) % 7 };
             figure = figure.series(Series::points(label, x.clone(), line.rmse_m.clone()).colour(shade));
             bias = bias.series(Series::points("", x, line.bias_m.clone()).colour(shade));
         }
@@ -163,13 +188,21 @@ pub fn derivative_errors() -> Result<Plot> {
         Axis::linear("spatial frequency (cycles per pixel)").range(0.0, 0.5),
         Axis::linear("slope found over true slope").range(0.0, 1.1),
     )
-    .subtitle("Lines: closed form. Points: measured on sinusoids. The information found is the square of this.");
+    .subtitle(
+        "Lines: closed form. Points: measured on sinusoids. The information found is the square of this.",
+    );
     let mut table = Table::new(["cycles_per_pixel", "derivative", "slope_found_over_true", "closed_form"]);
     for (colour, scheme) in Derivative::ALL.into_iter().enumerate() {
         let closed = omegas.iter().map(|omega| scheme.response(*omega)).collect::<Result<Vec<f64>>>()?;
-        let measured = omegas.iter().map(|omega| response_measured(scheme, *omega)).collect::<Result<Vec<f64>>>()?;
+        let measured =
+            omegas.iter().map(|omega| response_measured(scheme, *omega)).collect::<Result<Vec<f64>>>()?;
         for ((frequency, closed), measured) in pixels_per_cycle.iter().zip(&closed).zip(&measured) {
-            table.push(vec![number(*frequency), scheme.name().to_owned(), number(*measured), number(*closed)]);
+            table.push(vec![
+                number(*frequency),
+                scheme.name().to_owned(),
+                number(*measured),
+                number(*closed),
+            ]);
         }
         let points = Series::points("", pixels_per_cycle.clone(), measured).colour(colour);
         let style = if scheme == Derivative::Fourier { Style::Dashed } else { Style::Line };
@@ -215,19 +248,23 @@ fn plot(
     let columns = pictures.first()?.1.columns;
     let rows = pictures.first()?.1.values.len().checked_div(columns)?;
     let step = columns.div_ceil(COLUMNS).max(1);
-    let mut table =
-        Table::new(["row", "column"].map(str::to_owned).into_iter().chain(pictures.iter().map(|(key, _)| key.clone())));
+    let mut table = Table::new(
+        ["row", "column"].map(str::to_owned).into_iter().chain(pictures.iter().map(|(key, _)| key.clone())),
+    );
     for row in (0..rows).step_by(step) {
         for column in (0..columns).step_by(step) {
             let mut cells = vec![(row + first[0]).to_string(), (column + first[1]).to_string()];
             let at = row * columns + column;
-            cells.extend(pictures.iter().map(|(_, picture)| {
-                picture.values.get(at).map_or_else(String::new, |value| short(*value))
-            }));
+            cells.extend(
+                pictures.iter().map(|(_, picture)| {
+                    picture.values.get(at).map_or_else(String::new, |value| short(*value))
+                }),
+            );
             table.push(cells);
         }
     }
-    let subtitle = if step > 1 { format!("{subtitle} The table beside holds every {step}th pixel.") } else { subtitle };
+    let subtitle =
+        if step > 1 { format!("{subtitle} The table beside holds every {step}th pixel.") } else { subtitle };
     let pictures = pictures.into_iter().map(|(_, picture)| picture).collect();
     let figure = Pictures::new(title, pictures).subtitle(subtitle).no_value(no_value);
     Some(Plot { name: name.into(), figure: figure.into(), table })

@@ -2,9 +2,9 @@
 
 use crate::ranging::depth::DepthSolution as Solution;
 use crate::report::text::warnings;
-use crate::words::{self, quantity, share as percent, significant};
 use crate::scenario::ranging::{Diffraction, Subject};
 use crate::study::ranging::{ObjectBounds, RangeStats, Ranging, Signal, SignalBounds};
+use crate::words::{self, quantity, share as percent, significant};
 use std::fmt::Write as _;
 
 /// The whole answer.
@@ -20,23 +20,30 @@ pub fn text(result: &Ranging) -> String {
     out
 }
 
+/// A disparity error beyond any image, pixels.
+const BEYOND: f64 = 1e20;
+
 /// Medians by object and signal.
 fn bounds(result: &Ranging) -> String {
     let window = result.scenario.stereo.window;
     let depth = result.objects.iter().any(|object| object.depth_m.is_some());
     let what = if depth { "Least depth error" } else { "Least disparity error" };
     let mut out = format!(
-        "{what}, median over windows of {} x {} pixels (share of them that reach the demand)\n",
+        "{what}, median over windows of {} x {} pixels (share of them that reach the demand; none: error above the depth itself)\n",
         window.rows(),
         window.columns()
     );
-    let signals: Vec<Signal> =
-        result.objects.first().map_or_else(Vec::new, |all| all.signals.iter().map(|found| found.signal).collect());
+    let signals: Vec<Signal> = result
+        .objects
+        .first()
+        .map_or_else(Vec::new, |all| all.signals.iter().map(|found| found.signal).collect());
     let name = |object: &ObjectBounds| match object.depth_m {
         Some([low, _, high]) if significant(low, 3) == significant(high, 3) => {
             format!("{}, {} m", object.name, significant(low, 3))
         }
-        Some([low, _, high]) => format!("{}, {} to {} m", object.name, significant(low, 2), significant(high, 2)),
+        Some([low, _, high]) => {
+            format!("{}, {} to {} m", object.name, significant(low, 2), significant(high, 2))
+        }
         None => object.name.clone(),
     };
     let names: Vec<String> = result.objects.iter().map(name).collect();
@@ -56,7 +63,10 @@ fn bounds(result: &Ranging) -> String {
     }
     if let Some(all) = result.objects.first() {
         for (label, value) in [
-            ("information of a window, pixel^-2", &(|found: &SignalBounds| found.information_per_px2) as &dyn Fn(&SignalBounds) -> f64),
+            (
+                "information of a window, pixel^-2",
+                &(|found: &SignalBounds| found.information_per_px2) as &dyn Fn(&SignalBounds) -> f64,
+            ),
             ("photons of a window", &|found: &SignalBounds| found.photons),
             ("noise over shot noise (gamma)", &|found: &SignalBounds| found.gamma),
             ("sigma_c of one photon, pixels", &|found: &SignalBounds| found.sigma_correspondence_px),
@@ -70,7 +80,8 @@ fn bounds(result: &Ranging) -> String {
         }
         if all.signals.iter().any(|found| found.largest_depth_m.is_some()) && depth {
             let share = 100.0 * result.scenario.requirement.share;
-            let _ = write!(out, "  {:width$}", format!("depth to which {share} % reach it"), width = first + 10);
+            let _ =
+                write!(out, "  {:width$}", format!("depth to which {share} % reach it"), width = first + 10);
             for (found, width) in all.signals.iter().zip(&widths) {
                 let shown = found.largest_depth_m.map_or("-".into(), |z| length(z));
                 let _ = write!(out, "  {shown:>width$}");
@@ -84,13 +95,18 @@ fn bounds(result: &Ranging) -> String {
 
 fn cell(found: &SignalBounds) -> String {
     match (found.depth_error_m, found.share) {
-        (Some([_, median, _]), Some(share)) => format!("{} ({})", length(median), percent(share)),
+        (Some([_, median, _]), Some(share)) => {
+            // Beyond the depth itself the linear law of errors means nothing.
+            let beyond = found.relative_depth_error.is_some_and(|relative| relative > 1.0);
+            let shown = if beyond { "none".to_owned() } else { length(median) };
+            format!("{shown} ({})", percent(share))
+        }
         _ => format!("{} px", finite(found.disparity_error_px)),
     }
 }
 
 fn finite(value: f64) -> String {
-    if value.is_infinite() {
+    if value.is_infinite() || value > BEYOND {
         "no texture".into()
     } else if value.is_nan() {
         "-".into()
@@ -105,11 +121,9 @@ fn length(metres: f64) -> String {
 
 fn cells(result: &Ranging) -> String {
     let Some(cells) = result.cells else { return String::new() };
-    let mut out = String::from("Information of a window with and without resolution, median, pixel^-2 (Table S4)\n");
-    let rows = [
-        ("bands together", cells.total, cells.spatial),
-        ("bands apart", cells.spectral, cells.full),
-    ];
+    let mut out =
+        String::from("Information of a window with and without resolution, median, pixel^-2 (Table S4)\n");
+    let rows = [("bands together", cells.total, cells.spatial), ("bands apart", cells.spectral, cells.full)];
     let _ = writeln!(out, "  {:14}  {:>17}  {:>12}", "", "pixels together", "pixels apart");
     for (label, joined, apart) in rows {
         let _ = writeln!(out, "  {label:14}  {:>17}  {:>12}", finite(joined), finite(apart));
@@ -173,25 +187,29 @@ fn witnesses(result: &Ranging) -> String {
         out.push_str("Matching against the bound, median over the windows of a line\n");
         let _ = writeln!(
             out,
-            "  {:>4}  {:26} {:20} {:>12} {:>12} {:>12} {:>10}",
-            "row", "signal", "method", "bound", "rmse", "bias", "outliers"
+            "  {:>4}  {:26} {:18} {:>10} {:>10} {:>10} {:>14} {:>9}",
+            "row", "signal", "method", "bound", "rmse", "bias", "scatter/bound", "outliers"
         );
         for line in witnessed {
             let middle = |values: &[f64]| crate::study::ranging::median(values);
             let sizes: Vec<f64> = line.bias_m.iter().map(|bias| bias.abs()).collect();
             let _ = writeln!(
                 out,
-                "  {:>4}  {:26} {:20} {:>12} {:>12} {:>12} {:>10}",
+                "  {:>4}  {:26} {:18} {:>10} {:>10} {:>10} {:>14} {:>9}",
                 line.row,
                 line.signal.name(),
                 line.method.unwrap_or_default(),
                 length(middle(&line.bound_m)),
                 length(middle(&line.rmse_m)),
                 length(middle(&sizes)),
+                line.scatter_over_bound.map_or("-".into(), |ratio| significant(ratio, 2)),
                 percent(line.outliers.iter().sum::<f64>() / line.outliers.len().max(1) as f64)
             );
         }
-        out.push('\n');
+        out.push_str(
+            "  bias: pixel locking, and disparity that changes within a window (a road does from row to row: try window = [1, 25]); it does not \
+             shrink with more light. Where most matches are outliers the bound is out of reach: noise has more texture than the image\n\n",
+        );
     }
     if !result.matched.is_empty() {
         out.push_str("Whole view matched once, block matching (standard depth metrics)\n");
@@ -251,9 +269,9 @@ fn assumptions(result: &Ranging) -> String {
     }
     if matches!(result.scenario.subject, Subject::Scene(_)) {
         out.push_str(
-            "  heat cube: no algorithm beats it. Reconstructed: temperature estimated in every pixel from the bands (strong: the \
-             strength of the emission too).\n  As if measured: the paper's reading, scattered light with its own noise alone; no camera \
-             measures it, and where it promises more than the heat cube nobody reaches it\n",
+            "  heat cube: no algorithm beats it\n  lighting, reconstructed: temperature estimated in every pixel from the bands, emissivity known \
+             there; e unknown: the strength of the emission is estimated too\n  scattered, as if measured: the paper's reading, with the noise \
+             of the scattered photons alone; no camera measures it, and where it promises more than the heat cube nobody reaches it\n",
         );
     } else {
         out.push_str(
@@ -268,6 +286,11 @@ fn assumptions(result: &Ranging) -> String {
 pub fn stats(stats: &RangeStats) -> String {
     format!(
         "\nComputed\n  {} of {} samples looked at; {} windows: {} proved to reach the demand, {} proved not to, {} computed in full\n",
-        stats.samples_read, stats.samples, stats.windows, stats.proved_above, stats.proved_below, stats.computed
+        stats.samples_read,
+        stats.samples,
+        stats.windows,
+        stats.proved_above,
+        stats.proved_below,
+        stats.computed
     )
 }

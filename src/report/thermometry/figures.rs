@@ -156,7 +156,11 @@ pub fn rmse(result: &Thermometry) -> Plot {
             figure = figure.series(Series::line(label, celsius.clone(), values).style(style).colour(colour));
         }
     }
-    Plot { name: "temperature_rmse".into(), figure: figure.lower(over_bound(result, &rows, &celsius)).into(), table }
+    Plot {
+        name: "temperature_rmse".into(),
+        figure: figure.lower(over_bound(result, &rows, &celsius)).into(),
+        table,
+    }
 }
 
 /// The bound averaged over the range of the lighting, where that stops the fits; elsewhere it hides under the others.

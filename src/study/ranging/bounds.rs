@@ -34,9 +34,13 @@ impl Ground<'_> {
         let [half_rows, half_columns] = half;
         let whole = |row: usize, column: usize| {
             (row - half_rows..=row + half_rows).all(|y| {
-                let pixels = y * self.columns + column - half_columns..=y * self.columns + column + half_columns;
+                let pixels =
+                    y * self.columns + column - half_columns..=y * self.columns + column + half_columns;
                 // The sky is infinitely far: it has no depth, and no texture of its own.
-                self.truth.depth_m.get(pixels.clone()).is_some_and(|depths| depths.iter().all(|z| !z.is_infinite()))
+                self.truth
+                    .depth_m
+                    .get(pixels.clone())
+                    .is_some_and(|depths| depths.iter().all(|z| !z.is_infinite()))
                     && self.truth.seen.get(pixels).is_some_and(|seen| seen.iter().all(|seen| *seen))
             })
         };
@@ -63,7 +67,8 @@ impl Ground<'_> {
             let partner = match right {
                 Some(right) if depth_m.is_finite() => {
                     let shifted = column as f64 - self.geometry.disparity_px(depth_m).ok()?;
-                    let there = (shifted.round() >= 0.0).then(|| right.at(row, shifted.round() as usize))??;
+                    let there =
+                        (shifted.round() >= 0.0).then(|| right.at(row, shifted.round() as usize))??;
                     one(right, there)?
                 }
                 _ => own,
@@ -80,7 +85,8 @@ impl Ground<'_> {
         maps: &[SignalMap],
         variances: &[Vec<f64>],
     ) -> Result<Vec<ObjectBounds>> {
-        let name_of = |&(row, column): &(usize, usize)| self.truth.object.get(row * self.columns + column).copied();
+        let name_of =
+            |&(row, column): &(usize, usize)| self.truth.object.get(row * self.columns + column).copied();
         let mut objects = vec![self.object("all windows", windows, maps, variances, &|_| true)?];
         for (i, name) in self.truth.names.iter().enumerate() {
             let own = |window: &(usize, usize)| name_of(window) == u8::try_from(i).ok();
@@ -147,13 +153,15 @@ impl Ground<'_> {
             .map(|bound| self.geometry.depth_error_m(bound.depth_m, bound.var_px2.sqrt()))
             .collect::<Result<Vec<f64>>>()?;
         let known = !errors.is_empty();
-        let relative: Vec<f64> = errors.iter().zip(&with_depth).map(|(error, bound)| error / bound.depth_m).collect();
+        let relative: Vec<f64> =
+            errors.iter().zip(&with_depth).map(|(error, bound)| error / bound.depth_m).collect();
         let met = errors
             .iter()
             .zip(&with_depth)
             .filter(|(error, bound)| **error <= self.requirement.error.at(bound.depth_m))
             .count();
-        let farthest: Vec<f64> = bounds.iter().map(|bound| self.largest_depth_m(bound.var_px2.sqrt())).collect();
+        let farthest: Vec<f64> =
+            bounds.iter().map(|bound| self.largest_depth_m(bound.var_px2.sqrt())).collect();
         Ok(SignalBounds {
             signal: map.signal,
             photons,
@@ -164,7 +172,8 @@ impl Ground<'_> {
             depth_error_m: known.then(|| [0.1, 0.5, 0.9].map(|part| quantile(&errors, part))),
             relative_depth_error: known.then(|| median(&relative)),
             share: known.then(|| met as f64 / errors.len() as f64),
-            largest_depth_m: (!farthest.is_empty()).then(|| quantile(&farthest, 1.0 - self.requirement.share)),
+            largest_depth_m: (!farthest.is_empty())
+                .then(|| quantile(&farthest, 1.0 - self.requirement.share)),
         })
     }
 
@@ -196,7 +205,8 @@ impl Ground<'_> {
             }
             map
         };
-        let centres = rows.clone().flat_map(|row| columns.clone().map(move |column| row * self.columns + column));
+        let centres =
+            rows.clone().flat_map(|row| columns.clone().map(move |column| row * self.columns + column));
         let depth_m = centres.map(|at| self.truth.depth_m.get(at).copied().unwrap_or(f64::NAN)).collect();
         let disparity_error_px: Vec<(Signal, Vec<f64>)> =
             maps.iter().zip(variances).map(|(map, var)| (map.signal, spread(var))).collect();

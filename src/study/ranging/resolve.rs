@@ -70,7 +70,9 @@ fn scene(
     let found = |key: &str, material: &MaterialRef| -> Result<Emissivity> {
         let place = || scenario.place(&format!("scene.{key}"));
         let emissivity = match material {
-            MaterialRef::Name(name) => library.get(name).and_then(|found| found.emissivity(bands.nodes_cm1())),
+            MaterialRef::Name(name) => {
+                library.get(name).and_then(|found| found.emissivity(bands.nodes_cm1()))
+            }
             MaterialRef::File(path) => {
                 Material::from_file(path).and_then(|read| read.emissivity(bands.nodes_cm1()))
             }
@@ -183,7 +185,9 @@ fn depth_map(depth: &Cube, shape: Shape) -> Result<Vec<f64>> {
     }
     let mut map = Vec::with_capacity(shape.rows() * shape.columns());
     match depth {
-        Cube::F32(rows) => map.extend(rows.read(0..shape.rows(), &mut Vec::new())?.iter().map(|z| f64::from(*z))),
+        Cube::F32(rows) => {
+            map.extend(rows.read(0..shape.rows(), &mut Vec::new())?.iter().map(|z| f64::from(*z)))
+        }
         Cube::F64(rows) => map.extend_from_slice(rows.read(0..shape.rows(), &mut Vec::new())?),
     }
     // What is not known, as such maps have it, is not above 0; nothing else is wrong with a depth.

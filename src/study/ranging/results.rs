@@ -1,7 +1,7 @@
 //! What a ranging study finds, as data.
 
-use crate::ranging::depth::DepthSolution;
 use crate::ranging::cube::Shape;
+use crate::ranging::depth::DepthSolution;
 use crate::ranging::metrics::DepthMetrics;
 use crate::scenario::RangeScenario;
 use crate::study::Warning;
@@ -16,17 +16,24 @@ pub enum Signal {
     ThermalImage,
     /// All bands apart: what no algorithm can beat.
     HeatCube,
-    /// What remains of it where the emission of every pixel, its strength and its temperature, has to be estimated from the bands
-    /// and taken off.
+    /// What remains of it where the temperature of every pixel is estimated from the bands, its emissivity known: lighting
+    /// reconstructed, with the noise of that.
     Reconstructed,
+    /// The same where the strength of the emission is estimated too, since texture of the emissivity is not known beforehand.
+    ReconstructedBlind,
     /// The scattered light alone, with only its own noise, as the paper has it: no camera measures it.
     ScatteredAsMeasured,
 }
 
 impl Signal {
     /// All of them, in the order of reports.
-    pub const ALL: [Self; 4] =
-        [Self::ThermalImage, Self::HeatCube, Self::Reconstructed, Self::ScatteredAsMeasured];
+    pub const ALL: [Self; 5] = [
+        Self::ThermalImage,
+        Self::HeatCube,
+        Self::Reconstructed,
+        Self::ReconstructedBlind,
+        Self::ScatteredAsMeasured,
+    ];
 
     /// In a table.
     #[must_use]
@@ -34,7 +41,8 @@ impl Signal {
         match self {
             Self::ThermalImage => "thermal image",
             Self::HeatCube => "heat cube",
-            Self::Reconstructed => "scattered, reconstructed",
+            Self::Reconstructed => "lighting, reconstructed",
+            Self::ReconstructedBlind => "the same, e unknown",
             Self::ScatteredAsMeasured => "scattered, as if measured",
         }
     }
@@ -45,7 +53,8 @@ impl Signal {
         match self {
             Self::ThermalImage => "thermal_image",
             Self::HeatCube => "heat_cube",
-            Self::Reconstructed => "scattered_reconstructed",
+            Self::Reconstructed => "lighting_reconstructed",
+            Self::ReconstructedBlind => "lighting_reconstructed_e_unknown",
             Self::ScatteredAsMeasured => "scattered_as_measured",
         }
     }
@@ -210,8 +219,8 @@ pub struct Line {
     pub bias_m: Vec<f64>,
     /// Share of matches that fail or miss by more than a pixel.
     pub outliers: Vec<f64>,
-    /// Median over the columns of RMSE over bound.
-    pub median_ratio: Option<f64>,
+    /// Median over the columns of the scatter of the matches, √(RMSE² − bias²), over the bound.
+    pub scatter_over_bound: Option<f64>,
     /// Trials.
     pub trials: usize,
 }

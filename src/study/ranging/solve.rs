@@ -33,7 +33,8 @@ impl RangeStudy {
     ) -> Result<Option<DepthSolutions>> {
         let place = informed.left.iter().position(|map| map.signal == Signal::HeatCube);
         let Some(var) = place.and_then(|at| variances.get(at)) else { return Ok(None) };
-        let Some(((row, column), depth_m)) = self.decisive(ground.truth, ground.columns, windows, var)? else {
+        let Some(((row, column), depth_m)) = self.decisive(ground.truth, ground.columns, windows, var)?
+        else {
             return Ok(None);
         };
         let disparity = self.geometry.disparity_px(depth_m)?;
@@ -50,10 +51,13 @@ impl RangeStudy {
             var => Image::Ideal { var_diffraction_m2: var * pitch * pitch },
         };
         let demand = self.scenario.requirement.error;
-        let task = DepthTask { geometry: self.geometry, distance_m: depth_m, views: [&left, &right], image, demand };
+        let task =
+            DepthTask { geometry: self.geometry, distance_m: depth_m, views: [&left, &right], image, demand };
         let camera = self.camera.as_ref();
         let aperture = camera.map(|camera| {
-            task.aperture(camera.focal_length_m / camera.f_number, |aperture_m| self.var_diffraction_m2(aperture_m))
+            task.aperture(camera.focal_length_m / camera.f_number, |aperture_m| {
+                self.var_diffraction_m2(aperture_m)
+            })
         });
         let exposure = camera.map(|camera| {
             task.exposure(ExposureNoise {
@@ -93,7 +97,8 @@ impl RangeStudy {
         }
         let last = ranked.len().saturating_sub(1);
         // The first that leaves fewer than the demanded share before it.
-        let rank = ((self.scenario.requirement.share * ranked.len() as f64).ceil() as usize).saturating_sub(1);
+        let rank =
+            ((self.scenario.requirement.share * ranked.len() as f64).ceil() as usize).saturating_sub(1);
         if ranked.is_empty() {
             return Ok(None);
         }
@@ -107,7 +112,13 @@ impl RangeStudy {
     }
 
     /// Samples of a window of one view; `None` where it does not fit in.
-    fn samples(&self, informed: &Informed, left: bool, row: usize, column: usize) -> Result<Option<WindowSamples>> {
+    fn samples(
+        &self,
+        informed: &Informed,
+        left: bool,
+        row: usize,
+        column: usize,
+    ) -> Result<Option<WindowSamples>> {
         let shape = self.shape()?;
         let stereo = &self.scenario.stereo;
         let (half_rows, half_columns) = (stereo.window.half_rows(), stereo.window.half_columns());
@@ -124,7 +135,8 @@ impl RangeStudy {
         for counts in counts.rows.chunks_exact(shape.row_len()) {
             differentiator.apply(counts, bands, &mut slopes)?;
             n.extend_from_slice(&counts[columns.start * bands..columns.end * bands]);
-            slope.extend_from_slice(&slopes[(columns.start - margin) * bands..(columns.end - margin) * bands]);
+            slope
+                .extend_from_slice(&slopes[(columns.start - margin) * bands..(columns.end - margin) * bands]);
         }
         let var = match counts.var.len() {
             0 => Vec::new(),
@@ -169,7 +181,8 @@ impl RangeStudy {
                     let spread = PointSpread::airy_of_aperture(aperture_m, focal, nu)?;
                     Ok((spread, planck::photon_radiance(nu, 293.15)))
                 };
-                let parts = bands.bands().iter().map(|band| part(band.center_cm1)).collect::<Result<Vec<_>>>()?;
+                let parts =
+                    bands.bands().iter().map(|band| part(band.center_cm1)).collect::<Result<Vec<_>>>()?;
                 bands_var_m2(&parts)
             }
         }

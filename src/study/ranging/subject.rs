@@ -41,6 +41,11 @@ pub(super) enum Depth {
 }
 
 impl Rendered {
+    /// σ² of each band, counts².
+    pub(super) fn var_per_band(&self, bands: usize) -> Vec<f64> {
+        (0..bands).map(|band| self.counting.var_electronic(band)).collect()
+    }
+
     /// Expected counts of a part of the signal in one view.
     pub(super) fn counts(&self, view: &View, part: Part) -> Result<Cube> {
         Ok(Cube::from(view.cube(part, self.counting.counts_per_radiance)?))
@@ -93,7 +98,9 @@ impl Measured {
             _ if g == 1.0 => None,
             NoiseVariance::None => None,
             NoiseVariance::Uniform(var) => Some(NoiseVariance::Uniform(var / g)),
-            NoiseVariance::PerBand(var) => Some(NoiseVariance::PerBand(var.iter().map(|var| var / g).collect())),
+            NoiseVariance::PerBand(var) => {
+                Some(NoiseVariance::PerBand(var.iter().map(|var| var / g).collect()))
+            }
             NoiseVariance::PerSample(_) => {
                 let instead = "give the counts in photons, or one variance per band";
                 return Err(Error::malformed("variances per sample beside photons_per_unit", instead));

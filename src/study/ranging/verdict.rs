@@ -16,7 +16,8 @@ impl RangeStudy {
     /// σ_d², pixel²: the diffraction that the image does not have in it. The pixel's own size is in the image: it is a mean
     /// over pixels.
     pub(super) fn var_diffraction_px2(&self) -> Result<f64> {
-        let aperture_m = self.camera.as_ref().map_or(f64::NAN, |camera| camera.focal_length_m / camera.f_number);
+        let aperture_m =
+            self.camera.as_ref().map_or(f64::NAN, |camera| camera.focal_length_m / camera.f_number);
         let var_m2 = self
             .var_diffraction_m2(aperture_m)
             .map_err(|error| error.at(self.scenario.place("stereo.diffraction")))?;

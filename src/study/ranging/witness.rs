@@ -54,7 +54,8 @@ impl RangeStudy {
         for row in &rows {
             if !maps.rows.contains(row) {
                 let found = format!("row {row} has no whole window");
-                let instead = format!("choose rows from {} to {}", maps.rows.start, maps.rows.end.saturating_sub(1));
+                let instead =
+                    format!("choose rows from {} to {}", maps.rows.start, maps.rows.end.saturating_sub(1));
                 return Err(Error::malformed(found, instead).at(self.scenario.place("stereo.lines")));
             }
         }
@@ -90,17 +91,23 @@ impl RangeStudy {
             rmse_m: Vec::new(),
             bias_m: Vec::new(),
             outliers: Vec::new(),
-            median_ratio: None,
+            scatter_over_bound: None,
             trials: 0,
         };
         for (i, column) in maps.columns.clone().enumerate() {
-            let (Some(error), Some(depth_m)) = (errors.get(from + i), maps.depth_m.get(from + i)) else { continue };
+            let (Some(error), Some(depth_m)) = (errors.get(from + i), maps.depth_m.get(from + i)) else {
+                continue;
+            };
             if error.is_nan() {
                 continue;
             }
             line.columns.push(column);
             line.depth_m.push(*depth_m);
-            line.bound_m.push(if depth_m.is_nan() { *error } else { self.geometry.depth_error_m(*depth_m, *error)? });
+            line.bound_m.push(if depth_m.is_nan() {
+                *error
+            } else {
+                self.geometry.depth_error_m(*depth_m, *error)?
+            });
         }
         Ok(line)
     }
@@ -154,14 +161,17 @@ impl RangeStudy {
             line.bias_m.push(-per_px * share(sum));
             line.outliers.push(outliers as f64 / plan.trials.max(1) as f64);
         }
-        let ratios: Vec<f64> = line
+        let scatter = line
             .rmse_m
             .iter()
+            .zip(&line.bias_m)
+            .map(|(rmse, bias)| ((rmse - bias) * (rmse + bias)).max(0.0).sqrt());
+        let ratios: Vec<f64> = scatter
             .zip(&line.bound_m)
-            .map(|(rmse, bound)| rmse / bound)
+            .map(|(scatter, bound)| scatter / bound)
             .filter(|ratio| ratio.is_finite())
             .collect();
-        line.median_ratio = (!ratios.is_empty()).then(|| median(&ratios));
+        line.scatter_over_bound = (!ratios.is_empty()).then(|| median(&ratios));
         Ok(line)
     }
 
@@ -191,17 +201,24 @@ impl RangeStudy {
             Joined::OneReading => total / bands as f64,
         };
         let noise = if var == 0.0 { NoiseVariance::None } else { NoiseVariance::Uniform(var) };
-        Ok(Views { shape: Shape::new(shape.rows(), shape.columns(), 1)?, left: summed(left), right: summed(right), noise })
+        Ok(Views {
+            shape: Shape::new(shape.rows(), shape.columns(), 1)?,
+            left: summed(left),
+            right: summed(right),
+            noise,
+        })
     }
 
     /// Whole views matched once by blocks, where trials are asked for.
     pub(super) fn matched(&self, plan: &RangePlan, informed: &Informed) -> Result<Vec<Matched>> {
-        let (Resolved::Scene(scene), Some(pair), true) = (&self.subject, &informed.pair, plan.trials > 0) else {
+        let (Resolved::Scene(scene), Some(pair), true) = (&self.subject, &informed.pair, plan.trials > 0)
+        else {
             return Ok(Vec::new());
         };
         let Truth { depth_m, seen, .. } = &informed.truth;
         let finite: Vec<f64> = depth_m.iter().copied().filter(|z| z.is_finite()).collect();
-        let disparities = finite.iter().map(|z| self.geometry.disparity_px(*z)).collect::<Result<Vec<f64>>>()?;
+        let disparities =
+            finite.iter().map(|z| self.geometry.disparity_px(*z)).collect::<Result<Vec<f64>>>()?;
         let search = search(&disparities)?;
         let block = Block::new(self.scenario.stereo.window);
         [Signal::ThermalImage, Signal::ScatteredAsMeasured]
@@ -214,11 +231,14 @@ impl RangeStudy {
                 let columns = views.shape.columns();
                 let found: Vec<f64> = (0..left.len())
                     .map(|at| match map.at(at / columns, at % columns) {
-                        Some(Ok(disparity)) if disparity > 0.0 => self.geometry.depth_m(disparity).unwrap_or(f64::NAN),
+                        Some(Ok(disparity)) if disparity > 0.0 => {
+                            self.geometry.depth_m(disparity).unwrap_or(f64::NAN)
+                        }
                         _ => f64::NAN,
                     })
                     .collect();
-                let mask: Vec<bool> = seen.iter().zip(depth_m).map(|(seen, z)| *seen && z.is_finite()).collect();
+                let mask: Vec<bool> =
+                    seen.iter().zip(depth_m).map(|(seen, z)| *seen && z.is_finite()).collect();
                 let metrics = DepthMetrics::of(&found, depth_m, Some(&mask))?;
                 Ok(Matched { signal, metrics, depth_m: found })
             })

@@ -1,0 +1,190 @@
+//! Whole pictures: what every pixel tells of position once its own emission has been estimated and taken off.
+//!
+//! In a pixel of counts N_b, of which E_b were emitted, with the derivative ∂N_b along x (pixel⁻¹) and variance N_b + σ_b²:
+//!
+//! * temperature estimated: ‖P⊥ ∂N‖², P⊥ removing the span of ∂E/∂T; emissivity known in every pixel;
+//! * temperature and strength estimated: P⊥ removes E itself as well, which is what a texture of emissivity changes;
+//!
+//! in the inner product of weights 1/(N + σ²), pixel⁻². Neither exceeds Σ(∂N)²/(N + σ²), the heat cube's. Where N changes by
+//! lighting alone the first is [`LightingSolver::information`](super::LightingSolver::information). Where emitted
+//! and scattered light have one spectrum (a grey surface as warm as what lights it) the second is 0: no processing
+//! separates them.
+//!
+//! Assumptions: pixels are taken one by one; ∂E/∂T of a mixed pixel is that of the temperature at its centre.
+//!
+//! Source: as the module's.
+
+use crate::error::{Error, Result};
+use crate::fisher::Projector;
+use crate::planck;
+use crate::ranging::cube::Shape;
+use crate::ranging::derivative::{Derivative, Differentiator};
+use crate::ranging::information::InformationMap;
+use rayon::prelude::*;
+
+/// A picture with its emission known apart, as a renderer has it.
+#[derive(Debug, Clone, Copy)]
+pub struct EmissionImage<'a> {
+    /// Rows, columns and bands.
+    pub shape: Shape,
+    /// Expected counts N, [row][column][band].
+    pub counts: &'a [f64],
+    /// What of them was emitted, E.
+    pub emission: &'a [f64],
+    /// Temperature at the pixels' centres, K, [row][column].
+    pub temperature_k: &'a [f64],
+    /// Centres of the bands, cm⁻¹.
+    pub wavenumbers_cm1: &'a [f64],
+    /// Electronic noise σ² of each band, counts².
+    pub var_electronic: &'a [f64],
+}
+
+/// Information of every pixel, pixel⁻², [row][column] without the derivative's margins.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BesideEmission {
+    columns: usize,
+    margin: usize,
+    /// Temperature estimated.
+    pub temperature: Vec<f64>,
+    /// Temperature and strength of the emission estimated.
+    pub strength_too: Vec<f64>,
+}
+
+impl EmissionImage<'_> {
+    /// What every pixel tells beside its emission.
+    ///
+    /// # Errors
+    /// Lists that do not fit the shape.
+    ///
+    /// ```
+    /// use hadar::planck::photon_radiance;
+    /// use hadar::ranging::{cube::Shape, derivative::Derivative, reconstruction::EmissionImage};
+    /// // A grey road at 290 K under a sky of 250 K, its emissivity rising along x.
+    /// let bands = [800.0, 900.0, 1000.0, 1100.0];
+    /// let pixel = |x: usize| (0.8 + 0.01 * x as f64, bands.map(|nu| [photon_radiance(nu, 290.0), photon_radiance(nu, 250.0)]));
+    /// let emission: Vec<f64> = (0..5).flat_map(|x| pixel(x).1.map(|[own, _]| pixel(x).0 * own)).collect();
+    /// let counts: Vec<f64> =
+    ///     (0..5).flat_map(|x| pixel(x).1.map(|[own, sky]| pixel(x).0 * own + (1.0 - pixel(x).0) * sky)).collect();
+    /// let image = EmissionImage {
+    ///     shape: Shape::new(1, 5, 4)?,
+    ///     counts: &counts,
+    ///     emission: &emission,
+    ///     temperature_k: &[290.0; 5],
+    ///     wavenumbers_cm1: &bands,
+    ///     var_electronic: &[0.0; 4],
+    /// };
+    /// let found = image.beside_emission(Derivative::Central)?;
+    /// assert!(found.strength_too[0] < found.temperature[0]);
+    /// # Ok::<(), hadar::Error>(())
+    /// ```
+    pub fn beside_emission(&self, derivative: Derivative) -> Result<BesideEmission> {
+        let Self { shape, counts, emission, .. } = *self;
+        let (bands, row_len, width) = (shape.bands(), shape.row_len(), shape.columns());
+        let fits = |what: &str, found: usize, expected: usize| match found == expected {
+            true => Ok(()),
+            false => Err(Error::Length { what: what.to_owned(), found, expected }),
+        };
+        fits("counts", counts.len(), shape.len())?;
+        fits("emitted counts", emission.len(), shape.len())?;
+        fits("temperatures", self.temperature_k.len(), shape.rows() * width)?;
+        fits("bands", self.wavenumbers_cm1.len(), bands)?;
+        fits("noise variances", self.var_electronic.len(), bands)?;
+        let margin = derivative.margin();
+        let differentiator = Differentiator::new(derivative, width)?;
+        let columns = width - 2 * margin;
+        let rows: Result<Vec<Vec<[f64; 2]>>> = counts
+            .par_chunks(row_len)
+            .zip(emission.par_chunks(row_len))
+            .zip(self.temperature_k.par_chunks(width))
+            .map_init(
+                || Work::new(differentiator.clone(), columns * bands),
+                |work, ((counts, emission), temperature_k)| {
+                    work.differentiator.apply(counts, bands, &mut work.slopes)?;
+                    let pixel = |x: usize| {
+                        let own = (x + margin) * bands..(x + margin + 1) * bands;
+                        let temperature_k = temperature_k.get(x + margin).copied().unwrap_or(f64::NAN);
+                        work.pixel(self, x, &counts[own.clone()], &emission[own], temperature_k)
+                    };
+                    Ok((0..columns).map(pixel).collect())
+                },
+            )
+            .collect();
+        let all = rows?.concat();
+        let [temperature, strength_too] = [0, 1].map(|i| all.iter().map(|found| found[i]).collect());
+        Ok(BesideEmission { columns, margin, temperature, strength_too })
+    }
+}
+
+/// A thread's.
+struct Work {
+    differentiator: Differentiator,
+    projector: Projector,
+    slopes: Vec<f64>,
+    columns: Vec<f64>,
+    weights: Vec<f64>,
+    warmth: Vec<f64>,
+}
+
+impl Work {
+    fn pixel(
+        &mut self,
+        image: &EmissionImage<'_>,
+        x: usize,
+        counts: &[f64],
+        emission: &[f64],
+        temperature_k: f64,
+    ) -> [f64; 2] {
+        let bands = counts.len();
+        let noisy = counts.iter().zip(image.var_electronic);
+        self.weights.clear();
+        // Where nothing is counted, nothing is told.
+        self.weights.extend(noisy.map(|(n, var)| if n + var > 0.0 { 1.0 / (n + var) } else { 0.0 }));
+        let per_kelvin = |nu: &f64| planck::log_derivative(*nu, temperature_k);
+        self.warmth.clear();
+        self.warmth.extend(emission.iter().zip(image.wavenumbers_cm1).map(|(e, nu)| e * per_kelvin(nu)));
+        let slope = &self.slopes[x * bands..(x + 1) * bands];
+        let parts: [&[f64]; 3] = [&self.warmth, emission, slope];
+        [&[0, 2][..], &[0, 1, 2]].map(|unknown| {
+            self.columns.clear();
+            unknown.iter().for_each(|part| self.columns.extend_from_slice(parts[*part]));
+            let found = self.projector.project(&mut self.columns, &self.weights, 1.0);
+            // What is no more than rounding is imitated by the emission.
+            if found.relative_error < 1.0 { found.residual * found.residual } else { 0.0 }
+        })
+    }
+
+    fn new(differentiator: Differentiator, slopes: usize) -> Self {
+        Self {
+            differentiator,
+            projector: Projector::default(),
+            slopes: vec![0.0; slopes],
+            columns: Vec::new(),
+            weights: Vec::new(),
+            warmth: Vec::new(),
+        }
+    }
+}
+
+impl BesideEmission {
+    /// Sums of `values` (one of this picture's) over the windows of a map of the same picture.
+    #[must_use]
+    pub fn windows(&self, values: &[f64], map: &InformationMap, half: [usize; 2]) -> Vec<f64> {
+        let [half_rows, half_columns] = half;
+        let row = |row: usize| values.get(row * self.columns..(row + 1) * self.columns).unwrap_or_default();
+        let sums: Vec<Vec<f64>> = map
+            .rows
+            .clone()
+            .into_par_iter()
+            .map(|centre| {
+                let mut columns = vec![0.0; self.columns];
+                for y in centre.saturating_sub(half_rows)..=centre + half_rows {
+                    columns.iter_mut().zip(row(y)).for_each(|(sum, value)| *sum += value);
+                }
+                let from = |x: usize| (x - self.margin).saturating_sub(half_columns);
+                let window = |x: usize| columns.get(from(x)..=x - self.margin + half_columns);
+                map.columns.clone().map(|x| window(x).unwrap_or_default().iter().sum()).collect()
+            })
+            .collect();
+        sums.concat()
+    }
+}
