@@ -21,6 +21,7 @@
 mod blocks;
 mod boxes;
 mod checks;
+pub mod decide;
 mod kernels;
 mod pixels;
 mod rows;
@@ -161,5 +162,8 @@ impl InformationMap {
 pub fn information(cube: &Cube, request: &Request<'_>) -> Result<InformationMap> {
     let plan = blocks::Plan::new(cube.shape(), request)?;
     let sums = samples::band_sums(cube, &plan, 32)?;
-    pixels::windows(&plan, sums)
+    let mut map = pixels::windows(&plan, &sums)?;
+    let [_, _, spectral, _] = &mut map.information;
+    *spectral = sums.spectral;
+    pixels::finite(map)
 }

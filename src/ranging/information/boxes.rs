@@ -11,6 +11,13 @@
 
 use crate::simd::{Aligned, Chunk, LANES, dispatched, spaced};
 
+/// Makes room for `len` values, if there is not.
+pub(super) fn grow(room: &mut Aligned, len: usize) {
+    if room.len() < len {
+        room.set_len(len);
+    }
+}
+
 /// Sums over the last `height` rows of rows that come one after the other.
 #[derive(Debug, Default)]
 pub(super) struct Stack {
@@ -28,8 +35,8 @@ impl Stack {
     /// Starts again at row `first`, with rows of `len` values (a multiple of [`LANES`]).
     pub(super) fn start(&mut self, height: usize, len: usize, first: usize) {
         self.spacing = spaced(len);
-        self.rows.set_len(height * self.spacing);
-        self.top.set_len(len);
+        grow(&mut self.rows, height * self.spacing);
+        grow(&mut self.top, len);
         (self.height, self.len, self.first) = (height, len, first);
     }
 
@@ -44,7 +51,7 @@ impl Stack {
         let start = y % self.height * self.spacing;
         let row = &self.rows[start..start + self.len];
         if y % self.height == 0 || y == self.first {
-            self.top.copy_from_slice(row);
+            self.top[..self.len].copy_from_slice(row);
         } else {
             add_to(row, &mut self.top);
         }
@@ -54,7 +61,7 @@ impl Stack {
     pub(super) fn sum(&self, y: usize, sum: &mut [f64]) {
         let after = (y + 1) % self.height;
         if after == 0 {
-            sum.copy_from_slice(&self.top);
+            sum.copy_from_slice(&self.top[..self.len]);
         } else {
             let start = after * self.spacing;
             add(&self.rows[start..start + self.len], &self.top, sum);
@@ -115,22 +122,19 @@ dispatched! {
         row: &'a [f64], place: Along, ends: &'a mut [f64], begin: &'a mut [f64], sums: &'a mut [f64]
     ) -> () {
         let Along { stride, width, first } = place;
-        let columns = row.len() / stride;
         ends_of_blocks(row, place, ends);
-        for x in 0..columns {
-            let at = &row[x * stride..(x + 1) * stride];
-            let inside = (first + x) % width;
+        let mut inside = first % width;
+        for (x, at) in row.chunks_exact(stride).enumerate() {
             if inside == 0 || x == 0 {
                 begin.copy_from_slice(at);
             } else {
                 plus(at, begin);
             }
-            if x + 1 < width {
-                continue;
-            }
-            let left = x + 1 - width;
+            let complete = inside + 1 == width;
+            inside = if complete { 0 } else { inside + 1 };
+            let Some(left) = (x + 1).checked_sub(width) else { continue };
             let sum = &mut sums[left * stride..(left + 1) * stride];
-            if inside + 1 == width {
+            if complete {
                 sum.copy_from_slice(begin);
             } else {
                 let end = &ends[left * stride..(left + 1) * stride];
@@ -149,16 +153,18 @@ fn ends_of_blocks(row: &[f64], place: Along, ends: &mut [f64]) {
     let columns = row.len() / stride;
     let whole = (first + columns) / width * width;
     let Some(last) = whole.checked_sub(first).filter(|last| *last > 0) else { return };
+    let mut after = 0;
     for x in (0..last).rev() {
         let at = &row[x * stride..(x + 1) * stride];
-        let (to, after) = ends[x * stride..].split_at_mut(stride);
-        if (first + x + 1) % width == 0 {
+        let (to, next) = ends[x * stride..].split_at_mut(stride);
+        if after == 0 {
             to.copy_from_slice(at);
         } else {
-            for (to, (at, after)) in chunks_mut(to).zip(chunks(at).zip(chunks(after))) {
-                *to = std::array::from_fn(|i| at[i] + after[i]);
+            for (to, (at, next)) in chunks_mut(to).zip(chunks(at).zip(chunks(next))) {
+                *to = std::array::from_fn(|i| at[i] + next[i]);
             }
         }
+        after = if after + 1 == width { 0 } else { after + 1 };
     }
 }
 
