@@ -11,7 +11,7 @@ use std::ops::Range;
 use std::sync::Mutex;
 
 /// Doubles of a strip that are to stay in a core's own cache.
-const CACHE: usize = 1 << 16;
+const CACHE: usize = 1 << 15;
 
 /// A request that fits its cube.
 #[derive(Debug)]
