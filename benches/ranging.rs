@@ -1,6 +1,7 @@
 //! How long the information of all windows of a heat cube takes, and whether it reaches a requirement.
 //!
-//! `cargo bench --bench ranging`: 540 × 960 × 54 samples in memory (the case `ranging` of `numpy_peer.py` is the full cell with
+//! `cargo bench --bench ranging`: 540 × 960 × 54 samples in memory (the case `ranging` of `numpy_peer.py` is the
+//! full cell with
 //! 5 × 5 windows), and 1080 × 1920 × 54 read from a file by rows, beside a copy of as many samples in memory.
 
 use criterion::{Criterion, criterion_group, criterion_main};

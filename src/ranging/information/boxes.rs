@@ -1,7 +1,8 @@
 //! Sums over windows whose cost does not grow with the window and whose error does not grow with the image.
 //!
 //! Rows are cut into blocks as high as the window. A window of h rows reaches over two blocks at most: its sum is
-//! the sum of the last rows of the one (from below, kept for every row) and of the first rows of the other (from above,
+//! the sum of the last rows of the one (from below, kept for every row) and of the first rows of the other (from
+//! above,
 //! kept as it grows). Nothing is ever subtracted, so the error is at most h roundings of sums of magnitudes;
 //! the blocks begin at multiples of h, so that the sum of a window does not depend on where the work began.
 //! Columns are summed in the same way.
@@ -50,7 +51,7 @@ impl Stack {
     pub(super) fn push(&mut self, y: usize) {
         let start = y % self.height * self.spacing;
         let row = &self.rows[start..start + self.len];
-        if y % self.height == 0 || y == self.first {
+        if y.is_multiple_of(self.height) || y == self.first {
             self.top[..self.len].copy_from_slice(row);
         } else {
             add_to(row, &mut self.top);
@@ -70,7 +71,7 @@ impl Stack {
 
     /// Makes the sums from below where `y` is the last row of its block; to be called when all else is done with it.
     pub(super) fn finish(&mut self, y: usize) {
-        if (y + 1) % self.height != 0 {
+        if !(y + 1).is_multiple_of(self.height) {
             return;
         }
         let begun = if self.first + self.height > y { self.first % self.height } else { 0 };

@@ -57,7 +57,8 @@ impl<'a> Checked<'a> {
         Self { shape: plan.shape, rows, counts, variances, var_band: &plan.var_band, zero_matters }
     }
 
-    /// Looks closely if what was seen on the way is not beyond doubt; the first offending sample of all the rows read is named.
+    /// Looks closely if what was seen on the way is not beyond doubt; the first offending sample of all the rows
+    /// read is named.
     pub(super) fn look(&self, counts: Seen, variances: Option<Seen>) -> Result<()> {
         let sound = counts.sound && variances.is_none_or(|seen| seen.sound);
         if sound && (!self.zero_matters || counts.least >= LEAST) {

@@ -1,12 +1,16 @@
 //! Whether J(full) of a window reaches what is required, without looking at every sample.
 //!
-//! All terms of J are 0 or above, and rounding does not reverse an order. The sum of a window with some of its pixels left
-//! out (as 0), added in the order of [`super::boxes`], is therefore never above the sum that [`super::information`] gives: where it
+//! All terms of J are 0 or above, and rounding does not reverse an order. The sum of a window with some of its
+//! pixels left
+//! out (as 0), added in the order of [`super::boxes`], is therefore never above the sum that [`super::information`]
+//! gives: where it
 //! reaches the requirement, so does J, without any margin. First one row in as many as the window is high is
-//! evaluated, of which each window has exactly one; then those pixels that windows still open need. The answer is the same.
+//! evaluated, of which each window has exactly one; then those pixels that windows still open need. The answer is
+//! the same.
 //!
-//! No sample can be left out of a window that stays below: it might be the one that carries the information. There the
-//! time is that of reading the cube in any case, not that of the arithmetic (see `benches/README.md`).
+//! No sample can be left out of a window that stays below: it might be the one that carries the information. There
+//! the
+//! time is that of reading and widening the cube in any case, not that of the arithmetic.
 
 use super::blocks::{Plan, Strip, run};
 use super::samples::{BandSums, Room, pixels_of_row};

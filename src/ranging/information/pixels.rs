@@ -47,7 +47,7 @@ pub(super) fn windows(plan: &Plan<'_>, sums: &BandSums) -> Result<InformationMap
     let per_block = (BLOCK * columns.len()).max(1);
     {
         fn parts(values: &mut [f64], len: usize) -> impl Iterator<Item = &mut [f64]> {
-            values.chunks_mut(len).chain(std::iter::repeat_with(|| <&mut [f64]>::default()))
+            values.chunks_mut(len).chain(std::iter::repeat_with(<&mut [f64]>::default))
         }
         let (mut total, mut spatial) = (parts(&mut total, per_block), parts(&mut spatial, per_block));
         let (mut full, mut var) = (parts(&mut full, per_block), parts(&mut var, per_block));
