@@ -18,8 +18,7 @@
 //!   rings. A value in every column.
 //!
 //! Source: H. Farid, E. P. Simoncelli, IEEE Trans. Image Process. 13, 496 (2004), doi:10.1109/TIP.2004.823819,
-//! Table I; C. de
-//! Boor, A Practical Guide to Splines (1978), chapter IV; the rest is elementary.
+//! first derivative with five taps; C. de Boor, A Practical Guide to Splines (1978), chapter IV; the rest is elementary.
 
 mod fourier;
 mod spline;
@@ -188,7 +187,7 @@ impl Differentiator {
         Ok(Self { columns, margin: derivative.margin(), scheme })
     }
 
-    /// ∂N/∂x, pixel⁻¹, of a row [column][band]; `slope` [column][band] has no room for the columns without a value
+    /// ∂N/∂x, pixel⁻¹, of a row \[column\]\[band\]; `slope` \[column\]\[band\] has no room for the columns without a value
     /// ([`Derivative::margin`] at either end).
     ///
     /// ```

@@ -2,7 +2,7 @@
 //!
 //! All terms of J are 0 or above, and rounding does not reverse an order. The sum of a window with some of its
 //! pixels left
-//! out (as 0), added in the order of [`super::boxes`], is therefore never above the sum that [`super::information`]
+//! out (as 0), added in the order of the two-level sums, is therefore never above the sum that [`super::information`]
 //! gives: where it
 //! reaches the requirement, so does J, without any margin. First one row in as many as the window is high is
 //! evaluated, of which each window has exactly one; then those pixels that windows still open need. The answer is
@@ -25,7 +25,7 @@ const TILE: usize = 64;
 /// Which windows reach a required information.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Decision {
-    /// J(full) ≥ required, [row][column] of the windows' centres.
+    /// J(full) ≥ required, \[row\]\[column\] of the windows' centres.
     pub above: Vec<bool>,
     /// Rows of the centres.
     pub rows: Range<usize>,
