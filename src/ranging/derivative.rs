@@ -1,23 +1,24 @@
 //! Derivative along x of a row of counts.
 //!
-//! Four schemes for ∂N/∂x on a grid of pixels, with what each makes of a sinusoid of ω rad/pixel ([`Derivative::response`],
-//! relative to the true iω; 1 is exact):
+//! Four schemes for ∂N/∂x on a grid of pixels, with what each makes of a sinusoid of ω rad/pixel
+//! ([`Derivative::response`], relative to the true iω; 1 is exact):
 //!
 //! * central difference, (N[x+1] − N[x−1])/2: sin ω/ω. No value in 1 column at either end; exact for quadratics.
 //! * five taps of Farid and Simoncelli, Σ d_k N[x+k] with d = (−0.109604, −0.276691, 0, 0.276691, 0.109604): D/ω with
-//!   D = 2(0.276691 sin ω + 0.109604 sin 2ω). It is meant as the derivative of the image smoothed by their
-//!   prefilter p = (0.037659, 0.249153, 0.426375, 0.249153, 0.037659): relative to that, D/(ωP), with P = 0.426375 +
-//!   2(0.249153 cos ω + 0.037659 cos 2ω), near 1 up to ω ≈ 2 ([`Derivative::response_of_smoothed`]). The counts it is divided by are not smoothed
-//!   here, nor is anything along y. No value in 2 columns at either end.
-//! * derivative at the knots of the interpolating cubic spline, whose third derivative is continuous at the second and
-//!   last but one knot (not-a-knot: exact for cubics): 3 sin ω/(ω(2 + cos ω)), the influence of the ends falling by 2 − √3
-//!   per pixel. A value in every column; the tridiagonal system is eliminated, 5 operations per sample.
-//! * Fourier: trigonometric interpolation of the row followed by its mirror image (half a pixel beyond its ends), which has
-//!   no jump where the row's own periodic continuation would have one: 1 up to the Nyquist frequency π. What is left is
-//!   a kink at each end, unless the row is level there: near the ends the derivative tends to 0 and rings. A value in every column.
+//!   D = 2(0.276691 sin ω + 0.109604 sin 2ω). It is meant as the derivative of the image smoothed by their prefilter
+//!   p = (0.037659, 0.249153, 0.426375, 0.249153, 0.037659): relative to that, D/(ωP), with P = 0.426375 + 2(0.249153
+//!   cos ω + 0.037659 cos 2ω), near 1 up to ω ≈ 2 ([`Derivative::response_of_smoothed`]). The counts it is divided by
+//!   are not smoothed here, nor is anything along y. No value in 2 columns at either end.
+//! * derivative at the knots of the interpolating cubic spline, whose third derivative is continuous at the second
+//!   and last but one knot (not-a-knot: exact for cubics): 3 sin ω/(ω(2 + cos ω)), the influence of the ends falling
+//!   by 2 − √3 per pixel. A value in every column; the tridiagonal system is eliminated, 5 operations per sample.
+//! * Fourier: trigonometric interpolation of the row followed by its mirror image (half a pixel beyond its ends),
+//!   which has no jump where the row's own periodic continuation would have one: 1 up to the Nyquist frequency π.
+//!   What is left is a kink at each end, unless the row is level there: near the ends the derivative tends to 0 and
+//!   rings. A value in every column.
 //!
-//! Source: H. Farid, E. P. Simoncelli, IEEE Trans. Image Process. 13, 496 (2004), doi:10.1109/TIP.2004.823819, Table I; C. de
-//! Boor, A Practical Guide to Splines (1978), chapter IV; the rest is elementary.
+//! Source: H. Farid, E. P. Simoncelli, IEEE Trans. Image Process. 13, 496 (2004), doi:10.1109/TIP.2004.823819,
+//! first derivative with five taps; C. de Boor, A Practical Guide to Splines (1978), chapter IV; the rest is elementary.
 
 mod fourier;
 mod spline;
@@ -146,7 +147,8 @@ impl Derivative {
         Ok(response / smoothing)
     }
 
-    /// Error of the derivative of a sinusoid over its true amplitude: response − 1, negative where it comes out too small.
+    /// Error of the derivative of a sinusoid over its true amplitude: response − 1, negative where it comes out too
+    /// small.
     ///
     /// # Errors
     /// A frequency that is negative or beyond π.
@@ -196,7 +198,7 @@ impl Differentiator {
         Ok(Self { columns, margin: derivative.margin(), scheme })
     }
 
-    /// ∂N/∂x, pixel⁻¹, of a row [column][band]; `slope` [column][band] has no room for the columns without a value
+    /// ∂N/∂x, pixel⁻¹, of a row \[column\]\[band\]; `slope` \[column\]\[band\] has no room for the columns without a value
     /// ([`Derivative::margin`] at either end).
     ///
     /// ```

@@ -21,6 +21,7 @@
 mod blocks;
 mod boxes;
 mod checks;
+pub mod decide;
 mod kernels;
 mod pixels;
 mod rows;
@@ -153,6 +154,9 @@ impl InformationMap {
     }
 }
 
+/// Rows of windows that a thread takes at a time.
+const BLOCK_ROWS: usize = 64;
+
 /// J of every window whose centre lies in the rows asked for.
 ///
 /// # Errors
@@ -160,6 +164,9 @@ impl InformationMap {
 /// negative, NaN, infinite or beyond 1e27; a count below 1e-27 without electronic noise; a cube that cannot be read.
 pub fn information(cube: &Cube, request: &Request<'_>) -> Result<InformationMap> {
     let plan = blocks::Plan::new(cube.shape(), request)?;
-    let sums = samples::band_sums(cube, &plan, 32)?;
-    pixels::windows(&plan, sums)
+    let sums = samples::band_sums(cube, &plan, BLOCK_ROWS)?;
+    let mut map = pixels::windows(&plan, &sums)?;
+    let [_, _, spectral, _] = &mut map.information;
+    *spectral = sums.spectral;
+    pixels::finite(map)
 }

@@ -11,7 +11,7 @@ use std::ops::Range;
 use std::sync::Mutex;
 
 /// Doubles of a strip that are to stay in a core's own cache.
-const CACHE: usize = 1 << 16;
+const CACHE: usize = 1 << 15;
 
 /// A request that fits its cube.
 #[derive(Debug)]
@@ -115,17 +115,22 @@ impl<'a> Plan<'a> {
 
     /// Strips from left to right.
     pub(super) fn strips(&self) -> Vec<Strip> {
-        let centres = self.centres();
         let half = self.request.window.half_columns();
-        let all = self.shape.columns();
-        let wide = if !self.central() {
-            centres.len()
-        } else if self.wants(Cell::Spectral) {
+        let wide = if self.wants(Cell::Spectral) {
             let columns = CACHE / (self.stride * self.request.window.rows());
             columns.max(4 * (half + 1)).max(16)
         } else {
             (CACHE / (4 * self.stride)).max(16)
         };
+        self.strips_of(wide)
+    }
+
+    /// Strips of at most `wide` columns of centres; all of them where the derivative needs whole rows.
+    pub(super) fn strips_of(&self, wide: usize) -> Vec<Strip> {
+        let centres = self.centres();
+        let half = self.request.window.half_columns();
+        let all = self.shape.columns();
+        let wide = if self.central() { wide } else { centres.len() };
         let count = centres.len().div_ceil(wide).max(1);
         let cut = |i: usize| centres.start + centres.len() * i / count;
         (0..count)

@@ -1,7 +1,8 @@
 //! Sums over windows whose cost does not grow with the window and whose error does not grow with the image.
 //!
 //! Rows are cut into blocks as high as the window. A window of h rows reaches over two blocks at most: its sum is
-//! the sum of the last rows of the one (from below, kept for every row) and of the first rows of the other (from above,
+//! the sum of the last rows of the one (from below, kept for every row) and of the first rows of the other (from
+//! above,
 //! kept as it grows). Nothing is ever subtracted, so the error is at most h roundings of sums of magnitudes;
 //! the blocks begin at multiples of h, so that the sum of a window does not depend on where the work began.
 //! Columns are summed in the same way.
@@ -10,6 +11,13 @@
 //! TPAMI 15, 504 (1993), doi:10.1109/34.211471 (there for maxima).
 
 use crate::simd::{Aligned, Chunk, LANES, dispatched, spaced};
+
+/// Makes room for `len` values, if there is not.
+pub(super) fn grow(room: &mut Aligned, len: usize) {
+    if room.len() < len {
+        room.set_len(len);
+    }
+}
 
 /// Sums over the last `height` rows of rows that come one after the other.
 #[derive(Debug, Default)]
@@ -28,8 +36,8 @@ impl Stack {
     /// Starts again at row `first`, with rows of `len` values (a multiple of [`LANES`]).
     pub(super) fn start(&mut self, height: usize, len: usize, first: usize) {
         self.spacing = spaced(len);
-        self.rows.set_len(height * self.spacing);
-        self.top.set_len(len);
+        grow(&mut self.rows, height * self.spacing);
+        grow(&mut self.top, len);
         (self.height, self.len, self.first) = (height, len, first);
     }
 
@@ -43,8 +51,8 @@ impl Stack {
     pub(super) fn push(&mut self, y: usize) {
         let start = y % self.height * self.spacing;
         let row = &self.rows[start..start + self.len];
-        if y % self.height == 0 || y == self.first {
-            self.top.copy_from_slice(row);
+        if y.is_multiple_of(self.height) || y == self.first {
+            self.top[..self.len].copy_from_slice(row);
         } else {
             add_to(row, &mut self.top);
         }
@@ -54,7 +62,7 @@ impl Stack {
     pub(super) fn sum(&self, y: usize, sum: &mut [f64]) {
         let after = (y + 1) % self.height;
         if after == 0 {
-            sum.copy_from_slice(&self.top);
+            sum.copy_from_slice(&self.top[..self.len]);
         } else {
             let start = after * self.spacing;
             add(&self.rows[start..start + self.len], &self.top, sum);
@@ -63,7 +71,7 @@ impl Stack {
 
     /// Makes the sums from below where `y` is the last row of its block; to be called when all else is done with it.
     pub(super) fn finish(&mut self, y: usize) {
-        if (y + 1) % self.height != 0 {
+        if !(y + 1).is_multiple_of(self.height) {
             return;
         }
         let begun = if self.first + self.height > y { self.first % self.height } else { 0 };
@@ -115,22 +123,19 @@ dispatched! {
         row: &'a [f64], place: Along, ends: &'a mut [f64], begin: &'a mut [f64], sums: &'a mut [f64]
     ) -> () {
         let Along { stride, width, first } = place;
-        let columns = row.len() / stride;
         ends_of_blocks(row, place, ends);
-        for x in 0..columns {
-            let at = &row[x * stride..(x + 1) * stride];
-            let inside = (first + x) % width;
+        let mut inside = first % width;
+        for (x, at) in row.chunks_exact(stride).enumerate() {
             if inside == 0 || x == 0 {
                 begin.copy_from_slice(at);
             } else {
                 plus(at, begin);
             }
-            if x + 1 < width {
-                continue;
-            }
-            let left = x + 1 - width;
+            let complete = inside + 1 == width;
+            inside = if complete { 0 } else { inside + 1 };
+            let Some(left) = (x + 1).checked_sub(width) else { continue };
             let sum = &mut sums[left * stride..(left + 1) * stride];
-            if inside + 1 == width {
+            if complete {
                 sum.copy_from_slice(begin);
             } else {
                 let end = &ends[left * stride..(left + 1) * stride];
@@ -149,16 +154,18 @@ fn ends_of_blocks(row: &[f64], place: Along, ends: &mut [f64]) {
     let columns = row.len() / stride;
     let whole = (first + columns) / width * width;
     let Some(last) = whole.checked_sub(first).filter(|last| *last > 0) else { return };
+    let mut after = 0;
     for x in (0..last).rev() {
         let at = &row[x * stride..(x + 1) * stride];
-        let (to, after) = ends[x * stride..].split_at_mut(stride);
-        if (first + x + 1) % width == 0 {
+        let (to, next) = ends[x * stride..].split_at_mut(stride);
+        if after == 0 {
             to.copy_from_slice(at);
         } else {
-            for (to, (at, after)) in chunks_mut(to).zip(chunks(at).zip(chunks(after))) {
-                *to = std::array::from_fn(|i| at[i] + after[i]);
+            for (to, (at, next)) in chunks_mut(to).zip(chunks(at).zip(chunks(next))) {
+                *to = std::array::from_fn(|i| at[i] + next[i]);
             }
         }
+        after = if after + 1 == width { 0 } else { after + 1 };
     }
 }
 

@@ -3,6 +3,7 @@
 //! A count is 0 or lies between [`LEAST`] and [`MOST`]: far beyond any detector on both sides, and such that products
 //! of the seven sums over the largest windows still are ordinary doubles.
 
+use super::blocks::Plan;
 use super::kernels::Seen;
 use super::rows::Raw;
 use crate::error::{Error, Result};
@@ -45,8 +46,19 @@ pub(super) struct Checked<'a> {
     pub(super) zero_matters: bool,
 }
 
-impl Checked<'_> {
-    /// Looks closely if what was seen on the way is not beyond doubt; the first offending sample of all the rows read is named.
+impl<'a> Checked<'a> {
+    pub(super) fn new(
+        plan: &'a Plan<'_>,
+        rows: (usize, usize),
+        counts: Raw<'a>,
+        variances: Option<Raw<'a>>,
+    ) -> Self {
+        let zero_matters = variances.is_some() || plan.var_band.iter().any(|var| *var < LEAST);
+        Self { shape: plan.shape, rows, counts, variances, var_band: &plan.var_band, zero_matters }
+    }
+
+    /// Looks closely if what was seen on the way is not beyond doubt; the first offending sample of all the rows
+    /// read is named.
     pub(super) fn look(&self, counts: Seen, variances: Option<Seen>) -> Result<()> {
         let sound = counts.sound && variances.is_none_or(|seen| seen.sound);
         if sound && (!self.zero_matters || counts.least >= LEAST) {

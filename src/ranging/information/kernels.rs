@@ -1,8 +1,10 @@
 //! The loops over samples: widening them to `f64`, and the sums over bands.
 //!
-//! A column takes a whole number of vectors ([`stride`]): the lanes beyond its last band hold counts of 0 and a variance of 1 and
+//! A column takes a whole number of vectors ([`stride`]): the lanes beyond its last band hold counts of 0 and a
+//! variance of 1 and
 //! so add nothing. The quotients of a column are added as one fraction, a/b + c/d = (ad + cb)/(bd), up to
-//! [`TOGETHER`] of them in every lane, which leaves one division for as many vectors. All of them are positive, so a rounding
+//! [`TOGETHER`] of them in every lane, which leaves one division for as many vectors. All of them are positive, so
+//! a rounding
 //! is relative to the sum (at most some 3 per term), and none overflows: see [`super::checks`].
 
 use super::boxes::{chunks, chunks_mut};
@@ -46,6 +48,8 @@ macro_rules! stored {
                     most = std::array::from_fn(|i| high[i].max(bits[i]));
                 };
                 let tail = bands % LANES;
+                // Of the next column, which is looked at here too: no product is NaN if it is sound.
+                let keep: Chunk = std::array::from_fn(|i| if i < tail { 1.0 } else { 0.0 });
                 let columns = to.chunks_exact_mut(stride(bands));
                 for (column, to) in columns.enumerate() {
                     let from = &samples[column * bands..];
@@ -59,7 +63,7 @@ macro_rules! stored {
                         let start = bands - tail;
                         if let Some(from) = from[start..].first_chunk::<LANES>() {
                             see(*from);
-                            *to = std::array::from_fn(|i| if i < tail { f64::from(from[i]) } else { 0.0 });
+                            *to = std::array::from_fn(|i| f64::from(from[i]) * keep[i]);
                         } else {
                             let from = &from[start..bands];
                             see(std::array::from_fn(|i| from[i.min(tail - 1)]));
@@ -161,7 +165,8 @@ dispatched! {
 }
 
 dispatched! {
-    /// The same with the central difference: `row` holds the counts of the columns of `below` and one more on either side.
+    /// The same with the central difference: `row` holds the counts of the columns of `below` and one more on
+    /// either side.
     pub(super) fn ratios_central<'a>(
         row: &'a [f64], of: Quotients<'a>, lanes: &'a mut [Chunk], sums: &'a mut [f64]
     ) -> () {

@@ -36,7 +36,7 @@ struct Room {
 }
 
 /// The second pass.
-pub(super) fn windows(plan: &Plan<'_>, sums: BandSums) -> Result<InformationMap> {
+pub(super) fn windows(plan: &Plan<'_>, sums: &BandSums) -> Result<InformationMap> {
     let (columns, half) = (plan.centres(), plan.request.window.half_rows());
     let rows = plan.tops.start + half..plan.tops.end + half;
     let len = rows.len() * columns.len();
@@ -47,7 +47,7 @@ pub(super) fn windows(plan: &Plan<'_>, sums: BandSums) -> Result<InformationMap>
     let per_block = (BLOCK * columns.len()).max(1);
     {
         fn parts(values: &mut [f64], len: usize) -> impl Iterator<Item = &mut [f64]> {
-            values.chunks_mut(len).chain(std::iter::repeat_with(|| <&mut [f64]>::default()))
+            values.chunks_mut(len).chain(std::iter::repeat_with(<&mut [f64]>::default))
         }
         let (mut total, mut spatial) = (parts(&mut total, per_block), parts(&mut spatial, per_block));
         let (mut full, mut var) = (parts(&mut full, per_block), parts(&mut var, per_block));
@@ -65,20 +65,19 @@ pub(super) fn windows(plan: &Plan<'_>, sums: BandSums) -> Result<InformationMap>
                 var: var.next().unwrap_or_default(),
             })
             .collect();
-        run(blocks, |block, room: &mut Room| block.work(plan, &sums, room))?;
+        run(blocks, |block, room: &mut Room| block.work(plan, sums, room))?;
     }
-    let map = InformationMap {
+    Ok(InformationMap {
         rows,
         columns,
-        information: [total, spatial, sums.spectral, full],
+        information: [total, spatial, Vec::new(), full],
         photons,
         var_electronic: var,
-    };
-    finite(map)
+    })
 }
 
 /// A map without an infinity: counts at the ends of what is allowed side by side.
-fn finite(map: InformationMap) -> Result<InformationMap> {
+pub(super) fn finite(map: InformationMap) -> Result<InformationMap> {
     // A sum of terms that are not negative is finite only if all of them are.
     let sums = map.information.iter().map(|cell| crate::sum::sum(cell));
     match sums.into_iter().find(|sum| !sum.is_finite()) {
@@ -129,7 +128,7 @@ impl Block<'_> {
                 let var = if plan.var_band.is_empty() { own() } else { var_pixel };
                 let slope = room.slope[x];
                 let full = if cells[2] { sums.quotients[row * inner.len() + x] } else { 0.0 };
-                let spatial = if cells[1] { slope * slope / share_pixel.mul_add(var, count) } else { 0.0 };
+                let spatial = if cells[1] { slope * slope / (share_pixel * var + count) } else { 0.0 };
                 let of: Chunk = [full, spatial, slope, count, var, 0.0, 0.0, 0.0];
                 *record = of;
             }
@@ -147,7 +146,7 @@ impl Block<'_> {
                 }
                 if cells[0] {
                     for (to, of) in total[row..].iter_mut().zip(windows) {
-                        *to = of[2] * of[2] / share_window.mul_add(var_window(of[4]), of[3]);
+                        *to = of[2] * of[2] / (share_window * var_window(of[4]) + of[3]);
                     }
                 }
                 if cells[1] {

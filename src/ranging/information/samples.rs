@@ -1,12 +1,14 @@
-//! First pass, over the samples: of every pixel the sum over bands and the information of its bands, of every window the
+//! First pass, over the samples: of every pixel the sum over bands and the information of its bands, of every
+//! window the
 //! information of its bands.
 //!
-//! A block of rows is worked on in strips of columns, so that what is kept of the last rows (as many as a window has) stays in
+//! A block of rows is worked on in strips of columns, so that what is kept of the last rows (as many as a window
+//! has) stays in
 //! cache. For the sums over windows see [`super::boxes`].
 
 use super::Cell;
 use super::blocks::{Plan, Strip, run};
-use super::boxes::{Along, Stack, add_to, along};
+use super::boxes::{Along, Stack, add_to, along, grow};
 use super::checks::Checked;
 use super::kernels::{Quotients, ratios, ratios_central, ratios_ends, totals};
 use super::rows::Buffer;
@@ -80,9 +82,36 @@ pub(super) fn band_sums(cube: &Cube, plan: &Plan<'_>, block_rows: usize) -> Resu
     Ok(sums)
 }
 
+/// The quotients of one row of pixels, in some of the strips of a plan for [`Cell::Full`] alone; `to` is for all
+/// columns with a
+/// derivative.
+pub(super) fn pixels_of_row(
+    cube: &Cube,
+    plan: &Plan<'_>,
+    y: usize,
+    strips: &[&Strip],
+    room: &mut Room,
+    to: &mut [f64],
+) -> Result<()> {
+    let counts = room.counts.read(cube, y..y + 1)?;
+    let variances = match plan.request.noise {
+        NoiseVariance::PerSample(cube) => Some(room.variances.read(cube, y..y + 1)?),
+        _ => None,
+    };
+    let checked = Checked::new(plan, (y, y + 1), counts, variances);
+    room.strip.prepare(plan)?;
+    for strip in strips {
+        room.strip.start(plan, strip, y, variances.is_some());
+        room.strip.widen(y, plan, strip, &checked)?;
+        let local = strip.quotients.start - plan.margin..strip.quotients.end - plan.margin;
+        room.strip.quotients(y, plan, strip, variances.is_some(), &mut to[local])?;
+    }
+    Ok(())
+}
+
 /// What a thread keeps from block to block.
 #[derive(Default)]
-struct Room {
+pub(super) struct Room {
     counts: Buffer,
     variances: Buffer,
     strip: StripRoom,
@@ -116,18 +145,8 @@ impl Block<'_> {
             NoiseVariance::PerSample(cube) => Some(room.variances.read(cube, read.clone())?),
             _ => None,
         };
-        let checked = Checked {
-            shape: plan.shape,
-            rows: (read.start, read.end),
-            counts,
-            variances,
-            var_band: &plan.var_band,
-            zero_matters: plan.var_band.is_empty()
-                || plan.var_band.iter().any(|var| *var < super::checks::LEAST),
-        };
-        if !plan.central() && room.strip.slopes.is_none() {
-            room.strip.slopes = Some(Differentiator::new(plan.request.derivative, plan.shape.columns())?);
-        }
+        let checked = Checked::new(plan, (read.start, read.end), counts, variances);
+        room.strip.prepare(plan)?;
         for strip in strips {
             room.strip.start(plan, strip, read.start, variances.is_some());
             for y in read.clone() {
@@ -146,11 +165,8 @@ impl Block<'_> {
         checked: &Checked<'_>,
         room: &mut StripRoom,
     ) -> Result<()> {
-        let (stride, bands, columns) = (plan.stride, plan.shape.bands(), plan.shape.columns());
-        let start = (y - checked.rows.0) * plan.shape.row_len() + strip.read.start * bands;
-        let seen = checked.counts.widen(start, bands, room.counts.row(y));
-        let seen_var = checked.variances.map(|raw| raw.widen(start, bands, room.variances.row(y)));
-        checked.look(seen, seen_var)?;
+        let (stride, columns) = (plan.stride, plan.shape.columns());
+        room.widen(y, plan, strip, checked)?;
         if self.owned.contains(&y) {
             let row = y - self.owned.start;
             let of = |range: &Range<usize>, first: usize| range.start - first..range.end - first;
@@ -196,6 +212,22 @@ impl Block<'_> {
 }
 
 impl StripRoom {
+    fn prepare(&mut self, plan: &Plan<'_>) -> Result<()> {
+        if !plan.central() && self.slopes.is_none() {
+            self.slopes = Some(Differentiator::new(plan.request.derivative, plan.shape.columns())?);
+        }
+        Ok(())
+    }
+
+    /// Widens and checks row `y` of a strip.
+    fn widen(&mut self, y: usize, plan: &Plan<'_>, strip: &Strip, checked: &Checked<'_>) -> Result<()> {
+        let bands = plan.shape.bands();
+        let start = (y - checked.rows.0) * plan.shape.row_len() + strip.read.start * bands;
+        let seen = checked.counts.widen(start, bands, self.counts.row(y));
+        let seen_var = checked.variances.map(|raw| raw.widen(start, bands, self.variances.row(y)));
+        checked.look(seen, seen_var)
+    }
+
     fn start(&mut self, plan: &Plan<'_>, strip: &Strip, first: usize, variances: bool) {
         let len = strip.read.len() * plan.stride;
         let height = if plan.wants(Cell::Spectral) { plan.request.window.rows() } else { 1 };
@@ -211,10 +243,12 @@ impl StripRoom {
             &mut self.slope_sums,
             &mut self.ends,
         ] {
-            row.set_len(len);
+            grow(row, len);
         }
         self.begin.set_len(plan.stride);
-        self.lanes.resize(strip.read.len(), [0.0; LANES]);
+        if self.lanes.len() < strip.read.len() {
+            self.lanes.resize(strip.read.len(), [0.0; LANES]);
+        }
     }
 
     /// The quotients of row `y`, over the bands of each pixel.
@@ -231,7 +265,7 @@ impl StripRoom {
         let samples = from * stride..(from + strip.quotients.len()) * stride;
         let row = &self.counts.row(y)[..];
         let below = if variances {
-            self.below.copy_from_slice(row);
+            self.below[..row.len()].copy_from_slice(row);
             add_to(self.variances.row(y), &mut self.below);
             &self.below[samples]
         } else {
@@ -260,13 +294,14 @@ impl StripRoom {
     ) -> Result<()> {
         let stride = plan.stride;
         let width = plan.request.window.columns();
-        self.counts.sum(y, &mut self.sum);
+        let len = strip.read.len() * stride;
+        self.counts.sum(y, &mut self.sum[..len]);
         let inside = plan.margin * stride..(strip.read.len() - plan.margin) * stride;
         let below = if variances {
             let share = plan.share((plan.request.window.rows() * width) as f64);
-            self.variances.sum(y, &mut self.below);
-            for (below, count) in self.below.iter_mut().zip(self.sum.iter()) {
-                *below = share.mul_add(*below, *count);
+            self.variances.sum(y, &mut self.below[..len]);
+            for (below, count) in self.below[..len].iter_mut().zip(self.sum.iter()) {
+                *below = share * *below + *count;
             }
             &self.below[inside]
         } else {
@@ -279,12 +314,12 @@ impl StripRoom {
             Quotients { below: &self.below_sums[..windows], var: &plan.var_window, derivative: &[], stride };
         if let Some(slopes) = &mut self.slopes {
             let len = plan.inner().len() * stride;
-            slopes.apply(&self.sum, stride, &mut self.slope[..len])?;
+            slopes.apply(&self.sum[..strip.read.len() * stride], stride, &mut self.slope[..len])?;
             along(&self.slope[..len], place, &mut self.ends, &mut self.begin, &mut self.slope_sums);
             of.derivative = &self.slope_sums[..windows];
             ratios(of, &mut self.lanes, to);
         } else {
-            ratios_ends(&self.sum, width, of, &mut self.lanes, to);
+            ratios_ends(&self.sum[..len], width, of, &mut self.lanes, to);
         }
         Ok(())
     }

@@ -1,0 +1,120 @@
+//! How long the information of all windows of a heat cube takes, and whether it reaches a requirement.
+//!
+//! `cargo bench --bench ranging`: 540 × 960 × 54 samples in memory (the case `ranging` of `numpy_peer.py` is the
+//! full cell with
+//! 5 × 5 windows), and 1080 × 1920 × 54 read from a file by rows, beside a copy of as many samples in memory.
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use hadar::ranging::cube::{Cube, MemoryCube, Rows, Shape};
+use hadar::ranging::derivative::Derivative;
+use hadar::ranging::information::decide::decide;
+use hadar::ranging::information::{Cell, Request, Window, information};
+use hadar::ranging::noise::{Joined, NoiseVariance};
+use std::hint::black_box;
+use std::io::Write;
+use std::ops::Range;
+use std::os::unix::fs::FileExt;
+
+/// Samples in a file, [row][column][band], in the byte order of this machine.
+#[derive(Debug)]
+struct FileCube {
+    file: std::fs::File,
+    shape: Shape,
+}
+
+impl Rows<f32> for FileCube {
+    fn shape(&self) -> Shape {
+        self.shape
+    }
+
+    fn read<'a>(&'a self, rows: Range<usize>, buffer: &'a mut Vec<f32>) -> hadar::Result<&'a [f32]> {
+        buffer.resize(rows.len() * self.shape.row_len(), 0.0);
+        let start = rows.start * self.shape.row_len() * size_of::<f32>();
+        self.file.read_exact_at(bytemuck::cast_slice_mut(buffer), start as u64).expect("a readable file");
+        Ok(buffer)
+    }
+}
+
+/// Counts of some 10⁴ with strong texture.
+fn counts(shape: Shape) -> Vec<f32> {
+    let mut state = 1_u32;
+    let mut next = || {
+        state ^= state << 13;
+        state ^= state >> 17;
+        state ^= state << 5;
+        (state >> 20) as f32
+    };
+    (0..shape.len()).map(|i| 1e4 + next() + (i % shape.bands()) as f32).collect()
+}
+
+fn request<'a>(window: usize, noise: &'a NoiseVariance, cells: &'a [Cell]) -> Request<'a> {
+    Request {
+        window: Window::new(window, window).expect("odd"),
+        derivative: Derivative::Central,
+        noise,
+        joined: Joined::SumOfReadings,
+        cells,
+        centres: 0..usize::MAX,
+    }
+}
+
+fn in_memory(criterion: &mut Criterion) {
+    let shape = Shape::new(540, 960, 54).expect("a shape");
+    let noise = NoiseVariance::None;
+    let textured = counts(shape);
+    // Level, but for a patch of 60 x 100 pixels.
+    let mut level = vec![1e4_f32; shape.len()];
+    for row in 100..160 {
+        let start = (row * shape.columns() + 200) * shape.bands();
+        let patch = start..start + 100 * shape.bands();
+        level[patch.clone()].copy_from_slice(&textured[patch]);
+    }
+    let cube =
+        |samples| Cube::from(MemoryCube::new(shape, samples).expect("as many samples as the shape has"));
+    let (textured, level) = (cube(textured), cube(level));
+    let mut group = criterion.benchmark_group("540 x 960 x 54");
+    group.sample_size(20);
+    for window in [5, 31] {
+        group.bench_function(format!("all cells, windows of {window} x {window}"), |bencher| {
+            bencher.iter(|| information(black_box(&textured), &request(window, &noise, &Cell::ALL)));
+        });
+    }
+    for cell in Cell::ALL {
+        group.bench_function(format!("{cell:?} alone, windows of 5 x 5"), |bencher| {
+            bencher.iter(|| information(black_box(&textured), &request(5, &noise, &[cell])));
+        });
+    }
+    for (name, cube) in [("textured", &textured), ("level but for a patch", &level)] {
+        let map = information(cube, &request(5, &noise, &[Cell::Full])).expect("sound counts");
+        let required = 0.05 * map.cell(Cell::Full).iter().fold(0.0, |most: f64, j| most.max(*j));
+        let decision = decide(cube, &request(5, &noise, &[]), required).expect("sound counts");
+        println!("{name}: {:?}", decision.stats);
+        group.bench_function(format!("decide, {name}"), |bencher| {
+            bencher.iter(|| decide(black_box(cube), &request(5, &noise, &[]), required));
+        });
+    }
+    group.finish();
+}
+
+fn from_a_file(criterion: &mut Criterion) {
+    let shape = Shape::new(1080, 1920, 54).expect("a shape");
+    let noise = NoiseVariance::None;
+    let samples = counts(shape);
+    let mut file = tempfile::tempfile().expect("a temporary file");
+    file.write_all(bytemuck::cast_slice(&samples)).expect("room for the file");
+    let mut group = criterion.benchmark_group("1080 x 1920 x 54");
+    group.sample_size(10);
+    let mut copy = samples.clone();
+    group.bench_function("copied in memory by one thread", |bencher| {
+        bencher.iter(|| copy.copy_from_slice(black_box(&samples)));
+    });
+    drop((samples, copy));
+    let cube = Cube::F32(Box::new(FileCube { file, shape }));
+    group.bench_function("all cells, from a file", |bencher| {
+        bencher.iter(|| information(black_box(&cube), &request(5, &noise, &Cell::ALL)));
+    });
+    group.finish();
+}
+
+criterion_group!(benches, in_memory, from_a_file);
+criterion_main!(benches);
