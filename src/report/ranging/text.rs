@@ -25,6 +25,9 @@ const BEYOND: f64 = 1e20;
 
 /// Medians by object and signal.
 fn bounds(result: &Ranging) -> String {
+    if result.objects.is_empty() {
+        return String::new();
+    }
     let window = result.scenario.stereo.window;
     let depth = result.objects.iter().any(|object| object.depth_m.is_some());
     let what = if depth { "Least depth error" } else { "Least disparity error" };

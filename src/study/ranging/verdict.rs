@@ -1,9 +1,12 @@
 //! The answer in a sentence, what diffraction adds, and what the reader must know.
 
 use super::RangeStudy;
-use super::results::{DepthVerdict, ObjectBounds, Ranging, Signal, SignalBounds};
-use super::subject::Resolved;
+use super::results::{BoundMaps, DepthVerdict, ObjectBounds, RangeStats, Ranging, Signal, SignalBounds};
+use super::subject::{Depth, Resolved};
 use crate::error::Result;
+use crate::ranging::cube::Shape;
+use crate::ranging::information::Cell;
+use crate::ranging::information::decide::decide;
 use crate::scenario::ranging::Demand;
 use crate::study::Warning;
 use crate::words::{self, significant};
@@ -25,8 +28,55 @@ impl RangeStudy {
         Ok(var_m2 / (pitch * pitch))
     }
 
-    pub(super) fn verdict_alone(&self, _shape: crate::ranging::cube::Shape) -> Result<Option<Ranging>> {
-        Ok(None)
+    /// Yes or no by proofs alone: for a cube of one depth and one view, where every window has the same requirement. `None` where
+    /// it takes the bounds themselves. Samples that no proof needed are not checked.
+    pub(super) fn verdict_alone(&self, shape: Shape) -> Result<Option<Ranging>> {
+        let Resolved::Cube(cube) = &self.subject else { return Ok(None) };
+        let (Some(Depth::Uniform(depth_m)), None) = (&cube.depth, &cube.right) else { return Ok(None) };
+        let var_diffraction_px2 = self.var_diffraction_px2()?;
+        if var_diffraction_px2 != 0.0 {
+            return Ok(None);
+        }
+        let requirement = self.scenario.requirement;
+        let allowed_px = requirement.error.at(*depth_m) / self.geometry.depth_error_m(*depth_m, 1.0)?;
+        let noise = cube.noise_per_unit()?;
+        let request = self.request(noise.as_ref().unwrap_or(&cube.noise), &[Cell::Full], shape);
+        // δd² = 2/J ≤ allowed².
+        let required = 2.0 / (allowed_px * allowed_px) / cube.photons_per_unit;
+        let decision = decide(&cube.left, &request, required)
+            .map_err(|error| error.at(self.scenario.place("cube.left")))?;
+        let windows = decision.above.len();
+        let share = decision.above.iter().filter(|above| **above).count() as f64 / windows.max(1) as f64;
+        let met = share >= requirement.share;
+        let verdict = DepthVerdict {
+            met: Some(met),
+            sentence: self.sentence(met, share, None),
+            share: Some(share),
+            required_share: requirement.share,
+            signal: Signal::HeatCube,
+        };
+        let stats = RangeStats {
+            samples: shape.len() as u64,
+            samples_read: decision.stats.samples_evaluated as u64,
+            windows: windows as u64,
+            proved_above: decision.stats.windows_proved_above as u64,
+            proved_below: decision.stats.windows_proved_below as u64,
+            computed: decision.stats.windows_computed as u64,
+        };
+        Ok(Some(Ranging {
+            scenario: self.scenario.clone(),
+            verdict,
+            shape,
+            geometry: self.geometry(var_diffraction_px2)?,
+            objects: Vec::new(),
+            cells: None,
+            solve_for: None,
+            lines: Vec::new(),
+            matched: Vec::new(),
+            stats,
+            warnings: Vec::new(),
+            maps: BoundMaps::default(),
+        }))
     }
 
     pub(super) fn verdict(&self, all: Option<&ObjectBounds>) -> Result<DepthVerdict> {
@@ -36,7 +86,7 @@ impl RangeStudy {
         let required = self.scenario.requirement.share;
         let met = share.map(|share| share >= required);
         let sentence = match (met, cube) {
-            (Some(met), Some(cube)) => self.sentence(met, cube, by(Signal::ThermalImage)),
+            (Some(met), Some(_)) => self.sentence(met, share.unwrap_or(f64::NAN), by(Signal::ThermalImage)),
             (None, Some(cube)) => format!(
                 "A window's disparity can be known to {} pixels at best (median, heat cube); give the depth for what that means in metres.",
                 short(cube.disparity_error_px)
@@ -46,17 +96,16 @@ impl RangeStudy {
         Ok(DepthVerdict { met, sentence, share, required_share: required, signal: Signal::HeatCube })
     }
 
-    pub(super) fn sentence(&self, met: bool, cube: &SignalBounds, thermal: Option<&SignalBounds>) -> String {
+    fn sentence(&self, met: bool, share: f64, thermal: Option<&SignalBounds>) -> String {
         let requirement = self.scenario.requirement;
-        let reach = |found: &SignalBounds| words::share(found.share.unwrap_or(f64::NAN));
-        let beside = thermal.map_or_else(String::new, |thermal| {
-            format!("; a thermal image, all bands together, allows it in {}", reach(thermal))
+        let beside = thermal.and_then(|thermal| thermal.share).map_or_else(String::new, |share| {
+            format!("; a thermal image, all bands together, allows it in {}", words::share(share))
         });
         format!(
             "{}: depth can be measured to within {} in {} of the windows at best, by the heat cube ({} demanded){beside}.",
             if met { "Yes" } else { "No" },
             demand(requirement.error),
-            reach(cube),
+            words::share(share),
             words::share(requirement.share),
         )
     }
