@@ -12,6 +12,8 @@ use crate::{Error, Result};
 /// Width of a colour bar, and its distance from the picture.
 const BAR: f64 = 11.0;
 const APART: f64 = 8.0;
+/// Steps of colour: no eye sees more, and a palette of a file holds them.
+const SHADES: f64 = 200.0;
 /// Between two pictures.
 const GAP: f64 = 14.0;
 const TITLE: f64 = 12.5;
@@ -140,7 +142,7 @@ fn draw(scene: &mut Scene, picture: &Picture, left: f64, top: f64, slot: f64) ->
     let area = Rect { left, right: left + width, top, bottom: top + width * ratio };
     let bar = Vertical::new(&picture.colour, ruler, area.height());
     let colour_of = |value: &f64| match ruler.fraction(*value) {
-        Some(part) => colour::quantity(part.clamp(0.0, 1.0)).rgb,
+        Some(part) => colour::quantity((part.clamp(0.0, 1.0) * SHADES).round() / SHADES).rgb,
         None => NO_VALUE.rgb,
     };
     let holes = picture.values.iter().any(|value| ruler.fraction(*value).is_none());

@@ -24,11 +24,31 @@ pub(super) fn paint(scene: &Scene) -> Result<Vec<u8>> {
     encode(&pixels, width, height).map_err(failure)
 }
 
-/// A raster of its own, a pixel each.
+/// A raster of its own, a pixel each. Up to 256 colours make a palette.
 pub(super) fn raster(pixels: &[(u8, u8, u8)], columns: usize) -> Result<Vec<u8>> {
-    let bytes: Vec<u8> = pixels.iter().flat_map(|&(r, g, b)| [r, g, b]).collect();
     let rows = pixels.len().checked_div(columns).unwrap_or(0);
-    encode(&bytes, columns as u32, rows as u32).map_err(failure)
+    let mut palette: Vec<(u8, u8, u8)> = pixels.to_vec();
+    palette.sort_unstable();
+    palette.dedup();
+    let flat =
+        |colours: &[(u8, u8, u8)]| colours.iter().flat_map(|&(r, g, b)| [r, g, b]).collect::<Vec<u8>>();
+    let mut file = Vec::new();
+    let mut encoder = ::png::Encoder::new(&mut file, columns as u32, rows as u32);
+    encoder.set_depth(::png::BitDepth::Eight);
+    encoder.set_compression(::png::Compression::Best);
+    encoder.set_filter(::png::FilterType::NoFilter);
+    let data = if palette.len() <= 256 {
+        encoder.set_color(::png::ColorType::Indexed);
+        encoder.set_palette(flat(&palette));
+        pixels.iter().map(|colour| palette.binary_search(colour).unwrap_or(0) as u8).collect()
+    } else {
+        encoder.set_color(::png::ColorType::Rgb);
+        flat(pixels)
+    };
+    let mut writer = encoder.write_header().map_err(failure)?;
+    writer.write_image_data(&data).map_err(failure)?;
+    writer.finish().map_err(failure)?;
+    Ok(file)
 }
 
 fn encode(pixels: &[u8], width: u32, height: u32) -> std::result::Result<Vec<u8>, ::png::EncodingError> {

@@ -1,6 +1,7 @@
 //! A ranging study in words: the answer, the bounds, what would have to change, what it rests on.
 
 use crate::ranging::depth::DepthSolution as Solution;
+use crate::ranging::derivative::Derivative;
 use crate::report::text::warnings;
 use crate::scenario::ranging::{Diffraction, Subject};
 use crate::study::ranging::{ObjectBounds, RangeStats, Ranging, Signal, SignalBounds};
@@ -134,8 +135,14 @@ fn cells(result: &Ranging) -> String {
     if let Some(other) = cells.other_derivative {
         let _ = writeln!(
             out,
-            "  another derivative along x gives {} times as much: what lies between is not certain",
-            significant(other, 2)
+            "  {} give {} times as much of the last (in use: {}): what lies between is uncertain",
+            if result.scenario.stereo.derivative == Derivative::Central {
+                "cubic splines"
+            } else {
+                "central differences, blind to the finest texture,"
+            },
+            significant(other, 2),
+            result.scenario.stereo.derivative.name()
         );
     }
     out.push('\n');

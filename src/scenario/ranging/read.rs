@@ -202,7 +202,12 @@ fn stereo(entry: &Entry<'_>, camera: bool, subject: &Subject) -> Result<Stereo> 
         focal_length_m,
         pixel_m,
         window: section.read("window", window)?.map_or_else(|| Window::new(5, 5), Ok)?,
-        derivative: section.choice("derivative", &schemes)?.unwrap_or_default(),
+        // Central differences see too little of fine texture, and their bound comes out too large; splines see more, of noise too, which
+        // only the counts of a file have.
+        derivative: section.choice("derivative", &schemes)?.unwrap_or(match subject {
+            Subject::Scene(_) => Derivative::CubicSpline,
+            Subject::Cube(_) => Derivative::Central,
+        }),
         joined: section.choice("joined", &joined)?.unwrap_or_default(),
         lines: section
             .read("lines", |entry| {

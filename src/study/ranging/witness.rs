@@ -23,6 +23,8 @@ const OUTLIER_PX: f64 = 1.0;
 /// The signals that are matched: what a thermal camera has, what a spectral one has, what the paper has.
 const MATCHED: [Signal; 3] = [Signal::ThermalImage, Signal::HeatCube, Signal::ScatteredAsMeasured];
 
+const MATCHED_IN_ONE_BAND: [Signal; 2] = [Signal::ThermalImage, Signal::ScatteredAsMeasured];
+
 /// Expected counts of both views as a matcher gets them.
 struct Views {
     shape: Shape,
@@ -59,10 +61,15 @@ impl RangeStudy {
                 return Err(Error::malformed(found, instead).at(self.scenario.place("stereo.lines")));
             }
         }
+        let one_band = self.shape()?.bands() == 1;
         let jobs = rows.len() * maps.disparity_error_px.len();
         for (i, &row) in rows.iter().enumerate() {
             for (k, (signal, errors)) in maps.disparity_error_px.iter().enumerate() {
                 let bound = self.bound_line(row, *signal, errors, maps)?;
+                // In one band the cube is the image, and nothing is reconstructed.
+                if one_band && !MATCHED_IN_ONE_BAND.contains(signal) {
+                    continue;
+                }
                 match (&self.subject, &informed.pair) {
                     (Resolved::Scene(scene), Some(pair)) if plan.trials > 0 && MATCHED.contains(signal) => {
                         let views = self.views(scene, pair, *signal)?;
