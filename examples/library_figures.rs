@@ -204,7 +204,7 @@ fn ratios(pairs: &[Pair]) -> Plot {
     .rule(Rule::vertical(0.5, "too small by a factor 2"))
     .rule(Rule::vertical(1.0, "equal"))
     .rule(Rule::vertical(2.0, "too large by a factor 2"));
-    Plot { name: "ratios", figure: figure.into(), table }
+    Plot { name: "ratios".into(), figure: figure.into(), table }
 }
 
 /// Simulated decisions against what the local distance and the two-sided estimate say.
@@ -246,7 +246,7 @@ fn decisions(decided: &[Decided]) -> Plot {
     .series(Series::points("by the local distance", of(Decided::promised), p.clone()).colour(1))
     .series(Series::points("by the two-sided estimate", of(Decided::two_sided), p).colour(2))
     .rule(Rule::horizontal(detection::probability(1.0), "limit Φ(1) of the nearest distance"));
-    Plot { name: "decisions", figure: figure.into(), table }
+    Plot { name: "decisions".into(), figure: figure.into(), table }
 }
 
 /// Root mean square with its 95 % interval from the scatter of the squares.

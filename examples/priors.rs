@@ -167,7 +167,7 @@ fn temperatures(name: &'static str, lighting: f64, most: f64, rows: &[(Vec<f64>,
             .colour(2),
     )
     .rule(Rule::vertical(AMBIENT_CELSIUS, "equal temperatures"));
-    Plot { name, figure: figure.into(), table: table(&["target_celsius", "lighting"], rows) }
+    Plot { name: name.into(), figure: figure.into(), table: table(&["target_celsius", "lighting"], rows) }
 }
 
 /// Photons at equilibrium against the width of the prior.
@@ -190,7 +190,7 @@ fn widths(rows: &[(Vec<f64>, Photons)]) -> Plot {
     .series(line("average of the local", |n| n.average_local).style(Style::Dashed).colour(1))
     .series(line("hybrid bound (of estimates, not of decisions)", |n| n.bound).style(Style::Dashed).colour(2))
     .series(Series::line("slope −2", x.clone(), slope).style(Style::Dotted).colour(6));
-    Plot { name: "prior_width", figure: figure.into(), table: table(&["prior_k"], rows) }
+    Plot { name: "prior_width".into(), figure: figure.into(), table: table(&["prior_k"], rows) }
 }
 
 /// Nearest distance in one range of the alternative's state.

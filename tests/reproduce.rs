@@ -66,7 +66,19 @@ fn compare(name: &str, made: &Rows, kept: &Rows) -> usize {
                 assert!(free || new == old, "{name}: {column} of {key} is {new}, was {old}");
                 continue;
             };
+            let ranging = name.starts_with("fig4/") || name.starts_with("figs12/");
+            // No texture but rounding: an error beyond any depth, an information that is none.
+            if ranging && (a.min(b) > 1e3 || a.max(b) < 1e-6) {
+                continue;
+            }
             let tolerance = match column.as_str() {
+                // A draw that falls on the other side of a rounding sends a match elsewhere.
+                c if name == "fig4/matched.csv" && c != "depth_m_truth" => f64::INFINITY,
+                c if ranging && (c.starts_with("entropy") || c == "standard_deviation_with_noise_counts") => {
+                    f64::INFINITY
+                }
+                "outliers" => 0.05,
+                "rmse_m" | "bias_m" if ranging => 0.1 * (1.0 + b.abs()),
                 c if ["accuracy", "accuracy_low", "accuracy_high"].contains(&c) => {
                     if of_network {
                         TRAINED
@@ -105,7 +117,8 @@ fn the_committed_reports_are_those_of_today() {
     assert!(outcome.stdout.starts_with("Of "), "{}", outcome.stdout);
     let committed = Path::new(env!("CARGO_MANIFEST_DIR")).join("reports");
     let mut numbers = 0;
-    for item in ["tabs2", "policy", "fig3c", "edfig6", "edfig9", "figs7", "fig3b"] {
+    for item in ["tabs2", "tabs5", "policy", "fig3c", "figs12", "fig4", "edfig6", "edfig9", "figs7", "fig3b"]
+    {
         for entry in fs::read_dir(folder.path().join("new").join(item)).unwrap() {
             let path = entry.unwrap().path();
             let file = path.file_name().unwrap().to_str().unwrap().to_owned();
@@ -132,7 +145,8 @@ fn the_committed_reports_are_those_of_today() {
             }
         }
     }
-    for item in ["tabs2", "policy", "fig3c", "edfig6", "edfig9", "figs7", "fig3b"] {
+    for item in ["tabs2", "tabs5", "policy", "fig3c", "figs12", "fig4", "edfig6", "edfig9", "figs7", "fig3b"]
+    {
         for entry in fs::read_dir(committed.join(item)).unwrap() {
             let file = entry.unwrap().file_name();
             let made = folder.path().join("new").join(item).join(&file);

@@ -137,7 +137,7 @@ pub fn against_distances(lines: &[Line]) -> Plot {
     .series(bars("", &of(|l| l.nearest), &low, &high).colour(0))
     .series(Series::points("at the local distance", of(|l| l.local), p.clone()).colour(1))
     .series(Series::points("at the nearest distance", of(|l| l.nearest), p).colour(0));
-    Plot { name: "against_distances", figure: figure.into(), table }
+    Plot { name: "against_distances".into(), figure: figure.into(), table }
 }
 
 /// What the test achieves against the estimates of it.
@@ -169,5 +169,5 @@ pub fn against_estimates(lines: &[Line]) -> Plot {
     .series(bars("", &of(Line::two_sided), &low, &high).colour(2))
     .series(Series::points("local distance", of(Line::promised), p.clone()).colour(1))
     .series(Series::points("two-sided estimate", of(Line::two_sided), p).colour(2));
-    Plot { name: "against_estimates", figure: figure.into(), table }
+    Plot { name: "against_estimates".into(), figure: figure.into(), table }
 }

@@ -129,7 +129,7 @@ fn overview(items: &[Item], effort: Effort, ledger: &[Line]) -> String {
         page.push_str(&format!("* [{}]({}/README.md)\n", item.title(), item.name()));
     }
     page.push_str(
-        "\nNot made again here: Fig. 3a's 72.5 degC, the formulas S28, S31 to S36 and S43, ranging (Fig. 4, Tables S4 and S5). A \
+        "\nNot made again here: Fig. 3a's 72.5 degC, the formulas S28 and S31 to S34, Fig. S10 (a trained network), the optical images of Fig. 4. A \
          verdict of numbers is computed: the same within the tolerance printed beside it.\n",
     );
     page.push_str(

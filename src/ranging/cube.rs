@@ -1,4 +1,4 @@
-//! Heat cubes: photon counts N[row][column][band], in memory or read by rows.
+//! Heat cubes: photon counts `N[row][column][band]`, in memory or read by rows.
 //!
 //! A cube is only ever asked for whole rows, in any order and by many threads at once: one that is larger than
 //! memory costs no more than the rows that are in work. Samples are `f32` or `f64`, and stay so.
@@ -109,7 +109,7 @@ pub trait Rows<S: Sample>: Debug + Send + Sync {
     /// Its shape.
     fn shape(&self) -> Shape;
 
-    /// The samples of `rows`, row after row, [column][band] within each. A cube in memory gives its own; one in a file
+    /// The samples of `rows`, row after row, `[column][band]` within each. A cube in memory gives its own; one in a file
     /// fills `buffer` and gives that.
     ///
     /// # Errors
@@ -145,7 +145,7 @@ pub struct MemoryCube<S> {
 }
 
 impl<S: Sample> MemoryCube<S> {
-    /// A cube of samples [row][column][band].
+    /// A cube of samples `[row][column][band]`.
     ///
     /// # Errors
     /// A number of samples that is not that of the shape.
@@ -160,7 +160,7 @@ impl<S: Sample> MemoryCube<S> {
         })
     }
 
-    /// All samples, [row][column][band].
+    /// All samples, `[row][column][band]`.
     #[must_use]
     pub fn samples(&self) -> &[S] {
         &self.samples

@@ -132,16 +132,16 @@ pub struct InformationMap {
     pub rows: Range<usize>,
     /// Columns of the centres.
     pub columns: Range<usize>,
-    /// J, pixel⁻², [row][column] of the centres; empty for a cell that was not asked for. In the order of [`Cell::ALL`].
+    /// J, pixel⁻², `[row][column]` of the centres; empty for a cell that was not asked for. In the order of [`Cell::ALL`].
     pub information: [Vec<f64>; 4],
-    /// Photons N in each window, [row][column].
+    /// Photons N in each window, `[row][column]`.
     pub photons: Vec<f64>,
-    /// ΣΣσ² of each window, counts², [row][column].
+    /// ΣΣσ² of each window, counts², `[row][column]`.
     pub var_electronic: Vec<f64>,
 }
 
 impl InformationMap {
-    /// J of a cell, pixel⁻², [row][column] of the centres; empty where it was not asked for.
+    /// J of a cell, pixel⁻², `[row][column]` of the centres; empty where it was not asked for.
     #[must_use]
     pub fn cell(&self, cell: Cell) -> &[f64] {
         let [total, spatial, spectral, full] = &self.information;

@@ -33,7 +33,7 @@ pub struct TextureMap {
     pub rows: Range<usize>,
     /// Columns of the windows' centres.
     pub columns: Range<usize>,
-    /// The measure, [row][column] of the centres.
+    /// The measure, `[row][column]` of the centres.
     pub values: Vec<f64>,
 }
 

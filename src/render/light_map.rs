@@ -23,7 +23,7 @@ pub(super) struct LightMap {
     first: [f64; 2],
     columns: usize,
     rows: usize,
-    /// Φ above the horizon of every surface beyond the ground, [row][column].
+    /// Φ above the horizon of every surface beyond the ground, `[row][column]`.
     nodes: Vec<[Vector; SURFACES]>,
 }
 

@@ -43,7 +43,7 @@ pub(super) struct Centre {
     pub(super) seen_by_other: bool,
 }
 
-/// One camera's picture, with the truth about it. Maps are [row][column] and tell what is at a pixel's centre;
+/// One camera's picture, with the truth about it. Maps are `[row][column]` and tell what is at a pixel's centre;
 /// radiance is the mean over the pixel's area.
 #[derive(Debug)]
 pub struct View {
@@ -60,7 +60,7 @@ pub struct View {
     pub surface: Vec<u8>,
     /// Mixing τ of the surface's two emissivities, 0 where it has but one.
     pub texture: Vec<f64>,
-    /// Thermal lighting factors V, [row][column][surface]; all 0 in the sky.
+    /// Thermal lighting factors V, `[row][column][surface]`; all 0 in the sky.
     pub lighting: Vec<f64>,
     /// Whether the other camera sees the same point.
     pub seen_by_other: Vec<bool>,
@@ -94,7 +94,7 @@ impl View {
         ))
     }
 
-    /// A row of a part of the signal times `factor`, [column][band], into `out`; nothing if there is no such row.
+    /// A row of a part of the signal times `factor`, `[column][band]`, into `out`; nothing if there is no such row.
     pub fn row_into(&self, part: Part, factor: f64, row: usize, out: &mut Vec<f64>) {
         out.clear();
         if let Some(row) = self.rows.get(row) {

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 /// Samples that are in work at a time for each thread: 1 MB of `f32`.
 const BLOCK: usize = 1 << 18;
 
-/// The sum of all bands in every pixel, one band, [row][column]. Rows are read as they are needed; the sum is the
+/// The sum of all bands in every pixel, one band, `[row][column]`. Rows are read as they are needed; the sum is the
 /// same to the last bit for any number of threads.
 ///
 /// # Errors

@@ -217,7 +217,7 @@ fn swap_bytes<S: Sample>(samples: &mut [S]) {
     }
 }
 
-/// Writes samples [row][column][band] to an NPY file (version 1, three dimensions); one that is there is replaced.
+/// Writes samples `[row][column][band]` to an NPY file (version 1, three dimensions); one that is there is replaced.
 ///
 /// # Errors
 /// A number of samples that is not that of the shape; a file that cannot be written.
@@ -235,7 +235,7 @@ pub fn write_npy<S: Sample>(path: &Path, shape: Shape, samples: &[S]) -> Result<
     put(&mut writer, shape, samples).and_then(|()| writer.flush()).map_err(unwritten)
 }
 
-/// Writes samples [row][column][band] in NPY format (version 1, three dimensions).
+/// Writes samples `[row][column][band]` in NPY format (version 1, three dimensions).
 ///
 /// # Errors
 /// A number of samples that is not that of the shape; whatever the writer refuses.

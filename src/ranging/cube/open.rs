@@ -37,7 +37,7 @@ impl Kind {
 
 impl Cube {
     /// Opens an NPY file (NumPy's `np.save`; versions 1 to 3) or a MATLAB file (version 5: `save` with `-v6` or
-    /// `-v7`) of samples [row][column][band] or, with one band, [row][column]. The file's first bytes tell which it
+    /// `-v7`) of samples `[row][column][band]` or, with one band, `[row][column]`. The file's first bytes tell which it
     /// is, not its name. `variable` names the array in a MATLAB file; it may be left out where only one array is
     /// three-dimensional, or only one is there.
     ///

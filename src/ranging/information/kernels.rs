@@ -31,7 +31,7 @@ pub(super) struct Seen {
 
 /// Samples that can be widened to rows of `f64` with whole vectors per column.
 pub(super) trait Stored: Sample {
-    /// Writes the samples [column][band] to [column][`stride`].
+    /// Writes the samples `[column][band]` to [column][`stride`].
     fn widen(samples: &[Self], bands: usize, to: &mut [f64]) -> Seen;
 }
 

@@ -37,7 +37,7 @@ fn exactly<'a, S: Stored>(
     Err(crate::Error::Length { what, found: samples.len(), expected: len })
 }
 
-/// Samples of rows, [row][column][band].
+/// Samples of rows, `[row][column][band]`.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Raw<'a> {
     F32(&'a [f32]),

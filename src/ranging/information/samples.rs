@@ -22,13 +22,13 @@ use std::ops::Range;
 /// Sums over the bands of pixels and of windows.
 #[derive(Debug, Default)]
 pub(super) struct BandSums {
-    /// Σ_b (∂N)²/(N + σ²), [row][column] of the pixels in windows with a derivative; empty unless asked for.
+    /// Σ_b (∂N)²/(N + σ²), `[row][column]` of the pixels in windows with a derivative; empty unless asked for.
     pub(super) quotients: Vec<f64>,
-    /// Σ_b N, [row][column], all columns.
+    /// Σ_b N, `[row][column]`, all columns.
     pub(super) counts: Vec<f64>,
     /// Σ_b σ², likewise; empty unless every sample has its own.
     pub(super) variances: Vec<f64>,
-    /// Σ_b (Σ_p ∂N)²/Σ_p (N + σ²), [row][column] of the windows; empty unless asked for.
+    /// Σ_b (Σ_p ∂N)²/Σ_p (N + σ²), `[row][column]` of the windows; empty unless asked for.
     pub(super) spectral: Vec<f64>,
 }
 

@@ -4,7 +4,7 @@ use crate::ranging::cube::{MemoryCube, Shape};
 use crate::ranging::derivative::Differentiator;
 use proptest::prelude::*;
 
-/// Counts from a small generator, [row][column][band]; whole numbers, so that f32 holds them exactly.
+/// Counts from a small generator, `[row][column][band]`; whole numbers, so that f32 holds them exactly.
 fn counts(shape: Shape, seed: u64) -> Vec<f64> {
     let mut state = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1;
     let mut next = || {

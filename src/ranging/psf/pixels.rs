@@ -194,7 +194,7 @@ fn folded(i: isize) -> usize {
 /// ∬h over the parts of a quadrant, and ∫h dy along their edges of constant x.
 struct Quadrant {
     n: usize,
-    /// [row][column].
+    /// `[row][column]`.
     areas: Vec<f64>,
     /// [row][edge], n + 1 edges.
     edges: Vec<f64>,

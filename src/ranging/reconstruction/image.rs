@@ -27,11 +27,11 @@ use rayon::prelude::*;
 pub struct EmissionImage<'a> {
     /// Rows, columns and bands.
     pub shape: Shape,
-    /// Expected counts N, [row][column][band].
+    /// Expected counts N, `[row][column][band]`.
     pub counts: &'a [f64],
     /// What of them was emitted, E.
     pub emission: &'a [f64],
-    /// Temperature at the pixels' centres, K, [row][column].
+    /// Temperature at the pixels' centres, K, `[row][column]`.
     pub temperature_k: &'a [f64],
     /// Centres of the bands, cm⁻¹.
     pub wavenumbers_cm1: &'a [f64],
@@ -39,7 +39,7 @@ pub struct EmissionImage<'a> {
     pub var_electronic: &'a [f64],
 }
 
-/// Information of every pixel, pixel⁻², [row][column] without the derivative's margins.
+/// Information of every pixel, pixel⁻², `[row][column]` without the derivative's margins.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BesideEmission {
     columns: usize,

@@ -87,7 +87,7 @@ fn bounds(result: &Ranging) -> String {
             let _ =
                 write!(out, "  {:width$}", format!("depth to which {share} % reach it"), width = first + 10);
             for (found, width) in all.signals.iter().zip(&widths) {
-                let shown = found.largest_depth_m.map_or("-".into(), |z| length(z));
+                let shown = found.largest_depth_m.map_or("-".into(), length);
                 let _ = write!(out, "  {shown:>width$}");
             }
             out.push('\n');

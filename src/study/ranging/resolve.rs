@@ -191,7 +191,7 @@ fn depth_map(depth: &Cube, shape: Shape) -> Result<Vec<f64>> {
         Cube::F64(rows) => map.extend_from_slice(rows.read(0..shape.rows(), &mut Vec::new())?),
     }
     // What is not known, as such maps have it, is not above 0; nothing else is wrong with a depth.
-    map.iter_mut().filter(|z| !(**z > 0.0)).for_each(|z| *z = f64::NAN);
+    map.iter_mut().filter(|z| z.is_nan() || **z <= 0.0).for_each(|z| *z = f64::NAN);
     if map.iter().all(|z| z.is_nan()) {
         return Err(Error::malformed("no depth is above 0 m", "give depths in metres"));
     }

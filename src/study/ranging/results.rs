@@ -232,7 +232,7 @@ pub struct Matched {
     pub signal: Signal,
     /// How far the depths are from the truth.
     pub metrics: DepthMetrics,
-    /// Depth, m, [row][column] of the left view; NaN where there is no match.
+    /// Depth, m, `[row][column]` of the left view; NaN where there is no match.
     #[serde(skip)]
     pub depth_m: Vec<f64>,
 }
@@ -265,7 +265,7 @@ pub struct BoundMaps {
     pub disparity_error_px: Vec<(Signal, Vec<f64>)>,
     /// Depth at the centres, m.
     pub depth_m: Vec<f64>,
-    /// Pictures of the left view, [row][column].
+    /// Pictures of the left view, `[row][column]`.
     pub pictures: Vec<(PictureKind, Vec<f64>)>,
 }
 

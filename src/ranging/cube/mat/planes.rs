@@ -1,4 +1,4 @@
-//! From MATLAB's order, in which rows run fastest, to [row][column][band].
+//! From MATLAB's order, in which rows run fastest, to `[row][column][band]`.
 //!
 //! Bands are read some at a time, so many as fill a cache line of the result, and transposed in tiles of as many
 //! rows: every line of either array is then in the cache until all of it is done.
@@ -28,7 +28,7 @@ impl Number for f64 {
     }
 }
 
-/// Samples [row][column][band] from a source that gives them [band][column][row].
+/// Samples `[row][column][band]` from a source that gives them `[band][column][row]`.
 pub(super) fn transposed<S: Number>(
     shape: Shape,
     mut next: impl FnMut(&mut [S]) -> Result<()>,

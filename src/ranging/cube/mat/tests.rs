@@ -110,7 +110,7 @@ fn samples(cube: &Cube) -> Vec<f64> {
     }
 }
 
-/// Place of [row][column][band] in MATLAB's order, for every sample in ours.
+/// Place of `[row][column][band]` in MATLAB's order, for every sample in ours.
 fn places(shape: Shape) -> impl Iterator<Item = usize> {
     let (rows, columns, bands) = (shape.rows(), shape.columns(), shape.bands());
     (0..rows).flat_map(move |row| {
