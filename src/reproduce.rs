@@ -13,6 +13,7 @@ mod fig3b;
 mod fig3c;
 mod fig4;
 mod ledger;
+mod locking;
 mod policy;
 mod scene;
 mod tabs2;

@@ -177,7 +177,7 @@ fn a_report_has_every_plot_with_its_table_and_its_maps() {
     }
     let map = folder.path().join("out/disparity_error_px_heat_cube.npy");
     let cube = hadar::ranging::cube::Cube::open(&map, None).unwrap();
-    assert_eq!((cube.shape().rows(), cube.shape().columns()), (56, 74));
+    assert_eq!((cube.shape().rows(), cube.shape().columns()), (56, 76));
     let again = folder.run(&["range", "out/scenario.toml", "-q"]);
     assert_eq!(again.code, 0, "{}", again.stderr);
     let line = fs::read_to_string(folder.path().join("out/line_38.csv")).unwrap();

@@ -4,6 +4,7 @@ use super::Global;
 use crate::error::{Error, Result};
 use crate::report::ranging;
 use crate::scenario::RangeScenario;
+use crate::scenario::ranging::Subject;
 use crate::study::ranging::{RangePlan, RangeStudy};
 use clap::Args;
 use std::path::PathBuf;
@@ -25,7 +26,7 @@ pub(super) struct RangeArgs {
     /// Compute every window in full where a proof by a part of its samples would do; the answer is the same
     #[arg(long)]
     no_skip: bool,
-    /// Answer yes or no alone, by the cheapest proof, and exit with code 3 if the demand is not met
+    /// Exit with code 3 if the demand is not met; a cube of one view and one depth is decided by the cheapest proofs alone
     #[arg(long, conflicts_with = "trials")]
     check: bool,
 }
@@ -44,6 +45,15 @@ pub(super) fn run(args: &RangeArgs, global: &Global) -> Result<ExitCode> {
         // A report shows all windows.
         verdict_alone: args.check && global.out.is_none(),
     };
+    if args.trials > 0 && matches!(scenario.subject, Subject::Cube(_)) {
+        let found = "--trials match views whose truth is known, which a cube's is not";
+        return Err(Error::malformed(found, "leave it out, or give a [scene]"));
+    }
+    if args.check && matches!(&scenario.subject, Subject::Cube(cube) if cube.depth.is_none()) {
+        let found =
+            Error::malformed("--check demands a depth error", "write depth = \"12 m\" or a file of depths");
+        return Err(found.at(scenario.place("cube.depth")));
+    }
     let bar = global.progress("rows and draws");
     let result = study.range(&plan, &|done, total| bar.set(done, total))?;
     bar.finish();

@@ -97,7 +97,7 @@ impl Derivative {
         if columns >= least {
             return Ok(());
         }
-        let found = format!("an image of {columns} columns for the derivative {self:?}");
+        let found = format!("an image of {columns} columns for the derivative {}", self.name());
         Err(Error::malformed(found, format!("it takes at least {least}")))
     }
 

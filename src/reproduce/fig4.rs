@@ -59,6 +59,8 @@ pub(super) fn make(order: Order, out: &Path, progress: Progress<'_>) -> Result<M
         plot.name = "night_bounds_map".into();
         plots.push(plot);
     }
+    let (locked, locking) = super::locking::locking(order.seed)?;
+    plots.push(locked);
     bundle.add_plots(&plots)?;
     let (table, depends) = dependence()?;
     bundle.add("dependence.csv", table.to_csv()?);
@@ -82,10 +84,11 @@ pub(super) fn make(order: Order, out: &Path, progress: Progress<'_>) -> Result<M
             "dim_line_330.png",
             "The same with a hundredth of the light and windows of one row: maximum likelihood reaches the bound",
         ),
+        ("pixel_locking.png", "What is left of the matchers' error with all the light there could be"),
         ("matched.png", "Depth by block matching"),
         ("night_bounds_map.png", "Bounds of depth by signal under a cold sky, in 54 bands"),
     ];
-    Ok((bundle, ledger(&paper, &night, &dim), Figures { pictures, text }))
+    Ok((bundle, ledger(&paper, &night, &dim, &locking), Figures { pictures, text }))
 }
 
 /// The same street seen more coarsely, so that many of them are quickly drawn.
@@ -143,7 +146,7 @@ fn dimmer() -> String {
     ONE_TEMPERATURE.replace("\"12 ms\"", "\"120 us\"").replace("window = [5, 5]", "window = [1, 25]")
 }
 
-fn ledger(paper: &Ranging, night: &Ranging, dim: &Ranging) -> Vec<Line> {
+fn ledger(paper: &Ranging, night: &Ranging, dim: &Ranging, locking: &[(&str, f64)]) -> Vec<Line> {
     let place = "Fig. 4d, e";
     let error = |result: &Ranging, object: &str, signal: Signal| {
         of(result, object, signal).and_then(|found| found.depth_error_m).map_or(f64::NAN, |errors| errors[1])
@@ -165,7 +168,12 @@ fn ledger(paper: &Ranging, night: &Ranging, dim: &Ranging) -> Vec<Line> {
         let same = |line: &&crate::study::ranging::Line| {
             line.signal == Signal::ScatteredAsMeasured && line.method == Some(method)
         };
-        dim.lines.iter().find(same).map_or(f64::NAN, |line| median(&line.rmse_m) / median(&line.bound_m))
+        let ratio = |line: &crate::study::ranging::Line| {
+            median(
+                &line.rmse_m.iter().zip(&line.bound_m).map(|(rmse, bound)| rmse / bound).collect::<Vec<_>>(),
+            )
+        };
+        dim.lines.iter().find(same).map_or(f64::NAN, ratio)
     };
     let (block, likelihood) = (over("block matching"), over("maximum likelihood"));
     let by_bound = gain(paper, Signal::ScatteredAsMeasured);
@@ -209,6 +217,18 @@ fn ledger(paper: &Ranging, night: &Ranging, dim: &Ranging) -> Vec<Line> {
             Verdict::NotReproduced,
             "in one band at one temperature emitted and scattered light add up to B(T) whatever the emissivity: no processing of what is measured \
              recovers the texture",
+        ),
+        Line::new(
+            "not in the paper",
+            "error that no light removes, one disparity in each window (largest over its sub-pixel part), pixels",
+            "-",
+            locking
+                .iter()
+                .map(|(name, rms)| format!("{} ({name})", significant(*rms, 2)))
+                .collect::<Vec<_>>()
+                .join(", "),
+            Verdict::NotInThePaper,
+            "pixel locking: parabola through whole disparities, windowed sinc; where the bound is lower, it is out of their reach",
         ),
         Line::new(
             "not in the paper",

@@ -194,11 +194,7 @@ fn alternatives(entry: &Entry<'_>) -> Result<Alternatives> {
     })
 }
 
-pub(super) fn range<'a>(
-    entry: &Entry<'a>,
-    example: &str,
-    read: impl Fn(&Entry<'a>) -> Result<f64>,
-) -> Result<[f64; 2]> {
+fn range<'a>(entry: &Entry<'a>, example: &str, read: impl Fn(&Entry<'a>) -> Result<f64>) -> Result<[f64; 2]> {
     let [low, high] = entry.pair(example)?;
     let (low, high) = (read(&low)?, read(&high)?);
     if low < high {

@@ -118,9 +118,28 @@ impl RangeStudy {
         let mut maps = ground.maps(&windows, &informed.left, &variances);
         if let Some(pair) = &informed.pair {
             maps.pictures = self.pictures(pair)?;
+            maps.brightest = self.brightest(pair)?;
         }
         let solve_for = self.solutions(&informed, &ground, &windows, &variances)?;
-        let lines = self.lines(plan, &informed, &maps, progress)?;
+        let lines = match plan.trials {
+            0 => self.lines(plan, &informed, &maps, progress)?,
+            // The views that are matched have no diffraction.
+            _ => {
+                let sharp = Ground { var_diffraction_px2: 0.0, ..self.ground(&informed.truth, shape)? };
+                let sharp_variances: Vec<Vec<f64>> = informed
+                    .left
+                    .iter()
+                    .enumerate()
+                    .map(|(i, left)| sharp.variances(left, informed.right.get(i), &windows))
+                    .collect();
+                self.lines(
+                    plan,
+                    &informed,
+                    &sharp.maps(&windows, &informed.left, &sharp_variances),
+                    progress,
+                )?
+            }
+        };
         let matched = self.matched(plan, &informed)?;
         let samples = shape.len() as u64 * if informed.right.is_empty() { 1 } else { 2 };
         let counted = windows.len() as u64;
@@ -175,12 +194,13 @@ impl RangeStudy {
             (Resolved::Cube(cube), _) => {
                 // A unit of g photons: J(N, σ²) = g J(n, σ²/g) for counts n = N/g.
                 let noise = cube.noise_per_unit()?;
+                let joined = self.scenario.stereo.joined;
                 let of = |cells: &InformationMap| {
-                    [(Signal::ThermalImage, Cell::Spatial), (Signal::HeatCube, Cell::Full)]
-                        .map(|(signal, cell)| {
-                            SignalMap::of(signal, cell, cells).scaled(cube.photons_per_unit)
-                        })
-                        .to_vec()
+                    let both = [
+                        SignalMap::thermal(cells, joined, shape.bands()),
+                        SignalMap::of(Signal::HeatCube, Cell::Full, cells),
+                    ];
+                    both.map(|map| map.scaled(cube.photons_per_unit)).to_vec()
                 };
                 let place = |key: &'static str| move |error: crate::Error| error.at(self.scenario.place(key));
                 let noise = noise.as_ref().unwrap_or(&cube.noise);
@@ -275,6 +295,17 @@ impl RangeStudy {
         let at = |&(row, column): &(usize, usize)| map.information.get(map.at(row, column)?).copied();
         let other = median(&windows.iter().filter_map(at).collect::<Vec<_>>());
         Ok((own > 0.0).then(|| other / own))
+    }
+
+    /// Photons of the brightest sample of a frame.
+    fn brightest(&self, pair: &StereoPair) -> Result<Option<f64>> {
+        let (Resolved::Scene(scene), Some(camera)) = (&self.subject, &self.camera) else { return Ok(None) };
+        if camera.full_well.is_none() {
+            return Ok(None);
+        }
+        let counts = pair.left.cube(Part::Total, scene.counting.counts_per_radiance)?;
+        let most = counts.samples().iter().copied().fold(0.0, f64::max);
+        Ok(Some(most / f64::from(camera.frames)))
     }
 
     /// Pictures of the left view, sums over the bands.

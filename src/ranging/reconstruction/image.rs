@@ -31,6 +31,8 @@ pub struct EmissionImage<'a> {
     pub counts: &'a [f64],
     /// What of them was emitted, E.
     pub emission: &'a [f64],
+    /// What of them was scattered, R = N − E, with its own digits.
+    pub scattered: &'a [f64],
     /// Temperature at the pixels' centres, K, `[row][column]`.
     pub temperature_k: &'a [f64],
     /// Centres of the bands, cm⁻¹.
@@ -48,6 +50,8 @@ pub struct BesideEmission {
     pub temperature: Vec<f64>,
     /// Temperature and strength of the emission estimated.
     pub strength_too: Vec<f64>,
+    /// The scattered signal as if it were measured, Σ(∂R)²/(R + σ²); a pixel that scatters nothing tells nothing.
+    pub scattered_alone: Vec<f64>,
 }
 
 impl EmissionImage<'_> {
@@ -65,10 +69,12 @@ impl EmissionImage<'_> {
     /// let emission: Vec<f64> = (0..5).flat_map(|x| pixel(x).1.map(|[own, _]| pixel(x).0 * own)).collect();
     /// let counts: Vec<f64> =
     ///     (0..5).flat_map(|x| pixel(x).1.map(|[own, sky]| pixel(x).0 * own + (1.0 - pixel(x).0) * sky)).collect();
+    /// let scattered: Vec<f64> = counts.iter().zip(&emission).map(|(n, e)| n - e).collect();
     /// let image = EmissionImage {
     ///     shape: Shape::new(1, 5, 4)?,
     ///     counts: &counts,
     ///     emission: &emission,
+    ///     scattered: &scattered,
     ///     temperature_k: &[290.0; 5],
     ///     wavenumbers_cm1: &bands,
     ///     var_electronic: &[0.0; 4],
@@ -86,32 +92,42 @@ impl EmissionImage<'_> {
         };
         fits("counts", counts.len(), shape.len())?;
         fits("emitted counts", emission.len(), shape.len())?;
+        fits("scattered counts", self.scattered.len(), shape.len())?;
         fits("temperatures", self.temperature_k.len(), shape.rows() * width)?;
         fits("bands", self.wavenumbers_cm1.len(), bands)?;
         fits("noise variances", self.var_electronic.len(), bands)?;
         let margin = derivative.margin();
         let differentiator = Differentiator::new(derivative, width)?;
         let columns = width - 2 * margin;
-        let rows: Result<Vec<Vec<[f64; 2]>>> = counts
+        let rows: Result<Vec<Vec<[f64; 3]>>> = counts
             .par_chunks(row_len)
-            .zip(emission.par_chunks(row_len))
+            .zip(emission.par_chunks(row_len).zip(self.scattered.par_chunks(row_len)))
             .zip(self.temperature_k.par_chunks(width))
             .map_init(
                 || Work::new(differentiator.clone(), columns * bands),
-                |work, ((counts, emission), temperature_k)| {
+                |work, ((counts, (emission, scattered)), temperature_k)| {
                     work.differentiator.apply(counts, bands, &mut work.slopes)?;
+                    work.differentiator.apply(scattered, bands, &mut work.scattered)?;
                     let pixel = |x: usize| {
                         let own = (x + margin) * bands..(x + margin + 1) * bands;
                         let temperature_k = temperature_k.get(x + margin).copied().unwrap_or(f64::NAN);
-                        work.pixel(self, x, &counts[own.clone()], &emission[own], temperature_k)
+                        let [temperature, strength_too] =
+                            work.pixel(self, x, &counts[own.clone()], &emission[own.clone()], temperature_k);
+                        let slope = &work.scattered[x * bands..(x + 1) * bands];
+                        let terms = scattered[own].iter().zip(self.var_electronic).zip(slope);
+                        let alone = terms.map(
+                            |((r, var), slope)| if r + var > 0.0 { slope * slope / (r + var) } else { 0.0 },
+                        );
+                        [temperature, strength_too, alone.sum()]
                     };
                     Ok((0..columns).map(pixel).collect())
                 },
             )
             .collect();
         let all = rows?.concat();
-        let [temperature, strength_too] = [0, 1].map(|i| all.iter().map(|found| found[i]).collect());
-        Ok(BesideEmission { columns, margin, temperature, strength_too })
+        let [temperature, strength_too, scattered_alone] =
+            [0, 1, 2].map(|i| all.iter().map(|found| found[i]).collect());
+        Ok(BesideEmission { columns, margin, temperature, strength_too, scattered_alone })
     }
 }
 
@@ -120,6 +136,8 @@ struct Work {
     differentiator: Differentiator,
     projector: Projector,
     slopes: Vec<f64>,
+    /// Slopes of the scattered counts.
+    scattered: Vec<f64>,
     columns: Vec<f64>,
     weights: Vec<f64>,
     warmth: Vec<f64>,
@@ -158,6 +176,7 @@ impl Work {
             differentiator,
             projector: Projector::default(),
             slopes: vec![0.0; slopes],
+            scattered: vec![0.0; slopes],
             columns: Vec::new(),
             weights: Vec::new(),
             warmth: Vec::new(),

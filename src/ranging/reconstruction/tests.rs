@@ -210,10 +210,12 @@ fn a_picture_tells_what_its_states_tell() {
     let emission: Vec<f64> = pixels.iter().flatten().map(|pixel| pixel.0).collect();
     let counts: Vec<f64> = pixels.iter().flatten().map(|pixel| pixel.1).collect();
     let temperature_k: Vec<f64> = (-3..=3).map(|x| T_K + dt * f64::from(x)).collect();
+    let scattered: Vec<f64> = counts.iter().zip(&emission).map(|(n, e)| n - e).collect();
     let image = EmissionImage {
         shape: Shape::new(1, 7, BANDS).unwrap(),
         counts: &counts,
         emission: &emission,
+        scattered: &scattered,
         temperature_k: &temperature_k,
         wavenumbers_cm1: nodes,
         var_electronic: &counting.var_electronic,
@@ -223,6 +225,7 @@ fn a_picture_tells_what_its_states_tell() {
     let mut solver = LightingSolver::new(&bands, &surroundings, unknowns(&BOTH)).unwrap();
     let told = solver.information(&e, &state, &counting, dt, &[dv]).unwrap();
     assert!((found.temperature[2] / told.reconstructed - 1.0).abs() < 1e-3, "{found:?} {told:?}");
+    assert!((found.scattered_alone[2] / told.as_if_measured - 1.0).abs() < 1e-3, "{found:?} {told:?}");
     assert!(found.strength_too[2] < found.temperature[2] && found.strength_too[2] > 0.0);
     let short = EmissionImage { temperature_k: &temperature_k[1..], ..image };
     assert!(short.beside_emission(Derivative::Central).is_err());
@@ -246,10 +249,12 @@ fn what_has_one_spectrum_is_not_separated() {
                 .collect()
         };
         let (counts, emission) = (cube(0.5), cube(0.0));
+        let scattered: Vec<f64> = counts.iter().zip(&emission).map(|(n, e)| n - e).collect();
         let image = EmissionImage {
             shape: Shape::new(1, 7, bands).unwrap(),
             counts: &counts,
             emission: &emission,
+            scattered: &scattered,
             temperature_k: &[T_K; 7],
             wavenumbers_cm1: &nodes,
             var_electronic: &vec![0.0; bands],

@@ -150,23 +150,28 @@ fn line(row: usize, lines: Vec<&Line>) -> Plot {
     let axis = Axis::log(if depth { "depth error (m)" } else { "disparity error (pixels)" });
     let mut figure =
         LineFigure::new(format!("Depth error along row {row} of the left view"), Axis::linear("column (pixels)"), axis)
-            .subtitle("Lines: least error of an unbiased estimate. Points: root-mean-square error of matches in repeated draws of the noise.");
+            .subtitle("Lines: least error of an unbiased estimate. Points: root-mean-square error of matches in repeated draws of the noise; where they are guesses, the range that is searched limits it.");
     let mut bias = Panel::new(Axis::linear(if depth { "bias (m)" } else { "bias (pixels)" }));
+    let colour = |line: &Line| Signal::ALL.iter().position(|signal| *signal == line.signal).unwrap_or(0);
+    let x = |line: &Line| line.columns.iter().map(|column| *column as f64).collect::<Vec<_>>();
+    for line in &lines {
+        let Some(method) = line.method else { continue };
+        let label = format!("{method}, {}", line.signal.name());
+        // The second method of a signal has a colour of its own.
+        let shade = if method.starts_with("block") { colour(line) } else { (colour(line) + 5) % 7 };
+        figure = figure.series(Series::points(label, x(line), line.rmse_m.clone()).colour(shade));
+        bias = bias.series(Series::points("", x(line), line.bias_m.clone()).colour(shade));
+    }
+    // Bounds lie on top of the points that reach them.
     let mut drawn: Vec<Signal> = Vec::new();
     for line in &lines {
-        let x: Vec<f64> = line.columns.iter().map(|column| *column as f64).collect();
-        let colour = Signal::ALL.iter().position(|signal| *signal == line.signal).unwrap_or(0);
         if !drawn.contains(&line.signal) {
             drawn.push(line.signal);
             let label = format!("bound, {}", line.signal.name());
-            figure = figure.series(Series::line(label, x.clone(), line.bound_m.clone()).colour(colour));
-        }
-        if let Some(method) = line.method {
-            let label = format!("{method}, {}", line.signal.name());
-            // The second method of a signal has a colour of its own.
-            let shade = if method.starts_with("block") { colour } else { (colour + 5) % 7 };
-            figure = figure.series(Series::points(label, x.clone(), line.rmse_m.clone()).colour(shade));
-            bias = bias.series(Series::points("", x, line.bias_m.clone()).colour(shade));
+            let dark = if line.method.is_some() { 6 } else { colour(line) };
+            let style = if line.signal == Signal::ScatteredAsMeasured { Style::Dashed } else { Style::Line };
+            figure =
+                figure.series(Series::line(label, x(line), line.bound_m.clone()).colour(dark).style(style));
         }
     }
     if !bias.series.is_empty() {

@@ -84,8 +84,12 @@ fn bounds(result: &Ranging) -> String {
         }
         if all.signals.iter().any(|found| found.largest_depth_m.is_some()) && depth {
             let share = 100.0 * result.scenario.requirement.share;
-            let _ =
-                write!(out, "  {:width$}", format!("depth to which {share} % reach it"), width = first + 10);
+            let _ = write!(
+                out,
+                "  {:width$}",
+                format!("depth to which {share} % do, as seen"),
+                width = first + 10
+            );
             for (found, width) in all.signals.iter().zip(&widths) {
                 let shown = found.largest_depth_m.map_or("-".into(), length);
                 let _ = write!(out, "  {shown:>width$}");
@@ -154,7 +158,7 @@ fn changes(result: &Ranging) -> String {
     let Some(solve) = &result.solve_for else { return String::new() };
     let share = 100.0 * result.scenario.requirement.share;
     let mut out = format!(
-        "What would just meet it: {share} % of the windows within the demand, by the {}\n",
+        "What would just meet it, by the {}: {share} % of the windows that are seen now within the demand\n",
         solve.signal.name()
     );
     let mut line = |label: &str, solution: &Solution, shown: &dyn Fn(f64) -> String| {
@@ -166,7 +170,14 @@ fn changes(result: &Ranging) -> String {
         };
         let _ = writeln!(out, "  {label:18} {value}");
     };
-    line("baseline", &solve.baseline_m, &|value| quantity(value, "m"));
+    line("baseline", &solve.baseline_m, &|value| {
+        let wider = value > solve.baseline_m.camera;
+        format!(
+            "{}{}",
+            quantity(value, "m"),
+            if wider { ", fewer windows are seen by both then" } else { "" }
+        )
+    });
     if let Some(solution) = &solve.exposure_s {
         line("exposure", solution, &|value| quantity(value, "s"));
     }
@@ -174,13 +185,14 @@ fn changes(result: &Ranging) -> String {
         line("aperture", solution, &|value| quantity(value, "m"));
     }
     if let Some(solution) = &solve.noise_counts {
-        line("noise per reading", solution, &|value| format!("{} counts", significant(value, 3)));
+        line("noise, all frames", solution, &|value| format!("{} counts", significant(value, 3)));
     }
     let _ = writeln!(
         out,
         "  {}\n",
         format_args!(
-            "exposure, aperture and noise for the window that decides, at row {}, column {}, {} away",
+            "exposure, aperture and noise for the window that decides, at row {}, column {}, {} away; another exposure needs \
+             noise_exposure beside it, else its noise is taken to be stated there",
             solve.pixel[0],
             solve.pixel[1],
             length(solve.depth_m)
@@ -198,7 +210,7 @@ fn witnesses(result: &Ranging) -> String {
         let _ = writeln!(
             out,
             "  {:>4}  {:26} {:18} {:>10} {:>10} {:>10} {:>14} {:>9}",
-            "row", "signal", "method", "bound", "rmse", "bias", "scatter/bound", "outliers"
+            "row", "signal", "method", "bound", "rmse", "|bias|", "scatter/bound", "outliers"
         );
         for line in witnessed {
             let middle = |values: &[f64]| crate::study::ranging::median(values);
@@ -279,9 +291,10 @@ fn assumptions(result: &Ranging) -> String {
     }
     if matches!(result.scenario.subject, Subject::Scene(_)) {
         out.push_str(
-            "  heat cube: no algorithm beats it\n  lighting, reconstructed: temperature estimated in every pixel from the bands, emissivity known \
-             there; e unknown: the strength of the emission is estimated too\n  scattered, as if measured: the paper's reading, with the noise \
-             of the scattered photons alone; no camera measures it, and where it promises more than the heat cube nobody reaches it\n",
+            "  heat cube: no algorithm does better with these readings\n  cube, T estimated: temperature unknown in every pixel and \
+             estimated from the bands; T and e: strength of the emission too, which leaves the scattered light as it can be \
+             reconstructed\n  scattered, as if measured: the paper's reading, with the noise of the scattered photons alone; no camera \
+             measures it, and where it promises more than the heat cube nobody reaches it\n",
         );
     } else {
         out.push_str(

@@ -1,6 +1,6 @@
 //! Reads a ranging scenario: every key checked, every error one line with file, line and key.
 
-use super::super::read::{file, material, parse, range};
+use super::super::read::{file, material, parse};
 use super::super::section::{ABOVE_ZERO, ABSOLUTE_TEMPERATURE, Entry, FROM_ZERO, Rule, SHARE, Section};
 use super::super::{BandsSpec, CameraSpec, Source};
 use super::{
@@ -97,8 +97,10 @@ fn scene(entry: &Entry<'_>) -> Result<SceneSpec> {
         sky_temperature_k: temperature("sky_temperature")?,
         car_temperature_k: temperature("car_temperature")?,
         person_temperature_k: temperature("person_temperature")?,
-        ground_emissivity: section
-            .read("ground_emissivity", |entry| range(entry, "[0.8, 1.0]", |end| end.number("0.8", SHARE)))?,
+        ground_emissivity: section.read("ground_emissivity", |entry| {
+            let [low, high] = entry.pair("[0.8, 1.0]")?;
+            Ok([low.number("0.8", SHARE)?, high.number("1.0", SHARE)?])
+        })?,
         car: section.read("car", material)?,
         person: section.read("person", material)?,
         car_distance_m: length("car_distance")?,

@@ -58,8 +58,13 @@ impl Ground<'_> {
         let one = |map: &SignalMap, at: usize| -> Option<f64> {
             let (j, n) = (*map.information.get(at)?, *map.photons.get(at)?);
             let var = *map.var_electronic.get(at)?;
-            // (1 + γ)/N = (N + Σσ²)/N².
-            Some(1.0 / j + self.var_diffraction_px2 * (n + var) / (n * n))
+            // (1 + γ)/N = (N + Σσ²)/N²; without photons nothing is told.
+            let diffraction = match (self.var_diffraction_px2, n) {
+                (0.0, _) => 0.0,
+                (_, 0.0) => f64::INFINITY,
+                (var_px2, n) => var_px2 * ((n + var) / n) / n,
+            };
+            Some(1.0 / j + diffraction)
         };
         let both = |&(row, column): &(usize, usize)| {
             let own = one(left, left.at(row, column)?)?;
@@ -210,7 +215,7 @@ impl Ground<'_> {
         let depth_m = centres.map(|at| self.truth.depth_m.get(at).copied().unwrap_or(f64::NAN)).collect();
         let disparity_error_px: Vec<(Signal, Vec<f64>)> =
             maps.iter().zip(variances).map(|(map, var)| (map.signal, spread(var))).collect();
-        BoundMaps { rows, columns, disparity_error_px, depth_m, pictures: Vec::new() }
+        BoundMaps { rows, columns, disparity_error_px, depth_m, brightest: None, pictures: Vec::new() }
     }
 }
 

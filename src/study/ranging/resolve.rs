@@ -15,6 +15,9 @@ use crate::scenario::{MaterialRef, RangeScenario};
 use crate::spectrum::Bands;
 use crate::study::{bands, camera};
 
+/// Samples of a rendered view that are held at a time, four times over.
+const MOST_SAMPLES: f64 = 2e8;
+
 impl RangeStudy {
     /// Looks up everything that `scenario` names, materials in `library`, and opens its cubes.
     ///
@@ -100,6 +103,13 @@ fn scene(
     }
     let at_scene = |error: Error| error.at(scenario.place("scene"));
     let scene = Scene::street(&street).map_err(at_scene)?;
+    let samples = rig.rows as f64 * rig.columns as f64 * bands.len() as f64;
+    if samples > MOST_SAMPLES {
+        let found = format!("{} x {} pixels in {} bands", rig.rows, rig.columns, bands.len());
+        let instead =
+            format!("lower scene.size or the number of bands: {MOST_SAMPLES:e} samples fit into memory");
+        return Err(at_scene(Error::malformed(found, instead)));
+    }
     let counting = camera.counting(bands, None);
     let noise = camera_noise(&counting, bands.len());
     Ok(Rendered { scene, rig: rig.checked().map_err(at_scene)?, options, counting, noise })
@@ -123,7 +133,13 @@ fn cube(
     camera: Option<&Camera>,
     bands: Option<&Bands>,
 ) -> Result<Measured> {
-    let at = |key: &'static str| move |error: Error| error.at(scenario.place(key));
+    // An error that names a file has no line of the scenario.
+    let at = |key: &'static str| {
+        move |error: Error| match &error {
+            Error::At { place, .. } if place.path.is_some() => error.for_key(key),
+            _ => error.at(scenario.place(key)),
+        }
+    };
     let open = |key: &'static str, path: &std::path::Path| {
         Cube::open(path, spec.variable.as_deref()).map_err(at(key))
     };

@@ -16,10 +16,11 @@ pub enum Signal {
     ThermalImage,
     /// All bands apart: what no algorithm can beat.
     HeatCube,
-    /// What remains of it where the temperature of every pixel is estimated from the bands, its emissivity known: lighting
-    /// reconstructed, with the noise of that.
+    /// What remains of it where the temperature of every pixel is unknown and estimated from the bands: lighting and
+    /// emissivity as they are reconstructed, with the noise of that.
     Reconstructed,
-    /// The same where the strength of the emission is estimated too, since texture of the emissivity is not known beforehand.
+    /// The same where the strength of the emission is unknown and estimated too: scattered light alone, as it is
+    /// reconstructed where the texture of the emissivity is not known beforehand.
     ReconstructedBlind,
     /// The scattered light alone, with only its own noise, as the paper has it: no camera measures it.
     ScatteredAsMeasured,
@@ -41,8 +42,8 @@ impl Signal {
         match self {
             Self::ThermalImage => "thermal image",
             Self::HeatCube => "heat cube",
-            Self::Reconstructed => "lighting, reconstructed",
-            Self::ReconstructedBlind => "the same, e unknown",
+            Self::Reconstructed => "cube, T estimated",
+            Self::ReconstructedBlind => "cube, T and e estimated",
             Self::ScatteredAsMeasured => "scattered, as if measured",
         }
     }
@@ -53,8 +54,8 @@ impl Signal {
         match self {
             Self::ThermalImage => "thermal_image",
             Self::HeatCube => "heat_cube",
-            Self::Reconstructed => "lighting_reconstructed",
-            Self::ReconstructedBlind => "lighting_reconstructed_e_unknown",
+            Self::Reconstructed => "temperature_estimated",
+            Self::ReconstructedBlind => "temperature_and_emissivity_estimated",
             Self::ScatteredAsMeasured => "scattered_as_measured",
         }
     }
@@ -265,6 +266,8 @@ pub struct BoundMaps {
     pub disparity_error_px: Vec<(Signal, Vec<f64>)>,
     /// Depth at the centres, m.
     pub depth_m: Vec<f64>,
+    /// Photons of the brightest band of the brightest pixel in one frame, of a scene.
+    pub brightest: Option<f64>,
     /// Pictures of the left view, `[row][column]`.
     pub pictures: Vec<(PictureKind, Vec<f64>)>,
 }

@@ -3,8 +3,9 @@
 use super::results::Signal;
 use super::subject::Rendered;
 use crate::error::Result;
-use crate::ranging::cube::{Cube, MemoryCube, Rows as _};
+use crate::ranging::cube::{Cube, Rows as _};
 use crate::ranging::information::{Cell, InformationMap, Request, information};
+use crate::ranging::noise::Joined;
 use crate::ranging::reconstruction::EmissionImage;
 use crate::render::{Part, View};
 use crate::spectrum::Bands;
@@ -34,6 +35,15 @@ impl SignalMap {
         }
     }
 
+    /// The thermal image, whose joined bands have the noise of one reading or of all.
+    pub(super) fn thermal(map: &InformationMap, joined: Joined, bands: usize) -> Self {
+        let mut thermal = Self::of(Signal::ThermalImage, Cell::Spatial, map);
+        if joined == Joined::OneReading {
+            thermal.var_electronic.iter_mut().for_each(|var| *var /= bands as f64);
+        }
+        thermal
+    }
+
     /// Counts in units of `photons` photons each: J, N and Σσ² in photons.
     pub(super) fn scaled(mut self, photons: f64) -> Self {
         for values in [&mut self.information, &mut self.photons, &mut self.var_electronic] {
@@ -59,40 +69,41 @@ pub(super) fn of_scene(
     let factor = subject.counting.counts_per_radiance;
     let total = view.cube(Part::Total, factor)?;
     let emission = view.cube(Part::Emission, factor)?;
+    let scattered = view.cube(Part::Scattered, factor)?;
     let centres: Vec<f64> = bands.bands().iter().map(|band| band.center_cm1).collect();
     let image = EmissionImage {
         shape: total.shape(),
         counts: total.samples(),
         emission: emission.samples(),
+        scattered: scattered.samples(),
         temperature_k: &view.temperature_k,
         wavenumbers_cm1: &centres,
         var_electronic: &subject.var_per_band(bands.len()),
     };
     let beside = image.beside_emission(request.derivative)?;
-    drop(emission);
+    let margin = request.derivative.margin();
+    let columns = view.shape().columns();
+    let photons: Vec<f64> = scattered
+        .samples()
+        .chunks_exact(bands.len())
+        .enumerate()
+        .filter(|(pixel, _)| (margin..columns - margin).contains(&(pixel % columns)))
+        .map(|(_, pixel)| pixel.iter().sum())
+        .collect();
+    drop((emission, scattered));
     let all = information(&Cube::from(total), request)?;
-    let scattered = view.cube(Part::Scattered, factor)?;
-    let full = Request { cells: &[Cell::Full], ..request.clone() };
-    let scattered = information(&Cube::from(filled(&scattered)?), &full)?;
     let half = [request.window.half_rows(), request.window.half_columns()];
-    let reconstructed = |signal: Signal, pixels: &[f64]| SignalMap {
+    let of = |signal: Signal, pixels: &[f64]| SignalMap {
         information: beside.windows(pixels, &all, half),
         ..SignalMap::of(signal, Cell::Full, &all)
     };
+    let alone = of(Signal::ScatteredAsMeasured, &beside.scattered_alone);
     let maps = vec![
-        SignalMap::of(Signal::ThermalImage, Cell::Spatial, &all),
+        SignalMap::thermal(&all, request.joined, bands.len()),
         SignalMap::of(Signal::HeatCube, Cell::Full, &all),
-        reconstructed(Signal::Reconstructed, &beside.temperature),
-        reconstructed(Signal::ReconstructedBlind, &beside.strength_too),
-        SignalMap::of(Signal::ScatteredAsMeasured, Cell::Full, &scattered),
+        of(Signal::Reconstructed, &beside.temperature),
+        of(Signal::ReconstructedBlind, &beside.strength_too),
+        SignalMap { photons: beside.windows(&photons, &all, half), ..alone },
     ];
     Ok((maps, all))
-}
-
-/// The sky scatters nothing, and a count of 0 without noise has no bound: its pixels get the largest count of
-/// the view. No window that touches the sky is used.
-fn filled(cube: &MemoryCube<f64>) -> Result<MemoryCube<f64>> {
-    let largest = cube.samples().iter().copied().fold(f64::MIN_POSITIVE, f64::max);
-    let samples = cube.samples().iter().map(|&count| if count > 0.0 { count } else { largest }).collect();
-    MemoryCube::new(cube.shape(), samples)
 }

@@ -15,6 +15,9 @@ use crate::render::{Part, View};
 use crate::scenario::ranging::Diffraction;
 use std::ops::Range;
 
+/// A share of a number of windows that is whole but for rounding.
+const RANK_ROUNDING: f64 = 1e-9;
+
 /// Rows of counts of a view, in photons, with σ² of a sample of band b.
 struct Counts {
     rows: Vec<f64>,
@@ -97,8 +100,8 @@ impl RangeStudy {
         }
         let last = ranked.len().saturating_sub(1);
         // The first that leaves fewer than the demanded share before it.
-        let rank =
-            ((self.scenario.requirement.share * ranked.len() as f64).ceil() as usize).saturating_sub(1);
+        let rank = ((self.scenario.requirement.share * ranked.len() as f64 - RANK_ROUNDING).ceil() as usize)
+            .saturating_sub(1);
         if ranked.is_empty() {
             return Ok(None);
         }

@@ -87,7 +87,10 @@ impl Truth {
 
 /// No window has a bound: what to say of it.
 pub(super) fn nothing_to_see() -> Error {
-    Error::malformed("no window is seen by both cameras", "lower the baseline, or move the objects away")
+    Error::malformed(
+        "no window has all of its pixels in both views",
+        "make the window smaller or the view wider, lower the baseline, or move things away",
+    )
 }
 
 impl Measured {

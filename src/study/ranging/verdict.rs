@@ -6,7 +6,8 @@ use super::subject::{Depth, Resolved};
 use crate::error::Result;
 use crate::ranging::cube::Shape;
 use crate::ranging::information::Cell;
-use crate::ranging::information::decide::decide;
+use crate::ranging::information::decide::{Stats, decide};
+use crate::ranging::noise::Joined;
 use crate::scenario::ranging::Demand;
 use crate::study::Warning;
 use crate::words::{self, significant};
@@ -34,7 +35,7 @@ impl RangeStudy {
         let Resolved::Cube(cube) = &self.subject else { return Ok(None) };
         let (Some(Depth::Uniform(depth_m)), None) = (&cube.depth, &cube.right) else { return Ok(None) };
         let var_diffraction_px2 = self.var_diffraction_px2()?;
-        if var_diffraction_px2 != 0.0 {
+        if var_diffraction_px2 != 0.0 || self.scenario.stereo.joined == Joined::OneReading {
             return Ok(None);
         }
         let requirement = self.scenario.requirement;
@@ -50,7 +51,7 @@ impl RangeStudy {
         let met = share >= requirement.share;
         let verdict = DepthVerdict {
             met: Some(met),
-            sentence: self.sentence(met, share, None),
+            sentence: self.sentence(met, share, Signal::HeatCube, None),
             share: Some(share),
             required_share: requirement.share,
             signal: Signal::HeatCube,
@@ -74,38 +75,74 @@ impl RangeStudy {
             lines: Vec::new(),
             matched: Vec::new(),
             stats,
-            warnings: Vec::new(),
+            warnings: self.unseen(&decision.stats, shape, required * cube.photons_per_unit),
             maps: BoundMaps::default(),
         }))
     }
 
+    /// What proofs leave unsaid: samples that were not looked at, and the noise that measured counts have of their own.
+    fn unseen(&self, stats: &Stats, shape: Shape, required_per_px2: f64) -> Vec<Warning> {
+        let mut warnings = Vec::new();
+        if stats.samples_evaluated < stats.samples_total {
+            let message = format!(
+                "{} of {} samples decided; the others were not looked at, nor checked for counts that are none: --no-skip does",
+                stats.samples_evaluated, stats.samples_total
+            );
+            warnings.push(Warning::new("samples-not-checked", message));
+        }
+        let floor = noise_floor(self, shape);
+        if floor > 0.02 * required_per_px2 {
+            let message = format!(
+                "if these counts are measured, their own noise makes an information of {} pixel^-2 of the {} demanded: give expected counts",
+                short(floor),
+                short(required_per_px2)
+            );
+            warnings.push(Warning::new("noise-in-counts", message));
+        }
+        warnings
+    }
+
     pub(super) fn verdict(&self, all: Option<&ObjectBounds>) -> Result<DepthVerdict> {
         let by = |signal: Signal| all.and_then(|all| all.signals.iter().find(|found| found.signal == signal));
-        let cube = by(Signal::HeatCube);
+        // Bands joined in the detector are read once: with much noise the image then tells more than the cube.
+        let share_of = |signal: Signal| by(signal).and_then(|found| found.share).unwrap_or(-1.0);
+        let image_tells_more = self.scenario.stereo.joined == Joined::OneReading
+            && share_of(Signal::ThermalImage) > share_of(Signal::HeatCube);
+        let signal = if image_tells_more { Signal::ThermalImage } else { Signal::HeatCube };
+        let cube = by(signal);
         let share = cube.and_then(|found| found.share);
         let required = self.scenario.requirement.share;
         let met = share.map(|share| share >= required);
         let sentence = match (met, cube) {
-            (Some(met), Some(_)) => self.sentence(met, share.unwrap_or(f64::NAN), by(Signal::ThermalImage)),
+            (Some(met), Some(_)) => {
+                let other = if image_tells_more { Signal::HeatCube } else { Signal::ThermalImage };
+                self.sentence(met, share.unwrap_or(f64::NAN), signal, by(other))
+            }
             (None, Some(cube)) => format!(
                 "A window's disparity can be known to {} pixels at best (median, heat cube); give the depth for what that means in metres.",
                 short(cube.disparity_error_px)
             ),
             (_, None) => "No window has a bound.".to_owned(),
         };
-        Ok(DepthVerdict { met, sentence, share, required_share: required, signal: Signal::HeatCube })
+        Ok(DepthVerdict { met, sentence, share, required_share: required, signal })
     }
 
-    fn sentence(&self, met: bool, share: f64, thermal: Option<&SignalBounds>) -> String {
+    fn sentence(&self, met: bool, share: f64, signal: Signal, other: Option<&SignalBounds>) -> String {
         let requirement = self.scenario.requirement;
-        let beside = thermal.and_then(|thermal| thermal.share).map_or_else(String::new, |share| {
-            format!("; a thermal image, all bands together, allows it in {}", words::share(share))
+        let beside = other.and_then(|other| Some((other.signal, other.share?)));
+        let beside = beside.map_or_else(String::new, |(signal, share)| {
+            let name = match signal {
+                Signal::ThermalImage => "thermal image, all bands together,",
+                _ => "heat cube, all bands apart,",
+            };
+            format!("; a {name} allows it in {}", words::share(share))
         });
         format!(
-            "{}: depth can be measured to within {} in {} of the windows at best, by the heat cube ({} demanded){beside}.",
+            "{}: depth can be measured to within {} in {} of the windows at best, by the {} ({} demanded){beside}.",
             if met { "Yes" } else { "No" },
             demand(requirement.error),
             words::share(share),
+            signal.name(),
             words::share(requirement.share),
         )
     }
@@ -140,10 +177,21 @@ pub(super) fn warnings(study: &RangeStudy, result: &Ranging) -> Vec<Warning> {
             ),
         ));
     }
+    if let (Some(full), Some(brightest)) =
+        (study.camera.as_ref().and_then(|camera| camera.full_well), result.maps.brightest)
+        && brightest > full
+    {
+        let message = format!(
+            "the brightest band of the brightest pixel holds {} photons, the well {}: shorten the exposure",
+            short(brightest),
+            short(full)
+        );
+        warnings.push(Warning::new("full-well", message));
+    }
     if let Resolved::Cube(_) = &study.subject
         && let Some(cube) = by(Signal::HeatCube)
     {
-        let floor = noise_floor(study, result);
+        let floor = noise_floor(study, result.shape);
         if floor > 0.02 * cube.information_per_px2 {
             warnings.push(Warning::new(
                 "noise-in-counts",
@@ -171,15 +219,21 @@ pub(super) fn warnings(study: &RangeStudy, result: &Ranging) -> Vec<Warning> {
             ),
         ));
     }
-    if study.bands.as_ref().is_some_and(|bands| bands.len() < 3) && by(Signal::Reconstructed).is_some() {
-        let message = "fewer than 3 bands cannot tell emission from scattered light: nothing is reconstructed from them";
+    let bands = study.bands.as_ref().map_or(0, crate::spectrum::Bands::len);
+    if bands < 3 && by(Signal::Reconstructed).is_some() {
+        let message = match bands {
+            2 => "two bands cannot tell temperature, strength of the emission and scattered light apart",
+            _ => {
+                "one band cannot tell emission from scattered light: nothing is left where the temperature is estimated"
+            }
+        };
         warnings.push(Warning::new("few-bands", message));
     }
     warnings
 }
 
 /// Information that noise of N + σ² in each sample would make, pixel⁻²: Σ of the squared taps for every sample.
-fn noise_floor(study: &RangeStudy, result: &Ranging) -> f64 {
+fn noise_floor(study: &RangeStudy, shape: Shape) -> f64 {
     // By Parseval: the mean of (ω·response)² over all frequencies.
     const FREQUENCIES: usize = 1000;
     let scheme = study.scenario.stereo.derivative;
@@ -189,5 +243,5 @@ fn noise_floor(study: &RangeStudy, result: &Ranging) -> f64 {
     };
     let per_sample = (0..FREQUENCIES).map(squared).sum::<f64>() / FREQUENCIES as f64;
     let window = study.scenario.stereo.window;
-    per_sample * (window.rows() * window.columns() * result.shape.bands()) as f64
+    per_sample * (window.rows() * window.columns() * shape.bands()) as f64
 }

@@ -15,11 +15,14 @@ use crate::simulate::matching::likelihood::Likelihood;
 use crate::simulate::matching::trials::{Centre, MatchingTrials, Noisy, Run, Setup};
 use crate::simulate::matching::{Matcher, Search, StereoPair};
 use crate::statistics::Statistics;
+use std::ops::Range;
 
 /// Disparities tried beyond the largest true one.
 const BEYOND_PX: f64 = 4.0;
 /// A match further off than this is an outlier, pixels.
 const OUTLIER_PX: f64 = 1.0;
+/// Share of outliers beyond which matches are guesses.
+const GUESSES: f64 = 0.1;
 /// The signals that are matched: what a thermal camera has, what a spectral one has, what the paper has.
 const MATCHED: [Signal; 3] = [Signal::ThermalImage, Signal::HeatCube, Signal::ScatteredAsMeasured];
 
@@ -35,10 +38,10 @@ struct Views {
 
 impl RangeStudy {
     /// Rows along which bounds are drawn: those of the scenario, or where a scene has both ground and objects.
-    fn line_rows(&self, rows: usize) -> Vec<usize> {
+    fn line_rows(&self, rows: &Range<usize>) -> Vec<usize> {
         let own = &self.scenario.stereo.lines;
         match &self.subject {
-            Resolved::Scene(_) if own.is_empty() => vec![rows * 5 / 8],
+            Resolved::Scene(_) if own.is_empty() => vec![(rows.end * 5 / 8).clamp(rows.start, rows.end - 1)],
             _ => own.clone(),
         }
     }
@@ -52,7 +55,10 @@ impl RangeStudy {
         progress: Progress<'_>,
     ) -> Result<Vec<Line>> {
         let mut lines = Vec::new();
-        let rows = self.line_rows(self.shape()?.rows());
+        if maps.rows.is_empty() {
+            return Ok(lines);
+        }
+        let rows = self.line_rows(&maps.rows);
         for row in &rows {
             if !maps.rows.contains(row) {
                 let found = format!("row {row} has no whole window");
@@ -178,7 +184,9 @@ impl RangeStudy {
             .map(|(scatter, bound)| scatter / bound)
             .filter(|ratio| ratio.is_finite())
             .collect();
-        line.scatter_over_bound = (!ratios.is_empty()).then(|| median(&ratios));
+        // Where matches are guesses, the range that is searched sets their scatter.
+        let guesses = line.outliers.iter().sum::<f64>() > GUESSES * line.outliers.len() as f64;
+        line.scatter_over_bound = (!ratios.is_empty() && !guesses).then(|| median(&ratios));
         Ok(line)
     }
 
@@ -231,7 +239,7 @@ impl RangeStudy {
         [Signal::ThermalImage, Signal::ScatteredAsMeasured]
             .into_iter()
             .map(|signal| {
-                let views = self.views(scene, pair, signal)?.joined()?;
+                let views = self.views(scene, pair, signal)?.joined(self.scenario.stereo.joined)?;
                 let noisy = |counts: &[f64], stream: u64| views.drawn(counts, plan.seed, stream);
                 let (left, right) = (noisy(&views.left, 0)?, noisy(&views.right, 1)?);
                 let map = disparity_map(&StereoPair::new(views.shape, &left, &right)?, &block, search)?;
@@ -255,15 +263,21 @@ impl RangeStudy {
 
 impl Views {
     /// All bands together, as a picture.
-    fn joined(self) -> Result<Self> {
+    fn joined(self, joined: Joined) -> Result<Self> {
         let bands = self.shape.bands();
         if bands == 1 {
             return Ok(self);
         }
         let summed = |view: &[f64]| view.chunks_exact(bands).map(|pixel| pixel.iter().sum()).collect();
+        let readings = match joined {
+            Joined::SumOfReadings => bands as f64,
+            Joined::OneReading => 1.0,
+        };
         let noise = match &self.noise {
-            NoiseVariance::Uniform(var) => NoiseVariance::Uniform(var * bands as f64),
-            NoiseVariance::PerBand(var) => NoiseVariance::Uniform(var.iter().sum()),
+            NoiseVariance::Uniform(var) => NoiseVariance::Uniform(var * readings),
+            NoiseVariance::PerBand(var) => {
+                NoiseVariance::Uniform(var.iter().sum::<f64>() / bands as f64 * readings)
+            }
             NoiseVariance::None | NoiseVariance::PerSample(_) => NoiseVariance::None,
         };
         let shape = Shape::new(self.shape.rows(), self.shape.columns(), 1)?;
