@@ -22,6 +22,7 @@ mod blocks;
 mod boxes;
 mod checks;
 pub mod decide;
+mod direct;
 mod kernels;
 mod pixels;
 mod rows;

@@ -1,6 +1,7 @@
 //! What a request comes to, and its division into blocks of rows and strips of columns.
 
 use super::checks;
+use super::direct::{MOST_COLUMNS, MOST_ROWS};
 use super::kernels::stride;
 use super::{Cell, Request};
 use crate::error::{Error, Result};
@@ -12,6 +13,12 @@ use std::sync::Mutex;
 
 /// Doubles of a strip that are to stay in a core's own cache.
 const CACHE: usize = 1 << 15;
+
+/// Doubles of a row of a strip that are to stay in the nearest cache.
+const NEAR: usize = 1 << 11;
+
+/// Samples of a window's rows that are to stay in a core's own cache.
+const KEPT: usize = 1 << 18;
 
 /// A request that fits its cube.
 #[derive(Debug)]
@@ -86,6 +93,17 @@ impl<'a> Plan<'a> {
         self.request.derivative == Derivative::Central
     }
 
+    /// Whether samples are worked on straight from the rows as stored: see [`super::direct`].
+    pub(super) fn direct(&self) -> bool {
+        self.central() && !self.var_band.is_empty()
+    }
+
+    /// Whether the sums over windows are, too.
+    pub(super) fn direct_windows(&self) -> bool {
+        let window = self.request.window;
+        self.direct() && window.rows() <= MOST_ROWS && window.columns() <= MOST_COLUMNS
+    }
+
     /// The part of Σσ² that counts where `joined` samples are.
     pub(super) fn share(&self, joined: f64) -> f64 {
         match self.request.joined {
@@ -116,13 +134,24 @@ impl<'a> Plan<'a> {
     /// Strips from left to right.
     pub(super) fn strips(&self) -> Vec<Strip> {
         let half = self.request.window.half_columns();
-        let wide = if self.wants(Cell::Spectral) {
+        let wide = if self.direct_windows() || self.direct() && !self.wants(Cell::Spectral) {
+            (NEAR / self.stride).max(16)
+        } else if self.wants(Cell::Spectral) {
             let columns = CACHE / (self.stride * self.request.window.rows());
             columns.max(4 * (half + 1)).max(16)
         } else {
             (CACHE / (4 * self.stride)).max(16)
         };
         self.strips_of(wide)
+    }
+
+    /// Strips that are worked on row by row together.
+    pub(super) fn strips_together(&self) -> usize {
+        if !self.direct_windows() {
+            return 1;
+        }
+        let columns = KEPT / (self.shape.bands() * self.request.window.rows());
+        columns.div_ceil((NEAR / self.stride).max(16))
     }
 
     /// Strips of at most `wide` columns of centres; all of them where the derivative needs whole rows.

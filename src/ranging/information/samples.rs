@@ -10,7 +10,8 @@ use super::Cell;
 use super::blocks::{Plan, Strip, run};
 use super::boxes::{Along, Stack, add_to, along, grow};
 use super::checks::Checked;
-use super::kernels::{Quotients, ratios, ratios_central, ratios_ends, totals};
+use super::direct::{Lanes, Pixels, windows};
+use super::kernels::{Below, ratios, ratios_central, ratios_ends, totals};
 use super::rows::Buffer;
 use crate::error::Result;
 use crate::ranging::cube::Cube;
@@ -101,10 +102,14 @@ pub(super) fn pixels_of_row(
     let checked = Checked::new(plan, (y, y + 1), counts, variances);
     room.strip.prepare(plan)?;
     for strip in strips {
+        let to = &mut to[strip.quotients.start - plan.margin..strip.quotients.end - plan.margin];
+        if plan.direct() {
+            room.strip.pixels(y, plan, strip, &checked, None, to)?;
+            continue;
+        }
         room.strip.start(plan, strip, y, variances.is_some());
         room.strip.widen(y, plan, strip, &checked)?;
-        let local = strip.quotients.start - plan.margin..strip.quotients.end - plan.margin;
-        room.strip.quotients(y, plan, strip, variances.is_some(), &mut to[local])?;
+        room.strip.quotients(y, plan, strip, variances.is_some(), to)?;
     }
     Ok(())
 }
@@ -133,6 +138,9 @@ struct StripRoom {
     ends: Aligned,
     begin: Aligned,
     lanes: Vec<Chunk>,
+    /// Of a row of pixels, and of windows.
+    direct: Lanes,
+    totals: Vec<f64>,
 }
 
 impl Block<'_> {
@@ -147,10 +155,14 @@ impl Block<'_> {
         };
         let checked = Checked::new(plan, (read.start, read.end), counts, variances);
         room.strip.prepare(plan)?;
-        for strip in strips {
-            room.strip.start(plan, strip, read.start, variances.is_some());
+        for strips in strips.chunks(plan.strips_together()) {
+            if let ([strip], false) = (strips, plan.direct_windows()) {
+                room.strip.start(plan, strip, read.start, variances.is_some());
+            }
             for y in read.clone() {
-                self.row(y, plan, strip, &checked, &mut room.strip)?;
+                for strip in strips {
+                    self.row(y, plan, strip, &checked, &mut room.strip)?;
+                }
             }
         }
         Ok(())
@@ -165,47 +177,74 @@ impl Block<'_> {
         checked: &Checked<'_>,
         room: &mut StripRoom,
     ) -> Result<()> {
-        let (stride, columns) = (plan.stride, plan.shape.columns());
-        room.widen(y, plan, strip, checked)?;
         if self.owned.contains(&y) {
-            let row = y - self.owned.start;
-            let of = |range: &Range<usize>, first: usize| range.start - first..range.end - first;
-            let local = of(&strip.totals, strip.read.start);
-            let samples = local.start * stride..local.end * stride;
-            let to = row * columns + strip.totals.start..row * columns + strip.totals.end;
-            totals(
-                &room.counts.row(y)[samples.clone()],
-                stride,
-                &mut room.lanes,
-                &mut self.counts[to.clone()],
-            );
-            if checked.variances.is_some() {
-                totals(&room.variances.row(y)[samples], stride, &mut room.lanes, &mut self.variances[to]);
-            }
-            if plan.wants(Cell::Full) {
-                let to = of(&strip.quotients, plan.margin);
-                let inner = plan.inner().len();
-                let to = &mut self.quotients[row * inner + to.start..row * inner + to.end];
-                room.quotients(y, plan, strip, checked.variances.is_some(), to)?;
-            }
+            self.pixels(y, plan, strip, checked, room)?;
+        } else if !plan.direct_windows() {
+            room.widen(y, plan, strip, checked)?;
         }
         if plan.wants(Cell::Spectral) {
-            room.counts.push(y);
-            if checked.variances.is_some() {
-                room.variances.push(y);
-            }
             let top = (y + 1).checked_sub(plan.request.window.rows()).filter(|top| self.tops.contains(top));
-            if let Some(top) = top {
+            let to = top.map(|top| {
                 let centres = plan.centres();
                 let row = (top - self.tops.start) * centres.len();
                 let (start, end) = (strip.centres.start - centres.start, strip.centres.end - centres.start);
-                let to = &mut self.spectral[row + start..row + end];
-                room.spectral(y, plan, strip, checked.variances.is_some(), to)?;
+                &mut self.spectral[row + start..row + end]
+            });
+            if plan.direct_windows() {
+                if let Some(to) = to {
+                    room.direct(y, plan, strip, checked, to);
+                }
+                return Ok(());
+            }
+            let variances = checked.variances.is_some();
+            room.counts.push(y);
+            if variances {
+                room.variances.push(y);
+            }
+            if let Some(to) = to {
+                room.spectral(y, plan, strip, variances, to)?;
             }
             room.counts.finish(y);
-            if checked.variances.is_some() {
+            if variances {
                 room.variances.finish(y);
             }
+        }
+        Ok(())
+    }
+
+    /// Sums and quotients over the bands of each pixel.
+    fn pixels(
+        &mut self,
+        y: usize,
+        plan: &Plan<'_>,
+        strip: &Strip,
+        checked: &Checked<'_>,
+        room: &mut StripRoom,
+    ) -> Result<()> {
+        let (stride, columns, inner) = (plan.stride, plan.shape.columns(), plan.inner().len());
+        let of = |range: &Range<usize>, first: usize| range.start - first..range.end - first;
+        let row = y - self.owned.start;
+        let to_totals = row * columns + strip.totals.start..row * columns + strip.totals.end;
+        let to_ratios = if plan.wants(Cell::Full) {
+            let to = of(&strip.quotients, plan.margin);
+            row * inner + to.start..row * inner + to.end
+        } else {
+            0..0
+        };
+        if plan.direct() {
+            let (to_totals, to) = (&mut self.counts[to_totals], &mut self.quotients[to_ratios]);
+            return room.pixels(y, plan, strip, checked, Some(to_totals), to);
+        }
+        room.widen(y, plan, strip, checked)?;
+        let local = of(&strip.totals, strip.read.start);
+        let samples = local.start * stride..local.end * stride;
+        let (counts, lanes) = (&room.counts.row(y)[samples.clone()], &mut room.lanes);
+        totals(counts, stride, lanes, &mut self.counts[to_totals.clone()]);
+        if checked.variances.is_some() {
+            totals(&room.variances.row(y)[samples], stride, &mut room.lanes, &mut self.variances[to_totals]);
+        }
+        if plan.wants(Cell::Full) {
+            room.quotients(y, plan, strip, checked.variances.is_some(), &mut self.quotients[to_ratios])?;
         }
         Ok(())
     }
@@ -222,7 +261,7 @@ impl StripRoom {
     /// Widens and checks row `y` of a strip.
     fn widen(&mut self, y: usize, plan: &Plan<'_>, strip: &Strip, checked: &Checked<'_>) -> Result<()> {
         let bands = plan.shape.bands();
-        let start = (y - checked.rows.0) * plan.shape.row_len() + strip.read.start * bands;
+        let start = checked.at(y, strip.read.start);
         let seen = checked.counts.widen(start, bands, self.counts.row(y));
         let seen_var = checked.variances.map(|raw| raw.widen(start, bands, self.variances.row(y)));
         checked.look(seen, seen_var)
@@ -251,6 +290,49 @@ impl StripRoom {
         }
     }
 
+    /// The sums and, if there is room for them, the quotients of row `y` over the bands of each pixel.
+    fn pixels(
+        &mut self,
+        y: usize,
+        plan: &Plan<'_>,
+        strip: &Strip,
+        checked: &Checked<'_>,
+        to_totals: Option<&mut [f64]>,
+        ratios: &mut [f64],
+    ) -> Result<()> {
+        // With the columns on either side that a difference takes.
+        let stacked = plan.wants(Cell::Spectral) && !plan.direct_windows();
+        let own =
+            if stacked { strip.read.clone() } else { strip.quotients.start - 1..strip.quotients.end + 1 };
+        self.totals.resize(own.len(), 0.0);
+        let len = own.len() * plan.stride;
+        let wide = if stacked {
+            self.counts.row(y)
+        } else {
+            grow(&mut self.below, len);
+            &mut self.below[..len]
+        };
+        let start = checked.at(y, own.start);
+        let to =
+            Pixels { var: &plan.var_sample, wide, totals: &mut self.totals, ratios, lanes: &mut self.direct };
+        checked.look(checked.counts.pixels(start, plan.shape.bands(), to), None)?;
+        if let Some(to) = to_totals {
+            to.copy_from_slice(&self.totals[strip.totals.start - own.start..strip.totals.end - own.start]);
+        }
+        Ok(())
+    }
+
+    /// The quotients of small windows that end with row `y`, over their bands.
+    fn direct(&mut self, y: usize, plan: &Plan<'_>, strip: &Strip, checked: &Checked<'_>, to: &mut [f64]) {
+        let window = plan.request.window;
+        let len = strip.read.len() * plan.stride;
+        grow(&mut self.sum, len);
+        let start = checked.at(y + 1 - window.rows(), strip.read.start);
+        let rows = (plan.shape.row_len(), window.rows());
+        checked.counts.sum_rows(start, rows, plan.shape.bands(), &mut self.sum[..len]);
+        windows(&self.sum[..len], window.columns(), &plan.var_window, &mut self.direct, to);
+    }
+
     /// The quotients of row `y`, over the bands of each pixel.
     fn quotients(
         &mut self,
@@ -271,7 +353,7 @@ impl StripRoom {
         } else {
             &row[samples]
         };
-        let mut of = Quotients { below, var: &plan.var_sample, derivative: &[], stride };
+        let mut of = Below { below, var: &plan.var_sample, derivative: &[], stride };
         if let Some(slopes) = &mut self.slopes {
             let len = plan.inner().len() * stride;
             slopes.apply(row, stride, &mut self.slope[..len])?;
@@ -311,7 +393,7 @@ impl StripRoom {
         along(below, place, &mut self.ends, &mut self.begin, &mut self.below_sums);
         let windows = strip.centres.len() * stride;
         let mut of =
-            Quotients { below: &self.below_sums[..windows], var: &plan.var_window, derivative: &[], stride };
+            Below { below: &self.below_sums[..windows], var: &plan.var_window, derivative: &[], stride };
         if let Some(slopes) = &mut self.slopes {
             let len = plan.inner().len() * stride;
             slopes.apply(&self.sum[..strip.read.len() * stride], stride, &mut self.slope[..len])?;
