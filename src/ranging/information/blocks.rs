@@ -20,6 +20,9 @@ const NEAR: usize = 1 << 11;
 /// Samples of a window's rows that are to stay in a core's own cache.
 const KEPT: usize = 1 << 18;
 
+/// Rows of windows of a block.
+const BLOCK_ROWS: usize = 32;
+
 /// A request that fits its cube.
 #[derive(Debug)]
 pub(super) struct Plan<'a> {
@@ -129,6 +132,15 @@ impl<'a> Plan<'a> {
     pub(super) fn centres(&self) -> Range<usize> {
         let (inner, half) = (self.inner(), self.request.window.half_columns());
         inner.start + half..inner.end - half
+    }
+
+    /// Rows of windows that a thread takes at a time: enough that the rows that blocks have in common count for little,
+    /// and as many blocks for every thread.
+    pub(super) fn block_rows(&self) -> usize {
+        let least = BLOCK_ROWS.max(4 * (self.request.window.rows() - 1));
+        let threads = rayon::current_num_threads();
+        let blocks = self.tops.len().div_ceil(least).next_multiple_of(threads);
+        self.tops.len().div_ceil(blocks.max(1)).max(1)
     }
 
     /// Strips from left to right.

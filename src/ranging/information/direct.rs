@@ -46,7 +46,11 @@ pub(super) struct Pixels<'a> {
 
 /// The last vector of a column, with samples of the next one or, at the end of the rows, repeated ones behind its own.
 #[inline(always)]
-fn last<'a, S: Sample>(column: &'a [S], bands: usize, spare: &'a mut [S; LANES]) -> &'a [S; LANES] {
+pub(super) fn last<'a, S: Sample>(
+    column: &'a [S],
+    bands: usize,
+    spare: &'a mut [S; LANES],
+) -> &'a [S; LANES] {
     let start = bands - bands % LANES;
     match column[start..].first_chunk::<LANES>() {
         Some(chunk) => chunk,

@@ -114,6 +114,25 @@ pub(super) fn pixels_of_row(
     Ok(())
 }
 
+/// Upper bounds of the quotients of one row of pixels, likewise; with the central difference.
+pub(super) fn bounds_of_row(
+    cube: &Cube,
+    plan: &Plan<'_>,
+    y: usize,
+    strips: &[&Strip],
+    room: &mut Room,
+    to: &mut [f64],
+) -> Result<()> {
+    let (counts, bands) = (room.counts.read(cube, y..y + 1)?, plan.shape.bands());
+    // Variances of single samples are not read: 0 is below all of them.
+    let least = plan.var_band.iter().copied().reduce(f64::min).unwrap_or(0.0);
+    for strip in strips {
+        let to = &mut to[strip.quotients.start - plan.margin..strip.quotients.end - plan.margin];
+        counts.bounds((strip.quotients.start - 1) * bands, bands, least, &mut room.strip.lanes, to);
+    }
+    Ok(())
+}
+
 /// What a thread keeps from block to block.
 #[derive(Default)]
 pub(super) struct Room {
