@@ -103,8 +103,13 @@ impl<'a> Plan<'a> {
 
     /// Whether the sums over windows are, too.
     pub(super) fn direct_windows(&self) -> bool {
+        self.direct() && self.small_windows()
+    }
+
+    /// Whether windows are summed row by row and column by column.
+    pub(super) fn small_windows(&self) -> bool {
         let window = self.request.window;
-        self.direct() && window.rows() <= MOST_ROWS && window.columns() <= MOST_COLUMNS
+        window.rows() <= MOST_ROWS && window.columns() <= MOST_COLUMNS
     }
 
     /// The part of Σσ² that counts where `joined` samples are.

@@ -76,33 +76,3 @@ macro_rules! bounded {
 
 bounded!(f32, bounds_f32);
 bounded!(f64, bounds_f64);
-
-dispatched! {
-    /// Sums over windows of `height` rows and `width` columns of an image of `columns`, to far better than the margin
-    /// that a comparison leaves: not those of [`super::boxes`], but in fewer passes.
-    pub(super) fn window_sums<'a>(
-        image: &'a [f64], columns: usize, window: (usize, usize)
-    ) -> Vec<f64> {
-        let (height, width) = window;
-        let rows = (image.len() / columns + 1).saturating_sub(height);
-        let centres = (columns + 1).saturating_sub(width);
-        let mut sums = Vec::with_capacity(rows * centres);
-        let mut sum = vec![0.0; columns];
-        for top in 0..rows {
-            sum.fill(0.0);
-            for row in image[top * columns..(top + height) * columns].chunks_exact(columns) {
-                for (sum, x) in sum.iter_mut().zip(row) {
-                    *sum += x;
-                }
-            }
-            let start = sums.len();
-            sums.extend_from_slice(&sum[..centres]);
-            for shift in 1..width {
-                for (to, x) in sums[start..].iter_mut().zip(&sum[shift..]) {
-                    *to += x;
-                }
-            }
-        }
-        sums
-    }
-}

@@ -14,7 +14,7 @@
 //! is saved is arithmetic, not reading.
 
 use super::blocks::{Plan, Strip, run};
-use super::bounds::window_sums;
+use super::boxes::{Image, window_sums};
 use super::samples::{BandSums, Room, bounds_of_row, pixels_of_row};
 use super::{Cell, Request, Window, pixels};
 use crate::error::{Error, Result, check};
@@ -23,6 +23,9 @@ use std::ops::Range;
 
 /// Columns that are evaluated or left out together.
 const TILE: usize = 64;
+
+/// Rows of windows that a thread sums at a time.
+const BLOCK: usize = 32;
 
 /// How far below the requirement a window has to look, by its first row, for a bound to be tried.
 const HOPE: f64 = 4.0;
@@ -161,9 +164,7 @@ impl State<'_> {
             wanted.iter().zip(&self.evaluated).map(|(wanted, done)| *wanted && !done).collect();
         let (plan, cube) = (self.plan, self.cube);
         run(self.jobs(&due), |(y, due, to), room: &mut Room| bounds_of_row(cube, plan, y, &due, room, to))?;
-        let window = plan.request.window;
-        let size = (window.rows(), window.columns());
-        let bounds = window_sums(&self.quotients, plan.inner().len(), size);
+        let bounds = self.sums()?;
         // What is not evaluated is 0 again.
         run(self.jobs(&due), |(_, due, to), _: &mut Room| {
             for strip in due {
@@ -187,8 +188,25 @@ impl State<'_> {
             .collect()
     }
 
+    /// Sums over windows, added in the order of the map if they are small.
+    fn sums(&self) -> Result<Vec<f64>> {
+        let (window, columns, centres) =
+            (self.plan.request.window, self.plan.inner().len(), self.plan.centres().len());
+        let mut sums = vec![0.0; self.plan.tops.len() * centres];
+        let parts = sums.chunks_mut(BLOCK * centres).enumerate().collect();
+        run(parts, |(part, to), _: &mut ()| {
+            let values = &self.quotients[part * BLOCK * columns..];
+            window_sums(Image { values, pitch: columns, columns }, window, to);
+            Ok(())
+        })?;
+        Ok(sums)
+    }
+
     /// J of all windows, with what is not evaluated as 0.
     fn windows(&mut self) -> Result<Vec<f64>> {
+        if self.plan.small_windows() {
+            return self.sums();
+        }
         let zeros = self.plan.rows().len() * self.plan.shape.columns();
         let sums = BandSums {
             quotients: std::mem::take(&mut self.quotients),
