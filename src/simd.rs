@@ -178,7 +178,8 @@ impl std::ops::DerefMut for Aligned {
 /// Adds every second half of `a` and `b` to the first ones: `HALF` lanes of each in turn.
 #[inline(always)]
 fn halved<const HALF: usize>(a: Chunk, b: Chunk) -> Chunk {
-    let lane = |i: usize| (if i / HALF % 2 == 0 { a } else { b }, i / (2 * HALF) * (2 * HALF) + i % HALF);
+    let lane =
+        |i: usize| (if (i / HALF).is_multiple_of(2) { a } else { b }, i / (2 * HALF) * (2 * HALF) + i % HALF);
     std::array::from_fn(|i| {
         let (from, at) = lane(i);
         from[at] + from[at + HALF]

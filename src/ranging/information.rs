@@ -28,6 +28,7 @@ mod kernels;
 mod pixels;
 mod rows;
 mod samples;
+mod strips;
 #[cfg(test)]
 mod tests;
 

@@ -13,6 +13,9 @@
 //! requirement, so does J. No sample can be left out there: it might be the one that carries the information. What
 //! is saved is arithmetic, not reading.
 
+#[cfg(test)]
+mod tests;
+
 use super::blocks::{Plan, Strip, run};
 use super::boxes::{Image, window_sums};
 use super::samples::{BandSums, Room, bounds_of_row, pixels_of_row};
