@@ -5,35 +5,13 @@
 //! 5 × 5 windows), and 1080 × 1920 × 54 read from a file by rows, beside a copy of as many samples in memory.
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use hadar::ranging::cube::{Cube, MemoryCube, Rows, Shape};
+use hadar::ranging::cube::{Cube, MemoryCube, Shape, write_npy};
 use hadar::ranging::derivative::Derivative;
 use hadar::ranging::information::decide::decide;
 use hadar::ranging::information::{Cell, Request, Window, information};
 use hadar::ranging::noise::{Joined, NoiseVariance};
 use std::hint::black_box;
-use std::io::Write;
 use std::ops::Range;
-use std::os::unix::fs::FileExt;
-
-/// Samples in a file, [row][column][band], in the byte order of this machine.
-#[derive(Debug)]
-struct FileCube {
-    file: std::fs::File,
-    shape: Shape,
-}
-
-impl Rows<f32> for FileCube {
-    fn shape(&self) -> Shape {
-        self.shape
-    }
-
-    fn read<'a>(&'a self, rows: Range<usize>, buffer: &'a mut Vec<f32>) -> hadar::Result<&'a [f32]> {
-        buffer.resize(rows.len() * self.shape.row_len(), 0.0);
-        let start = rows.start * self.shape.row_len() * size_of::<f32>();
-        self.file.read_exact_at(bytemuck::cast_slice_mut(buffer), start as u64).expect("a readable file");
-        Ok(buffer)
-    }
-}
 
 /// Counts of some 10⁴ with strong texture.
 fn counts(shape: Shape) -> Vec<f32> {
@@ -62,16 +40,20 @@ fn in_memory(criterion: &mut Criterion) {
     let shape = Shape::new(540, 960, 54).expect("a shape");
     let noise = NoiseVariance::None;
     let textured = counts(shape);
-    // Level, but for a patch of 60 x 100 pixels.
-    let mut level = vec![1e4_f32; shape.len()];
-    for row in 100..160 {
-        let start = (row * shape.columns() + 200) * shape.bands();
-        let patch = start..start + 100 * shape.bands();
-        level[patch.clone()].copy_from_slice(&textured[patch]);
-    }
+    // Level, but for a patch.
+    let level_but = |rows: Range<usize>, columns: Range<usize>| {
+        let mut level = vec![1e4_f32; shape.len()];
+        for row in rows {
+            let start = row * shape.row_len();
+            let patch = start + columns.start * shape.bands()..start + columns.end * shape.bands();
+            level[patch.clone()].copy_from_slice(&textured[patch]);
+        }
+        level
+    };
+    let (patch, half) = (level_but(100..160, 200..300), level_but(0..540, 0..480));
     let cube =
         |samples| Cube::from(MemoryCube::new(shape, samples).expect("as many samples as the shape has"));
-    let (textured, level) = (cube(textured), cube(level));
+    let (textured, patch, half) = (cube(textured), cube(patch), cube(half));
     let mut group = criterion.benchmark_group("540 x 960 x 54");
     group.sample_size(20);
     for window in [5, 31] {
@@ -84,7 +66,8 @@ fn in_memory(criterion: &mut Criterion) {
             bencher.iter(|| information(black_box(&textured), &request(5, &noise, &[cell])));
         });
     }
-    for (name, cube) in [("textured", &textured), ("level but for a patch", &level)] {
+    for (name, cube) in [("textured", &textured), ("level but for a patch", &patch), ("half textured", &half)]
+    {
         let map = information(cube, &request(5, &noise, &[Cell::Full])).expect("sound counts");
         let required = 0.05 * map.cell(Cell::Full).iter().fold(0.0, |most: f64, j| most.max(*j));
         let decision = decide(cube, &request(5, &noise, &[]), required).expect("sound counts");
@@ -100,8 +83,9 @@ fn from_a_file(criterion: &mut Criterion) {
     let shape = Shape::new(1080, 1920, 54).expect("a shape");
     let noise = NoiseVariance::None;
     let samples = counts(shape);
-    let mut file = tempfile::tempfile().expect("a temporary file");
-    file.write_all(bytemuck::cast_slice(&samples)).expect("room for the file");
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("cube.npy");
+    write_npy(&path, shape, &samples).expect("room for the file");
     let mut group = criterion.benchmark_group("1080 x 1920 x 54");
     group.sample_size(10);
     let mut copy = samples.clone();
@@ -109,7 +93,7 @@ fn from_a_file(criterion: &mut Criterion) {
         bencher.iter(|| copy.copy_from_slice(black_box(&samples)));
     });
     drop((samples, copy));
-    let cube = Cube::F32(Box::new(FileCube { file, shape }));
+    let cube = Cube::open(&path, None).expect("the file just written");
     group.bench_function("all cells, from a file", |bencher| {
         bencher.iter(|| information(black_box(&cube), &request(5, &noise, &Cell::ALL)));
     });

@@ -174,3 +174,32 @@ impl std::ops::DerefMut for Aligned {
         &mut self.storage[self.start..self.start + self.len]
     }
 }
+
+/// Adds every second half of `a` and `b` to the first ones: `HALF` lanes of each in turn.
+#[inline(always)]
+fn halved<const HALF: usize>(a: Chunk, b: Chunk) -> Chunk {
+    let lane =
+        |i: usize| (if (i / HALF).is_multiple_of(2) { a } else { b }, i / (2 * HALF) * (2 * HALF) + i % HALF);
+    std::array::from_fn(|i| {
+        let (from, at) = lane(i);
+        from[at] + from[at + HALF]
+    })
+}
+
+/// factor · the sum of the lanes of each, added in the order of [`crate::sum::fold`]; eight at a time, so that all
+/// lanes of all additions are used.
+#[inline(always)]
+pub(crate) fn fold_all(lanes: &[Chunk], factor: f64, sums: &mut [f64]) {
+    let (eights, rest) = lanes.as_chunks::<LANES>();
+    let (to, to_rest) = sums.split_at_mut(eights.len() * LANES);
+    for (lanes, to) in eights.iter().zip(to.as_chunks_mut::<LANES>().0) {
+        let [a, b, c, d, e, f, g, h] = *lanes;
+        // In pairs of lanes 4 apart, then 2, then 1; the order of the arguments puts the sums in theirs.
+        let fours = [halved::<4>(a, e), halved::<4>(b, f), halved::<4>(c, g), halved::<4>(d, h)];
+        let twos = [halved::<2>(fours[0], fours[2]), halved::<2>(fours[1], fours[3])];
+        *to = halved::<1>(twos[0], twos[1]).map(|sum| factor * sum);
+    }
+    for (lanes, to) in rest.iter().zip(to_rest) {
+        *to = factor * crate::sum::fold(lanes);
+    }
+}

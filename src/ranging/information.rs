@@ -19,13 +19,16 @@
 //! Source: paper S37–S40, Tables S4 and S5.
 
 mod blocks;
+mod bounds;
 mod boxes;
 mod checks;
 pub mod decide;
+mod direct;
 mod kernels;
 mod pixels;
 mod rows;
 mod samples;
+mod strips;
 #[cfg(test)]
 mod tests;
 
@@ -154,9 +157,6 @@ impl InformationMap {
     }
 }
 
-/// Rows of windows that a thread takes at a time.
-const BLOCK_ROWS: usize = 64;
-
 /// J of every window whose centre lies in the rows asked for.
 ///
 /// # Errors
@@ -164,7 +164,7 @@ const BLOCK_ROWS: usize = 64;
 /// negative, NaN, infinite or beyond 1e27; a count below 1e-27 without electronic noise; a cube that cannot be read.
 pub fn information(cube: &Cube, request: &Request<'_>) -> Result<InformationMap> {
     let plan = blocks::Plan::new(cube.shape(), request)?;
-    let sums = samples::band_sums(cube, &plan, BLOCK_ROWS)?;
+    let sums = samples::band_sums(cube, &plan, plan.block_rows())?;
     let mut map = pixels::windows(&plan, &sums)?;
     let [_, _, spectral, _] = &mut map.information;
     *spectral = sums.spectral;

@@ -1,6 +1,7 @@
 //! What a request comes to, and its division into blocks of rows and strips of columns.
 
 use super::checks;
+use super::direct::{MOST_COLUMNS, MOST_ROWS};
 use super::kernels::stride;
 use super::{Cell, Request};
 use crate::error::{Error, Result};
@@ -12,6 +13,15 @@ use std::sync::Mutex;
 
 /// Doubles of a strip that are to stay in a core's own cache.
 const CACHE: usize = 1 << 15;
+
+/// Doubles of a row of a strip that are to stay in the nearest cache.
+const NEAR: usize = 1 << 11;
+
+/// Samples of a window's rows that are to stay in a core's own cache.
+const KEPT: usize = 1 << 18;
+
+/// Rows of windows of a block.
+const BLOCK_ROWS: usize = 32;
 
 /// A request that fits its cube.
 #[derive(Debug)]
@@ -86,6 +96,22 @@ impl<'a> Plan<'a> {
         self.request.derivative == Derivative::Central
     }
 
+    /// Whether samples are worked on straight from the rows as stored: see [`super::direct`].
+    pub(super) fn direct(&self) -> bool {
+        self.central() && !self.var_band.is_empty()
+    }
+
+    /// Whether the sums over windows are, too.
+    pub(super) fn direct_windows(&self) -> bool {
+        self.direct() && self.small_windows()
+    }
+
+    /// Whether windows are summed row by row and column by column.
+    pub(super) fn small_windows(&self) -> bool {
+        let window = self.request.window;
+        window.rows() <= MOST_ROWS && window.columns() <= MOST_COLUMNS
+    }
+
     /// The part of Σσ² that counts where `joined` samples are.
     pub(super) fn share(&self, joined: f64) -> f64 {
         match self.request.joined {
@@ -113,16 +139,36 @@ impl<'a> Plan<'a> {
         inner.start + half..inner.end - half
     }
 
+    /// Rows of windows that a thread takes at a time: enough that the rows that blocks have in common count for little,
+    /// and as many blocks for every thread.
+    pub(super) fn block_rows(&self) -> usize {
+        let least = BLOCK_ROWS.max(4 * (self.request.window.rows() - 1));
+        let threads = rayon::current_num_threads();
+        let blocks = self.tops.len().div_ceil(least).next_multiple_of(threads);
+        self.tops.len().div_ceil(blocks.max(1)).max(1)
+    }
+
     /// Strips from left to right.
     pub(super) fn strips(&self) -> Vec<Strip> {
         let half = self.request.window.half_columns();
-        let wide = if self.wants(Cell::Spectral) {
+        let wide = if self.direct_windows() || self.direct() && !self.wants(Cell::Spectral) {
+            (NEAR / self.stride).max(16)
+        } else if self.wants(Cell::Spectral) {
             let columns = CACHE / (self.stride * self.request.window.rows());
             columns.max(4 * (half + 1)).max(16)
         } else {
             (CACHE / (4 * self.stride)).max(16)
         };
         self.strips_of(wide)
+    }
+
+    /// Strips that are worked on row by row together.
+    pub(super) fn strips_together(&self) -> usize {
+        if !self.direct_windows() {
+            return 1;
+        }
+        let columns = KEPT / (self.shape.bands() * self.request.window.rows());
+        columns.div_ceil((NEAR / self.stride).max(16))
     }
 
     /// Strips of at most `wide` columns of centres; all of them where the derivative needs whole rows.

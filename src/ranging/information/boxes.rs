@@ -10,6 +10,7 @@
 //! Source: van Herk, Pattern Recognit. Lett. 13, 517 (1992), doi:10.1016/0167-8655(92)90069-C; Gil and Werman, IEEE
 //! TPAMI 15, 504 (1993), doi:10.1109/34.211471 (there for maxima).
 
+use super::Window;
 use crate::simd::{Aligned, Chunk, LANES, dispatched, spaced};
 
 /// Makes room for `len` values, if there is not.
@@ -166,6 +167,40 @@ fn ends_of_blocks(row: &[f64], place: Along, ends: &mut [f64]) {
             }
         }
         after = if after + 1 == width { 0 } else { after + 1 };
+    }
+}
+
+/// An image of one value per pixel, or the part of it that windows lie in.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Image<'a> {
+    pub(super) values: &'a [f64],
+    /// Values from row to row.
+    pub(super) pitch: usize,
+    /// Columns of a row that count, the first ones.
+    pub(super) columns: usize,
+}
+
+dispatched! {
+    /// Sums over small windows, row by row and then column by column: `sums` \[row\]\[column\] as many rows of windows as
+    /// there is room for.
+    pub(super) fn window_sums<'a>(of: Image<'a>, window: Window, sums: &'a mut [f64]) -> () {
+        let Image { values, pitch, columns } = of;
+        let centres = (columns + 1).saturating_sub(window.columns()).max(1);
+        let mut sum = vec![0.0; columns];
+        for (top, sums) in sums.chunks_exact_mut(centres).enumerate() {
+            sum.copy_from_slice(&values[top * pitch..][..columns]);
+            for row in top + 1..top + window.rows() {
+                for (sum, x) in sum.iter_mut().zip(&values[row * pitch..][..columns]) {
+                    *sum += x;
+                }
+            }
+            sums.copy_from_slice(&sum[..centres]);
+            for shift in 1..window.columns() {
+                for (to, x) in sums.iter_mut().zip(&sum[shift..]) {
+                    *to += x;
+                }
+            }
+        }
     }
 }
 

@@ -57,6 +57,11 @@ impl<'a> Checked<'a> {
         Self { shape: plan.shape, rows, counts, variances, var_band: &plan.var_band, zero_matters }
     }
 
+    /// Place of the first sample of a pixel among those read.
+    pub(super) fn at(&self, row: usize, column: usize) -> usize {
+        (row - self.rows.0) * self.shape.row_len() + column * self.shape.bands()
+    }
+
     /// Looks closely if what was seen on the way is not beyond doubt; the first offending sample of all the rows
     /// read is named.
     pub(super) fn look(&self, counts: Seen, variances: Option<Seen>) -> Result<()> {

@@ -8,12 +8,17 @@
 //! evaluated, of which each window has exactly one; then those pixels that windows still open need. The answer is
 //! the same.
 //!
-//! No sample can be left out of a window that stays below: it might be the one that carries the information. There
-//! the
-//! time is that of reading and widening the cube in any case, not that of the arithmetic.
+//! Windows that the first rows let expect to stay below by far are then tried with an upper bound of every pixel not
+//! yet evaluated (`bounds`): where the sum of the bounds, and a margin for rounding, stays below the
+//! requirement, so does J. No sample can be left out there: it might be the one that carries the information. What
+//! is saved is arithmetic, not reading.
+
+#[cfg(test)]
+mod tests;
 
 use super::blocks::{Plan, Strip, run};
-use super::samples::{BandSums, Room, pixels_of_row};
+use super::boxes::{Image, window_sums};
+use super::samples::{BandSums, Room, bounds_of_row, pixels_of_row};
 use super::{Cell, Request, Window, pixels};
 use crate::error::{Error, Result, check};
 use crate::ranging::cube::Cube;
@@ -21,6 +26,15 @@ use std::ops::Range;
 
 /// Columns that are evaluated or left out together.
 const TILE: usize = 64;
+
+/// Rows of windows that a thread sums at a time.
+const BLOCK: usize = 32;
+
+/// How far below the requirement a window has to look, by its first row, for a bound to be tried.
+const HOPE: f64 = 4.0;
+
+/// Part of the requirement left for the rounding of sums, of bounds as of quotients.
+const MARGIN: f64 = 1e-9;
 
 /// Which windows reach a required information.
 #[derive(Debug, Clone, PartialEq)]
@@ -40,7 +54,7 @@ pub struct Decision {
 pub struct Stats {
     /// Windows that some of their pixels prove to be above.
     pub windows_proved_above: usize,
-    /// Windows proved below without all of their samples: see the module; none so far.
+    /// Windows that upper bounds of their pixels prove to be below.
     pub windows_proved_below: usize,
     /// Windows whose pixels were all evaluated.
     pub windows_computed: usize,
@@ -77,20 +91,42 @@ pub fn decide(cube: &Cube, request: &Request<'_>, required_per_pixel2: f64) -> R
         wanted.fill(height == 1 || (rows.start + row) % height == height / 2);
     }
     state.evaluate(&wanted)?;
-    let mut above = state.above(required_per_pixel2)?;
-    let proved = if height == 1 { 0 } else { above.iter().filter(|above| **above).count() };
-    if height > 1 && proved < above.len() {
-        let wanted = state.open(&above, request.window);
-        state.evaluate(&wanted)?;
-        above = state.above(required_per_pixel2)?;
+    let first = state.windows()?;
+    let mut above: Vec<bool> = first.iter().map(|j| *j >= required_per_pixel2).collect();
+    let (mut proved_above, mut proved_below) = (0, 0);
+    if height > 1 {
+        proved_above = above.iter().filter(|above| **above).count();
+        // Windows with nothing left to do.
+        let mut done = above.clone();
+        let hopeful = HOPE * height as f64;
+        let not_tried: Vec<bool> = first.iter().map(|j| hopeful * j >= required_per_pixel2).collect();
+        drop(first);
+        if plan.central() && not_tried.contains(&false) {
+            let bounds = state.bounds(&state.open(&not_tried, request.window))?;
+            let limit = (1.0 - MARGIN) * required_per_pixel2;
+            for ((done, bound), not_tried) in done.iter_mut().zip(bounds).zip(not_tried) {
+                if !not_tried && bound < limit {
+                    *done = true;
+                    proved_below += 1;
+                }
+            }
+        }
+        if done.contains(&false) {
+            let wanted = state.open(&done, request.window);
+            state.evaluate(&wanted)?;
+            let windows = state.windows()?;
+            for ((above, j), done) in above.iter_mut().zip(windows).zip(done) {
+                *above |= !done && j >= required_per_pixel2;
+            }
+        }
     }
 
     let samples = |columns: usize| columns * plan.shape.bands();
     let evaluated = state.evaluated.chunks(state.strips.len()).flat_map(|row| row.iter().zip(&state.strips));
     let stats = Stats {
-        windows_proved_above: proved,
-        windows_proved_below: 0,
-        windows_computed: above.len() - proved,
+        windows_proved_above: proved_above,
+        windows_proved_below: proved_below,
+        windows_computed: above.len() - proved_above - proved_below,
         samples_evaluated: evaluated
             .filter(|(done, _)| **done)
             .map(|(_, s)| samples(s.quotients.len()))
@@ -115,28 +151,65 @@ struct State<'a> {
 impl State<'_> {
     /// Evaluates the tiles that are wanted and not done yet, [row][strip].
     fn evaluate(&mut self, wanted: &[bool]) -> Result<()> {
-        let (plan, cube, strips) = (self.plan, self.cube, &self.strips);
-        let first = plan.rows().start;
-        let rows = self.quotients.chunks_mut(plan.inner().len().max(1));
-        let tiles = self.evaluated.chunks_mut(strips.len()).zip(wanted.chunks(strips.len()));
-        let mut jobs = Vec::new();
-        for (row, (to, (done, wanted))) in rows.zip(tiles).enumerate() {
-            let mut due = Vec::new();
-            for ((done, wanted), strip) in done.iter_mut().zip(wanted).zip(strips) {
-                if *wanted && !*done {
-                    *done = true;
-                    due.push(strip);
-                }
-            }
-            if !due.is_empty() {
-                jobs.push((first + row, due, to));
-            }
+        let due: Vec<bool> =
+            wanted.iter().zip(&self.evaluated).map(|(wanted, done)| *wanted && !done).collect();
+        let (plan, cube) = (self.plan, self.cube);
+        run(self.jobs(&due), |(y, due, to), room: &mut Room| pixels_of_row(cube, plan, y, &due, room, to))?;
+        for (done, due) in self.evaluated.iter_mut().zip(due) {
+            *done |= due;
         }
-        run(jobs, |(y, due, to), room: &mut Room| pixels_of_row(cube, plan, y, &due, room, to))
+        Ok(())
     }
 
-    /// Windows whose pixels, as far as they are evaluated, reach the requirement.
-    fn above(&mut self, required: f64) -> Result<Vec<bool>> {
+    /// Upper bounds of J of the windows all of whose tiles are wanted or evaluated; those of others mean nothing.
+    fn bounds(&mut self, wanted: &[bool]) -> Result<Vec<f64>> {
+        let due: Vec<bool> =
+            wanted.iter().zip(&self.evaluated).map(|(wanted, done)| *wanted && !done).collect();
+        let (plan, cube) = (self.plan, self.cube);
+        run(self.jobs(&due), |(y, due, to), room: &mut Room| bounds_of_row(cube, plan, y, &due, room, to))?;
+        let bounds = self.sums()?;
+        // What is not evaluated is 0 again.
+        run(self.jobs(&due), |(_, due, to), _: &mut Room| {
+            for strip in due {
+                to[strip.quotients.start - plan.margin..strip.quotients.end - plan.margin].fill(0.0);
+            }
+            Ok(())
+        })?;
+        Ok(bounds)
+    }
+
+    /// Rows, their strips and where their quotients are, as far as there are tiles due.
+    fn jobs(&mut self, due: &[bool]) -> Vec<(usize, Vec<&Strip>, &mut [f64])> {
+        let (strips, first) = (&self.strips, self.plan.rows().start);
+        let rows = self.quotients.chunks_mut(self.plan.inner().len().max(1)).enumerate();
+        rows.zip(due.chunks(strips.len()))
+            .map(|((row, to), due)| {
+                let due = strips.iter().zip(due).filter(|(_, due)| **due).map(|(strip, _)| strip);
+                (first + row, due.collect::<Vec<_>>(), to)
+            })
+            .filter(|(_, due, _)| !due.is_empty())
+            .collect()
+    }
+
+    /// Sums over windows, added in the order of the map if they are small.
+    fn sums(&self) -> Result<Vec<f64>> {
+        let (window, columns, centres) =
+            (self.plan.request.window, self.plan.inner().len(), self.plan.centres().len());
+        let mut sums = vec![0.0; self.plan.tops.len() * centres];
+        let parts = sums.chunks_mut(BLOCK * centres).enumerate().collect();
+        run(parts, |(part, to), _: &mut ()| {
+            let values = &self.quotients[part * BLOCK * columns..];
+            window_sums(Image { values, pitch: columns, columns }, window, to);
+            Ok(())
+        })?;
+        Ok(sums)
+    }
+
+    /// J of all windows, with what is not evaluated as 0.
+    fn windows(&mut self) -> Result<Vec<f64>> {
+        if self.plan.small_windows() {
+            return self.sums();
+        }
         let zeros = self.plan.rows().len() * self.plan.shape.columns();
         let sums = BandSums {
             quotients: std::mem::take(&mut self.quotients),
@@ -148,7 +221,7 @@ impl State<'_> {
         self.quotients = sums.quotients;
         let [_, _, _, full] = map.information;
         if full.len() == self.plan.tops.len() * self.plan.centres().len() {
-            return Ok(full.into_iter().map(|information| information >= required).collect());
+            return Ok(full);
         }
         Err(Error::malformed("a map of another size", "report this"))
     }

@@ -10,7 +10,7 @@
 use super::boxes::{chunks, chunks_mut};
 use super::checks::MOST;
 use crate::ranging::cube::Sample;
-use crate::simd::{Chunk, LANES, dispatched};
+use crate::simd::{Chunk, LANES, dispatched, fold_all};
 
 /// Quotients added as one fraction.
 const TOGETHER: usize = 7;
@@ -89,41 +89,55 @@ stored!(f32, u32, widen_f32);
 stored!(f64, u64, widen_f64);
 
 /// Σ of quotients per lane, up to [`TOGETHER`] of them as one fraction.
-#[inline(always)]
-fn quotients(mut terms: impl Iterator<Item = (Chunk, Chunk)>) -> Chunk {
-    let mut total = [0.0; LANES];
-    while let Some((mut numerator, mut denominator)) = terms.next() {
-        for (n, d) in terms.by_ref().take(TOGETHER - 1) {
-            let (a, b) = (numerator, denominator);
-            numerator = std::array::from_fn(|i| a[i].mul_add(d[i], n[i] * b[i]));
-            denominator = std::array::from_fn(|i| b[i] * d[i]);
-        }
-        total = std::array::from_fn(|i| total[i] + numerator[i] / denominator[i]);
+pub(super) struct Quotients {
+    total: Chunk,
+    numerator: Chunk,
+    denominator: Chunk,
+    held: usize,
+}
+
+impl Quotients {
+    #[inline(always)]
+    pub(super) const fn new() -> Self {
+        Self { total: [0.0; LANES], numerator: [0.0; LANES], denominator: [1.0; LANES], held: 0 }
     }
-    total
+
+    /// Adds n/d.
+    #[inline(always)]
+    pub(super) fn add(&mut self, n: Chunk, d: Chunk) {
+        if self.held == TOGETHER {
+            self.total = self.sum();
+            self.held = 0;
+        }
+        if self.held == 0 {
+            (self.numerator, self.denominator) = (n, d);
+        } else {
+            let (a, b) = (self.numerator, self.denominator);
+            self.numerator = std::array::from_fn(|i| a[i].mul_add(d[i], n[i] * b[i]));
+            self.denominator = std::array::from_fn(|i| b[i] * d[i]);
+        }
+        self.held += 1;
+    }
+
+    #[inline(always)]
+    pub(super) fn sum(&self) -> Chunk {
+        std::array::from_fn(|i| self.total[i] + self.numerator[i] / self.denominator[i])
+    }
 }
 
 #[inline(always)]
-fn square(x: Chunk) -> Chunk {
+pub(super) fn square(x: Chunk) -> Chunk {
     x.map(|x| x * x)
 }
 
 #[inline(always)]
-fn minus(a: Chunk, b: Chunk) -> Chunk {
+pub(super) fn minus(a: Chunk, b: Chunk) -> Chunk {
     std::array::from_fn(|i| a[i] - b[i])
 }
 
 #[inline(always)]
-fn plus(a: Chunk, b: Chunk) -> Chunk {
+pub(super) fn plus(a: Chunk, b: Chunk) -> Chunk {
     std::array::from_fn(|i| a[i] + b[i])
-}
-
-/// Adds the lanes of each.
-#[inline(always)]
-fn fold_into(lanes: &[Chunk], factor: f64, sums: &mut [f64]) {
-    for (sum, lanes) in sums.iter_mut().zip(lanes) {
-        *sum = factor * crate::sum::fold(lanes);
-    }
 }
 
 dispatched! {
@@ -136,13 +150,13 @@ dispatched! {
             }
             *lanes = total;
         }
-        fold_into(lanes, 1.0, sums);
+        fold_all(&lanes[..sums.len()], 1.0, sums);
     }
 }
 
 /// What the quotients of a row are made of, all [column][`stride`].
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Quotients<'a> {
+pub(super) struct Below<'a> {
     /// What stands below, without `var`.
     pub(super) below: &'a [f64],
     /// Added to it in every column.
@@ -154,13 +168,16 @@ pub(super) struct Quotients<'a> {
 
 dispatched! {
     /// Σ over the bands of (derivative)²/(below + var), of every column.
-    pub(super) fn ratios<'a>(of: Quotients<'a>, lanes: &'a mut [Chunk], sums: &'a mut [f64]) -> () {
+    pub(super) fn ratios<'a>(of: Below<'a>, lanes: &'a mut [Chunk], sums: &'a mut [f64]) -> () {
         let columns = of.below.chunks_exact(of.stride).zip(of.derivative.chunks_exact(of.stride));
         for (lanes, (below, derivative)) in lanes.iter_mut().zip(columns) {
-            let terms = chunks(below).zip(chunks(of.var)).zip(chunks(derivative));
-            *lanes = quotients(terms.map(|((below, var), d)| (square(*d), plus(*below, *var))));
+            let mut ratio = Quotients::new();
+            for ((below, var), d) in chunks(below).zip(chunks(of.var)).zip(chunks(derivative)) {
+                ratio.add(square(*d), plus(*below, *var));
+            }
+            *lanes = ratio.sum();
         }
-        fold_into(lanes, 1.0, sums);
+        fold_all(&lanes[..sums.len()], 1.0, sums);
     }
 }
 
@@ -168,17 +185,19 @@ dispatched! {
     /// The same with the central difference: `row` holds the counts of the columns of `below` and one more on
     /// either side.
     pub(super) fn ratios_central<'a>(
-        row: &'a [f64], of: Quotients<'a>, lanes: &'a mut [Chunk], sums: &'a mut [f64]
+        row: &'a [f64], of: Below<'a>, lanes: &'a mut [Chunk], sums: &'a mut [f64]
     ) -> () {
         let after = row[2 * of.stride..].chunks_exact(of.stride);
         let columns = of.below.chunks_exact(of.stride).zip(row.chunks_exact(of.stride).zip(after));
         for (lanes, (below, (before, after))) in lanes.iter_mut().zip(columns) {
+            let mut ratio = Quotients::new();
             let terms = chunks(below).zip(chunks(of.var)).zip(chunks(before).zip(chunks(after)));
-            *lanes = quotients(
-                terms.map(|((below, var), (before, after))| (square(minus(*after, *before)), plus(*below, *var))),
-            );
+            for ((below, var), (before, after)) in terms {
+                ratio.add(square(minus(*after, *before)), plus(*below, *var));
+            }
+            *lanes = ratio.sum();
         }
-        fold_into(lanes, 0.25, sums);
+        fold_all(&lanes[..sums.len()], 0.25, sums);
     }
 }
 
@@ -186,7 +205,7 @@ dispatched! {
     /// The same for windows of `width` columns, over which a central difference leaves only its ends: `row` holds the
     /// columns of the windows and one more on either side, `below` the sums over each window.
     pub(super) fn ratios_ends<'a>(
-        row: &'a [f64], width: usize, of: Quotients<'a>, lanes: &'a mut [Chunk], sums: &'a mut [f64]
+        row: &'a [f64], width: usize, of: Below<'a>, lanes: &'a mut [Chunk], sums: &'a mut [f64]
     ) -> () {
         let stride = of.stride;
         let columns = |first: usize| row[first * stride..].chunks_exact(stride);
@@ -194,13 +213,14 @@ dispatched! {
         for (lanes, (below, (left, right))) in lanes.iter_mut().zip(of.below.chunks_exact(stride).zip(ends)) {
             let left = chunks(left.0).zip(chunks(left.1));
             let right = chunks(right.0).zip(chunks(right.1));
-            let terms = chunks(below).zip(chunks(of.var)).zip(left.zip(right));
-            *lanes = quotients(terms.map(|((below, var), (left, right))| {
+            let mut ratio = Quotients::new();
+            for ((below, var), (left, right)) in chunks(below).zip(chunks(of.var)).zip(left.zip(right)) {
                 let inner = minus(*right.0, *left.1);
                 let outer = minus(*right.1, *left.0);
-                (square(plus(inner, outer)), plus(*below, *var))
-            }));
+                ratio.add(square(plus(inner, outer)), plus(*below, *var));
+            }
+            *lanes = ratio.sum();
         }
-        fold_into(lanes, 0.25, sums);
+        fold_all(&lanes[..sums.len()], 0.25, sums);
     }
 }

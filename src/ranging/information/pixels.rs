@@ -1,7 +1,7 @@
 //! Second pass, over the pixels: sums over windows of what the first pass left of each pixel.
 
 use super::blocks::{Plan, run};
-use super::boxes::{Along, Stack, along};
+use super::boxes::{Along, Image, Stack, along, window_sums};
 use super::samples::BandSums;
 use super::{Cell, InformationMap};
 use crate::error::{Error, Result};
@@ -13,7 +13,7 @@ use std::ops::Range;
 const RECORD: usize = LANES;
 
 /// Rows of windows of a block.
-const BLOCK: usize = 64;
+const BLOCK: usize = 16;
 
 struct Block<'a> {
     tops: Range<usize>,
@@ -29,6 +29,7 @@ struct Room {
     slopes: Option<Differentiator>,
     stack: Stack,
     slope: Vec<f64>,
+    spatial: Vec<f64>,
     sum: Aligned,
     ends: Aligned,
     begin: Aligned,
@@ -92,7 +93,68 @@ pub(super) fn finite(map: InformationMap) -> Result<InformationMap> {
 }
 
 impl Block<'_> {
+    /// Sums over small windows, one quantity after the other.
+    fn small(self, plan: &Plan<'_>, sums: &BandSums, room: &mut Room) -> Result<()> {
+        let (window, inner, columns) = (plan.request.window, plan.inner(), plan.shape.columns());
+        let (bands, pixels) = (plan.shape.bands() as f64, (window.rows() * window.columns()) as f64);
+        let (len, first) = (inner.len(), self.tops.start - plan.tops.start);
+        let rows = self.tops.len() + window.rows() - 1;
+        let whole = |values| Image { values, pitch: columns, columns: len };
+        let part = |values| Image { values, pitch: len, columns: len };
+        let start = first * columns + inner.start;
+        window_sums(whole(&sums.counts[start..]), window, self.photons);
+        let var_pixel = crate::sum::sum(&plan.var_band);
+        if plan.var_band.is_empty() {
+            window_sums(whole(&sums.variances[start..]), window, self.var);
+        } else {
+            self.var.fill(pixels * var_pixel);
+        }
+        if plan.wants(Cell::Full) {
+            window_sums(part(&sums.quotients[first * len..]), window, self.full);
+        }
+        if !plan.wants(Cell::Total) && !plan.wants(Cell::Spatial) {
+            return Ok(());
+        }
+        let slopes = match &mut room.slopes {
+            Some(slopes) => slopes,
+            none => none.insert(Differentiator::new(plan.request.derivative, columns)?),
+        };
+        room.slope.resize(rows * len, 0.0);
+        for (slope, row) in room.slope.chunks_exact_mut(len).zip(first..) {
+            slopes.apply(&sums.counts[row * columns..(row + 1) * columns], 1, slope)?;
+        }
+        if plan.wants(Cell::Spatial) {
+            let share = plan.share(bands);
+            room.spatial.resize(rows * len, 0.0);
+            let to = room.spatial.chunks_exact_mut(len).zip(room.slope.chunks_exact(len));
+            for ((to, slope), row) in to.zip(first..) {
+                let at = row * columns + inner.start;
+                for ((to, slope), count) in to.iter_mut().zip(slope).zip(&sums.counts[at..]) {
+                    *to = slope * slope / (share * var_pixel + count);
+                }
+                if plan.var_band.is_empty() {
+                    let below = sums.counts[at..].iter().zip(&sums.variances[at..]);
+                    for ((to, slope), (count, var)) in to.iter_mut().zip(slope).zip(below) {
+                        *to = slope * slope / (share * var + count);
+                    }
+                }
+            }
+            window_sums(part(&room.spatial), window, self.spatial);
+        }
+        if plan.wants(Cell::Total) {
+            let share = plan.share(bands * pixels);
+            window_sums(part(&room.slope), window, self.total);
+            for (total, (var, photons)) in self.total.iter_mut().zip(self.var.iter().zip(&*self.photons)) {
+                *total = *total * *total / (share * var + photons);
+            }
+        }
+        Ok(())
+    }
+
     fn work(self, plan: &Plan<'_>, sums: &BandSums, room: &mut Room) -> Result<()> {
+        if plan.small_windows() {
+            return self.small(plan, sums, room);
+        }
         let (window, inner) = (plan.request.window, plan.inner());
         let columns = plan.shape.columns();
         if room.slopes.is_none() {

@@ -1,8 +1,11 @@
 //! Rows of a cube of either kind of sample, as they were read.
 
+use super::bounds::Bounded;
+use super::direct::{Direct, Pixels, Stretch};
 use super::kernels::{Seen, Stored};
 use crate::error::Result;
 use crate::ranging::cube::{Cube, Rows};
+use crate::simd::Chunk;
 use std::ops::Range;
 
 /// Room for rows that do not lie in memory.
@@ -58,6 +61,51 @@ impl Raw<'_> {
         match self {
             Raw::F32(samples) => Stored::widen(&samples[start..], bands, to),
             Raw::F64(samples) => Stored::widen(&samples[start..], bands, to),
+        }
+    }
+
+    /// What the pixels of a row give, as many columns from `start` on as there are totals.
+    pub(super) fn pixels(self, start: usize, bands: usize, to: Pixels<'_>) -> Seen {
+        match self {
+            Raw::F32(samples) => Direct::pixels(Stretch { samples: &samples[start..], bands }, to),
+            Raw::F64(samples) => Direct::pixels(Stretch { samples: &samples[start..], bands }, to),
+        }
+    }
+
+    /// Σ over `height` rows, the first sample of which is at `start`, widened as by [`Self::widen`].
+    pub(super) fn sum_rows(
+        self,
+        start: usize,
+        (row_len, height): (usize, usize),
+        bands: usize,
+        to: &mut [f64],
+    ) {
+        match self {
+            Raw::F32(samples) => {
+                Direct::rows(Stretch { samples: &samples[start..], bands }, row_len, height, to);
+            }
+            Raw::F64(samples) => {
+                Direct::rows(Stretch { samples: &samples[start..], bands }, row_len, height, to);
+            }
+        }
+    }
+
+    /// Upper bounds of the information of pixels, of which the first is in the second column from `start` on.
+    pub(super) fn bounds(
+        self,
+        start: usize,
+        bands: usize,
+        var_least: f64,
+        lanes: &mut Vec<Chunk>,
+        to: &mut [f64],
+    ) {
+        match self {
+            Raw::F32(samples) => {
+                Bounded::bounds(Stretch { samples: &samples[start..], bands }, var_least, lanes, to);
+            }
+            Raw::F64(samples) => {
+                Bounded::bounds(Stretch { samples: &samples[start..], bands }, var_least, lanes, to);
+            }
         }
     }
 }

@@ -8,15 +8,13 @@
 
 use super::Cell;
 use super::blocks::{Plan, Strip, run};
-use super::boxes::{Along, Stack, add_to, along, grow};
 use super::checks::Checked;
-use super::kernels::{Quotients, ratios, ratios_central, ratios_ends, totals};
+use super::kernels::totals;
 use super::rows::Buffer;
+use super::strips::StripRoom;
 use crate::error::Result;
 use crate::ranging::cube::Cube;
-use crate::ranging::derivative::Differentiator;
 use crate::ranging::noise::NoiseVariance;
-use crate::simd::{Aligned, Chunk, LANES};
 use std::ops::Range;
 
 /// Sums over the bands of pixels and of windows.
@@ -101,10 +99,33 @@ pub(super) fn pixels_of_row(
     let checked = Checked::new(plan, (y, y + 1), counts, variances);
     room.strip.prepare(plan)?;
     for strip in strips {
+        let to = &mut to[strip.quotients.start - plan.margin..strip.quotients.end - plan.margin];
+        if plan.direct() {
+            room.strip.pixels(y, plan, strip, &checked, None, to)?;
+            continue;
+        }
         room.strip.start(plan, strip, y, variances.is_some());
         room.strip.widen(y, plan, strip, &checked)?;
-        let local = strip.quotients.start - plan.margin..strip.quotients.end - plan.margin;
-        room.strip.quotients(y, plan, strip, variances.is_some(), &mut to[local])?;
+        room.strip.quotients(y, plan, strip, variances.is_some(), to)?;
+    }
+    Ok(())
+}
+
+/// Upper bounds of the quotients of one row of pixels, likewise; with the central difference.
+pub(super) fn bounds_of_row(
+    cube: &Cube,
+    plan: &Plan<'_>,
+    y: usize,
+    strips: &[&Strip],
+    room: &mut Room,
+    to: &mut [f64],
+) -> Result<()> {
+    let (counts, bands) = (room.counts.read(cube, y..y + 1)?, plan.shape.bands());
+    // Variances of single samples are not read: 0 is below all of them.
+    let least = plan.var_band.iter().copied().reduce(f64::min).unwrap_or(0.0);
+    for strip in strips {
+        let to = &mut to[strip.quotients.start - plan.margin..strip.quotients.end - plan.margin];
+        counts.bounds((strip.quotients.start - 1) * bands, bands, least, &mut room.strip.lanes, to);
     }
     Ok(())
 }
@@ -115,24 +136,6 @@ pub(super) struct Room {
     counts: Buffer,
     variances: Buffer,
     strip: StripRoom,
-}
-
-#[derive(Default)]
-struct StripRoom {
-    slopes: Option<Differentiator>,
-    counts: Stack,
-    variances: Stack,
-    /// Σ of the counts over the rows of windows.
-    sum: Aligned,
-    /// What stands below the fraction.
-    below: Aligned,
-    slope: Aligned,
-    /// Sums over windows of `below`, and of `slope`.
-    below_sums: Aligned,
-    slope_sums: Aligned,
-    ends: Aligned,
-    begin: Aligned,
-    lanes: Vec<Chunk>,
 }
 
 impl Block<'_> {
@@ -147,10 +150,14 @@ impl Block<'_> {
         };
         let checked = Checked::new(plan, (read.start, read.end), counts, variances);
         room.strip.prepare(plan)?;
-        for strip in strips {
-            room.strip.start(plan, strip, read.start, variances.is_some());
+        for strips in strips.chunks(plan.strips_together()) {
+            if let ([strip], false) = (strips, plan.direct_windows()) {
+                room.strip.start(plan, strip, read.start, variances.is_some());
+            }
             for y in read.clone() {
-                self.row(y, plan, strip, &checked, &mut room.strip)?;
+                for strip in strips {
+                    self.row(y, plan, strip, &checked, &mut room.strip)?;
+                }
             }
         }
         Ok(())
@@ -165,161 +172,74 @@ impl Block<'_> {
         checked: &Checked<'_>,
         room: &mut StripRoom,
     ) -> Result<()> {
-        let (stride, columns) = (plan.stride, plan.shape.columns());
-        room.widen(y, plan, strip, checked)?;
         if self.owned.contains(&y) {
-            let row = y - self.owned.start;
-            let of = |range: &Range<usize>, first: usize| range.start - first..range.end - first;
-            let local = of(&strip.totals, strip.read.start);
-            let samples = local.start * stride..local.end * stride;
-            let to = row * columns + strip.totals.start..row * columns + strip.totals.end;
-            totals(
-                &room.counts.row(y)[samples.clone()],
-                stride,
-                &mut room.lanes,
-                &mut self.counts[to.clone()],
-            );
-            if checked.variances.is_some() {
-                totals(&room.variances.row(y)[samples], stride, &mut room.lanes, &mut self.variances[to]);
-            }
-            if plan.wants(Cell::Full) {
-                let to = of(&strip.quotients, plan.margin);
-                let inner = plan.inner().len();
-                let to = &mut self.quotients[row * inner + to.start..row * inner + to.end];
-                room.quotients(y, plan, strip, checked.variances.is_some(), to)?;
-            }
+            self.pixels(y, plan, strip, checked, room)?;
+        } else if !plan.direct_windows() {
+            room.widen(y, plan, strip, checked)?;
         }
         if plan.wants(Cell::Spectral) {
-            room.counts.push(y);
-            if checked.variances.is_some() {
-                room.variances.push(y);
-            }
             let top = (y + 1).checked_sub(plan.request.window.rows()).filter(|top| self.tops.contains(top));
-            if let Some(top) = top {
+            let to = top.map(|top| {
                 let centres = plan.centres();
                 let row = (top - self.tops.start) * centres.len();
                 let (start, end) = (strip.centres.start - centres.start, strip.centres.end - centres.start);
-                let to = &mut self.spectral[row + start..row + end];
-                room.spectral(y, plan, strip, checked.variances.is_some(), to)?;
+                &mut self.spectral[row + start..row + end]
+            });
+            if plan.direct_windows() {
+                if let Some(to) = to {
+                    room.direct(y, plan, strip, checked, to);
+                }
+                return Ok(());
+            }
+            let variances = checked.variances.is_some();
+            room.counts.push(y);
+            if variances {
+                room.variances.push(y);
+            }
+            if let Some(to) = to {
+                room.spectral(y, plan, strip, variances, to)?;
             }
             room.counts.finish(y);
-            if checked.variances.is_some() {
+            if variances {
                 room.variances.finish(y);
             }
         }
         Ok(())
     }
-}
 
-impl StripRoom {
-    fn prepare(&mut self, plan: &Plan<'_>) -> Result<()> {
-        if !plan.central() && self.slopes.is_none() {
-            self.slopes = Some(Differentiator::new(plan.request.derivative, plan.shape.columns())?);
-        }
-        Ok(())
-    }
-
-    /// Widens and checks row `y` of a strip.
-    fn widen(&mut self, y: usize, plan: &Plan<'_>, strip: &Strip, checked: &Checked<'_>) -> Result<()> {
-        let bands = plan.shape.bands();
-        let start = (y - checked.rows.0) * plan.shape.row_len() + strip.read.start * bands;
-        let seen = checked.counts.widen(start, bands, self.counts.row(y));
-        let seen_var = checked.variances.map(|raw| raw.widen(start, bands, self.variances.row(y)));
-        checked.look(seen, seen_var)
-    }
-
-    fn start(&mut self, plan: &Plan<'_>, strip: &Strip, first: usize, variances: bool) {
-        let len = strip.read.len() * plan.stride;
-        let height = if plan.wants(Cell::Spectral) { plan.request.window.rows() } else { 1 };
-        self.counts.start(height, len, first);
-        if variances {
-            self.variances.start(height, len, first);
-        }
-        for row in [
-            &mut self.sum,
-            &mut self.below,
-            &mut self.slope,
-            &mut self.below_sums,
-            &mut self.slope_sums,
-            &mut self.ends,
-        ] {
-            grow(row, len);
-        }
-        self.begin.set_len(plan.stride);
-        if self.lanes.len() < strip.read.len() {
-            self.lanes.resize(strip.read.len(), [0.0; LANES]);
-        }
-    }
-
-    /// The quotients of row `y`, over the bands of each pixel.
-    fn quotients(
+    /// Sums and quotients over the bands of each pixel.
+    fn pixels(
         &mut self,
         y: usize,
         plan: &Plan<'_>,
         strip: &Strip,
-        variances: bool,
-        to: &mut [f64],
+        checked: &Checked<'_>,
+        room: &mut StripRoom,
     ) -> Result<()> {
-        let stride = plan.stride;
-        let from = strip.quotients.start - strip.read.start;
-        let samples = from * stride..(from + strip.quotients.len()) * stride;
-        let row = &self.counts.row(y)[..];
-        let below = if variances {
-            self.below[..row.len()].copy_from_slice(row);
-            add_to(self.variances.row(y), &mut self.below);
-            &self.below[samples]
+        let (stride, columns, inner) = (plan.stride, plan.shape.columns(), plan.inner().len());
+        let of = |range: &Range<usize>, first: usize| range.start - first..range.end - first;
+        let row = y - self.owned.start;
+        let to_totals = row * columns + strip.totals.start..row * columns + strip.totals.end;
+        let to_ratios = if plan.wants(Cell::Full) {
+            let to = of(&strip.quotients, plan.margin);
+            row * inner + to.start..row * inner + to.end
         } else {
-            &row[samples]
+            0..0
         };
-        let mut of = Quotients { below, var: &plan.var_sample, derivative: &[], stride };
-        if let Some(slopes) = &mut self.slopes {
-            let len = plan.inner().len() * stride;
-            slopes.apply(row, stride, &mut self.slope[..len])?;
-            of.derivative = &self.slope[..len];
-            ratios(of, &mut self.lanes, to);
-        } else {
-            ratios_central(&row[(from - 1) * stride..], of, &mut self.lanes, to);
+        if plan.direct() {
+            let (to_totals, to) = (&mut self.counts[to_totals], &mut self.quotients[to_ratios]);
+            return room.pixels(y, plan, strip, checked, Some(to_totals), to);
         }
-        Ok(())
-    }
-
-    /// The quotients of the windows that end with row `y`, over their bands.
-    fn spectral(
-        &mut self,
-        y: usize,
-        plan: &Plan<'_>,
-        strip: &Strip,
-        variances: bool,
-        to: &mut [f64],
-    ) -> Result<()> {
-        let stride = plan.stride;
-        let width = plan.request.window.columns();
-        let len = strip.read.len() * stride;
-        self.counts.sum(y, &mut self.sum[..len]);
-        let inside = plan.margin * stride..(strip.read.len() - plan.margin) * stride;
-        let below = if variances {
-            let share = plan.share((plan.request.window.rows() * width) as f64);
-            self.variances.sum(y, &mut self.below[..len]);
-            for (below, count) in self.below[..len].iter_mut().zip(self.sum.iter()) {
-                *below = share * *below + *count;
-            }
-            &self.below[inside]
-        } else {
-            &self.sum[inside]
-        };
-        let place = Along { stride, width, first: strip.read.start + plan.margin };
-        along(below, place, &mut self.ends, &mut self.begin, &mut self.below_sums);
-        let windows = strip.centres.len() * stride;
-        let mut of =
-            Quotients { below: &self.below_sums[..windows], var: &plan.var_window, derivative: &[], stride };
-        if let Some(slopes) = &mut self.slopes {
-            let len = plan.inner().len() * stride;
-            slopes.apply(&self.sum[..strip.read.len() * stride], stride, &mut self.slope[..len])?;
-            along(&self.slope[..len], place, &mut self.ends, &mut self.begin, &mut self.slope_sums);
-            of.derivative = &self.slope_sums[..windows];
-            ratios(of, &mut self.lanes, to);
-        } else {
-            ratios_ends(&self.sum[..len], width, of, &mut self.lanes, to);
+        room.widen(y, plan, strip, checked)?;
+        let local = of(&strip.totals, strip.read.start);
+        let samples = local.start * stride..local.end * stride;
+        let (counts, lanes) = (&room.counts.row(y)[samples.clone()], &mut room.lanes);
+        totals(counts, stride, lanes, &mut self.counts[to_totals.clone()]);
+        if checked.variances.is_some() {
+            totals(&room.variances.row(y)[samples], stride, &mut room.lanes, &mut self.variances[to_totals]);
+        }
+        if plan.wants(Cell::Full) {
+            room.quotients(y, plan, strip, checked.variances.is_some(), &mut self.quotients[to_ratios])?;
         }
         Ok(())
     }
