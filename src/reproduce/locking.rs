@@ -22,7 +22,7 @@ const CUTOFF: f64 = 0.25;
 
 /// The plot, and the largest root-mean-square error over the windows of each matcher, pixels.
 pub(super) fn locking(seed: u64) -> Result<(Plot, Vec<(&'static str, f64)>)> {
-    let texture = Texture::random(seed, &[PHOTONS], CONTRAST, CUTOFF, 60)?;
+    let texture = Texture::random(seed, &[PHOTONS], CONTRAST, CUTOFF, 40)?;
     let window = Window::new(5, 5)?;
     let disparities: Vec<f64> = (0..=STEPS).map(|i| i as f64 / STEPS as f64).collect();
     let mut figure = LineFigure::new(
