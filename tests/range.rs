@@ -198,6 +198,27 @@ fn a_check_says_yes_or_no_by_the_cheapest_proof_and_the_same() {
     }
 }
 
+/// Windows without a photon, under electronic noise: no texture, no bound, and counted as such by the proofs and by the bounds.
+#[test]
+fn windows_without_photons_count_as_not_reaching_it() {
+    let scenario = CUBE.replace("depth = ", "noise_variance = 4.0\ndepth = ");
+    let folder = with_cube(&scenario);
+    let dark: Vec<f64> =
+        samples().iter().enumerate().map(|(i, n)| if i / BANDS % COLUMNS < 14 { *n } else { 0.0 }).collect();
+    write_npy(&folder.path().join("left.npy"), shape(), &dark).unwrap();
+    let share = |arguments: &[&str]| {
+        let outcome = folder.run(&[&["range", "a.toml", "--json"], arguments].concat());
+        let result: Value = serde_json::from_str(&outcome.stdout).unwrap();
+        (outcome.code, number(&result["verdict"]["share"]), result["stats"]["windows"].as_u64().unwrap())
+    };
+    // Centres 3 to 36: those from 17 on see dark pixels alone, and at 16 the slope from the last bright one.
+    let (code, proved, windows) = share(&["--check"]);
+    assert_eq!((code, windows), (3, 5 * 34));
+    assert!((proved - 14.0 / 34.0).abs() < 1e-12, "{proved}");
+    assert_eq!(share(&["--check", "--no-skip"]), (code, proved, windows));
+    assert_eq!(share(&[]), (0, proved, windows));
+}
+
 /// One line on stderr that names file, line or key, what was found and what to write.
 #[test]
 fn every_mistake_is_one_line() {

@@ -161,7 +161,7 @@ fn the_committed_reports_are_those_of_today() {
 fn every_mistake_is_one_line() {
     let folder = Folder::with(SCENARIO);
     for (items, said) in [
-        (vec!["fig9"], "unknown figure or table `fig9`; choose among tabs2, policy, fig3c"),
+        (vec!["fig9"], "unknown figure or table `fig9`; choose among tabs2, tabs5, policy"),
         (vec!["tabs2", "--only-library"], "made with the built-in library"),
         (vec!["all", "fig3b"], "`all` beside other names; write `all` alone"),
         (vec!["tabs2", "--out", "a.toml"], "this is a file; name a folder"),
