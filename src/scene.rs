@@ -120,6 +120,23 @@ impl Surroundings {
         })
     }
 
+    /// Checks a state whose fields were set one by one.
+    ///
+    /// # Errors
+    /// Those of [`Surroundings::state`]; a gain or a temperature of the surroundings that is not positive, or not one per object.
+    pub fn check(&self, state: &State) -> Result<()> {
+        self.state(state.temperature_k, &state.lighting)?;
+        check::positive("gain", state.gain, "")?;
+        let (found, expected) = (state.environment_k.len(), self.objects.len());
+        if found != expected {
+            return Err(Error::Length { what: "temperatures of the surroundings".into(), found, expected });
+        }
+        for &temperature_k in &state.environment_k {
+            check::positive("temperature of an environment object", temperature_k, "K")?;
+        }
+        Ok(())
+    }
+
     /// εₖ at node j.
     fn object_emissivity(&self, object: usize, node: usize) -> f64 {
         self.objects[object].emissivity.as_ref().map_or(1.0, |emissivity| emissivity[node])

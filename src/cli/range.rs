@@ -32,6 +32,10 @@ pub(super) struct RangeArgs {
 }
 
 pub(super) fn run(args: &RangeArgs, global: &Global) -> Result<ExitCode> {
+    if args.trials == 1 {
+        let expected = "at least 2, for one error has no scatter; 0 for the bounds alone";
+        return Err(Error::out_of_range("--trials", 1.0, "", expected));
+    }
     if args.trials > MOST_TRIALS {
         let expected = format!("at most {MOST_TRIALS}");
         return Err(Error::out_of_range("--trials", args.trials as f64, "", expected));

@@ -26,7 +26,7 @@ mod tests;
 pub use joint::JointBound;
 
 use super::{Counting, Projection, Projector, Unknowns};
-use crate::error::{Error, Result, check};
+use crate::error::{Error, Result};
 use crate::scene::{Jacobian, Parameter, State, Surroundings, check_emissivity};
 use crate::spectrum::Bands;
 
@@ -182,15 +182,7 @@ impl<'a> PrecisionSolver<'a> {
     fn evaluate(&mut self, emissivity: &[f64], state: &State, counting: &Counting) -> Result<()> {
         let surroundings = self.jacobian.surroundings();
         check_emissivity(emissivity, surroundings.nodes_cm1().len())?;
-        surroundings.state(state.temperature_k, &state.lighting)?;
-        check::positive("gain", state.gain, "")?;
-        let (found, expected) = (state.environment_k.len(), surroundings.objects().len());
-        if found != expected {
-            return Err(Error::Length { what: "temperatures of the surroundings".into(), found, expected });
-        }
-        for &temperature_k in &state.environment_k {
-            check::positive("temperature of an environment object", temperature_k, "K")?;
-        }
+        surroundings.check(state)?;
         counting.check(self.jacobian.bands().len())?;
         let total_known = self.unknowns.known_lighting_total().is_some();
         self.jacobian.evaluate(emissivity, emissivity, state, &self.parameters, total_known);

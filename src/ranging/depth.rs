@@ -144,7 +144,8 @@ impl StereoGeometry {
         let var_diffraction_m2 = image.checked()?.var_diffraction_m2();
         let sum = |of: &dyn Fn(&WindowInformation) -> f64| views.iter().map(of).sum::<f64>();
         let var_content = sum(&|view| 1.0 / view.information_px2());
-        let var_diffraction = sum(&|view| self.diffraction_px2(view, var_diffraction_m2));
+        let var_diffraction_px2 = var_diffraction_m2 / self.pitch_m / self.pitch_m;
+        let var_diffraction = sum(&|view| view.var_diffraction_px2(var_diffraction_px2));
         let sigma_disparity_px = (var_content + var_diffraction).sqrt();
         let sigma_z_m = self.depth_error_m(distance_m, sigma_disparity_px)?;
         Ok(DepthBound {
@@ -154,15 +155,6 @@ impl StereoGeometry {
             sigma_content_px: var_content.sqrt(),
             sigma_diffraction_px: var_diffraction.sqrt(),
         })
-    }
-
-    /// σ_d²(1 + γ)/N of one view, pixel².
-    fn diffraction_px2(&self, view: &WindowInformation, var_diffraction_m2: f64) -> f64 {
-        if var_diffraction_m2 == 0.0 {
-            return 0.0;
-        }
-        let per_photon = view.var_of_one_photon();
-        var_diffraction_m2 / self.pitch_m / self.pitch_m * per_photon
     }
 
     /// z²/(b f)·p.

@@ -141,18 +141,7 @@ impl<'a> LightingSolver<'a> {
     ) -> Result<PixelPrecision> {
         check_emissivity(emissivity, self.jacobian.surroundings().nodes_cm1().len())?;
         counting.check(self.jacobian.bands().len())?;
-        self.check_state(state)?;
-        self.one_factor(emissivity, state, counting, factor)
-    }
-
-    /// [`LightingSolver::precision`] where emissivity, counting and state are known to be sound.
-    fn one_factor(
-        &mut self,
-        emissivity: &[f64],
-        state: &State,
-        counting: &Counting,
-        factor: usize,
-    ) -> Result<PixelPrecision> {
+        self.jacobian.surroundings().check(state)?;
         let wanted = Parameter::Lighting(factor);
         let Some(own) = self.parameters.iter().position(|parameter| *parameter == wanted) else {
             let free = self.parameters.len() - self.others;
@@ -193,7 +182,7 @@ impl<'a> LightingSolver<'a> {
         let surroundings = self.jacobian.surroundings();
         check_emissivity(emissivity, surroundings.nodes_cm1().len())?;
         counting.check(self.jacobian.bands().len())?;
-        self.check_state(state)?;
+        self.jacobian.surroundings().check(state)?;
         check::finite("change of temperature", temperature_per_px, "K per pixel")?;
         let (found, expected) = (lighting_per_px.len(), surroundings.objects().len());
         if found != expected {
@@ -278,19 +267,5 @@ impl<'a> LightingSolver<'a> {
         }
         let of = |(i, parameter): (usize, &Parameter)| self.unknowns.sigma_prior(*parameter).map(|s| (i, s));
         self.parameters.iter().enumerate().filter_map(of).collect()
-    }
-
-    fn check_state(&self, state: &State) -> Result<()> {
-        let surroundings = self.jacobian.surroundings();
-        surroundings.state(state.temperature_k, &state.lighting)?;
-        check::positive("gain", state.gain, "")?;
-        let (found, expected) = (state.environment_k.len(), surroundings.objects().len());
-        if found != expected {
-            return Err(Error::Length { what: "temperatures of the surroundings".into(), found, expected });
-        }
-        for &temperature_k in &state.environment_k {
-            check::positive("temperature of an environment object", temperature_k, "K")?;
-        }
-        Ok(())
     }
 }

@@ -105,6 +105,8 @@ impl View {
 
     fn fill(&self, part: Part, factor: f64, row: &MixedRow, out: &mut [f64]) {
         let bands = self.basis.bands;
+        // Written before it is read: fresh memory that is read first is the system's page of zeros, copied at the first write.
+        out.fill(0.0);
         let (mut entry, mut coefficients) = (0, row.coefficients.as_slice());
         for (pixel, &until) in out.chunks_exact_mut(bands).zip(&row.entries_until) {
             while entry < until {

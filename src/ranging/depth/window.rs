@@ -20,7 +20,8 @@ impl WindowInformation {
         check::non_negative("information J of a window", information_px2, "pixel^-2")?;
         check::non_negative("photons of a window", photons, "")?;
         check::non_negative("electronic noise of a window", var_electronic, "counts^2")?;
-        if information_px2 > 0.0 && photons == 0.0 {
+        // Dark pixels beside bright ones have a slope, which electronic noise makes finite information of.
+        if information_px2 > 0.0 && photons == 0.0 && var_electronic == 0.0 {
             return Err(Error::malformed(
                 format!("a window of information {information_px2} pixel^-2 without photons"),
                 "give the photons it was counted from",
@@ -56,8 +57,20 @@ impl WindowInformation {
         1.0 / (self.information_px2 * self.var_of_one_photon())
     }
 
+    /// σ_d²(1 + γ)/N, pixel²: what diffraction of `var_one_photon_px2` = σ_d² (pixel²) adds; infinite without photons.
+    #[must_use]
+    pub fn var_diffraction_px2(&self, var_one_photon_px2: f64) -> f64 {
+        if var_one_photon_px2 == 0.0 { 0.0 } else { var_one_photon_px2 * self.var_of_one_photon() }
+    }
+
+    /// Variance of the window's position in this view, pixel² (half of S43's): 1/J + σ_d²(1 + γ)/N.
+    #[must_use]
+    pub fn var_position_px2(&self, var_one_photon_px2: f64) -> f64 {
+        1.0 / self.information_px2 + self.var_diffraction_px2(var_one_photon_px2)
+    }
+
     /// (1 + γ)/N: by what N photons with their noise divide the variance of one.
-    pub(super) fn var_of_one_photon(&self) -> f64 {
+    fn var_of_one_photon(&self) -> f64 {
         if self.photons > 0.0 {
             (1.0 + self.var_electronic / self.photons) / self.photons
         } else {

@@ -6,6 +6,8 @@
 //! its mirror image at the other end. The pivots of the elimination lie between 2 and 4, but for the first (1)
 //! and the last (2 − √3 + …, at least 3/7), so no exchange of rows is needed.
 
+use crate::simd::dispatched;
+
 /// The elimination of the system for rows of a certain length: reciprocal pivots.
 #[derive(Debug, Clone)]
 pub(super) struct Spline {
@@ -29,9 +31,16 @@ impl Spline {
     }
 
     pub(super) fn apply(&self, row: &[f64], bands: usize, slope: &mut [f64]) {
-        let last = self.reciprocal.len() - 1;
+        solve(&self.reciprocal, row, bands, slope);
+    }
+}
+
+dispatched! {
+    /// Elimination and back substitution, all bands side by side.
+    fn solve<'a>(reciprocal: &'a [f64], row: &'a [f64], bands: usize, slope: &'a mut [f64]) {
+        let last = reciprocal.len() - 1;
         let at = |x: usize| &row[x * bands..(x + 1) * bands];
-        for (x, reciprocal) in self.reciprocal.iter().enumerate() {
+        for (x, pivot) in reciprocal.iter().enumerate() {
             let (done, rest) = slope.split_at_mut(x * bands);
             let here = &mut rest[..bands];
             if x == 0 || x == last {
@@ -54,12 +63,12 @@ impl Spline {
             }
             // Stored over the pivot, so that the next row subtracts it as it is.
             for here in here.iter_mut() {
-                *here *= reciprocal;
+                *here *= pivot;
             }
         }
         for x in (0..last).rev() {
             let (here, after) = slope[x * bands..].split_at_mut(bands);
-            let factor: f64 = if x == 0 { -2.0 } else { -self.reciprocal[x] };
+            let factor: f64 = if x == 0 { -2.0 } else { -reciprocal[x] };
             for (here, after) in here.iter_mut().zip(&after[..bands]) {
                 *here = factor.mul_add(*after, *here);
             }

@@ -141,6 +141,9 @@ struct Work {
     columns: Vec<f64>,
     weights: Vec<f64>,
     warmth: Vec<f64>,
+    /// ∂ln B/∂T of the bands at the temperature of the last pixel.
+    per_kelvin: Vec<f64>,
+    temperature_k: Option<f64>,
 }
 
 impl Work {
@@ -157,9 +160,14 @@ impl Work {
         self.weights.clear();
         // Where nothing is counted, nothing is told.
         self.weights.extend(noisy.map(|(n, var)| if n + var > 0.0 { 1.0 / (n + var) } else { 0.0 }));
-        let per_kelvin = |nu: &f64| planck::log_derivative(*nu, temperature_k);
+        // Neighbours mostly belong to one surface.
+        if self.temperature_k != Some(temperature_k) {
+            self.temperature_k = Some(temperature_k);
+            let per_kelvin = |nu: &f64| planck::log_derivative(*nu, temperature_k);
+            self.per_kelvin = image.wavenumbers_cm1.iter().map(per_kelvin).collect();
+        }
         self.warmth.clear();
-        self.warmth.extend(emission.iter().zip(image.wavenumbers_cm1).map(|(e, nu)| e * per_kelvin(nu)));
+        self.warmth.extend(emission.iter().zip(&self.per_kelvin).map(|(e, per_kelvin)| e * per_kelvin));
         let slope = &self.slopes[x * bands..(x + 1) * bands];
         let parts: [&[f64]; 3] = [&self.warmth, emission, slope];
         [&[0, 2][..], &[0, 1, 2]].map(|unknown| {
@@ -180,6 +188,8 @@ impl Work {
             columns: Vec::new(),
             weights: Vec::new(),
             warmth: Vec::new(),
+            per_kelvin: Vec::new(),
+            temperature_k: None,
         }
     }
 }

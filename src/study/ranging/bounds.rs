@@ -55,17 +55,8 @@ impl Ground<'_> {
         right: Option<&SignalMap>,
         windows: &[(usize, usize)],
     ) -> Vec<f64> {
-        let one = |map: &SignalMap, at: usize| -> Option<f64> {
-            let (j, n) = (*map.information.get(at)?, *map.photons.get(at)?);
-            let var = *map.var_electronic.get(at)?;
-            // (1 + γ)/N = (N + Σσ²)/N²; without photons nothing is told.
-            let diffraction = match (self.var_diffraction_px2, n) {
-                (0.0, _) => 0.0,
-                (_, 0.0) => f64::INFINITY,
-                (var_px2, n) => var_px2 * ((n + var) / n) / n,
-            };
-            Some(1.0 / j + diffraction)
-        };
+        let one =
+            |map: &SignalMap, at: usize| Some(map.window(at)?.var_position_px2(self.var_diffraction_px2));
         let both = |&(row, column): &(usize, usize)| {
             let own = one(left, left.at(row, column)?)?;
             let depth_m = *self.truth.depth_m.get(row * self.columns + column)?;
@@ -145,11 +136,7 @@ impl Ground<'_> {
         let gamma = of(&map.var_electronic) / photons;
         let correspondence: Vec<f64> = bounds
             .iter()
-            .filter_map(|&Bound { place, .. }| {
-                let (j, n) = (map.information.get(place)?, map.photons.get(place)?);
-                // 1/J⁰ = N/(J (1 + γ)) = N²/(J (N + Σσ²)).
-                Some((n * n / (j * (n + map.var_electronic.get(place)?))).sqrt())
-            })
+            .filter_map(|bound| Some(map.window(bound.place)?.var_content_px2().sqrt()))
             .collect();
         let disparities: Vec<f64> = bounds.iter().map(|bound| bound.var_px2.sqrt()).collect();
         let with_depth: Vec<&Bound> = bounds.iter().filter(|bound| bound.depth_m.is_finite()).collect();

@@ -4,6 +4,7 @@ use super::results::Signal;
 use super::subject::Rendered;
 use crate::error::Result;
 use crate::ranging::cube::{Cube, Rows as _};
+use crate::ranging::depth::WindowInformation;
 use crate::ranging::information::{Cell, InformationMap, Request, information};
 use crate::ranging::noise::Joined;
 use crate::ranging::reconstruction::EmissionImage;
@@ -50,6 +51,12 @@ impl SignalMap {
             values.iter_mut().for_each(|value| *value *= photons);
         }
         self
+    }
+
+    /// A window as the bounds take it.
+    pub(super) fn window(&self, at: usize) -> Option<WindowInformation> {
+        let (j, n) = (*self.information.get(at)?, *self.photons.get(at)?);
+        WindowInformation::new(j, n, *self.var_electronic.get(at)?).ok()
     }
 
     /// The place of a centre in the map.

@@ -9,6 +9,7 @@ use crate::ranging::metrics::DepthMetrics;
 use crate::ranging::noise::{Joined, NoiseVariance};
 use crate::render::{Part, StereoPair as Rendering, View};
 use crate::simulate::draws::{Draws, generator};
+use crate::simulate::efficiency::Criteria;
 use crate::simulate::matching::block::Block;
 use crate::simulate::matching::dense::disparity_map;
 use crate::simulate::matching::likelihood::Likelihood;
@@ -19,8 +20,6 @@ use std::ops::Range;
 
 /// Disparities tried beyond the largest true one.
 const BEYOND_PX: f64 = 4.0;
-/// A match further off than this is an outlier, pixels.
-const OUTLIER_PX: f64 = 1.0;
 /// Share of outliers beyond which matches are guesses.
 const GUESSES: f64 = 0.1;
 /// The signals that are matched: what a thermal camera has, what a spectral one has, what the paper has.
@@ -153,26 +152,13 @@ impl RangeStudy {
         let index = u32::try_from(bound.row).unwrap_or(u32::MAX);
         let matches = trials.run(Run { index, trials: plan.trials, seed: plan.seed });
         let mut line = Line { method: Some(method.name()), trials: plan.trials, ..bound.clone() };
-        for (i, centre) in centres.iter().enumerate() {
-            let (mut found, mut sum, mut squares, mut outliers) = (0_usize, 0.0, 0.0, 0_usize);
-            for error in matches.of(i).map(|found| found.map(|disparity| disparity - centre.disparity)) {
-                match error {
-                    Ok(error) => {
-                        found += 1;
-                        sum += error;
-                        squares += error * error;
-                        outliers += usize::from(error.abs() > OUTLIER_PX);
-                    }
-                    Err(_) => outliers += 1,
-                }
-            }
-            let depth_m = bound.depth_m.get(i).copied().unwrap_or(f64::NAN);
-            let per_px = self.geometry.depth_error_m(depth_m, 1.0)?;
-            let share = |value: f64| if found == 0 { f64::NAN } else { value / found as f64 };
-            line.rmse_m.push(per_px * share(squares).sqrt());
+        let report = matches.report(&[], &Criteria::default())?;
+        for (centre, depth_m) in report.centres.iter().zip(&bound.depth_m) {
+            let per_px = self.geometry.depth_error_m(*depth_m, 1.0)?;
+            line.rmse_m.push(per_px * centre.errors.map_or(f64::NAN, |errors| errors.rmse));
             // More disparity is less depth.
-            line.bias_m.push(-per_px * share(sum));
-            line.outliers.push(outliers as f64 / plan.trials.max(1) as f64);
+            line.bias_m.push(-per_px * centre.errors.map_or(f64::NAN, |errors| errors.bias));
+            line.outliers.push(centre.lost);
         }
         let scatter = line
             .rmse_m
