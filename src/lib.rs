@@ -10,6 +10,8 @@ pub mod material;
 pub mod planck;
 pub mod policy;
 pub mod ranging;
+#[cfg(feature = "accuracy")]
+pub mod reference;
 pub mod render;
 pub mod report;
 pub mod reproduce;
