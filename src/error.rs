@@ -24,7 +24,7 @@ impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut separator = "";
         if let Some(path) = &self.path {
-            write!(f, "{}", path.display())?;
+            write!(f, "{}", Shown(&path.to_string_lossy(), LONGEST_PART))?;
             separator = ": ";
         }
         if let Some(line) = self.line {
@@ -36,7 +36,7 @@ impl fmt::Display for Place {
             separator = ": ";
         }
         if let Some(key) = &self.key {
-            write!(f, "{separator}{key}")?;
+            write!(f, "{separator}{}", Shown(key, LONGEST_NAME))?;
         }
         Ok(())
     }
@@ -47,7 +47,10 @@ impl fmt::Display for Place {
 #[non_exhaustive]
 pub enum Error {
     /// A number outside the range in which it has a meaning.
-    #[error("{quantity} is {}{}; it must be {expected}", short(*.value), unit_suffix(.unit))]
+    #[error(
+        "{} is {}{}; it must be {}",
+        Shown(.quantity, LONGEST_PART), short(*.value), unit_suffix(.unit), Shown(.expected, LONGEST_PART)
+    )]
     OutOfRange {
         /// Name of the quantity, e.g. `temperature`.
         quantity: String,
@@ -59,7 +62,7 @@ pub enum Error {
         expected: String,
     },
     /// A name that is not in the list it must come from.
-    #[error("there is no {kind} `{name}`{}", suggestion(.nearest))]
+    #[error("there is no {kind} `{}`{}", Shown(.name, LONGEST_NAME), suggestion(.nearest))]
     UnknownName {
         /// What was looked up, e.g. `material`.
         kind: &'static str,
@@ -69,7 +72,7 @@ pub enum Error {
         nearest: Vec<String>,
     },
     /// Two lists that must have the same length do not.
-    #[error("{what}: {found} values where {expected} are needed")]
+    #[error("{}: {found} values where {expected} are needed", Shown(.what, LONGEST_PART))]
     Length {
         /// What is being counted.
         what: String,
@@ -80,8 +83,8 @@ pub enum Error {
     },
     /// A spectrum is asked for outside the range in which it is known.
     #[error(
-        "`{name}` is known from {} to {} cm^-1 but is needed at {} cm^-1; narrow the bands, or add extrapolate = \"hold\" or \"linear\" if you accept a guess",
-        converted(*known_min), converted(*known_max), converted(*needed)
+        "`{}` is known from {} to {} cm^-1 but is needed at {} cm^-1; narrow the bands, or add extrapolate = \"hold\" or \"linear\" if you accept a guess",
+        Shown(.name, LONGEST_NAME), converted(*known_min), converted(*known_max), converted(*needed)
     )]
     OutsideSpectrum {
         /// Name of the spectrum.
@@ -94,7 +97,7 @@ pub enum Error {
         needed: f64,
     },
     /// Something is written in a way that cannot be used.
-    #[error("{found}; {instead}")]
+    #[error("{}; {}", Shown(.found, LONGEST_PART), Shown(.instead, LONGEST_PART))]
     Malformed {
         /// What was found.
         found: String,
@@ -102,7 +105,7 @@ pub enum Error {
         instead: String,
     },
     /// The operating system refused a file operation.
-    #[error("cannot {action}: {reason}")]
+    #[error("cannot {}: {}", Shown(.action, LONGEST_PART), Shown(.reason, LONGEST_PART))]
     File {
         /// What was tried, e.g. `read the scenario`.
         action: String,
@@ -141,8 +144,11 @@ impl Error {
         name: &str,
         known: impl IntoIterator<Item = &'a str>,
     ) -> Self {
+        // Comparing takes the product of the lengths, and nothing is like a name that long.
+        let comparable = name.len() <= LONGEST_NAME;
         let mut ranked: Vec<(f64, &str)> = known
             .into_iter()
+            .filter(|candidate| comparable && candidate.len() <= LONGEST_NAME)
             .map(|candidate| (strsim::jaro_winkler(name, candidate), candidate))
             .filter(|(score, _)| *score > 0.6)
             .collect();
@@ -188,6 +194,41 @@ impl Error {
             },
             other => Self::At { place: outer, source: Box::new(other) },
         }
+    }
+}
+
+/// Most characters of a name or key, and of another part of a message.
+const LONGEST_NAME: usize = 120;
+const LONGEST_PART: usize = 400;
+
+/// Text that a message repeats, which may be from a file: on one line, without anything a terminal would obey, its
+/// middle left out if it is longer than the given number of characters.
+struct Shown<'a>(&'a str, usize);
+
+impl fmt::Display for Shown<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self(text, most) = *self;
+        let put = |f: &mut fmt::Formatter<'_>, part: &str| {
+            part.chars().try_for_each(|char| match char.is_control() {
+                true => write!(f, "{}", char.escape_default()),
+                false => write!(f, "{char}"),
+            })
+        };
+        // An escaped character takes up to eight.
+        let shown = |char: char| if char.is_control() { char.escape_default().len() } else { 1 };
+        if text.len() <= most / 8 || text.chars().map(shown).sum::<usize>() <= most {
+            return put(f, text);
+        }
+        let (head, tail) = (3 * most / 4, most / 4 - 3);
+        let fits = |room: usize| {
+            let mut left = room;
+            move |char: &char| left.checked_sub(shown(*char)).map(|rest| left = rest).is_some()
+        };
+        let start: usize = text.chars().take_while(fits(head)).map(char::len_utf8).sum();
+        let end: usize = text.chars().rev().take_while(fits(tail)).map(char::len_utf8).sum();
+        put(f, &text[..start])?;
+        f.write_str(" … ")?;
+        put(f, &text[text.len() - end..])
     }
 }
 
@@ -270,6 +311,23 @@ mod tests {
         assert_eq!(message(1e300), "t is 1e300 K; it must be less");
         assert_eq!(message(-2.5e-9), "t is -2.5e-9 K; it must be less");
         assert_eq!(message(0.0), "t is 0 K; it must be less");
+    }
+
+    #[test]
+    fn what_a_file_holds_is_repeated_on_one_line_and_not_at_any_length() {
+        let message = |found: &str| Error::malformed(found, "do").for_key(found).to_string();
+        assert_eq!(message("a\n\u{1b}[2J\u{85}"), r"a\n\u{1b}[2J\u{85}: a\n\u{1b}[2J\u{85}; do");
+        let long = format!("head {}\0 tail", "ä".repeat(100_000));
+        let message = message(&long);
+        assert!(message.starts_with("head ää") && message.contains(r"ä … ä"), "{message}");
+        assert!(message.ends_with(r"ää\u{0} tail; do"), "{message}");
+        assert_eq!(message.chars().count(), LONGEST_NAME + 2 + LONGEST_PART + 4);
+        for length in 0..LONGEST_PART + 2 {
+            let shown = Shown(&"\u{7f}".repeat(length), LONGEST_PART).to_string();
+            assert!(shown.len() <= LONGEST_PART + "…".len(), "{length}: {shown}");
+        }
+        let unknown = Error::unknown_name("key", &"a".repeat(1_000_000), ["a"]);
+        assert!(matches!(unknown, Error::UnknownName { nearest, .. } if nearest.is_empty()));
     }
 
     #[test]

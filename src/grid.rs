@@ -1,6 +1,7 @@
 //! Files of numbers: CSV with comment lines, one header line, and rows as long as the header.
 
 use crate::error::{Error, Result};
+use std::io::Read;
 use std::path::Path;
 
 /// What a file should begin with, for messages.
@@ -8,6 +9,9 @@ pub(crate) const EXAMPLE: &str = "begin the file with a line such as wavenumber_
 
 /// What reading a material is called in messages.
 pub(crate) const READ_SPECTRUM: &str = "read the spectrum";
+
+/// The longest file that is taken for text, bytes: a manifest may name anything, a device without end among it.
+const LONGEST_FILE: u64 = 1 << 26;
 
 /// The header and the numbers, with the line (from 1) that each row stands on.
 #[derive(Debug, Clone, PartialEq)]
@@ -98,10 +102,17 @@ pub(crate) fn text_of_file(path: &Path, action: &str) -> Result<String> {
         let library = if action == READ_SPECTRUM { ", or give it to --library" } else { "" };
         return Err(Error::file(action, path, format!("this is a directory; name a file{library}")));
     }
-    let bytes = std::fs::read(path).map_err(|error| match error.kind() {
+    let failed = |error: std::io::Error| match error.kind() {
         std::io::ErrorKind::NotFound => Error::file(action, path, "there is no such file; check the name"),
         _ => Error::file(action, path, error),
-    })?;
+    };
+    let mut bytes = Vec::new();
+    std::fs::File::open(path)
+        .and_then(|file| file.take(LONGEST_FILE + 1).read_to_end(&mut bytes))
+        .map_err(failed)?;
+    if bytes.len() as u64 > LONGEST_FILE {
+        return Err(Error::file(action, path, "it is longer than 64 MiB, more than such a file needs"));
+    }
     // Latin-1 is the first 256 code points
     Ok(String::from_utf8(bytes)
         .unwrap_or_else(|error| error.as_bytes().iter().map(|&b| char::from(b)).collect()))

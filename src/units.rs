@@ -153,7 +153,10 @@ impl Dimension {
             ));
         }
         match self.units().iter().find(|unit| unit.spelling == spelling) {
-            Some(unit) => Ok(value * unit.factor + unit.offset),
+            Some(unit) => match value * unit.factor + unit.offset {
+                value if value.is_finite() => Ok(value),
+                _ => Err(Error::malformed(format!("`{text}` is out of range"), "it must be a finite number")),
+            },
             None => Err(Error::malformed(
                 format!("`{spelling}` is not a unit of {}", self.name()),
                 format!("write {}", self.example()),
@@ -311,6 +314,7 @@ mod tests {
         assert!(Dimension::Temperature.parse("37 m").is_err());
         assert!(Dimension::Temperature.parse("NaN K").is_err());
         assert!(Dimension::Temperature.parse("").is_err());
+        assert!(Dimension::Length.parse("1e308 km").is_err());
         assert_eq!(Spectral::parse("8 um").unwrap(), Spectral::Wavelength(8.0));
         assert_eq!(Spectral::parse("715 cm^-1").unwrap(), Spectral::Wavenumber(715.0));
         assert!(Spectral::parse("8").is_err());

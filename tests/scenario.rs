@@ -26,6 +26,33 @@ fn read(text: &str) -> Scenario {
 }
 
 #[test]
+fn plain_numbers_may_be_written_to_any_base_of_toml() {
+    let number = |text: &str| {
+        read(&format!("{MINIMUM}[camera]\nnoise_electrons = {text}\n"))
+            .camera
+            .unwrap()
+            .noise_electrons
+            .unwrap()
+    };
+    let texts = ["0x10", "0x1E5", "0b1010", "0o17", "1_000", "1e2", "16"];
+    assert_eq!(texts.map(number), [16.0, 485.0, 10.0, 15.0, 1000.0, 100.0, 16.0]);
+}
+
+#[test]
+fn paths_that_begin_or_end_in_a_blank_are_not_confused_with_others() {
+    let path = std::env::temp_dir().join("a.toml");
+    let with = |file: &str| Scenario::from_toml(&MINIMUM.replace("skin", file), Some(&path));
+    let scenario = with("./ x.csv").unwrap();
+    let text = scenario.to_toml_beside(path.parent().unwrap());
+    assert_eq!(Scenario::from_toml(&text, Some(&path)).unwrap(), scenario, "{text}");
+    let error = with("./x /.").unwrap_err().to_string();
+    assert!(
+        error.ends_with("target.material: `./x /.` is a path that ends in a blank; rename the file"),
+        "{error}"
+    );
+}
+
+#[test]
 fn the_example_is_the_case_of_the_paper() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/human_vs_robot.toml");
     let scenario = Scenario::from_file(&path).unwrap();

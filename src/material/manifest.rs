@@ -30,6 +30,7 @@ use super::{Material, read};
 use crate::error::{Error, Result};
 use serde::Deserialize;
 use std::borrow::Cow;
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -148,11 +149,14 @@ pub(super) fn parse(text: &str, path: &Path, around: &Surroundings<'_>) -> Resul
         .for_key("version")
         .in_file(path));
     }
-    let mut materials: Vec<Material> = Vec::with_capacity(manifest.material.len());
+    let mut materials = Vec::with_capacity(manifest.material.len());
+    let mut builder = Builder { earlier: BTreeMap::new(), around };
     for entry in manifest.material {
         let name = entry.name.clone();
-        let built = build(entry, &materials, around)
+        let built = builder
+            .material(entry)
             .map_err(|error| error.for_key(format!("material `{name}`")).in_file(path))?;
+        builder.earlier.insert(name, built.model.clone());
         materials.push(built);
     }
     Ok(materials)
@@ -168,43 +172,47 @@ fn syntax(text: &str, error: &toml::de::Error) -> Error {
     }
 }
 
-fn build(entry: Entry, earlier: &[Material], around: &Surroundings<'_>) -> Result<Material> {
-    if entry.name != read::kebab_case(&entry.name) || entry.name.is_empty() {
-        return Err(Error::malformed(
-            format!("the name `{}` is not in kebab-case", entry.name),
-            format!("write `{}`", read::kebab_case(&entry.name)),
-        ));
-    }
-    if earlier.iter().any(|material| material.name() == entry.name) {
-        return Err(Error::malformed("this name is there twice", "give every material its own name"));
-    }
-    let builder = Builder { earlier, around };
-    let mut model = builder.model(entry.model)?;
-    if let Some([low, high]) = entry.range_cm1 {
-        model = Arc::new(Model::within(low, high, model)?);
-    }
-    Ok(Material {
-        name: entry.name,
-        provenance: Provenance {
-            description: entry.description,
-            category: entry.category,
-            basis: entry.basis,
-            source: entry.source,
-            licence: entry.licence,
-            note: entry.note,
-        },
-        model,
-        extrapolation: None,
-        warnings: Vec::new(),
-    })
-}
-
 struct Builder<'a> {
-    earlier: &'a [Material],
+    /// Materials further up.
+    earlier: BTreeMap<String, Arc<Model>>,
     around: &'a Surroundings<'a>,
 }
 
 impl Builder<'_> {
+    fn material(&self, entry: Entry) -> Result<Material> {
+        if entry.name != read::kebab_case(&entry.name) || entry.name.is_empty() {
+            let instead = match read::kebab_case(&entry.name) {
+                kebab if kebab.is_empty() => "write letters and digits, such as `my-paint`".to_owned(),
+                kebab => format!("write `{kebab}`"),
+            };
+            let found = format!("the name `{}` is not in kebab-case", entry.name);
+            return Err(Error::malformed(found, instead));
+        }
+        if self.earlier.contains_key(&entry.name) {
+            return Err(Error::malformed("this name is there twice", "give every material its own name"));
+        }
+        let mut model = self.model(entry.model)?;
+        if let Some([low, high]) = entry.range_cm1 {
+            model = Arc::new(Model::within(low, high, model)?);
+        }
+        // In TOML a text may have several lines; a list of materials has one for each.
+        let line = |text: String| read::one_line(&text);
+        Ok(Material {
+            name: entry.name,
+            provenance: Provenance {
+                description: line(entry.description),
+                category: line(entry.category),
+                basis: entry.basis,
+                source: line(entry.source),
+                licence: line(entry.licence),
+                note: line(entry.note),
+            },
+            model,
+            extrapolation: None,
+            warnings: Vec::new(),
+        })
+    }
+
     fn model(&self, entry: ModelEntry) -> Result<Arc<Model>> {
         let model = match entry {
             ModelEntry::Constant(emissivity) => Model::constant(emissivity)?,
@@ -238,8 +246,8 @@ impl Builder<'_> {
                     .collect::<Result<_>>()?,
             )?,
             ModelEntry::Material(name) => {
-                return match self.earlier.iter().find(|material| material.name() == name) {
-                    Some(material) => Ok(material.model.clone()),
+                return match self.earlier.get(&name) {
+                    Some(model) => Ok(model.clone()),
                     None => (self.around.known)(&name),
                 };
             }

@@ -17,6 +17,10 @@ use crate::error::{Error, Result, check};
 use serde::Deserialize;
 use std::sync::Arc;
 
+/// Most surfaces in a tree. One that stands there several times is computed as often, so that a few lines, each made
+/// twice of the one before, would take forever.
+const MOST_PARTS: usize = 1000;
+
 /// A range of wavenumbers in cm⁻¹; `None` is everywhere.
 pub(super) type Range = Option<(f64, f64)>;
 
@@ -83,7 +87,7 @@ impl Model {
         if !(area_ratio.is_finite() && area_ratio >= 1.0) {
             return Err(Error::out_of_range("area_ratio", area_ratio, "", "a finite number, 1 or above"));
         }
-        Ok(Self::Cavity { area_ratio, surface })
+        Self::Cavity { area_ratio, surface }.of_few_parts()
     }
 
     /// The mean of surfaces, each with the number of parts it makes up.
@@ -95,14 +99,36 @@ impl Model {
         if parts.is_empty() {
             return Err(Error::malformed("a mixture of nothing", "name at least one part"));
         }
-        Self::Mean(parts.into_iter().map(|(weight, part)| (weight / total, part)).collect()).somewhere()
+        check::finite("sum of the parts", total, "")?;
+        let parts = parts.into_iter().map(|(weight, part)| (weight / total, part));
+        Self::Mean(parts.collect()).of_few_parts()?.somewhere()
     }
 
     /// A surface that is vouched for only between two wavenumbers.
     pub(super) fn within(low_cm1: f64, high_cm1: f64, surface: Arc<Model>) -> Result<Self> {
         check::positive("range_cm1", low_cm1, "cm^-1")?;
         check::positive("range_cm1", high_cm1, "cm^-1")?;
-        Self::Within { low_cm1, high_cm1, surface }.somewhere()
+        Self::Within { low_cm1, high_cm1, surface }.of_few_parts()?.somewhere()
+    }
+
+    /// Surfaces in the tree, itself among them.
+    fn parts(&self) -> usize {
+        1 + match self {
+            Self::Cavity { surface, .. } | Self::Within { surface, .. } => surface.parts(),
+            Self::Mean(parts) => parts.iter().map(|(_, part)| part.parts()).sum(),
+            _ => 0,
+        }
+    }
+
+    /// The model, if it is no larger than any surface needs.
+    fn of_few_parts(self) -> Result<Self> {
+        match self.parts() {
+            parts if parts > MOST_PARTS => Err(Error::malformed(
+                format!("the surface is made of {parts} surfaces"),
+                format!("make it of at most {MOST_PARTS}"),
+            )),
+            _ => Ok(self),
+        }
     }
 
     /// The model, if its parts have a range in common.

@@ -107,6 +107,12 @@ pub(super) fn kebab_case(name: &str) -> String {
     kebab
 }
 
+/// Text without line breaks and other control characters, nor more than one blank at a place.
+pub(super) fn one_line(text: &str) -> String {
+    let words = text.split(|char: char| char.is_whitespace() || char.is_control());
+    words.filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ")
+}
+
 /// The file's name without folders and extension, in kebab-case.
 pub(super) fn stem(path: &Path) -> String {
     let stem = path.file_stem().map(|stem| kebab_case(&stem.to_string_lossy())).unwrap_or_default();

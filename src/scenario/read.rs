@@ -1,6 +1,6 @@
 //! Reads a scenario: every key checked, every error one line with file, line and key.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
@@ -280,21 +280,28 @@ pub(super) fn is_path(text: &str) -> bool {
 pub(super) fn file(entry: &Entry<'_>) -> Result<PathBuf> {
     let text = entry.text("\"my_data.csv\"")?.trim();
     let path = entry.source().directory().join(text);
-    std::path::absolute(&path).map_err(|error| {
+    let path = std::path::absolute(&path).map_err(|error| {
         entry
             .fail(Error::malformed(format!("`{text}` is not a usable path ({error})"), "write the full path"))
-    })
+    })?;
+    // As in `x /.`: written again, it would be another path.
+    if path.to_string_lossy().ends_with(char::is_whitespace) {
+        let found = format!("`{text}` is a path that ends in a blank");
+        return Err(entry.fail(Error::malformed(found, "rename the file")));
+    }
+    Ok(path)
 }
 
 /// The items of a list, each of which may stand there once.
-fn without_repetition<'a, T: PartialEq>(
+fn without_repetition<'a, T: Ord + Clone>(
     items: &[Entry<'a>],
     read: impl Fn(&Entry<'a>) -> Result<T>,
 ) -> Result<Vec<T>> {
     let mut values = Vec::with_capacity(items.len());
+    let mut seen = BTreeSet::new();
     for item in items {
         let value = read(item)?;
-        if values.contains(&value) {
+        if !seen.insert(value.clone()) {
             let found = "the same is already in the list";
             return Err(item.fail(Error::malformed(found, "name it once")));
         }

@@ -209,9 +209,11 @@ impl<'a> Entry<'a> {
     /// A finite plain number, whole or not; `example` is one to write.
     pub(super) fn number(&self, example: &str, rule: Rule) -> Result<f64> {
         let value = match self.value {
-            DeValue::Integer(digits) => digits.as_str().parse().ok().or_else(|| {
+            DeValue::Integer(digits) if digits.radix() == 10 => digits.as_str().parse().ok(),
+            // The digits alone, without 0x, 0o or 0b before them.
+            DeValue::Integer(digits) => {
                 i64::from_str_radix(digits.as_str(), digits.radix()).ok().map(|value| value as f64)
-            }),
+            }
             DeValue::Float(digits) => digits.as_str().parse().ok(),
             _ => None,
         };

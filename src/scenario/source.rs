@@ -7,6 +7,10 @@ use toml::de::{DeTable, DeValue};
 
 use crate::error::Place;
 
+/// Longest name of a table or list whose entries are noted, bytes. No scenario needs as much, and names of entries
+/// repeat it: a long one with a long list would fill the memory.
+const LONGEST_NAME: usize = 100;
+
 /// Where a scenario was read from.
 #[derive(Debug, Clone, Default)]
 pub struct Source {
@@ -56,6 +60,7 @@ impl Source {
 
     fn note_value(&mut self, starts: &LineStarts, name: &str, value: &DeValue<'_>) {
         match value {
+            _ if name.len() > LONGEST_NAME => {}
             DeValue::Table(table) => self.note_table(starts, name, table),
             DeValue::Array(items) => {
                 for (index, item) in items.iter().enumerate() {

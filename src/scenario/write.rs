@@ -157,8 +157,8 @@ impl Paths<'_> {
     pub(super) fn file(self, path: &Path) -> String {
         let inside = self.beside.and_then(|directory| path.strip_prefix(directory).ok());
         let text = inside.unwrap_or(path).to_string_lossy().into_owned();
-        // A bare `skin` would be read as a name of the library.
-        if is_path(&text) { text } else { format!("./{text}") }
+        // A bare `skin` would be read as a name of the library, and a blank at the beginning would be lost.
+        if is_path(&text) && !text.starts_with(char::is_whitespace) { text } else { format!("./{text}") }
     }
 
     pub(super) fn material(self, material: &MaterialRef) -> String {

@@ -71,6 +71,8 @@ fn rows(text: &str) -> Result<Bands> {
         check::positive(width, value, "").map_err(|error| error.for_key(width).on_line(*line))?;
         // dν = 10⁴ dλ/λ² = ν² dλ/10⁴.
         let width_cm1 = if width == "width_um" { center * center * value / 1e4 } else { value };
+        check::positive("band width", width_cm1, "cm^-1")
+            .map_err(|error| error.for_key(width).on_line(*line))?;
         Ok((center, width_cm1))
     });
     Bands::from_rows(banded.collect::<Result<Vec<_>>>()?)
@@ -111,8 +113,11 @@ fn axis(grid: &Grid) -> Result<Vec<f64>> {
     let mut seen: Vec<(f64, usize)> = Vec::new();
     for (line, cells) in &grid.rows {
         let value = cells.first().copied().unwrap_or(f64::NAN);
-        check::positive(name, value, "").map_err(|error| error.for_key(name).on_line(*line))?;
-        seen.push((if name == "wavelength_um" { 1e4 / value } else { value }, *line));
+        let wavenumber = if name == "wavelength_um" { 1e4 / value } else { value };
+        check::positive(name, value, "")
+            .and_then(|_| check::positive("wavenumber", wavenumber, "cm^-1"))
+            .map_err(|error| error.for_key(name).on_line(*line))?;
+        seen.push((wavenumber, *line));
     }
     let axis = seen.iter().map(|row| row.0).collect();
     seen.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));

@@ -1,6 +1,6 @@
 //! What the columns of a CSV file mean: axis first, then emissivity, reflectance, n and k, or materials.
 
-use super::{kebab_case, stem};
+use super::{kebab_case, one_line, stem};
 use crate::error::{Error, Result, check};
 use crate::grid::Grid;
 use crate::material::Material;
@@ -8,6 +8,7 @@ use crate::material::dielectric::{Dielectric, OpticalConstants};
 use crate::material::model::Model;
 use crate::material::provenance::{Basis, Provenance};
 use crate::material::table::{Fault, Table, ascending};
+use std::collections::BTreeSet;
 use std::path::Path;
 
 const HEADERS: &str =
@@ -44,15 +45,18 @@ pub(super) fn materials(grid: &Grid, source: &Path) -> Result<Vec<Material>> {
         [one] => Err(Error::malformed(format!("a column `{one}`"), HEADERS)
             .for_key(*one)
             .on_line(grid.header_line)),
-        many => many
-            .iter()
-            .enumerate()
-            .map(|(index, column)| {
-                let name = material_name(many, index).map_err(|error| error.on_line(grid.header_line))?;
-                let model = Model::Table(emissivities(grid, &axis, index + 1, |e| e)?);
-                Ok(Material::of(name, described(format!("column {column}"), ""), model))
-            })
-            .collect(),
+        many => {
+            let mut names = BTreeSet::new();
+            many.iter()
+                .enumerate()
+                .map(|(index, column)| {
+                    let name =
+                        material_name(column, &mut names).map_err(|error| error.on_line(grid.header_line))?;
+                    let model = Model::Table(emissivities(grid, &axis, index + 1, |e| e)?);
+                    Ok(Material::of(name, described(format!("column {}", one_line(column)), ""), model))
+                })
+                .collect()
+        }
     }
 }
 
@@ -149,9 +153,8 @@ fn emissivities(grid: &Grid, axis: &[f64], column: usize, rule: fn(f64) -> f64) 
     Table::new(&rows)
 }
 
-/// The name of a material's column, which no other column may share.
-fn material_name(columns: &[&str], index: usize) -> Result<String> {
-    let column = columns.get(index).copied().unwrap_or_default();
+/// The name of a material's column, which no other column may share; it is added to the `names` there are.
+fn material_name(column: &str, names: &mut BTreeSet<String>) -> Result<String> {
     let name = kebab_case(column);
     if name.is_empty() || matches!(column, "n" | "k" | "reflectance" | "emissivity" | "transmittance") {
         return Err(Error::malformed(
@@ -159,7 +162,7 @@ fn material_name(columns: &[&str], index: usize) -> Result<String> {
             "name each column after its material; its cells are emissivities",
         ));
     }
-    if columns.iter().take(index).any(|other| kebab_case(other) == name) {
+    if !names.insert(name.clone()) {
         return Err(Error::malformed(
             format!("two columns for the material `{name}`"),
             "give every column its own name",

@@ -10,7 +10,7 @@
 //! Source: Meerdink et al., Remote Sens. Environ. 230, 111196 (2019), doi:10.1016/j.rse.2019.05.015; Baldridge et al.,
 //! Remote Sens. Environ. 113, 711 (2009), doi:10.1016/j.rse.2008.11.007. Layout from the files themselves.
 
-use super::{Content, kebab_case, stem};
+use super::{Content, kebab_case, one_line, stem};
 use crate::error::{Error, Result, check};
 use crate::grid;
 use crate::material::Material;
@@ -77,12 +77,12 @@ pub(super) fn parse(text: &str, source: &Path) -> Result<Content> {
     let title = value("name");
     let name = if kebab_case(title).is_empty() { stem(source) } else { kebab_case(title) };
     let provenance = Provenance {
-        description: one_line(&[title, value("description")], "; "),
-        category: value("type").to_lowercase(),
+        description: joined(&[title, value("description")], "; "),
+        category: one_line(&value("type").to_lowercase()),
         basis: Basis::UserFile,
-        source: one_line(&[&source.display().to_string(), value("owner")], "; "),
+        source: joined(&[&source.display().to_string(), value("owner")], "; "),
         licence: String::new(),
-        note: one_line(
+        note: joined(
             &[value("measurement"), "emissivity = 1 - reflectance (Kirchhoff), taken as opaque"],
             "; ",
         ),
@@ -91,13 +91,9 @@ pub(super) fn parse(text: &str, source: &Path) -> Result<Content> {
 }
 
 /// Non-empty parts without doubled blanks.
-fn one_line(parts: &[&str], separator: &str) -> String {
-    parts
-        .iter()
-        .map(|part| part.split_whitespace().collect::<Vec<_>>().join(" "))
-        .filter(|part| !part.is_empty())
-        .collect::<Vec<_>>()
-        .join(separator)
+fn joined(parts: &[&str], separator: &str) -> String {
+    let parts = parts.iter().map(|part| one_line(part)).filter(|part| !part.is_empty());
+    parts.collect::<Vec<_>>().join(separator)
 }
 
 fn split(text: &str) -> Result<Parts> {

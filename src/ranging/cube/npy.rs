@@ -20,6 +20,9 @@ pub(super) const MAGIC: &[u8] = b"\x93NUMPY";
 /// Longest header that is looked at, bytes; as NumPy has it.
 const MAX_HEADER: usize = 10_000;
 
+/// Deepest nesting of a header that is looked at: a type made of types made of types.
+const MAX_DEPTH: usize = 8;
+
 /// A cube in an NPY file.
 #[derive(Debug)]
 struct NpyCube<S> {
@@ -94,14 +97,29 @@ fn header(file: &mut File, len: u64) -> Result<(NpyHeader, u64)> {
     }
     fill(&mut bytes, start.max(12))?;
     let text = &bytes[before as usize..];
-    // Deep nesting would exhaust the parser's stack, and dimensions of more than 19 digits together its u64.
+    // The parser tries every bracket as several things, each with all that is in it: its time doubles with every level.
+    // Dimensions of more than 19 digits together would not fit its u64.
     let brackets = text.iter().filter(|byte| b"([{".contains(byte)).count();
     let digits = text.iter().filter(|byte| byte.is_ascii_digit()).count();
-    if brackets > 64 || digits > 19 {
+    if brackets > 64 || depth(text) > MAX_DEPTH || digits > 19 {
         return Err(strange(text));
     }
     let header = NpyHeader::from_reader(bytes.as_slice()).map_err(|_| strange(text))?;
     Ok((header, start))
+}
+
+/// Most brackets that are open at one place.
+fn depth(text: &[u8]) -> usize {
+    let (mut open, mut most) = (0_usize, 0);
+    for byte in text {
+        match byte {
+            b'(' | b'[' | b'{' => open += 1,
+            b')' | b']' | b'}' => open = open.saturating_sub(1),
+            _ => {}
+        }
+        most = most.max(open);
+    }
+    most
 }
 
 /// Whether samples are doubles, and the order of their bytes.

@@ -232,6 +232,9 @@ impl SavedModel {
             return Err(Error::malformed(found, "train it again with --save-models"));
         }
         crate::error::check::positive("photons of the saved model", self.photons, "")?;
+        for &centre in &self.wavenumber_cm1 {
+            crate::error::check::positive("band centre of the saved model", centre, "cm^-1")?;
+        }
         for (what, found, expected) in [
             ("bands of the saved model", self.wavenumber_cm1.len(), self.model.bands()),
             ("classes of the saved model", self.classes.len(), self.model.classes()),

@@ -45,6 +45,7 @@ impl Bands {
         for &(center, width) in &rows {
             check::positive("band centre", center, "cm^-1")?;
             check::positive("band width", width, "cm^-1")?;
+            check::finite("upper edge of a band", center + 0.5 * width, "cm^-1")?;
         }
         rows.sort_by(|a, b| a.0.total_cmp(&b.0));
         distinct(rows.iter().map(|row| row.0), "the bands")?;
@@ -135,7 +136,13 @@ impl Bands {
             let nodes = bands.first_node[q]..bands.first_node[q + 1];
             let weight: f64 = bands.weights_cm1[nodes.clone()].iter().sum();
             let moment: f64 = nodes.map(|j| bands.weights_cm1[j] * bands.nodes_cm1[j]).sum();
-            bands.bands[q].center_cm1 = moment / weight;
+            let Band { low_cm1, high_cm1, name, .. } = &bands.bands[q];
+            let quantity = || format!("width that filter `{}` lets through", name.as_deref().unwrap_or(""));
+            // Transmittances next to 0 over a width next to 0.
+            check::positive("", weight, "").and(check::positive("", moment, "")).map_err(|_| {
+                Error::out_of_range(quantity(), weight, "cm^-1", "a number above 0 that can be divided by")
+            })?;
+            bands.bands[q].center_cm1 = (moment / weight).clamp(*low_cm1, *high_cm1);
         }
         Ok(bands)
     }

@@ -17,6 +17,8 @@ const CHUNK: usize = 1 << 15;
 /// The longest name and the most dimensions that are looked at, bytes.
 const MAX_SHORT: u32 = 4096;
 
+const TOO_LONG: &str = "an array is longer than the element that holds it";
+
 /// The class of an array, as numbered in the file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Class(u8);
@@ -186,12 +188,14 @@ impl<R: Read> Element<R> {
 
     /// Reads a zlib stream to its end, so that its checksum is looked at.
     pub(super) fn finish(&mut self) -> Result<()> {
-        match &mut self.content {
-            Content::Plain(_) => Ok(()),
-            Content::Zlib(stream) => {
-                let mut rest = [0; 512];
-                while stream.read(&mut rest).map_err(unreadable)? > 0 {}
-                Ok(())
+        let Content::Zlib(stream) = &mut self.content else { return Ok(()) };
+        let mut rest = [0; 512];
+        // Padding is not always counted; more than that would be unpacked for nothing.
+        let mut most = self.left + rest.len() as u64;
+        loop {
+            match stream.read(&mut rest).map_err(unreadable)? as u64 {
+                0 => return Ok(()),
+                found => most = most.checked_sub(found).ok_or_else(|| damaged(TOO_LONG))?,
             }
         }
     }
@@ -230,7 +234,7 @@ impl<R: Read> Element<R> {
     }
 
     fn exact(&mut self, bytes: &mut [u8]) -> Result<()> {
-        let too_long = || damaged("an array is longer than the element that holds it");
+        let too_long = || damaged(TOO_LONG);
         self.left = self.left.checked_sub(bytes.len() as u64).ok_or_else(too_long)?;
         match &mut self.content {
             Content::Plain(content) => content.read_exact(bytes),

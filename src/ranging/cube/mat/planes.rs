@@ -58,15 +58,13 @@ pub(super) fn transposed<S: Number>(
     Ok(samples)
 }
 
-/// Zeros, if there is memory for them.
+/// Zeros, if there is memory for them. They come from the system, which provides no more than what is written to: a
+/// packed array that announces more than it holds takes no more than it holds.
 fn cleared<S: Sample>(len: usize) -> Result<Vec<S>> {
-    let mut samples = Vec::new();
-    samples.try_reserve_exact(len).map_err(|_| {
+    bytemuck::allocation::try_zeroed_vec(len).map_err(|()| {
         Error::malformed(
             format!("the array needs {} bytes of memory, which there are not", len * size_of::<S>()),
             "write it as an NPY file, which is read by rows",
         )
-    })?;
-    samples.resize(len, S::zeroed());
-    Ok(samples)
+    })
 }
