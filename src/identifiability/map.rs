@@ -1,10 +1,14 @@
 //! Distances over a grid of target temperature and lighting (the paper's Fig. 3c).
 //!
 //! Rows run over T, columns over the lighting factor of the first environment object; what depends on T
-//! alone is computed once per row. Rows are spread over the threads of the pool; the result does not
-//! depend on their number.
+//! alone is computed once per row, and the rest at a few lighting factors wherever that keeps all digits: see [`row`].
+//! Rows are spread over the threads of the pool; the result does not depend on their number.
 
-use super::local::LocalSolver;
+mod chebyshev;
+mod passes;
+mod row;
+
+use self::row::{Pair, RowSolver};
 use super::nearest::{NearestSolver, StateRange};
 use crate::error::Result;
 use crate::fisher::Unknowns;
@@ -53,22 +57,15 @@ impl MapScene<'_> {
     /// # Errors
     /// As [`LocalSolver::per_photon`], at the first point that fails.
     pub fn local(&self, temperatures_k: &[f64], lightings: &[f64]) -> Result<Vec<MapPoint>> {
-        let solver = || LocalSolver::new(self.bands, self.surroundings, self.unknowns.clone());
+        let solver = || RowSolver::new(self.bands, self.surroundings, self.unknowns);
         let (emissivity, alternative) = (Aligned::from(self.emissivity), Aligned::from(self.alternative));
+        let pair = Pair { emissivity: &emissivity, alternative: &alternative };
         let rows: Result<Vec<Vec<MapPoint>>> = temperatures_k
             .par_iter()
             .map_init(solver, |solver, &temperature_k| {
-                let mut state = self.at(temperature_k, 0.0);
-                lightings
-                    .iter()
-                    .map(|&lighting| {
-                        if let Some(first) = state.lighting.first_mut() {
-                            *first = lighting;
-                        }
-                        let (distance, photon_radiance) = solver.point(&emissivity, &alternative, &state)?;
-                        Ok(MapPoint { distance, photon_radiance })
-                    })
-                    .collect()
+                let mut row = Vec::with_capacity(lightings.len());
+                solver.row(pair, &mut self.at(temperature_k, 0.0), lightings, &mut row)?;
+                Ok(row)
             })
             .collect();
         rows.map(|rows| rows.concat())
@@ -97,3 +94,6 @@ impl MapScene<'_> {
         rows.map(|rows| rows.concat())
     }
 }
+
+#[cfg(test)]
+mod tests;

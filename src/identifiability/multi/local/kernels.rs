@@ -10,7 +10,7 @@ pub(super) const TOGETHER: usize = 5;
 /// Nuisances the shared kernels take; more of them go pair by pair.
 pub(super) const MOST_NUISANCES: usize = 4;
 /// Chunks in a block of a compensated sum: more than elsewhere, since a group of pairs ends a dozen of them.
-const BLOCK_CHUNKS: usize = 64;
+const BLOCK_CHUNKS: usize = 96;
 
 /// Spectra of the target that a pass over the bands reads.
 #[derive(Clone, Copy)]
