@@ -12,9 +12,11 @@ mod reproduce;
 mod simulate;
 mod size;
 
+use crate::demand::{Reason, Skipping, Thing, Work};
 use crate::error::{Error, Result};
 use crate::material::Library;
 use crate::report::bundle::Bundle;
+use crate::report::text;
 use crate::scenario::Scenario;
 use crate::study::Study;
 use clap::{Args, Parser, Subcommand};
@@ -77,6 +79,12 @@ struct Global {
     /// Number of threads (default: all cores); the result does not depend on it
     #[arg(long, global = true, value_name = "N")]
     threads: Option<usize>,
+    /// Say on stderr what was computed, what was not, and why (with --json always under `stats`)
+    #[arg(long, global = true)]
+    stats: bool,
+    /// Compute in full what a proof would spare; the answer is the same
+    #[arg(long, global = true)]
+    no_skip: bool,
     /// Print nothing on stderr but errors
     #[arg(short, long, global = true)]
     quiet: bool,
@@ -128,7 +136,7 @@ impl Global {
         for path in &self.library {
             library.add_path(path)?;
         }
-        if library.iter().next().is_none() {
+        if library.is_empty() {
             let instead = "add spectra with --library DIR, or leave out --only-library";
             return Err(Error::malformed("the library is empty", instead));
         }
@@ -148,6 +156,40 @@ impl Global {
         if !self.quiet {
             eprintln!("{text}");
         }
+    }
+
+    /// Whether proofs may spare work.
+    fn skipping(&self) -> Skipping {
+        if self.no_skip { Skipping::Off } else { Skipping::On }
+    }
+
+    /// Makes and writes a report where there is a folder for it, and books it.
+    fn report(&self, work: &mut Work, make: impl FnOnce(&Path) -> Result<Bundle>) -> Result<()> {
+        let Some(out) = &self.out else {
+            work.spare(Thing::Reports, Reason::NotAsked, 1);
+            return Ok(());
+        };
+        let bundle = make(out)?;
+        self.write(&bundle, out)?;
+        work.compute(Thing::Reports, 1);
+        work.compute(Thing::Figures, bundle.figures() as u64);
+        Ok(())
+    }
+
+    /// Prints a result that has its ledger in it, and with `--stats` the ledger.
+    fn answer(&self, json: &impl serde::Serialize, text: &str, work: &Work) -> Result<()> {
+        if self.stats {
+            self.note(text::work(work).trim_end());
+        }
+        self.print(json, text)
+    }
+
+    /// Prints a result that has no ledger in it, with `stats` beside its keys.
+    fn answer_with(&self, mut json: serde_json::Value, text: &str, work: &Work) -> Result<()> {
+        if let Some(object) = json.as_object_mut() {
+            object.insert("stats".into(), as_json(work)?);
+        }
+        self.answer(&json, text, work)
     }
 
     /// Prints a result: JSON with `--json`, else the text.
@@ -183,6 +225,11 @@ impl Global {
         self.note(&format!("wrote {} to {}", names.join(", "), out.display()));
         Ok(())
     }
+}
+
+/// Anything as JSON.
+fn as_json(value: &impl serde::Serialize) -> Result<serde_json::Value> {
+    serde_json::to_value(value).map_err(|error| Error::malformed(error.to_string(), "report this as a bug"))
 }
 
 /// The distance that decides, as a flag.

@@ -1,6 +1,7 @@
 #![doc = include_str!("../README.md")]
 
 pub mod cli;
+pub mod demand;
 pub mod error;
 pub mod fisher;
 mod grid;

@@ -45,7 +45,7 @@ pub use scaling::{BandNumber, LibrarySize, Scaling};
 pub use simulation::{
     PhotonLaw, SimulatedClass, SimulatedPerformance, SimulatedPoint, Simulation, SimulationPlan, Standing,
 };
-pub use size::{CameraResult, RequirementResult, Sizing, Verdict};
+pub use size::{CameraResult, RequirementResult, Sizing, Verdict, VerdictAlone};
 pub use thermometry::{FIXED_EMISSIVITY, ImagerErrors, Reader, Thermometry, ThermometryRow};
 
 /// Something the reader of a result must know, with a code that programs can rely on.

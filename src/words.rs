@@ -41,6 +41,15 @@ pub(crate) fn length(metres: f64) -> String {
     format!("{} {unit}", significant(metres * factor, 2))
 }
 
+/// A whole number, its digits in groups of three.
+#[must_use]
+pub(crate) fn whole(count: u64) -> String {
+    let digits = count.to_string();
+    let groups: Vec<&str> =
+        digits.as_bytes().rchunks(3).rev().filter_map(|g| std::str::from_utf8(g).ok()).collect();
+    groups.join(" ")
+}
+
 /// A share in percent, never 0 or 100 % short of it.
 #[must_use]
 pub(crate) fn share(share: f64) -> String {
@@ -66,6 +75,11 @@ mod tests {
         assert_eq!(quantity(12e-6, "m"), "12.0 um");
         assert_eq!(quantity(0.012, "s"), "12.0 ms");
         assert_eq!(quantity(0.0, "s"), "0 s");
+    }
+
+    #[test]
+    fn whole_numbers_are_grouped() {
+        assert_eq!([0, 999, 1000, 1_234_567].map(whole), ["0", "999", "1 000", "1 234 567"]);
     }
 
     #[test]

@@ -68,18 +68,10 @@ fn every_section_has_the_agreed_keys_and_is_there_only_if_asked_for() {
         &["material", "limiting", "distance_minimum", "statistical_distance_minimum", "identifiable"],
     );
     let found = &apart["apart"];
-    has(found, &["told_apart", "not_told_apart", "clusters", "chains", "work"]);
-    has(
-        &found["work"],
-        &[
-            "distances",
-            "in_full",
-            "decided_at_own_state",
-            "decided_by_few_bands",
-            "decided_by_another",
-            "decided_on_the_way",
-        ],
-    );
+    has(found, &["told_apart", "not_told_apart", "clusters", "chains"]);
+    for line in ["library_spectra", "sections", "own_state_distances", "nearest_searches", "reports"] {
+        has(&apart["stats"][line], &["possible", "computed", "spared"]);
+    }
     has(&all["scaling"], &["by", "library", "bands"]);
     has(&all["scaling"]["library"], &["materials", "target", "quantiles", "whole_library"]);
     has(&all["scaling"]["bands"], &["bands", "shot_noise", "shot_noise_median", "camera", "camera_median"]);
@@ -213,10 +205,12 @@ fn who_is_told_apart_is_the_same_by_every_way() {
         for key in ["told_apart", "not_told_apart", "clusters", "chains"] {
             assert!(full[key] == fast["apart"][key] && full[key] == slow["apart"][key], "{exposure}: {key}");
         }
-        let work = |result: &Value, key: &str| result["apart"]["work"][key].as_u64().unwrap();
-        assert_eq!(work(&fast, "distances"), (count * (count - 1)) as u64);
-        assert_eq!(work(&slow, "in_full"), work(&slow, "distances"));
-        assert!(work(&fast, "in_full") < work(&slow, "in_full"), "{exposure}");
+        // Beside all pairs, three searches for each alternative of the target: with shot noise, back, by the camera.
+        let searches = |result: &Value, key: &str| result["stats"]["nearest_searches"][key].as_u64().unwrap();
+        let possible = (count * (count - 1) + 3 * (count - 1)) as u64;
+        assert_eq!([&fast, &slow].map(|result| searches(result, "possible")), [possible; 2]);
+        assert_eq!(searches(&slow, "computed"), possible);
+        assert!(searches(&fast, "computed") < possible, "{exposure}");
         let (told, not) = (pairs(&full["told_apart"]), pairs(&full["not_told_apart"]));
         println!("{exposure}: {} pairs told apart, {} not", told.len(), not.len());
         assert!(told.is_disjoint(&not));
@@ -377,12 +371,19 @@ fn quiet_is_quiet_and_what_was_skipped_is_said_on_stderr_only() {
     let plain = folder.run(&["identify", "a.toml", "--apart"]);
     let stats = folder.run(&["identify", "a.toml", "--apart", "--stats"]);
     assert_eq!((plain.stderr.as_str(), &plain.stdout), ("", &stats.stdout));
-    assert!(stats.stderr.starts_with("work: 20 distances asked for, "), "{}", stats.stderr);
-    assert_eq!(stats.stderr.lines().count(), 1);
+    let searches = |stderr: &str| -> Vec<u64> {
+        let line = stderr.lines().find(|line| line.starts_with("searches in all bands")).unwrap();
+        line.split_whitespace().filter_map(|word| word.parse().ok()).take(3).collect()
+    };
+    assert!(stats.stderr.starts_with("work "), "{}", stats.stderr);
+    assert_eq!(searches(&stats.stderr)[0], 20 + 12);
     let all = folder.run(&["identify", "a.toml", "--matrix", "--stats"]);
-    assert!(all.stderr.starts_with("work: every distance was computed"), "{}", all.stderr);
+    assert_eq!(searches(&all.stderr), [2 * 20 + 12, 2 * 20 + 12, 0]);
     let check = folder.run(&["identify", "a.toml", "--check", "--stats", "--json"]);
-    assert!(check.stderr.starts_with("work: 4 distances asked for, "), "{}", check.stderr);
+    let counts = searches(&check.stderr);
+    assert_eq!((counts[0], counts[1] + counts[2]), (4, 4));
+    let json: Value = serde_json::from_str(&check.stdout).unwrap();
+    assert_eq!(json["stats"]["nearest_searches"]["possible"], 4);
     let loud = folder.run(&["identify", "a.toml", "--matrix", "--out", "report"]);
     assert!(loud.stderr.starts_with("wrote scenario.toml"), "{}", loud.stderr);
     let quiet = folder.run(&["identify", "a.toml", "--matrix", "--out", "report", "--stats", "-q"]);

@@ -175,8 +175,6 @@ fn flags_that_do_not_go_together_end_with_2() {
         vec!["--matrix", "--apart"],
         vec!["--check", "--matrix"],
         vec!["--check", "--exact"],
-        vec!["--no-skip"],
-        vec!["--check", "--no-skip"],
         vec!["--bands"],
         vec!["--bands", "-1"],
         vec!["--bands", "many"],

@@ -4,9 +4,10 @@
 #[allow(dead_code)]
 mod scenes;
 
+use hadar::demand::{Reason, Skipping, Thing};
 use hadar::fisher::{Counting, Nuisance, Unknowns};
 use hadar::identifiability::local::LocalSolver;
-use hadar::identifiability::multi::{LibraryScene, LocalMatrix, Skipping};
+use hadar::identifiability::multi::{LibraryScene, LocalMatrix};
 use hadar::identifiability::nearest::{NearestSolver, StateRange};
 use hadar::scene::{EnvironmentObject, State, Surroundings};
 use hadar::spectrum::Bands;
@@ -128,22 +129,46 @@ proptest! {
             for b in 0..count {
                 prop_assert_eq!(skipped.told_apart(a, b), full.told_apart(a, b), "{} {}", a, b);
             }
-            let (failed, work) = library.first_not_told_from(a, &materials, &counting, required).unwrap();
-            let row = (0..count).filter(|&b| b != a).map(|b| found[a * count + b].as_ref().unwrap().distance);
-            prop_assert_eq!(failed.is_some(), row.clone().any(|d| d < required));
-            if let Some(failed) = failed {
-                prop_assert!(found[a * count + failed].as_ref().unwrap().distance < required);
+            for skipping in [Skipping::On, Skipping::Off] {
+                let (failed, work) =
+                    library.first_not_told_from(a, &materials, &counting, required, skipping).unwrap();
+                let row = (0..count).filter(|&b| b != a);
+                let row = row.map(|b| found[a * count + b].as_ref().unwrap().distance);
+                prop_assert_eq!(failed.is_some(), row.clone().any(|d| d < required));
+                if let Some(failed) = failed {
+                    prop_assert!(found[a * count + failed].as_ref().unwrap().distance < required);
+                }
+                prop_assert_eq!(work.possible(Thing::NearestSearches), count as u64 - 1);
+                prop_assert_eq!(work.computed(Thing::OwnStateDistances), count as u64 - 1);
             }
-            prop_assert_eq!(work.distances, count - 1);
         }
         // Every distance is accounted for once.
-        for work in [skipped.work, full.work] {
-            let accounted = work.decided_at_own_state + work.decided_by_few_bands + work.decided_on_the_way
-                + work.decided_by_another + work.in_full;
-            prop_assert_eq!(accounted, work.distances);
-            prop_assert_eq!(work.distances, count * (count - 1));
+        let distances = (count * (count - 1)) as u64;
+        for work in [&skipped.work, &full.work] {
+            prop_assert_eq!(work.possible(Thing::NearestSearches), distances);
         }
-        prop_assert_eq!(full.work.in_full, count * (count - 1));
+        prop_assert_eq!(full.work.computed(Thing::NearestSearches), distances);
+        // What the distances in the own state decide, by the distances themselves: each is asked for unless the other
+        // direction was nearer than required, and so is each after it.
+        let mut solver = NearestSolver::new(&scene.bands, &scene.surroundings, unknowns.clone(), library.range);
+        let (mut asked, mut decided) = (0, 0);
+        for a in 0..count {
+            for b in a + 1..count {
+                for (own, other) in [(a, b), (b, a)] {
+                    asked += 1;
+                    let at_own = solver
+                        .own_state_distance(materials[own], materials[other], library.state, &counting)
+                        .unwrap();
+                    decided += u64::from(at_own < required);
+                    if found[own * count + other].as_ref().unwrap().distance < required {
+                        break;
+                    }
+                }
+            }
+        }
+        prop_assert_eq!(skipped.work.computed(Thing::OwnStateDistances), asked);
+        prop_assert_eq!(skipped.work.spared(Thing::NearestSearches, Reason::OwnState), decided);
+        prop_assert_eq!(skipped.work.spared(Thing::NearestSearches, Reason::AnotherOne), distances - asked);
     }
 }
 

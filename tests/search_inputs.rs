@@ -1,7 +1,8 @@
 //! What the search for nearest states takes for granted of its inputs, and what it refuses.
 
+use hadar::demand::Skipping;
 use hadar::fisher::{Counting, Nuisance, Unknowns};
-use hadar::identifiability::multi::{LibraryScene, LocalMatrix, Skipping};
+use hadar::identifiability::multi::{LibraryScene, LocalMatrix};
 use hadar::identifiability::nearest::{NearestSolver, StateRange};
 use hadar::material::Library;
 use hadar::scenario::Scenario;
@@ -99,7 +100,7 @@ fn impossible_inputs_are_errors() {
             assert!(library.told_apart(&[&own, &other], &shot, required, skipping).is_err(), "{required}");
         }
     }
-    assert!(library.first_not_told_from(2, &[&own, &other], &shot, 1.0).is_err());
+    assert!(library.first_not_told_from(2, &[&own, &other], &shot, 1.0, Skipping::On).is_err());
     let decided = library.told_apart(&[&own, &other], &shot, 1.0, Skipping::On).unwrap();
     assert!(!decided.told_apart(0, 2) && !decided.told_apart(2, 2));
 }

@@ -1,6 +1,7 @@
 //! `hadar cameras`: the known cameras.
 
-use super::Global;
+use super::{Global, as_json};
+use crate::demand::{Reason, Thing, Work};
 use crate::error::Result;
 use crate::instrument::{Camera, Figures, presets};
 use crate::report::text;
@@ -42,14 +43,23 @@ pub(super) fn run(args: &CamerasArgs, global: &Global) -> Result<ExitCode> {
             for camera in &cameras {
                 let _ = writeln!(out, "{:<14} {}", camera.name, camera.description);
             }
-            global.print(&serde_json::json!({ "cameras": cameras }), &out)?;
+            global.answer_with(serde_json::json!({ "cameras": cameras }), &out, &work(0, cameras.len()))?;
         }
         Action::Show { name } => {
             let camera = presets::get(name)?;
+            let others = presets::all()?.len() - 1;
             let figures = camera.figures()?;
             let text = text::camera(&camera, &figures);
-            global.print(&Shown { camera, figures }, &text)?;
+            global.answer_with(as_json(&Shown { camera, figures })?, &text, &work(1, others))?;
         }
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// Cameras whose figures were worked out, and those of which none were asked for.
+fn work(shown: usize, others: usize) -> Work {
+    let mut work = Work::default();
+    work.compute(Thing::Cameras, shown as u64);
+    work.spare(Thing::Cameras, Reason::NotAsked, others as u64);
+    work
 }

@@ -2,7 +2,6 @@
 
 use super::{By, Global};
 use crate::error::{Error, Place, Result, check};
-use crate::identifiability::multi::Skipping;
 use crate::report::{library, text};
 use crate::simulate::sequential::Plan;
 use crate::study::{Asked, Law, Study, Trial};
@@ -54,42 +53,32 @@ pub(super) struct IdentifyArgs {
     /// Answer only whether the camera tells the target from every alternative; exit with code 3 if not
     #[arg(long, conflicts_with_all = ["matrix", "apart", "scaling", "bands", "filters", "exact"])]
     check: bool,
-    /// With --apart, compute pairs that a cheap bound decides all the same (the answer does not change)
-    #[arg(long, requires = "apart", conflicts_with = "check", help_heading = ALL)]
-    no_skip: bool,
-    /// Say on stderr what was computed and what was not
-    #[arg(long)]
-    stats: bool,
 }
 
 pub(super) fn run(args: &IdentifyArgs, global: &Global) -> Result<ExitCode> {
     let study = global.study(&args.scenario, args.by.map(Into::into))?;
     if args.check {
-        return only_check(args, &study, global);
+        return only_check(&study, global);
     }
     let most = study.bands().len();
     number_of("--bands", args.bands, most)?;
     number_of("--filters", args.filters, most)?;
-    let skipping = if args.no_skip { Skipping::Off } else { Skipping::On };
     let chosen = args.bands.is_some() || args.filters.is_some();
     let asked = Asked {
         matrix: args.matrix,
         apart: args.apart,
-        skipping,
+        skipping: global.skipping(),
         scaling: args.scaling,
         bands: chosen.then_some((args.bands, args.filters)),
         exact: args.exact.then(|| trial(args, global)).transpose()?,
     };
     let bar = global.progress("pairs simulated");
-    let answers = study.answer(&asked, &|done, total| bar.set(done, total))?;
+    let mut answers = study.answer(&asked, &|done, total| bar.set(done, total))?;
     bar.finish();
-    if let Some(out) = &global.out {
-        global.write(&library::bundle(&study, &answers, global.seed, out)?, out)?;
-    }
-    if args.stats {
-        global.note(&text::work_of(&answers));
-    }
-    global.print(&answers, &text::answers(&answers, &study))?;
+    let mut stats = std::mem::take(&mut answers.identification.stats);
+    global.report(&mut stats, |out| library::bundle(&study, &answers, global.seed, out))?;
+    answers.identification.stats = stats;
+    global.answer(&answers, &text::answers(&answers, &study), &answers.identification.stats)?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -131,15 +120,12 @@ fn trial(args: &IdentifyArgs, global: &Global) -> Result<Trial> {
 }
 
 /// The answer to one question, at the first proof.
-fn only_check(args: &IdentifyArgs, study: &Study, global: &Global) -> Result<ExitCode> {
+fn only_check(study: &Study, global: &Global) -> Result<ExitCode> {
     if global.out.is_some() {
         let found = "--check answers yes or no and has nothing to write into --out";
         return Err(Error::malformed(found, "leave out --out, or --check to have the files"));
     }
-    let result = study.check()?;
-    if args.stats {
-        global.note(&text::work(&result.work));
-    }
-    global.print(&result, &text::check(&result, study))?;
+    let result = study.check(global.skipping())?;
+    global.answer(&result, &text::check(&result, study), &result.stats)?;
     Ok(if result.identifiable { ExitCode::SUCCESS } else { ExitCode::from(3) })
 }

@@ -1,6 +1,7 @@
 //! `hadar materials`: the library.
 
-use super::Global;
+use super::{Global, as_json};
+use crate::demand::{Reason, Thing, Work};
 use crate::error::{Error, Result};
 use crate::material::{Library, Material, Summary, read};
 use crate::report::bundle::Bundle;
@@ -47,7 +48,7 @@ enum Action {
 pub(super) fn run(args: &MaterialsArgs, global: &Global) -> Result<ExitCode> {
     match &args.action {
         Action::List => list(&global.library()?, global)?,
-        Action::Show { name } => show(global.library()?.get(name)?, global)?,
+        Action::Show { name } => show(&global.library()?, name, global)?,
         Action::Plot { names } => plot(&global.library()?, names, global)?,
         Action::Import { files } => import(files, global)?,
     }
@@ -67,7 +68,7 @@ fn list(library: &Library, global: &Global) -> Result<()> {
         "\n{} materials; `hadar materials show NAME` tells source, licence and range",
         summaries.len()
     );
-    global.print(&serde_json::json!({ "materials": summaries }), &out)
+    global.answer_with(serde_json::json!({ "materials": summaries }), &out, &library.work())
 }
 
 /// A material, its emissivity in the paper's bands and what it was taken from.
@@ -79,7 +80,8 @@ struct Shown {
     emissivity: Vec<f64>,
 }
 
-fn show(material: &Material, global: &Global) -> Result<()> {
+fn show(library: &Library, name: &str, global: &Global) -> Result<()> {
+    let material = library.get(name)?;
     let summary = material.summary();
     let (wavenumber_cm1, emissivity) = sampled(material)?;
     let mut out = format!("{}: {}\n\n", summary.name, summary.provenance.description);
@@ -108,7 +110,8 @@ fn show(material: &Material, global: &Global) -> Result<()> {
     for (nu, e) in wavenumber_cm1.iter().zip(&emissivity).step_by(step) {
         let _ = writeln!(out, "  {nu:>18.0}  {:>15.2}  {e:>10.4}", 1e4 / nu);
     }
-    global.print(&Shown { summary, wavenumber_cm1, emissivity }, &out)
+    let json = as_json(&Shown { summary, wavenumber_cm1, emissivity })?;
+    global.answer_with(json, &out, &library.work())
 }
 
 /// The emissivity every 1 cm⁻¹ where the paper's bands and the material's range overlap.
@@ -145,7 +148,10 @@ fn plot(library: &Library, names: &[String], global: &Global) -> Result<()> {
     bundle.add_plots(&[figures::emissivities("Emissivities", &nodes, first, &others)])?;
     global.write(&bundle, out)?;
     let drawn: Vec<Summary> = materials.iter().map(|material| material.summary()).collect();
-    global.print(&serde_json::json!({ "materials": drawn }), &format!("drew {}", names.join(", ")))
+    let mut work = library.work();
+    work.compute(Thing::Figures, bundle.figures() as u64);
+    let text = format!("drew {}", names.join(", "));
+    global.answer_with(serde_json::json!({ "materials": drawn }), &text, &work)
 }
 
 fn import(files: &[PathBuf], global: &Global) -> Result<()> {
@@ -168,11 +174,16 @@ fn import(files: &[PathBuf], global: &Global) -> Result<()> {
             summaries.push(summary);
         }
     }
+    let mut work = Work::default();
+    work.compute(Thing::LibrarySpectra, summaries.len() as u64);
     if let Some(directory) = &global.out {
         global.write(&bundle, directory)?;
         let _ = writeln!(out, "use them with --library {}", directory.display());
+        work.compute(Thing::Reports, 1);
+    } else {
+        work.spare(Thing::Reports, Reason::NotAsked, 1);
     }
-    global.print(&serde_json::json!({ "materials": summaries }), &out)
+    global.answer_with(serde_json::json!({ "materials": summaries }), &out, &work)
 }
 
 /// The material's own rows: its ends and every kink between.

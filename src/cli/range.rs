@@ -20,12 +20,6 @@ pub(super) struct RangeArgs {
     /// Match noisy views N times along the scenario's lines, and whole views once: do matchers reach the bound?
     #[arg(long, value_name = "N", default_value_t = 0)]
     trials: usize,
-    /// Print how many samples and windows were computed, and how many were not needed
-    #[arg(long)]
-    stats: bool,
-    /// Compute every window in full where a proof by a part of its samples would do; the answer is the same
-    #[arg(long)]
-    no_skip: bool,
     /// Exit with code 3 if the demand is not met; a cube of one view and one depth is decided by the cheapest proofs alone
     #[arg(long, conflicts_with = "trials")]
     check: bool,
@@ -45,7 +39,7 @@ pub(super) fn run(args: &RangeArgs, global: &Global) -> Result<ExitCode> {
     let plan = RangePlan {
         trials: args.trials,
         seed: global.seed,
-        skip: !args.no_skip,
+        skipping: global.skipping(),
         // A report shows all windows.
         verdict_alone: args.check && global.out.is_none(),
     };
@@ -59,16 +53,12 @@ pub(super) fn run(args: &RangeArgs, global: &Global) -> Result<ExitCode> {
         return Err(found.at(scenario.place("cube.depth")));
     }
     let bar = global.progress("rows and draws");
-    let result = study.range(&plan, &|done, total| bar.set(done, total))?;
+    let mut result = study.range(&plan, &|done, total| bar.set(done, total))?;
     bar.finish();
-    if let Some(out) = &global.out {
-        global.write(&ranging::bundle(&result, out)?, out)?;
-    }
-    let mut text = ranging::text(&result);
-    if args.stats {
-        text.push_str(&ranging::stats(&result.stats));
-    }
-    global.print(&result, &text)?;
+    let mut stats = std::mem::take(&mut result.stats);
+    global.report(&mut stats, |out| ranging::bundle(&result, out))?;
+    result.stats = stats;
+    global.answer(&result, &ranging::text(&result), &result.stats)?;
     let failed = args.check && result.verdict.met != Some(true);
     Ok(if failed { ExitCode::from(3) } else { ExitCode::SUCCESS })
 }

@@ -1,6 +1,7 @@
 //! `hadar reproduce`: the paper's figures and tables made again, with a ledger of what agrees.
 
 use super::Global;
+use crate::demand::{Reason, Thing, Work};
 use crate::error::{Error, Result};
 use crate::report::bundle::Bundle;
 use crate::reproduce::{Effort, Item, Line, Order, Verdict, markdown, table};
@@ -24,6 +25,7 @@ struct Output {
     effort: &'static str,
     seed: u64,
     ledger: Vec<Line>,
+    stats: Work,
 }
 
 pub(super) fn run(args: &ReproduceArgs, global: &Global) -> Result<ExitCode> {
@@ -35,6 +37,9 @@ pub(super) fn run(args: &ReproduceArgs, global: &Global) -> Result<ExitCode> {
     let effort = if args.quick { Effort::Quick } else { Effort::Full };
     let order = Order { effort, seed: global.seed };
     let mut ledger = Vec::new();
+    let mut stats = Work::default();
+    stats.compute(Thing::Reproductions, items.len() as u64);
+    stats.spare(Thing::Reproductions, Reason::NotAsked, (Item::ALL.len() - items.len()) as u64);
     for (i, item) in items.iter().enumerate() {
         let start = Instant::now();
         let bar = global.progress(item.name());
@@ -44,8 +49,14 @@ pub(super) fn run(args: &ReproduceArgs, global: &Global) -> Result<ExitCode> {
         bar.finish();
         let took = start.elapsed().as_secs_f64();
         global.note(&format!("{} of {}: {}, {took:.1} s", i + 1, items.len(), item.title()));
+        let figures = made.bundle.figures() as u64;
         if let Some(folder) = folder {
             global.write(&made.bundle, &folder)?;
+            stats.compute(Thing::Reports, 1);
+            stats.compute(Thing::Figures, figures);
+        } else {
+            stats.spare(Thing::Reports, Reason::NotAsked, 1);
+            stats.spare(Thing::Figures, Reason::NotAsked, figures);
         }
         ledger.extend(made.lines);
     }
@@ -57,7 +68,8 @@ pub(super) fn run(args: &ReproduceArgs, global: &Global) -> Result<ExitCode> {
     }
     let text = text(&items, &ledger);
     let effort = if args.quick { "quick" } else { "full" };
-    global.print(&Output { effort, seed: global.seed, ledger }, &text)?;
+    let output = Output { effort, seed: global.seed, ledger, stats };
+    global.answer(&output, &text, &output.stats)?;
     Ok(ExitCode::SUCCESS)
 }
 

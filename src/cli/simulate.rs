@@ -1,6 +1,7 @@
 //! `hadar simulate`: spectra drawn, classifiers trained and judged, held against the limit.
 
 use super::Global;
+use crate::demand::Work;
 use crate::error::{Error, Result, check};
 use crate::grid::text_of_file;
 use crate::report::bundle::Bundle;
@@ -110,7 +111,8 @@ pub(super) fn run(args: &SimulateArgs, global: &Global) -> Result<ExitCode> {
     if let Some(range) = &args.thermometry {
         return thermometry(range, args, &study, global);
     }
-    let plan = plan(args, &study, global)?;
+    let mut work = Work::default();
+    let plan = plan(args, &study, global, &mut work)?;
     if let Some(folder) = &args.save_models {
         Bundle::check_destination(folder)?;
     }
@@ -119,7 +121,7 @@ pub(super) fn run(args: &SimulateArgs, global: &Global) -> Result<ExitCode> {
         return Err(Error::malformed(found, "name one alternative with --against, or leave out fixed-total"));
     }
     let bar = global.progress("experiments");
-    let (result, models) = study.simulate(&plan, &|done, total| bar.set(done, total))?;
+    let (mut result, models) = study.simulate(&plan, &|done, total| bar.set(done, total))?;
     bar.finish();
     if let Some(folder) = &args.save_models {
         let mut bundle = Bundle::default();
@@ -128,14 +130,16 @@ pub(super) fn run(args: &SimulateArgs, global: &Global) -> Result<ExitCode> {
         }
         global.write(&bundle, folder)?;
     }
-    if let Some(out) = &global.out {
+    work.add(&result.stats);
+    global.report(&mut work, |out| {
         let rival = result.points.first().and_then(|point| point.classes.get(1));
         let rival =
             rival.filter(|_| args.sweep.is_some()).and_then(|class| study.alternative(&class.material));
         let noise = rival.map(|rival| study.noise_curves(rival, CURVES, CURVE_POINTS)).transpose()?;
-        global.write(&simulation::bundle(&study, &result, noise.as_ref(), out)?, out)?;
-    }
-    global.print(&result, &text::simulation(&result, &study))?;
+        simulation::bundle(&study, &result, noise.as_ref(), out)
+    })?;
+    result.stats = work;
+    global.answer(&result, &text::simulation(&result, &study), &result.stats)?;
     let failed = args.check && !result.limit_holds;
     Ok(if failed { ExitCode::from(3) } else { ExitCode::SUCCESS })
 }
@@ -163,17 +167,17 @@ fn thermometry(range: &str, args: &SimulateArgs, study: &Study, global: &Global)
         return Err(Error::out_of_range("--spectra", args.spectra as f64, "", expected));
     }
     let bar = global.progress("temperatures");
-    let result =
+    let mut result =
         study.thermometry(&temperatures, args.spectra, global.seed, &|done, total| bar.set(done, total))?;
     bar.finish();
-    if let Some(out) = &global.out {
-        global.write(&thermometry_report::bundle(study, &result, out)?, out)?;
-    }
-    global.print(&result, &thermometry_report::text(&result))?;
+    let mut stats = std::mem::take(&mut result.stats);
+    global.report(&mut stats, |out| thermometry_report::bundle(study, &result, out))?;
+    result.stats = stats;
+    global.answer(&result, &thermometry_report::text(&result), &result.stats)?;
     Ok(ExitCode::SUCCESS)
 }
 
-fn plan(args: &SimulateArgs, study: &Study, global: &Global) -> Result<SimulationPlan> {
+fn plan(args: &SimulateArgs, study: &Study, global: &Global, work: &mut Work) -> Result<SimulationPlan> {
     let methods = if args.classifiers.is_empty() && args.skip_spectra {
         vec![Method::LikelihoodRatio]
     } else if args.classifiers.is_empty() && args.model.is_empty() {
@@ -195,7 +199,7 @@ fn plan(args: &SimulateArgs, study: &Study, global: &Global) -> Result<Simulatio
     };
     let models: Vec<SavedModel> = args.model.iter().map(|path| saved(path)).collect::<Result<_>>()?;
     for (saved, path) in models.iter().zip(&args.model) {
-        study.check_model(saved, &against).map_err(|error| error.in_file(path))?;
+        study.check_model(saved, &against, work).map_err(|error| error.in_file(path))?;
     }
     Parts::of(args.spectra).map_err(|error| error.for_key("--spectra"))?;
     for &photons in &args.photons {
@@ -203,7 +207,7 @@ fn plan(args: &SimulateArgs, study: &Study, global: &Global) -> Result<Simulatio
     }
     let photons = match args.sweep {
         Some(experiments) => study
-            .sweep(SWEEP, experiments, &against, !args.shot_noise_only)
+            .sweep(SWEEP, experiments, &against, !args.shot_noise_only, work)
             .map_err(|error| error.for_key("--sweep"))?,
         None => args.photons.clone(),
     };

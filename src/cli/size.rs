@@ -1,8 +1,10 @@
 //! `hadar size`: the verdict on a camera.
 
 use super::{By, Global};
+use crate::demand::Skipping;
 use crate::error::Result;
 use crate::report::{sizing, text};
+use crate::study::Verdict;
 use clap::Args;
 use std::io::IsTerminal as _;
 use std::path::PathBuf;
@@ -12,7 +14,7 @@ use std::process::ExitCode;
 pub(super) struct SizeArgs {
     /// The scenario file (TOML)
     scenario: PathBuf,
-    /// Exit with code 3 if the requirement is not met
+    /// Exit with code 3 if the requirement is not met; without --out the answer alone, by the cheapest proofs
     #[arg(long)]
     check: bool,
     /// The distance that decides, instead of the scenario's
@@ -22,14 +24,25 @@ pub(super) struct SizeArgs {
 
 pub(super) fn run(args: &SizeArgs, global: &Global) -> Result<ExitCode> {
     let study = global.study(&args.scenario, args.by.map(Into::into))?;
-    let result = study.size()?;
-    if let Some(out) = &global.out {
-        global.write(&sizing::bundle(&study, &result, out)?, out)?;
+    if args.check
+        && global.out.is_none()
+        && global.skipping() == Skipping::On
+        && let Some(result) = study.verdict_alone()?
+    {
+        global.answer(&result, &result.verdict.sentence, &result.stats)?;
+        return Ok(code(args, &result.verdict));
     }
-    global.print(&result, &text::sizing(&result, &study))?;
+    let mut result = study.size()?;
+    let mut stats = std::mem::take(&mut result.stats);
+    global.report(&mut stats, |out| sizing::bundle(&study, &result, out))?;
+    result.stats = stats;
+    global.answer(&result, &text::sizing(&result, &study), &result.stats)?;
     if global.out.is_none() && !global.json && std::io::stderr().is_terminal() {
         global.note("for plots and tables add --out DIR");
     }
-    let failed = args.check && result.verdict.met != Some(true);
-    Ok(if failed { ExitCode::from(3) } else { ExitCode::SUCCESS })
+    Ok(code(args, &result.verdict))
+}
+
+fn code(args: &SizeArgs, verdict: &Verdict) -> ExitCode {
+    if args.check && verdict.met != Some(true) { ExitCode::from(3) } else { ExitCode::SUCCESS }
 }

@@ -13,7 +13,8 @@ mod nearest;
 mod predict;
 mod scaling;
 
-pub use decide::{Decisions, Skipping, Work};
+pub use crate::demand::Skipping;
+pub use decide::Decisions;
 pub use local::{LocalMatrix, Passes};
 pub use nearest::LibraryScene;
 pub use predict::{chains, clusters, prediction};

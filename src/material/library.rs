@@ -2,14 +2,17 @@
 //!
 //! A user's material replaces one of the same name, with a warning. Where several files of one
 //! directory define the same name, each is kept as `NAME@FILE`, and the bare name is an error that lists them.
+//! Embedded materials are made of their files only when they are named.
 
-use super::manifest::{self, Surroundings};
+use super::manifest::{self, Deferred, Surroundings};
 use super::read::{self, Content};
 use super::{Material, embedded};
+use crate::demand::{Reason, Thing, Work};
 use crate::error::{Error, Result};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// The name of a manifest within a directory.
 const MANIFEST: &str = "manifest.toml";
@@ -26,9 +29,32 @@ const MANIFEST: &str = "manifest.toml";
 /// ```
 #[derive(Debug, Clone, Default)]
 pub struct Library {
-    materials: BTreeMap<String, Material>,
+    materials: BTreeMap<String, Stored>,
     ambiguous: BTreeMap<String, Vec<String>>,
     warnings: Vec<String>,
+}
+
+/// A material, or where it can be made.
+#[derive(Debug, Clone)]
+enum Stored {
+    Read(Material),
+    Embedded(Arc<Deferred>, usize),
+}
+
+impl Stored {
+    fn material(&self) -> Result<&Material> {
+        match self {
+            Self::Read(material) => Ok(material),
+            Self::Embedded(manifest, index) => manifest.material(*index),
+        }
+    }
+
+    fn is_made(&self) -> bool {
+        match self {
+            Self::Read(_) => true,
+            Self::Embedded(manifest, index) => manifest.is_made(*index),
+        }
+    }
 }
 
 impl Library {
@@ -43,7 +69,6 @@ impl Library {
     /// # Errors
     /// None that a release can have: the embedded data are tested.
     pub fn embedded() -> Result<Self> {
-        let mut library = Self::empty();
         let file = |name: &str| {
             let text = embedded::FILES.iter().find(|(path, _)| *path == name).map(|(_, text)| *text);
             text.map(Cow::Borrowed).ok_or_else(|| {
@@ -51,10 +76,10 @@ impl Library {
             })
         };
         let path = Path::new("spectra/manifest.toml");
-        for material in library.manifest(embedded::MANIFEST, path, &file)? {
-            library.materials.insert(material.name().to_owned(), material);
-        }
-        Ok(library)
+        let manifest = Arc::new(Deferred::parse(embedded::MANIFEST, path, file)?);
+        let stored =
+            |(index, name): (usize, &str)| (name.to_owned(), Stored::Embedded(Arc::clone(&manifest), index));
+        Ok(Self { materials: manifest.names().enumerate().map(stored).collect(), ..Self::empty() })
     }
 
     /// Adds the materials of a directory: those of its `manifest.toml` if it has one, else those of all its
@@ -109,7 +134,7 @@ impl Library {
             let source = &material.provenance().source;
             self.warnings.push(format!("the material `{name}` is replaced by that of {source}"));
         }
-        self.materials.insert(name, material);
+        self.materials.insert(name, Stored::Read(material));
     }
 
     /// The material of a name.
@@ -123,12 +148,32 @@ impl Library {
                 format!("write one of `{}`", qualified.join("`, `")),
             ));
         }
-        self.materials.get(name).ok_or_else(|| Error::unknown_name("material", name, self.names()))
+        match self.materials.get(name) {
+            Some(stored) => stored.material(),
+            None => Err(Error::unknown_name("material", name, self.names())),
+        }
     }
 
-    /// All materials, in the order of their names.
+    /// All materials, in the order of their names. Where names will do, [`Library::names`] makes none of them.
     pub fn iter(&self) -> impl Iterator<Item = &Material> {
-        self.materials.values()
+        // An embedded material that cannot be made is kept from a release by tests.
+        self.materials.values().filter_map(|stored| stored.material().ok())
+    }
+
+    /// Whether there is no material.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.materials.is_empty()
+    }
+
+    /// How many of the spectra were made so far, and how many nobody asked for.
+    #[must_use]
+    pub fn work(&self) -> Work {
+        let made = self.materials.values().filter(|stored| stored.is_made()).count();
+        let mut work = Work::default();
+        work.compute(Thing::LibrarySpectra, made as u64);
+        work.spare(Thing::LibrarySpectra, Reason::NotAsked, (self.materials.len() - made) as u64);
+        work
     }
 
     /// All names, in order.

@@ -21,6 +21,10 @@
 //! further up, or of a library added before). A medium is one of `nk = "file.csv"`, `drude`, `lorentz`,
 //! `factorised`, `gaussian`. Files are sought beside the manifest.
 
+mod deferred;
+
+pub(super) use deferred::Deferred;
+
 use super::dielectric::Dielectric;
 use super::gaussian::Gaussian;
 use super::model::{Model, Polynomial};
@@ -45,7 +49,7 @@ struct Manifest {
     material: Vec<Entry>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Entry {
     name: String,
@@ -73,7 +77,7 @@ fn user_file() -> Basis {
     Basis::UserFile
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Clone, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 enum ModelEntry {
     Constant(f64),
@@ -87,7 +91,7 @@ enum ModelEntry {
     Material(String),
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct FilmEntry {
     film: Medium,
@@ -95,28 +99,28 @@ struct FilmEntry {
     substrate: Medium,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct SlabEntry {
     medium: Medium,
     thickness_um: f64,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct CavityEntry {
     area_ratio: f64,
     of: Box<ModelEntry>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct PartEntry {
     parts: f64,
     of: ModelEntry,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Clone, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 enum Medium {
     Nk(String),
@@ -134,32 +138,53 @@ pub(super) struct Surroundings<'a> {
     pub(super) known: &'a dyn Fn(&str) -> Result<Arc<Model>>,
 }
 
+/// The same, with the materials further up.
+struct Around<'a> {
+    /// The model of a material further up, if there is one of that name.
+    earlier: &'a dyn Fn(&str) -> Option<Result<Arc<Model>>>,
+    /// See [`Surroundings`].
+    file: &'a dyn Fn(&str) -> Result<Cow<'static, str>>,
+    /// See [`Surroundings`].
+    known: &'a dyn Fn(&str) -> Result<Arc<Model>>,
+}
+
 /// Reads a manifest; `path` is what errors call it.
 ///
 /// # Errors
 /// TOML or keys that are wrong, another version, a missing file or material, a parameter out of range; each
 /// with the line or the material it is in.
 pub(super) fn parse(text: &str, path: &Path, around: &Surroundings<'_>) -> Result<Vec<Material>> {
-    let manifest: Manifest = toml::from_str(text).map_err(|error| syntax(text, &error).in_file(path))?;
-    if manifest.version != VERSION {
-        return Err(Error::malformed(
-            format!("version {} of the manifest format", manifest.version),
-            format!("write version = {VERSION}"),
-        )
-        .for_key("version")
-        .in_file(path));
-    }
-    let mut materials = Vec::with_capacity(manifest.material.len());
-    let mut builder = Builder { earlier: BTreeMap::new(), around };
-    for entry in manifest.material {
+    let mut materials = Vec::new();
+    let mut models: BTreeMap<String, Arc<Model>> = BTreeMap::new();
+    for entry in entries(text, path)? {
         let name = entry.name.clone();
-        let built = builder
-            .material(entry)
-            .map_err(|error| error.for_key(format!("material `{name}`")).in_file(path))?;
-        builder.earlier.insert(name, built.model.clone());
+        let earlier = |name: &str| models.get(name).map(|model| Ok(model.clone()));
+        let around = Around { earlier: &earlier, file: around.file, known: around.known };
+        let built = made(entry, path, &around)?;
+        models.insert(name, built.model.clone());
         materials.push(built);
     }
     Ok(materials)
+}
+
+/// The entries of a manifest.
+fn entries(text: &str, path: &Path) -> Result<Vec<Entry>> {
+    let manifest: Manifest = toml::from_str(text).map_err(|error| syntax(text, &error).in_file(path))?;
+    if manifest.version == VERSION {
+        return Ok(manifest.material);
+    }
+    Err(Error::malformed(
+        format!("version {} of the manifest format", manifest.version),
+        format!("write version = {VERSION}"),
+    )
+    .for_key("version")
+    .in_file(path))
+}
+
+/// The material of an entry.
+fn made(entry: Entry, path: &Path, around: &Around<'_>) -> Result<Material> {
+    let name = entry.name.clone();
+    build(entry, around).map_err(|error| error.for_key(format!("material `{name}`")).in_file(path))
 }
 
 /// A TOML error on one line, with its place.
@@ -172,47 +197,46 @@ fn syntax(text: &str, error: &toml::de::Error) -> Error {
     }
 }
 
+fn build(entry: Entry, around: &Around<'_>) -> Result<Material> {
+    if entry.name != read::kebab_case(&entry.name) || entry.name.is_empty() {
+        let instead = match read::kebab_case(&entry.name) {
+            kebab if kebab.is_empty() => "write letters and digits, such as `my-paint`".to_owned(),
+            kebab => format!("write `{kebab}`"),
+        };
+        let found = format!("the name `{}` is not in kebab-case", entry.name);
+        return Err(Error::malformed(found, instead));
+    }
+    if (around.earlier)(&entry.name).is_some() {
+        return Err(Error::malformed("this name is there twice", "give every material its own name"));
+    }
+    let builder = Builder { around };
+    let mut model = builder.model(entry.model)?;
+    if let Some([low, high]) = entry.range_cm1 {
+        model = Arc::new(Model::within(low, high, model)?);
+    }
+    // In TOML a text may have several lines; a list of materials has one for each.
+    let line = |text: String| read::one_line(&text);
+    Ok(Material {
+        name: entry.name,
+        provenance: Provenance {
+            description: line(entry.description),
+            category: line(entry.category),
+            basis: entry.basis,
+            source: line(entry.source),
+            licence: line(entry.licence),
+            note: line(entry.note),
+        },
+        model,
+        extrapolation: None,
+        warnings: Vec::new(),
+    })
+}
+
 struct Builder<'a> {
-    /// Materials further up.
-    earlier: BTreeMap<String, Arc<Model>>,
-    around: &'a Surroundings<'a>,
+    around: &'a Around<'a>,
 }
 
 impl Builder<'_> {
-    fn material(&self, entry: Entry) -> Result<Material> {
-        if entry.name != read::kebab_case(&entry.name) || entry.name.is_empty() {
-            let instead = match read::kebab_case(&entry.name) {
-                kebab if kebab.is_empty() => "write letters and digits, such as `my-paint`".to_owned(),
-                kebab => format!("write `{kebab}`"),
-            };
-            let found = format!("the name `{}` is not in kebab-case", entry.name);
-            return Err(Error::malformed(found, instead));
-        }
-        if self.earlier.contains_key(&entry.name) {
-            return Err(Error::malformed("this name is there twice", "give every material its own name"));
-        }
-        let mut model = self.model(entry.model)?;
-        if let Some([low, high]) = entry.range_cm1 {
-            model = Arc::new(Model::within(low, high, model)?);
-        }
-        // In TOML a text may have several lines; a list of materials has one for each.
-        let line = |text: String| read::one_line(&text);
-        Ok(Material {
-            name: entry.name,
-            provenance: Provenance {
-                description: line(entry.description),
-                category: line(entry.category),
-                basis: entry.basis,
-                source: line(entry.source),
-                licence: line(entry.licence),
-                note: line(entry.note),
-            },
-            model,
-            extrapolation: None,
-            warnings: Vec::new(),
-        })
-    }
-
     fn model(&self, entry: ModelEntry) -> Result<Arc<Model>> {
         let model = match entry {
             ModelEntry::Constant(emissivity) => Model::constant(emissivity)?,
@@ -246,10 +270,7 @@ impl Builder<'_> {
                     .collect::<Result<_>>()?,
             )?,
             ModelEntry::Material(name) => {
-                return match self.earlier.get(&name) {
-                    Some(model) => Ok(model.clone()),
-                    None => (self.around.known)(&name),
-                };
+                return (self.around.earlier)(&name).unwrap_or_else(|| (self.around.known)(&name));
             }
         };
         Ok(Arc::new(model))

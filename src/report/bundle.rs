@@ -1,10 +1,11 @@
 //! Files that appear together or not at all.
 //!
 //! Everything is written into a fresh folder beside the destination first and moved into place only when
-//! the last file is complete, so that a full disk or a missing permission leaves nothing half-written.
+//! the last file is complete, so that a full disk or a missing permission leaves nothing half-written. Figures are drawn
+//! only as they are written.
 
 use super::figures::Plot;
-use super::plot::{render_png, render_svg};
+use super::plot::{Figure, render_png, render_svg};
 use crate::error::{Error, Result};
 use rayon::prelude::*;
 use std::fs;
@@ -13,30 +14,44 @@ use std::path::{Path, PathBuf};
 /// Files of a report, by name.
 #[derive(Debug, Clone, Default)]
 pub struct Bundle {
-    files: Vec<(String, Vec<u8>)>,
+    files: Vec<(String, Content)>,
+    figures: Vec<Figure>,
+}
+
+/// What a file holds.
+#[derive(Debug, Clone)]
+enum Content {
+    Bytes(Vec<u8>),
+    /// Of a figure.
+    Svg(usize),
+    Png(usize),
 }
 
 impl Bundle {
     /// Adds a file.
     pub fn add(&mut self, name: impl Into<String>, content: impl Into<Vec<u8>>) {
-        self.files.push((name.into(), content.into()));
+        self.files.push((name.into(), Content::Bytes(content.into())));
     }
 
-    /// Adds SVG, PNG and CSV of every plot, rendered in parallel.
+    /// Adds SVG, PNG and CSV of every plot.
     ///
     /// # Errors
-    /// A figure that cannot be drawn.
+    /// A table that cannot be written.
     pub fn add_plots(&mut self, plots: &[Plot]) -> Result<()> {
-        let rendered: Result<Vec<(String, Vec<u8>, String)>> = plots
-            .par_iter()
-            .map(|plot| Ok((render_svg(&plot.figure)?, render_png(&plot.figure)?, plot.table.to_csv()?)))
-            .collect();
-        for (plot, (svg, png, csv)) in plots.iter().zip(rendered?) {
-            self.add(format!("{}.svg", plot.name), svg);
-            self.add(format!("{}.png", plot.name), png);
-            self.add(format!("{}.csv", plot.name), csv);
+        for plot in plots {
+            let figure = self.figures.len();
+            self.files.push((format!("{}.svg", plot.name), Content::Svg(figure)));
+            self.files.push((format!("{}.png", plot.name), Content::Png(figure)));
+            self.add(format!("{}.csv", plot.name), plot.table.to_csv()?);
+            self.figures.push(plot.figure.clone());
         }
         Ok(())
+    }
+
+    /// How many figures there are to draw.
+    #[must_use]
+    pub fn figures(&self) -> usize {
+        self.figures.len()
     }
 
     /// Names of the files, in the order they were added.
@@ -56,17 +71,31 @@ impl Bundle {
     /// Writes all files into `directory`, which is made if it is not there.
     ///
     /// # Errors
-    /// The folder cannot be made or written to; then none of the files is there.
+    /// A figure that cannot be drawn; the folder cannot be made or written to. Then none of the files is there.
     pub fn write(&self, directory: &Path) -> Result<()> {
+        let drawn: Result<Vec<(Vec<u8>, Vec<u8>)>> = self
+            .figures
+            .par_iter()
+            .map(|figure| Ok((render_svg(figure)?.into_bytes(), render_png(figure)?)))
+            .collect();
+        let drawn = drawn?;
         let staging = stage(directory)?;
-        let result = self.fill(&staging).and_then(|()| self.publish(&staging, directory));
+        let result = self.fill(&staging, &drawn).and_then(|()| self.publish(&staging, directory));
         // What is left of the staging folder is of no use to anyone, whether or not it can be removed.
         let _ = fs::remove_dir_all(&staging);
         result.map_err(|error| refused(directory, &error))
     }
 
-    fn fill(&self, staging: &Path) -> std::io::Result<()> {
-        self.files.iter().try_for_each(|(name, content)| fs::write(staging.join(name), content))
+    /// Writes every file; `drawn` are the figures as SVG and PNG.
+    fn fill(&self, staging: &Path, drawn: &[(Vec<u8>, Vec<u8>)]) -> std::io::Result<()> {
+        self.files.iter().try_for_each(|(name, content)| {
+            let content = match content {
+                Content::Bytes(bytes) => bytes,
+                Content::Svg(figure) => &drawn[*figure].0,
+                Content::Png(figure) => &drawn[*figure].1,
+            };
+            fs::write(staging.join(name), content)
+        })
     }
 
     fn publish(&self, staging: &Path, directory: &Path) -> std::io::Result<()> {

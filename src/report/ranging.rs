@@ -4,7 +4,7 @@ mod figures;
 mod text;
 
 pub use figures::{bound_maps, derivative_errors, lines, matched_maps, picture_plot, views};
-pub use text::{stats, text};
+pub use text::text;
 
 use super::bundle::Bundle;
 use super::table::{Table, number, optional};

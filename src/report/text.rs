@@ -9,11 +9,13 @@ mod many;
 mod numbers;
 mod pairs;
 mod simulation;
+mod work;
 
 pub use camera::camera;
-pub use many::{answers, check, work, work_of};
+pub use many::{answers, check};
 pub use numbers::{quantity, significant};
 pub use simulation::simulation;
+pub use work::work;
 
 pub(super) use self::footing::warnings;
 use self::footing::{GAUSSIAN, assumptions};

@@ -1,8 +1,8 @@
 //! Extended Data Fig. 6: which of five materials can be told apart.
 
 use super::{Figures, Line, Made, Order, Progress, Verdict, scene};
+use crate::demand::Skipping;
 use crate::error::Result;
-use crate::identifiability::multi::Skipping;
 use crate::report::{library, text};
 use crate::simulate::sequential::Plan;
 use crate::study::{Answers, Asked, Trial};

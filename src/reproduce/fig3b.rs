@@ -4,6 +4,7 @@
 //! training, 25 % for validation, 50 % for the test; 536 bands (Fig. 3b) or three (Fig. S7).
 
 use super::{Effort, Figures, Line, Made, Order, Progress, Verdict, scene};
+use crate::demand::Work;
 use crate::error::Result;
 use crate::identifiability::detection;
 use crate::instrument::{gamma_per_band, presets};
@@ -97,7 +98,7 @@ fn experiments(
     camera_noise: bool,
     progress: Progress<'_>,
 ) -> Result<Simulation> {
-    let mut photons = study.sweep(normalised, EXPERIMENTS, &[], false)?;
+    let mut photons = study.sweep(normalised, EXPERIMENTS, &[], false, &mut Work::default())?;
     if order.effort == Effort::Quick {
         photons = photons.into_iter().skip(QUICK / 2).step_by(QUICK).collect();
     }

@@ -1,6 +1,7 @@
 //! Fig. 4: what ranging gains from scattered light where a thermal image has no texture; Fig. S12: measures of texture.
 
 use super::{Figures, Line, Made, Order, Progress, Verdict};
+use crate::demand::Skipping;
 use crate::error::Result;
 use crate::material::Library;
 use crate::ranging::cube::{Cube, MemoryCube, Rows as _};
@@ -35,7 +36,7 @@ pub(super) fn study(toml: &str) -> Result<RangeStudy> {
 }
 
 pub(super) fn make(order: Order, out: &Path, progress: Progress<'_>) -> Result<Made> {
-    let plan = RangePlan { trials: TRIALS, seed: order.seed, skip: true, verdict_alone: false };
+    let plan = RangePlan { trials: TRIALS, seed: order.seed, skipping: Skipping::On, verdict_alone: false };
     let paper = study(ONE_TEMPERATURE)?.range(&plan, progress)?;
     let night = study(STREET)?.range(&RangePlan { trials: 0, ..plan }, progress)?;
     let dim = study(&dimmer())?.range(&plan, progress)?;

@@ -8,6 +8,7 @@ use super::draws::{Draws, STREAMS};
 use super::ratio::RatioDraws;
 use super::sequential::Interval;
 use super::spectra::{LabelledSpectra, Parts};
+use crate::demand::{Reason, Thing, Work};
 use crate::error::{Error, Result};
 use crate::identifiability::ratio::State;
 use crate::statistics::Statistics;
@@ -71,6 +72,35 @@ impl Performance {
     #[must_use]
     pub fn words(&self) -> String {
         format!("{}{}", self.method.words(), if self.saved { ", saved" } else { "" })
+    }
+}
+
+impl Design {
+    /// What an experiment with so many classes draws and trains, and what nobody who takes part needs.
+    ///
+    /// # Errors
+    /// Fewer than 4 spectra of a class, or too many.
+    pub fn work(&self, classes: usize) -> Result<Work> {
+        let Parts { training, validation, test } = Parts::of(self.per_class)?;
+        let spectra = |range: &std::ops::Range<u64>| (range.end - range.start) * classes as u64;
+        let (learnt, tested) = (spectra(&training) + spectra(&validation), spectra(&test));
+        let trained = self.methods.iter().filter(|method| method.is_trained()).count() as u64;
+        let can_be_trained = Method::ALL.iter().filter(|method| method.is_trained()).count() as u64;
+        let mut work = Work::default();
+        work.compute(Thing::TrainedClassifiers, if self.skip_spectra { 0 } else { trained });
+        work.spare(Thing::TrainedClassifiers, Reason::NotAsked, can_be_trained.saturating_sub(trained));
+        if self.skip_spectra {
+            work.compute(Thing::Ratios, tested);
+            work.spare(Thing::Spectra, Reason::Decided, tested);
+        } else {
+            work.compute(Thing::Spectra, tested);
+        }
+        if trained > 0 && !self.skip_spectra {
+            work.compute(Thing::Spectra, learnt);
+        } else {
+            work.spare(Thing::Spectra, Reason::NotAsked, learnt);
+        }
+        Ok(work)
     }
 }
 

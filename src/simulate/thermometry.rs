@@ -121,6 +121,22 @@ impl Fits {
     }
 }
 
+/// What a fit starts from.
+struct Fitter {
+    parameters: Vec<Parameter>,
+    truth: Vec<f64>,
+    /// Deviations of the priors.
+    priors: Vec<Option<f64>>,
+    lighting_total: Option<f64>,
+}
+
+/// What a fit found.
+struct Estimates {
+    values: Vec<f64>,
+    converged: bool,
+    at_edge: bool,
+}
+
 impl ThermometryScene<'_> {
     /// Mean counts of each band in `state`.
     ///
@@ -162,55 +178,8 @@ impl ThermometryScene<'_> {
     /// # Errors
     /// No unknowns, a state outside of the range, or one that does not fit the scene; too many photons to draw.
     pub fn fits(&self, unknowns: &Unknowns, state: &State, run: Run) -> Result<Fits> {
-        let parameters = unknowns.parameters(self.surroundings.objects().len());
-        if parameters.is_empty() {
-            return Err(Error::malformed("a fit without unknown parameters", "name at least one unknown"));
-        }
-        self.range.check()?;
-        let truth: Vec<f64> = parameters.iter().map(|p| value(state, *p)).collect();
-        for (parameter, truth) in parameters.iter().zip(&truth) {
-            self.check_within(*parameter, *truth)?;
-        }
-        let draws = self.draws(state)?;
-        let fits = MaximumLikelihood::new(
-            self.bands,
-            self.surroundings,
-            unknowns.clone(),
-            self.range,
-            self.counting.counts_per_radiance,
-            self.statistics()?,
-        )?;
-        let grey = Conventional::with_surroundings(0.95, self.surroundings)?;
-        let middle = 0.5 * (self.range.lighting[0] + self.range.lighting[1]);
-        let share = middle.min(self.range.lighting_sum / state.lighting.len().max(1) as f64);
-        let priors: Vec<Option<f64>> = parameters.iter().map(|p| unknowns.sigma_prior(*p)).collect();
-        let total_known = unknowns.known_lighting_total();
-        let each = self.trials(&draws, run, fits, |fits, rng, counts| {
-            let mut known = state.clone();
-            let mut start = state.clone();
-            for (parameter, sigma) in parameters.iter().zip(&priors) {
-                let noise: f64 = StandardNormal.sample(rng);
-                // Without a prior what is unknown is not looked at there.
-                let centre = value(state, *parameter) + sigma.unwrap_or(0.0) * noise;
-                set(&mut known, *parameter, centre);
-                if sigma.is_some() {
-                    set(&mut start, *parameter, centre);
-                } else {
-                    set(&mut start, *parameter, self.guess(*parameter, &grey, counts, share, total_known));
-                }
-            }
-            let fit = fits.fit(self.emissivity, counts, &known, &[start]);
-            let estimates: Vec<f64> = parameters.iter().map(|p| value(&fit.state, *p)).collect();
-            (estimates, fit.converged, self.at_edge(&fit.state, &parameters, total_known))
-        });
-        Ok(Fits {
-            unconverged: each.iter().filter(|(_, converged, _)| !converged).count(),
-            at_edge: each.iter().filter(|(.., at_edge)| *at_edge).count(),
-            trials: each.len(),
-            estimates: each.into_iter().flat_map(|(estimates, ..)| estimates).collect(),
-            parameters,
-            truth,
-        })
+        let (mut fits, _) = self.read(&[unknowns], &[], state, run)?;
+        fits.pop().ok_or_else(|| Error::malformed("a fit without an outcome", "report this as a bug"))
     }
 
     /// What a thermal imager reads from the sum of the counts of every spectrum of a run in `state`.
@@ -218,8 +187,114 @@ impl ThermometryScene<'_> {
     /// # Errors
     /// A state that does not fit the scene; too many photons to draw.
     pub fn readings(&self, conventional: &Conventional, state: &State, run: Run) -> Result<Vec<Reading>> {
+        let (_, mut readings) = self.read(&[], &[conventional], state, run)?;
+        Ok(readings.pop().unwrap_or_default())
+    }
+
+    /// What each fit and each imager makes of the spectra of a run in `state`, which are drawn once for all of them: the
+    /// same as [`ThermometryScene::fits`] and [`ThermometryScene::readings`] one by one.
+    ///
+    /// # Errors
+    /// As those.
+    pub fn read(
+        &self,
+        unknowns: &[&Unknowns],
+        imagers: &[&Conventional],
+        state: &State,
+        run: Run,
+    ) -> Result<(Vec<Fits>, Vec<Vec<Reading>>)> {
+        self.range.check()?;
+        let grey = Conventional::with_surroundings(0.95, self.surroundings)?;
+        let fitters =
+            unknowns.iter().map(|unknowns| self.fitter(unknowns, state)).collect::<Result<Vec<_>>>()?;
         let draws = self.draws(state)?;
-        Ok(self.trials(&draws, run, (), |(), _, counts| self.reading(conventional, crate::sum::sum(counts))))
+        let workspace = unknowns.iter().map(|unknowns| self.likelihood(unknowns));
+        let workspace = workspace.collect::<Result<Vec<_>>>()?;
+        let most = fitters.iter().map(|fitter| fitter.parameters.len()).max().unwrap_or(0);
+        let each = self.trials(&draws, run, workspace, |likelihoods, rng, counts| {
+            // The noise of the priors: every fit has the same, as if it were alone.
+            let normals: Vec<f64> = (0..most).map(|_| StandardNormal.sample(rng)).collect();
+            let fits = fitters.iter().zip(likelihoods);
+            let fits = fits
+                .map(|(fitter, likelihood)| self.fit(fitter, likelihood, (state, &grey), &normals, counts));
+            let fits: Vec<Estimates> = fits.collect();
+            let total = crate::sum::sum(counts);
+            let readings: Vec<Reading> = imagers.iter().map(|imager| self.reading(imager, total)).collect();
+            (fits, readings)
+        });
+        let fits = fitters.into_iter().enumerate().map(|(i, fitter)| {
+            let own = || each.iter().filter_map(|(fits, _)| fits.get(i));
+            Fits {
+                unconverged: own().filter(|fit| !fit.converged).count(),
+                at_edge: own().filter(|fit| fit.at_edge).count(),
+                trials: each.len(),
+                estimates: own().flat_map(|fit| fit.values.iter().copied()).collect(),
+                parameters: fitter.parameters,
+                truth: fitter.truth,
+            }
+        });
+        let readings = (0..imagers.len()).map(|i| each.iter().map(|(_, readings)| readings[i]).collect());
+        Ok((fits.collect(), readings.collect()))
+    }
+
+    fn fitter(&self, unknowns: &Unknowns, state: &State) -> Result<Fitter> {
+        let parameters = unknowns.parameters(self.surroundings.objects().len());
+        if parameters.is_empty() {
+            return Err(Error::malformed("a fit without unknown parameters", "name at least one unknown"));
+        }
+        let truth: Vec<f64> = parameters.iter().map(|p| value(state, *p)).collect();
+        for (parameter, truth) in parameters.iter().zip(&truth) {
+            self.check_within(*parameter, *truth)?;
+        }
+        Ok(Fitter {
+            priors: parameters.iter().map(|p| unknowns.sigma_prior(*p)).collect(),
+            lighting_total: unknowns.known_lighting_total(),
+            parameters,
+            truth,
+        })
+    }
+
+    fn likelihood(&self, unknowns: &Unknowns) -> Result<MaximumLikelihood<'_>> {
+        MaximumLikelihood::new(
+            self.bands,
+            self.surroundings,
+            unknowns.clone(),
+            self.range,
+            self.counting.counts_per_radiance,
+            self.statistics()?,
+        )
+    }
+
+    /// One spectrum fitted.
+    fn fit(
+        &self,
+        fitter: &Fitter,
+        likelihood: &mut MaximumLikelihood<'_>,
+        (state, grey): (&State, &Conventional),
+        normals: &[f64],
+        counts: &[f64],
+    ) -> Estimates {
+        let middle = 0.5 * (self.range.lighting[0] + self.range.lighting[1]);
+        let share = middle.min(self.range.lighting_sum / state.lighting.len().max(1) as f64);
+        let Fitter { parameters, priors, lighting_total, .. } = fitter;
+        let mut known = state.clone();
+        let mut start = state.clone();
+        for ((parameter, sigma), noise) in parameters.iter().zip(priors).zip(normals) {
+            // Without a prior what is unknown is not looked at there.
+            let centre = value(state, *parameter) + sigma.unwrap_or(0.0) * noise;
+            set(&mut known, *parameter, centre);
+            if sigma.is_some() {
+                set(&mut start, *parameter, centre);
+            } else {
+                set(&mut start, *parameter, self.guess(*parameter, grey, counts, share, *lighting_total));
+            }
+        }
+        let fit = likelihood.fit(self.emissivity, counts, &known, &[start]);
+        Estimates {
+            values: parameters.iter().map(|p| value(&fit.state, *p)).collect(),
+            converged: fit.converged,
+            at_edge: self.at_edge(&fit.state, parameters, *lighting_total),
+        }
     }
 
     fn draws(&self, state: &State) -> Result<Draws> {

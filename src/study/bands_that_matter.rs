@@ -2,6 +2,7 @@
 
 use super::chosen_bands::{Reached, fewest_as_good};
 use super::{Study, Surface};
+use crate::demand::{Thing, Work};
 use crate::error::{Error, Result};
 use crate::identifiability::selection::{
     FilterSelection, Quality, Scores, best_bands, best_filters, shares_between,
@@ -71,6 +72,9 @@ pub struct BandsThatMatter {
     pub bands: Option<Choice>,
     /// The best contiguous filters; `None` if not asked for.
     pub filters: Option<Choice>,
+    /// What it took.
+    #[serde(skip)]
+    pub work: Work,
 }
 
 impl Study {
@@ -99,7 +103,9 @@ impl Study {
             .collect::<Result<_>>()?;
         let (useful, blind): (Vec<usize>, Vec<usize>) =
             (0..scores.len()).partition(|&i| self.is_told_by_all_bands(&self.alternatives[i]));
-        let (_, beyond) = self.within_reach()?;
+        let mut work = Work::default();
+        self.book_local(&mut work, &unknowns, scores.len());
+        let (_, beyond) = self.within_reach(&mut work)?;
         let (out_of_reach, reachable): (Vec<usize>, Vec<usize>) =
             useful.iter().partition(|i| beyond.contains(i));
         let (counted, out_of_reach) =
@@ -150,6 +156,7 @@ impl Study {
         let chosen_filters = filters.map(best_few).transpose()?;
         let alternative = told[hardest].0;
         let state: State = self.spectra(alternative)?.state;
+        work.compute(Thing::NearestSearches, 1);
         let nearest = self.bands.weigh(&self.surroundings.signal(&alternative.emissivity, &state));
         Ok(BandsThatMatter {
             alternatives: told.iter().map(|(surface, _)| surface.name.clone()).collect(),
@@ -162,6 +169,7 @@ impl Study {
             share_nearest: shares_between(&self.target_signal(), &nearest, counting.as_ref())?,
             bands: chosen_bands,
             filters: chosen_filters,
+            work,
         })
     }
 

@@ -1,6 +1,7 @@
 //! The curves behind the plots: spectra that look alike, information against photons, photons over a map.
 
 use super::{Study, Surface};
+use crate::demand::Work;
 use crate::error::Result;
 use crate::fisher::Nuisance;
 use crate::identifiability::detection;
@@ -144,7 +145,8 @@ impl Study {
             .iter()
             .map(|n| {
                 let counting = self.counting_with(camera, *n);
-                self.statistical_distance(kind, alternative, &counting).map(detection::information_bits)
+                self.statistical_distance(kind, alternative, &counting, &mut Work::default())
+                    .map(detection::information_bits)
             })
             .collect()
     }

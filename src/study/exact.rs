@@ -9,6 +9,7 @@ mod results;
 pub use results::{Exact, ExactLibrary, ExactPair};
 
 use super::{Study, Surface};
+use crate::demand::{Reason, Thing, Work};
 use crate::error::{Error, Result};
 use crate::fisher::{Counting, Nuisance};
 use crate::identifiability::bracket::KnownStates;
@@ -17,7 +18,6 @@ use crate::identifiability::lattice::{LatticeDetection, LatticeDetector, Lattice
 use crate::identifiability::local::LocalSolver;
 use crate::identifiability::nearest::{NearestSolver, StateRange};
 use crate::policy;
-use crate::scenario::DistanceKind;
 use crate::simulate::decision::{Balanced, DecisionScene};
 use crate::simulate::draws::{GENERATOR, LARGEST_MEAN};
 use crate::simulate::sequential::Plan;
@@ -61,7 +61,8 @@ impl Study {
     /// # Errors
     /// A scene without photons, or too many of them to draw; electronic noise without a camera.
     pub fn exact(&self, trial: &Trial, progress: &dyn Fn(usize, usize)) -> Result<Exact> {
-        let hardest_first = self.hardest_first()?;
+        let mut work = Work::default();
+        let hardest_first = self.hardest_first(trial, &mut work)?;
         let photons = match (trial.photons, self.counting()) {
             (Some(photons), _) => photons,
             (None, Some(counting)) => counting.counts_per_radiance * self.photon_radiance(),
@@ -96,7 +97,17 @@ impl Study {
         } else {
             None
         };
+        for pair in &pairs {
+            // From the nearest state back, and the local distance.
+            work.compute(Thing::NearestSearches, 1);
+            self.book_local(&mut work, &self.unknowns, 1);
+            book_trials(&mut work, pair.trials, 2, &trial.plan);
+        }
+        library
+            .iter()
+            .for_each(|library: &ExactLibrary| book_trials(&mut work, library.trials, 1, &trial.plan));
         Ok(Exact {
+            work,
             statistics: statistics.name(),
             normal_error: normal_error(
                 &statistics,
@@ -110,10 +121,17 @@ impl Study {
         })
     }
 
-    /// The alternatives with their nearest distances per √photon, nearest first.
-    fn hardest_first(&self) -> Result<Vec<(f64, &Surface)>> {
+    /// The alternatives with their nearest distances per √photon, nearest first; a single one whose distance nobody
+    /// asks for has none.
+    fn hardest_first(&self, trial: &Trial, work: &mut Work) -> Result<Vec<(f64, &Surface)>> {
+        let photons_are_known = trial.photons.is_some() || self.camera.is_some();
+        if let ([only], true) = (self.alternatives.as_slice(), photons_are_known) {
+            work.spare(Thing::NearestSearches, Reason::NotAsked, 1);
+            return Ok(vec![(f64::NAN, only)]);
+        }
+        work.compute(Thing::NearestSearches, self.alternatives.len() as u64);
         let ranked = self.alternatives.par_iter().map(|alternative| {
-            let distance = self.distance_per_photon(DistanceKind::Nearest, alternative, f64::INFINITY)?;
+            let distance = self.nearest(alternative, f64::INFINITY, &mut Work::default())?.distance;
             Ok((distance, alternative))
         });
         let mut ranked = ranked.collect::<Result<Vec<(f64, &Surface)>>>()?;
@@ -255,4 +273,11 @@ impl Study {
             trials: found.trials,
         })
     }
+}
+
+/// Trials of so many truths, of each as many as the plan has at most.
+fn book_trials(work: &mut Work, trials: u64, truths: u64, plan: &Plan) {
+    work.compute(Thing::Trials, trials);
+    let most = truths.saturating_mul(plan.most_trials());
+    work.spare(Thing::Trials, Reason::NarrowEnough, most.saturating_sub(trials));
 }

@@ -5,6 +5,7 @@ mod results;
 pub use results::{Identifiability, Identification, NearestState, PairResult, PhotonsRequired, Prediction};
 
 use super::{Study, Surface, Warning, warn};
+use crate::demand::Work;
 use crate::error::Result;
 use crate::fisher::{Counting, Nuisance};
 use crate::identifiability::Status;
@@ -21,9 +22,14 @@ impl Study {
     /// # Errors
     /// A scene without photons, or fewer bands than unknowns.
     pub fn identify(&self) -> Result<Identification> {
-        let results: Result<Vec<(PairResult, Vec<Warning>)>> =
-            self.alternatives.par_iter().map(|alternative| self.pair(alternative)).collect();
-        let (pairs, pair_warnings): (Vec<_>, Vec<_>) = results?.into_iter().unzip();
+        let pair = |alternative| {
+            let mut work = Work::default();
+            self.pair(alternative, &mut work).map(|(pair, warnings)| (pair, (warnings, work)))
+        };
+        let results: Result<Vec<(PairResult, (Vec<Warning>, Work))>> =
+            self.alternatives.par_iter().map(pair).collect();
+        let (pairs, others): (Vec<_>, Vec<_>) = results?.into_iter().unzip();
+        let (pair_warnings, took): (Vec<_>, Vec<_>) = others.into_iter().unzip();
         let kind = self.scenario.requirement.by;
         let decisive = |pair: &PairResult| pair.statistical_distance.unwrap_or_else(|| pair.distance(kind));
         let limiting = pairs
@@ -44,6 +50,7 @@ impl Study {
             pairs,
             limiting,
             warnings,
+            stats: took.iter().fold(self.looked_up.clone(), Work::and),
         })
     }
 
@@ -87,7 +94,7 @@ impl Study {
         self.camera.as_ref().map(|camera| camera.counting(&self.bands, self.scenario.target.distance_m))
     }
 
-    fn pair(&self, alternative: &Surface) -> Result<(PairResult, Vec<Warning>)> {
+    fn pair(&self, alternative: &Surface, work: &mut Work) -> Result<(PairResult, Vec<Warning>)> {
         let kind = self.scenario.requirement.by;
         let counting = self.counting();
         let signal = self.target_signal();
@@ -96,27 +103,31 @@ impl Study {
         // Priors weigh by the number of photons they compete with: the camera's, else those required.
         let with_priors = if self.unknowns.has_priors() {
             Some(PhotonsRequired {
-                nearest: self.photons_with_priors(DistanceKind::Nearest, alternative)?,
-                local: self.photons_with_priors(DistanceKind::Local, alternative)?,
-                local_unknown_gain: self.photons_with_priors(DistanceKind::LocalUnknownGain, alternative)?,
+                nearest: self.photons_with_priors(DistanceKind::Nearest, alternative, work)?,
+                local: self.photons_with_priors(DistanceKind::Local, alternative, work)?,
+                local_unknown_gain: self.photons_with_priors(
+                    DistanceKind::LocalUnknownGain,
+                    alternative,
+                    work,
+                )?,
             })
         } else {
             None
         };
         let photons = camera_photons.or(with_priors.and_then(|by| by.of(kind))).unwrap_or(f64::INFINITY);
-        let local = self.local(self.unknowns.clone(), alternative, photons)?;
-        let nearest = self.nearest(alternative, photons)?;
-        let unknown_gain = self.local_unknown_gain(alternative, photons)?;
+        let local = self.local(self.unknowns.clone(), alternative, photons, work)?;
+        let nearest = self.nearest(alternative, photons, work)?;
+        let unknown_gain = self.local_unknown_gain(alternative, photons, work)?;
         let required = |distance: f64| policy::photons_required(self.required, distance);
         let required_by = with_priors.unwrap_or_else(|| PhotonsRequired {
             nearest: required(nearest.distance),
             local: required(local.distance),
             local_unknown_gain: required(unknown_gain),
         });
-        let back = self.return_distance(alternative, &nearest)?;
+        let back = self.return_distance(alternative, &nearest, work)?;
         let statistical = counting
             .as_ref()
-            .map(|counting| self.statistical_distance(kind, alternative, counting))
+            .map(|counting| self.statistical_distance(kind, alternative, counting, work))
             .transpose()?;
         let shortcut = counting.as_ref().map(|counting| {
             let gamma = crate::instrument::gamma_per_band(counting, &signal);

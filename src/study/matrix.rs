@@ -5,9 +5,10 @@ mod results;
 pub use results::{Apart, Check, Matrix, Rows, TargetVerdict};
 
 use super::{Study, Surface};
+use crate::demand::{Demand, Reason, Skipping, Thing, Work};
 use crate::error::{Error, Result};
 use crate::fisher::{Counting, Nuisance, Unknowns};
-use crate::identifiability::multi::{self, Decisions, LibraryScene, LocalMatrix, Skipping, Work};
+use crate::identifiability::multi::{self, Decisions, LibraryScene, LocalMatrix, Passes};
 use crate::identifiability::nearest::NearestDistance;
 use crate::scenario::DistanceKind;
 
@@ -72,6 +73,15 @@ impl Study {
             DistanceKind::Local => local.clone(),
             DistanceKind::LocalUnknownGain => of(kind, None)?,
         };
+        let distances_asked = count * (count - 1);
+        let mut work = self.work_of_passes(solver.passes(), distances_asked);
+        work.compute(Thing::NearestSearches, distances_asked as u64);
+        if statistical.is_some() {
+            self.book_distances(&mut work, kind, distances_asked);
+        }
+        if kind == DistanceKind::LocalUnknownGain {
+            self.book_distances(&mut work, kind, distances_asked);
+        }
         let required = self.required;
         let targets = (0..count)
             .map(|target| {
@@ -93,7 +103,7 @@ impl Study {
             .collect();
         let apart = statistical.as_ref().map(|d| {
             let told = |a: usize, b: usize| d[a * count + b] >= required && d[b * count + a] >= required;
-            sorted_out(&names, told, None)
+            sorted_out(&names, told, Work::default())
         });
         Ok(Matrix {
             by: kind.name(),
@@ -108,7 +118,24 @@ impl Study {
             unconverged,
             passes: solver.passes(),
             materials: names,
+            work,
         })
+    }
+
+    /// The local distances of a matrix, with the columns of derivatives that targets lent to all their pairs.
+    fn work_of_passes(&self, passes: Passes, distances: usize) -> Work {
+        let mut work = Work::default();
+        self.book_local(&mut work, &self.unknowns, passes.alone);
+        let shared = distances.saturating_sub(passes.alone);
+        let objects = self.surroundings.objects().len();
+        let (asked, all) = (self.unknowns.parameters(objects).len(), 3 + 2 * objects);
+        // A target's nuisances are formed once, and the alternatives' columns band by band as they are used.
+        let formed = passes.shared_targets * asked;
+        work.compute(Thing::LocalDistances, shared as u64);
+        work.compute(Thing::DerivativeColumns, formed as u64);
+        work.spare(Thing::DerivativeColumns, Reason::Shared, (shared * asked - formed) as u64);
+        work.spare(Thing::DerivativeColumns, Reason::NotAsked, (shared * (all - asked)) as u64);
+        work
     }
 
     /// Which materials the camera tells apart, stopping at the first proof of each pair.
@@ -124,49 +151,49 @@ impl Study {
         if kind == DistanceKind::Nearest {
             let found: Decisions =
                 self.library_scene().told_apart(&emissivities, &counting, self.required, skipping)?;
-            return Ok(sorted_out(&names, |a, b| found.told_apart(a, b), Some(found.work)));
+            let work = found.work.clone();
+            return Ok(sorted_out(&names, |a, b| found.told_apart(a, b), work));
         }
         // All local distances together take less time than bounds on each would.
         let d = self.all_distances(kind, &emissivities, Some(&counting))?;
         let count = names.len();
         let told =
             |a: usize, b: usize| d[a * count + b] >= self.required && d[b * count + a] >= self.required;
-        let distances = count * (count - 1);
-        let work = Work { distances, in_full: distances, ..Work::default() };
-        Ok(sorted_out(&names, told, Some(work)))
+        let mut work = Work::default();
+        self.book_distances(&mut work, kind, count * (count - 1));
+        Ok(sorted_out(&names, told, work))
     }
 
     /// Whether the camera tells the target from every alternative, ending at the first one it does not.
     ///
     /// # Errors
     /// As [`Study::told_apart`].
-    pub fn check(&self) -> Result<Check> {
+    pub fn check(&self, skipping: Skipping) -> Result<Check> {
         let counting = self.needed_counting()?;
         let kind = self.scenario.requirement.by;
         let (failed, work) = if kind == DistanceKind::Nearest {
             let emissivities: Vec<&[f64]> =
                 std::iter::once(&self.target).chain(&self.alternatives).map(|m| &m.emissivity[..]).collect();
             let scene = self.library_scene();
-            let (failed, work) = scene.first_not_told_from(0, &emissivities, &counting, self.required)?;
+            let (failed, work) =
+                scene.first_not_told_from(0, &emissivities, &counting, self.required, skipping)?;
             (failed.map(|i| &self.alternatives[i - 1]), work)
         } else {
-            let mut work = Work { distances: self.alternatives.len(), ..Work::default() };
-            let mut failed = None;
-            for alternative in &self.alternatives {
-                work.in_full += 1;
-                if self.statistical_distance(kind, alternative, &counting)? < self.required {
-                    failed = Some(alternative);
-                    break;
-                }
-            }
-            work.decided_by_another = work.distances - work.in_full;
-            (failed, work)
+            let mut demand = Demand::new(skipping);
+            let failed =
+                demand.until(&self.alternatives, &[Thing::LocalDistances], |demand, alternative| {
+                    let mut work = Work::default();
+                    let distance = self.statistical_distance(kind, alternative, &counting, &mut work)?;
+                    demand.add(&work);
+                    Ok((distance < self.required).then_some(alternative))
+                })?;
+            (failed, demand.into_work())
         };
         Ok(Check {
             scenario: self.scenario.clone(),
             identifiable: failed.is_none(),
             not_told_from: failed.map(|surface| surface.name.clone()),
-            work,
+            stats: self.looked_up.clone().and(&work),
         })
     }
 
@@ -223,7 +250,7 @@ fn rows(distances: &[f64], count: usize) -> Rows {
     distances.chunks(count).enumerate().map(row).collect()
 }
 
-fn sorted_out(names: &[String], told: impl Fn(usize, usize) -> bool, work: Option<Work>) -> Apart {
+fn sorted_out(names: &[String], told: impl Fn(usize, usize) -> bool, work: Work) -> Apart {
     let (mut told_apart, mut not_told_apart) = (Vec::new(), Vec::new());
     for a in 0..names.len() {
         for b in a + 1..names.len() {

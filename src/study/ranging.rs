@@ -11,7 +11,7 @@ mod witness;
 
 pub use results::{
     BoundMaps, CellMedians, DepthSolutions, DepthVerdict, Geometry, Line, Matched, ObjectBounds, PictureKind,
-    RangeStats, Ranging, Signal, SignalBounds,
+    Ranging, Signal, SignalBounds,
 };
 
 pub(crate) use bounds::{median, quantile};
@@ -20,6 +20,7 @@ use self::bounds::Ground;
 use self::signals::SignalMap;
 use self::subject::{Resolved, Truth, nothing_to_see};
 use super::Warning;
+use crate::demand::{Demand, Skipping, Thing, Work};
 use crate::error::Result;
 use crate::instrument::Camera;
 use crate::ranging::cube::{Cube, Shape};
@@ -39,6 +40,8 @@ pub struct RangeStudy {
     bands: Option<Bands>,
     geometry: StereoGeometry,
     subject: Resolved,
+    /// What it took to look everything up.
+    looked_up: Work,
 }
 
 /// How a study is to be answered.
@@ -49,13 +52,16 @@ pub struct RangePlan {
     /// Seed of the draws.
     pub seed: u64,
     /// Whether what a proof makes needless is left out; the answer is the same.
-    pub skip: bool,
+    pub skipping: Skipping,
     /// Whether yes or no is enough.
     pub verdict_alone: bool,
 }
 
 /// Is told how much of how much is done.
 pub type Progress<'a> = &'a (dyn Fn(usize, usize) + Sync);
+
+/// Sections of an answer: verdict, objects, cells, what would have to change, lines, and views matched.
+const SECTIONS: usize = 6;
 
 /// Information of every window in both views.
 struct Informed {
@@ -95,7 +101,7 @@ impl RangeStudy {
     pub fn range(&self, plan: &RangePlan, progress: Progress<'_>) -> Result<Ranging> {
         let shape = self.shape()?;
         if plan.verdict_alone
-            && plan.skip
+            && plan.skipping == Skipping::On
             && let Some(result) = self.verdict_alone(shape)?
         {
             return Ok(result);
@@ -140,9 +146,17 @@ impl RangeStudy {
                 )?
             }
         };
-        let matched = self.matched(plan, &informed)?;
-        let samples = shape.len() as u64 * if informed.right.is_empty() { 1 } else { 2 };
-        let counted = windows.len() as u64;
+        let mut demand = Demand::new(plan.skipping);
+        demand.add(&self.looked_up);
+        demand.computed(Thing::Samples, shape.len() * if informed.right.is_empty() { 1 } else { 2 });
+        demand.computed(Thing::Windows, windows.len());
+        demand.computed(Thing::Sections, SECTIONS - 1);
+        let matched = demand.if_asked(plan.trials > 0, Thing::Sections, 1, |demand| {
+            let matched = self.matched(plan, &informed)?;
+            let of_lines: usize = lines.iter().map(|line| line.trials).sum();
+            demand.computed(Thing::MatchedViews, matched.len() + of_lines);
+            Ok(matched)
+        })?;
         let mut result = Ranging {
             scenario: self.scenario.clone(),
             verdict: self.verdict(objects.first())?,
@@ -152,14 +166,8 @@ impl RangeStudy {
             objects,
             solve_for,
             lines,
-            matched,
-            stats: RangeStats {
-                samples,
-                samples_read: samples,
-                windows: counted,
-                computed: counted,
-                ..RangeStats::default()
-            },
+            matched: matched.unwrap_or_default(),
+            stats: demand.into_work(),
             warnings: Vec::new(),
             maps,
         };

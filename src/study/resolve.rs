@@ -6,6 +6,7 @@ mod finder;
 use self::defaults::{alternatives_as_written, check_range, fill, state_range, unknowns};
 use self::finder::Finder;
 use super::{Warning, bands, camera};
+use crate::demand::Work;
 use crate::error::Result;
 use crate::fisher::{Nuisance, Unknowns};
 use crate::identifiability::detection;
@@ -41,6 +42,8 @@ pub struct Study {
     /// Skies of the library that are no alternatives.
     pub(super) skies: Vec<String>,
     pub(super) warnings: Vec<Warning>,
+    /// What it took to look everything up.
+    pub(super) looked_up: Work,
 }
 
 impl Study {
@@ -147,6 +150,7 @@ impl Study {
             required,
             skies,
             warnings,
+            looked_up: library.work(),
         };
         study.check_magnitudes()?;
         Ok(study)

@@ -5,6 +5,7 @@
 //! can lose. Bands are joined two by two, over and over, so that every number of bands refines the one before.
 
 use super::{Study, Surface};
+use crate::demand::Work;
 use crate::error::Result;
 use crate::fisher::Counting;
 use crate::identifiability::local::LocalSolver;
@@ -54,6 +55,9 @@ pub struct Scaling {
     pub library: LibrarySize,
     /// Against the number of bands.
     pub bands: BandNumber,
+    /// What it took.
+    #[serde(skip)]
+    pub work: Work,
 }
 
 impl Study {
@@ -63,14 +67,18 @@ impl Study {
     /// As [`Study::matrix`].
     pub fn scaling(&self) -> Result<Scaling> {
         let kind = self.scenario.requirement.by;
-        Ok(Scaling { by: kind.name(), library: self.library_size(kind)?, bands: self.band_number(kind)? })
+        let mut work = Work::default();
+        let library = self.library_size(kind, &mut work)?;
+        let bands = self.band_number(kind, &mut work)?;
+        Ok(Scaling { by: kind.name(), library, bands, work })
     }
 
-    fn library_size(&self, kind: DistanceKind) -> Result<LibrarySize> {
+    fn library_size(&self, kind: DistanceKind, work: &mut Work) -> Result<LibrarySize> {
         let materials = self.materials()?;
         let emissivities: Vec<&[f64]> = materials.iter().map(|m| m.emissivity.as_slice()).collect();
         let count = materials.len();
         let distances = self.all_distances(kind, &emissivities, None)?;
+        self.book_distances(work, kind, count * (count - 1));
         let curves: Vec<Vec<f64>> = (0..count)
             .map(|target| {
                 let row = &distances[target * count..(target + 1) * count];
@@ -92,8 +100,8 @@ impl Study {
         Ok(LibrarySize { materials: (2..=count).collect(), target, quantiles, whole_library })
     }
 
-    fn band_number(&self, kind: DistanceKind) -> Result<BandNumber> {
-        let (within, beyond) = self.within_reach()?;
+    fn band_number(&self, kind: DistanceKind, work: &mut Work) -> Result<BandNumber> {
+        let (within, beyond) = self.within_reach(work)?;
         let beyond = if within.is_empty() { Vec::new() } else { beyond };
         let counted = self.alternatives.iter().enumerate().filter(|(i, _)| !beyond.contains(i));
         let counted: Vec<Surface> = counted.map(|(_, surface)| surface.clone()).collect();
@@ -115,12 +123,14 @@ impl Study {
                 continue;
             }
             let (least, median) = study.least_and_median(kind, None)?;
+            study.book_distances(work, kind, counted.len());
             found.bands.push(study.bands.len());
             found.shot_noise.push(least);
             found.shot_noise_median.push(median);
             let noisy = |counting: &Counting| counting.var_electronic.iter().any(|&var| var > 0.0);
             if let Some(counting) = study.counting().filter(noisy) {
                 let (least, median) = study.least_and_median(kind, Some(&counting))?;
+                study.book_distances(work, kind, counted.len());
                 found.camera.push(least);
                 found.camera_median.push(median);
             }

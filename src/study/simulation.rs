@@ -14,7 +14,8 @@ mod standing;
 pub(super) use experiment::normal_error;
 pub use standing::{SimulatedPerformance, Standing};
 
-use super::{Study, Surface, Warning};
+use super::{Study, Warning};
+use crate::demand::{Thing, Work};
 use crate::error::Result;
 use crate::fisher::Unknowns;
 use crate::simulate::classifier::{SavedModel, Trained};
@@ -124,6 +125,8 @@ pub struct Simulation {
     pub limit_holds: bool,
     /// What the reader must know.
     pub warnings: Vec<Warning>,
+    /// What it took.
+    pub stats: Work,
 }
 
 impl Study {
@@ -144,9 +147,9 @@ impl Study {
             result.warnings.push(Warning::new("priors-left-out", message));
             return Ok((result, models));
         }
-        let rivals = self.rivals(&plan.against)?;
-        let photons = self.photon_numbers(plan, &rivals)?;
-        let rivals: Vec<&Surface> = rivals.into_iter().map(|(_, rival)| rival).collect();
+        let mut stats = self.looked_up.clone();
+        let rivals = self.rivals(&plan.against, &mut stats)?;
+        let photons = self.photon_numbers(plan, &rivals, &mut stats)?;
         let names: Vec<String> =
             std::iter::once(&self.target).chain(rivals.iter().copied()).map(|s| s.name.clone()).collect();
         let centres = self.band_centres_cm1();
@@ -166,6 +169,12 @@ impl Study {
                 Ok(outcome)
             })
             .collect::<Result<_>>()?;
+        for _ in &photons {
+            // States of the rivals, and the nearest of them once more without electronic noise.
+            stats.compute(Thing::NearestSearches, rivals.len() as u64 + 1);
+            self.book_local(&mut stats, &self.unknowns, 1);
+            stats.add(&plan.design.work(names.len())?);
+        }
         let (points, mut trained): (Vec<_>, Vec<_>) = experiments.into_iter().unzip();
         let last = photons.last().copied().unwrap_or(0.0);
         let models = trained.pop().unwrap_or_default();
@@ -190,6 +199,7 @@ impl Study {
                     .any(|found| found.standing == Some(Standing::Beyond)),
                 points,
                 warnings,
+                stats,
             },
             models.into_iter().map(save).collect::<Result<_>>()?,
         ))
@@ -199,9 +209,9 @@ impl Study {
     ///
     /// # Errors
     /// Other bands or classes; an unknown alternative.
-    pub fn check_model(&self, saved: &SavedModel, against: &[String]) -> Result<()> {
-        let rivals = self.rivals(against)?;
-        let all = std::iter::once(&self.target).chain(rivals.iter().map(|(_, rival)| *rival));
+    pub fn check_model(&self, saved: &SavedModel, against: &[String], work: &mut Work) -> Result<()> {
+        let rivals = self.rivals(against, work)?;
+        let all = std::iter::once(&self.target).chain(rivals);
         let names: Vec<String> = all.map(|surface| surface.name.clone()).collect();
         saved.check_fits(&self.band_centres_cm1(), &names)
     }

@@ -1,7 +1,8 @@
 //! The main job: does the camera meet the requirement, and what would it have to be.
 
 use super::identify::{PairResult, PhotonsRequired};
-use super::{Study, Surface, Warning, reliability, warn};
+use super::{Check, Study, Surface, Warning, reliability, warn};
+use crate::demand::{Skipping, Thing, Work};
 use crate::error::Result;
 use crate::fisher::{Counting, Nuisance};
 use crate::identifiability::local::LocalSolver;
@@ -37,6 +38,21 @@ pub struct Sizing {
     pub limiting: String,
     /// What the reader must know.
     pub warnings: Vec<Warning>,
+    /// What it took.
+    pub stats: Work,
+}
+
+/// The answer to 'can this camera do it' by the cheapest proofs, and no more.
+#[derive(Debug, Clone, serde::Serialize)]
+pub struct VerdictAlone {
+    /// The scenario with its defaults filled in.
+    pub scenario: Scenario,
+    /// Yes or no; the distance reached is not known.
+    pub verdict: Verdict,
+    /// The first alternative found that the camera does not tell; there may be more.
+    pub not_told_from: Option<String>,
+    /// What it took.
+    pub stats: Work,
 }
 
 /// Yes or no.
@@ -124,6 +140,7 @@ impl Study {
     /// As [`Study::identify`].
     pub fn size(&self) -> Result<Sizing> {
         let identification = self.identify()?;
+        let mut stats = identification.stats;
         let mut warnings = identification.warnings.clone();
         let limiting = identification
             .pairs
@@ -138,7 +155,10 @@ impl Study {
         };
         let requirement = self.requirement(pair, identification.photon_radiance);
         let camera = self.camera_result(identification.photon_radiance);
-        let solve_for = self.camera.as_ref().map(|camera| self.solutions(camera, surface)).transpose()?;
+        let solve_for = match &self.camera {
+            Some(camera) => Some(self.solutions(camera, surface, &mut stats)?),
+            None => None,
+        };
         if let Some(camera) = &camera {
             warnings.extend(warn::of_camera_result(camera, pair, &self.scenario));
         }
@@ -153,7 +173,38 @@ impl Study {
             pairs: identification.pairs,
             limiting: identification.limiting,
             warnings,
+            stats,
         })
+    }
+
+    /// Whether the camera meets the requirement, ending at the first proof; `None` without a camera, when nothing is met.
+    ///
+    /// # Errors
+    /// As [`Study::told_apart`].
+    pub fn verdict_alone(&self) -> Result<Option<VerdictAlone>> {
+        let Some(camera) = &self.camera else { return Ok(None) };
+        let check = self.check(Skipping::On)?;
+        let (yes, can) = if check.identifiable { ("Yes", "can") } else { ("No", "cannot") };
+        let other = match (&check.not_told_from, self.alternatives.as_slice()) {
+            (Some(name), _) => name,
+            (None, [only]) => &only.name,
+            (None, _) => "every alternative",
+        };
+        let sentence = format!(
+            "{yes}: {} {can} tell {} from {other} with {} reliability.",
+            camera.name,
+            self.target.name,
+            reliability(self.required)
+        );
+        let verdict = Verdict {
+            met: Some(check.identifiable),
+            sentence,
+            statistical_distance: None,
+            required_distance: self.required,
+            margin: None,
+        };
+        let Check { scenario, not_told_from, stats, .. } = check;
+        Ok(Some(VerdictAlone { scenario, verdict, not_told_from, stats }))
     }
 
     fn requirement(&self, pair: &PairResult, photon_radiance: f64) -> RequirementResult {
@@ -215,7 +266,7 @@ impl Study {
         })
     }
 
-    fn solutions(&self, camera: &Camera, alternative: &Surface) -> Result<Solutions> {
+    fn solutions(&self, camera: &Camera, alternative: &Surface, work: &mut Work) -> Result<Solutions> {
         let task = solve::CameraTask {
             camera,
             bands: &self.bands,
@@ -224,7 +275,7 @@ impl Study {
         };
         let solved: Result<Vec<(Quantity, Solution)>> = Quantity::ALL
             .into_iter()
-            .map(|quantity| Ok((quantity, self.solution(&task, quantity, alternative)?)))
+            .map(|quantity| Ok((quantity, self.solution(&task, quantity, alternative, work)?)))
             .collect();
         solved.map(Solutions)
     }
@@ -235,6 +286,7 @@ impl Study {
         task: &solve::CameraTask<'_>,
         quantity: Quantity,
         alternative: &Surface,
+        work: &mut Work,
     ) -> Result<Solution> {
         let kind = self.scenario.requirement.by;
         let (target, other) = (&self.target.emissivity, &alternative.emissivity);
@@ -243,8 +295,9 @@ impl Study {
                 DistanceKind::LocalUnknownGain => self.unknowns.with(Nuisance::Gain),
                 _ => self.unknowns.clone(),
             };
-            let mut solver = LocalSolver::new(&self.bands, &self.surroundings, unknowns);
+            let mut solver = LocalSolver::new(&self.bands, &self.surroundings, unknowns.clone());
             return task.solve(quantity, |counting| {
+                self.book_local(work, &unknowns, 1);
                 solver.with_counting(target, other, &self.state, counting).map(|local| local.distance)
             });
         }
@@ -255,15 +308,20 @@ impl Study {
             let solution = task.solve(quantity, |counting: &Counting| {
                 let nearest = match &followed {
                     Some(start) => {
+                        work.compute(Thing::RefinedSearches, 1);
                         solver.refine_with_counting(target, other, &self.state, counting, start)?
                     }
-                    None => solver.with_counting(target, other, &self.state, counting)?,
+                    None => {
+                        work.compute(Thing::NearestSearches, 1);
+                        solver.with_counting(target, other, &self.state, counting)?
+                    }
                 };
                 followed = Some(nearest.state);
                 Ok(nearest.distance)
             })?;
             let Some(value) = solution.value else { return Ok(solution) };
             let counting = task.forward(quantity, value).counting(task.bands, task.distance_m);
+            work.compute(Thing::NearestSearches, 1);
             let anew = solver.with_counting(target, other, &self.state, &counting)?;
             if anew.distance >= solution.statistical_distance * (1.0 - SAME) {
                 return Ok(solution);
@@ -271,7 +329,7 @@ impl Study {
             // Another state is nearer at this noise: follow that one.
             followed = Some(anew.state);
         }
-        task.solve(quantity, |counting| self.statistical_distance(kind, alternative, counting))
+        task.solve(quantity, |counting| self.statistical_distance(kind, alternative, counting, work))
     }
 
     fn verdict(&self, pair: &PairResult, requirement: &RequirementResult) -> Verdict {

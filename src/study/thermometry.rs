@@ -24,6 +24,7 @@
 //! doi:10.2307/3318681 (law).
 
 use super::{Study, Warning};
+use crate::demand::{Reason, Thing, Work};
 use crate::error::{Error, Result};
 use crate::fisher::precision::{JointBound, Precision, Sight};
 use crate::fisher::{Nuisance, Unknowns};
@@ -77,6 +78,8 @@ pub struct Thermometry {
     pub rows: Vec<ThermometryRow>,
     /// What the reader must know.
     pub warnings: Vec<Warning>,
+    /// What it took.
+    pub stats: Work,
 }
 
 /// One true temperature.
@@ -218,6 +221,12 @@ impl Study {
         }
         progress(total, total);
         let warnings = warnings(&rows);
+        let mut stats = self.looked_up.clone();
+        // Every spectrum is drawn once, and read by the fits and by two imagers.
+        let (drawn, read_by) = ((total * trials) as u64, readers as u64 + 2);
+        stats.compute(Thing::Spectra, drawn);
+        stats.spare(Thing::Spectra, Reason::Shared, drawn * (read_by - 1));
+        stats.compute(Thing::Readings, drawn * read_by);
         Ok(Thermometry {
             target: self.target.name.clone(),
             camera: camera.name.clone(),
@@ -236,6 +245,7 @@ impl Study {
             calibrated_k: coldest.temperature_k,
             rows,
             warnings,
+            stats,
         })
     }
 
@@ -300,27 +310,37 @@ struct Series<'a> {
 
 impl Series<'_> {
     fn row(&self, state: &State, run: Run) -> Result<ThermometryRow> {
+        let unknown: Vec<&Unknowns> =
+            std::iter::once(&self.lighting_known).chain(&self.lighting_unknown).collect();
+        let imagers = [&self.fixed, &self.manual];
+        let (fits, readings) = self.scene.read(&unknown, &imagers, state, run)?;
+        let mut fits = fits.into_iter();
+        let mut next = |unknowns: &Unknowns| match fits.next() {
+            Some(fits) => self.reader(unknowns, state, fits),
+            None => Err(Error::malformed("a fit without an outcome", "report this as a bug")),
+        };
+        let lighting_known = next(&self.lighting_known)?;
         let (lighting_unknown, bound_range_k) = match &self.lighting_unknown {
-            Some(unknown) => (Some(self.reader(unknown, state, run)?), self.bound_range_k(unknown, state)?),
+            Some(unknown) => (Some(next(unknown)?), self.bound_range_k(unknown, state)?),
             None => (None, None),
         };
+        let read = |i: usize| self.imager(readings.get(i).map(Vec::as_slice).unwrap_or_default(), state);
         Ok(ThermometryRow {
             temperature_k: state.temperature_k,
             photons: crate::sum::sum(&self.scene.means(state)?),
-            lighting_known: self.reader(&self.lighting_known, state, run)?,
+            lighting_known,
             lighting_unknown,
             bound_range_k,
-            fixed: self.imager(&self.fixed, state, run)?,
-            manual: self.imager(&self.manual, state, run)?,
+            fixed: read(0)?,
+            manual: read(1)?,
         })
     }
 
-    fn reader(&self, unknowns: &Unknowns, state: &State, run: Run) -> Result<Reader> {
+    fn reader(&self, unknowns: &Unknowns, state: &State, fits: Fits) -> Result<Reader> {
         let bound = self.scene.bound(unknowns, state)?;
         let Some(own) = bound.each.iter().find(|one| one.parameter == Parameter::Temperature) else {
             return Err(Error::malformed("a fit without temperature", "report this as a bug"));
         };
-        let fits = self.scene.fits(unknowns, state, run)?;
         let estimates = fits.of(Parameter::Temperature);
         let truth = state.temperature_k;
         let errors = Errors::of(&estimates, truth, self.criteria.level)?;
@@ -374,8 +394,7 @@ impl Series<'_> {
         Ok(bound.each.iter().find(|one| one.parameter == Parameter::Temperature).and_then(finite))
     }
 
-    fn imager(&self, imager: &Conventional, state: &State, run: Run) -> Result<ImagerErrors> {
-        let readings = self.scene.readings(imager, state, run)?;
+    fn imager(&self, readings: &[Reading], state: &State) -> Result<ImagerErrors> {
         let kelvin: Vec<f64> = (readings.iter())
             .filter_map(|reading| if let Reading::Kelvin(t) = reading { Some(*t) } else { None })
             .collect();

@@ -4,6 +4,7 @@
 //! A choice for the alternative that fares worst would else be made for one that stays hopeless whatever is chosen.
 
 use super::{Study, Surface};
+use crate::demand::Work;
 use crate::error::Result;
 use crate::fisher::Counting;
 use rayon::prelude::*;
@@ -11,14 +12,16 @@ use rayon::prelude::*;
 impl Study {
     /// Indices of the alternatives that the camera's photons tell as required in all bands with shot noise alone, by
     /// the distance that decides, and of the others. All are of the first kind without a camera.
-    pub(super) fn within_reach(&self) -> Result<(Vec<usize>, Vec<usize>)> {
+    pub(super) fn within_reach(&self, work: &mut Work) -> Result<(Vec<usize>, Vec<usize>)> {
         let Some(Counting { counts_per_radiance, .. }) = self.counting() else {
             return Ok(((0..self.alternatives.len()).collect(), Vec::new()));
         };
         let shot = Counting { counts_per_radiance, var_electronic: Vec::new() };
         let kind = self.scenario.requirement.by;
-        let distance = |surface: &Surface| self.statistical_distance(kind, surface, &shot);
+        let distance =
+            |surface: &Surface| self.statistical_distance(kind, surface, &shot, &mut Work::default());
         let distances = self.alternatives.par_iter().map(distance).collect::<Result<Vec<f64>>>()?;
+        self.book_distances(work, kind, distances.len());
         Ok((0..distances.len()).partition(|&i| distances[i] >= self.required))
     }
 

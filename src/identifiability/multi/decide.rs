@@ -12,55 +12,19 @@
 //! One direction that fails decides the pair. Proofs are as good as the search for the nearest state is.
 
 use super::LibraryScene;
+use crate::demand::{Demand, Proof, Reason, Skipping, Thing, Work};
 use crate::error::{Error, Result, check};
 use crate::fisher::Counting;
 use crate::identifiability::nearest::{Nearer, NearestSolver};
-use crate::scene::{EnvironmentObject, State, Surroundings, check_emissivity};
+use crate::scene::{EnvironmentObject, Surroundings, check_emissivity};
 use crate::spectrum::Bands;
 use rayon::prelude::*;
 
 /// Bands that are enough for a first look.
 const FEW_BANDS: usize = 64;
 
-/// Whether pairs that a cheap bound decides are computed all the same.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Skipping {
-    /// Stop at the first proof.
-    On,
-    /// Compute every distance in full; the answer is the same.
-    Off,
-}
-
-/// What was computed and what was not.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
-pub struct Work {
-    /// Distances that were asked for: two per pair of materials.
-    pub distances: usize,
-    /// Decided at the target's own state.
-    pub decided_at_own_state: usize,
-    /// Decided by a few of the bands.
-    pub decided_by_few_bands: usize,
-    /// Decided by a search that ended at the first state nearer than required.
-    pub decided_on_the_way: usize,
-    /// Not asked, since another distance had decided the question: the other direction of the pair, or another
-    /// alternative that is too near.
-    pub decided_by_another: usize,
-    /// Computed in full.
-    pub in_full: usize,
-}
-
-impl Work {
-    fn and(self, other: Self) -> Self {
-        Self {
-            distances: self.distances + other.distances,
-            decided_at_own_state: self.decided_at_own_state + other.decided_at_own_state,
-            decided_by_few_bands: self.decided_by_few_bands + other.decided_by_few_bands,
-            decided_on_the_way: self.decided_on_the_way + other.decided_on_the_way,
-            decided_by_another: self.decided_by_another + other.decided_by_another,
-            in_full: self.in_full + other.in_full,
-        }
-    }
-}
+/// What deciding a distance takes at most, with skipping.
+const THINGS: [Thing; 3] = [Thing::OwnStateDistances, Thing::FewBandSearches, Thing::NearestSearches];
 
 /// Which pairs of materials can be told apart.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -144,9 +108,13 @@ impl LibraryScene<'_> {
             .par_iter()
             .map_init(
                 || question.solvers(),
-                |solvers, &(a, b)| match skipping {
-                    Skipping::On => question.decide(solvers, a, b),
-                    Skipping::Off => question.compute(solvers, a, b),
+                |solvers, &(a, b)| {
+                    let mut demand = Demand::new(skipping);
+                    let nearer = demand.until([(a, b), (b, a)], question.things(), |demand, (a, b)| {
+                        let reached = question.reaches(solvers, demand, a, b, None)?;
+                        Ok((!reached).then_some(()))
+                    })?;
+                    Ok((nearer.is_none(), demand.into_work()))
                 },
             )
             .collect();
@@ -154,7 +122,7 @@ impl LibraryScene<'_> {
         let mut work = Work::default();
         for (&(a, b), (told, took)) in pairs.iter().zip(answers?) {
             (apart[a * count + b], apart[b * count + a]) = (told, told);
-            work = work.and(took);
+            work.add(&took);
         }
         Ok(Decisions { count, apart, work })
     }
@@ -172,30 +140,35 @@ impl LibraryScene<'_> {
         emissivities: &[&[f64]],
         counting: &Counting,
         required: f64,
+        skipping: Skipping,
     ) -> Result<(Option<usize>, Work)> {
         check::positive("required distance", required, "")?;
         if target >= emissivities.len() {
             let found = emissivities.len();
             return Err(Error::Length { what: "materials".into(), found, expected: target + 1 });
         }
-        let few = Few::of(self, emissivities, counting)?;
+        let few = match skipping {
+            Skipping::On => Few::of(self, emissivities, counting)?,
+            Skipping::Off => None,
+        };
         let question = Question { scene: self, emissivities, counting, required, few: few.as_ref() };
         let mut solvers = question.solvers();
+        let mut demand = Demand::new(skipping);
         let mut ranked = Vec::new();
         for other in (0..emissivities.len()).filter(|&other| other != target) {
             let (own, other_e) = (emissivities[target], emissivities[other]);
             let distance = solvers.all.own_state_distance(own, other_e, self.state, counting)?;
+            demand.computed(Thing::OwnStateDistances, 1);
             ranked.push((distance, other));
         }
         ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let mut work = Work { distances: ranked.len(), ..Work::default() };
-        for (asked, (_, other)) in ranked.iter().enumerate() {
-            if !question.reaches(&mut solvers, target, *other, &mut work)? {
-                work.decided_by_another = ranked.len() - asked - 1;
-                return Ok((Some(*other), work));
-            }
-        }
-        Ok((None, work))
+        // The first of the things stands in the ranking already.
+        let things = &question.things()[1..];
+        let failed = demand.until(ranked, things, |demand, (distance, other)| {
+            let reached = question.reaches(&mut solvers, demand, target, other, Some(distance))?;
+            Ok((!reached).then_some(other))
+        })?;
+        Ok((failed, demand.into_work()))
     }
 }
 
@@ -217,56 +190,52 @@ impl<'q> Question<'q> {
         Solvers { all: self.scene.solver(), few }
     }
 
-    fn state(&self) -> &State {
-        self.scene.state
+    /// What one distance takes at most.
+    fn things(&self) -> &'static [Thing] {
+        if self.few.is_some() { &THINGS } else { &[Thing::OwnStateDistances, Thing::NearestSearches] }
     }
 
-    /// Both distances in full.
-    fn compute(&self, solvers: &mut Solvers<'_>, a: usize, b: usize) -> Result<(bool, Work)> {
-        let mut distance = |a: usize, b: usize| {
-            let (own, other) = (self.emissivities[a], self.emissivities[b]);
-            solvers.all.with_counting(own, other, self.state(), self.counting).map(|found| found.distance)
-        };
-        let told = distance(a, b)? >= self.required && distance(b, a)? >= self.required;
-        Ok((told, Work { distances: 2, in_full: 2, ..Work::default() }))
-    }
-
-    /// No more than the answer needs.
-    fn decide(&self, solvers: &mut Solvers<'_>, a: usize, b: usize) -> Result<(bool, Work)> {
-        let mut work = Work { distances: 2, ..Work::default() };
-        for (asked, (a, b)) in [(a, b), (b, a)].into_iter().enumerate() {
-            if !self.reaches(solvers, a, b, &mut work)? {
-                work.decided_by_another = 1 - asked;
-                return Ok((false, work));
-            }
-        }
-        Ok((true, work))
-    }
-
-    /// Whether target a is told from alternative b.
-    fn reaches(&self, solvers: &mut Solvers<'_>, a: usize, b: usize, work: &mut Work) -> Result<bool> {
+    /// Whether target a is told from alternative b; the distance in the target's own state where it is known.
+    fn reaches(
+        &self,
+        solvers: &mut Solvers<'_>,
+        demand: &mut Demand,
+        a: usize,
+        b: usize,
+        in_own_state: Option<f64>,
+    ) -> Result<bool> {
         let (own, other) = (self.emissivities[a], self.emissivities[b]);
-        if solvers.all.own_state_distance(own, other, self.state(), self.counting)? < self.required {
-            work.decided_at_own_state += 1;
-            return Ok(false);
-        }
-        if let (Some(few), Some(solver)) = (self.few, solvers.few.as_mut()) {
+        let (state, counting, required) = (self.scene.state, self.counting, self.required);
+        let own_state = |solvers: &mut Solvers<'_>| {
+            let distance = match in_own_state {
+                Some(distance) => distance,
+                None => solvers.all.own_state_distance(own, other, state, counting)?,
+            };
+            Ok((distance < required).then_some(false))
+        };
+        let few_bands = |solvers: &mut Solvers<'_>| {
+            let (Some(few), Some(solver)) = (self.few, solvers.few.as_mut()) else { return Ok(None) };
             let (own, other) = (&few.emissivities[a], &few.emissivities[b]);
-            let found = solver.nearer_than(own, other, self.state(), &few.counting, self.required)?;
-            if found == Nearer::Nowhere {
-                work.decided_by_few_bands += 1;
-                return Ok(true);
+            let found = solver.nearer_than(own, other, state, &few.counting, required)?;
+            Ok((found == Nearer::Nowhere).then_some(true))
+        };
+        let skips = demand.skips();
+        let in_full = |solvers: &mut Solvers<'_>| {
+            if !skips {
+                let found = solvers.all.with_counting(own, other, state, counting)?;
+                return Ok((found.distance >= required, None));
             }
-        }
-        match solvers.all.nearer_than(own, other, self.state(), self.counting, self.required)? {
-            Nearer::Somewhere => {
-                work.decided_on_the_way += 1;
-                Ok(false)
-            }
-            Nearer::Nowhere => {
-                work.in_full += 1;
-                Ok(true)
-            }
-        }
+            Ok(match solvers.all.nearer_than(own, other, state, counting, required)? {
+                Nearer::Somewhere => (false, Some(Reason::NearerState)),
+                Nearer::Nowhere => (true, None),
+            })
+        };
+        let own_is_new = in_own_state.is_none().then_some(Thing::OwnStateDistances);
+        let proofs = [
+            Proof { of: own_is_new, spares: Reason::OwnState, find: &own_state },
+            Proof { of: Some(Thing::FewBandSearches), spares: Reason::FewBands, find: &few_bands },
+        ];
+        let proofs = if self.few.is_some() { &proofs[..] } else { &proofs[..1] };
+        demand.first_proof(solvers, proofs, Thing::NearestSearches, &in_full)
     }
 }

@@ -4,7 +4,7 @@ use crate::ranging::depth::DepthSolution as Solution;
 use crate::ranging::derivative::Derivative;
 use crate::report::text::warnings;
 use crate::scenario::ranging::{Diffraction, Subject};
-use crate::study::ranging::{ObjectBounds, RangeStats, Ranging, Signal, SignalBounds};
+use crate::study::ranging::{ObjectBounds, Ranging, Signal, SignalBounds};
 use crate::words::{self, quantity, share as percent, significant};
 use std::fmt::Write as _;
 
@@ -302,18 +302,4 @@ fn assumptions(result: &Ranging) -> String {
         );
     }
     out
-}
-
-/// What was computed, and what was not needed.
-#[must_use]
-pub fn stats(stats: &RangeStats) -> String {
-    format!(
-        "\nComputed\n  {} of {} samples looked at; {} windows: {} proved to reach the demand, {} proved not to, {} computed in full\n",
-        stats.samples_read,
-        stats.samples,
-        stats.windows,
-        stats.proved_above,
-        stats.proved_below,
-        stats.computed
-    )
 }

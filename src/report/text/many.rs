@@ -6,7 +6,6 @@ use super::exact::exact;
 use super::footing::footing;
 use super::numbers::{celsius, numbers, photons, significant};
 use super::pairs::pair_table;
-use crate::identifiability::multi::{Passes, Work};
 use crate::scenario::DistanceKind;
 use crate::study::{self, Answers, Check, Identification, Study};
 use std::fmt::Write as _;
@@ -156,39 +155,4 @@ pub fn check(result: &Check, study: &Study) -> String {
             format!("Yes: {camera} tells {target} from {all} with {reliability} reliability.\n")
         }
     }
-}
-
-/// What the answers took.
-#[must_use]
-pub fn work_of(answers: &Answers) -> String {
-    if let Some(done) = answers.apart.as_ref().and_then(|apart| apart.work) {
-        return work(&done);
-    }
-    let every = "work: every distance was computed; only --apart and --check can do with less";
-    let Some(Passes { shared_targets, one_pass, two_passes, alone }) =
-        answers.matrix.as_ref().map(|m| m.passes)
-    else {
-        return every.into();
-    };
-    format!(
-        "{every}. Of the {} local ones {one_pass} took one pass over the bands and {two_passes} a second one, \
-         with what {shared_targets} targets lent them; {alone} were judged on their own",
-        one_pass + two_passes + alone
-    )
-}
-
-/// What was computed and what was not.
-#[must_use]
-pub fn work(work: &Work) -> String {
-    let skipped = work.distances.saturating_sub(work.in_full + work.decided_on_the_way);
-    format!(
-        "work: {} distances asked for, {skipped} not searched in all bands ({} decided at the target's own state, \
-         {} by a few of the bands, {} by another distance), {} searches ended at the first state nearer than required, {} in full",
-        work.distances,
-        work.decided_at_own_state,
-        work.decided_by_few_bands,
-        work.decided_by_another,
-        work.decided_on_the_way,
-        work.in_full
-    )
 }

@@ -1,6 +1,7 @@
 //! Simulated decisions as data.
 
 use super::super::Warning;
+use crate::demand::Work;
 use crate::identifiability::lattice::LatticeDetection;
 use crate::simulate::sequential::{Interval, Plan};
 
@@ -75,6 +76,9 @@ pub struct Exact {
     pub pairs: Vec<ExactPair>,
     /// Among all of them; `None` for a single alternative.
     pub library: Option<ExactLibrary>,
+    /// What it took.
+    #[serde(skip)]
+    pub work: Work,
 }
 
 impl Exact {

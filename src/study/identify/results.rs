@@ -1,6 +1,7 @@
 //! What is known of every pair, and of the target against all alternatives, as data.
 
 use super::super::{PriorAverage, Warning};
+use crate::demand::Work;
 use crate::identifiability::Status;
 use crate::identifiability::detection::ErrorBracket;
 use crate::scenario::{DistanceKind, Scenario};
@@ -23,6 +24,9 @@ pub struct Identification {
     pub prior_average: Option<PriorAverage>,
     /// What the reader must know.
     pub warnings: Vec<Warning>,
+    /// What it took. Searches within an average over priors, a choice of bands or a simulated decision are part of that
+    /// section and not counted one by one.
+    pub stats: Work,
 }
 
 /// A target against all its alternatives (Algorithm 3): the one hardest to tell apart decides.

@@ -1,6 +1,7 @@
 //! All against all as data.
 
-use crate::identifiability::multi::{Passes, Work};
+use crate::demand::Work;
+use crate::identifiability::multi::Passes;
 use crate::scenario::Scenario;
 
 /// Distances row by row of the target; `None` on the diagonal.
@@ -33,6 +34,9 @@ pub struct Matrix {
     pub unconverged: usize,
     /// How the local distances per √photon were computed: what the targets lent to their pairs.
     pub passes: Passes,
+    /// What it took.
+    #[serde(skip)]
+    pub work: Work,
 }
 
 /// One material against all others.
@@ -79,8 +83,9 @@ pub struct Apart {
     pub clusters: Vec<Vec<String>>,
     /// Groups that hang together by pairs that are not told apart, if only by a chain of them.
     pub chains: Vec<Vec<String>>,
-    /// What was computed for it and what was not; `None` where all distances were wanted anyway.
-    pub work: Option<Work>,
+    /// What was computed for it and what was not; nothing where all distances were wanted anyway.
+    #[serde(skip)]
+    pub work: Work,
 }
 
 /// The answer to 'is the target identifiable', and no more.
@@ -93,5 +98,5 @@ pub struct Check {
     /// The first alternative found that it does not; there may be more.
     pub not_told_from: Option<String>,
     /// What was computed for it and what was not.
-    pub work: Work,
+    pub stats: Work,
 }

@@ -48,7 +48,7 @@ impl RangeStudy {
                 Resolved::Cube(Box::new(cube(spec, scenario, camera.as_ref(), bands.as_ref())?))
             }
         };
-        Ok(Self { scenario: scenario.clone(), camera, bands, geometry, subject })
+        Ok(Self { scenario: scenario.clone(), camera, bands, geometry, subject, looked_up: library.work() })
     }
 }
 

@@ -1,5 +1,6 @@
 //! What a ranging study finds, as data.
 
+use crate::demand::Work;
 use crate::ranging::cube::Shape;
 use crate::ranging::depth::DepthSolution;
 use crate::ranging::metrics::DepthMetrics;
@@ -83,7 +84,7 @@ pub struct Ranging {
     /// Matching of whole views, where it was asked for.
     pub matched: Vec<Matched>,
     /// What was computed and what was skipped.
-    pub stats: RangeStats,
+    pub stats: Work,
     /// What the reader must know.
     pub warnings: Vec<Warning>,
     /// Bounds of every window, for pictures and tables.
@@ -236,23 +237,6 @@ pub struct Matched {
     /// Depth, m, `[row][column]` of the left view; NaN where there is no match.
     #[serde(skip)]
     pub depth_m: Vec<f64>,
-}
-
-/// What was computed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
-pub struct RangeStats {
-    /// Samples of the cube or of the pair of cubes.
-    pub samples: u64,
-    /// Samples that were looked at.
-    pub samples_read: u64,
-    /// Windows with a bound.
-    pub windows: u64,
-    /// Windows proved to reach the demand by a part of their samples.
-    pub proved_above: u64,
-    /// Windows proved not to reach it.
-    pub proved_below: u64,
-    /// Windows computed in full.
-    pub computed: u64,
 }
 
 /// Maps over the windows' centres in the left view.

@@ -1,8 +1,9 @@
 //! The answer in a sentence, what diffraction adds, and what the reader must know.
 
-use super::RangeStudy;
-use super::results::{BoundMaps, DepthVerdict, ObjectBounds, RangeStats, Ranging, Signal, SignalBounds};
+use super::results::{BoundMaps, DepthVerdict, ObjectBounds, Ranging, Signal, SignalBounds};
 use super::subject::{Depth, Resolved};
+use super::{RangeStudy, SECTIONS};
+use crate::demand::{Reason, Thing};
 use crate::error::Result;
 use crate::ranging::cube::Shape;
 use crate::ranging::information::Cell;
@@ -56,14 +57,15 @@ impl RangeStudy {
             required_share: requirement.share,
             signal: Signal::HeatCube,
         };
-        let stats = RangeStats {
-            samples: shape.len() as u64,
-            samples_read: decision.stats.samples_evaluated as u64,
-            windows: windows as u64,
-            proved_above: decision.stats.windows_proved_above as u64,
-            proved_below: decision.stats.windows_proved_below as u64,
-            computed: decision.stats.windows_computed as u64,
-        };
+        let found = &decision.stats;
+        let mut stats = self.looked_up.clone();
+        stats.compute(Thing::Sections, 1);
+        stats.spare(Thing::Sections, Reason::NotAsked, SECTIONS as u64 - 1);
+        stats.compute(Thing::Samples, found.samples_evaluated as u64);
+        stats.spare(Thing::Samples, Reason::Decided, (shape.len() - found.samples_evaluated) as u64);
+        stats.compute(Thing::Windows, found.windows_computed as u64);
+        stats.spare(Thing::Windows, Reason::ProvedAbove, found.windows_proved_above as u64);
+        stats.spare(Thing::Windows, Reason::ProvedBelow, found.windows_proved_below as u64);
         Ok(Some(Ranging {
             scenario: self.scenario.clone(),
             verdict,

@@ -76,12 +76,14 @@ impl<'a> Finder<'a> {
                 found
             }
             None => {
-                let others = self.library.iter().filter(|material| material.name() != target.name());
-                let (surfaces, skies): (Vec<_>, Vec<_>) = others.partition(|material| is_surface(material));
-                self.skies = skies.iter().map(|material| material.name().to_owned()).collect();
-                let accepted =
-                    surfaces.into_iter().map(|m| self.accept(Cow::Borrowed(m), wanted.extrapolate));
-                accepted.collect()
+                let others = self.library.names().filter(|name| *name != target.name());
+                let (surfaces, skies): (Vec<_>, Vec<_>) = others.partition(|name| is_surface(name));
+                self.skies = skies.into_iter().map(str::to_owned).collect();
+                let library = self.library;
+                let accepted = surfaces
+                    .into_iter()
+                    .map(|name| Ok(self.accept(Cow::Borrowed(library.get(name)?), wanted.extrapolate)));
+                accepted.collect::<Result<_>>()?
             }
         };
         if found.is_empty() {
@@ -135,6 +137,6 @@ fn shortened(names: &[&str]) -> String {
 }
 
 /// Skies are surroundings, not something a target could be made of.
-fn is_surface(material: &Material) -> bool {
-    !material.name().starts_with("sky-") && material.name() != "sky"
+fn is_surface(name: &str) -> bool {
+    !name.starts_with("sky-") && name != "sky"
 }

@@ -1,12 +1,12 @@
 //! Photons of an experiment, and the counts and noise that a camera makes of them.
 
 use super::SimulationPlan;
+use crate::demand::{Reason, Thing, Work};
 use crate::error::{Error, Result, check};
 use crate::fisher::Counting;
 use crate::instrument::{Camera, gamma_per_band};
 use crate::planck;
 use crate::policy;
-use crate::scenario::DistanceKind;
 use crate::simulate::draws::LARGEST_MEAN;
 use crate::statistics::Statistics;
 use crate::study::curves::logarithmic;
@@ -17,44 +17,49 @@ const FEWEST: f64 = 1e-9;
 const MOST_EXPERIMENTS: usize = 10_000;
 
 impl Study {
-    /// The alternatives that are classes, with their nearest distances per √photon in shot noise.
-    pub(super) fn rivals(&self, against: &[String]) -> Result<Vec<(f64, &Surface)>> {
-        let with_distance = |alternative| {
-            let distance = self.distance_per_photon(DistanceKind::Nearest, alternative, f64::INFINITY)?;
-            Ok((distance, alternative))
-        };
-        if against.is_empty() {
-            let all: Vec<(f64, &Surface)> =
-                self.alternatives.iter().map(with_distance).collect::<Result<_>>()?;
-            return Ok(all.into_iter().min_by(|a, b| a.0.total_cmp(&b.0)).into_iter().collect());
+    /// The alternatives that are classes: those named, else the one nearest to the target.
+    pub(super) fn rivals(&self, against: &[String], work: &mut Work) -> Result<Vec<&Surface>> {
+        if let ([], [only]) = (against, self.alternatives.as_slice()) {
+            work.spare(Thing::NearestSearches, Reason::NotAsked, 1);
+            return Ok(vec![only]);
         }
-        let find = |name: &String| {
-            let found = self.alternative(name).ok_or_else(|| {
+        if against.is_empty() {
+            let ranked = self.nearest_distances(&self.alternatives.iter().collect::<Vec<_>>(), work)?;
+            let nearest = self.alternatives.iter().zip(ranked).min_by(|a, b| a.1.total_cmp(&b.1));
+            return Ok(nearest.map(|(surface, _)| surface).into_iter().collect());
+        }
+        let mut found: Vec<&Surface> = Vec::new();
+        for name in against {
+            let surface = self.alternative(name).ok_or_else(|| {
                 let names: Vec<&str> =
                     self.alternatives.iter().map(|surface| surface.name.as_str()).collect();
                 let found = format!("`{name}` is none of the alternatives");
                 Error::malformed(found, format!("choose among {}", names.join(", ")))
-            });
-            with_distance(found?)
-        };
-        let mut found: Vec<(f64, &Surface)> = Vec::new();
-        for name in against {
-            if !found.iter().any(|(_, surface)| surface.name == *name) {
-                found.push(find(name)?);
+            })?;
+            if !found.iter().any(|known| known.name == *name) {
+                found.push(surface);
             }
         }
         Ok(found)
+    }
+
+    /// Nearest distances per √photon in shot noise.
+    fn nearest_distances(&self, surfaces: &[&Surface], work: &mut Work) -> Result<Vec<f64>> {
+        let distance =
+            |surface: &&Surface| self.nearest(surface, f64::INFINITY, work).map(|nearest| nearest.distance);
+        surfaces.iter().map(distance).collect()
     }
 
     /// Photons of each experiment.
     pub(super) fn photon_numbers(
         &self,
         plan: &SimulationPlan,
-        rivals: &[(f64, &Surface)],
+        rivals: &[&Surface],
+        work: &mut Work,
     ) -> Result<Vec<f64>> {
         let numbers = match (plan.photons.as_slice(), self.counting()) {
             ([], Some(counting)) => vec![counting.counts_per_radiance * self.photon_radiance()],
-            ([], None) => vec![self.photons_for(rivals)?],
+            ([], None) => vec![self.photons_for(rivals, work)?],
             (given, _) => given.to_vec(),
         };
         for &photons in &numbers {
@@ -68,14 +73,15 @@ impl Study {
     }
 
     /// Photons at which the nearest of the rivals that differs at all is told apart as required.
-    fn photons_for(&self, rivals: &[(f64, &Surface)]) -> Result<f64> {
+    fn photons_for(&self, rivals: &[&Surface], work: &mut Work) -> Result<f64> {
+        let distances = self.nearest_distances(rivals, work)?;
         let needed =
-            rivals.iter().filter_map(|(distance, _)| policy::photons_required(self.required, *distance));
+            distances.iter().filter_map(|distance| policy::photons_required(self.required, *distance));
         let most = needed.fold(0.0, f64::max);
         if most > 0.0 {
             return Ok(most);
         }
-        let names: Vec<&str> = rivals.iter().map(|(_, rival)| rival.name.as_str()).collect();
+        let names: Vec<&str> = rivals.iter().map(|rival| rival.name.as_str()).collect();
         let found = format!("no number of photons tells {} from {}", self.target.name, names.join(", "));
         let instead = "change the scene, name other alternatives with --against, or photons with --photons";
         Err(Error::malformed(found, instead).at(self.scenario.place("target")))
@@ -93,12 +99,15 @@ impl Study {
         experiments: usize,
         against: &[String],
         camera_noise: bool,
+        work: &mut Work,
     ) -> Result<Vec<f64>> {
         if experiments == 0 || experiments > MOST_EXPERIMENTS {
             let expected = format!("1 to {MOST_EXPERIMENTS}");
             return Err(Error::out_of_range("experiments of a sweep", experiments as f64, "", expected));
         }
-        let least = self.rivals(against)?.iter().map(|rival| rival.0).fold(f64::INFINITY, f64::min);
+        let rivals = self.rivals(against, work)?;
+        let distances = self.nearest_distances(&rivals, work)?;
+        let least = distances.into_iter().fold(f64::INFINITY, f64::min);
         if !(least > 0.0 && least.is_finite()) {
             let found =
                 format!("no number of photons tells {} from the nearest alternative", self.target.name);

@@ -1,0 +1,123 @@
+use super::*;
+use crate::error::Error;
+use proptest::prelude::*;
+use std::cell::Cell;
+
+const THINGS: [Thing; 3] = [Thing::OwnStateDistances, Thing::FewBandSearches, Thing::NearestSearches];
+const REASONS: [Reason; 3] = [Reason::NotAsked, Reason::OwnState, Reason::AnotherOne];
+
+/// A ledger from a list of entries: thing, reason or none, count.
+fn ledger(entries: &[(usize, usize, u64)]) -> Work {
+    let mut work = Work::default();
+    for &(thing, reason, count) in entries {
+        match REASONS.get(reason) {
+            Some(reason) => work.spare(THINGS[thing], *reason, count),
+            None => work.compute(THINGS[thing], count),
+        }
+    }
+    work
+}
+
+fn entries() -> impl Strategy<Value = Vec<(usize, usize, u64)>> {
+    proptest::collection::vec((0..3_usize, 0..4_usize, 0..1_000_000_u64), 0..12)
+}
+
+proptest! {
+    /// Grouping and order do not matter, and every line has the sum of what was booked.
+    #[test]
+    fn ledgers_add_in_any_order(a in entries(), b in entries(), c in entries()) {
+        let [x, y, z] = [&a, &b, &c].map(|entries| ledger(entries));
+        prop_assert_eq!(x.clone().and(&y).and(&z), x.clone().and(&y.clone().and(&z)));
+        prop_assert_eq!(x.clone().and(&y), y.clone().and(&x));
+        prop_assert_eq!(x.clone().and(&Work::default()), x.clone());
+        let all = x.and(&y).and(&z);
+        for (i, thing) in THINGS.into_iter().enumerate() {
+            let booked = a.iter().chain(&b).chain(&c).filter(|entry| entry.0 == i);
+            let (spared, computed): (Vec<_>, Vec<_>) = booked.partition(|entry| entry.1 < 3);
+            let sum = |entries: &[&(usize, usize, u64)]| entries.iter().map(|entry| entry.2).sum::<u64>();
+            prop_assert_eq!(all.computed(thing), sum(&computed));
+            prop_assert_eq!(all.possible(thing), sum(&computed) + sum(&spared));
+        }
+    }
+}
+
+#[test]
+fn what_is_not_asked_for_is_not_run() {
+    let mut demand = Demand::new(Skipping::Off);
+    let none = demand.if_asked(false, Thing::Figures, 4, |_| -> Result<u8> {
+        Err(Error::malformed("ran", "do not run it"))
+    });
+    assert_eq!(none.unwrap(), None);
+    assert_eq!(demand.if_asked(true, Thing::Figures, 2, |_| Ok(7)).unwrap(), Some(7));
+    let work = demand.into_work();
+    assert_eq!((work.possible(Thing::Figures), work.computed(Thing::Figures)), (6, 2));
+    assert_eq!(work.spared(Thing::Figures, Reason::NotAsked), 4);
+}
+
+/// Which of two proofs and the full way run, counted by themselves.
+#[test]
+fn a_proof_spares_what_comes_after_it_and_nothing_before() {
+    for skipping in [Skipping::On, Skipping::Off] {
+        for winner in 0..3 {
+            let ran = [const { Cell::new(0_u64) }; 3];
+            let tried = |i: usize| {
+                let ran = &ran;
+                move |_: &mut ()| {
+                    ran[i].set(ran[i].get() + 1);
+                    Ok((winner == i).then_some("answer"))
+                }
+            };
+            let (first, second) = (tried(0), tried(1));
+            let proofs = [
+                Proof { of: Some(THINGS[0]), spares: Reason::OwnState, find: &first },
+                Proof { of: Some(THINGS[1]), spares: Reason::FewBands, find: &second },
+            ];
+            let in_full = |_: &mut ()| {
+                ran[2].set(ran[2].get() + 1);
+                Ok(("answer", None))
+            };
+            let mut demand = Demand::new(skipping);
+            let answer = demand.first_proof(&mut (), &proofs, THINGS[2], &in_full).unwrap();
+            assert_eq!(answer, "answer");
+            let work = demand.into_work();
+            for (i, thing) in THINGS.into_iter().enumerate() {
+                assert_eq!(work.computed(thing), ran[i].get(), "{skipping:?} {winner} {i}");
+                let asked = skipping == Skipping::On || i == 2;
+                assert_eq!(work.possible(thing), u64::from(asked), "{skipping:?} {winner} {i}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_first_item_that_settles_it_ends_the_work() {
+    let things = [Thing::Windows, Thing::Samples];
+    for (skipping, looked_at) in [(Skipping::On, 3), (Skipping::Off, 5)] {
+        let mut demand = Demand::new(skipping);
+        let found = demand.until(0..5, &things, |demand, item| {
+            things.iter().for_each(|thing| demand.computed(*thing, 1));
+            Ok((item >= 2).then_some(item))
+        });
+        assert_eq!(found.unwrap(), Some(2));
+        for thing in things {
+            assert_eq!((demand.work().computed(thing), demand.work().possible(thing)), (looked_at, 5));
+        }
+    }
+    let mut demand = Demand::new(Skipping::On);
+    let none = demand.until(0..5, &things, |_, _| Ok(None::<u8>)).unwrap();
+    assert_eq!((none, demand.work().possible(Thing::Windows)), (None, 0));
+}
+
+#[test]
+fn the_ledger_as_json() {
+    let mut work = Work::default();
+    work.compute(Thing::Windows, 1200);
+    work.spare(Thing::Windows, Reason::ProvedAbove, 34_000);
+    work.spare(Thing::Windows, Reason::ProvedBelow, 7);
+    let line = serde_json::json!({
+        "possible": 35_207,
+        "computed": 1200,
+        "spared": {"proved_above": 34_000, "proved_below": 7},
+    });
+    assert_eq!(serde_json::to_value(&work).unwrap(), serde_json::json!({ "windows": line }));
+}
