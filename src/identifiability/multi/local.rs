@@ -22,7 +22,7 @@ use crate::error::{Error, Result};
 use crate::fisher::{Counting, Projector, Unknowns};
 use crate::identifiability::local::{LocalSolver, SAFE_RANGE};
 use crate::scene::{Jacobian, Parameter, State, Surroundings};
-use crate::simd::{Aligned, LANES};
+use crate::simd::{Aligned, LANES, spaced};
 use crate::spectrum::Bands;
 use rayon::prelude::*;
 
@@ -62,6 +62,7 @@ enum Weights<'c> {
 #[derive(Debug, Clone)]
 pub struct LocalMatrix<'a> {
     passes: Passes,
+    library: Aligned,
     unknowns: Unknowns,
     parameters: Vec<Parameter>,
     jacobian: Jacobian<'a>,
@@ -119,6 +120,7 @@ impl<'a> LocalMatrix<'a> {
         let count = bands.len();
         Self {
             passes: Passes::default(),
+            library: Aligned::default(),
             parameters: unknowns.parameters(surroundings.objects().len()),
             jacobian: Jacobian::new(bands, surroundings),
             pair: LocalSolver::new(bands, surroundings, unknowns.clone()),
@@ -176,14 +178,39 @@ impl<'a> LocalMatrix<'a> {
         if count < 2 {
             return Ok(distances);
         }
+        // A copy whose rows start at cache lines: every spectrum is read once per other material.
+        let stride = spaced(nodes);
+        let mut library = std::mem::take(&mut self.library);
+        library.set_len(stride * count);
+        for (row, emissivity) in library.chunks_mut(stride).zip(emissivities) {
+            row[..nodes].copy_from_slice(emissivity);
+        }
+        let aligned: Vec<&[f64]> = library.chunks(stride).map(|row| &row[..nodes]).collect();
+        let found = self.rows(&aligned, state, weights, &mut distances);
+        self.library = library;
+        found.map(|passes| {
+            self.passes = passes;
+            distances
+        })
+    }
+
+    /// The whole matrix, row by row.
+    fn rows(
+        &mut self,
+        emissivities: &[&[f64]],
+        state: &State,
+        weights: Weights<'_>,
+        distances: &mut [f64],
+    ) -> Result<Passes> {
+        let count = emissivities.len();
         let rows = distances.chunks_mut(count).enumerate();
         let few = count * count * self.jacobian.bands().len() < WORTH_THREADS;
-        self.passes = if few || rayon::current_num_threads() == 1 {
+        if few || rayon::current_num_threads() == 1 {
             let mut passes = Passes::default();
             for (target, row) in rows {
                 passes = passes.and(self.row(emissivities, target, state, weights, row)?);
             }
-            passes
+            Ok(passes)
         } else {
             rows.collect::<Vec<_>>()
                 .into_par_iter()
@@ -191,9 +218,8 @@ impl<'a> LocalMatrix<'a> {
                     || self.clone(),
                     |own, (target, row)| own.row(emissivities, target, state, weights, row),
                 )
-                .try_reduce(Passes::default, |a, b| Ok(a.and(b)))?
-        };
-        Ok(distances)
+                .try_reduce(Passes::default, |a, b| Ok(a.and(b)))
+        }
     }
 
     /// Distances of one target to all.

@@ -1,0 +1,208 @@
+//! The core kernels, each made ready to be called again and again, for the benches that count and bound them.
+//!
+//! Skin against aluminium over 536 bands (715 to 1250 cm⁻¹), surroundings at 20 °C, as in `distances.rs`. Every call gets
+//! another temperature than the call before, so that nothing may be kept from it.
+
+use hadar::fisher::{Nuisance, Unknowns};
+use hadar::identifiability::local::LocalSolver;
+use hadar::identifiability::map::MapScene;
+use hadar::identifiability::multi::LocalMatrix;
+use hadar::identifiability::nearest::{NearestSolver, StateRange};
+use hadar::identifiability::ratio::RatioLaw;
+use hadar::planck::{photon_radiance_and_slope_into, photon_radiance_difference_into};
+use hadar::ranging::cube::{Cube, MemoryCube, Shape};
+use hadar::ranging::derivative::Derivative;
+use hadar::ranging::information::{Cell, Request, Window, information};
+use hadar::ranging::noise::{Joined, NoiseVariance};
+use hadar::scene::{EnvironmentObject, State, Surroundings};
+use hadar::simulate::draws::{Draws, generator};
+use hadar::spectrum::Bands;
+use hadar::statistics::Statistics;
+use std::hint::black_box;
+
+/// Names of the kernels, in the order of the tables.
+pub const NAMES: [&str; 9] = [
+    "planck spectrum",
+    "planck difference",
+    "local pair",
+    "map row",
+    "local matrix",
+    "nearest",
+    "window information",
+    "exact error",
+    "poisson draws",
+];
+
+/// Bands of the spectra, points of a map's row, materials of the library, samples of the cube.
+pub const BANDS: usize = 536;
+pub const ROW: usize = 300;
+pub const MATERIALS: usize = 30;
+pub const CUBE: [usize; 3] = [32, 64, 54];
+
+/// What the kernels work on.
+pub struct Scene {
+    bands: Bands,
+    surroundings: Surroundings,
+    unknowns: Unknowns,
+    skin: Vec<f64>,
+    robot: Vec<f64>,
+    state: State,
+}
+
+impl Scene {
+    pub fn new() -> Self {
+        let bands = Bands::uniform(715.0, 1250.0, 1.0).expect("valid bands");
+        let object = EnvironmentObject { temperature_k: 293.15, emissivity: None };
+        let surroundings = Surroundings::new(bands.nodes_cm1(), vec![object]).expect("valid surroundings");
+        let place = |nu: f64| (nu - 985.0) / 265.0;
+        let robot = |&nu: &f64| 0.49287 - 0.0782 * place(nu) + 0.00892 * place(nu) * place(nu);
+        Self {
+            unknowns: Unknowns::new([Nuisance::Temperature, Nuisance::Lighting]).expect("distinct"),
+            skin: vec![0.95; bands.len()],
+            robot: bands.nodes_cm1().iter().map(robot).collect(),
+            state: surroundings.state(310.15, &[0.5]).expect("valid state"),
+            bands,
+            surroundings,
+        }
+    }
+
+    /// One call of a kernel; `call` counts them.
+    pub fn kernel(&self, name: &str) -> Option<Box<dyn FnMut(usize) + '_>> {
+        let nu = self.bands.nodes_cm1();
+        let spectrum = || vec![0.0; BANDS];
+        let at = |call: usize| State { temperature_k: 310.15 + (call % 2) as f64, ..self.state.clone() };
+        Some(match name {
+            "planck spectrum" => {
+                let (mut value, mut slope) = (spectrum(), spectrum());
+                Box::new(move |call| {
+                    photon_radiance_and_slope_into(nu, 300.0 + call as f64, &mut value, &mut slope);
+                    black_box(&value);
+                })
+            }
+            "planck difference" => {
+                let (mut base, mut slope, mut out) = (spectrum(), spectrum(), spectrum());
+                photon_radiance_and_slope_into(nu, 300.0, &mut base, &mut slope);
+                Box::new(move |call| {
+                    photon_radiance_difference_into(nu, 300.0, 1.0 + call as f64, &base, &mut out);
+                    black_box(&out);
+                })
+            }
+            "local pair" => {
+                let mut solver = LocalSolver::new(&self.bands, &self.surroundings, self.unknowns.clone());
+                let states = [at(0), at(1)];
+                Box::new(move |call| {
+                    let state = &states[call % 2];
+                    black_box(solver.per_photon(&self.skin, &self.robot, state, f64::INFINITY).expect("sound"));
+                })
+            }
+            "map row" => {
+                let lightings: Vec<f64> =
+                    (0..ROW).map(|i| 0.01 + 0.98 * i as f64 / (ROW - 1) as f64).collect();
+                Box::new(move |call| {
+                    // Eight rows at a time: setting up a map is no part of a row.
+                    let temperatures: Vec<f64> = (0..8).map(|i| 310.0 + (8 * (call % 2) + i) as f64).collect();
+                    black_box(self.map().local(&temperatures, &lightings).expect("sound"));
+                })
+            }
+            "local matrix" => {
+                let library: Vec<Vec<f64>> = (0..MATERIALS).map(|i| self.made_up(i)).collect();
+                let mut matrix = LocalMatrix::new(&self.bands, &self.surroundings, self.unknowns.clone());
+                let states = [at(0), at(1)];
+                Box::new(move |call| {
+                    let materials: Vec<&[f64]> = library.iter().map(Vec::as_slice).collect();
+                    black_box(matrix.per_photon(&materials, &states[call % 2]).expect("sound"));
+                })
+            }
+            "nearest" => {
+                let range = StateRange::default();
+                let mut solver =
+                    NearestSolver::new(&self.bands, &self.surroundings, self.unknowns.clone(), range);
+                let state = at(0);
+                Box::new(move |_| {
+                    black_box(solver.per_photon(&self.skin, &self.robot, &state, f64::INFINITY).expect("sound"));
+                })
+            }
+            "window information" => {
+                let cube = cube();
+                Box::new(move |_| {
+                    let request = Request {
+                        window: Window::new(5, 5).expect("odd"),
+                        derivative: Derivative::Central,
+                        noise: &NoiseVariance::None,
+                        joined: Joined::SumOfReadings,
+                        cells: &Cell::ALL,
+                        centres: 0..usize::MAX,
+                    };
+                    black_box(information(&cube, &request).expect("sound"));
+                })
+            }
+            "exact error" => {
+                let means = self.means();
+                Box::new(move |_| {
+                    let law = RatioLaw::new(&means[0], &means[1], &Statistics::Poisson).expect("two states");
+                    black_box(law.accuracy());
+                })
+            }
+            "poisson draws" => {
+                let [means, _] = self.means();
+                let draws = Draws::new(&Statistics::Poisson, &means).expect("means to draw about");
+                let mut counts = spectrum();
+                Box::new(move |call| {
+                    draws.draw_into(&mut generator(1, call as u64), &mut counts);
+                    black_box(&counts);
+                })
+            }
+            _ => return None,
+        })
+    }
+
+    fn map(&self) -> MapScene<'_> {
+        MapScene {
+            bands: &self.bands,
+            surroundings: &self.surroundings,
+            unknowns: &self.unknowns,
+            emissivity: &self.skin,
+            alternative: &self.robot,
+            state: &self.state,
+        }
+    }
+
+    /// The made-up materials of `distances.rs`.
+    fn made_up(&self, material: usize) -> Vec<f64> {
+        let emissivity = |&nu: &f64| {
+            let place = (nu - 985.0) / 265.0;
+            let waves = (1..=5).map(|j| {
+                let phase = f64::from(j) * std::f64::consts::PI * (place + 1.0);
+                0.1 * (1.7 * (material as f64 * 5.0 + f64::from(j))).sin() * phase.cos()
+            });
+            (0.8 + waves.sum::<f64>()).clamp(0.05, 0.99)
+        };
+        self.bands.nodes_cm1().iter().map(emissivity).collect()
+    }
+
+    /// Mean counts of the person and of the nearest robot, 1.2763e6 photons in all: d = 1.
+    fn means(&self) -> [Vec<f64>; 2] {
+        let signal = |emissivity: &[f64], temperature_k: f64, lighting: f64| {
+            let state = self.surroundings.state(temperature_k, &[lighting]).expect("valid state");
+            self.surroundings.signal(emissivity, &state)
+        };
+        let [person, other] = [signal(&self.skin, 310.15, 0.5), signal(&self.robot, 355.951, 0.1867)];
+        let counts = 1.2763e6 / person.iter().sum::<f64>();
+        [person, other].map(|signal| signal.iter().map(|s| s * counts).collect())
+    }
+}
+
+/// Counts of some 10⁴ with strong texture.
+fn cube() -> Cube {
+    let [rows, columns, bands] = CUBE;
+    let mut state = 1_u32;
+    let mut next = || {
+        state ^= state << 13;
+        state ^= state >> 17;
+        state ^= state << 5;
+        (state >> 20) as f32
+    };
+    let samples = (0..rows * columns * bands).map(|i| 1e4 + next() + (i % bands) as f32).collect();
+    let shape = Shape::new(rows, columns, bands).expect("a shape");
+    Cube::from(MemoryCube::new(shape, samples).expect("as many samples as the shape has"))
+}
