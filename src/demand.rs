@@ -37,7 +37,7 @@ pub enum Skipping {
 /// let digit = Proof {
 ///     of: Some(Thing::OwnStateDistances),
 ///     spares: Reason::OwnState,
-///     find: &|n: &mut u32| Ok((*n % 2 == 0).then_some(false)),
+///     find: &|n: &mut u32| Ok((*n % 2 == 0).then_some(false).into()),
 /// };
 /// let in_full = |n: &mut u32| Ok(((2..*n).all(|k| *n % k != 0), None));
 /// for (number, tried) in [(91, 1), (92, 0)] {
@@ -65,8 +65,25 @@ pub struct Proof<'p, C, A> {
     pub find: Try<'p, C, A>,
 }
 
+/// What came of a proof.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Attempt<A> {
+    /// The answer.
+    Proved(A),
+    /// No answer.
+    Open,
+    /// It was not tried, since it would hardly find an answer.
+    NotTried,
+}
+
+impl<A> From<Option<A>> for Attempt<A> {
+    fn from(found: Option<A>) -> Self {
+        found.map_or(Self::Open, Self::Proved)
+    }
+}
+
 /// Tries to find an answer.
-pub type Try<'p, C, A> = &'p dyn Fn(&mut C) -> Result<Option<A>>;
+pub type Try<'p, C, A> = &'p dyn Fn(&mut C) -> Result<Attempt<A>>;
 /// Finds the answer; with a reason where it was found before all was computed.
 pub type Full<'p, C, A> = &'p dyn Fn(&mut C) -> Result<(A, Option<Reason>)>;
 
@@ -158,10 +175,12 @@ impl Demand {
         let proofs = if self.skips() { proofs } else { &[] };
         for (i, proof) in proofs.iter().enumerate() {
             let found = (proof.find)(context)?;
-            if let Some(of) = proof.of {
-                self.computed(of, 1);
+            match proof.of {
+                Some(of) if matches!(found, Attempt::NotTried) => self.spared(of, Reason::Hopeless, 1),
+                Some(of) => self.computed(of, 1),
+                None => {}
             }
-            if let Some(answer) = found {
+            if let Attempt::Proved(answer) = found {
                 let later = proofs[i + 1..].iter().filter_map(|later| later.of);
                 later.chain([thing]).for_each(|of| self.spared(of, proof.spares, 1));
                 return Ok(answer);

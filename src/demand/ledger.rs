@@ -20,6 +20,10 @@ pub enum Thing {
     LocalDistances,
     /// Distances to the alternative in the target's own state.
     OwnStateDistances,
+    /// Local distances in a few of the bands, which say what is worth trying.
+    FewBandEstimates,
+    /// Descents from the target's own state to a nearer one.
+    Descents,
     /// Searches for the nearest state in a few of the bands.
     FewBandSearches,
     /// Searches for the nearest state in all bands.
@@ -60,6 +64,8 @@ impl Thing {
             Self::DerivativeColumns => "derivative_columns",
             Self::LocalDistances => "local_distances",
             Self::OwnStateDistances => "own_state_distances",
+            Self::FewBandEstimates => "few_band_estimates",
+            Self::Descents => "descents",
             Self::FewBandSearches => "few_band_searches",
             Self::NearestSearches => "nearest_searches",
             Self::RefinedSearches => "refined_searches",
@@ -87,6 +93,8 @@ impl Thing {
             Self::DerivativeColumns => "columns of derivatives",
             Self::LocalDistances => "local distances",
             Self::OwnStateDistances => "distances in the own state",
+            Self::FewBandEstimates => "estimates in a few bands",
+            Self::Descents => "descents from the own state",
             Self::FewBandSearches => "searches in a few bands",
             Self::NearestSearches => "searches in all bands",
             Self::RefinedSearches => "nearest states followed",
@@ -113,6 +121,10 @@ pub enum Reason {
     Shared,
     /// The alternative in the target's own state is nearer than required.
     OwnState,
+    /// It would hardly have decided anything.
+    Hopeless,
+    /// A descent from the target's own state found one nearer than required.
+    Descent,
     /// A few of the bands suffice to tell.
     FewBands,
     /// The search ended at the first state that is nearer than required.
@@ -137,6 +149,8 @@ impl Reason {
             Self::NotAsked => "not_asked",
             Self::Shared => "shared",
             Self::OwnState => "own_state",
+            Self::Hopeless => "hopeless",
+            Self::Descent => "descent",
             Self::FewBands => "few_bands",
             Self::NearerState => "nearer_state",
             Self::AnotherOne => "another_one",
@@ -154,6 +168,8 @@ impl Reason {
             Self::NotAsked => "not asked for",
             Self::Shared => "shared with others",
             Self::OwnState => "decided in the own state",
+            Self::Hopeless => "not worth trying",
+            Self::Descent => "decided by a descent",
             Self::FewBands => "decided by a few bands",
             Self::NearerState => "ended at the first state nearer than required",
             Self::AnotherOne => "decided by another one",

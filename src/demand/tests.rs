@@ -64,7 +64,7 @@ fn a_proof_spares_what_comes_after_it_and_nothing_before() {
                 let ran = &ran;
                 move |_: &mut ()| {
                     ran[i].set(ran[i].get() + 1);
-                    Ok((winner == i).then_some("answer"))
+                    Ok((winner == i).then_some("answer").into())
                 }
             };
             let (first, second) = (tried(0), tried(1));
@@ -87,6 +87,18 @@ fn a_proof_spares_what_comes_after_it_and_nothing_before() {
             }
         }
     }
+}
+
+/// What is not tried is not counted as computed, and stands in nobody's way.
+#[test]
+fn a_hopeless_proof_is_left_out() {
+    let proof =
+        Proof { of: Some(THINGS[1]), spares: Reason::FewBands, find: &|_: &mut ()| Ok(Attempt::NotTried) };
+    let mut demand = Demand::new(Skipping::On);
+    let answer = demand.first_proof(&mut (), &[proof], THINGS[2], &|_| Ok((5, None))).unwrap();
+    let work = demand.work();
+    assert_eq!((answer, work.computed(THINGS[2])), (5, 1));
+    assert_eq!((work.computed(THINGS[1]), work.spared(THINGS[1], Reason::Hopeless)), (0, 1));
 }
 
 #[test]

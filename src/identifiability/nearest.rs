@@ -165,6 +165,24 @@ impl<'a> NearestSolver<'a> {
         Ok(if found.distance < limit { Nearer::Somewhere } else { Nearer::Nowhere })
     }
 
+    /// Whether a descent from the target's own state comes to one of the alternative's that is nearer than `limit`. It
+    /// ends there, and sees nothing of other minima: that it finds none proves nothing.
+    ///
+    /// # Errors
+    /// A scene without photons.
+    pub fn descends_below(
+        &mut self,
+        emissivity: &[f64],
+        alternative: &[f64],
+        state: &State,
+        counting: &Counting,
+        limit: f64,
+    ) -> Result<bool> {
+        let metric = Metric::Counting(counting);
+        let found = self.search(emissivity, alternative, state, metric, Some(state), limit)?;
+        Ok(found.distance < limit)
+    }
+
     /// Statistical distance to the alternative in the target's own state (as far as that is within the
     /// alternative's range): an upper bound on the nearest one.
     ///

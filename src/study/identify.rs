@@ -22,14 +22,17 @@ impl Study {
     /// # Errors
     /// A scene without photons, or fewer bands than unknowns.
     pub fn identify(&self) -> Result<Identification> {
-        let pair = |alternative| {
+        let found = self.alternatives.par_iter().map(|alternative| {
             let mut work = Work::default();
-            self.pair(alternative, &mut work).map(|(pair, warnings)| (pair, (warnings, work)))
-        };
-        let results: Result<Vec<(PairResult, (Vec<Warning>, Work))>> =
-            self.alternatives.par_iter().map(pair).collect();
-        let (pairs, others): (Vec<_>, Vec<_>) = results?.into_iter().unzip();
-        let (pair_warnings, took): (Vec<_>, Vec<_>) = others.into_iter().unzip();
+            self.pair(alternative, &mut work).map(|(pair, warnings)| (pair, warnings, work))
+        });
+        let (mut pairs, mut pair_warnings) = (Vec::new(), Vec::new());
+        let mut stats = self.looked_up.clone();
+        for (pair, warnings, work) in found.collect::<Result<Vec<_>>>()? {
+            pairs.push(pair);
+            pair_warnings.extend(warnings);
+            stats.add(&work);
+        }
         let kind = self.scenario.requirement.by;
         let decisive = |pair: &PairResult| pair.statistical_distance.unwrap_or_else(|| pair.distance(kind));
         let limiting = pairs
@@ -38,7 +41,7 @@ impl Study {
             .map_or_else(String::new, |pair| pair.alternative.clone());
         let mut warnings = self.warnings.clone();
         warnings.extend(self.camera_warnings());
-        warnings.extend(pair_warnings.into_iter().flatten());
+        warnings.extend(pair_warnings);
         Ok(Identification {
             scenario: self.scenario.clone(),
             photon_radiance: self.photon_radiance(),
@@ -50,7 +53,7 @@ impl Study {
             pairs,
             limiting,
             warnings,
-            stats: took.iter().fold(self.looked_up.clone(), Work::and),
+            stats,
         })
     }
 

@@ -94,6 +94,22 @@ impl RangeStudy {
         }
     }
 
+    /// Expected counts of the left view of a scene, and their noise; `None` of cubes, which are there.
+    ///
+    /// # Errors
+    /// A scene that cannot be rendered.
+    pub fn rendered_left(&self, progress: Progress<'_>) -> Result<Option<(Cube, &NoiseVariance)>> {
+        let (Resolved::Scene(scene), Some(bands)) = (&self.subject, &self.bands) else { return Ok(None) };
+        let pair = scene.scene.render(&scene.rig, bands, &scene.options, progress)?;
+        Ok(Some((scene.counts(&pair.left, Part::Total)?, &scene.noise)))
+    }
+
+    /// The stereo geometry.
+    #[must_use]
+    pub fn stereo_geometry(&self) -> &StereoGeometry {
+        &self.geometry
+    }
+
     /// The bounds, what would have to change, and the witnesses that the plan asks for.
     ///
     /// # Errors

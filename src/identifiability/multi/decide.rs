@@ -5,16 +5,21 @@
 //!
 //! 1. the alternative in the target's own state is nearer than required: a distance to any state is an upper
 //!    bound (to first order this is ½‖s_g‖, the distance with no nuisance);
-//! 2. every n-th band alone reaches the requirement: fewer bands never carry more information, since each band adds a
+//! 2. a descent from there comes to a state that is nearer than required;
+//! 3. every n-th band alone reaches the requirement: fewer bands never carry more information, since each band adds a
 //!    square to the separation at every state of the alternative, hence to the least of them;
-//! 3. the search in all bands, which ends at the first state that is nearer than required.
+//! 4. the search in all bands, which ends at the first state that is nearer than required.
+//!
+//! Whether 2 is worth trying the local distance in every n-th band tells (times √n it is about that in all): it proves
+//! nothing, and is only a guess at what will. Before 3 a descent in the few bands shows cheaply where they fail.
 //!
 //! One direction that fails decides the pair. Proofs are as good as the search for the nearest state is.
 
 use super::LibraryScene;
-use crate::demand::{Demand, Proof, Reason, Skipping, Thing, Work};
+use crate::demand::{Attempt, Demand, Proof, Reason, Skipping, Thing, Work};
 use crate::error::{Error, Result, check};
 use crate::fisher::Counting;
+use crate::identifiability::local::LocalSolver;
 use crate::identifiability::nearest::{Nearer, NearestSolver};
 use crate::scene::{EnvironmentObject, Surroundings, check_emissivity};
 use crate::spectrum::Bands;
@@ -23,8 +28,18 @@ use rayon::prelude::*;
 /// Bands that are enough for a first look.
 const FEW_BANDS: usize = 64;
 
-/// What deciding a distance takes at most, with skipping.
-const THINGS: [Thing; 3] = [Thing::OwnStateDistances, Thing::FewBandSearches, Thing::NearestSearches];
+/// A local distance in few bands below this many times what is required leaves little hope that they suffice.
+const CLOSE: f64 = 2.0;
+
+/// What deciding a distance takes at most, with skipping, and what it takes where bands are few already.
+const THINGS: [Thing; 5] = [
+    Thing::OwnStateDistances,
+    Thing::FewBandEstimates,
+    Thing::Descents,
+    Thing::FewBandSearches,
+    Thing::NearestSearches,
+];
+const THINGS_OF_FEW: [Thing; 2] = [Thing::OwnStateDistances, Thing::NearestSearches];
 
 /// Which pairs of materials can be told apart.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -47,7 +62,9 @@ impl Decisions {
 /// A solver in all bands, and one in few.
 struct Solvers<'s> {
     all: NearestSolver<'s>,
-    few: Option<NearestSolver<'s>>,
+    few: Option<(LocalSolver<'s>, NearestSolver<'s>)>,
+    /// The local distance in few bands of the pair at hand.
+    estimate: f64,
 }
 
 /// The scene in every n-th band.
@@ -56,6 +73,8 @@ struct Few {
     surroundings: Surroundings,
     counting: Counting,
     emissivities: Vec<Vec<f64>>,
+    /// Every so many bands are kept.
+    stride: usize,
 }
 
 impl Few {
@@ -78,7 +97,7 @@ impl Few {
             var_electronic: counting.var_electronic.iter().copied().step_by(stride).collect(),
         };
         let emissivities = emissivities.iter().map(|emissivity| kept(emissivity)).collect();
-        Ok(Some(Self { bands, surroundings, counting, emissivities }))
+        Ok(Some(Self { bands, surroundings, counting, emissivities, stride }))
     }
 }
 
@@ -184,15 +203,17 @@ struct Question<'q> {
 impl<'q> Question<'q> {
     fn solvers(&self) -> Solvers<'q> {
         let LibraryScene { unknowns, range, .. } = self.scene;
-        let few = self
-            .few
-            .map(|few| NearestSolver::new(&few.bands, &few.surroundings, (*unknowns).clone(), *range));
-        Solvers { all: self.scene.solver(), few }
+        let few = self.few.map(|few| {
+            let (bands, surroundings) = (&few.bands, &few.surroundings);
+            let local = LocalSolver::new(bands, surroundings, (*unknowns).clone());
+            (local, NearestSolver::new(bands, surroundings, (*unknowns).clone(), *range))
+        });
+        Solvers { all: self.scene.solver(), few, estimate: f64::NAN }
     }
 
     /// What one distance takes at most.
     fn things(&self) -> &'static [Thing] {
-        if self.few.is_some() { &THINGS } else { &[Thing::OwnStateDistances, Thing::NearestSearches] }
+        if self.few.is_some() { &THINGS } else { &THINGS_OF_FEW }
     }
 
     /// Whether target a is told from alternative b; the distance in the target's own state where it is known.
@@ -211,13 +232,37 @@ impl<'q> Question<'q> {
                 Some(distance) => distance,
                 None => solvers.all.own_state_distance(own, other, state, counting)?,
             };
-            Ok((distance < required).then_some(false))
+            Ok((distance < required).then_some(false).into())
+        };
+        let estimate = |solvers: &mut Solvers<'_>| {
+            if let (Some(few), Some((local, _))) = (self.few, solvers.few.as_mut()) {
+                let (own, other) = (&few.emissivities[a], &few.emissivities[b]);
+                let found = local.with_counting(own, other, state, &few.counting);
+                // Where there is none, nothing is guessed and everything tried.
+                solvers.estimate = found.map_or(f64::NAN, |local| local.distance);
+            }
+            Ok(Attempt::Open)
+        };
+        let descent = |solvers: &mut Solvers<'_>| {
+            let in_all = solvers.estimate * self.few.map_or(1.0, |few| few.stride as f64).sqrt();
+            if in_all >= required {
+                return Ok(Attempt::NotTried);
+            }
+            let nearer = solvers.all.descends_below(own, other, state, counting, required)?;
+            Ok(nearer.then_some(false).into())
         };
         let few_bands = |solvers: &mut Solvers<'_>| {
-            let (Some(few), Some(solver)) = (self.few, solvers.few.as_mut()) else { return Ok(None) };
+            let close = solvers.estimate < CLOSE * required;
+            let (Some(few), Some((_, solver))) = (self.few, solvers.few.as_mut()) else {
+                return Ok(Attempt::Open);
+            };
             let (own, other) = (&few.emissivities[a], &few.emissivities[b]);
+            // One state that is nearer in the few bands, and they prove nothing.
+            if close && solver.descends_below(own, other, state, &few.counting, required)? {
+                return Ok(Attempt::NotTried);
+            }
             let found = solver.nearer_than(own, other, state, &few.counting, required)?;
-            Ok((found == Nearer::Nowhere).then_some(true))
+            Ok((found == Nearer::Nowhere).then_some(true).into())
         };
         let skips = demand.skips();
         let in_full = |solvers: &mut Solvers<'_>| {
@@ -233,6 +278,8 @@ impl<'q> Question<'q> {
         let own_is_new = in_own_state.is_none().then_some(Thing::OwnStateDistances);
         let proofs = [
             Proof { of: own_is_new, spares: Reason::OwnState, find: &own_state },
+            Proof { of: Some(Thing::FewBandEstimates), spares: Reason::Decided, find: &estimate },
+            Proof { of: Some(Thing::Descents), spares: Reason::Descent, find: &descent },
             Proof { of: Some(Thing::FewBandSearches), spares: Reason::FewBands, find: &few_bands },
         ];
         let proofs = if self.few.is_some() { &proofs[..] } else { &proofs[..1] };

@@ -20,6 +20,7 @@ use super::blocks::{Plan, Strip, run};
 use super::boxes::{Image, window_sums};
 use super::samples::{BandSums, Room, bounds_of_row, pixels_of_row};
 use super::{Cell, Request, Window, pixels};
+use crate::demand::{Reason, Thing, Work};
 use crate::error::{Error, Result, check};
 use crate::ranging::cube::Cube;
 use std::ops::Range;
@@ -62,6 +63,20 @@ pub struct Stats {
     pub samples_evaluated: usize,
     /// Samples in any window.
     pub samples_total: usize,
+}
+
+impl Stats {
+    /// The same as a ledger, for a cube of so many samples.
+    #[must_use]
+    pub fn work(&self, samples: usize) -> Work {
+        let mut work = Work::default();
+        work.compute(Thing::Samples, self.samples_evaluated as u64);
+        work.spare(Thing::Samples, Reason::Decided, samples.saturating_sub(self.samples_evaluated) as u64);
+        work.compute(Thing::Windows, self.windows_computed as u64);
+        work.spare(Thing::Windows, Reason::ProvedAbove, self.windows_proved_above as u64);
+        work.spare(Thing::Windows, Reason::ProvedBelow, self.windows_proved_below as u64);
+        work
+    }
 }
 
 /// Whether J(full) ≥ `required_per_pixel2` (pixel⁻²) in each window of a request, whose `cells` are not looked at.

@@ -201,3 +201,27 @@ fn what_does_not_fit_is_refused() {
     assert!(ThermometryScene { counting: &bright, ..scene }.fits(&both(), &state, run).is_err());
     assert!(scene.means(&State { lighting: vec![], ..state.clone() }).is_err());
 }
+
+/// Spectra drawn once for two fits, one of them with a prior, and two imagers: each reads what it reads alone.
+#[test]
+fn spectra_drawn_once_for_all_are_those_drawn_for_each() {
+    let setup = Setup::carbide(1e-15, 50.0);
+    let (scene, state) = (setup.scene(), setup.state(330.0));
+    let run = Run { index: 3, trials: 40, seed: 9 };
+    let with_prior = both().prior(Nuisance::Lighting, 0.05).unwrap();
+    let unknowns = [&Unknowns::new([Nuisance::Temperature]).unwrap(), &with_prior];
+    let imagers = [
+        &Conventional::with_surroundings(0.95, &setup.surroundings).unwrap(),
+        &Conventional::calibrated(&scene, &state).unwrap(),
+    ];
+    let (fits, readings) = scene.read(&unknowns, &imagers, &state, run).unwrap();
+    for (unknowns, fits) in unknowns.iter().zip(&fits) {
+        assert_eq!(*fits, scene.fits(unknowns, &state, run).unwrap());
+        assert_eq!(fits.estimates.len(), 40 * fits.parameters.len());
+    }
+    for (imager, readings) in imagers.iter().zip(&readings) {
+        assert_eq!(*readings, scene.readings(imager, &state, run).unwrap());
+        assert_eq!(readings.len(), 40);
+    }
+    assert_ne!(fits[0].estimates[..4], fits[1].estimates[..4]);
+}

@@ -57,15 +57,9 @@ impl RangeStudy {
             required_share: requirement.share,
             signal: Signal::HeatCube,
         };
-        let found = &decision.stats;
-        let mut stats = self.looked_up.clone();
+        let mut stats = self.looked_up.clone().and(&decision.stats.work(shape.len()));
         stats.compute(Thing::Sections, 1);
         stats.spare(Thing::Sections, Reason::NotAsked, SECTIONS as u64 - 1);
-        stats.compute(Thing::Samples, found.samples_evaluated as u64);
-        stats.spare(Thing::Samples, Reason::Decided, (shape.len() - found.samples_evaluated) as u64);
-        stats.compute(Thing::Windows, found.windows_computed as u64);
-        stats.spare(Thing::Windows, Reason::ProvedAbove, found.windows_proved_above as u64);
-        stats.spare(Thing::Windows, Reason::ProvedBelow, found.windows_proved_below as u64);
         Ok(Some(Ranging {
             scenario: self.scenario.clone(),
             verdict,

@@ -1,0 +1,3 @@
+//! How long answers take, and what they are worth.
+
+pub mod skipping;
