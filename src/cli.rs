@@ -3,6 +3,8 @@
 //! Exit codes: 0 done; 1 the input is wrong (one message on stderr); 2 usage; 3 requirement not met with
 //! `--check`. With `--json` stdout is one object and nothing else.
 
+#[cfg(feature = "accuracy")]
+mod accuracy;
 mod cameras;
 mod identify;
 mod materials;
@@ -49,6 +51,9 @@ enum Command {
     Simulate(simulate::SimulateArgs),
     /// The paper's figures and tables made again, with a ledger of what agrees
     Reproduce(reproduce::ReproduceArgs),
+    /// Run time against error: every method of a computation over its effort, beside extended precision
+    #[cfg(feature = "accuracy")]
+    Accuracy(accuracy::AccuracyArgs),
     /// The materials: list, show, plot, import
     Materials(materials::MaterialsArgs),
     /// The known cameras: list, show
@@ -124,6 +129,8 @@ fn run(cli: &Cli) -> Result<ExitCode> {
         Command::Range(args) => range::run(args, &cli.global),
         Command::Simulate(args) => simulate::run(args, &cli.global),
         Command::Reproduce(args) => reproduce::run(args, &cli.global),
+        #[cfg(feature = "accuracy")]
+        Command::Accuracy(args) => accuracy::run(args, &cli.global),
         Command::Materials(args) => materials::run(args, &cli.global),
         Command::Cameras(args) => cameras::run(args, &cli.global),
     }

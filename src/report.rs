@@ -1,5 +1,7 @@
 //! Results made readable: files, tables, plots and text. Physics never imports this module.
 
+#[cfg(feature = "accuracy")]
+pub mod accuracy;
 pub mod bundle;
 pub mod figures;
 pub mod library;

@@ -5,10 +5,11 @@
 mod folder;
 
 use folder::{Folder, SCENARIO};
-use hadar::accuracy::skipping::{skipping, text};
+use hadar::accuracy::skipping::skipping;
 use hadar::demand::{Reason, Skipping, Thing};
 use hadar::fisher::{Nuisance, Unknowns};
 use hadar::material::Library;
+use hadar::report::accuracy::skipping_text as text;
 use hadar::scenario::Scenario;
 use hadar::study::{Asked, Study};
 use serde_json::Value;

@@ -229,22 +229,3 @@ fn classifier(bench: &Bench, study: &Study, per_class: usize) -> Result<Skipped>
     let names = ("a person or a robot in three bands", "how often the likelihood ratio is right");
     bench.compared(names, answer, |a, b| ratio(a).is_some() && ratio(a) == ratio(b), |found| &found.stats)
 }
-
-/// A table of the questions for people.
-#[must_use]
-pub fn text(found: &[Skipped]) -> String {
-    let mut out =
-        format!("{:<38} {:>10} {:>10} {:>6}  same answer\n", "scenario", "skipping", "in full", "gain");
-    for one in found {
-        out.push_str(&format!(
-            "{:<38} {:>8.2} ms {:>7.2} ms {:>6.1}  {}\n  {}\n",
-            one.scenario,
-            1e3 * one.seconds_on,
-            1e3 * one.seconds_off,
-            one.gain(),
-            if one.answers_equal { "yes" } else { "no" },
-            one.question
-        ));
-    }
-    out
-}

@@ -149,6 +149,22 @@ impl RatioLaw {
         found.unwrap_or_else(|| self.bracketed())
     }
 
+    /// [`error`](Self::error) by one route alone; nothing if it does not apply or does not settle.
+    #[must_use]
+    pub fn error_by(&self, route: Route) -> Option<TestError> {
+        let line = self.line(self.saddle());
+        if line.modes.is_empty() || route == Route::Single {
+            return (line.modes.is_empty() && route == Route::Single).then(|| single(&line)).flatten();
+        }
+        let found = match route {
+            Route::Sum => enumeration::enumerate(&line),
+            Route::Integral => inversion::integrate(&line),
+            Route::Lattice => lattice::transform(&line),
+            Route::Single | Route::Bracket => return Some(self.bracketed()),
+        };
+        self.checked(found?, route)
+    }
+
     /// 1 − [`error`](Self::error).
     #[must_use]
     pub fn accuracy(&self) -> f64 {

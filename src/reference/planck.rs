@@ -42,6 +42,13 @@ pub fn photon_radiance(wavenumber_cm1: f64, temperature_k: f64) -> Extended {
     Blackbody::new(&[wavenumber_cm1], &Extended::from(temperature_k)).values.swap_remove(0)
 }
 
+/// B of a wavenumber (cm⁻¹) and a temperature (K) that need not be doubles.
+#[must_use]
+pub fn photon_radiance_at(wavenumber_cm1: &Extended, temperature_k: &Extended) -> Extended {
+    let x = second_radiation_cm_k() * wavenumber_cm1 / temperature_k;
+    modes(wavenumber_cm1) / (x.exp() - Extended::one())
+}
+
 /// ∂B/∂T, photons s⁻¹ m⁻² sr⁻¹ per cm⁻¹ per K.
 #[must_use]
 pub fn photon_radiance_slope(wavenumber_cm1: f64, temperature_k: f64) -> Extended {
