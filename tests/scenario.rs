@@ -45,6 +45,7 @@ fn paths_that_begin_or_end_in_a_blank_are_not_confused_with_others() {
     let scenario = with("./ x.csv").unwrap();
     let text = scenario.to_toml_beside(path.parent().unwrap());
     assert_eq!(Scenario::from_toml(&text, Some(&path)).unwrap(), scenario, "{text}");
+    assert!(with("./x //").is_err());
     let error = with("./x /.").unwrap_err().to_string();
     assert!(
         error.ends_with("target.material: `./x /.` is a path that ends in a blank; rename the file"),

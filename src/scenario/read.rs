@@ -285,7 +285,7 @@ pub(super) fn file(entry: &Entry<'_>) -> Result<PathBuf> {
             .fail(Error::malformed(format!("`{text}` is not a usable path ({error})"), "write the full path"))
     })?;
     // As in `x /.`: written again, it would be another path.
-    if path.to_string_lossy().ends_with(char::is_whitespace) {
+    if path.file_name().is_some_and(|name| name.to_string_lossy().ends_with(char::is_whitespace)) {
         let found = format!("`{text}` is a path that ends in a blank");
         return Err(entry.fail(Error::malformed(found, "rename the file")));
     }
