@@ -94,6 +94,10 @@ pub fn continuum(order: Order) -> Result<Continuum> {
         }
         let materials = [library.get(target)?, library.get(alternative)?];
         let limit = Values::of(&Pair::new(spectrum_of_nodes(materials)?, materials)?)?;
+        if limit.nearest == 0.0 {
+            // The same spectrum by another name.
+            continue;
+        }
         let mut widest = None;
         let mut good = true;
         for count in order.some(&COUNTS) {
