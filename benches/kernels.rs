@@ -21,6 +21,7 @@ use hadar::statistics::Statistics;
 use std::hint::black_box;
 
 /// Names of the kernels, in the order of the tables.
+#[allow(dead_code, reason = "not every bench names them all")]
 pub const NAMES: [&str; 9] = [
     "planck spectrum",
     "planck difference",
@@ -92,7 +93,9 @@ impl Scene {
                 let states = [at(0), at(1)];
                 Box::new(move |call| {
                     let state = &states[call % 2];
-                    black_box(solver.per_photon(&self.skin, &self.robot, state, f64::INFINITY).expect("sound"));
+                    black_box(
+                        solver.per_photon(&self.skin, &self.robot, state, f64::INFINITY).expect("sound"),
+                    );
                 })
             }
             "map row" => {
@@ -100,7 +103,8 @@ impl Scene {
                     (0..ROW).map(|i| 0.01 + 0.98 * i as f64 / (ROW - 1) as f64).collect();
                 Box::new(move |call| {
                     // Eight rows at a time: setting up a map is no part of a row.
-                    let temperatures: Vec<f64> = (0..8).map(|i| 310.0 + (8 * (call % 2) + i) as f64).collect();
+                    let temperatures: Vec<f64> =
+                        (0..8).map(|i| 310.0 + (8 * (call % 2) + i) as f64).collect();
                     black_box(self.map().local(&temperatures, &lightings).expect("sound"));
                 })
             }
@@ -119,7 +123,9 @@ impl Scene {
                     NearestSolver::new(&self.bands, &self.surroundings, self.unknowns.clone(), range);
                 let state = at(0);
                 Box::new(move |_| {
-                    black_box(solver.per_photon(&self.skin, &self.robot, &state, f64::INFINITY).expect("sound"));
+                    black_box(
+                        solver.per_photon(&self.skin, &self.robot, &state, f64::INFINITY).expect("sound"),
+                    );
                 })
             }
             "window information" => {
