@@ -21,6 +21,7 @@ use hadar::statistics::Statistics;
 use std::hint::black_box;
 
 /// Names of the kernels, in the order of the tables.
+#[allow(dead_code, reason = "not every bench names them all")]
 pub const NAMES: [&str; 9] = [
     "planck spectrum",
     "planck difference",

@@ -141,7 +141,9 @@ impl Aligned {
 
     /// Changes the length; what the values are afterwards is not said.
     pub(crate) fn set_len(&mut self, len: usize) {
-        if self.len != len {
+        if self.start + len <= self.storage.len() {
+            self.len = len;
+        } else {
             *self = Self::zeros(len);
         }
     }

@@ -1,7 +1,7 @@
 //! Distances over a grid of target temperature and lighting (the paper's Fig. 3c).
 //!
 //! Rows run over T, columns over the lighting factor of the first environment object; what depends on T
-//! alone is computed once per row, and the rest at a few lighting factors wherever that keeps all digits: see [`row`].
+//! alone is computed once per row, and the rest at a few lighting factors wherever that keeps all digits: see `map/row.rs`.
 //! Rows are spread over the threads of the pool; the result does not depend on their number.
 
 mod chebyshev;
@@ -16,6 +16,9 @@ use crate::scene::{State, Surroundings};
 use crate::simd::Aligned;
 use crate::spectrum::Bands;
 use rayon::prelude::*;
+
+/// Rows that one solver takes at least: to set it up costs as much as a row.
+const ROWS_TOGETHER: usize = 8;
 
 /// The pair of materials and everything around it that stays the same over a map.
 #[derive(Debug, Clone)]
@@ -62,6 +65,7 @@ impl MapScene<'_> {
         let pair = Pair { emissivity: &emissivity, alternative: &alternative };
         let rows: Result<Vec<Vec<MapPoint>>> = temperatures_k
             .par_iter()
+            .with_min_len(ROWS_TOGETHER)
             .map_init(solver, |solver, &temperature_k| {
                 let mut row = Vec::with_capacity(lightings.len());
                 solver.row(pair, &mut self.at(temperature_k, 0.0), lightings, &mut row)?;
