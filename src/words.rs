@@ -19,7 +19,7 @@ pub fn significant(value: f64, digits: usize) -> String {
 /// A length, time or such with a unit that keeps the number short.
 #[must_use]
 pub fn quantity(value: f64, unit: &str) -> String {
-    for (factor, prefix) in [(1.0, ""), (1e3, "m"), (1e6, "u"), (1e9, "n")] {
+    for (factor, prefix) in [(1.0, ""), (1e3, "m"), (1e6, "u"), (1e9, "n"), (1e12, "p")] {
         if value * factor >= 1.0 {
             return format!("{} {prefix}{unit}", significant(value * factor, 3));
         }

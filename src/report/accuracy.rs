@@ -142,24 +142,28 @@ pub fn verdict(chart: &Chart) -> String {
 #[must_use]
 pub fn markdown(charts: &[Chart]) -> String {
     let mut page = String::from(
-        "| computation | default | effort | time | error | on the front | fastest within twice the error |\n|---|---|---|---|---|---|---|\n",
+        "| computation | default | time of one | true error | on the front | fastest other as good |\n|---|---|---|---|---|---|\n",
     );
     for chart in charts {
         let defaults: Vec<&Measured> = chart.defaults().collect();
+        // In the middle of the settings, where there are several.
         let Some(shown) = defaults.get(defaults.len() / 2) else { continue };
         let on = if shown.on_front { "yes" } else { "no" };
-        let as_good = |other: &&Measured| {
-            other.question == shown.question && other.error.max(ROUNDED) <= 2.0 * shown.error.max(ROUNDED)
+        let other_as_good = |other: &&Measured| {
+            other.question == shown.question
+                && other.method != shown.method
+                && other.error.max(ROUNDED) <= 2.0 * shown.error.max(ROUNDED)
         };
-        let fastest = chart.measured.iter().filter(as_good).min_by(|a, b| a.seconds.total_cmp(&b.seconds));
-        let rival = fastest
-            .map_or_else(String::new, |rival| format!("{}, {}", rival.method, quantity(rival.seconds, "s")));
+        let others = chart.measured.iter().filter(other_as_good);
+        let rival = others.min_by(|a, b| a.seconds.total_cmp(&b.seconds)).map_or_else(
+            || "none".into(),
+            |rival| format!("{}: {}", rival.method, quantity(rival.seconds, "s")),
+        );
+        let of = if shown.question.is_empty() { String::new() } else { format!(", {}", shown.question) };
         page.push_str(&format!(
-            "| {} | {} | {} {} | {} | {} | {on} | {rival} |\n",
+            "| {}{of} | {} | {} | {} | {on} | {rival} |\n",
             chart.title,
             shown.method,
-            shown.effort.map_or_else(String::new, |effort| significant(effort, 3)),
-            shown.effort.map_or("", |_| chart.effort),
             quantity(shown.seconds, "s"),
             error_of(shown.error),
         ));
