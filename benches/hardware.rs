@@ -6,7 +6,7 @@
 //!
 //!   operations/rate,   divisions/rate,   bytes/bandwidth
 //!
-//! with the least it has to do by its own equations, written beside the code below. What all three do at
+//! with the least it has to do by its own equations, written beside the code below (estimates for map, nearest state and windows). What all three do at
 //! once is not counted, neither are shuffles, calls, allocations and the folding of sums: a ratio of 1 is out of reach.
 
 mod kernels;

@@ -58,7 +58,7 @@ impl MapScene<'_> {
     /// Local distances, temperature after temperature (rows), lighting within.
     ///
     /// # Errors
-    /// As [`LocalSolver::per_photon`], at the first point that fails.
+    /// As [`LocalSolver::per_photon`](super::local::LocalSolver::per_photon), at the first point that fails.
     pub fn local(&self, temperatures_k: &[f64], lightings: &[f64]) -> Result<Vec<MapPoint>> {
         let solver = || RowSolver::new(self.bands, self.surroundings, self.unknowns);
         let (emissivity, alternative) = (Aligned::from(self.emissivity), Aligned::from(self.alternative));
