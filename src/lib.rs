@@ -1,5 +1,7 @@
 #![doc = include_str!("../README.md")]
 
+#[cfg(feature = "accuracy")]
+pub mod accuracy;
 pub mod cli;
 pub mod error;
 pub mod fisher;
