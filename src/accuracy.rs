@@ -19,6 +19,7 @@ mod probability;
 mod quadrature;
 mod scene;
 pub mod skipping;
+pub mod stress;
 pub mod timing;
 mod windows;
 

@@ -15,8 +15,8 @@
 mod bound;
 pub mod precision;
 
-pub(crate) use bound::Reduced;
 pub use bound::{Projection, Projector};
+pub(crate) use bound::{Reduced, times_power_of_two};
 
 use crate::error::{Error, Result, check};
 use crate::scene::Parameter;

@@ -6,12 +6,13 @@
 //! orthogonalised twice ('twice is enough'). Scale-free: a column may be in any unit. Lengths of the columns
 //! come from the triangular factor, by Pythagoras.
 //!
-//! A nuisance column that is zero, or of which less than [`DEPENDENT`] is left after removing the others,
-//! is dropped and reported.
-//!
 //! Rounding: the columns come with a relative error of a few u per element (u = 2⁻⁵³), so the residual
-//! carries about u(‖a_g‖ + Σ|cᵢ|‖aᵢ‖), cᵢ the coefficients of a_g on the nuisances. Divided by the residual
-//! this is the reported relative error.
+//! carries about u(‖a_g‖ + Σ|cᵢ|‖aᵢ‖), cᵢ the coefficients of a_g on the nuisances. What is left of a nuisance carries
+//! as much of its own, which turns its direction by δᵢ, and so the residual by δᵢ² of itself. Both together, the first
+//! divided by the residual, are the reported relative error.
+//!
+//! A nuisance column that is zero, or of which less than [`DEPENDENT`] of that sum is left after removing the others,
+//! is dropped and reported: what is left of it is rounding noise, which may have any direction.
 //!
 //! Sources: paper S25–S29; Björck, Linear Algebra Appl. 197, 297 (1994), doi:10.1016/0024-3795(94)90493-6;
 //! Giraud, Langou, Rozložník, Numer. Math. 101, 87 (2005), doi:10.1007/s00211-005-0615-4.
@@ -21,10 +22,12 @@ mod passes;
 use self::passes::{Pass, eliminate, reduce_last};
 use crate::scene::Columns;
 
-/// Share of a nuisance column below which what is left of it is rounding noise.
+/// Share of ‖aᵢ‖ + Σ|cⱼ|‖aⱼ‖ of a nuisance column below which what is left of it is rounding noise.
 const DEPENDENT: f64 = 1e-14;
+/// Lengths between these square without losing digits at either end.
+const SAFE_LENGTHS: std::ops::RangeInclusive<f64> = 1e-140..=1e140;
 /// Rounding errors of an element and of the sums, in units of u; measured against 30-digit answers.
-const ROUNDINGS: f64 = 4.0;
+const ROUNDINGS: f64 = 6.0;
 const UNIT_ROUNDOFF: f64 = 0.5 * f64::EPSILON;
 
 /// What is left of a column after the span of the others has been removed.
@@ -165,6 +168,7 @@ impl Projector {
         }
         let columns = &mut columns[..count * stride];
         let last = count - 1;
+        let mut turned = 0.0;
         for pivot in 0..last {
             eliminate(Pass { columns, stride, weights, pivot, shares: &self.shares, dots: &mut self.dots });
             let squared = self.dots[pivot];
@@ -172,13 +176,16 @@ impl Projector {
             self.triangle[pivot * count + pivot] = 1.0;
             self.shares.fill(0.0);
             let left = squared.sqrt();
-            // Scaled before it is compared: the threshold is a share of the column's own length.
-            if left.is_nan() || left <= DEPENDENT * self.lengths[pivot] {
+            // Scaled before it is compared: the threshold is a share of the columns that it is made of.
+            back_substitute(&self.triangle, &self.norms, pivot, &mut self.coefficients);
+            let made_of = self.lengths[pivot] + self.carried(pivot);
+            if left.is_nan() || left <= DEPENDENT * made_of {
                 self.dropped.push(pivot);
                 // It need not be finite, so that no share of it is small enough.
                 columns[pivot * stride..(pivot + 1) * stride].fill(0.0);
                 continue;
             }
+            turned += (ROUNDINGS * UNIT_ROUNDOFF * made_of / left).powi(2);
             (self.norms[pivot], self.squares[pivot]) = (left, squared);
             for i in pivot + 1..count {
                 self.shares[i] = self.dots[i] / squared;
@@ -205,15 +212,42 @@ impl Projector {
         } else {
             reduce_last(columns, stride, weights, &self.shares[..last], &mut self.dots)
         };
-        let residual = left.sqrt();
+        // As many directions as there are rows leave nothing but rounding.
+        let kept = last - self.dropped.len();
+        let nothing = kept > 0 && kept >= weights.iter().filter(|&&weight| weight > 0.0).take(count).count();
+        let residual = if nothing { 0.0 } else { left.sqrt() };
         self.triangle[count * count - 1] = 1.0;
         self.norms[last] = residual;
 
-        back_substitute(&self.triangle, &self.norms, &mut self.coefficients);
-        let carried: f64 =
-            self.coefficients.iter().zip(&self.lengths).map(|(c, length)| (c * length).abs()).sum();
-        let noise = ROUNDINGS * UNIT_ROUNDOFF * (cancellation * norm + carried);
-        Reduced { residual, norm, relative_error: if residual > 0.0 { noise / residual } else { 0.0 } }
+        back_substitute(&self.triangle, &self.norms, last, &mut self.coefficients);
+        let noise = ROUNDINGS * UNIT_ROUNDOFF * (cancellation * norm + self.carried(last));
+        let relative_error = if residual > 0.0 { noise / residual + turned } else { 0.0 };
+        Reduced { residual, norm, relative_error }
+    }
+
+    /// Σ|cⱼ|‖aⱼ‖ of the coefficients of a column on those before it.
+    fn carried(&self, column: usize) -> f64 {
+        let parts = self.coefficients.iter().zip(&self.lengths).take(column);
+        parts.map(|(c, length)| (c * length).abs()).sum()
+    }
+
+    /// Whether no length of the last [`Projector::reduce`] was so large or small that its square lost digits, as far as
+    /// it matters: of the column asked for, and of those that were dropped.
+    pub(crate) fn in_range(&self, found: Reduced) -> bool {
+        let dropped = self.dropped.iter().map(|&i| self.lengths[i]);
+        found.residual.is_finite()
+            && found.relative_error.is_finite()
+            && dropped.chain([found.norm]).all(|length| SAFE_LENGTHS.contains(&length))
+    }
+
+    /// Takes back that column i was divided by 2 to the power `powers[i]` before it was reduced.
+    pub(crate) fn unscale(&mut self, powers: &[i32], found: Reduced) -> Reduced {
+        let Some(last) = powers.last() else { return found };
+        for (c, power) in self.coefficients.iter_mut().zip(powers) {
+            *c = times_power_of_two(*c, last - power).clamp(f64::MIN, f64::MAX);
+        }
+        let [residual, norm] = [found.residual, found.norm].map(|length| times_power_of_two(length, *last));
+        Reduced { residual, norm, ..found }
     }
 
     /// Zeros for `count` columns.
@@ -240,17 +274,23 @@ fn length(triangle: &[f64], norms: &[f64], column: usize, squared: f64) -> f64 {
     (squared + parts.sum::<f64>()).sqrt()
 }
 
-/// Coefficients of the last column on the others, from the unit upper triangle.
-fn back_substitute(triangle: &[f64], norms: &[f64], coefficients: &mut [f64]) {
-    let (last, count) = (coefficients.len(), norms.len());
-    for row in (0..last).rev() {
+/// Coefficients of a column on those before it, from the unit upper triangle; 0 on those that were dropped.
+fn back_substitute(triangle: &[f64], norms: &[f64], column: usize, coefficients: &mut [f64]) {
+    let count = norms.len();
+    for row in (0..column).rev() {
         if norms[row] == 0.0 {
+            coefficients[row] = 0.0;
             continue;
         }
-        let known: f64 =
-            (row + 1..last).map(|column| triangle[row * count + column] * coefficients[column]).sum();
-        coefficients[row] = triangle[row * count + last] - known;
+        let known: f64 = (row + 1..column).map(|i| triangle[row * count + i] * coefficients[i]).sum();
+        coefficients[row] = triangle[row * count + column] - known;
     }
+}
+
+/// x·2^power in steps that do not overflow before the result does.
+pub(crate) fn times_power_of_two(x: f64, power: i32) -> f64 {
+    let half = power / 2;
+    x * f64::from(half).exp2() * f64::from(power - half).exp2()
 }
 
 #[cfg(test)]

@@ -6,14 +6,16 @@
 //!
 //! Source: paper S24–S30, Algorithm 2.
 
+mod scaled;
+
 use super::Status;
 use crate::error::{Error, Result};
 use crate::fisher::{Counting, Projection, Projector, Reduced, Unknowns};
-use crate::scene::{Columns, Jacobian, Parameter, State, Surroundings};
-use crate::simd::{Aligned, dispatched};
+use crate::scene::{Jacobian, Parameter, State, Surroundings};
+use crate::simd::Aligned;
 use crate::spectrum::Bands;
 
-/// Sums of the signal outside this range are brought back by a power of two before they are squared.
+/// Signals of which the sum is outside this range are whitened and scaled before they are squared.
 pub(super) const SAFE_RANGE: std::ops::Range<f64> = 1e-100..1e100;
 
 /// Local distance of a pair of materials.
@@ -71,8 +73,8 @@ pub struct LocalSolver<'a> {
     projector: Projector,
     columns: Vec<f64>,
     weights: Aligned,
-    /// Weights with those of the rows of priors.
-    more_weights: Vec<f64>,
+    /// Weights of whitened columns.
+    ones: Vec<f64>,
 }
 
 impl<'a> LocalSolver<'a> {
@@ -88,7 +90,7 @@ impl<'a> LocalSolver<'a> {
             projector: Projector::default(),
             columns: Vec::new(),
             weights: Aligned::zeros(bands.len()),
-            more_weights: Vec::new(),
+            ones: Vec::new(),
         }
     }
 
@@ -139,7 +141,19 @@ impl<'a> LocalSolver<'a> {
             let variance = signal + counting.var_electronic(w) / counts;
             *weight = if variance > 0.0 { counts / variance } else { 0.0 };
         }
-        let found = self.reduce(1.0, 1.0)?;
+        self.check_rank()?;
+        if !self.unknowns.has_priors() {
+            let root = |w: usize| self.weights[w].sqrt();
+            let cancellation = self.jacobian.material_cancellation(emissivity, alternative, state, root);
+            let found = self.projector.reduce(self.jacobian.columns_mut(), &self.weights, cancellation);
+            if self.projector.in_range(found) {
+                return Ok(self.judge(found, emissivity, alternative, state, total));
+            }
+            self.evaluate(emissivity, alternative, state);
+        }
+        let root =
+            |w: usize, signal: f64| counts.sqrt() / (signal + counting.var_electronic(w) / counts).sqrt();
+        let found = self.reduce_scaled(emissivity, alternative, state, root, 1.0);
         Ok(self.judge(found, emissivity, alternative, state, total))
     }
 
@@ -164,55 +178,26 @@ impl<'a> LocalSolver<'a> {
     ) -> Result<(f64, Reduced)> {
         self.evaluate(emissivity, alternative, state);
         let total = positive(crate::sum::sum(self.jacobian.signal()))?;
-        let scale = safe_scale(total);
-        if scale == 1.0 && !(self.unknowns.has_priors() && sqrt_photons.is_finite()) {
-            self.check_rank()?;
-            let cancellation = self.jacobian.cancellation();
+        self.check_rank()?;
+        let priors = self.unknowns.has_priors() && sqrt_photons.is_finite();
+        if SAFE_RANGE.contains(&total) && !priors {
+            let signal = self.jacobian.signal();
+            let root = |w: usize| if signal[w] > 0.0 { 1.0 / signal[w].sqrt() } else { 0.0 };
+            let cancellation = self.jacobian.material_cancellation(emissivity, alternative, state, root);
             let (columns, inverse) = self.jacobian.columns_and_inverse();
-            let Reduced { residual, norm, relative_error } =
-                self.projector.reduce(columns, inverse, cancellation);
+            let found = self.projector.reduce(columns, inverse, cancellation);
             // ΣS comes in at the end, since it scales all the same.
             let per_photon = 1.0 / total.sqrt();
-            let (residual, norm) = (per_photon * residual, per_photon * norm);
-            return Ok((total, Reduced { residual, norm, relative_error }));
+            let Reduced { residual, norm, relative_error } = found;
+            let scaled = Reduced { residual: per_photon * residual, norm: per_photon * norm, relative_error };
+            if self.projector.in_range(found) {
+                return Ok((total, scaled));
+            }
+            self.evaluate(emissivity, alternative, state);
         }
-        reciprocal_into(self.jacobian.signal(), scale * (total * scale), &mut self.weights);
-        Ok((total, self.reduce(scale, sqrt_photons)?))
-    }
-
-    /// Projection with the weights that stand ready.
-    fn reduce(&mut self, scale: f64, sqrt_photons: f64) -> Result<Reduced> {
-        self.check_rank()?;
-        let cancellation = self.jacobian.cancellation();
-        if scale == 1.0 && !(self.unknowns.has_priors() && sqrt_photons.is_finite()) {
-            return Ok(self.projector.reduce(self.jacobian.columns_mut(), &self.weights, cancellation));
-        }
-        self.append_priors(scale, sqrt_photons);
-        let columns = Columns { values: &mut self.columns, stride: self.more_weights.len() };
-        Ok(self.projector.reduce(columns, &self.more_weights, cancellation))
-    }
-
-    /// Columns scaled by a power of two, with one more row for every prior.
-    fn append_priors(&mut self, scale: f64, sqrt_photons: f64) {
-        let priors: Vec<(usize, f64)> = self
-            .parameters
-            .iter()
-            .enumerate()
-            .filter_map(|(i, parameter)| self.unknowns.sigma_prior(*parameter).map(|sigma| (i, sigma)))
-            .collect();
-        self.columns.clear();
-        for i in 0..self.parameters.len() {
-            self.columns.extend(self.jacobian.column(i).iter().map(|value| value * scale));
-            self.columns.extend(
-                priors.iter().map(
-                    |&(owner, sigma)| {
-                        if owner == i { 1.0 / (sigma * sqrt_photons) } else { 0.0 }
-                    },
-                ),
-            );
-        }
-        self.more_weights.clear();
-        self.more_weights.extend(self.weights.iter().copied().chain(priors.iter().map(|_| 1.0)));
+        let root_total = total.sqrt();
+        let root = |_, signal: f64| 1.0 / (signal.sqrt() * root_total);
+        Ok((total, self.reduce_scaled(emissivity, alternative, state, root, sqrt_photons)))
     }
 
     fn check_rank(&self) -> Result<()> {
@@ -290,23 +275,4 @@ fn positive(total: f64) -> Result<f64> {
         "photons s^-1 m^-2 sr^-1",
         "above 0: a warmer scene, or bands at lower wavenumbers",
     ))
-}
-
-/// A power of two that brings `total` near 1, or 1 if squares are safe as they are.
-fn safe_scale(total: f64) -> f64 {
-    if SAFE_RANGE.contains(&total) {
-        1.0
-    } else {
-        total.log2().floor().clamp(-1000.0, 1000.0).mul_add(-1.0, 0.0).exp2()
-    }
-}
-
-dispatched! {
-    /// 1/(factor·value), and 0 for a value of 0: a band without photons tells nothing.
-    fn reciprocal_into<'a>(values: &'a [f64], factor: f64, out: &'a mut [f64]) {
-        for (out, value) in out.iter_mut().zip(values) {
-            let product = factor * value;
-            *out = if product > 0.0 { 1.0 / product } else { 0.0 };
-        }
-    }
 }

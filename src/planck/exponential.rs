@@ -14,14 +14,39 @@ const LARGEST_EXPONENT: f64 = 708.0;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Double {
     pub(super) high: f64,
-    low: f64,
+    pub(super) low: f64,
+}
+
+impl Double {
+    /// a + b without rounding (Knuth's TwoSum).
+    pub(super) fn sum(a: f64, b: f64) -> Self {
+        let high = a + b;
+        let part = high - a;
+        Self { high, low: (a - (high - part)) + (b - part) }
+    }
+
+    /// This over a double, and this times another, to twice the digits.
+    pub(super) fn over(self, divisor: f64) -> Self {
+        let high = self.high / divisor;
+        Self { high, low: ((-high).mul_add(divisor, self.high) + self.low) / divisor }
+    }
+
+    pub(super) fn times(self, other: Self) -> Self {
+        let high = self.high * other.high;
+        let rest = self.high.mul_add(other.high, -high);
+        Self { high, low: self.high.mul_add(other.low, self.low.mul_add(other.high, rest)) }
+    }
 }
 
 /// hc/(kT), in cm.
 pub(super) fn inverse_thermal(temperature_k: f64) -> Double {
-    let high = SECOND_RADIATION_CM_K / temperature_k;
-    let rest = (-high).mul_add(temperature_k, SECOND_RADIATION_CM_K) + SECOND_RADIATION_REST_CM_K;
-    Double { high, low: rest / temperature_k }
+    Double { high: SECOND_RADIATION_CM_K, low: SECOND_RADIATION_REST_CM_K }.over(temperature_k)
+}
+
+/// hc/(kT) of a temperature that is the sum of two doubles.
+pub(super) fn inverse_thermal_of(temperature: Double) -> Double {
+    let Double { high, low } = inverse_thermal(temperature.high);
+    Double { high, low: low - high * (temperature.low / temperature.high) }
 }
 
 /// e⁻ˣ and 1 − e⁻ˣ, both to full relative precision, for x = high + low ≥ 0.
@@ -32,10 +57,10 @@ pub(super) fn exp_and_complement(high: f64, low: f64) -> (f64, f64) {
     (if high < LARGEST_EXPONENT { q } else { 0.0 }, p)
 }
 
-/// e^y − 1 to full relative precision for |y| ≤ [`LARGEST_EXPONENT`].
+/// e^y − 1 to full relative precision for y = high + low, |y| ≤ [`LARGEST_EXPONENT`].
 #[inline(always)]
-pub(super) fn exp_minus_one(y: f64) -> f64 {
-    let (scale, head) = reduced_exp(y, 0.0);
+pub(super) fn exp_minus_one(high: f64, low: f64) -> f64 {
+    let (scale, head) = reduced_exp(high, low);
     scale.mul_add(head, scale - 1.0)
 }
 
@@ -92,8 +117,8 @@ mod tests {
             if x > 0.0 {
                 assert!((p / -(-x).exp_m1() - 1.0).abs() < 5e-16, "{x}");
                 let y = x.min(600.0);
-                assert!((exp_minus_one(y) / y.exp_m1() - 1.0).abs() < 5e-16, "{y}");
-                assert!((exp_minus_one(-y) / (-y).exp_m1() - 1.0).abs() < 5e-16, "{y}");
+                assert!((exp_minus_one(y, 0.0) / y.exp_m1() - 1.0).abs() < 5e-16, "{y}");
+                assert!((exp_minus_one(-y, 0.0) / (-y).exp_m1() - 1.0).abs() < 5e-16, "{y}");
             }
         }
     }

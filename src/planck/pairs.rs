@@ -3,10 +3,15 @@
 //! With E = e^δ − 1 and δ = hcν(T − T₀)/(k T T₀) the second radiance follows from the first by one exponential of a
 //! small number; each function says how far apart the temperatures may be.
 
-use super::exponential::{Double, exp_and_complement, exp_minus_one, inverse_thermal, product, reduced_exp};
-use super::{PREFACTOR, photon_radiance_and_slope_into, photon_radiance_into};
+use super::exponential::{
+    Double, exp_and_complement, exp_minus_one, inverse_thermal, inverse_thermal_of, product, reduced_exp,
+};
+use super::{PREFACTOR, Radiance, photon_radiance_and_slope_into, radiance};
 use crate::simd::{dispatched, largest};
 use crate::units::SECOND_RADIATION_CM_K;
+
+/// |δ| beyond which two radiances have no digit in common.
+const ALIKE: f64 = 30.0;
 
 /// B(T₀ + ΔT) − B(T₀) of a whole spectrum, given B(T₀) as `base`; exact to a few ulp however small ΔT is.
 ///
@@ -18,18 +23,46 @@ pub fn photon_radiance_difference_into(
     base: &[f64],
     out: &mut [f64],
 ) {
-    let warmer_k = temperature_k + difference_k;
-    let inverse = inverse_thermal(warmer_k);
-    let delta_per_cm1 = inverse.high * (difference_k / temperature_k);
-    if delta_per_cm1.abs() * largest(wavenumbers_cm1) > 30.0 {
-        // e^δ may overflow, but then the two radiances have no digit in common to cancel.
-        photon_radiance_into(wavenumbers_cm1, warmer_k, out);
-        for (out, base) in out.iter_mut().zip(base) {
-            *out -= base;
-        }
+    let warmer = Double::sum(temperature_k, difference_k);
+    let difference = Double { high: difference_k, low: 0.0 };
+    differences_into(wavenumbers_cm1, (temperature_k, base), warmer, difference, out);
+}
+
+/// B(T) − B(T₀) of a whole spectrum, given T₀ and B(T₀): as [`photon_radiance_difference_into`], of the very temperatures.
+pub(crate) fn photon_radiance_apart_into(
+    wavenumbers_cm1: &[f64],
+    base: (f64, &[f64]),
+    temperature_k: f64,
+    out: &mut [f64],
+) {
+    let difference = Double::sum(temperature_k, -base.0);
+    differences_into(wavenumbers_cm1, base, Double { high: temperature_k, low: 0.0 }, difference, out);
+}
+
+/// B(T) − B(T₀), given T₀ and B(T₀), T and T − T₀.
+fn differences_into(
+    wavenumbers_cm1: &[f64],
+    (base_k, base): (f64, &[f64]),
+    temperature: Double,
+    difference: Double,
+    out: &mut [f64],
+) {
+    let inverse = inverse_thermal_of(temperature);
+    let delta_per_cm1 = inverse.times(difference.over(base_k));
+    if delta_per_cm1.high.abs() * largest(wavenumbers_cm1) <= ALIKE {
+        near_differences(wavenumbers_cm1, inverse, delta_per_cm1, base, out);
         return;
     }
-    near_differences(wavenumbers_cm1, inverse, delta_per_cm1, base, out);
+    // e^δ may overflow at the highest wavenumbers, where the two radiances have no digit in common to cancel; at the
+    // lowest they may have all.
+    for ((out, base), &wavenumber) in out.iter_mut().zip(base).zip(wavenumbers_cm1) {
+        *out = if (wavenumber * delta_per_cm1.high).abs() <= ALIKE {
+            base * growth(wavenumber, inverse, delta_per_cm1)
+        } else {
+            let Radiance { value, .. } = radiance(wavenumber, inverse, 0.0);
+            value - base
+        };
+    }
 }
 
 /// B(T₀), B(T), ∂B/∂T at T and B(T) − B(T₀) of a whole spectrum, for T within a quarter of T₀.
@@ -70,7 +103,7 @@ dispatched! {
         for ((((base, value), slope), difference), &wavenumber) in bands {
             let (x, low) = product(wavenumber, inverse);
             let (q, p) = exp_and_complement(x, low);
-            let e = exp_minus_one(wavenumber * delta_per_cm1);
+            let e = exp_minus_one(wavenumber * delta_per_cm1, 0.0);
             let inverse_p = 1.0 / (-q).mul_add(e, p);
             *base = PREFACTOR * wavenumber * wavenumber * q / p;
             *difference = *base * (e * inverse_p);
@@ -96,13 +129,34 @@ pub(crate) fn beside_into(
     temperature_k: f64,
     out: Beside<'_>,
 ) {
-    let delta_per_cm1 = inverse_thermal(base_k).high * ((temperature_k - base_k) / temperature_k);
-    if near(base_k, temperature_k) && delta_per_cm1.abs() * largest(wavenumbers_cm1) <= 30.0 {
-        near_beside(wavenumbers_cm1, delta_per_cm1, base, temperature_k, out);
-    } else {
+    if !near(base_k, temperature_k) {
         // So far apart that no more than two or three bits cancel.
         photon_radiance_and_slope_into(wavenumbers_cm1, temperature_k, out.value, out.slope);
         subtract(base, out.value, out.difference);
+        return;
+    }
+    let delta_per_cm1 =
+        inverse_thermal(base_k).times(Double::sum(temperature_k, -base_k).over(temperature_k));
+    if delta_per_cm1.high.abs() * largest(wavenumbers_cm1) <= ALIKE {
+        near_beside(wavenumbers_cm1, delta_per_cm1, base, temperature_k, out);
+        return;
+    }
+    // The highest wavenumbers have no digit in common, the lowest may have all.
+    let inverse = inverse_thermal(temperature_k);
+    let Beside { value, slope, difference } = out;
+    for (i, (&wavenumber, &base)) in wavenumbers_cm1.iter().zip(base).enumerate() {
+        if (wavenumber * delta_per_cm1.high).abs() <= ALIKE {
+            let one = i..i + 1;
+            let out = Beside {
+                value: &mut value[one.clone()],
+                slope: &mut slope[one.clone()],
+                difference: &mut difference[one],
+            };
+            near_beside(&[wavenumber], delta_per_cm1, &[base], temperature_k, out);
+            continue;
+        }
+        let at = radiance(wavenumber, inverse, 1.0 / temperature_k);
+        (value[i], slope[i], difference[i]) = (at.value, at.slope, base - at.value);
     }
 }
 
@@ -111,7 +165,7 @@ dispatched! {
     /// and B = B₀(E + 1)M/(M − B₀E).
     fn near_beside<'a>(
         wavenumbers_cm1: &'a [f64],
-        delta_per_cm1: f64,
+        delta_per_cm1: Double,
         base: &'a [f64],
         temperature_k: f64,
         out: Beside<'a>,
@@ -119,7 +173,8 @@ dispatched! {
         let x_ratio = SECOND_RADIATION_CM_K / (temperature_k * temperature_k);
         let spectra = out.value.iter_mut().zip(out.slope).zip(out.difference);
         for (((value, slope), difference), (&wavenumber, base)) in spectra.zip(wavenumbers_cm1.iter().zip(base)) {
-            let (scale, head) = reduced_exp(wavenumber * delta_per_cm1, 0.0);
+            let (y, low) = product(wavenumber, delta_per_cm1);
+            let (scale, head) = reduced_exp(y, low);
             // E, and E + 1 with all its digits where E is nearly −1.
             let (e, grown) = (scale.mul_add(head, scale - 1.0), scale.mul_add(head, scale));
             let modes = PREFACTOR * wavenumber * wavenumber;
@@ -145,21 +200,28 @@ dispatched! {
     fn near_differences<'a>(
         wavenumbers_cm1: &'a [f64],
         inverse: Double,
-        delta_per_cm1: f64,
+        delta_per_cm1: Double,
         base: &'a [f64],
         out: &'a mut [f64],
     ) {
         for ((out, base), &wavenumber) in out.iter_mut().zip(base).zip(wavenumbers_cm1) {
-            let (x, low) = product(wavenumber, inverse);
-            let (_, p) = exp_and_complement(x, low);
-            *out = base * exp_minus_one(wavenumber * delta_per_cm1) / p;
+            *out = base * growth(wavenumber, inverse, delta_per_cm1);
         }
     }
 }
 
+/// E/(1 − e⁻ˣ).
+#[inline(always)]
+fn growth(wavenumber_cm1: f64, inverse: Double, delta_per_cm1: Double) -> f64 {
+    let (x, low) = product(wavenumber_cm1, inverse);
+    let (_, p) = exp_and_complement(x, low);
+    let (y, low) = product(wavenumber_cm1, delta_per_cm1);
+    exp_minus_one(y, low) / p
+}
+
 #[cfg(test)]
 mod tests {
-    use super::super::{photon_radiance, photon_radiance_slope};
+    use super::super::{photon_radiance, photon_radiance_into, photon_radiance_slope};
     use super::*;
 
     #[test]

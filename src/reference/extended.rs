@@ -249,6 +249,20 @@ impl Extended {
         y + Self(CONSTANTS.ln2.clone()) * Self::from(f64::from(power))
     }
 
+    /// ln(1 + this), also of what is far below the last bit of 1.
+    #[must_use]
+    pub fn ln_1p(&self) -> Self {
+        if self.abs() > Self::from(1e-20) {
+            return (Self::one() + self).ln();
+        }
+        // Σ (−1)ⁿ⁺¹ yⁿ/n: the ninth term is below 10⁻¹⁶⁰ of the first.
+        (1..9).rev().fold(Self::zero(), |sum, n| {
+            let n = f64::from(n);
+            let inverse = Self::one() / Self::from(n);
+            (if n % 2.0 == 0.0 { -inverse } else { inverse } + sum) * self
+        })
+    }
+
     /// The larger of two.
     #[must_use]
     pub fn max(self, other: Self) -> Self {
@@ -414,6 +428,12 @@ mod tests {
             let x = Extended::from(x);
             close(&x.ln(), &Extended(x.0.ln(PRECISION, NEAREST, &mut constants)), 150);
         }
+        for y in [1e-5, -1e-19, 3e-21] {
+            // What ln(1 + y) loses is what 1 + y has lost of y.
+            let y = Extended::from(y);
+            close(&y.ln_1p(), &(Extended::one() + &y).ln(), 130);
+        }
+        assert_eq!(Extended::from(1e-300).ln_1p().to_f64(), 1e-300);
         assert_eq!(Extended::zero().exp(), Extended::one());
         assert!(Extended::from(-1.0).ln().to_f64().is_nan());
     }

@@ -57,8 +57,8 @@ pub struct LocalAnswer {
     pub distance_no_nuisance: Extended,
     /// ΣS of the target, photons s⁻¹ m⁻² sr⁻¹.
     pub photon_radiance: Extended,
-    /// Of each nuisance: what the ones before it leave of it, as a share of its own length; 0 where it is zero.
-    pub shares: Vec<(Parameter, f64)>,
+    /// What the others leave of each nuisance.
+    pub shares: Vec<Share>,
     /// Nuisances left out: those the caller named, and those that are zero or depend on others exactly.
     pub dropped: Vec<Parameter>,
     /// ½Σ|cᵢ|‖aᵢ‖, cᵢ the coefficients of the material's column on the nuisances: what was projected away, term by
@@ -67,6 +67,18 @@ pub struct LocalAnswer {
     /// [`LocalAnswer::distance_no_nuisance`] with every term of the contrast Σ Vₖεₖ[B(T) − B(Tₖ)] + [1 − ΣVₖεₖ]B(T)
     /// taken by its magnitude: a few units in the last place of this are what doubles can do.
     pub terms: Extended,
+}
+
+/// What is left of a nuisance.
+#[derive(Debug, Clone, Copy)]
+pub struct Share {
+    /// Which.
+    pub parameter: Parameter,
+    /// What the ones before it that were kept leave of it, as a share of ‖a‖ + Σ|cⱼ|‖aⱼ‖, cⱼ its coefficients on them: 0
+    /// where it is zero or depends on them exactly.
+    pub left: f64,
+    /// Largest magnitude of its column, photons s⁻¹ m⁻² sr⁻¹ per unit of the parameter.
+    pub largest: f64,
 }
 
 /// Spectra in extended precision, and what has been computed of blackbodies.
@@ -334,6 +346,10 @@ impl<'a> LocalReference<'a> {
         let terms = self.spectra.terms(emissivity, alternative, &state, &state);
         let terms = inner(&terms, &terms, &weights).sqrt();
         self.spectra.forget();
+        let largest: Vec<f64> = columns
+            .iter()
+            .map(|column| column.iter().map(|value| value.abs().to_f64()).fold(0.0, f64::max))
+            .collect();
         let projected = project(columns, &weights, |i| left_out.contains(&parameters[i]));
         let half = Extended::from(0.5);
         let of = |indices: Vec<usize>| indices.into_iter().map(|i| parameters[i]).collect();
@@ -341,7 +357,12 @@ impl<'a> LocalReference<'a> {
             distance: &half * projected.residual,
             distance_no_nuisance: &half * projected.norm,
             photon_radiance,
-            shares: parameters.iter().copied().zip(projected.shares).collect(),
+            shares: parameters
+                .iter()
+                .zip(projected.shares)
+                .zip(largest)
+                .map(|((&parameter, left), largest)| Share { parameter, left, largest })
+                .collect(),
             dropped: of(projected.dropped),
             terms: &half * terms,
             carried: half * projected.carried,
@@ -389,9 +410,11 @@ fn project(
     let lengths: Vec<Extended> = columns.iter().map(|column| inner(column, column, weights)).collect();
     let mut triangle = vec![vec![Extended::zero(); count]; count];
     let (mut shares, mut dropped) = (Vec::new(), Vec::new());
+    let sizes: Vec<Extended> = lengths.iter().map(Extended::sqrt).collect();
     for pivot in 0..last {
         let square = inner(&columns[pivot], &columns[pivot], weights);
-        let share = if lengths[pivot].is_zero() { 0.0 } else { (&square / &lengths[pivot]).sqrt().to_f64() };
+        let made_of = &sizes[pivot] + carried(&triangle, &sizes, pivot, &dropped);
+        let share = if sizes[pivot].is_zero() { 0.0 } else { (square.sqrt() / made_of).to_f64() };
         shares.push(if share < EXACTLY_DEPENDENT { 0.0 } else { share });
         if left_out(pivot) || share < EXACTLY_DEPENDENT {
             dropped.push(pivot);
@@ -411,13 +434,18 @@ fn project(
     let left = inner(&columns[last], &columns[last], weights).sqrt();
     // What 512 bits leave of a column that lies in the span of the others.
     let nothing = left <= &norm * Extended::from(EXACTLY_DEPENDENT);
-    let mut coefficients = vec![Extended::zero(); last];
-    for row in (0..last).rev().filter(|row| !dropped.contains(row)) {
-        let known: Extended = (row + 1..last).map(|i| &triangle[row][i] * &coefficients[i]).sum();
-        coefficients[row] = &triangle[row][last] - known;
-    }
-    let carried = coefficients.iter().zip(&lengths).map(|(c, square)| c.abs() * square.sqrt()).sum();
+    let carried = carried(&triangle, &sizes, last, &dropped);
     Projected { residual: if nothing { Extended::zero() } else { left }, norm, carried, shares, dropped }
+}
+
+/// Σ|cⱼ|‖aⱼ‖ of the coefficients of a column on those before it, from the unit upper triangle.
+fn carried(triangle: &[Vec<Extended>], sizes: &[Extended], column: usize, dropped: &[usize]) -> Extended {
+    let mut coefficients = vec![Extended::zero(); column];
+    for row in (0..column).rev().filter(|row| !dropped.contains(row)) {
+        let known: Extended = (row + 1..column).map(|i| &triangle[row][i] * &coefficients[i]).sum();
+        coefficients[row] = &triangle[row][column] - known;
+    }
+    coefficients.iter().zip(sizes).map(|(c, size)| c.abs() * size).sum()
 }
 
 #[cfg(test)]

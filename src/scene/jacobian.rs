@@ -12,10 +12,11 @@
 
 mod kernels;
 mod radiances;
+mod rounding;
 mod sampling;
 
 use self::kernels::{
-    LightObject, LightSpectra, OneObject, add_darkness, add_object, add_scaled, inverse_into, largest_by_one,
+    LightObject, LightSpectra, OneObject, add_darkness, add_object, inverse_into, largest_by_one,
     light_by_one, mixing_into, product_into, scale_by, scattered_into, signal_and_mixing_by_one, signal_into,
 };
 use self::sampling::Sampling;
@@ -375,18 +376,18 @@ impl<'a> Jacobian<'a> {
         let nu = &self.surroundings.nodes_cm1;
         let base = &self.base[last * nodes..];
         let (t, last_k) = (state.environment_k[k], state.environment_k[last]);
-        planck::photon_radiance_difference_into(nu, last_k, t - last_k, base, &mut self.column);
-        // εₖ[B(Tₖ) − B(T_K)] + (εₖ − ε_K)B(T_K).
-        self.scratch.fill(0.0);
-        add_scaled(1.0, own, &self.column, &mut self.scratch);
-        match (own, objects[last].emissivity.as_deref()) {
-            (None, None) => {}
-            (own, other) => {
-                for (j, (out, base)) in self.scratch.iter_mut().zip(base).enumerate() {
-                    let at = |emissivity: Option<&[f64]>| emissivity.map_or(1.0, |e| e[j]);
-                    *out += (at(own) - at(other)) * base;
-                }
-            }
+        planck::photon_radiance_apart_into(nu, (last_k, base), t, &mut self.column);
+        // εₖ[B(Tₖ) − B(T_K)] + (εₖ − ε_K)B(T_K), or where the two differ much, as they stand: the parts must not cancel.
+        let other = objects[last].emissivity.as_deref();
+        let own_base = &self.base[k * nodes..(k + 1) * nodes];
+        for (j, (out, difference)) in self.scratch.iter_mut().zip(self.column.iter()).enumerate() {
+            let at = |emissivity: Option<&[f64]>| emissivity.map_or(1.0, |e| e[j]);
+            let (own, other) = (at(own), at(other));
+            *out = if difference.abs() <= 0.5 * base[j] {
+                own * difference + (own - other) * base[j]
+            } else {
+                own * own_base[j] - other * base[j]
+            };
         }
         Incident::Scratch
     }

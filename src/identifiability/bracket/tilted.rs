@@ -64,7 +64,7 @@ impl Tilted {
         Ok(match statistics {
             Statistics::Gaussian { .. } => {
                 let square = check::finite("difference of a band, squared", change * change, "counts^2")?;
-                Self::Gaussian { square, var, other: var_other, log: log_ratio(var, change) }
+                Self::Gaussian { square, var, other: var_other, log: log_ratio(var, var_other, change) }
             }
             _ if mean == 0.0 || other == 0.0 => {
                 let exponent = match statistics {
@@ -75,9 +75,10 @@ impl Tilted {
                 };
                 Self::Dark { exponent, first: mean == 0.0 }
             }
-            Statistics::Poisson => Self::Poisson { mean, other, log: log_ratio(mean, change) },
+            Statistics::Poisson => Self::Poisson { mean, other, log: log_ratio(mean, other, change) },
             Statistics::NegativeBinomial { modes } => {
                 let modes = modes[band];
+                let log = log_ratio(mean, other, change);
                 let (a, other) = (mean / modes, other / modes);
                 if !(a > 0.0 && other > 0.0 && a.is_finite() && other.is_finite()) {
                     return Err(Error::out_of_range(
@@ -88,7 +89,7 @@ impl Tilted {
                     ));
                 }
                 let log_dark = (change / modes / (1.0 + a)).ln_1p();
-                Self::Bunched { modes, a, other, log: log_ratio(mean, change), log_dark }
+                Self::Bunched { modes, a, other, log, log_dark }
             }
         })
     }
@@ -157,10 +158,10 @@ impl Tilted {
     }
 }
 
-/// ln((x + change)/x), exact near equality.
-fn log_ratio(x: f64, change: f64) -> f64 {
+/// ln(y/x) with y = x + `change`, exact near equality.
+fn log_ratio(x: f64, y: f64, change: f64) -> f64 {
     let relative = change / x;
-    if relative.abs() < 0.5 { relative.ln_1p() } else { (x + change).ln() - x.ln() }
+    if relative.abs() < 0.5 { relative.ln_1p() } else { y.ln() - x.ln() }
 }
 
 /// x^{1−s}y^s with ln(y/x) known.

@@ -30,6 +30,8 @@ use rayon::prelude::*;
 const ONE_PASS: f64 = 16.0;
 /// Largest none/d for which a residual once projected is good; beyond it rank and rounding are judged too.
 const TWO_PASSES: f64 = 1e5;
+/// Squares of lengths that lose no digits.
+const SAFE_SQUARES: std::ops::RangeInclusive<f64> = 1e-280..=1e280;
 /// Bands × materials² beyond which threads are worth their while.
 const WORTH_THREADS: usize = 2_000_000;
 
@@ -315,6 +317,14 @@ impl<'a> LocalMatrix<'a> {
         shared.live.clear();
         if count > 0 {
             let columns = self.jacobian.columns_mut();
+            let safe = |column: &[f64]| {
+                let column = &column[..bands.len()];
+                let square: f64 = column.iter().zip(shared.weights.iter()).map(|(a, u)| u * a * a).sum();
+                SAFE_SQUARES.contains(&square) || column.iter().all(|&value| value == 0.0)
+            };
+            if !columns.values.chunks(columns.stride).take(count).all(safe) {
+                return false;
+            }
             let norms = self.projector.orthogonalise(columns.values, columns.stride, &shared.weights);
             shared.live.extend(norms.iter().copied().enumerate().filter(|(_, norm)| *norm > 0.0));
             shared.directions.set_len(shared.stride * shared.live.len());
@@ -356,7 +366,10 @@ impl Row<'_> {
             let along: f64 = dots.iter().map(|dot| dot * dot).sum();
             let left = squares[i] - along;
             *out = if squares[i] == 0.0 {
-                0.0
+                // Nothing, or so little that its square is.
+                if self.own == *other { 0.0 } else { f64::NAN }
+            } else if !squares[i].is_finite() {
+                f64::NAN
             } else if left * (ONE_PASS * ONE_PASS) >= squares[i] {
                 shared.half * left.sqrt()
             } else {

@@ -90,7 +90,7 @@ fn dependent_nuisances_are_told_from_nearly_dependent_ones() {
     );
     // One ulp of 300 K is 1.9e-16 of it: what is left of the third object's column is x·1.9e-16 of it, but for its
     // mean over the bands.
-    let share = found.shares[2].1;
+    let share = found.shares[2].left;
     assert!(1e-17 < share && share < 1e-15, "{share:e}");
     // Its direction is that of ∂B/∂T: leaving out it or all others of that direction is the same.
     let one = reference.answer(pair, noise, &[Lighting(2)]);

@@ -28,7 +28,7 @@ impl Jacobian<'_> {
             } else {
                 planck::photon_radiance_into(nu, base_k, base);
             }
-            planck::photon_radiance_difference_into(nu, base_k, t - base_k, base, difference);
+            planck::photon_radiance_apart_into(nu, (base_k, base), t, difference);
         }
         if !value_known {
             planck::photon_radiance_and_slope_into(nu, t, &mut self.value, &mut self.slope);
@@ -102,7 +102,7 @@ impl Jacobian<'_> {
             }
             let nu = &self.surroundings.nodes_cm1;
             let mut warmer = vec![0.0; nodes];
-            planck::photon_radiance_difference_into(nu, other_k, t - other_k, &other.base[span], &mut warmer);
+            planck::photon_radiance_apart_into(nu, (other_k, &other.base[span]), t, &mut warmer);
             add_scaled(other_state.lighting[k], emissivity, &warmer, out);
         }
     }

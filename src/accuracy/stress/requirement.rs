@@ -1,0 +1,88 @@
+//! Requirements solved for and put back: the camera that is asked for must do what was asked.
+
+use super::draw::Draw;
+use super::findings::Findings;
+use super::scene::{Hardship, Scene};
+use crate::error::Result;
+use crate::fisher::Counting;
+use crate::identifiability::local::LocalSolver;
+use crate::instrument::presets;
+use crate::policy::photons_required;
+use crate::policy::solve::{CameraTask, Quantity};
+use crate::reference::Extended;
+use crate::reference::local::{LocalReference, Noise, Pair};
+
+/// How closely a solution must meet what was asked: to the last bits of a logarithm, and what the distance's own
+/// rounding adds.
+const MET: f64 = 1e-9;
+
+/// A camera in front of a mild scene.
+pub(super) fn judge(draw: &mut Draw, found: &mut Findings) -> Result<()> {
+    let count = 6 + draw.below(6);
+    let scene = Scene::draw(draw, Hardship::Mild, count)?;
+    let Scene { bands, surroundings, state, target, alternative, unknowns } = &scene;
+    let mut solver = LocalSolver::new(bands, surroundings, unknowns.clone());
+    let per_photon = solver.per_photon(target, alternative, state, f64::INFINITY)?;
+    put_photons_back(draw, found, per_photon.distance);
+    if per_photon.relative_error > 1e-3 {
+        return Ok(());
+    }
+    let cameras = presets::all()?;
+    let mut camera = cameras[draw.below(cameras.len())].clone();
+    camera.flicker_fraction = if draw.chance(0.3) { 0.0 } else { draw.scale(1e-6, 1.0) };
+    camera.exposure_s = draw.scale(1e-9, 1e3);
+    let distance_m = draw.chance(0.5).then(|| draw.scale(0.1, 1e5));
+    let required = draw.scale(1e-3, 40.0);
+    let task = CameraTask { camera: &camera, bands, distance_m, required };
+    let quantity = Quantity::ALL[draw.below(Quantity::ALL.len())];
+    let mut distance = |counting: &Counting| {
+        solver.with_counting(target, alternative, state, counting).map(|local| local.distance)
+    };
+    let solution = task.solve(quantity, &mut distance)?;
+    found.require(solution.statistical_distance.is_finite(), || format!("{solution:?}"));
+    let Some(value) = solution.value else {
+        found.require(solution.reason.is_some() && solution.statistical_distance < required, || {
+            format!("neither value nor reason: {solution:?}")
+        });
+        return Ok(());
+    };
+    found.require(value.is_finite() && value >= 0.0, || format!("{quantity:?} of {value}"));
+    if quantity == Quantity::Frames && value > f64::from(u32::MAX) {
+        return Ok(());
+    }
+    let counting = task.forward(quantity, value).counting(bands, distance_m);
+    let fast = distance(&counting)?;
+    let pair = Pair { emissivity: target, alternative, state };
+    let exact = LocalReference::new(bands, surroundings, unknowns.clone()).answer(
+        pair,
+        Noise::Counting(&counting),
+        &[],
+    );
+    let reached = exact.distance.to_f64();
+    let tolerance = MET + per_photon.relative_error;
+    let fully = reached >= required * (1.0 - tolerance);
+    found.require(fully, || {
+        format!("{quantity:?} of {value:e} reaches {reached:e} ({fast:e}), not {required:e}")
+    });
+    let whole = quantity == Quantity::Frames || value == 0.0;
+    let off = Extended::from(required).relative_error_to(&exact.distance);
+    // A pair that differs without limit meets it at any value.
+    let anyhow = solution.statistical_distance == required && reached > required;
+    if !whole && !anyhow {
+        found.check("distance at the solution", off, tolerance);
+    }
+    Ok(())
+}
+
+/// N photons for a distance: √N·d₀ gives it back.
+fn put_photons_back(draw: &mut Draw, found: &mut Findings, per_photon: f64) {
+    let required = draw.scale(1e-6, 1e6);
+    match photons_required(required, per_photon) {
+        Some(photons) => {
+            let back = Extended::from(photons).sqrt() * Extended::from(per_photon);
+            let error = back.relative_error_to(&Extended::from(required));
+            found.check("photons put back", error, 4.0 * f64::EPSILON);
+        }
+        None => found.require(per_photon == 0.0, || format!("no photons suffice at {per_photon:e}")),
+    }
+}

@@ -1,0 +1,52 @@
+//! How far the terms of ∂S/∂g cancel, weighted as the distance is.
+//!
+//! C = Σₖ Vₖεₖ[B(T) − B(Tₖ)] + [1 − ΣVₖεₖ]B(T): every term is good to a few ulp, so that ∂S/∂g = G(e′ − e)C is off by a few
+//! ulp of G|e′ − e|Σ|terms|. No term has another sign than the others unless an object is warmer than the target, or a band
+//! has several nodes, over which e′ − e may change its sign.
+
+use super::{Jacobian, ratio};
+use crate::scene::{State, unlit};
+
+impl Jacobian<'_> {
+    /// ‖G(e′ − e)Σ|terms|‖ ÷ ‖∂S/∂g‖ of the last evaluation, whose last column must be that of the material; `root` gives the
+    /// square root of the weight of a band.
+    pub(crate) fn material_cancellation(
+        &self,
+        emissivity: &[f64],
+        alternative: &[f64],
+        state: &State,
+        root: impl Fn(usize) -> f64,
+    ) -> f64 {
+        let rest = unlit(&state.lighting);
+        let warmer = |(base_k, factor): (&f64, &f64)| *base_k > state.temperature_k && *factor > 0.0;
+        let Some(last) = self.parameters.len().checked_sub(1) else { return 1.0 };
+        let alike = rest >= 0.0 && !state.environment_k.iter().zip(&state.lighting).any(warmer);
+        if alike && self.bands.one_node_per_band() {
+            return 1.0;
+        }
+        let nodes = self.value.len();
+        let mut dark = vec![rest; nodes];
+        let mut terms = vec![0.0; nodes];
+        for (k, factor) in state.lighting.iter().enumerate() {
+            let difference = &self.difference[k * nodes..(k + 1) * nodes];
+            let own = self.surroundings.objects[k].emissivity.as_deref();
+            for (j, (terms, dark)) in terms.iter_mut().zip(&mut dark).enumerate() {
+                let e = own.map_or(1.0, |own| own[j]);
+                *terms += (factor * e * difference[j]).abs();
+                *dark += factor * (1.0 - e);
+            }
+        }
+        for (j, terms) in terms.iter_mut().enumerate() {
+            let all = *terms + dark[j].abs() * self.value[j];
+            *terms = state.gain * (alternative[j] - emissivity[j]).abs() * all;
+        }
+        let banded = self.bands.weigh(&terms);
+        let scores = banded.iter().zip(self.column(last)).enumerate();
+        let scores: Vec<(f64, f64)> = scores.map(|(w, (a, b))| (root(w) * a, root(w) * b)).collect();
+        // Brought near 1, so that no square overflows.
+        let size = scores.iter().fold(0.0_f64, |size, (terms, _)| size.max(*terms));
+        let square = |x: f64| (x / size) * (x / size);
+        let sums = scores.iter().fold((0.0, 0.0), |sums, (a, b)| (sums.0 + square(*a), sums.1 + square(*b)));
+        if size > 0.0 { ratio(sums.0.sqrt(), sums.1.sqrt()).max(1.0) } else { 1.0 }
+    }
+}
