@@ -2,6 +2,7 @@
 
 use super::{Global, as_json};
 use crate::accuracy::skipping::{Skipped, skipping};
+use crate::accuracy::stress::{StressPlan, StressReport, stress};
 use crate::accuracy::{Chart, Continuum, Item, Order, continuum};
 use crate::demand::{Reason, Thing, Work};
 use crate::error::{Error, Result};
@@ -14,16 +15,24 @@ use std::time::Instant;
 /// What is no chart of methods.
 const CONTINUUM: &str = "continuum";
 const SKIPPING: &str = "skipping";
+const STRESS: &str = "stress";
+/// Stress cases of a quick run.
+const QUICK_CASES: u64 = 2000;
+const CASES: u64 = 100_000;
 
 #[derive(Debug, Args)]
 pub(super) struct AccuracyArgs {
     /// Computations: planck, band-integrals, local, local-near-equilibrium, nearest, probability, decisions, windows,
-    /// draws; continuum (what the width of bands costs); skipping (what leaving out the needless is worth); or all
+    /// draws; continuum (what the width of bands costs); skipping (what leaving out the needless is worth); stress (generated extremes, each judged in extended precision); or
+    /// all
     #[arg(value_name = "NAME", default_value = "all")]
     items: Vec<String>,
     /// Fewer settings and shorter runs
     #[arg(long)]
     quick: bool,
+    /// Stress cases (default: 100000, or 2000 with --quick)
+    #[arg(long, value_name = "N")]
+    cases: Option<u64>,
 }
 
 /// What is printed with `--json`.
@@ -34,6 +43,8 @@ struct Output {
     continuum: Option<Continuum>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     skipping: Vec<Skipped>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    stress: Option<StressReport>,
 }
 
 /// One thing to do.
@@ -42,6 +53,7 @@ enum Task {
     Chart(Item),
     Continuum,
     Skipping,
+    Stress,
 }
 
 impl Task {
@@ -49,6 +61,7 @@ impl Task {
         match name {
             CONTINUUM => Ok(Self::Continuum),
             SKIPPING => Ok(Self::Skipping),
+            STRESS => Ok(Self::Stress),
             _ => Item::from_name(name).map(Self::Chart),
         }
     }
@@ -58,6 +71,7 @@ impl Task {
             Self::Chart(item) => item.name(),
             Self::Continuum => CONTINUUM,
             Self::Skipping => SKIPPING,
+            Self::Stress => STRESS,
         }
     }
 }
@@ -87,6 +101,16 @@ pub(super) fn run(args: &AccuracyArgs, global: &Global) -> Result<ExitCode> {
                 bundle.add("skipping.csv", report::skipping_table(&found).to_csv()?);
                 output.skipping = found;
             }
+            Task::Stress => {
+                let cases = args.cases.unwrap_or(if args.quick { QUICK_CASES } else { CASES });
+                let bar = global.progress("stress cases");
+                let plan = StressPlan { cases, seed: global.seed };
+                let found = stress(&plan, &|done, total| bar.set(done as usize, total as usize))?;
+                bar.finish();
+                text.push_str(&format!("{}\n", report::stress_text(&found)));
+                bundle.add_plots(&report::stress_plots(&found))?;
+                output.stress = Some(found);
+            }
         }
         let took = start.elapsed().as_secs_f64();
         global.note(&format!("{} of {}: {}, {took:.1} s", i + 1, tasks.len(), task.name()));
@@ -100,11 +124,12 @@ pub(super) fn run(args: &AccuracyArgs, global: &Global) -> Result<ExitCode> {
     work.compute(Thing::Sections, tasks.len() as u64);
     work.spare(Thing::Sections, Reason::NotAsked, (all().len() - tasks.len()) as u64);
     global.answer_with(as_json(&output)?, &text, &work)?;
-    Ok(ExitCode::SUCCESS)
+    let failed = output.stress.is_some_and(|stress| stress.failures > 0);
+    Ok(if failed { ExitCode::from(3) } else { ExitCode::SUCCESS })
 }
 
 fn all() -> Vec<Task> {
-    Item::ALL.map(Task::Chart).into_iter().chain([Task::Continuum, Task::Skipping]).collect()
+    Item::ALL.map(Task::Chart).into_iter().chain([Task::Continuum, Task::Skipping, Task::Stress]).collect()
 }
 
 fn tasks(names: &[String]) -> Result<Vec<Task>> {
@@ -148,6 +173,13 @@ fn page(output: &Output, quick: bool) -> String {
         page.push_str(&format!(
             "\n## Nothing computed in vain\n\n{}",
             report::skipping_text(&output.skipping)
+        ));
+    }
+    if let Some(found) = &output.stress {
+        page.push_str(&format!(
+            "\n## Stress\n\n{}\n![Share of the answers that keep so many digits](stress_digits.png)\n\n\
+             ![Digits kept over the distance from equilibrium](stress_equilibrium.png)\n",
+            report::stress_text(found)
         ));
     }
     page

@@ -2,9 +2,11 @@
 
 mod continuum;
 mod skipping;
+mod stress;
 
 pub use continuum::{continuum_plot, continuum_text};
 pub use skipping::{skipping_table, skipping_text};
+pub use stress::{stress_plots, stress_text};
 
 use super::figures::Plot;
 use super::plot::{Axis, LineFigure, Marker, Series, Style};
