@@ -56,22 +56,21 @@ pub fn stress_plots(report: &StressReport) -> Vec<Plot> {
     vec![digits_kept(report), over_equilibrium(report)]
 }
 
-/// Share of the comparisons with at least so many digits, over the digits: as they are, and as the estimates promise.
+/// Share of the comparisons with fewer than so many digits: as they are, and as the estimates promise.
 fn digits_kept(report: &StressReport) -> Plot {
     let total: u64 = report.families.iter().map(|family| family.comparisons).sum();
-    let at_least = |of: fn(&FamilyReport) -> &[u64]| -> Vec<f64> {
+    let fewer = |of: fn(&FamilyReport) -> &[u64]| -> Vec<f64> {
         let count = |digits: usize| -> u64 {
-            report.families.iter().map(|family| of(family).iter().skip(digits).sum::<u64>()).sum()
+            report.families.iter().map(|family| of(family).iter().take(digits).sum::<u64>()).sum()
         };
-        (0..=16).map(|digits| count(digits) as f64 / total.max(1) as f64).collect()
+        (1..=16).map(|digits| count(digits) as f64 / total.max(1) as f64).collect()
     };
-    let digits: Vec<f64> = (0..=16).map(f64::from).collect();
-    let (kept, promised) =
-        (at_least(|family| &family.digits_kept), at_least(|family| &family.digits_promised));
+    let digits: Vec<f64> = (1..=16).map(f64::from).collect();
+    let (kept, promised) = (fewer(|family| &family.digits_kept), fewer(|family| &family.digits_promised));
     let figure = LineFigure::new(
         "Digits that answers keep at extremes",
         Axis::linear("digits"),
-        Axis::linear("share of the answers with at least as many").range(0.0, 1.0),
+        Axis::log("share of the answers with fewer"),
     )
     .subtitle(format!(
         "{} generated cases, {total} comparisons with extended precision. The promise is each answer's own estimate.",
@@ -112,10 +111,13 @@ fn over_equilibrium(report: &StressReport) -> Plot {
         Axis::log("|T − T₀|/T₀"),
         Axis::linear("digits of the local distance").range(-0.5, 16.5),
     )
-    .subtitle("Target at T, lit from everywhere by surroundings at T₀. Differences: as the crate forms them; subtracted: B(T) − V B(T₀) in doubles.")
-    .series(series("kept by differences", |point| point.digits))
-    .series(series("claimed by the solver", |point| point.digits_claimed))
-    .series(series("kept when subtracted", |point| point.digits_naive));
+    .subtitle(
+        "Target at T among surroundings at T₀. Differences: as the crate forms them; subtracted: B(T) − V B(T₀) in doubles, \
+         which loses nothing where V is far below 1.",
+    )
+    .series(series("kept when subtracted", |point| point.digits_naive).colour(1))
+    .series(series("claimed by the solver", |point| point.digits_claimed).colour(4))
+    .series(series("kept by differences", |point| point.digits).colour(0));
     let mut table =
         Table::new(["case", "relative_distance", "digits", "digits_subtracted", "digits_claimed"]);
     for point in &report.points {
