@@ -4,7 +4,7 @@
 //! 1/d² is the Cramér–Rao bound of g with the nuisances unknown, [J⁻¹]_gg, without forming J or an
 //! inverse, whose condition number is the square of this one's. Modified Gram–Schmidt, the last column
 //! orthogonalised twice ('twice is enough'). Scale-free: a column may be in any unit. Lengths of the columns
-//! come from the triangular factor, by Pythagoras.
+//! come from the triangular factor, by Pythagoras, but for that of the last after more than [`FEW`] nuisances.
 //!
 //! Rounding: the columns come with a relative error of a few u per element (u = 2⁻⁵³), so the residual
 //! carries about u(‖a_g‖ + Σ|cᵢ|‖aᵢ‖), cᵢ the coefficients of a_g on the nuisances. What is left of a nuisance carries
@@ -24,6 +24,10 @@ use crate::scene::Columns;
 
 /// Share of ‖aᵢ‖ + Σ|cⱼ|‖aⱼ‖ of a nuisance column below which what is left of it is rounding noise.
 const DEPENDENT: f64 = 1e-14;
+/// Σδᵢ² beyond which the directions of the nuisances are no longer orthogonal enough for lengths by Pythagoras.
+const NEARLY_DEPENDENT: f64 = 1e-24;
+/// Nuisances of which the length of the last column is left to Pythagoras.
+const FEW: usize = 2;
 /// Lengths between these square without losing digits at either end.
 const SAFE_LENGTHS: std::ops::RangeInclusive<f64> = 1e-140..=1e140;
 /// Rounding errors of an element and of the sums, in units of u; measured against 30-digit answers.
@@ -101,6 +105,8 @@ pub struct Projector {
     norms: Vec<f64>,
     coefficients: Vec<f64>,
     dropped: Vec<usize>,
+    /// Σδᵢ² of the directions that were kept.
+    turned: f64,
 }
 
 impl Projector {
@@ -123,14 +129,23 @@ impl Projector {
         // Once leaves u·condition of the earlier ones in the later, except in the last, which is reduced twice as it
         // is; the second time starts from that.
         let rounds = if last < 2 { 1 } else { 2 };
+        let mut turned = 0.0_f64;
         for _ in 0..rounds {
-            let Reduced { residual, norm, .. } = self.reduce(Columns { values, stride }, weights, 1.0);
-            if (residual.is_nan() || residual <= DEPENDENT * norm)
-                && let Some(column) = values.get_mut(last * stride..)
-            {
+            let Reduced { residual, norm, relative_error } =
+                self.reduce(Columns { values, stride }, weights, 1.0);
+            // The same share of what it is made of as for those before it.
+            let dependent = residual.is_nan()
+                || residual <= DEPENDENT * norm
+                || relative_error * DEPENDENT >= ROUNDINGS * UNIT_ROUNDOFF;
+            turned = turned.max(self.turned + if dependent { 0.0 } else { relative_error * relative_error });
+            if dependent && let Some(column) = values.get_mut(last * stride..) {
                 column.fill(0.0);
+                if let Some(norm) = self.norms.last_mut() {
+                    *norm = 0.0;
+                }
             }
         }
+        self.turned = turned;
         &self.norms
     }
 
@@ -142,6 +157,11 @@ impl Projector {
     /// Share of column `pivot`, as it is left, that the last reduction took off the last column.
     pub(crate) fn share_in_last(&self, pivot: usize) -> f64 {
         self.triangle[(pivot + 1) * self.norms.len() - 1]
+    }
+
+    /// Whether the directions that the last call kept are known to about all digits.
+    pub(crate) fn well_known(&self) -> bool {
+        self.turned <= NEARLY_DEPENDENT
     }
 
     /// All there is to know about the last [`Projector::reduce`].
@@ -168,6 +188,9 @@ impl Projector {
         }
         let columns = &mut columns[..count * stride];
         let last = count - 1;
+        // Pythagoras saves a pass, but wants orthogonal directions, which many nuisances may not have.
+        let square = (last > FEW)
+            .then(|| reduce_last(&mut columns[last * stride..], stride, weights, &[], &mut self.dots));
         let mut turned = 0.0;
         for pivot in 0..last {
             eliminate(Pass { columns, stride, weights, pivot, shares: &self.shares, dots: &mut self.dots });
@@ -200,8 +223,8 @@ impl Projector {
             *last_pivot = share;
         }
         let squared = reduce_last(columns, stride, weights, &self.shares[..last], &mut self.dots);
-        self.lengths[last] = length(&self.triangle, &self.norms, last, squared);
-        let norm = self.lengths[last];
+        let norm = square.map_or_else(|| length(&self.triangle, &self.norms, last, squared), f64::sqrt);
+        self.lengths[last] = norm;
         for pivot in 0..last {
             let squared = self.squares[pivot];
             self.shares[pivot] = if squared > 0.0 { self.dots[pivot] / squared } else { 0.0 };
@@ -220,6 +243,7 @@ impl Projector {
         self.norms[last] = residual;
 
         back_substitute(&self.triangle, &self.norms, last, &mut self.coefficients);
+        self.turned = turned;
         let noise = ROUNDINGS * UNIT_ROUNDOFF * (cancellation * norm + self.carried(last));
         let relative_error = if residual > 0.0 { noise / residual + turned } else { 0.0 };
         Reduced { residual, norm, relative_error }
@@ -231,11 +255,12 @@ impl Projector {
         parts.map(|(c, length)| (c * length).abs()).sum()
     }
 
-    /// Whether no length of the last [`Projector::reduce`] was so large or small that its square lost digits, as far as
-    /// it matters: of the column asked for, and of those that were dropped.
+    /// Whether all lengths of the last [`Projector::reduce`] are good: none was so large or small that its square lost
+    /// digits, as far as it matters (the column asked for, and those that were dropped), and Pythagoras gives the others.
     pub(crate) fn in_range(&self, found: Reduced) -> bool {
         let dropped = self.dropped.iter().map(|&i| self.lengths[i]);
-        found.residual.is_finite()
+        (self.norms.len() > FEW + 1 || self.well_known())
+            && found.residual.is_finite()
             && found.relative_error.is_finite()
             && dropped.chain([found.norm]).all(|length| SAFE_LENGTHS.contains(&length))
     }

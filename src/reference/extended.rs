@@ -1,8 +1,8 @@
 //! Numbers of [`PRECISION`] bits with the usual operators.
 //!
 //! Sum, difference, product, quotient and square root are those of `astro-float-num`, rounded to nearest. The
-//! exponential is e^x = 2^k (e^{r/2^m})^{2^m} with x = k ln2 + r, |r| ≤ ½ ln2, m = [`HALVINGS`], by Taylor's series, with
-//! [`GUARD`] more bits, as squaring m times loses m of them; the logarithm is found by Halley's method on it. Constants
+//! exponential is e^x = 2^k (e^{r/2^m})^{2^m} with x = k ln2 + r, |r| ≤ ½ ln2, m = 20, by Taylor's series, with
+//! 128 more bits, as squaring m times loses m of them; the logarithm is found by Halley's method on it. Constants
 //! come from series: ln2 = Σ 2^{-k}/k, and π by Machin's formula. All are good to the last bits.
 //!
 //! Assumption: arguments of [`Extended::exp`] within ±10⁹.

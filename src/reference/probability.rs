@@ -1,7 +1,7 @@
 //! Tail of the normal law, and the exact error of the best test between two Poisson laws, in extended precision.
 //!
 //! * Φ(−d) = ½ − (2π)^{-½} e^{−d²/2} Σ d^{2n+1}/(2n+1)!! below d = 6 (what the subtraction loses, 26 bits, is there to
-//!   lose), and above it (2π)^{-½} e^{−d²/2}/(d + 1/(d + 2/(d + 3/(d + …)))), of which [`FRACTIONS`] give all digits;
+//!   lose), and above it (2π)^{-½} e^{−d²/2}/(d + 1/(d + 2/(d + 3/(d + …)))), of which 800 partial fractions give all digits;
 //! * error = ½Σₙ min(p(n), q(n)) over the counts of up to three bands, p and q products of Poisson laws: in the last
 //!   band the smaller of the two is one law below a count and the other above it, where cumulative sums serve.
 //!

@@ -1,7 +1,7 @@
 //! Projection of columns that are whitened first, and brought to a length near 1 by a power of two each.
 //!
 //! The elements are scores s = a·√u, formed without a square that could overflow or underflow before the result does. For
-//! scenes of hardly any light, unknowns of hardly any effect, and wherever a prior adds a row.
+//! scenes of hardly any light, unknowns of hardly any effect or that are nearly the same, and wherever a prior adds a row.
 
 use super::LocalSolver;
 use crate::fisher::{Reduced, times_power_of_two};
@@ -56,8 +56,11 @@ impl LocalSolver<'_> {
         self.ones.resize(rows, 1.0);
         let root = |w: usize| roots[w];
         let cancellation = self.jacobian.material_cancellation(emissivity, alternative, state, root);
+        let last = self.columns.rchunks(rows.max(1)).next().unwrap_or_default();
+        let norm = crate::sum::dot(last, last).sqrt();
         let columns = Columns { values: &mut self.columns, stride: rows };
-        let found = self.projector.reduce(columns, &self.ones, cancellation);
-        self.projector.unscale(&powers, found)
+        let Reduced { residual, relative_error, .. } =
+            self.projector.reduce(columns, &self.ones, cancellation);
+        self.projector.unscale(&powers, Reduced { residual, norm, relative_error })
     }
 }

@@ -326,7 +326,11 @@ impl<'a> LocalMatrix<'a> {
                 return false;
             }
             let norms = self.projector.orthogonalise(columns.values, columns.stride, &shared.weights);
-            shared.live.extend(norms.iter().copied().enumerate().filter(|(_, norm)| *norm > 0.0));
+            let live = norms.iter().copied().enumerate().filter(|(_, norm)| *norm > 0.0);
+            shared.live.extend(live);
+            if !self.projector.well_known() {
+                return false;
+            }
             shared.directions.set_len(shared.stride * shared.live.len());
             let outs = shared.directions.chunks_mut(shared.stride);
             for (&(column, norm), out) in shared.live.iter().zip(outs) {
