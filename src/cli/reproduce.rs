@@ -11,7 +11,7 @@ use std::time::Instant;
 
 #[derive(Debug, Args)]
 pub(super) struct ReproduceArgs {
-    /// Figures and tables: fig3b, figs7, fig3c, edfig6, edfig9, tabs2, policy, or all
+    /// Figures and tables: fig3b, figs7, fig3c, fig4, figs12, edfig6, edfig9, tabs2, tabs5, policy, or all
     #[arg(value_name = "ID", default_value = "all")]
     items: Vec<String>,
     /// Some of the experiments only: within a minute on two cores
@@ -146,7 +146,7 @@ fn overview(items: &[Item], effort: Effort, ledger: &[Line]) -> String {
     );
     page.push_str(
         "\nFurther studies, made by the programs of `examples/`: [exact decisions](exact_probability/README.md), \
-         [the paper's own library](library_figures/README.md), [priors](priors/README.md).\n\n",
+         [the paper's own library](library_figures/README.md), [priors](priors/README.md); and [run time against error](accuracy/README.md), by `hadar accuracy`.\n\n",
     );
     page.push_str(&markdown(ledger));
     page
