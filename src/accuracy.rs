@@ -3,7 +3,8 @@
 //! Each [`Item`] is a computation that can be done in several ways. Every way is timed over the knob that makes it
 //! dearer (step, tolerance, trials, bands), and its true error is taken against a reference that shares no arithmetic
 //! with it ([`crate::reference`], a closed form, or another algorithm taken much further; each chart says which).
-//! A method is on the Pareto front where no other is both faster and more accurate ([`Chart::mark_front`]).
+//! A method is on the Pareto front where no other that answers the same is faster and no less accurate, nor as fast and
+//! more accurate.
 //!
 //! Times are of one thread, the least of many short runs ([`timing`]); errors are relative unless a chart says otherwise.
 

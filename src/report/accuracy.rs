@@ -39,7 +39,7 @@ pub fn plot(chart: &Chart) -> Plot {
         let of = chart.measured.iter().filter(|measured| measured.method == method);
         let (x, y): (Vec<f64>, Vec<f64>) = of.map(drawn).unzip();
         figure = figure
-            .series(Series::points(method, x.clone(), y.clone()).colour(colour))
+            .series(Series::points(method.replace("^-1", "⁻¹"), x.clone(), y.clone()).colour(colour))
             .series(Series::line("", x, y).colour(colour));
     }
     for (i, question) in chart.questions().into_iter().enumerate() {
@@ -57,7 +57,7 @@ pub fn plot(chart: &Chart) -> Plot {
     for default in chart.defaults() {
         let (x, y) = drawn(default);
         // Many settings of one method would cover each other.
-        if chart.defaults().count() == 1 {
+        if chart.defaults().count() <= 2 {
             figure = figure.marker(Marker::new("default", x, y));
         }
     }

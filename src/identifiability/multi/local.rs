@@ -17,6 +17,7 @@ mod kernels;
 
 use self::kernels::{
     Contrast, Lent, MOST_NUISANCES, TOGETHER, contrast_into, direction_into, projections, residual_square,
+    weighted_square,
 };
 use crate::error::{Error, Result};
 use crate::fisher::{Counting, Projector, Unknowns};
@@ -319,7 +320,7 @@ impl<'a> LocalMatrix<'a> {
             let columns = self.jacobian.columns_mut();
             let safe = |column: &[f64]| {
                 let column = &column[..bands.len()];
-                let square: f64 = column.iter().zip(shared.weights.iter()).map(|(a, u)| u * a * a).sum();
+                let square = weighted_square(column, &shared.weights);
                 SAFE_SQUARES.contains(&square) || column.iter().all(|&value| value == 0.0)
             };
             if !columns.values.chunks(columns.stride).take(count).all(safe) {
@@ -370,8 +371,8 @@ impl Row<'_> {
             let along: f64 = dots.iter().map(|dot| dot * dot).sum();
             let left = squares[i] - along;
             *out = if squares[i] == 0.0 {
-                // Nothing, or so little that its square is.
-                if self.own == *other { 0.0 } else { f64::NAN }
+                // Nothing, or so little that its square is; of itself that need not be looked at.
+                if std::ptr::eq(self.own, *other) || self.own == *other { 0.0 } else { f64::NAN }
             } else if !squares[i].is_finite() {
                 f64::NAN
             } else if left * (ONE_PASS * ONE_PASS) >= squares[i] {

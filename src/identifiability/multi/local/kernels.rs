@@ -57,6 +57,20 @@ dispatched! {
     }
 }
 
+dispatched! {
+    /// Σ u a², to a few ulp per eight bands: told from what is no number.
+    pub(super) fn weighted_square<'a>(a: &'a [f64], u: &'a [f64]) -> f64 {
+        let count = a.len().min(u.len());
+        let ((a, a_rest), (u, u_rest)) = (a[..count].as_chunks(), u[..count].as_chunks());
+        let mut lanes = [0.0; LANES];
+        for (a, u) in a.iter().zip(u) {
+            lanes = added(product(*u, *a), *a, lanes);
+        }
+        let (a, u) = (padded(a_rest), padded(u_rest));
+        fold(&added(product(u, a), a, lanes))
+    }
+}
+
 /// Σ m Δ² of each alternative, and Σ kᵢ Δ of each alternative along each direction.
 pub(super) type Projections = ([f64; TOGETHER], [[f64; MOST_NUISANCES]; TOGETHER]);
 
