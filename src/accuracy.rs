@@ -27,7 +27,7 @@ mod windows;
 pub use chart::{Chart, Measured, ROUNDED};
 pub use continuum::{Continuum, GOOD, MaterialStep, Recommended, continuum};
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::reference::Extended;
 
 /// A computation that is done in several ways.
@@ -102,24 +102,6 @@ impl Item {
         };
         chart.mark_front();
         Ok(chart)
-    }
-
-    /// The item of a name.
-    ///
-    /// # Errors
-    /// An unknown name; the message lists those there are.
-    ///
-    /// ```
-    /// use hadar::accuracy::Item;
-    /// assert_eq!(Item::from_name("band-integrals")?, Item::BandIntegrals);
-    /// assert!(Item::from_name("speed").is_err());
-    /// # Ok::<(), hadar::Error>(())
-    /// ```
-    pub fn from_name(name: &str) -> Result<Self> {
-        Self::ALL.into_iter().find(|item| item.name() == name).ok_or_else(|| {
-            let names = Self::ALL.map(Self::name).join(", ");
-            Error::malformed(format!("unknown computation `{name}`"), format!("choose among {names}, all"))
-        })
     }
 }
 

@@ -58,12 +58,11 @@ enum Task {
 
 impl Task {
     fn from_name(name: &str) -> Result<Self> {
-        match name {
-            CONTINUUM => Ok(Self::Continuum),
-            SKIPPING => Ok(Self::Skipping),
-            STRESS => Ok(Self::Stress),
-            _ => Item::from_name(name).map(Self::Chart),
-        }
+        all().into_iter().find(|task| task.name() == name).ok_or_else(|| {
+            let names: Vec<&str> = all().into_iter().map(Self::name).collect();
+            let instead = format!("choose among {}, all", names.join(", "));
+            Error::malformed(format!("unknown computation `{name}`"), instead)
+        })
     }
 
     fn name(self) -> &'static str {
