@@ -76,15 +76,6 @@ fn real_questions_have_the_same_answers_with_and_without_skipping() {
     assert_eq!((last.possible(Thing::LocalDistances), last.computed(Thing::LocalDistances)), (20, 20));
 }
 
-/// The table of real sizes; `cargo test --release --test demand -- --ignored --nocapture` prints it.
-#[test]
-#[ignore = "takes minutes"]
-fn what_skipping_is_worth() {
-    let found = skipping(false).unwrap();
-    println!("{}", text(&found));
-    assert!(found.iter().all(|one| one.answers_equal));
-}
-
 /// Every command has its ledger, on stderr and in the JSON, and says the same with `--no-skip`.
 #[test]
 fn every_command_says_what_it_took_and_answers_the_same_in_full() {

@@ -1,21 +1,9 @@
 use super::*;
 use crate::fisher::{Counting, Nuisance};
 use crate::identifiability::nearest::NearestSolver;
+use crate::reference::files::{table, text};
 use crate::scene::EnvironmentObject;
 use std::path::Path;
-
-fn table(root: &Path, name: &str) -> (Vec<f64>, Vec<f64>) {
-    let text = std::fs::read_to_string(root.join(format!("emissivity/{name}.csv"))).unwrap();
-    let row = |line: &str| {
-        let (nu, e) = line.split_once(',').unwrap();
-        (nu.parse::<f64>().unwrap(), e.parse::<f64>().unwrap())
-    };
-    text.lines().skip(1).map(row).unzip()
-}
-
-fn text(value: &serde_json::Value) -> String {
-    value.as_str().map_or_else(|| value.to_string(), str::to_owned)
-}
 
 /// Nearest distances of 30 digits: from the rounded state of the file Newton's method must come to the same distance.
 /// Tolerance 1e-27: the file's digits, less what its ratio to the terms of the separation loses.
