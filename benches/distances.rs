@@ -97,7 +97,7 @@ fn libraries(criterion: &mut Criterion) {
     let materials: Vec<&[f64]> = materials.iter().map(Vec::as_slice).collect();
     // 1e6 photons from a blackbody in the target's place, 10 electrons of noise in every band.
     let black: f64 = bands.nodes_cm1().iter().map(|&nu| photon_radiance(nu, 333.15)).sum();
-    let counting = Counting { counts_per_radiance: 1e6 / black, var_electronic: vec![100.0; bands.len()] };
+    let counting = Counting { counts_per_radiance: 1e6 / black, var_added: vec![100.0; bands.len()] };
     let range = StateRange::default();
     let scene = LibraryScene {
         bands: &bands,

@@ -167,11 +167,11 @@ impl Camera {
             self.etendue_m2_sr(distance_m) * self.optics_efficiency * self.integration_s();
         let stretch = self.integration_s() / self.noise_exposure_s;
         let growth = noise::growth(stretch, self.flicker_fraction);
-        let var_electronic = match self.reading_sigma(bands) {
+        let var_added = match self.reading_sigma(bands) {
             Some(sigma) => sigma.iter().map(|sigma| sigma * sigma * growth).collect(),
             None => Vec::new(),
         };
-        Counting { counts_per_radiance, var_electronic }
+        Counting { counts_per_radiance, var_added }
     }
 
     /// σ of each band reading at the exposure the noise is stated for, in counts; `None` without noise.
@@ -203,7 +203,7 @@ impl Camera {
         let mut blackbody = vec![0.0; range.nodes_cm1().len()];
         planck::photon_radiance_into(range.nodes_cm1(), self.reference_temperature_k, &mut blackbody);
         let photons = counting.counts_per_radiance * range.weigh(&blackbody).iter().sum::<f64>();
-        let var: f64 = (0..bands.len()).map(|w| counting.var_electronic(w)).sum();
+        let var: f64 = (0..bands.len()).map(|w| counting.var_added(w)).sum();
         let gamma = var / photons;
         Ok(Figures {
             reference_temperature_k: self.reference_temperature_k,
@@ -246,6 +246,6 @@ pub struct Figures {
 #[must_use]
 pub fn gamma_per_band(counting: &Counting, signal: &[f64]) -> f64 {
     let photons: f64 = signal.iter().map(|s| s * counting.counts_per_radiance).sum();
-    let var: f64 = (0..signal.len()).map(|w| counting.var_electronic(w)).sum();
+    let var: f64 = (0..signal.len()).map(|w| counting.var_added(w)).sum();
     if photons > 0.0 { var / photons } else { f64::INFINITY }
 }

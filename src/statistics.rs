@@ -26,7 +26,7 @@ pub enum Statistics {
     /// Variance N + σ²; σ² of each band, counts².
     Gaussian {
         /// σ² of each band.
-        var_electronic: Vec<f64>,
+        var_added: Vec<f64>,
     },
     /// Variance N + N²/m; modes m of each band.
     NegativeBinomial {
@@ -40,11 +40,11 @@ impl Statistics {
     ///
     /// # Errors
     /// A negative variance.
-    pub fn gaussian(var_electronic: Vec<f64>) -> Result<Self> {
-        var_electronic.iter().try_for_each(|&var| {
+    pub fn gaussian(var_added: Vec<f64>) -> Result<Self> {
+        var_added.iter().try_for_each(|&var| {
             check::non_negative("variance of electronic noise", var, "counts^2").map(drop)
         })?;
-        Ok(Self::Gaussian { var_electronic })
+        Ok(Self::Gaussian { var_added })
     }
 
     /// Bunched photons in `modes` modes of each band.
@@ -73,9 +73,9 @@ impl Statistics {
     pub fn check_bands(&self, bands: usize) -> Result<()> {
         let (what, found) = match self {
             Self::Poisson => return Ok(()),
-            Self::Gaussian { var_electronic } => {
-                Self::gaussian(var_electronic.clone())?;
-                ("variances of electronic noise", var_electronic.len())
+            Self::Gaussian { var_added } => {
+                Self::gaussian(var_added.clone())?;
+                ("variances of electronic noise", var_added.len())
             }
             Self::NegativeBinomial { modes } => {
                 Self::negative_binomial(modes.clone())?;
@@ -93,7 +93,7 @@ impl Statistics {
     pub fn variance(&self, band: usize, mean: f64) -> f64 {
         match self {
             Self::Poisson => mean,
-            Self::Gaussian { var_electronic } => mean + var_electronic[band],
+            Self::Gaussian { var_added } => mean + var_added[band],
             Self::NegativeBinomial { modes } => mean * (1.0 + mean / modes[band]),
         }
     }
@@ -108,8 +108,8 @@ impl Statistics {
         let weighted_log = |x: f64| if count == 0.0 { 0.0 } else { count * x.ln() };
         match self {
             Self::Poisson => weighted_log(mean) - mean,
-            Self::Gaussian { var_electronic } => {
-                let variance = mean + var_electronic[band];
+            Self::Gaussian { var_added } => {
+                let variance = mean + var_added[band];
                 let off = count - mean;
                 -0.5 * (off * off / variance + variance.ln())
             }

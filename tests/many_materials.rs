@@ -77,7 +77,7 @@ proptest! {
         materials.extend(others.iter().map(Vec::as_slice));
         let signal = scene.counts(&scene.emissivity, &scene.state);
         let mut counting = Counting::shot(photons, &signal);
-        counting.var_electronic =
+        counting.var_added =
             signal.iter().map(|s| gamma * s * counting.counts_per_radiance).collect();
         for unknowns in ever_more_unknowns(recipe.count, recipe.objects.len()) {
             check_matrix(&scene, &materials, &unknowns, None)?;
@@ -114,7 +114,7 @@ proptest! {
         };
         let signal = scene.counts(&scene.emissivity, &scene.state);
         let mut counting = Counting::shot(10f64.powf(log_photons), &signal);
-        counting.var_electronic =
+        counting.var_added =
             signal.iter().map(|s| gamma * s * counting.counts_per_radiance).collect();
         let found = library.nearest_with_counting(&materials, &counting).unwrap();
         let mut distances: Vec<f64> = found.iter().flatten().map(|nearest| nearest.distance).collect();

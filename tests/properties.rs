@@ -51,7 +51,7 @@ fn temperature_and_lighting() -> Unknowns {
 }
 
 fn noiseless(counts_per_radiance: f64) -> Counting {
-    Counting { counts_per_radiance, var_electronic: Vec::new() }
+    Counting { counts_per_radiance, var_added: Vec::new() }
 }
 
 /// Whether the nearest state is compared too. With the gain or the temperatures of the surroundings unknown as well as
@@ -310,7 +310,7 @@ proptest! {
         let other = recipe.on(Bands::from_rows(rows).unwrap());
         let signal = scene.counts(&scene.emissivity, &scene.state);
         let mut counting = Counting::shot(10f64.powf(log_photons), &signal);
-        counting.var_electronic = signal.iter().map(|s| gamma * s * counting.counts_per_radiance).collect();
+        counting.var_added = signal.iter().map(|s| gamma * s * counting.counts_per_radiance).collect();
         let mut scaled = counting.clone();
         scaled.counts_per_radiance /= unit;
         for unknowns in ever_more_unknowns(recipe.count, recipe.objects.len()) {

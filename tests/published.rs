@@ -206,7 +206,7 @@ fn free() -> Unknowns {
 fn the_papers_robot_is_the_unweighted_fit() {
     let scene = Scene::new();
     let unweighted = |human: &[f64], robot: &[f64]| {
-        let counting = Counting { counts_per_radiance: 1e-12, var_electronic: vec![1e22; scene.bands.len()] };
+        let counting = Counting { counts_per_radiance: 1e-12, var_added: vec![1e22; scene.bands.len()] };
         let mut solver = scene.solver(StateRange::default());
         let nearest = solver.with_counting(human, robot, &scene.state(37.0, 0.5), &counting).unwrap();
         (nearest.state.temperature_k - ZERO_CELSIUS_K, nearest.state.lighting[0])

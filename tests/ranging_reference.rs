@@ -70,7 +70,7 @@ fn all_cells_agree_with_exact_fractions() {
                 let window = (1..6).flat_map(|y| (1..6).map(move |x| (y * 7 + x) * 3));
                 let photons: f64 = window.map(|at| counts[at..at + 3].iter().sum::<f64>()).sum();
                 assert_eq!(map.photons[1], photons);
-                assert_eq!(map.var_electronic[1], 75.0 * var);
+                assert_eq!(map.var_added[1], 75.0 * var);
                 for other in Cell::ALL {
                     assert_eq!(map.cell(other).is_empty(), other != cell);
                 }

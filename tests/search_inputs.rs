@@ -52,7 +52,7 @@ fn what_is_known_is_not_taken_from_a_start() {
     let Scene { bands, surroundings, state, own, other } = scene();
     let unknowns = Unknowns::new([Nuisance::Temperature]).unwrap();
     let mut solver = NearestSolver::new(&bands, &surroundings, unknowns, StateRange::default());
-    let counting = Counting { counts_per_radiance: 1e-15, var_electronic: vec![] };
+    let counting = Counting { counts_per_radiance: 1e-15, var_added: vec![] };
     let found = solver.with_counting(&own, &other, &state, &counting).unwrap();
     let start =
         State { lighting: vec![0.9], temperature_k: found.state.temperature_k + 5.0, ..state.clone() };
@@ -66,7 +66,7 @@ fn what_is_known_is_not_taken_from_a_start() {
 fn impossible_inputs_are_errors() {
     let Scene { bands, surroundings, state, own, other } = scene();
     let unknowns = Unknowns::new([Nuisance::Temperature, Nuisance::Lighting]).unwrap();
-    let shot = Counting { counts_per_radiance: 1e-15, var_electronic: vec![] };
+    let shot = Counting { counts_per_radiance: 1e-15, var_added: vec![] };
     let with = |range: StateRange, other: &[f64], counting: &Counting| {
         NearestSolver::new(&bands, &surroundings, unknowns.clone(), range)
             .with_counting(&own, other, &state, counting)
@@ -77,10 +77,10 @@ fn impossible_inputs_are_errors() {
     assert!(with(whole, &vec![f64::NAN; other.len()], &shot).is_err());
     assert!(with(whole, &other[1..], &shot).is_err());
     for var in [f64::NAN, -1.0, f64::INFINITY] {
-        let counting = Counting { var_electronic: vec![var; other.len()], ..shot.clone() };
+        let counting = Counting { var_added: vec![var; other.len()], ..shot.clone() };
         assert!(with(whole, &other, &counting).is_err(), "{var}");
     }
-    assert!(with(whole, &other, &Counting { var_electronic: vec![1.0; 3], ..shot.clone() }).is_err());
+    assert!(with(whole, &other, &Counting { var_added: vec![1.0; 3], ..shot.clone() }).is_err());
     for temperature_k in [[400.0, 300.0], [f64::NAN, 300.0], [0.0, 300.0], [100.0, f64::INFINITY]] {
         assert!(with(StateRange { temperature_k, ..whole }, &other, &shot).is_err(), "{temperature_k:?}");
     }

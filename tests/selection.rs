@@ -179,7 +179,7 @@ fn camera(scene: &Scene, photons: f64, share: f64) -> Counting {
     let bands = signal.len();
     Counting {
         counts_per_radiance: photons / signal.iter().sum::<f64>(),
-        var_electronic: vec![share * photons / bands as f64; bands],
+        var_added: vec![share * photons / bands as f64; bands],
     }
 }
 

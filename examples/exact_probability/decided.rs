@@ -111,7 +111,7 @@ pub fn line(
         let means: Vec<f64> = signal.iter().map(|s| kappa * s).collect();
         let statistics = statistics(law, &means)?;
         let excess = means.iter().enumerate().map(|(w, &n)| statistics.variance(w, n) - n).collect();
-        Ok((statistics, Counting { counts_per_radiance: kappa, var_electronic: excess }))
+        Ok((statistics, Counting { counts_per_radiance: kappa, var_added: excess }))
     };
     let solver =
         || NearestSolver::new(&scene.bands, &scene.surroundings, scene.unknowns.clone(), scene.range);

@@ -64,7 +64,7 @@ impl PaperScene {
             solver.per_photon(target, other, state, f64::INFINITY).map(|found| found.distance)
         };
         let photon_radiance: f64 = self.signal(target, state).iter().sum();
-        let per_photon = Counting { counts_per_radiance: 1.0 / photon_radiance, var_electronic: Vec::new() };
+        let per_photon = Counting { counts_per_radiance: 1.0 / photon_radiance, var_added: Vec::new() };
         let solver =
             || NearestSolver::new(&self.bands, &self.surroundings, self.unknowns.clone(), self.range);
         let nearest = solver().with_counting(target, other, state, &per_photon)?;

@@ -25,7 +25,7 @@ pub(super) fn measure(order: Order) -> Result<Chart> {
             let law = if is_default {
                 Statistics::Poisson
             } else {
-                Statistics::Gaussian { var_electronic: vec![0.0; BANDS] }
+                Statistics::Gaussian { var_added: vec![0.0; BANDS] }
             };
             let draws = Draws::new(&law, &means)?;
             let mut counts = vec![0.0; BANDS];

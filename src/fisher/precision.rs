@@ -81,7 +81,7 @@ pub struct JointPrecision {
 /// let surroundings = Surroundings::new(bands.nodes_cm1(), vec![ambient])?;
 /// let skin = vec![0.97; bands.len()];
 /// let state = surroundings.state(310.15, &[0.5])?;
-/// let counting = Counting { counts_per_radiance: 1e-12, var_electronic: vec![1e12; bands.len()] };
+/// let counting = Counting { counts_per_radiance: 1e-12, var_added: vec![1e12; bands.len()] };
 /// let sigma_k = |unknown: &[Nuisance]| {
 ///     let unknowns = Unknowns::new(unknown.iter().copied())?;
 ///     let mut solver = PrecisionSolver::new(&bands, &surroundings, unknowns);
@@ -189,7 +189,7 @@ impl<'a> PrecisionSolver<'a> {
         let counts = counting.counts_per_radiance;
         let reciprocal_sigma: Vec<f64> = (self.jacobian.signal().iter().enumerate())
             .map(|(band, signal)| {
-                let var = counts * signal + counting.var_electronic(band);
+                let var = counts * signal + counting.var_added(band);
                 if var > 0.0 { counts / var.sqrt() } else { 0.0 }
             })
             .collect();

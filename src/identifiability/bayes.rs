@@ -241,7 +241,7 @@ impl<'a> BayesianBound<'a> {
     ) -> Result<(f64, usize)> {
         let nodes = prior::nodes(&self.unknowns, pair.state, order, MAX_STACK)?;
         let total = self.photon_radiance(pair)?;
-        let counting = Counting { counts_per_radiance: photons / total, var_electronic: Vec::new() };
+        let counting = Counting { counts_per_radiance: photons / total, var_added: Vec::new() };
         let (own, other) = (pair.emissivity, pair.alternative);
         let found: Result<Vec<f64>> = match distances {
             Distances::Local => nodes

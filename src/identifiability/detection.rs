@@ -95,7 +95,7 @@ pub fn two_sided_probability(distance: f64, return_ratio: f64) -> f64 {
 #[must_use]
 pub fn half_separation(means: &[f64], others: &[f64], counting: &Counting) -> f64 {
     let band = |(w, (a, b)): (usize, (&f64, &f64))| {
-        let var = counting.var_electronic(w);
+        let var = counting.var_added(w);
         ((a - b) / ((a + var).sqrt() + (b + var).sqrt()).max(f64::MIN_POSITIVE)).powi(2)
     };
     means.iter().zip(others).enumerate().map(band).sum::<f64>().sqrt()

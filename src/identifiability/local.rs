@@ -138,7 +138,7 @@ impl<'a> LocalSolver<'a> {
         let counts = counting.counts_per_radiance;
         for (w, (weight, signal)) in self.weights.iter_mut().zip(self.jacobian.signal()).enumerate() {
             // κ²/(κS + σ²) with one κ taken out, so that nothing overflows before it must.
-            let variance = signal + counting.var_electronic(w) / counts;
+            let variance = signal + counting.var_added(w) / counts;
             *weight = if variance > 0.0 { counts / variance } else { 0.0 };
         }
         self.check_rank()?;
@@ -151,8 +151,7 @@ impl<'a> LocalSolver<'a> {
             }
             self.evaluate(emissivity, alternative, state);
         }
-        let root =
-            |w: usize, signal: f64| counts.sqrt() / (signal + counting.var_electronic(w) / counts).sqrt();
+        let root = |w: usize, signal: f64| counts.sqrt() / (signal + counting.var_added(w) / counts).sqrt();
         let found = self.reduce_scaled(emissivity, alternative, state, root, 1.0);
         Ok(self.judge(found, emissivity, alternative, state, total))
     }

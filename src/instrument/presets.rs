@@ -67,7 +67,7 @@ mod tests {
         for (exposure_s, frames) in [(12e-3, 1), (1e-3, 7), (1.0, 3)] {
             (camera.exposure_s, camera.frames) = (exposure_s, frames);
             let counting = camera.counting(&bands, Some(30.0));
-            let total = 5e18 * counting.counts_per_radiance + counting.var_electronic(0);
+            let total = 5e18 * counting.counts_per_radiance + counting.var_added(0);
             let lines: f64 =
                 camera.noise_budget(&bands, &signal, Some(30.0)).iter().map(|line| line.var_counts).sum();
             assert!((lines / total - 1.0).abs() < 1e-13);

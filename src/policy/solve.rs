@@ -205,7 +205,7 @@ impl CameraTask<'_> {
                 // Of one reading, as it is stated and as a detector is bought, however many frames there are.
                 let one = Camera { frames: 1, ..camera.clone() };
                 let counting = one.counting(self.bands, self.distance_m);
-                let var: f64 = (0..self.bands.len()).map(|w| counting.var_electronic(w)).sum();
+                let var: f64 = (0..self.bands.len()).map(|w| counting.var_added(w)).sum();
                 (var / self.bands.len() as f64).sqrt()
             }
         }
@@ -220,7 +220,7 @@ mod tests {
     /// d² = N²/(N + σ²)·10⁻⁶ for one band: closed form of every solution.
     fn one_band(counting: &Counting) -> Result<f64> {
         let photons = counting.counts_per_radiance * 1e21;
-        Ok(1e-3 * photons / (photons + counting.var_electronic(0)).sqrt())
+        Ok(1e-3 * photons / (photons + counting.var_added(0)).sqrt())
     }
 
     fn task<'a>(camera: &'a Camera, bands: &'a Bands, required: f64) -> CameraTask<'a> {
@@ -255,7 +255,7 @@ mod tests {
         let bands = Bands::from_rows([(900.0, 1.0)]).unwrap();
         // t → ∞: d → 10⁻³ N/σ_F, σ_F² = φσ² at the stated exposure.
         let counting = camera.counting(&bands, Some(30.0));
-        let floor = 1e-3 * counting.counts_per_radiance * 1e21 / (0.5 * counting.var_electronic(0)).sqrt();
+        let floor = 1e-3 * counting.counts_per_radiance * 1e21 / (0.5 * counting.var_added(0)).sqrt();
         let below = task(&camera, &bands, 0.999_999 * floor).solve(Quantity::Exposure, one_band).unwrap();
         assert!(below.value.is_some());
         let above = task(&camera, &bands, 1.000_001 * floor).solve(Quantity::Exposure, one_band).unwrap();

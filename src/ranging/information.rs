@@ -140,7 +140,7 @@ pub struct InformationMap {
     /// Photons N in each window, `[row][column]`.
     pub photons: Vec<f64>,
     /// ΣΣσ² of each window, counts², `[row][column]`.
-    pub var_electronic: Vec<f64>,
+    pub var_added: Vec<f64>,
 }
 
 impl InformationMap {

@@ -70,7 +70,7 @@ pub struct PixelInformation {
 /// let surroundings = Surroundings::new(bands.nodes_cm1(), vec![sky])?;
 /// let ground: Vec<f64> = (0..bands.len()).map(|w| 0.9 + 0.05 * (w as f64 / 5.0).sin()).collect();
 /// let state = surroundings.state(300.0, &[0.5])?;
-/// let counting = Counting { counts_per_radiance: 1e-12, var_electronic: Vec::new() };
+/// let counting = Counting { counts_per_radiance: 1e-12, var_added: Vec::new() };
 /// let unknowns = Unknowns::new([Nuisance::Temperature, Nuisance::Lighting])?;
 /// let mut solver = LightingSolver::new(&bands, &surroundings, unknowns)?;
 /// let precision = solver.precision(&ground, &state, &counting, 0)?;
@@ -212,7 +212,7 @@ impl<'a> LightingSolver<'a> {
         for (w, (change, slope)) in lighting.iter().zip(self.jacobian.column(0)).enumerate() {
             let both = change + temperature_per_px * slope;
             heat_cube.add(both * both * self.weights[w]);
-            let var = counts * scattered[w] + counting.var_electronic(w);
+            let var = counts * scattered[w] + counting.var_added(w);
             if var > 0.0 {
                 as_if_measured.add((counts * change / var.sqrt()).powi(2));
             }
@@ -255,7 +255,7 @@ impl<'a> LightingSolver<'a> {
         let counts = counting.counts_per_radiance;
         self.weights.clear();
         self.weights.extend(self.jacobian.signal().iter().enumerate().map(|(band, signal)| {
-            let var = counts * signal + counting.var_electronic(band);
+            let var = counts * signal + counting.var_added(band);
             if var > 0.0 { counts * (counts / var) } else { 0.0 }
         }));
     }

@@ -377,7 +377,7 @@ fn weights(signal: &[Extended], total: &Extended, noise: Noise<'_>) -> Vec<Exten
             Noise::PerPhoton { .. } => (Extended::one(), signal * total),
             Noise::Counting(counting) => {
                 let counts = Extended::from(counting.counts_per_radiance);
-                let var = Extended::from(counting.var_electronic(band));
+                let var = Extended::from(counting.var_added(band));
                 (counts.square(), counts * signal + var)
             }
         };

@@ -51,7 +51,7 @@ impl Target<'_> {
     fn var(&self, band: usize) -> Extended {
         match self.noise {
             Noise::PerPhoton { .. } => Extended::zero(),
-            Noise::Counting(counting) => Extended::from(counting.var_electronic(band)),
+            Noise::Counting(counting) => Extended::from(counting.var_added(band)),
         }
     }
 

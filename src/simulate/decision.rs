@@ -302,11 +302,11 @@ impl DecisionScene<'_> {
     /// The noise as the nearest distance takes it: what the law adds to the variance of a Poisson law.
     fn counting(&self, means: &[f64]) -> Counting {
         let excess = |(band, &mean): (usize, &f64)| self.statistics.variance(band, mean) - mean;
-        let var_electronic = match self.statistics {
+        let var_added = match self.statistics {
             Statistics::Poisson => Vec::new(),
             _ => means.iter().enumerate().map(excess).collect(),
         };
-        Counting { counts_per_radiance: self.counts_per_radiance, var_electronic }
+        Counting { counts_per_radiance: self.counts_per_radiance, var_added }
     }
 }
 

@@ -119,7 +119,7 @@ impl Draws {
         Ok(Self { bands: weights.len(), photons, largest_mean: total, readings: Vec::new() })
     }
 
-    /// Adds to the counts of every band a normal reading error of variance `var_electronic`, counts², independent in
+    /// Adds to the counts of every band a normal reading error of variance `var_added`, counts², independent in
     /// every reading; noise of several calls adds up. Readings may be negative, and are no whole numbers.
     ///
     /// ```
@@ -134,7 +134,7 @@ impl Draws {
     ///
     /// # Errors
     /// A variance that is negative or not finite; another number of bands; Gaussian counts, which have it already.
-    pub fn with_electronic_noise(mut self, var_electronic: &[f64]) -> Result<Self> {
+    pub fn with_electronic_noise(mut self, var_added: &[f64]) -> Result<Self> {
         let is_normal = |band: &Band| matches!(band, Band::Normal(_));
         if matches!(&self.photons, Photons::Bands(bands) if bands.iter().any(is_normal)) {
             return Err(Error::malformed(
@@ -142,15 +142,15 @@ impl Draws {
                 "draw Poisson or negative binomial counts, or give it to the Gaussian law alone",
             ));
         }
-        if var_electronic.len() != self.bands {
+        if var_added.len() != self.bands {
             return Err(Error::Length {
                 what: "variances of electronic noise".into(),
-                found: var_electronic.len(),
+                found: var_added.len(),
                 expected: self.bands,
             });
         }
-        let mut readings = Vec::with_capacity(var_electronic.len());
-        for (band, &more) in var_electronic.iter().enumerate() {
+        let mut readings = Vec::with_capacity(var_added.len());
+        for (band, &more) in var_added.iter().enumerate() {
             check::non_negative("variance of electronic noise", more, "counts^2")?;
             let var = more + self.readings.get(band).map_or(0.0, |reading| reading.var);
             let noise = Normal::new(0.0, var.sqrt()).map_err(|_| {

@@ -60,7 +60,7 @@ const EDGE: f64 = 1e-9;
 ///     surroundings: &surroundings,
 ///     emissivity: &paint,
 ///     range: StateRange::default(),
-///     counting: &Counting { counts_per_radiance: 1e-14, var_electronic: Vec::new() },
+///     counting: &Counting { counts_per_radiance: 1e-14, var_added: Vec::new() },
 /// };
 /// let unknowns = Unknowns::new([Nuisance::Temperature])?;
 /// let state = surroundings.state(310.0, &[0.5])?;
@@ -156,7 +156,7 @@ impl ThermometryScene<'_> {
     /// # Errors
     /// Impossible noise.
     pub fn statistics(&self) -> Result<Statistics> {
-        let var = &self.counting.var_electronic;
+        let var = &self.counting.var_added;
         if var.iter().all(|&var| var == 0.0) {
             Ok(Statistics::Poisson)
         } else {
@@ -300,7 +300,7 @@ impl ThermometryScene<'_> {
     fn draws(&self, state: &State) -> Result<Draws> {
         let photons = Draws::new(&Statistics::Poisson, &self.means(state)?)?;
         match self.statistics()? {
-            Statistics::Gaussian { var_electronic } => photons.with_electronic_noise(&var_electronic),
+            Statistics::Gaussian { var_added } => photons.with_electronic_noise(&var_added),
             Statistics::Poisson | Statistics::NegativeBinomial { .. } => Ok(photons),
         }
     }

@@ -63,11 +63,11 @@ impl Study {
         });
         let surroundings = Surroundings::new(bands.nodes_cm1(), objects.collect())?;
         let noise = |run: &Range<usize>| {
-            run.clone().map(|w| counting.var_electronic(w)).sum::<f64>() / run.len().max(1) as f64
+            run.clone().map(|w| counting.var_added(w)).sum::<f64>() / run.len().max(1) as f64
         };
         let counting = Counting {
             counts_per_radiance: counting.counts_per_radiance,
-            var_electronic: runs.iter().map(noise).collect(),
+            var_added: runs.iter().map(noise).collect(),
         };
         let own = kept(&self.target.emissivity);
         let solver = || NearestSolver::new(&bands, &surroundings, self.unknowns.clone(), self.range);
@@ -131,7 +131,7 @@ mod tests {
             let other = counts(&surface.emissivity);
             let square: f64 = (0..3)
                 .map(|i| {
-                    let noise = &counting.var_electronic[runs[i].clone()];
+                    let noise = &counting.var_added[runs[i].clone()];
                     let var = noise.iter().sum::<f64>() / noise.len() as f64;
                     ((own[i] + var).sqrt() - (other[i] + var).sqrt()).powi(2)
                 })

@@ -86,7 +86,7 @@ impl Study {
             let Some(counting) = self.counting() else { return Vec::new() };
             let counts = counting.counts_per_radiance;
             let sigma = target.iter().enumerate().map(|(w, signal)| {
-                let noise = if electronic { counting.var_electronic(w) } else { 0.0 };
+                let noise = if electronic { counting.var_added(w) } else { 0.0 };
                 (counts * signal + noise).sqrt() / counts
             });
             per_cm1(&sigma.collect::<Vec<f64>>())

@@ -150,7 +150,7 @@ impl Study {
     }
 
     fn statistics(&self, law: Option<Law>, counts_per_radiance: f64) -> Result<Statistics> {
-        let noisy = self.counting().filter(|counting| counting.var_electronic.iter().any(|&var| var > 0.0));
+        let noisy = self.counting().filter(|counting| counting.var_added.iter().any(|&var| var > 0.0));
         let silent = if noisy.is_some() { Law::Gaussian } else { Law::Poisson };
         match law.unwrap_or(silent) {
             Law::Poisson => Ok(Statistics::Poisson),
@@ -161,7 +161,7 @@ impl Study {
                     let instead = "add a [camera] with noise, or use --statistics poisson";
                     return Err(Error::malformed(found, instead).at(self.scenario.place("camera")));
                 };
-                Statistics::gaussian(counting.var_electronic)
+                Statistics::gaussian(counting.var_added)
             }
             Law::NegativeBinomial => self.bunched(counts_per_radiance),
         }
@@ -178,7 +178,7 @@ impl Study {
         // All noise beyond that of the photons: electronic, or that of bunching about the state's own means.
         let counting = |means: &[f64]| Counting {
             counts_per_radiance: scene.counts_per_radiance,
-            var_electronic: means
+            var_added: means
                 .iter()
                 .enumerate()
                 .map(|(band, mean)| (scene.statistics.variance(band, *mean) - mean).max(0.0))
@@ -232,7 +232,7 @@ impl Study {
             && self.is_unknown(Nuisance::Temperature);
         // With noise above all the light every state looks alike, and there is nothing to decide.
         let drowned = match statistics {
-            Statistics::Gaussian { var_electronic } => var_electronic.iter().any(|var| var.sqrt() > photons),
+            Statistics::Gaussian { var_added } => var_added.iter().any(|var| var.sqrt() > photons),
             Statistics::Poisson | Statistics::NegativeBinomial { .. } => false,
         };
         if self.bands.len() > 3 || photons > LATTICE_PHOTONS || unbounded || drowned {

@@ -41,7 +41,7 @@ impl Study {
         }
         let Some(counting) = self.counting() else { return Ok(()) };
         let photons = counting.counts_per_radiance * radiance;
-        let noise = counting.var_electronic.iter().copied().fold(0.0, f64::max).sqrt();
+        let noise = counting.var_added.iter().copied().fold(0.0, f64::max).sqrt();
         if PHOTONS.contains(&photons) && noise < PHOTONS.end {
             return Ok(());
         }

@@ -26,11 +26,11 @@ impl Study {
     /// Too many photons to draw.
     pub fn sample_spectra(&self, seed: u64) -> Result<Option<SampleSpectra>> {
         let Some(counting) = self.counting() else { return Ok(None) };
-        let Counting { counts_per_radiance, var_electronic } = counting;
-        let statistics = if var_electronic.iter().all(|&var| var == 0.0) {
+        let Counting { counts_per_radiance, var_added } = counting;
+        let statistics = if var_added.iter().all(|&var| var == 0.0) {
             Statistics::Poisson
         } else {
-            Statistics::gaussian(var_electronic)?
+            Statistics::gaussian(var_added)?
         };
         let mut materials = Vec::new();
         for (stream, surface) in self.materials()?.into_iter().enumerate() {

@@ -127,7 +127,7 @@ impl Study {
             found.bands.push(study.bands.len());
             found.shot_noise.push(least);
             found.shot_noise_median.push(median);
-            let noisy = |counting: &Counting| counting.var_electronic.iter().any(|&var| var > 0.0);
+            let noisy = |counting: &Counting| counting.var_added.iter().any(|&var| var > 0.0);
             if let Some(counting) = study.counting().filter(noisy) {
                 let (least, median) = study.least_and_median(kind, Some(&counting))?;
                 study.book_distances(work, kind, counted.len());

@@ -248,7 +248,7 @@ impl Study {
             }
             _ => None,
         };
-        let var: f64 = (0..self.bands.len()).map(|w| counting.var_electronic(w)).sum();
+        let var: f64 = (0..self.bands.len()).map(|w| counting.var_added(w)).sum();
         let brightest = signal.iter().copied().fold(0.0, f64::max);
         Some(CameraResult {
             photons,

@@ -16,7 +16,7 @@ impl Study {
         let Some(Counting { counts_per_radiance, .. }) = self.counting() else {
             return Ok(((0..self.alternatives.len()).collect(), Vec::new()));
         };
-        let shot = Counting { counts_per_radiance, var_electronic: Vec::new() };
+        let shot = Counting { counts_per_radiance, var_added: Vec::new() };
         let kind = self.scenario.requirement.by;
         let distance =
             |surface: &Surface| self.statistical_distance(kind, surface, &shot, &mut Work::default());

@@ -92,11 +92,11 @@ impl Scene {
         let gamma = if draw.chance(0.3) { 0.0 } else { draw.scale(1e-30, 1e30) };
         let each = gamma * photons / signal.len() as f64;
         let rough = draw.chance(0.3);
-        let var_electronic = match gamma {
+        let var_added = match gamma {
             0.0 => Vec::new(),
             _ => signal.iter().map(|_| if rough { each * draw.scale(1e-6, 1.0) } else { each }).collect(),
         };
-        Counting { counts_per_radiance, var_electronic }
+        Counting { counts_per_radiance, var_added }
     }
 }
 

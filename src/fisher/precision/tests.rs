@@ -18,10 +18,7 @@ fn scene(rows: &[(f64, f64)]) -> (Bands, Surroundings) {
 }
 
 fn noisy(bands: usize) -> Counting {
-    Counting {
-        counts_per_radiance: 3e-13,
-        var_electronic: (0..bands).map(|w| 1e9 * (1.0 + w as f64)).collect(),
-    }
+    Counting { counts_per_radiance: 3e-13, var_added: (0..bands).map(|w| 1e9 * (1.0 + w as f64)).collect() }
 }
 
 fn bound(rows: &[(f64, f64)], e: &[f64], unknowns: Unknowns, parameter: Parameter) -> Precision {
@@ -40,7 +37,7 @@ fn by_hand(rows: &[(f64, f64)], e: &[f64]) -> [Vec<f64>; 3] {
         let kappa = counting.counts_per_radiance * width;
         let (own, other) = (planck::photon_radiance(*nu, 310.0), planck::photon_radiance(*nu, 293.15));
         let mean = kappa * (e * own + (1.0 - e) * 0.4 * other);
-        let sigma = (mean + counting.var_electronic[w]).sqrt();
+        let sigma = (mean + counting.var_added[w]).sqrt();
         scores[0].push(kappa * e * planck::photon_radiance_slope(*nu, 310.0) / sigma);
         scores[1].push(kappa * (1.0 - e) * other / sigma);
         scores[2].push(mean / sigma);
@@ -150,7 +147,7 @@ fn bounds_agree_with_finite_differences() {
             };
             let (up, down) = (moved(1.0), moved(-1.0));
             let slope = up.iter().zip(&down).map(|(a, b)| (a - b) / (2.0 * steps[i]));
-            let var = here.iter().enumerate().map(|(w, n)| n + counting.var_electronic[w]);
+            let var = here.iter().enumerate().map(|(w, n)| n + counting.var_added[w]);
             slope.zip(var).map(|(slope, var)| slope / var.sqrt()).collect()
         })
         .collect();
@@ -179,7 +176,7 @@ fn no_number_of_photons_is_too_small_or_too_large() {
     let unknowns = unknown(&[Nuisance::Temperature, Nuisance::Lighting]);
     let mut solver = PrecisionSolver::new(&bands, &surroundings, unknowns);
     let mut sigma = |counts_per_radiance: f64| {
-        let counting = Counting { counts_per_radiance, var_electronic: Vec::new() };
+        let counting = Counting { counts_per_radiance, var_added: Vec::new() };
         solver.bound(&[0.6, 0.9], &state, &counting, T).unwrap().sigma
     };
     let one = sigma(1.0);

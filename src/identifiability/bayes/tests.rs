@@ -103,7 +103,7 @@ fn the_bound_is_the_optimistic_average() {
     let photons = 1e5;
     let bound = scene.bound(&unknowns).distance(scene.pair(&state), photons).unwrap().distance;
     let total = scene.bound(&unknowns).photon_radiance(scene.pair(&state)).unwrap();
-    let counting = Counting { counts_per_radiance: photons / total, var_electronic: Vec::new() };
+    let counting = Counting { counts_per_radiance: photons / total, var_added: Vec::new() };
     let mut solver = LocalSolver::new(&scene.bands, &scene.surroundings, unknowns.clone());
     let nodes = prior::nodes(&unknowns, &state, 16, 10_000).unwrap();
     let mean: f64 = nodes

@@ -55,7 +55,7 @@ impl Terms {
         };
         match statistics {
             Statistics::Poisson => poisson(bands),
-            Statistics::Gaussian { var_electronic } => gaussian(bands, var_electronic),
+            Statistics::Gaussian { var_added } => gaussian(bands, var_added),
             Statistics::NegativeBinomial { modes } => negative_binomial(bands, modes),
         }
         sum::sum(&self.loss)
@@ -91,11 +91,11 @@ dispatched! {
 }
 
 dispatched! {
-    fn gaussian<'a>(bands: BandTerms<'a>, var_electronic: &'a [f64]) {
+    fn gaussian<'a>(bands: BandTerms<'a>, var_added: &'a [f64]) {
         let BandTerms { scale, signal, counts, loss, pull, expected, observed } = bands;
         let square = scale * scale;
         let out = loss.iter_mut().zip(pull).zip(expected.iter_mut().zip(observed));
-        let given = signal.iter().zip(counts).zip(var_electronic);
+        let given = signal.iter().zip(counts).zip(var_added);
         for (((loss, pull), (expected, observed)), ((signal, n), var)) in out.zip(given) {
             let mean = scale * signal;
             let variance = at_least(mean + var);

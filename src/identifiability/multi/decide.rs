@@ -94,7 +94,7 @@ impl Few {
         let surroundings = Surroundings::new(bands.nodes_cm1(), objects.collect())?;
         let counting = Counting {
             counts_per_radiance: counting.counts_per_radiance,
-            var_electronic: counting.var_electronic.iter().copied().step_by(stride).collect(),
+            var_added: counting.var_added.iter().copied().step_by(stride).collect(),
         };
         let emissivities = emissivities.iter().map(|emissivity| kept(emissivity)).collect();
         Ok(Some(Self { bands, surroundings, counting, emissivities, stride }))

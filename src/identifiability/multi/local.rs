@@ -299,7 +299,7 @@ impl<'a> LocalMatrix<'a> {
             Weights::Counting(counting) => {
                 shared.half = 0.5;
                 for (w, noise) in shared.noise.iter_mut().enumerate() {
-                    *noise = counting.var_electronic(w) / counting.counts_per_radiance;
+                    *noise = counting.var_added(w) / counting.counts_per_radiance;
                 }
                 counting.counts_per_radiance
             }

@@ -67,7 +67,7 @@ impl Workspace {
             Metric::PerPhoton { .. } => self.noise.fill(0.0),
             Metric::Counting(counting) => {
                 for (band, noise) in self.noise.iter_mut().enumerate() {
-                    *noise = counting.var_electronic(band);
+                    *noise = counting.var_added(band);
                 }
             }
         }

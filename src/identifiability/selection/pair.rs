@@ -40,7 +40,7 @@ impl Pair {
     pub(super) fn new(scores: &Scores) -> Self {
         let (bands, priors) = (scores.counts.len(), scores.priors.len());
         let variance: Vec<[f64; 2]> =
-            scores.counts.iter().zip(&scores.var_electronic).map(|(n, s)| [*n, *s]).collect();
+            scores.counts.iter().zip(&scores.var_added).map(|(n, s)| [*n, *s]).collect();
         let mut weights: Vec<f64> = variance.iter().map(|v| reciprocal(v[0] + v[1])).collect();
         weights.resize(bands + priors, 1.0);
         let mut columns = Vec::with_capacity(scores.columns.len() * weights.len());

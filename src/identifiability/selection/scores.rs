@@ -23,7 +23,7 @@ pub struct Scores {
     /// N, counts.
     pub(super) counts: Vec<f64>,
     /// σ², counts², of one reading.
-    pub(super) var_electronic: Vec<f64>,
+    pub(super) var_added: Vec<f64>,
     /// (column, deviation σ_p) of every prior.
     pub(super) priors: Vec<(usize, f64)>,
     /// Factor by which rounding errors of the last column exceed a few ulp.
@@ -80,7 +80,7 @@ impl Scores {
         Ok(Self {
             columns: (0..parameters.len()).map(|i| scaled(jacobian.column(i))).collect(),
             counts: scaled(jacobian.signal()),
-            var_electronic: (0..bands.len()).map(|w| counting.map_or(0.0, |c| c.var_electronic(w))).collect(),
+            var_added: (0..bands.len()).map(|w| counting.map_or(0.0, |c| c.var_added(w))).collect(),
             priors,
             cancellation: jacobian.cancellation(),
             required: 1.0,
@@ -96,22 +96,22 @@ impl Scores {
         nuisances: Vec<Vec<f64>>,
         difference: Vec<f64>,
         counts: Vec<f64>,
-        var_electronic: Vec<f64>,
+        var_added: Vec<f64>,
     ) -> Result<Self> {
         if counts.is_empty() {
             return Err(Error::malformed("there are no bands", "give at least one"));
         }
         let columns: Vec<Vec<f64>> = nuisances.into_iter().chain([difference]).collect();
-        for column in columns.iter().chain([&var_electronic]) {
+        for column in columns.iter().chain([&var_added]) {
             same_length("numbers per band", column.len(), counts.len())?;
         }
         for value in columns.iter().flatten() {
             check::finite("derivative of the counts", *value, "")?;
         }
-        for value in counts.iter().chain(&var_electronic) {
+        for value in counts.iter().chain(&var_added) {
             check::non_negative("variance of the counts", *value, "")?;
         }
-        Ok(Self { columns, counts, var_electronic, priors: Vec::new(), cancellation: 1.0, required: 1.0 })
+        Ok(Self { columns, counts, var_added, priors: Vec::new(), cancellation: 1.0, required: 1.0 })
     }
 
     /// The same pair, of which this distance is required: choices among many pairs then maximise the smallest
@@ -164,7 +164,7 @@ pub fn shares_between(signal: &[f64], other: &[f64], counting: Option<&Counting>
         .zip(other)
         .enumerate()
         .map(|(w, (s, t))| {
-            let extra = counting.map_or(0.0, |c| c.var_electronic(w) / c.counts_per_radiance);
+            let extra = counting.map_or(0.0, |c| c.var_added(w) / c.counts_per_radiance);
             let below = (s + extra).sqrt() + (t + extra).sqrt();
             if below > 0.0 { ((s - t) / below).powi(2) } else { 0.0 }
         })

@@ -8,7 +8,7 @@ use crate::sum::Compensated;
 pub struct WindowInformation {
     information_px2: f64,
     photons: f64,
-    var_electronic: f64,
+    var_added: f64,
 }
 
 impl WindowInformation {
@@ -16,18 +16,18 @@ impl WindowInformation {
     ///
     /// # Errors
     /// A number that is negative or none; information without photons.
-    pub fn new(information_px2: f64, photons: f64, var_electronic: f64) -> Result<Self> {
+    pub fn new(information_px2: f64, photons: f64, var_added: f64) -> Result<Self> {
         check::non_negative("information J of a window", information_px2, "pixel^-2")?;
         check::non_negative("photons of a window", photons, "")?;
-        check::non_negative("electronic noise of a window", var_electronic, "counts^2")?;
+        check::non_negative("electronic noise of a window", var_added, "counts^2")?;
         // Dark pixels beside bright ones have a slope, which electronic noise makes finite information of.
-        if information_px2 > 0.0 && photons == 0.0 && var_electronic == 0.0 {
+        if information_px2 > 0.0 && photons == 0.0 && var_added == 0.0 {
             return Err(Error::malformed(
                 format!("a window of information {information_px2} pixel^-2 without photons"),
                 "give the photons it was counted from",
             ));
         }
-        Ok(Self { information_px2, photons, var_electronic })
+        Ok(Self { information_px2, photons, var_added })
     }
 
     /// J, pixel⁻².
@@ -45,7 +45,7 @@ impl WindowInformation {
     /// γ = ΣΣσ²/N; infinite without photons.
     #[must_use]
     pub fn gamma(&self) -> f64 {
-        if self.photons > 0.0 { self.var_electronic / self.photons } else { f64::INFINITY }
+        if self.photons > 0.0 { self.var_added / self.photons } else { f64::INFINITY }
     }
 
     /// σ_c² = N/(J(1 + γ)), pixel²: position variance that one photon without noise would have; infinite where J is 0.
@@ -71,11 +71,7 @@ impl WindowInformation {
 
     /// (1 + γ)/N: by what N photons with their noise divide the variance of one.
     fn var_of_one_photon(&self) -> f64 {
-        if self.photons > 0.0 {
-            (1.0 + self.var_electronic / self.photons) / self.photons
-        } else {
-            f64::INFINITY
-        }
+        if self.photons > 0.0 { (1.0 + self.var_added / self.photons) / self.photons } else { f64::INFINITY }
     }
 }
 
@@ -95,7 +91,7 @@ impl WindowInformation {
 pub struct WindowSamples {
     counts: Vec<f64>,
     derivative: Vec<f64>,
-    var_electronic: Vec<f64>,
+    var_added: Vec<f64>,
 }
 
 impl WindowSamples {
@@ -103,7 +99,7 @@ impl WindowSamples {
     ///
     /// # Errors
     /// No samples, lists that differ in length, counts or noise that are negative or no numbers.
-    pub fn new(counts: Vec<f64>, derivative: Vec<f64>, var_electronic: Vec<f64>) -> Result<Self> {
+    pub fn new(counts: Vec<f64>, derivative: Vec<f64>, var_added: Vec<f64>) -> Result<Self> {
         let expected = counts.len();
         if expected == 0 {
             return Err(Error::malformed(
@@ -115,8 +111,8 @@ impl WindowSamples {
         if derivative.len() != expected {
             return length("derivatives of a window's counts", derivative.len());
         }
-        if !var_electronic.is_empty() && var_electronic.len() != expected {
-            return length("noise variances of a window", var_electronic.len());
+        if !var_added.is_empty() && var_added.len() != expected {
+            return length("noise variances of a window", var_added.len());
         }
         for &value in &counts {
             check::non_negative("counts of a sample", value, "")?;
@@ -124,10 +120,10 @@ impl WindowSamples {
         for &value in &derivative {
             check::finite("derivative of counts", value, "counts per pixel")?;
         }
-        for &value in &var_electronic {
+        for &value in &var_added {
             check::non_negative("noise variance", value, "counts^2")?;
         }
-        Ok(Self { counts, derivative, var_electronic })
+        Ok(Self { counts, derivative, var_added })
     }
 
     /// J with `photon_factor` times the photons and `noise_factor` times the variance of the electronic noise, pixel⁻². A
@@ -140,8 +136,7 @@ impl WindowSamples {
         check::non_negative("factor of the noise", noise_factor, "")?;
         let mut information = Compensated::default();
         for (i, (counts, slope)) in self.counts.iter().zip(&self.derivative).enumerate() {
-            let var =
-                photon_factor * counts + noise_factor * self.var_electronic.get(i).copied().unwrap_or(0.0);
+            let var = photon_factor * counts + noise_factor * self.var_added.get(i).copied().unwrap_or(0.0);
             if var > 0.0 {
                 let score = photon_factor * slope / var.sqrt();
                 information.add(score * score);
@@ -158,13 +153,13 @@ impl WindowSamples {
         WindowInformation::new(
             self.information_at(photon_factor, noise_factor)?,
             photon_factor * crate::sum::sum(&self.counts),
-            noise_factor * crate::sum::sum(&self.var_electronic),
+            noise_factor * crate::sum::sum(&self.var_added),
         )
     }
 
     /// Root mean square σ of the electronic noise of a sample, counts.
     #[must_use]
     pub fn noise_counts(&self) -> f64 {
-        (crate::sum::sum(&self.var_electronic) / self.counts.len() as f64).sqrt()
+        (crate::sum::sum(&self.var_added) / self.counts.len() as f64).sqrt()
     }
 }

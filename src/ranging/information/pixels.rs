@@ -73,7 +73,7 @@ pub(super) fn windows(plan: &Plan<'_>, sums: &BandSums) -> Result<InformationMap
         columns,
         information: [total, spatial, Vec::new(), full],
         photons,
-        var_electronic: var,
+        var_added: var,
     })
 }
 

@@ -38,7 +38,7 @@ pub struct EmissionImage<'a> {
     /// Centres of the bands, cm⁻¹.
     pub wavenumbers_cm1: &'a [f64],
     /// Electronic noise σ² of each band, counts².
-    pub var_electronic: &'a [f64],
+    pub var_added: &'a [f64],
 }
 
 /// Information of every pixel, pixel⁻², `[row][column]` without the derivative's margins.
@@ -77,7 +77,7 @@ impl EmissionImage<'_> {
     ///     scattered: &scattered,
     ///     temperature_k: &[290.0; 5],
     ///     wavenumbers_cm1: &bands,
-    ///     var_electronic: &[0.0; 4],
+    ///     var_added: &[0.0; 4],
     /// };
     /// let found = image.beside_emission(Derivative::Central)?;
     /// assert!(found.strength_too[0] < found.temperature[0]);
@@ -95,7 +95,7 @@ impl EmissionImage<'_> {
         fits("scattered counts", self.scattered.len(), shape.len())?;
         fits("temperatures", self.temperature_k.len(), shape.rows() * width)?;
         fits("bands", self.wavenumbers_cm1.len(), bands)?;
-        fits("noise variances", self.var_electronic.len(), bands)?;
+        fits("noise variances", self.var_added.len(), bands)?;
         let margin = derivative.margin();
         let differentiator = Differentiator::new(derivative, width)?;
         let columns = width - 2 * margin;
@@ -114,7 +114,7 @@ impl EmissionImage<'_> {
                         let [temperature, strength_too] =
                             work.pixel(self, x, &counts[own.clone()], &emission[own.clone()], temperature_k);
                         let slope = &work.scattered[x * bands..(x + 1) * bands];
-                        let terms = scattered[own].iter().zip(self.var_electronic).zip(slope);
+                        let terms = scattered[own].iter().zip(self.var_added).zip(slope);
                         let alone = terms.map(
                             |((r, var), slope)| if r + var > 0.0 { slope * slope / (r + var) } else { 0.0 },
                         );
@@ -156,7 +156,7 @@ impl Work {
         temperature_k: f64,
     ) -> [f64; 2] {
         let bands = counts.len();
-        let noisy = counts.iter().zip(image.var_electronic);
+        let noisy = counts.iter().zip(image.var_added);
         self.weights.clear();
         // Where nothing is counted, nothing is told.
         self.weights.extend(noisy.map(|(n, var)| if n + var > 0.0 { 1.0 / (n + var) } else { 0.0 }));

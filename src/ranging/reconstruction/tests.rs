@@ -24,10 +24,7 @@ fn striped(bands: usize) -> Vec<f64> {
 }
 
 fn noisy(bands: usize) -> Counting {
-    Counting {
-        counts_per_radiance: COUNTS,
-        var_electronic: (0..bands).map(|w| 1e5 * (1.0 + w as f64)).collect(),
-    }
+    Counting { counts_per_radiance: COUNTS, var_added: (0..bands).map(|w| 1e5 * (1.0 + w as f64)).collect() }
 }
 
 fn unknowns(nuisances: &[Nuisance]) -> Unknowns {
@@ -44,12 +41,12 @@ fn by_hand(e: &[f64], lighting: f64) -> [f64; 4] {
         let (nu, kappa) = (800.0 + 40.0 * w as f64, COUNTS * 30.0);
         let (own, other) = (planck::photon_radiance(nu, T_K), planck::photon_radiance(nu, AROUND_K));
         let scattered = kappa * (1.0 - e) * lighting * other;
-        let var = kappa * e * own + scattered + counting.var_electronic[w];
+        let var = kappa * e * own + scattered + counting.var_added[w];
         let (by_v, by_t) = (kappa * (1.0 - e) * other, kappa * e * planck::photon_radiance_slope(nu, T_K));
         sums[0] += by_v * by_v / var;
         sums[1] += by_v * by_t / var;
         sums[2] += by_t * by_t / var;
-        sums[3] += by_v * by_v / (scattered + counting.var_electronic[w]);
+        sums[3] += by_v * by_v / (scattered + counting.var_added[w]);
     }
     sums
 }
@@ -129,7 +126,7 @@ fn limits() {
 #[test]
 fn as_if_measured_is_no_bound() {
     let (bands, surroundings) = scene(9, &[AROUND_K]);
-    let shot = Counting { counts_per_radiance: COUNTS, var_electronic: Vec::new() };
+    let shot = Counting { counts_per_radiance: COUNTS, var_added: Vec::new() };
     let mut solver = LightingSolver::new(&bands, &surroundings, unknowns(&BOTH)).unwrap();
     for lighting in [0.05, 0.4, 1.0] {
         let state = surroundings.state(T_K, &[lighting]).unwrap();
@@ -153,7 +150,7 @@ fn least_squares_reach_the_bound() {
     let e = striped(6);
     let (bands, surroundings) = scene(6, &[AROUND_K]);
     let state = surroundings.state(T_K, &[0.4]).unwrap();
-    let counting = Counting { counts_per_radiance: 1e3 * COUNTS, var_electronic: Vec::new() };
+    let counting = Counting { counts_per_radiance: 1e3 * COUNTS, var_added: Vec::new() };
     let mut solver = LightingSolver::new(&bands, &surroundings, unknowns(&BOTH)).unwrap();
     let bound = solver.precision(&e, &state, &counting, 0).unwrap().others_unknown;
     let mut model = Jacobian::new(&bands, &surroundings);
@@ -218,7 +215,7 @@ fn a_picture_tells_what_its_states_tell() {
         scattered: &scattered,
         temperature_k: &temperature_k,
         wavenumbers_cm1: nodes,
-        var_electronic: &counting.var_electronic,
+        var_added: &counting.var_added,
     };
     let found = image.beside_emission(Derivative::Central).unwrap();
     let state = surroundings.state(T_K, &[0.4]).unwrap();
@@ -257,7 +254,7 @@ fn what_has_one_spectrum_is_not_separated() {
             scattered: &scattered,
             temperature_k: &[T_K; 7],
             wavenumbers_cm1: &nodes,
-            var_electronic: &vec![0.0; bands],
+            var_added: &vec![0.0; bands],
         };
         let told = image.beside_emission(Derivative::Central).unwrap();
         (told.temperature[2], told.strength_too[2])

@@ -59,7 +59,7 @@ fn the_fast_path_stands_at_the_bottom() {
     let target: Vec<f64> = (0..bands.len()).map(|i| 0.9 - 0.01 * i as f64).collect();
     let alternative: Vec<f64> = (0..bands.len()).map(|i| 0.5 + 0.03 * (i % 4) as f64).collect();
     let pair = Pair { emissivity: &target, alternative: &alternative, state: &state };
-    let counting = Counting { counts_per_radiance: 1e-12, var_electronic: vec![1e6; bands.len()] };
+    let counting = Counting { counts_per_radiance: 1e-12, var_added: vec![1e6; bands.len()] };
     let sets = [
         Unknowns::new([Nuisance::Temperature]).unwrap(),
         Unknowns::new([Nuisance::Temperature, Nuisance::Lighting]).unwrap(),

@@ -21,7 +21,7 @@ pub struct GaussianDistance {
     pub skewness: f64,
 }
 
-/// The distance for counts of mean `mean` and electronic noise of variance `var_electronic`, counts²; leading order in
+/// The distance for counts of mean `mean` and electronic noise of variance `var_added`, counts²; leading order in
 /// 1/√v, never above 1. Good to 5 % for v above 10, to 0.1 % for v above 10⁴.
 ///
 /// ```
@@ -33,16 +33,16 @@ pub struct GaussianDistance {
 ///
 /// # Errors
 /// A mean or a variance that is negative or not finite.
-pub fn gaussian_distance(mean: f64, var_electronic: f64) -> Result<GaussianDistance> {
+pub fn gaussian_distance(mean: f64, var_added: f64) -> Result<GaussianDistance> {
     check::non_negative("mean counts of a band", mean, "counts")?;
-    check::non_negative("variance of electronic noise", var_electronic, "counts^2")?;
+    check::non_negative("variance of electronic noise", var_added, "counts^2")?;
     if mean == 0.0 {
         return Ok(GaussianDistance { largest: 0.0, skewness: 0.0 });
     }
-    let var = mean + var_electronic;
+    let var = mean + var_added;
     let peak = (2.0 * PI * var).sqrt().recip();
     let skewness = (peak * (mean / var) / 6.0).min(1.0);
-    let step = sawtooth(var_electronic) * peak;
+    let step = sawtooth(var_added) * peak;
     Ok(GaussianDistance { largest: (skewness + step).min(1.0), skewness })
 }
 

@@ -17,9 +17,9 @@ impl Setup {
         let bands = Bands::from_rows(nodes_cm1.iter().map(|nu| (*nu, 1.0))).unwrap();
         let object = EnvironmentObject { temperature_k: 293.15, emissivity: None };
         let surroundings = Surroundings::new(bands.nodes_cm1(), vec![object]).unwrap();
-        let var_electronic = if var > 0.0 { vec![var; bands.len()] } else { Vec::new() };
+        let var_added = if var > 0.0 { vec![var; bands.len()] } else { Vec::new() };
         let emissivity = nodes_cm1.iter().map(|nu| emissivity(*nu)).collect();
-        Self { bands, surroundings, emissivity, counting: Counting { counts_per_radiance, var_electronic } }
+        Self { bands, surroundings, emissivity, counting: Counting { counts_per_radiance, var_added } }
     }
 
     /// Reflecting between 800 and 970 cm⁻¹, as silicon carbide does.
@@ -197,7 +197,7 @@ fn what_does_not_fit_is_refused() {
     let narrow = StateRange { temperature_k: [300.0, 310.0], ..StateRange::default() };
     assert!(ThermometryScene { range: narrow, ..scene }.fits(&both(), &state, run).is_err());
     assert!(ThermometryScene { emissivity: &[0.5], ..scene }.means(&state).is_err());
-    let bright = Counting { counts_per_radiance: 1e10, var_electronic: Vec::new() };
+    let bright = Counting { counts_per_radiance: 1e10, var_added: Vec::new() };
     assert!(ThermometryScene { counting: &bright, ..scene }.fits(&both(), &state, run).is_err());
     assert!(scene.means(&State { lighting: vec![], ..state.clone() }).is_err());
 }

@@ -133,7 +133,7 @@ impl Ground<'_> {
             median(&bounds.iter().filter_map(|bound| values.get(bound.place).copied()).collect::<Vec<_>>())
         };
         let photons = of(&map.photons);
-        let gamma = of(&map.var_electronic) / photons;
+        let gamma = of(&map.var_added) / photons;
         let correspondence: Vec<f64> = bounds
             .iter()
             .filter_map(|bound| Some(map.window(bound.place)?.var_content_px2().sqrt()))

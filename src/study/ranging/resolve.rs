@@ -117,7 +117,7 @@ fn scene(
 
 /// The camera's noise in every band.
 pub(super) fn camera_noise(counting: &Counting, bands: usize) -> NoiseVariance {
-    let var: Vec<f64> = (0..bands).map(|w| counting.var_electronic(w)).collect();
+    let var: Vec<f64> = (0..bands).map(|w| counting.var_added(w)).collect();
     match var.as_slice() {
         [first, rest @ ..] if rest.iter().all(|var| var == first) => match *first {
             0.0 => NoiseVariance::None,

@@ -20,7 +20,7 @@ pub(super) struct SignalMap {
     pub(super) columns: Range<usize>,
     pub(super) information: Vec<f64>,
     pub(super) photons: Vec<f64>,
-    pub(super) var_electronic: Vec<f64>,
+    pub(super) var_added: Vec<f64>,
 }
 
 impl SignalMap {
@@ -32,7 +32,7 @@ impl SignalMap {
             columns: map.columns.clone(),
             information: map.cell(cell).to_vec(),
             photons: map.photons.clone(),
-            var_electronic: map.var_electronic.clone(),
+            var_added: map.var_added.clone(),
         }
     }
 
@@ -40,14 +40,14 @@ impl SignalMap {
     pub(super) fn thermal(map: &InformationMap, joined: Joined, bands: usize) -> Self {
         let mut thermal = Self::of(Signal::ThermalImage, Cell::Spatial, map);
         if joined == Joined::OneReading {
-            thermal.var_electronic.iter_mut().for_each(|var| *var /= bands as f64);
+            thermal.var_added.iter_mut().for_each(|var| *var /= bands as f64);
         }
         thermal
     }
 
     /// Counts in units of `photons` photons each: J, N and Σσ² in photons.
     pub(super) fn scaled(mut self, photons: f64) -> Self {
-        for values in [&mut self.information, &mut self.photons, &mut self.var_electronic] {
+        for values in [&mut self.information, &mut self.photons, &mut self.var_added] {
             values.iter_mut().for_each(|value| *value *= photons);
         }
         self
@@ -56,7 +56,7 @@ impl SignalMap {
     /// A window as the bounds take it.
     pub(super) fn window(&self, at: usize) -> Option<WindowInformation> {
         let (j, n) = (*self.information.get(at)?, *self.photons.get(at)?);
-        WindowInformation::new(j, n, *self.var_electronic.get(at)?).ok()
+        WindowInformation::new(j, n, *self.var_added.get(at)?).ok()
     }
 
     /// The place of a centre in the map.
@@ -85,7 +85,7 @@ pub(super) fn of_scene(
         scattered: scattered.samples(),
         temperature_k: &view.temperature_k,
         wavenumbers_cm1: &centres,
-        var_electronic: &subject.var_per_band(bands.len()),
+        var_added: &subject.var_per_band(bands.len()),
     };
     let beside = image.beside_emission(request.derivative)?;
     let margin = request.derivative.margin();

@@ -43,7 +43,7 @@ pub(super) enum Depth {
 impl Rendered {
     /// σ² of each band, counts².
     pub(super) fn var_per_band(&self, bands: usize) -> Vec<f64> {
-        (0..bands).map(|band| self.counting.var_electronic(band)).collect()
+        (0..bands).map(|band| self.counting.var_added(band)).collect()
     }
 
     /// Expected counts of a part of the signal in one view.

@@ -47,7 +47,7 @@ impl Study {
             Statistics::Poisson => Vec::new(),
             law => signal.iter().enumerate().map(|(w, s)| law.variance(w, s * scale) - s * scale).collect(),
         };
-        let noise = Counting { counts_per_radiance: scale, var_electronic: excess };
+        let noise = Counting { counts_per_radiance: scale, var_added: excess };
         let classes = self.classes(plan.law, rivals, photons, &noise)?;
         let (Some(target), Some(rival)) =
             (classes.first(), classes.iter().skip(1).min_by(|a, b| a.distance.total_cmp(&b.distance)))
@@ -161,9 +161,9 @@ impl Study {
             PhotonLaw::NegativeBinomial => Draws::new(&self.bunched(counting.counts_per_radiance)?, means)?,
             PhotonLaw::FixedTotal => Draws::fixed_total(photons, means)?,
         };
-        match counting.var_electronic.as_slice() {
+        match counting.var_added.as_slice() {
             [] => Ok(draws),
-            var_electronic => draws.with_electronic_noise(var_electronic),
+            var_added => draws.with_electronic_noise(var_added),
         }
     }
 
@@ -173,13 +173,13 @@ impl Study {
             PhotonLaw::Poisson | PhotonLaw::FixedTotal => Statistics::Poisson,
             PhotonLaw::NegativeBinomial => self.bunched(counting.counts_per_radiance)?,
         };
-        if counting.var_electronic.iter().all(|&var| var == 0.0) {
+        if counting.var_added.iter().all(|&var| var == 0.0) {
             return Ok(photons);
         }
         let signal = self.target_signal();
         let variance = signal.iter().enumerate().map(|(band, s)| {
             let mean = s * counting.counts_per_radiance;
-            counting.var_electronic(band) + (photons.variance(band, mean) - mean).max(0.0)
+            counting.var_added(band) + (photons.variance(band, mean) - mean).max(0.0)
         });
         Statistics::gaussian(variance.collect())
     }
@@ -199,10 +199,10 @@ impl Class<'_> {
 /// How far the distribution function of a band is from the normal one that likelihoods take it for, at most; `None`
 /// where they do not.
 pub(in crate::study) fn normal_error(statistics: &Statistics, means: &[Vec<f64>]) -> Result<Option<f64>> {
-    let Statistics::Gaussian { var_electronic } = statistics else { return Ok(None) };
+    let Statistics::Gaussian { var_added } = statistics else { return Ok(None) };
     let mut largest = 0.0_f64;
     for means in means {
-        for (&mean, &var) in means.iter().zip(var_electronic) {
+        for (&mean, &var) in means.iter().zip(var_added) {
             largest = largest.max(gaussian_distance(mean, var)?.largest);
         }
     }

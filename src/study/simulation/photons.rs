@@ -128,7 +128,7 @@ impl Study {
     /// Counts and noise when the target sends so many photons: the exposure is made as long as that takes.
     pub(in crate::study) fn counting_at(&self, photons: f64, camera_noise: bool) -> Counting {
         let counts_per_radiance = photons / self.photon_radiance();
-        let silent = Counting { counts_per_radiance, var_electronic: Vec::new() };
+        let silent = Counting { counts_per_radiance, var_added: Vec::new() };
         match self.camera.as_ref().filter(|_| camera_noise) {
             Some(camera) => self.counting_with(camera, photons),
             None => silent,
