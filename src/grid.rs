@@ -1,6 +1,6 @@
 //! Files of numbers: CSV with comment lines, one header line, and rows as long as the header.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, check};
 use std::io::Read;
 use std::path::Path;
 
@@ -42,6 +42,42 @@ impl Grid {
             .map(|(line, row)| Ok((line, numbers(row, &header).map_err(|error| error.on_line(line))?)))
             .collect::<Result<_>>()?;
         Ok(Self { header, header_line, rows })
+    }
+
+    /// Wavenumbers of the rows, cm⁻¹, each only once.
+    ///
+    /// # Errors
+    /// A first column of another name, a value that is not positive or comes twice.
+    pub(crate) fn wavenumbers_cm1(&self) -> Result<Vec<f64>> {
+        let name = self.header.first().map_or("", String::as_str);
+        if !matches!(name, "wavenumber_cm1" | "wavelength_um") {
+            return Err(Error::malformed(
+                format!("a first column `{name}`"),
+                "name it wavenumber_cm1 or wavelength_um",
+            )
+            .for_key(name)
+            .on_line(self.header_line));
+        }
+        let mut seen: Vec<(f64, usize)> = Vec::new();
+        for (line, cells) in &self.rows {
+            let value = cells.first().copied().unwrap_or(f64::NAN);
+            let wavenumber = if name == "wavelength_um" { 1e4 / value } else { value };
+            check::positive(name, value, "")
+                .and_then(|_| check::positive("wavenumber", wavenumber, "cm^-1"))
+                .map_err(|error| error.for_key(name).on_line(*line))?;
+            seen.push((wavenumber, *line));
+        }
+        let axis = seen.iter().map(|row| row.0).collect();
+        seen.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        if let Some(twins) = seen.windows(2).find(|pair| pair[0].0 == pair[1].0) {
+            return Err(Error::malformed(
+                format!("wavenumber {} cm^-1 is there already on line {}", twins[1].0, twins[0].1),
+                "keep one of the two rows",
+            )
+            .for_key(name)
+            .on_line(twins[1].1));
+        }
+        Ok(axis)
     }
 }
 

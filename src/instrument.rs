@@ -2,23 +2,30 @@
 //!
 //! * étendue of a pixel π A_p/(4F² + (f/z)²) (S7), A_p pixel area (m²), F f-number, f focal length (m),
 //!   z distance (m);
-//! * counts of band w: N_w = S_w × étendue × optics efficiency × exposure × frames;
-//! * electronic noise per band reading, as a budget of labelled lines ([`noise`]): Johnson σ² ∝ t,
-//!   flicker σ² ∝ t²;
+//! * counts of band w: N_w = S_w × étendue × optics efficiency × quantum efficiency × exposure × frames, where a
+//!   pixel that the target does not fill counts its share ([`View`]); efficiencies that depend on wavenumber
+//!   ([`EfficiencyCurve`]) are in the weights of the bands;
+//! * everything else that adds variance, as a budget of labelled lines ([`budget`]), the electronic noise of a
+//!   band reading among them ([`noise`]);
 //! * γ = Σσ²_w/ΣN_w, the noise of a reading over the photons of that band (the paper's γ per band);
 //! * H = t A_p/((1 + γ)F²), the hardware figure of the paper's policy inequality, m² s.
 //!
-//! Assumptions: every band is read by every pixel with the same exposure; unit quantum efficiency unless
-//! it is folded into the optics efficiency; photon bunching neglected (occupancy per mode ≪ 1); linear
-//! response. Averaged frames add photons, Johnson noise and (fully correlated) flicker noise as one longer
-//! exposure does.
+//! Assumptions: every band is read with the same exposure; linear response; photon bunching neglected
+//! (occupancy per mode ≪ 1) unless it is asked for. Averaged frames add photons, Johnson noise and (fully
+//! correlated) flicker noise as one longer exposure does; read noise and quantisation come with every frame.
 //!
 //! Source: paper S7–S16, Tables S1 and S2, Methods 'Guiding public policy'.
 
+pub mod budget;
+pub mod efficiency;
 pub mod noise;
 pub mod presets;
+pub mod view;
 
-pub use noise::{NoiseLine, NoiseSpec};
+pub use budget::NoiseLine;
+pub use efficiency::EfficiencyCurve;
+pub use noise::NoiseSpec;
+pub use view::{Light, View};
 
 use crate::error::{Error, Result, check};
 use crate::fisher::Counting;
@@ -28,19 +35,27 @@ use crate::spectrum::Bands;
 /// The fastest f-number of a lens in air (Abbe's sine condition).
 pub const FASTEST_F_NUMBER: f64 = 0.5;
 
+/// Share of a frame by which a stated exposure may exceed it: rounding.
+const FRAME_ROUNDING: f64 = 0.01;
+
 /// When the bands are exposed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-#[serde(rename_all = "lowercase")]
+#[serde(rename_all = "kebab-case")]
 pub enum Readout {
     /// All in the same exposure.
     Simultaneous,
-    /// One after the other, an exposure each.
+    /// One after the other, an exposure each: a wheel of filters, a scanned monochromator.
     Sequential,
+    /// All at once through an interferometer, as many mirror positions as bands, an exposure each.
+    FourierTransform,
+    /// All in the same exposure, side by side behind a slit: an image is made line by line.
+    Dispersive,
 }
 
 impl Readout {
-    /// Both.
-    pub const ALL: [Self; 2] = [Self::Simultaneous, Self::Sequential];
+    /// All of them.
+    pub const ALL: [Self; 4] =
+        [Self::Simultaneous, Self::Sequential, Self::FourierTransform, Self::Dispersive];
 
     /// The name in a scenario.
     #[must_use]
@@ -48,22 +63,32 @@ impl Readout {
         match self {
             Self::Simultaneous => "simultaneous",
             Self::Sequential => "sequential",
+            Self::FourierTransform => "fourier-transform",
+            Self::Dispersive => "dispersive",
+        }
+    }
+
+    /// Exposures until all of so many bands are known.
+    #[must_use]
+    pub const fn exposures(self, bands: usize) -> usize {
+        match self {
+            Self::Simultaneous | Self::Dispersive => 1,
+            Self::Sequential | Self::FourierTransform => bands,
         }
     }
 }
 
 /// A spectral thermal camera.
-#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Camera {
     /// Name, as in `camera.preset`.
     pub name: String,
     /// What it is, in one line.
-    #[serde(default)]
     pub description: String,
     /// Where the figures are from, and what is known to be wrong with them.
-    #[serde(default)]
     pub provenance: Vec<String>,
+    /// Figures that no document states, and what stands for them.
+    pub assumed: Vec<String>,
     /// Exposure of one frame, s.
     pub exposure_s: f64,
     /// Side of a square pixel, m.
@@ -74,18 +99,37 @@ pub struct Camera {
     pub focal_length_m: f64,
     /// Share of the photons that the optics pass, in (0, 1].
     pub optics_efficiency: f64,
+    /// Share of the photons on the detector that are counted, in (0, 1].
+    pub quantum_efficiency: f64,
+    /// Efficiencies that depend on wavenumber, of the optics and of the detector, to be multiplied with the two above.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub efficiency_curves: Vec<EfficiencyCurve>,
     /// Electronic noise of one band reading.
     pub noise: NoiseSpec,
     /// Exposure at which that noise is stated, s.
     pub noise_exposure_s: f64,
     /// Share of the noise variance at that exposure which is flicker, in [0, 1].
     pub flicker_fraction: f64,
+    /// Counts per second without any light.
+    pub dark_rate_per_s: f64,
+    /// Deviation that every reading adds whatever its exposure, counts.
+    pub read_noise_counts: f64,
+    /// Bits of the converter that divides the full well into steps, if known.
+    pub quantisation_bits: Option<u32>,
     /// Counts at which a pixel is full, if known.
     pub full_well: Option<f64>,
+    /// Whether the bunching of thermal photons adds its noise.
+    pub photon_bunching: bool,
     /// When the bands are exposed.
     pub readout: Readout,
     /// Frames that are averaged.
     pub frames: u32,
+    /// Frames per second, if known: an exposure is no longer than a frame.
+    pub frame_rate_hz: Option<f64>,
+    /// Temperature of the sensor, whose emission filters throw back onto it (K of S8), K, if known.
+    pub sensor_temperature_k: Option<f64>,
+    /// Temperature of the filters (F of S8), K, if known; else that of the sensor.
+    pub filter_temperature_k: Option<f64>,
     /// Full field of view across, rad, if known.
     pub field_of_view_rad: Option<f64>,
     /// Pixels across the field of view, if known.
@@ -117,7 +161,28 @@ impl Camera {
         }
         check::positive("optics_efficiency", self.optics_efficiency, "")?;
         check::unit_interval("optics_efficiency", self.optics_efficiency)?;
+        check::positive("quantum_efficiency", self.quantum_efficiency, "")?;
+        check::unit_interval("quantum_efficiency", self.quantum_efficiency)?;
         check::unit_interval("flicker_fraction", self.flicker_fraction)?;
+        check::non_negative("dark_rate", self.dark_rate_per_s, "1/s")?;
+        check::non_negative("read_noise", self.read_noise_counts, "counts")?;
+        for (name, figure) in [
+            ("full_well", self.full_well),
+            ("frame_rate", self.frame_rate_hz),
+            ("sensor_temperature", self.sensor_temperature_k),
+            ("filter_temperature", self.filter_temperature_k),
+        ] {
+            if let Some(figure) = figure {
+                check::positive(name, figure, "")?;
+            }
+        }
+        self.check_frame()?;
+        if self.quantisation_bits.is_some() && self.full_well.is_none() {
+            return Err(Error::malformed(
+                "quantisation_bits without a full_well to divide",
+                "write full_well = 1e7 beside it",
+            ));
+        }
         check::positive("frames", f64::from(self.frames), "")?;
         let [low, high] = self.spectral_range_cm1;
         check::positive("spectral range", low, "cm^-1")?;
@@ -126,6 +191,22 @@ impl Camera {
         }
         self.noise.check()?;
         Ok(self)
+    }
+
+    /// Refuses an exposure that is longer than a frame.
+    fn check_frame(&self) -> Result<()> {
+        let Some(rate) = self.frame_rate_hz else { return Ok(()) };
+        // Stated figures are rounded: 16.7 ms at 60 Hz is a whole frame.
+        if self.exposure_s * rate <= 1.0 + FRAME_ROUNDING {
+            return Ok(());
+        }
+        let frame_ms = 1e3 / rate;
+        Err(Error::out_of_range(
+            "exposure",
+            self.exposure_s,
+            "s",
+            format!("at most the {frame_ms:.4} ms of a frame (frame_rate = \"{rate} Hz\")"),
+        ))
     }
 
     /// Étendue of a pixel, m² sr, for a target at `distance_m` (infinitely far where `None`) (S7).
@@ -154,24 +235,13 @@ impl Camera {
     /// Time until all bands are read, s.
     #[must_use]
     pub fn acquisition_s(&self, bands: usize) -> f64 {
-        match self.readout {
-            Readout::Simultaneous => self.integration_s(),
-            Readout::Sequential => self.integration_s() * bands as f64,
-        }
+        self.integration_s() * self.readout.exposures(bands) as f64
     }
 
-    /// Counts per unit of band signal, and the variance of the electronic noise of each band.
+    /// The longest exposure of a frame, s, where the frame rate is known.
     #[must_use]
-    pub fn counting(&self, bands: &Bands, distance_m: Option<f64>) -> Counting {
-        let counts_per_radiance =
-            self.etendue_m2_sr(distance_m) * self.optics_efficiency * self.integration_s();
-        let stretch = self.integration_s() / self.noise_exposure_s;
-        let growth = noise::growth(stretch, self.flicker_fraction);
-        let var_added = match self.reading_sigma(bands) {
-            Some(sigma) => sigma.iter().map(|sigma| sigma * sigma * growth).collect(),
-            None => Vec::new(),
-        };
-        Counting { counts_per_radiance, var_added }
+    pub fn frame_s(&self) -> Option<f64> {
+        self.frame_rate_hz.map(f64::recip)
     }
 
     /// σ of each band reading at the exposure the noise is stated for, in counts; `None` without noise.
@@ -196,10 +266,11 @@ impl Camera {
     pub fn figures(&self) -> Result<Figures> {
         let bands = self.own_bands()?;
         let one_frame = Self { frames: 1, ..self.clone() };
-        let counting = one_frame.counting(&bands, None);
+        let bands = one_frame.received(&bands);
+        let counting = one_frame.counting(&bands, &View::default());
         // Photons between the ends of the range; the outermost bands of Table S2 reach half a band beyond.
         let [low, high] = self.spectral_range_cm1;
-        let range = Bands::from_ranges(&[(low, high)])?;
+        let range = one_frame.received(&Bands::from_ranges(&[(low, high)])?);
         let mut blackbody = vec![0.0; range.nodes_cm1().len()];
         planck::photon_radiance_into(range.nodes_cm1(), self.reference_temperature_k, &mut blackbody);
         let photons = counting.counts_per_radiance * range.weigh(&blackbody).iter().sum::<f64>();

@@ -24,7 +24,7 @@ pub mod source;
 mod write;
 
 pub use bands::{BandSource, BandsSpec};
-pub use camera::{CameraSpec, Readout};
+pub use camera::{CameraSpec, Efficiency, Readout};
 pub use ranging::RangeScenario;
 pub use source::Source;
 

@@ -23,6 +23,7 @@ mod reliability;
 mod resolve;
 mod samples;
 mod scaling;
+mod sight;
 mod simulation;
 mod size;
 mod thermometry;

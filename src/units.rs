@@ -36,6 +36,14 @@ pub enum Dimension {
     Angle,
     /// Specific detectivity D*, inside in cm √Hz W⁻¹.
     Detectivity,
+    /// Frequency or bandwidth, inside in Hz.
+    Frequency,
+    /// Number per time, inside in s⁻¹.
+    Rate,
+    /// Noise-equivalent power of a bandwidth of 1 Hz, inside in W Hz^-½.
+    NoiseEquivalentPower,
+    /// Spectral radiance per wavelength, inside in µflick (µW cm⁻² sr⁻¹ µm⁻¹).
+    SpectralRadiance,
     /// Wavenumber, inside in cm⁻¹.
     Wavenumber,
     /// Wavelength, inside in µm.
@@ -87,6 +95,18 @@ const SPEED: &[Unit] =
     &[unit("m/s", 1.0), unit("km/h", 1.0 / 3.6), unit("mph", 0.44704), unit("kn", 1852.0 / 3600.0)];
 const ANGLE: &[Unit] = &[unit("rad", 1.0), unit("mrad", 1e-3), unit("deg", std::f64::consts::PI / 180.0)];
 const DETECTIVITY: &[Unit] = &[unit("cm Hz^0.5/W", 1.0), unit("Jones", 1.0), unit("m Hz^0.5/W", 1e2)];
+const FREQUENCY: &[Unit] = &[unit("Hz", 1.0), unit("kHz", 1e3), unit("MHz", 1e6), unit("GHz", 1e9)];
+const RATE: &[Unit] = &[unit("1/s", 1.0), unit("s^-1", 1.0), unit("s-1", 1.0), unit("Hz", 1.0)];
+const NOISE_EQUIVALENT_POWER: &[Unit] = &[
+    unit("W/Hz^0.5", 1.0),
+    unit("mW/Hz^0.5", 1e-3),
+    unit("uW/Hz^0.5", 1e-6),
+    unit("nW/Hz^0.5", 1e-9),
+    unit("pW/Hz^0.5", 1e-12),
+    unit("fW/Hz^0.5", 1e-15),
+    unit("aW/Hz^0.5", 1e-18),
+];
+const SPECTRAL_RADIANCE: &[Unit] = &[unit("uflick", 1.0), unit("µflick", 1.0), unit("flick", 1e6)];
 const WAVENUMBER: &[Unit] = &[unit("cm^-1", 1.0), unit("cm-1", 1.0), unit("1/cm", 1.0), unit("m^-1", 1e-2)];
 const WAVELENGTH: &[Unit] = &[unit("um", 1.0), unit("µm", 1.0), unit("nm", 1e-3), unit("mm", 1e3)];
 
@@ -100,6 +120,10 @@ impl Dimension {
             Self::Speed => SPEED,
             Self::Angle => ANGLE,
             Self::Detectivity => DETECTIVITY,
+            Self::Frequency => FREQUENCY,
+            Self::Rate => RATE,
+            Self::NoiseEquivalentPower => NOISE_EQUIVALENT_POWER,
+            Self::SpectralRadiance => SPECTRAL_RADIANCE,
             Self::Wavenumber => WAVENUMBER,
             Self::Wavelength => WAVELENGTH,
         }
@@ -120,6 +144,10 @@ impl Dimension {
             Self::Speed => "\"30 mph\" or \"13.4 m/s\"",
             Self::Angle => "\"25 deg\"",
             Self::Detectivity => "\"4.7e10 cm Hz^0.5/W\"",
+            Self::Frequency => "\"60 Hz\" or \"175 kHz\"",
+            Self::Rate => "\"1000 1/s\"",
+            Self::NoiseEquivalentPower => "\"1e-12 W/Hz^0.5\"",
+            Self::SpectralRadiance => "\"1 uflick\"",
             Self::Wavenumber => "\"715 cm^-1\"",
             Self::Wavelength => "\"8 um\"",
         }
@@ -179,6 +207,10 @@ impl Dimension {
             Self::Speed => "speed",
             Self::Angle => "angle",
             Self::Detectivity => "detectivity",
+            Self::Frequency => "frequency",
+            Self::Rate => "rate",
+            Self::NoiseEquivalentPower => "noise-equivalent power",
+            Self::SpectralRadiance => "spectral radiance",
             Self::Wavenumber => "wavenumber",
             Self::Wavelength => "wavelength",
         }

@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use hadar::scenario::{
-    Alternatives, BandSource, BandsSpec, CameraSpec, DistanceKind, EnvironmentObject, Extrapolation,
-    MaterialRef, Nuisance, Readout, Reliability, Requirement, Scenario, Source, Target, Unknown,
+    Alternatives, BandSource, BandsSpec, CameraSpec, DistanceKind, Efficiency, EnvironmentObject,
+    Extrapolation, MaterialRef, Nuisance, Readout, Reliability, Requirement, Scenario, Source, Target,
+    Unknown,
 };
 use hadar::units::Spectral;
 use proptest::prelude::*;
@@ -187,7 +188,10 @@ fn every_key_is_read_into_the_unit_of_its_name() {
     assert!((camera.pixel_m.unwrap() / 25e-6 - 1.0).abs() < 1e-15);
     assert!((camera.focal_length_m.unwrap() / 0.018 - 1.0).abs() < 1e-15);
     assert!((camera.field_of_view_rad.unwrap() / 0.18 - 1.0).abs() < 1e-15);
-    assert_eq!((camera.f_number, camera.optics_efficiency), (Some(1.0), Some(0.95)));
+    assert_eq!(
+        (camera.f_number, camera.optics_efficiency.clone()),
+        (Some(1.0), Some(Efficiency::Number(0.95)))
+    );
     assert_eq!((camera.detectivity_cm_hz05_w, camera.flicker_fraction), (Some(4e10), Some(0.5)));
     assert_eq!((camera.full_well, camera.readout), (Some(1e7), Some(Readout::Sequential)));
     assert_eq!((camera.frames, camera.pixels), (Some(16), Some(320)));
@@ -261,15 +265,16 @@ fn unknown() -> impl Strategy<Value = Unknown> {
 prop_compose! {
     fn camera()(
         preset in proptest::option::of("[a-z][a-z0-9-]{0,12}"),
-        quantities in proptest::collection::vec(proptest::option::of(above_zero()), 10),
-        shares in proptest::collection::vec(proptest::option::of(1e-9..=1.0), 2),
+        quantities in proptest::collection::vec(proptest::option::of(above_zero()), 18),
+        shares in proptest::collection::vec(proptest::option::of(1e-9..=1.0), 3),
         f_numbers in proptest::collection::vec(proptest::option::of(0.5..1e3), 2),
-        noise in 0..4usize,
+        which_noise in 0..6usize,
         readout in proptest::option::of(proptest::sample::select(Readout::ALL.to_vec())),
-        counts in proptest::collection::vec(proptest::option::of(1..=u32::MAX), 2),
+        counts in proptest::collection::vec(proptest::option::of(1..=u32::MAX), 3),
+        flags in proptest::collection::vec(any::<bool>(), 2),
         field_of_view_rad in proptest::option::of(1e-6..3.1),
     ) -> CameraSpec {
-        let noise = |which: usize| quantities[which].filter(|_| noise == which);
+        let noise = |which: usize| quantities[which].filter(|_| which_noise == which);
         CameraSpec {
             preset,
             netd_k: noise(0),
@@ -284,7 +289,23 @@ prop_compose! {
             noise_exposure_s: quantities[9],
             f_number: f_numbers[0],
             netd_f_number: f_numbers[1],
-            optics_efficiency: shares[0],
+            optics_efficiency: shares[0].map(Efficiency::Number),
+            quantum_efficiency: if flags[0] {
+                Some(Efficiency::File(std::path::absolute("qe.csv").unwrap()))
+            } else {
+                shares[2].map(Efficiency::Number)
+            },
+            nep_w_hz05: quantities[10].filter(|_| which_noise == 3),
+            nesr_microflick: quantities[11].filter(|_| which_noise == 4),
+            noise_table: (which_noise == 5).then(|| std::path::absolute("noise.csv").unwrap()),
+            noise_bandwidth_hz: quantities[12],
+            dark_rate_per_s: quantities[13],
+            read_noise: quantities[14],
+            quantisation_bits: counts[2],
+            photon_bunching: Some(flags[1]),
+            frame_rate_hz: quantities[15],
+            sensor_temperature_k: quantities[16],
+            filter_temperature_k: quantities[17],
             flicker_fraction: shares[1],
             readout,
             frames: counts[0],

@@ -2,23 +2,30 @@
 //!
 //! * NETD: σ = NETD · dN/dT, N the photons of a blackbody at the stated temperature, f-number, pixel and
 //!   optics efficiency in all of the detector's spectral range, per exposure;
-//! * specific detectivity: σ_w = √(A_p Δf)/D* · t/(hcν_w), Δf = 1/(2t) (photon noise-equivalent of the NEP);
-//! * counts: as given.
+//! * specific detectivity: NEP = √(A_p Δf)/D*, σ_w = η_q NEP t/(hcν_w), η_q quantum efficiency;
+//! * noise-equivalent power: of a bandwidth Δf, or per √Hz and then NEP = n √Δf;
+//! * noise-equivalent spectral radiance L (flicks, W cm⁻² sr⁻¹ µm⁻¹): σ_w = L Δλ_w × étendue × η t/(hcν_w);
+//! * counts: as given, or as a table over wavenumber.
+//!
+//! The bandwidth of a reading that integrates for t is Δf = 1/(2t) where no other is stated.
 //!
 //! The noise belongs to the detector: it does not change with the lens in front of it. Its variance grows
 //! with the integration time as σ²(t) = σ²·[(1 − φ)(t/t₀) + φ(t/t₀)²], φ the flicker share at t₀.
 //!
 //! Source: paper Table S2 and text above it (γ = γ₀ + γ₁N).
 
-use super::Camera;
-use crate::error::{Result, check};
+use super::{Camera, View};
+use crate::error::{Error, Result, check};
 use crate::planck;
-use crate::spectrum::Bands;
+use crate::spectrum::{Bands, interpolated};
 use crate::units::{PLANCK_J_S, SPEED_OF_LIGHT_M_S};
 
+/// 1 µflick in W m⁻² sr⁻¹ per µm.
+const MICROFLICK_W_M2_SR_UM: f64 = 1e-2;
+
 /// How the noise of a camera is stated.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
-#[serde(rename_all = "kebab-case", tag = "kind", deny_unknown_fields)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[serde(rename_all = "kebab-case", tag = "kind")]
 pub enum NoiseSpec {
     /// No electronic noise at all.
     None,
@@ -39,45 +46,115 @@ pub enum NoiseSpec {
     Detectivity {
         /// D*, cm √Hz W⁻¹.
         detectivity_cm_hz05_w: f64,
+        /// Noise bandwidth Δf, Hz; that of the exposure where `None`.
+        bandwidth_hz: Option<f64>,
+    },
+    /// Noise-equivalent power of a bandwidth of 1 Hz.
+    Nep {
+        /// NEP, W Hz^-½.
+        nep_w_hz05: f64,
+        /// Noise bandwidth Δf, Hz; that of the exposure where `None`.
+        bandwidth_hz: Option<f64>,
+    },
+    /// Noise-equivalent spectral radiance, the same per wavelength in all bands.
+    SpectralRadiance {
+        /// NESR, µflick (µW cm⁻² sr⁻¹ µm⁻¹).
+        microflick: f64,
     },
     /// Standard deviation of a band reading.
     Counts {
         /// σ, counts.
         sigma_counts: f64,
     },
+    /// Standard deviation of a band reading over wavenumber.
+    Table {
+        /// Ascending wavenumbers, cm⁻¹.
+        wavenumbers_cm1: Vec<f64>,
+        /// σ there, counts; straight lines between, the last one beyond.
+        sigma_counts: Vec<f64>,
+    },
 }
 
 impl NoiseSpec {
+    /// A table of noise from rows (wavenumber in cm⁻¹, σ in counts) in any order.
+    ///
+    /// # Errors
+    /// No rows, a wavenumber that is not positive or comes twice, a σ below 0.
+    pub fn table(mut rows: Vec<(f64, f64)>) -> Result<Self> {
+        for &(wavenumber, sigma) in &rows {
+            check::positive("wavenumber of the noise", wavenumber, "cm^-1")?;
+            check::non_negative("noise", sigma, "counts")?;
+        }
+        rows.sort_by(|a, b| a.0.total_cmp(&b.0));
+        if rows.is_empty() || rows.windows(2).any(|pair| pair[0].0 == pair[1].0) {
+            let found = "the table of noise has no rows, or a wavenumber comes twice";
+            return Err(Error::malformed(found, "give each wavenumber one row"));
+        }
+        let (wavenumbers_cm1, sigma_counts) = rows.into_iter().unzip();
+        Ok(Self::Table { wavenumbers_cm1, sigma_counts })
+    }
+
     /// The same kind of noise with a deviation σ `factor` times as large.
     #[must_use]
-    pub fn scaled(self, factor: f64) -> Self {
+    pub fn scaled(&self, factor: f64) -> Self {
+        let mut noise = self.clone();
+        match &mut noise {
+            Self::None => {}
+            Self::Netd { netd_k, .. } => *netd_k *= factor,
+            Self::Detectivity { detectivity_cm_hz05_w, .. } => *detectivity_cm_hz05_w /= factor,
+            Self::Nep { nep_w_hz05, .. } => *nep_w_hz05 *= factor,
+            Self::SpectralRadiance { microflick } => *microflick *= factor,
+            Self::Counts { sigma_counts } => *sigma_counts *= factor,
+            Self::Table { sigma_counts, .. } => sigma_counts.iter_mut().for_each(|sigma| *sigma *= factor),
+        }
+        noise
+    }
+
+    /// Key of a scenario that states this kind.
+    #[must_use]
+    pub const fn key(&self) -> &'static str {
         match self {
-            Self::None => Self::None,
-            Self::Netd { netd_k, temperature_k, f_number, optics_efficiency, pixel_m } => {
-                Self::Netd { netd_k: netd_k * factor, temperature_k, f_number, optics_efficiency, pixel_m }
-            }
-            Self::Detectivity { detectivity_cm_hz05_w } => {
-                Self::Detectivity { detectivity_cm_hz05_w: detectivity_cm_hz05_w / factor }
-            }
-            Self::Counts { sigma_counts } => Self::Counts { sigma_counts: sigma_counts * factor },
+            Self::None | Self::Counts { .. } => "noise_electrons",
+            Self::Netd { .. } => "netd",
+            Self::Detectivity { .. } => "detectivity",
+            Self::Nep { .. } => "nep",
+            Self::SpectralRadiance { .. } => "nesr",
+            Self::Table { .. } => "noise_table",
         }
     }
 
     pub(super) fn check(&self) -> Result<()> {
-        match *self {
+        let bandwidth = |hz: &Option<f64>| match hz {
+            Some(hz) => check::positive("noise_bandwidth", *hz, "Hz").map(drop),
+            None => Ok(()),
+        };
+        match self {
             Self::None => {}
             Self::Netd { netd_k, temperature_k, f_number, optics_efficiency, pixel_m } => {
-                check::positive("pixel of the NETD", pixel_m, "m")?;
-                check::positive("netd", netd_k, "K")?;
-                check::positive("netd_temperature", temperature_k, "K")?;
-                check::positive("netd_f_number", f_number, "")?;
-                check::positive("optics efficiency of the NETD", optics_efficiency, "")?;
+                check::positive("pixel of the NETD", *pixel_m, "m")?;
+                check::positive("netd", *netd_k, "K")?;
+                check::positive("netd_temperature", *temperature_k, "K")?;
+                check::positive("netd_f_number", *f_number, "")?;
+                check::positive("optics efficiency of the NETD", *optics_efficiency, "")?;
             }
-            Self::Detectivity { detectivity_cm_hz05_w } => {
-                check::positive("detectivity", detectivity_cm_hz05_w, "cm Hz^0.5/W")?;
+            Self::Detectivity { detectivity_cm_hz05_w, bandwidth_hz } => {
+                check::positive("detectivity", *detectivity_cm_hz05_w, "cm Hz^0.5/W")?;
+                bandwidth(bandwidth_hz)?;
+            }
+            Self::Nep { nep_w_hz05, bandwidth_hz } => {
+                check::positive("nep", *nep_w_hz05, "W/Hz^0.5")?;
+                bandwidth(bandwidth_hz)?;
+            }
+            Self::SpectralRadiance { microflick } => {
+                check::positive("nesr", *microflick, "uflick")?;
             }
             Self::Counts { sigma_counts } => {
-                check::non_negative("noise_electrons", sigma_counts, "")?;
+                check::non_negative("noise_electrons", *sigma_counts, "")?;
+            }
+            Self::Table { sigma_counts, .. } => {
+                for sigma in sigma_counts {
+                    check::non_negative("noise", *sigma, "counts")?;
+                }
             }
         }
         Ok(())
@@ -90,79 +167,91 @@ pub fn growth(stretch: f64, flicker_fraction: f64) -> f64 {
     stretch * ((1.0 - flicker_fraction) + flicker_fraction * stretch)
 }
 
+/// Energy of a photon, J.
+pub(super) fn photon_energy_j(wavenumber_cm1: f64) -> f64 {
+    PLANCK_J_S * SPEED_OF_LIGHT_M_S * 100.0 * wavenumber_cm1
+}
+
+/// Width of a band in wavelength, µm, of a width in wavenumber that is small against its centre (both cm⁻¹).
+pub(super) fn width_um(center_cm1: f64, width_cm1: f64) -> f64 {
+    1e4 * width_cm1 / (center_cm1 * center_cm1)
+}
+
 /// σ of each band reading at the stated exposure, counts.
 pub(super) fn reading_sigma(camera: &Camera, bands: &Bands) -> Option<Vec<f64>> {
-    match camera.noise {
+    let t = camera.noise_exposure_s;
+    // Photons that a power on the detector amounts to in a band, as it counts them.
+    let of_power = |power_w: f64| {
+        let counted = |center: f64| camera.counted(center) * power_w * t / photon_energy_j(center);
+        bands.bands().iter().map(|band| counted(band.center_cm1)).collect()
+    };
+    match &camera.noise {
         NoiseSpec::None => None,
-        NoiseSpec::Counts { sigma_counts } => Some(vec![sigma_counts; bands.len()]),
+        NoiseSpec::Counts { sigma_counts } => Some(vec![*sigma_counts; bands.len()]),
+        NoiseSpec::Table { wavenumbers_cm1, sigma_counts } => {
+            let at = |center: f64| interpolated(wavenumbers_cm1, sigma_counts, center);
+            Some(bands.bands().iter().map(|band| at(band.center_cm1)).collect())
+        }
         NoiseSpec::Netd { netd_k, temperature_k, f_number, optics_efficiency, pixel_m } => {
             let stated = Camera {
-                f_number,
-                optics_efficiency,
-                pixel_m,
-                exposure_s: camera.noise_exposure_s,
+                f_number: *f_number,
+                optics_efficiency: *optics_efficiency,
+                pixel_m: *pixel_m,
+                exposure_s: t,
                 frames: 1,
                 ..camera.clone()
             };
-            let sigma = netd_k * stated.counts_per_kelvin(temperature_k);
-            Some(vec![sigma; bands.len()])
+            Some(vec![netd_k * stated.counts_per_kelvin(*temperature_k); bands.len()])
         }
-        NoiseSpec::Detectivity { detectivity_cm_hz05_w } => {
-            let t = camera.noise_exposure_s;
+        NoiseSpec::Detectivity { detectivity_cm_hz05_w, bandwidth_hz } => {
             let area_cm2 = (camera.pixel_m * 100.0).powi(2);
-            let nep_w = (area_cm2 * 0.5 / t).sqrt() / detectivity_cm_hz05_w;
-            let sigma = |center_cm1: f64| nep_w * t / (PLANCK_J_S * SPEED_OF_LIGHT_M_S * 100.0 * center_cm1);
-            Some(bands.bands().iter().map(|band| sigma(band.center_cm1)).collect())
+            let bandwidth_hz = bandwidth_hz.unwrap_or(0.5 / t);
+            Some(of_power((area_cm2 * bandwidth_hz).sqrt() / detectivity_cm_hz05_w))
+        }
+        NoiseSpec::Nep { nep_w_hz05, bandwidth_hz } => {
+            Some(of_power(nep_w_hz05 * bandwidth_hz.unwrap_or(0.5 / t).sqrt()))
+        }
+        NoiseSpec::SpectralRadiance { microflick } => {
+            // Light of that radiance through the camera's own optics; the weights of the bands hold the efficiency curves.
+            let collected = camera.etendue_m2_sr(None) * camera.optics_efficiency * camera.quantum_efficiency;
+            let widths = bands.widths_cm1();
+            let sigma = bands.bands().iter().zip(widths).map(|(band, width)| {
+                let radiance = microflick * MICROFLICK_W_M2_SR_UM * width_um(band.center_cm1, width);
+                radiance * collected * t / photon_energy_j(band.center_cm1)
+            });
+            Some(sigma.collect())
         }
     }
 }
 
 impl Camera {
+    /// Johnson and flicker noise of one reading at the camera's exposure, root mean square over the bands, counts.
+    #[must_use]
+    pub fn electronic_noise_counts(&self, bands: &Bands) -> f64 {
+        let Some(sigma) = self.reading_sigma(bands) else { return 0.0 };
+        let squares: f64 = sigma.iter().map(|sigma| sigma * sigma).sum();
+        (squares / bands.len() as f64
+            * growth(self.exposure_s / self.noise_exposure_s, self.flicker_fraction))
+        .sqrt()
+    }
+
+    /// Share of the photons on the detector that are counted at a wavenumber (cm⁻¹).
+    fn counted(&self, wavenumber_cm1: f64) -> f64 {
+        let curves = self.efficiency_curves.iter().filter(|curve| curve.name() == "quantum_efficiency");
+        self.quantum_efficiency * curves.map(|curve| curve.at(wavenumber_cm1)).product::<f64>()
+    }
+
     /// dN/dT of a far blackbody in all of the camera's spectral range, counts per K and exposure.
-    pub(super) fn counts_per_kelvin(&self, temperature_k: f64) -> f64 {
+    #[must_use]
+    pub fn counts_per_kelvin(&self, temperature_k: f64) -> f64 {
         // A range that makes no bands is refused by `checked`; no bands here mean no counts.
         let Ok(bands) = self.own_bands() else { return 0.0 };
+        let bands = self.received(&bands);
         let nodes = bands.nodes_cm1();
         let (mut value, mut slope) = (vec![0.0; nodes.len()], vec![0.0; nodes.len()]);
         planck::photon_radiance_and_slope_into(nodes, temperature_k, &mut value, &mut slope);
         let per_kelvin: f64 = bands.weigh(&slope).iter().sum();
-        per_kelvin * self.etendue_m2_sr(None) * self.optics_efficiency * self.exposure_s
-    }
-}
-
-/// One line of the noise budget of a band.
-#[derive(Debug, Clone, PartialEq, serde::Serialize)]
-pub struct NoiseLine {
-    /// What it is.
-    pub label: &'static str,
-    /// Variance, counts², mean over the bands.
-    pub var_counts: f64,
-    /// How it grows with the integration time t.
-    pub scaling: &'static str,
-}
-
-impl Camera {
-    /// The noise of an average band as labelled lines, which sum to its total variance.
-    #[must_use]
-    pub fn noise_budget(&self, bands: &Bands, signal: &[f64], distance_m: Option<f64>) -> Vec<NoiseLine> {
-        let counting = self.counting(bands, distance_m);
-        let mean = |values: &mut dyn Iterator<Item = f64>| values.sum::<f64>() / bands.len() as f64;
-        let shot = mean(&mut signal.iter().map(|s| s * counting.counts_per_radiance));
-        let stretch = self.integration_s() / self.noise_exposure_s;
-        let sigma = self.reading_sigma(bands).unwrap_or_else(|| vec![0.0; bands.len()]);
-        let stated = mean(&mut sigma.iter().map(|sigma| sigma * sigma));
-        vec![
-            NoiseLine { label: "shot noise", var_counts: shot, scaling: "t" },
-            NoiseLine {
-                label: "Johnson noise",
-                var_counts: stated * (1.0 - self.flicker_fraction) * stretch,
-                scaling: "t",
-            },
-            NoiseLine {
-                label: "flicker noise",
-                var_counts: stated * self.flicker_fraction * stretch * stretch,
-                scaling: "t^2",
-            },
-        ]
+        let one = Self { frames: 1, readout: super::Readout::Simultaneous, ..self.clone() };
+        per_kelvin * one.counts_per_radiance(&bands, &View::default())
     }
 }

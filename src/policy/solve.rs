@@ -6,7 +6,6 @@
 //! (d → d_∞ as t → ∞), shot noise (d at zero electronic noise), or the fastest lens in air.
 
 use crate::error::Result;
-use crate::fisher::Counting;
 use crate::instrument::{Camera, FASTEST_F_NUMBER};
 use crate::root::crossing;
 use crate::spectrum::Bands;
@@ -78,52 +77,47 @@ pub struct Solution {
 pub struct CameraTask<'a> {
     /// The camera.
     pub camera: &'a Camera,
-    /// Bands.
+    /// Bands, as the camera receives them.
     pub bands: &'a Bands,
-    /// Distance of the target, m.
-    pub distance_m: Option<f64>,
     /// Statistical distance d_req that the task demands.
     pub required: f64,
 }
 
 impl CameraTask<'_> {
-    /// Solves for `quantity`; `distance` evaluates the statistical distance at a given counting.
+    /// Solves for `quantity`; `distance` evaluates the statistical distance of a camera.
     ///
     /// # Errors
     /// An error of `distance`.
     pub fn solve(
         &self,
         quantity: Quantity,
-        mut distance: impl FnMut(&Counting) -> Result<f64>,
+        mut distance: impl FnMut(&Camera) -> Result<f64>,
     ) -> Result<Solution> {
-        let camera = self.value(self.camera, quantity);
-        // d as a function of how much better the quantity is than the camera's, as a logarithm.
-        let mut at = |log: f64| distance(&self.counting(quantity, log.exp()));
-        let mut best = LOG_RANGE;
-        let mut cap = None;
-        if quantity == Quantity::FNumber {
-            best = self.log_of_fastest_lens();
-            cap = Some(format!("no lens in air is faster than f/{FASTEST_F_NUMBER}"));
-        }
+        let camera = self.value(quantity);
         if quantity == Quantity::Noise && camera == 0.0 {
-            let reached = at(0.0)?;
+            let reached = distance(self.camera)?;
             let reason = (reached < self.required).then(|| "the detector has no electronic noise".to_owned());
             let value = reason.is_none().then_some(0.0);
             return Ok(Solution { value, camera, statistical_distance: reached, reason });
         }
+        if quantity == Quantity::Frames {
+            return self.solve_frames(distance);
+        }
+        // d as a function of how much better the quantity is than the camera's, as a logarithm.
+        let mut at = |log: f64| distance(&self.forward(quantity, self.scaled(quantity, log.exp())));
+        let fastest = quantity == Quantity::FNumber;
+        let best = if fastest { (self.camera.f_number / FASTEST_F_NUMBER).ln() } else { LOG_RANGE };
         let ceiling = at(best)?;
         if ceiling < self.required {
-            let never = (ceiling == 0.0).then(|| NEVER.to_owned());
-            let reason = never.or(cap).unwrap_or_else(|| match quantity {
+            let reason = match quantity {
+                _ if ceiling == 0.0 => NEVER.into(),
+                Quantity::FNumber => format!("no lens in air is faster than f/{FASTEST_F_NUMBER}"),
                 Quantity::Exposure => {
                     "flicker noise grows as fast as the signal: no exposure is long enough".into()
                 }
-                Quantity::Frames => {
-                    "flicker noise does not average out: no number of frames is enough".into()
-                }
                 Quantity::Noise => "shot noise alone is too much: no detector is quiet enough".into(),
-                Quantity::Pixel | Quantity::FNumber => NEVER.into(),
-            });
+                Quantity::Frames | Quantity::Pixel => NEVER.into(),
+            };
             return Ok(Solution { value: None, camera, statistical_distance: ceiling, reason: Some(reason) });
         }
         if at(-LOG_RANGE)? >= self.required {
@@ -138,10 +132,38 @@ impl CameraTask<'_> {
         }
         let log = crossing(-LOG_RANGE, best, |log| Ok((at(log)? / self.required).ln().max(-1e3)))?;
         let value = self.scaled(quantity, log.exp());
-        // Whole frames, unless rounding alone is what makes one more of them.
-        let value = if quantity == Quantity::Frames { (value * (1.0 - 1e-9)).ceil().max(1.0) } else { value };
-        let reached = distance(&self.counting(quantity, self.factor(quantity, value)))?;
+        let reached = distance(&self.forward(quantity, value))?;
         Ok(Solution { value: Some(value), camera, statistical_distance: reached, reason: None })
+    }
+
+    /// The least whole number of frames that will do: by halving, since more of them are never worse.
+    fn solve_frames(&self, mut distance: impl FnMut(&Camera) -> Result<f64>) -> Result<Solution> {
+        let camera = f64::from(self.camera.frames);
+        let mut at = |frames: u32| distance(&self.forward(Quantity::Frames, f64::from(frames)));
+        // Rounding alone does not make one more of them.
+        let enough = |d: f64| d >= self.required * (1.0 - 1e-9);
+        let ceiling = at(u32::MAX)?;
+        if !enough(ceiling) {
+            let why = if ceiling == 0.0 {
+                NEVER
+            } else {
+                "flicker noise does not average out: no number of frames is enough"
+            };
+            let reason = Some(why.to_owned());
+            return Ok(Solution { value: None, camera, statistical_distance: ceiling, reason });
+        }
+        let (mut few, mut many, mut reached) = (0, u32::MAX, ceiling);
+        while many - few > 1 {
+            let middle = few + (many - few) / 2;
+            let d = at(middle)?;
+            if enough(d) {
+                (many, reached) = (middle, d);
+            } else {
+                few = middle;
+            }
+        }
+        let value = Some(f64::from(many));
+        Ok(Solution { value, camera, statistical_distance: reached, reason: None })
     }
 
     /// The camera with one quantity set to a value.
@@ -153,61 +175,34 @@ impl CameraTask<'_> {
             Quantity::Pixel => camera.pixel_m = value,
             Quantity::FNumber => camera.f_number = value,
             Quantity::Noise => {
-                let now = self.value(self.camera, Quantity::Noise);
+                let now = self.value(Quantity::Noise);
                 camera.noise = camera.noise.scaled(if now > 0.0 { value / now } else { 0.0 });
             }
             // A cast saturates: more frames than fit are as good as endless.
-            Quantity::Frames => camera.frames = value as u32,
+            Quantity::Frames => camera.frames = (value as u32).max(1),
         }
         camera
     }
 
-    /// Counting when the quantity is `factor` times better than the camera's.
-    fn counting(&self, quantity: Quantity, factor: f64) -> Counting {
-        if quantity == Quantity::Frames {
-            // Frames act as one longer exposure; in between whole numbers the function is smooth.
-            let exposure_s = self.camera.integration_s() * factor;
-            let long = Camera { exposure_s, frames: 1, ..self.camera.clone() };
-            return long.counting(self.bands, self.distance_m);
-        }
-        self.forward(quantity, self.scaled(quantity, factor)).counting(self.bands, self.distance_m)
-    }
-
     /// The value that is `factor` times better than the camera's.
     fn scaled(&self, quantity: Quantity, factor: f64) -> f64 {
-        let now = self.value(self.camera, quantity);
+        let now = self.value(quantity);
         match quantity {
             Quantity::Exposure | Quantity::Pixel | Quantity::Frames => now * factor,
             Quantity::FNumber | Quantity::Noise => now / factor,
         }
     }
 
-    /// How many times better than the camera's a value is.
-    fn factor(&self, quantity: Quantity, value: f64) -> f64 {
-        let now = self.value(self.camera, quantity);
+    /// The camera's own value of a quantity.
+    #[must_use]
+    pub fn value(&self, quantity: Quantity) -> f64 {
         match quantity {
-            Quantity::Exposure | Quantity::Pixel | Quantity::Frames => value / now,
-            Quantity::FNumber | Quantity::Noise => now / value,
-        }
-    }
-
-    fn log_of_fastest_lens(&self) -> f64 {
-        (self.camera.f_number / FASTEST_F_NUMBER).ln()
-    }
-
-    fn value(&self, camera: &Camera, quantity: Quantity) -> f64 {
-        match quantity {
-            Quantity::Exposure => camera.exposure_s,
-            Quantity::Pixel => camera.pixel_m,
-            Quantity::FNumber => camera.f_number,
-            Quantity::Frames => f64::from(camera.frames),
-            Quantity::Noise => {
-                // Of one reading, as it is stated and as a detector is bought, however many frames there are.
-                let one = Camera { frames: 1, ..camera.clone() };
-                let counting = one.counting(self.bands, self.distance_m);
-                let var: f64 = (0..self.bands.len()).map(|w| counting.var_added(w)).sum();
-                (var / self.bands.len() as f64).sqrt()
-            }
+            Quantity::Exposure => self.camera.exposure_s,
+            Quantity::Pixel => self.camera.pixel_m,
+            Quantity::FNumber => self.camera.f_number,
+            Quantity::Frames => f64::from(self.camera.frames),
+            // Of one reading, as it is stated and as a detector is bought, however many frames there are.
+            Quantity::Noise => self.camera.electronic_noise_counts(self.bands),
         }
     }
 }
@@ -215,16 +210,23 @@ impl CameraTask<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::instrument::presets;
+    use crate::fisher::Counting;
+    use crate::instrument::{View, presets};
 
     /// d² = N²/(N + σ²)·10⁻⁶ for one band: closed form of every solution.
-    fn one_band(counting: &Counting) -> Result<f64> {
+    fn one_band(camera: &Camera) -> Result<f64> {
+        let counting = seen(camera);
         let photons = counting.counts_per_radiance * 1e21;
         Ok(1e-3 * photons / (photons + counting.var_added(0)).sqrt())
     }
 
+    fn seen(camera: &Camera) -> Counting {
+        let bands = Bands::from_rows([(900.0, 1.0)]).unwrap();
+        camera.counting(&bands, &View::at(Some(30.0)))
+    }
+
     fn task<'a>(camera: &'a Camera, bands: &'a Bands, required: f64) -> CameraTask<'a> {
-        CameraTask { camera, bands, distance_m: Some(30.0), required }
+        CameraTask { camera, bands, required }
     }
 
     #[test]
@@ -232,14 +234,14 @@ mod tests {
         let mut camera = presets::get("flir-a325sc").unwrap();
         camera.flicker_fraction = 0.01;
         let bands = Bands::from_rows([(900.0, 1.0)]).unwrap();
-        let now = one_band(&camera.counting(&bands, Some(30.0))).unwrap();
+        let now = one_band(&camera).unwrap();
         for required in [0.2 * now, now, 1.3 * now] {
             let task = task(&camera, &bands, required);
             for quantity in Quantity::ALL {
                 let solution = task.solve(quantity, one_band).unwrap();
                 let value = solution.value.unwrap_or_else(|| panic!("{quantity:?}: {solution:?}"));
                 let camera = task.forward(quantity, value);
-                let reached = one_band(&camera.counting(&bands, Some(30.0))).unwrap();
+                let reached = one_band(&camera).unwrap();
                 if quantity == Quantity::Frames {
                     assert!(reached >= required * (1.0 - 1e-9));
                 } else {
@@ -254,7 +256,7 @@ mod tests {
         let camera = presets::get("flir-a325sc").unwrap();
         let bands = Bands::from_rows([(900.0, 1.0)]).unwrap();
         // t → ∞: d → 10⁻³ N/σ_F, σ_F² = φσ² at the stated exposure.
-        let counting = camera.counting(&bands, Some(30.0));
+        let counting = camera.counting(&bands, &View::at(Some(30.0)));
         let floor = 1e-3 * counting.counts_per_radiance * 1e21 / (0.5 * counting.var_added(0)).sqrt();
         let below = task(&camera, &bands, 0.999_999 * floor).solve(Quantity::Exposure, one_band).unwrap();
         assert!(below.value.is_some());
@@ -279,7 +281,7 @@ mod tests {
         let mut camera = presets::get("flir-a325sc").unwrap();
         (camera.flicker_fraction, camera.frames) = (0.0, 100);
         let bands = Bands::from_rows([(900.0, 1.0)]).unwrap();
-        let photons = camera.counting(&bands, Some(30.0)).counts_per_radiance * 1e21;
+        let photons = camera.counting(&bands, &View::at(Some(30.0))).counts_per_radiance * 1e21;
         let required = 1e-3 * (photons / 5.0).sqrt();
         let solution = task(&camera, &bands, required).solve(Quantity::Noise, one_band).unwrap();
         // N²/(N + nσ₁²) = N/5, so σ₁² = 4N/n.
@@ -292,7 +294,7 @@ mod tests {
     fn no_lens_is_faster_than_half() {
         let camera = presets::get("ideal-pnrd").unwrap();
         let bands = Bands::from_rows([(900.0, 1.0)]).unwrap();
-        let now = one_band(&camera.counting(&bands, Some(30.0))).unwrap();
+        let now = one_band(&camera).unwrap();
         // d ∝ 1/F for shot noise: f/1.3 → f/0.5 gains 2.6.
         let solution = task(&camera, &bands, 2.7 * now).solve(Quantity::FNumber, one_band).unwrap();
         assert!(solution.value.is_none() && solution.reason.unwrap().contains("f/0.5"));

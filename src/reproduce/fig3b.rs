@@ -146,7 +146,7 @@ fn floor(place: &'static str, noise: &NoiseCurves) -> Option<Line> {
 fn noise_of_three_bands(study: &Study) -> Result<Line> {
     let signal = study.bands().weigh(&study.surroundings().signal(&study.target().emissivity, study.state()));
     let camera = presets::get("flir-a325sc")?;
-    let gamma = gamma_per_band(&camera.counting(study.bands(), study.scenario().target.distance_m), &signal);
+    let gamma = gamma_per_band(&study.counting_of(&camera), &signal);
     let half = 0.5 * gamma;
     let why = "a free constant of the paper, 'for better visual clarity'; the scenario takes it over, the camera itself has ours";
     Ok(Line::compared(

@@ -240,6 +240,11 @@ impl<'a> Entry<'a> {
         })
     }
 
+    /// Whether the value is text.
+    pub(super) fn is_text(&self) -> bool {
+        matches!(self.value, DeValue::String(_))
+    }
+
     /// `true` or `false`.
     pub(super) fn boolean(&self) -> Result<bool> {
         match self.value {

@@ -10,8 +10,8 @@ use toml::Value;
 
 use super::read::is_path;
 use super::{
-    Alternatives, BandSource, BandsSpec, CameraSpec, EnvironmentObject, Extrapolation, MaterialRef, Nuisance,
-    Reliability, Requirement, Scenario, Target, Unknown,
+    Alternatives, BandSource, BandsSpec, CameraSpec, Efficiency, EnvironmentObject, Extrapolation,
+    MaterialRef, Nuisance, Reliability, Requirement, Scenario, Target, Unknown,
 };
 use crate::units::Dimension;
 
@@ -77,7 +77,7 @@ impl Scenario {
         document.push(("bands", Part::Table(bands(&self.bands, paths))));
         document.push(("unknown", Part::Table(unknown(&self.unknown))));
         if let Some(spec) = &self.camera {
-            document.push(("camera", Part::Table(camera(spec))));
+            document.push(("camera", Part::Table(camera(spec, paths))));
         }
         document.push(("requirement", Part::Table(requirement(&self.requirement))));
         document
@@ -233,25 +233,42 @@ fn unknown(unknown: &Unknown) -> Entries {
         .put_if("lighting_total", unknown.lighting_total)
 }
 
-pub(super) fn camera(camera: &CameraSpec) -> Entries {
+pub(super) fn camera(camera: &CameraSpec, paths: Paths<'_>) -> Entries {
+    let efficiency = |efficiency: &Option<Efficiency>| match efficiency {
+        Some(Efficiency::Number(value)) => Some(Value::from(*value)),
+        Some(Efficiency::File(path)) => Some(Value::from(paths.file(path))),
+        None => None,
+    };
     Entries::default()
         .put_if("preset", camera.preset.as_deref())
         .put_quantity("exposure", Dimension::Time, camera.exposure_s)
         .put_quantity("pixel", Dimension::Length, camera.pixel_m)
         .put_if("f_number", camera.f_number)
         .put_quantity("focal_length", Dimension::Length, camera.focal_length_m)
-        .put_if("optics_efficiency", camera.optics_efficiency)
+        .put_if("optics_efficiency", efficiency(&camera.optics_efficiency))
+        .put_if("quantum_efficiency", efficiency(&camera.quantum_efficiency))
         .put_quantity("netd", Dimension::TemperatureDifference, camera.netd_k)
         .put_quantity("netd_temperature", Dimension::Temperature, camera.netd_temperature_k)
         .put_if("netd_f_number", camera.netd_f_number)
         .put_quantity("netd_pixel", Dimension::Length, camera.netd_pixel_m)
         .put_quantity("detectivity", Dimension::Detectivity, camera.detectivity_cm_hz05_w)
+        .put_quantity("nep", Dimension::NoiseEquivalentPower, camera.nep_w_hz05)
+        .put_quantity("nesr", Dimension::SpectralRadiance, camera.nesr_microflick)
         .put_if("noise_electrons", camera.noise_electrons)
+        .put_if("noise_table", camera.noise_table.as_ref().map(|path| paths.file(path)))
+        .put_quantity("noise_bandwidth", Dimension::Frequency, camera.noise_bandwidth_hz)
         .put_quantity("noise_exposure", Dimension::Time, camera.noise_exposure_s)
         .put_if("flicker_fraction", camera.flicker_fraction)
+        .put_quantity("dark_rate", Dimension::Rate, camera.dark_rate_per_s)
+        .put_if("read_noise", camera.read_noise)
+        .put_if("quantisation_bits", camera.quantisation_bits)
         .put_if("full_well", camera.full_well)
+        .put_if("photon_bunching", camera.photon_bunching)
         .put_if("readout", camera.readout.map(|readout| readout.name()))
         .put_if("frames", camera.frames)
+        .put_quantity("frame_rate", Dimension::Frequency, camera.frame_rate_hz)
+        .put_quantity("sensor_temperature", Dimension::Temperature, camera.sensor_temperature_k)
+        .put_quantity("filter_temperature", Dimension::Temperature, camera.filter_temperature_k)
         .put_quantity("field_of_view", Dimension::Angle, camera.field_of_view_rad)
         .put_if("pixels", camera.pixels)
 }

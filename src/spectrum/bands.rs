@@ -7,6 +7,9 @@ use super::filter::FilterCurve;
 use crate::error::{Error, Result};
 use crate::simd::dispatched;
 
+/// Transmittance of what is opaque.
+const OPAQUE: f64 = 1e-30;
+
 /// One spectral band as reports show it.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Band {
@@ -85,6 +88,17 @@ impl Bands {
     #[must_use]
     pub fn one_node_per_band(&self) -> bool {
         self.nodes_cm1.len() == self.bands.len()
+    }
+
+    /// The same bands behind something that lets the share `transmittance` of each wavenumber (cm⁻¹) through.
+    #[must_use]
+    pub(crate) fn transmitted(&self, transmittance: impl Fn(f64) -> f64) -> Self {
+        let mut bands = self.clone();
+        for (weight, node) in bands.weights_cm1.iter_mut().zip(&self.nodes_cm1) {
+            // A band that nothing reaches keeps a weight that can be divided by.
+            *weight *= transmittance(*node).max(OPAQUE);
+        }
+        bands
     }
 
     /// Weight of each node, cm⁻¹.

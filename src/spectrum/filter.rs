@@ -1,6 +1,7 @@
 //! The transmittance curve of a filter.
 
 use super::bands::distinct;
+use super::interpolated;
 use crate::error::{Error, Result, check};
 
 /// The transmittance of a filter at ascending wavenumbers, straight lines between the rows, 0 outside.
@@ -38,15 +39,11 @@ impl FilterCurve {
     /// Transmittance at a wavenumber in cm⁻¹.
     #[must_use]
     pub fn transmittance(&self, wavenumber_cm1: f64) -> f64 {
-        let right = self.wavenumbers_cm1.partition_point(|&row| row < wavenumber_cm1);
-        match (self.wavenumbers_cm1.get(right), self.transmittances.get(right)) {
-            (Some(&row), Some(&value)) if row == wavenumber_cm1 => value,
-            (Some(&high), Some(&value_high)) if right > 0 => {
-                let (low, value_low) = (self.wavenumbers_cm1[right - 1], self.transmittances[right - 1]);
-                value_low + (value_high - value_low) * ((wavenumber_cm1 - low) / (high - low))
-            }
-            _ => 0.0,
+        let (low, high) = self.support();
+        if !(low..=high).contains(&wavenumber_cm1) {
+            return 0.0;
         }
+        interpolated(&self.wavenumbers_cm1, &self.transmittances, wavenumber_cm1)
     }
 
     pub(super) fn support(&self) -> (f64, f64) {

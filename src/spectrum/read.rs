@@ -50,7 +50,7 @@ fn rows(text: &str) -> Result<Bands> {
         text
     };
     let grid = Grid::parse(text)?;
-    let centers = axis(&grid)?;
+    let centers = grid.wavenumbers_cm1()?;
     let width = grid.header.get(1).map_or("", String::as_str);
     match width {
         "width_cm1" | "width_um" => {}
@@ -80,7 +80,7 @@ fn rows(text: &str) -> Result<Bands> {
 
 fn filters(text: &str) -> Result<Vec<FilterCurve>> {
     let grid = Grid::parse(text)?;
-    let axis = axis(&grid)?;
+    let axis = grid.wavenumbers_cm1()?;
     (1..grid.header.len())
         .map(|column| {
             let name = grid.header[column].clone();
@@ -97,39 +97,6 @@ fn filters(text: &str) -> Result<Vec<FilterCurve>> {
             FilterCurve::new(name.clone(), rows?)
         })
         .collect()
-}
-
-/// Wavenumbers of the rows, cm⁻¹, each only once.
-fn axis(grid: &Grid) -> Result<Vec<f64>> {
-    let name = grid.header.first().map_or("", String::as_str);
-    if !matches!(name, "wavenumber_cm1" | "wavelength_um") {
-        return Err(Error::malformed(
-            format!("a first column `{name}`"),
-            "name it wavenumber_cm1 or wavelength_um",
-        )
-        .for_key(name)
-        .on_line(grid.header_line));
-    }
-    let mut seen: Vec<(f64, usize)> = Vec::new();
-    for (line, cells) in &grid.rows {
-        let value = cells.first().copied().unwrap_or(f64::NAN);
-        let wavenumber = if name == "wavelength_um" { 1e4 / value } else { value };
-        check::positive(name, value, "")
-            .and_then(|_| check::positive("wavenumber", wavenumber, "cm^-1"))
-            .map_err(|error| error.for_key(name).on_line(*line))?;
-        seen.push((wavenumber, *line));
-    }
-    let axis = seen.iter().map(|row| row.0).collect();
-    seen.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-    if let Some(twins) = seen.windows(2).find(|pair| pair[0].0 == pair[1].0) {
-        return Err(Error::malformed(
-            format!("wavenumber {} cm^-1 is there already on line {}", twins[1].0, twins[0].1),
-            "keep one of the two rows",
-        )
-        .for_key(name)
-        .on_line(twins[1].1));
-    }
-    Ok(axis)
 }
 
 #[cfg(test)]

@@ -11,6 +11,7 @@ use crate::fisher::{Counting, Nuisance};
 use crate::identifiability::Status;
 use crate::identifiability::detection;
 use crate::identifiability::multi;
+use crate::instrument::Camera;
 use crate::policy;
 use crate::scenario::DistanceKind;
 use crate::scene::Parameter;
@@ -94,7 +95,13 @@ impl Study {
     /// Counting of the scenario's camera.
     #[must_use]
     pub fn counting(&self) -> Option<Counting> {
-        self.camera.as_ref().map(|camera| camera.counting(&self.bands, self.scenario.target.distance_m))
+        self.camera.as_ref().map(|camera| self.counting_of(camera))
+    }
+
+    /// Counting of a camera that sees the scene from where the scenario's does, through the same bands.
+    #[must_use]
+    pub fn counting_of(&self, camera: &Camera) -> Counting {
+        camera.counting(&self.bands, &self.view_of(camera))
     }
 
     fn pair(&self, alternative: &Surface, work: &mut Work) -> Result<(PairResult, Vec<Warning>)> {

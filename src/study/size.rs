@@ -4,7 +4,7 @@ use super::identify::{PairResult, PhotonsRequired};
 use super::{Check, Study, Surface, Warning, reliability, warn};
 use crate::demand::{Skipping, Thing, Work};
 use crate::error::Result;
-use crate::fisher::{Counting, Nuisance};
+use crate::fisher::Nuisance;
 use crate::identifiability::local::LocalSolver;
 use crate::identifiability::nearest::NearestSolver;
 use crate::identifiability::{Status, detection};
@@ -249,10 +249,9 @@ impl Study {
             _ => None,
         };
         let var: f64 = (0..self.bands.len()).map(|w| counting.var_added(w)).sum();
-        let brightest = signal.iter().copied().fold(0.0, f64::max);
         Some(CameraResult {
             photons,
-            brightest_reading: brightest * counting.counts_per_radiance / f64::from(camera.frames),
+            brightest_reading: camera.brightest_reading(&self.bands, &signal, &self.view_of(camera)),
             noise_counts: (var / self.bands.len() as f64).sqrt(),
             gamma_per_band: gamma,
             etendue_m2_sr: camera.etendue_m2_sr(distance_m),
@@ -261,18 +260,13 @@ impl Study {
             acquisition_s: camera.acquisition_s(self.bands.len()),
             footprint_m: distance_m.map(|z| camera.pixel_m * z / camera.focal_length_m),
             motion_blur_pixels: blur,
-            noise_budget: camera.noise_budget(&self.bands, &signal, distance_m),
+            noise_budget: camera.noise_budget(&self.bands, &signal, &self.view_of(camera)),
             camera: camera.clone(),
         })
     }
 
     fn solutions(&self, camera: &Camera, alternative: &Surface, work: &mut Work) -> Result<Solutions> {
-        let task = solve::CameraTask {
-            camera,
-            bands: &self.bands,
-            distance_m: self.scenario.target.distance_m,
-            required: self.required,
-        };
+        let task = solve::CameraTask { camera, bands: &self.bands, required: self.required };
         let solved: Result<Vec<(Quantity, Solution)>> = Quantity::ALL
             .into_iter()
             .map(|quantity| Ok((quantity, self.solution(&task, quantity, alternative, work)?)))
@@ -296,16 +290,18 @@ impl Study {
                 _ => self.unknowns.clone(),
             };
             let mut solver = LocalSolver::new(&self.bands, &self.surroundings, unknowns.clone());
-            return task.solve(quantity, |counting| {
+            return task.solve(quantity, |camera| {
                 self.book_local(work, &unknowns, 1);
-                solver.with_counting(target, other, &self.state, counting).map(|local| local.distance)
+                let counting = self.counting_of(camera);
+                solver.with_counting(target, other, &self.state, &counting).map(|local| local.distance)
             });
         }
         let mut solver =
             NearestSolver::new(&self.bands, &self.surroundings, self.unknowns.clone(), self.range);
         let mut followed: Option<State> = None;
         for _ in 0..4 {
-            let solution = task.solve(quantity, |counting: &Counting| {
+            let solution = task.solve(quantity, |camera| {
+                let counting = &self.counting_of(camera);
                 let nearest = match &followed {
                     Some(start) => {
                         work.compute(Thing::RefinedSearches, 1);
@@ -320,7 +316,7 @@ impl Study {
                 Ok(nearest.distance)
             })?;
             let Some(value) = solution.value else { return Ok(solution) };
-            let counting = task.forward(quantity, value).counting(task.bands, task.distance_m);
+            let counting = self.counting_of(&task.forward(quantity, value));
             work.compute(Thing::NearestSearches, 1);
             let anew = solver.with_counting(target, other, &self.state, &counting)?;
             if anew.distance >= solution.statistical_distance * (1.0 - SAME) {
@@ -329,7 +325,9 @@ impl Study {
             // Another state is nearer at this noise: follow that one.
             followed = Some(anew.state);
         }
-        task.solve(quantity, |counting| self.statistical_distance(kind, alternative, counting, work))
+        task.solve(quantity, |camera| {
+            self.statistical_distance(kind, alternative, &self.counting_of(camera), work)
+        })
     }
 
     fn verdict(&self, pair: &PairResult, requirement: &RequirementResult) -> Verdict {

@@ -37,14 +37,25 @@ pub fn camera(camera: &Camera, figures: &Figures) -> String {
 }
 
 fn noise(camera: &Camera) -> String {
-    match camera.noise {
+    match &camera.noise {
         NoiseSpec::None => "none".into(),
-        NoiseSpec::Netd { netd_k, temperature_k, .. } => {
-            format!("NETD {} at {}", quantity(netd_k, "K"), celsius(temperature_k))
+        NoiseSpec::Netd { netd_k, temperature_k, f_number, .. } => {
+            format!("NETD {} at {}, f/{f_number}", quantity(*netd_k, "K"), celsius(*temperature_k))
         }
-        NoiseSpec::Detectivity { detectivity_cm_hz05_w } => {
-            format!("D* {detectivity_cm_hz05_w:.2e} cm Hz^0.5/W")
+        NoiseSpec::Detectivity { detectivity_cm_hz05_w, bandwidth_hz } => {
+            format!("D* {detectivity_cm_hz05_w:.2e} cm Hz^0.5/W{}", bandwidth(*bandwidth_hz))
         }
+        NoiseSpec::Nep { nep_w_hz05, bandwidth_hz } => {
+            format!("NEP {nep_w_hz05:.2e} W/Hz^0.5{}", bandwidth(*bandwidth_hz))
+        }
+        NoiseSpec::SpectralRadiance { microflick } => format!("{microflick} uflick"),
         NoiseSpec::Counts { sigma_counts } => format!("{sigma_counts:.2e} counts"),
+        NoiseSpec::Table { wavenumbers_cm1, .. } => {
+            format!("a table of {} wavenumbers", wavenumbers_cm1.len())
+        }
     }
+}
+
+fn bandwidth(hz: Option<f64>) -> String {
+    hz.map_or_else(|| ", bandwidth 1/(2 x exposure)".into(), |hz| format!(" in {}", quantity(hz, "Hz")))
 }

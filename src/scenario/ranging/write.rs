@@ -45,7 +45,7 @@ impl RangeScenario {
             document.push(("bands", Part::Table(bands(spec, paths))));
         }
         if let Some(spec) = &self.camera {
-            document.push(("camera", Part::Table(camera(spec))));
+            document.push(("camera", Part::Table(camera(spec, paths))));
         }
         document.push(("stereo", Part::Table(stereo(&self.stereo))));
         document.push(("requirement", Part::Table(requirement(self.requirement))));

@@ -4,7 +4,7 @@ use super::RangeStudy;
 use super::subject::{Depth, Measured, Rendered, Resolved};
 use crate::error::{Error, Result};
 use crate::fisher::Counting;
-use crate::instrument::Camera;
+use crate::instrument::{Camera, View};
 use crate::material::{Library, Material};
 use crate::ranging::cube::{Cube, Shape};
 use crate::ranging::depth::StereoGeometry;
@@ -110,7 +110,7 @@ fn scene(
             format!("lower scene.size or the number of bands: {MOST_SAMPLES:e} samples fit into memory");
         return Err(at_scene(Error::malformed(found, instead)));
     }
-    let counting = camera.counting(bands, None);
+    let counting = camera.counting(bands, &View::default());
     let noise = camera_noise(&counting, bands.len());
     Ok(Rendered { scene, rig: rig.checked().map_err(at_scene)?, options, counting, noise })
 }
@@ -176,7 +176,7 @@ fn cube(
                 let instead = "write [bands], or noise_variance in [cube]";
                 return Err(at("cube.noise_variance")(Error::malformed(found, instead)));
             };
-            camera_noise(&camera.counting(bands, None), bands.len())
+            camera_noise(&camera.counting(bands, &View::default()), bands.len())
         }
         (None, None) => NoiseVariance::None,
     };

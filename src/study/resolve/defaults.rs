@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 use crate::fisher::Unknowns;
 use crate::identifiability::nearest::StateRange;
 use crate::instrument::{Camera, NoiseSpec};
-use crate::scenario::{MaterialRef, Scenario};
+use crate::scenario::{Efficiency, MaterialRef, Scenario};
 
 pub(super) fn alternatives_as_written(alternatives: &[Surface]) -> Vec<String> {
     alternatives.iter().map(|surface| surface.name.clone()).collect()
@@ -63,21 +63,25 @@ pub(super) fn fill(
                 spec.netd_temperature_k = Some(temperature_k);
                 spec.netd_f_number = Some(f_number);
                 spec.netd_pixel_m = Some(pixel_m);
-                spec.noise_exposure_s = Some(camera.noise_exposure_s);
-            }
-            NoiseSpec::Detectivity { .. } if spec.detectivity_cm_hz05_w.is_some() => {
-                spec.noise_exposure_s = Some(camera.noise_exposure_s);
-            }
-            NoiseSpec::Counts { .. } if spec.noise_electrons.is_some() => {
-                spec.noise_exposure_s = Some(camera.noise_exposure_s);
             }
             _ => {}
+        }
+        if spec.states_noise() {
+            spec.noise_exposure_s = Some(camera.noise_exposure_s);
         }
         spec.exposure_s = Some(camera.exposure_s);
         spec.pixel_m = Some(camera.pixel_m);
         spec.f_number = Some(camera.f_number);
         spec.focal_length_m = Some(camera.focal_length_m);
-        spec.optics_efficiency = Some(camera.optics_efficiency);
+        spec.optics_efficiency.get_or_insert(Efficiency::Number(camera.optics_efficiency));
+        spec.quantum_efficiency.get_or_insert(Efficiency::Number(camera.quantum_efficiency));
+        spec.dark_rate_per_s = Some(camera.dark_rate_per_s);
+        spec.read_noise = Some(camera.read_noise_counts);
+        spec.quantisation_bits = camera.quantisation_bits;
+        spec.photon_bunching = Some(camera.photon_bunching);
+        spec.frame_rate_hz = camera.frame_rate_hz;
+        spec.sensor_temperature_k = camera.sensor_temperature_k;
+        spec.filter_temperature_k = camera.filter_temperature_k;
         spec.flicker_fraction = Some(camera.flicker_fraction);
         spec.full_well = camera.full_well;
         spec.readout = Some(camera.readout);

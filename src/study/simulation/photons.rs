@@ -138,11 +138,9 @@ impl Study {
     /// The same with the noise of `camera`.
     pub(in crate::study) fn counting_with(&self, camera: &Camera, photons: f64) -> Counting {
         let counts_per_radiance = photons / self.photon_radiance();
-        let distance_m = self.scenario.target.distance_m;
         let second = Camera { exposure_s: 1.0, frames: 1, ..camera.clone() };
-        let exposure_s = counts_per_radiance / second.counting(&self.bands, distance_m).counts_per_radiance;
-        let exposed = Camera { exposure_s, ..second };
-        Counting { counts_per_radiance, ..exposed.counting(&self.bands, distance_m) }
+        let exposure_s = counts_per_radiance / self.counting_of(&second).counts_per_radiance;
+        Counting { counts_per_radiance, ..self.counting_of(&Camera { exposure_s, ..second }) }
     }
 
     /// The law of thermal light that is bunched in the modes of each band.
