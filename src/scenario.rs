@@ -37,6 +37,8 @@ pub struct Scenario {
     pub title: Option<String>,
     /// What is there.
     pub target: Target,
+    /// What is behind the target.
+    pub background: Option<Background>,
     /// The surroundings that light the target; may be empty (cold space).
     pub environment: Vec<EnvironmentObject>,
     /// What the target must be told apart from.
@@ -103,6 +105,7 @@ impl PartialEq for Scenario {
     fn eq(&self, other: &Self) -> bool {
         self.title == other.title
             && self.target == other.target
+            && self.background == other.background
             && self.environment == other.environment
             && self.alternatives == other.alternatives
             && self.bands == other.bands
@@ -130,6 +133,19 @@ pub struct Target {
     pub temperature_k: f64,
     /// Its distance from the camera, m; above 0.
     pub distance_m: Option<f64>,
+    /// Side of the target as the camera sees it, m; above 0. One that fills the pixel if none.
+    pub size_m: Option<f64>,
+    /// How its spectrum is continued beyond its data.
+    pub extrapolate: Option<Extrapolation>,
+}
+
+/// What is behind a target that does not fill a pixel (`[background]`); lit as the target is.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Background {
+    /// Its temperature, K; above 0.
+    pub temperature_k: f64,
+    /// Its material; a blackbody if none.
+    pub material: Option<MaterialRef>,
     /// How its spectrum is continued beyond its data.
     pub extrapolate: Option<Extrapolation>,
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use hadar::scenario::{
-    Alternatives, BandSource, BandsSpec, CameraSpec, DistanceKind, Efficiency, EnvironmentObject,
+    Alternatives, Background, BandSource, BandsSpec, CameraSpec, DistanceKind, Efficiency, EnvironmentObject,
     Extrapolation, MaterialRef, Nuisance, Readout, Reliability, Requirement, Scenario, Source, Target,
     Unknown,
 };
@@ -64,8 +64,10 @@ fn the_example_is_the_case_of_the_paper() {
             material: name("skin"),
             temperature_k: 310.15,
             distance_m: Some(30.0),
+            size_m: None,
             extrapolate: None,
         },
+        background: None,
         environment: vec![EnvironmentObject {
             temperature_k: 293.15,
             lighting: 0.5,
@@ -332,6 +334,8 @@ prop_compose! {
     fn scenario()(
         title in proptest::option::of("[^\\p{Cc}]{0,20}[a-z]"),
         target in (material(), above_zero(), proptest::option::of(above_zero()), extrapolate()),
+        behind in proptest::option::of((above_zero(), proptest::option::of(material()), extrapolate())),
+        size_m in proptest::option::of(above_zero()),
         environment in environment(),
         materials in proptest::option::of(proptest::collection::btree_set(material(), 1..4)),
         temperature_range_k in proptest::option::of(ordered(1.0, 1e4)),
@@ -354,9 +358,11 @@ prop_compose! {
             unknown.lighting_total = Some(environment.iter().map(|object| object.lighting).sum::<f64>().min(1.0));
         }
         let materials = materials.map(|set| set.into_iter().collect());
+        let background = behind.map(|(temperature_k, material, extrapolate)| Background { temperature_k, material, extrapolate });
         Scenario {
             title,
-            target: Target { material, temperature_k, distance_m, extrapolate: target_extrapolate },
+            target: Target { material, temperature_k, distance_m, size_m, extrapolate: target_extrapolate },
+            background,
             environment,
             alternatives: Alternatives {
                 materials,

@@ -10,8 +10,8 @@ use toml::Value;
 
 use super::read::is_path;
 use super::{
-    Alternatives, BandSource, BandsSpec, CameraSpec, Efficiency, EnvironmentObject, Extrapolation,
-    MaterialRef, Nuisance, Reliability, Requirement, Scenario, Target, Unknown,
+    Alternatives, Background, BandSource, BandsSpec, CameraSpec, Efficiency, EnvironmentObject,
+    Extrapolation, MaterialRef, Nuisance, Reliability, Requirement, Scenario, Target, Unknown,
 };
 use crate::units::Dimension;
 
@@ -71,6 +71,9 @@ impl Scenario {
             document.push(("title", Part::Value(title.as_str().into())));
         }
         document.push(("target", Part::Table(target(&self.target, paths))));
+        if let Some(behind) = &self.background {
+            document.push(("background", Part::Table(background(behind, paths))));
+        }
         let objects = self.environment.iter().map(|object| environment(object, paths)).collect();
         document.push(("environment", Part::Tables(objects)));
         document.push(("alternatives", Part::Table(alternatives(&self.alternatives, paths))));
@@ -174,7 +177,15 @@ fn target(target: &Target, paths: Paths<'_>) -> Entries {
         .put("material", paths.material(&target.material))
         .put_quantity("temperature", Dimension::Temperature, Some(target.temperature_k))
         .put_quantity("distance", Dimension::Length, target.distance_m)
+        .put_quantity("size", Dimension::Length, target.size_m)
         .put_if("extrapolate", target.extrapolate.map(Extrapolation::name))
+}
+
+fn background(behind: &Background, paths: Paths<'_>) -> Entries {
+    Entries::default()
+        .put_quantity("temperature", Dimension::Temperature, Some(behind.temperature_k))
+        .put_if("material", behind.material.as_ref().map(|material| paths.material(material)))
+        .put_if("extrapolate", behind.extrapolate.map(Extrapolation::name))
 }
 
 fn environment(object: &EnvironmentObject, paths: Paths<'_>) -> Entries {
