@@ -9,8 +9,8 @@ use toml::de::DeTable;
 use super::section::{ABOVE_ZERO, ABSOLUTE_TEMPERATURE, Entry, Rule, SHARE, Section};
 use super::source::LineStarts;
 use super::{
-    Alternatives, BandsSpec, CameraSpec, DistanceKind, EnvironmentObject, Extrapolation, MaterialRef,
-    Nuisance, Reliability, Requirement, Scenario, Source, Target, Unknown,
+    Alternatives, AtmosphereSpec, BandsSpec, CameraSpec, DistanceKind, EnvironmentObject, Extrapolation,
+    MaterialRef, Nuisance, Reliability, Requirement, Scenario, Source, Target, Unknown,
 };
 use crate::error::{Error, Result};
 use crate::units::Dimension;
@@ -20,8 +20,17 @@ const LIGHTING_ROUNDING: f64 = 1e-12;
 /// The longest file taken for a scenario, bytes.
 const LONGEST_FILE: u64 = 1 << 20;
 
-const TABLES: &[&str] =
-    &["title", "target", "environment", "alternatives", "bands", "unknown", "camera", "requirement"];
+const TABLES: &[&str] = &[
+    "title",
+    "target",
+    "environment",
+    "alternatives",
+    "atmosphere",
+    "bands",
+    "unknown",
+    "camera",
+    "requirement",
+];
 
 /// The text of a scenario file.
 pub(super) fn text_of(path: &Path) -> Result<String> {
@@ -67,6 +76,7 @@ pub(super) fn scenario(text: &str, path: Option<&Path>) -> Result<Scenario> {
         target,
         environment: environment(&root, unknown.lighting_total)?,
         alternatives: root.read("alternatives", alternatives)?.unwrap_or_default(),
+        atmosphere: root.read("atmosphere", AtmosphereSpec::read)?,
         bands: root.read("bands", BandsSpec::read)?.unwrap_or_default(),
         unknown,
         camera: root.read("camera", CameraSpec::read)?,
