@@ -15,6 +15,7 @@ use crate::error::{Place, Result};
 pub use crate::fisher::Nuisance;
 pub use crate::material::Extrapolation;
 
+pub mod atmosphere;
 pub mod bands;
 pub mod camera;
 pub mod ranging;
@@ -23,6 +24,7 @@ mod section;
 pub mod source;
 mod write;
 
+pub use atmosphere::{AtmosphereSource, AtmosphereSpec};
 pub use bands::{BandSource, BandsSpec};
 pub use camera::{CameraSpec, Efficiency, Readout};
 pub use ranging::RangeScenario;
@@ -43,6 +45,8 @@ pub struct Scenario {
     pub environment: Vec<EnvironmentObject>,
     /// What the target must be told apart from.
     pub alternatives: Alternatives,
+    /// The air between target and camera; none, if it is not given.
+    pub atmosphere: Option<AtmosphereSpec>,
     /// The spectral bands.
     pub bands: BandsSpec,
     /// What is not known beforehand.
@@ -108,6 +112,7 @@ impl PartialEq for Scenario {
             && self.background == other.background
             && self.environment == other.environment
             && self.alternatives == other.alternatives
+            && self.atmosphere == other.atmosphere
             && self.bands == other.bands
             && self.unknown == other.unknown
             && self.camera == other.camera

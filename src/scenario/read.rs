@@ -9,8 +9,8 @@ use toml::de::DeTable;
 use super::section::{ABOVE_ZERO, ABSOLUTE_TEMPERATURE, Entry, Rule, SHARE, Section};
 use super::source::LineStarts;
 use super::{
-    Alternatives, Background, BandsSpec, CameraSpec, DistanceKind, EnvironmentObject, Extrapolation,
-    MaterialRef, Nuisance, Reliability, Requirement, Scenario, Source, Target, Unknown,
+    Alternatives, AtmosphereSpec, Background, BandsSpec, CameraSpec, DistanceKind, EnvironmentObject,
+    Extrapolation, MaterialRef, Nuisance, Reliability, Requirement, Scenario, Source, Target, Unknown,
 };
 use crate::error::{Error, Result};
 use crate::units::Dimension;
@@ -26,6 +26,7 @@ const TABLES: &[&str] = &[
     "background",
     "environment",
     "alternatives",
+    "atmosphere",
     "bands",
     "unknown",
     "camera",
@@ -77,6 +78,7 @@ pub(super) fn scenario(text: &str, path: Option<&Path>) -> Result<Scenario> {
         background: root.read("background", background)?,
         environment: environment(&root, unknown.lighting_total)?,
         alternatives: root.read("alternatives", alternatives)?.unwrap_or_default(),
+        atmosphere: root.read("atmosphere", AtmosphereSpec::read)?,
         bands: root.read("bands", BandsSpec::read)?.unwrap_or_default(),
         unknown,
         camera: root.read("camera", CameraSpec::read)?,
