@@ -1,7 +1,7 @@
 //! What results rest on, and what their reader must know.
 
-use super::numbers::listed;
-use crate::scenario::{Nuisance, Unknown};
+use super::numbers::{celsius, listed, quantity};
+use crate::scenario::{AtmosphereSource, Nuisance, Unknown};
 use crate::study::{Identification, Study, Warning};
 use std::fmt::Write as _;
 
@@ -51,9 +51,20 @@ pub(super) fn assumptions(study: &Study, counts: &str) -> String {
         "  {count} band{} centred from {low} to {high} cm^-1",
         if count == 1 { "" } else { "s" }
     );
-    out.push_str(
-        "  opaque Lambertian target that fills the pixel, one scattering, no atmosphere on the path\n",
-    );
+    let fills = match (scenario.target.size_m, &scenario.background) {
+        (Some(size), Some(behind)) => {
+            format!("of {} in front of {}", quantity(size, "m"), celsius(behind.temperature_k))
+        }
+        _ => "that fills the pixel".to_owned(),
+    };
+    let air = match &scenario.atmosphere {
+        None => "no atmosphere on the path".to_owned(),
+        Some(spec) => match &spec.source {
+            AtmosphereSource::Model(name) => format!("air `{name}` on the path, without aerosol"),
+            AtmosphereSource::Table(_) => "air of a table on the path".to_owned(),
+        },
+    };
+    let _ = writeln!(out, "  opaque Lambertian target {fills}, one scattering, {air}");
     let _ = writeln!(out, "  {counts}");
     let skies = study.skies_left_out();
     if !skies.is_empty() {
