@@ -15,6 +15,7 @@
 //!
 //! Source: paper S7–S16, Tables S1 and S2, Methods 'Guiding public policy'.
 
+pub mod bunching;
 pub mod noise;
 pub mod presets;
 
