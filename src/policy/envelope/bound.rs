@@ -17,7 +17,7 @@ use super::cell::{Cell, Node, PAIRS, RANK, Vector};
 use super::model::SOURCES;
 
 /// Columns of A: temperature, v, w of each source.
-const COLUMNS: usize = 3 * SOURCES;
+pub(super) const COLUMNS: usize = 3 * SOURCES;
 /// Steps of the search for the nearest point of the linear model.
 const STEPS: usize = 16;
 /// Share of the separation in the middle below which the linear model is taken to reach the origin.
@@ -86,7 +86,8 @@ impl Cell {
             }
         }
         let mut point = middle;
-        let gram = Gram::new(&columns[..3 * sources], &middle);
+        let gram =
+            Gram::new(3 * sources, |i, j| dot(&columns[i], &columns[j]), |i| dot(&columns[i], &middle));
         let x = gram.nearest();
         for (x, column) in x.iter().zip(&columns) {
             add(&mut point, *x, column);
@@ -196,7 +197,7 @@ impl Cell {
 }
 
 /// Normal equations of the linear model, of its columns that are not zero.
-struct Gram {
+pub(super) struct Gram {
     square: [[f64; COLUMNS]; COLUMNS],
     pull: [f64; COLUMNS],
     columns: [usize; COLUMNS],
@@ -204,23 +205,26 @@ struct Gram {
 }
 
 impl Gram {
-    fn new(columns: &[Vector], middle: &Vector) -> Self {
+    /// Of `columns` columns, from their inner products with each other and with the middle.
+    #[inline(always)]
+    pub(super) fn new(
+        columns: usize,
+        inner: impl Fn(usize, usize) -> f64,
+        middle: impl Fn(usize) -> f64,
+    ) -> Self {
         let (mut square, mut pull) = ([[0.0; COLUMNS]; COLUMNS], [0.0; COLUMNS]);
         let (mut used, mut count) = ([0; COLUMNS], 0);
-        for (i, column) in columns.iter().enumerate() {
-            let own = dot(column, column);
+        for i in 0..columns {
+            let own = inner(i, i);
             if own > 0.0 {
                 square[i][i] = own;
-                pull[i] = dot(column, middle);
+                pull[i] = middle(i);
+                for &j in &used[..count] {
+                    let value = inner(i, j);
+                    (square[i][j], square[j][i]) = (value, value);
+                }
                 used[count] = i;
                 count += 1;
-            }
-        }
-        for a in 0..count {
-            for b in 0..a {
-                let (i, j) = (used[a], used[b]);
-                let value = dot(&columns[i], &columns[j]);
-                (square[i][j], square[j][i]) = (value, value);
             }
         }
         Self { square, pull, columns: used, count }
@@ -229,7 +233,7 @@ impl Gram {
     /// x with |x_i| ≤ 1 that brings middle + Σxᵢ columnᵢ nearest to the origin: an active set (Stark and Parker,
     /// Comput. Stat. 10, 129 (1995)). Coefficients that come to a bound are held there; when the others have come to
     /// rest, the one that is pulled back most is let go.
-    fn nearest(&self) -> [f64; COLUMNS] {
+    pub(super) fn nearest(&self) -> [f64; COLUMNS] {
         let (mut x, mut held) = ([0.0; COLUMNS], [false; COLUMNS]);
         let mut slope = self.pull;
         let columns = &self.columns[..self.count];
@@ -285,15 +289,15 @@ impl Gram {
         for a in 0..n {
             for b in 0..=a {
                 let mut value = self.square[free[a]][free[b]] * scale[a] * scale[b];
-                for k in 0..b {
-                    value -= factor[a][k] * factor[b][k];
+                for (x, y) in factor[a].iter().zip(&factor[b]).take(b) {
+                    value -= x * y;
                 }
                 // A little is added to the diagonal: columns may be dependent.
                 factor[a][b] = if a == b { (value + 1e-12).max(1e-13).sqrt() } else { value / factor[b][b] };
             }
             let mut value = -slope[free[a]] * scale[a];
-            for k in 0..a {
-                value -= factor[a][k] * y[k];
+            for (x, y) in factor[a].iter().zip(&y).take(a) {
+                value -= x * y;
             }
             y[a] = value / factor[a][a];
         }

@@ -163,7 +163,7 @@ impl Cell {
                 remove(&mut next, known);
             }
             let norm = dot(&next, &next).sqrt();
-            if !(norm > 0.0) {
+            if norm <= 0.0 {
                 continue;
             }
             next.iter_mut().for_each(|x| *x /= norm);
