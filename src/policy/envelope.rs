@@ -23,6 +23,7 @@ mod attain;
 mod bound;
 mod cell;
 mod joint;
+mod linear;
 mod model;
 mod partition;
 mod prove;

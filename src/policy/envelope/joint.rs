@@ -5,7 +5,7 @@
 //! same bounded linear problem as that of a bound. Unlike a descent over scenes alone it follows narrow valleys
 //! that run across scene and state.
 
-use super::bound::{COLUMNS, Gram};
+use super::linear::{COLUMNS, Gram};
 use super::model::{Model, Region, SOURCES};
 use super::series::planck_series;
 use crate::sum::dot;

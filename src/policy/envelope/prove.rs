@@ -80,7 +80,7 @@ pub(super) fn prove(
     let distance = attained.distance;
     let cells: Vec<Cell> = parts
         .into_par_iter()
-        .map(|part| (part.bound, Cell::new(model, part.region, &part.variance, distance)))
+        .map(|part| (part.bound, Cell::new(model, &part, distance)))
         .collect::<Vec<_>>()
         .into_iter()
         .map(|(bound, cell)| {
