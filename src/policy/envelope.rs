@@ -156,9 +156,11 @@ pub fn worst_case(scene: &EnvelopeScene<'_>, ranges: &Ranges, effort: &Effort) -
     if attained.distance == 0.0 {
         return Ok(WorstCase::new(attained, Some(0.0), Certificate::Equilibrium));
     }
-    let Some(joint) = joint else {
+    let Some(mut joint) = joint else {
         return Ok(WorstCase::new(attained, None, Certificate::DenseSearch { points }));
     };
+    let best = joint::residual(&joint.0, &joint.0.point(&attained.state, &attained.nearest));
+    joint.0.lean([&best.target, &best.alternative]);
     let proof = prove::prove(&joint, ranges, effort, attained)?;
     let gap = 1.0 - proof.lower_bound / proof.attained.distance;
     let proved = gap <= effort.relative_tolerance;

@@ -11,12 +11,14 @@
 //! by its second derivatives alone. *Any* u gives a valid bound: how well the nearest point is solved for matters for
 //! tightness alone.
 //!
-//! Split is along what bends u·Δ, or moves it, most.
+//! Split is along what bends u·Δ, moves it, or changes the variance most.
 
 use super::cell::{Cell, Node, PAIRS, RANK, Vector};
 use super::linear::{COLUMNS, Factor, Gram};
 use super::model::SOURCES;
 
+/// About how fast Planck's function grows with temperature, both relative.
+const GROWTH: f64 = 5.0;
 /// Share of the separation in the middle below which the linear model is taken to reach the origin.
 const REACHED: f64 = 1e-9;
 
@@ -120,13 +122,33 @@ impl Cell {
         for s in 0..sources {
             total += self.least(cube, s, &u, &mut weight);
         }
-        cube.split = self.best_split(cube, |i| weight[i]);
         if total > 0.0 {
+            let spread = along(&variance, &u);
+            self.weigh_variance(cube, &u, 0.5 * total / spread, &mut weight);
             // A denominator some hundred roundings too large, never too small.
-            let bound = total / (along(&variance, &u).sqrt() * (1.0 + 1e-13));
+            let bound = total / (spread.sqrt() * (1.0 + 1e-13));
             if bound > cube.bound {
                 cube.bound = bound;
             }
+        }
+        cube.split = self.best_split(cube, |i| weight[i]);
+    }
+
+    /// Adds what the ranges account for by the variance at their upper ends being too large within them.
+    #[inline(always)]
+    fn weigh_variance(&self, cube: &Cube, u: &Vector, scale: f64, weight: &mut [f64; COLUMNS]) {
+        for s in 0..self.sources.len() {
+            let node = self.node_of(cube, s);
+            let (own, other) = (cube.own[s], cube.other[s]);
+            let share = scale * along(&node.own_spread, u);
+            weight[3 * s + 1] += share * (own[1] - own[0]);
+            let mut seen = share * own[1];
+            if other[1] > 0.0 {
+                let share = scale * along(&node.other_spread, u);
+                weight[3 * s + 2] += share * (other[1] - other[0]);
+                seen += share * other[1];
+            }
+            weight[3 * s] += seen * GROWTH * (node.t[1] - node.t[0]) / node.t[1];
         }
     }
 

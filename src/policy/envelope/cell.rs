@@ -5,10 +5,11 @@
 //! cell. Neither c nor Q is an approximation in a bound: for *any* weights z of the bands and any upper bounds ĉ of the
 //! variances,
 //!
-//! d(θ, θ′) ≥ Σ z_w ω_w(N − N′)_w / √(Σ z_w² ĉ_w/c_w),   ĉ_w = ½(N + N′)_w + v_w at the upper ends of a box,
+//! d(θ, θ′) ≥ Σ z_w ω_w(N − N′)_w / √(Σ z_w² ĉ_w/c_w),   ĉ = ¼(1 + s)(N + v) + ¼(1 + 1/s)(N′ + v) at the upper ends of a box,
 //!
-//! because |√(N+v) − √(N′+v)| = |N − N′|/(√(N+v) + √(N′+v)) ≥ |N − N′|/(2√ĉ) (the root is concave, N grows with every
-//! temperature and lighting factor) and by Cauchy and Schwarz. With z = Qu the numerator is u·Qᵀω(N − N′), for which
+//! by Cauchy and Schwarz and because √(N+v) − √(N′+v) = (N − N′)/(√(N+v) + √(N′+v)), where (√a + √b)²/4 ≤ ĉ for any s > 0
+//! (2√(ab) ≤ sa + b/s; best where s² = b/a, which is taken from the best scene known), and N and N′ grow with every
+//! temperature and lighting factor. With z = Qu the numerator is u·Qᵀω(N − N′), for which
 //! Qᵀω f(T) is kept as a cubic with its remainder (`series`), and the denominator √(uᵀMu), M = Σ_w q_w q_wᵀ ĉ_w/c_w. A
 //! basis or weights that are not the best lose only in the second order of what they miss.
 //!
@@ -97,7 +98,9 @@ impl Cell {
             slack: 0.0,
         };
         cell.span_samples(model, &part.skew, LEFT_OVER * attained);
-        cell.var_spread = cell.spread(&model.var);
+        let shares = model.shares[0].iter().zip(&model.shares[1]);
+        let var: Vec<f64> = model.var.iter().zip(shares).map(|(v, (a, b))| v * (a + b)).collect();
+        cell.var_spread = cell.spread(&var);
         let mut size = 0.0;
         for s in 0..cell.region.len().min(SOURCES) {
             let Span { t, own, other } = cell.region[s];
@@ -220,10 +223,15 @@ impl Cell {
 
     fn spreads(&self, model: &Model<'_>, s: usize, temperature_k: f64) -> [Box<[f64; PAIRS]>; 2] {
         let (source, radiance) = (&model.sources[s], model.radiance(temperature_k));
-        let both: Vec<f64> =
-            source.target.iter().zip(&source.alternative).map(|(a, b)| 0.5 * (a + b)).collect();
-        let alone: Vec<f64> = source.alone.iter().map(|a| 0.5 * a).collect();
-        [both, alone].map(|strength| self.spread(&model.counts(&strength, &radiance)))
+        let [target, alternative, alone] = [&source.target, &source.alternative, &source.alone]
+            .map(|strength| model.counts(strength, &radiance));
+        let [share, other_share] = &model.shares;
+        let sum = |a: &[f64], b: &[f64]| -> Vec<f64> {
+            let terms = a.iter().zip(share).zip(b.iter().zip(other_share));
+            terms.map(|((a, share), (b, other))| a * share + b * other).collect()
+        };
+        let nothing = vec![0.0; alone.len()];
+        [self.spread(&sum(&target, &alternative)), self.spread(&sum(&nothing, &alone))]
     }
 
     fn node(&self, model: &Model<'_>, s: usize, t: [f64; 2], top: [Box<[f64; PAIRS]>; 2]) -> Node {

@@ -25,9 +25,11 @@ pub(super) struct Point {
     pub(super) values: [[f64; 3]; SOURCES],
 }
 
-/// Residual of a point, and its derivatives if asked for.
-struct Residual {
-    square: f64,
+/// Counts and residual of a point, and its derivatives.
+pub(super) struct Residual {
+    pub(super) target: Vec<f64>,
+    pub(super) alternative: Vec<f64>,
+    pub(super) square: f64,
     rows: Vec<f64>,
     columns: Vec<Vec<f64>>,
 }
@@ -92,7 +94,7 @@ pub(super) fn descend(model: &Model<'_>, whole: &Region, mut point: Point) -> (P
     (point, at.square.sqrt())
 }
 
-fn residual(model: &Model<'_>, point: &Point) -> Residual {
+pub(super) fn residual(model: &Model<'_>, point: &Point) -> Residual {
     let bands = model.var.len();
     let (mut target, mut alternative, mut apart) = (vec![0.0; bands], vec![0.0; bands], vec![0.0; bands]);
     // Derivatives of N and of N′.
@@ -127,5 +129,5 @@ fn residual(model: &Model<'_>, point: &Point) -> Residual {
             .map(|band| 0.5 * (own[band] * safe(root[band]) - other[band] * safe(other_root[band])))
             .collect()
     });
-    Residual { square: dot(&rows, &rows), columns: columns.collect(), rows }
+    Residual { square: dot(&rows, &rows), columns: columns.collect(), rows, target, alternative }
 }

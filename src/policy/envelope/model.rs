@@ -52,6 +52,8 @@ pub(super) struct Model<'a> {
     pub(super) sources: Vec<Source>,
     pub(super) var: Vec<f64>,
     lighting_unknown: bool,
+    /// Shares of N and N′ in the bound of a variance, band by band: ¼(1 + s) and ¼(1 + 1/s).
+    pub(super) shares: [Vec<f64>; 2],
     /// Largest sum of V and of V′.
     pub(super) sums: [f64; 2],
 }
@@ -117,17 +119,10 @@ impl<'a> Model<'a> {
                 region.push(span(t, v, [0.0; 2]));
             }
         }
-        let var = (0..scene.bands.len()).map(|band| scene.counting.var_added(band)).collect();
-        (
-            Self {
-                scene: *scene,
-                sources,
-                var,
-                lighting_unknown: own_v,
-                sums: [1.0, scene.range.lighting_sum],
-            },
-            region,
-        )
+        let var: Vec<f64> = (0..scene.bands.len()).map(|band| scene.counting.var_added(band)).collect();
+        let shares = [vec![0.5; var.len()], vec![0.5; var.len()]];
+        let sums = [1.0, scene.range.lighting_sum];
+        (Self { scene: *scene, sources, var, lighting_unknown: own_v, shares, sums }, region)
     }
 
     /// Counts of every band for a spectrum that is `strength` times `radiance` at the nodes.
@@ -143,6 +138,16 @@ impl<'a> Model<'a> {
         let mut radiance = vec![0.0; nodes.len()];
         planck::photon_radiance_into(nodes, temperature_k, &mut radiance);
         radiance
+    }
+
+    /// Takes the ratio s² = (N′+v)/(N+v) of every band from a point: bounds are tightest where it is right.
+    pub(super) fn lean(&mut self, counts: [&[f64]; 2]) {
+        for (band, v) in self.var.iter().enumerate() {
+            let [target, alternative] = counts.map(|counts| counts[band] + v);
+            let usable = target > 0.0 && alternative > 0.0;
+            let s = if usable { (alternative / target).sqrt().clamp(1e-3, 1e3) } else { 1.0 };
+            (self.shares[0][band], self.shares[1][band]) = (0.25 * (1.0 + s), 0.25 * (1.0 + 1.0 / s));
+        }
     }
 
     /// Scene and alternative's state as values of the sources.
