@@ -63,6 +63,22 @@ impl Factor {
     }
 }
 
+/// A sum of factors as a row of the linear model: nothing where it holds anyway.
+#[derive(Default)]
+pub(super) struct Limit {
+    pub(super) row: [f64; COLUMNS],
+    pub(super) middle: f64,
+    pub(super) stiffness: f64,
+}
+
+impl Limit {
+    /// The multiplier of the sum, not negative.
+    pub(super) fn price(&self, x: &[f64; COLUMNS]) -> f64 {
+        let row: f64 = self.row.iter().zip(x).map(|(row, x)| row * x).sum();
+        (self.stiffness * (self.middle + row)).max(0.0)
+    }
+}
+
 /// Normal equations of the linear model, of its columns that are not zero.
 pub(super) struct Gram {
     square: [[f64; COLUMNS]; COLUMNS],
