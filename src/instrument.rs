@@ -17,13 +17,17 @@
 //! Source: paper S7–S16, Tables S1 and S2, Methods 'Guiding public policy'.
 
 pub mod budget;
+pub mod comparison;
 pub mod efficiency;
+pub mod equivalents;
 pub mod noise;
 pub mod presets;
 pub mod view;
 
 pub use budget::NoiseLine;
+pub use comparison::Comparison;
 pub use efficiency::EfficiencyCurve;
+pub use equivalents::Equivalents;
 pub use noise::NoiseSpec;
 pub use view::{Light, View};
 

@@ -3,6 +3,7 @@
 mod apart;
 mod bands;
 mod camera;
+mod compare;
 mod exact;
 mod footing;
 mod many;
@@ -11,7 +12,8 @@ mod pairs;
 mod simulation;
 mod work;
 
-pub use camera::camera;
+pub use camera::{camera, cameras};
+pub use compare::{comparison, comparison_sentence};
 pub use many::{answers, check};
 pub use numbers::{quantity, significant};
 pub use simulation::simulation;
