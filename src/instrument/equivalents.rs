@@ -210,7 +210,7 @@ impl Camera {
         let var = crate::sum::sum(&var);
         let sigma_counts = (var / bands.len() as f64).sqrt();
         let temperature_k = camera.reference_temperature_k;
-        let photons = photons(&camera, &bands, temperature_k);
+        let photons = camera.figures()?.photons;
         let slope = camera.counts_per_kelvin(temperature_k);
         let mid = band_at(&camera, mid_cm1)?;
         let sigma_mid = one_band(&camera, &mid);
@@ -276,13 +276,6 @@ fn one_watt(camera: &Camera, band: &Bands) -> f64 {
 fn one_microflick(camera: &Camera, band: &Bands) -> f64 {
     let noise = NoiseSpec::SpectralRadiance { microflick: 1.0 };
     one_band(&Camera { noise, ..camera.clone() }, band)
-}
-
-/// Photons of a blackbody in all bands.
-fn photons(camera: &Camera, bands: &Bands, temperature_k: f64) -> f64 {
-    let mut radiance = vec![0.0; bands.nodes_cm1().len()];
-    planck::photon_radiance_into(bands.nodes_cm1(), temperature_k, &mut radiance);
-    camera.counts_per_radiance(bands, &View::default()) * crate::sum::sum(&bands.weigh(&radiance))
 }
 
 /// dN/dT of a single band, counts per K.

@@ -12,21 +12,26 @@ const SAME: f64 = 5e-4;
 /// Which one collects more photons, which has less noise, and what that means for the distance d.
 #[must_use]
 pub fn comparison_sentence(both: &SideBySide) -> String {
-    let (a, b) = (&both.a.preset.name, &both.b.preset.name);
-    let Some(ratios) = &both.comparison else { return incomplete(&both.a, &both.b) };
-    let same_time = match same(ratios.a.acquisition_s / ratios.b.acquisition_s) {
-        true => String::new(),
-        false => format!(", in the time of the slower one {} times", times(ratios.distance_in_same_time)),
-    };
+    let (a, b) = (both.a.preset.name.as_str(), both.b.preset.name.as_str());
     if a == b {
         return format!("{a} is compared with itself: all ratios are 1.");
     }
+    let Some(ratios) = &both.comparison else { return incomplete(&both.a, &both.b) };
+    // The one that tells more apart comes first, whichever of the two it is.
+    let (better, worse, sign) = if ratios.distance < 1.0 { (a, b, -1) } else { (b, a, 1) };
+    let same_time = match same(ratios.a.acquisition_s / ratios.b.acquisition_s) {
+        true => String::new(),
+        false => format!(
+            ", in the time of the slower one {} times",
+            times(ratios.distance_in_same_time.powi(sign))
+        ),
+    };
     format!(
         "In one acquisition {}, and {}. In a scene of 300 K a pair whose spectra differ little has {} times the distance d \
-         with {b} that it has with {a}{same_time}.",
+         with {better} that it has with {worse}{same_time}.",
         photons(ratios.photons, a, b),
         noises(ratios, a, b),
-        times(ratios.distance),
+        times(ratios.distance.powi(sign)),
     )
 }
 
