@@ -160,10 +160,11 @@ fn figures(sheet: &Sheet) -> String {
             taken(preset.quantum_efficiency, camera.map(|camera| camera.quantum_efficiency), &plain),
         ),
         ("noise", noise(preset)),
+        (
+            "flicker share of noise variance",
+            taken(preset.flicker_fraction, camera.map(|camera| camera.flicker_fraction), &plain),
+        ),
     ];
-    if let Some(share) = preset.flicker_fraction.or(camera.map(|camera| camera.flicker_fraction)) {
-        rows.push(("flicker share of noise variance", format!("{share}")));
-    }
     if let Some(rate) = preset.dark_rate_per_s {
         rows.push(("dark counts", format!("{} per s", significant(rate, 3))));
     }
