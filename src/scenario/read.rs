@@ -9,8 +9,8 @@ use toml::de::DeTable;
 use super::section::{ABOVE_ZERO, ABSOLUTE_TEMPERATURE, Entry, Rule, SHARE, Section};
 use super::source::LineStarts;
 use super::{
-    Alternatives, BandsSpec, CameraSpec, DistanceKind, EnvironmentObject, Extrapolation, MaterialRef,
-    Nuisance, Reliability, Requirement, Scenario, Source, Target, Unknown,
+    Alternatives, AtmosphereSpec, Background, BandsSpec, CameraSpec, DistanceKind, EnvironmentObject,
+    Extrapolation, MaterialRef, Nuisance, Reliability, Requirement, Scenario, Source, Target, Unknown,
 };
 use crate::error::{Error, Result};
 use crate::units::Dimension;
@@ -20,8 +20,18 @@ const LIGHTING_ROUNDING: f64 = 1e-12;
 /// The longest file taken for a scenario, bytes.
 const LONGEST_FILE: u64 = 1 << 20;
 
-const TABLES: &[&str] =
-    &["title", "target", "environment", "alternatives", "bands", "unknown", "camera", "requirement"];
+const TABLES: &[&str] = &[
+    "title",
+    "target",
+    "background",
+    "environment",
+    "alternatives",
+    "atmosphere",
+    "bands",
+    "unknown",
+    "camera",
+    "requirement",
+];
 
 /// The text of a scenario file.
 pub(super) fn text_of(path: &Path) -> Result<String> {
@@ -65,8 +75,10 @@ pub(super) fn scenario(text: &str, path: Option<&Path>) -> Result<Scenario> {
     let mut scenario = Scenario {
         title: root.read("title", |entry| Ok(entry.text("\"Person or robot?\"")?.to_owned()))?,
         target,
+        background: root.read("background", background)?,
         environment: environment(&root, unknown.lighting_total)?,
         alternatives: root.read("alternatives", alternatives)?.unwrap_or_default(),
+        atmosphere: root.read("atmosphere", AtmosphereSpec::read)?,
         bands: root.read("bands", BandsSpec::read)?.unwrap_or_default(),
         unknown,
         camera: root.read("camera", CameraSpec::read)?,
@@ -96,13 +108,25 @@ pub(super) fn parse<'t>(text: &'t str, source: &Source) -> Result<DeTable<'t>> {
 }
 
 fn target(entry: &Entry<'_>) -> Result<Target> {
-    let section = entry.section(&["material", "temperature", "distance", "extrapolate"])?;
+    let section = entry.section(&["material", "temperature", "distance", "size", "extrapolate"])?;
     Ok(Target {
         material: material(&section.require("material", "\"skin\"")?)?,
         temperature_k: section
             .require("temperature", "\"37 degC\"")?
             .quantity(Dimension::Temperature, ABSOLUTE_TEMPERATURE)?,
         distance_m: section.quantity("distance", Dimension::Length, ABOVE_ZERO)?,
+        size_m: section.quantity("size", Dimension::Length, ABOVE_ZERO)?,
+        extrapolate: extrapolation(&section)?,
+    })
+}
+
+fn background(entry: &Entry<'_>) -> Result<Background> {
+    let section = entry.section(&["temperature", "material", "extrapolate"])?;
+    Ok(Background {
+        temperature_k: section
+            .require("temperature", "\"15 degC\"")?
+            .quantity(Dimension::Temperature, ABSOLUTE_TEMPERATURE)?,
+        material: section.read("material", material)?,
         extrapolate: extrapolation(&section)?,
     })
 }
