@@ -3,6 +3,7 @@
 mod apart;
 mod bands;
 mod camera;
+mod camera_list;
 mod compare;
 mod exact;
 mod footing;
@@ -12,7 +13,8 @@ mod pairs;
 mod simulation;
 mod work;
 
-pub use camera::{camera, cameras};
+pub use camera::camera;
+pub use camera_list::cameras;
 pub use compare::{comparison, comparison_sentence};
 pub use many::{answers, check};
 pub use numbers::{quantity, significant};
