@@ -18,13 +18,17 @@
 
 pub mod budget;
 pub mod bunching;
+pub mod comparison;
 pub mod efficiency;
+pub mod equivalents;
 pub mod noise;
 pub mod presets;
 pub mod view;
 
 pub use budget::NoiseLine;
+pub use comparison::Comparison;
 pub use efficiency::EfficiencyCurve;
+pub use equivalents::Equivalents;
 pub use noise::NoiseSpec;
 pub use view::{Light, View};
 
