@@ -21,6 +21,7 @@ pub mod camera;
 pub mod ranging;
 mod read;
 mod section;
+pub mod sensitivity;
 pub mod source;
 mod write;
 
@@ -28,6 +29,7 @@ pub use atmosphere::{AtmosphereSource, AtmosphereSpec};
 pub use bands::{BandSource, BandsSpec};
 pub use camera::{CameraSpec, Efficiency, Readout};
 pub use ranging::RangeScenario;
+pub use sensitivity::SensitivitySpec;
 pub use source::Source;
 
 /// Everything a scenario file says, defaults filled in.
@@ -55,6 +57,8 @@ pub struct Scenario {
     pub camera: Option<CameraSpec>,
     /// How reliably, and at which speed.
     pub requirement: Requirement,
+    /// How wrong the emissivities may be; the defaults of [`SensitivitySpec`] where it is not given.
+    pub sensitivity: Option<SensitivitySpec>,
     /// Where it was read from.
     pub source: Source,
 }
@@ -117,6 +121,7 @@ impl PartialEq for Scenario {
             && self.unknown == other.unknown
             && self.camera == other.camera
             && self.requirement == other.requirement
+            && self.sensitivity == other.sensitivity
     }
 }
 

@@ -96,6 +96,7 @@ fn the_example_is_the_case_of_the_paper() {
             by: DistanceKind::Nearest,
             speed_m_s: Some(13.4112),
         },
+        sensitivity: None,
         source: Source::default(),
     };
     assert_eq!(scenario, expected);
@@ -395,6 +396,7 @@ prop_compose! {
             unknown,
             camera,
             requirement: Requirement { reliability, by, speed_m_s },
+            sensitivity: None,
             source: Source::default(),
         }
     }

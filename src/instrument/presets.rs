@@ -168,11 +168,17 @@ impl Missing {
                 format!("write {key} = {}", self.example),
             ),
         };
-        Error::malformed(found, instead).for_key(self.key)
+        Error::malformed(found, instead)
     }
 }
 
 impl Preset {
+    /// Whether its noise is one of a bandwidth, D* or NEP, so that its conditions are those of another value of it too.
+    #[must_use]
+    pub fn bandwidth_is_stated(&self) -> bool {
+        matches!(self.noise, Some(StatedNoise::Detectivity { .. } | StatedNoise::Nep { .. }))
+    }
+
     /// The camera with these figures, what stands for missing ones listed in [`Camera::assumed`].
     ///
     /// # Errors

@@ -10,7 +10,8 @@ use super::section::{ABOVE_ZERO, ABSOLUTE_TEMPERATURE, Entry, Rule, SHARE, Secti
 use super::source::LineStarts;
 use super::{
     Alternatives, AtmosphereSpec, Background, BandsSpec, CameraSpec, DistanceKind, EnvironmentObject,
-    Extrapolation, MaterialRef, Nuisance, Reliability, Requirement, Scenario, Source, Target, Unknown,
+    Extrapolation, MaterialRef, Nuisance, Reliability, Requirement, Scenario, SensitivitySpec, Source,
+    Target, Unknown,
 };
 use crate::error::{Error, Result};
 use crate::units::Dimension;
@@ -31,6 +32,7 @@ const TABLES: &[&str] = &[
     "unknown",
     "camera",
     "requirement",
+    "sensitivity",
 ];
 
 /// The text of a scenario file.
@@ -83,6 +85,7 @@ pub(super) fn scenario(text: &str, path: Option<&Path>) -> Result<Scenario> {
         unknown,
         camera: root.read("camera", CameraSpec::read)?,
         requirement: root.read("requirement", requirement)?.unwrap_or_default(),
+        sensitivity: root.read("sensitivity", SensitivitySpec::read)?,
         source: Source::default(),
     };
     scenario.source = source;

@@ -87,6 +87,9 @@ impl Scenario {
             document.push(("camera", Part::Table(camera(spec, paths))));
         }
         document.push(("requirement", Part::Table(requirement(&self.requirement))));
+        if let Some(spec) = self.sensitivity {
+            document.push(("sensitivity", Part::Table(spec.entries())));
+        }
         document
     }
 }
