@@ -191,7 +191,10 @@ fn files_that_are_not_there_or_are_folders_are_named() {
         ),
         (vec!["materials", "plot", "skin"], "there is no folder to draw into; add --out DIR"),
         (vec!["materials", "plot", "skn", "--out", "drawn"], "there is no material `skn`"),
-        (vec!["cameras", "show", "flir-a325"], "there is no camera `flir-a325`; did you mean `flir-a325sc`?"),
+        (
+            vec!["cameras", "show", "flir-a325"],
+            "there is no camera `flir-a325`; the nearest are `flir-a325sc`",
+        ),
     ] {
         let folder = Folder::with(SCENARIO);
         folder.file("empty.toml", "");
