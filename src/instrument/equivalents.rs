@@ -173,7 +173,7 @@ pub fn nesr_of_sigma(camera: &Camera, sigma_counts: f64, wavenumber_cm1: f64) ->
 ///
 /// ```
 /// let (all, slope) = hadar::instrument::equivalents::blackbody_microflick(10.0, 300.0);
-/// assert!((all - 992.0).abs() < 1.0 && (1e3 / slope - 62.54).abs() < 0.01);
+/// assert!((all - 992.0).abs() < 1.0 && (1e3 / slope - 62.51).abs() < 0.01);
 /// ```
 #[must_use]
 pub fn blackbody_microflick(wavelength_um: f64, temperature_k: f64) -> (f64, f64) {
