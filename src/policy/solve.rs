@@ -55,6 +55,8 @@ pub struct CameraTask<'a> {
     pub required: f64,
     /// Distance of the target, m; infinitely far where `None`.
     pub distance_m: Option<f64>,
+    /// Side of the target, m; it fills the pixel, however large, where `None`.
+    pub size_m: Option<f64>,
 }
 
 impl CameraTask<'_> {
@@ -82,8 +84,12 @@ impl CameraTask<'_> {
         }
         // d as a function of how much better the quantity is than the camera's, as a logarithm.
         let mut at = |log: f64| distance(&self.forward(quantity, self.scaled(quantity, log.exp())));
-        let fastest = quantity == Quantity::FNumber;
-        let best = if fastest { (self.camera.f_number / FASTEST_F_NUMBER).ln() } else { LOG_RANGE };
+        let best = match quantity {
+            Quantity::FNumber => (self.camera.f_number / FASTEST_F_NUMBER).ln(),
+            // A larger pixel sees more of what is behind the target, not more of the target.
+            Quantity::Pixel => self.filled_pixel_m().map_or(LOG_RANGE, |pixel| (pixel / camera).ln()),
+            _ => LOG_RANGE,
+        };
         let ceiling = at(best)?;
         if ceiling < self.required {
             let reason = match quantity {
@@ -93,6 +99,7 @@ impl CameraTask<'_> {
                     "flicker noise grows as fast as the signal: no exposure is long enough".into()
                 }
                 Quantity::Noise => "shot noise alone is too much: no detector is quiet enough".into(),
+                _ if self.size_m.is_some() => "the largest pixel that the target fills is too small".into(),
                 _ => "no pixel is large enough".into(),
             };
             return Ok(Solution::new(None, camera, ceiling, Some(reason)));
@@ -148,6 +155,11 @@ impl CameraTask<'_> {
         let value = exposure.value.map(|exposure_s| motion.fastest_m_s(self.time_s(exposure_s)));
         let reason = exposure.reason.map(|reason| format!("not even at rest: {reason}"));
         Ok(Solution::new(value, camera, exposure.statistical_distance, reason))
+    }
+
+    /// Side of the largest pixel that the target fills, m.
+    fn filled_pixel_m(&self) -> Option<f64> {
+        Some(self.size_m? * self.camera.focal_length_m / self.distance_m?)
     }
 
     /// Time until all bands are exposed once, s.

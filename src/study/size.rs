@@ -272,7 +272,13 @@ impl Study {
     /// What the scenario demands of its camera.
     pub(super) fn task<'a>(&'a self, camera: &'a Camera) -> CameraTask<'a> {
         let distance_m = self.scenario.target.distance_m;
-        CameraTask { camera, bands: &self.bands, required: self.required, distance_m }
+        CameraTask {
+            camera,
+            bands: &self.bands,
+            required: self.required,
+            distance_m,
+            size_m: self.scenario.target.size_m,
+        }
     }
 
     /// Counts of the fullest reading of a trial.

@@ -17,7 +17,7 @@ fn seen(camera: &Camera) -> Counting {
 }
 
 fn task<'a>(camera: &'a Camera, bands: &'a Bands, required: f64) -> CameraTask<'a> {
-    CameraTask { camera, bands, required, distance_m: Some(30.0) }
+    CameraTask { camera, bands, required, distance_m: Some(30.0), size_m: None }
 }
 
 #[test]
@@ -154,4 +154,24 @@ fn the_largest_speed_is_that_of_the_least_exposure() {
     camera.field_of_view_rad = None;
     let solution = task(&camera, &bands, 1.0).solve(Quantity::Speed, one_band).unwrap();
     assert!(solution.value.is_none() && solution.reason.unwrap().contains("camera.field_of_view"));
+}
+
+/// d = a² of a pixel up to the one that the target fills, and no more beyond.
+#[test]
+fn a_pixel_larger_than_the_target_is_no_better() {
+    let camera = presets::get("flir-a325sc").unwrap();
+    let bands = Bands::from_rows([(900.0, 1.0)]).unwrap();
+    let size_m = 4.0 * camera.pixel_m * 30.0 / camera.focal_length_m;
+    let reached = |trial: &Trial| {
+        let side = trial.camera.pixel_m / camera.pixel_m;
+        Ok(if side <= 4.0 { side * side } else { 16.0 / (side / 4.0) })
+    };
+    let solve = |required: f64| {
+        let task = CameraTask { size_m: Some(size_m), ..task(&camera, &bands, required) };
+        task.solve(Quantity::Pixel, reached).unwrap()
+    };
+    assert!((solve(9.0).value.unwrap() / (3.0 * camera.pixel_m) - 1.0).abs() < 1e-9);
+    let solution = solve(17.0);
+    assert!(solution.value.is_none() && solution.reason.unwrap().contains("that the target fills"));
+    assert!((solution.statistical_distance / 16.0 - 1.0).abs() < 1e-9);
 }

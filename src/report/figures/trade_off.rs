@@ -55,7 +55,7 @@ pub fn trade_off(curve: &TradeOff, camera: &str) -> Plot {
         figure = figure.series(Series::line(label, at, now).style(Style::Dashed).colour(6));
     }
     for (i, line) in curve.limits.iter().enumerate() {
-        let label = words(line.code);
+        let label = words(line.code, y);
         if line.upright {
             let here = line.points.first().map_or(f64::NAN, |point| point.0);
             figure = figure.rule(Rule::vertical(here * sx, label));
@@ -135,8 +135,10 @@ fn name(quantity: Quantity) -> &'static str {
     }
 }
 
-fn words(code: &str) -> &str {
+fn words(code: &str, limited: Quantity) -> &str {
     match code {
+        "motion" if limited == Quantity::Speed => "speed demanded",
+        "diffraction" => "pixel = λF",
         "motion" => "motion of one pixel",
         "frame-rate" => "a whole frame",
         "full-well" => "full well",

@@ -145,7 +145,7 @@ fn solutions(result: &Sizing) -> String {
         };
         let _ = writeln!(out, "  {:<34} {}", solved.name(), answer.trim_end());
         for cap in &solution.caps {
-            let side = if cap.blocks { "but" } else { "where" };
+            let side = if cap.blocks { "but" } else { "better" };
             let bound = match (cap.blocks, solved.is_least()) {
                 (true, true) | (false, false) => "at most",
                 (true, false) | (false, true) => "at least",
@@ -177,30 +177,26 @@ fn sensitivity(result: &Sizing) -> String {
     let levers = found.elasticities.0.iter().filter_map(|(lever, elasticity)| {
         let value = elasticity.as_ref()?.value;
         // What changes nothing is not worth a word.
-        (value.abs() >= 5e-4).then(|| format!("{} {value:+.2}", lever.name()))
+        (value.abs() >= 5e-3).then(|| format!("{} {value:+.2} %", lever.name()))
     });
     let levers: Vec<String> = levers.collect();
     let levers = if levers.is_empty() { "nothing".into() } else { levers.join(", ") };
-    let _ = writeln!(out, "  1 % more of it changes d by, in %    {levers}");
+    let mut line = |label: &str, text: String| {
+        let _ = writeln!(out, "  {label:<34} {text}");
+    };
+    line("1 % more of it changes d by", levers);
     let of = &found.emissivity;
     if of.error > 0.0 {
-        let linear = of
-            .sigma_linear
-            .map_or_else(String::new, |sigma| format!("; +- {} to first order", significant(sigma, 2)));
-        let _ = writeln!(
-            out,
-            "  emissivities wrong by {} rms        d = {} ({} to {} in 90 % of {} draws{linear})",
-            of.error,
-            significant(of.distance_50, 2),
-            significant(of.distance_5, 2),
-            significant(of.distance_95, 2),
-            of.draws,
-        );
-        let _ = writeln!(
-            out,
-            "  {:<34} {} of the draws meet the requirement",
-            format!("(correlated over {} cm^-1)", of.correlation_cm1),
-            share(of.share_met)
+        let linear = of.sigma_linear.map_or_else(String::new, |sigma| {
+            format!("; to first order {} +- {}", significant(of.distance, 2), significant(sigma, 2))
+        });
+        let [low, middle, high] =
+            [of.distance_5, of.distance_50, of.distance_95].map(|distance| significant(distance, 2));
+        let spread = format!("d = {middle} ({low} to {high} in 90 % of {} draws){linear}", of.draws);
+        line(&format!("emissivities wrong by {} rms", of.error), spread);
+        line(
+            &format!("  correlated over {} cm^-1", of.correlation_cm1),
+            format!("{} of the draws meet the requirement", share(of.share_met)),
         );
     }
     out.push('\n');

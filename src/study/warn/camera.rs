@@ -10,6 +10,8 @@ use crate::words::{quantity, significant};
 
 /// Relative difference between shortcut and exact statistical distance worth a word.
 const SHORTCUT: f64 = 0.1;
+/// Share of a band that may be outside: a band that is centred at the end of the range, and rounding.
+const HALF: f64 = 0.5 + 1e-9;
 /// Radius of the first dark ring of a point's image, in units of λF.
 const AIRY: f64 = 1.22;
 
@@ -95,15 +97,15 @@ impl Study {
         })
     }
 
-    /// Bands that reach out of the range of the detector by more than their width.
+    /// Bands of which more than half is out of the range of the detector; one that is wholly so was refused.
     fn outside_range(&self, camera: &Camera) -> Option<Warning> {
         let [low, high] = camera.spectral_range_cm1;
-        let beyond = |from: f64, to: f64| (low - from).max(to - high) > to - from;
+        let beyond = |from: f64, to: f64| (low - from).max(to - high) > HALF * (to - from);
         let count = self.bands.bands().iter().filter(|band| beyond(band.low_cm1, band.high_cm1)).count();
         (count > 0).then(|| {
             let of = self.bands.len();
             let message = format!(
-                "{count} of {of} bands lie outside {low} to {high} cm^-1, the range in which the figures of the detector are \
+                "{count} of {of} bands are for the most part outside {low} to {high} cm^-1, the range in which the figures of the detector are \
                  stated; they are taken to hold there too"
             );
             Warning::new("outside-detector-range", message)
