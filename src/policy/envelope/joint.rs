@@ -76,7 +76,12 @@ pub(super) fn descend(model: &Model<'_>, whole: &Region, mut point: Point) -> (P
             }
         }
         let solve = |rows: &[f64], scaled: &[Vec<f64>]| {
-            let gram = Gram::new(count, |i, j| dot(&scaled[i], &scaled[j]), |i| dot(&scaled[i], rows));
+            let gram = Gram::new(
+                count,
+                dot(rows, rows),
+                |i, j| dot(&scaled[i], &scaled[j]),
+                |i| dot(&scaled[i], rows),
+            );
             let x = gram.nearest();
             let mut next = point;
             for i in 0..count {
