@@ -114,6 +114,7 @@ impl Cell {
         let (gram, x) = loop {
             let gram = Gram::new(
                 3 * sources,
+                dot(&middle, &middle) + limits.iter().map(|l| l.middle * l.middle).sum::<f64>(),
                 |i, j| {
                     dot(&columns[i], &columns[j]) + limits.iter().map(|l| l.row[i] * l.row[j]).sum::<f64>()
                 },

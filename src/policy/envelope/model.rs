@@ -190,6 +190,29 @@ impl<'a> Model<'a> {
         values.into_iter().zip(ranges.all()).map(share).collect()
     }
 
+    fn sums_of(&self, point: &Point) -> [f64; 2] {
+        [1, 2].map(|which: usize| {
+            let values = self.sources.iter().zip(point.values).filter(|(source, _)| source.object);
+            values.map(|(_, value)| value[which]).sum()
+        })
+    }
+
+    /// Which sums of lighting factors, V and V′, are larger than they may be.
+    pub(super) fn excesses(&self, point: &Point) -> [bool; 2] {
+        let sums = self.sums_of(point);
+        [0, 1].map(|which: usize| sums[which] > self.sums[which] + 1e-12)
+    }
+
+    /// Scales lighting factors down to the sums they may have.
+    pub(super) fn scale(&self, point: &mut Point) {
+        let (sums, excesses) = (self.sums_of(point), self.excesses(point));
+        for (source, value) in self.sources.iter().zip(&mut point.values) {
+            for which in (0..2).filter(|&which| source.object && excesses[which]) {
+                value[which + 1] *= self.sums[which] / sums[which];
+            }
+        }
+    }
+
     /// Keeps lighting factors within what their sum may be. `false` where that leaves nothing.
     pub(super) fn tighten(&self, own: &mut [[f64; 2]], other: &mut [[f64; 2]]) -> bool {
         [own, other].into_iter().zip(self.sums).all(|(factors, sum)| {
