@@ -144,7 +144,14 @@ fn glass_in_one_frame(distances: [Option<f64>; 2]) -> Line {
     };
     let ours = format!("d = {reached:.2} nearest; {local:.2} local (S27)");
     let why = "the built-in glass is nearer to skin than the authors' (line above), and the local distance is no limit";
-    Line::new(PLACE, "FLIR A325sc tells skin from glass in one frame", "yes: 0.049 > 0.0078", ours, verdict, why)
+    Line::new(
+        PLACE,
+        "FLIR A325sc tells skin from glass in one frame",
+        "yes: 0.049 > 0.0078",
+        ours,
+        verdict,
+        why,
+    )
 }
 
 /// Small numbers in the text.

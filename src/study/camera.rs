@@ -125,6 +125,8 @@ fn overridden(spec: &CameraSpec, preset: Preset, place: &dyn Fn(&str) -> Place) 
     // Without a preset there is no document that could have stated an efficiency.
     if spec.preset.is_none() {
         stated.optics_efficiency = Some(1.0);
+        stated.spectral_range_cm1 = Some([715.0, 1250.0]);
+        stated.flicker_fraction = stated.flicker_fraction.or(Some(0.0));
     }
     for (key, efficiency) in
         [("optics_efficiency", &spec.optics_efficiency), ("quantum_efficiency", &spec.quantum_efficiency)]
