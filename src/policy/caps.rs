@@ -108,7 +108,7 @@ pub fn limits(quantity: Quantity, trial: &Trial, given: &Circumstances<'_>) -> R
                 let all =
                     if exposures > 1 { format!(" for all {exposures} exposures") } else { String::new() };
                 let reason =
-                    format!("the target moves a pixel in more at {} m/s{all}", significant(speed, 3));
+                    format!("in longer the target moves a pixel at {} m/s{all}", significant(speed, 3));
                 push("motion", longest, false, reason);
             }
             if let Some(frame) = camera.frame_s() {
@@ -161,7 +161,9 @@ pub fn broken(
         let taken = task.forward(quantity, value);
         let of_exposure = limits(Quantity::Exposure, &taken, given)?;
         let others = of_exposure.iter().filter(|limit| limit.code != "motion");
-        broken.extend(others.filter_map(|limit| limit.broken_by(taken.camera.exposure_s)));
+        let caps = others.filter_map(|limit| limit.broken_by(taken.camera.exposure_s));
+        // The speed is as the inverse of the exposure.
+        broken.extend(caps.map(|cap| Cap { limit: value * taken.camera.exposure_s / cap.limit, ..cap }));
     }
     Ok(broken)
 }

@@ -17,8 +17,8 @@ const SLOWEST_F_NUMBER: f64 = 8.0;
 const PIXELS: f64 = 8.0;
 const EXPOSURES: f64 = 100.0;
 const DISTANCES: f64 = 30.0;
-/// Share by which a camera that is as good as it is now may be worse: a whole frame more is no price for the last digits.
-const AS_GOOD: f64 = 1e-6;
+/// Share by which frames that are as good as now may be worse: a whole frame more is no price for the last digits.
+const AS_GOOD: f64 = 1e-3;
 /// Distance around which distances are drawn where none is stated, m.
 const DISTANCE_M: f64 = 30.0;
 
@@ -147,7 +147,8 @@ pub fn trace(
             capped.sort_unstable();
             capped.dedup();
         }
-        let now = CameraTask { required: as_now * (1.0 - AS_GOOD), ..here.clone() };
+        let slack = if y == Quantity::Frames { AS_GOOD } else { 0.0 };
+        let now = CameraTask { required: as_now * (1.0 - slack), ..here.clone() };
         let y_as_now = if as_now > 0.0 { solved(&now, y, solve)?.value } else { None };
         points.push(Point { x: at, y: solution.value, y_as_now, capped, reason: solution.reason });
     }
@@ -233,7 +234,7 @@ mod tests {
             let (y, now) = (point.y.unwrap(), point.y_as_now.unwrap());
             // The crossing is found to the last bits.
             assert!((y / point.x.powi(2) / first - 1.0).abs() < 1e-9);
-            assert!((y / now / (2.0 / curve.as_now).powi(2) - 1.0).abs() < 3.0 * AS_GOOD);
+            assert!((y / now / (2.0 / curve.as_now).powi(2) - 1.0).abs() < 1e-9);
             // 900 cm^-1 is 11.1 um, the pixel 12 um: f/1.08 is the slowest lens that does not blur.
             let blurred = point.x > 12e-6 * 900.0 / 0.01;
             assert_eq!(point.capped.contains(&"diffraction"), blurred, "{point:?}");

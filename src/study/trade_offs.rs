@@ -12,7 +12,7 @@ use rayon::prelude::*;
 impl Study {
     /// The trade-off curves of the pairs in [`trade_off::PAIRS`], against the limiting alternative of `result`; none
     /// without a camera. Those of a speed are left out where the scenario does not say enough for one, those of noise
-    /// where the detector has none.
+    /// where the detector has none, those of distance where nothing depends on it (neither size nor air).
     ///
     /// # Errors
     /// As [`Study::size`].
@@ -25,6 +25,8 @@ impl Study {
         let known = |pair: &&(Quantity, Quantity)| match pair.1 {
             Quantity::Speed => Motion::of(camera, task.distance_m).is_some(),
             Quantity::Noise => task.value(Quantity::Noise) > 0.0,
+            // Else distance does not matter.
+            Quantity::Frames => task.size_m.is_some() || self.scenario.atmosphere.is_some(),
             _ => true,
         };
         let pairs: Vec<_> = PAIRS.iter().filter(known).collect();

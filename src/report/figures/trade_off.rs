@@ -8,6 +8,8 @@ use crate::report::text::significant;
 
 /// What is drawn reaches this far beyond camera and demand.
 const MARGIN: f64 = 3.0;
+/// A name of more letters is not written beside the camera.
+const LONG: usize = 24;
 /// Farther than this factor from the camera's own value nothing is drawn: nobody builds it.
 const FARTHEST: f64 = 1e6;
 
@@ -66,7 +68,8 @@ pub fn trade_off(curve: &TradeOff, camera: &str) -> Plot {
         }
     }
     if own.0.is_finite() && own.1.is_finite() {
-        figure = figure.marker(Marker::new(camera, own.0, own.1));
+        let label = if camera.len() > LONG { "this camera" } else { camera };
+        figure = figure.marker(Marker::new(label, own.0, own.1));
     }
     Plot { name: format!("trade_off_{}_{}", name(x), name(y)).into(), figure: figure.into(), table }
 }
