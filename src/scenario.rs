@@ -17,15 +17,19 @@ pub use crate::material::Extrapolation;
 
 pub mod bands;
 pub mod camera;
+pub mod envelope;
 pub mod ranging;
 mod read;
+pub mod rule;
 mod section;
 pub mod source;
 mod write;
 
 pub use bands::{BandSource, BandsSpec};
 pub use camera::{CameraSpec, Efficiency, Readout};
+pub use envelope::Envelope;
 pub use ranging::RangeScenario;
+pub use rule::Rule;
 pub use source::Source;
 
 /// Everything a scenario file says, defaults filled in.
@@ -49,6 +53,8 @@ pub struct Scenario {
     pub camera: Option<CameraSpec>,
     /// How reliably, and at which speed.
     pub requirement: Requirement,
+    /// Scenes that the requirement must hold in, if not this one alone.
+    pub envelope: Option<Envelope>,
     /// Where it was read from.
     pub source: Source,
 }
@@ -109,6 +115,7 @@ impl PartialEq for Scenario {
             && self.unknown == other.unknown
             && self.camera == other.camera
             && self.requirement == other.requirement
+            && self.envelope == other.envelope
     }
 }
 
