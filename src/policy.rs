@@ -12,6 +12,7 @@
 //!
 //! Source: paper, Methods 'Guiding public policy'; S7, S27, S29; γ = γ₀ + γ₁N.
 
+pub mod envelope;
 pub mod solve;
 
 pub use solve::{Quantity, Solution};
