@@ -2,6 +2,7 @@
 
 #[cfg(feature = "accuracy")]
 pub mod accuracy;
+pub mod atmosphere;
 pub mod cli;
 pub mod demand;
 pub mod error;

@@ -15,6 +15,7 @@ use crate::error::{Place, Result};
 pub use crate::fisher::Nuisance;
 pub use crate::material::Extrapolation;
 
+pub mod atmosphere;
 pub mod bands;
 pub mod camera;
 pub mod envelope;
@@ -25,6 +26,7 @@ mod section;
 pub mod source;
 mod write;
 
+pub use atmosphere::{AtmosphereSource, AtmosphereSpec};
 pub use bands::{BandSource, BandsSpec};
 pub use camera::{CameraSpec, Efficiency, Readout};
 pub use envelope::Envelope;
@@ -41,10 +43,14 @@ pub struct Scenario {
     pub title: Option<String>,
     /// What is there.
     pub target: Target,
+    /// What is behind the target.
+    pub background: Option<Background>,
     /// The surroundings that light the target; may be empty (cold space).
     pub environment: Vec<EnvironmentObject>,
     /// What the target must be told apart from.
     pub alternatives: Alternatives,
+    /// The air between target and camera; none, if it is not given.
+    pub atmosphere: Option<AtmosphereSpec>,
     /// The spectral bands.
     pub bands: BandsSpec,
     /// What is not known beforehand.
@@ -109,8 +115,10 @@ impl PartialEq for Scenario {
     fn eq(&self, other: &Self) -> bool {
         self.title == other.title
             && self.target == other.target
+            && self.background == other.background
             && self.environment == other.environment
             && self.alternatives == other.alternatives
+            && self.atmosphere == other.atmosphere
             && self.bands == other.bands
             && self.unknown == other.unknown
             && self.camera == other.camera
@@ -137,6 +145,19 @@ pub struct Target {
     pub temperature_k: f64,
     /// Its distance from the camera, m; above 0.
     pub distance_m: Option<f64>,
+    /// Side of the target as the camera sees it, m; above 0. One that fills the pixel if none.
+    pub size_m: Option<f64>,
+    /// How its spectrum is continued beyond its data.
+    pub extrapolate: Option<Extrapolation>,
+}
+
+/// What is behind a target that does not fill a pixel (`[background]`); lit as the target is.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Background {
+    /// Its temperature, K; above 0.
+    pub temperature_k: f64,
+    /// Its material; a blackbody if none.
+    pub material: Option<MaterialRef>,
     /// How its spectrum is continued beyond its data.
     pub extrapolate: Option<Extrapolation>,
 }

@@ -43,6 +43,7 @@ pub use reliability::{probability, reliability};
 pub use resolve::{Study, Surface};
 pub use samples::SampleSpectra;
 pub use scaling::{BandNumber, LibrarySize, Scaling};
+pub use sight::Sight;
 pub use simulation::{
     PhotonLaw, SimulatedClass, SimulatedPerformance, SimulatedPoint, Simulation, SimulationPlan, Standing,
 };

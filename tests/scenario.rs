@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use hadar::scenario::{
-    Alternatives, BandSource, BandsSpec, CameraSpec, DistanceKind, Efficiency, Envelope, EnvironmentObject,
-    Extrapolation, MaterialRef, Nuisance, Readout, Reliability, Requirement, Scenario, Source, Target,
-    Unknown,
+    Alternatives, AtmosphereSource, AtmosphereSpec, Background, BandSource, BandsSpec, CameraSpec,
+    DistanceKind, Efficiency, Envelope, EnvironmentObject, Extrapolation, MaterialRef, Nuisance, Readout,
+    Reliability, Requirement, Scenario, Source, Target, Unknown,
 };
 use hadar::units::Spectral;
 use proptest::prelude::*;
@@ -64,8 +64,10 @@ fn the_example_is_the_case_of_the_paper() {
             material: name("skin"),
             temperature_k: 310.15,
             distance_m: Some(30.0),
+            size_m: None,
             extrapolate: None,
         },
+        background: None,
         environment: vec![EnvironmentObject {
             temperature_k: 293.15,
             lighting: 0.5,
@@ -73,6 +75,7 @@ fn the_example_is_the_case_of_the_paper() {
             extrapolate: None,
         }],
         alternatives: Alternatives { materials: Some(vec![name("aluminium")]), ..Alternatives::default() },
+        atmosphere: None,
         bands: BandsSpec {
             source: BandSource::Grid {
                 start: Spectral::Wavenumber(715.0),
@@ -114,7 +117,7 @@ fn what_is_silent_has_its_default() {
     assert_eq!(scenario.unknown.nuisances, [Nuisance::Temperature, Nuisance::Lighting]);
     assert_eq!(scenario.requirement.reliability, Reliability::Distance(1.0));
     assert_eq!(scenario.requirement.by, DistanceKind::Nearest);
-    assert!(scenario.environment.is_empty() && scenario.camera.is_none());
+    assert!(scenario.environment.is_empty() && scenario.camera.is_none() && scenario.atmosphere.is_none());
     assert_eq!(scenario.alternatives.materials, None);
     assert!(read(&format!("{MINIMUM}[unknown]\nnuisances = []")).unknown.nuisances.is_empty());
 }
@@ -137,6 +140,9 @@ fn every_key_is_read_into_the_unit_of_its_name() {
         [alternatives]
         temperature = ["0 degC", "120 degC"]
         lighting = [0, 0.9]
+        [atmosphere]
+        table = "air.csv"
+        temperature = "15 degC"
         [bands]
         ranges = [["715 cm^-1", "800 cm^-1"], ["8000 nm", "9 um"]]
         integrate = true
@@ -176,6 +182,8 @@ fn every_key_is_read_into_the_unit_of_its_name() {
     assert_eq!((second.lighting, second.extrapolate), (0.75, Some(Extrapolation::Linear)));
     assert_eq!(scenario.alternatives.temperature_range_k, Some([273.15, 393.15]));
     assert_eq!(scenario.alternatives.lighting_range, Some([0.0, 0.9]));
+    let air = AtmosphereSource::Table(std::path::absolute("/data/study/air.csv").unwrap());
+    assert_eq!(scenario.atmosphere, Some(AtmosphereSpec { source: air, temperature_k: Some(288.15) }));
     let ranges = [
         [Spectral::Wavenumber(715.0), Spectral::Wavenumber(800.0)],
         [Spectral::Wavelength(8.0), Spectral::Wavelength(9.0)],
@@ -250,6 +258,18 @@ fn bands() -> impl Strategy<Value = BandsSpec> {
         integrate,
         tolerance,
     })
+}
+
+fn atmosphere() -> impl Strategy<Value = AtmosphereSpec> {
+    prop_oneof![
+        ("[a-z][a-z0-9-]{0,12}", proptest::option::of(above_zero())).prop_map(|(name, temperature_k)| {
+            AtmosphereSpec { source: AtmosphereSource::Model(name), temperature_k }
+        }),
+        ("[a-z #]{0,6}[a-z](\\.csv)?", above_zero()).prop_map(|(name, temperature_k)| AtmosphereSpec {
+            source: AtmosphereSource::Table(std::path::absolute(Path::new("air").join(name)).unwrap()),
+            temperature_k: Some(temperature_k),
+        }),
+    ]
 }
 
 fn unknown() -> impl Strategy<Value = Unknown> {
@@ -333,11 +353,14 @@ prop_compose! {
     fn scenario()(
         title in proptest::option::of("[^\\p{Cc}]{0,20}[a-z]"),
         target in (material(), above_zero(), proptest::option::of(above_zero()), extrapolate()),
+        behind in proptest::option::of((above_zero(), proptest::option::of(material()), extrapolate())),
+        size_m in proptest::option::of(above_zero()),
         environment in environment(),
         materials in proptest::option::of(proptest::collection::btree_set(material(), 1..4)),
         temperature_range_k in proptest::option::of(ordered(1.0, 1e4)),
         lighting_range in proptest::option::of(ordered(0.0, 1.0)),
         extrapolate in extrapolate(),
+        atmosphere in proptest::option::of(atmosphere()),
         bands in bands(),
         mut unknown in unknown(),
         tied in any::<bool>(),
@@ -369,9 +392,11 @@ prop_compose! {
             unknown.lighting_total = Some(environment.iter().map(|object| object.lighting).sum::<f64>().min(1.0));
         }
         let materials = materials.map(|set| set.into_iter().collect());
+        let background = behind.map(|(temperature_k, material, extrapolate)| Background { temperature_k, material, extrapolate });
         Scenario {
             title,
-            target: Target { material, temperature_k, distance_m, extrapolate: target_extrapolate },
+            target: Target { material, temperature_k, distance_m, size_m, extrapolate: target_extrapolate },
+            background,
             environment,
             alternatives: Alternatives {
                 materials,
@@ -380,6 +405,7 @@ prop_compose! {
                 extrapolate,
                 skip_uncovered,
             },
+            atmosphere,
             bands,
             unknown,
             camera,
@@ -435,12 +461,12 @@ proptest! {
     fn any_value_at_any_key_gives_a_scenario_or_one_line(
         table in proptest::sample::select(vec![
             "target", "[environment]", "environment", "alternatives", "bands", "unknown", "unknown.priors",
-            "camera", "requirement",
+            "camera", "requirement", "atmosphere",
         ]),
         key in proptest::sample::select(vec![
             "material", "temperature", "distance", "lighting", "extrapolate", "materials", "start", "stop", "step",
             "filters", "rows", "ranges", "integrate", "tolerance", "nuisances", "priors", "lighting_total", "gain",
-            "exposure", "f_number", "netd", "readout", "frames", "pixels", "by", "speed", "preset",
+            "exposure", "f_number", "netd", "readout", "frames", "pixels", "by", "speed", "preset", "model", "table",
         ]),
         value in prop_oneof![
             "-?[0-9]{1,25}", "-?[0-9]{1,4}\\.[0-9]{1,4}(e[0-9]{1,4})?", "\"-?[0-9.e]{0,9} ?(K|m|um|s|cm\\^-1|deg)?\"",

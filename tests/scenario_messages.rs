@@ -249,6 +249,36 @@ fn bands_have_one_source_and_one_axis() {
 }
 
 #[test]
+fn the_air_is_of_one_kind_and_has_a_temperature() {
+    messages! { message:
+        "[atmosphere]\nmodel = \"tropical\"\ntable = \"air.csv\"" =>
+            "a.toml:6: atmosphere.table: `model` is given as well; keep only one of the two",
+        "[atmosphere]" =>
+            r#"a.toml:4: atmosphere: neither model nor table is given; write model = "us-standard" or table = "my_path.csv""#,
+        "[atmosphere]\ntable = \"air.csv\"" =>
+            r#"a.toml:4: atmosphere.temperature: the key is missing, and a table of transmittances does not know it; write temperature = "15 degC", that of the air"#,
+        "[atmosphere]\nmodel = \"tropical\"\ntemperature = 15" =>
+            r#"a.toml:6: atmosphere.temperature: `15` is a number without a unit; write "37 degC" or "310.15 K""#,
+        "[atmosphere]\nmodel = \"tropical\"\ntemperature = \"-300 degC\"" =>
+            "a.toml:6: atmosphere.temperature: `-300 degC` is out of range; it must be above 0 K (-273.15 degC)",
+        "[atmosphere]\nmodel = 6" =>
+            r#"a.toml:5: atmosphere.model: the number 6 was found; write text in quotes, e.g. model = "us-standard""#,
+        "[atmosphere]\nmodel = \"\"" =>
+            r#"a.toml:5: atmosphere.model: the text is empty; write for example model = "us-standard""#,
+        "[atmosphere]\ntable = \"air.csv /.\"\ntemperature = \"1 K\"" =>
+            "a.toml:5: atmosphere.table: `air.csv /.` is a path that ends in a blank; rename the file",
+        "[atmosphere]\nmodell = \"tropical\"" =>
+            "a.toml:5: atmosphere: there is no key `modell`; did you mean `model`?",
+        "[atmosphere]\nhumidity = 0.5" =>
+            "a.toml:5: atmosphere: there is no key `humidity`; what may stand here is `model`, `table` or `temperature`",
+        "atmosphere = \"tropical\"" =>
+            "a.toml:4: target: there is no key `atmosphere`; the nearest are `temperature`, `material`",
+        "[[atmosphere]]\nmodel = \"tropical\"" =>
+            "a.toml:4: atmosphere: a list was found; write the table as [atmosphere], once",
+    }
+}
+
+#[test]
 fn a_camera_is_possible() {
     messages! { message:
         "[camera]\nexposure = \"0 s\"" =>

@@ -26,7 +26,7 @@
 //! Source: paper S10–S15, Table S2; photon bunching S11–S12; P. B. Fellgett, J. Phys. Radium 19, 187 (1958) for
 //! the multiplex advantage (the factors 4 and 8 are the least-squares covariance of one-sided cosines).
 
-use super::{Camera, Readout, View};
+use super::{Camera, NoiseSpec, Readout, View};
 use crate::fisher::Counting;
 use crate::spectrum::Bands;
 
@@ -127,7 +127,13 @@ impl Camera {
         }
         let frames = f64::from(self.frames);
         push("dark counts", every(self.dark_rate_per_s * self.integration_s()), "t", "dark_rate");
-        if let Some(sigma) = self.reading_sigma(bands) {
+        if let Some(mut sigma) = self.reading_sigma(bands) {
+            if let NoiseSpec::SpectralRadiance { .. } = self.noise {
+                // Stated in front of the optics: what the path takes away does not make it less.
+                let widths = bands.widths_cm1();
+                let open = sigma.iter_mut().zip(view.open_widths_cm1.iter().zip(&widths));
+                open.for_each(|(sigma, (open, behind))| *sigma *= open / behind);
+            }
             let stretch = self.integration_s() / self.noise_exposure_s;
             let source = self.noise.key();
             let grown = |factor: f64| sigma.iter().map(|sigma| sigma * sigma * factor * spread).collect();

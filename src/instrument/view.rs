@@ -36,6 +36,9 @@ pub struct View {
     /// Signal of the target in each band where it fills the pixel, photons s⁻¹ m⁻² sr⁻¹: what the noise of an
     /// interferometer and of bunched photons is made of. Empty where neither is asked for.
     pub signal: Vec<f64>,
+    /// Width of each band behind the optics but without what the path takes away, cm⁻¹: what a noise stated as radiance is
+    /// spread over. Empty where nothing is on the path.
+    pub open_widths_cm1: Vec<f64>,
     /// Photons that are counted per mode, mean over each band; empty where bunching is not asked for.
     pub occupancy: Vec<f64>,
 }
@@ -50,7 +53,14 @@ impl View {
     /// A target that fills the pixel, and nothing between.
     #[must_use]
     pub const fn at(distance_m: Option<f64>) -> Self {
-        Self { distance_m, fill: 1.0, light: Vec::new(), signal: Vec::new(), occupancy: Vec::new() }
+        Self {
+            distance_m,
+            fill: 1.0,
+            light: Vec::new(),
+            signal: Vec::new(),
+            open_widths_cm1: Vec::new(),
+            occupancy: Vec::new(),
+        }
     }
 
     /// Other light in band w, photons s⁻¹ m⁻² sr⁻¹.

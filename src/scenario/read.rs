@@ -9,8 +9,9 @@ use toml::de::DeTable;
 use super::section::{ABOVE_ZERO, ABSOLUTE_TEMPERATURE, Entry, Rule, SHARE, Section};
 use super::source::LineStarts;
 use super::{
-    Alternatives, BandsSpec, CameraSpec, DistanceKind, Envelope, EnvironmentObject, Extrapolation,
-    MaterialRef, Nuisance, Reliability, Requirement, Scenario, Source, Target, Unknown,
+    Alternatives, AtmosphereSpec, Background, BandsSpec, CameraSpec, DistanceKind, Envelope,
+    EnvironmentObject, Extrapolation, MaterialRef, Nuisance, Reliability, Requirement, Scenario, Source,
+    Target, Unknown,
 };
 use crate::error::{Error, Result};
 use crate::units::Dimension;
@@ -20,11 +21,13 @@ const LIGHTING_ROUNDING: f64 = 1e-12;
 /// The longest file taken for a scenario, bytes.
 const LONGEST_FILE: u64 = 1 << 20;
 
-pub(super) const TABLES: [&str; 9] = [
+pub(super) const TABLES: [&str; 11] = [
     "title",
     "target",
+    "background",
     "environment",
     "alternatives",
+    "atmosphere",
     "bands",
     "unknown",
     "camera",
@@ -90,7 +93,9 @@ pub(super) fn of_root(root: &Section<'_>) -> Result<Scenario> {
         target,
         envelope: root.read("envelope", |entry| Envelope::read(entry, environment.len()))?,
         environment,
+        background: root.read("background", background)?,
         alternatives: root.read("alternatives", alternatives)?.unwrap_or_default(),
+        atmosphere: root.read("atmosphere", AtmosphereSpec::read)?,
         bands: root.read("bands", BandsSpec::read)?.unwrap_or_default(),
         unknown,
         camera: None,
@@ -118,13 +123,25 @@ pub(super) fn parse<'t>(text: &'t str, source: &Source) -> Result<DeTable<'t>> {
 }
 
 fn target(entry: &Entry<'_>) -> Result<Target> {
-    let section = entry.section(&["material", "temperature", "distance", "extrapolate"])?;
+    let section = entry.section(&["material", "temperature", "distance", "size", "extrapolate"])?;
     Ok(Target {
         material: material(&section.require("material", "\"skin\"")?)?,
         temperature_k: section
             .require("temperature", "\"37 degC\"")?
             .quantity(Dimension::Temperature, ABSOLUTE_TEMPERATURE)?,
         distance_m: section.quantity("distance", Dimension::Length, ABOVE_ZERO)?,
+        size_m: section.quantity("size", Dimension::Length, ABOVE_ZERO)?,
+        extrapolate: extrapolation(&section)?,
+    })
+}
+
+fn background(entry: &Entry<'_>) -> Result<Background> {
+    let section = entry.section(&["temperature", "material", "extrapolate"])?;
+    Ok(Background {
+        temperature_k: section
+            .require("temperature", "\"15 degC\"")?
+            .quantity(Dimension::Temperature, ABSOLUTE_TEMPERATURE)?,
+        material: section.read("material", material)?,
         extrapolate: extrapolation(&section)?,
     })
 }

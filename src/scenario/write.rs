@@ -10,8 +10,9 @@ use toml::Value;
 
 use super::read::is_path;
 use super::{
-    Alternatives, BandSource, BandsSpec, CameraSpec, Efficiency, EnvironmentObject, Extrapolation,
-    MaterialRef, Nuisance, Reliability, Requirement, Scenario, Target, Unknown,
+    Alternatives, AtmosphereSource, AtmosphereSpec, Background, BandSource, BandsSpec, CameraSpec,
+    Efficiency, EnvironmentObject, Extrapolation, MaterialRef, Nuisance, Reliability, Requirement, Scenario,
+    Target, Unknown,
 };
 use crate::units::Dimension;
 
@@ -37,7 +38,7 @@ pub(super) type Document = Vec<(&'static str, Part)>;
 
 impl Scenario {
     /// The scenario as TOML, every default filled in; reading it gives an equal scenario. What stays silent
-    /// has no value (a distance, a camera) or one that others know (a preset's fields, the library's
+    /// has no value (a distance, an atmosphere, a camera) or one that others know (a preset's fields, the library's
     /// materials). Paths of files are absolute, so that it may be put anywhere on the same machine.
     ///
     /// ```
@@ -71,9 +72,15 @@ impl Scenario {
             document.push(("title", Part::Value(title.as_str().into())));
         }
         document.push(("target", Part::Table(target(&self.target, paths))));
+        if let Some(behind) = &self.background {
+            document.push(("background", Part::Table(background(behind, paths))));
+        }
         let objects = self.environment.iter().map(|object| environment(object, paths)).collect();
         document.push(("environment", Part::Tables(objects)));
         document.push(("alternatives", Part::Table(alternatives(&self.alternatives, paths))));
+        if let Some(spec) = &self.atmosphere {
+            document.push(("atmosphere", Part::Table(atmosphere(spec, paths))));
+        }
         document.push(("bands", Part::Table(bands(&self.bands, paths))));
         document.push(("unknown", Part::Table(unknown(&self.unknown))));
         if let Some(spec) = &self.camera {
@@ -183,7 +190,15 @@ fn target(target: &Target, paths: Paths<'_>) -> Entries {
         .put("material", paths.material(&target.material))
         .put_quantity("temperature", Dimension::Temperature, Some(target.temperature_k))
         .put_quantity("distance", Dimension::Length, target.distance_m)
+        .put_quantity("size", Dimension::Length, target.size_m)
         .put_if("extrapolate", target.extrapolate.map(Extrapolation::name))
+}
+
+fn background(behind: &Background, paths: Paths<'_>) -> Entries {
+    Entries::default()
+        .put_quantity("temperature", Dimension::Temperature, Some(behind.temperature_k))
+        .put_if("material", behind.material.as_ref().map(|material| paths.material(material)))
+        .put_if("extrapolate", behind.extrapolate.map(Extrapolation::name))
 }
 
 fn environment(object: &EnvironmentObject, paths: Paths<'_>) -> Entries {
@@ -205,6 +220,14 @@ fn alternatives(alternatives: &Alternatives, paths: Paths<'_>) -> Entries {
         .put_if("lighting", alternatives.lighting_range.map(|range| range.to_vec()))
         .put_if("extrapolate", alternatives.extrapolate.map(Extrapolation::name))
         .put_if("skip_uncovered", alternatives.skip_uncovered.then_some(true))
+}
+
+fn atmosphere(atmosphere: &AtmosphereSpec, paths: Paths<'_>) -> Entries {
+    let entries = match &atmosphere.source {
+        AtmosphereSource::Model(name) => Entries::default().put("model", name.as_str()),
+        AtmosphereSource::Table(path) => Entries::default().put("table", paths.file(path)),
+    };
+    entries.put_quantity("temperature", Dimension::Temperature, atmosphere.temperature_k)
 }
 
 pub(super) fn bands(bands: &BandsSpec, paths: Paths<'_>) -> Entries {

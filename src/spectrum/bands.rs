@@ -101,6 +101,34 @@ impl Bands {
         bands
     }
 
+    /// ∫ f(ν, T, R) dν over `range_cm1` for the filter of each band, by midpoints 1 cm⁻¹ apart or closer, T its transmittance
+    /// and R its reflectance at ν; 0 for bands without a filter. `None` if there is no filter at all.
+    #[must_use]
+    pub(crate) fn over_filters(
+        &self,
+        range_cm1: [f64; 2],
+        f: impl Fn(f64, f64, f64) -> f64,
+    ) -> Option<Vec<f64>> {
+        if self.shapes.iter().all(|shape| *shape == Shape::TopHat) {
+            return None;
+        }
+        let [low, high] = range_cm1;
+        let count = (high - low).ceil().clamp(1.0, 1e6);
+        let step = (high - low) / count;
+        let integral = |filter: &FilterCurve| {
+            let at = |i: usize| {
+                let nu = (i as f64 + 0.5).mul_add(step, low);
+                f(nu, filter.transmittance(nu), filter.reflectance(nu))
+            };
+            step * (0..count as usize).map(at).sum::<f64>()
+        };
+        let of_shape = |shape: &Shape| match shape {
+            Shape::TopHat => 0.0,
+            Shape::Filter(filter) => integral(filter),
+        };
+        Some(self.shapes.iter().map(of_shape).collect())
+    }
+
     /// Weight of each node, cm⁻¹.
     pub(crate) fn weights_cm1(&self) -> &[f64] {
         &self.weights_cm1

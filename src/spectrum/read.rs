@@ -78,25 +78,37 @@ fn rows(text: &str) -> Result<Bands> {
     Bands::from_rows(banded.collect::<Result<Vec<_>>>()?)
 }
 
+/// A column of this ending is the reflectance of the filter before it.
+const REFLECTANCE: &str = ":reflectance";
+
 fn filters(text: &str) -> Result<Vec<FilterCurve>> {
     let grid = Grid::parse(text)?;
     let axis = grid.wavenumbers_cm1()?;
-    (1..grid.header.len())
-        .map(|column| {
-            let name = grid.header[column].clone();
-            let rows: Result<Vec<(f64, f64)>> = axis
-                .iter()
-                .zip(&grid.rows)
-                .map(|(&wavenumber, (line, cells))| {
-                    let value = cells.get(column).copied().unwrap_or(f64::NAN);
-                    check::unit_interval("transmittance", value)
-                        .map(|value| (wavenumber, value))
-                        .map_err(|error| error.for_key(name.clone()).on_line(*line))
-                })
-                .collect();
-            FilterCurve::new(name.clone(), rows?)
-        })
-        .collect()
+    let rows = |column: usize, what: &str| -> Result<Vec<(f64, f64)>> {
+        let row = |(&wavenumber, (line, cells)): (&f64, &(usize, Vec<f64>))| {
+            let value = cells.get(column).copied().unwrap_or(f64::NAN);
+            check::unit_interval(what, value)
+                .map(|value| (wavenumber, value))
+                .map_err(|error| error.for_key(grid.header[column].clone()).on_line(*line))
+        };
+        axis.iter().zip(&grid.rows).map(row).collect()
+    };
+    let mut filters: Vec<FilterCurve> = Vec::new();
+    for (column, header) in grid.header.iter().enumerate().skip(1) {
+        let at_column = |error: Error| error.for_key(header.clone()).on_line(grid.header_line);
+        let Some(of) = header.strip_suffix(REFLECTANCE) else {
+            filters.push(FilterCurve::new(header.clone(), rows(column, "transmittance")?)?);
+            continue;
+        };
+        let Some(place) = filters.iter().position(|filter| filter.name == of) else {
+            let found = format!("a reflectance of `{of}`, which is no filter before it");
+            return Err(at_column(Error::malformed(found, format!("write a column `{of}` to its left"))));
+        };
+        let reflectance = rows(column, "reflectance")?;
+        let filter = filters.swap_remove(place).with_reflectance(reflectance).map_err(at_column)?;
+        filters.push(filter);
+    }
+    Ok(filters)
 }
 
 #[cfg(test)]

@@ -5,9 +5,10 @@ mod finder;
 
 use self::defaults::{alternatives_as_written, check_range, fill, state_range, unknowns};
 use self::finder::Finder;
+use super::sight::Behind;
 use super::{Warning, bands, camera};
 use crate::demand::Work;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::fisher::{Nuisance, Unknowns};
 use crate::identifiability::detection;
 use crate::identifiability::nearest::StateRange;
@@ -30,7 +31,14 @@ pub struct Surface {
 #[derive(Debug, Clone)]
 pub struct Study {
     pub(super) scenario: Scenario,
+    /// The bands as they leave the target.
+    pub(super) open_bands: Bands,
+    /// The same behind path, optics and detector: what is counted.
     pub(super) bands: Bands,
+    /// Emission of the path at the nodes, photons s⁻¹ m⁻² sr⁻¹ per cm⁻¹; empty for none.
+    pub(super) air: Vec<f64>,
+    /// What is behind a target that does not fill the pixel.
+    pub(super) behind: Option<Behind>,
     pub(super) surroundings: Surroundings,
     pub(super) state: State,
     pub(super) unknowns: Unknowns,
@@ -86,6 +94,15 @@ impl Study {
                 found.transpose()
             })
             .collect::<Result<Vec<_>>>()?;
+        let behind = match scenario.background.as_ref().map(|behind| (behind.temperature_k, &behind.material))
+        {
+            None => None,
+            Some((temperature_k, None)) => Some((temperature_k, None)),
+            Some((temperature_k, Some(material))) => {
+                let extrapolate = scenario.background.as_ref().and_then(|behind| behind.extrapolate);
+                Some((temperature_k, Some(finder.find("background.material", material, extrapolate)?)))
+            }
+        };
         let bands = bands::at_centres(&scenario.bands, &scenario.source)?;
         let alternatives = finder.alternatives(&target, &bands)?;
         let Finder { warnings, skies, .. } = finder;
@@ -124,6 +141,15 @@ impl Study {
             .enumerate()
             .map(|(i, material)| on_nodes(material, &format!("alternatives.materials[{i}]")))
             .collect::<Result<Vec<_>>>()?;
+        let behind = behind
+            .map(|(temperature_k, material)| {
+                let surface = match &material {
+                    Some(material) => on_nodes(material, "background.material")?,
+                    None => Surface { name: "blackbody".into(), emissivity: vec![1.0; nodes.len()] },
+                };
+                Ok::<_, Error>(Behind { surface, temperature_k })
+            })
+            .transpose()?;
         let camera =
             scenario.camera.as_ref().map(|spec| camera::resolved(spec, &scenario.source)).transpose()?;
         let required = match scenario.requirement.reliability {
@@ -137,9 +163,12 @@ impl Study {
         let range = state_range(&scenario);
         check_range(&scenario, &range)?;
         fill(&mut scenario, &alternatives_as_written(&alternatives), camera.as_ref(), &range);
-        let study = Self {
+        let mut study = Self {
             scenario,
+            open_bands: bands.clone(),
             bands,
+            air: Vec::new(),
+            behind,
             surroundings,
             state,
             unknowns,
@@ -152,6 +181,8 @@ impl Study {
             warnings,
             looked_up: library.work(),
         };
+        study.check_sight()?;
+        (study.bands, study.air) = study.received(study.camera.as_ref(), study.scenario.target.distance_m)?;
         study.check_magnitudes()?;
         Ok(study)
     }

@@ -1,0 +1,227 @@
+use super::*;
+use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
+
+/// Rows of an embedded table, read without the library.
+fn columns(name: &str) -> (Vec<f64>, Vec<Vec<f64>>) {
+    let table = embedded::TABLES.iter().find(|table| table.name == name).unwrap();
+    let rows = table.text.lines().filter(|line| !line.starts_with(['#', 'w']));
+    rows.map(|row| {
+        let mut cells = row.split(',').map(|cell| cell.parse::<f64>().unwrap());
+        (cells.next().unwrap(), cells.collect())
+    })
+    .unzip()
+}
+
+const LENGTHS_M: [f64; 7] = [10.0, 30.0, 100.0, 300.0, 1e3, 3e3, 1e4];
+
+fn table(lengths_m: &[f64], rows: &[(f64, Vec<f64>)]) -> Result<Atmosphere> {
+    let mut text = "wavenumber_cm1".to_owned();
+    lengths_m.iter().for_each(|length| text += &format!(",tau_{length}m"));
+    for (wavenumber, taus) in rows {
+        text += &format!("\n{wavenumber}");
+        taus.iter().for_each(|tau| text += &format!(",{tau}"));
+    }
+    Atmosphere::from_csv(&text, Path::new("a.csv"))
+}
+
+#[test]
+fn columns_are_hit_and_names_and_heads_agree() {
+    for (embedded, name) in embedded::TABLES.iter().zip(Atmosphere::names()) {
+        assert_eq!(embedded.name, *name);
+        assert!(embedded.text.contains(&format!("T={} K", embedded.temperature_k)), "{name}");
+        let air = Atmosphere::embedded(name).unwrap();
+        let stated = (air.name(), air.temperature_k(), air.range_cm1(), air.longest_m());
+        assert_eq!(stated, (*name, Some(embedded.temperature_k), (700.0, 1350.0), 1e4));
+        let (nodes, rows) = columns(name);
+        assert_eq!(nodes.len(), 131);
+        for (column, length) in LENGTHS_M.into_iter().enumerate() {
+            let found = air.transmittance(&nodes, length).unwrap();
+            for (tau, row) in found.iter().zip(&rows) {
+                // e to a logarithm of at most 12 loses 12 ulp; a 0 stands for less than half its last digit.
+                let allowed = if row[column] == 0.0 { 5e-6 } else { 4e-15 * row[column] };
+                assert!((tau - row[column]).abs() <= allowed, "{name} {length}: {tau} {}", row[column]);
+            }
+        }
+        assert!(air.transmittance(&nodes, 0.0).unwrap().iter().all(|&tau| tau == 1.0));
+    }
+    // Three numbers off the printed table, and the depth half-way between two rows.
+    let air = Atmosphere::embedded("us-standard").unwrap();
+    let near = |nodes: &[f64], length: f64, expected: f64| {
+        let found = air.transmittance(nodes, length).unwrap()[0];
+        assert!((found - expected).abs() < 1e-14, "{found} {expected}");
+    };
+    near(&[700.0], 10.0, 0.798_80);
+    near(&[785.0], 3000.0, 0.549_45);
+    near(&[1e4 / (1e4 / 770.0)], 1000.0, 0.746_70);
+    near(&[772.5], 1000.0, (0.746_70f64 * 0.764_86).sqrt());
+}
+
+/// What the head of the module states: every column from the others.
+#[test]
+fn a_column_left_out_is_found_again_within_the_stated_error() {
+    let (mut inside, mut below) = (0.0f64, 0.0f64);
+    for name in Atmosphere::names() {
+        let (nodes, rows) = columns(name);
+        for out in 0..LENGTHS_M.len() - 1 {
+            let kept = |values: &[f64]| -> Vec<f64> {
+                values.iter().enumerate().filter(|(i, _)| *i != out).map(|(_, value)| *value).collect()
+            };
+            let rest: Vec<_> = nodes.iter().zip(&rows).map(|(node, row)| (*node, kept(row))).collect();
+            let air = table(&kept(&LENGTHS_M), &rest).unwrap();
+            let found = air.transmittance(&nodes, LENGTHS_M[out]).unwrap();
+            let worst = found.iter().zip(&rows).map(|(tau, row)| (tau - row[out]).abs()).fold(0.0, f64::max);
+            let measured = if out == 0 { &mut below } else { &mut inside };
+            *measured = measured.max(worst);
+        }
+    }
+    assert!((inside - 0.0040).abs() < 5e-5, "{inside}");
+    assert!((below - 0.0027).abs() < 5e-5, "{below}");
+}
+
+/// A band model of two power laws, from its values at the columns.
+#[test]
+fn a_band_model_is_followed_between_its_columns() {
+    let tau = |strength: f64, power: f64, continuum: f64, length: f64| {
+        (-(strength * length).powf(power) - continuum * length).exp()
+    };
+    let mut worst = 0.0f64;
+    for strength in [1e-6, 1e-5, 1e-4, 1e-3, 1e-2] {
+        for (power, continuum) in [(0.5, 1e-5), (0.55, 1e-4), (0.65, 3e-4), (0.8, 1e-6)] {
+            let row = LENGTHS_M.map(|length| tau(strength, power, continuum, length)).to_vec();
+            let air = table(&LENGTHS_M, &[(700.0, row.clone()), (800.0, row)]).unwrap();
+            for step in 0..=300 {
+                let length = 10f64.powf(1.0 + f64::from(step) / 100.0);
+                let found = air.transmittance(&[750.0], length).unwrap()[0];
+                worst = worst.max((found - tau(strength, power, continuum, length)).abs());
+            }
+        }
+    }
+    assert!(worst < 5e-4, "{worst}");
+}
+
+#[test]
+fn gray_air_follows_beers_law_at_any_length() {
+    // Any cubic of ln D in ln z keeps a straight line, also below the first column.
+    let k = 3.7e-4;
+    let row = LENGTHS_M.map(|length| (-k * length).exp()).to_vec();
+    let air = table(&LENGTHS_M, &[(1200.0, row.clone()), (700.0, row)]).unwrap();
+    for length in [1e-9, 0.3, 5.0, 17.0, 30.0, 64.0, 999.0, 5e3, 1e4] {
+        let depth = air.optical_depth(&[700.0, 801.3, 1200.0], length).unwrap();
+        // D of the first column has lost 1e-16/D = 3e-14, and the slope there as much.
+        for depth in depth {
+            assert!((depth / (k * length) - 1.0).abs() < 1e-11, "{length} {depth}");
+        }
+    }
+    let short = air.path_radiance(&[1000.0], 1e-9, 290.0).unwrap()[0];
+    let expected = k * 1e-9 * planck::photon_radiance(1000.0, 290.0);
+    assert!((short / expected - 1.0).abs() < 1e-11, "1 - tau is 4e-13 and has all its digits");
+    // Where all is absorbed, the path is a blackbody.
+    let us = Atmosphere::embedded("us-standard").unwrap();
+    let fog = us.path_radiance(&[700.0], 1e4, 288.2).unwrap()[0];
+    assert!((fog / planck::photon_radiance(700.0, 288.2) - 1.0).abs() < 1e-5);
+}
+
+#[test]
+fn digits_that_are_not_there_are_no_infinities() {
+    let row = |taus: [f64; 4]| {
+        let air =
+            table(&[1.0, 10.0, 100.0, 1000.0], &[(700.0, taus.to_vec()), (701.0, taus.to_vec())]).unwrap();
+        [0.1, 1.0, 5.0, 10.0, 50.0, 100.0, 500.0, 1e3].map(|z| air.optical_depth(&[700.5], z).unwrap()[0])
+    };
+    assert_eq!(row([1.0; 4]), [0.0; 8], "a vacuum");
+    for taus in
+        [[0.0; 4], [1.0, 0.0, 0.0, 0.0], [1.0, 1.0, 0.5, 0.0], [1.0, 1.0, 1.0, 0.99999], [0.9, 0.9, 0.9, 0.9]]
+    {
+        let depths = row(taus);
+        assert!(depths.iter().all(|d| d.is_finite() && *d > 0.0), "{taus:?}: {depths:?}");
+        assert!(depths.windows(2).all(|pair| pair[0] <= pair[1]), "{taus:?}: {depths:?}");
+    }
+    // Beer's law back from D = 0.69 at 100 m would show in the digits at 10 m: they allow at most 5e-6, and then
+    // a tenth of it. Forward, it would show less than the 12.2 that a 0 stands for.
+    let found = row([1.0, 1.0, 0.5, 0.0]);
+    for (at, expected) in [(1, 5e-7), (3, 5e-6), (5, std::f64::consts::LN_2), (7, 2e5f64.ln())] {
+        assert!((found[at] / expected - 1.0).abs() < 1e-12, "{at}: {found:?}");
+    }
+}
+
+#[test]
+fn what_is_outside_the_table_is_named() {
+    let air = Atmosphere::embedded("tropical").unwrap();
+    let error = |nodes: &[f64], length: f64| air.transmittance(nodes, length).unwrap_err().to_string();
+    assert_eq!(
+        error(&[800.0, 1400.0], 10.0),
+        "wavenumber is 1400 cm^-1; it must be from 700 to 1350 cm^-1, where the air of `tropical` is known; \
+         narrow the bands"
+    );
+    assert!(error(&[f64::NAN], 10.0).starts_with("wavenumber is NaN"));
+    assert_eq!(
+        error(&[800.0], 2e4),
+        "distance is 20000 m; it must be at most 10000 m, the longest path in the air of `tropical`"
+    );
+    assert!(error(&[800.0], -1.0).contains("0 or above") && error(&[800.0], f64::NAN).contains("finite"));
+    assert!(air.path_radiance(&[800.0], 10.0, 0.0).is_err());
+    assert_eq!(
+        Atmosphere::embedded("us standard").unwrap_err().to_string(),
+        "there is no model atmosphere `us standard`; did you mean `us-standard`?"
+    );
+}
+
+#[test]
+fn bad_tables_are_refused_with_their_place() {
+    let error = |text: &str| Atmosphere::from_csv(text, Path::new("a.csv")).unwrap_err().to_string();
+    let head = "wavenumber_cm1,tau_10m,tau_0.1km\n";
+    for (text, message) in [
+        ("wavelength_um,tau_10m,tau_1km\n8,1,1\n", "a.csv:1: the first column is `wavelength_um`"),
+        ("wavenumber_cm1,tau_10,tau_1km\n8,1,1\n", "a.csv:1: tau_10: a column `tau_10`"),
+        ("wavenumber_cm1,tau_0m,tau_1km\n8,1,1\n", "a.csv:1: tau_0m: length of the path is 0 m"),
+        ("wavenumber_cm1,tau_100m,tau_0.1km\n8,1,1\n", "a.csv:1: the length 100 m is there twice"),
+        ("wavenumber_cm1,tau_100m\n8,1\n9,1\n", "a.csv:1: there is one path length"),
+        (&format!("{head}700,0.5,0.6\n"), "a.csv:2: tau_0.1km: the transmittance 0.6 is above the 0.5"),
+        (
+            &format!("{head}700,1.5,0.6\n"),
+            "a.csv:2: tau_10m: transmittance is 1.5; it must be between 0 and 1",
+        ),
+        (&format!("{head}-1,0.5,0.4\n"), "a.csv:2: wavenumber is -1 cm^-1"),
+        (&format!("{head}700,0.5,0.4\n"), "a.csv: 1 rows; a spectrum needs at least 2 rows"),
+        (&format!("{head}700,0.5,0.4\n700,0.5,0.4\n"), "a.csv: the wavenumber 700 cm^-1 is there twice"),
+        ("", "a.csv: the file has no rows"),
+    ] {
+        assert!(error(text).starts_with(message), "{}", error(text));
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig {
+        cases: 2000, rng_seed: RngSeed::Fixed(7), failure_persistence: None, ..Default::default()
+    })]
+
+    /// Any table that falls with length, zeros and ones among it, five digits or all.
+    #[test]
+    fn transmittance_never_rises_with_distance(
+        mut taus in proptest::collection::vec(prop_oneof![0.0..=1.0f64, Just(0.0), Just(1.0), 0.999..=1.0f64], 2..7),
+        mut gaps in proptest::collection::vec(1e-3..5.0f64, 7),
+        digits in any::<bool>(),
+        mut at in proptest::collection::vec(-8.0..1.0f64, 30),
+        share in 0.0..=1.0f64,
+    ) {
+        taus.sort_by(|a, b| b.total_cmp(a));
+        if digits {
+            taus.iter_mut().for_each(|tau| *tau = (*tau * 1e5).round() / 1e5);
+        }
+        gaps.truncate(taus.len());
+        let mut ln = 0.0;
+        let lengths: Vec<f64> = gaps.iter().map(|gap| { ln += gap; f64::exp(ln) }).collect();
+        let other: Vec<f64> = taus.iter().map(|tau| tau * tau).collect();
+        let air = table(&lengths, &[(700.0, taus.clone()), (710.0, other)]).unwrap();
+        let longest = air.longest_m();
+        at.sort_by(f64::total_cmp);
+        let mut last = 1.0;
+        for z in at.into_iter().map(|at| (longest * at.exp()).min(longest)).chain([longest]) {
+            let tau = air.transmittance(&[700.0 + 10.0 * share], z).unwrap()[0];
+            // D keeps 1e-15 of itself, and x e^-x is at most 1/e.
+            prop_assert!((0.0..=1.0).contains(&tau) && tau <= last + 1e-14, "{z}: {tau} after {last}");
+            last = tau;
+        }
+    }
+}
