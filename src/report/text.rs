@@ -8,12 +8,14 @@ mod footing;
 mod many;
 mod numbers;
 mod pairs;
+mod rule;
 mod simulation;
 mod work;
 
 pub use camera::camera;
 pub use many::{answers, check};
 pub use numbers::{quantity, significant};
+pub use rule::{rule, scene, would_do};
 pub use simulation::simulation;
 pub use work::work;
 
@@ -24,6 +26,11 @@ use self::pairs::pair_table;
 use crate::policy::Quantity;
 use crate::study::{self, PairResult, Sizing, Study};
 use std::fmt::Write as _;
+
+/// What every answer about a scene rests on.
+pub(super) fn footing_of(study: &Study) -> String {
+    assumptions(study, GAUSSIAN)
+}
 
 /// The verdict and everything behind it.
 #[must_use]

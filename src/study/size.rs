@@ -227,7 +227,7 @@ impl Study {
         }
     }
 
-    fn camera_result(&self, photon_radiance: f64) -> Option<CameraResult> {
+    pub(super) fn camera_result(&self, photon_radiance: f64) -> Option<CameraResult> {
         let camera = self.camera.as_ref()?;
         let counting = self.counting()?;
         let signal = self.target_signal();
@@ -265,7 +265,12 @@ impl Study {
         })
     }
 
-    fn solutions(&self, camera: &Camera, alternative: &Surface, work: &mut Work) -> Result<Solutions> {
+    pub(super) fn solutions(
+        &self,
+        camera: &Camera,
+        alternative: &Surface,
+        work: &mut Work,
+    ) -> Result<Solutions> {
         let task = solve::CameraTask { camera, bands: &self.bands, required: self.required };
         let solved: Result<Vec<(Quantity, Solution)>> = Quantity::ALL
             .into_iter()

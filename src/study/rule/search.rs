@@ -1,0 +1,233 @@
+//! One camera against a rule: the least distance over all materials, alternatives and scenes, and what would raise it.
+//!
+//! A few scenes of every pair give an estimate from above. The pairs are then searched in the order of these estimates,
+//! each only as exactly as it matters: a pair whose distance is a multiple of the least one known needs a bound
+//! that is above that, not its own worst case to 1 %.
+
+use super::super::envelope::{Estimate, Sighted, brightest};
+use super::super::{NearestState, Study, Surface, Warning, warn};
+use super::results::{CameraVerdict, Certified, Fixes, LimitingScene};
+use super::{Candidate, RuleStudy};
+use crate::demand::{Reason, Thing, Work};
+use crate::error::{Error, Result};
+use crate::fisher::Nuisance;
+use crate::identifiability::detection;
+use crate::policy;
+use crate::policy::envelope::{Certificate, Effort, WorstCase, worst_case};
+use crate::scene::State;
+
+/// How far below the distance attained a bound may be, as a share of it.
+const TOLERANCE: f64 = 0.01;
+/// Boxes of the branch and bound for each pair at most: a second or so.
+const BOXES: u64 = 200_000;
+
+/// A pair's scene with what is known of it.
+struct Searched {
+    pair: Estimate,
+    certificate: Option<Certificate>,
+    lower_bound: Option<f64>,
+}
+
+impl Searched {
+    /// What the estimate says alone.
+    fn estimated(pair: Estimate) -> Self {
+        Self { pair, certificate: None, lower_bound: None }
+    }
+}
+
+impl RuleStudy {
+    /// The verdict on one camera; `alone` asks for no more than it.
+    pub(super) fn judged(
+        &self,
+        candidate: &Candidate,
+        alone: bool,
+        work: &mut Work,
+    ) -> Result<CameraVerdict> {
+        let worst = self.worst(candidate, alone, work)?;
+        let sighted = &candidate.sighted[worst.pair.sighted];
+        let surface = &sighted.study.alternatives[worst.pair.alternative];
+        let distance = worst.pair.distance;
+        let at = Study { state: worst.pair.state.clone(), ..sighted.study.clone() };
+        let (blur, reading, mut warnings) = self.image(candidate);
+        let full_well = at.camera.as_ref().and_then(|camera| camera.full_well);
+        let mut fails_by = Vec::new();
+        if distance < self.required {
+            fails_by.push("distance");
+        }
+        if blur.is_some_and(|blur| blur >= 1.0) {
+            fails_by.push("motion-blur");
+        }
+        if full_well.is_some_and(|full| reading > full) {
+            fails_by.push("full-well");
+        }
+        let passes = fails_by.is_empty();
+        let gap = worst.lower_bound.filter(|_| distance > 0.0).map(|bound| 1.0 - bound / distance);
+        let certificate =
+            worst.certificate.map_or_else(Certified::counterexample, |found| Certified::of(found, gap));
+        if passes && worst.lower_bound.is_none_or(|bound| bound < self.required) {
+            let message = "that no scene of the envelope is below the requirement was searched, not proved";
+            warnings.push(Warning::new("not-proved", message));
+        }
+        let mut limiting =
+            limiting(&at, surface, &worst.pair, self.is_unknown(Nuisance::EnvironmentTemperature));
+        let mut fixes = None;
+        if !alone {
+            let shot = at.nearest(surface, f64::INFINITY, work)?;
+            limiting.hardware_m2_s = policy::photons_required(self.required, shot.distance)
+                .map(|photons| policy::hardware_required_m2_s(photons, at.photon_radiance()));
+            let local = at.local(at.unknowns.clone(), surface, f64::INFINITY, work)?;
+            if shot.distance > 0.0 && local.distance_no_nuisance > warn::FRAGILE_RATIO * shot.distance {
+                let message = "the spectra of the limiting scene are nearly featureless: errors of 0.1 % in the emissivities \
+                               can change the distance several times over";
+                warnings.push(Warning::new("fragile", message));
+            }
+            if let Some(camera) = at.camera.clone().filter(|_| distance < self.required) {
+                let quantities = at.solutions(&camera, surface, work)?;
+                let any = quantities.0.iter().any(|(_, solution)| solution.value.is_some());
+                fixes = Some(Fixes { any, quantities });
+            }
+        }
+        Ok(CameraVerdict {
+            name: candidate.name.clone(),
+            passes,
+            fails_by,
+            margin: distance / self.required,
+            statistical_distance: distance,
+            detection_probability: detection::probability(distance),
+            lower_bound: worst.lower_bound,
+            certificate,
+            limiting,
+            fixes,
+            motion_blur_pixels: blur,
+            brightest_reading: reading,
+            warnings,
+        })
+    }
+
+    fn is_unknown(&self, nuisance: Nuisance) -> bool {
+        self.rule.scenario.unknown.nuisances.contains(&nuisance)
+    }
+
+    /// Motion blur (pixels) at the least distance, the fullest reading of the brightest scene, and what is to be said of it.
+    fn image(&self, candidate: &Candidate) -> (Option<f64>, f64, Vec<Warning>) {
+        let (mut blur, mut reading, mut warnings) = (None, 0.0f64, Vec::<Warning>::new());
+        for near in &candidate.near {
+            let Ok(ranges) = near.ranges(&self.envelope) else { continue };
+            let bright = Study { state: brightest(&ranges), ..near.clone() };
+            let Some(camera) = bright.camera_result(bright.photon_radiance()) else { continue };
+            blur = camera.motion_blur_pixels;
+            reading = reading.max(camera.brightest_reading);
+            if warnings.is_empty() {
+                warnings.extend(bright.camera_warnings());
+                let assumed = camera.camera.assumed.iter();
+                warnings.extend(assumed.map(|figure| Warning::new("assumed-figure", figure.clone())));
+            }
+        }
+        match blur {
+            Some(blur) if blur >= 1.0 => {
+                let message =
+                    format!("at the least distance the target moves {blur:.1} pixels during an exposure");
+                warnings.push(Warning::new("motion-blur", message));
+            }
+            None if self.rule.scenario.requirement.speed_m_s.is_some() => {
+                let message = "a speed is given, but motion blur needs the camera's pixels and field_of_view, and a distance";
+                warnings.push(Warning::new("motion-blur-unknown", message));
+            }
+            _ => {}
+        }
+        (blur, reading, warnings)
+    }
+
+    /// The worst of all pairs, or a scene that is below the requirement where no more is asked for.
+    fn worst(&self, candidate: &Candidate, alone: bool, work: &mut Work) -> Result<Searched> {
+        let mut pairs: Vec<Estimate> = Vec::new();
+        for (index, sighted) in candidate.sighted.iter().enumerate() {
+            let (estimates, searched) = sighted.estimates(index)?;
+            work.compute(Thing::NearestSearches, searched);
+            pairs.extend(estimates);
+        }
+        pairs.sort_by(|a, b| a.distance.total_cmp(&b.distance));
+        let count = pairs.len();
+        let mut found: Vec<Searched> = Vec::with_capacity(count);
+        let mut best = f64::INFINITY;
+        let mut all = true;
+        for (done, pair) in pairs.into_iter().enumerate() {
+            if alone && (pair.distance < self.required || best < self.required) {
+                work.spare(Thing::WorstCases, Reason::AnotherOne, (count - done) as u64);
+                if best >= self.required {
+                    return Ok(Searched::estimated(pair));
+                }
+                all = false;
+                break;
+            }
+            let sighted = &candidate.sighted[pair.sighted];
+            let enough = if alone { self.required } else { best };
+            let mut tolerance = (1.0 - enough / pair.distance).clamp(TOLERANCE, 1.0 - TOLERANCE);
+            let mut searched = search(sighted, pair, tolerance, work)?;
+            best = best.min(searched.pair.distance);
+            // A worst case below the estimate may leave a bound that does not reach what is enough.
+            let short = |searched: &Searched, enough: f64| {
+                let exact = searched.pair.distance * (1.0 - TOLERANCE);
+                searched.lower_bound.is_some_and(|bound| bound < exact.min(enough * (1.0 - TOLERANCE)))
+            };
+            let enough = if alone { self.required } else { best };
+            if tolerance > TOLERANCE && short(&searched, enough) {
+                tolerance = (1.0 - enough / searched.pair.distance).clamp(TOLERANCE, 1.0 - TOLERANCE);
+                searched = search(sighted, searched.pair, tolerance, work)?;
+                best = best.min(searched.pair.distance);
+            }
+            found.push(searched);
+        }
+        let lower: Option<Vec<f64>> = found.iter().map(|searched| searched.lower_bound).collect();
+        let lower = lower.map(|bounds| bounds.into_iter().fold(f64::INFINITY, f64::min));
+        let worst = found.into_iter().min_by(|a, b| a.pair.distance.total_cmp(&b.pair.distance));
+        let Some(worst) = worst else {
+            let instead = "name one in alternatives.materials";
+            return Err(Error::malformed("there is no pair of materials", instead));
+        };
+        if !all {
+            // A scene below the requirement, and other pairs not looked at.
+            return Ok(Searched::estimated(worst.pair));
+        }
+        let distance = worst.pair.distance;
+        let certificate = match (worst.certificate, lower) {
+            (Some(Certificate::Equilibrium), _) => Some(Certificate::Equilibrium),
+            (_, None) => Some(Certificate::DenseSearch { points: 0 }),
+            (_, Some(bound)) if bound >= distance * (1.0 - TOLERANCE) => Some(Certificate::BranchAndBound),
+            (_, Some(bound)) => Some(Certificate::Bounded { gap: 1.0 - bound / distance }),
+        };
+        Ok(Searched { lower_bound: lower, certificate, ..worst })
+    }
+}
+
+/// The worst case of one pair, no worse than its estimate.
+fn search(sighted: &Sighted, pair: Estimate, tolerance: f64, work: &mut Work) -> Result<Searched> {
+    let surface = &sighted.study.alternatives[pair.alternative];
+    let effort = Effort { relative_tolerance: tolerance, boxes: BOXES };
+    let WorstCase { distance, lower_bound, state, nearest, certificate, evaluations, boxes } =
+        worst_case(&sighted.scene(surface), &sighted.ranges, &effort)?;
+    work.compute(Thing::WorstCases, 1);
+    work.compute(Thing::NearestSearches, evaluations);
+    work.compute(Thing::Boxes, boxes);
+    let pair = if distance <= pair.distance { Estimate { distance, state, nearest, ..pair } } else { pair };
+    Ok(Searched { pair, certificate: Some(certificate), lower_bound })
+}
+
+fn limiting(at: &Study, surface: &Surface, pair: &Estimate, environment: bool) -> LimitingScene {
+    let State { temperature_k, lighting, environment_k, .. } = pair.state.clone();
+    LimitingScene {
+        target: at.target.name.clone(),
+        alternative: surface.name.clone(),
+        temperature_k,
+        lighting,
+        surroundings_k: environment_k,
+        distance_m: at.scenario.target.distance_m,
+        nearest_state: NearestState {
+            temperature_k: pair.nearest.temperature_k,
+            lighting: pair.nearest.lighting.clone(),
+            gain: pair.nearest.gain,
+            environment_temperature_k: environment.then(|| pair.nearest.environment_k.clone()),
+        },
+        hardware_m2_s: None,
+    }
+}
