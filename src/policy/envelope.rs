@@ -22,6 +22,8 @@
 mod attain;
 mod bound;
 mod cell;
+mod joint;
+mod linear;
 mod model;
 mod partition;
 mod prove;
@@ -31,6 +33,7 @@ mod series;
 pub use self::ranges::Ranges;
 
 use self::attain::Attained;
+use self::model::Model;
 use crate::error::Result;
 use crate::fisher::{Counting, Unknowns};
 use crate::identifiability::nearest::{NearestSolver, StateRange};
@@ -147,15 +150,18 @@ pub fn worst_case(scene: &EnvelopeScene<'_>, ranges: &Ranges, effort: &Effort) -
         return Ok(WorstCase::new(attained, Some(0.0), Certificate::Equilibrium));
     }
     let provable = model::provable(scene.unknowns, scene.surroundings.objects().len()) && effort.boxes > 0;
+    let joint = provable.then(|| Model::new(scene, ranges));
     let points = if provable { SCENES } else { SCENES_WITHOUT_PROOF };
-    let attained = attain::attain(scene, ranges, points)?;
+    let attained = attain::attain(scene, ranges, points, joint.as_ref())?;
     if attained.distance == 0.0 {
         return Ok(WorstCase::new(attained, Some(0.0), Certificate::Equilibrium));
     }
-    if !provable {
+    let Some(mut joint) = joint else {
         return Ok(WorstCase::new(attained, None, Certificate::DenseSearch { points }));
-    }
-    let proof = prove::prove(scene, ranges, effort, attained)?;
+    };
+    let best = joint::residual(&joint.0, &joint.0.point(&attained.state, &attained.nearest));
+    joint.0.lean([&best.target, &best.alternative]);
+    let proof = prove::prove(&joint, ranges, effort, attained)?;
     let gap = 1.0 - proof.lower_bound / proof.attained.distance;
     let proved = gap <= effort.relative_tolerance;
     let certificate = if proved { Certificate::BranchAndBound } else { Certificate::Bounded { gap } };

@@ -6,6 +6,8 @@
 //! along one range at a time and along what two rounds have gained (Hooke and Jeeves, J. ACM 8, 212 (1961)), with steps
 //! that halve. Neither proves anything.
 
+use super::joint::{self, Point};
+use super::model::{Model, Region};
 use super::{EnvelopeScene, Ranges};
 use crate::error::Result;
 use crate::identifiability::nearest::NearestSolver;
@@ -60,7 +62,12 @@ impl Trial<'_, '_> {
 }
 
 /// The least distance of `points` scenes and more, refined.
-pub(super) fn attain(scene: &EnvelopeScene<'_>, ranges: &Ranges, points: usize) -> Result<Attained> {
+pub(super) fn attain(
+    scene: &EnvelopeScene<'_>,
+    ranges: &Ranges,
+    points: usize,
+    joint: Option<&(Model<'_>, Region)>,
+) -> Result<Attained> {
     let free: Vec<bool> = ranges.all().iter().map(|[low, high]| low < high).collect();
     let places = places(&free, points);
     let solver = scene.solver();
@@ -73,7 +80,7 @@ pub(super) fn attain(scene: &EnvelopeScene<'_>, ranges: &Ranges, points: usize) 
         .into_par_iter()
         .map(|start| {
             let mut trial = trial();
-            Ok((descend(&mut trial, start, &free)?, trial.evaluations))
+            Ok((refine(&mut trial, start, &free, joint)?, trial.evaluations))
         })
         .collect::<Result<_>>()?;
     let evaluations = places.len() as u64 + refined.iter().map(|(_, count)| count).sum::<u64>();
@@ -90,27 +97,41 @@ pub(super) fn attain(scene: &EnvelopeScene<'_>, ranges: &Ranges, points: usize) 
     })
 }
 
-/// A descent from a scene that another search has come upon.
+/// What a descent from a point that another search has come upon leads to, if it is below `below`; and how many
+/// nearest distances that took.
 pub(super) fn attain_from(
-    scene: &EnvelopeScene<'_>,
+    (model, whole): &(Model<'_>, Region),
     ranges: &Ranges,
-    place: &[f64],
+    start: Point,
     below: f64,
 ) -> Result<(Option<Attained>, u64)> {
-    let free: Vec<bool> = ranges.all().iter().map(|[low, high]| low < high).collect();
-    let mut trial = Trial { scene, ranges, solver: scene.solver(), evaluations: 0 };
-    let start = trial.at(place)?;
-    // A scene that is no better than what is known is not worth a descent.
-    if start.distance >= below {
-        return Ok((None, trial.evaluations));
+    let scene = &model.scene;
+    let (point, distance) = joint::descend(model, whole, start);
+    if distance >= below {
+        return Ok((None, 0));
     }
-    let best = descend(&mut trial, start, &free)?;
-    let state = ranges.scene_at(&best.place);
-    let evaluations = trial.evaluations;
-    Ok((
-        Some(Attained { distance: best.distance, state, nearest: best.nearest, evaluations: 0 }),
-        evaluations,
-    ))
+    let mut trial = Trial { scene, ranges, solver: scene.solver(), evaluations: 0 };
+    let best = trial.at(&model.place(&point, ranges))?;
+    let Tried { place, distance, nearest } = best;
+    let found = Attained { distance, state: ranges.scene_at(&place), nearest, evaluations: 0 };
+    Ok(((distance < below).then_some(found), trial.evaluations))
+}
+
+/// From one of the best scenes downhill: with the alternative's state together where that can be, then along the ranges.
+fn refine(
+    trial: &mut Trial<'_, '_>,
+    mut best: Tried,
+    free: &[bool],
+    joint: Option<&(Model<'_>, Region)>,
+) -> Result<Tried> {
+    let Some((model, whole)) = joint else { return descend(trial, best, free, FIRST_STEP) };
+    let start = model.point(&trial.ranges.scene_at(&best.place), &best.nearest);
+    let (point, _) = joint::descend(model, whole, start);
+    let found = trial.at(&model.place(&point, trial.ranges))?;
+    if found.distance < best.distance {
+        best = found;
+    }
+    Ok(best)
 }
 
 /// Points of the unit cube: the lattice and the corners. What is not free stays at 0.
@@ -154,8 +175,8 @@ fn apart(sorted: Vec<Tried>) -> Vec<Tried> {
 }
 
 /// The method of Hooke and Jeeves within the unit cube.
-fn descend(trial: &mut Trial<'_, '_>, start: Tried, free: &[bool]) -> Result<Tried> {
-    let (mut best, mut step) = (start, FIRST_STEP);
+fn descend(trial: &mut Trial<'_, '_>, start: Tried, free: &[bool], first_step: f64) -> Result<Tried> {
+    let (mut best, mut step) = (start, first_step);
     let first = trial.evaluations;
     while step > LAST_STEP && best.distance > 0.0 && trial.evaluations - first < PATIENCE as u64 {
         let before = best.place.clone();

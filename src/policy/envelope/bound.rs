@@ -11,15 +11,14 @@
 //! by its second derivatives alone. *Any* u gives a valid bound: how well the nearest point is solved for matters for
 //! tightness alone.
 //!
-//! Split is along what bends u·Δ, or moves it, most.
+//! Split is along what bends u·Δ, moves it, or changes the variance most.
 
 use super::cell::{Cell, Node, PAIRS, RANK, Vector};
+use super::linear::{COLUMNS, Factor, Gram};
 use super::model::SOURCES;
 
-/// Columns of A: temperature, v, w of each source.
-const COLUMNS: usize = 3 * SOURCES;
-/// Steps of the search for the nearest point of the linear model.
-const STEPS: usize = 16;
+/// About how fast Planck's function grows with temperature, both relative.
+const GROWTH: f64 = 5.0;
 /// Share of the separation in the middle below which the linear model is taken to reach the origin.
 const REACHED: f64 = 1e-9;
 
@@ -60,6 +59,20 @@ fn least_parabola(a: f64, b: f64, c: f64) -> f64 {
     if 2.0 * c > b.abs() { a - 0.25 * b * b / c } else { a + c - b.abs() }
 }
 
+/// uᵀMu.
+fn along(matrix: &[f64; PAIRS], u: &Vector) -> f64 {
+    let (mut total, mut place) = (0.0, 0);
+    for i in 0..RANK {
+        let mut line = 0.5 * matrix[place] * u[i];
+        for (x, u) in matrix[place..place + RANK - i].iter().zip(&u[i..]).skip(1) {
+            line += x * u;
+        }
+        total += 2.0 * u[i] * line;
+        place += RANK - i;
+    }
+    total
+}
+
 fn centre([low, high]: [f64; 2]) -> (f64, f64) {
     (0.5 * (low + high), 0.5 * (high - low))
 }
@@ -85,32 +98,77 @@ impl Cell {
                 add(&mut columns[3 * s + 2], dw, &node.other[0]);
             }
         }
+        // In coordinates in which M is the unit matrix.
+        let variance = self.variance_of(cube);
+        let factor = Factor::new(&variance, self.rank);
+        for column in columns[..3 * sources].iter_mut().chain([&mut middle]) {
+            factor.solve(column);
+        }
+        let gram =
+            Gram::new(3 * sources, |i, j| dot(&columns[i], &columns[j]), |i| dot(&columns[i], &middle));
         let mut point = middle;
-        let gram = Gram::new(&columns[..3 * sources], &middle);
-        let x = gram.nearest();
-        for (x, column) in x.iter().zip(&columns) {
+        for (x, column) in gram.nearest().iter().zip(&columns) {
             add(&mut point, *x, column);
         }
-        let norm = dot(&point, &point).sqrt();
-        if norm <= REACHED * dot(&middle, &middle).sqrt() {
-            let size = |i: usize| gram.square[i][i];
-            cube.split = self.best_split(cube, size);
+        if dot(&point, &point).sqrt() <= REACHED * dot(&middle, &middle).sqrt() {
+            cube.split = self.best_split(cube, |i| gram.size(i));
             return;
         }
+        factor.solve_transposed(&mut point);
+        let norm = dot(&point, &point).sqrt();
         let u = point.map(|x| x / norm);
         let mut weight = [0.0; COLUMNS];
         let mut total = -self.slack;
         for s in 0..sources {
             total += self.least(cube, s, &u, &mut weight);
         }
-        cube.split = self.best_split(cube, |i| weight[i]);
         if total > 0.0 {
+            let spread = along(&variance, &u);
+            self.weigh_variance(cube, &u, 0.5 * total / spread, &mut weight);
             // A denominator some hundred roundings too large, never too small.
-            let bound = total / (self.spread_of(cube, &u).sqrt() * (1.0 + 1e-13));
+            let bound = total / (spread.sqrt() * (1.0 + 1e-13));
             if bound > cube.bound {
                 cube.bound = bound;
             }
         }
+        cube.split = self.best_split(cube, |i| weight[i]);
+    }
+
+    /// Adds what the ranges account for by the variance at their upper ends being too large within them.
+    #[inline(always)]
+    fn weigh_variance(&self, cube: &Cube, u: &Vector, scale: f64, weight: &mut [f64; COLUMNS]) {
+        for s in 0..self.sources.len() {
+            let node = self.node_of(cube, s);
+            let (own, other) = (cube.own[s], cube.other[s]);
+            let share = scale * along(&node.own_spread, u);
+            weight[3 * s + 1] += share * (own[1] - own[0]);
+            let mut seen = share * own[1];
+            if other[1] > 0.0 {
+                let share = scale * along(&node.other_spread, u);
+                weight[3 * s + 2] += share * (other[1] - other[0]);
+                seen += share * other[1];
+            }
+            weight[3 * s] += seen * GROWTH * (node.t[1] - node.t[0]) / node.t[1];
+        }
+    }
+
+    /// M at the upper ends of a cube.
+    #[inline(always)]
+    fn variance_of(&self, cube: &Cube) -> [f64; PAIRS] {
+        let mut total = *self.var_spread;
+        let mut add = |factor: f64, spread: &[f64; PAIRS]| {
+            for (to, x) in total.iter_mut().zip(spread) {
+                *to += factor * x;
+            }
+        };
+        for s in 0..self.sources.len() {
+            let node = self.node_of(cube, s);
+            add(cube.own[s][1], &node.own_spread);
+            if cube.other[s][1] > 0.0 {
+                add(cube.other[s][1], &node.other_spread);
+            }
+        }
+        total
     }
 
     /// Least u·(v f + w g) of one source, and how much of it each of its ranges accounts for.
@@ -147,37 +205,6 @@ impl Cell {
         least
     }
 
-    /// uᵀMu at the upper ends of a cube.
-    #[inline(always)]
-    fn spread_of(&self, cube: &Cube, u: &Vector) -> f64 {
-        let mut products = [0.0; PAIRS];
-        let mut place = 0;
-        for i in 0..RANK {
-            for j in i..RANK {
-                products[place] = u[i] * u[j];
-                place += 1;
-            }
-        }
-        let along = |spread: &[f64; PAIRS]| -> f64 {
-            let mut lanes = [0.0; 8];
-            for (a, b) in products.chunks_exact(8).zip(spread.chunks_exact(8)) {
-                for i in 0..8 {
-                    lanes[i] += a[i] * b[i];
-                }
-            }
-            lanes.iter().sum()
-        };
-        let mut total = along(&self.var_spread);
-        for s in 0..self.sources.len() {
-            let node = self.node_of(cube, s);
-            total += cube.own[s][1] * along(&node.own_spread);
-            if cube.other[s][1] > 0.0 {
-                total += cube.other[s][1] * along(&node.other_spread);
-            }
-        }
-        total
-    }
-
     /// The range of most weight among those that can be halved.
     fn best_split(&self, cube: &Cube, weight: impl Fn(usize) -> f64) -> Option<usize> {
         let mut best: Option<(f64, usize)> = None;
@@ -192,120 +219,5 @@ impl Cell {
             }
         }
         best.map(|(_, i)| i)
-    }
-}
-
-/// Normal equations of the linear model, of its columns that are not zero.
-struct Gram {
-    square: [[f64; COLUMNS]; COLUMNS],
-    pull: [f64; COLUMNS],
-    columns: [usize; COLUMNS],
-    count: usize,
-}
-
-impl Gram {
-    fn new(columns: &[Vector], middle: &Vector) -> Self {
-        let (mut square, mut pull) = ([[0.0; COLUMNS]; COLUMNS], [0.0; COLUMNS]);
-        let (mut used, mut count) = ([0; COLUMNS], 0);
-        for (i, column) in columns.iter().enumerate() {
-            let own = dot(column, column);
-            if own > 0.0 {
-                square[i][i] = own;
-                pull[i] = dot(column, middle);
-                used[count] = i;
-                count += 1;
-            }
-        }
-        for a in 0..count {
-            for b in 0..a {
-                let (i, j) = (used[a], used[b]);
-                let value = dot(&columns[i], &columns[j]);
-                (square[i][j], square[j][i]) = (value, value);
-            }
-        }
-        Self { square, pull, columns: used, count }
-    }
-
-    /// x with |x_i| ≤ 1 that brings middle + Σxᵢ columnᵢ nearest to the origin: an active set (Stark and Parker,
-    /// Comput. Stat. 10, 129 (1995)). Coefficients that come to a bound are held there; when the others have come to
-    /// rest, the one that is pulled back most is let go.
-    fn nearest(&self) -> [f64; COLUMNS] {
-        let (mut x, mut held) = ([0.0; COLUMNS], [false; COLUMNS]);
-        let mut slope = self.pull;
-        let columns = &self.columns[..self.count];
-        for _ in 0..STEPS {
-            let (mut free, mut count) = ([0; COLUMNS], 0);
-            for &i in columns.iter().filter(|&&i| !held[i]) {
-                free[count] = i;
-                count += 1;
-            }
-            let free = &free[..count];
-            let step = self.newton(free, &slope);
-            // As far as the first bound.
-            let (mut share, mut stop) = (1.0, None);
-            for (&i, &d) in free.iter().zip(&step) {
-                let room = if d > 0.0 { 1.0 - x[i] } else { -1.0 - x[i] };
-                if d != 0.0 && room / d < share {
-                    (share, stop) = (room / d, Some(i));
-                }
-            }
-            for (&i, &d) in free.iter().zip(&step) {
-                x[i] = (x[i] + share * d).clamp(-1.0, 1.0);
-                for &j in columns {
-                    slope[j] += share * d * self.square[i][j];
-                }
-            }
-            if let Some(i) = stop {
-                x[i] = x[i].signum();
-                held[i] = true;
-                continue;
-            }
-            let mut most = (0.0, None);
-            for &i in columns.iter().filter(|&&i| held[i]) {
-                let pull = x[i] * slope[i] / self.square[i][i].sqrt();
-                if pull > most.0 {
-                    most = (pull, Some(i));
-                }
-            }
-            match most.1 {
-                Some(i) => held[i] = false,
-                None => break,
-            }
-        }
-        x
-    }
-
-    /// −G⁻¹ slope on the free coefficients, by Cholesky's factors of the matrix scaled to a unit diagonal.
-    fn newton(&self, free: &[usize], slope: &[f64; COLUMNS]) -> [f64; COLUMNS] {
-        let n = free.len();
-        let (mut factor, mut y, mut scale) = ([[0.0; COLUMNS]; COLUMNS], [0.0; COLUMNS], [0.0; COLUMNS]);
-        for (a, &i) in free.iter().enumerate() {
-            scale[a] = 1.0 / self.square[i][i].sqrt();
-        }
-        for a in 0..n {
-            for b in 0..=a {
-                let mut value = self.square[free[a]][free[b]] * scale[a] * scale[b];
-                for k in 0..b {
-                    value -= factor[a][k] * factor[b][k];
-                }
-                // A little is added to the diagonal: columns may be dependent.
-                factor[a][b] = if a == b { (value + 1e-12).max(1e-13).sqrt() } else { value / factor[b][b] };
-            }
-            let mut value = -slope[free[a]] * scale[a];
-            for k in 0..a {
-                value -= factor[a][k] * y[k];
-            }
-            y[a] = value / factor[a][a];
-        }
-        for a in (0..n).rev() {
-            for k in a + 1..n {
-                y[a] -= factor[k][a] * y[k];
-            }
-            y[a] /= factor[a][a];
-        }
-        for a in 0..n {
-            y[a] *= scale[a];
-        }
-        y
     }
 }

@@ -5,10 +5,11 @@
 //! cell. Neither c nor Q is an approximation in a bound: for *any* weights z of the bands and any upper bounds ĉ of the
 //! variances,
 //!
-//! d(θ, θ′) ≥ Σ z_w ω_w(N − N′)_w / √(Σ z_w² ĉ_w/c_w),   ĉ_w = ½(N + N′)_w + v_w at the upper ends of a box,
+//! d(θ, θ′) ≥ Σ z_w ω_w(N − N′)_w / √(Σ z_w² ĉ_w/c_w),   ĉ = ¼(1 + s)(N + v) + ¼(1 + 1/s)(N′ + v) at the upper ends of a box,
 //!
-//! because |√(N+v) − √(N′+v)| = |N − N′|/(√(N+v) + √(N′+v)) ≥ |N − N′|/(2√ĉ) (the root is concave, N grows with every
-//! temperature and lighting factor) and by Cauchy and Schwarz. With z = Qu the numerator is u·Qᵀω(N − N′), for which
+//! by Cauchy and Schwarz and because √(N+v) − √(N′+v) = (N − N′)/(√(N+v) + √(N′+v)), where (√a + √b)²/4 ≤ ĉ for any s > 0
+//! (2√(ab) ≤ sa + b/s; best where s² = b/a, which is taken from the best scene known), and N and N′ grow with every
+//! temperature and lighting factor. With z = Qu the numerator is u·Qᵀω(N − N′), for which
 //! Qᵀω f(T) is kept as a cubic with its remainder (`series`), and the denominator √(uᵀMu), M = Σ_w q_w q_wᵀ ĉ_w/c_w. A
 //! basis or weights that are not the best lose only in the second order of what they miss.
 //!
@@ -16,6 +17,7 @@
 //! hundred more for Planck's function and the short sums, are taken off every bound.
 
 use super::model::{Model, Region, SOURCES, Span};
+use super::partition::Part;
 use super::series::{TERMS, planck_series, remainder};
 use crate::sum::dot;
 
@@ -27,6 +29,9 @@ pub(super) const PAIRS: usize = RANK * (RANK + 1) / 2;
 const RADII: [f64; 5] = [0.2, 0.4, 0.6, 0.8, 0.95];
 /// The basis is complete when nothing is left of a spectrum but this share of the distance attained.
 const LEFT_OVER: f64 = 1e-3;
+/// What is left of a spectrum times the skew of variances is this much less of a loss: the weights of bands need not be
+/// known as well as their differences.
+const WEIGHT_OF_SKEW: f64 = 0.03;
 /// A source that is weaker than this share of the distance attained is not resolved in temperature.
 pub(super) const FAINT: f64 = 3e-4;
 /// Intervals are not halved below this share of their temperature.
@@ -44,7 +49,7 @@ pub(super) struct Node {
     pub(super) other: Cubic,
     pub(super) own_rest: f64,
     pub(super) other_rest: f64,
-    /// Shares of v and w in M at the upper end, entries off the diagonal doubled.
+    /// Shares of v and w in M at the upper end.
     pub(super) own_spread: Box<[f64; PAIRS]>,
     pub(super) other_spread: Box<[f64; PAIRS]>,
     /// Place of the first of two halves.
@@ -67,17 +72,18 @@ pub(super) struct Cell {
     /// ω, and 1/c.
     whitening: Vec<f64>,
     per_variance: Vec<f64>,
-    /// The components of each band along the basis.
+    /// The components of each band along the basis, and how many there are.
     basis: Vec<Vector>,
-    rank: usize,
+    pub(super) rank: usize,
     pub(super) sources: Vec<Intervals>,
     pub(super) var_spread: Box<[f64; PAIRS]>,
     pub(super) slack: f64,
 }
 
 impl Cell {
-    /// Prepares a part of the envelope; `variance` c of each band, `attained` a distance for what is negligible.
-    pub(super) fn new(model: &Model<'_>, region: Region, variance: &[f64], attained: f64) -> Self {
+    /// Prepares a part of the envelope, with a distance for what is negligible.
+    pub(super) fn new(model: &Model<'_>, part: &Part, attained: f64) -> Self {
+        let (region, variance) = (part.region.clone(), &part.variance);
         let usable = |c: &f64| *c > 0.0;
         let per_variance: Vec<f64> = variance.iter().map(|c| if usable(c) { 1.0 / c } else { 0.0 }).collect();
         let whitening: Vec<f64> = per_variance.iter().map(|inverse| 0.5 * inverse.sqrt()).collect();
@@ -91,8 +97,10 @@ impl Cell {
             var_spread: Box::new([0.0; PAIRS]),
             slack: 0.0,
         };
-        cell.span_samples(model, LEFT_OVER * attained);
-        cell.var_spread = cell.spread(&model.var);
+        cell.span_samples(model, &part.skew, LEFT_OVER * attained);
+        let shares = model.shares[0].iter().zip(&model.shares[1]);
+        let var: Vec<f64> = model.var.iter().zip(shares).map(|(v, (a, b))| v * (a + b)).collect();
+        cell.var_spread = cell.spread(&var);
         let mut size = 0.0;
         for s in 0..cell.region.len().min(SOURCES) {
             let Span { t, own, other } = cell.region[s];
@@ -133,9 +141,9 @@ impl Cell {
         counts
     }
 
-    /// The basis: whitened spectra at Chebyshev points of every temperature, largest remainder first (Gram and Schmidt,
-    /// twice).
-    fn span_samples(&mut self, model: &Model<'_>, negligible: f64) {
+    /// The basis: whitened spectra at Chebyshev points of every temperature, and what they become if the variances change,
+    /// largest remainder first (Gram and Schmidt, twice).
+    fn span_samples(&mut self, model: &Model<'_>, skew: &[f64], negligible: f64) {
         let mut samples: Vec<Vec<f64>> = Vec::new();
         for (source, span) in model.sources.iter().zip(&self.region) {
             for point in 0..5 {
@@ -145,6 +153,9 @@ impl Cell {
                 for (strength, factor) in [(&source.own, span.own[1]), (&source.other, span.other[1])] {
                     let mut counts = self.whitened(model.counts(strength, &radiance));
                     counts.iter_mut().for_each(|count| *count *= factor);
+                    samples.push(
+                        counts.iter().zip(skew).map(|(count, skew)| WEIGHT_OF_SKEW * count * skew).collect(),
+                    );
                     samples.push(counts);
                 }
             }
@@ -163,7 +174,7 @@ impl Cell {
                 remove(&mut next, known);
             }
             let norm = dot(&next, &next).sqrt();
-            if !(norm > 0.0) {
+            if norm <= 0.0 {
                 continue;
             }
             next.iter_mut().for_each(|x| *x /= norm);
@@ -190,7 +201,7 @@ impl Cell {
         out
     }
 
-    /// Σ q qᵀ of the bands times `var`/c, entries off the diagonal doubled.
+    /// Σ q qᵀ of the bands times `var`/c, the lines of its upper half.
     fn spread(&self, var: &[f64]) -> Box<[f64; PAIRS]> {
         let mut square = [[0.0; RANK]; RANK];
         for ((row, var), inverse) in self.basis.iter().zip(var).zip(&self.per_variance) {
@@ -205,17 +216,22 @@ impl Cell {
         let mut packed = Box::new([0.0; PAIRS]);
         let places = (0..RANK).flat_map(|i| (i..RANK).map(move |j| (i, j)));
         for (out, (i, j)) in packed.iter_mut().zip(places) {
-            *out = if i == j { square[i][i] } else { 2.0 * square[i][j] };
+            *out = square[i][j];
         }
         packed
     }
 
     fn spreads(&self, model: &Model<'_>, s: usize, temperature_k: f64) -> [Box<[f64; PAIRS]>; 2] {
         let (source, radiance) = (&model.sources[s], model.radiance(temperature_k));
-        let both: Vec<f64> =
-            source.target.iter().zip(&source.alternative).map(|(a, b)| 0.5 * (a + b)).collect();
-        let alone: Vec<f64> = source.alone.iter().map(|a| 0.5 * a).collect();
-        [both, alone].map(|strength| self.spread(&model.counts(&strength, &radiance)))
+        let [target, alternative, alone] = [&source.target, &source.alternative, &source.alone]
+            .map(|strength| model.counts(strength, &radiance));
+        let [share, other_share] = &model.shares;
+        let sum = |a: &[f64], b: &[f64]| -> Vec<f64> {
+            let terms = a.iter().zip(share).zip(b.iter().zip(other_share));
+            terms.map(|((a, share), (b, other))| a * share + b * other).collect()
+        };
+        let nothing = vec![0.0; alone.len()];
+        [self.spread(&sum(&target, &alternative)), self.spread(&sum(&nothing, &alone))]
     }
 
     fn node(&self, model: &Model<'_>, s: usize, t: [f64; 2], top: [Box<[f64; PAIRS]>; 2]) -> Node {

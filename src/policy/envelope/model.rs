@@ -11,9 +11,11 @@
 //! | object k, lighting unknown | Vₖ | (1 − e)εₖ | Vₖ′ | −(1 − e′)εₖ |
 //! | object k, lighting known | Vₖ | (e′ − e)εₖ | | |
 
+use super::joint::Point;
 use super::{EnvelopeScene, Ranges};
 use crate::fisher::{Nuisance, Unknowns};
 use crate::planck;
+use crate::scene::State;
 
 /// Sources that a proof can deal with: two surfaces and two objects.
 pub(super) const SOURCES: usize = 4;
@@ -49,6 +51,9 @@ pub(super) struct Model<'a> {
     pub(super) scene: EnvelopeScene<'a>,
     pub(super) sources: Vec<Source>,
     pub(super) var: Vec<f64>,
+    lighting_unknown: bool,
+    /// Shares of N and N′ in the bound of a variance, band by band: ¼(1 + s) and ¼(1 + 1/s).
+    pub(super) shares: [Vec<f64>; 2],
     /// Largest sum of V and of V′.
     pub(super) sums: [f64; 2],
 }
@@ -114,8 +119,10 @@ impl<'a> Model<'a> {
                 region.push(span(t, v, [0.0; 2]));
             }
         }
-        let var = (0..scene.bands.len()).map(|band| scene.counting.var_added(band)).collect();
-        (Self { scene: *scene, sources, var, sums: [1.0, scene.range.lighting_sum] }, region)
+        let var: Vec<f64> = (0..scene.bands.len()).map(|band| scene.counting.var_added(band)).collect();
+        let shares = [vec![0.5; var.len()], vec![0.5; var.len()]];
+        let sums = [1.0, scene.range.lighting_sum];
+        (Self { scene: *scene, sources, var, lighting_unknown: own_v, shares, sums }, region)
     }
 
     /// Counts of every band for a spectrum that is `strength` times `radiance` at the nodes.
@@ -131,6 +138,49 @@ impl<'a> Model<'a> {
         let mut radiance = vec![0.0; nodes.len()];
         planck::photon_radiance_into(nodes, temperature_k, &mut radiance);
         radiance
+    }
+
+    /// Takes the ratio s² = (N′+v)/(N+v) of every band from a point: bounds are tightest where it is right.
+    pub(super) fn lean(&mut self, counts: [&[f64]; 2]) {
+        for (band, v) in self.var.iter().enumerate() {
+            let [target, alternative] = counts.map(|counts| counts[band] + v);
+            let usable = target > 0.0 && alternative > 0.0;
+            let s = if usable { (alternative / target).sqrt().clamp(1e-3, 1e3) } else { 1.0 };
+            (self.shares[0][band], self.shares[1][band]) = (0.25 * (1.0 + s), 0.25 * (1.0 + 1.0 / s));
+        }
+    }
+
+    /// Scene and alternative's state as values of the sources.
+    pub(super) fn point(&self, state: &State, nearest: &State) -> Point {
+        let mut values = [[0.0; 3]; SOURCES];
+        let mut object = 0;
+        for (s, (source, value)) in self.sources.iter().zip(&mut values).enumerate() {
+            *value = if source.object {
+                let (t, v, w) =
+                    (state.environment_k[object], state.lighting[object], nearest.lighting[object]);
+                object += 1;
+                [t, v, if self.lighting_unknown { w } else { 0.0 }]
+            } else {
+                [if s == 0 { state.temperature_k } else { nearest.temperature_k }, 1.0, 0.0]
+            };
+        }
+        Point { values }
+    }
+
+    /// The scene of a point, as a place in the unit cube of the ranges.
+    pub(super) fn place(&self, point: &Point, ranges: &Ranges) -> Vec<f64> {
+        let mut values = Vec::new();
+        for (s, (source, value)) in self.sources.iter().zip(point.values).enumerate() {
+            if source.object {
+                values.extend([value[0], value[1]]);
+            } else if s == 0 {
+                values.push(value[0]);
+            }
+        }
+        let share = |(value, [low, high]): (f64, [f64; 2])| {
+            if high > low { ((value - low) / (high - low)).clamp(0.0, 1.0) } else { 0.0 }
+        };
+        values.into_iter().zip(ranges.all()).map(share).collect()
     }
 
     /// Keeps lighting factors within what their sum may be. `false` where that leaves nothing.

@@ -22,6 +22,8 @@ const ROUNDING: f64 = 1e-14;
 pub(super) struct Part {
     pub(super) region: Region,
     pub(super) variance: Vec<f64>,
+    /// By what share of itself that of each band may differ, beyond what all bands have in common.
+    pub(super) skew: Vec<f64>,
     /// Proved of the part as a whole.
     pub(super) bound: f64,
 }
@@ -109,6 +111,7 @@ fn assess(model: &Model<'_>, region: Region, threshold: f64, attained: f64, many
     let ends = ends(model, &region);
     let mut square = 0.0;
     let mut variance = vec![0.0; model.var.len()];
+    let mut skew = vec![0.0; model.var.len()];
     let mut ratios = [f64::INFINITY, f64::NEG_INFINITY];
     for (band, (variance, v)) in variance.iter_mut().zip(&model.var).enumerate() {
         let at = |counts: &[Vec<f64>; 2], end: usize| counts[end][band] + v;
@@ -121,6 +124,7 @@ fn assess(model: &Model<'_>, region: Region, threshold: f64, attained: f64, many
         *variance = 0.5 * (common[0] + common[1]);
         if *variance > 0.0 && common[0] > 0.0 {
             let ratio = (common[1] / common[0]).ln();
+            skew[band] = ratio;
             ratios = [ratios[0].min(ratio), ratios[1].max(ratio)];
         }
     }
@@ -161,7 +165,9 @@ fn assess(model: &Model<'_>, region: Region, threshold: f64, attained: f64, many
             return Verdict::Halve(halved(&region, s, which));
         }
     }
-    Verdict::Keep(Part { region, variance, bound })
+    let common = 0.5 * (ratios[0] + ratios[1]);
+    skew.iter_mut().for_each(|ratio| *ratio = 0.5 * (*ratio - common));
+    Verdict::Keep(Part { region, variance, skew, bound })
 }
 
 /// Halves of a part: at the geometric mean of a temperature, at the middle of v or w.

@@ -7,14 +7,17 @@
 
 use super::bound::Cube;
 use super::cell::{Cell, Node};
-use super::model::{Model, SOURCES};
+use super::joint::Point;
+use super::model::{Model, Region, SOURCES};
 use super::partition::partition;
-use super::{Effort, EnvelopeScene, Ranges, attain};
+use super::{Effort, Ranges, attain};
 use crate::error::Result;
 use rayon::prelude::*;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
+/// A descent is tried in every one of the first so many batches, and in every so many later.
+const EVERY: u64 = 8;
 /// Boxes halved together.
 const BATCH: usize = 2048;
 
@@ -63,21 +66,21 @@ struct Search<'m, 'a> {
 
 /// A lower bound of the distance over an envelope in which `attained` is known to be.
 pub(super) fn prove(
-    scene: &EnvelopeScene<'_>,
+    joint: &(Model<'_>, Region),
     ranges: &Ranges,
     effort: &Effort,
     mut attained: attain::Attained,
 ) -> Result<Proof> {
     // A little more than asked for, so that a bound rounded down does not miss it.
     let share = 1.0 - 0.999 * effort.relative_tolerance;
-    let (model, whole) = Model::new(scene, ranges);
+    let (model, whole) = joint;
     let threshold = share * attained.distance;
-    let (parts, aside) = partition(&model, whole, threshold, attained.distance);
+    let (parts, aside) = partition(model, whole.clone(), threshold, attained.distance);
     let mut bounds = Vec::with_capacity(parts.len());
     let distance = attained.distance;
     let cells: Vec<Cell> = parts
         .into_par_iter()
-        .map(|part| (part.bound, Cell::new(&model, part.region, &part.variance, distance)))
+        .map(|part| (part.bound, Cell::new(model, &part, distance)))
         .collect::<Vec<_>>()
         .into_iter()
         .map(|(bound, cell)| {
@@ -85,19 +88,22 @@ pub(super) fn prove(
             cell
         })
         .collect();
-    let mut search = Search { model: &model, cells, queue: BinaryHeap::new(), threshold, aside, boxes: 0 };
+    let mut search = Search { model, cells, queue: BinaryHeap::new(), threshold, aside, boxes: 0 };
     let roots = (0..search.cells.len()).map(|cell| search.root(cell, bounds[cell])).collect();
     search.take_in(roots);
+    let mut round = 0;
     while search.boxes < effort.boxes && !search.queue.is_empty() {
-        if let Some(place) = search.lowest_place(ranges) {
+        let promising = if round < EVERY || round % EVERY == 0 { search.lowest() } else { None };
+        if let Some(start) = promising {
             let below = attained.distance * (1.0 - 1e-6);
-            let (better, evaluations) = attain::attain_from(scene, ranges, &place, below)?;
+            let (better, evaluations) = attain::attain_from(joint, ranges, start, below)?;
             attained.evaluations += evaluations;
             if let Some(better) = better {
                 attained = attain::Attained { evaluations: attained.evaluations, ..better };
                 search.threshold = share * attained.distance;
             }
         }
+        round += 1;
         search.advance();
     }
     let waiting = search.queue.peek().map_or(f64::INFINITY, |waiting| waiting.cube.bound);
@@ -184,26 +190,16 @@ impl Search<'_, '_> {
         })
     }
 
-    /// The scene in the middle of the lowest box, as a place in the unit cube of the ranges.
-    fn lowest_place(&self, ranges: &Ranges) -> Option<Vec<f64>> {
+    /// The middle of the lowest box.
+    fn lowest(&self) -> Option<Point> {
         let cube = &self.queue.peek()?.cube;
         let cell = &self.cells[cube.cell as usize];
         let middle = |range: [f64; 2]| 0.5 * (range[0] + range[1]);
-        let mut values = Vec::new();
-        for (s, source) in self.model.sources.iter().enumerate() {
-            let temperature = middle(cell.sources[s].nodes[cube.nodes[s] as usize].t);
-            if s == 0 || source.object {
-                values.push(temperature);
-            }
-            if source.object {
-                values.push(middle(cube.own[s]));
-            }
+        let mut values = [[0.0; 3]; SOURCES];
+        for (s, intervals) in cell.sources.iter().enumerate() {
+            let t = intervals.nodes[cube.nodes[s] as usize].t;
+            values[s] = [t, cube.own[s], cube.other[s]].map(middle);
         }
-        let places = values.iter().zip(ranges.all());
-        Some(
-            places
-                .map(|(value, [low, high])| if high > low { (value - low) / (high - low) } else { 0.0 })
-                .collect(),
-        )
+        Some(Point { values })
     }
 }
