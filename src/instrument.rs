@@ -17,6 +17,7 @@
 //! Source: paper S7–S16, Tables S1 and S2, Methods 'Guiding public policy'.
 
 pub mod budget;
+pub mod bunching;
 pub mod efficiency;
 pub mod noise;
 pub mod presets;
