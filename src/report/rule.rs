@@ -130,7 +130,13 @@ fn margins(answer: &RuleAnswer) -> Plot {
         let proved = camera.lower_bound.map(|bound| bound / required);
         table.push(vec![camera.name.clone(), number(camera.margin), optional(proved)]);
     }
-    let names = ranked.iter().map(|camera| camera.name.clone()).collect();
+    // The margin does not show what else a camera fails by.
+    let named = |camera: &&CameraVerdict| match camera.fails_by.iter().filter(|by| **by != "distance").count()
+    {
+        0 => camera.name.clone(),
+        _ => format!("{} ({})", camera.name, camera.fails_by.join(", ")),
+    };
+    let names = ranked.iter().map(named).collect();
     let values =
         NamedSeries::new("least over the envelope", ranked.iter().map(|camera| camera.margin).collect());
     let title = answer.rule.about.name.clone().or(answer.rule.scenario.title.clone());
@@ -140,6 +146,6 @@ fn margins(answer: &RuleAnswer) -> Plot {
         .subtitle(format!("Least over the envelope; demanded is d = {required}."))
         .series(values)
         .threshold(1.0, "demanded")
-        .below("does not meet the rule");
+        .below("too small: does not meet the rule");
     Plot { name: "margins".into(), figure: Figure::from(figure), table }
 }

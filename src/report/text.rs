@@ -15,7 +15,8 @@ mod work;
 pub use camera::camera;
 pub use many::{answers, check};
 pub use numbers::{quantity, significant};
-pub use rule::{rule, scene, would_do};
+pub use rule::rule;
+pub(super) use rule::{no_camera, scene, together, would_do};
 pub use simulation::simulation;
 pub use work::work;
 

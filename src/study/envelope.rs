@@ -78,14 +78,24 @@ impl Sighted {
 
     /// Whether every band counts less here than in `other`, amid more noise: then every distance is smaller.
     pub(super) fn is_worse_than(&self, other: &Self) -> bool {
-        let counts = |sighted: &Self| -> Vec<f64> {
-            let kappa = sighted.counting.counts_per_radiance;
-            sighted.study.bands.widths_cm1().iter().map(|width| kappa * width).collect()
-        };
-        let var = |sighted: &Self, w: usize| sighted.counting.var_added(w);
-        let bands = 0..self.study.bands.len();
-        counts(self).iter().zip(counts(other)).all(|(here, there)| *here <= there * (1.0 + SAME))
-            && bands.into_iter().all(|w| var(self, w) >= var(other, w) * (1.0 - SAME))
+        let mut bands = self.counts().into_iter().zip(other.counts()).enumerate();
+        bands.all(|(w, (here, there))| {
+            here <= there * (1.0 + SAME)
+                && self.counting.var_added(w) >= other.counting.var_added(w) * (1.0 - SAME)
+        })
+    }
+
+    /// Whether counts or added variance of any band differ by more than `share`.
+    pub(super) fn differs_from(&self, other: &Self, share: f64) -> bool {
+        let apart = |a: f64, b: f64| (a - b).abs() > share * a.abs().max(b.abs());
+        let mut bands = self.counts().into_iter().zip(other.counts()).enumerate();
+        bands.any(|(w, (a, b))| apart(a, b) || apart(self.counting.var_added(w), other.counting.var_added(w)))
+    }
+
+    /// Counts of a flat spectrum in each band.
+    fn counts(&self) -> Vec<f64> {
+        let kappa = self.counting.counts_per_radiance;
+        self.study.bands.widths_cm1().into_iter().map(|width| kappa * width).collect()
     }
 
     /// The nearest of a few scenes for every alternative.

@@ -27,6 +27,9 @@ use crate::material::Library;
 use crate::scenario::{DistanceKind, Envelope, MaterialRef, Rule};
 use crate::words;
 
+/// Relative difference of counts or variance from which on a distance matters.
+const NOTICEABLE: f64 = 1e-3;
+
 /// What is asked of a rule.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct RuleAsked {
@@ -43,6 +46,8 @@ pub struct RuleAsked {
 struct Candidate {
     name: String,
     sighted: Vec<Sighted>,
+    /// Whether what is counted depends on the distance.
+    distance_matters: bool,
     /// From the least distance, every material in turn.
     near: Vec<Study>,
 }
@@ -262,7 +267,7 @@ fn candidate(rule: &Rule, index: usize, envelope: &Envelope, library: &Library) 
     let camera = spec.map(|spec| super::camera::resolved_at(spec, &|key| rule.camera_place(index, key)));
     let camera = camera.transpose()?;
     let mut scenario = rule.with_camera(index);
-    let (mut sighted, mut near) = (Vec::new(), Vec::new());
+    let (mut sighted, mut near, mut distance_matters) = (Vec::new(), Vec::new(), false);
     for material in envelope.materials.iter().flatten() {
         scenario.target.material = material.clone();
         let mut at = |distance_m: Option<f64>| {
@@ -280,6 +285,7 @@ fn candidate(rule: &Rule, index: usize, envelope: &Envelope, library: &Library) 
             continue;
         }
         let far = at(most)?;
+        distance_matters |= far.differs_from(&close, NOTICEABLE);
         match (far.is_worse_than(&close), close.is_worse_than(&far)) {
             (true, _) => sighted.push(far),
             (false, true) => sighted.push(close),
@@ -289,7 +295,7 @@ fn candidate(rule: &Rule, index: usize, envelope: &Envelope, library: &Library) 
     let given = rule.cameras.get(index).and_then(|camera| camera.name.clone());
     let own = camera.map(|camera| camera.name).filter(|_| spec.is_some_and(|spec| spec.preset.is_some()));
     let name = given.or(own).unwrap_or_else(|| format!("camera {}", index + 1));
-    Ok(Candidate { name, sighted, near })
+    Ok(Candidate { name, sighted, distance_matters, near })
 }
 
 /// Which cameras meet the rule.

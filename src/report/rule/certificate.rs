@@ -26,16 +26,7 @@ pub(super) fn markdown(study: &RuleStudy, answer: &RuleAnswer) -> String {
     answer.cameras.iter().for_each(|camera| out.push_str(&row(camera)));
     out.push('\n');
     if let Some(part) = &answer.not_identifiable {
-        let percent = |value: f64| significant(100.0 * value, 2);
-        let _ = writeln!(
-            out,
-            "In {} % (standard error {} %) of the envelope no camera could do it; {}. In {} % {}.\n",
-            percent(part.fraction),
-            percent(part.standard_error),
-            part.definition,
-            percent(part.fraction_within_emissivity_error),
-            part.emissivity_error
-        );
+        let _ = writeln!(out, "{}.\n", text::no_camera(part).join("; "));
     }
     out.push_str("## What this rests on\n\n");
     if let Some(study) = study.study() {
@@ -47,26 +38,15 @@ pub(super) fn markdown(study: &RuleStudy, answer: &RuleAnswer) -> String {
     out.push_str(
         "- the margin is the least statistical distance over the envelope, over that demanded; no test is right more often than \
          the probability in the table, averaged over the limiting scene and its nearest look-alike\n\
-         - it is a limit of physics: a camera that meets the rule can do the task, with software that uses all of its light; one that does \
-         not cannot, with any software\n\
-         - figures of cameras are their makers' or the paper's; nothing was measured\n\n",
+         - it is a limit of physics: a camera that falls short of the distance cannot do the task with any software; one that \
+         reaches it may, if its software comes near the limit\n\
+         - figures of cameras are those of the documents named with them; nothing was measured here\n\n",
     );
-    let warned: Vec<String> = answer
-        .warnings
-        .iter()
-        .map(|warning| format!("[{}] {}", warning.code, warning.message))
-        .chain(answer.cameras.iter().flat_map(|camera| {
-            let name = &camera.name;
-            camera
-                .warnings
-                .iter()
-                .map(move |warning| format!("[{}] {name}: {}", warning.code, warning.message))
-        }))
-        .collect();
+    let warned = text::together(answer);
     if !warned.is_empty() {
         out.push_str("## Warnings\n\n");
         warned.iter().for_each(|warning| {
-            let _ = writeln!(out, "- {warning}");
+            let _ = writeln!(out, "- [{}] {}", warning.code, warning.message);
         });
         out.push('\n');
     }

@@ -3,7 +3,9 @@
 use super::footing::{GAUSSIAN, assumptions, warnings};
 use super::numbers::{celsius, exponential, numbers, quantity, significant};
 use crate::policy::{Quantity, Solution};
-use crate::study::{self, CameraVerdict, Fixes, LimitingScene, NotIdentifiable, RuleAnswer, RuleStudy};
+use crate::study::{
+    self, CameraVerdict, Fixes, LimitingScene, NotIdentifiable, RuleAnswer, RuleStudy, Warning,
+};
 use crate::words::share;
 use std::fmt::Write as _;
 
@@ -39,14 +41,33 @@ pub fn rule(answer: &RuleAnswer, study: &RuleStudy) -> String {
     );
     answer.cameras.iter().for_each(|camera| out.push_str(&details(camera)));
     if let Some(part) = &answer.not_identifiable {
-        out.push_str(&not_identifiable(part));
+        let _ = writeln!(out, "{}\n", no_camera(part).join("\n  "));
     }
     let _ = writeln!(out, "The rule in a sentence\n  {}\n", answer.requirement.quotable);
     if let Some(study) = study.study() {
         out.push_str(&assumptions(study, GAUSSIAN));
     }
-    out.push_str(&warnings(&answer.warnings));
+    out.push_str(&warnings(&together(answer)));
     out
+}
+
+/// All warnings; what is said of several cameras is said once, with their names.
+pub(in crate::report) fn together(answer: &RuleAnswer) -> Vec<Warning> {
+    let mut said: Vec<(&Warning, Vec<&str>)> = Vec::new();
+    for camera in &answer.cameras {
+        for warning in &camera.warnings {
+            match said.iter_mut().find(|(known, _)| *known == warning) {
+                Some((_, names)) => names.push(&camera.name),
+                None => said.push((warning, vec![&camera.name])),
+            }
+        }
+    }
+    let all = answer.cameras.len();
+    let of_cameras = said.into_iter().map(|(warning, names)| {
+        let who = if names.len() == all && all > 1 { "all cameras".into() } else { names.join(", ") };
+        Warning { code: warning.code, message: format!("{who}: {}", warning.message) }
+    });
+    answer.warnings.iter().cloned().chain(of_cameras).collect()
 }
 
 /// What limits a camera, how sure that is, and what would help.
@@ -57,12 +78,12 @@ fn details(camera: &CameraVerdict) -> String {
     };
     line("limited by", scene(&camera.limiting));
     line("certificate", camera.certificate.statement.clone());
-    for reason in camera.fails_by.iter().filter(|reason| **reason != "distance") {
-        let text = match *reason {
-            "motion-blur" => "motion blur of a pixel or more",
-            _ => "a well that the brightest scene fills",
-        };
-        line("fails by", text.into());
+    let spoiled: Vec<&str> = camera.fails_by.iter().copied().filter(|reason| *reason != "distance").collect();
+    if !spoiled.is_empty() {
+        let longest = camera.longest_exposure_s.map_or_else(String::new, |longest| {
+            format!(": exposures of {} and more are too long", quantity(longest, "s"))
+        });
+        line("fails by", format!("{}{longest}", in_words(&spoiled)));
     }
     if let Some(fixes) = &camera.fixes {
         line("would do", would_do(fixes));
@@ -70,16 +91,12 @@ fn details(camera: &CameraVerdict) -> String {
     if let Some(blur) = camera.motion_blur_pixels {
         line("motion blur", format!("{} pixels at the least distance", significant(blur, 2)));
     }
-    for warning in &camera.warnings {
-        line("warning", format!("[{}] {}", warning.code, warning.message));
-    }
     out.push('\n');
     out
 }
 
 /// A scene in one line.
-#[must_use]
-pub fn scene(scene: &LimitingScene) -> String {
+pub(in crate::report) fn scene(scene: &LimitingScene) -> String {
     let kelvin: Vec<String> = scene.surroundings_k.iter().map(|kelvin| celsius(*kelvin)).collect();
     let distance = scene
         .distance_m
@@ -98,14 +115,31 @@ pub fn scene(scene: &LimitingScene) -> String {
 }
 
 /// What would help, each alone.
-#[must_use]
-pub fn would_do(fixes: &Fixes) -> String {
-    let texts: Vec<String> = fixes.that_do().map(|(quantity, solution)| one(quantity, solution)).collect();
+pub(in crate::report) fn would_do(fixes: &Fixes) -> String {
+    let texts: Vec<String> = fixes
+        .that_do()
+        .map(|(quantity, solution, spoiled)| {
+            let spoiled =
+                if spoiled.is_empty() { String::new() } else { format!(", but: {}", in_words(spoiled)) };
+            format!("{}{spoiled}", one(quantity, solution))
+        })
+        .collect();
     if texts.is_empty() {
         let reasons = fixes.quantities.0.iter().filter_map(|(_, solution)| solution.reason.as_deref());
         return format!("nothing alone: {}", reasons.last().unwrap_or("no value suffices"));
     }
-    format!("alone: {}", texts.join(", or "))
+    format!("alone: {}", texts.join("; or "))
+}
+
+/// What is wrong with an image.
+fn in_words(spoiled: &[&str]) -> String {
+    let words = spoiled.iter().map(|reason| match *reason {
+        "motion-blur" => "motion blur of a pixel or more",
+        "full-well" => "the brightest scene fills the well",
+        "frame-rate" => "longer than a frame",
+        other => other,
+    });
+    words.collect::<Vec<_>>().join(", ")
 }
 
 fn one(solved: Quantity, solution: &Solution) -> String {
@@ -120,30 +154,28 @@ fn one(solved: Quantity, solution: &Solution) -> String {
     format!("{} {value} (now {})", solved.name(), show(solution.camera))
 }
 
-/// The part of the envelope that no camera does.
-fn not_identifiable(part: &NotIdentifiable) -> String {
-    let mut out = format!(
-        "In {} (+- {}) of the envelope no camera could do it\n  {}\n",
-        share(part.fraction),
-        percent(part.standard_error),
-        part.definition
-    );
+/// The part of the envelope that no camera does, line by line.
+pub(in crate::report) fn no_camera(part: &NotIdentifiable) -> Vec<String> {
+    let found = if part.fraction > 0.0 {
+        format!("In {} (+- {}) of the envelope", share(part.fraction), percent(part.standard_error))
+    } else {
+        format!("In none of {} scenes drawn from the envelope", part.scenes)
+    };
+    let mut lines = vec![format!("{found} no camera could do it"), part.definition.clone()];
     if let Some(near) = &part.neighbourhood {
-        let _ = writeln!(
-            out,
-            "  it is the neighbourhood of equilibrium: nine tenths of it within {} K of the surroundings, unlit share up to {}",
+        lines.push(format!(
+            "nine tenths of these scenes are within {} K of equilibrium with the surroundings, unlit share up to {}",
             significant(near.temperature_difference_k, 2),
             significant(near.unlit, 2)
-        );
+        ));
     }
-    let _ = writeln!(
-        out,
-        "  in {} (+- {}) {}\n",
+    lines.push(format!(
+        "in {} (+- {}) {}",
         share(part.fraction_within_emissivity_error),
         percent(part.standard_error_within_emissivity_error),
         part.emissivity_error
-    );
-    out
+    ));
+    lines
 }
 
 fn percent(share: f64) -> String {

@@ -1,11 +1,12 @@
 //! What comes of a rule, as data.
 
 use crate::demand::Work;
-use crate::policy::Solution;
 use crate::policy::envelope::Certificate;
+use crate::policy::{Quantity, Solution};
 use crate::scenario::Rule;
 use crate::study::size::Solutions;
 use crate::study::{NearestState, Warning};
+use std::collections::BTreeMap;
 
 /// Which cameras meet a rule.
 #[derive(Debug, Clone, serde::Serialize)]
@@ -90,6 +91,8 @@ pub struct CameraVerdict {
     pub motion_blur_pixels: Option<f64>,
     /// Photons of the fullest reading in the brightest scene, at most.
     pub brightest_reading: f64,
+    /// The longest exposure without a pixel of blur and without a full well, s; `None` where neither can be known.
+    pub longest_exposure_s: Option<f64>,
     /// What the reader must know.
     pub warnings: Vec<Warning>,
 }
@@ -149,6 +152,8 @@ pub struct LimitingScene {
     pub surroundings_k: Vec<f64>,
     /// Distance, m; infinitely far where `None`.
     pub distance_m: Option<f64>,
+    /// Whether the counts at the least and the greatest distance of the envelope differ by more than a thousandth.
+    pub distance_matters: bool,
     /// The state of the alternative that is nearest to it.
     pub nearest_state: NearestState,
     /// H_req of the paper's inequality in this scene, m² s; `None` where no hardware suffices.
@@ -158,18 +163,23 @@ pub struct LimitingScene {
 /// What would let a camera reach the distance in its limiting scene, each with the rest of it as it is.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Fixes {
-    /// Whether any single quantity does.
+    /// Whether any single quantity does, and spoils nothing else.
     pub any: bool,
+    /// By quantity, what its value would spoil: `motion-blur`, `full-well`, `frame-rate`.
+    pub spoils: BTreeMap<&'static str, Vec<&'static str>>,
     /// Solutions by quantity.
     #[serde(flatten)]
     pub quantities: Solutions,
 }
 
 impl Fixes {
-    /// Quantities by name with the value that would do.
-    pub fn that_do(&self) -> impl Iterator<Item = (crate::policy::Quantity, &Solution)> {
+    /// Quantities with the value that would do, and what it would spoil.
+    pub fn that_do(&self) -> impl Iterator<Item = (Quantity, &Solution, &[&'static str])> {
         let solved = self.quantities.0.iter().filter(|(_, solution)| solution.value.is_some());
-        solved.map(|(quantity, solution)| (*quantity, solution))
+        solved.map(|(quantity, solution)| {
+            let spoiled = self.spoils.get(quantity.key()).map_or(&[][..], Vec::as_slice);
+            (*quantity, solution, spoiled)
+        })
     }
 }
 

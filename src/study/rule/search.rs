@@ -12,9 +12,11 @@ use crate::demand::{Reason, Thing, Work};
 use crate::error::{Error, Result};
 use crate::fisher::Nuisance;
 use crate::identifiability::detection;
-use crate::policy;
+use crate::instrument::Camera;
 use crate::policy::envelope::{Certificate, Effort, WorstCase, worst_case};
+use crate::policy::{self, solve::CameraTask};
 use crate::scene::State;
+use std::collections::BTreeMap;
 
 /// How far below the distance attained a bound may be, as a share of it.
 const TOLERANCE: f64 = 0.01;
@@ -26,6 +28,18 @@ struct Searched {
     pair: Estimate,
     certificate: Option<Certificate>,
     lower_bound: Option<f64>,
+}
+
+/// What a camera's image of the brightest scene is like.
+#[derive(Debug, Default)]
+struct Image {
+    /// Motion during an exposure, pixels.
+    blur: Option<f64>,
+    /// Photons of the fullest reading.
+    reading: f64,
+    longest_exposure_s: Option<f64>,
+    /// What is wrong with it.
+    spoiled: Vec<&'static str>,
 }
 
 impl Searched {
@@ -48,18 +62,14 @@ impl RuleStudy {
         let surface = &sighted.study.alternatives[worst.pair.alternative];
         let distance = worst.pair.distance;
         let at = Study { state: worst.pair.state.clone(), ..sighted.study.clone() };
-        let (blur, reading, mut warnings) = self.image(candidate);
-        let full_well = at.camera.as_ref().and_then(|camera| camera.full_well);
+        let mut warnings = self.warnings_of(candidate);
+        let image = at.camera.as_ref().map(|camera| self.image(candidate, camera));
+        let image = image.unwrap_or_default();
         let mut fails_by = Vec::new();
         if distance < self.required {
             fails_by.push("distance");
         }
-        if blur.is_some_and(|blur| blur >= 1.0) {
-            fails_by.push("motion-blur");
-        }
-        if full_well.is_some_and(|full| reading > full) {
-            fails_by.push("full-well");
-        }
+        fails_by.extend(&image.spoiled);
         let passes = fails_by.is_empty();
         let gap = worst.lower_bound.filter(|_| distance > 0.0).map(|bound| 1.0 - bound / distance);
         let certificate =
@@ -68,8 +78,13 @@ impl RuleStudy {
             let message = "that no scene of the envelope is below the requirement was searched, not proved";
             warnings.push(Warning::new("not-proved", message));
         }
-        let mut limiting =
-            limiting(&at, surface, &worst.pair, self.is_unknown(Nuisance::EnvironmentTemperature));
+        let mut limiting = limiting(
+            candidate.distance_matters,
+            &at,
+            surface,
+            &worst.pair,
+            self.is_unknown(Nuisance::EnvironmentTemperature),
+        );
         let mut fixes = None;
         if !alone {
             let shot = at.nearest(surface, f64::INFINITY, work)?;
@@ -82,9 +97,19 @@ impl RuleStudy {
                 warnings.push(Warning::new("fragile", message));
             }
             if let Some(camera) = at.camera.clone().filter(|_| distance < self.required) {
+                let task = CameraTask { camera: &camera, bands: &at.bands, required: self.required };
                 let quantities = at.solutions(&camera, surface, work)?;
-                let any = quantities.0.iter().any(|(_, solution)| solution.value.is_some());
-                fixes = Some(Fixes { any, quantities });
+                let mut any = false;
+                let mut spoils = BTreeMap::new();
+                for (quantity, solution) in &quantities.0 {
+                    let Some(value) = solution.value else { continue };
+                    let spoiled = self.image(candidate, &task.forward(*quantity, value)).spoiled;
+                    any |= spoiled.is_empty();
+                    if !spoiled.is_empty() {
+                        spoils.insert(quantity.key(), spoiled);
+                    }
+                }
+                fixes = Some(Fixes { any, spoils, quantities });
             }
         }
         Ok(CameraVerdict {
@@ -98,8 +123,9 @@ impl RuleStudy {
             certificate,
             limiting,
             fixes,
-            motion_blur_pixels: blur,
-            brightest_reading: reading,
+            motion_blur_pixels: image.blur,
+            brightest_reading: image.reading,
+            longest_exposure_s: image.longest_exposure_s,
             warnings,
         })
     }
@@ -108,34 +134,48 @@ impl RuleStudy {
         self.rule.scenario.unknown.nuisances.contains(&nuisance)
     }
 
-    /// Motion blur (pixels) at the least distance, the fullest reading of the brightest scene, and what is to be said of it.
-    fn image(&self, candidate: &Candidate) -> (Option<f64>, f64, Vec<Warning>) {
-        let (mut blur, mut reading, mut warnings) = (None, 0.0f64, Vec::<Warning>::new());
+    /// The image that a camera makes of the brightest scene, from the least distance.
+    fn image(&self, candidate: &Candidate, camera: &Camera) -> Image {
+        let mut image = Image::default();
         for near in &candidate.near {
             let Ok(ranges) = near.ranges(&self.envelope) else { continue };
-            let bright = Study { state: brightest(&ranges), ..near.clone() };
-            let Some(camera) = bright.camera_result(bright.photon_radiance()) else { continue };
-            blur = camera.motion_blur_pixels;
-            reading = reading.max(camera.brightest_reading);
-            if warnings.is_empty() {
-                warnings.extend(bright.camera_warnings());
-                let assumed = camera.camera.assumed.iter();
-                warnings.extend(assumed.map(|figure| Warning::new("assumed-figure", figure.clone())));
-            }
+            let (state, camera) = (brightest(&ranges), Some(camera.clone()));
+            let bright = Study { state, camera, ..near.clone() };
+            let Some(seen) = bright.camera_result(bright.photon_radiance()) else { continue };
+            image.blur = seen.motion_blur_pixels;
+            image.reading = image.reading.max(seen.brightest_reading);
         }
-        match blur {
-            Some(blur) if blur >= 1.0 => {
-                let message =
-                    format!("at the least distance the target moves {blur:.1} pixels during an exposure");
-                warnings.push(Warning::new("motion-blur", message));
-            }
-            None if self.rule.scenario.requirement.speed_m_s.is_some() => {
-                let message = "a speed is given, but motion blur needs the camera's pixels and field_of_view, and a distance";
-                warnings.push(Warning::new("motion-blur-unknown", message));
-            }
-            _ => {}
+        let blurred = image.blur.map(|blur| camera.exposure_s / blur);
+        let full = camera.full_well.map(|full| camera.exposure_s * full / image.reading);
+        image.longest_exposure_s = blurred.into_iter().chain(full).reduce(f64::min);
+        if image.blur.is_some_and(|blur| blur >= 1.0) {
+            image.spoiled.push("motion-blur");
         }
-        (blur, reading, warnings)
+        if camera.full_well.is_some_and(|full| image.reading > full) {
+            image.spoiled.push("full-well");
+        }
+        if camera.clone().checked().is_err()
+            && camera.frame_s().is_some_and(|frame| camera.exposure_s > frame)
+        {
+            image.spoiled.push("frame-rate");
+        }
+        image
+    }
+
+    /// What is to be said of a camera before any scene is searched.
+    fn warnings_of(&self, candidate: &Candidate) -> Vec<Warning> {
+        let Some(near) = candidate.near.first() else { return Vec::new() };
+        let Some(camera) = &near.camera else { return Vec::new() };
+        let state =
+            near.ranges(&self.envelope).map_or_else(|_| near.state.clone(), |ranges| brightest(&ranges));
+        let mut warnings = Study { state, ..near.clone() }.camera_warnings();
+        warnings.extend(camera.assumed.iter().map(|figure| Warning::new("assumed-figure", figure.clone())));
+        if self.rule.scenario.requirement.speed_m_s.is_some() && self.image(candidate, camera).blur.is_none()
+        {
+            let message = "a speed is given, but motion blur needs the camera's pixels and field_of_view, and a distance";
+            warnings.push(Warning::new("motion-blur-unknown", message));
+        }
+        warnings
     }
 
     /// The worst of all pairs, or a scene that is below the requirement where no more is asked for.
@@ -213,7 +253,13 @@ fn search(sighted: &Sighted, pair: Estimate, tolerance: f64, work: &mut Work) ->
     Ok(Searched { pair, certificate: Some(certificate), lower_bound })
 }
 
-fn limiting(at: &Study, surface: &Surface, pair: &Estimate, environment: bool) -> LimitingScene {
+fn limiting(
+    distance_matters: bool,
+    at: &Study,
+    surface: &Surface,
+    pair: &Estimate,
+    environment: bool,
+) -> LimitingScene {
     let State { temperature_k, lighting, environment_k, .. } = pair.state.clone();
     LimitingScene {
         target: at.target.name.clone(),
@@ -222,6 +268,7 @@ fn limiting(at: &Study, surface: &Surface, pair: &Estimate, environment: bool) -
         lighting,
         surroundings_k: environment_k,
         distance_m: at.scenario.target.distance_m,
+        distance_matters,
         nearest_state: NearestState {
             temperature_k: pair.nearest.temperature_k,
             lighting: pair.nearest.lighting.clone(),
