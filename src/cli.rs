@@ -11,6 +11,7 @@ mod materials;
 mod progress;
 mod range;
 mod reproduce;
+mod rule;
 mod simulate;
 mod size;
 
@@ -45,6 +46,8 @@ enum Command {
     /// Without a flag: the distance from the target to every alternative, the photons it takes, and with a camera which
     /// of them it tells the target from. Flags add what else is to be computed, and can be combined.
     Identify(identify::IdentifyArgs),
+    /// Which cameras meet a rule: a requirement over ranges of scenes, with a certificate that can be quoted
+    Rule(rule::RuleArgs),
     /// How well depth can be measured: bounds of stereo ranging from a scene or a heat cube
     Range(range::RangeArgs),
     /// Draw spectra, train and judge classifiers, and hold them against the limit
@@ -126,6 +129,7 @@ fn run(cli: &Cli) -> Result<ExitCode> {
     match &cli.command {
         Command::Size(args) => size::run(args, &cli.global),
         Command::Identify(args) => identify::run(args, &cli.global),
+        Command::Rule(args) => rule::run(args, &cli.global),
         Command::Range(args) => range::run(args, &cli.global),
         Command::Simulate(args) => simulate::run(args, &cli.global),
         Command::Reproduce(args) => reproduce::run(args, &cli.global),

@@ -8,6 +8,7 @@ pub mod figures;
 pub mod library;
 pub mod plot;
 pub mod ranging;
+pub mod rule;
 pub mod simulation;
 pub mod sizing;
 pub mod table;

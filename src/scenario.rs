@@ -18,8 +18,10 @@ pub use crate::material::Extrapolation;
 pub mod atmosphere;
 pub mod bands;
 pub mod camera;
+pub mod envelope;
 pub mod ranging;
 mod read;
+pub mod rule;
 mod section;
 pub mod sensitivity;
 pub mod source;
@@ -28,7 +30,9 @@ mod write;
 pub use atmosphere::{AtmosphereSource, AtmosphereSpec};
 pub use bands::{BandSource, BandsSpec};
 pub use camera::{CameraSpec, Efficiency, Readout};
+pub use envelope::Envelope;
 pub use ranging::RangeScenario;
+pub use rule::Rule;
 pub use sensitivity::SensitivitySpec;
 pub use source::Source;
 
@@ -59,6 +63,8 @@ pub struct Scenario {
     pub requirement: Requirement,
     /// How wrong the emissivities may be; the defaults of [`SensitivitySpec`] where it is not given.
     pub sensitivity: Option<SensitivitySpec>,
+    /// Scenes that the requirement must hold in, if not this one alone.
+    pub envelope: Option<Envelope>,
     /// Where it was read from.
     pub source: Source,
 }
@@ -122,6 +128,7 @@ impl PartialEq for Scenario {
             && self.camera == other.camera
             && self.requirement == other.requirement
             && self.sensitivity == other.sensitivity
+            && self.envelope == other.envelope
     }
 }
 

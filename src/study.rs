@@ -12,6 +12,7 @@ mod camera;
 mod chosen_bands;
 mod curves;
 mod distances;
+mod envelope;
 mod exact;
 mod identify;
 mod magnitudes;
@@ -21,6 +22,7 @@ mod priors;
 pub mod ranging;
 mod reliability;
 mod resolve;
+mod rule;
 mod samples;
 mod scaling;
 mod sensitivity;
@@ -43,6 +45,10 @@ pub use noise_curves::{NoiseCurve, NoiseCurves};
 pub use priors::PriorAverage;
 pub use reliability::{probability, reliability};
 pub use resolve::{Study, Surface};
+pub use rule::{
+    CameraVerdict, Certified, EnvelopeResult, FileHash, Fixes, LimitingScene, Neighbourhood, NotIdentifiable,
+    RuleAnswer, RuleAsked, RuleRequirement, RuleStudy,
+};
 pub use samples::SampleSpectra;
 pub use scaling::{BandNumber, LibrarySize, Scaling};
 pub use sensitivity::{Elasticities, EmissivityErrors, Sensitivity};

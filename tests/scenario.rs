@@ -5,8 +5,8 @@ use std::path::Path;
 
 use hadar::scenario::{
     Alternatives, AtmosphereSource, AtmosphereSpec, Background, BandSource, BandsSpec, CameraSpec,
-    DistanceKind, Efficiency, EnvironmentObject, Extrapolation, MaterialRef, Nuisance, Readout, Reliability,
-    Requirement, Scenario, Source, Target, Unknown,
+    DistanceKind, Efficiency, Envelope, EnvironmentObject, Extrapolation, MaterialRef, Nuisance, Readout,
+    Reliability, Requirement, Scenario, Source, Target, Unknown,
 };
 use hadar::units::Spectral;
 use proptest::prelude::*;
@@ -97,6 +97,7 @@ fn the_example_is_the_case_of_the_paper() {
             speed_m_s: Some(13.4112),
         },
         sensitivity: None,
+        envelope: None,
         source: Source::default(),
     };
     assert_eq!(scenario, expected);
@@ -372,7 +373,21 @@ prop_compose! {
         by in proptest::sample::select(DistanceKind::ALL.to_vec()),
         skip_uncovered in any::<bool>(),
         speed_m_s in proptest::option::of(above_zero()),
+        (ranged, width, envelope_materials, near) in (
+            any::<bool>(), 0.0..1.0, proptest::option::of(proptest::collection::btree_set(material(), 1..3)),
+            proptest::option::of(above_zero()),
+        ),
     ) -> Scenario {
+        // Ranges that begin at the scene's own values; the lighting is never widened downwards, so that it fits.
+        let envelope = ranged.then(|| Envelope {
+            temperature_k: Some([target.1, target.1 * (1.0 + width)]),
+            lighting: (!environment.is_empty() && width < 0.7)
+                .then(|| environment.iter().map(|o| [o.lighting * width, o.lighting]).collect()),
+            surroundings_k: (!environment.is_empty())
+                .then(|| environment.iter().map(|o| [o.temperature_k, o.temperature_k * (1.0 + width)]).collect()),
+            distance_m: near.map(|near| [near, near * (1.0 + width)]),
+            materials: envelope_materials.map(|set| set.into_iter().collect()),
+        });
         let (material, temperature_k, distance_m, target_extrapolate) = target;
         if tied && !environment.is_empty() {
             unknown.lighting_total = Some(environment.iter().map(|object| object.lighting).sum::<f64>().min(1.0));
@@ -397,6 +412,7 @@ prop_compose! {
             camera,
             requirement: Requirement { reliability, by, speed_m_s },
             sensitivity: None,
+            envelope,
             source: Source::default(),
         }
     }

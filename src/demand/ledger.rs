@@ -30,6 +30,10 @@ pub enum Thing {
     NearestSearches,
     /// Nearest states followed from one that was found, as a quantity is solved for.
     RefinedSearches,
+    /// Worst cases over an envelope of scenes, one for each pair of materials and camera.
+    WorstCases,
+    /// Boxes of scenes and states of which a bound is proved.
+    Boxes,
     /// Samples of a heat cube, or of a pair of them.
     Samples,
     /// Windows of pixels whose information is asked for.
@@ -69,6 +73,8 @@ impl Thing {
             Self::FewBandSearches => "few_band_searches",
             Self::NearestSearches => "nearest_searches",
             Self::RefinedSearches => "refined_searches",
+            Self::WorstCases => "worst_cases",
+            Self::Boxes => "boxes",
             Self::Samples => "samples",
             Self::Windows => "windows",
             Self::MatchedViews => "matched_views",
@@ -98,6 +104,8 @@ impl Thing {
             Self::FewBandSearches => "searches in a few bands",
             Self::NearestSearches => "searches in all bands",
             Self::RefinedSearches => "nearest states followed",
+            Self::WorstCases => "worst cases of an envelope",
+            Self::Boxes => "boxes of scenes bounded",
             Self::Samples => "samples",
             Self::Windows => "windows",
             Self::MatchedViews => "noisy views matched",

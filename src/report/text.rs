@@ -10,6 +10,7 @@ mod footing;
 mod many;
 mod numbers;
 mod pairs;
+mod rule;
 mod simulation;
 mod sizing;
 mod work;
@@ -19,8 +20,17 @@ pub use camera_list::cameras;
 pub use compare::{comparison, comparison_sentence};
 pub use many::{answers, check};
 pub use numbers::{quantity, significant};
+pub use rule::rule;
+pub(super) use rule::{no_camera, scene, together, would_do};
 pub use simulation::simulation;
 pub use sizing::sizing;
 pub use work::work;
 
 pub(super) use self::footing::warnings;
+use self::footing::{GAUSSIAN, assumptions};
+use crate::study::Study;
+
+/// What every answer about a scene rests on.
+pub(super) fn footing_of(study: &Study) -> String {
+    assumptions(study, GAUSSIAN)
+}

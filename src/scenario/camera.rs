@@ -143,7 +143,12 @@ impl CameraSpec {
     }
 
     pub(super) fn read(entry: &Entry<'_>) -> Result<Self> {
-        let section = entry.section(KEYS)?;
+        Self::read_beside(entry, &[])
+    }
+
+    /// The same in a table that may hold `other` keys too.
+    pub(super) fn read_beside(entry: &Entry<'_>, other: &[&str]) -> Result<Self> {
+        let section = entry.section(&[other, KEYS].concat())?;
         section.at_most_one(&NOISES)?;
         let efficiency = |entry: &Entry<'_>| {
             if entry.is_text() {

@@ -9,9 +9,9 @@ use toml::de::DeTable;
 use super::section::{ABOVE_ZERO, ABSOLUTE_TEMPERATURE, Entry, Rule, SHARE, Section};
 use super::source::LineStarts;
 use super::{
-    Alternatives, AtmosphereSpec, Background, BandsSpec, CameraSpec, DistanceKind, EnvironmentObject,
-    Extrapolation, MaterialRef, Nuisance, Reliability, Requirement, Scenario, SensitivitySpec, Source,
-    Target, Unknown,
+    Alternatives, AtmosphereSpec, Background, BandsSpec, CameraSpec, DistanceKind, Envelope,
+    EnvironmentObject, Extrapolation, MaterialRef, Nuisance, Reliability, Requirement, Scenario,
+    SensitivitySpec, Source, Target, Unknown,
 };
 use crate::error::{Error, Result};
 use crate::units::Dimension;
@@ -21,7 +21,7 @@ const LIGHTING_ROUNDING: f64 = 1e-12;
 /// The longest file taken for a scenario, bytes.
 const LONGEST_FILE: u64 = 1 << 20;
 
-const TABLES: &[&str] = &[
+pub(super) const TABLES: [&str; 12] = [
     "title",
     "target",
     "background",
@@ -33,7 +33,9 @@ const TABLES: &[&str] = &[
     "camera",
     "requirement",
     "sensitivity",
+    "envelope",
 ];
+const MINIMUM: &str = "write [target] with material = \"skin\" and temperature = \"37 degC\"";
 
 /// The text of a scenario file.
 pub(super) fn text_of(path: &Path) -> Result<String> {
@@ -61,35 +63,47 @@ pub(super) fn text_of(path: &Path) -> Result<String> {
 
 pub(super) fn scenario(text: &str, path: Option<&Path>) -> Result<Scenario> {
     let mut source = Source { path: path.map(Path::to_owned), lines: BTreeMap::new() };
-    let minimum = "write [target] with material = \"skin\" and temperature = \"37 degC\"";
-    if text.trim().is_empty() {
-        return Err(Error::malformed("the file is empty", minimum).at(source.place("")));
-    }
-    let document = parse(text, &source)?;
-    source.note_lines(text, &document);
+    let document = document(text, &mut source)?;
+    let root = Section::open(&document, "", &source, &TABLES)?;
+    let mut scenario = of_root(&root)?;
+    scenario.camera = root.read("camera", CameraSpec::read)?;
+    scenario.source = source;
+    Ok(scenario)
+}
 
-    let root = Section::open(&document, "", &source, TABLES)?;
+/// The tables of a file that is not empty, whose lines `source` then knows.
+pub(super) fn document<'t>(text: &'t str, source: &mut Source) -> Result<DeTable<'t>> {
+    if text.trim().is_empty() {
+        return Err(Error::malformed("the file is empty", MINIMUM).at(source.place("")));
+    }
+    let document = parse(text, source)?;
+    source.note_lines(text, &document);
+    Ok(document)
+}
+
+/// All of a scenario but its camera and its source.
+pub(super) fn of_root(root: &Section<'_>) -> Result<Scenario> {
     let target = match root.get("target") {
         Some(entry) => target(&entry)?,
-        None => return Err(root.fail("target", Error::malformed("the table is missing", minimum))),
+        None => return Err(root.fail("target", Error::malformed("the table is missing", MINIMUM))),
     };
     let unknown = root.read("unknown", unknown)?.unwrap_or_default();
-    let mut scenario = Scenario {
+    let environment = environment(root, unknown.lighting_total)?;
+    Ok(Scenario {
         title: root.read("title", |entry| Ok(entry.text("\"Person or robot?\"")?.to_owned()))?,
         target,
+        envelope: root.read("envelope", |entry| Envelope::read(entry, environment.len()))?,
+        environment,
         background: root.read("background", background)?,
-        environment: environment(&root, unknown.lighting_total)?,
         alternatives: root.read("alternatives", alternatives)?.unwrap_or_default(),
         atmosphere: root.read("atmosphere", AtmosphereSpec::read)?,
         bands: root.read("bands", BandsSpec::read)?.unwrap_or_default(),
         unknown,
-        camera: root.read("camera", CameraSpec::read)?,
+        camera: None,
         requirement: root.read("requirement", requirement)?.unwrap_or_default(),
         sensitivity: root.read("sensitivity", SensitivitySpec::read)?,
         source: Source::default(),
-    };
-    scenario.source = source;
-    Ok(scenario)
+    })
 }
 
 /// The table behind the text, or the first thing that is not TOML.
@@ -320,7 +334,7 @@ pub(super) fn file(entry: &Entry<'_>) -> Result<PathBuf> {
 }
 
 /// The items of a list, each of which may stand there once.
-fn without_repetition<'a, T: Ord + Clone>(
+pub(super) fn without_repetition<'a, T: Ord + Clone>(
     items: &[Entry<'a>],
     read: impl Fn(&Entry<'a>) -> Result<T>,
 ) -> Result<Vec<T>> {

@@ -129,8 +129,14 @@ impl<'a> Entry<'a> {
 
     /// A table with these keys, under its header `[name]`.
     pub(super) fn section(&self, known: &[&str]) -> Result<Section<'a>> {
+        let Section { table, name, source } = self.table()?;
+        Section::open(table, &name, source, known)
+    }
+
+    /// A table whose keys were checked before.
+    pub(super) fn table(&self) -> Result<Section<'a>> {
         match self.value {
-            DeValue::Table(table) => Section::open(table, &self.key, self.source, known),
+            DeValue::Table(table) => Ok(Section { table, name: self.key.clone(), source: self.source }),
             _ => Err(self.wrong_type(format!("write the table as [{}], once", self.key))),
         }
     }
@@ -243,6 +249,11 @@ impl<'a> Entry<'a> {
     /// Whether the value is text.
     pub(super) fn is_text(&self) -> bool {
         matches!(self.value, DeValue::String(_))
+    }
+
+    /// Whether the value is a list.
+    pub(super) fn is_list(&self) -> bool {
+        matches!(self.value, DeValue::Array(_))
     }
 
     /// `true` or `false`.

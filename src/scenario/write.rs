@@ -66,7 +66,7 @@ impl Scenario {
         text(self.document(paths))
     }
 
-    fn document(&self, paths: Paths<'_>) -> Document {
+    pub(super) fn document(&self, paths: Paths<'_>) -> Document {
         let mut document = Vec::new();
         if let Some(title) = &self.title {
             document.push(("title", Part::Value(title.as_str().into())));
@@ -89,6 +89,9 @@ impl Scenario {
         document.push(("requirement", Part::Table(requirement(&self.requirement))));
         if let Some(spec) = self.sensitivity {
             document.push(("sensitivity", Part::Table(spec.entries())));
+        }
+        if let Some(envelope) = &self.envelope {
+            document.push(("envelope", Part::Table(envelope.written(paths))));
         }
         document
     }
@@ -150,6 +153,12 @@ impl Entries {
 
     pub(super) fn put_quantity(self, key: &'static str, dimension: Dimension, value: Option<f64>) -> Self {
         self.put_if(key, value.map(|value| dimension.format(value)))
+    }
+
+    /// These, then others.
+    pub(super) fn and(mut self, other: Self) -> Self {
+        self.0.extend(other.0);
+        self
     }
 
     fn write(&self, text: &mut String, header: &str) {

@@ -42,6 +42,10 @@ impl Study {
             .map_or_else(String::new, |pair| pair.alternative.clone());
         let mut warnings = self.warnings.clone();
         warnings.extend(self.camera_warnings());
+        if self.scenario.envelope.is_some() {
+            let message = "this is the answer for the one scene; the [envelope] is searched by `hadar rule`";
+            warnings.push(Warning::new("envelope-not-searched", message));
+        }
         warnings.extend(pair_warnings);
         Ok(Identification {
             scenario: self.scenario.clone(),

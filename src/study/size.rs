@@ -241,7 +241,7 @@ impl Study {
         }
     }
 
-    fn camera_result(&self, photon_radiance: f64) -> Option<CameraResult> {
+    pub(super) fn camera_result(&self, photon_radiance: f64) -> Option<CameraResult> {
         let camera = self.camera.as_ref()?;
         let counting = self.counting()?;
         let signal = self.target_signal();
@@ -288,7 +288,12 @@ impl Study {
         Ok(trial.camera.brightest_reading(&sight.bands, &signal, &sight.view))
     }
 
-    fn solutions(&self, camera: &Camera, alternative: &Surface, work: &mut Work) -> Result<Solutions> {
+    pub(super) fn solutions(
+        &self,
+        camera: &Camera,
+        alternative: &Surface,
+        work: &mut Work,
+    ) -> Result<Solutions> {
         let task = self.task(camera);
         let brightest = |trial: &Trial| self.brightest(trial);
         let speed_m_s = self.scenario.requirement.speed_m_s;

@@ -16,7 +16,7 @@ use crate::scene::{Parameter, State};
 /// Ratio of local and nearest distance beyond which the linear picture has failed.
 const LINEAR_FACTOR: f64 = 2.0;
 /// Share of a distance that emissivity errors of 0.1 % can make up before a word of caution is due.
-const FRAGILE_RATIO: f64 = 50.0;
+pub(super) const FRAGILE_RATIO: f64 = 50.0;
 /// Photons per mode beyond which bunching is no longer negligible.
 const OCCUPANCY: f64 = 0.1;
 

@@ -1,0 +1,284 @@
+//! One camera against a rule: the least distance over all materials, alternatives and scenes, and what would raise it.
+//!
+//! A few scenes of every pair give an estimate from above. The pairs are then searched in the order of these estimates,
+//! each only as exactly as it matters: a pair whose distance is a multiple of the least one known needs a bound
+//! that is above that, not its own worst case to 1 %.
+
+use super::super::envelope::{Estimate, Sighted, brightest};
+use super::super::{NearestState, Study, Surface, Warning, warn};
+use super::results::{CameraVerdict, Certified, Fixes, LimitingScene};
+use super::{Candidate, RuleStudy};
+use crate::demand::{Reason, Thing, Work};
+use crate::error::{Error, Result};
+use crate::fisher::Nuisance;
+use crate::identifiability::detection;
+use crate::instrument::Camera;
+use crate::policy::envelope::{Certificate, Effort, WorstCase, worst_case};
+use crate::policy::{self, Quantity};
+use crate::scene::State;
+use std::collections::BTreeMap;
+
+/// How far below the distance attained a bound may be, as a share of it.
+const TOLERANCE: f64 = 0.01;
+/// Boxes of the branch and bound for each pair at most: a second or so.
+const BOXES: u64 = 200_000;
+
+/// A pair's scene with what is known of it.
+struct Searched {
+    pair: Estimate,
+    certificate: Option<Certificate>,
+    lower_bound: Option<f64>,
+}
+
+/// What a camera's image of the brightest scene is like.
+#[derive(Debug, Default)]
+struct Image {
+    /// Motion during an exposure, pixels.
+    blur: Option<f64>,
+    /// Photons of the fullest reading.
+    reading: f64,
+    longest_exposure_s: Option<f64>,
+    /// What is wrong with it.
+    spoiled: Vec<&'static str>,
+}
+
+impl Searched {
+    /// What the estimate says alone.
+    fn estimated(pair: Estimate) -> Self {
+        Self { pair, certificate: None, lower_bound: None }
+    }
+}
+
+impl RuleStudy {
+    /// The verdict on one camera; `alone` asks for no more than it.
+    pub(super) fn judged(
+        &self,
+        candidate: &Candidate,
+        alone: bool,
+        work: &mut Work,
+    ) -> Result<CameraVerdict> {
+        let worst = self.worst(candidate, alone, work)?;
+        let sighted = &candidate.sighted[worst.pair.sighted];
+        let surface = &sighted.study.alternatives[worst.pair.alternative];
+        let distance = worst.pair.distance;
+        let at = Study { state: worst.pair.state.clone(), ..sighted.study.clone() };
+        let mut warnings = self.warnings_of(candidate);
+        let image = at.camera.as_ref().map(|camera| self.image(candidate, camera));
+        let image = image.unwrap_or_default();
+        let mut fails_by = Vec::new();
+        if distance < self.required {
+            fails_by.push("distance");
+        }
+        fails_by.extend(&image.spoiled);
+        let passes = fails_by.is_empty();
+        let gap = worst.lower_bound.filter(|_| distance > 0.0).map(|bound| 1.0 - bound / distance);
+        let certificate =
+            worst.certificate.map_or_else(Certified::counterexample, |found| Certified::of(found, gap));
+        if passes && worst.lower_bound.is_none_or(|bound| bound < self.required) {
+            let message = "that no scene of the envelope is below the requirement was searched, not proved";
+            warnings.push(Warning::new("not-proved", message));
+        }
+        let mut limiting = limiting(
+            candidate.distance_matters,
+            &at,
+            surface,
+            &worst.pair,
+            self.is_unknown(Nuisance::EnvironmentTemperature),
+        );
+        let mut fixes = None;
+        if !alone {
+            let shot = at.nearest(surface, f64::INFINITY, work)?;
+            limiting.hardware_m2_s = policy::photons_required(self.required, shot.distance)
+                .map(|photons| policy::hardware_required_m2_s(photons, at.photon_radiance()));
+            let local = at.local(at.unknowns.clone(), surface, f64::INFINITY, work)?;
+            if shot.distance > 0.0 && local.distance_no_nuisance > warn::FRAGILE_RATIO * shot.distance {
+                let message = "the spectra of the limiting scene are nearly featureless: errors of 0.1 % in the emissivities \
+                               can change the distance several times over";
+                warnings.push(Warning::new("fragile", message));
+            }
+            if let Some(camera) = at.camera.clone().filter(|_| distance < self.required) {
+                let task = at.task(&camera);
+                let mut quantities = at.solutions(&camera, surface, work)?;
+                // How fast it may move is no matter of telling materials apart.
+                quantities.0.retain(|(quantity, _)| *quantity != Quantity::Speed);
+                let mut any = false;
+                let mut spoils = BTreeMap::new();
+                for (quantity, solution) in &quantities.0 {
+                    let Some(value) = solution.value else { continue };
+                    let spoiled = self.image(candidate, &task.forward(*quantity, value).camera).spoiled;
+                    any |= spoiled.is_empty();
+                    if !spoiled.is_empty() {
+                        spoils.insert(quantity.key(), spoiled);
+                    }
+                }
+                fixes = Some(Fixes { any, spoils, quantities });
+            }
+        }
+        Ok(CameraVerdict {
+            name: candidate.name.clone(),
+            passes,
+            fails_by,
+            margin: distance / self.required,
+            statistical_distance: distance,
+            detection_probability: detection::probability(distance),
+            lower_bound: worst.lower_bound,
+            certificate,
+            limiting,
+            fixes,
+            motion_blur_pixels: image.blur,
+            brightest_reading: image.reading,
+            longest_exposure_s: image.longest_exposure_s,
+            warnings,
+        })
+    }
+
+    fn is_unknown(&self, nuisance: Nuisance) -> bool {
+        self.rule.scenario.unknown.nuisances.contains(&nuisance)
+    }
+
+    /// The image that a camera makes of the brightest scene, from the least distance.
+    fn image(&self, candidate: &Candidate, camera: &Camera) -> Image {
+        let mut image = Image::default();
+        for near in &candidate.near {
+            let Ok(ranges) = near.ranges(&self.envelope) else { continue };
+            let (state, camera) = (brightest(&ranges), Some(camera.clone()));
+            let bright = Study { state, camera, ..near.clone() };
+            let Some(seen) = bright.camera_result(bright.photon_radiance()) else { continue };
+            image.blur = seen.motion_blur_pixels;
+            image.reading = image.reading.max(seen.brightest_reading);
+        }
+        let blurred = image.blur.map(|blur| camera.exposure_s / blur);
+        let full = camera.full_well.map(|full| camera.exposure_s * full / image.reading);
+        image.longest_exposure_s = blurred.into_iter().chain(full).reduce(f64::min);
+        if image.blur.is_some_and(|blur| blur >= 1.0) {
+            image.spoiled.push("motion-blur");
+        }
+        if camera.full_well.is_some_and(|full| image.reading > full) {
+            image.spoiled.push("full-well");
+        }
+        if camera.clone().checked().is_err()
+            && camera.frame_s().is_some_and(|frame| camera.exposure_s > frame)
+        {
+            image.spoiled.push("frame-rate");
+        }
+        image
+    }
+
+    /// What is to be said of a camera before any scene is searched.
+    fn warnings_of(&self, candidate: &Candidate) -> Vec<Warning> {
+        let Some(near) = candidate.near.first() else { return Vec::new() };
+        let Some(camera) = &near.camera else { return Vec::new() };
+        let state =
+            near.ranges(&self.envelope).map_or_else(|_| near.state.clone(), |ranges| brightest(&ranges));
+        let mut warnings = Study { state, ..near.clone() }.camera_warnings();
+        warnings.extend(
+            camera.assumed.iter().map(|figure| Warning::new("camera-figure-assumed", figure.clone())),
+        );
+        if self.rule.scenario.requirement.speed_m_s.is_some() && self.image(candidate, camera).blur.is_none()
+        {
+            let message = "a speed is given, but motion blur needs the camera's pixels and field_of_view, and a distance";
+            warnings.push(Warning::new("motion-blur-unknown", message));
+        }
+        warnings
+    }
+
+    /// The worst of all pairs, or a scene that is below the requirement where no more is asked for.
+    fn worst(&self, candidate: &Candidate, alone: bool, work: &mut Work) -> Result<Searched> {
+        let mut pairs: Vec<Estimate> = Vec::new();
+        for (index, sighted) in candidate.sighted.iter().enumerate() {
+            let (estimates, searched) = sighted.estimates(index)?;
+            work.compute(Thing::NearestSearches, searched);
+            pairs.extend(estimates);
+        }
+        pairs.sort_by(|a, b| a.distance.total_cmp(&b.distance));
+        let count = pairs.len();
+        let mut found: Vec<Searched> = Vec::with_capacity(count);
+        let mut best = f64::INFINITY;
+        let mut all = true;
+        for (done, pair) in pairs.into_iter().enumerate() {
+            if alone && (pair.distance < self.required || best < self.required) {
+                work.spare(Thing::WorstCases, Reason::AnotherOne, (count - done) as u64);
+                if best >= self.required {
+                    return Ok(Searched::estimated(pair));
+                }
+                all = false;
+                break;
+            }
+            let sighted = &candidate.sighted[pair.sighted];
+            let enough = if alone { self.required } else { best };
+            let mut tolerance = (1.0 - enough / pair.distance).clamp(TOLERANCE, 1.0 - TOLERANCE);
+            let mut searched = search(sighted, pair, tolerance, work)?;
+            best = best.min(searched.pair.distance);
+            // A worst case below the estimate may leave a bound that does not reach what is enough.
+            let short = |searched: &Searched, enough: f64| {
+                let exact = searched.pair.distance * (1.0 - TOLERANCE);
+                searched.lower_bound.is_some_and(|bound| bound < exact.min(enough * (1.0 - TOLERANCE)))
+            };
+            let enough = if alone { self.required } else { best };
+            if tolerance > TOLERANCE && short(&searched, enough) {
+                tolerance = (1.0 - enough / searched.pair.distance).clamp(TOLERANCE, 1.0 - TOLERANCE);
+                searched = search(sighted, searched.pair, tolerance, work)?;
+                best = best.min(searched.pair.distance);
+            }
+            found.push(searched);
+        }
+        let lower: Option<Vec<f64>> = found.iter().map(|searched| searched.lower_bound).collect();
+        let lower = lower.map(|bounds| bounds.into_iter().fold(f64::INFINITY, f64::min));
+        let worst = found.into_iter().min_by(|a, b| a.pair.distance.total_cmp(&b.pair.distance));
+        let Some(worst) = worst else {
+            let instead = "name one in alternatives.materials";
+            return Err(Error::malformed("there is no pair of materials", instead));
+        };
+        if !all {
+            // A scene below the requirement, and other pairs not looked at.
+            return Ok(Searched::estimated(worst.pair));
+        }
+        let distance = worst.pair.distance;
+        let certificate = match (worst.certificate, lower) {
+            (Some(Certificate::Equilibrium), _) => Some(Certificate::Equilibrium),
+            (_, None) => Some(Certificate::DenseSearch { points: 0 }),
+            (_, Some(bound)) if bound >= distance * (1.0 - TOLERANCE) => Some(Certificate::BranchAndBound),
+            (_, Some(bound)) => Some(Certificate::Bounded { gap: 1.0 - bound / distance }),
+        };
+        Ok(Searched { lower_bound: lower, certificate, ..worst })
+    }
+}
+
+/// The worst case of one pair, no worse than its estimate.
+fn search(sighted: &Sighted, pair: Estimate, tolerance: f64, work: &mut Work) -> Result<Searched> {
+    let surface = &sighted.study.alternatives[pair.alternative];
+    let effort = Effort { relative_tolerance: tolerance, boxes: BOXES };
+    let WorstCase { distance, lower_bound, state, nearest, certificate, evaluations, boxes } =
+        worst_case(&sighted.scene(surface), &sighted.ranges, &effort)?;
+    work.compute(Thing::WorstCases, 1);
+    work.compute(Thing::NearestSearches, evaluations);
+    work.compute(Thing::Boxes, boxes);
+    let pair = if distance <= pair.distance { Estimate { distance, state, nearest, ..pair } } else { pair };
+    Ok(Searched { pair, certificate: Some(certificate), lower_bound })
+}
+
+fn limiting(
+    distance_matters: bool,
+    at: &Study,
+    surface: &Surface,
+    pair: &Estimate,
+    environment: bool,
+) -> LimitingScene {
+    let State { temperature_k, lighting, environment_k, .. } = pair.state.clone();
+    LimitingScene {
+        target: at.target.name.clone(),
+        alternative: surface.name.clone(),
+        temperature_k,
+        lighting,
+        surroundings_k: environment_k,
+        distance_m: at.scenario.target.distance_m,
+        distance_matters,
+        nearest_state: NearestState {
+            temperature_k: pair.nearest.temperature_k,
+            lighting: pair.nearest.lighting.clone(),
+            gain: pair.nearest.gain,
+            environment_temperature_k: environment.then(|| pair.nearest.environment_k.clone()),
+        },
+        hardware_m2_s: None,
+    }
+}
