@@ -90,9 +90,9 @@ pub struct Effort {
 }
 
 impl Default for Effort {
-    /// 1 %, and some ten seconds on two cores at most.
+    /// 1 %, and some seconds on two cores at most.
     fn default() -> Self {
-        Self { relative_tolerance: 0.01, boxes: 10_000_000 }
+        Self { relative_tolerance: 0.01, boxes: 3_000_000 }
     }
 }
 
