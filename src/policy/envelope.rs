@@ -44,6 +44,9 @@ use crate::spectrum::Bands;
 const SCENES: usize = 256;
 const SCENES_WITHOUT_PROOF: usize = 2048;
 
+/// Boxes at most where priors are left out of the bound.
+const BOXES_WITH_PRIORS: u64 = 100_000;
+
 /// One pair of materials and one camera, whose worst scene is looked for.
 #[derive(Debug, Clone, Copy)]
 pub struct EnvelopeScene<'a> {
@@ -87,9 +90,9 @@ pub struct Effort {
 }
 
 impl Default for Effort {
-    /// 1 %, and some ten seconds on two cores at most.
+    /// 1 %, and some seconds on two cores at most.
     fn default() -> Self {
-        Self { relative_tolerance: 0.01, boxes: 10_000_000 }
+        Self { relative_tolerance: 0.01, boxes: 3_000_000 }
     }
 }
 
@@ -155,7 +158,9 @@ pub fn worst_case(scene: &EnvelopeScene<'_>, ranges: &Ranges, effort: &Effort) -
     let provable = model::provable(scene.unknowns, scene.surroundings.objects().len()) && effort.boxes > 0;
     let joint = provable.then(|| Model::new(scene, ranges));
     let points = if provable { SCENES } else { SCENES_WITHOUT_PROOF };
-    let attained = attain::attain(scene, ranges, points, joint.as_ref())?;
+    // A descent over scene and state together knows nothing of priors.
+    let descent = joint.as_ref().filter(|_| !scene.unknowns.has_priors());
+    let attained = attain::attain(scene, ranges, points, descent)?;
     if attained.distance == 0.0 {
         return Ok(WorstCase::new(attained, Some(0.0), Certificate::Equilibrium));
     }
@@ -164,10 +169,16 @@ pub fn worst_case(scene: &EnvelopeScene<'_>, ranges: &Ranges, effort: &Effort) -
     };
     let best = joint::residual(&joint.0, &joint.0.point(&attained.state, &attained.nearest));
     joint.0.lean([&best.target, &best.alternative]);
-    let proof = prove::prove(&joint, ranges, effort, attained)?;
+    // With priors the bound need not come near, however many boxes.
+    let most = if scene.unknowns.has_priors() { BOXES_WITH_PRIORS } else { u64::MAX };
+    let effort = Effort { boxes: effort.boxes.min(most), ..*effort };
+    let proof = prove::prove(&joint, ranges, &effort, attained)?;
     let gap = 1.0 - proof.lower_bound / proof.attained.distance;
     let proved = gap <= effort.relative_tolerance;
     let certificate = if proved { Certificate::BranchAndBound } else { Certificate::Bounded { gap } };
     let worst = WorstCase::new(proof.attained, Some(proof.lower_bound), certificate);
     Ok(WorstCase { boxes: proof.boxes, ..worst })
 }
+
+#[cfg(test)]
+mod tests;

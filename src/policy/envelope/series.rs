@@ -62,10 +62,9 @@ mod tests {
                     .fold(f64::INFINITY, f64::min);
                 assert!(worst <= bound + 1e-14 * a, "{nu} {centre} {half}: {worst} {bound}");
                 // The bound is of the right order of smallness: a wrong coefficient would leave far more than it.
-                assert!(
-                    bound < 0.2 * a.max(planck::photon_radiance(nu, centre + half)),
-                    "{nu} {centre} {half}"
-                );
+                if nu / centre < 5.0 {
+                    assert!(bound < 0.01 * a, "{nu} {centre} {half}: {bound} {a}");
+                }
             }
         }
     }
