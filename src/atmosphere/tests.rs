@@ -224,4 +224,28 @@ proptest! {
             last = tau;
         }
     }
+
+    #[test]
+    fn any_text_gives_a_table_or_one_line(
+        head in proptest::sample::select(vec!["wavenumber_cm1,tau_1m,tau_2km", "wavenumber_cm1,tau_3m", "x,y", ""]),
+        cells in proptest::collection::vec(
+            prop_oneof!["[0-9]{1,3}", "0?\\.[0-9]{1,6}", "-?[0-9]e-?[0-9]{1,3}", "[01]", "nan|inf||[a-z]|#"], 0..12),
+        width in 2..4usize,
+        z in prop_oneof![0.0..3e3f64, Just(f64::MIN_POSITIVE), Just(5e-324), Just(1.0), Just(2e3)],
+        at in 0.0..1e3f64,
+    ) {
+        let rows: Vec<String> = cells.chunks(width).map(|row| row.join(",")).collect();
+        match Atmosphere::from_csv(&format!("{head}\n{}", rows.join("\n")), Path::new("a.csv")) {
+            Ok(air) => {
+                let (low, high) = air.range_cm1();
+                for tau in air.transmittance(&[low, high, at.clamp(low, high)], z.min(air.longest_m())).unwrap() {
+                    prop_assert!((0.0..=1.0).contains(&tau), "{tau}");
+                }
+            }
+            Err(error) => {
+                let message = error.to_string();
+                prop_assert!(message.starts_with("a.csv") && !message.contains(char::is_control), "{message}");
+            }
+        }
+    }
 }

@@ -3,6 +3,8 @@
 mod apart;
 mod bands;
 mod camera;
+mod camera_list;
+mod compare;
 mod exact;
 mod footing;
 mod many;
@@ -13,6 +15,8 @@ mod sizing;
 mod work;
 
 pub use camera::camera;
+pub use camera_list::cameras;
+pub use compare::{comparison, comparison_sentence};
 pub use many::{answers, check};
 pub use numbers::{quantity, significant};
 pub use simulation::simulation;

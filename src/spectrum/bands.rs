@@ -93,10 +93,17 @@ impl Bands {
     /// The same bands behind something that lets the share `transmittance` of each wavenumber (cm⁻¹) through.
     #[must_use]
     pub(crate) fn transmitted(&self, transmittance: impl Fn(f64) -> f64) -> Self {
+        let shares: Vec<f64> = self.nodes_cm1.iter().map(|node| transmittance(*node)).collect();
+        self.transmitted_at_nodes(&shares)
+    }
+
+    /// The same with what is let through given at the nodes.
+    #[must_use]
+    pub(crate) fn transmitted_at_nodes(&self, shares: &[f64]) -> Self {
         let mut bands = self.clone();
-        for (weight, node) in bands.weights_cm1.iter_mut().zip(&self.nodes_cm1) {
+        for (weight, share) in bands.weights_cm1.iter_mut().zip(shares) {
             // A band that nothing reaches keeps a weight that can be divided by.
-            *weight *= transmittance(*node).max(OPAQUE);
+            *weight *= share.max(OPAQUE);
         }
         bands
     }

@@ -48,7 +48,7 @@ where
 
 impl Study {
     /// Least nearest statistical distance with nothing but `runs` of bands, each summed and read once with the
-    /// electronic noise its bands have on average; `None` without a camera.
+    /// noise of a reading that its bands have on average; `None` without a camera.
     pub(super) fn reached_with(
         &self,
         runs: &[Range<usize>],
@@ -62,8 +62,11 @@ impl Study {
             emissivity: object.emissivity.as_deref().map(kept),
         });
         let surroundings = Surroundings::new(bands.nodes_cm1(), objects.collect())?;
+        // Photons of other light come with every band that is summed.
+        let light = self.counts_of_other_light();
         let noise = |run: &Range<usize>| {
-            run.clone().map(|w| counting.var_added(w)).sum::<f64>() / run.len().max(1) as f64
+            let of_readings = run.clone().map(|w| counting.var_added(w) - light[w]).sum::<f64>();
+            of_readings / run.len().max(1) as f64 + light[run.clone()].iter().sum::<f64>()
         };
         let counting = Counting {
             counts_per_radiance: counting.counts_per_radiance,

@@ -5,7 +5,7 @@ mod finder;
 
 use self::defaults::{alternatives_as_written, check_range, fill, state_range, unknowns};
 use self::finder::Finder;
-use super::sight::Behind;
+use super::sight::{Air, Behind};
 use super::{Warning, bands, camera};
 use crate::demand::Work;
 use crate::error::{Error, Result};
@@ -35,6 +35,8 @@ pub struct Study {
     pub(super) open_bands: Bands,
     /// The same behind path, optics and detector: what is counted.
     pub(super) bands: Bands,
+    /// The air on the path.
+    pub(super) atmosphere: Option<Air>,
     /// Emission of the path at the nodes, photons s⁻¹ m⁻² sr⁻¹ per cm⁻¹; empty for none.
     pub(super) air: Vec<f64>,
     /// What is behind a target that does not fill the pixel.
@@ -159,6 +161,7 @@ impl Study {
                     .map_err(|error| error.at(scenario.place("requirement.detection_probability")))?
             }
         };
+        let atmosphere = Air::of(&scenario)?;
         let unknowns = unknowns(&scenario).map_err(|error| error.at(scenario.place("unknown")))?;
         let range = state_range(&scenario);
         check_range(&scenario, &range)?;
@@ -167,6 +170,7 @@ impl Study {
             scenario,
             open_bands: bands.clone(),
             bands,
+            atmosphere,
             air: Vec::new(),
             behind,
             surroundings,

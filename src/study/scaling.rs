@@ -117,8 +117,8 @@ impl Study {
         let groups: Vec<usize> =
             std::iter::successors(Some(1), |group| (*group < whole).then_some(2 * group)).collect();
         for group in groups.into_iter().rev() {
-            let bands = self.bands.merged(group);
-            let study = Self { bands, alternatives: counted.clone(), ..self.clone() };
+            let (bands, open_bands) = (self.bands.merged(group), self.open_bands.merged(group));
+            let study = Self { bands, open_bands, alternatives: counted.clone(), ..self.clone() };
             if !study.enough_bands(&study.decisive_unknowns()) {
                 continue;
             }

@@ -11,10 +11,13 @@
 //! Source: paper S7–S9 and S11–S12.
 
 use super::{Study, Surface};
+use crate::atmosphere::Atmosphere;
 use crate::error::{Error, Result};
+use crate::grid::text_of_file;
 use crate::instrument::view::fill;
 use crate::instrument::{Camera, Light, NoiseSpec, View};
 use crate::planck;
+use crate::scenario::{AtmosphereSource, Scenario};
 use crate::scene::State;
 use crate::spectrum::Bands;
 
@@ -23,6 +26,46 @@ use crate::spectrum::Bands;
 pub(super) struct Behind {
     pub(super) surface: Surface,
     pub(super) temperature_k: f64,
+}
+
+/// The air on the path.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Air {
+    pub(super) table: Atmosphere,
+    pub(super) temperature_k: f64,
+}
+
+impl Air {
+    /// The air of a scenario.
+    ///
+    /// # Errors
+    /// An unknown model, a table that cannot be read, a target without a distance, bands that the table does not cover.
+    pub(super) fn of(scenario: &Scenario) -> Result<Option<Self>> {
+        let Some(spec) = &scenario.atmosphere else { return Ok(None) };
+        let table = match &spec.source {
+            AtmosphereSource::Model(name) => {
+                Atmosphere::embedded(name).map_err(|error| error.at(scenario.place("atmosphere.model")))?
+            }
+            AtmosphereSource::Table(path) => {
+                Atmosphere::from_csv(&text_of_file(path, "read the transmittances")?, path)?
+            }
+        };
+        let Some(temperature_k) = spec.temperature_k.or(table.temperature_k()) else {
+            let error = Error::malformed(
+                "the temperature of the air is not given",
+                "write temperature = \"15 degC\"",
+            );
+            return Err(error.at(scenario.place("atmosphere.temperature")));
+        };
+        if scenario.target.distance_m.is_none() {
+            let error = Error::malformed(
+                "air on the path, but the target has no distance",
+                "write distance = \"30 m\"",
+            );
+            return Err(error.at(scenario.place("target.distance")));
+        }
+        Ok(Some(Self { table, temperature_k }))
+    }
 }
 
 /// The bands as they reach a camera, and what its pixel sees beside the target.
@@ -59,8 +102,24 @@ impl Study {
     ) -> Result<(Bands, Vec<f64>)> {
         let bands =
             camera.map_or_else(|| self.open_bands.clone(), |camera| camera.received(&self.open_bands));
-        let _ = distance_m;
-        Ok((bands, Vec::new()))
+        let (Some(air), Some(distance_m)) = (&self.atmosphere, distance_m) else {
+            return Ok((bands, Vec::new()));
+        };
+        let at_distance = |error: Error| error.at(self.scenario.place("target.distance"));
+        let nodes = bands.nodes_cm1();
+        let transmittance = air.table.transmittance(nodes, distance_m).map_err(at_distance)?;
+        let emission = air.table.path_radiance(nodes, distance_m, air.temperature_k).map_err(at_distance)?;
+        Ok((bands.transmitted_at_nodes(&transmittance), emission))
+    }
+
+    /// Counts of each band that are not the target's, by the scenario's camera.
+    pub(super) fn counts_of_other_light(&self) -> Vec<f64> {
+        let counts = |camera: &Camera| {
+            let view = self.view_of(camera);
+            let kappa = camera.counts_per_radiance(&self.bands, &view) / view.fill;
+            (0..self.bands.len()).map(|w| kappa * view.other_light(w)).collect()
+        };
+        self.camera.as_ref().map_or_else(|| vec![0.0; self.bands.len()], counts)
     }
 
     /// Refuses what the view leaves open.
@@ -128,15 +187,17 @@ impl Study {
         if let (Some(size), Some(distance)) = (self.scenario.target.size_m, distance_m) {
             view.fill = fill(size, camera.pixel_m, camera.focal_length_m, distance);
         }
-        let mut push = |label, radiance: Vec<f64>| view.light.push(Light { label, radiance });
         if !air.is_empty() {
+            let open = camera.received(&self.open_bands);
+            view.open_widths_cm1 = open.widths_cm1();
             // Its own transmittance is in what it sends, so only the camera's weights apply.
-            push("light from the path", camera.received(&self.open_bands).weigh(air));
+            view.light.push(Light { label: "light from the path", radiance: open.weigh(air) });
         }
         if let Some(behind) = self.behind.as_ref().filter(|_| view.fill < 1.0) {
             let state = State { temperature_k: behind.temperature_k, ..self.state.clone() };
             let signal = bands.weigh(&self.surroundings.signal(&behind.surface.emissivity, &state));
-            push("light from behind the target", signal.iter().map(|s| s * (1.0 - view.fill)).collect());
+            let radiance = signal.iter().map(|s| s * (1.0 - view.fill)).collect();
+            view.light.push(Light { label: "light from behind the target", radiance });
         }
         for (label, radiance) in filter_light(camera, bands) {
             view.light.push(Light { label, radiance });

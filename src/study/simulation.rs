@@ -18,6 +18,7 @@ use super::{Study, Warning};
 use crate::demand::{Thing, Work};
 use crate::error::Result;
 use crate::fisher::Unknowns;
+use crate::instrument::Camera;
 use crate::simulate::classifier::{SavedModel, Trained};
 use crate::simulate::draws::{GENERATOR, LARGEST_EXACT};
 use crate::simulate::experiment::Design;
@@ -146,6 +147,13 @@ impl Study {
             let message = "priors are left out: the spectra that are drawn, and what is learnt from them, know nothing of them";
             result.warnings.push(Warning::new("priors-left-out", message));
             return Ok((result, models));
+        }
+        if plan.law == PhotonLaw::NegativeBinomial
+            && self.camera.as_ref().is_some_and(|camera| camera.photon_bunching)
+        {
+            // Drawn as it is, bunching is no noise to be added.
+            let camera = self.camera.clone().map(|camera| Camera { photon_bunching: false, ..camera });
+            return Self { camera, ..self.clone() }.simulate(plan, progress);
         }
         let mut stats = self.looked_up.clone();
         let rivals = self.rivals(&plan.against, &mut stats)?;

@@ -1,7 +1,8 @@
 //! What results rest on, and what their reader must know.
 
-use super::numbers::listed;
-use crate::scenario::{Nuisance, Unknown};
+use super::numbers::{celsius, listed, quantity};
+use crate::instrument::Readout;
+use crate::scenario::{AtmosphereSource, Nuisance, Unknown};
 use crate::study::{Identification, Study, Warning};
 use std::fmt::Write as _;
 
@@ -51,9 +52,20 @@ pub(super) fn assumptions(study: &Study, counts: &str) -> String {
         "  {count} band{} centred from {low} to {high} cm^-1",
         if count == 1 { "" } else { "s" }
     );
-    out.push_str(
-        "  opaque Lambertian target that fills the pixel, one scattering, no atmosphere on the path\n",
-    );
+    let fills = match (scenario.target.size_m, &scenario.background) {
+        (Some(size), Some(behind)) => {
+            format!("of {} in front of {}", quantity(size, "m"), celsius(behind.temperature_k))
+        }
+        _ => "that fills the pixel".to_owned(),
+    };
+    let air = match &scenario.atmosphere {
+        None => "no atmosphere on the path".to_owned(),
+        Some(spec) => match &spec.source {
+            AtmosphereSource::Model(name) => format!("air `{name}` on the path, without aerosol"),
+            AtmosphereSource::Table(_) => "air of a table on the path".to_owned(),
+        },
+    };
+    let _ = writeln!(out, "  opaque Lambertian target {fills}, one scattering, {air}");
     let _ = writeln!(out, "  {counts}");
     let skies = study.skies_left_out();
     if !skies.is_empty() {
@@ -63,8 +75,22 @@ pub(super) fn assumptions(study: &Study, counts: &str) -> String {
             listed(skies)
         );
     }
-    if study.camera().is_some() {
-        out.push_str("  every band is read by every pixel with the whole exposure; all photons are counted (quantum efficiency 1)\n");
+    if let Some(camera) = study.camera() {
+        let read = match camera.readout {
+            Readout::Simultaneous => "every band is read by every pixel with the whole exposure",
+            Readout::Sequential => "bands are exposed one after the other, each by every pixel",
+            Readout::FourierTransform => {
+                "all bands at once through an interferometer, one mirror position for each"
+            }
+            Readout::Dispersive => "all bands of a line at once, side by side; an image takes line by line",
+        };
+        let curved = camera.efficiency_curves.iter().any(|curve| curve.name() == "quantum_efficiency");
+        let counted = match camera.quantum_efficiency {
+            _ if curved => "quantum efficiency by its table".to_owned(),
+            1.0 => "all photons are counted (quantum efficiency 1)".to_owned(),
+            eta => format!("quantum efficiency {eta}"),
+        };
+        let _ = writeln!(out, "  {read}; {counted}");
     }
     out
 }

@@ -4,7 +4,7 @@ use super::RangeStudy;
 use super::subject::{Depth, Measured, Rendered, Resolved};
 use crate::error::{Error, Result};
 use crate::fisher::Counting;
-use crate::instrument::{Camera, View};
+use crate::instrument::{Camera, Readout, View};
 use crate::material::{Library, Material};
 use crate::ranging::cube::{Cube, Shape};
 use crate::ranging::depth::StereoGeometry;
@@ -28,6 +28,16 @@ impl RangeStudy {
         let source = &scenario.source;
         let camera = scenario.camera.as_ref().map(|spec| camera::resolved(spec, source)).transpose()?;
         let bands = scenario.bands.as_ref().map(|spec| bands::at_centres(spec, source)).transpose()?;
+        let bands = match (&camera, bands) {
+            (Some(camera), Some(bands)) => Some(camera.received(&bands)),
+            (_, bands) => bands,
+        };
+        if camera.as_ref().is_some_and(|camera| camera.readout == Readout::FourierTransform) {
+            let found =
+                "an interferometer mixes all bands in every reading, which the depth bounds do not know";
+            let instead = "write readout = \"simultaneous\", or give the cube with its noise_variance";
+            return Err(Error::malformed(found, instead).at(scenario.place("camera.readout")));
+        }
         let length = |own: Option<f64>, from: Option<f64>| own.or(from).unwrap_or(f64::NAN);
         let stereo = &scenario.stereo;
         let geometry = StereoGeometry::new(

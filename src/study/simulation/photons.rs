@@ -143,11 +143,15 @@ impl Study {
         Counting { counts_per_radiance, ..self.counting_of(&Camera { exposure_s, ..second }) }
     }
 
-    /// The law of thermal light that is bunched in the modes of each band.
+    /// The law of thermal light that is bunched in the modes of each band. What is lost on the way is lost at random: it
+    /// leaves the number of modes as it is.
     pub(in crate::study) fn bunched(&self, counts_per_radiance: f64) -> Result<Statistics> {
-        let nodes = self.bands.nodes_cm1();
+        let efficiency =
+            self.camera.as_ref().map_or(1.0, |camera| camera.optics_efficiency * camera.quantum_efficiency);
+        let nodes = self.open_bands.nodes_cm1();
         let density: Vec<f64> = nodes.iter().map(|&nu| planck::mode_density(nu)).collect();
-        let modes = self.bands.weigh(&density).iter().map(|m| counts_per_radiance * m).collect();
+        let per_density = counts_per_radiance / efficiency;
+        let modes = self.open_bands.weigh(&density).iter().map(|m| per_density * m).collect();
         Statistics::negative_binomial(modes)
     }
 }

@@ -1,0 +1,173 @@
+//! The worst case of the statistical distance over an envelope of scenes, with a certificate.
+//!
+//! A requirement holds over ranges: temperature T of the target, lighting Vₖ and temperature Tₖ of every object
+//! around it. The worst case is the least distance of all these scenes,
+//!
+//! d* = min over θ = (T, V, Tₖ) of d(θ),   d(θ) = min over θ′ = (T′, V′) of ‖√(N(θ)+v) − √(N′(θ′, Tₖ)+v)‖,
+//!
+//! N counts of the target, N′ of the alternative amid the same surroundings, v added variance of each band. So
+//! d* is one minimisation over θ and θ′ together.
+//!
+//! * From above (`attain`): a dense set of scenes with [`NearestSolver`] in each, and descents from the best of
+//!   them. The distance reported is that of [`NearestSolver::with_counting`] at the scene reported.
+//! * From below (`prove`, `bound`): branch and bound over θ and θ′ together, where the alternative's unknowns
+//!   are temperature or lighting or both, without gain. Priors only add to the distance, so what is proved
+//!   without them is true with them, but need not meet the distance attained.
+//!
+//! A proof accounts for the rounding of its own sums (`cell`), but it is not made of outward-rounded intervals,
+//! and Planck's function is taken to be as exact as [`crate::planck`] states.
+//!
+//! Distance to the target is no dimension here: d falls with it. Materials are enumerated by the caller.
+
+mod attain;
+mod bound;
+mod cell;
+mod joint;
+mod linear;
+mod model;
+mod partition;
+mod prove;
+mod ranges;
+mod series;
+
+pub use self::ranges::Ranges;
+
+use self::attain::Attained;
+use self::model::Model;
+use crate::error::Result;
+use crate::fisher::{Counting, Unknowns};
+use crate::identifiability::nearest::{NearestSolver, StateRange};
+use crate::scene::{State, Surroundings, check_emissivity};
+use crate::spectrum::Bands;
+
+/// Scenes that are tried before the best of them are refined, with a proof to follow and without.
+const SCENES: usize = 256;
+const SCENES_WITHOUT_PROOF: usize = 2048;
+
+/// One pair of materials and one camera, whose worst scene is looked for.
+#[derive(Debug, Clone, Copy)]
+pub struct EnvelopeScene<'a> {
+    /// The bands of the camera.
+    pub bands: &'a Bands,
+    /// The objects around the target with their emissivities; their temperatures are those of the envelope.
+    pub surroundings: &'a Surroundings,
+    /// Emissivity of the target at the nodes of the bands.
+    pub emissivity: &'a [f64],
+    /// Emissivity of the alternative at the nodes of the bands.
+    pub alternative: &'a [f64],
+    /// Counts per radiance and added noise.
+    pub counting: &'a Counting,
+    /// What is not known of the alternative's state.
+    pub unknowns: &'a Unknowns,
+    /// Within what limits the alternative's state may be.
+    pub range: StateRange,
+}
+
+impl<'a> EnvelopeScene<'a> {
+    fn check(&self, ranges: &Ranges) -> Result<()> {
+        self.range.check()?;
+        self.counting.check(self.bands.len())?;
+        check_emissivity(self.emissivity, self.bands.nodes_cm1().len())?;
+        check_emissivity(self.alternative, self.bands.nodes_cm1().len())?;
+        ranges.check_objects(self.surroundings.objects().len())
+    }
+
+    fn solver(&self) -> NearestSolver<'a> {
+        NearestSolver::new(self.bands, self.surroundings, self.unknowns.clone(), self.range)
+    }
+}
+
+/// How much is done for a proof.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Effort {
+    /// How far below the distance attained the proved bound may be, as a share of it.
+    pub relative_tolerance: f64,
+    /// Boxes of the branch and bound at most; with 0 there is no proof.
+    pub boxes: u64,
+}
+
+impl Default for Effort {
+    /// 1 %, and some ten seconds on two cores at most.
+    fn default() -> Self {
+        Self { relative_tolerance: 0.01, boxes: 10_000_000 }
+    }
+}
+
+/// What is known of a worst case.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Certificate {
+    /// Proved to the tolerance: no scene of the envelope is below the lower bound.
+    BranchAndBound,
+    /// A lower bound is proved, but it is farther below the distance attained than the tolerance.
+    Bounded {
+        /// By how much, as a share of the distance attained.
+        gap: f64,
+    },
+    /// The envelope holds a scene in which nothing differs: the distance is 0.
+    Equilibrium,
+    /// No proof: the best of a dense search and of refinements.
+    DenseSearch {
+        /// Scenes searched before refinement.
+        points: usize,
+    },
+}
+
+/// The least distance of an envelope.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WorstCase {
+    /// The statistical distance in the limiting scene: attained.
+    pub distance: f64,
+    /// Proved: no scene of the envelope is below. `None` if nothing is proved.
+    pub lower_bound: Option<f64>,
+    /// The limiting scene.
+    pub state: State,
+    /// The alternative's state that is nearest to it.
+    pub nearest: State,
+    /// How sure it is.
+    pub certificate: Certificate,
+    /// Nearest distances computed.
+    pub evaluations: u64,
+    /// Boxes of the branch and bound.
+    pub boxes: u64,
+}
+
+impl WorstCase {
+    fn new(attained: Attained, lower_bound: Option<f64>, certificate: Certificate) -> Self {
+        let Attained { distance, state, nearest, evaluations, .. } = attained;
+        Self { distance, lower_bound, state, nearest, certificate, evaluations, boxes: 0 }
+    }
+}
+
+/// The worst case of one pair of materials over an envelope.
+///
+/// # Errors
+/// Ranges that do not fit the surroundings; emissivities, noise or a range of states that cannot be; a scene
+/// without photons.
+pub fn worst_case(scene: &EnvelopeScene<'_>, ranges: &Ranges, effort: &Effort) -> Result<WorstCase> {
+    scene.check(ranges)?;
+    if let Some(state) = ranges.equilibrium(scene) {
+        let attained = Attained { distance: 0.0, nearest: state.clone(), state, evaluations: 0 };
+        return Ok(WorstCase::new(attained, Some(0.0), Certificate::Equilibrium));
+    }
+    if let Some(attained) = attain::nothing_differs(scene, ranges)? {
+        return Ok(WorstCase::new(attained, Some(0.0), Certificate::Equilibrium));
+    }
+    let provable = model::provable(scene.unknowns, scene.surroundings.objects().len()) && effort.boxes > 0;
+    let joint = provable.then(|| Model::new(scene, ranges));
+    let points = if provable { SCENES } else { SCENES_WITHOUT_PROOF };
+    let attained = attain::attain(scene, ranges, points, joint.as_ref())?;
+    if attained.distance == 0.0 {
+        return Ok(WorstCase::new(attained, Some(0.0), Certificate::Equilibrium));
+    }
+    let Some(mut joint) = joint else {
+        return Ok(WorstCase::new(attained, None, Certificate::DenseSearch { points }));
+    };
+    let best = joint::residual(&joint.0, &joint.0.point(&attained.state, &attained.nearest));
+    joint.0.lean([&best.target, &best.alternative]);
+    let proof = prove::prove(&joint, ranges, effort, attained)?;
+    let gap = 1.0 - proof.lower_bound / proof.attained.distance;
+    let proved = gap <= effort.relative_tolerance;
+    let certificate = if proved { Certificate::BranchAndBound } else { Certificate::Bounded { gap } };
+    let worst = WorstCase::new(proof.attained, Some(proof.lower_bound), certificate);
+    Ok(WorstCase { boxes: proof.boxes, ..worst })
+}

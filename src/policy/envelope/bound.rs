@@ -1,0 +1,281 @@
+//! A lower bound of the distance in a box of all sources' temperatures and factors.
+//!
+//! Let Δ = Qᵀω(N − N′) (see `cell`), Δ_c its value at the centre and A its derivatives times the half widths. Of the linear
+//! model the point x, |x_i| ≤ 1, nearest to the origin is found, and u = (Δ_c + Ax)/‖Δ_c + Ax‖. For this one direction
+//!
+//! min over the box of u·Δ = Σ_s min over (T, v, w) of u·[v f(T) + w g(T)]
+//!
+//! is bounded below source by source: linear in v and w, so that only the four corners of their ranges matter, and on each
+//! of them a parabola in T minimised on its interval, less the cubic term and the remainder. A linear model loses nothing
+//! by the choice of u (duality of the nearest point of a convex set); so the bound misses the least distance in the box
+//! by its second derivatives alone. *Any* u gives a valid bound: how well the nearest point is solved for matters for
+//! tightness alone.
+//!
+//! Where a sum of lighting factors is limited, Σv ≤ V, λ(Σv − V) ≤ 0 may be added for any λ ≥ 0 (a price on v); λ is the
+//! multiplier that the linear model has, found with the limit as one more row of great weight.
+//!
+//! Split is along what bends u·Δ, moves it, or changes the variance most.
+
+use super::cell::{Cell, Node, PAIRS, RANK, Vector};
+use super::linear::{COLUMNS, Factor, Gram, Limit};
+use super::model::{Model, SOURCES};
+
+/// About how fast Planck's function grows with temperature, both relative.
+const GROWTH: f64 = 5.0;
+/// Share of the separation in the middle below which the linear model is taken to reach the origin.
+const REACHED: f64 = 1e-9;
+
+/// How much more a broken sum of factors weighs than what they do.
+const STIFF: f64 = 30.0;
+
+/// Part of a cell: an interval of each temperature, and ranges of the factors.
+#[derive(Debug, Clone)]
+pub(super) struct Cube {
+    pub(super) cell: u32,
+    pub(super) nodes: [u32; SOURCES],
+    pub(super) own: [[f64; 2]; SOURCES],
+    pub(super) other: [[f64; 2]; SOURCES],
+    /// Proved: no distance in it is below.
+    pub(super) bound: f64,
+    /// Along what it is best split: 3s for temperature s, 3s + 1 for v, 3s + 2 for w; `None` if it cannot be.
+    pub(super) split: Option<usize>,
+}
+
+#[inline(always)]
+fn dot(a: &Vector, b: &Vector) -> f64 {
+    let mut lanes = [0.0; 4];
+    for (a, b) in a.chunks_exact(4).zip(b.chunks_exact(4)) {
+        for i in 0..4 {
+            lanes[i] += a[i] * b[i];
+        }
+    }
+    (lanes[0] + lanes[1]) + (lanes[2] + lanes[3])
+}
+
+#[inline(always)]
+fn add(to: &mut Vector, factor: f64, column: &Vector) {
+    for (to, x) in to.iter_mut().zip(column) {
+        *to += factor * x;
+    }
+}
+
+/// Least a + bt + ct² on |t| ≤ 1.
+#[inline(always)]
+fn least_parabola(a: f64, b: f64, c: f64) -> f64 {
+    if 2.0 * c > b.abs() { a - 0.25 * b * b / c } else { a + c - b.abs() }
+}
+
+/// uᵀMu.
+fn along(matrix: &[f64; PAIRS], u: &Vector) -> f64 {
+    let (mut total, mut place) = (0.0, 0);
+    for i in 0..RANK {
+        let mut line = 0.5 * matrix[place] * u[i];
+        for (x, u) in matrix[place..place + RANK - i].iter().zip(&u[i..]).skip(1) {
+            line += x * u;
+        }
+        total += 2.0 * u[i] * line;
+        place += RANK - i;
+    }
+    total
+}
+
+fn centre([low, high]: [f64; 2]) -> (f64, f64) {
+    (0.5 * (low + high), 0.5 * (high - low))
+}
+
+impl Cell {
+    fn node_of(&self, cube: &Cube, s: usize) -> &Node {
+        &self.sources[s].nodes[cube.nodes[s] as usize]
+    }
+
+    /// Sets bound and split of a cube; the bound never falls below what it was.
+    pub(super) fn bound(&self, model: &Model<'_>, cube: &mut Cube) {
+        let sources = self.sources.len();
+        let (mut middle, mut columns) = ([0.0; RANK], [[0.0; RANK]; COLUMNS]);
+        for s in 0..sources {
+            let node = self.node_of(cube, s);
+            let ((v, dv), (w, dw)) = (centre(cube.own[s]), centre(cube.other[s]));
+            add(&mut middle, v, &node.own[0]);
+            add(&mut columns[3 * s], v, &node.own[1]);
+            add(&mut columns[3 * s + 1], dv, &node.own[0]);
+            if cube.other[s][1] > 0.0 {
+                add(&mut middle, w, &node.other[0]);
+                add(&mut columns[3 * s], w, &node.other[1]);
+                add(&mut columns[3 * s + 2], dw, &node.other[0]);
+            }
+        }
+        // In coordinates in which M is the unit matrix.
+        let variance = self.variance_of(cube);
+        let factor = Factor::new(&variance, self.rank);
+        for column in columns[..3 * sources].iter_mut().chain([&mut middle]) {
+            factor.solve(column);
+        }
+        let mut limits = [Limit::default(), Limit::default()];
+        let (gram, x) = loop {
+            let gram = Gram::new(
+                3 * sources,
+                dot(&middle, &middle) + limits.iter().map(|l| l.middle * l.middle).sum::<f64>(),
+                |i, j| {
+                    dot(&columns[i], &columns[j]) + limits.iter().map(|l| l.row[i] * l.row[j]).sum::<f64>()
+                },
+                |i| dot(&columns[i], &middle) + limits.iter().map(|l| l.row[i] * l.middle).sum::<f64>(),
+            );
+            let x = gram.nearest();
+            // At most once for each sum: a row that is there is not put there again.
+            if !(model.limited && self.exceeded(model, cube, &x, &columns, &mut limits)) {
+                break (gram, x);
+            }
+        };
+        let mut point = middle;
+        for (x, column) in x.iter().zip(&columns) {
+            add(&mut point, *x, column);
+        }
+        if dot(&point, &point).sqrt() <= REACHED * dot(&middle, &middle).sqrt() {
+            cube.split = self.best_split(cube, |i| gram.size(i));
+            return;
+        }
+        factor.solve_transposed(&mut point);
+        let norm = dot(&point, &point).sqrt();
+        let u = point.map(|x| x / norm);
+        let prices = [0, 1].map(|which: usize| limits[which].price(&x) / norm);
+        let mut weight = [0.0; COLUMNS];
+        let mut total = -self.slack;
+        for (price, sum) in prices.iter().zip(model.sums) {
+            // A sum of factors may be this much larger, by the rounding of the user's own numbers.
+            total -= price * (sum + 1e-12);
+        }
+        for s in 0..sources {
+            let prices = if model.sources[s].object { prices } else { [0.0; 2] };
+            total += self.least(cube, s, &u, prices, &mut weight);
+        }
+        if total > 0.0 {
+            let spread = along(&variance, &u);
+            self.weigh_variance(cube, &u, 0.5 * total / spread, &mut weight);
+            // A denominator some hundred roundings too large, never too small.
+            let bound = total / (spread.sqrt() * (1.0 + 1e-13));
+            if bound > cube.bound {
+                cube.bound = bound;
+            }
+        }
+        cube.split = self.best_split(cube, |i| weight[i]);
+    }
+
+    /// Adds a row for every sum of factors that the point x breaks; whether any is new.
+    fn exceeded(
+        &self,
+        model: &Model<'_>,
+        cube: &Cube,
+        x: &[f64; COLUMNS],
+        columns: &[Vector; COLUMNS],
+        limits: &mut [Limit; 2],
+    ) -> bool {
+        let mut new = false;
+        for (which, (limit, sum)) in limits.iter_mut().zip(model.sums).enumerate() {
+            let (mut row, mut middle, mut at, mut stiff) = ([0.0; COLUMNS], -sum, -sum, 0.0f64);
+            for s in (0..self.sources.len()).filter(|&s| model.sources[s].object) {
+                let i = 3 * s + 1 + which;
+                let (value, half) = centre([cube.own[s], cube.other[s]][which]);
+                row[i] = half;
+                middle += value;
+                at += value + half * x[i];
+                if half > 0.0 {
+                    stiff = stiff.max(STIFF * dot(&columns[i], &columns[i]).sqrt() / half);
+                }
+            }
+            if limit.stiffness == 0.0 && at > 1e-9 && stiff > 0.0 {
+                *limit = Limit { row: row.map(|x| stiff * x), middle: stiff * middle, stiffness: stiff };
+                new = true;
+            }
+        }
+        new
+    }
+
+    /// Adds what the ranges account for by the variance at their upper ends being too large within them.
+    #[inline(always)]
+    fn weigh_variance(&self, cube: &Cube, u: &Vector, scale: f64, weight: &mut [f64; COLUMNS]) {
+        for s in 0..self.sources.len() {
+            let node = self.node_of(cube, s);
+            let (own, other) = (cube.own[s], cube.other[s]);
+            let share = scale * along(&node.own_spread, u);
+            weight[3 * s + 1] += share * (own[1] - own[0]);
+            let mut seen = share * own[1];
+            if other[1] > 0.0 {
+                let share = scale * along(&node.other_spread, u);
+                weight[3 * s + 2] += share * (other[1] - other[0]);
+                seen += share * other[1];
+            }
+            weight[3 * s] += seen * GROWTH * (node.t[1] - node.t[0]) / node.t[1];
+        }
+    }
+
+    /// M at the upper ends of a cube.
+    #[inline(always)]
+    fn variance_of(&self, cube: &Cube) -> [f64; PAIRS] {
+        let mut total = *self.var_spread;
+        let mut add = |factor: f64, spread: &[f64; PAIRS]| {
+            for (to, x) in total.iter_mut().zip(spread) {
+                *to += factor * x;
+            }
+        };
+        for s in 0..self.sources.len() {
+            let node = self.node_of(cube, s);
+            add(cube.own[s][1], &node.own_spread);
+            if cube.other[s][1] > 0.0 {
+                add(cube.other[s][1], &node.other_spread);
+            }
+        }
+        total
+    }
+
+    /// Least u·(v f + w g) with the prices of v and w of one source, and how much of it each of its ranges accounts for.
+    #[inline(always)]
+    fn least(&self, cube: &Cube, s: usize, u: &Vector, prices: [f64; 2], weight: &mut [f64; COLUMNS]) -> f64 {
+        let node = self.node_of(cube, s);
+        let mut f = [0, 1, 2, 3].map(|term| dot(u, &node.own[term]));
+        f[0] += prices[0];
+        let own = cube.own[s];
+        let other = cube.other[s];
+        if other[1] <= 0.0 {
+            let least =
+                own.map(|v| least_parabola(v * f[0], v * f[1], v * f[2]) - v * (f[3].abs() + node.own_rest));
+            let (v, dv) = centre(own);
+            weight[3 * s] =
+                v * (f[1].abs() + f[2].abs() + f[3].abs() + node.own_rest) + 0.5 * dv * f[1].abs();
+            weight[3 * s + 1] = dv * (f[0].abs() + 0.5 * f[1].abs());
+            return least[0].min(least[1]);
+        }
+        let mut g = [0, 1, 2, 3].map(|term| dot(u, &node.other[term]));
+        g[0] += prices[1];
+        let mut least = f64::INFINITY;
+        for v in own {
+            for w in other {
+                let mix = |term: usize| v * f[term] + w * g[term];
+                let rest = mix(3).abs() + v * node.own_rest + w * node.other_rest;
+                least = least.min(least_parabola(mix(0), mix(1), mix(2)) - rest);
+            }
+        }
+        let ((v, dv), (w, dw)) = (centre(own), centre(other));
+        let mix = |term: usize| (v * f[term] + w * g[term]).abs();
+        let cross = 0.5 * (dv * f[1].abs() + dw * g[1].abs());
+        weight[3 * s] = mix(1) + mix(2) + mix(3) + v * node.own_rest + w * node.other_rest + cross;
+        weight[3 * s + 1] = dv * (f[0].abs() + 0.5 * f[1].abs());
+        weight[3 * s + 2] = dw * (g[0].abs() + 0.5 * g[1].abs());
+        least
+    }
+
+    /// The range of most weight among those that can be halved.
+    fn best_split(&self, cube: &Cube, weight: impl Fn(usize) -> f64) -> Option<usize> {
+        let mut best: Option<(f64, usize)> = None;
+        for i in 0..3 * self.sources.len() {
+            let s = i / 3;
+            let [low, high] = [[0.0, 1.0], cube.own[s], cube.other[s]][i % 3];
+            let divisible =
+                if i % 3 == 0 { self.divisible(s, cube.nodes[s]) } else { high - low > 1e-12 * high };
+            let weight = weight(i);
+            if divisible && weight > 0.0 && best.is_none_or(|(most, _)| weight > most) {
+                best = Some((weight, i));
+            }
+        }
+        best.map(|(_, i)| i)
+    }
+}

@@ -1,0 +1,205 @@
+//! The worst case from below: branch and bound over the scenes and the alternative's states together.
+//!
+//! Boxes wait in the order of their bounds; the lowest ones are halved, a batch at a time, until none is below
+//! (1 − tolerance) times the distance attained, or as many have been looked at as are allowed. What is then proved is
+//! the least bound of all boxes ever left aside or waiting. The batches do not depend on the number of
+//! threads. Where the lowest box promises a scene below the best one known, a descent from it is tried.
+
+use super::bound::Cube;
+use super::cell::{Cell, Node};
+use super::joint::Point;
+use super::model::{Model, Region, SOURCES};
+use super::partition::partition;
+use super::{Effort, Ranges, attain};
+use crate::error::Result;
+use rayon::prelude::*;
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+/// A descent is tried in every one of the first so many batches, and in every so many later.
+const EVERY: u64 = 8;
+/// Boxes halved together.
+const BATCH: usize = 2048;
+
+/// What has come of an attempt.
+pub(super) struct Proof {
+    pub(super) lower_bound: f64,
+    pub(super) boxes: u64,
+    pub(super) attained: attain::Attained,
+}
+
+/// A box in its queue: the lowest bound first, then the oldest.
+struct Waiting {
+    cube: Cube,
+    age: u64,
+}
+
+impl Ord for Waiting {
+    fn cmp(&self, other: &Self) -> Ordering {
+        other.cube.bound.total_cmp(&self.cube.bound).then(other.age.cmp(&self.age))
+    }
+}
+
+impl PartialOrd for Waiting {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Waiting {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Waiting {}
+
+/// The queue, and the least bound of what was left aside.
+struct Search<'m, 'a> {
+    model: &'m Model<'a>,
+    cells: Vec<Cell>,
+    queue: BinaryHeap<Waiting>,
+    threshold: f64,
+    aside: f64,
+    boxes: u64,
+}
+
+/// A lower bound of the distance over an envelope in which `attained` is known to be.
+pub(super) fn prove(
+    joint: &(Model<'_>, Region),
+    ranges: &Ranges,
+    effort: &Effort,
+    mut attained: attain::Attained,
+) -> Result<Proof> {
+    // A little more than asked for, so that a bound rounded down does not miss it.
+    let share = 1.0 - 0.999 * effort.relative_tolerance;
+    let (model, whole) = joint;
+    let threshold = share * attained.distance;
+    let (parts, aside) = partition(model, whole.clone(), threshold, attained.distance);
+    let mut bounds = Vec::with_capacity(parts.len());
+    let distance = attained.distance;
+    let cells: Vec<Cell> = parts
+        .into_par_iter()
+        .map(|part| (part.bound, Cell::new(model, &part, distance)))
+        .collect::<Vec<_>>()
+        .into_iter()
+        .map(|(bound, cell)| {
+            bounds.push(bound);
+            cell
+        })
+        .collect();
+    let mut search = Search { model, cells, queue: BinaryHeap::new(), threshold, aside, boxes: 0 };
+    let roots = (0..search.cells.len()).map(|cell| search.root(cell, bounds[cell])).collect();
+    search.take_in(roots);
+    let mut round = 0;
+    while search.boxes < effort.boxes && !search.queue.is_empty() {
+        let promising = if round < EVERY || round % EVERY == 0 { search.lowest() } else { None };
+        if let Some(start) = promising {
+            let below = attained.distance * (1.0 - 1e-6);
+            let (better, evaluations) = attain::attain_from(joint, ranges, start, below)?;
+            attained.evaluations += evaluations;
+            if let Some(better) = better {
+                attained = attain::Attained { evaluations: attained.evaluations, ..better };
+                search.threshold = share * attained.distance;
+            }
+        }
+        round += 1;
+        search.advance();
+    }
+    let waiting = search.queue.peek().map_or(f64::INFINITY, |waiting| waiting.cube.bound);
+    let lower_bound = waiting.min(search.aside).min(attained.distance);
+    Ok(Proof { lower_bound, boxes: search.boxes, attained })
+}
+
+impl Search<'_, '_> {
+    fn root(&self, cell: usize, bound: f64) -> Cube {
+        let region = &self.cells[cell].region;
+        let (mut own, mut other) = ([[0.0; 2]; SOURCES], [[0.0; 2]; SOURCES]);
+        for (s, span) in region.iter().enumerate().take(SOURCES) {
+            (own[s], other[s]) = (span.own, span.other);
+        }
+        Cube { cell: cell as u32, nodes: [0; SOURCES], own, other, bound, split: None }
+    }
+
+    /// Bounds new boxes, and queues those that are not beyond the threshold.
+    fn take_in(&mut self, mut cubes: Vec<Cube>) {
+        let (cells, model) = (&self.cells, self.model);
+        cubes.par_iter_mut().with_min_len(64).for_each(|cube| cells[cube.cell as usize].bound(model, cube));
+        for cube in cubes {
+            self.boxes += 1;
+            if cube.bound >= self.threshold || cube.split.is_none() {
+                self.aside = self.aside.min(cube.bound);
+            } else {
+                self.queue.push(Waiting { cube, age: self.boxes });
+            }
+        }
+    }
+
+    /// Halves the lowest boxes.
+    fn advance(&mut self) {
+        let mut batch = Vec::with_capacity(BATCH);
+        while batch.len() < BATCH {
+            let Some(Waiting { cube, .. }) = self.queue.pop() else { break };
+            batch.push(cube);
+        }
+        self.halve_intervals(&batch);
+        let halves = batch.iter().flat_map(|cube| self.halves(cube)).flatten().collect();
+        self.take_in(halves);
+    }
+
+    /// Makes sure that the halves of all intervals to be halved are known.
+    fn halve_intervals(&mut self, batch: &[Cube]) {
+        let mut wanted: Vec<(u32, usize, u32)> = batch
+            .iter()
+            .filter_map(|cube| {
+                let split = cube.split.filter(|split| split % 3 == 0)?;
+                let (s, node) = (split / 3, cube.nodes[split / 3]);
+                let known = self.cells[cube.cell as usize].sources[s].nodes[node as usize].halves;
+                known.is_none().then_some((cube.cell, s, node))
+            })
+            .collect();
+        wanted.sort_unstable();
+        wanted.dedup();
+        let (cells, model) = (&self.cells, self.model);
+        let made: Vec<[Node; 2]> =
+            wanted.par_iter().map(|&(cell, s, node)| cells[cell as usize].halve(model, s, node)).collect();
+        for ((cell, s, node), halves) in wanted.into_iter().zip(made) {
+            let nodes = &mut self.cells[cell as usize].sources[s].nodes;
+            nodes[node as usize].halves = Some(nodes.len() as u32);
+            nodes.extend(halves);
+        }
+    }
+
+    /// The two halves of a box, without what the sums of the lighting exclude.
+    fn halves(&self, cube: &Cube) -> [Option<Cube>; 2] {
+        let Some(split) = cube.split else { return [None, None] };
+        let s = split / 3;
+        [0, 1].map(|half: usize| {
+            let mut part = cube.clone();
+            match split % 3 {
+                0 => {
+                    let nodes = &self.cells[cube.cell as usize].sources[s].nodes;
+                    part.nodes[s] = nodes[cube.nodes[s] as usize].halves? + half as u32;
+                }
+                which => {
+                    let range = if which == 1 { &mut part.own[s] } else { &mut part.other[s] };
+                    range[1 - half] = 0.5 * (range[0] + range[1]);
+                }
+            }
+            self.model.tighten(&mut part.own, &mut part.other).then_some(part)
+        })
+    }
+
+    /// The middle of the lowest box.
+    fn lowest(&self) -> Option<Point> {
+        let cube = &self.queue.peek()?.cube;
+        let cell = &self.cells[cube.cell as usize];
+        let middle = |range: [f64; 2]| 0.5 * (range[0] + range[1]);
+        let mut values = [[0.0; 3]; SOURCES];
+        for (s, intervals) in cell.sources.iter().enumerate() {
+            let t = intervals.nodes[cube.nodes[s] as usize].t;
+            values[s] = [t, cube.own[s], cube.other[s]].map(middle);
+        }
+        Some(Point { values })
+    }
+}
