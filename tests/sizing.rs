@@ -104,7 +104,9 @@ fn fed_back(task: &Task, quantity: Quantity, solution: &Solution, value: f64) ->
         Quantity::Frames => vec![("frames", format!("{value:.0}"))],
         Quantity::Noise if task.preset == "nicolet-is50" => {
             let detectivity = 4.7e10 * solution.camera / value;
-            vec![("detectivity", format!("\"{detectivity:e} Jones\""))]
+            // Stated under the bandwidth of the preset's own exposure.
+            let conditions = ("noise_exposure", "\"2.86 us\"".into());
+            vec![("detectivity", format!("\"{detectivity:e} Jones\"")), conditions]
         }
         Quantity::Noise => vec![("noise_electrons", format!("{value:e}"))],
         Quantity::Distance | Quantity::Speed => Vec::new(),
