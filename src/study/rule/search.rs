@@ -78,6 +78,11 @@ impl RuleStudy {
             let message = "that no scene of the envelope is below the requirement was searched, not proved";
             warnings.push(Warning::new("not-proved", message));
         }
+        if at.counting().is_some_and(|own| own.var_added != sighted.counting.var_added) {
+            let message = "noise that depends on the scene is taken in the brightest scene, so the distance is a lower bound; \
+                           what would fix the camera is computed in the limiting scene itself";
+            warnings.push(Warning::new("brightest-noise", message));
+        }
         let mut limiting = limiting(
             candidate.distance_matters,
             &at,
