@@ -149,6 +149,9 @@ pub fn worst_case(scene: &EnvelopeScene<'_>, ranges: &Ranges, effort: &Effort) -
         let attained = Attained { distance: 0.0, nearest: state.clone(), state, evaluations: 0 };
         return Ok(WorstCase::new(attained, Some(0.0), Certificate::Equilibrium));
     }
+    if let Some(attained) = attain::nothing_differs(scene, ranges)? {
+        return Ok(WorstCase::new(attained, Some(0.0), Certificate::Equilibrium));
+    }
     let provable = model::provable(scene.unknowns, scene.surroundings.objects().len()) && effort.boxes > 0;
     let joint = provable.then(|| Model::new(scene, ranges));
     let points = if provable { SCENES } else { SCENES_WITHOUT_PROOF };

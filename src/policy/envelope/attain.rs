@@ -97,6 +97,20 @@ pub(super) fn attain(
     })
 }
 
+/// A scene at one temperature in which the distance is 0.
+pub(super) fn nothing_differs(scene: &EnvelopeScene<'_>, ranges: &Ranges) -> Result<Option<Attained>> {
+    let EnvelopeScene { emissivity, alternative, counting, .. } = *scene;
+    let mut solver = scene.solver();
+    for (tried, state) in ranges.isothermal().into_iter().enumerate() {
+        let found = solver.with_counting(emissivity, alternative, &state, counting)?;
+        if found.distance == 0.0 {
+            let evaluations = tried as u64 + 1;
+            return Ok(Some(Attained { distance: 0.0, state, nearest: found.state, evaluations }));
+        }
+    }
+    Ok(None)
+}
+
 /// What a descent from a point that another search has come upon leads to, if it is below `below`; and how many
 /// nearest distances that took.
 pub(super) fn attain_from(

@@ -11,16 +11,22 @@
 //! by its second derivatives alone. *Any* u gives a valid bound: how well the nearest point is solved for matters for
 //! tightness alone.
 //!
+//! Where a sum of lighting factors is limited, Σv ≤ V, λ(Σv − V) ≤ 0 may be added for any λ ≥ 0 (a price on v); λ is the
+//! multiplier that the linear model has, found with the limit as one more row of great weight.
+//!
 //! Split is along what bends u·Δ, moves it, or changes the variance most.
 
 use super::cell::{Cell, Node, PAIRS, RANK, Vector};
-use super::linear::{COLUMNS, Factor, Gram};
-use super::model::SOURCES;
+use super::linear::{COLUMNS, Factor, Gram, Limit};
+use super::model::{Model, SOURCES};
 
 /// About how fast Planck's function grows with temperature, both relative.
 const GROWTH: f64 = 5.0;
 /// Share of the separation in the middle below which the linear model is taken to reach the origin.
 const REACHED: f64 = 1e-9;
+
+/// How much more a broken sum of factors weighs than what they do.
+const STIFF: f64 = 30.0;
 
 /// Part of a cell: an interval of each temperature, and ranges of the factors.
 #[derive(Debug, Clone)]
@@ -83,7 +89,7 @@ impl Cell {
     }
 
     /// Sets bound and split of a cube; the bound never falls below what it was.
-    pub(super) fn bound(&self, cube: &mut Cube) {
+    pub(super) fn bound(&self, model: &Model<'_>, cube: &mut Cube) {
         let sources = self.sources.len();
         let (mut middle, mut columns) = ([0.0; RANK], [[0.0; RANK]; COLUMNS]);
         for s in 0..sources {
@@ -104,10 +110,24 @@ impl Cell {
         for column in columns[..3 * sources].iter_mut().chain([&mut middle]) {
             factor.solve(column);
         }
-        let gram =
-            Gram::new(3 * sources, |i, j| dot(&columns[i], &columns[j]), |i| dot(&columns[i], &middle));
+        let mut limits = [Limit::default(), Limit::default()];
+        let (gram, x) = loop {
+            let gram = Gram::new(
+                3 * sources,
+                dot(&middle, &middle) + limits.iter().map(|l| l.middle * l.middle).sum::<f64>(),
+                |i, j| {
+                    dot(&columns[i], &columns[j]) + limits.iter().map(|l| l.row[i] * l.row[j]).sum::<f64>()
+                },
+                |i| dot(&columns[i], &middle) + limits.iter().map(|l| l.row[i] * l.middle).sum::<f64>(),
+            );
+            let x = gram.nearest();
+            // At most once for each sum: a row that is there is not put there again.
+            if !(model.limited && self.exceeded(model, cube, &x, &columns, &mut limits)) {
+                break (gram, x);
+            }
+        };
         let mut point = middle;
-        for (x, column) in gram.nearest().iter().zip(&columns) {
+        for (x, column) in x.iter().zip(&columns) {
             add(&mut point, *x, column);
         }
         if dot(&point, &point).sqrt() <= REACHED * dot(&middle, &middle).sqrt() {
@@ -117,10 +137,16 @@ impl Cell {
         factor.solve_transposed(&mut point);
         let norm = dot(&point, &point).sqrt();
         let u = point.map(|x| x / norm);
+        let prices = [0, 1].map(|which: usize| limits[which].price(&x) / norm);
         let mut weight = [0.0; COLUMNS];
         let mut total = -self.slack;
+        for (price, sum) in prices.iter().zip(model.sums) {
+            // A sum of factors may be this much larger, by the rounding of the user's own numbers.
+            total -= price * (sum + 1e-12);
+        }
         for s in 0..sources {
-            total += self.least(cube, s, &u, &mut weight);
+            let prices = if model.sources[s].object { prices } else { [0.0; 2] };
+            total += self.least(cube, s, &u, prices, &mut weight);
         }
         if total > 0.0 {
             let spread = along(&variance, &u);
@@ -132,6 +158,36 @@ impl Cell {
             }
         }
         cube.split = self.best_split(cube, |i| weight[i]);
+    }
+
+    /// Adds a row for every sum of factors that the point x breaks; whether any is new.
+    fn exceeded(
+        &self,
+        model: &Model<'_>,
+        cube: &Cube,
+        x: &[f64; COLUMNS],
+        columns: &[Vector; COLUMNS],
+        limits: &mut [Limit; 2],
+    ) -> bool {
+        let mut new = false;
+        for (which, (limit, sum)) in limits.iter_mut().zip(model.sums).enumerate() {
+            let (mut row, mut middle, mut at, mut stiff) = ([0.0; COLUMNS], -sum, -sum, 0.0f64);
+            for s in (0..self.sources.len()).filter(|&s| model.sources[s].object) {
+                let i = 3 * s + 1 + which;
+                let (value, half) = centre([cube.own[s], cube.other[s]][which]);
+                row[i] = half;
+                middle += value;
+                at += value + half * x[i];
+                if half > 0.0 {
+                    stiff = stiff.max(STIFF * dot(&columns[i], &columns[i]).sqrt() / half);
+                }
+            }
+            if limit.stiffness == 0.0 && at > 1e-9 && stiff > 0.0 {
+                *limit = Limit { row: row.map(|x| stiff * x), middle: stiff * middle, stiffness: stiff };
+                new = true;
+            }
+        }
+        new
     }
 
     /// Adds what the ranges account for by the variance at their upper ends being too large within them.
@@ -171,11 +227,12 @@ impl Cell {
         total
     }
 
-    /// Least u·(v f + w g) of one source, and how much of it each of its ranges accounts for.
+    /// Least u·(v f + w g) with the prices of v and w of one source, and how much of it each of its ranges accounts for.
     #[inline(always)]
-    fn least(&self, cube: &Cube, s: usize, u: &Vector, weight: &mut [f64; COLUMNS]) -> f64 {
+    fn least(&self, cube: &Cube, s: usize, u: &Vector, prices: [f64; 2], weight: &mut [f64; COLUMNS]) -> f64 {
         let node = self.node_of(cube, s);
-        let f = [0, 1, 2, 3].map(|term| dot(u, &node.own[term]));
+        let mut f = [0, 1, 2, 3].map(|term| dot(u, &node.own[term]));
+        f[0] += prices[0];
         let own = cube.own[s];
         let other = cube.other[s];
         if other[1] <= 0.0 {
@@ -187,7 +244,8 @@ impl Cell {
             weight[3 * s + 1] = dv * (f[0].abs() + 0.5 * f[1].abs());
             return least[0].min(least[1]);
         }
-        let g = [0, 1, 2, 3].map(|term| dot(u, &node.other[term]));
+        let mut g = [0, 1, 2, 3].map(|term| dot(u, &node.other[term]));
+        g[0] += prices[1];
         let mut least = f64::INFINITY;
         for v in own {
             for w in other {

@@ -19,6 +19,9 @@ const FIRST_K: f64 = 10.0;
 const LAST: f64 = 1e-7;
 const NO_GAIN: f64 = 1e-9;
 
+/// How much more a broken sum of factors weighs than what they do.
+const STIFF: f64 = 30.0;
+
 /// Values of the temperatures, v and w of all sources.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Point {
@@ -45,6 +48,7 @@ pub(super) fn descend(model: &Model<'_>, whole: &Region, mut point: Point) -> (P
         let [low, high] = range(i);
         point.values[i / 3][i % 3] = point.values[i / 3][i % 3].clamp(low, high);
     }
+    model.scale(&mut point);
     let mut at = residual(model, &point);
     let mut size = 1.0;
     for _ in 0..STEPS {
@@ -71,13 +75,40 @@ pub(super) fn descend(model: &Model<'_>, whole: &Region, mut point: Point) -> (P
                 *x *= half[i];
             }
         }
-        let gram = Gram::new(count, |i, j| dot(&scaled[i], &scaled[j]), |i| dot(&scaled[i], &rows));
-        let x = gram.nearest();
-        let mut next = point;
-        for i in 0..count {
-            let [low, high] = range(i);
-            let value = &mut next.values[i / 3][i % 3];
-            *value = (*value + middle[i] + half[i] * x[i]).clamp(low, high);
+        let solve = |rows: &[f64], scaled: &[Vec<f64>]| {
+            let gram = Gram::new(
+                count,
+                dot(rows, rows),
+                |i, j| dot(&scaled[i], &scaled[j]),
+                |i| dot(&scaled[i], rows),
+            );
+            let x = gram.nearest();
+            let mut next = point;
+            for i in 0..count {
+                let [low, high] = range(i);
+                let value = &mut next.values[i / 3][i % 3];
+                *value = (*value + middle[i] + half[i] * x[i]).clamp(low, high);
+            }
+            next
+        };
+        let mut next = solve(&rows, &scaled);
+        if model.limited && model.excesses(&next) != [false; 2] {
+            // A sum that is broken becomes one more row, of great weight.
+            for (which, _) in model.excesses(&next).iter().enumerate().filter(|(_, broken)| **broken) {
+                let lit = |i: usize| i % 3 == which + 1 && model.sources[i / 3].object;
+                let stiff = (0..count)
+                    .filter(|&i| lit(i) && half[i] > 0.0)
+                    .map(|i| STIFF * dot(&scaled[i], &scaled[i]).sqrt() / half[i])
+                    .fold(0.0, f64::max);
+                let sum: f64 =
+                    (0..count).filter(|&i| lit(i)).map(|i| point.values[i / 3][i % 3] + middle[i]).sum();
+                rows.push(stiff * (sum - model.sums[which]));
+                for (i, column) in scaled.iter_mut().enumerate() {
+                    column.push(if lit(i) { stiff * half[i] } else { 0.0 });
+                }
+            }
+            next = solve(&rows, &scaled);
+            model.scale(&mut next);
         }
         let moved = residual(model, &next);
         if moved.square < at.square {

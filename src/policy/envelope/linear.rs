@@ -6,7 +6,9 @@ use super::model::SOURCES;
 /// Columns of A: temperature, v, w of each source.
 pub(super) const COLUMNS: usize = 3 * SOURCES;
 /// Steps of the search for the nearest point.
-const STEPS: usize = 16;
+const STEPS: usize = 24;
+/// Share of the distance that may be lost by slopes that are left.
+const LOSS: f64 = 1e-3;
 
 /// Cholesky's factor L of a matrix M = LLᵀ of the first `rank` components; the others are left alone.
 pub(super) struct Factor {
@@ -63,8 +65,26 @@ impl Factor {
     }
 }
 
+/// A sum of factors as a row of the linear model: nothing where it holds anyway.
+#[derive(Default)]
+pub(super) struct Limit {
+    pub(super) row: [f64; COLUMNS],
+    pub(super) middle: f64,
+    pub(super) stiffness: f64,
+}
+
+impl Limit {
+    /// The multiplier of the sum, not negative.
+    pub(super) fn price(&self, x: &[f64; COLUMNS]) -> f64 {
+        let row: f64 = self.row.iter().zip(x).map(|(row, x)| row * x).sum();
+        (self.stiffness * (self.middle + row)).max(0.0)
+    }
+}
+
 /// Normal equations of the linear model, of its columns that are not zero.
 pub(super) struct Gram {
+    /// ‖middle‖².
+    middle: f64,
     square: [[f64; COLUMNS]; COLUMNS],
     pull: [f64; COLUMNS],
     columns: [usize; COLUMNS],
@@ -76,6 +96,7 @@ impl Gram {
     #[inline(always)]
     pub(super) fn new(
         columns: usize,
+        square_of_middle: f64,
         inner: impl Fn(usize, usize) -> f64,
         middle: impl Fn(usize) -> f64,
     ) -> Self {
@@ -94,7 +115,7 @@ impl Gram {
                 count += 1;
             }
         }
-        Self { square, pull, columns: used, count }
+        Self { middle: square_of_middle, square, pull, columns: used, count }
     }
 
     /// ‖columnᵢ‖².
@@ -136,6 +157,12 @@ impl Gram {
                 held[i] = true;
                 continue;
             }
+            // A matrix near singular is not solved in one go, and what is left of the slopes is lost in a bound.
+            let loss: f64 = free.iter().map(|&i| slope[i].abs()).sum();
+            let square = self.middle + columns.iter().map(|&i| x[i] * (self.pull[i] + slope[i])).sum::<f64>();
+            if loss > LOSS * square {
+                continue;
+            }
             let mut most = (0.0, None);
             for &i in columns.iter().filter(|&&i| held[i]) {
                 let pull = x[i] * slope[i] / self.square[i][i].sqrt();
@@ -165,7 +192,7 @@ impl Gram {
                     value -= x * y;
                 }
                 // A little is added to the diagonal: columns may be dependent.
-                factor[a][b] = if a == b { (value + 1e-12).max(1e-13).sqrt() } else { value / factor[b][b] };
+                factor[a][b] = if a == b { (value + 1e-14).max(1e-14).sqrt() } else { value / factor[b][b] };
             }
             let mut value = -slope[free[a]] * scale[a];
             for (x, y) in factor[a].iter().zip(&y).take(a) {

@@ -56,6 +56,8 @@ pub(super) struct Model<'a> {
     pub(super) shares: [Vec<f64>; 2],
     /// Largest sum of V and of V′.
     pub(super) sums: [f64; 2],
+    /// Whether the ranges of the factors reach beyond these.
+    pub(super) limited: bool,
 }
 
 /// Whether a lower bound can be proved, and whether it is one on the very distance and not without its priors.
@@ -122,7 +124,12 @@ impl<'a> Model<'a> {
         let var: Vec<f64> = (0..scene.bands.len()).map(|band| scene.counting.var_added(band)).collect();
         let shares = [vec![0.5; var.len()], vec![0.5; var.len()]];
         let sums = [1.0, scene.range.lighting_sum];
-        (Self { scene: *scene, sources, var, lighting_unknown: own_v, shares, sums }, region)
+        let most = |range: fn(&Span) -> f64| -> f64 {
+            let lit = region.iter().zip(&sources).filter(|(_, source)| source.object);
+            lit.map(|(span, _)| range(span)).sum()
+        };
+        let limited = most(|span| span.own[1]) > sums[0] || most(|span| span.other[1]) > sums[1];
+        (Self { scene: *scene, sources, var, lighting_unknown: own_v, shares, sums, limited }, region)
     }
 
     /// Counts of every band for a spectrum that is `strength` times `radiance` at the nodes.
@@ -181,6 +188,29 @@ impl<'a> Model<'a> {
             if high > low { ((value - low) / (high - low)).clamp(0.0, 1.0) } else { 0.0 }
         };
         values.into_iter().zip(ranges.all()).map(share).collect()
+    }
+
+    fn sums_of(&self, point: &Point) -> [f64; 2] {
+        [1, 2].map(|which: usize| {
+            let values = self.sources.iter().zip(point.values).filter(|(source, _)| source.object);
+            values.map(|(_, value)| value[which]).sum()
+        })
+    }
+
+    /// Which sums of lighting factors, V and V′, are larger than they may be.
+    pub(super) fn excesses(&self, point: &Point) -> [bool; 2] {
+        let sums = self.sums_of(point);
+        [0, 1].map(|which: usize| sums[which] > self.sums[which] + 1e-12)
+    }
+
+    /// Scales lighting factors down to the sums they may have.
+    pub(super) fn scale(&self, point: &mut Point) {
+        let (sums, excesses) = (self.sums_of(point), self.excesses(point));
+        for (source, value) in self.sources.iter().zip(&mut point.values) {
+            for which in (0..2).filter(|&which| source.object && excesses[which]) {
+                value[which + 1] *= self.sums[which] / sums[which];
+            }
+        }
     }
 
     /// Keeps lighting factors within what their sum may be. `false` where that leaves nothing.

@@ -11,8 +11,9 @@ use rayon::prelude::*;
 
 /// Largest half width of a temperature, as a share of its middle.
 const WIDEST: f64 = 0.08;
-/// How far the variances of bands may change differently: ln of the ratio of ratios.
-const SKEWED: f64 = 0.4;
+/// How far the variances of bands may change differently: ln of the ratio of ratios. Bounds do without; only the
+/// basis is chosen for one variance.
+const SKEWED: f64 = 1.6;
 /// Parts beyond which proportions no longer matter.
 const MANY: usize = 600;
 /// Rounding of a count, relative.

@@ -123,8 +123,8 @@ impl Search<'_, '_> {
 
     /// Bounds new boxes, and queues those that are not beyond the threshold.
     fn take_in(&mut self, mut cubes: Vec<Cube>) {
-        let cells = &self.cells;
-        cubes.par_iter_mut().with_min_len(64).for_each(|cube| cells[cube.cell as usize].bound(cube));
+        let (cells, model) = (&self.cells, self.model);
+        cubes.par_iter_mut().with_min_len(64).for_each(|cube| cells[cube.cell as usize].bound(model, cube));
         for cube in cubes {
             self.boxes += 1;
             if cube.bound >= self.threshold || cube.split.is_none() {

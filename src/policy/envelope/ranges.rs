@@ -2,7 +2,8 @@
 //!
 //! A target at the temperature of black surroundings that light it wholly (ΣVₖ = 1) radiates as a blackbody whatever it
 //! is made of: S = eB + (1 − e)B. Where an envelope holds such a scene, and the alternative may be in that state too,
-//! the least distance is 0, and no camera meets a requirement over it.
+//! the least distance is 0, and no camera meets a requirement over it. Two gray materials need no more than one
+//! temperature for that: another lighting factor makes up for another emissivity.
 
 use super::EnvelopeScene;
 use crate::error::{Error, Result, check};
@@ -11,6 +12,9 @@ use crate::scene::{State, unlit};
 
 /// By how much a sum of lighting factors may differ from 1 by the rounding of the user's own numbers.
 const ROUNDING: f64 = 1e-12;
+
+/// How many scenes at one temperature are looked at, at either end of what is possible.
+const ISOTHERMAL: u32 = 5;
 
 /// Ranges of the states of a scene: what a requirement must hold for.
 #[derive(Debug, Clone, PartialEq)]
@@ -114,6 +118,25 @@ impl Ranges {
             }
         }
         State { temperature_k: values[0], lighting, gain: 1.0, environment_k }
+    }
+
+    /// Some scenes in which all is at one temperature, where contrast is least.
+    pub(super) fn isothermal(&self) -> Vec<State> {
+        let ranges = || self.environment_k.iter().chain([&self.temperature_k]);
+        let low = ranges().map(|range| range[0]).fold(0.0, f64::max);
+        let high = ranges().map(|range| range[1]).fold(f64::INFINITY, f64::min);
+        if low > high {
+            return Vec::new();
+        }
+        let dimensions = 1 + 2 * self.lighting.len();
+        let states = [low, high].into_iter().flat_map(|t| {
+            (0..ISOTHERMAL).map(move |step| {
+                let share = f64::from(step) / f64::from(ISOTHERMAL - 1);
+                let lit = self.scene_at(&vec![share; dimensions]);
+                State { temperature_k: t, environment_k: vec![t; self.lighting.len()], ..lit }
+            })
+        });
+        states.collect()
     }
 
     /// A scene of the envelope in which nothing differs, if there is one that the alternative may be in.
