@@ -59,7 +59,7 @@ enum Command {
     Accuracy(accuracy::AccuracyArgs),
     /// The materials: list, show, plot, import
     Materials(materials::MaterialsArgs),
-    /// The known cameras: list, show
+    /// The known cameras: list, show, compare
     Cameras(cameras::CamerasArgs),
 }
 

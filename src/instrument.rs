@@ -18,13 +18,17 @@
 
 pub mod budget;
 pub mod bunching;
+pub mod comparison;
 pub mod efficiency;
+pub mod equivalents;
 pub mod noise;
 pub mod presets;
 pub mod view;
 
 pub use budget::NoiseLine;
+pub use comparison::Comparison;
 pub use efficiency::EfficiencyCurve;
+pub use equivalents::Equivalents;
 pub use noise::NoiseSpec;
 pub use view::{Light, View};
 
@@ -201,12 +205,12 @@ impl Camera {
         if self.exposure_s * rate <= 1.0 + FRAME_ROUNDING {
             return Ok(());
         }
-        let frame_ms = 1e3 / rate;
+        let frame_ms = (1e7 / rate).round() / 1e4;
         Err(Error::out_of_range(
             "exposure",
             self.exposure_s,
             "s",
-            format!("at most the {frame_ms:.4} ms of a frame (frame_rate = \"{rate} Hz\")"),
+            format!("at most the {frame_ms} ms of a frame (frame_rate = \"{rate} Hz\")"),
         ))
     }
 

@@ -12,10 +12,17 @@
 //!
 //! Source: paper, Methods 'Guiding public policy'; S7, S27, S29; γ = γ₀ + γ₁N.
 
+pub mod caps;
+pub mod elasticity;
 pub mod envelope;
+pub mod motion;
 pub mod solve;
+pub mod trade_off;
 
-pub use solve::{Quantity, Solution};
+pub use caps::Cap;
+pub use motion::Motion;
+pub use solve::{CameraTask, Quantity, Solution, Trial};
+pub use trade_off::TradeOff;
 
 use std::f64::consts::FRAC_PI_4;
 

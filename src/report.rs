@@ -3,6 +3,7 @@
 #[cfg(feature = "accuracy")]
 pub mod accuracy;
 pub mod bundle;
+pub mod cameras;
 pub mod figures;
 pub mod library;
 pub mod plot;

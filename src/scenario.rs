@@ -23,6 +23,7 @@ pub mod ranging;
 mod read;
 pub mod rule;
 mod section;
+pub mod sensitivity;
 pub mod source;
 mod write;
 
@@ -32,6 +33,7 @@ pub use camera::{CameraSpec, Efficiency, Readout};
 pub use envelope::Envelope;
 pub use ranging::RangeScenario;
 pub use rule::Rule;
+pub use sensitivity::SensitivitySpec;
 pub use source::Source;
 
 /// Everything a scenario file says, defaults filled in.
@@ -61,6 +63,8 @@ pub struct Scenario {
     pub requirement: Requirement,
     /// Scenes that the requirement must hold in, if not this one alone.
     pub envelope: Option<Envelope>,
+    /// How wrong the emissivities may be; the defaults of [`SensitivitySpec`] where it is not given.
+    pub sensitivity: Option<SensitivitySpec>,
     /// Where it was read from.
     pub source: Source,
 }
@@ -124,6 +128,7 @@ impl PartialEq for Scenario {
             && self.camera == other.camera
             && self.requirement == other.requirement
             && self.envelope == other.envelope
+            && self.sensitivity == other.sensitivity
     }
 }
 

@@ -25,10 +25,12 @@ mod resolve;
 mod rule;
 mod samples;
 mod scaling;
+mod sensitivity;
 mod sight;
 mod simulation;
 mod size;
 mod thermometry;
+mod trade_offs;
 mod warn;
 mod within_reach;
 
@@ -49,11 +51,12 @@ pub use rule::{
 };
 pub use samples::SampleSpectra;
 pub use scaling::{BandNumber, LibrarySize, Scaling};
+pub use sensitivity::{Elasticities, EmissivityErrors, Sensitivity};
 pub use sight::Sight;
 pub use simulation::{
     PhotonLaw, SimulatedClass, SimulatedPerformance, SimulatedPoint, Simulation, SimulationPlan, Standing,
 };
-pub use size::{CameraResult, RequirementResult, Sizing, Verdict, VerdictAlone};
+pub use size::{CameraResult, RequirementResult, Sizing, Solutions, Verdict, VerdictAlone};
 pub use thermometry::{FIXED_EMISSIVITY, ImagerErrors, Reader, Thermometry, ThermometryRow};
 
 /// Something the reader of a result must know, with a code that programs can rely on.

@@ -97,7 +97,7 @@ fn every_mistake_in_a_scenario_is_one_line_with_file_line_and_key() {
         (
             "flir-a325sc",
             "flir-a325",
-            "a.toml:12: camera.preset: there is no camera `flir-a325`; did you mean `flir-a325sc`?",
+            "a.toml:12: camera.preset: there is no camera `flir-a325`; the nearest are `flir-a325sc`, `flir-a325sc-25um`, `flir-a655sc`",
         ),
         (
             "preset = \"flir-a325sc\"",
@@ -191,7 +191,10 @@ fn files_that_are_not_there_or_are_folders_are_named() {
         ),
         (vec!["materials", "plot", "skin"], "there is no folder to draw into; add --out DIR"),
         (vec!["materials", "plot", "skn", "--out", "drawn"], "there is no material `skn`"),
-        (vec!["cameras", "show", "flir-a325"], "there is no camera `flir-a325`; did you mean `flir-a325sc`?"),
+        (
+            vec!["cameras", "show", "flir-a325"],
+            "there is no camera `flir-a325`; the nearest are `flir-a325sc`",
+        ),
     ] {
         let folder = Folder::with(SCENARIO);
         folder.file("empty.toml", "");

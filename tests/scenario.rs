@@ -97,6 +97,7 @@ fn the_example_is_the_case_of_the_paper() {
             speed_m_s: Some(13.4112),
         },
         envelope: None,
+        sensitivity: None,
         source: Source::default(),
     };
     assert_eq!(scenario, expected);
@@ -411,6 +412,7 @@ prop_compose! {
             camera,
             requirement: Requirement { reliability, by, speed_m_s },
             envelope,
+            sensitivity: None,
             source: Source::default(),
         }
     }

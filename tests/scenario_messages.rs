@@ -114,13 +114,13 @@ fn a_key_that_is_not_known_or_out_of_range_is_named() {
         r#"extrapolate = "yes""# =>
             r#"a.toml:4: target.extrapolate: `yes` is not known here; write "hold" or "linear""#,
         "zzz = 1" =>
-            "a.toml:4: target: there is no key `zzz`; what may stand here is `material`, `temperature`, `distance` or `extrapolate`",
+            "a.toml:4: target: there is no key `zzz`; what may stand here is `material`, `temperature`, `distance`, `size` or `extrapolate`",
         r#""a\nb" = 1"# =>
-            r#"a.toml:4: target: there is no key `a\nb`; what may stand here is `material`, `temperature`, `distance` or `extrapolate`"#,
+            r#"a.toml:4: target: there is no key `a\nb`; what may stand here is `material`, `temperature`, `distance`, `size` or `extrapolate`"#,
         "[targets]" =>
             "a.toml:4: there is no key `targets`; the nearest are `target`, `alternatives`",
         "title = 5" =>
-            "a.toml:4: target: there is no key `title`; what may stand here is `material`, `temperature`, `distance` or `extrapolate`",
+            "a.toml:4: target: there is no key `title`; did you mean `size`?",
         "camera = 5" =>
             "a.toml:4: target: there is no key `camera`; did you mean `material`?",
     }
@@ -300,15 +300,15 @@ fn a_camera_is_possible() {
         "[camera]\nframes = 0" =>
             "a.toml:5: camera.frames: the number 0 was found; write a whole number from 1 to 4294967295, e.g. frames = 16",
         "[camera]\nreadout = \"rolling\"" =>
-            r#"a.toml:5: camera.readout: `rolling` is not known here; write "simultaneous" or "sequential""#,
+            r#"a.toml:5: camera.readout: `rolling` is not known here; write "simultaneous", "sequential", "fourier-transform" or "dispersive""#,
         "[camera]\nreadout = 1" =>
-            r#"a.toml:5: camera.readout: the number 1 was found; write "simultaneous" or "sequential""#,
+            r#"a.toml:5: camera.readout: the number 1 was found; write "simultaneous", "sequential", "fourier-transform" or "dispersive""#,
         "[camera]\nfield_of_view = \"180 deg\"" =>
             "a.toml:5: camera.field_of_view: `180 deg` is out of range; it must be above 0 and below 180 deg",
         "[camera]\nfnumber = 1.3" =>
             "a.toml:5: camera: there is no key `fnumber`; the nearest are `f_number`, `frames`",
         "[camera]\ngain = 1.3" =>
-            "a.toml:5: camera: there is no key `gain`; what may stand here is `preset`, `exposure`, `pixel`, `f_number`, `focal_length`, `optics_efficiency`, `netd`, `netd_temperature`, `netd_f_number`, `netd_pixel`, `detectivity`, `noise_electrons`, `noise_exposure`, `flicker_fraction`, `full_well`, `readout`, `frames`, `field_of_view` or `pixels`",
+            "a.toml:5: camera: there is no key `gain`; what may stand here is `preset`, `exposure`, `pixel`, `f_number`, `focal_length`, `optics_efficiency`, `quantum_efficiency`, `netd`, `netd_temperature`, `netd_f_number`, `netd_pixel`, `detectivity`, `nep`, `nesr`, `noise_electrons`, `noise_table`, `noise_bandwidth`, `noise_exposure`, `flicker_fraction`, `dark_rate`, `read_noise`, `quantisation_bits`, `full_well`, `photon_bunching`, `readout`, `frames`, `frame_rate`, `sensor_temperature`, `filter_temperature`, `field_of_view` or `pixels`",
         "[camera]\nflicker_fraction = 1.1" =>
             "a.toml:5: camera.flicker_fraction: flicker_fraction is 1.1; it must be between 0 and 1",
         "[camera]\npreset = true" =>

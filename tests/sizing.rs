@@ -107,7 +107,14 @@ fn fed_back(task: &Task, quantity: Quantity, solution: &Solution, value: f64) ->
             vec![("detectivity", format!("\"{detectivity:e} Jones\""))]
         }
         Quantity::Noise => vec![("noise_electrons", format!("{value:e}"))],
+        Quantity::Distance | Quantity::Speed => Vec::new(),
     }
+}
+
+/// The solutions that keys of `[camera]` can take.
+fn of_camera(sizing: Sizing) -> impl Iterator<Item = (Quantity, Solution)> {
+    let solutions = sizing.solve_for.unwrap().0.into_iter();
+    solutions.filter(|(quantity, _)| Quantity::OF_CAMERA.contains(quantity))
 }
 
 proptest! {
@@ -121,7 +128,7 @@ proptest! {
         let required = task.harder * reached;
         let sizing = size(&task.scenario(required, &[]));
         prop_assert_eq!(sizing.verdict.met, Some(task.harder <= 1.0));
-        for (quantity, solution) in sizing.solve_for.unwrap().0 {
+        for (quantity, solution) in of_camera(sizing) {
             let Some(value) = solution.value else {
                 prop_assert!(solution.reason.is_some() && solution.statistical_distance < required, "{quantity:?}");
                 prop_assert!(task.harder > 1.0, "{quantity:?} as it is suffices, but {:?}", solution.reason);
@@ -155,12 +162,13 @@ proptest! {
         prop_assume!(task.preset != "ideal-pnrd");
         let sizing = size(&task.scenario(1.0, &[]));
         let now = sizing.verdict.statistical_distance.unwrap();
-        for (quantity, solution) in sizing.solve_for.unwrap().0 {
+        for (quantity, solution) in of_camera(sizing) {
             let value = match quantity {
                 Quantity::Exposure | Quantity::Pixel => solution.camera * better,
                 Quantity::Frames => (solution.camera * better).ceil(),
                 Quantity::FNumber => (solution.camera / better).max(0.5),
                 Quantity::Noise => solution.camera / better,
+                Quantity::Distance | Quantity::Speed => continue,
             };
             let text = task.scenario(1.0, &fed_back(&task, quantity, &solution, value));
             let then = size(&text).verdict.statistical_distance.unwrap();
@@ -265,6 +273,7 @@ fn a_camera_of_ones_own_can_be_fed_back() {
             Quantity::FNumber => camera.f_number = Some(value),
             Quantity::Noise => camera.netd_k = camera.netd_k.map(|netd| netd * value / solution.camera),
             Quantity::Frames => camera.frames = Some(value as u32),
+            Quantity::Distance | Quantity::Speed => continue,
         }
         let reached =
             Study::new(&filled, &library).unwrap().size().unwrap().verdict.statistical_distance.unwrap();

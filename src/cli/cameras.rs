@@ -1,12 +1,12 @@
 //! `hadar cameras`: the known cameras.
 
-use super::{Global, as_json};
+use super::Global;
 use crate::demand::{Reason, Thing, Work};
 use crate::error::Result;
-use crate::instrument::{Camera, Figures, presets};
+use crate::instrument::presets;
+use crate::report::cameras::{Sheet, SideBySide};
 use crate::report::text;
 use clap::{Args, Subcommand};
-use std::fmt::Write as _;
 use std::process::ExitCode;
 
 #[derive(Debug, Args)]
@@ -17,49 +17,52 @@ pub(super) struct CamerasArgs {
 
 #[derive(Debug, Subcommand)]
 enum Action {
-    /// All known cameras
+    /// All known cameras, and what is not known of them
     List,
-    /// One camera: its figures and where they are from
+    /// One camera: its figures, what follows from them, and where they are from
     Show {
         /// Name of the camera
         name: String,
     },
-}
-
-/// A camera and what follows from its figures.
-#[derive(serde::Serialize)]
-struct Shown {
-    #[serde(flatten)]
-    camera: Camera,
-    #[serde(flatten)]
-    figures: Figures,
+    /// Two cameras side by side: photons, noise, and how far apart each sees the same two spectra
+    Compare {
+        /// Name of the first camera
+        a: String,
+        /// Name of the second one; ratios are of it over the first
+        b: String,
+    },
 }
 
 pub(super) fn run(args: &CamerasArgs, global: &Global) -> Result<ExitCode> {
+    let all = presets::all()?;
+    let known = all.len();
     match &args.action {
         Action::List => {
-            let cameras = presets::all()?;
-            let mut out = String::new();
-            for camera in &cameras {
-                let _ = writeln!(out, "{:<14} {}", camera.name, camera.description);
-            }
-            global.answer_with(serde_json::json!({ "cameras": cameras }), &out, &work(0, cameras.len()))?;
+            let json = serde_json::json!({ "cameras": all });
+            let sheets = all.into_iter().map(Sheet::stated).collect::<Vec<_>>();
+            global.answer_with(json, &text::cameras(&sheets), &work(0, known))?;
         }
         Action::Show { name } => {
-            let camera = presets::get(name)?;
-            let others = presets::all()?.len() - 1;
-            let figures = camera.figures()?;
-            let text = text::camera(&camera, &figures);
-            global.answer_with(as_json(&Shown { camera, figures })?, &text, &work(1, others))?;
+            let sheet = Sheet::of(presets::find(name)?)?;
+            let work = work(usize::from(sheet.worked.is_some()), known);
+            global.answer_with(sheet.json()?.into(), &text::camera(&sheet), &work)?;
+        }
+        Action::Compare { a, b } => {
+            let (a, b) = (presets::find(a)?, presets::find(b)?);
+            let asked = if a.name == b.name { 1 } else { 2 };
+            let both = SideBySide::of(Sheet::of(a)?, Sheet::of(b)?)?;
+            let shown = [&both.a, &both.b].iter().take(asked).filter(|sheet| sheet.worked.is_some()).count();
+            let json = both.json(&text::comparison_sentence(&both))?;
+            global.answer_with(json, &text::comparison(&both), &work(shown, known))?;
         }
     }
     Ok(ExitCode::SUCCESS)
 }
 
-/// Cameras whose figures were worked out, and those of which none were asked for.
-fn work(shown: usize, others: usize) -> Work {
+/// Cameras whose figures were worked out, of so many that are known.
+fn work(shown: usize, known: usize) -> Work {
     let mut work = Work::default();
     work.compute(Thing::Cameras, shown as u64);
-    work.spare(Thing::Cameras, Reason::NotAsked, others as u64);
+    work.spare(Thing::Cameras, Reason::NotAsked, (known - shown) as u64);
     work
 }

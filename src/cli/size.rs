@@ -34,6 +34,10 @@ pub(super) fn run(args: &SizeArgs, global: &Global) -> Result<ExitCode> {
     }
     let mut result = study.size()?;
     let mut stats = std::mem::take(&mut result.stats);
+    // Curves are for files and programs: nobody reads them off a terminal.
+    if global.out.is_some() || global.json {
+        result.trade_offs = Some(study.trade_offs(&result, &mut stats)?);
+    }
     global.report(&mut stats, |out| sizing::bundle(&study, &result, out))?;
     result.stats = stats;
     global.answer(&result, &text::sizing(&result, &study), &result.stats)?;

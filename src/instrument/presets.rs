@@ -168,11 +168,17 @@ impl Missing {
                 format!("write {key} = {}", self.example),
             ),
         };
-        Error::malformed(found, instead).for_key(self.key)
+        Error::malformed(found, instead)
     }
 }
 
 impl Preset {
+    /// Whether its noise is one of a bandwidth, D* or NEP, so that its conditions are those of another value of it too.
+    #[must_use]
+    pub fn bandwidth_is_stated(&self) -> bool {
+        matches!(self.noise, Some(StatedNoise::Detectivity { .. } | StatedNoise::Nep { .. }))
+    }
+
     /// The camera with these figures, what stands for missing ones listed in [`Camera::assumed`].
     ///
     /// # Errors
@@ -236,7 +242,18 @@ impl Preset {
             StatedNoise::Counts { sigma_counts } => NoiseSpec::Counts { sigma_counts: *sigma_counts },
             StatedNoise::Table(table) => table.clone(),
         };
-        let spectral_range_cm1 = self.spectral_range_cm1.unwrap_or(PAPER_RANGE_CM1);
+        let spectral_range_cm1 = self.spectral_range_cm1.unwrap_or_else(|| {
+            let [low, high] = PAPER_RANGE_CM1;
+            assumed.push(format!("spectral range: not stated; {low} to {high} cm^-1 is taken"));
+            PAPER_RANGE_CM1
+        });
+        let flicker_fraction = self.flicker_fraction.unwrap_or_else(|| {
+            if noise != NoiseSpec::None {
+                let why = "0 is taken, so that frames average all of the noise out";
+                assumed.push(format!("flicker_fraction: not stated; {why}"));
+            }
+            0.0
+        });
         Ok(Camera {
             name: self.name.clone(),
             description: self.description.clone(),
@@ -251,7 +268,7 @@ impl Preset {
             efficiency_curves: self.efficiency_curves.clone(),
             noise,
             noise_exposure_s: self.noise_exposure_s.unwrap_or(exposure_s),
-            flicker_fraction: self.flicker_fraction.unwrap_or(0.0),
+            flicker_fraction,
             dark_rate_per_s: self.dark_rate_per_s.unwrap_or(0.0),
             read_noise_counts: self.read_noise_counts.unwrap_or(0.0),
             quantisation_bits: self.quantisation_bits,

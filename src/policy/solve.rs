@@ -3,8 +3,16 @@
 //! The statistical distance d is a monotone function of each quantity; it is evaluated exactly, with the
 //! camera's noise at every trial value, and its crossing with d_req is found in the logarithm of the
 //! quantity to the last bits. What limits a quantity is told as a reason: the flicker floor
-//! (d → d_∞ as t → ∞), shot noise (d at zero electronic noise), or the fastest lens in air.
+//! (d → d_∞ as t → ∞), shot noise (d at zero electronic noise), or the fastest lens in air. What the statistical
+//! distance does not know of (diffraction, full well, motion, frames) is told beside the value as [`super::caps`].
 
+mod distance;
+mod quantity;
+
+pub use quantity::{Quantity, Trial};
+
+use super::caps::Cap;
+use super::motion::Motion;
 use crate::error::Result;
 use crate::instrument::{Camera, FASTEST_F_NUMBER};
 use crate::root::crossing;
@@ -15,61 +23,25 @@ const LOG_RANGE: f64 = 69.0;
 /// Why no value suffices where the distance is 0.
 const NEVER: &str = "the two cannot be told apart";
 
-/// A quantity that can be solved for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Quantity {
-    /// Exposure of a frame, s.
-    Exposure,
-    /// Side of the pixel, m.
-    Pixel,
-    /// f-number.
-    FNumber,
-    /// Electronic noise of a band reading in one frame, counts at the camera's exposure.
-    Noise,
-    /// Number of averaged frames.
-    Frames,
-}
-
-impl Quantity {
-    /// All of them, in the order of reports.
-    pub const ALL: [Self; 5] = [Self::Exposure, Self::Pixel, Self::FNumber, Self::Noise, Self::Frames];
-
-    /// Key in the JSON, with its unit.
-    #[must_use]
-    pub const fn key(self) -> &'static str {
-        match self {
-            Self::Exposure => "exposure_s",
-            Self::Pixel => "pixel_m",
-            Self::FNumber => "f_number",
-            Self::Noise => "noise_counts",
-            Self::Frames => "frames",
-        }
-    }
-
-    /// Name in a sentence.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Exposure => "exposure",
-            Self::Pixel => "pixel",
-            Self::FNumber => "f-number",
-            Self::Noise => "noise per reading",
-            Self::Frames => "frames",
-        }
-    }
-}
-
 /// The value of a quantity at which the task is just met, or why there is none.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Solution {
-    /// The value (largest f-number or noise, least of the others); `None` if no value suffices.
+    /// The value (largest f-number, noise, distance or speed, least of the others); `None` if no value suffices.
     pub value: Option<f64>,
-    /// The camera's own value.
+    /// The camera's own value; infinite or no number where it has none (`null` in JSON).
     pub camera: f64,
     /// Statistical distance at that value, or the best that the quantity alone can reach.
     pub statistical_distance: f64,
     /// Why no value suffices.
     pub reason: Option<String>,
+    /// Limits that shot noise does not know and the value breaks.
+    pub caps: Vec<Cap>,
+}
+
+impl Solution {
+    fn new(value: Option<f64>, camera: f64, statistical_distance: f64, reason: Option<String>) -> Self {
+        Self { value, camera, statistical_distance, reason, caps: Vec::new() }
+    }
 }
 
 /// A camera in front of a task.
@@ -81,32 +53,43 @@ pub struct CameraTask<'a> {
     pub bands: &'a Bands,
     /// Statistical distance d_req that the task demands.
     pub required: f64,
+    /// Distance of the target, m; infinitely far where `None`.
+    pub distance_m: Option<f64>,
+    /// Side of the target, m; it fills the pixel, however large, where `None`.
+    pub size_m: Option<f64>,
 }
 
 impl CameraTask<'_> {
-    /// Solves for `quantity`; `distance` evaluates the statistical distance of a camera.
+    /// Solves for `quantity`; `distance` evaluates the statistical distance of a trial.
     ///
     /// # Errors
     /// An error of `distance`.
     pub fn solve(
         &self,
         quantity: Quantity,
-        mut distance: impl FnMut(&Camera) -> Result<f64>,
+        mut distance: impl FnMut(&Trial) -> Result<f64>,
     ) -> Result<Solution> {
+        match quantity {
+            Quantity::Frames => return self.solve_frames(distance),
+            Quantity::Distance => return distance::solve(self, distance),
+            Quantity::Speed => return self.solve_speed(distance),
+            Quantity::Exposure | Quantity::Pixel | Quantity::FNumber | Quantity::Noise => {}
+        }
         let camera = self.value(quantity);
         if quantity == Quantity::Noise && camera == 0.0 {
-            let reached = distance(self.camera)?;
+            let reached = distance(&self.own())?;
             let reason = (reached < self.required).then(|| "the detector has no electronic noise".to_owned());
             let value = reason.is_none().then_some(0.0);
-            return Ok(Solution { value, camera, statistical_distance: reached, reason });
-        }
-        if quantity == Quantity::Frames {
-            return self.solve_frames(distance);
+            return Ok(Solution::new(value, camera, reached, reason));
         }
         // d as a function of how much better the quantity is than the camera's, as a logarithm.
         let mut at = |log: f64| distance(&self.forward(quantity, self.scaled(quantity, log.exp())));
-        let fastest = quantity == Quantity::FNumber;
-        let best = if fastest { (self.camera.f_number / FASTEST_F_NUMBER).ln() } else { LOG_RANGE };
+        let best = match quantity {
+            Quantity::FNumber => (self.camera.f_number / FASTEST_F_NUMBER).ln(),
+            // A larger pixel sees more of what is behind the target, not more of the target.
+            Quantity::Pixel => self.filled_pixel_m().map_or(LOG_RANGE, |pixel| (pixel / camera).ln()),
+            _ => LOG_RANGE,
+        };
         let ceiling = at(best)?;
         if ceiling < self.required {
             let reason = match quantity {
@@ -116,28 +99,24 @@ impl CameraTask<'_> {
                     "flicker noise grows as fast as the signal: no exposure is long enough".into()
                 }
                 Quantity::Noise => "shot noise alone is too much: no detector is quiet enough".into(),
-                Quantity::Frames | Quantity::Pixel => NEVER.into(),
+                _ if self.size_m.is_some() => "the largest pixel that the target fills is too small".into(),
+                _ => "no pixel is large enough".into(),
             };
-            return Ok(Solution { value: None, camera, statistical_distance: ceiling, reason: Some(reason) });
+            return Ok(Solution::new(None, camera, ceiling, Some(reason)));
         }
         if at(-LOG_RANGE)? >= self.required {
             // Any value does: the pair differs without limit.
             let value = self.scaled(quantity, (-LOG_RANGE).exp());
-            return Ok(Solution {
-                value: Some(value),
-                camera,
-                statistical_distance: self.required,
-                reason: None,
-            });
+            return Ok(Solution::new(Some(value), camera, self.required, None));
         }
         let log = crossing(-LOG_RANGE, best, |log| Ok((at(log)? / self.required).ln().max(-1e3)))?;
         let value = self.scaled(quantity, log.exp());
         let reached = distance(&self.forward(quantity, value))?;
-        Ok(Solution { value: Some(value), camera, statistical_distance: reached, reason: None })
+        Ok(Solution::new(Some(value), camera, reached, None))
     }
 
     /// The least whole number of frames that will do: by halving, since more of them are never worse.
-    fn solve_frames(&self, mut distance: impl FnMut(&Camera) -> Result<f64>) -> Result<Solution> {
+    fn solve_frames(&self, mut distance: impl FnMut(&Trial) -> Result<f64>) -> Result<Solution> {
         let camera = f64::from(self.camera.frames);
         let mut at = |frames: u32| distance(&self.forward(Quantity::Frames, f64::from(frames)));
         // Rounding alone does not make one more of them.
@@ -149,8 +128,7 @@ impl CameraTask<'_> {
             } else {
                 "flicker noise does not average out: no number of frames is enough"
             };
-            let reason = Some(why.to_owned());
-            return Ok(Solution { value: None, camera, statistical_distance: ceiling, reason });
+            return Ok(Solution::new(None, camera, ceiling, Some(why.to_owned())));
         }
         let (mut few, mut many, mut reached) = (0, u32::MAX, ceiling);
         while many - few > 1 {
@@ -162,14 +140,44 @@ impl CameraTask<'_> {
                 few = middle;
             }
         }
-        let value = Some(f64::from(many));
-        Ok(Solution { value, camera, statistical_distance: reached, reason: None })
+        Ok(Solution::new(Some(f64::from(many)), camera, reached, None))
     }
 
-    /// The camera with one quantity set to a value.
+    /// The speed at which the least exposure that will do moves the target by one pixel.
+    fn solve_speed(&self, distance: impl FnMut(&Trial) -> Result<f64>) -> Result<Solution> {
+        let camera = self.value(Quantity::Speed);
+        let Some(motion) = Motion::of(self.camera, self.distance_m) else {
+            let keys = Motion::missing(self.camera, self.distance_m).join(", ");
+            let reason = format!("the scenario does not say {keys}");
+            return Ok(Solution::new(None, camera, f64::NAN, Some(reason)));
+        };
+        let exposure = self.solve(Quantity::Exposure, distance)?;
+        let value = exposure.value.map(|exposure_s| motion.fastest_m_s(self.time_s(exposure_s)));
+        let reason = exposure.reason.map(|reason| format!("not even at rest: {reason}"));
+        Ok(Solution::new(value, camera, exposure.statistical_distance, reason))
+    }
+
+    /// Side of the largest pixel that the target fills, m.
+    fn filled_pixel_m(&self) -> Option<f64> {
+        Some(self.size_m? * self.camera.focal_length_m / self.distance_m?)
+    }
+
+    /// Time until all bands are exposed once, s.
+    fn time_s(&self, exposure_s: f64) -> f64 {
+        exposure_s * self.camera.readout.exposures(self.bands.len()) as f64
+    }
+
+    /// The camera as it is, where it is.
     #[must_use]
-    pub fn forward(&self, quantity: Quantity, value: f64) -> Camera {
-        let mut camera = self.camera.clone();
+    pub fn own(&self) -> Trial {
+        Trial { camera: self.camera.clone(), distance_m: self.distance_m }
+    }
+
+    /// The same with one quantity set to a value; a speed sets the exposure in which it moves the target by one pixel.
+    #[must_use]
+    pub fn forward(&self, quantity: Quantity, value: f64) -> Trial {
+        let mut trial = self.own();
+        let camera = &mut trial.camera;
         match quantity {
             Quantity::Exposure => camera.exposure_s = value,
             Quantity::Pixel => camera.pixel_m = value,
@@ -180,20 +188,24 @@ impl CameraTask<'_> {
             }
             // A cast saturates: more frames than fit are as good as endless.
             Quantity::Frames => camera.frames = (value as u32).max(1),
+            Quantity::Distance => trial.distance_m = value.is_finite().then_some(value),
+            Quantity::Speed => {
+                if let Some(motion) = Motion::of(self.camera, self.distance_m) {
+                    camera.exposure_s = motion.longest_s(value) / self.time_s(1.0);
+                }
+            }
         }
-        camera
+        trial
     }
 
     /// The value that is `factor` times better than the camera's.
     fn scaled(&self, quantity: Quantity, factor: f64) -> f64 {
         let now = self.value(quantity);
-        match quantity {
-            Quantity::Exposure | Quantity::Pixel | Quantity::Frames => now * factor,
-            Quantity::FNumber | Quantity::Noise => now / factor,
-        }
+        if quantity.is_least() { now * factor } else { now / factor }
     }
 
-    /// The camera's own value of a quantity.
+    /// The camera's own value of a quantity: infinite for a distance that is not stated, no number for a speed that
+    /// the scenario does not tell enough for.
     #[must_use]
     pub fn value(&self, quantity: Quantity) -> f64 {
         match quantity {
@@ -203,102 +215,12 @@ impl CameraTask<'_> {
             Quantity::Frames => f64::from(self.camera.frames),
             // Of one reading, as it is stated and as a detector is bought, however many frames there are.
             Quantity::Noise => self.camera.electronic_noise_counts(self.bands),
+            Quantity::Distance => self.distance_m.unwrap_or(f64::INFINITY),
+            Quantity::Speed => Motion::of(self.camera, self.distance_m)
+                .map_or(f64::NAN, |motion| motion.fastest_m_s(self.time_s(self.camera.exposure_s))),
         }
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::fisher::Counting;
-    use crate::instrument::{View, presets};
-
-    /// d² = N²/(N + σ²)·10⁻⁶ for one band: closed form of every solution.
-    fn one_band(camera: &Camera) -> Result<f64> {
-        let counting = seen(camera);
-        let photons = counting.counts_per_radiance * 1e21;
-        Ok(1e-3 * photons / (photons + counting.var_added(0)).sqrt())
-    }
-
-    fn seen(camera: &Camera) -> Counting {
-        let bands = Bands::from_rows([(900.0, 1.0)]).unwrap();
-        camera.counting(&bands, &View::at(Some(30.0)))
-    }
-
-    fn task<'a>(camera: &'a Camera, bands: &'a Bands, required: f64) -> CameraTask<'a> {
-        CameraTask { camera, bands, required }
-    }
-
-    #[test]
-    fn every_solution_fed_forward_gives_the_demanded_distance() {
-        let mut camera = presets::get("flir-a325sc").unwrap();
-        camera.flicker_fraction = 0.01;
-        let bands = Bands::from_rows([(900.0, 1.0)]).unwrap();
-        let now = one_band(&camera).unwrap();
-        for required in [0.2 * now, now, 1.3 * now] {
-            let task = task(&camera, &bands, required);
-            for quantity in Quantity::ALL {
-                let solution = task.solve(quantity, one_band).unwrap();
-                let value = solution.value.unwrap_or_else(|| panic!("{quantity:?}: {solution:?}"));
-                let camera = task.forward(quantity, value);
-                let reached = one_band(&camera).unwrap();
-                if quantity == Quantity::Frames {
-                    assert!(reached >= required * (1.0 - 1e-9));
-                } else {
-                    assert!((reached / required - 1.0).abs() < 1e-9, "{quantity:?} {reached} {required}");
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn the_flicker_floor_is_found_exactly() {
-        let camera = presets::get("flir-a325sc").unwrap();
-        let bands = Bands::from_rows([(900.0, 1.0)]).unwrap();
-        // t → ∞: d → 10⁻³ N/σ_F, σ_F² = φσ² at the stated exposure.
-        let counting = camera.counting(&bands, &View::at(Some(30.0)));
-        let floor = 1e-3 * counting.counts_per_radiance * 1e21 / (0.5 * counting.var_added(0)).sqrt();
-        let below = task(&camera, &bands, 0.999_999 * floor).solve(Quantity::Exposure, one_band).unwrap();
-        assert!(below.value.is_some());
-        let above = task(&camera, &bands, 1.000_001 * floor).solve(Quantity::Exposure, one_band).unwrap();
-        assert!(above.value.is_none() && above.reason.unwrap().contains("flicker"));
-        assert!((above.statistical_distance / floor - 1.0).abs() < 1e-9);
-    }
-
-    #[test]
-    fn what_cannot_be_told_apart_is_said_to_be_so() {
-        let camera = presets::get("flir-a325sc").unwrap();
-        let bands = Bands::from_rows([(900.0, 1.0)]).unwrap();
-        for quantity in Quantity::ALL {
-            let solution = task(&camera, &bands, 1.0).solve(quantity, |_| Ok(0.0)).unwrap();
-            assert_eq!((solution.value, solution.reason.as_deref()), (None, Some(NEVER)), "{quantity:?}");
-        }
-    }
-
-    /// d² = N²/(N + σ²)·10⁻⁶ of n frames: N = nN₁ and, without flicker, σ² = nσ₁².
-    #[test]
-    fn noise_is_that_of_one_reading() {
-        let mut camera = presets::get("flir-a325sc").unwrap();
-        (camera.flicker_fraction, camera.frames) = (0.0, 100);
-        let bands = Bands::from_rows([(900.0, 1.0)]).unwrap();
-        let photons = camera.counting(&bands, &View::at(Some(30.0))).counts_per_radiance * 1e21;
-        let required = 1e-3 * (photons / 5.0).sqrt();
-        let solution = task(&camera, &bands, required).solve(Quantity::Noise, one_band).unwrap();
-        // N²/(N + nσ₁²) = N/5, so σ₁² = 4N/n.
-        let exact = (4.0 * photons / 100.0).sqrt();
-        assert!((solution.value.unwrap() / exact - 1.0).abs() < 1e-9, "{solution:?} {exact}");
-        assert!((solution.camera / 1.769e6 - 1.0).abs() < 1e-3);
-    }
-
-    #[test]
-    fn no_lens_is_faster_than_half() {
-        let camera = presets::get("ideal-pnrd").unwrap();
-        let bands = Bands::from_rows([(900.0, 1.0)]).unwrap();
-        let now = one_band(&camera).unwrap();
-        // d ∝ 1/F for shot noise: f/1.3 → f/0.5 gains 2.6.
-        let solution = task(&camera, &bands, 2.7 * now).solve(Quantity::FNumber, one_band).unwrap();
-        assert!(solution.value.is_none() && solution.reason.unwrap().contains("f/0.5"));
-        let solution = task(&camera, &bands, 2.0 * now).solve(Quantity::FNumber, one_band).unwrap();
-        assert!((solution.value.unwrap() / 0.65 - 1.0).abs() < 1e-6);
-    }
-}
+mod tests;

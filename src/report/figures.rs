@@ -6,11 +6,13 @@ mod bands;
 mod library;
 mod scaling;
 mod simulation;
+mod trade_off;
 
 pub use bands::bands_that_matter;
 pub use library::{distance_matrix, minimum_distances, sample_spectra};
 pub use scaling::{band_number, library_size};
 pub use simulation::{SimulationCurves, accuracies, classifiers, simulation_table};
+pub use trade_off::trade_off;
 
 use super::plot::{Axis, Band, Figure, HeatMap, LineFigure, Marker, Panel, Rule, Series, Style};
 use super::table::Table;

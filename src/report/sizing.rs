@@ -1,4 +1,4 @@
-//! The files of the main job: scenario, tables, and the four plots of the limiting pair.
+//! The files of the main job: scenario, tables, the four plots of the limiting pair, and the trade-offs.
 
 use super::bundle::Bundle;
 use super::figures::{self, InformationMarks, Plot};
@@ -6,7 +6,7 @@ use super::table::{Table, number, optional};
 use super::tables;
 use crate::error::Result;
 use crate::identifiability::detection;
-use crate::study::{Sizing, Study};
+use crate::study::{Sensitivity, Sizing, Study};
 use std::path::Path;
 
 /// Most alternatives that are drawn into one plot.
@@ -18,7 +18,7 @@ const DRAWN: usize = 6;
 /// A figure that cannot be drawn.
 pub fn bundle(study: &Study, result: &Sizing, out: &Path) -> Result<Bundle> {
     let mut bundle = Bundle::default();
-    bundle.add("scenario.toml", study.scenario().to_toml_beside(out));
+    bundle.add("scenario.toml", result.scenario.to_toml_beside(out));
     bundle.add("pairs.csv", tables::pairs(&result.pairs).to_csv()?);
     bundle.add("requirement.csv", requirement(result).to_csv()?);
     if let Some(camera) = &result.camera {
@@ -29,8 +29,14 @@ pub fn bundle(study: &Study, result: &Sizing, out: &Path) -> Result<Bundle> {
         bundle.add("noise_budget.csv", table.to_csv()?);
         bundle.add("solve_for.csv", solve_for(result).to_csv()?);
     }
+    if let Some(found) = &result.sensitivity {
+        bundle.add("sensitivity.csv", sensitivity(found).to_csv()?);
+    }
     bundle.add("warnings.csv", tables::warnings(&result.warnings).to_csv()?);
     bundle.add_plots(&drawn(study, result)?)?;
+    let name = result.camera.as_ref().map_or("the camera", |camera| camera.camera.name.as_str());
+    let curves = result.trade_offs.iter().flatten();
+    bundle.add_plots(&curves.map(|curve| figures::trade_off(curve, name)).collect::<Vec<_>>())?;
     Ok(bundle)
 }
 
@@ -90,7 +96,7 @@ fn requirement(result: &Sizing) -> Table {
 }
 
 fn solve_for(result: &Sizing) -> Table {
-    let mut table = Table::new(["quantity", "value", "camera", "statistical_distance", "reason"]);
+    let mut table = Table::new(["quantity", "value", "camera", "statistical_distance", "reason", "caps"]);
     for (quantity, solution) in result.solve_for.iter().flat_map(|solutions| &solutions.0) {
         table.push(vec![
             quantity.key().into(),
@@ -98,7 +104,33 @@ fn solve_for(result: &Sizing) -> Table {
             number(solution.camera),
             number(solution.statistical_distance),
             solution.reason.clone().unwrap_or_default(),
+            solution.caps.iter().map(|cap| cap.code).collect::<Vec<_>>().join(" "),
         ]);
+    }
+    table
+}
+
+fn sensitivity(found: &Sensitivity) -> Table {
+    let mut table = Table::new(["quantity", "value", "numerical_error"]);
+    for (lever, elasticity) in &found.elasticities.0 {
+        let of = |number: fn(&crate::policy::elasticity::Elasticity) -> f64| {
+            optional(elasticity.as_ref().map(number))
+        };
+        table.push(vec![format!("elasticity_{}", lever.key()), of(|e| e.value), of(|e| e.error)]);
+    }
+    let of = &found.emissivity;
+    let rows = [
+        ("emissivity_error", Some(of.error)),
+        ("emissivity_correlation_cm1", Some(of.correlation_cm1)),
+        ("distance", Some(of.distance)),
+        ("distance_5", Some(of.distance_5)),
+        ("distance_50", Some(of.distance_50)),
+        ("distance_95", Some(of.distance_95)),
+        ("share_met", Some(of.share_met)),
+        ("sigma_linear", of.sigma_linear),
+    ];
+    for (name, value) in rows {
+        table.push(vec![name.into(), optional(value), String::new()]);
     }
     table
 }

@@ -10,8 +10,8 @@ use super::section::{ABOVE_ZERO, ABSOLUTE_TEMPERATURE, Entry, Rule, SHARE, Secti
 use super::source::LineStarts;
 use super::{
     Alternatives, AtmosphereSpec, Background, BandsSpec, CameraSpec, DistanceKind, Envelope,
-    EnvironmentObject, Extrapolation, MaterialRef, Nuisance, Reliability, Requirement, Scenario, Source,
-    Target, Unknown,
+    EnvironmentObject, Extrapolation, MaterialRef, Nuisance, Reliability, Requirement, Scenario,
+    SensitivitySpec, Source, Target, Unknown,
 };
 use crate::error::{Error, Result};
 use crate::units::Dimension;
@@ -21,7 +21,7 @@ const LIGHTING_ROUNDING: f64 = 1e-12;
 /// The longest file taken for a scenario, bytes.
 const LONGEST_FILE: u64 = 1 << 20;
 
-pub(super) const TABLES: [&str; 11] = [
+pub(super) const TABLES: [&str; 12] = [
     "title",
     "target",
     "background",
@@ -33,6 +33,7 @@ pub(super) const TABLES: [&str; 11] = [
     "camera",
     "requirement",
     "envelope",
+    "sensitivity",
 ];
 const MINIMUM: &str = "write [target] with material = \"skin\" and temperature = \"37 degC\"";
 
@@ -100,6 +101,7 @@ pub(super) fn of_root(root: &Section<'_>) -> Result<Scenario> {
         unknown,
         camera: None,
         requirement: root.read("requirement", requirement)?.unwrap_or_default(),
+        sensitivity: root.read("sensitivity", SensitivitySpec::read)?,
         source: Source::default(),
     })
 }

@@ -90,6 +90,9 @@ impl Scenario {
         if let Some(envelope) = &self.envelope {
             document.push(("envelope", Part::Table(envelope.written(paths))));
         }
+        if let Some(spec) = self.sensitivity {
+            document.push(("sensitivity", Part::Table(spec.entries())));
+        }
         document
     }
 }

@@ -18,7 +18,7 @@ pub(super) fn resolved_at(spec: &CameraSpec, place: &dyn Fn(&str) -> Place) -> R
         Some(name) => Some(presets::find(name).map_err(|error| error.at(place("preset")))?),
         None => None,
     };
-    check_conditions(spec, place)?;
+    check_conditions(spec, preset.as_ref(), place)?;
     let stated = overridden(spec, preset.clone().unwrap_or_default(), place)?;
     let camera = |preset: &Preset| {
         preset.camera().map_err(|missing| missing.error(&preset.name).at(place(missing.key)))
@@ -35,11 +35,19 @@ pub(super) fn resolved_at(spec: &CameraSpec, place: &dyn Fn(&str) -> Place) -> R
         },
         _ => "the camera".into(),
     };
-    camera_made.checked().map_err(|error| error.at(place("preset")))
+    camera_made.checked().map_err(|error| {
+        // The figure at fault, where a scenario has a key of its name.
+        let key = match &error {
+            Error::OutOfRange { quantity, .. } if !quantity.contains(' ') => quantity.clone(),
+            Error::Malformed { .. } => "quantisation_bits".to_owned(),
+            _ => "preset".to_owned(),
+        };
+        error.at(place(&key))
+    })
 }
 
 /// Conditions of a noise that is not stated, and a noise without the condition it cannot do without.
-fn check_conditions(spec: &CameraSpec, place: &dyn Fn(&str) -> Place) -> Result<()> {
+fn check_conditions(spec: &CameraSpec, preset: Option<&Preset>, place: &dyn Fn(&str) -> Place) -> Result<()> {
     for (key, given) in [
         ("netd_temperature", spec.netd_temperature_k.is_some()),
         ("netd_f_number", spec.netd_f_number.is_some()),
@@ -61,7 +69,12 @@ fn check_conditions(spec: &CameraSpec, place: &dyn Fn(&str) -> Place) -> Result<
             let error = Error::malformed("noise_bandwidth without a detectivity or nep", instead);
             Err(error.at(place("noise_bandwidth")))
         }
-        Some((key, _)) if spec.noise_bandwidth_hz.is_none() && spec.noise_exposure_s.is_none() => {
+        // A preset that states such a noise states its conditions too.
+        Some((key, _))
+            if spec.noise_bandwidth_hz.is_none()
+                && spec.noise_exposure_s.is_none()
+                && !preset.is_some_and(|preset| preset.bandwidth_is_stated()) =>
+        {
             let instead =
                 "write noise_bandwidth = \"175 kHz\", or noise_exposure = \"2.86 us\" for 1/(2 x 2.86 us)";
             Err(Error::malformed(format!("{key} without a bandwidth"), instead).at(place(key)))
@@ -74,6 +87,17 @@ fn check_conditions(spec: &CameraSpec, place: &dyn Fn(&str) -> Place) -> Result<
 fn overridden(spec: &CameraSpec, preset: Preset, place: &dyn Fn(&str) -> Place) -> Result<Preset> {
     let mut stated = preset;
     let own_noise_exposure = stated.noise_exposure_s.or(stated.exposure_s);
+    let conditions = stated.bandwidth_is_stated();
+    let own_bandwidth = match stated.noise {
+        Some(StatedNoise::Detectivity { bandwidth_hz, .. } | StatedNoise::Nep { bandwidth_hz, .. }) => {
+            bandwidth_hz
+        }
+        _ => None,
+    };
+    let bandwidth_hz = match spec.noise_exposure_s {
+        Some(_) => spec.noise_bandwidth_hz,
+        None => spec.noise_bandwidth_hz.or(own_bandwidth),
+    };
     // Noise that comes with the preset is stated under the preset's conditions.
     if let Some(StatedNoise::Netd { f_number, optics_efficiency, pixel_m, .. }) = &mut stated.noise {
         *f_number = f_number.or(stated.f_number);
@@ -101,6 +125,8 @@ fn overridden(spec: &CameraSpec, preset: Preset, place: &dyn Fn(&str) -> Place) 
     // Without a preset there is no document that could have stated an efficiency.
     if spec.preset.is_none() {
         stated.optics_efficiency = Some(1.0);
+        stated.spectral_range_cm1 = Some([715.0, 1250.0]);
+        stated.flicker_fraction = stated.flicker_fraction.or(Some(0.0));
     }
     for (key, efficiency) in
         [("optics_efficiency", &spec.optics_efficiency), ("quantum_efficiency", &spec.quantum_efficiency)]
@@ -130,9 +156,9 @@ fn overridden(spec: &CameraSpec, preset: Preset, place: &dyn Fn(&str) -> Place) 
             pixel_m: spec.netd_pixel_m,
         })
     } else if let Some(detectivity_cm_hz05_w) = spec.detectivity_cm_hz05_w {
-        Some(StatedNoise::Detectivity { detectivity_cm_hz05_w, bandwidth_hz: spec.noise_bandwidth_hz })
+        Some(StatedNoise::Detectivity { detectivity_cm_hz05_w, bandwidth_hz })
     } else if let Some(nep_w_hz05) = spec.nep_w_hz05 {
-        Some(StatedNoise::Nep { nep_w_hz05, bandwidth_hz: spec.noise_bandwidth_hz })
+        Some(StatedNoise::Nep { nep_w_hz05, bandwidth_hz })
     } else if let Some(microflick) = spec.nesr_microflick {
         Some(StatedNoise::Nesr { microflick, wavelength_um: None })
     } else if let Some(path) = &spec.noise_table {
@@ -151,6 +177,9 @@ fn overridden(spec: &CameraSpec, preset: Preset, place: &dyn Fn(&str) -> Place) 
     }
     // Noise that comes with the preset is stated at the preset's exposure, other noise at its own.
     stated.noise_exposure_s = match noise {
+        Some(StatedNoise::Detectivity { .. } | StatedNoise::Nep { .. }) if conditions => {
+            spec.noise_exposure_s.or(own_noise_exposure)
+        }
         Some(_) => spec.noise_exposure_s.or(stated.exposure_s),
         None => own_noise_exposure.or(stated.exposure_s),
     };

@@ -1,21 +1,20 @@
 //! The main job: does the camera meet the requirement, and what would it have to be.
 
 use super::identify::{PairResult, PhotonsRequired};
-use super::{Check, Study, Surface, Warning, reliability, warn};
-use crate::demand::{Skipping, Thing, Work};
+use super::sensitivity::Sensitivity;
+use super::{Check, Study, Surface, Warning, reliability};
+use crate::demand::{Skipping, Work};
 use crate::error::Result;
-use crate::fisher::Nuisance;
-use crate::identifiability::local::LocalSolver;
-use crate::identifiability::nearest::NearestSolver;
 use crate::identifiability::{Status, detection};
 use crate::instrument::{Camera, NoiseLine, gamma_per_band};
-use crate::policy::{self, Quantity, Solution, solve};
-use crate::scenario::{DistanceKind, Scenario};
-use crate::scene::State;
+use crate::policy::caps::{self, Circumstances};
+use crate::policy::{self, CameraTask, Motion, Quantity, Solution, TradeOff, Trial};
+use crate::scenario::Scenario;
 use serde::ser::{SerializeMap, Serializer};
 
-/// Relative difference between a refined and a fully searched nearest distance that is rounding.
-const SAME: f64 = 1e-10;
+mod reach;
+
+pub(super) use reach::{Reach, Solvers};
 
 /// The answer to 'can this camera do it'.
 #[derive(Debug, Clone, serde::Serialize)]
@@ -30,6 +29,11 @@ pub struct Sizing {
     pub camera: Option<CameraResult>,
     /// Each hardware quantity with the others held, for the limiting alternative; `None` without a camera.
     pub solve_for: Option<Solutions>,
+    /// What the verdict hangs on; `None` without a camera.
+    pub sensitivity: Option<Sensitivity>,
+    /// Two quantities at a time, where they were asked for ([`Study::trade_offs`]).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub trade_offs: Option<Vec<TradeOff>>,
     /// ΣS·Δν of the target, photons s⁻¹ m⁻² sr⁻¹.
     pub photon_radiance: f64,
     /// All alternatives.
@@ -159,16 +163,26 @@ impl Study {
             Some(camera) => Some(self.solutions(camera, surface, &mut stats)?),
             None => None,
         };
+        let sensitivity = match &self.camera {
+            Some(camera) => Some(self.sensitivity(camera, surface, &mut stats)?),
+            None => None,
+        };
         if let Some(camera) = &camera {
-            warnings.extend(warn::of_camera_result(camera, pair, &self.scenario));
+            warnings.extend(self.camera_result_warnings(camera, pair));
+        }
+        let mut scenario = identification.scenario;
+        if sensitivity.is_some() {
+            scenario.sensitivity.get_or_insert_default();
         }
         let verdict = self.verdict(pair, &requirement);
         Ok(Sizing {
-            scenario: identification.scenario,
+            scenario,
             verdict,
             requirement,
             camera,
             solve_for,
+            sensitivity,
+            trade_offs: None,
             photon_radiance: identification.photon_radiance,
             pairs: identification.pairs,
             limiting: identification.limiting,
@@ -234,20 +248,10 @@ impl Study {
         let photons = counting.counts_per_radiance * photon_radiance;
         let gamma = gamma_per_band(&counting, &signal);
         let distance_m = self.scenario.target.distance_m;
-        let blur = match (
-            self.scenario.requirement.speed_m_s,
-            camera.pixels,
-            camera.field_of_view_rad,
-            distance_m,
-        ) {
-            (Some(speed), Some(pixels), Some(view), Some(distance)) => {
-                let time_s = camera.acquisition_s(self.bands.len()) / f64::from(camera.frames);
-                // SII E: the transverse part of the speed is at most v sin(θ/2).
-                let transverse = speed * (0.5 * view).sin();
-                Some(policy::motion_blur_pixels(transverse, time_s, pixels, distance, view))
-            }
-            _ => None,
-        };
+        let blur = self.scenario.requirement.speed_m_s.and_then(|speed| {
+            let time_s = camera.acquisition_s(self.bands.len()) / f64::from(camera.frames);
+            Motion::of(camera, distance_m).map(|motion| motion.blur_pixels(speed, time_s))
+        });
         let var: f64 = (0..self.bands.len()).map(|w| counting.var_added(w)).sum();
         Some(CameraResult {
             photons,
@@ -265,74 +269,46 @@ impl Study {
         })
     }
 
+    /// What the scenario demands of its camera.
+    pub(super) fn task<'a>(&'a self, camera: &'a Camera) -> CameraTask<'a> {
+        let distance_m = self.scenario.target.distance_m;
+        CameraTask {
+            camera,
+            bands: &self.bands,
+            required: self.required,
+            distance_m,
+            size_m: self.scenario.target.size_m,
+        }
+    }
+
+    /// Counts of the fullest reading of a trial.
+    pub(super) fn brightest(&self, trial: &Trial) -> Result<f64> {
+        let sight = self.sight_at(&trial.camera, trial.distance_m)?;
+        let signal = sight.bands.weigh(&self.surroundings.signal(&self.target.emissivity, &self.state));
+        Ok(trial.camera.brightest_reading(&sight.bands, &signal, &sight.view))
+    }
+
     pub(super) fn solutions(
         &self,
         camera: &Camera,
         alternative: &Surface,
         work: &mut Work,
     ) -> Result<Solutions> {
-        let task = solve::CameraTask { camera, bands: &self.bands, required: self.required };
-        let solved: Result<Vec<(Quantity, Solution)>> = Quantity::ALL
-            .into_iter()
-            .map(|quantity| Ok((quantity, self.solution(&task, quantity, alternative, work)?)))
-            .collect();
-        solved.map(Solutions)
-    }
-
-    /// One quantity; the nearest state is followed from trial to trial and searched anew at the end.
-    fn solution(
-        &self,
-        task: &solve::CameraTask<'_>,
-        quantity: Quantity,
-        alternative: &Surface,
-        work: &mut Work,
-    ) -> Result<Solution> {
-        let kind = self.scenario.requirement.by;
-        let (target, other) = (&self.target.emissivity, &alternative.emissivity);
-        if kind != DistanceKind::Nearest {
-            let unknowns = match kind {
-                DistanceKind::LocalUnknownGain => self.unknowns.with(Nuisance::Gain),
-                _ => self.unknowns.clone(),
-            };
-            let mut solver = LocalSolver::new(&self.bands, &self.surroundings, unknowns.clone());
-            return task.solve(quantity, |camera| {
-                self.book_local(work, &unknowns, 1);
-                let counting = self.counting_of(camera);
-                solver.with_counting(target, other, &self.state, &counting).map(|local| local.distance)
-            });
-        }
-        let mut solver =
-            NearestSolver::new(&self.bands, &self.surroundings, self.unknowns.clone(), self.range);
-        let mut followed: Option<State> = None;
-        for _ in 0..4 {
-            let solution = task.solve(quantity, |camera| {
-                let counting = &self.counting_of(camera);
-                let nearest = match &followed {
-                    Some(start) => {
-                        work.compute(Thing::RefinedSearches, 1);
-                        solver.refine_with_counting(target, other, &self.state, counting, start)?
-                    }
-                    None => {
-                        work.compute(Thing::NearestSearches, 1);
-                        solver.with_counting(target, other, &self.state, counting)?
-                    }
-                };
-                followed = Some(nearest.state);
-                Ok(nearest.distance)
-            })?;
-            let Some(value) = solution.value else { return Ok(solution) };
-            let counting = self.counting_of(&task.forward(quantity, value));
-            work.compute(Thing::NearestSearches, 1);
-            let anew = solver.with_counting(target, other, &self.state, &counting)?;
-            if anew.distance >= solution.statistical_distance * (1.0 - SAME) {
-                return Ok(solution);
+        let task = self.task(camera);
+        let brightest = |trial: &Trial| self.brightest(trial);
+        let speed_m_s = self.scenario.requirement.speed_m_s;
+        let given = Circumstances { bands: &self.bands, speed_m_s, brightest: &brightest };
+        let mut reach = Reach::new(self, alternative);
+        let mut solved = Vec::with_capacity(Quantity::ALL.len());
+        for quantity in Quantity::ALL {
+            let mut solution = reach.solve(&task, quantity)?;
+            if let Some(value) = solution.value {
+                solution.caps = caps::broken(quantity, value, &task, &given)?;
             }
-            // Another state is nearer at this noise: follow that one.
-            followed = Some(anew.state);
+            solved.push((quantity, solution));
         }
-        task.solve(quantity, |camera| {
-            self.statistical_distance(kind, alternative, &self.counting_of(camera), work)
-        })
+        work.add(&reach.work);
+        Ok(Solutions(solved))
     }
 
     fn verdict(&self, pair: &PairResult, requirement: &RequirementResult) -> Verdict {

@@ -1,7 +1,8 @@
 //! What the reader of a result must know, with stable codes.
 
+mod camera;
+
 use super::identify::PairResult;
-use super::size::CameraResult;
 use super::{Study, Warning};
 use crate::fisher::Nuisance;
 use crate::identifiability::Status;
@@ -9,15 +10,13 @@ use crate::identifiability::local::LocalDistance;
 use crate::identifiability::nearest::{NearestDistance, StateRange};
 use crate::instrument::{Camera, Readout};
 use crate::planck;
-use crate::scenario::{DistanceKind, Scenario};
+use crate::scenario::DistanceKind;
 use crate::scene::{Parameter, State};
 
 /// Ratio of local and nearest distance beyond which the linear picture has failed.
 const LINEAR_FACTOR: f64 = 2.0;
 /// Share of a distance that emissivity errors of 0.1 % can make up before a word of caution is due.
 pub(super) const FRAGILE_RATIO: f64 = 50.0;
-/// Relative difference between shortcut and exact statistical distance worth a word.
-const SHORTCUT: f64 = 0.1;
 /// Photons per mode beyond which bunching is no longer negligible.
 const OCCUPANCY: f64 = 0.1;
 
@@ -121,44 +120,6 @@ fn in_words(parameter: Parameter, objects: usize) -> String {
     }
 }
 
-/// Warnings on the camera in the scene, against the limiting alternative.
-pub(super) fn of_camera_result(
-    camera: &CameraResult,
-    pair: &PairResult,
-    scenario: &Scenario,
-) -> Vec<Warning> {
-    let mut warnings = Vec::new();
-    if let (Some(exact), Some(shortcut)) = (pair.statistical_distance, pair.statistical_distance_shortcut)
-        && exact > 0.0
-        && (shortcut / exact - 1.0).abs() > SHORTCUT
-    {
-        let percent = 100.0 * (shortcut / exact - 1.0);
-        let message =
-            format!("the shortcut sqrt(N/(1+gamma)) d0 is off by {percent:+.0} %; the exact value is used");
-        warnings.push(Warning::new("gamma-shortcut", message));
-    }
-    if let Some(blur) = camera.motion_blur_pixels
-        && blur >= 1.0
-    {
-        let message =
-            format!("the target moves {blur:.1} pixels during an exposure; the bound assumes less than 1");
-        warnings.push(Warning::new("motion-blur", message));
-    }
-    if let Some(full) = camera.camera.full_well
-        && camera.brightest_reading > full
-    {
-        let counts = camera.brightest_reading;
-        let message = format!("{counts:.2e} photons in one reading exceed the full well of {full:.2e}");
-        warnings.push(Warning::new("full-well", message));
-    }
-    if scenario.requirement.speed_m_s.is_some() && camera.motion_blur_pixels.is_none() {
-        let message =
-            "a speed is given, but motion blur needs camera.pixels, camera.field_of_view and target.distance";
-        warnings.push(Warning::new("motion-blur-unknown", message));
-    }
-    warnings
-}
-
 impl Study {
     /// Warnings that hold for every pair.
     pub(super) fn camera_warnings(&self) -> Vec<Warning> {
@@ -168,9 +129,13 @@ impl Study {
         // Occupancy of a mode: 1/(eˣ − 1) = B/(2cν²).
         let occupancy = planck::occupancy(low, hottest);
         if occupancy > OCCUPANCY {
-            let message = format!(
-                "{occupancy:.2} photons per mode at {low:.0} cm^-1: bunching, which is neglected, raises the noise by as much"
-            );
+            let included = self.camera.as_ref().is_some_and(|camera| camera.photon_bunching);
+            let what = if included {
+                "bunching raises the noise of the light that is counted, which is included"
+            } else {
+                "bunching, which is neglected (camera.photon_bunching), raises the noise by as much"
+            };
+            let message = format!("{occupancy:.2} photons per mode at {low:.0} cm^-1: {what}");
             warnings.push(Warning::new("bunching", message));
         }
         if self.is_unknown(Nuisance::EnvironmentTemperature) {

@@ -5,9 +5,9 @@ use super::findings::Findings;
 use super::scene::{Hardship, Scene};
 use crate::error::Result;
 use crate::identifiability::local::LocalSolver;
-use crate::instrument::{Camera, View, presets};
+use crate::instrument::{View, presets};
 use crate::policy::photons_required;
-use crate::policy::solve::{CameraTask, Quantity};
+use crate::policy::solve::{CameraTask, Quantity, Trial};
 use crate::reference::Extended;
 use crate::reference::local::{LocalReference, Noise, Pair};
 
@@ -34,11 +34,11 @@ pub(super) fn judge(draw: &mut Draw, found: &mut Findings) -> Result<()> {
     camera.exposure_s = draw.scale(1e-9, 1e3);
     let distance_m = draw.chance(0.5).then(|| draw.scale(0.1, 1e5));
     let required = draw.scale(1e-3, 40.0);
-    let task = CameraTask { camera: &camera, bands, required };
-    let quantity = Quantity::ALL[draw.below(Quantity::ALL.len())];
+    let task = CameraTask { camera: &camera, bands, required, distance_m, size_m: None };
+    let quantity = Quantity::OF_CAMERA[draw.below(Quantity::OF_CAMERA.len())];
     let view = View::at(distance_m);
-    let mut distance = |camera: &Camera| {
-        let counting = camera.counting(bands, &view);
+    let mut distance = |trial: &Trial| {
+        let counting = trial.camera.counting(bands, &view);
         solver.with_counting(target, alternative, state, &counting).map(|local| local.distance)
     };
     let solution = task.solve(quantity, &mut distance)?;
@@ -50,8 +50,8 @@ pub(super) fn judge(draw: &mut Draw, found: &mut Findings) -> Result<()> {
         return Ok(());
     };
     found.require(value.is_finite() && value >= 0.0, || format!("{quantity:?} of {value}"));
-    let camera = task.forward(quantity, value);
-    let (counting, fast) = (camera.counting(bands, &view), distance(&camera)?);
+    let trial = task.forward(quantity, value);
+    let (counting, fast) = (trial.camera.counting(bands, &view), distance(&trial)?);
     let pair = Pair { emissivity: target, alternative, state };
     let exact = LocalReference::new(bands, surroundings, unknowns.clone()).answer(
         pair,

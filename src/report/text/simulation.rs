@@ -1,7 +1,8 @@
 //! What a simulation found, as text.
 
+use super::footing::{assumptions, warnings};
 use super::numbers::shortened;
-use super::{assumptions, celsius, significant, warnings};
+use super::numbers::{celsius, significant};
 use crate::report::simulation::pair;
 use crate::study::{PhotonLaw, SimulatedPerformance, SimulatedPoint, Simulation, Standing, Study};
 use std::fmt::Write as _;

@@ -14,7 +14,7 @@ use crate::fisher::Nuisance;
 use crate::identifiability::detection;
 use crate::instrument::Camera;
 use crate::policy::envelope::{Certificate, Effort, WorstCase, worst_case};
-use crate::policy::{self, solve::CameraTask};
+use crate::policy::{self, Quantity};
 use crate::scene::State;
 use std::collections::BTreeMap;
 
@@ -102,13 +102,20 @@ impl RuleStudy {
                 warnings.push(Warning::new("fragile", message));
             }
             if let Some(camera) = at.camera.clone().filter(|_| distance < self.required) {
-                let task = CameraTask { camera: &camera, bands: &at.bands, required: self.required };
-                let quantities = at.solutions(&camera, surface, work)?;
+                let task = at.task(&camera);
+                let mut quantities = at.solutions(&camera, surface, work)?;
+                // Where the target is and how fast it moves is the rule's to say.
+                quantities
+                    .0
+                    .retain(|(quantity, _)| !matches!(quantity, Quantity::Distance | Quantity::Speed));
                 let mut any = false;
                 let mut spoils = BTreeMap::new();
                 for (quantity, solution) in &quantities.0 {
                     let Some(value) = solution.value else { continue };
-                    let spoiled = self.image(candidate, &task.forward(*quantity, value)).spoiled;
+                    let mut spoiled = self.image(candidate, &task.forward(*quantity, value).camera).spoiled;
+                    // Those of the limiting scene that the brightest one does not know of.
+                    let optical = solution.caps.iter().map(|cap| cap.code);
+                    spoiled.extend(optical.filter(|code| matches!(*code, "diffraction" | "lowest-noise")));
                     any |= spoiled.is_empty();
                     if !spoiled.is_empty() {
                         spoils.insert(quantity.key(), spoiled);

@@ -1,0 +1,280 @@
+//! Limits that shot noise does not know: what a solution must keep within beside the statistical distance.
+//!
+//! | code | limit | |
+//! |---|---|---|
+//! | `diffraction` | pixel ≥ λF, F ≤ pixel/λ | λ the longest wavelength of the bands |
+//! | `full-well` | counts of the fullest reading ≤ full well | on exposure, pixel, f-number |
+//! | `motion` | time until all bands are exposed ≤ r θ/(v_⊥ L) | [`super::motion`]; the speed that the scenario demands |
+//! | `frame-rate` | exposure ≤ 1/frame rate | |
+//! | `lowest-noise` | σ ≥ √(ρ² + q²/12) | read noise ρ and steps q of the converter stay whatever the detector |
+//!
+//! λF is the diffraction blur at which an image goes from detector-limited to optics-limited (Fλ/pixel = 1; the first dark
+//! ring of a point has the radius 1.22 λF): below it a smaller pixel shows no more detail and sees what is beside it.
+//!
+//! Source: G. C. Holst, Opt. Eng. 46, 103204 (2007), doi:10.1117/1.2790066; paper SII E (motion).
+
+use super::motion::Motion;
+use super::solve::{CameraTask, Quantity, Trial};
+use crate::error::Result;
+use crate::instrument::Camera;
+use crate::root::crossing;
+use crate::spectrum::Bands;
+use crate::words::{quantity as in_unit, significant};
+
+/// Logarithm of the largest factor by which a pixel or f-number is changed to fill the well.
+const LOG_RANGE: f64 = 30.0;
+/// Share by which a limit may be passed: rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// A limit that a value breaks.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct Cap {
+    /// Stable code, e.g. `motion`.
+    pub code: &'static str,
+    /// The limit, in the unit of the quantity.
+    pub limit: f64,
+    /// Whether no value meets the task within the limit; else one on the other side of the limit meets it too.
+    pub blocks: bool,
+    /// The reason in words.
+    pub reason: String,
+}
+
+/// A limit on one quantity, the rest of the camera as it is.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Limit {
+    /// Stable code.
+    pub code: &'static str,
+    /// The quantity.
+    pub quantity: Quantity,
+    /// Its limit.
+    pub value: f64,
+    /// Whether the quantity must be at least so large, not at most.
+    pub is_least: bool,
+    /// The reason in words.
+    pub reason: String,
+}
+
+impl Limit {
+    /// The cap of a solution, if its value breaks the limit.
+    #[must_use]
+    pub fn broken_by(&self, value: f64) -> Option<Cap> {
+        let broken = if self.is_least {
+            value < self.value * (1.0 - ROUNDING)
+        } else {
+            value > self.value * (1.0 + ROUNDING)
+        };
+        broken.then(|| Cap {
+            code: self.code,
+            limit: self.value,
+            blocks: self.is_least != self.quantity.is_least(),
+            reason: self.reason.clone(),
+        })
+    }
+}
+
+/// What limits are judged by, beside the camera.
+pub struct Circumstances<'a> {
+    /// Bands, as the camera receives them.
+    pub bands: &'a Bands,
+    /// Speed that is demanded, m s⁻¹.
+    pub speed_m_s: Option<f64>,
+    /// Counts of the fullest reading.
+    pub brightest: &'a dyn Fn(&Trial) -> Result<f64>,
+}
+
+/// Longest wavelength of bands, m.
+#[must_use]
+pub fn longest_wavelength_m(bands: &Bands) -> f64 {
+    0.01 / bands.range_cm1().0
+}
+
+/// What limits `quantity` where all else is as in `trial`.
+///
+/// # Errors
+/// Those of `brightest`.
+pub fn limits(quantity: Quantity, trial: &Trial, given: &Circumstances<'_>) -> Result<Vec<Limit>> {
+    let camera = &trial.camera;
+    let mut limits = Vec::new();
+    let mut push = |code, value: f64, is_least, reason: String| {
+        limits.push(Limit { code, quantity, value, is_least, reason });
+    };
+    let wavelength_m = longest_wavelength_m(given.bands);
+    let blur = format!("diffraction at {}", in_unit(wavelength_m, "m"));
+    match quantity {
+        Quantity::Exposure => {
+            if let (Some(speed), Some(motion)) = (given.speed_m_s, Motion::of(camera, trial.distance_m)) {
+                let exposures = camera.readout.exposures(given.bands.len());
+                let longest = motion.longest_s(speed) / exposures as f64;
+                let all =
+                    if exposures > 1 { format!(" for all {exposures} exposures") } else { String::new() };
+                let reason =
+                    format!("in longer the target moves a pixel at {} m/s{all}", significant(speed, 3));
+                push("motion", longest, false, reason);
+            }
+            if let Some(frame) = camera.frame_s() {
+                push("frame-rate", frame, false, "a frame is no longer".into());
+            }
+        }
+        Quantity::Pixel => {
+            let reason = format!("{blur} blurs over lambda F");
+            push("diffraction", wavelength_m * camera.f_number, true, reason);
+        }
+        Quantity::FNumber => {
+            let reason = format!("{blur} blurs over more than the pixel");
+            push("diffraction", camera.pixel_m / wavelength_m, false, reason);
+        }
+        Quantity::Noise => {
+            let step = camera.quantisation_step_counts().unwrap_or(0.0);
+            let floor = camera.read_noise_counts.hypot(step / 12f64.sqrt());
+            if floor > 0.0 {
+                push("lowest-noise", floor, true, "read noise and steps of the converter stay".into());
+            }
+        }
+        Quantity::Speed => {
+            if let Some(speed) = given.speed_m_s {
+                push("motion", speed, true, "this speed is demanded".into());
+            }
+        }
+        Quantity::Frames | Quantity::Distance => {}
+    }
+    if let Some(full) = camera.full_well
+        && let Some((value, is_least)) = fills(quantity, trial, full, given)?
+    {
+        push("full-well", value, is_least, format!("the pixel is full at {} counts", significant(full, 2)));
+    }
+    Ok(limits)
+}
+
+/// The limits that a solution breaks: its own, and for a speed also those of the exposure that it takes.
+///
+/// # Errors
+/// Those of `brightest`.
+pub fn broken(
+    quantity: Quantity,
+    value: f64,
+    task: &CameraTask<'_>,
+    given: &Circumstances<'_>,
+) -> Result<Vec<Cap>> {
+    let own = limits(quantity, &task.own(), given)?;
+    let mut broken: Vec<Cap> = own.iter().filter_map(|limit| limit.broken_by(value)).collect();
+    if quantity == Quantity::Speed {
+        let taken = task.forward(quantity, value);
+        let of_exposure = limits(Quantity::Exposure, &taken, given)?;
+        let others = of_exposure.iter().filter(|limit| limit.code != "motion");
+        let caps = others.filter_map(|limit| limit.broken_by(taken.camera.exposure_s));
+        // The speed is as the inverse of the exposure.
+        broken.extend(caps.map(|cap| Cap { limit: value * taken.camera.exposure_s / cap.limit, ..cap }));
+    }
+    Ok(broken)
+}
+
+/// The value at which the fullest reading fills the well.
+fn fills(
+    quantity: Quantity,
+    trial: &Trial,
+    full: f64,
+    given: &Circumstances<'_>,
+) -> Result<Option<(f64, bool)>> {
+    // ln of the fill as the quantity grows by a factor.
+    let fill = |change: &dyn Fn(&mut Camera, f64), log: f64| -> Result<f64> {
+        let mut changed = trial.clone();
+        change(&mut changed.camera, log.exp());
+        Ok(((given.brightest)(&changed)? / full).max(1e-300).ln())
+    };
+    let crossed = |change: &dyn Fn(&mut Camera, f64)| -> Result<Option<f64>> {
+        if fill(change, -LOG_RANGE)? >= 0.0 || fill(change, LOG_RANGE)? <= 0.0 {
+            return Ok(None);
+        }
+        crossing(-LOG_RANGE, LOG_RANGE, |log| fill(change, log)).map(|log| Some(log.exp()))
+    };
+    let camera = &trial.camera;
+    Ok(match quantity {
+        // Light and dark counts both grow with it.
+        Quantity::Exposure => {
+            let counts = (given.brightest)(trial)?;
+            (counts > 0.0).then(|| (camera.exposure_s * full / counts, false))
+        }
+        Quantity::Pixel => crossed(&|camera, factor| camera.pixel_m *= factor)?
+            .map(|factor| (camera.pixel_m * factor, false)),
+        Quantity::FNumber => crossed(&|camera, factor| camera.f_number /= factor)?
+            .map(|factor| (camera.f_number / factor, true)),
+        Quantity::Noise | Quantity::Frames | Quantity::Distance | Quantity::Speed => None,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::instrument::{View, presets};
+
+    fn trial() -> Trial {
+        let mut camera = presets::get("flir-a325sc").unwrap();
+        (camera.full_well, camera.frame_rate_hz) = (Some(1e7), Some(60.0));
+        Trial { camera, distance_m: Some(30.0) }
+    }
+
+    fn of(quantity: Quantity, trial: &Trial) -> Vec<Limit> {
+        let bands = Bands::from_rows([(800.0, 1.0), (1000.0, 1.0)]).unwrap();
+        let brightest = |trial: &Trial| {
+            Ok(trial.camera.brightest_reading(&bands, &[1e19, 3e19], &View::at(trial.distance_m)))
+        };
+        let given = Circumstances { bands: &bands, speed_m_s: Some(13.4112), brightest: &brightest };
+        limits(quantity, trial, &given).unwrap()
+    }
+
+    fn value(limits: &[Limit], code: &str) -> f64 {
+        limits.iter().find(|limit| limit.code == code).unwrap_or_else(|| panic!("{limits:?}")).value
+    }
+
+    #[test]
+    fn limits_are_those_of_the_formulas() {
+        let trial = trial();
+        let camera = &trial.camera;
+        // 800 cm^-1 is 12.5 um.
+        assert!((value(&of(Quantity::Pixel, &trial), "diffraction") / (12.5e-6 * 1.3) - 1.0).abs() < 1e-12);
+        assert!((value(&of(Quantity::FNumber, &trial), "diffraction") / (12.0 / 12.5) - 1.0).abs() < 1e-12);
+        let exposure = of(Quantity::Exposure, &trial);
+        assert!((value(&exposure, "frame-rate") - 1.0 / 60.0).abs() < 1e-15);
+        let (pixels, view) = (f64::from(camera.pixels.unwrap()), camera.field_of_view_rad.unwrap());
+        let longest = 30.0 * view / (13.4112 * (0.5 * view).sin() * pixels);
+        assert!((value(&exposure, "motion") / longest - 1.0).abs() < 1e-12);
+        // Far from the lens counts grow as t a²/F²; 12 mm behind 30 m change the last digits.
+        let counts = camera.brightest_reading(
+            &Bands::from_rows([(800.0, 1.0), (1000.0, 1.0)]).unwrap(),
+            &[1e19, 3e19],
+            &View::at(None),
+        );
+        let ratio = 1e7 / counts;
+        assert!((value(&exposure, "full-well") / (camera.exposure_s * ratio) - 1.0).abs() < 1e-6);
+        let pixel = value(&of(Quantity::Pixel, &trial), "full-well");
+        assert!((pixel / (camera.pixel_m * ratio.sqrt()) - 1.0).abs() < 1e-6);
+        let f_number = value(&of(Quantity::FNumber, &trial), "full-well");
+        assert!((f_number / (camera.f_number / ratio.sqrt()) - 1.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_wheel_of_filters_shares_the_time_between_the_bands() {
+        let mut trial = trial();
+        let at_once = value(&of(Quantity::Exposure, &trial), "motion");
+        trial.camera.readout = crate::instrument::Readout::Sequential;
+        let one_by_one = value(&of(Quantity::Exposure, &trial), "motion");
+        assert!((at_once / one_by_one - 2.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_cap_says_whether_it_can_be_kept() {
+        let trial = trial();
+        let exposure = of(Quantity::Exposure, &trial);
+        let longest = value(&exposure, "motion");
+        let caps: Vec<Cap> = exposure.iter().filter_map(|limit| limit.broken_by(2.0 * longest)).collect();
+        assert!(caps.iter().any(|cap| cap.code == "motion" && cap.blocks), "{caps:?}");
+        assert!(exposure.iter().all(|limit| limit.broken_by(0.1 * longest).is_none()));
+        // A pixel smaller than the blur can be made larger; an f-number larger than it asks for, smaller.
+        let pixel = of(Quantity::Pixel, &trial)[0].broken_by(1e-6).unwrap();
+        let f_number = of(Quantity::FNumber, &trial)[0].broken_by(2.0).unwrap();
+        assert_eq!((pixel.blocks, f_number.blocks), (false, false));
+        // A slower lens keeps the well from filling, but the task asks for a faster one.
+        let full = of(Quantity::FNumber, &trial).into_iter().find(|limit| limit.code == "full-well").unwrap();
+        assert!(full.broken_by(0.5 * full.value).unwrap().blocks);
+    }
+}
