@@ -61,10 +61,10 @@ pub struct Scenario {
     pub camera: Option<CameraSpec>,
     /// How reliably, and at which speed.
     pub requirement: Requirement,
-    /// How wrong the emissivities may be; the defaults of [`SensitivitySpec`] where it is not given.
-    pub sensitivity: Option<SensitivitySpec>,
     /// Scenes that the requirement must hold in, if not this one alone.
     pub envelope: Option<Envelope>,
+    /// How wrong the emissivities may be; the defaults of [`SensitivitySpec`] where it is not given.
+    pub sensitivity: Option<SensitivitySpec>,
     /// Where it was read from.
     pub source: Source,
 }
@@ -127,8 +127,8 @@ impl PartialEq for Scenario {
             && self.unknown == other.unknown
             && self.camera == other.camera
             && self.requirement == other.requirement
-            && self.sensitivity == other.sensitivity
             && self.envelope == other.envelope
+            && self.sensitivity == other.sensitivity
     }
 }
 

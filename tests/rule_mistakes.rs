@@ -54,7 +54,8 @@ fn every_mistake_in_a_rule_is_one_line_with_file_line_and_key() {
         (
             "\"ideal-pnrd\"",
             "\"flir-boson-320\"",
-            "a.toml:1: cameras[1]: no document that was read states the",
+            "a.toml:1: cameras[1]: no document that was read states the f_number of flir-boson-320; write a [[camera]] table with \
+             preset = \"flir-boson-320\" and f_number = 1.3",
         ),
         (
             cameras,

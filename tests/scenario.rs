@@ -96,8 +96,8 @@ fn the_example_is_the_case_of_the_paper() {
             by: DistanceKind::Nearest,
             speed_m_s: Some(13.4112),
         },
-        sensitivity: None,
         envelope: None,
+        sensitivity: None,
         source: Source::default(),
     };
     assert_eq!(scenario, expected);
@@ -411,8 +411,8 @@ prop_compose! {
             unknown,
             camera,
             requirement: Requirement { reliability, by, speed_m_s },
-            sensitivity: None,
             envelope,
+            sensitivity: None,
             source: Source::default(),
         }
     }

@@ -15,6 +15,10 @@ use crate::policy::Quantity;
 use crate::study::{CameraVerdict, RuleAnswer, RuleStudy, Warning};
 use std::path::Path;
 
+/// What can be changed of a camera.
+const HARDWARE: [Quantity; 5] =
+    [Quantity::Exposure, Quantity::Pixel, Quantity::FNumber, Quantity::Noise, Quantity::Frames];
+
 /// All files; paths in the rule are written relative to `out` where they lie below it.
 ///
 /// # Errors
@@ -44,7 +48,7 @@ fn warnings(answer: &RuleAnswer) -> Vec<Warning> {
 }
 
 fn cameras(answer: &RuleAnswer) -> Table {
-    let fixes = Quantity::ALL.map(|quantity| format!("would_do_{}", quantity.key()));
+    let fixes = HARDWARE.map(|quantity| format!("would_do_{}", quantity.key()));
     let head = [
         "camera",
         "meets_the_rule",
@@ -69,7 +73,7 @@ fn cameras(answer: &RuleAnswer) -> Table {
             camera.certificate.kind.into(),
             optional(camera.motion_blur_pixels),
         ];
-        row.extend(Quantity::ALL.map(|quantity| optional(value(camera, quantity))));
+        row.extend(HARDWARE.map(|quantity| optional(value(camera, quantity))));
         table.push(row);
     }
     table

@@ -32,8 +32,8 @@ pub(super) const TABLES: [&str; 12] = [
     "unknown",
     "camera",
     "requirement",
-    "sensitivity",
     "envelope",
+    "sensitivity",
 ];
 const MINIMUM: &str = "write [target] with material = \"skin\" and temperature = \"37 degC\"";
 

@@ -41,6 +41,14 @@ pub struct RuleCamera {
     pub key: String,
 }
 
+impl RuleCamera {
+    /// Whether it is a known camera named in `cameras`, without keys of its own.
+    #[must_use]
+    pub fn is_listed(&self) -> bool {
+        self.key.starts_with("cameras[")
+    }
+}
+
 /// Everything a rule file says, defaults filled in.
 #[derive(Debug, Clone)]
 pub struct Rule {
@@ -110,9 +118,11 @@ impl Rule {
     /// Where `key` of the camera at an index stands.
     #[must_use]
     pub fn camera_place(&self, index: usize, key: &str) -> Place {
-        let of = self.cameras.get(index).map_or("camera", |camera| camera.key.as_str());
-        // A known camera as it is has no keys of its own.
-        let key = if of.starts_with("camera[") { format!("{of}.{key}") } else { of.to_owned() };
+        let key = match self.cameras.get(index) {
+            Some(camera) if camera.is_listed() => camera.key.clone(),
+            Some(camera) => format!("{}.{key}", camera.key),
+            None => "camera".to_owned(),
+        };
         self.scenario.place(&key)
     }
 

@@ -87,11 +87,11 @@ impl Scenario {
             document.push(("camera", Part::Table(camera(spec, paths))));
         }
         document.push(("requirement", Part::Table(requirement(&self.requirement))));
-        if let Some(spec) = self.sensitivity {
-            document.push(("sensitivity", Part::Table(spec.entries())));
-        }
         if let Some(envelope) = &self.envelope {
             document.push(("envelope", Part::Table(envelope.written(paths))));
+        }
+        if let Some(spec) = self.sensitivity {
+            document.push(("sensitivity", Part::Table(spec.entries())));
         }
         document
     }

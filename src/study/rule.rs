@@ -23,7 +23,9 @@ use super::{Study, Warning, reliability};
 use crate::demand::{Reason, Skipping, Thing, Work};
 use crate::error::{Error, Result};
 use crate::identifiability::detection;
+use crate::instrument::presets;
 use crate::material::Library;
+use crate::scenario::rule::RuleCamera;
 use crate::scenario::{DistanceKind, Envelope, MaterialRef, Rule};
 use crate::words;
 
@@ -264,6 +266,9 @@ impl RuleStudy {
 fn candidate(rule: &Rule, index: usize, envelope: &Envelope, library: &Library) -> Result<Candidate> {
     // Mistakes of the camera are told by the key that it has in the rule.
     let spec = rule.cameras.get(index).map(|camera| &camera.spec);
+    if let Some(camera) = rule.cameras.get(index).filter(|camera| camera.is_listed()) {
+        complete(camera).map_err(|error| error.at(rule.camera_place(index, "preset")))?;
+    }
     let camera = spec.map(|spec| super::camera::resolved_at(spec, &|key| rule.camera_place(index, key)));
     let camera = camera.transpose()?;
     let mut scenario = rule.with_camera(index);
@@ -296,6 +301,16 @@ fn candidate(rule: &Rule, index: usize, envelope: &Envelope, library: &Library) 
     let own = camera.map(|camera| camera.name).filter(|_| spec.is_some_and(|spec| spec.preset.is_some()));
     let name = given.or(own).unwrap_or_else(|| format!("camera {}", index + 1));
     Ok(Candidate { name, sighted, distance_matters, near })
+}
+
+/// Refuses a known camera, named alone, of which no document states all that is needed.
+fn complete(camera: &RuleCamera) -> Result<()> {
+    let Some(name) = &camera.spec.preset else { return Ok(()) };
+    let Err(missing) = presets::find(name)?.camera() else { return Ok(()) };
+    let found = format!("no document that was read states the {} of {name}", missing.key);
+    let instead =
+        format!("write a [[camera]] table with preset = {name:?} and {} = {}", missing.key, missing.example);
+    Err(Error::malformed(found, instead))
 }
 
 /// Which cameras meet the rule.

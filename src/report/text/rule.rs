@@ -1,7 +1,8 @@
 //! Which cameras meet a rule, as text: the sentence, a table, then what limits each camera and what would help it.
 
 use super::footing::{GAUSSIAN, assumptions, warnings};
-use super::numbers::{celsius, exponential, numbers, quantity, significant};
+use super::numbers::{celsius, numbers, quantity, significant};
+use super::sizing::in_unit;
 use crate::policy::{Quantity, Solution};
 use crate::study::{
     self, CameraVerdict, Fixes, LimitingScene, NotIdentifiable, RuleAnswer, RuleStudy, Warning,
@@ -125,8 +126,8 @@ pub(in crate::report) fn would_do(fixes: &Fixes) -> String {
         })
         .collect();
     if texts.is_empty() {
-        let reasons = fixes.quantities.0.iter().filter_map(|(_, solution)| solution.reason.as_deref());
-        return format!("nothing alone: {}", reasons.last().unwrap_or("no value suffices"));
+        let mut reasons = fixes.quantities.0.iter().filter_map(|(_, solution)| solution.reason.as_deref());
+        return format!("nothing alone: {}", reasons.next_back().unwrap_or("no value suffices"));
     }
     format!("alone: {}", texts.join("; or "))
 }
@@ -137,23 +138,16 @@ fn in_words(spoiled: &[&str]) -> String {
         "motion-blur" => "motion blur of a pixel or more",
         "full-well" => "the brightest scene fills the well",
         "frame-rate" => "longer than a frame",
+        "diffraction" => "diffraction blurs over more than a pixel",
+        "lowest-noise" => "below what read noise and converter leave",
         other => other,
     });
     words.collect::<Vec<_>>().join(", ")
 }
 
 fn one(solved: Quantity, solution: &Solution) -> String {
-    let show = |value: f64| match solved {
-        Quantity::Exposure => quantity(value, "s"),
-        Quantity::Pixel => quantity(value, "m"),
-        Quantity::FNumber => format!("f/{}", significant(value, 3)),
-        Quantity::Noise => format!("{} counts", exponential(value, 2)),
-        Quantity::Frames => format!("{value:.0}"),
-        Quantity::Distance => quantity(value, "m"),
-        Quantity::Speed => quantity(value, "m/s"),
-    };
-    let value = solution.value.map_or_else(|| "-".into(), show);
-    format!("{} {value} (now {})", solved.name(), show(solution.camera))
+    let value = solution.value.map_or_else(|| "-".into(), |value| in_unit(solved, value));
+    format!("{} {value} (now {})", solved.name(), in_unit(solved, solution.camera))
 }
 
 /// The part of the envelope that no camera does, line by line.

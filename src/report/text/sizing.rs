@@ -158,7 +158,7 @@ fn solutions(result: &Sizing) -> String {
     out
 }
 
-fn in_unit(solved: Quantity, value: f64) -> String {
+pub(super) fn in_unit(solved: Quantity, value: f64) -> String {
     match solved {
         Quantity::Exposure => quantity(value, "s"),
         Quantity::Pixel => quantity(value, "m"),

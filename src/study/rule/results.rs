@@ -165,7 +165,7 @@ pub struct LimitingScene {
 pub struct Fixes {
     /// Whether any single quantity does, and spoils nothing else.
     pub any: bool,
-    /// By quantity, what its value would spoil: `motion-blur`, `full-well`, `frame-rate`.
+    /// By quantity, what its value would spoil: `motion-blur`, `full-well`, `frame-rate`, `diffraction`, `lowest-noise`.
     pub spoils: BTreeMap<&'static str, Vec<&'static str>>,
     /// Solutions by quantity.
     #[serde(flatten)]

@@ -78,6 +78,11 @@ impl RuleStudy {
             let message = "that no scene of the envelope is below the requirement was searched, not proved";
             warnings.push(Warning::new("not-proved", message));
         }
+        if at.counting().is_some_and(|own| own.var_added != sighted.counting.var_added) {
+            let message = "noise that depends on the scene is taken in the brightest scene, so the distance is a lower bound; \
+                           what would fix the camera is computed in the limiting scene itself";
+            warnings.push(Warning::new("brightest-noise", message));
+        }
         let mut limiting = limiting(
             candidate.distance_matters,
             &at,
@@ -99,13 +104,18 @@ impl RuleStudy {
             if let Some(camera) = at.camera.clone().filter(|_| distance < self.required) {
                 let task = at.task(&camera);
                 let mut quantities = at.solutions(&camera, surface, work)?;
-                // How fast it may move is no matter of telling materials apart.
-                quantities.0.retain(|(quantity, _)| *quantity != Quantity::Speed);
+                // Where the target is and how fast it moves is the rule's to say.
+                quantities
+                    .0
+                    .retain(|(quantity, _)| !matches!(quantity, Quantity::Distance | Quantity::Speed));
                 let mut any = false;
                 let mut spoils = BTreeMap::new();
                 for (quantity, solution) in &quantities.0 {
                     let Some(value) = solution.value else { continue };
-                    let spoiled = self.image(candidate, &task.forward(*quantity, value).camera).spoiled;
+                    let mut spoiled = self.image(candidate, &task.forward(*quantity, value).camera).spoiled;
+                    // Those of the limiting scene that the brightest one does not know of.
+                    let optical = solution.caps.iter().map(|cap| cap.code);
+                    spoiled.extend(optical.filter(|code| matches!(*code, "diffraction" | "lowest-noise")));
                     any |= spoiled.is_empty();
                     if !spoiled.is_empty() {
                         spoils.insert(quantity.key(), spoiled);
