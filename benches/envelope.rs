@@ -7,7 +7,7 @@
 use criterion::{Criterion, criterion_group, criterion_main};
 use hadar::fisher::{Nuisance, Unknowns};
 use hadar::identifiability::nearest::StateRange;
-use hadar::instrument::presets;
+use hadar::instrument::{View, presets};
 use hadar::material::Library;
 use hadar::policy::envelope::{Effort, EnvelopeScene, Ranges, worst_case};
 use hadar::scene::{EnvironmentObject, Surroundings};
@@ -32,7 +32,7 @@ fn envelopes(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("envelope");
     group.sample_size(10);
     for camera in ["flir-a325sc", "ideal-pnrd"] {
-        let counting = presets::get(camera).expect("a known camera").counting(&bands, Some(30.0));
+        let counting = presets::get(camera).expect("a known camera").counting(&bands, &View::at(Some(30.0)));
         let worst = |target: usize, alternative: usize| {
             let scene = EnvelopeScene {
                 bands: &bands,

@@ -5,7 +5,7 @@ use super::model::SOURCES;
 use super::partition::partition;
 use super::*;
 use crate::fisher::Nuisance;
-use crate::instrument::presets;
+use crate::instrument::{View, presets};
 use crate::material::Library;
 use crate::planck::photon_radiance;
 use crate::scene::EnvironmentObject;
@@ -31,7 +31,7 @@ impl Setting {
             Err(_) => library.get(name).unwrap().emissivity(bands.nodes_cm1()).unwrap(),
         };
         let object = EnvironmentObject { temperature_k: 293.15, emissivity: None };
-        let counting = presets::get(camera).unwrap().counting(&bands, Some(30.0));
+        let counting = presets::get(camera).unwrap().counting(&bands, &View::at(Some(30.0)));
         Self {
             surroundings: Surroundings::new(bands.nodes_cm1(), vec![object; objects]).unwrap(),
             emissivity: of(pair[0]),
