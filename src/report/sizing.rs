@@ -101,8 +101,9 @@ fn solve_for(result: &Sizing) -> Table {
         table.push(vec![
             quantity.key().into(),
             optional(solution.value),
-            number(solution.camera),
-            number(solution.statistical_distance),
+            // A distance that is not stated, a speed that nobody knows.
+            optional(Some(solution.camera).filter(|value| value.is_finite())),
+            optional(Some(solution.statistical_distance).filter(|value| value.is_finite())),
             solution.reason.clone().unwrap_or_default(),
             solution.caps.iter().map(|cap| cap.code).collect::<Vec<_>>().join(" "),
         ]);
