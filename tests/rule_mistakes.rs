@@ -102,7 +102,7 @@ fn every_mistake_in_a_rule_is_one_line_with_file_line_and_key() {
         (
             "[0.2, 0.8]",
             "[0.2, 1.2]",
-            "a.toml:16: envelope.lighting[1]: lighting[1] is 1.2; it must be between 0 and 1",
+            "a.toml:16: envelope.lighting[1]: lighting is 1.2; it must be between 0 and 1",
         ),
         (
             "lighting = [0.2, 0.8]",

@@ -99,9 +99,11 @@ fn details(camera: &CameraVerdict) -> String {
 /// A scene in one line.
 pub(in crate::report) fn scene(scene: &LimitingScene) -> String {
     let kelvin: Vec<String> = scene.surroundings_k.iter().map(|kelvin| celsius(*kelvin)).collect();
-    let distance = scene
-        .distance_m
-        .map_or_else(String::new, |distance| format!(", {} m away", significant(distance, 3)));
+    let distance = match scene.distance_m {
+        Some(distance) if scene.distance_matters => format!(", {} m away", significant(distance, 3)),
+        Some(_) => ", at any distance".into(),
+        None => String::new(),
+    };
     let surroundings = if kelvin.is_empty() {
         ", no surroundings".to_owned()
     } else {
