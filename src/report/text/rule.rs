@@ -155,11 +155,13 @@ fn one(solved: Quantity, solution: &Solution) -> String {
 /// The part of the envelope that no camera does, line by line.
 pub(in crate::report) fn no_camera(part: &NotIdentifiable) -> Vec<String> {
     let found = if part.fraction > 0.0 {
-        format!("In {} (+- {}) of the envelope", share(part.fraction), percent(part.standard_error))
+        let part_of =
+            format!("In {} (+- {}) of the envelope", share(part.fraction), percent(part.standard_error));
+        format!("{part_of} no camera could do it")
     } else {
-        format!("In none of {} scenes drawn from the envelope", part.scenes)
+        format!("In all of {} scenes drawn from the envelope some camera could do it", part.scenes)
     };
-    let mut lines = vec![format!("{found} no camera could do it"), part.definition.clone()];
+    let mut lines = vec![found, part.definition.clone()];
     if let Some(near) = &part.neighbourhood {
         lines.push(format!(
             "nine tenths of these scenes are within {} K of equilibrium with the surroundings, unlit share up to {}",
