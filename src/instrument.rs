@@ -43,6 +43,9 @@ pub const FASTEST_F_NUMBER: f64 = 0.5;
 /// Share of a frame by which a stated exposure may exceed it: rounding.
 const FRAME_ROUNDING: f64 = 0.01;
 
+/// The most bits a converter has.
+const MOST_BITS: u32 = 32;
+
 /// When the bands are exposed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -186,6 +189,16 @@ impl Camera {
             return Err(Error::malformed(
                 "quantisation_bits without a full_well to divide",
                 "write full_well = 1e7 beside it",
+            ));
+        }
+        if self.quantisation_bits.is_some_and(|bits| bits > MOST_BITS) {
+            let bits = f64::from(self.quantisation_bits.unwrap_or_default());
+            return Err(Error::out_of_range("quantisation_bits", bits, "", format!("at most {MOST_BITS}")));
+        }
+        if self.filter_temperature_k.is_some() && self.sensor_temperature_k.is_none() {
+            return Err(Error::malformed(
+                "filter_temperature without a sensor_temperature",
+                "write sensor_temperature = \"30 degC\" beside it",
             ));
         }
         check::positive("frames", f64::from(self.frames), "")?;

@@ -20,6 +20,8 @@ use crate::spectrum::Bands;
 
 /// Factors between 10⁻³⁰ and 10³⁰ of the camera's own value are searched.
 const LOG_RANGE: f64 = 69.0;
+/// Relative step by which a solution may be moved so that it meets the demand in spite of rounding.
+const SAFE_SIDE: f64 = 1e-11;
 /// Why no value suffices where the distance is 0.
 const NEVER: &str = "the two cannot be told apart";
 
@@ -95,9 +97,10 @@ impl CameraTask<'_> {
             let reason = match quantity {
                 _ if ceiling == 0.0 => NEVER.into(),
                 Quantity::FNumber => format!("no lens in air is faster than f/{FASTEST_F_NUMBER}"),
-                Quantity::Exposure => {
+                Quantity::Exposure if self.camera.flicker_fraction > 0.0 => {
                     "flicker noise grows as fast as the signal: no exposure is long enough".into()
                 }
+                Quantity::Exposure => "no exposure that was tried is long enough".into(),
                 Quantity::Noise => "shot noise alone is too much: no detector is quiet enough".into(),
                 _ if self.size_m.is_some() => "the largest pixel that the target fills is too small".into(),
                 _ => "no pixel is large enough".into(),
@@ -110,8 +113,14 @@ impl CameraTask<'_> {
             return Ok(Solution::new(Some(value), camera, self.required, None));
         }
         let log = crossing(-LOG_RANGE, best, |log| Ok((at(log)? / self.required).ln().max(-1e3)))?;
-        let value = self.scaled(quantity, log.exp());
-        let reached = distance(&self.forward(quantity, value))?;
+        // On the side that meets the demand, by a few units in the last place if need be.
+        let (mut value, mut more) = (self.scaled(quantity, log.exp()), f64::EPSILON);
+        let mut reached = distance(&self.forward(quantity, value))?;
+        while reached < self.required && more < SAFE_SIDE {
+            value = self.scaled(quantity, (log + more).min(best).exp());
+            reached = distance(&self.forward(quantity, value))?;
+            more *= 2.0;
+        }
         Ok(Solution::new(Some(value), camera, reached, None))
     }
 
@@ -123,10 +132,12 @@ impl CameraTask<'_> {
         let enough = |d: f64| d >= self.required * (1.0 - 1e-9);
         let ceiling = at(u32::MAX)?;
         if !enough(ceiling) {
-            let why = if ceiling == 0.0 {
-                NEVER
-            } else {
-                "flicker noise does not average out: no number of frames is enough"
+            let why = match ceiling {
+                0.0 => NEVER,
+                _ if self.camera.flicker_fraction > 0.0 => {
+                    "flicker noise does not average out: no number of frames is enough"
+                }
+                _ => "not even four thousand million frames are enough",
             };
             return Ok(Solution::new(None, camera, ceiling, Some(why.to_owned())));
         }
@@ -147,8 +158,7 @@ impl CameraTask<'_> {
     fn solve_speed(&self, distance: impl FnMut(&Trial) -> Result<f64>) -> Result<Solution> {
         let camera = self.value(Quantity::Speed);
         let Some(motion) = Motion::of(self.camera, self.distance_m) else {
-            let keys = Motion::missing(self.camera, self.distance_m).join(", ");
-            let reason = format!("the scenario does not say {keys}");
+            let reason = "the scenario does not say target.distance".to_owned();
             return Ok(Solution::new(None, camera, f64::NAN, Some(reason)));
         };
         let exposure = self.solve(Quantity::Exposure, distance)?;

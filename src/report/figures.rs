@@ -250,10 +250,14 @@ pub fn photon_map(map: &PhotonMap, target: &str, alternative: &str, here: (f64, 
         (Axis::linear("thermal lighting factor V"), map.lightings.clone()),
         (Axis::log("required photons").range(low, high), map.photons.clone()),
     )
-    .subtitle(format!(
-        "By the {by} distance, shot noise only. In equilibrium (V = 1, T = {:.1} °C) no number of photons suffices.",
-        map.equilibrium_k - 273.15
-    ))
+    .subtitle(if top == 1.0 {
+        format!(
+            "By the {by} distance, shot noise only. In equilibrium (V = 1, T = {:.1} °C) no number of photons suffices.",
+            map.equilibrium_k - 273.15
+        )
+    } else {
+        format!("By the {by} distance, shot noise only. V is that of the first of the surroundings, the others' held.")
+    })
     .no_value("no number of photons suffices")
     .contours(levels)
     .marker(Marker::new("this scene", here.0 - 273.15, here.1));

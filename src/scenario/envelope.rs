@@ -60,6 +60,10 @@ impl Envelope {
                 without_repetition(&items, material)
             })?,
         };
+        if envelope == Self::default() {
+            let instead = "write at least one range, such as temperature = [\"30 degC\", \"40 degC\"], or leave the table out";
+            return Err(entry.fail(Error::malformed("the envelope is empty", instead)));
+        }
         let least: f64 = envelope.lighting.iter().flatten().map(|range| range[0]).sum();
         if least > 1.0 + LIGHTING_ROUNDING {
             let least = (least * 1e12).round() / 1e12;

@@ -39,7 +39,7 @@ pub(super) fn resolved_at(spec: &CameraSpec, place: &dyn Fn(&str) -> Place) -> R
         // The figure at fault, where a scenario has a key of its name.
         let key = match &error {
             Error::OutOfRange { quantity, .. } if !quantity.contains(' ') => quantity.clone(),
-            Error::Malformed { .. } => "quantisation_bits".to_owned(),
+            Error::Malformed { found, .. } => found.split(' ').next().unwrap_or("preset").to_owned(),
             _ => "preset".to_owned(),
         };
         error.at(place(&key))

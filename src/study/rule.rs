@@ -243,10 +243,15 @@ impl RuleStudy {
         );
         if let Some(speed) = speed_m_s {
             let speed = words::significant(speed, 3);
-            quotable.push_str(&format!(", and nothing moves by a pixel during its exposure at {speed} m/s"));
+            quotable.push_str(&format!(
+                ", and nothing that stands moves by a pixel while all bands are exposed, seen from a vehicle that drives \
+                 forward at {speed} m/s"
+            ));
         }
         quotable.push('.');
-        if let Some(hardware) = hardware_m2_s {
+        // A target smaller than its pixel, or air, takes light away that the figure of the hardware does not know of.
+        let plain = self.rule.scenario.target.size_m.is_none() && self.rule.scenario.atmosphere.is_none();
+        if let Some(hardware) = hardware_m2_s.filter(|_| plain) {
             quotable.push_str(&format!(
                 " Where its noise is spread over the bands as its photons are, this is t A_p/((1+gamma) F^2) >= {hardware:.2e} m^2 s \
                  (exposure t, pixel area A_p, noise over photons gamma, f-number F; lossless optics)."

@@ -64,6 +64,8 @@ pub struct VerdictAlone {
 pub struct Verdict {
     /// Whether the requirement is met; `None` without a camera.
     pub met: Option<bool>,
+    /// What it is not met by: `distance`, `motion-blur`, `full-well`; empty if it is met or there is no camera.
+    pub fails_by: Vec<&'static str>,
     /// The answer in a sentence.
     pub sentence: String,
     /// Statistical distance that the camera reaches against the limiting alternative.
@@ -174,7 +176,7 @@ impl Study {
         if sensitivity.is_some() {
             scenario.sensitivity.get_or_insert_default();
         }
-        let verdict = self.verdict(pair, &requirement);
+        let verdict = self.verdict(pair, &requirement, self.spoiled(camera.as_ref()));
         Ok(Sizing {
             scenario,
             verdict,
@@ -198,20 +200,31 @@ impl Study {
     pub fn verdict_alone(&self) -> Result<Option<VerdictAlone>> {
         let Some(camera) = &self.camera else { return Ok(None) };
         let check = self.check(Skipping::On)?;
-        let (yes, can) = if check.identifiable { ("Yes", "can") } else { ("No", "cannot") };
+        let spoiled = self.spoiled(self.camera_result(self.photon_radiance()).as_ref());
+        let (yes, can) = match (check.identifiable, spoiled.is_empty()) {
+            (true, true) => ("Yes", "can"),
+            (true, false) => ("No", "could"),
+            (false, _) => ("No", "cannot"),
+        };
+        let but = if check.identifiable && !spoiled.is_empty() {
+            format!(", but {}", spoiled_in_words(&spoiled))
+        } else {
+            String::new()
+        };
         let other = match (&check.not_told_from, self.alternatives.as_slice()) {
             (Some(name), _) => name,
             (None, [only]) => &only.name,
             (None, _) => "every alternative",
         };
         let sentence = format!(
-            "{yes}: {} {can} tell {} from {other} with {} reliability.",
+            "{yes}: {} {can} tell {} from {other} with {} reliability{but}.",
             camera.name,
             self.target.name,
             reliability(self.required)
         );
         let verdict = Verdict {
-            met: Some(check.identifiable),
+            met: Some(check.identifiable && spoiled.is_empty()),
+            fails_by: (!check.identifiable).then_some("distance").into_iter().chain(spoiled).collect(),
             sentence,
             statistical_distance: None,
             required_distance: self.required,
@@ -311,9 +324,17 @@ impl Study {
         Ok(Solutions(solved))
     }
 
-    fn verdict(&self, pair: &PairResult, requirement: &RequirementResult) -> Verdict {
+    fn verdict(
+        &self,
+        pair: &PairResult,
+        requirement: &RequirementResult,
+        spoiled: Vec<&'static str>,
+    ) -> Verdict {
         let reached = pair.statistical_distance;
-        let met = reached.map(|reached| reached >= self.required);
+        let far_enough = reached.map(|reached| reached >= self.required);
+        let met = far_enough.map(|enough| enough && spoiled.is_empty());
+        let mut fails_by = if far_enough == Some(false) { vec!["distance"] } else { Vec::new() };
+        fails_by.extend(&spoiled);
         let (target, other) = (&pair.target, &pair.alternative);
         let wanted = reliability(self.required);
         let camera = self.camera.as_ref().map_or("", |camera| camera.name.as_str());
@@ -329,20 +350,51 @@ impl Study {
                 "Telling {target} from {other} with {wanted} reliability takes at least {photons:.2e} photons."
             ),
             (Some(d), Some(_)) => {
-                let (yes, what) = if d >= self.required { ("Yes", "can") } else { ("No", "cannot") };
                 let reached = reliability(d);
-                format!(
-                    "{yes}: {camera} {what} tell {target} from {other} with {wanted} reliability; \
-                     it reaches {reached} at most."
-                )
+                match (d >= self.required, spoiled.is_empty()) {
+                    (true, false) => format!(
+                        "No: {camera} could tell {target} from {other} with {wanted} reliability, but {}.",
+                        spoiled_in_words(&spoiled)
+                    ),
+                    (enough, _) => {
+                        let (yes, what) = if enough { ("Yes", "can") } else { ("No", "cannot") };
+                        format!(
+                            "{yes}: {camera} {what} tell {target} from {other} with {wanted} reliability; \
+                             it reaches {reached} at most."
+                        )
+                    }
+                }
             }
         };
         Verdict {
             met,
+            fails_by,
             sentence,
             statistical_distance: reached,
             required_distance: self.required,
             margin: reached.map(|reached| reached / self.required),
         }
     }
+
+    /// What spoils the camera's image whatever the distance: the demanded speed, the full well.
+    fn spoiled(&self, camera: Option<&CameraResult>) -> Vec<&'static str> {
+        let Some(camera) = camera else { return Vec::new() };
+        let mut spoiled = Vec::new();
+        if camera.motion_blur_pixels.is_some_and(|blur| blur >= 1.0) {
+            spoiled.push("motion-blur");
+        }
+        if camera.camera.full_well.is_some_and(|full| camera.brightest_reading > full) {
+            spoiled.push("full-well");
+        }
+        spoiled
+    }
+}
+
+/// What is wrong with an image, in words.
+fn spoiled_in_words(spoiled: &[&str]) -> String {
+    let words = spoiled.iter().map(|by| match *by {
+        "motion-blur" => "the target moves by a pixel or more while all bands are exposed",
+        _ => "a reading does not fit into the full well",
+    });
+    words.collect::<Vec<_>>().join(", and ")
 }

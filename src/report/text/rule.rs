@@ -138,6 +138,7 @@ pub(in crate::report) fn would_do(fixes: &Fixes) -> String {
 fn in_words(spoiled: &[&str]) -> String {
     let words = spoiled.iter().map(|reason| match *reason {
         "motion-blur" => "motion blur of a pixel or more",
+        "motion-unknown" => "motion that is not known without a distance",
         "full-well" => "the brightest scene fills the well",
         "frame-rate" => "longer than a frame",
         "diffraction" => "diffraction blurs over more than a pixel",
@@ -179,5 +180,8 @@ pub(in crate::report) fn no_camera(part: &NotIdentifiable) -> Vec<String> {
 }
 
 fn percent(share: f64) -> String {
+    if share < 1e-6 {
+        return "0 %".into();
+    }
     format!("{} %", significant(100.0 * share, 2))
 }

@@ -120,15 +120,25 @@ fn readings(pair: &PairResult, result: &Sizing) -> String {
 /// What would do, quantity by quantity, and what stands against it.
 fn solutions(result: &Sizing) -> String {
     let Some(solutions) = &result.solve_for else { return String::new() };
-    let mut out =
-        String::from("What would meet the requirement, each with the rest of the camera as it is\n");
+    let head = match result.verdict.met {
+        Some(true) => "How far each figure may go, with the rest of the camera as it is",
+        _ => "What would meet the requirement, each with the rest of the camera as it is",
+    };
+    let mut out = format!("{head}\n");
     for (solved, solution) in &solutions.0 {
         // A speed that was not asked for and cannot be worked out is of no interest.
         if *solved == Quantity::Speed && solution.camera.is_nan() {
             continue;
         }
         let now = if solution.camera.is_finite() {
-            format!("(now {})", in_unit(*solved, solution.camera))
+            // The noise of bands may differ: what is solved for is a factor of them all.
+            let factor = match (*solved, solution.value) {
+                (Quantity::Noise, Some(value)) if solution.camera > 0.0 => {
+                    format!(", times {}", significant(value / solution.camera, 3))
+                }
+                _ => String::new(),
+            };
+            format!("(now {}{factor})", in_unit(*solved, solution.camera))
         } else {
             String::new()
         };
@@ -143,7 +153,11 @@ fn solutions(result: &Sizing) -> String {
             ),
             (None, None) => "none suffices".into(),
         };
-        let _ = writeln!(out, "  {:<34} {}", solved.name(), answer.trim_end());
+        let name = match solved {
+            Quantity::Speed => "speed, with the exposure that takes",
+            other => other.name(),
+        };
+        let _ = writeln!(out, "  {name:<34} {}", answer.trim_end());
         for cap in &solution.caps {
             let side = if cap.blocks { "but" } else { "better" };
             let bound = match (cap.blocks, solved.is_least()) {

@@ -70,6 +70,10 @@ impl RuleStudy {
             fails_by.push("distance");
         }
         fails_by.extend(&image.spoiled);
+        if self.rule.scenario.requirement.speed_m_s.is_some() && image.blur.is_none() {
+            // What cannot be said is not met.
+            fails_by.push("motion-unknown");
+        }
         let passes = fails_by.is_empty();
         let gap = worst.lower_bound.filter(|_| distance > 0.0).map(|bound| 1.0 - bound / distance);
         let certificate =

@@ -4,7 +4,6 @@ use super::super::identify::PairResult;
 use super::super::size::CameraResult;
 use super::super::{Study, Warning};
 use crate::instrument::Camera;
-use crate::policy::Motion;
 use crate::policy::caps::longest_wavelength_m;
 use crate::words::{quantity, significant};
 
@@ -31,6 +30,7 @@ impl Study {
             self.diffraction(camera),
             self.frame_rate(camera),
             self.outside_range(camera),
+            self.filter_light(camera),
             assumed(camera),
         ];
         found.into_iter().flatten().collect()
@@ -39,17 +39,31 @@ impl Study {
     fn motion(&self, result: &CameraResult) -> Option<Warning> {
         self.scenario.requirement.speed_m_s?;
         let Some(blur) = result.motion_blur_pixels else {
-            let missing = Motion::missing(&result.camera, self.scenario.target.distance_m).join(", ");
-            let message =
-                format!("a speed is given, but for the motion blur the scenario must say {missing}");
+            let message = "a speed is given, but for the motion blur the scenario must say target.distance";
             return Some(Warning::new("motion-blur-unknown", message));
         };
         (blur >= 1.0).then(|| {
             let blur = significant(blur, 2);
-            let message =
-                format!("the target moves {blur} pixels during an exposure; the bound assumes less than 1");
+            let message = format!(
+                "the target moves {blur} pixels until all bands are exposed; the bound assumes less than 1"
+            );
             Warning::new("motion-blur", message)
         })
+    }
+
+    /// Filters without the light they throw back, or a sensor's temperature without filters.
+    fn filter_light(&self, camera: &Camera) -> Option<Warning> {
+        let filters = self.open_bands.bands().iter().any(|band| band.name.is_some());
+        let message = match (filters, camera.sensor_temperature_k) {
+            (true, None) => {
+                "the light that filters throw back onto the sensor, and their own, is left out: sensor_temperature is not given"
+            }
+            (false, Some(_)) => {
+                "sensor_temperature changes nothing: there are no filters that throw its light back"
+            }
+            _ => return None,
+        };
+        Some(Warning::new("filter-light", message))
     }
 
     fn small_target(&self, camera: &Camera) -> Option<Warning> {
