@@ -250,10 +250,31 @@ impl Camera {
         self.exposure_s * f64::from(self.frames)
     }
 
-    /// Time until all bands are read, s.
+    /// Time until all bands of all frames are read, s. Exposures wait for their frames where the frame rate is known.
     #[must_use]
     pub fn acquisition_s(&self, bands: usize) -> f64 {
-        self.integration_s() * self.readout.exposures(bands) as f64
+        self.series_s(self.readout.exposures(bands) as f64 * f64::from(self.frames))
+    }
+
+    /// Time until all bands are exposed once, s.
+    #[must_use]
+    pub fn sweep_s(&self, bands: usize) -> f64 {
+        self.series_s(self.readout.exposures(bands) as f64)
+    }
+
+    /// From the begin of the first to the end of the last of so many exposures, s.
+    fn series_s(&self, exposures: f64) -> f64 {
+        self.exposure_s + (exposures - 1.0) * self.exposure_s.max(self.frame_s().unwrap_or(0.0))
+    }
+
+    /// The exposure with which all bands are exposed once in `time_s`; not positive where the frames alone take longer.
+    #[must_use]
+    pub fn exposure_of_sweep_s(&self, bands: usize, time_s: f64) -> f64 {
+        let exposures = self.readout.exposures(bands) as f64;
+        match self.frame_s() {
+            Some(frame_s) if time_s < exposures * frame_s => time_s - (exposures - 1.0) * frame_s,
+            _ => time_s / exposures,
+        }
     }
 
     /// The longest exposure of a frame, s, where the frame rate is known.

@@ -82,10 +82,11 @@ pub struct Circumstances<'a> {
     pub brightest: &'a dyn Fn(&Trial) -> Result<f64>,
 }
 
-/// Longest wavelength of bands, m.
+/// Longest wavelength of bands, at the edge of the outermost, m.
 #[must_use]
 pub fn longest_wavelength_m(bands: &Bands) -> f64 {
-    0.01 / bands.range_cm1().0
+    let edge = bands.bands().iter().map(|band| band.low_cm1).fold(f64::INFINITY, f64::min);
+    0.01 / if edge > 0.0 { edge } else { bands.range_cm1().0 }
 }
 
 /// What limits `quantity` where all else is as in `trial`.
@@ -104,12 +105,18 @@ pub fn limits(quantity: Quantity, trial: &Trial, given: &Circumstances<'_>) -> R
         Quantity::Exposure => {
             if let (Some(speed), Some(motion)) = (given.speed_m_s, Motion::of(camera, trial.distance_m)) {
                 let exposures = camera.readout.exposures(given.bands.len());
-                let longest = motion.longest_s(speed) / exposures as f64;
+                let longest = camera.exposure_of_sweep_s(given.bands.len(), motion.longest_s(speed));
                 let all =
                     if exposures > 1 { format!(" for all {exposures} exposures") } else { String::new() };
-                let reason =
-                    format!("in longer the target moves a pixel at {} m/s{all}", significant(speed, 3));
-                push("motion", longest, false, reason);
+                let speed = significant(speed, 3);
+                let reason = if longest > 0.0 {
+                    format!("in longer the target moves a pixel at {speed} m/s{all}")
+                } else {
+                    format!(
+                        "the target moves a pixel at {speed} m/s while {exposures} frames pass, however short the exposures"
+                    )
+                };
+                push("motion", longest.max(0.0), false, reason);
             }
             if let Some(frame) = camera.frame_s() {
                 push("frame-rate", frame, false, "a frame is no longer".into());

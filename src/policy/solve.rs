@@ -22,6 +22,8 @@ use crate::spectrum::Bands;
 const LOG_RANGE: f64 = 69.0;
 /// Relative step by which a solution may be moved so that it meets the demand in spite of rounding.
 const SAFE_SIDE: f64 = 1e-11;
+/// Where the frames alone take longer than a speed allows, an exposure of no time, s.
+const SHORTEST_S: f64 = 1e-30;
 /// Why no value suffices where the distance is 0.
 const NEVER: &str = "the two cannot be told apart";
 
@@ -174,7 +176,7 @@ impl CameraTask<'_> {
 
     /// Time until all bands are exposed once, s.
     fn time_s(&self, exposure_s: f64) -> f64 {
-        exposure_s * self.camera.readout.exposures(self.bands.len()) as f64
+        Camera { exposure_s, ..self.camera.clone() }.sweep_s(self.bands.len())
     }
 
     /// The camera as it is, where it is.
@@ -201,7 +203,9 @@ impl CameraTask<'_> {
             Quantity::Distance => trial.distance_m = value.is_finite().then_some(value),
             Quantity::Speed => {
                 if let Some(motion) = Motion::of(self.camera, self.distance_m) {
-                    camera.exposure_s = motion.longest_s(value) / self.time_s(1.0);
+                    let time_s = motion.longest_s(value);
+                    camera.exposure_s =
+                        self.camera.exposure_of_sweep_s(self.bands.len(), time_s).max(SHORTEST_S);
                 }
             }
         }

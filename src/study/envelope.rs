@@ -11,8 +11,10 @@
 //! * Distance z: étendue πA/(4F² + (f/z)²) grows with z, by the share (f/2Fz)² in all; the share of the pixel that
 //!   the target fills and the transmittance of the path fall, the light of the path and from behind the
 //!   target grow. Étendue × fill rises, then falls: it is least at one of the ends. Where one end has the smaller
-//!   κ and the larger v in all bands, the worst scene is there; else both ends are searched. With air on the path
-//!   it is assumed that between the ends no distance is worse than both.
+//!   κ and the larger v in all bands, the worst scene is there; else both ends are searched. Air that changes a
+//!   spectrum within a band (bands of several nodes) changes S − S′ too, and any distance may be the worst: distances
+//!   between are then searched, which is no proof. With air and bands of one node it is assumed that between the
+//!   ends no distance is worse than both.
 //! * Added variance that depends on the scene (bunched photons, an interferometer, light from behind the target) is
 //!   taken in the brightest scene of the envelope, where it is largest.
 //!

@@ -31,6 +31,8 @@ use crate::words;
 
 /// Relative difference of counts or variance from which on a distance matters.
 const NOTICEABLE: f64 = 1e-3;
+/// Distances that are searched where air changes spectra within bands, both ends among them.
+const DISTANCES: usize = 25;
 
 /// What is asked of a rule.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -50,6 +52,8 @@ struct Candidate {
     sighted: Vec<Sighted>,
     /// Whether what is counted depends on the distance.
     distance_matters: bool,
+    /// Whether distances between the ends are searched too, which is no proof.
+    distance_searched: bool,
     /// From the least distance, every material in turn.
     near: Vec<Study>,
 }
@@ -278,6 +282,7 @@ fn candidate(rule: &Rule, index: usize, envelope: &Envelope, library: &Library) 
     let camera = camera.transpose()?;
     let mut scenario = rule.with_camera(index);
     let (mut sighted, mut near, mut distance_matters) = (Vec::new(), Vec::new(), false);
+    let mut distance_searched = false;
     for material in envelope.materials.iter().flatten() {
         scenario.target.material = material.clone();
         let mut at = |distance_m: Option<f64>| {
@@ -296,6 +301,15 @@ fn candidate(rule: &Rule, index: usize, envelope: &Envelope, library: &Library) 
         }
         let far = at(most)?;
         distance_matters |= far.differs_from(&close, NOTICEABLE);
+        if let (true, [Some(least), Some(most)]) = (close.study.air_reshapes_bands(), [least, most]) {
+            distance_searched = true;
+            let steps = (1..DISTANCES - 1).map(|i| i as f64 / (DISTANCES - 1) as f64);
+            let between = steps.map(|share| least * (most / least).powf(share));
+            let seen = between.map(|z| Sighted::new(close.study.from_distance(z)?, envelope));
+            sighted.extend(seen.collect::<Result<Vec<_>>>()?);
+            sighted.extend([close, far]);
+            continue;
+        }
         match (far.is_worse_than(&close), close.is_worse_than(&far)) {
             (true, _) => sighted.push(far),
             (false, true) => sighted.push(close),
@@ -305,7 +319,7 @@ fn candidate(rule: &Rule, index: usize, envelope: &Envelope, library: &Library) 
     let given = rule.cameras.get(index).and_then(|camera| camera.name.clone());
     let own = camera.map(|camera| camera.name).filter(|_| spec.is_some_and(|spec| spec.preset.is_some()));
     let name = given.or(own).unwrap_or_else(|| format!("camera {}", index + 1));
-    Ok(Candidate { name, sighted, distance_matters, near })
+    Ok(Candidate { name, sighted, distance_matters, distance_searched, near })
 }
 
 /// Refuses a known camera, named alone, of which no document states all that is needed.

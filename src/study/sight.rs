@@ -84,6 +84,22 @@ impl Study {
         self.view(camera, &self.bands, self.scenario.target.distance_m, &self.air)
     }
 
+    /// Whether air changes spectra within bands, so that a distance may be worse than those on either side of it.
+    pub(super) fn air_reshapes_bands(&self) -> bool {
+        self.atmosphere.is_some() && !self.open_bands.one_node_per_band()
+    }
+
+    /// The same scene from another distance.
+    ///
+    /// # Errors
+    /// A distance of which the air's table says nothing.
+    pub(super) fn from_distance(&self, distance_m: f64) -> Result<Self> {
+        let mut study = self.clone();
+        study.scenario.target.distance_m = Some(distance_m);
+        (study.bands, study.air) = study.received(study.camera.as_ref(), Some(distance_m))?;
+        Ok(study)
+    }
+
     /// What `camera` sees from `distance_m`.
     ///
     /// # Errors

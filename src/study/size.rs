@@ -262,7 +262,7 @@ impl Study {
         let gamma = gamma_per_band(&counting, &signal);
         let distance_m = self.scenario.target.distance_m;
         let blur = self.scenario.requirement.speed_m_s.and_then(|speed| {
-            let time_s = camera.acquisition_s(self.bands.len()) / f64::from(camera.frames);
+            let time_s = camera.sweep_s(self.bands.len());
             Motion::of(camera, distance_m).map(|motion| motion.blur_pixels(speed, time_s))
         });
         let var: f64 = (0..self.bands.len()).map(|w| counting.var_added(w)).sum();

@@ -2,8 +2,9 @@
 //!
 //! A target that fills its pixels is as bright from any distance, but for the air on the path and the last bit of
 //! étendue near the lens (S7). Distance matters through the air and through the share of the pixel that a target of
-//! stated size fills, both of which fall with it; near the lens the distance d rises a little. So the crossing is sought
-//! from the far end.
+//! stated size fills, both of which fall with it; near the lens the distance d rises a little. Air changes the spectrum
+//! within a wide band too, so that d may rise and fall: the answer is how far the task is met without a gap from the
+//! nearest distance at which it is, by steps of a factor, and it is said where that is not right before the lens.
 
 use super::{CameraTask, NEVER, Quantity, Solution, Trial};
 use crate::error::Result;
@@ -13,6 +14,8 @@ use crate::root::crossing;
 const NEAR_FOCAL_LENGTHS: f64 = 2.0;
 /// Farther than this nothing on Earth is, m.
 const FAR_M: f64 = 1e8;
+/// Nearer than this nobody asks, m.
+const CLOSE_M: f64 = 5.0;
 /// Factor from one distance to the next as the crossing is bracketed.
 const STEP: f64 = 2.0;
 
@@ -48,25 +51,31 @@ pub(super) fn solve(
         };
         return Ok(none(beyond, reason));
     }
+    // From near to far, up to the first distance that is too far.
+    let mut steps = vec![far];
+    while steps.last().is_some_and(|z| z / STEP >= near) {
+        steps.push(steps[steps.len() - 1] / STEP);
+    }
     let mut best = beyond;
-    while far / STEP >= near {
-        let nearer = far / STEP;
-        let reached = at(nearer)?;
+    let mut met: Option<f64> = None;
+    let mut first: Option<f64> = None;
+    for z in steps.into_iter().rev() {
+        let reached = at(z)?;
         best = best.max(reached);
         if reached >= task.required {
-            let excess =
-                |nearness: f64| Ok((at((-nearness).exp())? / task.required).max(1e-300).ln().max(-1e3));
-            let value = (-crossing(-far.ln(), -nearer.ln(), excess)?).exp();
-            let statistical_distance = at(value)?;
-            return Ok(Solution {
-                value: Some(value),
-                camera,
-                statistical_distance,
-                reason: None,
-                caps: Vec::new(),
-            });
+            first = first.or(Some(z));
+            met = Some(z);
+            continue;
         }
-        far = nearer;
+        let Some(nearer) = met else { continue };
+        let excess = |nearness: f64| Ok((at((-nearness).exp())? / task.required).max(1e-300).ln().max(-1e3));
+        let value = (-crossing(-z.ln(), -nearer.ln(), excess)?).exp();
+        let statistical_distance = at(value)?;
+        // Nearer than a few metres the lens itself takes its share.
+        let reason = first
+            .filter(|first| *first > CLOSE_M && *first > STEP * near)
+            .map(|first| format!("nearer than some {first:.2} m it is not met"));
+        return Ok(Solution { value: Some(value), camera, statistical_distance, reason, caps: Vec::new() });
     }
     let reason = if best == 0.0 { NEVER } else { "no distance is short enough" };
     Ok(none(best, reason.into()))

@@ -143,7 +143,8 @@ fn solutions(result: &Sizing) -> String {
             String::new()
         };
         let answer = match (solution.value, &solution.reason) {
-            (Some(value), _) => format!("{:<18} {now}", in_unit(*solved, value)),
+            (Some(value), None) => format!("{:<18} {now}", in_unit(*solved, value)),
+            (Some(value), Some(reason)) => format!("{:<18} {now}; {reason}", in_unit(*solved, value)),
             (None, Some(reason)) if solution.statistical_distance >= result.requirement.distance => {
                 format!("any: {reason}")
             }

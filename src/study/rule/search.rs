@@ -16,16 +16,22 @@ use crate::instrument::Camera;
 use crate::policy::envelope::{Certificate, Effort, WorstCase, worst_case};
 use crate::policy::{self, Quantity};
 use crate::scene::State;
+use crate::words::significant;
 use std::collections::BTreeMap;
 
 /// How far below the distance attained a bound may be, as a share of it.
 const TOLERANCE: f64 = 0.01;
+/// Golden sections of the distance, each to 0.62 of what it was.
+const GOLDEN_STEPS: usize = 8;
+const GOLDEN: f64 = 0.618_033_988_749_895;
 /// Boxes of the branch and bound for each pair at most: a second or so.
 const BOXES: u64 = 200_000;
 
 /// A pair's scene with what is known of it.
 struct Searched {
     pair: Estimate,
+    /// Where it was found, if between the distances of the candidate.
+    between: Option<Box<Sighted>>,
     certificate: Option<Certificate>,
     lower_bound: Option<f64>,
 }
@@ -45,7 +51,7 @@ struct Image {
 impl Searched {
     /// What the estimate says alone.
     fn estimated(pair: Estimate) -> Self {
-        Self { pair, certificate: None, lower_bound: None }
+        Self { pair, between: None, certificate: None, lower_bound: None }
     }
 }
 
@@ -58,7 +64,7 @@ impl RuleStudy {
         work: &mut Work,
     ) -> Result<CameraVerdict> {
         let worst = self.worst(candidate, alone, work)?;
-        let sighted = &candidate.sighted[worst.pair.sighted];
+        let sighted = worst.between.as_deref().unwrap_or(&candidate.sighted[worst.pair.sighted]);
         let surface = &sighted.study.alternatives[worst.pair.alternative];
         let distance = worst.pair.distance;
         let at = Study { state: worst.pair.state.clone(), ..sighted.study.clone() };
@@ -185,12 +191,23 @@ impl RuleStudy {
         let state =
             near.ranges(&self.envelope).map_or_else(|_| near.state.clone(), |ranges| brightest(&ranges));
         let mut warnings = Study { state, ..near.clone() }.camera_warnings();
+        if let (Some(speed), 2..) = (self.rule.scenario.requirement.speed_m_s, camera.frames) {
+            let all_s = camera.acquisition_s(near.bands.len());
+            let message = format!(
+                "its {} frames take {} s, in which the vehicle drives {} m: they must be laid over each other, and the scene \
+                 must not change",
+                camera.frames,
+                significant(all_s, 2),
+                significant(all_s * speed, 2)
+            );
+            warnings.push(Warning::new("frames-in-motion", message));
+        }
         warnings.extend(
             camera.assumed.iter().map(|figure| Warning::new("camera-figure-assumed", figure.clone())),
         );
         if self.rule.scenario.requirement.speed_m_s.is_some() && self.image(candidate, camera).blur.is_none()
         {
-            let message = "a speed is given, but motion blur needs the camera's pixels and field_of_view, and a distance";
+            let message = "a speed is given, but motion blur needs a distance";
             warnings.push(Warning::new("motion-blur-unknown", message));
         }
         warnings
@@ -247,6 +264,11 @@ impl RuleStudy {
             // A scene below the requirement, and other pairs not looked at.
             return Ok(Searched::estimated(worst.pair));
         }
+        if candidate.distance_searched {
+            let worst = self.between(candidate, worst, work)?;
+            let certificate = Some(Certificate::DenseSearch { points: candidate.sighted.len() });
+            return Ok(Searched { lower_bound: None, certificate, ..worst });
+        }
         let distance = worst.pair.distance;
         let certificate = match (worst.certificate, lower) {
             (Some(Certificate::Equilibrium), _) => Some(Certificate::Equilibrium),
@@ -255,6 +277,43 @@ impl RuleStudy {
             (_, Some(bound)) => Some(Certificate::Bounded { gap: 1.0 - bound / distance }),
         };
         Ok(Searched { lower_bound: lower, certificate, ..worst })
+    }
+}
+
+impl RuleStudy {
+    /// The worst distance next to that of the worst pair found, by golden sections of its logarithm.
+    fn between(&self, candidate: &Candidate, worst: Searched, work: &mut Work) -> Result<Searched> {
+        let own = &candidate.sighted[worst.pair.sighted].study;
+        let at = |study: &Study| study.scenario.target.distance_m.unwrap_or(f64::INFINITY);
+        let middle = at(own);
+        let of_target =
+            candidate.sighted.iter().filter(|sighted| sighted.study.target.name == own.target.name);
+        let distances: Vec<f64> = of_target.map(|sighted| at(&sighted.study)).collect();
+        let low = distances.iter().copied().filter(|z| *z < middle).fold(0.0, f64::max);
+        let high = distances.iter().copied().filter(|z| *z > middle).fold(f64::INFINITY, f64::min);
+        let low = if low > 0.0 { low } else { middle };
+        let high = if high.is_finite() { high } else { middle };
+        let mut best = worst;
+        let (mut a, mut b) = (low.ln(), high.ln());
+        for _ in 0..GOLDEN_STEPS {
+            let ends = [b - GOLDEN * (b - a), a + GOLDEN * (b - a)];
+            let mut found = [f64::INFINITY; 2];
+            for (found, end) in found.iter_mut().zip(ends) {
+                let sighted = Sighted::new(own.from_distance(end.exp())?, &self.envelope)?;
+                let searched = search(
+                    &sighted,
+                    Estimate { distance: f64::INFINITY, ..best.pair.clone() },
+                    TOLERANCE,
+                    work,
+                )?;
+                *found = searched.pair.distance;
+                if *found < best.pair.distance {
+                    best = Searched { between: Some(Box::new(sighted)), ..searched };
+                }
+            }
+            if found[0] <= found[1] { b = ends[1] } else { a = ends[0] }
+        }
+        Ok(best)
     }
 }
 
@@ -268,7 +327,7 @@ fn search(sighted: &Sighted, pair: Estimate, tolerance: f64, work: &mut Work) ->
     work.compute(Thing::NearestSearches, evaluations);
     work.compute(Thing::Boxes, boxes);
     let pair = if distance <= pair.distance { Estimate { distance, state, nearest, ..pair } } else { pair };
-    Ok(Searched { pair, certificate: Some(certificate), lower_bound })
+    Ok(Searched { pair, between: None, certificate: Some(certificate), lower_bound })
 }
 
 fn limiting(

@@ -103,7 +103,7 @@ impl Study {
         (exposures > 1.0 && waits).then(|| {
             let message = format!(
                 "{exposures:.0} exposures take {} at {} frames per second, not {}; nothing may change meanwhile",
-                quantity(exposures * frame_s, "s"),
+                quantity(camera.acquisition_s(self.bands.len()), "s"),
                 significant(frame_s.recip(), 3),
                 quantity(exposures * camera.exposure_s, "s"),
             );
