@@ -237,9 +237,12 @@ mod tests {
     fn limits_are_those_of_the_formulas() {
         let trial = trial();
         let camera = &trial.camera;
-        // 800 cm^-1 is 12.5 um.
-        assert!((value(&of(Quantity::Pixel, &trial), "diffraction") / (12.5e-6 * 1.3) - 1.0).abs() < 1e-12);
-        assert!((value(&of(Quantity::FNumber, &trial), "diffraction") / (12.0 / 12.5) - 1.0).abs() < 1e-12);
+        // The band at 800 cm^-1 reaches down to 799.5 cm^-1, 12.508 um.
+        let longest_m = 1e-2 / 799.5;
+        assert!((value(&of(Quantity::Pixel, &trial), "diffraction") / (longest_m * 1.3) - 1.0).abs() < 1e-12);
+        assert!(
+            (value(&of(Quantity::FNumber, &trial), "diffraction") / (12e-6 / longest_m) - 1.0).abs() < 1e-12
+        );
         let exposure = of(Quantity::Exposure, &trial);
         assert!((value(&exposure, "frame-rate") - 1.0 / 60.0).abs() < 1e-15);
         let (pixels, view) = (f64::from(camera.pixels.unwrap()), camera.field_of_view_rad.unwrap());
@@ -262,10 +265,17 @@ mod tests {
     #[test]
     fn a_wheel_of_filters_shares_the_time_between_the_bands() {
         let mut trial = trial();
+        trial.camera.frame_rate_hz = None;
         let at_once = value(&of(Quantity::Exposure, &trial), "motion");
         trial.camera.readout = crate::instrument::Readout::Sequential;
         let one_by_one = value(&of(Quantity::Exposure, &trial), "motion");
         assert!((at_once / one_by_one - 2.0).abs() < 1e-12);
+        // The second waits for its frame: what is left of the time is that of the last exposure.
+        trial.camera.frame_rate_hz = Some(100.0);
+        let waiting = value(&of(Quantity::Exposure, &trial), "motion");
+        assert!((waiting / (at_once - 10e-3) - 1.0).abs() < 1e-12);
+        trial.camera.frame_rate_hz = Some(60.0);
+        assert_eq!(value(&of(Quantity::Exposure, &trial), "motion"), 0.0);
     }
 
     #[test]

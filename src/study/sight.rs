@@ -19,7 +19,7 @@ use crate::instrument::{Camera, Light, NoiseSpec, View};
 use crate::planck;
 use crate::scenario::{AtmosphereSource, Scenario};
 use crate::scene::State;
-use crate::spectrum::Bands;
+use crate::spectrum::{Band, Bands};
 
 /// What is behind the target, on the nodes of the bands.
 #[derive(Debug, Clone, PartialEq)]
@@ -184,9 +184,13 @@ impl Study {
                 return refuse("camera.noise_table", &found, "add rows, or narrow the bands");
             }
         }
+        // A filter that the detector does not see is a mistake, and so is a grid of which it sees nothing; a grid that reaches
+        // beyond the stated range is warned of, since that is often stated of something else than the detector.
         let [low, high] = camera.spectral_range_cm1;
-        let outside =
-            self.open_bands.bands().iter().find(|band| band.high_cm1 <= low || band.low_cm1 >= high);
+        let bands = self.open_bands.bands();
+        let is_outside = |band: &Band| band.high_cm1 <= low || band.low_cm1 >= high;
+        let all = bands.iter().all(is_outside);
+        let outside = bands.iter().find(|band| is_outside(band) && (all || band.name.is_some()));
         if let Some(band) = outside {
             let which = band.name.as_ref().map_or_else(String::new, |name| format!(" of filter `{name}`"));
             let found = format!(

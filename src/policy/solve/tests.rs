@@ -151,9 +151,9 @@ fn the_largest_speed_is_that_of_the_least_exposure() {
         let forward = task.forward(Quantity::Speed, speed);
         assert!((one_band(&forward).unwrap() / required - 1.0).abs() < 1e-9);
     }
-    camera.field_of_view_rad = None;
-    let solution = task(&camera, &bands, 1.0).solve(Quantity::Speed, one_band).unwrap();
-    assert!(solution.value.is_none() && solution.reason.unwrap().contains("camera.field_of_view"));
+    let nowhere = CameraTask { distance_m: None, ..task(&camera, &bands, 1.0) };
+    let solution = nowhere.solve(Quantity::Speed, one_band).unwrap();
+    assert!(solution.value.is_none() && solution.reason.unwrap().contains("target.distance"));
 }
 
 /// d = a² of a pixel up to the one that the target fills, and no more beyond.

@@ -59,7 +59,9 @@ pub fn sizing(result: &Sizing, study: &Study) -> String {
             line("pixel footprint at the target", quantity(footprint, "m"));
         }
         if let Some(blur) = camera.motion_blur_pixels {
-            line("motion during an exposure", format!("{} pixel at most", significant(blur, 2)));
+            let of_bands = camera.camera.readout.exposures(study.bands().len()) > 1;
+            let label = if of_bands { "motion while bands are exposed" } else { "motion during an exposure" };
+            line(label, format!("{} pixel at most", significant(blur, 2)));
         }
         out.push('\n');
     }
@@ -155,7 +157,7 @@ fn solutions(result: &Sizing) -> String {
             (None, None) => "none suffices".into(),
         };
         let name = match solved {
-            Quantity::Speed => "speed, with the exposure that takes",
+            Quantity::Speed => "speed, at the exposure it takes",
             other => other.name(),
         };
         let _ = writeln!(out, "  {name:<34} {}", answer.trim_end());
