@@ -305,7 +305,7 @@ fn candidate(rule: &Rule, index: usize, envelope: &Envelope, library: &Library) 
             distance_searched = true;
             let steps = (1..DISTANCES - 1).map(|i| i as f64 / (DISTANCES - 1) as f64);
             let between = steps.map(|share| least * (most / least).powf(share));
-            let seen = between.map(|z| Sighted::new(close.study.from_distance(z)?, envelope));
+            let seen = between.map(|z| Sighted::new(close.study.at_distance(z)?, envelope));
             sighted.extend(seen.collect::<Result<Vec<_>>>()?);
             sighted.extend([close, far]);
             continue;

@@ -93,7 +93,7 @@ impl Study {
     ///
     /// # Errors
     /// A distance of which the air's table says nothing.
-    pub(super) fn from_distance(&self, distance_m: f64) -> Result<Self> {
+    pub(super) fn at_distance(&self, distance_m: f64) -> Result<Self> {
         let mut study = self.clone();
         study.scenario.target.distance_m = Some(distance_m);
         (study.bands, study.air) = study.received(study.camera.as_ref(), Some(distance_m))?;

@@ -299,7 +299,7 @@ impl RuleStudy {
             let ends = [b - GOLDEN * (b - a), a + GOLDEN * (b - a)];
             let mut found = [f64::INFINITY; 2];
             for (found, end) in found.iter_mut().zip(ends) {
-                let sighted = Sighted::new(own.from_distance(end.exp())?, &self.envelope)?;
+                let sighted = Sighted::new(own.at_distance(end.exp())?, &self.envelope)?;
                 let searched = search(
                     &sighted,
                     Estimate { distance: f64::INFINITY, ..best.pair.clone() },
