@@ -93,6 +93,11 @@ impl RuleStudy {
                            what would fix the camera is computed in the limiting scene itself";
             warnings.push(Warning::new("brightest-noise", message));
         }
+        if at.atmosphere.is_some() && candidate.distance_matters && !candidate.distance_searched {
+            let message = "with air on the path it is assumed, not proved, that no distance between the ends of its range is \
+                           worse than both";
+            warnings.push(Warning::new("distance-ends", message));
+        }
         let mut limiting = limiting(
             candidate.distance_matters,
             &at,
