@@ -146,10 +146,15 @@ impl Error {
     ) -> Self {
         // Comparing takes the product of the lengths, and nothing is like a name that long.
         let comparable = name.len() <= LONGEST_NAME;
+        let lower = if comparable { name.to_lowercase() } else { String::new() };
         let mut ranked: Vec<(f64, &str)> = known
             .into_iter()
             .filter(|candidate| comparable && candidate.len() <= LONGEST_NAME)
-            .map(|candidate| (strsim::jaro_winkler(name, candidate), candidate))
+            .map(|candidate| {
+                // A part of a name, in whatever case, is meant for it.
+                let part = lower.len() > 2 && candidate.to_lowercase().contains(&lower);
+                (if part { 1.0 } else { strsim::jaro_winkler(name, candidate) }, candidate)
+            })
             .filter(|(score, _)| *score > 0.6)
             .collect();
         ranked.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(b.1)));

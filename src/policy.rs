@@ -51,19 +51,6 @@ pub fn least_distance(required: f64, photons: f64, gamma: f64) -> f64 {
     required * ((1.0 + gamma) / photons).sqrt()
 }
 
-/// Apparent motion during an exposure in pixels, Δ = v t L/(r θ) (SII E): speed v (m s⁻¹), time t (s), L pixels
-/// across a field of view θ (rad), range r (m).
-#[must_use]
-pub fn motion_blur_pixels(
-    speed_m_s: f64,
-    time_s: f64,
-    pixels: u32,
-    distance_m: f64,
-    field_of_view_rad: f64,
-) -> f64 {
-    speed_m_s * time_s * f64::from(pixels) / (distance_m * field_of_view_rad)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -78,12 +65,5 @@ mod tests {
         // Literal inputs of the paper for the bolometer: 0.0158 (reproduction of its 0.0078).
         let least = (hardware / 1.53e-18).sqrt() * 8.852e-4;
         assert!((least / 0.0157 - 1.0).abs() < 0.01);
-    }
-
-    #[test]
-    fn thirty_miles_per_hour_at_thirty_metres() {
-        let speed = 13.4112 * (25f64.to_radians()).sin();
-        let blur = motion_blur_pixels(speed, 12e-3, 320, 30.0, 50f64.to_radians());
-        assert!((blur / 0.831 - 1.0).abs() < 1e-3, "{blur}");
     }
 }

@@ -5,7 +5,7 @@ mod finder;
 
 use self::defaults::{alternatives_as_written, check_range, fill, state_range, unknowns};
 use self::finder::Finder;
-use super::sight::{Air, Behind};
+use super::sight::{Air, Behind, check_detector};
 use super::{Warning, bands, camera};
 use crate::demand::Work;
 use crate::error::{Error, Result};
@@ -106,6 +106,11 @@ impl Study {
             }
         };
         let bands = bands::at_centres(&scenario.bands, &scenario.source)?;
+        let camera =
+            scenario.camera.as_ref().map(|spec| camera::resolved(spec, &scenario.source)).transpose()?;
+        if let Some(camera) = &camera {
+            check_detector(&bands, camera, &scenario)?;
+        }
         let alternatives = finder.alternatives(&target, &bands)?;
         let Finder { warnings, skies, .. } = finder;
 
@@ -152,8 +157,6 @@ impl Study {
                 Ok::<_, Error>(Behind { surface, temperature_k })
             })
             .transpose()?;
-        let camera =
-            scenario.camera.as_ref().map(|spec| camera::resolved(spec, &scenario.source)).transpose()?;
         let required = match scenario.requirement.reliability {
             Reliability::Distance(distance) => distance,
             Reliability::DetectionProbability(probability) => {

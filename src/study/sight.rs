@@ -44,7 +44,14 @@ impl Air {
         let Some(spec) = &scenario.atmosphere else { return Ok(None) };
         let table = match &spec.source {
             AtmosphereSource::Model(name) => {
-                Atmosphere::embedded(name).map_err(|error| error.at(scenario.place("atmosphere.model")))?
+                let known = Atmosphere::embedded(name).map_err(|error| match error {
+                    Error::UnknownName { nearest, .. } if nearest.is_empty() => Error::malformed(
+                        format!("there is no model atmosphere `{name}`"),
+                        format!("choose among {}", Atmosphere::names().join(", ")),
+                    ),
+                    error => error,
+                });
+                known.map_err(|error| error.at(scenario.place("atmosphere.model")))?
             }
             AtmosphereSource::Table(path) => {
                 Atmosphere::from_csv(&text_of_file(path, "read the transmittances")?, path)?
@@ -184,21 +191,6 @@ impl Study {
                 return refuse("camera.noise_table", &found, "add rows, or narrow the bands");
             }
         }
-        // A filter that the detector does not see is a mistake, and so is a grid of which it sees nothing; a grid that reaches
-        // beyond the stated range is warned of, since that is often stated of something else than the detector.
-        let [low, high] = camera.spectral_range_cm1;
-        let bands = self.open_bands.bands();
-        let is_outside = |band: &Band| band.high_cm1 <= low || band.low_cm1 >= high;
-        let all = bands.iter().all(is_outside);
-        let outside = bands.iter().find(|band| is_outside(band) && (all || band.name.is_some()));
-        if let Some(band) = outside {
-            let which = band.name.as_ref().map_or_else(String::new, |name| format!(" of filter `{name}`"));
-            let found = format!(
-                "the band{which} from {:.0} to {:.0} cm^-1 lies outside the range of the detector, {low} to {high} cm^-1",
-                band.low_cm1, band.high_cm1
-            );
-            return refuse("bands", &found, "leave it out, or take another camera");
-        }
         Ok(())
     }
 
@@ -238,6 +230,27 @@ impl Study {
         let all = |w: usize| view.fill * view.signal[w] + view.other_light(w);
         open.iter().enumerate().map(|(w, modes)| efficiency * all(w) / modes).collect()
     }
+}
+
+/// Refuses bands that the detector does not see at all.
+///
+/// # Errors
+/// A filter outside the stated range of the detector, or bands all of which are.
+pub(super) fn check_detector(bands: &Bands, camera: &Camera, scenario: &Scenario) -> Result<()> {
+    // A grid that reaches beyond the range is only warned of, since that is often stated of something else than the detector.
+    let [low, high] = camera.spectral_range_cm1;
+    let is_outside = |band: &Band| band.high_cm1 <= low || band.low_cm1 >= high;
+    let all = bands.bands().iter().all(is_outside);
+    let Some(band) = bands.bands().iter().find(|band| is_outside(band) && (all || band.name.is_some()))
+    else {
+        return Ok(());
+    };
+    let which = band.name.as_ref().map_or_else(String::new, |name| format!(" of filter `{name}`"));
+    let found = format!(
+        "the band{which} from {:.0} to {:.0} cm^-1 lies outside the range of the detector, {low} to {high} cm^-1",
+        band.low_cm1, band.high_cm1
+    );
+    Err(Error::malformed(found, "leave it out, or take another camera").at(scenario.place("bands")))
 }
 
 /// What sensor and filters send onto the sensor, photons s⁻¹ m⁻² sr⁻¹ in each band.

@@ -23,7 +23,7 @@ use crate::fisher::Counting;
 use crate::identifiability::nearest::NearestSolver;
 use crate::instrument::{Camera, FASTEST_F_NUMBER};
 use crate::planck;
-use crate::policy;
+use crate::policy::Motion;
 use crate::policy::envelope::Ranges;
 use crate::scene::State;
 use crate::spectrum::Bands;
@@ -131,13 +131,8 @@ impl RuleStudy {
     fn longest(&self, cameras: &[&Camera]) -> (f64, String) {
         let frames = cameras.iter().map(|camera| camera.frames).max().unwrap_or(1);
         let speed = self.rule.scenario.requirement.speed_m_s;
-        let sharp = cameras.iter().filter_map(|camera| {
-            let (pixels, view) = (camera.pixels?, camera.field_of_view_rad?);
-            let transverse = speed? * (0.5 * view).sin();
-            let per_s =
-                policy::motion_blur_pixels(transverse, 1.0, pixels, self.envelope.distance_m?[0], view);
-            Some(1.0 / per_s)
-        });
+        let least = self.envelope.distance_m.map(|[least, _]| least);
+        let sharp = cameras.iter().filter_map(|camera| Some(Motion::of(camera, least)?.longest_s(speed?)));
         match (sharp.reduce(f64::max), speed, self.envelope.distance_m) {
             (Some(exposure), Some(speed), Some([least, _])) => {
                 let times = if frames > 1 { format!("{frames} frames, each ") } else { String::new() };
