@@ -1,34 +1,14 @@
-#![doc = include_str!("../README.md")]
+//! The physical limits of seeing by heat.
 
-#[cfg(feature = "accuracy")]
-pub mod accuracy;
-pub mod atmosphere;
-pub mod cli;
-pub mod demand;
-pub mod error;
-pub mod fisher;
-mod grid;
-pub mod identifiability;
+mod base;
 pub mod instrument;
-pub mod material;
-pub mod planck;
-pub mod policy;
-pub mod ranging;
-#[cfg(feature = "accuracy")]
-pub mod reference;
-pub mod render;
-pub mod report;
-pub mod reproduce;
-mod root;
-pub mod scenario;
-pub mod scene;
-mod simd;
-pub mod simulate;
-pub mod spectrum;
-pub mod statistics;
-pub mod study;
-mod sum;
-pub mod units;
-mod words;
+mod limits;
+mod physics;
+mod witness;
 
-pub use error::{Error, Result};
+pub use base::error::{Error, Result};
+pub(crate) use base::simd;
+pub use base::{demand, error, grid, root, statistics, sum, units, words};
+pub use limits::{fisher, identifiability, policy, ranging};
+pub use physics::{atmosphere, material, planck, scene, spectrum};
+pub use witness::{render, simulate};

@@ -1,0 +1,4 @@
+//! `hadar` held against references in extended precision.
+
+pub mod accuracy;
+pub mod reference;

@@ -1,0 +1,4 @@
+//! Questions about thermal cameras answered: scenarios from files, results as data.
+
+pub mod scenario;
+pub mod study;
