@@ -69,6 +69,8 @@ pub struct Warning {
 }
 
 impl Warning {
+    /// A warning of that code.
+    #[must_use]
     pub fn new(code: &'static str, message: impl Into<String>) -> Self {
         Self { code, message: message.into() }
     }

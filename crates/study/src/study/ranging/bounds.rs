@@ -206,6 +206,8 @@ impl Ground<'_> {
     }
 }
 
+/// The middle one of the values.
+#[must_use]
 pub fn median(values: &[f64]) -> f64 {
     quantile(values, 0.5)
 }
