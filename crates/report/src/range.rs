@@ -11,7 +11,7 @@ use crate::table::{Table, number, optional};
 use crate::tables;
 use hadar::error::Result;
 use hadar::ranging::cube::{Shape, write_npy_to};
-use hadar_study::study::ranging::{Line, Ranging};
+use hadar_study::study::range::{Line, Ranging};
 use std::path::Path;
 
 /// All files; paths in the scenario are written relative to `out` where they lie below it.

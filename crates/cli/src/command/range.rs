@@ -5,8 +5,8 @@ use clap::Args;
 use hadar::error::{Error, Result};
 use hadar_report::range;
 use hadar_study::scenario::RangeScenario;
-use hadar_study::scenario::ranging::Subject;
-use hadar_study::study::ranging::{RangePlan, RangeStudy};
+use hadar_study::scenario::range::Subject;
+use hadar_study::study::range::{RangePlan, RangeStudy};
 use std::path::PathBuf;
 use std::process::ExitCode;
 

@@ -17,7 +17,7 @@ use hadar_report::plot::{Axis, Picture};
 use hadar_report::range;
 use hadar_report::table::{Table, number};
 use hadar_study::scenario::RangeScenario;
-use hadar_study::study::ranging::{
+use hadar_study::study::range::{
     PictureKind, RangePlan, RangeStudy, Ranging, Signal, SignalBounds, median, quantile,
 };
 use std::path::Path;
@@ -165,10 +165,10 @@ fn ledger(paper: &Ranging, night: &Ranging, dim: &Ranging, locking: &[(&str, f64
         if (30.0..=300.0).contains(&value) { Verdict::UnderAChoice } else { Verdict::NotReproduced }
     };
     let over = |method: &str| {
-        let same = |line: &&hadar_study::study::ranging::Line| {
+        let same = |line: &&hadar_study::study::range::Line| {
             line.signal == Signal::ScatteredAsMeasured && line.method == Some(method)
         };
-        let ratio = |line: &hadar_study::study::ranging::Line| {
+        let ratio = |line: &hadar_study::study::range::Line| {
             median(
                 &line.rmse_m.iter().zip(&line.bound_m).map(|(rmse, bound)| rmse / bound).collect::<Vec<_>>(),
             )

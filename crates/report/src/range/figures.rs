@@ -6,7 +6,7 @@ use crate::range::lines_table;
 use crate::table::{Table, number};
 use hadar::error::Result;
 use hadar::ranging::derivative::{Derivative, Differentiator};
-use hadar_study::study::ranging::{Line, PictureKind, Ranging, Signal, quantile};
+use hadar_study::study::range::{Line, PictureKind, Ranging, Signal, quantile};
 use std::f64::consts::PI;
 
 /// A picture's table holds so many of its columns at most: the maps themselves are in NPY files.

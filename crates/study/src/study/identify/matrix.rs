@@ -4,8 +4,8 @@ mod results;
 
 pub use results::{Apart, Check, Matrix, Rows, TargetVerdict};
 
-use super::{Study, Surface};
 use crate::scenario::DistanceKind;
+use crate::study::{Study, Surface};
 use hadar::demand::{Demand, Reason, Skipping, Thing, Work};
 use hadar::error::{Error, Result};
 use hadar::fisher::{Counting, Nuisance, Unknowns};
@@ -206,7 +206,7 @@ impl Study {
     }
 
     /// Distances of a kind, row-major: statistical ones of the camera, or without `counting` those per √photon.
-    pub(super) fn all_distances(
+    pub(in crate::study) fn all_distances(
         &self,
         kind: DistanceKind,
         emissivities: &[&[f64]],

@@ -8,10 +8,10 @@
 //!
 //! Assumptions: the noise is that of the spectra as they are; the limiting alternative stays the limiting one.
 
-use super::super::scaling::quantile;
-use super::super::size::Solvers;
-use super::super::{Study, Surface};
 use super::linear;
+use crate::study::identify::quantile;
+use crate::study::size::Solvers;
+use crate::study::{Study, Surface};
 use hadar::demand::Work;
 use hadar::error::Result;
 use hadar::instrument::Camera;

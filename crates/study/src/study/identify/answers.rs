@@ -1,6 +1,6 @@
 //! What can be asked of a library besides the distances to the target, and the answers together.
 
-use super::{Apart, BandsThatMatter, Exact, Identification, Matrix, Scaling, Study, Trial, Warning};
+use crate::study::{Apart, BandsThatMatter, Exact, Identification, Matrix, Scaling, Study, Trial, Warning};
 use hadar::demand::{Demand, Skipping, Thing};
 use hadar::error::Result;
 

@@ -3,7 +3,7 @@
 //! Every value was checked by itself when it was read. Here they are checked together, in the unit in which they are
 //! used: a slip of the pen such as an exposure of 10²⁰⁰ s is told as such, before its square is no longer a number.
 
-use super::Study;
+use crate::study::Study;
 use hadar::error::{Error, Result};
 use std::ops::{Range, RangeInclusive};
 
@@ -16,7 +16,7 @@ const TEMPERATURE_K: RangeInclusive<f64> = 1e-6..=1e6;
 
 impl Study {
     /// Numbers that a scene could have, a target that radiates at all, a camera whose noise can be squared.
-    pub(super) fn check_magnitudes(&self) -> Result<()> {
+    pub(in crate::study) fn check_magnitudes(&self) -> Result<()> {
         let objects = self.scenario.environment.iter().enumerate();
         let objects =
             objects.map(|(k, object)| (format!("environment[{k}].temperature"), object.temperature_k));

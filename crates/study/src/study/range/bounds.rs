@@ -3,7 +3,7 @@
 use super::results::{BoundMaps, ObjectBounds, Signal, SignalBounds};
 use super::signals::SignalMap;
 use super::subject::Truth;
-use crate::scenario::ranging::{Demand, DepthRequirement};
+use crate::scenario::range::{Demand, DepthRequirement};
 use hadar::error::Result;
 use hadar::ranging::depth::StereoGeometry;
 

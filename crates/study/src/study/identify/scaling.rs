@@ -4,8 +4,8 @@
 //! there is; with electronic noise of every reading, finer bands share the photons among more readings and
 //! can lose. Bands are joined two by two, over and over, so that every number of bands refines the one before.
 
-use super::{Study, Surface};
 use crate::scenario::DistanceKind;
+use crate::study::{Study, Surface};
 use hadar::demand::Work;
 use hadar::error::Result;
 use hadar::fisher::Counting;
@@ -176,7 +176,7 @@ impl Study {
 }
 
 /// The value below which this share of sorted values lies.
-pub(super) fn quantile(sorted: &[f64], share: f64) -> f64 {
+pub(in crate::study) fn quantile(sorted: &[f64], share: f64) -> f64 {
     let last = sorted.len().saturating_sub(1);
     sorted.get((share * last as f64).round() as usize).copied().unwrap_or(f64::NAN)
 }

@@ -8,11 +8,16 @@
 //! Whether a classifier beats the limit is asked at a level that holds for all comparisons together (Bonferroni).
 
 mod experiment;
+mod magnitudes;
+mod noise_curves;
 mod photons;
 mod standing;
+mod thermometry;
 
 pub(super) use experiment::normal_error;
+pub use noise_curves::{NoiseCurve, NoiseCurves};
 pub use standing::{SimulatedPerformance, Standing};
+pub use thermometry::{FIXED_EMISSIVITY, ImagerErrors, Reader, Thermometry, ThermometryRow};
 
 use super::{Study, Warning};
 use hadar::demand::{Thing, Work};

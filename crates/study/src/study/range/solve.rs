@@ -4,7 +4,7 @@ use super::bounds::Ground;
 use super::results::{DepthSolutions, Signal};
 use super::subject::{Measured, Resolved, Truth};
 use super::{Informed, RangeStudy};
-use crate::scenario::ranging::Diffraction;
+use crate::scenario::range::Diffraction;
 use hadar::error::Result;
 use hadar::planck;
 use hadar::ranging::cube::Cube;

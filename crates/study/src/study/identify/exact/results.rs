@@ -1,6 +1,6 @@
 //! Simulated decisions as data.
 
-use super::super::Warning;
+use crate::study::Warning;
 use hadar::demand::Work;
 use hadar::identifiability::lattice::LatticeDetection;
 use hadar::simulate::sequential::{Interval, Plan};

@@ -1,7 +1,7 @@
 //! Photons of an experiment, and the counts and noise that a camera makes of them.
 
 use super::SimulationPlan;
-use crate::study::curves::logarithmic;
+use crate::study::size::logarithmic;
 use crate::study::{Study, Surface};
 use hadar::demand::{Reason, Thing, Work};
 use hadar::error::{Error, Result, check};

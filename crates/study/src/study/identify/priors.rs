@@ -1,7 +1,7 @@
 //! What priors make of the hardest pair, on average over what they allow.
 
-use super::{Study, Surface};
 use crate::scenario::DistanceKind;
+use crate::study::{Study, Surface};
 use hadar::error::Result;
 use hadar::identifiability::bayes::{BayesianBound, Distances, Pair};
 use hadar::identifiability::detection;

@@ -2,7 +2,7 @@
 
 use super::RangeStudy;
 use super::subject::{Depth, Measured, Rendered, Resolved};
-use crate::scenario::ranging::{CubeSpec, DepthSource, NoiseSource, SceneSpec, Subject};
+use crate::scenario::range::{CubeSpec, DepthSource, NoiseSource, SceneSpec, Subject};
 use crate::scenario::{MaterialRef, RangeScenario};
 use crate::study::{bands, camera};
 use hadar::error::{Error, Result};

@@ -1,6 +1,6 @@
 //! Spectra as a camera would read them once, drawn at random.
 
-use super::Study;
+use crate::study::Study;
 use hadar::error::Result;
 use hadar::fisher::Counting;
 use hadar::simulate::draws::{Draws, GENERATOR, generator};

@@ -1,6 +1,6 @@
 //! A few bands or filters as all that the camera has.
 
-use super::{Study, Surface};
+use crate::study::{Study, Surface};
 use hadar::error::Result;
 use hadar::fisher::Counting;
 use hadar::identifiability::nearest::NearestSolver;
@@ -23,7 +23,7 @@ pub struct Reached {
 }
 
 /// The fewest of up to `most` filters with no less than 99.9 % of the distance of all of them, by trying ever fewer.
-pub(super) fn fewest_as_good<T>(
+pub(in crate::study) fn fewest_as_good<T>(
     most: usize,
     choose: impl Fn(usize) -> Result<T>,
     distance: impl Fn(&T) -> f64,
@@ -49,7 +49,7 @@ where
 impl Study {
     /// Least nearest statistical distance with nothing but `runs` of bands, each summed and read once with the
     /// noise of a reading that its bands have on average; `None` without a camera.
-    pub(super) fn reached_with(
+    pub(in crate::study) fn reached_with(
         &self,
         runs: &[Range<usize>],
         alternatives: &[&Surface],

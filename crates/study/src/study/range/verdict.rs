@@ -3,7 +3,7 @@
 use super::results::{BoundMaps, DepthVerdict, ObjectBounds, Ranging, Signal, SignalBounds};
 use super::subject::{Depth, Resolved};
 use super::{RangeStudy, SECTIONS};
-use crate::scenario::ranging::Demand;
+use crate::scenario::range::Demand;
 use crate::study::Warning;
 use hadar::demand::{Reason, Thing};
 use hadar::error::Result;

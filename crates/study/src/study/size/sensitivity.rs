@@ -6,8 +6,8 @@ mod linear;
 
 pub use emissivity::EmissivityErrors;
 
-use super::size::Reach;
-use super::{Study, Surface};
+use crate::study::size::Reach;
+use crate::study::{Study, Surface};
 use hadar::demand::Work;
 use hadar::error::Result;
 use hadar::instrument::Camera;
@@ -39,7 +39,7 @@ impl serde::Serialize for Elasticities {
 
 impl Study {
     /// What the verdict on `camera` hangs on, against `alternative`.
-    pub(super) fn sensitivity(
+    pub(in crate::study) fn sensitivity(
         &self,
         camera: &Camera,
         alternative: &Surface,

@@ -7,8 +7,8 @@
 //!
 //! and the variance is Σ_jk g_j g_k ρ_jk for each surface; with ρ a chain along ascending wavenumber that is one sum.
 
-use super::super::{Study, Surface};
 use super::emissivity::Ripple;
+use crate::study::{Study, Surface};
 use hadar::fisher::Counting;
 use hadar::scene::State;
 

@@ -20,8 +20,8 @@
 //!
 //! A worst case so found is attained where the added variance does not depend on the scene, and else a lower bound.
 
-use super::{Study, Surface};
 use crate::scenario::Envelope;
+use crate::study::{Study, Surface};
 use hadar::error::Result;
 use hadar::fisher::Counting;
 use hadar::identifiability::nearest::NearestSolver;
@@ -37,27 +37,27 @@ const SCENES: usize = 32;
 
 /// One camera, one material of the target, one distance: all scenes between, with what counts in each.
 #[derive(Debug, Clone)]
-pub(super) struct Sighted {
-    pub(super) study: Study,
-    pub(super) counting: Counting,
-    pub(super) ranges: Ranges,
+pub(in crate::study) struct Sighted {
+    pub(in crate::study) study: Study,
+    pub(in crate::study) counting: Counting,
+    pub(in crate::study) ranges: Ranges,
 }
 
 /// A pair of materials before a camera, and a scene of the envelope in which they are near.
 #[derive(Debug, Clone)]
-pub(super) struct Estimate {
+pub(in crate::study) struct Estimate {
     /// Index of what is sighted, and of the alternative in its study.
-    pub(super) sighted: usize,
-    pub(super) alternative: usize,
+    pub(in crate::study) sighted: usize,
+    pub(in crate::study) alternative: usize,
     /// Statistical distance in that scene.
-    pub(super) distance: f64,
-    pub(super) state: State,
-    pub(super) nearest: State,
+    pub(in crate::study) distance: f64,
+    pub(in crate::study) state: State,
+    pub(in crate::study) nearest: State,
 }
 
 impl Sighted {
     /// A study with its camera, over the ranges of an envelope that is filled in.
-    pub(super) fn new(study: Study, envelope: &Envelope) -> Result<Self> {
+    pub(in crate::study) fn new(study: Study, envelope: &Envelope) -> Result<Self> {
         let ranges = study.ranges(envelope)?;
         let brightest = Study { state: brightest(&ranges), ..study.clone() };
         let counting =
@@ -66,7 +66,7 @@ impl Sighted {
     }
 
     /// The pair with an alternative, for a search.
-    pub(super) fn scene<'a>(&'a self, alternative: &'a Surface) -> EnvelopeScene<'a> {
+    pub(in crate::study) fn scene<'a>(&'a self, alternative: &'a Surface) -> EnvelopeScene<'a> {
         EnvelopeScene {
             bands: &self.study.bands,
             surroundings: &self.study.surroundings,
@@ -79,7 +79,7 @@ impl Sighted {
     }
 
     /// Whether every band counts less here than in `other`, amid more noise: then every distance is smaller.
-    pub(super) fn is_worse_than(&self, other: &Self) -> bool {
+    pub(in crate::study) fn is_worse_than(&self, other: &Self) -> bool {
         let mut bands = self.counts().into_iter().zip(other.counts()).enumerate();
         bands.all(|(w, (here, there))| {
             here <= there * (1.0 + SAME)
@@ -88,7 +88,7 @@ impl Sighted {
     }
 
     /// Whether counts or added variance of any band differ by more than `share`.
-    pub(super) fn differs_from(&self, other: &Self, share: f64) -> bool {
+    pub(in crate::study) fn differs_from(&self, other: &Self, share: f64) -> bool {
         let apart = |a: f64, b: f64| (a - b).abs() > share * a.abs().max(b.abs());
         let mut bands = self.counts().into_iter().zip(other.counts()).enumerate();
         bands.any(|(w, (a, b))| apart(a, b) || apart(self.counting.var_added(w), other.counting.var_added(w)))
@@ -101,7 +101,7 @@ impl Sighted {
     }
 
     /// The nearest of a few scenes for every alternative.
-    pub(super) fn estimates(&self, sighted: usize) -> Result<(Vec<Estimate>, u64)> {
+    pub(in crate::study) fn estimates(&self, sighted: usize) -> Result<(Vec<Estimate>, u64)> {
         let places = scattered(&self.ranges);
         let estimate = |alternative: usize| {
             let surface = &self.study.alternatives[alternative];
@@ -127,7 +127,7 @@ impl Sighted {
         Ok((found.into_iter().flatten().collect(), searched))
     }
 
-    pub(super) fn solver(&self) -> NearestSolver<'_> {
+    pub(in crate::study) fn solver(&self) -> NearestSolver<'_> {
         let Study { bands, surroundings, unknowns, range, .. } = &self.study;
         NearestSolver::new(bands, surroundings, unknowns.clone(), *range)
     }
@@ -138,7 +138,7 @@ impl Study {
     ///
     /// # Errors
     /// Ranges that leave no scene.
-    pub(super) fn ranges(&self, envelope: &Envelope) -> Result<Ranges> {
+    pub(in crate::study) fn ranges(&self, envelope: &Envelope) -> Result<Ranges> {
         let state = &self.state;
         let points = |values: &[f64]| values.iter().map(|value| [*value; 2]).collect::<Vec<_>>();
         Ranges::new(
@@ -152,7 +152,7 @@ impl Study {
 
 /// The scene in which every band is brightest: all at their highest temperatures, the lighting of each object
 /// as much as it may be (together perhaps more than 1, so that it bounds every scene).
-pub(super) fn brightest(ranges: &Ranges) -> State {
+pub(in crate::study) fn brightest(ranges: &Ranges) -> State {
     State {
         temperature_k: ranges.temperature_k()[1],
         lighting: ranges.lighting().iter().map(|range| range[1]).collect(),
@@ -162,13 +162,13 @@ pub(super) fn brightest(ranges: &Ranges) -> State {
 }
 
 /// Every range of an envelope: the target's temperature, then temperature and lighting of each object.
-pub(super) fn all(ranges: &Ranges) -> Vec<[f64; 2]> {
+pub(in crate::study) fn all(ranges: &Ranges) -> Vec<[f64; 2]> {
     let objects = ranges.environment_k().iter().zip(ranges.lighting()).flat_map(|(t, v)| [*t, *v]);
     std::iter::once(ranges.temperature_k()).chain(objects).collect()
 }
 
 /// The scene at a point of the unit cube, in the order of [`all`]; `None` where the lighting adds up to more than 1.
-pub(super) fn scene_at(ranges: &Ranges, place: &[f64]) -> Option<State> {
+pub(in crate::study) fn scene_at(ranges: &Ranges, place: &[f64]) -> Option<State> {
     let within = |([low, high], x): ([f64; 2], &f64)| (low + (high - low) * x).clamp(low, high);
     let values: Vec<f64> = all(ranges).into_iter().zip(place).map(within).collect();
     let (temperature_k, objects) = values.split_first()?;
@@ -181,7 +181,7 @@ pub(super) fn scene_at(ranges: &Ranges, place: &[f64]) -> Option<State> {
 
 /// Point `index` of a lattice of irrational steps in the unit cube, begun at `shift` (R. Roberts's generalised golden
 /// ratio φ with φⁿ⁺¹ = φ + 1: steps φ⁻¹, φ⁻², …).
-pub(super) fn lattice(index: usize, shift: &[f64]) -> Vec<f64> {
+pub(in crate::study) fn lattice(index: usize, shift: &[f64]) -> Vec<f64> {
     let n = shift.len() as f64;
     let golden = (0..60).fold(1.5f64, |phi, _| (1.0 + phi).powf(1.0 / (n + 1.0)));
     let step = |i: usize| golden.powi(-(i as i32 + 1));

@@ -23,7 +23,7 @@
 //! Trans. Acoust. Speech Signal Process. 35, 286 (1987) (hybrid bound); Gill and Levit, Bernoulli 1, 59 (1995),
 //! doi:10.2307/3318681 (law).
 
-use super::{Study, Warning};
+use crate::study::{Study, Warning};
 use hadar::demand::{Reason, Thing, Work};
 use hadar::error::{Error, Result};
 use hadar::fisher::precision::{JointBound, Precision, Sight};

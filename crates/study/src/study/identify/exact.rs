@@ -8,8 +8,8 @@ mod results;
 
 pub use results::{Exact, ExactLibrary, ExactPair};
 
-use super::{Study, Surface};
-use crate::study::simulation::normal_error;
+use crate::study::simulate::normal_error;
+use crate::study::{Study, Surface};
 use hadar::demand::{Reason, Thing, Work};
 use hadar::error::{Error, Result};
 use hadar::fisher::{Counting, Nuisance};

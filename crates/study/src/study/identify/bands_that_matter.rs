@@ -1,7 +1,7 @@
 //! Which bands matter for the scenario's task, and what the best few bands or filters keep of the distance.
 
-use super::chosen_bands::{Reached, fewest_as_good};
-use super::{Study, Surface};
+use crate::study::identify::chosen_bands::{Reached, fewest_as_good};
+use crate::study::{Study, Surface};
 use hadar::demand::{Thing, Work};
 use hadar::error::{Error, Result};
 use hadar::identifiability::selection::{

@@ -4,8 +4,8 @@
 //! γ = γ₁N grows, and no exposure is long enough (paper, Fig. 3b and Fig. S7). Limits are those to the nearest state
 //! of the alternative under the noise at hand. Shot noise is there in every curve.
 
-use super::curves::logarithmic;
-use super::{Study, Surface};
+use crate::study::size::logarithmic;
+use crate::study::{Study, Surface};
 use hadar::error::Result;
 use hadar::identifiability::detection;
 use hadar::identifiability::nearest::NearestSolver;

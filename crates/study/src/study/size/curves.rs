@@ -1,7 +1,7 @@
 //! The curves behind the plots: spectra that look alike, information against photons, photons over a map.
 
-use super::{Study, Surface};
 use crate::scenario::DistanceKind;
+use crate::study::{Study, Surface};
 use hadar::demand::Work;
 use hadar::error::Result;
 use hadar::fisher::Nuisance;
@@ -194,7 +194,7 @@ impl Study {
 }
 
 /// So many values from the first to the second, evenly spread in the logarithm.
-pub(super) fn logarithmic([low, high]: [f64; 2], points: usize) -> Vec<f64> {
+pub(in crate::study) fn logarithmic([low, high]: [f64; 2], points: usize) -> Vec<f64> {
     let last = points.saturating_sub(1).max(1) as f64;
     (0..points).map(|i| (low.ln() + (high / low).ln() * i as f64 / last).exp()).collect()
 }

@@ -1,7 +1,7 @@
 //! Two quantities at a time, for the scenario's camera and the limiting alternative.
 
-use super::Study;
-use super::size::{Reach, Sizing};
+use crate::study::Study;
+use crate::study::size::{Reach, Sizing};
 use hadar::demand::Work;
 use hadar::error::Result;
 use hadar::policy::caps::Circumstances;

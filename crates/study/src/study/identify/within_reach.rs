@@ -3,7 +3,7 @@
 //!
 //! A choice for the alternative that fares worst would else be made for one that stays hopeless whatever is chosen.
 
-use super::{Study, Surface};
+use crate::study::{Study, Surface};
 use hadar::demand::Work;
 use hadar::error::Result;
 use hadar::fisher::Counting;
@@ -12,7 +12,7 @@ use rayon::prelude::*;
 impl Study {
     /// Indices of the alternatives that the camera's photons tell as required in all bands with shot noise alone, by
     /// the distance that decides, and of the others. All are of the first kind without a camera.
-    pub(super) fn within_reach(&self, work: &mut Work) -> Result<(Vec<usize>, Vec<usize>)> {
+    pub(in crate::study) fn within_reach(&self, work: &mut Work) -> Result<(Vec<usize>, Vec<usize>)> {
         let Some(Counting { counts_per_radiance, .. }) = self.counting() else {
             return Ok(((0..self.alternatives.len()).collect(), Vec::new()));
         };
@@ -25,7 +25,7 @@ impl Study {
         Ok((0..distances.len()).partition(|&i| distances[i] >= self.required))
     }
 
-    pub(super) fn names_of(&self, alternatives: &[usize]) -> Vec<String> {
+    pub(in crate::study) fn names_of(&self, alternatives: &[usize]) -> Vec<String> {
         alternatives.iter().map(|&i| self.alternatives[i].name.clone()).collect()
     }
 }
