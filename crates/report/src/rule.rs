@@ -40,13 +40,10 @@ pub fn bundle(study: &RuleStudy, answer: &RuleAnswer, out: &Path) -> Result<Bund
 
 /// All warnings, those of a camera with its name.
 fn warnings(answer: &RuleAnswer) -> Vec<Warning> {
-    let of_cameras = answer.cameras.iter().flat_map(|camera| {
-        let name = &camera.name;
-        camera.warnings.iter().map(move |warning| Warning {
-            code: warning.code,
-            message: format!("{name}: {}", warning.message),
-        })
-    });
+    let of_cameras = answer
+        .cameras
+        .iter()
+        .flat_map(|camera| camera.warnings.iter().map(|warning| warning.clone().of_cameras(&camera.name)));
     answer.warnings.iter().cloned().chain(of_cameras).collect()
 }
 

@@ -57,7 +57,7 @@ pub fn pairs(pairs: &[PairResult]) -> Table {
 pub fn warnings(warnings: &[Warning]) -> Table {
     let mut table = Table::new(["code", "message"]);
     for warning in warnings {
-        table.push(vec![warning.code.into(), warning.message.clone()]);
+        table.push(vec![warning.code().name().into(), warning.to_string()]);
     }
     table
 }

@@ -18,6 +18,7 @@ mod simulate;
 mod size;
 mod warn;
 
+pub use crate::warning::Warning;
 pub use identify::{
     Answers, Apart, Asked, BandNumber, BandsThatMatter, Check, Choice, Exact, ExactLibrary, ExactPair,
     Identifiability, Identification, Law, LibrarySize, Matrix, NearestState, PairResult, Passband,
@@ -38,20 +39,3 @@ pub use size::{
     CameraResult, Elasticities, EmissivityErrors, InformationCurves, PhotonMap, RequirementResult,
     Sensitivity, Sizing, Solutions, Spectra, Verdict, VerdictAlone,
 };
-
-/// Something the reader of a result must know, with a code that programs can rely on.
-#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
-pub struct Warning {
-    /// Stable code, e.g. `nearest-at-edge`.
-    pub code: &'static str,
-    /// One sentence.
-    pub message: String,
-}
-
-impl Warning {
-    /// A warning of that code.
-    #[must_use]
-    pub fn new(code: &'static str, message: impl Into<String>) -> Self {
-        Self { code, message: message.into() }
-    }
-}

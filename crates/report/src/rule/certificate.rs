@@ -47,7 +47,7 @@ pub(super) fn markdown(study: &RuleStudy, answer: &RuleAnswer) -> String {
     if !warned.is_empty() {
         out.push_str("## Warnings\n\n");
         warned.iter().for_each(|warning| {
-            let _ = writeln!(out, "- [{}] {}", warning.code, warning.message);
+            let _ = writeln!(out, "- [{}] {warning}", warning.code().name());
         });
         out.push('\n');
     }

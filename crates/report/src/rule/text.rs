@@ -57,7 +57,7 @@ pub(crate) fn together(answer: &RuleAnswer) -> Vec<Warning> {
     let mut said: Vec<(&Warning, Vec<&str>)> = Vec::new();
     for camera in &answer.cameras {
         for warning in &camera.warnings {
-            match said.iter_mut().find(|(known, _)| *known == warning) {
+            match said.iter_mut().find(|(known, _)| known.says_as(warning)) {
                 Some((_, names)) => names.push(&camera.name),
                 None => said.push((warning, vec![&camera.name])),
             }
@@ -66,7 +66,7 @@ pub(crate) fn together(answer: &RuleAnswer) -> Vec<Warning> {
     let all = answer.cameras.len();
     let of_cameras = said.into_iter().map(|(warning, names)| {
         let who = if names.len() == all && all > 1 { "all cameras".into() } else { names.join(", ") };
-        Warning { code: warning.code, message: format!("{who}: {}", warning.message) }
+        warning.clone().of_cameras(&who)
     });
     answer.warnings.iter().cloned().chain(of_cameras).collect()
 }

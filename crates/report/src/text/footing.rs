@@ -102,13 +102,13 @@ pub(crate) fn warnings(warnings: &[Warning]) -> String {
     let mut out = String::from("Warnings\n");
     // One line per code: a whole library would otherwise bury the answer.
     for (i, warning) in warnings.iter().enumerate() {
-        if warnings[..i].iter().any(|earlier| earlier.code == warning.code) {
+        if warnings[..i].iter().any(|earlier| earlier.code() == warning.code()) {
             continue;
         }
-        let more = warnings[i + 1..].iter().filter(|later| later.code == warning.code).count();
+        let more = warnings[i + 1..].iter().filter(|later| later.code() == warning.code()).count();
         let rest =
             if more > 0 { format!(" (and {more} more of this kind, see --json)") } else { String::new() };
-        let _ = writeln!(out, "  [{}] {}{rest}", warning.code, warning.message);
+        let _ = writeln!(out, "  [{}] {warning}{rest}", warning.code().name());
     }
     out
 }

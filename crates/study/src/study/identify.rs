@@ -61,8 +61,7 @@ impl Study {
         let mut warnings = self.warnings.clone();
         warnings.extend(self.camera_warnings());
         if self.scenario.envelope.is_some() {
-            let message = "this is the answer for the one scene; the [envelope] is searched by `hadar rule`";
-            warnings.push(Warning::new("envelope-not-searched", message));
+            warnings.push(Warning::EnvelopeNotSearched);
         }
         warnings.extend(pair_warnings);
         Ok(Identification {

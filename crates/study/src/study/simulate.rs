@@ -149,8 +149,7 @@ impl Study {
     ) -> Result<(Simulation, Vec<SavedModel>)> {
         if self.unknowns.has_priors() {
             let (mut result, models) = self.without_priors()?.simulate(plan, progress)?;
-            let message = "priors are left out: the spectra that are drawn, and what is learnt from them, know nothing of them";
-            result.warnings.push(Warning::new("priors-left-out", message));
+            result.warnings.push(Warning::PriorsLeftOut);
             return Ok((result, models));
         }
         if plan.law == PhotonLaw::NegativeBinomial
@@ -247,44 +246,27 @@ impl Study {
         let fewest = points.iter().map(|point| point.photons).fold(f64::INFINITY, f64::min);
         let most = points.iter().map(|point| point.photons).fold(0.0, f64::max);
         if fewest < 1.0 {
-            let message = format!("with {fewest:.2e} photons most spectra are empty in every band");
-            warnings.push(Warning::new("spectra-empty", message));
+            warnings.push(Warning::SpectraEmpty { photons: fewest });
         }
         if most / bands > LARGEST_EXACT {
-            let message = format!(
-                "with {most:.1e} photons counts of a band leave the whole numbers that 64-bit floating point holds: \
-                 they are rounded to it"
-            );
-            warnings.push(Warning::new("counts-rounded", message));
+            warnings.push(Warning::CountsRounded { photons: most });
         }
         let learns = plan.design.methods.iter().any(|method| method.is_trained());
         if learns && plan.design.per_class / 4 < FEW_SPECTRA {
-            let message =
-                format!("{} training spectra of each class teach little", plan.design.per_class / 4);
-            warnings.push(Warning::new("few-spectra", message));
+            warnings.push(Warning::FewSpectra { training: plan.design.per_class / 4 });
         }
         for saved in &plan.models {
             if points.iter().any(|point| (point.photons / saved.photons).ln().abs() > OTHER_PHOTONS) {
-                let method = saved.model.method().words();
-                let message = format!(
-                    "the saved {method} was trained with {:.3e} photons: with others its scale is wrong",
-                    saved.photons
-                );
-                warnings.push(Warning::new("model-photons", message));
+                let (method, photons) = (saved.model.method(), saved.photons);
+                warnings.push(Warning::ModelPhotons { method, photons });
             }
         }
         let error = points.iter().filter_map(|point| point.normal_error).fold(0.0, f64::max);
         if error > NORMAL {
-            let message = format!(
-                "likelihoods take counts for normal; their distribution function is up to {error:.1e} off, so the \
-                 likelihood ratio may fall short of the optimum (draws are exact)"
-            );
-            warnings.push(Warning::new("normal-likelihood", message));
+            warnings.push(Warning::NormalLikelihood { error });
         }
         if plan.law == PhotonLaw::FixedTotal {
-            let message =
-                "with a fixed total only the limit of many photons is known; nothing is held against it";
-            warnings.push(Warning::new("limit-normal", message));
+            warnings.push(Warning::LimitNormal);
         }
         warnings
     }

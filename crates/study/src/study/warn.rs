@@ -29,59 +29,36 @@ pub(super) fn of_pair(
     range: &StateRange,
 ) -> Vec<Warning> {
     let mut warnings = Vec::new();
-    let mut warn = |code, message: String| {
-        warnings.push(Warning::new(code, format!("{} against {}: {message}", pair.target, pair.alternative)));
+    let mut warn = |warning: Warning| {
+        let (target, alternative) = (pair.target.clone(), pair.alternative.clone());
+        warnings.push(Warning::OfPair { target, alternative, warning: Box::new(warning) });
     };
     match pair.status {
         Status::Ok => {}
-        Status::Identical => warn("identical", "the two emissivities are equal in every band".into()),
-        Status::Equilibrium => warn(
-            "equilibrium",
-            "target and surroundings are in thermal equilibrium; every material looks like a blackbody"
-                .into(),
-        ),
-        Status::Blind => {
-            warn("blind", "a change of the unknowns looks exactly like the change of material".into());
-        }
+        Status::Identical => warn(Warning::Identical),
+        Status::Equilibrium => warn(Warning::Equilibrium),
+        Status::Blind => warn(Warning::Blind),
     }
+    let objects = nearest.state.lighting.len();
     // Where physics ends there is no further state to be asked for.
-    let chosen: Vec<String> = nearest
-        .at_edge
-        .iter()
-        .filter(|parameter| stands_where_asked(**parameter, &nearest.state, range))
-        .map(|parameter| in_words(*parameter, nearest.state.lighting.len()))
-        .collect();
-    if !chosen.is_empty() && pair.status == Status::Ok {
-        let message = format!(
-            "the nearest state stands at the edge of its range ({}); the range decides the answer",
-            chosen.join(", ")
-        );
-        warn("nearest-at-edge", message);
+    let chosen = |parameter: &Parameter| stands_where_asked(*parameter, &nearest.state, range);
+    let parameters: Vec<Parameter> = nearest.at_edge.iter().copied().filter(chosen).collect();
+    if !parameters.is_empty() && pair.status == Status::Ok {
+        warn(Warning::NearestAtEdge { parameters, objects });
     }
     if !nearest.converged {
-        warn("nearest-not-converged", "the search for the nearest state stopped early".into());
+        warn(Warning::NearestNotConverged);
     }
     let (d_local, d_nearest) = (pair.distance_local, pair.distance_nearest);
     let ratio = (d_local / d_nearest).max(d_nearest / d_local);
     if pair.status == Status::Ok && ratio > LINEAR_FACTOR {
-        let message = format!(
-            "local ({d_local:.2e}) and nearest ({d_nearest:.2e}) distance differ by a factor {ratio:.1}; \
-             only the nearest one is a limit"
-        );
-        warn("local-differs", message);
+        warn(Warning::LocalDiffers { local: d_local, nearest: d_nearest, ratio });
     }
     if pair.status == Status::Ok && local.distance_no_nuisance > FRAGILE_RATIO * pair.distance(kind) {
-        warn(
-            "fragile",
-            "the spectra are nearly featureless: errors of 0.1 % in the emissivities can change this distance several times over".into(),
-        );
+        warn(Warning::Fragile);
     }
     if !local.dropped.is_empty() && pair.status == Status::Ok {
-        let objects = nearest.state.lighting.len();
-        let names: Vec<String> =
-            local.dropped.iter().map(|parameter| in_words(*parameter, objects)).collect();
-        let change = if names.len() == 1 { "changes" } else { "change" };
-        warn("unknown-without-effect", format!("{} {change} nothing in this scene", names.join(", ")));
+        warn(Warning::UnknownWithoutEffect { parameters: local.dropped.clone(), objects });
     }
     warnings
 }
@@ -102,24 +79,6 @@ fn stands_where_asked(parameter: Parameter, state: &State, range: &StateRange) -
     asked.into_iter().zip(physical).any(|(asked, physical)| asked != physical && near(asked))
 }
 
-/// A parameter as a reader calls it.
-fn in_words(parameter: Parameter, objects: usize) -> String {
-    let of = |what: &str, k: usize| {
-        if objects > 1 {
-            format!("{what} of environment[{k}]")
-        } else {
-            format!("{what} of the surroundings")
-        }
-    };
-    match parameter {
-        Parameter::Temperature => "temperature".into(),
-        Parameter::Lighting(k) => of("lighting", k),
-        Parameter::Gain => "gain".into(),
-        Parameter::EnvironmentTemperature(k) => of("temperature", k),
-        Parameter::Material => "material".into(),
-    }
-}
-
 impl Study {
     /// Warnings that hold for every pair.
     pub(super) fn camera_warnings(&self) -> Vec<Warning> {
@@ -130,21 +89,12 @@ impl Study {
         let occupancy = planck::occupancy(low, hottest);
         if occupancy > OCCUPANCY {
             let included = self.camera.as_ref().is_some_and(|camera| camera.photon_bunching);
-            let what = if included {
-                "bunching raises the noise of the light that is counted, which is included"
-            } else {
-                "bunching, which is neglected (camera.photon_bunching), raises the noise by as much"
-            };
-            let message = format!("{occupancy:.2} photons per mode at {low:.0} cm^-1: {what}");
-            warnings.push(Warning::new("bunching", message));
+            warnings.push(Warning::Bunching { occupancy, wavenumber_cm1: low, included });
         }
         if self.is_unknown(Nuisance::EnvironmentTemperature) {
-            let message = "with the temperatures of the surroundings unknown there are many similar states; the search \
-                           for the nearest one missed it in up to a quarter of random scenes, so the nearest distance may be too large";
-            warnings.push(Warning::new("nearest-search", message));
+            warnings.push(Warning::NearestSearch { unknown: Nuisance::EnvironmentTemperature });
         } else if self.is_unknown(Nuisance::Gain) {
-            let message = "with the gain unknown the search for the nearest state missed it in one of 200 random scenes, by up to 3 %";
-            warnings.push(Warning::new("nearest-search", message));
+            warnings.push(Warning::NearestSearch { unknown: Nuisance::Gain });
         }
         if let Some(camera) = &self.camera {
             warnings.extend(sequential(camera, self.bands.len()));
@@ -154,11 +104,6 @@ impl Study {
 }
 
 fn sequential(camera: &Camera, bands: usize) -> Option<Warning> {
-    (camera.readout == Readout::Sequential && bands > 1).then(|| {
-        let message = format!(
-            "bands are read one after the other: {:.3e} s until all {bands} are there, during which nothing may change",
-            camera.acquisition_s(bands)
-        );
-        Warning::new("sequential-readout", message)
-    })
+    (camera.readout == Readout::Sequential && bands > 1)
+        .then(|| Warning::SequentialReadout { acquisition_s: camera.acquisition_s(bands), bands })
 }

@@ -103,7 +103,7 @@ pub fn text(result: &Thermometry) -> String {
     if !result.warnings.is_empty() {
         out.push_str("\nWarnings\n");
         for warning in &result.warnings {
-            let _ = writeln!(out, "  {} [{}]", warning.message, warning.code);
+            let _ = writeln!(out, "  {warning} [{}]", warning.code().name());
         }
     }
     out

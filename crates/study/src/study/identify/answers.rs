@@ -56,17 +56,15 @@ impl Study {
         let mut identification = self.identify()?;
         demand.computed(section, 1);
         if asked.matrix && self.unknowns.has_priors() {
-            let message = "the matrix's distances per sqrt(photon) are those of many photons, where priors count for nothing; \
-                           its statistical distances have them";
-            identification.warnings.push(Warning::new("matrix-priors", message));
+            identification.warnings.push(Warning::MatrixPriors);
         }
         let matrix = demand.if_asked(asked.matrix, section, 1, |demand| {
             self.matrix().inspect(|matrix| demand.add(&matrix.work))
         })?;
-        if let Some(stopped) = matrix.as_ref().map(|matrix| matrix.unconverged).filter(|&stopped| stopped > 0)
+        if let Some(searches) =
+            matrix.as_ref().map(|matrix| matrix.unconverged).filter(|&stopped| stopped > 0)
         {
-            let message = format!("{stopped} searches for the nearest states of the matrix stopped early");
-            identification.warnings.push(Warning::new("nearest-not-converged", message));
+            identification.warnings.push(Warning::MatrixNotConverged { searches });
         }
         let exact = demand.if_asked(asked.exact.is_some(), section, 1, |demand| {
             let exact = asked.exact.map(|trial| self.exact(&trial, progress)).transpose()?;

@@ -80,20 +80,13 @@ impl RangeStudy {
     fn unseen(&self, stats: &Stats, shape: Shape, required_per_px2: f64) -> Vec<Warning> {
         let mut warnings = Vec::new();
         if stats.samples_evaluated < stats.samples_total {
-            let message = format!(
-                "{} of {} samples decided; the others were not looked at, nor checked for counts that are none: --no-skip does",
-                stats.samples_evaluated, stats.samples_total
-            );
-            warnings.push(Warning::new("samples-not-checked", message));
+            let (evaluated, samples) = (stats.samples_evaluated, stats.samples_total);
+            warnings.push(Warning::SamplesNotChecked { evaluated, samples });
         }
-        let floor = noise_floor(self, shape);
-        if floor > 0.02 * required_per_px2 {
-            let message = format!(
-                "if these counts are measured, their own noise makes an information of {} pixel^-2 of the {} demanded: give expected counts",
-                short(floor),
-                short(required_per_px2)
-            );
-            warnings.push(Warning::new("noise-in-counts", message));
+        let floor_per_px2 = noise_floor(self, shape);
+        let demanded_per_px2 = required_per_px2;
+        if floor_per_px2 > 0.02 * demanded_per_px2 {
+            warnings.push(Warning::NoiseOfDemanded { floor_per_px2, demanded_per_px2 });
         }
         warnings
     }
@@ -164,66 +157,35 @@ pub(super) fn warnings(study: &RangeStudy, result: &Ranging) -> Vec<Warning> {
     if let (Some(cube), Some(alone)) = (by(Signal::HeatCube), by(Signal::ScatteredAsMeasured))
         && alone.disparity_error_px * BEYOND < cube.disparity_error_px
     {
-        warnings.push(Warning::new(
-            "scattered-as-measured",
-            format!(
-                "the scattered signal as if measured promises {} times less error than the heat cube holds: the photons that are emitted are \
-                 left out there, and no processing of the cube reaches it",
-                short(cube.disparity_error_px / alone.disparity_error_px)
-            ),
-        ));
+        let ratio = cube.disparity_error_px / alone.disparity_error_px;
+        warnings.push(Warning::ScatteredAsMeasured { ratio });
     }
-    if let (Some(full), Some(brightest)) =
+    if let (Some(full_well), Some(counts)) =
         (study.camera.as_ref().and_then(|camera| camera.full_well), result.maps.brightest)
-        && brightest > full
+        && counts > full_well
     {
-        let message = format!(
-            "the brightest band of the brightest pixel holds {} photons, the well {}: shorten the exposure",
-            short(brightest),
-            short(full)
-        );
-        warnings.push(Warning::new("full-well", message));
+        warnings.push(Warning::PixelFull { counts, full_well });
     }
     if let Resolved::Cube(_) = &study.subject
         && let Some(cube) = by(Signal::HeatCube)
     {
-        let floor = noise_floor(study, result.shape);
-        if floor > 0.02 * cube.information_per_px2 {
-            warnings.push(Warning::new(
-                "noise-in-counts",
-                format!(
-                    "if these counts are measured, their own noise makes an information of {} pixel^-2 of the {} that were found (median): give expected \
-                     counts, or averages of many frames",
-                    short(floor),
-                    short(cube.information_per_px2)
-                ),
-            ));
+        let floor_per_px2 = noise_floor(study, result.shape);
+        let found_per_px2 = cube.information_per_px2;
+        if floor_per_px2 > 0.02 * found_per_px2 {
+            warnings.push(Warning::NoiseOfFound { floor_per_px2, found_per_px2 });
         }
         if result.objects.iter().all(|object| object.depth_m.is_none()) {
-            let message = "no depth is given: the bounds are on disparity; write depth = \"12 m\" or a file of depths in [cube]";
-            warnings.push(Warning::new("no-depth", message));
+            warnings.push(Warning::NoDepth);
         }
     }
     if let Some(ratio) = result.cells.and_then(|cells| cells.other_derivative)
         && !(0.5..=2.0).contains(&ratio)
     {
-        warnings.push(Warning::new(
-            "derivative",
-            format!(
-                "texture near the limit of the pixels: another derivative gives {} times the information; bounds are uncertain by the square root of that",
-                short(ratio)
-            ),
-        ));
+        warnings.push(Warning::Derivative { ratio });
     }
     let bands = study.bands.as_ref().map_or(0, hadar::spectrum::Bands::len);
     if bands < 3 && by(Signal::Reconstructed).is_some() {
-        let message = match bands {
-            2 => "two bands cannot tell temperature, strength of the emission and scattered light apart",
-            _ => {
-                "one band cannot tell emission from scattered light: nothing is left where the temperature is estimated"
-            }
-        };
-        warnings.push(Warning::new("few-bands", message));
+        warnings.push(Warning::FewBands { bands });
     }
     warnings
 }

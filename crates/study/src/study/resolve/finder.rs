@@ -41,7 +41,8 @@ impl<'a> Finder<'a> {
         extrapolate: Option<Extrapolation>,
     ) -> Cow<'a, Material> {
         for warning in material.warnings() {
-            self.warnings.push(Warning::new("material", format!("{}: {warning}", material.name())));
+            let (material, remark) = (material.name().to_owned(), warning.clone());
+            self.warnings.push(Warning::Material { material, remark });
         }
         match extrapolate {
             Some(extrapolation) => Cow::Owned(material.into_owned().with_extrapolation(extrapolation)),
@@ -69,9 +70,8 @@ impl<'a> Finder<'a> {
                     && found.len() > 1
                 {
                     found.remove(own);
-                    let message =
-                        format!("{} is left out of the alternatives: it is the target", target.name());
-                    self.warnings.push(Warning::new("target-among-alternatives", message));
+                    let target = target.name().to_owned();
+                    self.warnings.push(Warning::TargetAmongAlternatives { target });
                 }
                 found
             }
@@ -119,8 +119,7 @@ impl<'a> Finder<'a> {
             return Err(Error::malformed(found, instead).at(self.scenario.place("alternatives")));
         }
         for name in names {
-            let message = format!("{name} is left out: its spectrum does not cover the bands");
-            self.warnings.push(Warning::new("material-skipped", message));
+            self.warnings.push(Warning::MaterialSkipped { material: name.to_owned() });
         }
         Ok(kept)
     }

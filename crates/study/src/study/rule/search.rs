@@ -16,7 +16,6 @@ use hadar::instrument::Camera;
 use hadar::policy::envelope::{Certificate, Effort, WorstCase, worst_case};
 use hadar::policy::{self, Quantity};
 use hadar::scene::State;
-use hadar::words::significant;
 use std::collections::BTreeMap;
 
 /// How far below the distance attained a bound may be, as a share of it.
@@ -85,18 +84,13 @@ impl RuleStudy {
         let certificate =
             worst.certificate.map_or_else(Certified::counterexample, |found| Certified::of(found, gap));
         if passes && worst.lower_bound.is_none_or(|bound| bound < self.required) {
-            let message = "that no scene of the envelope is below the requirement was searched, not proved";
-            warnings.push(Warning::new("not-proved", message));
+            warnings.push(Warning::NotProved);
         }
         if at.counting().is_some_and(|own| own.var_added != sighted.counting.var_added) {
-            let message = "noise that depends on the scene is taken in the brightest scene, so the distance is a lower bound; \
-                           what would fix the camera is computed in the limiting scene itself";
-            warnings.push(Warning::new("brightest-noise", message));
+            warnings.push(Warning::BrightestNoise);
         }
         if at.atmosphere.is_some() && candidate.distance_matters && !candidate.distance_searched {
-            let message = "with air on the path it is assumed, not proved, that no distance between the ends of its range is \
-                           worse than both";
-            warnings.push(Warning::new("distance-ends", message));
+            warnings.push(Warning::DistanceEnds);
         }
         let mut limiting = limiting(
             candidate.distance_matters,
@@ -112,9 +106,7 @@ impl RuleStudy {
                 .map(|photons| policy::hardware_required_m2_s(photons, at.photon_radiance()));
             let local = at.local(at.unknowns.clone(), surface, f64::INFINITY, work)?;
             if shot.distance > 0.0 && local.distance_no_nuisance > warn::FRAGILE_RATIO * shot.distance {
-                let message = "the spectra of the limiting scene are nearly featureless: errors of 0.1 % in the emissivities \
-                               can change the distance several times over";
-                warnings.push(Warning::new("fragile", message));
+                warnings.push(Warning::FragileScene);
             }
             if let Some(camera) = at.camera.clone().filter(|_| distance < self.required) {
                 let task = at.task(&camera);
@@ -197,23 +189,15 @@ impl RuleStudy {
             near.ranges(&self.envelope).map_or_else(|_| near.state.clone(), |ranges| brightest(&ranges));
         let mut warnings = Study { state, ..near.clone() }.camera_warnings();
         if let (Some(speed), 2..) = (self.rule.scenario.requirement.speed_m_s, camera.frames) {
-            let all_s = camera.acquisition_s(near.bands.len());
-            let message = format!(
-                "its {} frames take {} s, in which the vehicle drives {} m: they must be laid over each other, and the scene \
-                 must not change",
-                camera.frames,
-                significant(all_s, 2),
-                significant(all_s * speed, 2)
-            );
-            warnings.push(Warning::new("frames-in-motion", message));
+            let time_s = camera.acquisition_s(near.bands.len());
+            let (frames, way_m) = (camera.frames, time_s * speed);
+            warnings.push(Warning::FramesInMotion { frames, time_s, way_m });
         }
-        warnings.extend(
-            camera.assumed.iter().map(|figure| Warning::new("camera-figure-assumed", figure.clone())),
-        );
+        let assumed = camera.assumed.iter().cloned();
+        warnings.extend(assumed.map(|figure| Warning::CameraFigureAssumed { figure }));
         if self.rule.scenario.requirement.speed_m_s.is_some() && self.image(candidate, camera).blur.is_none()
         {
-            let message = "a speed is given, but motion blur needs a distance";
-            warnings.push(Warning::new("motion-blur-unknown", message));
+            warnings.push(Warning::RuleMotionBlurUnknown);
         }
         warnings
     }

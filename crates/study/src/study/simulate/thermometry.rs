@@ -418,30 +418,18 @@ fn warnings(rows: &[ThermometryRow]) -> Vec<Warning> {
     let held = readers().filter(|reader| !reader.bound_applies);
     let (count, most) = held.fold((0, 0.0_f64), |(n, most), reader| (n + 1, most.max(reader.at_edge)));
     if count > 0 {
-        let message = format!(
-            "up to {:.1} % of the fits at a temperature end at the edge of the physical range of lighting or temperature: \
-             they may be biased, and the range limits their errors, so that the Cramer-Rao bound, which is for unbiased \
-             estimates, is not applied where more than {:.1} % do",
-            100.0 * most,
-            100.0 * HELD
-        );
-        warnings.push(Warning::new("range-holds-the-estimates", message));
+        warnings.push(Warning::RangeHoldsTheEstimates { at_edge: most, held: HELD });
     }
-    let unconverged: usize = readers().map(|reader| reader.unconverged).sum();
-    if unconverged > 0 {
-        let message = format!("{unconverged} fits did not converge; their best state so far counts");
-        warnings.push(Warning::new("unconverged-fits", message));
+    let fits: usize = readers().map(|reader| reader.unconverged).sum();
+    if fits > 0 {
+        warnings.push(Warning::UnconvergedFits { fits });
     }
-    let without: usize = rows.iter().map(|row| row.fixed.without_reading + row.manual.without_reading).sum();
-    if without > 0 {
-        let message = format!(
-            "{without} sums of counts are explained by no temperature; thermal imaging is without them"
-        );
-        warnings.push(Warning::new("no-reading", message));
+    let sums: usize = rows.iter().map(|row| row.fixed.without_reading + row.manual.without_reading).sum();
+    if sums > 0 {
+        warnings.push(Warning::NoReading { sums });
     }
     if readers().any(|reader| reader.sight != Sight::Seen) {
-        let message = "the spectrum tells nothing of the temperature, or nothing that the other unknowns do not imitate";
-        warnings.push(Warning::new("temperature-not-seen", message));
+        warnings.push(Warning::TemperatureNotSeen);
     }
     warnings
 }

@@ -5,7 +5,6 @@ use super::super::size::CameraResult;
 use super::super::{Study, Warning};
 use hadar::instrument::Camera;
 use hadar::policy::caps::longest_wavelength_m;
-use hadar::words::{quantity, significant};
 
 /// Relative difference between shortcut and exact statistical distance worth a word.
 const SHORTCUT: f64 = 0.1;
@@ -39,59 +38,31 @@ impl Study {
     fn motion(&self, result: &CameraResult) -> Option<Warning> {
         self.scenario.requirement.speed_m_s?;
         let Some(blur) = result.motion_blur_pixels else {
-            let message = "a speed is given, but for the motion blur the scenario must say target.distance";
-            return Some(Warning::new("motion-blur-unknown", message));
+            return Some(Warning::MotionBlurUnknown);
         };
-        (blur >= 1.0).then(|| {
-            let blur = significant(blur, 2);
-            let message = format!(
-                "the target moves {blur} pixels until all bands are exposed; the bound assumes less than 1"
-            );
-            Warning::new("motion-blur", message)
-        })
+        (blur >= 1.0).then_some(Warning::MotionBlur { pixels: blur })
     }
 
     /// Filters without the light they throw back, or a sensor's temperature without filters.
     fn filter_light(&self, camera: &Camera) -> Option<Warning> {
         let filters = self.open_bands.bands().iter().any(|band| band.name.is_some());
-        let message = match (filters, camera.sensor_temperature_k) {
-            (true, None) => {
-                "the light that filters throw back onto the sensor, and their own, is left out: sensor_temperature is not given"
-            }
-            (false, Some(_)) => {
-                "sensor_temperature changes nothing: there are no filters that throw its light back"
-            }
-            _ => return None,
-        };
-        Some(Warning::new("filter-light", message))
+        match (filters, camera.sensor_temperature_k) {
+            (true, None) => Some(Warning::FilterLightLeftOut),
+            (false, Some(_)) => Some(Warning::SensorTemperatureIdle),
+            _ => None,
+        }
     }
 
     fn small_target(&self, camera: &Camera) -> Option<Warning> {
         let fill = self.view_of(camera).fill;
-        (fill < 1.0).then(|| {
-            let message = format!(
-                "the target fills {} % of its pixel, as long as it stands in the middle of one; on the edge of two or \
-                 four of them it is seen by each in part",
-                significant(100.0 * fill, 2)
-            );
-            Warning::new("target-smaller-than-pixel", message)
-        })
+        (fill < 1.0).then_some(Warning::TargetSmallerThanPixel { fill })
     }
 
     fn diffraction(&self, camera: &Camera) -> Option<Warning> {
         let wavelength_m = longest_wavelength_m(&self.bands);
         let blur_m = wavelength_m * camera.f_number;
-        (camera.pixel_m < blur_m).then(|| {
-            let message = format!(
-                "at {} the lens blurs a point over lambda F = {} (first dark ring at {}), more than the pixel of {}: \
-                 neighbours see the same, and an edge of the target is spread over pixels",
-                quantity(wavelength_m, "m"),
-                quantity(blur_m, "m"),
-                quantity(AIRY * blur_m, "m"),
-                quantity(camera.pixel_m, "m"),
-            );
-            Warning::new("diffraction", message)
-        })
+        let (ring_m, pixel_m) = (AIRY * blur_m, camera.pixel_m);
+        (pixel_m < blur_m).then_some(Warning::Diffraction { wavelength_m, blur_m, ring_m, pixel_m })
     }
 
     /// Several exposures come at the frame rate, however short each is.
@@ -100,14 +71,11 @@ impl Study {
         let exposures = camera.readout.exposures(self.bands.len()) as f64 * f64::from(camera.frames);
         // Shorter by less than this is no other time.
         let waits = camera.exposure_s < 0.9 * frame_s;
-        (exposures > 1.0 && waits).then(|| {
-            let message = format!(
-                "{exposures:.0} exposures take {} at {} frames per second, not {}; nothing may change meanwhile",
-                quantity(camera.acquisition_s(self.bands.len()), "s"),
-                significant(frame_s.recip(), 3),
-                quantity(exposures * camera.exposure_s, "s"),
-            );
-            Warning::new("frame-rate", message)
+        (exposures > 1.0 && waits).then(|| Warning::FrameRate {
+            exposures,
+            acquisition_s: camera.acquisition_s(self.bands.len()),
+            frame_rate_hz: frame_s.recip(),
+            exposed_s: exposures * camera.exposure_s,
         })
     }
 
@@ -115,41 +83,25 @@ impl Study {
     fn outside_range(&self, camera: &Camera) -> Option<Warning> {
         let [low, high] = camera.spectral_range_cm1;
         let beyond = |from: f64, to: f64| (low - from).max(to - high) > HALF * (to - from);
-        let count = self.bands.bands().iter().filter(|band| beyond(band.low_cm1, band.high_cm1)).count();
-        (count > 0).then(|| {
-            let of = self.bands.len();
-            let message = format!(
-                "{count} of {of} bands are for the most part outside {low} to {high} cm^-1, the range in which the figures of the detector are \
-                 stated; they are taken to hold there too"
-            );
-            Warning::new("outside-detector-range", message)
-        })
+        let outside = self.bands.bands().iter().filter(|band| beyond(band.low_cm1, band.high_cm1)).count();
+        let (bands, range_cm1) = (self.bands.len(), camera.spectral_range_cm1);
+        (outside > 0).then_some(Warning::OutsideDetectorRange { outside, bands, range_cm1 })
     }
 }
 
 fn shortcut(pair: &PairResult) -> Option<Warning> {
     let (exact, shortcut) = (pair.statistical_distance?, pair.statistical_distance_shortcut?);
     let off = shortcut / exact - 1.0;
-    (exact > 0.0 && off.abs() > SHORTCUT).then(|| {
-        let percent = 100.0 * off;
-        let message =
-            format!("the shortcut sqrt(N/(1+gamma)) d0 is off by {percent:+.0} %; the exact value is used");
-        Warning::new("gamma-shortcut", message)
-    })
+    (exact > 0.0 && off.abs() > SHORTCUT).then_some(Warning::GammaShortcut { off })
 }
 
 fn full_well(result: &CameraResult) -> Option<Warning> {
-    let full = result.camera.full_well?;
-    let counts = result.brightest_reading;
-    (counts > full).then(|| {
-        let message = format!("{counts:.2e} photons in one reading exceed the full well of {full:.2e}");
-        Warning::new("full-well", message)
-    })
+    let (counts, full_well) = (result.brightest_reading, result.camera.full_well?);
+    (counts > full_well).then_some(Warning::FullWell { counts, full_well })
 }
 
 fn assumed(camera: &Camera) -> Option<Warning> {
-    (!camera.assumed.is_empty()).then(|| {
-        let message = format!("no document states all of {}: {}", camera.name, camera.assumed.join("; "));
-        Warning::new("camera-figure-assumed", message)
-    })
+    let (name, figures) = (&camera.name, &camera.assumed);
+    (!figures.is_empty())
+        .then(|| Warning::CameraFiguresAssumed { camera: name.clone(), figures: figures.clone() })
 }

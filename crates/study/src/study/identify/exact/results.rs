@@ -89,16 +89,12 @@ impl Exact {
         let wide: Vec<f64> =
             intervals.map(|i| i.half_width()).filter(|reached| *reached > plan.half_width()).collect();
         let widest = wide.iter().copied().fold(0.0, f64::max);
-        (!wide.is_empty()).then(|| {
-            let message = format!(
-                "{} of {} simulations ended after {} trials of a state with intervals of up to +- {widest:.2}, not the +- {} \
-                 asked for; raise --trials, or ask for less with --half-width",
-                wide.len(),
-                self.pairs.len() + usize::from(self.library.is_some()),
-                plan.most_trials(),
-                plan.half_width()
-            );
-            Warning::new("trials-ended", message)
+        (!wide.is_empty()).then(|| Warning::TrialsEnded {
+            wide: wide.len(),
+            simulations: self.pairs.len() + usize::from(self.library.is_some()),
+            most_trials: plan.most_trials(),
+            widest,
+            asked: plan.half_width(),
         })
     }
 }

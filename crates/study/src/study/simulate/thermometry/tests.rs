@@ -58,7 +58,7 @@ fn where_the_range_tells_more_than_the_camera_it_is_said() {
     let unknown = found.rows[0].lighting_unknown.as_ref().unwrap();
     assert!(unknown.at_edge > 0.3 && unknown.efficiency.unwrap().verdict == Verdict::Below, "{unknown:?}");
     assert!(!unknown.bound_applies && found.rows[0].lighting_known.bound_applies);
-    assert!(found.warnings.iter().any(|warning| warning.code == "range-holds-the-estimates"));
+    assert!(found.warnings.iter().any(|warning| matches!(warning, Warning::RangeHoldsTheEstimates { .. })));
     // The hybrid bound is for errors averaged over the range; at the middle of it this estimate errs more, too.
     assert!(unknown.errors.rmse > found.rows[0].bound_range_k.unwrap());
 }

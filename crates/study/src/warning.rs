@@ -1,0 +1,222 @@
+//! What the reader of a result must know: a code that programs can rely on, and the data of its message.
+//!
+//! Codes with their meaning and what to do are rows of [`Code`]; messages are worded in the file `message` alone.
+
+mod catalogue;
+mod message;
+
+pub use catalogue::Code;
+
+use hadar::fisher::Nuisance;
+use hadar::scene::Parameter;
+use hadar::simulate::classifier::Method;
+use serde::ser::{Serialize, SerializeStruct, Serializer};
+
+/// Something the reader of a result must know. Its `Display` is the message, one sentence.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+#[expect(missing_docs, reason = "fields are told with their variant")]
+pub enum Warning {
+    /// One of a pair of materials.
+    OfPair { target: String, alternative: String, warning: Box<Self> },
+    /// One that concerns some cameras of several.
+    OfCameras { who: String, warning: Box<Self> },
+
+    /// What the entry of a material says.
+    Material { material: String, remark: String },
+    /// The target was named among its alternatives.
+    TargetAmongAlternatives { target: String },
+    /// The spectrum does not cover the bands.
+    MaterialSkipped { material: String },
+
+    /// Equal emissivities.
+    Identical,
+    /// Equal temperatures.
+    Equilibrium,
+    /// The unknowns imitate the material.
+    Blind,
+    /// Parameters of the nearest state at ends of ranges that the scenario set, among so many objects around.
+    NearestAtEdge { parameters: Vec<Parameter>, objects: usize },
+    /// The search for the nearest state of a pair.
+    NearestNotConverged,
+    /// How many searches of the matrix did not converge.
+    MatrixNotConverged { searches: usize },
+    /// Distances per √photon.
+    LocalDiffers { local: f64, nearest: f64, ratio: f64 },
+    /// Of a pair.
+    Fragile,
+    /// Of the limiting scene of a rule.
+    FragileScene,
+    /// Parameters that change nothing, among so many objects around.
+    UnknownWithoutEffect { parameters: Vec<Parameter>, objects: usize },
+    /// The unknown that makes the search for the nearest state uncertain.
+    NearestSearch { unknown: Nuisance },
+    /// Photons per mode at the lowest wavenumber, and whether the camera's noise has bunching in it.
+    Bunching { occupancy: f64, wavenumber_cm1: f64, included: bool },
+    /// An envelope beside the one scene.
+    EnvelopeNotSearched,
+
+    /// Time until all bands are read.
+    SequentialReadout { acquisition_s: f64, bands: usize },
+    /// Motion until all bands are exposed.
+    MotionBlur { pixels: f64 },
+    /// A scenario with a speed and no distance.
+    MotionBlurUnknown,
+    /// A rule with a speed and no distance.
+    RuleMotionBlurUnknown,
+    /// Filters and no temperature of the sensor.
+    FilterLightLeftOut,
+    /// A temperature of the sensor and no filters.
+    SensorTemperatureIdle,
+    /// Share of the pixel that the target fills.
+    TargetSmallerThanPixel { fill: f64 },
+    /// Blur λF and radius of the first dark ring at the longest wavelength, beside the pixel.
+    Diffraction { wavelength_m: f64, blur_m: f64, ring_m: f64, pixel_m: f64 },
+    /// Exposures at a frame rate, and their sum.
+    FrameRate { exposures: f64, acquisition_s: f64, frame_rate_hz: f64, exposed_s: f64 },
+    /// So many bands of all that lie for the most part outside a range.
+    OutsideDetectorRange { outside: usize, bands: usize, range_cm1: [f64; 2] },
+    /// By how much the shortcut is off, as a share of the exact distance.
+    GammaShortcut { off: f64 },
+    /// Photons of a reading.
+    FullWell { counts: f64, full_well: f64 },
+    /// Photons of the brightest band of the brightest pixel of a scene.
+    PixelFull { counts: f64, full_well: f64 },
+    /// Figures that no document states, each in the words of the camera's entry.
+    CameraFiguresAssumed { camera: String, figures: Vec<String> },
+    /// One of them.
+    CameraFigureAssumed { figure: String },
+
+    /// A matrix of distances with priors.
+    MatrixPriors,
+    /// Simulations whose intervals are wider than asked for.
+    TrialsEnded { wide: usize, simulations: usize, most_trials: u64, widest: f64, asked: f64 },
+
+    /// A worst case that was searched for.
+    NotProved,
+    /// Noise of the brightest scene.
+    BrightestNoise,
+    /// Ends of the range of distances.
+    DistanceEnds,
+    /// Time of all frames, and the way that is driven in it.
+    FramesInMotion { frames: u32, time_s: f64, way_m: f64 },
+
+    /// Samples of a cube that were looked at.
+    SamplesNotChecked { evaluated: usize, samples: usize },
+    /// Information that noise of the counts would make, and that demanded.
+    NoiseOfDemanded { floor_per_px2: f64, demanded_per_px2: f64 },
+    /// Information that noise of the counts would make, and that found.
+    NoiseOfFound { floor_per_px2: f64, found_per_px2: f64 },
+    /// Disparity error of the cube over that promised.
+    ScatteredAsMeasured { ratio: f64 },
+    /// A cube without depth.
+    NoDepth,
+    /// Information by another derivative over that by the one asked for.
+    Derivative { ratio: f64 },
+    /// Two bands, or one.
+    FewBands { bands: usize },
+
+    /// Priors of a simulation.
+    PriorsLeftOut,
+    /// The fewest photons of an experiment.
+    SpectraEmpty { photons: f64 },
+    /// The most photons of an experiment.
+    CountsRounded { photons: f64 },
+    /// Training spectra of each class.
+    FewSpectra { training: usize },
+    /// What a saved model was trained with.
+    ModelPhotons { method: Method, photons: f64 },
+    /// Error of the distribution function.
+    NormalLikelihood { error: f64 },
+    /// A fixed total of photons.
+    LimitNormal,
+    /// Largest share of fits of a temperature at an edge, and the share up to which the bound applies.
+    RangeHoldsTheEstimates { at_edge: f64, held: f64 },
+    /// How many fits.
+    UnconvergedFits { fits: usize },
+    /// How many sums of counts.
+    NoReading { sums: usize },
+    /// A spectrum without temperature in it.
+    TemperatureNotSeen,
+}
+
+impl Warning {
+    /// The stable code, with its meaning and what to do.
+    #[must_use]
+    pub fn code(&self) -> Code {
+        match self {
+            Self::OfPair { warning, .. } | Self::OfCameras { warning, .. } => warning.code(),
+            Self::Material { .. } => Code::Material,
+            Self::TargetAmongAlternatives { .. } => Code::TargetAmongAlternatives,
+            Self::MaterialSkipped { .. } => Code::MaterialSkipped,
+            Self::Identical => Code::Identical,
+            Self::Equilibrium => Code::Equilibrium,
+            Self::Blind => Code::Blind,
+            Self::NearestAtEdge { .. } => Code::NearestAtEdge,
+            Self::NearestNotConverged | Self::MatrixNotConverged { .. } => Code::NearestNotConverged,
+            Self::LocalDiffers { .. } => Code::LocalDiffers,
+            Self::Fragile | Self::FragileScene => Code::Fragile,
+            Self::UnknownWithoutEffect { .. } => Code::UnknownWithoutEffect,
+            Self::NearestSearch { .. } => Code::NearestSearch,
+            Self::Bunching { .. } => Code::Bunching,
+            Self::EnvelopeNotSearched => Code::EnvelopeNotSearched,
+            Self::SequentialReadout { .. } => Code::SequentialReadout,
+            Self::MotionBlur { .. } => Code::MotionBlur,
+            Self::MotionBlurUnknown | Self::RuleMotionBlurUnknown => Code::MotionBlurUnknown,
+            Self::FilterLightLeftOut | Self::SensorTemperatureIdle => Code::FilterLight,
+            Self::TargetSmallerThanPixel { .. } => Code::TargetSmallerThanPixel,
+            Self::Diffraction { .. } => Code::Diffraction,
+            Self::FrameRate { .. } => Code::FrameRate,
+            Self::OutsideDetectorRange { .. } => Code::OutsideDetectorRange,
+            Self::GammaShortcut { .. } => Code::GammaShortcut,
+            Self::FullWell { .. } | Self::PixelFull { .. } => Code::FullWell,
+            Self::CameraFiguresAssumed { .. } | Self::CameraFigureAssumed { .. } => Code::CameraFigureAssumed,
+            Self::MatrixPriors => Code::MatrixPriors,
+            Self::TrialsEnded { .. } => Code::TrialsEnded,
+            Self::NotProved => Code::NotProved,
+            Self::BrightestNoise => Code::BrightestNoise,
+            Self::DistanceEnds => Code::DistanceEnds,
+            Self::FramesInMotion { .. } => Code::FramesInMotion,
+            Self::SamplesNotChecked { .. } => Code::SamplesNotChecked,
+            Self::NoiseOfDemanded { .. } | Self::NoiseOfFound { .. } => Code::NoiseInCounts,
+            Self::ScatteredAsMeasured { .. } => Code::ScatteredAsMeasured,
+            Self::NoDepth => Code::NoDepth,
+            Self::Derivative { .. } => Code::Derivative,
+            Self::FewBands { .. } => Code::FewBands,
+            Self::PriorsLeftOut => Code::PriorsLeftOut,
+            Self::SpectraEmpty { .. } => Code::SpectraEmpty,
+            Self::CountsRounded { .. } => Code::CountsRounded,
+            Self::FewSpectra { .. } => Code::FewSpectra,
+            Self::ModelPhotons { .. } => Code::ModelPhotons,
+            Self::NormalLikelihood { .. } => Code::NormalLikelihood,
+            Self::LimitNormal => Code::LimitNormal,
+            Self::RangeHoldsTheEstimates { .. } => Code::RangeHoldsTheEstimates,
+            Self::UnconvergedFits { .. } => Code::UnconvergedFits,
+            Self::NoReading { .. } => Code::NoReading,
+            Self::TemperatureNotSeen => Code::TemperatureNotSeen,
+        }
+    }
+}
+
+impl Warning {
+    /// The same, said of cameras among several.
+    #[must_use]
+    pub fn of_cameras(self, who: &str) -> Self {
+        Self::OfCameras { who: who.to_owned(), warning: Box::new(self) }
+    }
+
+    /// Whether a reader is told the same, digits that are not shown left out.
+    #[must_use]
+    pub fn says_as(&self, other: &Self) -> bool {
+        self.code() == other.code() && self.to_string() == other.to_string()
+    }
+}
+
+impl Serialize for Warning {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut object = serializer.serialize_struct("Warning", 2)?;
+        object.serialize_field("code", self.code().name())?;
+        object.serialize_field("message", &self.to_string())?;
+        object.end()
+    }
+}

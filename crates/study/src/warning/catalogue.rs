@@ -1,0 +1,167 @@
+//! Every code of a warning, what it means and what to do about it: one row each.
+
+/// Makes the enum, its list and its texts of one table, so that no code can lack a row or be left out of the list.
+macro_rules! catalogue {
+    ($($(#[doc = $meaning:literal])+ $variant:ident = $name:literal, $remedy:literal;)+) => {
+        /// Stable code of a warning.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        #[non_exhaustive]
+        pub enum Code {
+            $(
+                #[doc = concat!("`", $name, "`:")]
+                $(#[doc = $meaning])+
+                #[doc = concat!("\n\n", $remedy)]
+                $variant,
+            )+
+        }
+
+        impl Code {
+            /// All of them.
+            pub const ALL: &'static [Self] = &[$(Self::$variant),+];
+
+            /// The code as programs know it, e.g. `nearest-at-edge`.
+            #[must_use]
+            pub const fn name(self) -> &'static str {
+                match self { $(Self::$variant => $name),+ }
+            }
+
+            /// What it means.
+            #[must_use]
+            pub fn meaning(self) -> &'static str {
+                match self { $(Self::$variant => concat!($($meaning),+).trim_start()),+ }
+            }
+
+            /// What to do about it.
+            #[must_use]
+            pub const fn remedy(self) -> &'static str {
+                match self { $(Self::$variant => $remedy),+ }
+            }
+        }
+    };
+}
+
+catalogue! {
+    /// The file or library entry of a material says something that whoever uses it must know.
+    Material = "material", "Read the entry; use another spectrum if it does not fit your surface.";
+    /// The target's own material was named among the alternatives, from which it cannot be told.
+    TargetAmongAlternatives = "target-among-alternatives", "Nothing; or leave it out of alternatives.materials.";
+    /// An alternative was left out since its spectrum does not cover the bands.
+    MaterialSkipped = "material-skipped",
+        "Choose bands that its spectrum covers, or alternatives.extrapolate = \"hold\".";
+
+    /// The two materials have equal emissivities in every band: no camera tells them apart.
+    Identical = "identical", "Choose bands in which they differ.";
+    /// Target and surroundings are in thermal equilibrium, where every material looks like a blackbody.
+    Equilibrium = "equilibrium", "Look at another time or place, where temperatures differ, or light the scene.";
+    /// A change of the unknowns looks exactly like the change of material, to first order.
+    Blind = "blind", "Take more bands, or make an unknown known (fewer nuisances, a prior, lighting_total).";
+    /// The state in which the alternative is most similar stands at the end of a range that the scenario set.
+    NearestAtEdge = "nearest-at-edge", "Check that the range is what can occur: the answer hangs on it.";
+    /// The search for a nearest state ended before it converged, so that a distance may be too large.
+    NearestNotConverged = "nearest-not-converged", "Take the distance as an estimate from above; narrow the ranges.";
+    /// Local and nearest distance differ much: the picture that is linear in the unknowns has failed.
+    LocalDiffers = "local-differs", "Use the nearest distance (requirement.by = \"nearest\").";
+    /// Spectra are nearly featureless, so that small errors of the emissivities change the distance several times over.
+    Fragile = "fragile", "Measure the emissivities better, or take the answer as an order of magnitude.";
+    /// An unknown changes nothing in this scene and was left out.
+    UnknownWithoutEffect = "unknown-without-effect", "Nothing; or take it out of unknown.nuisances.";
+    /// With this unknown there are many similar states, of which the search may miss the nearest: its distance may be too large.
+    NearestSearch = "nearest-search", "Make the unknown known if you can; else keep a margin.";
+    /// Photons per mode are so many that bunching raises the noise noticeably.
+    Bunching = "bunching", "Set camera.photon_bunching = true to include it.";
+    /// The scenario has an envelope, and this answer is for its one scene.
+    EnvelopeNotSearched = "envelope-not-searched", "Ask `hadar rule` for the worst scene of the envelope.";
+
+    /// Bands are read one after the other, and the scene must hold still for all of them.
+    SequentialReadout = "sequential-readout", "Shorten the exposure, or take a camera that reads all bands at once.";
+    /// The target moves by a pixel or more while all bands are exposed; the bound assumes less.
+    MotionBlur = "motion-blur", "Shorten the exposure, or allow less speed.";
+    /// A speed is demanded, but without a distance its blur cannot be known.
+    MotionBlurUnknown = "motion-blur-unknown", "Write target.distance, or distance in [envelope].";
+    /// Light of filters and of the sensor is left out, or the sensor's temperature is given where it does nothing.
+    FilterLight = "filter-light", "Write camera.sensor_temperature where there are filters, and only there.";
+    /// The target does not fill its pixel.
+    TargetSmallerThanPixel = "target-smaller-than-pixel", "Keep a margin for targets between pixels, or magnify.";
+    /// The lens blurs a point over more than a pixel.
+    Diffraction = "diffraction", "Lower the f-number or enlarge the pixel; expect neighbours to mix.";
+    /// Several exposures come at the frame rate and so take longer than their sum.
+    FrameRate = "frame-rate", "Take fewer frames or a faster camera, or make sure that nothing changes.";
+    /// Bands lie for the most part outside the range in which the detector's figures are stated.
+    OutsideDetectorRange = "outside-detector-range", "Narrow the bands, or state figures that hold there.";
+    /// The shortcut by a mean noise is off; the exact distance is what is reported.
+    GammaShortcut = "gamma-shortcut", "Nothing; do not use the shortcut here.";
+    /// A reading does not fit into the full well of a pixel.
+    FullWell = "full-well", "Shorten the exposure, or take more frames of less each.";
+    /// No document states a figure of the camera: it was assumed.
+    CameraFigureAssumed = "camera-figure-assumed", "Measure it or ask the maker, and write it under [camera].";
+
+    /// Distances of the matrix per root of the photons know nothing of the priors; its statistical distances do.
+    MatrixPriors = "matrix-priors", "Read the statistical distances.";
+    /// Simulations ended at the most trials with intervals wider than asked for.
+    TrialsEnded = "trials-ended", "Raise --trials, or ask for less with --half-width.";
+
+    /// That no scene of the envelope is below the requirement was searched for, not proved.
+    NotProved = "not-proved", "Narrow the envelope, so that the search can prove it.";
+    /// Noise that depends on the scene is taken where it is largest, so that the distance is a lower bound.
+    BrightestNoise = "brightest-noise", "Nothing; the verdict is on the safe side.";
+    /// With air on the path the worst distance is assumed to be at an end of its range.
+    DistanceEnds = "distance-ends", "Ask for distances between in rules of their own.";
+    /// The frames of a camera take so long that the vehicle moves meanwhile.
+    FramesInMotion = "frames-in-motion", "Lay the frames over each other, or take fewer.";
+
+    /// A yes or no was decided by some samples of the cube, and the others were not looked at.
+    SamplesNotChecked = "samples-not-checked", "Use --no-skip to have all of them checked.";
+    /// Measured counts have noise of their own, which looks like texture and makes bounds too good.
+    NoiseInCounts = "noise-in-counts", "Give expected counts, or averages of many frames.";
+    /// The scattered light as if it were measured alone promises more than the cube holds.
+    ScatteredAsMeasured = "scattered-as-measured", "Use the bounds of the heat cube.";
+    /// No depth is given, so that bounds are on disparity, in pixels.
+    NoDepth = "no-depth", "Write depth in [cube], a length or a file.";
+    /// Texture is near the limit of the pixels, and another derivative gives other information.
+    Derivative = "derivative", "Take the square root of the factor as uncertainty, or use finer pixels.";
+    /// There are too few bands to tell emission from scattered light.
+    FewBands = "few-bands", "Give three bands or more.";
+
+    /// Priors count for nothing in what is drawn and learnt.
+    PriorsLeftOut = "priors-left-out", "Compare with limits without priors.";
+    /// With so few photons most spectra are empty.
+    SpectraEmpty = "spectra-empty", "Ask for more with --photons.";
+    /// Counts are so large that floating point rounds them.
+    CountsRounded = "counts-rounded", "Ask for fewer with --photons.";
+    /// There are too few training spectra to learn from.
+    FewSpectra = "few-spectra", "Raise --spectra.";
+    /// A saved model was trained with another number of photons.
+    ModelPhotons = "model-photons", "Judge it with the photons it was trained with, or train anew.";
+    /// Likelihoods take counts for normal, which they are not quite, so that the likelihood ratio may lose a little.
+    NormalLikelihood = "normal-likelihood", "Ask for more photons, or leave the electronic noise out.";
+    /// With a fixed total only the limit of many photons is known: nothing is held against it.
+    LimitNormal = "limit-normal", "Use --statistics poisson to hold classifiers against their limit.";
+    /// Fits end at the edge of what is physically possible and may be biased, where the Cramer-Rao bound says nothing.
+    RangeHoldsTheEstimates = "range-holds-the-estimates", "Use more photons or bands, or know the lighting.";
+    /// Fits of temperatures did not converge.
+    UnconvergedFits = "unconverged-fits", "Nothing if they are few; else take more photons or bands.";
+    /// Sums of counts are explained by no temperature.
+    NoReading = "no-reading", "Take more photons: noise outweighs the signal.";
+    /// The spectrum tells nothing of the temperature that the other unknowns do not imitate.
+    TemperatureNotSeen = "temperature-not-seen", "Take more bands, or make an unknown known.";
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn codes_are_unique_and_explained() {
+        let mut names: Vec<&str> = Code::ALL.iter().map(|code| code.name()).collect();
+        let written = |name: &&str| name.chars().all(|char| char.is_ascii_lowercase() || char == '-');
+        assert!(names.iter().all(written), "{names:?}");
+        names.sort_unstable();
+        names.dedup();
+        assert_eq!(names.len(), Code::ALL.len());
+        for code in Code::ALL {
+            for text in [code.meaning(), code.remedy()] {
+                assert!(text.ends_with('.') && text.starts_with(char::is_uppercase), "{code:?}: {text}");
+            }
+        }
+    }
+}

@@ -1,0 +1,278 @@
+//! The message of every warning, made of its data.
+
+use super::Warning;
+use hadar::fisher::Nuisance;
+use hadar::scene::Parameter;
+use hadar::words::{quantity, significant};
+use std::fmt::{self, Display, Formatter};
+
+impl Display for Warning {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::OfPair { target, alternative, warning } => {
+                write!(f, "{target} against {alternative}: {warning}")
+            }
+            Self::OfCameras { who, warning } => write!(f, "{who}: {warning}"),
+            Self::Material { material, remark } => write!(f, "{material}: {remark}"),
+            Self::TargetAmongAlternatives { target } => {
+                write!(f, "{target} is left out of the alternatives: it is the target")
+            }
+            Self::MaterialSkipped { material } => {
+                write!(f, "{material} is left out: its spectrum does not cover the bands")
+            }
+            Self::Identical => f.write_str("the two emissivities are equal in every band"),
+            Self::Equilibrium => f.write_str(
+                "target and surroundings are in thermal equilibrium; every material looks like a blackbody",
+            ),
+            Self::Blind => f.write_str("a change of the unknowns looks exactly like the change of material"),
+            Self::NearestAtEdge { parameters, objects } => write!(
+                f,
+                "the nearest state stands at the edge of its range ({}); the range decides the answer",
+                listed(parameters, *objects)
+            ),
+            Self::NearestNotConverged => f.write_str("the search for the nearest state stopped early"),
+            Self::MatrixNotConverged { searches } => {
+                write!(f, "{searches} searches for the nearest states of the matrix stopped early")
+            }
+            Self::LocalDiffers { local, nearest, ratio } => write!(
+                f,
+                "local ({local:.2e}) and nearest ({nearest:.2e}) distance differ by a factor {ratio:.1}; \
+                 only the nearest one is a limit"
+            ),
+            Self::Fragile => f.write_str(
+                "the spectra are nearly featureless: errors of 0.1 % in the emissivities can change this distance several \
+                 times over",
+            ),
+            Self::FragileScene => f.write_str(
+                "the spectra of the limiting scene are nearly featureless: errors of 0.1 % in the emissivities \
+                 can change the distance several times over",
+            ),
+            Self::UnknownWithoutEffect { parameters, objects } => {
+                let change = if parameters.len() == 1 { "changes" } else { "change" };
+                write!(f, "{} {change} nothing in this scene", listed(parameters, *objects))
+            }
+            Self::NearestSearch { unknown: Nuisance::Gain } => f.write_str(
+                "with the gain unknown the search for the nearest state missed it in one of 200 random scenes, by up to 3 %",
+            ),
+            Self::NearestSearch { .. } => f.write_str(
+                "with the temperatures of the surroundings unknown there are many similar states; the search \
+                 for the nearest one missed it in up to a quarter of random scenes, so the nearest distance may be too large",
+            ),
+            Self::Bunching { occupancy, wavenumber_cm1, included } => {
+                let what = if *included {
+                    "bunching raises the noise of the light that is counted, which is included"
+                } else {
+                    "bunching, which is neglected (camera.photon_bunching), raises the noise by as much"
+                };
+                write!(f, "{occupancy:.2} photons per mode at {wavenumber_cm1:.0} cm^-1: {what}")
+            }
+            Self::EnvelopeNotSearched => f.write_str(
+                "this is the answer for the one scene; the [envelope] is searched by `hadar rule`",
+            ),
+            Self::SequentialReadout { acquisition_s, bands } => write!(
+                f,
+                "bands are read one after the other: {acquisition_s:.3e} s until all {bands} are there, during which nothing \
+                 may change"
+            ),
+            Self::MotionBlur { pixels } => write!(
+                f,
+                "the target moves {} pixels until all bands are exposed; the bound assumes less than 1",
+                significant(*pixels, 2)
+            ),
+            Self::MotionBlurUnknown => f.write_str(
+                "a speed is given, but for the motion blur the scenario must say target.distance",
+            ),
+            Self::RuleMotionBlurUnknown => f.write_str("a speed is given, but motion blur needs a distance"),
+            Self::FilterLightLeftOut => f.write_str(
+                "the light that filters throw back onto the sensor, and their own, is left out: sensor_temperature is not \
+                 given",
+            ),
+            Self::SensorTemperatureIdle => f.write_str(
+                "sensor_temperature changes nothing: there are no filters that throw its light back",
+            ),
+            Self::TargetSmallerThanPixel { fill } => write!(
+                f,
+                "the target fills {} % of its pixel, as long as it stands in the middle of one; on the edge of two or \
+                 four of them it is seen by each in part",
+                significant(100.0 * fill, 2)
+            ),
+            Self::Diffraction { wavelength_m, blur_m, ring_m, pixel_m } => write!(
+                f,
+                "at {} the lens blurs a point over lambda F = {} (first dark ring at {}), more than the pixel of {}: \
+                 neighbours see the same, and an edge of the target is spread over pixels",
+                quantity(*wavelength_m, "m"),
+                quantity(*blur_m, "m"),
+                quantity(*ring_m, "m"),
+                quantity(*pixel_m, "m"),
+            ),
+            Self::FrameRate { exposures, acquisition_s, frame_rate_hz, exposed_s } => write!(
+                f,
+                "{exposures:.0} exposures take {} at {} frames per second, not {}; nothing may change meanwhile",
+                quantity(*acquisition_s, "s"),
+                significant(*frame_rate_hz, 3),
+                quantity(*exposed_s, "s"),
+            ),
+            Self::OutsideDetectorRange { outside, bands, range_cm1: [low, high] } => write!(
+                f,
+                "{outside} of {bands} bands are for the most part outside {low} to {high} cm^-1, the range in which the \
+                 figures of the detector are stated; they are taken to hold there too"
+            ),
+            Self::GammaShortcut { off } => {
+                let percent = 100.0 * off;
+                write!(
+                    f,
+                    "the shortcut sqrt(N/(1+gamma)) d0 is off by {percent:+.0} %; the exact value is used"
+                )
+            }
+            Self::FullWell { counts, full_well } => {
+                write!(f, "{counts:.2e} photons in one reading exceed the full well of {full_well:.2e}")
+            }
+            Self::PixelFull { counts, full_well } => write!(
+                f,
+                "the brightest band of the brightest pixel holds {} photons, the well {}: shorten the exposure",
+                short(*counts),
+                short(*full_well)
+            ),
+            Self::CameraFiguresAssumed { camera, figures } => {
+                write!(f, "no document states all of {camera}: {}", figures.join("; "))
+            }
+            Self::CameraFigureAssumed { figure } => f.write_str(figure),
+            Self::MatrixPriors => f.write_str(
+                "the matrix's distances per sqrt(photon) are those of many photons, where priors count for nothing; \
+                 its statistical distances have them",
+            ),
+            Self::TrialsEnded { wide, simulations, most_trials, widest, asked } => write!(
+                f,
+                "{wide} of {simulations} simulations ended after {most_trials} trials of a state with intervals of up to \
+                 +- {widest:.2}, not the +- {asked} asked for; raise --trials, or ask for less with --half-width"
+            ),
+            Self::NotProved => f.write_str(
+                "that no scene of the envelope is below the requirement was searched, not proved",
+            ),
+            Self::BrightestNoise => f.write_str(
+                "noise that depends on the scene is taken in the brightest scene, so the distance is a lower bound; \
+                 what would fix the camera is computed in the limiting scene itself",
+            ),
+            Self::DistanceEnds => f.write_str(
+                "with air on the path it is assumed, not proved, that no distance between the ends of its range is \
+                 worse than both",
+            ),
+            Self::FramesInMotion { frames, time_s, way_m } => write!(
+                f,
+                "its {frames} frames take {} s, in which the vehicle drives {} m: they must be laid over each other, and the \
+                 scene must not change",
+                short(*time_s),
+                short(*way_m)
+            ),
+            Self::SamplesNotChecked { evaluated, samples } => write!(
+                f,
+                "{evaluated} of {samples} samples decided; the others were not looked at, nor checked for counts that are \
+                 none: --no-skip does"
+            ),
+            Self::NoiseOfDemanded { floor_per_px2, demanded_per_px2 } => write!(
+                f,
+                "if these counts are measured, their own noise makes an information of {} pixel^-2 of the {} demanded: give \
+                 expected counts",
+                short(*floor_per_px2),
+                short(*demanded_per_px2)
+            ),
+            Self::NoiseOfFound { floor_per_px2, found_per_px2 } => write!(
+                f,
+                "if these counts are measured, their own noise makes an information of {} pixel^-2 of the {} that were \
+                 found (median): give expected counts, or averages of many frames",
+                short(*floor_per_px2),
+                short(*found_per_px2)
+            ),
+            Self::ScatteredAsMeasured { ratio } => write!(
+                f,
+                "the scattered signal as if measured promises {} times less error than the heat cube holds: the photons that \
+                 are emitted are left out there, and no processing of the cube reaches it",
+                short(*ratio)
+            ),
+            Self::NoDepth => f.write_str(
+                "no depth is given: the bounds are on disparity; write depth = \"12 m\" or a file of depths in [cube]",
+            ),
+            Self::Derivative { ratio } => write!(
+                f,
+                "texture near the limit of the pixels: another derivative gives {} times the information; bounds are uncertain \
+                 by the square root of that",
+                short(*ratio)
+            ),
+            Self::FewBands { bands: 2 } => f.write_str(
+                "two bands cannot tell temperature, strength of the emission and scattered light apart",
+            ),
+            Self::FewBands { .. } => f.write_str(
+                "one band cannot tell emission from scattered light: nothing is left where the temperature is estimated",
+            ),
+            Self::PriorsLeftOut => f.write_str(
+                "priors are left out: the spectra that are drawn, and what is learnt from them, know nothing of them",
+            ),
+            Self::SpectraEmpty { photons } => {
+                write!(f, "with {photons:.2e} photons most spectra are empty in every band")
+            }
+            Self::CountsRounded { photons } => write!(
+                f,
+                "with {photons:.1e} photons counts of a band leave the whole numbers that 64-bit floating point holds: \
+                 they are rounded to it"
+            ),
+            Self::FewSpectra { training } => write!(f, "{training} training spectra of each class teach little"),
+            Self::ModelPhotons { method, photons } => write!(
+                f,
+                "the saved {} was trained with {photons:.3e} photons: with others its scale is wrong",
+                method.words()
+            ),
+            Self::NormalLikelihood { error } => write!(
+                f,
+                "likelihoods take counts for normal; their distribution function is up to {error:.1e} off, so the \
+                 likelihood ratio may fall short of the optimum (draws are exact)"
+            ),
+            Self::LimitNormal => f.write_str(
+                "with a fixed total only the limit of many photons is known; nothing is held against it",
+            ),
+            Self::RangeHoldsTheEstimates { at_edge, held } => write!(
+                f,
+                "up to {:.1} % of the fits at a temperature end at the edge of the physical range of lighting or temperature: \
+                 they may be biased, and the range limits their errors, so that the Cramer-Rao bound, which is for unbiased \
+                 estimates, is not applied where more than {:.1} % do",
+                100.0 * at_edge,
+                100.0 * held
+            ),
+            Self::UnconvergedFits { fits } => {
+                write!(f, "{fits} fits did not converge; their best state so far counts")
+            }
+            Self::NoReading { sums } => {
+                write!(f, "{sums} sums of counts are explained by no temperature; thermal imaging is without them")
+            }
+            Self::TemperatureNotSeen => f.write_str(
+                "the spectrum tells nothing of the temperature, or nothing that the other unknowns do not imitate",
+            ),
+        }
+    }
+}
+
+/// Parameters as a reader calls them.
+fn listed(parameters: &[Parameter], objects: usize) -> String {
+    let words = parameters.iter().map(|parameter| in_words(*parameter, objects));
+    words.collect::<Vec<_>>().join(", ")
+}
+
+fn in_words(parameter: Parameter, objects: usize) -> String {
+    let of = |what: &str, k: usize| {
+        if objects > 1 {
+            format!("{what} of environment[{k}]")
+        } else {
+            format!("{what} of the surroundings")
+        }
+    };
+    match parameter {
+        Parameter::Temperature => "temperature".into(),
+        Parameter::Lighting(k) => of("lighting", k),
+        Parameter::Gain => "gain".into(),
+        Parameter::EnvironmentTemperature(k) => of("temperature", k),
+        Parameter::Material => "material".into(),
+    }
+}
+
+fn short(value: f64) -> String {
+    significant(value, 2)
+}
