@@ -15,7 +15,7 @@ use super::tables;
 use super::text::significant;
 use hadar::error::Result;
 use hadar::policy::Quantity;
-use hadar_study::study::{CameraVerdict, RuleAnswer, RuleStudy, Warning};
+use hadar_study::study::{CameraVerdict, RuleAnswer, RuleStudy, Shortfall, Warning};
 use std::path::Path;
 
 /// What can be changed of a camera.
@@ -65,12 +65,12 @@ fn cameras(answer: &RuleAnswer) -> Table {
         let mut row = vec![
             camera.name.clone(),
             if camera.passes { "yes" } else { "no" }.into(),
-            camera.fails_by.join(" "),
+            text::codes(&camera.fails_by, " "),
             number(camera.margin),
             number(camera.statistical_distance),
             number(camera.detection_probability),
             optional(camera.lower_bound),
-            camera.certificate.kind.into(),
+            camera.certificate.kind.code().into(),
             optional(camera.motion_blur_pixels),
         ];
         row.extend(HARDWARE.map(|quantity| optional(value(camera, quantity))));
@@ -135,10 +135,14 @@ fn margins(answer: &RuleAnswer) -> Plot {
         table.push(vec![camera.name.clone(), number(camera.margin), optional(proved)]);
     }
     // The margin does not show what else a camera fails by.
-    let named = |camera: &&CameraVerdict| match camera.fails_by.iter().filter(|by| **by != "distance").count()
+    let named = |camera: &&CameraVerdict| match camera
+        .fails_by
+        .iter()
+        .filter(|by| **by != Shortfall::Distance)
+        .count()
     {
         0 => camera.name.clone(),
-        _ => format!("{} ({})", camera.name, camera.fails_by.join(", ")),
+        _ => format!("{} ({})", camera.name, text::codes(&camera.fails_by, ", ")),
     };
     let names = ranked.iter().map(named).collect();
     let values =

@@ -13,6 +13,7 @@ pub mod range;
 mod reliability;
 mod resolve;
 mod rule;
+mod shortfall;
 mod sight;
 mod simulate;
 mod size;
@@ -27,15 +28,17 @@ pub use identify::{
 pub use reliability::{probability, reliability};
 pub use resolve::{Study, Surface};
 pub use rule::{
-    CameraVerdict, Certified, EnvelopeResult, FileHash, Fixes, LimitingScene, Neighbourhood, NotIdentifiable,
-    RuleAnswer, RuleAsked, RuleRequirement, RuleStudy,
+    CameraVerdict, Certified, EmissivityError, EnvelopeResult, FileHash, Fixes, IdealCamera, LightTime,
+    LimitingScene, Neighbourhood, NotIdentifiable, Proof, Quotable, RuleAnswer, RuleAsked, RuleRequirement,
+    RuleStudy, WhoMeets,
 };
+pub use shortfall::Shortfall;
 pub use sight::Sight;
 pub use simulate::{
     FIXED_EMISSIVITY, ImagerErrors, NoiseCurve, NoiseCurves, PhotonLaw, Reader, SimulatedClass,
     SimulatedPerformance, SimulatedPoint, Simulation, SimulationPlan, Standing, Thermometry, ThermometryRow,
 };
 pub use size::{
-    CameraResult, Elasticities, EmissivityErrors, InformationCurves, PhotonMap, RequirementResult,
-    Sensitivity, Sizing, Solutions, Spectra, Verdict, VerdictAlone,
+    Answer, CameraResult, Elasticities, EmissivityErrors, Finding, InformationCurves, PhotonMap,
+    RequirementResult, Sensitivity, Sizing, Solutions, Spectra, Verdict, VerdictAlone,
 };

@@ -29,7 +29,7 @@ pub(super) fn run(args: &SizeArgs, global: &Global) -> Result<ExitCode> {
         && global.skipping() == Skipping::On
         && let Some(result) = study.verdict_alone()?
     {
-        global.answer(&result, &result.verdict.sentence, &result.stats)?;
+        global.answer(&result, &result.verdict.sentence.to_string(), &result.stats)?;
         return Ok(code(args, &result.verdict));
     }
     let mut result = study.size()?;

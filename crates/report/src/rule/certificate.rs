@@ -64,12 +64,12 @@ fn row(camera: &CameraVerdict) -> String {
         camera.name.clone(),
         match camera.fails_by.as_slice() {
             [] => "yes".into(),
-            reasons => format!("no ({})", reasons.join(", ")),
+            reasons => format!("no ({})", text::codes(reasons, ", ")),
         },
         significant(camera.margin, 3),
         significant(camera.statistical_distance, 3),
         study::reliability(camera.statistical_distance),
-        camera.certificate.statement.clone(),
+        camera.certificate.to_string(),
         text::scene(&camera.limiting),
         fixes,
     ];

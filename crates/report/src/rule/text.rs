@@ -6,7 +6,7 @@ use crate::text::numbers::{celsius, numbers, quantity, significant};
 use hadar::policy::{Quantity, Solution};
 use hadar::words::share;
 use hadar_study::study::{
-    self, CameraVerdict, Fixes, LimitingScene, NotIdentifiable, RuleAnswer, RuleStudy, Warning,
+    self, CameraVerdict, Fixes, LimitingScene, NotIdentifiable, RuleAnswer, RuleStudy, Shortfall, Warning,
 };
 use std::fmt::Write as _;
 
@@ -78,8 +78,9 @@ fn details(camera: &CameraVerdict) -> String {
         let _ = writeln!(out, "  {label:<12} {text}");
     };
     line("limited by", scene(&camera.limiting));
-    line("certificate", camera.certificate.statement.clone());
-    let spoiled: Vec<&str> = camera.fails_by.iter().copied().filter(|reason| *reason != "distance").collect();
+    line("certificate", camera.certificate.to_string());
+    let spoiled: Vec<Shortfall> =
+        camera.fails_by.iter().copied().filter(|reason| *reason != Shortfall::Distance).collect();
     if !spoiled.is_empty() {
         let longest = camera.longest_exposure_s.map_or_else(String::new, |longest| {
             format!(": exposures of {} and more are too long", quantity(longest, "s"))
@@ -134,16 +135,21 @@ pub(crate) fn would_do(fixes: &Fixes) -> String {
     format!("alone: {}", texts.join("; or "))
 }
 
+/// Codes, one after the other.
+pub(crate) fn codes(shortfalls: &[Shortfall], between: &str) -> String {
+    shortfalls.iter().map(|by| by.code()).collect::<Vec<_>>().join(between)
+}
+
 /// What is wrong with an image.
-fn in_words(spoiled: &[&str]) -> String {
-    let words = spoiled.iter().map(|reason| match *reason {
-        "motion-blur" => "motion blur of a pixel or more",
-        "motion-unknown" => "motion that is not known without a distance",
-        "full-well" => "the brightest scene fills the well",
-        "frame-rate" => "longer than a frame",
-        "diffraction" => "diffraction blurs over more than a pixel",
-        "lowest-noise" => "below what read noise and converter leave",
-        other => other,
+fn in_words(spoiled: &[Shortfall]) -> String {
+    let words = spoiled.iter().map(|reason| match reason {
+        Shortfall::MotionBlur => "motion blur of a pixel or more",
+        Shortfall::MotionUnknown => "motion that is not known without a distance",
+        Shortfall::FullWell => "the brightest scene fills the well",
+        Shortfall::FrameRate => "longer than a frame",
+        Shortfall::Diffraction => "diffraction blurs over more than a pixel",
+        Shortfall::LowestNoise => "below what read noise and converter leave",
+        other => other.code(),
     });
     words.collect::<Vec<_>>().join(", ")
 }
@@ -162,7 +168,7 @@ pub(crate) fn no_camera(part: &NotIdentifiable) -> Vec<String> {
     } else {
         format!("In all of {} scenes drawn from the envelope some camera could do it", part.scenes)
     };
-    let mut lines = vec![found, part.definition.clone()];
+    let mut lines = vec![found, part.definition.to_string()];
     if let Some(near) = &part.neighbourhood {
         lines.push(format!(
             "nine tenths of these scenes are within {} K of equilibrium with the surroundings, unlit share up to {}",

@@ -8,10 +8,11 @@ mod solve;
 mod subject;
 mod verdict;
 mod witness;
+mod wording;
 
 pub use results::{
-    BoundMaps, CellMedians, DepthSolutions, DepthVerdict, Geometry, Line, Matched, ObjectBounds, PictureKind,
-    Ranging, Signal, SignalBounds,
+    BoundMaps, CellMedians, DepthFinding, DepthSolutions, DepthVerdict, Geometry, Line, Matched,
+    ObjectBounds, PictureKind, Ranging, Signal, SignalBounds,
 };
 
 pub use bounds::{median, quantile};

@@ -13,14 +13,15 @@ mod ideal;
 mod inputs;
 mod results;
 mod search;
+mod wording;
 
 pub use results::{
-    CameraVerdict, Certified, EnvelopeResult, FileHash, Fixes, LimitingScene, Neighbourhood, NotIdentifiable,
-    RuleAnswer, RuleRequirement,
+    CameraVerdict, Certified, EmissivityError, EnvelopeResult, FileHash, Fixes, IdealCamera, LightTime,
+    LimitingScene, Neighbourhood, NotIdentifiable, Proof, Quotable, RuleAnswer, RuleRequirement, WhoMeets,
 };
 
 use self::envelope::Sighted;
-use super::{Study, Warning, reliability};
+use super::{Study, Warning};
 use crate::scenario::rule::RuleCamera;
 use crate::scenario::{DistanceKind, Envelope, MaterialRef, Rule};
 use hadar::demand::{Reason, Skipping, Thing, Work};
@@ -28,7 +29,6 @@ use hadar::error::{Error, Result};
 use hadar::identifiability::detection;
 use hadar::instrument::presets;
 use hadar::material::Library;
-use hadar::words;
 
 /// Relative difference of counts or variance from which on a distance matters.
 const NOTICEABLE: f64 = 1e-3;
@@ -189,7 +189,7 @@ impl RuleStudy {
         let requirement = self.requirement(&cameras, &envelope, alone);
         Ok(RuleAnswer {
             rule: self.rule.clone(),
-            sentence: sentence(&cameras),
+            sentence: who_meets(&cameras),
             requirement,
             envelope,
             cameras,
@@ -237,31 +237,14 @@ impl RuleStudy {
         let hardware = hardware.filter(|_| !alone);
         let hardware_m2_s = hardware.map(|each| each.into_iter().fold(0.0, f64::max));
         let speed_m_s = self.rule.scenario.requirement.speed_m_s;
-        let mut quotable = format!(
-            "A camera meets this rule if, in every scene of the envelope ({}), it tells {} from {} with {} reliability \
-             (statistical distance d of at least {})",
-            in_words(envelope),
-            either(&envelope.materials),
-            either(&envelope.alternatives),
-            reliability(self.required),
-            words::significant(self.required, 4),
-        );
-        if let Some(speed) = speed_m_s {
-            let speed = words::significant(speed, 3);
-            quotable.push_str(&format!(
-                ", and nothing that stands moves by a pixel while all bands are exposed, seen from a vehicle that drives \
-                 forward at {speed} m/s"
-            ));
-        }
-        quotable.push('.');
         // A target smaller than its pixel, or air, takes light away that the figure of the hardware does not know of.
         let plain = self.rule.scenario.target.size_m.is_none() && self.rule.scenario.atmosphere.is_none();
-        if let Some(hardware) = hardware_m2_s.filter(|_| plain) {
-            quotable.push_str(&format!(
-                " Where its noise is spread over the bands as its photons are, this is t A_p/((1+gamma) F^2) >= {hardware:.2e} m^2 s \
-                 (exposure t, pixel area A_p, noise over photons gamma, f-number F; lossless optics)."
-            ));
-        }
+        let quotable = Quotable {
+            envelope: envelope.clone(),
+            required: self.required,
+            speed_m_s,
+            hardware_m2_s: hardware_m2_s.filter(|_| plain),
+        };
         RuleRequirement {
             distance: self.required,
             detection_probability: detection::probability(self.required),
@@ -334,55 +317,10 @@ fn complete(camera: &RuleCamera) -> Result<()> {
 }
 
 /// Which cameras meet the rule.
-fn sentence(cameras: &[CameraVerdict]) -> String {
-    let names = |passing: bool| -> Vec<&str> {
+fn who_meets(cameras: &[CameraVerdict]) -> WhoMeets {
+    let names = |passing: bool| {
         let chosen = cameras.iter().filter(|camera| camera.passes == passing);
-        chosen.map(|camera| camera.name.as_str()).collect()
+        chosen.map(|camera| camera.name.clone()).collect()
     };
-    let (meet, fail) = (names(true), names(false));
-    match (meet.as_slice(), fail.as_slice()) {
-        ([one], []) => format!("{one} meets the rule."),
-        ([], [one]) => format!("{one} does not meet the rule."),
-        (all, []) => format!("All {} cameras meet the rule: {}.", all.len(), all.join(", ")),
-        ([], all) => format!("None of {} cameras meets the rule: {}.", all.len(), all.join(", ")),
-        ([one], rest) => format!("1 of {} cameras meets the rule: {one}.", 1 + rest.len()),
-        (some, rest) => {
-            format!(
-                "{} of {} cameras meet the rule: {}.",
-                some.len(),
-                some.len() + rest.len(),
-                some.join(", ")
-            )
-        }
-    }
-}
-
-/// `a, b or c`.
-fn either(names: &[String]) -> String {
-    match names {
-        [] => "nothing".into(),
-        [one] => one.clone(),
-        [first @ .., last] => format!("{} or {last}", first.join(", ")),
-    }
-}
-
-/// The ranges of an envelope in a few words.
-fn in_words(envelope: &EnvelopeResult) -> String {
-    let celsius = |range: [f64; 2]| interval(range.map(|kelvin| kelvin - 273.15), "degC");
-    let mut parts = vec![format!("target {}", celsius(envelope.temperature_k))];
-    let objects = envelope.surroundings_k.iter().zip(&envelope.lighting);
-    parts.extend(objects.map(|(kelvin, lighting)| {
-        format!("surroundings {} lighting it by {}", celsius(*kelvin), interval(*lighting, ""))
-    }));
-    parts.extend(envelope.distance_m.map(|range| format!("distance {}", interval(range, "m"))));
-    parts.join(", ")
-}
-
-fn interval([low, high]: [f64; 2], unit: &str) -> String {
-    let shown = |value: f64| {
-        let rounded = (value * 1e6).round() / 1e6;
-        if rounded == 0.0 { "0".to_owned() } else { format!("{rounded}") }
-    };
-    let range = if low == high { shown(low) } else { format!("{} to {}", shown(low), shown(high)) };
-    if unit.is_empty() { range } else { format!("{range} {unit}") }
+    WhoMeets { meet: names(true), fail: names(false) }
 }

@@ -1,7 +1,7 @@
 //! The main job: does the camera meet the requirement, and what would it have to be.
 
 use super::identify::{PairResult, PhotonsRequired};
-use super::{Check, Study, Surface, Warning, reliability};
+use super::{Check, Shortfall, Study, Surface, Warning};
 use crate::scenario::Scenario;
 use hadar::demand::{Skipping, Work};
 use hadar::error::Result;
@@ -15,6 +15,7 @@ mod curves;
 mod reach;
 mod sensitivity;
 mod trade_offs;
+mod wording;
 
 pub(super) use curves::logarithmic;
 pub use curves::{InformationCurves, PhotonMap, Spectra};
@@ -69,16 +70,54 @@ pub struct VerdictAlone {
 pub struct Verdict {
     /// Whether the requirement is met; `None` without a camera.
     pub met: Option<bool>,
-    /// What it is not met by: `distance`, `motion-blur`, `full-well`; empty if it is met or there is no camera.
-    pub fails_by: Vec<&'static str>,
-    /// The answer in a sentence.
-    pub sentence: String,
+    /// What it is not met by; empty if it is met or there is no camera.
+    pub fails_by: Vec<Shortfall>,
+    /// The answer, in JSON a sentence.
+    pub sentence: Finding,
     /// Statistical distance that the camera reaches against the limiting alternative.
     pub statistical_distance: Option<f64>,
     /// Statistical distance demanded.
     pub required_distance: f64,
     /// The first over the second.
     pub margin: Option<f64>,
+}
+
+/// What there is to be said of a camera, target and alternative. Its `Display` is a sentence.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Finding {
+    /// Name of the camera; empty without one.
+    pub camera: String,
+    /// The target.
+    pub target: String,
+    /// What it is to be told from; every alternative where `None`.
+    pub alternative: Option<String>,
+    /// Statistical distance demanded.
+    pub required: f64,
+    /// What was found.
+    pub answer: Answer,
+}
+
+/// What was found.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Answer {
+    /// No photons suffice: the spectra are equal.
+    NothingDiffers,
+    /// No photons suffice: the unknowns imitate the other material.
+    UnknownsExplain,
+    /// There is no camera to judge.
+    Takes {
+        /// Photons that any camera needs.
+        photons: f64,
+    },
+    /// The camera was judged.
+    Judged {
+        /// Whether the statistical distance is reached.
+        enough: bool,
+        /// What is wrong with the image.
+        spoiled: Vec<Shortfall>,
+        /// Statistical distance reached, where it is known.
+        reached: Option<f64>,
+    },
 }
 
 /// What the task demands of any camera, against the limiting alternative.
@@ -206,30 +245,25 @@ impl Study {
         let Some(camera) = &self.camera else { return Ok(None) };
         let check = self.check(Skipping::On)?;
         let spoiled = self.spoiled(self.camera_result(self.photon_radiance()).as_ref());
-        let (yes, can) = match (check.identifiable, spoiled.is_empty()) {
-            (true, true) => ("Yes", "can"),
-            (true, false) => ("No", "could"),
-            (false, _) => ("No", "cannot"),
+        let alternative = match (&check.not_told_from, self.alternatives.as_slice()) {
+            (Some(name), _) => Some(name.clone()),
+            (None, [only]) => Some(only.name.clone()),
+            (None, _) => None,
         };
-        let but = if check.identifiable && !spoiled.is_empty() {
-            format!(", but {}", spoiled_in_words(&spoiled))
-        } else {
-            String::new()
+        let sentence = Finding {
+            camera: camera.name.clone(),
+            target: self.target.name.clone(),
+            alternative,
+            required: self.required,
+            answer: Answer::Judged { enough: check.identifiable, spoiled: spoiled.clone(), reached: None },
         };
-        let other = match (&check.not_told_from, self.alternatives.as_slice()) {
-            (Some(name), _) => name,
-            (None, [only]) => &only.name,
-            (None, _) => "every alternative",
-        };
-        let sentence = format!(
-            "{yes}: {} {can} tell {} from {other} with {} reliability{but}.",
-            camera.name,
-            self.target.name,
-            reliability(self.required)
-        );
         let verdict = Verdict {
             met: Some(check.identifiable && spoiled.is_empty()),
-            fails_by: (!check.identifiable).then_some("distance").into_iter().chain(spoiled).collect(),
+            fails_by: (!check.identifiable)
+                .then_some(Shortfall::Distance)
+                .into_iter()
+                .chain(spoiled)
+                .collect(),
             sentence,
             statistical_distance: None,
             required_distance: self.required,
@@ -333,43 +367,25 @@ impl Study {
         &self,
         pair: &PairResult,
         requirement: &RequirementResult,
-        spoiled: Vec<&'static str>,
+        spoiled: Vec<Shortfall>,
     ) -> Verdict {
         let reached = pair.statistical_distance;
         let far_enough = reached.map(|reached| reached >= self.required);
         let met = far_enough.map(|enough| enough && spoiled.is_empty());
-        let mut fails_by = if far_enough == Some(false) { vec!["distance"] } else { Vec::new() };
+        let mut fails_by = if far_enough == Some(false) { vec![Shortfall::Distance] } else { Vec::new() };
         fails_by.extend(&spoiled);
-        let (target, other) = (&pair.target, &pair.alternative);
-        let wanted = reliability(self.required);
-        let camera = self.camera.as_ref().map_or("", |camera| camera.name.as_str());
-        let sentence = match (reached, requirement.photons) {
-            (_, None) => {
-                let why = match pair.status {
-                    Status::Identical | Status::Equilibrium => "nothing in the spectrum differs",
-                    Status::Ok | Status::Blind => "the unknowns explain every difference in the spectrum",
-                };
-                format!("No camera can tell {target} from {other} here: {why}.")
-            }
-            (None, Some(photons)) => format!(
-                "Telling {target} from {other} with {wanted} reliability takes at least {photons:.2e} photons."
-            ),
-            (Some(d), Some(_)) => {
-                let reached = reliability(d);
-                match (d >= self.required, spoiled.is_empty()) {
-                    (true, false) => format!(
-                        "No: {camera} could tell {target} from {other} with {wanted} reliability, but {}.",
-                        spoiled_in_words(&spoiled)
-                    ),
-                    (enough, _) => {
-                        let (yes, what) = if enough { ("Yes", "can") } else { ("No", "cannot") };
-                        format!(
-                            "{yes}: {camera} {what} tell {target} from {other} with {wanted} reliability; \
-                             it reaches {reached} at most."
-                        )
-                    }
-                }
-            }
+        let answer = match (reached, requirement.photons, pair.status) {
+            (_, None, Status::Identical | Status::Equilibrium) => Answer::NothingDiffers,
+            (_, None, Status::Ok | Status::Blind) => Answer::UnknownsExplain,
+            (None, Some(photons), _) => Answer::Takes { photons },
+            (Some(d), Some(_), _) => Answer::Judged { enough: d >= self.required, spoiled, reached },
+        };
+        let sentence = Finding {
+            camera: self.camera.as_ref().map_or_else(String::new, |camera| camera.name.clone()),
+            target: pair.target.clone(),
+            alternative: Some(pair.alternative.clone()),
+            required: self.required,
+            answer,
         };
         Verdict {
             met,
@@ -382,24 +398,15 @@ impl Study {
     }
 
     /// What spoils the camera's image whatever the distance: the demanded speed, the full well.
-    fn spoiled(&self, camera: Option<&CameraResult>) -> Vec<&'static str> {
+    fn spoiled(&self, camera: Option<&CameraResult>) -> Vec<Shortfall> {
         let Some(camera) = camera else { return Vec::new() };
         let mut spoiled = Vec::new();
         if camera.motion_blur_pixels.is_some_and(|blur| blur >= 1.0) {
-            spoiled.push("motion-blur");
+            spoiled.push(Shortfall::MotionBlur);
         }
         if camera.camera.full_well.is_some_and(|full| camera.brightest_reading > full) {
-            spoiled.push("full-well");
+            spoiled.push(Shortfall::FullWell);
         }
         spoiled
     }
-}
-
-/// What is wrong with an image, in words.
-fn spoiled_in_words(spoiled: &[&str]) -> String {
-    let words = spoiled.iter().map(|by| match *by {
-        "motion-blur" => "the target moves by a pixel or more while all bands are exposed",
-        _ => "a reading does not fit into the full well",
-    });
-    words.collect::<Vec<_>>().join(", and ")
 }

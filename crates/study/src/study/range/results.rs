@@ -1,6 +1,7 @@
 //! What a ranging study finds, as data.
 
 use crate::scenario::RangeScenario;
+use crate::scenario::range::Demand;
 use crate::study::Warning;
 use hadar::demand::Work;
 use hadar::ranging::cube::Shape;
@@ -97,14 +98,41 @@ pub struct Ranging {
 pub struct DepthVerdict {
     /// Whether enough windows reach the demanded error; `None` without depth.
     pub met: Option<bool>,
-    /// The answer in a sentence.
-    pub sentence: String,
+    /// The answer, in JSON a sentence.
+    pub sentence: DepthFinding,
     /// Share of the windows that reach it by the heat cube.
     pub share: Option<f64>,
     /// Share demanded.
     pub required_share: f64,
     /// The signal that decides.
     pub signal: Signal,
+}
+
+/// What there is to be said of depth. Its `Display` is a sentence.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum DepthFinding {
+    /// Windows were held against the demand.
+    Judged {
+        /// Whether enough of them reach it.
+        met: bool,
+        /// Error demanded.
+        error: Demand,
+        /// Share of the windows that reach it.
+        share: f64,
+        /// Share demanded.
+        required_share: f64,
+        /// The signal that decides.
+        signal: Signal,
+        /// Another signal, and its share.
+        beside: Option<(Signal, f64)>,
+    },
+    /// Depth is not known.
+    NoDepth {
+        /// Median of the least disparity error by the heat cube, pixels.
+        disparity_error_px: f64,
+    },
+    /// No window has a bound.
+    NoBound,
 }
 
 /// The pair of cameras.

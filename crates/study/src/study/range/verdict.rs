@@ -1,9 +1,8 @@
 //! The answer in a sentence, what diffraction adds, and what the reader must know.
 
-use super::results::{BoundMaps, DepthVerdict, ObjectBounds, Ranging, Signal, SignalBounds};
+use super::results::{BoundMaps, DepthFinding, DepthVerdict, ObjectBounds, Ranging, Signal, SignalBounds};
 use super::subject::{Depth, Resolved};
 use super::{RangeStudy, SECTIONS};
-use crate::scenario::range::Demand;
 use crate::study::Warning;
 use hadar::demand::{Reason, Thing};
 use hadar::error::Result;
@@ -11,7 +10,6 @@ use hadar::ranging::cube::Shape;
 use hadar::ranging::information::Cell;
 use hadar::ranging::information::decide::{Stats, decide};
 use hadar::ranging::noise::Joined;
-use hadar::words::{self, significant};
 use std::f64::consts::PI;
 
 /// A gain of the scattered signal over the heat cube by more than rounding.
@@ -52,7 +50,7 @@ impl RangeStudy {
         let met = share >= requirement.share;
         let verdict = DepthVerdict {
             met: Some(met),
-            sentence: self.sentence(met, share, Signal::HeatCube, None),
+            sentence: self.judged(met, share, Signal::HeatCube, None),
             share: Some(share),
             required_share: requirement.share,
             signal: Signal::HeatCube,
@@ -105,48 +103,25 @@ impl RangeStudy {
         let sentence = match (met, cube) {
             (Some(met), Some(_)) => {
                 let other = if image_tells_more { Signal::HeatCube } else { Signal::ThermalImage };
-                self.sentence(met, share.unwrap_or(f64::NAN), signal, by(other))
+                self.judged(met, share.unwrap_or(f64::NAN), signal, by(other))
             }
-            (None, Some(cube)) => format!(
-                "A window's disparity can be known to {} pixels at best (median, heat cube); give the depth for what that means in metres.",
-                short(cube.disparity_error_px)
-            ),
-            (_, None) => "No window has a bound.".to_owned(),
+            (None, Some(cube)) => DepthFinding::NoDepth { disparity_error_px: cube.disparity_error_px },
+            (_, None) => DepthFinding::NoBound,
         };
         Ok(DepthVerdict { met, sentence, share, required_share: required, signal })
     }
 
-    fn sentence(&self, met: bool, share: f64, signal: Signal, other: Option<&SignalBounds>) -> String {
+    fn judged(&self, met: bool, share: f64, signal: Signal, other: Option<&SignalBounds>) -> DepthFinding {
         let requirement = self.scenario.requirement;
-        let beside = other.and_then(|other| Some((other.signal, other.share?)));
-        let beside = beside.map_or_else(String::new, |(signal, share)| {
-            let name = match signal {
-                Signal::ThermalImage => "thermal image, all bands together,",
-                _ => "heat cube, all bands apart,",
-            };
-            format!("; a {name} allows it in {}", words::share(share))
-        });
-        format!(
-            "{}: depth can be measured to within {} in {} of the windows at best, by the {} ({} demanded){beside}.",
-            if met { "Yes" } else { "No" },
-            demand(requirement.error),
-            words::share(share),
-            signal.name(),
-            words::share(requirement.share),
-        )
+        DepthFinding::Judged {
+            met,
+            error: requirement.error,
+            share,
+            required_share: requirement.share,
+            signal,
+            beside: other.and_then(|other| Some((other.signal, other.share?))),
+        }
     }
-}
-
-/// What is demanded, in words.
-pub fn demand(error: Demand) -> String {
-    match error {
-        Demand::Absolute(error_m) => words::length(error_m),
-        Demand::Relative(share) => format!("{} % of it", significant(100.0 * share, 3)),
-    }
-}
-
-fn short(value: f64) -> String {
-    significant(value, 2)
 }
 
 /// What the reader must know.

@@ -13,10 +13,10 @@
 //! Scenes: every range uniform (lighting that adds up to more than 1 left out), every pair alike; a lattice of irrational
 //! steps with random shifts (Cranley and Patterson, SIAM J. Numer. Anal. 13, 904 (1976)), whose spread is the error.
 
-use super::super::{Study, reliability};
+use super::super::Study;
 use super::RuleStudy;
 use super::envelope::{all, lattice, scene_at};
-use super::results::{Neighbourhood, NotIdentifiable};
+use super::results::{EmissivityError, IdealCamera, LightTime, Neighbourhood, NotIdentifiable};
 use hadar::demand::{Thing, Work};
 use hadar::error::Result;
 use hadar::fisher::Counting;
@@ -27,7 +27,6 @@ use hadar::policy::Motion;
 use hadar::policy::envelope::Ranges;
 use hadar::scene::State;
 use hadar::spectrum::Bands;
-use hadar::words::{quantity, significant};
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
@@ -96,26 +95,21 @@ impl RuleStudy {
         work.compute(Thing::NearestSearches, drawn.len() as u64);
         let (fraction, standard_error) = share(&drawn, |scene| !scene.told);
         let (within, error_within) = share(&drawn, |scene| scene.within_error);
-        let distance = near.first().and_then(|study| study.scenario.target.distance_m);
-        let definition = format!(
-            "no camera: a detector that counts every photon and adds no noise, f/{FASTEST_F_NUMBER}, pixel {} (the largest of the \
-             cameras), light of {} ({why}), target filling the pixel{}, does not tell the pair with {} reliability",
-            quantity(pixel_m, "m"),
-            quantity(time_s, "s"),
-            distance.map_or_else(String::new, |distance| format!(" at {} m", significant(distance, 3))),
-            reliability(self.required)
-        );
-        let emissivity_error = format!(
-            "errors of {} % in the emissivities, independent from band to band, make up more than the distance, whatever the camera",
-            100.0 * EMISSIVITY_ERROR
-        );
+        let definition = IdealCamera {
+            f_number: FASTEST_F_NUMBER,
+            pixel_m,
+            time_s,
+            why,
+            distance_m: near.first().and_then(|study| study.scenario.target.distance_m),
+            required: self.required,
+        };
         Ok(NotIdentifiable {
             fraction,
             standard_error,
             definition,
             fraction_within_emissivity_error: within,
             standard_error_within_emissivity_error: error_within,
-            emissivity_error,
+            emissivity_error: EmissivityError(EMISSIVITY_ERROR),
             scenes: drawn.len(),
             neighbourhood: neighbourhood(&drawn),
         })
@@ -128,23 +122,18 @@ impl RuleStudy {
     }
 
     /// The longest that the rule allows to collect light, s, and why.
-    fn longest(&self, cameras: &[&Camera]) -> (f64, String) {
+    fn longest(&self, cameras: &[&Camera]) -> (f64, LightTime) {
         let frames = cameras.iter().map(|camera| camera.frames).max().unwrap_or(1);
         let speed = self.rule.scenario.requirement.speed_m_s;
         let least = self.envelope.distance_m.map(|[least, _]| least);
         let sharp = cameras.iter().filter_map(|camera| Some(Motion::of(camera, least)?.longest_s(speed?)));
         match (sharp.reduce(f64::max), speed, self.envelope.distance_m) {
-            (Some(exposure), Some(speed), Some([least, _])) => {
-                let times = if frames > 1 { format!("{frames} frames, each ") } else { String::new() };
-                let speed = significant(speed, 3);
-                let why = format!(
-                    "{times}as long as less than a pixel of blur allows at {speed} m/s and {least} m"
-                );
-                (exposure * f64::from(frames), why)
+            (Some(exposure), Some(speed_m_s), Some([distance_m, _])) => {
+                (exposure * f64::from(frames), LightTime::Sharp { frames, speed_m_s, distance_m })
             }
             _ => {
                 let longest = cameras.iter().map(|camera| camera.integration_s()).fold(0.0, f64::max);
-                (longest, "the longest integration among the cameras".into())
+                (longest, LightTime::LongestIntegration)
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use crate::scenario::Rule;
 use crate::study::size::Solutions;
-use crate::study::{NearestState, Warning};
+use crate::study::{NearestState, Shortfall, Warning};
 use hadar::demand::Work;
 use hadar::policy::envelope::Certificate;
 use hadar::policy::{Quantity, Solution};
@@ -13,8 +13,8 @@ use std::collections::BTreeMap;
 pub struct RuleAnswer {
     /// The rule with its defaults filled in.
     pub rule: Rule,
-    /// The answer in a sentence.
-    pub sentence: String,
+    /// Which cameras do, in JSON a sentence.
+    pub sentence: WhoMeets,
     /// What is demanded.
     pub requirement: RuleRequirement,
     /// Where it is demanded.
@@ -31,6 +31,15 @@ pub struct RuleAnswer {
     pub stats: Work,
 }
 
+/// Names of the cameras that meet a rule, and of the others. Its `Display` is a sentence.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct WhoMeets {
+    /// Those that do.
+    pub meet: Vec<String>,
+    /// Those that do not.
+    pub fail: Vec<String>,
+}
+
 /// What a rule demands of any camera.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct RuleRequirement {
@@ -44,7 +53,20 @@ pub struct RuleRequirement {
     /// no hardware suffices or only the verdict was asked for.
     pub hardware_m2_s: Option<f64>,
     /// The rule in a sentence that can be quoted.
-    pub quotable: String,
+    pub quotable: Quotable,
+}
+
+/// What can be quoted of a rule. Its `Display` is a sentence or two.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Quotable {
+    /// Where it is demanded.
+    pub envelope: EnvelopeResult,
+    /// Statistical distance demanded.
+    pub required: f64,
+    /// Speed of a vehicle that drives forward, m s⁻¹.
+    pub speed_m_s: Option<f64>,
+    /// H_req, m² s; `None` where that figure of the hardware does not tell all.
+    pub hardware_m2_s: Option<f64>,
 }
 
 /// The envelope as it was searched.
@@ -71,8 +93,8 @@ pub struct CameraVerdict {
     pub name: String,
     /// Whether it meets the rule.
     pub passes: bool,
-    /// What it does not meet: `distance`, `motion-blur`, `full-well`.
-    pub fails_by: Vec<&'static str>,
+    /// What it does not meet.
+    pub fails_by: Vec<Shortfall>,
     /// Statistical distance over that demanded, in the limiting scene.
     pub margin: f64,
     /// Statistical distance in the limiting scene.
@@ -97,43 +119,60 @@ pub struct CameraVerdict {
     pub warnings: Vec<Warning>,
 }
 
-/// How sure a worst case is.
-#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+/// How sure a worst case is. Its `Display` is the statement.
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Certified {
-    /// `branch-and-bound`, `bounded`, `equilibrium`, `dense-search` or `counterexample`.
-    pub kind: &'static str,
-    /// The same in words.
-    pub statement: String,
+    /// How it is known.
+    pub kind: Proof,
     /// By how much the lower bound is below the distance attained, as a share of it.
     pub gap: Option<f64>,
+}
+
+/// How a worst case is known.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Proof {
+    /// Proved within the gap by branch and bound.
+    BranchAndBound,
+    /// Searched, with a proved lower bound.
+    Bounded,
+    /// Proved: a scene in which nothing differs.
+    Equilibrium,
+    /// Searched, with no bound.
+    DenseSearch,
+    /// A scene that fails; no worse one was looked for.
+    Counterexample,
+}
+
+impl Proof {
+    /// Stable code, e.g. `branch-and-bound`.
+    #[must_use]
+    pub const fn code(self) -> &'static str {
+        match self {
+            Self::BranchAndBound => "branch-and-bound",
+            Self::Bounded => "bounded",
+            Self::Equilibrium => "equilibrium",
+            Self::DenseSearch => "dense-search",
+            Self::Counterexample => "counterexample",
+        }
+    }
 }
 
 impl Certified {
     /// Of a worst case, `gap` being that of its lower bound if there is one.
     pub(super) fn of(certificate: Certificate, gap: Option<f64>) -> Self {
-        let percent = |gap: f64| format!("{:.2} %", 100.0 * gap.max(0.0));
-        let (kind, statement) = match (certificate, gap) {
-            (Certificate::Equilibrium, _) => {
-                ("equilibrium", "proved: the envelope holds a scene in which nothing differs".into())
-            }
-            (Certificate::DenseSearch { .. }, _) | (_, None) => (
-                "dense-search",
-                "searched, not proved: the best of a dense search and its refinements".into(),
-            ),
-            (Certificate::BranchAndBound, Some(gap)) => {
-                ("branch-and-bound", format!("proved by branch and bound to {}", percent(gap)))
-            }
-            (Certificate::Bounded { .. }, Some(gap)) => {
-                ("bounded", format!("searched; proved that no scene is more than {} below", percent(gap)))
-            }
+        let kind = match (certificate, gap) {
+            (Certificate::Equilibrium, _) => Proof::Equilibrium,
+            (Certificate::DenseSearch { .. }, _) | (_, None) => Proof::DenseSearch,
+            (Certificate::BranchAndBound, Some(_)) => Proof::BranchAndBound,
+            (Certificate::Bounded { .. }, Some(_)) => Proof::Bounded,
         };
-        Self { kind, statement, gap }
+        Self { kind, gap }
     }
 
     /// Of a scene that fails, with none looked for that is worse.
-    pub(super) fn counterexample() -> Self {
-        let statement = "proved by this scene; a worse one was not looked for".into();
-        Self { kind: "counterexample", statement, gap: None }
+    pub(super) const fn counterexample() -> Self {
+        Self { kind: Proof::Counterexample, gap: None }
     }
 }
 
@@ -165,8 +204,8 @@ pub struct LimitingScene {
 pub struct Fixes {
     /// Whether any single quantity does, and spoils nothing else.
     pub any: bool,
-    /// By quantity, what its value would spoil: `motion-blur`, `full-well`, `frame-rate`, `diffraction`, `lowest-noise`.
-    pub spoils: BTreeMap<&'static str, Vec<&'static str>>,
+    /// By quantity, what its value would spoil.
+    pub spoils: BTreeMap<&'static str, Vec<Shortfall>>,
     /// Solutions by quantity.
     #[serde(flatten)]
     pub quantities: Solutions,
@@ -174,7 +213,7 @@ pub struct Fixes {
 
 impl Fixes {
     /// Quantities with the value that would do, and what it would spoil.
-    pub fn that_do(&self) -> impl Iterator<Item = (Quantity, &Solution, &[&'static str])> {
+    pub fn that_do(&self) -> impl Iterator<Item = (Quantity, &Solution, &[Shortfall])> {
         let solved = self.quantities.0.iter().filter(|(_, solution)| solution.value.is_some());
         solved.map(|(quantity, solution)| {
             let spoiled = self.spoils.get(quantity.key()).map_or(&[][..], Vec::as_slice);
@@ -191,18 +230,55 @@ pub struct NotIdentifiable {
     /// Its statistical error, one standard deviation.
     pub standard_error: f64,
     /// What 'no camera' means.
-    pub definition: String,
+    pub definition: IdealCamera,
     /// Share in which errors of the emissivities make up more than the distance, whatever the camera.
     pub fraction_within_emissivity_error: f64,
     /// Its statistical error, one standard deviation.
     pub standard_error_within_emissivity_error: f64,
     /// What that means.
-    pub emissivity_error: String,
+    pub emissivity_error: EmissivityError,
     /// Scenes that were drawn.
     pub scenes: usize,
     /// Where those scenes are in which no camera could do it; `None` where there are none.
     pub neighbourhood: Option<Neighbourhood>,
 }
+
+/// The camera that no other surpasses. Its `Display` says that it does not tell the pair.
+#[derive(Debug, Clone, PartialEq)]
+pub struct IdealCamera {
+    /// f-number.
+    pub f_number: f64,
+    /// Pixel, the largest of the cameras, m.
+    pub pixel_m: f64,
+    /// Time in which it collects light, s.
+    pub time_s: f64,
+    /// Why so long.
+    pub why: LightTime,
+    /// Distance at which the target fills the pixel, m.
+    pub distance_m: Option<f64>,
+    /// Statistical distance demanded.
+    pub required: f64,
+}
+
+/// Why light is collected for so long.
+#[derive(Debug, Clone, PartialEq)]
+pub enum LightTime {
+    /// Motion blurs longer exposures.
+    Sharp {
+        /// Frames.
+        frames: u32,
+        /// Speed, m s⁻¹.
+        speed_m_s: f64,
+        /// Least distance, m.
+        distance_m: f64,
+    },
+    /// No camera collects it longer.
+    LongestIntegration,
+}
+
+/// Standard deviation of an emissivity in a band. Its `Display` says that it makes up more than the distance.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EmissivityError(pub f64);
 
 /// How near to equilibrium scenes are, nine tenths of them.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]

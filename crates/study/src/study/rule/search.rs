@@ -4,7 +4,7 @@
 //! each only as exactly as it matters: a pair whose distance is a multiple of the least one known needs a bound
 //! that is above that, not its own worst case to 1 %.
 
-use super::super::{NearestState, Study, Surface, Warning, warn};
+use super::super::{NearestState, Shortfall, Study, Surface, Warning, warn};
 use super::envelope::{Estimate, Sighted, brightest};
 use super::results::{CameraVerdict, Certified, Fixes, LimitingScene};
 use super::{Candidate, RuleStudy};
@@ -44,7 +44,7 @@ struct Image {
     reading: f64,
     longest_exposure_s: Option<f64>,
     /// What is wrong with it.
-    spoiled: Vec<&'static str>,
+    spoiled: Vec<Shortfall>,
 }
 
 impl Searched {
@@ -72,12 +72,12 @@ impl RuleStudy {
         let image = image.unwrap_or_default();
         let mut fails_by = Vec::new();
         if distance < self.required {
-            fails_by.push("distance");
+            fails_by.push(Shortfall::Distance);
         }
         fails_by.extend(&image.spoiled);
         if self.rule.scenario.requirement.speed_m_s.is_some() && image.blur.is_none() {
             // What cannot be said is not met.
-            fails_by.push("motion-unknown");
+            fails_by.push(Shortfall::MotionUnknown);
         }
         let passes = fails_by.is_empty();
         let gap = worst.lower_bound.filter(|_| distance > 0.0).map(|bound| 1.0 - bound / distance);
@@ -121,8 +121,11 @@ impl RuleStudy {
                     let Some(value) = solution.value else { continue };
                     let mut spoiled = self.image(candidate, &task.forward(*quantity, value).camera).spoiled;
                     // Those of the limiting scene that the brightest one does not know of.
-                    let optical = solution.caps.iter().map(|cap| cap.code);
-                    spoiled.extend(optical.filter(|code| matches!(*code, "diffraction" | "lowest-noise")));
+                    spoiled.extend(solution.caps.iter().filter_map(|cap| match cap.code {
+                        "diffraction" => Some(Shortfall::Diffraction),
+                        "lowest-noise" => Some(Shortfall::LowestNoise),
+                        _ => None,
+                    }));
                     any |= spoiled.is_empty();
                     if !spoiled.is_empty() {
                         spoils.insert(quantity.key(), spoiled);
@@ -168,15 +171,15 @@ impl RuleStudy {
         let full = camera.full_well.map(|full| camera.exposure_s * full / image.reading);
         image.longest_exposure_s = blurred.into_iter().chain(full).reduce(f64::min);
         if image.blur.is_some_and(|blur| blur >= 1.0) {
-            image.spoiled.push("motion-blur");
+            image.spoiled.push(Shortfall::MotionBlur);
         }
         if camera.full_well.is_some_and(|full| image.reading > full) {
-            image.spoiled.push("full-well");
+            image.spoiled.push(Shortfall::FullWell);
         }
         if camera.clone().checked().is_err()
             && camera.frame_s().is_some_and(|frame| camera.exposure_s > frame)
         {
-            image.spoiled.push("frame-rate");
+            image.spoiled.push(Shortfall::FrameRate);
         }
         image
     }

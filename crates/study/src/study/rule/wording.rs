@@ -1,0 +1,180 @@
+//! What comes of a rule in sentences.
+
+use super::results::{
+    Certified, EmissivityError, EnvelopeResult, IdealCamera, LightTime, Proof, Quotable, WhoMeets,
+};
+use crate::study::reliability;
+use hadar::words::{quantity, significant};
+use serde::ser::{Serialize, SerializeStruct, Serializer};
+use std::fmt::{self, Display, Formatter};
+
+impl Display for WhoMeets {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        match (self.meet.as_slice(), self.fail.as_slice()) {
+            ([one], []) => write!(f, "{one} meets the rule."),
+            ([], [one]) => write!(f, "{one} does not meet the rule."),
+            (all, []) => write!(f, "All {} cameras meet the rule: {}.", all.len(), all.join(", ")),
+            ([], all) => write!(f, "None of {} cameras meets the rule: {}.", all.len(), all.join(", ")),
+            ([one], rest) => write!(f, "1 of {} cameras meets the rule: {one}.", 1 + rest.len()),
+            (some, rest) => {
+                let all = some.len() + rest.len();
+                write!(f, "{} of {all} cameras meet the rule: {}.", some.len(), some.join(", "))
+            }
+        }
+    }
+}
+
+impl Display for Quotable {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "A camera meets this rule if, in every scene of the envelope ({}), it tells {} from {} with {} reliability \
+             (statistical distance d of at least {})",
+            in_words(&self.envelope),
+            either(&self.envelope.materials),
+            either(&self.envelope.alternatives),
+            reliability(self.required),
+            significant(self.required, 4),
+        )?;
+        if let Some(speed) = self.speed_m_s {
+            let speed = significant(speed, 3);
+            write!(
+                f,
+                ", and nothing that stands moves by a pixel while all bands are exposed, seen from a vehicle that drives \
+                 forward at {speed} m/s"
+            )?;
+        }
+        f.write_str(".")?;
+        if let Some(hardware) = self.hardware_m2_s {
+            write!(
+                f,
+                " Where its noise is spread over the bands as its photons are, this is t A_p/((1+gamma) F^2) >= {hardware:.2e} m^2 s \
+                 (exposure t, pixel area A_p, noise over photons gamma, f-number F; lossless optics)."
+            )?;
+        }
+        Ok(())
+    }
+}
+
+impl Display for Certified {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let percent = 100.0 * self.gap.unwrap_or(0.0).max(0.0);
+        match self.kind {
+            Proof::Equilibrium => f.write_str("proved: the envelope holds a scene in which nothing differs"),
+            Proof::DenseSearch => {
+                f.write_str("searched, not proved: the best of a dense search and its refinements")
+            }
+            Proof::BranchAndBound => write!(f, "proved by branch and bound to {percent:.2} %"),
+            Proof::Bounded => {
+                write!(f, "searched; proved that no scene is more than {percent:.2} % below")
+            }
+            Proof::Counterexample => f.write_str("proved by this scene; a worse one was not looked for"),
+        }
+    }
+}
+
+impl Display for IdealCamera {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let distance = self.distance_m.map_or_else(String::new, |z| format!(" at {} m", significant(z, 3)));
+        write!(
+            f,
+            "no camera: a detector that counts every photon and adds no noise, f/{}, pixel {} (the largest of the \
+             cameras), light of {} ({}), target filling the pixel{distance}, does not tell the pair with {} reliability",
+            self.f_number,
+            quantity(self.pixel_m, "m"),
+            quantity(self.time_s, "s"),
+            self.why,
+            reliability(self.required)
+        )
+    }
+}
+
+impl Display for LightTime {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Sharp { frames, speed_m_s, distance_m } => {
+                if *frames > 1 {
+                    write!(f, "{frames} frames, each ")?;
+                }
+                let speed = significant(*speed_m_s, 3);
+                write!(f, "as long as less than a pixel of blur allows at {speed} m/s and {distance_m} m")
+            }
+            Self::LongestIntegration => f.write_str("the longest integration among the cameras"),
+        }
+    }
+}
+
+impl Display for EmissivityError {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let percent = 100.0 * self.0;
+        write!(
+            f,
+            "errors of {percent} % in the emissivities, independent from band to band, make up more than the distance, \
+             whatever the camera"
+        )
+    }
+}
+
+/// `a, b or c`.
+fn either(names: &[String]) -> String {
+    match names {
+        [] => "nothing".into(),
+        [one] => one.clone(),
+        [first @ .., last] => format!("{} or {last}", first.join(", ")),
+    }
+}
+
+/// The ranges of an envelope in a few words.
+fn in_words(envelope: &EnvelopeResult) -> String {
+    let celsius = |range: [f64; 2]| interval(range.map(|kelvin| kelvin - 273.15), "degC");
+    let mut parts = vec![format!("target {}", celsius(envelope.temperature_k))];
+    let objects = envelope.surroundings_k.iter().zip(&envelope.lighting);
+    parts.extend(objects.map(|(kelvin, lighting)| {
+        format!("surroundings {} lighting it by {}", celsius(*kelvin), interval(*lighting, ""))
+    }));
+    parts.extend(envelope.distance_m.map(|range| format!("distance {}", interval(range, "m"))));
+    parts.join(", ")
+}
+
+fn interval([low, high]: [f64; 2], unit: &str) -> String {
+    let shown = |value: f64| {
+        let rounded = (value * 1e6).round() / 1e6;
+        if rounded == 0.0 { "0".to_owned() } else { format!("{rounded}") }
+    };
+    let range = if low == high { shown(low) } else { format!("{} to {}", shown(low), shown(high)) };
+    if unit.is_empty() { range } else { format!("{range} {unit}") }
+}
+
+impl Serialize for Certified {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut object = serializer.serialize_struct("Certified", 3)?;
+        object.serialize_field("kind", &self.kind)?;
+        object.serialize_field("statement", &self.to_string())?;
+        object.serialize_field("gap", &self.gap)?;
+        object.end()
+    }
+}
+
+impl Serialize for WhoMeets {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
+impl Serialize for Quotable {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
+impl Serialize for IdealCamera {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
+impl Serialize for EmissivityError {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}

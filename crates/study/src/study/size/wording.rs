@@ -1,0 +1,55 @@
+//! The verdict on a camera in a sentence.
+
+use super::{Answer, Finding};
+use crate::study::{Shortfall, reliability};
+use serde::{Serialize, Serializer};
+use std::fmt::{self, Display, Formatter};
+
+impl Display for Finding {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let Self { camera, target, .. } = self;
+        let other = self.alternative.as_deref().unwrap_or("every alternative");
+        let wanted = reliability(self.required);
+        match &self.answer {
+            Answer::NothingDiffers => {
+                write!(f, "No camera can tell {target} from {other} here: nothing in the spectrum differs.")
+            }
+            Answer::UnknownsExplain => write!(
+                f,
+                "No camera can tell {target} from {other} here: the unknowns explain every difference in the spectrum."
+            ),
+            Answer::Takes { photons } => write!(
+                f,
+                "Telling {target} from {other} with {wanted} reliability takes at least {photons:.2e} photons."
+            ),
+            Answer::Judged { enough, spoiled, reached } => {
+                let (yes, can) = match (enough, spoiled.is_empty()) {
+                    (true, true) => ("Yes", "can"),
+                    (true, false) => ("No", "could"),
+                    (false, _) => ("No", "cannot"),
+                };
+                write!(f, "{yes}: {camera} {can} tell {target} from {other} with {wanted} reliability")?;
+                match reached {
+                    _ if *enough && !spoiled.is_empty() => write!(f, ", but {}.", in_words(spoiled)),
+                    Some(reached) => write!(f, "; it reaches {} at most.", reliability(*reached)),
+                    None => f.write_str("."),
+                }
+            }
+        }
+    }
+}
+
+/// What is wrong with an image.
+fn in_words(spoiled: &[Shortfall]) -> String {
+    let words = spoiled.iter().map(|by| match by {
+        Shortfall::MotionBlur => "the target moves by a pixel or more while all bands are exposed",
+        _ => "a reading does not fit into the full well",
+    });
+    words.collect::<Vec<_>>().join(", and ")
+}
+
+impl Serialize for Finding {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
