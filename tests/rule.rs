@@ -7,7 +7,7 @@ mod folder;
 use folder::Folder;
 use hadar::material::Library;
 use hadar::scenario::{Rule, Scenario};
-use hadar::study::{RuleAnswer, RuleAsked, RuleStudy, Study};
+use hadar::study::{Proof, RuleAnswer, RuleAsked, RuleStudy, Shortfall, Study};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
@@ -245,7 +245,7 @@ fn the_worst_case_is_at_the_corner_known_by_hand() {
     if let Some(bound) = camera.lower_bound {
         assert!(
             bound <= expected * (1.0 + 1e-9)
-                && (camera.certificate.kind != "branch-and-bound" || bound > 0.98 * expected)
+                && (camera.certificate.kind != Proof::BranchAndBound || bound > 0.98 * expected)
         );
     }
 }
@@ -358,11 +358,11 @@ fn where_nothing_differs_no_camera_does() {
     let answer = answer(&text);
     for camera in &answer.cameras {
         assert_eq!((camera.passes, camera.margin, camera.lower_bound), (false, 0.0, Some(0.0)));
-        assert_eq!(camera.certificate.kind, "equilibrium");
+        assert_eq!(camera.certificate.kind, Proof::Equilibrium);
         assert!(!camera.fixes.as_ref().unwrap().any);
     }
     assert_eq!(answer.requirement.hardware_m2_s, None);
-    assert_eq!(answer.sentence, "None of 2 cameras meets the rule: flir-a325sc, ideal-pnrd.");
+    assert_eq!(answer.sentence.to_string(), "None of 2 cameras meets the rule: flir-a325sc, ideal-pnrd.");
 }
 
 #[test]
@@ -426,7 +426,7 @@ fn blur_and_a_full_well_fail_a_camera_that_sees_enough() {
     let answer = answer(&text);
     let ours = answer.cameras.iter().find(|camera| camera.name == "ours").unwrap();
     assert!(ours.margin > 1.0 && !ours.passes);
-    assert_eq!(ours.fails_by, ["motion-blur", "full-well"]);
+    assert_eq!(ours.fails_by, [Shortfall::MotionBlur, Shortfall::FullWell]);
     // Δ = v sin(θ/2) t L/(r θ) at the least distance, by hand: 10 m/s, 25 degrees, 12 ms, 320 pixels, 5 m, 50 degrees.
     let blur = 10.0 * 25f64.to_radians().sin() * 12e-3 * 320.0 / (5.0 * 50f64.to_radians());
     assert!((ours.motion_blur_pixels.unwrap() / blur - 1.0).abs() < 1e-12);

@@ -6,7 +6,7 @@
 
 use hadar::material::Library;
 use hadar::scenario::Rule;
-use hadar::study::{CameraVerdict, RuleAsked, RuleStudy};
+use hadar::study::{CameraVerdict, Proof, RuleAsked, RuleStudy};
 
 fn judged(target: &str, other: &str, farthest: &str, demanded: f64) -> CameraVerdict {
     let text = format!(
@@ -32,7 +32,7 @@ fn the_worst_distance_may_be_between_the_ends() {
     assert!(!verdict.passes && verdict.statistical_distance < 0.03, "{verdict:?}");
     let distance_m = verdict.limiting.distance_m.unwrap();
     assert!((800.0..1200.0).contains(&distance_m), "{distance_m}");
-    assert_eq!((verdict.lower_bound, verdict.certificate.kind), (None, "dense-search"));
+    assert_eq!((verdict.lower_bound, verdict.certificate.kind), (None, Proof::DenseSearch));
 }
 
 #[test]

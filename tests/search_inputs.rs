@@ -10,6 +10,7 @@ use hadar::scene::{EnvironmentObject, State, Surroundings};
 use hadar::simulate::sequential::Plan;
 use hadar::spectrum::Bands;
 use hadar::study::{Law, Study, Trial};
+use hadar_study::warning::Code;
 
 struct Scene {
     bands: Bands,
@@ -140,5 +141,5 @@ fn the_target_is_no_alternative_of_its_own() {
         study("start = \"800 cm^-1\"\nstop = \"1200 cm^-1\"\nstep = \"10 cm^-1\"", "\"skin\", \"pmma\"");
     let found = study.identify().unwrap();
     assert_eq!(found.pairs.len(), 1);
-    assert!(found.warnings.iter().any(|warning| warning.code == "target-among-alternatives"));
+    assert!(found.warnings.iter().any(|warning| warning.code() == Code::TargetAmongAlternatives));
 }

@@ -4,9 +4,10 @@ use hadar::demand::Work;
 use hadar::material::Library;
 use hadar::policy::elasticity::Lever;
 use hadar::policy::trade_off::POINTS;
-use hadar::policy::{Quantity, Solution};
+use hadar::policy::{CapCode, Quantity, Solution};
 use hadar::scenario::Scenario;
 use hadar::study::{Sizing, Study};
+use hadar_study::warning::Code;
 use std::sync::OnceLock;
 
 const SCENE: &str = r#"
@@ -50,7 +51,7 @@ fn solution(sizing: &Sizing, quantity: Quantity) -> Solution {
 }
 
 fn codes(sizing: &Sizing) -> Vec<&str> {
-    sizing.warnings.iter().map(|warning| warning.code).collect()
+    sizing.warnings.iter().map(|warning| warning.code().name()).collect()
 }
 
 fn reached(sizing: &Sizing) -> f64 {
@@ -88,11 +89,11 @@ fn a_solution_names_the_limits_it_breaks() {
         .replace("flicker_fraction = 0.1", "flicker_fraction = 0.0");
     let sizing = size(&text);
     let exposure = solution(&sizing, Quantity::Exposure);
-    let of: Vec<_> = exposure.caps.iter().map(|cap| (cap.code, cap.blocks)).collect();
+    let of: Vec<_> = exposure.caps.iter().map(|cap| (cap.code.name(), cap.blocks)).collect();
     assert_eq!(of, [("motion", true), ("frame-rate", true), ("full-well", true)], "{exposure:?}");
     assert!(exposure.value.unwrap() > 1.0 / 60.0);
     let speed = solution(&sizing, Quantity::Speed);
-    let of: Vec<_> = speed.caps.iter().map(|cap| cap.code).collect();
+    let of: Vec<_> = speed.caps.iter().map(|cap| cap.code.name()).collect();
     assert_eq!(of, ["motion", "frame-rate", "full-well"]);
     // In units of speed: a frame leads to the speed that moves a pixel in it.
     let frame = speed.caps[1].limit / speed.value.unwrap();
@@ -100,7 +101,7 @@ fn a_solution_names_the_limits_it_breaks() {
     // Least demanding: no limit in the way.
     let easy = size(&SCENE.replace("distance = 1.0", "distance = 0.1"));
     assert!(solution(&easy, Quantity::Exposure).caps.is_empty());
-    assert_eq!(solution(&easy, Quantity::FNumber).caps[0].code, "diffraction");
+    assert_eq!(solution(&easy, Quantity::FNumber).caps[0].code, CapCode::Diffraction);
 }
 
 /// Points of every curve put back into the scenario meet the demand as the solutions do.
@@ -256,6 +257,6 @@ fn assumptions_that_fail_are_warned_of() {
     let sharp = size(&SCENE.replace("netd =", "pixel = \"20 um\"\nnetd ="));
     assert!(!codes(&sharp).contains(&"diffraction"));
     let hot = size(&SCENE.replace("37 degC", "400 degC").replace("netd =", "photon_bunching = true\nnetd ="));
-    let warning = hot.warnings.iter().find(|warning| warning.code == "bunching").unwrap();
-    assert!(warning.message.contains("is included"), "{}", warning.message);
+    let warning = hot.warnings.iter().find(|warning| warning.code() == Code::Bunching).unwrap();
+    assert!(warning.to_string().contains("is included"), "{warning}");
 }

@@ -19,7 +19,7 @@ pub mod motion;
 pub mod solve;
 pub mod trade_off;
 
-pub use caps::Cap;
+pub use caps::{Cap, CapCode};
 pub use motion::Motion;
 pub use solve::{CameraTask, Quantity, Solution, Trial};
 pub use trade_off::TradeOff;

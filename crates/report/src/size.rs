@@ -112,7 +112,7 @@ fn solve_for(result: &Sizing) -> Table {
             optional(Some(solution.camera).filter(|value| value.is_finite())),
             optional(Some(solution.statistical_distance).filter(|value| value.is_finite())),
             solution.reason.clone().unwrap_or_default(),
-            solution.caps.iter().map(|cap| cap.code).collect::<Vec<_>>().join(" "),
+            solution.caps.iter().map(|cap| cap.code.name()).collect::<Vec<_>>().join(" "),
         ]);
     }
     table

@@ -3,3 +3,4 @@
 pub mod scenario;
 pub mod study;
 pub mod warning;
+pub mod words;

@@ -10,7 +10,6 @@ mod camera;
 mod distances;
 mod identify;
 pub mod range;
-mod reliability;
 mod resolve;
 mod rule;
 mod shortfall;
@@ -25,7 +24,6 @@ pub use identify::{
     Identifiability, Identification, Law, LibrarySize, Matrix, NearestState, PairResult, Passband,
     Prediction, PriorAverage, Reached, Rows, SampleSpectra, Scaling, TargetVerdict, Trial,
 };
-pub use reliability::{probability, reliability};
 pub use resolve::{Study, Surface};
 pub use rule::{
     CameraVerdict, Certified, EmissivityError, EnvelopeResult, FileHash, Fixes, IdealCamera, LightTime,

@@ -220,3 +220,29 @@ impl Serialize for Warning {
         object.end()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_warning_is_its_code_and_its_message() {
+        let of_pair = Warning::OfPair {
+            target: "skin".into(),
+            alternative: "pmma".into(),
+            warning: Box::new(Warning::NearestAtEdge {
+                parameters: vec![Parameter::Temperature, Parameter::Lighting(1)],
+                objects: 2,
+            }),
+        };
+        let said = serde_json::to_string(&of_pair).unwrap();
+        assert_eq!(
+            said,
+            "{\"code\":\"nearest-at-edge\",\"message\":\"skin against pmma: the nearest state stands at the edge of its range \
+             (temperature, lighting of environment[1]); the range decides the answer\"}"
+        );
+        // Digits that are not shown make no second warning.
+        let moving = |time_s| Warning::FramesInMotion { frames: 60, time_s, way_m: 1.7 };
+        assert!(moving(1.0).says_as(&moving(1.0 + 1e-9)) && !moving(1.0).says_as(&moving(1.2)));
+    }
+}

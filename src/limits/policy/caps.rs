@@ -26,11 +26,42 @@ const LOG_RANGE: f64 = 30.0;
 /// Share by which a limit may be passed: rounding.
 const ROUNDING: f64 = 1e-9;
 
+/// Which limit it is.
+// In the order of the codes' letters, in which several are listed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum CapCode {
+    /// The lens blurs a point over more than the pixel.
+    Diffraction,
+    /// An exposure is longer than a frame.
+    FrameRate,
+    /// The fullest reading does not fit into the well.
+    FullWell,
+    /// Read noise and steps of the converter stay.
+    LowestNoise,
+    /// The target moves by a pixel until all bands are exposed.
+    Motion,
+}
+
+impl CapCode {
+    /// The code, e.g. `full-well`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Diffraction => "diffraction",
+            Self::FrameRate => "frame-rate",
+            Self::FullWell => "full-well",
+            Self::LowestNoise => "lowest-noise",
+            Self::Motion => "motion",
+        }
+    }
+}
+
 /// A limit that a value breaks.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Cap {
-    /// Stable code, e.g. `motion`.
-    pub code: &'static str,
+    /// Which.
+    pub code: CapCode,
     /// The limit, in the unit of the quantity.
     pub limit: f64,
     /// Whether no value meets the task within the limit; else one on the other side of the limit meets it too.
@@ -42,8 +73,8 @@ pub struct Cap {
 /// A limit on one quantity, the rest of the camera as it is.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Limit {
-    /// Stable code.
-    pub code: &'static str,
+    /// Which.
+    pub code: CapCode,
     /// The quantity.
     pub quantity: Quantity,
     /// Its limit.
@@ -116,30 +147,30 @@ pub fn limits(quantity: Quantity, trial: &Trial, given: &Circumstances<'_>) -> R
                         "the target moves a pixel at {speed} m/s while {exposures} frames pass, however short the exposures"
                     )
                 };
-                push("motion", longest.max(0.0), false, reason);
+                push(CapCode::Motion, longest.max(0.0), false, reason);
             }
             if let Some(frame) = camera.frame_s() {
-                push("frame-rate", frame, false, "a frame is no longer".into());
+                push(CapCode::FrameRate, frame, false, "a frame is no longer".into());
             }
         }
         Quantity::Pixel => {
             let reason = format!("{blur} blurs over lambda F");
-            push("diffraction", wavelength_m * camera.f_number, true, reason);
+            push(CapCode::Diffraction, wavelength_m * camera.f_number, true, reason);
         }
         Quantity::FNumber => {
             let reason = format!("{blur} blurs over more than the pixel");
-            push("diffraction", camera.pixel_m / wavelength_m, false, reason);
+            push(CapCode::Diffraction, camera.pixel_m / wavelength_m, false, reason);
         }
         Quantity::Noise => {
             let step = camera.quantisation_step_counts().unwrap_or(0.0);
             let floor = camera.read_noise_counts.hypot(step / 12f64.sqrt());
             if floor > 0.0 {
-                push("lowest-noise", floor, true, "read noise and steps of the converter stay".into());
+                push(CapCode::LowestNoise, floor, true, "read noise and steps of the converter stay".into());
             }
         }
         Quantity::Speed => {
             if let Some(speed) = given.speed_m_s {
-                push("motion", speed, true, "this speed is demanded".into());
+                push(CapCode::Motion, speed, true, "this speed is demanded".into());
             }
         }
         Quantity::Frames | Quantity::Distance => {}
@@ -147,7 +178,12 @@ pub fn limits(quantity: Quantity, trial: &Trial, given: &Circumstances<'_>) -> R
     if let Some(full) = camera.full_well
         && let Some((value, is_least)) = fills(quantity, trial, full, given)?
     {
-        push("full-well", value, is_least, format!("the pixel is full at {} counts", significant(full, 2)));
+        push(
+            CapCode::FullWell,
+            value,
+            is_least,
+            format!("the pixel is full at {} counts", significant(full, 2)),
+        );
     }
     Ok(limits)
 }
@@ -167,7 +203,7 @@ pub fn broken(
     if quantity == Quantity::Speed {
         let taken = task.forward(quantity, value);
         let of_exposure = limits(Quantity::Exposure, &taken, given)?;
-        let others = of_exposure.iter().filter(|limit| limit.code != "motion");
+        let others = of_exposure.iter().filter(|limit| limit.code != CapCode::Motion);
         let caps = others.filter_map(|limit| limit.broken_by(taken.camera.exposure_s));
         // The speed is as the inverse of the exposure.
         broken.extend(caps.map(|cap| Cap { limit: value * taken.camera.exposure_s / cap.limit, ..cap }));
@@ -229,7 +265,7 @@ mod tests {
         limits(quantity, trial, &given).unwrap()
     }
 
-    fn value(limits: &[Limit], code: &str) -> f64 {
+    fn value(limits: &[Limit], code: CapCode) -> f64 {
         limits.iter().find(|limit| limit.code == code).unwrap_or_else(|| panic!("{limits:?}")).value
     }
 
@@ -239,15 +275,19 @@ mod tests {
         let camera = &trial.camera;
         // The band at 800 cm^-1 reaches down to 799.5 cm^-1, 12.508 um.
         let longest_m = 1e-2 / 799.5;
-        assert!((value(&of(Quantity::Pixel, &trial), "diffraction") / (longest_m * 1.3) - 1.0).abs() < 1e-12);
         assert!(
-            (value(&of(Quantity::FNumber, &trial), "diffraction") / (12e-6 / longest_m) - 1.0).abs() < 1e-12
+            (value(&of(Quantity::Pixel, &trial), CapCode::Diffraction) / (longest_m * 1.3) - 1.0).abs()
+                < 1e-12
+        );
+        assert!(
+            (value(&of(Quantity::FNumber, &trial), CapCode::Diffraction) / (12e-6 / longest_m) - 1.0).abs()
+                < 1e-12
         );
         let exposure = of(Quantity::Exposure, &trial);
-        assert!((value(&exposure, "frame-rate") - 1.0 / 60.0).abs() < 1e-15);
+        assert!((value(&exposure, CapCode::FrameRate) - 1.0 / 60.0).abs() < 1e-15);
         let (pixels, view) = (f64::from(camera.pixels.unwrap()), camera.field_of_view_rad.unwrap());
         let longest = 30.0 * view / (13.4112 * (0.5 * view).sin() * pixels);
-        assert!((value(&exposure, "motion") / longest - 1.0).abs() < 1e-12);
+        assert!((value(&exposure, CapCode::Motion) / longest - 1.0).abs() < 1e-12);
         // Far from the lens counts grow as t a²/F²; 12 mm behind 30 m change the last digits.
         let counts = camera.brightest_reading(
             &Bands::from_rows([(800.0, 1.0), (1000.0, 1.0)]).unwrap(),
@@ -255,10 +295,10 @@ mod tests {
             &View::at(None),
         );
         let ratio = 1e7 / counts;
-        assert!((value(&exposure, "full-well") / (camera.exposure_s * ratio) - 1.0).abs() < 1e-6);
-        let pixel = value(&of(Quantity::Pixel, &trial), "full-well");
+        assert!((value(&exposure, CapCode::FullWell) / (camera.exposure_s * ratio) - 1.0).abs() < 1e-6);
+        let pixel = value(&of(Quantity::Pixel, &trial), CapCode::FullWell);
         assert!((pixel / (camera.pixel_m * ratio.sqrt()) - 1.0).abs() < 1e-6);
-        let f_number = value(&of(Quantity::FNumber, &trial), "full-well");
+        let f_number = value(&of(Quantity::FNumber, &trial), CapCode::FullWell);
         assert!((f_number / (camera.f_number / ratio.sqrt()) - 1.0).abs() < 1e-6);
     }
 
@@ -266,32 +306,33 @@ mod tests {
     fn a_wheel_of_filters_shares_the_time_between_the_bands() {
         let mut trial = trial();
         trial.camera.frame_rate_hz = None;
-        let at_once = value(&of(Quantity::Exposure, &trial), "motion");
+        let at_once = value(&of(Quantity::Exposure, &trial), CapCode::Motion);
         trial.camera.readout = crate::instrument::Readout::Sequential;
-        let one_by_one = value(&of(Quantity::Exposure, &trial), "motion");
+        let one_by_one = value(&of(Quantity::Exposure, &trial), CapCode::Motion);
         assert!((at_once / one_by_one - 2.0).abs() < 1e-12);
         // The second waits for its frame: what is left of the time is that of the last exposure.
         trial.camera.frame_rate_hz = Some(100.0);
-        let waiting = value(&of(Quantity::Exposure, &trial), "motion");
+        let waiting = value(&of(Quantity::Exposure, &trial), CapCode::Motion);
         assert!((waiting / (at_once - 10e-3) - 1.0).abs() < 1e-12);
         trial.camera.frame_rate_hz = Some(60.0);
-        assert_eq!(value(&of(Quantity::Exposure, &trial), "motion"), 0.0);
+        assert_eq!(value(&of(Quantity::Exposure, &trial), CapCode::Motion), 0.0);
     }
 
     #[test]
     fn a_cap_says_whether_it_can_be_kept() {
         let trial = trial();
         let exposure = of(Quantity::Exposure, &trial);
-        let longest = value(&exposure, "motion");
+        let longest = value(&exposure, CapCode::Motion);
         let caps: Vec<Cap> = exposure.iter().filter_map(|limit| limit.broken_by(2.0 * longest)).collect();
-        assert!(caps.iter().any(|cap| cap.code == "motion" && cap.blocks), "{caps:?}");
+        assert!(caps.iter().any(|cap| cap.code == CapCode::Motion && cap.blocks), "{caps:?}");
         assert!(exposure.iter().all(|limit| limit.broken_by(0.1 * longest).is_none()));
         // A pixel smaller than the blur can be made larger; an f-number larger than it asks for, smaller.
         let pixel = of(Quantity::Pixel, &trial)[0].broken_by(1e-6).unwrap();
         let f_number = of(Quantity::FNumber, &trial)[0].broken_by(2.0).unwrap();
         assert_eq!((pixel.blocks, f_number.blocks), (false, false));
         // A slower lens keeps the well from filling, but the task asks for a faster one.
-        let full = of(Quantity::FNumber, &trial).into_iter().find(|limit| limit.code == "full-well").unwrap();
+        let full =
+            of(Quantity::FNumber, &trial).into_iter().find(|limit| limit.code == CapCode::FullWell).unwrap();
         assert!(full.broken_by(0.5 * full.value).unwrap().blocks);
     }
 }

@@ -5,7 +5,7 @@
 //! that shot noise does not know ([`super::caps`]) are drawn as lines of their own and named at every point that
 //! breaks one.
 
-use super::caps::{Circumstances, Limit, limits};
+use super::caps::{CapCode, Circumstances, Limit, limits};
 use super::solve::{CameraTask, Quantity, Solution};
 use crate::error::Result;
 use serde::ser::{Serialize, SerializeStruct, Serializer};
@@ -40,7 +40,7 @@ pub struct Point {
     /// Value of the second with which the camera is as good as it is now.
     pub y_as_now: Option<f64>,
     /// Codes of the limits that the pair (x, y) breaks.
-    pub capped: Vec<&'static str>,
+    pub capped: Vec<CapCode>,
     /// Why no value suffices.
     pub reason: Option<String>,
 }
@@ -49,7 +49,7 @@ pub struct Point {
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct LimitLine {
     /// Code of the limit.
-    pub code: &'static str,
+    pub code: CapCode,
     /// Whether it limits the first quantity, whatever the second, and so is upright.
     pub upright: bool,
     /// Where it runs, as pairs (x, y); y is `None` in an upright one.
@@ -141,7 +141,7 @@ pub fn trace(
             // A speed is limited where the exposure that sets it is.
             let of_x =
                 if y == Quantity::Speed { limits(x, &trial, given)? } else { limits(x, &both, given)? };
-            let of_x = of_x.iter().filter(|limit| !(y == Quantity::Speed && limit.code == "motion"));
+            let of_x = of_x.iter().filter(|limit| !(y == Quantity::Speed && limit.code == CapCode::Motion));
             let broken = of_y.iter().filter_map(|limit| limit.broken_by(value));
             capped = broken.chain(of_x.filter_map(|limit| limit.broken_by(at))).map(|cap| cap.code).collect();
             capped.sort_unstable();
@@ -237,10 +237,10 @@ mod tests {
             assert!((y / now / (2.0 / curve.as_now).powi(2) - 1.0).abs() < 1e-9);
             // 900 cm^-1 is 11.1 um, the pixel 12 um: f/1.08 is the slowest lens that does not blur.
             let blurred = point.x > 12e-6 * 900.0 / 0.01;
-            assert_eq!(point.capped.contains(&"diffraction"), blurred, "{point:?}");
+            assert_eq!(point.capped.contains(&CapCode::Diffraction), blurred, "{point:?}");
         }
         let codes: Vec<_> = curve.limits.iter().map(|line| (line.code, line.upright)).collect();
-        assert_eq!(codes, [("motion", false), ("diffraction", true)]);
+        assert_eq!(codes, [(CapCode::Motion, false), (CapCode::Diffraction, true)]);
     }
 
     #[test]
@@ -253,7 +253,7 @@ mod tests {
             let exact = 30.0 * 0.4 / (320.0 * 0.2f64.sin() * point.x);
             if let Some(speed) = point.y {
                 assert!((speed / exact - 1.0).abs() < 1e-12);
-                assert_eq!(point.capped.contains(&"motion"), exact < 10.0);
+                assert_eq!(point.capped.contains(&CapCode::Motion), exact < 10.0);
             }
         }
     }

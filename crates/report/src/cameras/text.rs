@@ -216,7 +216,7 @@ fn budget(budget: &[NoiseLine]) -> String {
             "  {:<34} {:>12}  {:>8}  {:<8}  {}",
             line.label,
             exponential(line.var_counts, 2),
-            percent(line.var_counts / total),
+            part(line.var_counts / total),
             line.scaling,
             line.source
         );
@@ -225,7 +225,7 @@ fn budget(budget: &[NoiseLine]) -> String {
     out
 }
 
-fn percent(share: f64) -> String {
+fn part(share: f64) -> String {
     if share >= 1e-3 { format!("{:.1} %", 100.0 * share) } else { format!("{:.0e} %", 100.0 * share) }
 }
 

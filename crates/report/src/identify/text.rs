@@ -12,7 +12,8 @@ use self::terms::{camera, no_limit};
 use crate::text::footing::footing;
 use crate::text::numbers::{celsius, numbers, photons, significant};
 use crate::text::pairs::pair_table;
-use hadar_study::study::{self, Answers, Check, Identification, Study};
+use hadar_study::study::{Answers, Check, Identification, Study};
+use hadar_study::words;
 use std::fmt::Write as _;
 
 /// Entries of the prediction vector that are shown.
@@ -60,7 +61,7 @@ fn verdict(result: &Identification, study: &Study) -> String {
         return out;
     };
     let (target, all) = (&pair.target, result.pairs.len());
-    let reliability = study::reliability(study.required_distance());
+    let reliability = words::reliability(study.required_distance());
     // The average is finite also where the state that stands in the scenario is one of equilibrium.
     if let Some(average) = &result.prior_average {
         let _ = writeln!(
@@ -128,7 +129,7 @@ fn prediction(result: &Identification) -> String {
 pub fn check(result: &Check, study: &Study) -> String {
     let target = &study.target().name;
     let camera = camera(study);
-    let reliability = study::reliability(study.required_distance());
+    let reliability = words::reliability(study.required_distance());
     match &result.not_told_from {
         Some(other) => {
             format!("No: {camera} cannot tell {target} from {other} with {reliability} reliability.\n")

@@ -3,7 +3,8 @@
 use super::text;
 use crate::text::footing::{GAUSSIAN, assumptions};
 use crate::text::significant;
-use hadar_study::study::{self, CameraVerdict, RuleAnswer, RuleStudy};
+use hadar_study::study::{CameraVerdict, RuleAnswer, RuleStudy};
+use hadar_study::words::reliability;
 use std::fmt::Write as _;
 
 /// The page.
@@ -68,7 +69,7 @@ fn row(camera: &CameraVerdict) -> String {
         },
         significant(camera.margin, 3),
         significant(camera.statistical_distance, 3),
-        study::reliability(camera.statistical_distance),
+        reliability(camera.statistical_distance),
         camera.certificate.to_string(),
         text::scene(&camera.limiting),
         fixes,

@@ -8,6 +8,7 @@ use hadar::words::share;
 use hadar_study::study::{
     self, CameraVerdict, Fixes, LimitingScene, NotIdentifiable, RuleAnswer, RuleStudy, Shortfall, Warning,
 };
+use hadar_study::words::reliability;
 use std::fmt::Write as _;
 
 /// The answer and everything behind it.
@@ -28,7 +29,7 @@ pub fn text(answer: &RuleAnswer, study: &RuleStudy) -> String {
             if camera.passes { "yes" } else { "no" },
             significant(camera.margin, 3),
             significant(camera.statistical_distance, 3),
-            study::reliability(camera.statistical_distance),
+            reliability(camera.statistical_distance),
             camera.limiting.target,
             camera.limiting.alternative,
         );
@@ -38,7 +39,7 @@ pub fn text(answer: &RuleAnswer, study: &RuleStudy) -> String {
         out,
         "  margin: least d over the envelope / {} demanded ({})\n",
         significant(answer.requirement.distance, 4),
-        study::reliability(answer.requirement.distance)
+        reliability(answer.requirement.distance)
     );
     answer.cameras.iter().for_each(|camera| out.push_str(&details(camera)));
     if let Some(part) = &answer.not_identifiable {
@@ -163,7 +164,7 @@ fn one(solved: Quantity, solution: &Solution) -> String {
 pub(crate) fn no_camera(part: &NotIdentifiable) -> Vec<String> {
     let found = if part.fraction > 0.0 {
         let part_of =
-            format!("In {} (+- {}) of the envelope", share(part.fraction), percent(part.standard_error));
+            format!("In {} (+- {}) of the envelope", share(part.fraction), error(part.standard_error));
         format!("{part_of} no camera could do it")
     } else {
         format!("In all of {} scenes drawn from the envelope some camera could do it", part.scenes)
@@ -179,13 +180,14 @@ pub(crate) fn no_camera(part: &NotIdentifiable) -> Vec<String> {
     lines.push(format!(
         "in {} (+- {}) {}",
         share(part.fraction_within_emissivity_error),
-        percent(part.standard_error_within_emissivity_error),
+        error(part.standard_error_within_emissivity_error),
         part.emissivity_error
     ));
     lines
 }
 
-fn percent(share: f64) -> String {
+/// The error of a share.
+fn error(share: f64) -> String {
     if share < 1e-6 {
         return "0 %".into();
     }

@@ -4,13 +4,12 @@ use crate::text::footing::{assumptions, warnings};
 use crate::text::numbers::shortened;
 use crate::text::numbers::{celsius, significant};
 use hadar_study::study::{PhotonLaw, SimulatedPerformance, SimulatedPoint, Simulation, Standing, Study};
+use hadar_study::words::percent;
 use std::fmt::Write as _;
 
 /// Classes that are named in a sentence beside the target.
 const NAMED: usize = 4;
 
-/// Decimals of a percentage beyond which rounding decides.
-const MOST_DECIMALS: f64 = 12.0;
 /// Shares of photons whose interval ends above this are not printed.
 const WIDEST_SHARE: f64 = 3.0;
 /// Columns that a confusion matrix may take.
@@ -113,13 +112,6 @@ fn sentence(result: &Simulation) -> String {
 fn of_standing(result: &Simulation, standing: Standing) -> usize {
     let all = result.points.iter().flat_map(|point| &point.performances);
     all.filter(|found| found.standing == Some(standing)).count()
-}
-
-/// In percent; short of certainty never 100, but with as many nines as it takes.
-fn percent(share: f64) -> String {
-    let missing = 1.0 - share;
-    let decimals = if missing > 0.0 && missing < 5e-4 { (-missing.log10() - 1e-9).ceil() - 2.0 } else { 1.0 };
-    format!("{:.*} %", decimals.clamp(1.0, MOST_DECIMALS) as usize, 100.0 * share)
 }
 
 /// One experiment as a table.
@@ -242,20 +234,5 @@ pub(super) fn pair(result: &Simulation) -> String {
             format!("{}, {} apart", target.material, names.join(", "))
         }
         [] => String::new(),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::percent;
-
-    #[test]
-    fn short_of_certain_is_never_100_percent() {
-        for (share, text) in
-            [(0.8413, "84.1 %"), (1.0, "100.0 %"), (0.99951, "99.95 %"), (0.999_99, "99.999 %")]
-        {
-            assert_eq!(percent(share), text);
-        }
-        assert_ne!(percent(1.0 - 3e-9), percent(1.0));
     }
 }

@@ -5,7 +5,8 @@ use crate::text::numbers::{celsius, exponential, numbers, photons, quantity, sig
 use crate::text::pairs::pair_table;
 use hadar::policy::Quantity;
 use hadar::words::share;
-use hadar_study::study::{PairResult, Sizing, Study, probability};
+use hadar_study::study::{PairResult, Sizing, Study};
+use hadar_study::words::probability;
 use std::fmt::Write as _;
 
 /// The verdict and everything behind it.
@@ -168,7 +169,8 @@ fn solutions(result: &Sizing) -> String {
                 (true, false) | (false, true) => "at least",
             };
             let limit = in_unit(*solved, cap.limit);
-            let _ = writeln!(out, "  {:<34} [{}] {side} {bound} {limit}: {}", "", cap.code, cap.reason);
+            let _ =
+                writeln!(out, "  {:<34} [{}] {side} {bound} {limit}: {}", "", cap.code.name(), cap.reason);
         }
     }
     out.push('\n');

@@ -4,7 +4,7 @@ use crate::figures::Plot;
 use crate::plot::{Axis, Band, LineFigure, Marker, Rule, Series, Style};
 use crate::table::{Table, number, optional};
 use crate::text::significant;
-use hadar::policy::{Quantity, TradeOff};
+use hadar::policy::{CapCode, Quantity, TradeOff};
 
 /// What is drawn reaches this far beyond camera and demand.
 const MARGIN: f64 = 3.0;
@@ -23,7 +23,12 @@ pub fn trade_off(curve: &TradeOff, camera: &str) -> Plot {
     for point in &curve.points {
         let reason = point.reason.clone().unwrap_or_default();
         let numbers = [number(point.x), optional(point.y), optional(point.y_as_now)];
-        table.push(numbers.into_iter().chain([point.capped.join(" "), reason]).collect());
+        table.push(
+            numbers
+                .into_iter()
+                .chain([point.capped.iter().map(|code| code.name()).collect::<Vec<_>>().join(" "), reason])
+                .collect(),
+        );
     }
     let scale = |quantity: Quantity| if quantity == Quantity::Pixel { 1e6 } else { 1.0 };
     let (sx, sy) = (scale(x), scale(y));
@@ -138,14 +143,13 @@ fn name(quantity: Quantity) -> &'static str {
     }
 }
 
-fn words(code: &str, limited: Quantity) -> &str {
+const fn words(code: CapCode, limited: Quantity) -> &'static str {
     match code {
-        "motion" if limited == Quantity::Speed => "speed demanded",
-        "diffraction" => "pixel = λF",
-        "motion" => "motion of one pixel",
-        "frame-rate" => "a whole frame",
-        "full-well" => "full well",
-        "lowest-noise" => "read noise and converter",
-        other => other,
+        CapCode::Motion if matches!(limited, Quantity::Speed) => "speed demanded",
+        CapCode::Diffraction => "pixel = λF",
+        CapCode::Motion => "motion of one pixel",
+        CapCode::FrameRate => "a whole frame",
+        CapCode::FullWell => "full well",
+        CapCode::LowestNoise => "read noise and converter",
     }
 }

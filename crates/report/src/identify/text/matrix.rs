@@ -2,7 +2,8 @@
 
 use super::terms::{camera, no_limit};
 use crate::text::numbers::{exponential, listed, shortened};
-use hadar_study::study::{self, Apart, Matrix, Study};
+use hadar_study::study::{Apart, Matrix, Study};
+use hadar_study::words;
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
@@ -13,7 +14,7 @@ pub(super) fn apart(apart: &Apart, study: &Study) -> String {
         name => name,
     };
     let pairs = apart.told_apart.len() + apart.not_told_apart.len();
-    let reliability = study::reliability(study.required_distance());
+    let reliability = words::reliability(study.required_distance());
     let mut out = format!(
         "{camera} tells {} of {pairs} pairs apart with {reliability} reliability, either of them the target{}\n",
         apart.told_apart.len(),

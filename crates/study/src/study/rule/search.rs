@@ -14,7 +14,7 @@ use hadar::fisher::Nuisance;
 use hadar::identifiability::detection;
 use hadar::instrument::Camera;
 use hadar::policy::envelope::{Certificate, Effort, WorstCase, worst_case};
-use hadar::policy::{self, Quantity};
+use hadar::policy::{self, CapCode, Quantity};
 use hadar::scene::State;
 use std::collections::BTreeMap;
 
@@ -122,9 +122,9 @@ impl RuleStudy {
                     let mut spoiled = self.image(candidate, &task.forward(*quantity, value).camera).spoiled;
                     // Those of the limiting scene that the brightest one does not know of.
                     spoiled.extend(solution.caps.iter().filter_map(|cap| match cap.code {
-                        "diffraction" => Some(Shortfall::Diffraction),
-                        "lowest-noise" => Some(Shortfall::LowestNoise),
-                        _ => None,
+                        CapCode::Diffraction => Some(Shortfall::Diffraction),
+                        CapCode::LowestNoise => Some(Shortfall::LowestNoise),
+                        CapCode::FrameRate | CapCode::FullWell | CapCode::Motion => None,
                     }));
                     any |= spoiled.is_empty();
                     if !spoiled.is_empty() {

@@ -3,7 +3,7 @@
 use super::results::{
     Certified, EmissivityError, EnvelopeResult, IdealCamera, LightTime, Proof, Quotable, WhoMeets,
 };
-use crate::study::reliability;
+use crate::words::reliability;
 use hadar::words::{quantity, significant};
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 use std::fmt::{self, Display, Formatter};

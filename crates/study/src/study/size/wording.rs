@@ -1,7 +1,8 @@
 //! The verdict on a camera in a sentence.
 
 use super::{Answer, Finding};
-use crate::study::{Shortfall, reliability};
+use crate::study::Shortfall;
+use crate::words::reliability;
 use serde::{Serialize, Serializer};
 use std::fmt::{self, Display, Formatter};
 

@@ -1,4 +1,5 @@
-//! Probabilities near 1 in words: with as many nines as it takes not to call them certain.
+//! Probabilities in words: near 1 with as many nines as it takes not to call them certain. Other numbers in words are in
+//! [`hadar::words`].
 
 use hadar::identifiability::detection;
 
@@ -29,6 +30,14 @@ pub fn probability(distance: f64, least: usize) -> String {
     }
 }
 
+/// A share that was found, in percent: short of 1 never 100, but with as many nines as it takes.
+#[must_use]
+pub fn percent(share: f64) -> String {
+    let missing = 1.0 - share;
+    let decimals = if missing > 0.0 && missing < 5e-4 { (-missing.log10() - 1e-9).ceil() - 2.0 } else { 1.0 };
+    format!("{:.*} %", decimals.clamp(1.0, MOST_DECIMALS as f64) as usize, 100.0 * share)
+}
+
 /// Decimals at which Φ(d) is not yet rounded to 1; `None` where they would be too many.
 fn decimals(distance: f64) -> Option<usize> {
     // A probability that was given as 0.999999 comes back with a rounding error.
@@ -47,6 +56,16 @@ fn nearly_certain(distance: f64) -> String {
 mod tests {
     use super::*;
     use detection::distance_for_probability;
+
+    #[test]
+    fn short_of_certain_is_never_100_percent() {
+        for (share, text) in
+            [(0.8413, "84.1 %"), (1.0, "100.0 %"), (0.99951, "99.95 %"), (0.999_99, "99.999 %")]
+        {
+            assert_eq!(percent(share), text);
+        }
+        assert_ne!(percent(1.0 - 3e-9), percent(1.0));
+    }
 
     #[test]
     fn nothing_short_of_certain_is_called_100_percent() {
