@@ -29,7 +29,6 @@ pub use write::Summary;
 
 use crate::error::{Error, Result, check};
 use model::{Model, inside};
-use std::path::Path;
 use std::sync::Arc;
 use table::{Table, same};
 
@@ -110,22 +109,6 @@ impl Material {
         let rows: Vec<(f64, [f64; 1])> = rows.iter().map(|&(x, e)| (x, [e])).collect();
         let provenance = Provenance::given(Basis::UserFile, "rows given by the user");
         Ok(Self::of(name.into(), provenance, Model::Table(Table::new(&rows)?)))
-    }
-
-    /// The one material of a file in any format that [`read`] knows.
-    ///
-    /// # Errors
-    /// As [`read::from_file`]; also a table of several materials, which must be added to a [`Library`].
-    pub fn from_file(path: &Path) -> Result<Self> {
-        let mut materials = read::from_file(path)?;
-        match (materials.pop(), materials.len()) {
-            (Some(material), 0) => Ok(material),
-            (_, others) => Err(Error::malformed(
-                format!("a table of {} materials where one is needed", others + 1),
-                "give the file to --library and name the material",
-            )
-            .in_file(path)),
-        }
     }
 
     pub(in crate::material) fn of(name: String, provenance: Provenance, model: Model) -> Self {

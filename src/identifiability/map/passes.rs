@@ -2,8 +2,8 @@
 //!
 //! Symbols as in [`super::row`]: S(τ) = S₀ + τ S₁ signal, u = 1/S weights, G = 1 + S₁/S₀ growth.
 
-use crate::simd::{Chunk, LANES, added, dispatched, fused, padded, product};
-use crate::sum::{CompensatedLanes, fold};
+use crate::simd::{Chunk, LANES, added, dispatched, fold, fused, padded, product};
+use crate::sum::CompensatedLanes;
 
 /// Columns that a pass takes at most: four nuisances and two of the material.
 pub(super) const MOST_COLUMNS: usize = 6;

@@ -2,8 +2,8 @@
 //!
 //! Symbols as in [`super`]: u weights, c = G w C, m = u c², kᵢ = u c q̂ᵢ, Δ = e′ − e.
 
-use crate::simd::{Chunk, LANES, added, dispatched, fused, padded, product};
-use crate::sum::{Compensated, CompensatedLanes, fold};
+use crate::simd::{Chunk, LANES, added, dispatched, fold, fused, padded, product};
+use crate::sum::{Compensated, CompensatedLanes};
 
 /// Alternatives worked on together.
 pub(super) const TOGETHER: usize = 5;
