@@ -134,13 +134,6 @@ impl Material {
         self
     }
 
-    /// The same material, known from elsewhere.
-    #[must_use]
-    pub fn with_provenance(mut self, provenance: Provenance) -> Self {
-        self.provenance = provenance;
-        self
-    }
-
     /// Name, in kebab-case.
     #[must_use]
     pub fn name(&self) -> &str {
@@ -157,12 +150,6 @@ impl Material {
     #[must_use]
     pub fn range_cm1(&self) -> Option<(f64, f64)> {
         self.model.range()
-    }
-
-    /// The rule outside the range, if any was asked for.
-    #[must_use]
-    pub fn extrapolation(&self) -> Option<Extrapolation> {
-        self.extrapolation
     }
 
     /// What a reader noticed and a user should know.

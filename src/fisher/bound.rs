@@ -149,16 +149,6 @@ impl Projector {
         &self.norms
     }
 
-    /// Lengths of the columns as they came to the last reduction, and of what the columns before leave of them.
-    pub(crate) fn lengths_and_norms(&self) -> (&[f64], &[f64]) {
-        (&self.lengths, &self.norms)
-    }
-
-    /// Share of column `pivot`, as it is left, that the last reduction took off the last column.
-    pub(crate) fn share_in_last(&self, pivot: usize) -> f64 {
-        self.triangle[(pivot + 1) * self.norms.len() - 1]
-    }
-
     /// Whether the directions that the last call kept are known to about all digits.
     pub(crate) fn well_known(&self) -> bool {
         self.turned <= NEARLY_DEPENDENT
