@@ -1,0 +1,11 @@
+//! What every storey stands on: errors, units, sums, lattices, one-dimensional solvers, statistics.
+
+pub mod demand;
+pub mod error;
+pub mod grid;
+pub mod root;
+pub(crate) mod simd;
+pub mod statistics;
+pub mod sum;
+pub mod units;
+pub mod words;
