@@ -22,6 +22,7 @@
 pub mod budget;
 pub mod bunching;
 mod camera;
+mod checked;
 pub mod comparison;
 pub mod efficiency;
 pub mod equivalents;

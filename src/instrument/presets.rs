@@ -169,6 +169,14 @@ mod tests {
     }
 
     #[test]
+    fn a_key_that_means_nothing_is_refused() {
+        let entry = "[[camera]]\nname = \"ours\"\npixel_m = 12e-6\n";
+        let file: File = toml::from_str(entry).unwrap();
+        assert_eq!(file.camera[0].figures.pixel_m, Some(12e-6));
+        assert!(toml::from_str::<File>(&format!("{entry}pixel = 12e-6\n")).is_err());
+    }
+
+    #[test]
     fn unknown_cameras_are_named() {
         assert!(get("flir-a325").unwrap_err().to_string().contains("flir-a325sc"));
     }

@@ -164,6 +164,8 @@ fn column(path: &Path, name: &str, action: &str) -> Result<Vec<(f64, f64)>> {
 mod tests {
     use super::*;
     use crate::scenario::Scenario;
+    use hadar::instrument::Readout;
+    use hadar::instrument::figures::{self, Row};
 
     #[test]
     fn a_preset_that_was_changed_says_in_what() {
@@ -190,5 +192,74 @@ mod tests {
             "flir-a325sc with noise_electrons changed"
         );
         assert_eq!(name(&|spec| spec.frames = Some(16)), "flir-a325sc with frames changed");
+    }
+
+    /// A camera like the FLIR of the paper with one figure changed, and what that figure cannot be stated without.
+    fn with_changed(row: &Row, table: &Path) -> CameraSpec {
+        let own = CameraSpec::of(&presets::get("flir-a325sc").unwrap());
+        let mut spec = CameraSpec { preset: Some("flir-a325sc".into()), ..CameraSpec::default() };
+        match row.key {
+            "noise_bandwidth" => spec.noise.detectivity_cm_hz05_w = Some(1e10),
+            "detectivity" | "nep" => spec.noise_exposure_s = own.noise_exposure_s,
+            "quantisation_bits" => spec.full_well = Some(1e7),
+            "filter_temperature" => spec.sensor_temperature_k = Some(300.0),
+            _ if matches!(row.part, Part::Condition(_)) => spec.noise.netd_k = own.noise.netd_k,
+            _ => {}
+        }
+        match row.kind {
+            Kind::Quantity(..) | Kind::Number(..) | Kind::Efficiency(..) => {
+                let value = row.number(&own).filter(|value| *value > 0.0).map_or(1.0, |value| 0.9 * value);
+                row.put_number(&mut spec, value);
+            }
+            Kind::Count(slot) => {
+                *(slot.at)(&mut spec) = (slot.of)(&own).map_or(Some(2), |count| Some(count + 1))
+            }
+            Kind::Flag(slot) => *(slot.at)(&mut spec) = (slot.of)(&own).map(|flag| !flag),
+            Kind::Readout(slot) => *(slot.at)(&mut spec) = Some(Readout::Sequential),
+            Kind::File(slot) => *(slot.at)(&mut spec) = Some(table.to_owned()),
+            Kind::Name(_) => {}
+        }
+        spec
+    }
+
+    #[test]
+    fn every_figure_that_is_changed_is_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let table = folder.path().join("table.csv");
+        std::fs::write(&table, "wavenumber_cm1,sigma_counts,efficiency\n700,1e5,0.5\n1300,2e5,0.8\n")
+            .unwrap();
+        let name = |spec: &CameraSpec| resolved(spec, &Source::default()).unwrap().name;
+        for row in TABLE.iter().filter(|row| row.key != "preset") {
+            let name = name(&with_changed(row, &table));
+            let keys = name.strip_prefix("flir-a325sc with ").and_then(|rest| rest.strip_suffix(" changed"));
+            let expected = match row.part {
+                // A noise under other conditions is another noise.
+                Part::Condition(noises) if row.key != "noise_exposure" => noises[0],
+                _ => row.key,
+            };
+            let named = keys.is_some_and(|keys| keys.split(", ").any(|key| key == expected));
+            assert!(named, "{}: {name}", row.key);
+        }
+        for key in ["optics_efficiency", "quantum_efficiency"] {
+            let mut spec = CameraSpec { preset: Some("flir-a325sc".into()), ..CameraSpec::default() };
+            if let Some(Kind::Efficiency(_, slot)) = figures::row(key).map(|row| row.kind) {
+                *(slot.at)(&mut spec) = Some(Efficiency::File(table.clone()));
+            }
+            assert_eq!(name(&spec), format!("flir-a325sc with {key} changed"));
+        }
+    }
+
+    /// Every example of the table can be read, and is written as it was.
+    #[test]
+    fn the_examples_of_the_table_are_read_and_written() {
+        for row in TABLE {
+            let text = format!(
+                "[target]\nmaterial = \"skin\"\ntemperature = \"37 degC\"\n[camera]\n{} = {}\n",
+                row.key, row.example
+            );
+            let scenario = Scenario::from_toml(&text, None).unwrap_or_else(|error| panic!("{error}"));
+            assert!(scenario.camera.as_ref().is_some_and(|spec| row.is_given(spec)), "{}", row.key);
+            assert_eq!(Scenario::from_toml(&scenario.to_toml(), None).unwrap(), scenario, "{}", row.key);
+        }
     }
 }
