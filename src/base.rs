@@ -1,5 +1,6 @@
 //! What every storey stands on: errors, units, sums, lattices, one-dimensional solvers, statistics.
 
+pub mod allowed;
 pub mod demand;
 pub mod error;
 pub mod grid;

@@ -87,7 +87,7 @@ mod witness;
 
 pub use base::error::{Error, Result};
 pub(crate) use base::simd;
-pub use base::{demand, error, grid, root, statistics, sum, units, words};
+pub use base::{allowed, demand, error, grid, root, statistics, sum, units, words};
 pub use limits::{fisher, identifiability, policy, ranging};
 pub use physics::{atmosphere, material, planck, scene, spectrum};
 pub use witness::{render, simulate};
