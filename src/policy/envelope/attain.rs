@@ -6,9 +6,10 @@
 //! along one range at a time and along what two rounds have gained (Hooke and Jeeves, J. ACM 8, 212 (1961)), with steps
 //! that halve. Neither proves anything.
 
-use super::joint::{self, Point};
-use super::model::{Model, Region};
-use super::{EnvelopeScene, Ranges};
+use super::joint;
+use super::model::{Model, Point, Region};
+use super::ranges::Ranges;
+use super::scene::EnvelopeScene;
 use crate::error::Result;
 use crate::identifiability::nearest::NearestSolver;
 use crate::scene::State;

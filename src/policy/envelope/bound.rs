@@ -16,8 +16,8 @@
 //!
 //! Split is along what bends u·Δ, moves it, or changes the variance most.
 
-use super::cell::{Cell, Node, PAIRS, RANK, Vector};
-use super::linear::{COLUMNS, Factor, Gram, Limit};
+use super::cell::{Cell, Node};
+use super::linear::{COLUMNS, Factor, Gram, Limit, PAIRS, RANK, Vector};
 use super::model::{Model, SOURCES};
 
 /// About how fast Planck's function grows with temperature, both relative.

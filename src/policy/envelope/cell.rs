@@ -16,15 +16,12 @@
 //! Rounding: components are sums over W bands and R basis vectors; 2√R W ulp of the largest whitened signals, and some
 //! hundred more for Planck's function and the short sums, are taken off every bound.
 
+use super::linear::{PAIRS, RANK, Vector};
 use super::model::{Model, Region, SOURCES, Span};
-use super::partition::Part;
+use super::partition::{FAINT, Part};
 use super::series::{TERMS, planck_series, remainder};
 use crate::sum::dot;
 
-/// Components that are kept of a spectrum.
-pub(super) const RANK: usize = 16;
-/// Entries of a symmetric matrix.
-pub(super) const PAIRS: usize = RANK * (RANK + 1) / 2;
 /// Radii of the discs of Cauchy's estimate, as shares of the lowest temperature.
 const RADII: [f64; 5] = [0.2, 0.4, 0.6, 0.8, 0.95];
 /// The basis is complete when nothing is left of a spectrum but this share of the distance attained.
@@ -32,12 +29,9 @@ const LEFT_OVER: f64 = 1e-3;
 /// What is left of a spectrum times the skew of variances is this much less of a loss: the weights of bands need not be
 /// known as well as their differences.
 const WEIGHT_OF_SKEW: f64 = 0.03;
-/// A source that is weaker than this share of the distance attained is not resolved in temperature.
-pub(super) const FAINT: f64 = 3e-4;
 /// Intervals are not halved below this share of their temperature.
 const NARROWEST: f64 = 1e-9;
 
-pub(super) type Vector = [f64; RANK];
 pub(super) type Cubic = [Vector; TERMS];
 
 /// An interval of the temperature of a source.

@@ -6,7 +6,7 @@
 //! that run across scene and state.
 
 use super::linear::{COLUMNS, Gram};
-use super::model::{Model, Region, SOURCES};
+use super::model::{Model, Point, Region, SOURCES};
 use super::series::planck_series;
 use crate::sum::dot;
 
@@ -21,12 +21,6 @@ const NO_GAIN: f64 = 1e-9;
 
 /// How much more a broken sum of factors weighs than what they do.
 const STIFF: f64 = 30.0;
-
-/// Values of the temperatures, v and w of all sources.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Point {
-    pub(super) values: [[f64; 3]; SOURCES],
-}
 
 /// Counts and residual of a point, and its derivatives.
 pub(super) struct Residual {

@@ -5,10 +5,11 @@
 //! are done with: an alternative far too hot, and most that are far too cold. Others are halved until every
 //! temperature ranges over some 15 % at most and the variances of the bands keep their proportions.
 
-use super::cell::FAINT;
 use super::model::{Model, Region};
 use rayon::prelude::*;
 
+/// A source that is weaker than this share of the distance attained is not resolved in temperature.
+pub(super) const FAINT: f64 = 3e-4;
 /// Largest half width of a temperature, as a share of its middle.
 const WIDEST: f64 = 0.08;
 /// How far the variances of bands may change differently: ln of the ratio of ratios. Bounds do without; only the

@@ -1,9 +1,9 @@
 //! What a request comes to, and its division into blocks of rows and strips of columns.
 
-use super::checks;
 use super::direct::{MOST_COLUMNS, MOST_ROWS};
 use super::kernels::stride;
-use super::{Cell, Request};
+use super::limits;
+use super::request::{Cell, Request};
 use crate::error::{Error, Result};
 use crate::ranging::cube::Shape;
 use crate::ranging::derivative::Derivative;
@@ -43,7 +43,7 @@ pub(super) struct Plan<'a> {
 
 impl<'a> Plan<'a> {
     pub(super) fn new(shape: Shape, request: &'a Request<'a>) -> Result<Self> {
-        checks::variances(request.noise, shape)?;
+        limits::variances(request.noise, shape)?;
         let window = request.window;
         let margin = request.derivative.margin();
         request.derivative.check_columns(shape.columns())?;

@@ -10,7 +10,7 @@
 //! Source: van Herk, Pattern Recognit. Lett. 13, 517 (1992), doi:10.1016/0167-8655(92)90069-C; Gil and Werman, IEEE
 //! TPAMI 15, 504 (1993), doi:10.1109/34.211471 (there for maxima).
 
-use super::Window;
+use super::request::Window;
 use crate::simd::{Aligned, Chunk, LANES, dispatched, spaced};
 
 /// Makes room for `len` values, if there is not.

@@ -5,10 +5,10 @@
 //! so add nothing. The quotients of a column are added as one fraction, a/b + c/d = (ad + cb)/(bd), up to
 //! [`TOGETHER`] of them in every lane, which leaves one division for as many vectors. All of them are positive, so
 //! a rounding
-//! is relative to the sum (at most some 3 per term), and none overflows: see [`super::checks`].
+//! is relative to the sum (at most some 3 per term), and none overflows: see [`super::limits`].
 
 use super::boxes::{chunks, chunks_mut};
-use super::checks::MOST;
+use super::limits::MOST;
 use crate::ranging::cube::Sample;
 use crate::simd::{Chunk, LANES, dispatched, fold_all};
 

@@ -2,8 +2,8 @@
 
 use super::blocks::{Plan, run};
 use super::boxes::{Along, Image, Stack, along, window_sums};
+use super::request::{Cell, InformationMap};
 use super::samples::BandSums;
-use super::{Cell, InformationMap};
 use crate::error::{Error, Result};
 use crate::ranging::derivative::Differentiator;
 use crate::simd::{Aligned, Chunk, LANES};

@@ -6,10 +6,10 @@
 //! has) stays in
 //! cache. For the sums over windows see [`super::boxes`].
 
-use super::Cell;
 use super::blocks::{Plan, Strip, run};
 use super::checks::Checked;
 use super::kernels::totals;
+use super::request::Cell;
 use super::rows::Buffer;
 use super::strips::StripRoom;
 use crate::error::Result;

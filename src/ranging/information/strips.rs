@@ -1,11 +1,11 @@
 //! What a thread keeps of the rows of a strip of columns, and what it makes of them.
 
-use super::Cell;
 use super::blocks::{Plan, Strip};
 use super::boxes::{Along, Stack, add_to, along, grow};
 use super::checks::Checked;
 use super::direct::{Lanes, Pixels, windows};
 use super::kernels::{Below, ratios, ratios_central, ratios_ends};
+use super::request::Cell;
 use crate::error::Result;
 use crate::ranging::derivative::Differentiator;
 use crate::simd::{Aligned, Chunk, LANES};

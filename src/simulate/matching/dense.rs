@@ -5,7 +5,7 @@
 
 use super::block::Block;
 use super::layout::{Layout, View};
-use super::{Match, Search, StereoPair, check_window};
+use super::search::{Match, Search, StereoPair, check_window};
 use crate::error::Result;
 use rayon::prelude::*;
 use std::ops::Range;

@@ -61,6 +61,30 @@ const REACH: f64 = 1.0;
 const ROUNDS: usize = 3;
 
 /// Maximum-likelihood matching.
+/// Which views are noisy.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Noisy {
+    /// Both, as cameras have it; bound 1/J_left + 1/J_right.
+    #[default]
+    Both,
+    /// The left one; the right one is as expected, a known template; bound 1/J_left.
+    Left,
+}
+
+impl Noisy {
+    /// Variance of the difference of two readings, σ² the electronic noise of one.
+    #[inline(always)]
+    fn variance(self, left: f64, right: f64, var: f64) -> f64 {
+        match self {
+            // Nothing at all was read: one photon more would be one.
+            Self::Both => (left + right + 2.0 * var).max(1.0),
+            // Interpolation may fall below 0 where there are hardly any photons.
+            Self::Left => (right + var).max(1e-6),
+        }
+    }
+}
+
 ///
 /// ```
 /// use hadar::ranging::information::Window;
