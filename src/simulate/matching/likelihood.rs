@@ -39,10 +39,11 @@ pub use super::interpolation::Interpolation;
 use super::interpolation::{LOBES, Weights};
 use super::lanes::{Lanes, Sums, chunks, differences, interpolate, window_sums};
 use super::layout::View;
-use super::trials::Noisy;
-use super::{Failure, Match, Search};
+use super::search::{Failure, Match, Search};
+use crate::minimum::golden_section;
 use crate::ranging::information::Window;
 use crate::simd::{Chunk, LANES};
+use std::convert::Infallible;
 use std::ops::Range;
 
 /// Steps of a refinement.
@@ -60,7 +61,6 @@ const REACH: f64 = 1.0;
 /// Times that v follows the estimate, if the right view is known.
 const ROUNDS: usize = 3;
 
-/// Maximum-likelihood matching.
 /// Which views are noisy.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
@@ -85,6 +85,7 @@ impl Noisy {
     }
 }
 
+/// Maximum-likelihood matching.
 ///
 /// ```
 /// use hadar::ranging::information::Window;
@@ -284,12 +285,8 @@ impl Place<'_> {
         if best.abs() == PLACES {
             return Err(Failure::Unconverged);
         }
-        let golden = 0.5 * (5_f64.sqrt() - 1.0);
-        let (mut low, mut high) = (at(best - 1), at(best + 1));
-        for _ in 0..NARROWINGS {
-            let (a, b) = (high - golden * (high - low), low + golden * (high - low));
-            if of(a) < of(b) { high = b } else { low = a }
-        }
+        let around = [at(best - 1), at(best + 1)];
+        let Ok([low, high]) = golden_section::<Infallible>(around, NARROWINGS, |shift| Ok(of(shift)));
         Ok(0.5 * (low + high))
     }
 }

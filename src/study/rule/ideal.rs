@@ -13,7 +13,7 @@
 //! Scenes: every range uniform (lighting that adds up to more than 1 left out), every pair alike; a lattice of irrational
 //! steps with random shifts (Cranley and Patterson, SIAM J. Numer. Anal. 13, 904 (1976)), whose spread is the error.
 
-use super::super::envelope::{all, lattice, scene_at};
+use super::super::envelope::{all, scene_at};
 use super::super::{Study, reliability};
 use super::RuleStudy;
 use super::results::{Neighbourhood, NotIdentifiable};
@@ -22,6 +22,7 @@ use crate::error::Result;
 use crate::fisher::Counting;
 use crate::identifiability::nearest::NearestSolver;
 use crate::instrument::{Camera, FASTEST_F_NUMBER};
+use crate::lattice_points::GoldenLattice;
 use crate::planck;
 use crate::policy::Motion;
 use crate::policy::envelope::Ranges;
@@ -71,15 +72,15 @@ impl RuleStudy {
             .collect::<Result<Vec<(&Study, Bands, Ranges)>>>()?;
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         let dimensions = scenes.first().map_or(0, |(_, _, ranges)| all(ranges).len());
-        let shifts: Vec<Vec<f64>> =
-            (0..SHIFTS).map(|_| (0..dimensions).map(|_| random.random::<f64>()).collect()).collect();
+        let mut shifted = || GoldenLattice::new((0..dimensions).map(|_| random.random::<f64>()).collect());
+        let lattices: Vec<GoldenLattice> = (0..SHIFTS).map(|_| shifted()).collect();
         let each = (SCENES / (SHIFTS * pairs.len().max(1))).max(4);
         let jobs: Vec<(usize, usize)> =
             (0..SHIFTS).flat_map(|shift| (0..pairs.len()).map(move |pair| (shift, pair))).collect();
         let drawn = jobs.into_par_iter().map(|(shift, pair)| {
             let (target, other) = pairs[pair];
             let (study, bands, ranges) = &scenes[target];
-            let places = (0..each).map(|index| lattice(index * pairs.len() + pair, &shifts[shift]));
+            let places = (0..each).map(|index| lattices[shift].point(index * pairs.len() + pair));
             let states: Vec<State> = places.filter_map(|place| scene_at(ranges, &place)).collect();
             let Study { surroundings, unknowns, range, .. } = study;
             let mut solver = NearestSolver::new(bands, surroundings, unknowns.clone(), *range);
