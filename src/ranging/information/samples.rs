@@ -1,10 +1,8 @@
 //! First pass, over the samples: of every pixel the sum over bands and the information of its bands, of every
-//! window the
-//! information of its bands.
+//! window the information of its bands.
 //!
 //! A block of rows is worked on in strips of columns, so that what is kept of the last rows (as many as a window
-//! has) stays in
-//! cache. For the sums over windows see [`super::boxes`].
+//! has) stays in cache. For the sums over windows see [`super::boxes`].
 
 use super::blocks::{Plan, Strip, run};
 use super::checks::Checked;
@@ -81,8 +79,7 @@ pub(super) fn band_sums(cube: &Cube, plan: &Plan<'_>, block_rows: usize) -> Resu
 }
 
 /// The quotients of one row of pixels, in some of the strips of a plan for [`Cell::Full`] alone; `to` is for all
-/// columns with a
-/// derivative.
+/// columns with a derivative.
 pub(super) fn pixels_of_row(
     cube: &Cube,
     plan: &Plan<'_>,
