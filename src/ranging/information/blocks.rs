@@ -82,7 +82,7 @@ impl<'a> Plan<'a> {
             var_window: Vec::new(),
             var_band,
         };
-        let pixels = (window.rows() * window.columns()) as f64;
+        let pixels = plan.pixels();
         plan.var_window = padded(&plan.var_band, bands, stride, pixels * plan.share(pixels));
         Ok(plan)
     }
@@ -118,6 +118,15 @@ impl<'a> Plan<'a> {
             Joined::SumOfReadings => 1.0,
             Joined::OneReading => joined.recip(),
         }
+    }
+
+    /// Bands of a sample, and pixels of a window, as numbers of what is joined.
+    pub(super) fn bands(&self) -> f64 {
+        self.shape.bands() as f64
+    }
+
+    pub(super) fn pixels(&self) -> f64 {
+        (self.request.window.rows() * self.request.window.columns()) as f64
     }
 
     /// Rows of pixels in any window.
