@@ -33,12 +33,6 @@ impl DisparityMap {
         }
         self.matches.get((row - self.rows.start) * self.columns.len() + column - self.columns.start).copied()
     }
-
-    /// Pixels of disparity, `missing` where there is none.
-    #[must_use]
-    pub fn values_or(&self, missing: f64) -> Vec<f64> {
-        self.matches.iter().map(|found| found.unwrap_or(missing)).collect()
-    }
 }
 
 /// Matches every window of the left view.
