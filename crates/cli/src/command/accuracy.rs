@@ -1,0 +1,190 @@
+//! `hadar accuracy`: run time against error, method by method.
+
+use super::{Global, as_json};
+use clap::Args;
+use hadar::demand::{Reason, Thing, Work};
+use hadar::error::{Error, Result};
+use hadar_proof::accuracy::skipping::{Skipped, skipping};
+use hadar_proof::accuracy::stress::{StressPlan, StressReport, stress};
+use hadar_proof::accuracy::{Chart, Continuum, Item, Order, continuum};
+use hadar_report::accuracy as report;
+use hadar_report::bundle::Bundle;
+use std::process::ExitCode;
+use std::time::Instant;
+
+/// What is no chart of methods.
+const CONTINUUM: &str = "continuum";
+const SKIPPING: &str = "skipping";
+const STRESS: &str = "stress";
+/// Stress cases of a quick run.
+const QUICK_CASES: u64 = 2000;
+const CASES: u64 = 100_000;
+
+#[derive(Debug, Args)]
+pub(super) struct AccuracyArgs {
+    /// Computations: planck, band-integrals, local, local-near-equilibrium, nearest, probability, decisions, windows,
+    /// draws; continuum (what the width of bands costs); skipping (what leaving out the needless is worth); stress (generated extremes, each judged in extended precision); or
+    /// all
+    #[arg(value_name = "NAME", default_value = "all")]
+    items: Vec<String>,
+    /// Fewer settings and shorter runs
+    #[arg(long)]
+    quick: bool,
+    /// Stress cases (default: 100000, or 2000 with --quick)
+    #[arg(long, value_name = "N")]
+    cases: Option<u64>,
+}
+
+/// What is printed with `--json`.
+#[derive(Default, serde::Serialize)]
+struct Output {
+    charts: Vec<Chart>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    continuum: Option<Continuum>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    skipping: Vec<Skipped>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    stress: Option<StressReport>,
+}
+
+/// One thing to do.
+#[derive(Clone, Copy, PartialEq)]
+enum Task {
+    Chart(Item),
+    Continuum,
+    Skipping,
+    Stress,
+}
+
+impl Task {
+    fn from_name(name: &str) -> Result<Self> {
+        all().into_iter().find(|task| task.name() == name).ok_or_else(|| {
+            let names: Vec<&str> = all().into_iter().map(Self::name).collect();
+            let instead = format!("choose among {}, all", names.join(", "));
+            Error::malformed(format!("unknown computation `{name}`"), instead)
+        })
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Chart(item) => item.name(),
+            Self::Continuum => CONTINUUM,
+            Self::Skipping => SKIPPING,
+            Self::Stress => STRESS,
+        }
+    }
+}
+
+pub(super) fn run(args: &AccuracyArgs, global: &Global) -> Result<ExitCode> {
+    let tasks = tasks(&args.items)?;
+    let order = Order { quick: args.quick, seed: global.seed };
+    let (mut output, mut bundle, mut text) = (Output::default(), Bundle::default(), String::new());
+    for (i, task) in tasks.iter().enumerate() {
+        let start = Instant::now();
+        match task {
+            Task::Chart(item) => {
+                let chart = item.measure(order)?;
+                text.push_str(&format!("{}\n", report::text(&chart)));
+                bundle.add_plots(&[report::plot(&chart)])?;
+                output.charts.push(chart);
+            }
+            Task::Continuum => {
+                let found = continuum(order)?;
+                text.push_str(&format!("{}\n", report::continuum_text(&found)));
+                bundle.add_plots(&[report::continuum_plot(&found)])?;
+                output.continuum = Some(found);
+            }
+            Task::Skipping => {
+                let found = skipping(order.quick)?;
+                text.push_str(&format!("{}\n", report::skipping_text(&found)));
+                bundle.add("skipping.csv", report::skipping_table(&found).to_csv()?);
+                output.skipping = found;
+            }
+            Task::Stress => {
+                let cases = args.cases.unwrap_or(if args.quick { QUICK_CASES } else { CASES });
+                let bar = global.progress("stress cases");
+                let plan = StressPlan { cases, seed: global.seed };
+                let found = stress(&plan, &|done, total| bar.set(done as usize, total as usize))?;
+                bar.finish();
+                text.push_str(&format!("{}\n", report::stress_text(&found)));
+                bundle.add_plots(&report::stress_plots(&found))?;
+                output.stress = Some(found);
+            }
+        }
+        let took = start.elapsed().as_secs_f64();
+        global.note(&format!("{} of {}: {}, {took:.1} s", i + 1, tasks.len(), task.name()));
+    }
+    if let Some(out) = &global.out {
+        bundle.add("accuracy.csv", report::table(&output.charts).to_csv()?);
+        bundle.add("README.md", page(&output, args.quick));
+        global.write(&bundle, out)?;
+    }
+    let mut work = Work::default();
+    work.compute(Thing::Sections, tasks.len() as u64);
+    work.spare(Thing::Sections, Reason::NotAsked, (all().len() - tasks.len()) as u64);
+    global.answer_with(as_json(&output)?, &text, &work)?;
+    let failed = output.stress.is_some_and(|stress| stress.failures > 0);
+    Ok(if failed { ExitCode::from(3) } else { ExitCode::SUCCESS })
+}
+
+fn all() -> Vec<Task> {
+    Item::ALL.map(Task::Chart).into_iter().chain([Task::Continuum, Task::Skipping, Task::Stress]).collect()
+}
+
+fn tasks(names: &[String]) -> Result<Vec<Task>> {
+    if names.iter().any(|name| name == "all") {
+        if names.len() > 1 {
+            return Err(Error::malformed("`all` beside other names", "write `all` alone, or the names"));
+        }
+        return Ok(all());
+    }
+    let mut tasks = Vec::new();
+    for name in names {
+        let task = Task::from_name(name)?;
+        if !tasks.contains(&task) {
+            tasks.push(task);
+        }
+    }
+    Ok(tasks)
+}
+
+fn page(output: &Output, quick: bool) -> String {
+    let made = if quick { "hadar accuracy --quick" } else { "hadar accuracy" };
+    let mut page = format!(
+        "# Run time against error\n\nMade by `{made}`. Times are of one thread, the least of many short runs, on whatever \
+         machine this was; errors are true ones, against references named below each picture.\n\n"
+    );
+    page.push_str(&report::markdown(&output.charts));
+    for chart in &output.charts {
+        page.push_str(&format!(
+            "\n## {}\n\n{}. {}\n\n![{}]({}.png)\n",
+            chart.title,
+            capital(&report::verdict(chart)),
+            chart.remark,
+            chart.title,
+            chart.name
+        ));
+    }
+    if let Some(found) = &output.continuum {
+        page.push_str(&format!("\n## Bands of finite width\n\n{}\n![Error of the nearest distance over the width of bands](continuum.png)\n", report::continuum_text(found)));
+    }
+    if !output.skipping.is_empty() {
+        page.push_str(&format!(
+            "\n## Nothing computed in vain\n\n{}",
+            report::skipping_text(&output.skipping)
+        ));
+    }
+    if let Some(found) = &output.stress {
+        page.push_str(&format!(
+            "\n## Stress\n\n{}\n![Share of the answers that keep so many digits](stress_digits.png)\n\n\
+             ![Digits kept over the distance from equilibrium](stress_equilibrium.png)\n",
+            report::stress_text(found)
+        ));
+    }
+    page
+}
+
+fn capital(sentence: &str) -> String {
+    let mut letters = sentence.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}

@@ -1,0 +1,131 @@
+//! `hadar identify`: distances from the target to every alternative, all against all, bands, simulated decisions.
+
+use super::{By, Global};
+use clap::Args;
+use hadar::error::{Error, Place, Result, check};
+use hadar::simulate::sequential::Plan;
+use hadar_report::identify;
+use hadar_study::study::{Asked, Law, Study, Trial};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+const ALL: &str = "All against all";
+const BANDS: &str = "Bands and the size of the library";
+const EXACT: &str = "Simulated decisions";
+
+#[derive(Debug, Args)]
+pub(super) struct IdentifyArgs {
+    /// The scenario file (TOML)
+    scenario: PathBuf,
+    /// The distance that decides, instead of the scenario's
+    #[arg(long)]
+    by: Option<By>,
+    /// All materials against all: distances, which the camera tells apart, clusters it cannot
+    #[arg(long, help_heading = ALL)]
+    matrix: bool,
+    /// Only which materials the camera tells apart, each pair by the first proof
+    #[arg(long, conflicts_with = "matrix", help_heading = ALL)]
+    apart: bool,
+    /// How the least distance changes with the size of the library and the number of bands
+    #[arg(long, help_heading = BANDS)]
+    scaling: bool,
+    /// Which bands matter, and the best K single bands for telling the target from all alternatives
+    #[arg(long, value_name = "K", help_heading = BANDS)]
+    bands: Option<usize>,
+    /// Which bands matter, and the best K contiguous filters, or fewer that do as well
+    #[arg(long, value_name = "K", help_heading = BANDS)]
+    filters: Option<usize>,
+    /// Simulate the maximum-likelihood decision over all states, and hold it against the limits
+    #[arg(long, help_heading = EXACT)]
+    exact: bool,
+    /// How counts scatter in the simulation (default: gaussian with a noisy camera, else poisson)
+    #[arg(long, requires = "exact", help_heading = EXACT)]
+    statistics: Option<Statistics>,
+    /// Photons of the target in the simulation (default: the camera's; without one those required)
+    #[arg(long, value_name = "N", requires = "exact", allow_negative_numbers = true, help_heading = EXACT)]
+    photons: Option<f64>,
+    /// Half width of the 95 % interval at which the simulation stops
+    #[arg(long, value_name = "P", default_value_t = 0.01, requires = "exact", allow_negative_numbers = true, help_heading = EXACT)]
+    half_width: f64,
+    /// Most trials of a state in the simulation
+    #[arg(long, value_name = "N", default_value_t = 1_000_000, requires = "exact", help_heading = EXACT)]
+    trials: u64,
+    /// Answer only whether the camera tells the target from every alternative; exit with code 3 if not
+    #[arg(long, conflicts_with_all = ["matrix", "apart", "scaling", "bands", "filters", "exact"])]
+    check: bool,
+}
+
+pub(super) fn run(args: &IdentifyArgs, global: &Global) -> Result<ExitCode> {
+    let study = global.study(&args.scenario, args.by.map(Into::into))?;
+    if args.check {
+        return only_check(&study, global);
+    }
+    let most = study.bands().len();
+    number_of("--bands", args.bands, most)?;
+    number_of("--filters", args.filters, most)?;
+    let chosen = args.bands.is_some() || args.filters.is_some();
+    let asked = Asked {
+        matrix: args.matrix,
+        apart: args.apart,
+        skipping: global.skipping(),
+        scaling: args.scaling,
+        bands: chosen.then_some((args.bands, args.filters)),
+        exact: args.exact.then(|| trial(args, global)).transpose()?,
+    };
+    let bar = global.progress("pairs simulated");
+    let mut answers = study.answer(&asked, &|done, total| bar.set(done, total))?;
+    bar.finish();
+    let mut stats = std::mem::take(&mut answers.identification.stats);
+    global.report(&mut stats, |out| identify::bundle(&study, &answers, global.seed, out))?;
+    answers.identification.stats = stats;
+    global.answer(&answers, &identify::text(&answers, &study), &answers.identification.stats)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// How many bands or filters can be asked for.
+fn number_of(flag: &str, asked: Option<usize>, most: usize) -> Result<()> {
+    match asked {
+        Some(k) if k == 0 || k > most => {
+            let expected = format!("from 1 to the number of bands, {most}");
+            Err(Error::out_of_range(flag, k as f64, "", expected))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Laws of counting, as a flag.
+#[derive(Debug, Clone, Copy, clap::ValueEnum)]
+enum Statistics {
+    /// Shot noise alone
+    Poisson,
+    /// Shot noise and the camera's electronic noise
+    Gaussian,
+    /// Bunched photons of thermal light
+    NegativeBinomial,
+}
+
+fn trial(args: &IdentifyArgs, global: &Global) -> Result<Trial> {
+    let law = args.statistics.map(|statistics| match statistics {
+        Statistics::Poisson => Law::Poisson,
+        Statistics::Gaussian => Law::Gaussian,
+        Statistics::NegativeBinomial => Law::NegativeBinomial,
+    });
+    if let Some(photons) = args.photons {
+        check::positive("--photons", photons, "")?;
+    }
+    let flag = if args.trials == 0 { "--trials" } else { "--half-width" };
+    let at_flag = |error: Error| error.at(Place { key: Some(flag.into()), ..Place::default() });
+    let plan = Plan::new(global.seed, args.half_width, args.trials).map_err(at_flag)?;
+    Ok(Trial { law, photons: args.photons, plan })
+}
+
+/// The answer to one question, at the first proof.
+fn only_check(study: &Study, global: &Global) -> Result<ExitCode> {
+    if global.out.is_some() {
+        let found = "--check answers yes or no and has nothing to write into --out";
+        return Err(Error::malformed(found, "leave out --out, or --check to have the files"));
+    }
+    let result = study.check(global.skipping())?;
+    global.answer(&result, &identify::check(&result, study), &result.stats)?;
+    Ok(if result.identifiable { ExitCode::SUCCESS } else { ExitCode::from(3) })
+}

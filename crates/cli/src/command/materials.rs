@@ -1,0 +1,197 @@
+//! `hadar materials`: the library.
+
+use super::{Global, as_json};
+use clap::{Args, Subcommand};
+use hadar::demand::{Reason, Thing, Work};
+use hadar::error::{Error, Result};
+use hadar::material::{Library, Material, Summary, read};
+use hadar_report::bundle::Bundle;
+use hadar_report::size::figures;
+use hadar_report::text::significant;
+use hadar_study::study::Surface;
+use std::fmt::Write as _;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Where materials are drawn and shown: the paper's bands, cm⁻¹.
+const SHOWN_CM1: (f64, f64) = (715.0, 1250.0);
+
+#[derive(Debug, Args)]
+pub(super) struct MaterialsArgs {
+    #[command(subcommand)]
+    action: Action,
+}
+
+#[derive(Debug, Subcommand)]
+enum Action {
+    /// All materials
+    List,
+    /// One material: what it is, how it is known, its emissivity
+    Show {
+        /// Name of the material
+        name: String,
+    },
+    /// Draw emissivities into the folder given by --out
+    Plot {
+        /// Names of the materials
+        #[arg(required = true)]
+        names: Vec<String>,
+    },
+    /// Read spectra from files, say what they hold, and with --out write them as two-column CSV
+    Import {
+        /// CSV or ECOSTRESS files
+        #[arg(required = true)]
+        files: Vec<PathBuf>,
+    },
+}
+
+pub(super) fn run(args: &MaterialsArgs, global: &Global) -> Result<ExitCode> {
+    match &args.action {
+        Action::List => list(&global.library()?, global)?,
+        Action::Show { name } => show(&global.library()?, name, global)?,
+        Action::Plot { names } => plot(&global.library()?, names, global)?,
+        Action::Import { files } => import(files, global)?,
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn list(library: &Library, global: &Global) -> Result<()> {
+    let summaries: Vec<Summary> = library.iter().map(Material::summary).collect();
+    let width = summaries.iter().map(|summary| summary.name.len()).max().unwrap_or(0);
+    let mut out = String::new();
+    for summary in &summaries {
+        let basis = summary.provenance.basis.to_string();
+        let _ = writeln!(out, "{:<width$}  {basis:<26}  {}", summary.name, summary.provenance.description);
+    }
+    let _ = writeln!(
+        out,
+        "\n{} materials; `hadar materials show NAME` tells source, licence and range",
+        summaries.len()
+    );
+    global.answer_with(serde_json::json!({ "materials": summaries }), &out, &library.work())
+}
+
+/// A material, its emissivity in the paper's bands and what it was taken from.
+#[derive(serde::Serialize)]
+struct Shown {
+    #[serde(flatten)]
+    summary: Summary,
+    wavenumber_cm1: Vec<f64>,
+    emissivity: Vec<f64>,
+}
+
+fn show(library: &Library, name: &str, global: &Global) -> Result<()> {
+    let material = library.get(name)?;
+    let summary = material.summary();
+    let (wavenumber_cm1, emissivity) = sampled(material)?;
+    let mut out = format!("{}: {}\n\n", summary.name, summary.provenance.description);
+    let provenance = &summary.provenance;
+    let range = summary.range_cm1.map_or_else(
+        || "everywhere".into(),
+        |(low, high)| format!("{} to {} cm^-1", significant(low, 5), significant(high, 5)),
+    );
+    for (label, value) in [
+        ("known as", provenance.basis.to_string()),
+        ("category", provenance.category.clone()),
+        ("source", provenance.source.clone()),
+        ("licence", provenance.licence.clone()),
+        ("note", provenance.note.clone()),
+        ("range", range),
+    ] {
+        if !value.is_empty() {
+            let _ = writeln!(out, "  {label:<10} {value}");
+        }
+    }
+    for warning in &summary.warnings {
+        let _ = writeln!(out, "  {:<10} {warning}", "warning");
+    }
+    let _ = writeln!(out, "\n  wavenumber [cm^-1]  wavelength [um]  emissivity");
+    let step = (wavenumber_cm1.len() / 11).max(1);
+    for (nu, e) in wavenumber_cm1.iter().zip(&emissivity).step_by(step) {
+        let _ = writeln!(out, "  {nu:>18.0}  {:>15.2}  {e:>10.4}", 1e4 / nu);
+    }
+    let json = as_json(&Shown { summary, wavenumber_cm1, emissivity })?;
+    global.answer_with(json, &out, &library.work())
+}
+
+/// The emissivity every 1 cm⁻¹ where the paper's bands and the material's range overlap.
+fn sampled(material: &Material) -> Result<(Vec<f64>, Vec<f64>)> {
+    let (low, high) = material.range_cm1().unwrap_or(SHOWN_CM1);
+    let (low, high) = (low.max(SHOWN_CM1.0).ceil(), high.min(SHOWN_CM1.1).floor());
+    if high < low {
+        return Err(Error::malformed(
+            format!("`{}` is not known between {} and {} cm^-1", material.name(), SHOWN_CM1.0, SHOWN_CM1.1),
+            "choose a material that covers the thermal infrared",
+        ));
+    }
+    let nodes: Vec<f64> = (0..=(high - low) as u32).map(|i| low + f64::from(i)).collect();
+    let emissivity = material.emissivity(&nodes)?;
+    Ok((nodes, emissivity))
+}
+
+fn plot(library: &Library, names: &[String], global: &Global) -> Result<()> {
+    let Some(out) = &global.out else {
+        return Err(Error::malformed("there is no folder to draw into", "add --out DIR"));
+    };
+    let materials = names.iter().map(|name| library.get(name)).collect::<Result<Vec<_>>>()?;
+    let nodes: Vec<f64> =
+        (0..=(SHOWN_CM1.1 - SHOWN_CM1.0) as u32).map(|i| SHOWN_CM1.0 + f64::from(i)).collect();
+    let surfaces = materials
+        .iter()
+        .map(|material| {
+            Ok(Surface { name: material.name().to_owned(), emissivity: material.emissivity(&nodes)? })
+        })
+        .collect::<Result<Vec<_>>>()?;
+    let Some((first, others)) = surfaces.split_first() else { return Ok(()) };
+    let others: Vec<&Surface> = others.iter().collect();
+    let mut bundle = Bundle::default();
+    bundle.add_plots(&[figures::emissivities("Emissivities", &nodes, first, &others)])?;
+    global.write(&bundle, out)?;
+    let drawn: Vec<Summary> = materials.iter().map(|material| material.summary()).collect();
+    let mut work = library.work();
+    work.compute(Thing::Figures, bundle.figures() as u64);
+    let text = format!("drew {}", names.join(", "));
+    global.answer_with(serde_json::json!({ "materials": drawn }), &text, &work)
+}
+
+fn import(files: &[PathBuf], global: &Global) -> Result<()> {
+    let mut bundle = Bundle::default();
+    let mut summaries = Vec::new();
+    let mut out = String::new();
+    for file in files {
+        for material in read::from_file(file)? {
+            let summary = material.summary();
+            let range = summary.range_cm1.map_or_else(String::new, |(low, high)| {
+                format!(", {} to {} cm^-1", significant(low, 5), significant(high, 5))
+            });
+            let _ = writeln!(out, "{}: {} rows{range}", summary.name, summary.rows);
+            for warning in &summary.warnings {
+                let _ = writeln!(out, "  warning: {warning}");
+            }
+            if global.out.is_some() {
+                bundle.add(format!("{}.csv", summary.name), material.to_csv(&rows(&material))?);
+            }
+            summaries.push(summary);
+        }
+    }
+    let mut work = Work::default();
+    work.compute(Thing::LibrarySpectra, summaries.len() as u64);
+    if let Some(directory) = &global.out {
+        global.write(&bundle, directory)?;
+        let _ = writeln!(out, "use them with --library {}", directory.display());
+        work.compute(Thing::Reports, 1);
+    } else {
+        work.spare(Thing::Reports, Reason::NotAsked, 1);
+    }
+    global.answer_with(serde_json::json!({ "materials": summaries }), &out, &work)
+}
+
+/// The material's own rows: its ends and every kink between.
+fn rows(material: &Material) -> Vec<f64> {
+    let (low, high) = material.range_cm1().unwrap_or(SHOWN_CM1);
+    let mut rows = vec![low, high];
+    rows.extend(material.breakpoints_cm1(low, high));
+    rows.sort_by(f64::total_cmp);
+    rows.dedup();
+    rows
+}

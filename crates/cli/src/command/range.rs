@@ -1,0 +1,64 @@
+//! `hadar range`: bounds of passive stereo ranging from a scene or a heat cube.
+
+use super::Global;
+use clap::Args;
+use hadar::error::{Error, Result};
+use hadar_report::range;
+use hadar_study::scenario::RangeScenario;
+use hadar_study::scenario::range::Subject;
+use hadar_study::study::range::{RangePlan, RangeStudy};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Most draws of the noise.
+const MOST_TRIALS: usize = 1_000_000;
+
+#[derive(Debug, Args)]
+pub(super) struct RangeArgs {
+    /// The ranging scenario (TOML)
+    scenario: PathBuf,
+    /// Match noisy views N times along the scenario's lines, and whole views once: do matchers reach the bound?
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    trials: usize,
+    /// Exit with code 3 if the demand is not met; a cube of one view and one depth is decided by the cheapest proofs alone
+    #[arg(long, conflicts_with = "trials")]
+    check: bool,
+}
+
+pub(super) fn run(args: &RangeArgs, global: &Global) -> Result<ExitCode> {
+    if args.trials == 1 {
+        let expected = "at least 2, for one error has no scatter; 0 for the bounds alone";
+        return Err(Error::out_of_range("--trials", 1.0, "", expected));
+    }
+    if args.trials > MOST_TRIALS {
+        let expected = format!("at most {MOST_TRIALS}");
+        return Err(Error::out_of_range("--trials", args.trials as f64, "", expected));
+    }
+    let scenario = RangeScenario::from_file(&args.scenario)?;
+    let study = RangeStudy::new(&scenario, &global.library()?)?;
+    let plan = RangePlan {
+        trials: args.trials,
+        seed: global.seed,
+        skipping: global.skipping(),
+        // A report shows all windows.
+        verdict_alone: args.check && global.out.is_none(),
+    };
+    if args.trials > 0 && matches!(scenario.subject, Subject::Cube(_)) {
+        let found = "--trials match views whose truth is known, which a cube's is not";
+        return Err(Error::malformed(found, "leave it out, or give a [scene]"));
+    }
+    if args.check && matches!(&scenario.subject, Subject::Cube(cube) if cube.depth.is_none()) {
+        let found =
+            Error::malformed("--check demands a depth error", "write depth = \"12 m\" or a file of depths");
+        return Err(found.at(scenario.place("cube.depth")));
+    }
+    let bar = global.progress("rows and draws");
+    let mut result = study.range(&plan, &|done, total| bar.set(done, total))?;
+    bar.finish();
+    let mut stats = std::mem::take(&mut result.stats);
+    global.report(&mut stats, |out| range::bundle(&result, out))?;
+    result.stats = stats;
+    global.answer(&result, &range::text(&result), &result.stats)?;
+    let failed = args.check && result.verdict.met != Some(true);
+    Ok(if failed { ExitCode::from(3) } else { ExitCode::SUCCESS })
+}

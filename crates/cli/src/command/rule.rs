@@ -1,0 +1,48 @@
+//! `hadar rule`: which cameras meet a rule.
+
+use super::Global;
+use clap::Args;
+use hadar::error::Result;
+use hadar_report::rule;
+use hadar_study::scenario::Rule;
+use hadar_study::study::{RuleAnswer, RuleAsked, RuleStudy};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+#[derive(Debug, Args)]
+pub(super) struct RuleArgs {
+    /// The rule file (TOML): a scenario with [envelope], cameras = [...] or [[camera]] tables, and [rule]
+    rule: PathBuf,
+    /// Exit with code 3 unless every camera meets the rule; without --out the verdicts alone, each by the first scene that
+    /// decides it
+    #[arg(long)]
+    check: bool,
+    /// With --check: one camera that meets the rule is enough
+    #[arg(long, requires = "check")]
+    any: bool,
+}
+
+pub(super) fn run(args: &RuleArgs, global: &Global) -> Result<ExitCode> {
+    let mut rule_read = Rule::from_file(&args.rule)?;
+    rule_read.scenario.alternatives.skip_uncovered |= global.skip_uncovered;
+    let study = RuleStudy::new(&rule_read, &global.library()?)?;
+    let asked = RuleAsked {
+        verdict_only: args.check && global.out.is_none(),
+        skipping: global.skipping(),
+        seed: global.seed,
+    };
+    let bar = global.progress("cameras");
+    let mut answer = study.answer(&asked, &|done, all| bar.set(done, all))?;
+    bar.finish();
+    let mut stats = std::mem::take(&mut answer.stats);
+    global.report(&mut stats, |out| rule::bundle(&study, &answer, out))?;
+    answer.stats = stats;
+    global.answer(&answer, &rule::text(&answer, &study), &answer.stats)?;
+    Ok(code(args, &answer))
+}
+
+fn code(args: &RuleArgs, answer: &RuleAnswer) -> ExitCode {
+    let mut met = answer.cameras.iter().map(|camera| camera.passes);
+    let enough = if args.any { met.any(|passes| passes) } else { met.all(|passes| passes) };
+    if args.check && !enough { ExitCode::from(3) } else { ExitCode::SUCCESS }
+}

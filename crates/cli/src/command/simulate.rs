@@ -1,0 +1,237 @@
+//! `hadar simulate`: spectra drawn, classifiers trained and judged, held against the limit.
+
+use super::Global;
+use clap::Args;
+use hadar::demand::Work;
+use hadar::error::{Error, Result, check};
+use hadar::grid::text_of_file;
+use hadar::simulate::classifier::{Method, SavedModel};
+use hadar::simulate::experiment::Design;
+use hadar::simulate::spectra::Parts;
+use hadar::units::Dimension;
+use hadar_report::bundle::Bundle;
+use hadar_report::simulate::{self, thermometry as thermometry_report};
+use hadar_study::study::{PhotonLaw, SimulationPlan, Study};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// Most true temperatures, and most spectra at each.
+const MOST_TEMPERATURES: usize = 10_000;
+const MOST_READINGS: usize = 10_000_000;
+/// Normalised photon numbers N d₀² that a sweep covers, and its curves.
+const SWEEP: [f64; 2] = [0.01, 10.0];
+const CURVES: [f64; 2] = [0.01, 1e8];
+const CURVE_POINTS: usize = 101;
+
+#[derive(Debug, Args)]
+pub(super) struct SimulateArgs {
+    /// The scenario file (TOML)
+    scenario: PathBuf,
+    /// Who takes part: likelihood-ratio, best-fits, discriminant, logistic, network (default: all)
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', help_heading = "Classifiers")]
+    classifiers: Vec<String>,
+    /// Spectra of each class: a quarter for training, a quarter for validation, half for the test
+    #[arg(long, value_name = "N", default_value_t = 5000, help_heading = "Spectra")]
+    spectra: usize,
+    /// Photons of the target, one experiment each (default: the camera's; without one those required)
+    #[arg(
+        long,
+        value_name = "N",
+        value_delimiter = ',',
+        allow_negative_numbers = true,
+        help_heading = "Spectra"
+    )]
+    photons: Vec<f64>,
+    /// K experiments with N d0^2/(1+gamma) from 0.01 to 10, d0 the nearest distance in shot noise, gamma that of the camera
+    #[arg(long, value_name = "K", conflicts_with = "photons", help_heading = "Spectra")]
+    sweep: Option<usize>,
+    /// How photons are counted
+    #[arg(long, value_enum, default_value_t = Statistics::Poisson, help_heading = "Spectra")]
+    statistics: Statistics,
+    /// Leave out the camera's electronic noise
+    #[arg(long, help_heading = "Spectra")]
+    shot_noise_only: bool,
+    /// Alternatives that are classes beside the target (default: the one nearest to it); `all` for all of them
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', help_heading = "Spectra")]
+    against: Vec<String>,
+    /// Write the trained classifiers of the last experiment into this folder
+    #[arg(long, value_name = "DIR", help_heading = "Classifiers")]
+    save_models: Option<PathBuf>,
+    /// A saved classifier that takes part as it is; may be given several times
+    #[arg(long, value_name = "FILE", help_heading = "Classifiers")]
+    model: Vec<PathBuf>,
+    /// Draw the likelihood ratio itself instead of spectra: far quicker where it alone takes part, and as good
+    #[arg(long, help_heading = "Spectra")]
+    skip_spectra: bool,
+    /// Read the target's temperature instead: by maximum likelihood and by thermal imaging at true temperatures
+    /// such as "30 degC..105 degC", or at a single one; --spectra are drawn at each
+    #[arg(long, value_name = "RANGE", allow_hyphen_values = true, conflicts_with_all = CLASSIFYING, help_heading = "Thermometry")]
+    thermometry: Option<String>,
+    /// How many true temperatures there are in the range
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 16,
+        requires = "thermometry",
+        help_heading = "Thermometry"
+    )]
+    temperatures: usize,
+    /// Exit with code 3 if a classifier was right more often than the limit allows
+    #[arg(long)]
+    check: bool,
+}
+
+/// Flags that say how classifiers are judged, and nothing to thermometry.
+const CLASSIFYING: [&str; 10] = [
+    "classifiers",
+    "photons",
+    "sweep",
+    "statistics",
+    "shot_noise_only",
+    "against",
+    "save_models",
+    "model",
+    "check",
+    "skip_spectra",
+];
+
+/// Laws of photons, as a flag.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Statistics {
+    /// Each on its own
+    Poisson,
+    /// Bunched, as thermal light is
+    NegativeBinomial,
+    /// As many in every spectrum: multinomial
+    FixedTotal,
+}
+
+pub(super) fn run(args: &SimulateArgs, global: &Global) -> Result<ExitCode> {
+    let study = global.study(&args.scenario, None)?;
+    if let Some(range) = &args.thermometry {
+        return thermometry(range, args, &study, global);
+    }
+    let mut work = Work::default();
+    let plan = plan(args, &study, global, &mut work)?;
+    if let Some(folder) = &args.save_models {
+        Bundle::check_destination(folder)?;
+    }
+    if args.check && (plan.against.len() > 1 || plan.law == PhotonLaw::FixedTotal) {
+        let found = "--check holds two classes against their limit, which is not known here";
+        return Err(Error::malformed(found, "name one alternative with --against, or leave out fixed-total"));
+    }
+    let bar = global.progress("experiments");
+    let (mut result, models) = study.simulate(&plan, &|done, total| bar.set(done, total))?;
+    bar.finish();
+    if let Some(folder) = &args.save_models {
+        let mut bundle = Bundle::default();
+        for saved in &models {
+            bundle.add(format!("{}.json", saved.model.method().name()), saved.to_json()?);
+        }
+        global.write(&bundle, folder)?;
+    }
+    work.add(&result.stats);
+    global.report(&mut work, |out| {
+        let rival = result.points.first().and_then(|point| point.classes.get(1));
+        let rival =
+            rival.filter(|_| args.sweep.is_some()).and_then(|class| study.alternative(&class.material));
+        let noise = rival.map(|rival| study.noise_curves(rival, CURVES, CURVE_POINTS)).transpose()?;
+        simulate::bundle(&study, &result, noise.as_ref(), out)
+    })?;
+    result.stats = work;
+    global.answer(&result, &simulate::text(&result, &study), &result.stats)?;
+    let failed = args.check && !result.limit_holds;
+    Ok(if failed { ExitCode::from(3) } else { ExitCode::SUCCESS })
+}
+
+fn thermometry(range: &str, args: &SimulateArgs, study: &Study, global: &Global) -> Result<ExitCode> {
+    let at_flag = |error: Error| error.for_key("--thermometry");
+    let temperature = |text: &str| Dimension::Temperature.parse(text).map_err(at_flag);
+    let temperatures = match (range.split_once(".."), args.temperatures) {
+        (None, _) => vec![temperature(range)?],
+        (Some(_), rows @ (0 | 1)) => {
+            return Err(Error::out_of_range("--temperatures", rows as f64, "", "at least 2 for a range"));
+        }
+        (Some((low, high)), rows) => {
+            let (low, high) = (temperature(low)?, temperature(high)?);
+            if rows > MOST_TEMPERATURES {
+                let expected = format!("at most {MOST_TEMPERATURES}");
+                return Err(Error::out_of_range("--temperatures", rows as f64, "", expected));
+            }
+            let step = (high - low) / (rows - 1) as f64;
+            (0..rows).map(|i| (i as f64).mul_add(step, low)).collect()
+        }
+    };
+    if args.spectra > MOST_READINGS {
+        let expected = format!("at most {MOST_READINGS} at each temperature");
+        return Err(Error::out_of_range("--spectra", args.spectra as f64, "", expected));
+    }
+    let bar = global.progress("temperatures");
+    let mut result =
+        study.thermometry(&temperatures, args.spectra, global.seed, &|done, total| bar.set(done, total))?;
+    bar.finish();
+    let mut stats = std::mem::take(&mut result.stats);
+    global.report(&mut stats, |out| thermometry_report::bundle(study, &result, out))?;
+    result.stats = stats;
+    global.answer(&result, &thermometry_report::text(&result), &result.stats)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn plan(args: &SimulateArgs, study: &Study, global: &Global, work: &mut Work) -> Result<SimulationPlan> {
+    let methods = if args.classifiers.is_empty() && args.skip_spectra {
+        vec![Method::LikelihoodRatio]
+    } else if args.classifiers.is_empty() && args.model.is_empty() {
+        Method::ALL.to_vec()
+    } else {
+        let mut methods = Vec::new();
+        for name in &args.classifiers {
+            let method = Method::from_name(name.trim())?;
+            if !methods.contains(&method) {
+                methods.push(method);
+            }
+        }
+        methods
+    };
+    let against = if args.against == ["all"] {
+        study.alternatives().iter().map(|surface| surface.name.clone()).collect()
+    } else {
+        args.against.clone()
+    };
+    let models: Vec<SavedModel> = args.model.iter().map(|path| saved(path)).collect::<Result<_>>()?;
+    for (saved, path) in models.iter().zip(&args.model) {
+        study.check_model(saved, &against, work).map_err(|error| error.in_file(path))?;
+    }
+    Parts::of(args.spectra).map_err(|error| error.for_key("--spectra"))?;
+    for &photons in &args.photons {
+        check::positive("number of photons", photons, "").map_err(|error| error.for_key("--photons"))?;
+    }
+    let photons = match args.sweep {
+        Some(experiments) => study
+            .sweep(SWEEP, experiments, &against, !args.shot_noise_only, work)
+            .map_err(|error| error.for_key("--sweep"))?,
+        None => args.photons.clone(),
+    };
+    Ok(SimulationPlan {
+        photons,
+        law: match args.statistics {
+            Statistics::Poisson => PhotonLaw::Poisson,
+            Statistics::NegativeBinomial => PhotonLaw::NegativeBinomial,
+            Statistics::FixedTotal => PhotonLaw::FixedTotal,
+        },
+        camera_noise: !args.shot_noise_only,
+        against,
+        design: Design {
+            per_class: args.spectra,
+            methods,
+            seed: global.seed,
+            level: 0.95,
+            skip_spectra: args.skip_spectra,
+        },
+        models,
+    })
+}
+
+fn saved(path: &Path) -> Result<SavedModel> {
+    let text = text_of_file(path, "read the model")?;
+    SavedModel::from_json(&text).map_err(|error| error.in_file(path))
+}

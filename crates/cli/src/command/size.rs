@@ -1,0 +1,52 @@
+//! `hadar size`: the verdict on a camera.
+
+use super::{By, Global};
+use clap::Args;
+use hadar::demand::Skipping;
+use hadar::error::Result;
+use hadar_report::size;
+use hadar_study::study::Verdict;
+use std::io::IsTerminal as _;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+#[derive(Debug, Args)]
+pub(super) struct SizeArgs {
+    /// The scenario file (TOML)
+    scenario: PathBuf,
+    /// Exit with code 3 if the requirement is not met; without --out the answer alone, by the cheapest proofs
+    #[arg(long)]
+    check: bool,
+    /// The distance that decides, instead of the scenario's
+    #[arg(long)]
+    by: Option<By>,
+}
+
+pub(super) fn run(args: &SizeArgs, global: &Global) -> Result<ExitCode> {
+    let study = global.study(&args.scenario, args.by.map(Into::into))?;
+    if args.check
+        && global.out.is_none()
+        && global.skipping() == Skipping::On
+        && let Some(result) = study.verdict_alone()?
+    {
+        global.answer(&result, &result.verdict.sentence, &result.stats)?;
+        return Ok(code(args, &result.verdict));
+    }
+    let mut result = study.size()?;
+    let mut stats = std::mem::take(&mut result.stats);
+    // Curves are for files and programs: nobody reads them off a terminal.
+    if global.out.is_some() || global.json {
+        result.trade_offs = Some(study.trade_offs(&result, &mut stats)?);
+    }
+    global.report(&mut stats, |out| size::bundle(&study, &result, out))?;
+    result.stats = stats;
+    global.answer(&result, &size::text(&result, &study), &result.stats)?;
+    if global.out.is_none() && !global.json && std::io::stderr().is_terminal() {
+        global.note("for plots and tables add --out DIR");
+    }
+    Ok(code(args, &result.verdict))
+}
+
+fn code(args: &SizeArgs, verdict: &Verdict) -> ExitCode {
+    if args.check && verdict.met != Some(true) { ExitCode::from(3) } else { ExitCode::SUCCESS }
+}

@@ -1,0 +1,208 @@
+//! The paper's figures and tables made again from the product's own code, with a ledger of what agrees.
+//!
+//! Paper: Bao et al., 'Heat-assisted detection and ranging', Nature 619, 743 (2023), doi:10.1038/s41586-023-06174-6, with
+//! its Supplementary Information. Every item gives the files of its figure (tables, plots, the scenario it rests on) and
+//! lines of the ledger: what, the paper's value, ours, a verdict, and why.
+//!
+//! [`Effort::Quick`] makes fewer of the experiments of a figure, each of them the same to the last bit as in the full
+//! form, so that a quick run can be held against committed files.
+
+mod edfig6;
+mod edfig9;
+mod fig3b;
+mod fig3c;
+mod fig4;
+mod ledger;
+mod locking;
+mod policy;
+mod scene;
+mod tabs2;
+mod tabs5;
+
+pub use ledger::{Line, Verdict, markdown, table};
+
+use hadar::error::{Error, Result};
+use hadar_report::bundle::Bundle;
+use std::path::Path;
+
+/// What can be made again.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Item {
+    /// Classifiers against the limit over photons, 536 bands.
+    Fig3b,
+    /// The same in three bands, and with a detector's noise.
+    FigS7,
+    /// Photons required over temperature and lighting.
+    Fig3c,
+    /// Five materials.
+    EdFig6,
+    /// Thermometry.
+    EdFig9,
+    /// Ranging: bounds by signal, and matching beside them.
+    Fig4,
+    /// Measures of texture.
+    FigS12,
+    /// Detectors.
+    TabS2,
+    /// What resolution is worth in ranging.
+    TabS5,
+    /// The policy numbers.
+    Policy,
+}
+
+/// How much is computed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Effort {
+    /// Every experiment.
+    Full,
+    /// Some of them.
+    Quick,
+}
+
+/// How an item is made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Order {
+    /// All experiments or some.
+    pub effort: Effort,
+    /// Seed of all that is drawn.
+    pub seed: u64,
+}
+
+/// What came of an item.
+#[derive(Debug, Clone)]
+pub struct Reproduction {
+    /// Which.
+    pub item: Item,
+    /// Its files.
+    pub bundle: Bundle,
+    /// Its lines of the ledger.
+    pub lines: Vec<Line>,
+}
+
+/// Is told how many experiments of how many are done.
+pub type Progress<'a> = &'a (dyn Fn(usize, usize) + Sync);
+
+impl Item {
+    /// All of them, the quickest first.
+    pub const ALL: [Self; 10] = [
+        Self::TabS2,
+        Self::TabS5,
+        Self::Policy,
+        Self::Fig3c,
+        Self::FigS12,
+        Self::Fig4,
+        Self::EdFig6,
+        Self::EdFig9,
+        Self::FigS7,
+        Self::Fig3b,
+    ];
+
+    /// The name on the command line, and of its folder.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Fig3b => "fig3b",
+            Self::FigS7 => "figs7",
+            Self::Fig3c => "fig3c",
+            Self::EdFig6 => "edfig6",
+            Self::EdFig9 => "edfig9",
+            Self::Fig4 => "fig4",
+            Self::FigS12 => "figs12",
+            Self::TabS5 => "tabs5",
+            Self::TabS2 => "tabs2",
+            Self::Policy => "policy",
+        }
+    }
+
+    /// What it shows.
+    #[must_use]
+    pub const fn title(self) -> &'static str {
+        match self {
+            Self::Fig3b => "Fig. 3b: classifiers against the shot-noise limit, 536 bands",
+            Self::FigS7 => "Fig. S7: the same in three bands, and with a detector's noise",
+            Self::Fig3c => "Fig. 3c: photons required over temperature and lighting",
+            Self::EdFig6 => "Extended Data Fig. 6: five materials",
+            Self::EdFig9 => "Extended Data Fig. 9f: thermometry against its bound",
+            Self::Fig4 => "Fig. 4: ranging by a thermal image, a heat cube and scattered light",
+            Self::FigS12 => "Fig. S12: measures of texture",
+            Self::TabS5 => "Tables S4 and S5: what resolution is worth",
+            Self::TabS2 => "Table S2: detectors",
+            Self::Policy => "Policy: can a camera tell a person from a robot?",
+        }
+    }
+
+    /// The item of a name.
+    ///
+    /// # Errors
+    /// An unknown name; the message lists those there are.
+    ///
+    /// ```
+    /// use hadar_cli::reproduce::Item;
+    /// assert_eq!(Item::from_name("tabs2")?, Item::TabS2);
+    /// assert!(Item::from_name("fig9").is_err());
+    /// # Ok::<(), hadar::Error>(())
+    /// ```
+    pub fn from_name(name: &str) -> Result<Self> {
+        Self::ALL.into_iter().find(|item| item.name() == name).ok_or_else(|| {
+            let names = Self::ALL.map(Self::name).join(", ");
+            Error::malformed(
+                format!("unknown figure or table `{name}`"),
+                format!("choose among {names}, all"),
+            )
+        })
+    }
+
+    /// Makes it; its scenario is written for a folder `out`.
+    ///
+    /// # Errors
+    /// A figure that cannot be drawn.
+    pub fn make(self, order: Order, out: &Path, progress: Progress<'_>) -> Result<Reproduction> {
+        let (mut bundle, lines, figures) = match self {
+            Self::Fig3b => fig3b::all_bands(order, out, progress)?,
+            Self::FigS7 => fig3b::three_bands(order, out, progress)?,
+            Self::Fig3c => fig3c::make(out)?,
+            Self::EdFig6 => edfig6::make(order, out, progress)?,
+            Self::EdFig9 => edfig9::make(order, out, progress)?,
+            Self::Fig4 => fig4::make(order, out, progress)?,
+            Self::FigS12 => fig4::textures(order)?,
+            Self::TabS5 => tabs5::make()?,
+            Self::TabS2 => tabs2::make(out)?,
+            Self::Policy => policy::make(out)?,
+        };
+        bundle.add("ledger.csv", table(&lines).to_csv()?);
+        bundle.add("README.md", page(self, order.effort, &lines, &figures));
+        Ok(Reproduction { item: self, bundle, lines })
+    }
+}
+
+/// Pictures of a page with their captions, and what is printed below them.
+#[derive(Debug, Clone, Default)]
+struct Figures {
+    pictures: Vec<(&'static str, &'static str)>,
+    text: String,
+}
+
+/// Files, lines of the ledger and what its page shows.
+type Made = (Bundle, Vec<Line>, Figures);
+
+fn page(item: Item, effort: Effort, lines: &[Line], figures: &Figures) -> String {
+    let name = item.name();
+    let made = match effort {
+        Effort::Full => format!("Made by `hadar reproduce {name}`"),
+        Effort::Quick => format!("Some of the experiments only, made by `hadar reproduce {name} --quick`"),
+    };
+    let mut page = format!(
+        "# {}\n\n{made} from the scenarios beside it.\n\
+         Paper: Bao et al., Nature 619, 743 (2023), doi:10.1038/s41586-023-06174-6.\n\n{}",
+        item.title(),
+        markdown(lines)
+    );
+    for (file, caption) in &figures.pictures {
+        page.push_str(&format!("\n![{caption}]({file})\n"));
+    }
+    if !figures.text.is_empty() {
+        page.push_str(&format!("\n{}", figures.text));
+    }
+    page
+}

@@ -1,0 +1,71 @@
+use super::findings::Findings;
+use super::*;
+use hadar::identifiability::Status;
+
+fn run(cases: u64, seed: u64) -> StressReport {
+    stress(&StressPlan { cases, seed }, &|_, _| {}).unwrap()
+}
+
+/// A few thousand cases of every family, without a fault.
+#[test]
+fn no_case_fails() {
+    let report = run(4000, 1);
+    for family in &report.families {
+        println!(
+            "{:?}: {} cases, worst {:.3} of the bound (case {}), bound {:?} x the error",
+            family.family, family.cases, family.worst_ratio, family.worst_case, family.median_overestimation
+        );
+        assert_eq!(family.failures, 0, "{:?}", family.first_failures);
+        assert!(family.worst_ratio <= 1.0);
+        assert!(family.comparisons >= family.cases / 2, "{family:?}");
+    }
+    assert_eq!(report.families.len(), Family::ALL.len());
+    assert_eq!(report.families.iter().map(|family| family.cases).sum::<u64>(), 4000);
+    assert!(report.points.len() > 20);
+}
+
+/// The same on one thread and on three, whatever the order.
+#[test]
+fn the_report_does_not_depend_on_threads() {
+    let pool = |threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    let [one, three] = [1, 3].map(|threads| pool(threads).install(|| run(300, 5)));
+    assert_eq!(one, three);
+    assert_ne!(one, run(300, 6));
+}
+
+/// What the suite is for: an answer that is off by more than it admits is caught, wherever it is judged.
+#[test]
+fn planted_errors_are_caught() {
+    let mut draw = Draw::new(3, 14);
+    let scene = scene::Scene::draw(&mut draw, scene::Hardship::Mild, 8).unwrap();
+    let mut sound = Findings::default();
+    let (fast, exact) = local::judge_scene(&mut draw, &mut sound, &scene, false).unwrap().unwrap();
+    assert!(sound.faults.is_empty() && fast.distance > 0.0, "{:?}", sound.faults);
+    let judged = |change: &dyn Fn(&mut hadar::identifiability::local::LocalDistance)| {
+        let mut changed = fast.clone();
+        change(&mut changed);
+        let mut found = Findings::default();
+        local::compare(&mut found, &scene, &changed, &exact);
+        found.faults
+    };
+    assert!(judged(&|_| ()).is_empty());
+    let off = 1.0 + 2.0 * fast.relative_error + 1e-15;
+    assert!(judged(&|fast| fast.distance *= off)[0].contains("distance"));
+    assert!(!judged(&|fast| fast.distance_no_nuisance *= 1.0 + 1e-12).is_empty());
+    assert!(!judged(&|fast| fast.photon_radiance *= 1.0 - 1e-14).is_empty());
+    assert!(!judged(&|fast| fast.relative_error = f64::NAN).is_empty());
+    assert!(!judged(&|fast| fast.distance = f64::INFINITY).is_empty());
+    for status in [Status::Blind, Status::Identical, Status::Equilibrium] {
+        assert!(!judged(&|fast| (fast.status, fast.distance) = (status, 0.0)).is_empty(), "{status:?}");
+    }
+    // A nuisance dropped that is not dependent.
+    let dropped = exact.shares[0].parameter;
+    assert!(!judged(&|fast| fast.dropped.push(dropped)).is_empty());
+}
+
+/// A panic is a fault of its case, not the end of the run.
+#[test]
+fn a_panic_is_counted() {
+    let found = caught(|| panic!("planted"));
+    assert_eq!(found.faults, ["panic"]);
+}

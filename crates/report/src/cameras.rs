@@ -1,0 +1,155 @@
+//! Cameras as the reports show them: what is stated, what is missing, and what follows.
+
+mod compare;
+mod list;
+mod side_by_side;
+mod text;
+
+pub use compare::{comparison, comparison_sentence};
+pub use list::list;
+
+pub use side_by_side::{Row, SideBySide};
+pub use text::text;
+
+use hadar::error::{Error, Result};
+use hadar::instrument::comparison::SCENE_K;
+use hadar::instrument::presets::{Missing, Preset};
+use hadar::instrument::{Camera, Equivalents, Figures, NoiseLine};
+use hadar::spectrum::Bands;
+use serde_json::{Map, Value};
+
+/// Wavelength at which diffraction is quoted, m.
+const DIFFRACTION_M: f64 = 10e-6;
+
+/// All that is known of a camera, and what follows where enough is.
+#[derive(Debug, Clone)]
+pub struct Sheet {
+    /// What documents state.
+    pub preset: Preset,
+    /// What they do not and a scenario must give.
+    pub missing: Vec<Missing>,
+    /// What follows; none where something is missing.
+    pub worked: Option<Worked>,
+}
+
+/// What follows from the figures of a camera.
+#[derive(Debug, Clone)]
+pub struct Worked {
+    /// The camera.
+    pub camera: Camera,
+    /// One exposure of a blackbody at its reference temperature.
+    pub figures: Figures,
+    /// Its electronic noise in every way of stating it.
+    pub equivalents: Equivalents,
+    /// The noise of an average band of 1 cm⁻¹ before a blackbody at 300 K.
+    pub noise_budget: Vec<NoiseLine>,
+    /// Exposures at which the well is full before a blackbody at 300 K, s: in the brightest band of 1 cm⁻¹, and in the
+    /// whole range at once.
+    pub full_well_exposures_s: Option<[f64; 2]>,
+}
+
+impl Sheet {
+    /// What is stated of a camera and what is missing, with nothing worked out.
+    #[must_use]
+    pub fn stated(preset: Preset) -> Self {
+        Self { missing: missing(&preset), preset, worked: None }
+    }
+
+    /// The sheet of a known camera.
+    ///
+    /// # Errors
+    /// Figures that make no camera.
+    pub fn of(preset: Preset) -> Result<Self> {
+        let worked = match preset.camera() {
+            Ok(camera) => Some(Worked::of(camera.checked()?)?),
+            Err(_) => None,
+        };
+        Ok(Self { worked, ..Self::stated(preset) })
+    }
+
+    /// λF over the pixel at 10 µm: the blur of diffraction in pixels.
+    #[must_use]
+    pub fn diffraction_pixels(&self) -> Option<f64> {
+        self.preset
+            .f_number
+            .zip(self.preset.pixel_m)
+            .map(|(f_number, pixel)| DIFFRACTION_M * f_number / pixel)
+    }
+
+    /// Everything under one key each, in SI units; null for what is not stated or does not follow.
+    ///
+    /// # Errors
+    /// What cannot be written as JSON.
+    pub fn json(&self) -> Result<Map<String, Value>> {
+        let mut all = object(&self.preset)?;
+        if let Some(worked) = &self.worked {
+            all.append(&mut object(&worked.camera)?);
+            all.append(&mut object(&worked.figures)?);
+        }
+        let worked = self.worked.as_ref();
+        let full = worked.and_then(|worked| worked.full_well_exposures_s);
+        let missing: Vec<Value> = self
+            .missing
+            .iter()
+            .map(|missing| serde_json::json!({ "key": missing.key, "example": missing.example }))
+            .collect();
+        all.insert("missing".into(), missing.into());
+        all.insert("equivalents".into(), value(&worked.map(|worked| &worked.equivalents))?);
+        all.insert("noise_budget".into(), value(&worked.map(|worked| &worked.noise_budget))?);
+        all.insert("noise_budget_temperature_k".into(), SCENE_K.into());
+        all.insert("diffraction_pixels".into(), value(&self.diffraction_pixels())?);
+        all.insert("full_well_exposure_of_a_band_s".into(), value(&full.map(|full| full[0]))?);
+        all.insert("full_well_exposure_of_the_range_s".into(), value(&full.map(|full| full[1]))?);
+        Ok(all)
+    }
+}
+
+impl Worked {
+    fn of(camera: Camera) -> Result<Self> {
+        let bands = camera.own_bands()?;
+        let [low, high] = camera.spectral_range_cm1;
+        let whole = Bands::from_ranges(&[(low, high)])?;
+        let of_band = camera.full_well_exposure_s(&bands, SCENE_K);
+        let of_range = camera.full_well_exposure_s(&whole, SCENE_K);
+        Ok(Self {
+            figures: camera.figures()?,
+            equivalents: camera.equivalents()?,
+            noise_budget: camera.budget_of_blackbody(&bands, SCENE_K),
+            full_well_exposures_s: of_band.zip(of_range).map(|(band, range)| [band, range]),
+            camera,
+        })
+    }
+}
+
+/// Everything that a scenario must give before the camera can be used.
+fn missing(preset: &Preset) -> Vec<Missing> {
+    let mut given = preset.clone();
+    let mut all = Vec::new();
+    while let Err(missing) = given.camera() {
+        match missing.key {
+            "exposure" => given.exposure_s = Some(1.0),
+            "pixel" => given.pixel_m = Some(1.0),
+            "f_number" => given.f_number = Some(1.0),
+            "focal_length" => given.focal_length_m = Some(1.0),
+            "netd" => given.noise = Some(hadar::instrument::presets::StatedNoise::None),
+            // Nothing else is missing yet; without this a new key would be asked for ever.
+            _ => {
+                all.push(missing);
+                break;
+            }
+        }
+        all.push(missing);
+    }
+    all
+}
+
+fn value(of: &impl serde::Serialize) -> Result<Value> {
+    serde_json::to_value(of).map_err(|error| Error::malformed(error.to_string(), "report this as a bug"))
+}
+
+fn object(of: &impl serde::Serialize) -> Result<Map<String, Value>> {
+    match value(of)? {
+        Value::Object(object) => Ok(object),
+        other => Err(Error::malformed(format!("{other} is no object"), "report this as a bug")),
+    }
+}

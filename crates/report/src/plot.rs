@@ -1,0 +1,127 @@
+//! Figures: one description, drawn as SVG and as PNG with the same look.
+//!
+//! A [`Figure`] is plain data: titles, axes, numbers. [`render_svg`] and [`render_png`] lay it out
+//! once (text measured with the embedded font, so that nothing is clipped or overlaps) into a list of
+//! marks, which two painters draw through the backends of `plotters`. White background, one font
+//! (DejaVu Sans), colours that the colour-blind can tell apart (Okabe and Ito, *Color Universal
+//! Design*, 2008), legends outside the data.
+//!
+//! A number that cannot be drawn (NaN, infinite, zero or below on a logarithmic axis) is a gap in a
+//! curve and a cell without value in a map, never an error. Beside a name it is an arrow at the edge of the
+//! axis, or the words "no value".
+//!
+//! ```
+//! use hadar_report::plot::{Axis, Figure, LineFigure, Series, render_svg};
+//! let figure = LineFigure::new("Two materials", Axis::linear("wavenumber (cm⁻¹)"), Axis::linear("emissivity"))
+//!     .series(Series::line("skin", vec![715.0, 1250.0], vec![0.97, 0.98]).colour(0))
+//!     .series(Series::line("aluminium", vec![715.0, 1250.0], vec![0.2, 0.1]).colour(1));
+//! let svg = render_svg(&Figure::from(figure))?;
+//! assert!(svg.starts_with("<svg"));
+//! # Ok::<(), hadar::Error>(())
+//! ```
+
+mod axis;
+mod colour;
+mod contour;
+mod dots;
+mod figure;
+mod frame;
+mod geometry;
+mod grid;
+mod heat;
+mod heatmap;
+mod label;
+mod legend;
+mod lines;
+mod mask;
+mod matrix;
+mod named;
+mod names;
+mod pictures;
+mod png;
+mod scene;
+mod svg;
+mod symbol;
+mod text;
+mod ticks;
+
+pub use axis::{Axis, Scale, Secondary};
+pub use figure::{Band, LineFigure, Marker, Panel, Rule, Series, Style};
+pub use heatmap::HeatMap;
+pub use matrix::{Matrix, Threshold};
+pub use named::{NamedSeries, NamedValues};
+pub use pictures::{Picture, Pictures};
+
+use hadar::Result;
+
+/// Anything that can be drawn.
+#[derive(Debug, Clone)]
+pub enum Figure {
+    /// Curves and points over one or two panels.
+    Line(LineFigure),
+    /// A quantity over a plane, in colours.
+    HeatMap(HeatMap),
+    /// A quantity for every pair of names, in colours.
+    Matrix(Matrix),
+    /// Quantities of every name, as points on one axis.
+    Named(NamedValues),
+    /// Images side by side.
+    Pictures(Pictures),
+}
+
+impl From<LineFigure> for Figure {
+    fn from(figure: LineFigure) -> Self {
+        Self::Line(figure)
+    }
+}
+
+impl From<HeatMap> for Figure {
+    fn from(figure: HeatMap) -> Self {
+        Self::HeatMap(figure)
+    }
+}
+
+impl From<Matrix> for Figure {
+    fn from(figure: Matrix) -> Self {
+        Self::Matrix(figure)
+    }
+}
+
+impl From<Pictures> for Figure {
+    fn from(figure: Pictures) -> Self {
+        Self::Pictures(figure)
+    }
+}
+
+impl From<NamedValues> for Figure {
+    fn from(figure: NamedValues) -> Self {
+        Self::Named(figure)
+    }
+}
+
+/// The figure as an SVG document, 800 px wide.
+///
+/// # Errors
+/// [`hadar::Error::Length`] where lists that belong together differ in length, and
+/// [`hadar::Error::Malformed`] where the cells of a heat map or the groups of a matrix are not in rising order.
+pub fn render_svg(figure: &Figure) -> Result<String> {
+    svg::paint(&scene(figure)?)
+}
+
+/// The figure as a PNG file, 2400 pixels wide.
+///
+/// # Errors
+/// As [`render_svg`].
+pub fn render_png(figure: &Figure) -> Result<Vec<u8>> {
+    png::paint(&scene(figure)?)
+}
+
+fn scene(figure: &Figure) -> Result<scene::Scene> {
+    match figure {
+        Figure::Line(figure) => lines::scene(figure),
+        Figure::HeatMap(map) => heat::scene(map),
+        Figure::Matrix(matrix) => grid::scene(matrix),
+        Figure::Named(named) => dots::scene(named),
+        Figure::Pictures(figure) => pictures::scene(figure),
+    }
+}

@@ -1,0 +1,165 @@
+//! Images side by side, each with its own colour bar: a raster of numbers per picture.
+
+use super::axis::{Axis, Ruler};
+use super::colour::{self, INK, NO_VALUE, WHITE};
+use super::frame::{self, Vertical};
+use super::heat::draw_bar;
+use super::legend::{Entry, Key, Legend};
+use super::scene::{Anchor, Mark, Rect, Scene};
+use super::text::{self, LEADING};
+use hadar::{Error, Result};
+
+/// Width of a colour bar, and its distance from the picture.
+const BAR: f64 = 11.0;
+const APART: f64 = 8.0;
+/// Steps of colour: no eye sees more, and a palette of a file holds them.
+const SHADES: f64 = 200.0;
+/// Between two pictures.
+const GAP: f64 = 14.0;
+const TITLE: f64 = 12.5;
+/// A picture taller than this is made narrower.
+const HIGHEST: f64 = 420.0;
+
+/// One image.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Picture {
+    /// What it shows, in a few words above it.
+    pub title: String,
+    /// The colour axis: title with unit, scale, range.
+    pub colour: Axis,
+    /// Pixels of a row.
+    pub columns: usize,
+    /// Values, row after row, the uppermost first.
+    pub values: Vec<f64>,
+    /// Rows that are marked by a dashed line.
+    pub lines: Vec<usize>,
+}
+
+/// Images side by side, two in a row.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pictures {
+    /// One line that says what is shown; wraps when long.
+    pub title: String,
+    /// Small print under the title; nothing where empty.
+    pub subtitle: String,
+    /// The images, from left to right and from top to bottom.
+    pub pictures: Vec<Picture>,
+    /// What a pixel without value means, for the legend.
+    pub no_value: String,
+}
+
+impl Picture {
+    /// An image of `columns` × (number of values / `columns`) pixels.
+    pub fn new(title: impl Into<String>, colour: Axis, columns: usize, values: Vec<f64>) -> Self {
+        Self { title: title.into(), colour, columns, values, lines: Vec::new() }
+    }
+
+    /// Marks rows by dashed lines.
+    #[must_use]
+    pub fn lines(mut self, rows: &[usize]) -> Self {
+        self.lines = rows.to_vec();
+        self
+    }
+
+    fn rows(&self) -> usize {
+        self.values.len().checked_div(self.columns).unwrap_or(0)
+    }
+
+    fn check(&self) -> Result<()> {
+        let expected = self.rows() * self.columns;
+        if expected > 0 && expected == self.values.len() {
+            return Ok(());
+        }
+        let what = format!("pixels of the picture `{}` in rows of {}", self.title, self.columns);
+        Err(Error::Length { what, found: self.values.len(), expected: expected.max(1) })
+    }
+}
+
+impl Pictures {
+    /// Images under a common title.
+    pub fn new(title: impl Into<String>, pictures: Vec<Picture>) -> Self {
+        Self { title: title.into(), subtitle: String::new(), pictures, no_value: "no value".to_owned() }
+    }
+
+    /// Sets the small print under the title.
+    #[must_use]
+    pub fn subtitle(mut self, subtitle: impl Into<String>) -> Self {
+        self.subtitle = subtitle.into();
+        self
+    }
+
+    /// Says what a pixel without value means.
+    #[must_use]
+    pub fn no_value(mut self, meaning: impl Into<String>) -> Self {
+        self.no_value = meaning.into();
+        self
+    }
+}
+
+pub(super) fn scene(figure: &Pictures) -> Result<Scene> {
+    figure.pictures.iter().try_for_each(Picture::check)?;
+    let across = figure.pictures.len().clamp(1, 2);
+    let slot = (frame::WIDTH - 2.0 * frame::EDGE - GAP * (across - 1) as f64) / across as f64;
+    let mut scene = Scene::new(&figure.title, frame::WIDTH);
+    let mut top = frame::heading(&mut scene, &figure.title, &figure.subtitle) + 4.0;
+    let mut missing = false;
+    for pair in figure.pictures.chunks(across) {
+        let titles: Vec<Vec<String>> =
+            pair.iter().map(|picture| text::wrap_at_most(&picture.title, TITLE, slot, 2)).collect();
+        let lines = titles.iter().map(Vec::len).max().unwrap_or(0) as f64;
+        let upper = top + lines * TITLE * LEADING + 16.0;
+        let mut lowest = upper;
+        for (i, (picture, title)) in pair.iter().zip(&titles).enumerate() {
+            let left = frame::EDGE + i as f64 * (slot + GAP);
+            for (line, words) in title.iter().enumerate() {
+                let y = top + (line as f64 + 0.85) * TITLE * LEADING;
+                scene.text((left, y), words, TITLE, INK, Anchor::Start);
+            }
+            let (bottom, holes) = draw(&mut scene, picture, left, upper, slot);
+            lowest = lowest.max(bottom);
+            missing |= holes;
+        }
+        top = lowest + 12.0;
+    }
+    if missing {
+        let key = Key::Area { colour: NO_VALUE };
+        let legend = Legend::new(vec![Entry { key, label: figure.no_value.clone() }], frame::WIDTH, HIGHEST);
+        top = legend.draw_below(&mut scene, frame::EDGE, frame::WIDTH - frame::EDGE, top);
+    }
+    scene.height = (top + 6.0).ceil();
+    Ok(scene)
+}
+
+/// Draws a picture with its bar; says where it ends and whether pixels have no value.
+fn draw(scene: &mut Scene, picture: &Picture, left: f64, top: f64, slot: f64) -> (f64, bool) {
+    let values = || picture.values.iter().copied();
+    let ruler = Ruler::fit(picture.colour.scale, picture.colour.range, values(), 0.0);
+    let ratio = picture.rows() as f64 / picture.columns as f64;
+    // The room beside the bar depends on its height only through the number of its ticks.
+    let guess = (0.75 * slot * ratio).min(HIGHEST);
+    let room = Vertical::new(&picture.colour, ruler, guess).room() + BAR + APART - frame::EDGE;
+    let width = (slot - room).min(HIGHEST / ratio);
+    let area = Rect { left, right: left + width, top, bottom: top + width * ratio };
+    let bar = Vertical::new(&picture.colour, ruler, area.height());
+    let colour_of = |value: &f64| match ruler.fraction(*value) {
+        Some(part) => colour::quantity((part.clamp(0.0, 1.0) * SHADES).round() / SHADES).rgb,
+        None => NO_VALUE.rgb,
+    };
+    let holes = picture.values.iter().any(|value| ruler.fraction(*value).is_none());
+    let pixels = picture.values.iter().map(colour_of).collect();
+    scene.marks.push(Mark::Image { area, columns: picture.columns, pixels });
+    for row in &picture.lines {
+        let y = area.top + (*row as f64 + 0.5) / picture.rows() as f64 * area.height();
+        let dashes = (area.width() / 12.0) as u32;
+        for i in 0..dashes {
+            let from = area.left + f64::from(i) * 12.0;
+            for (thickness, colour) in [(2.6, INK), (1.4, WHITE)] {
+                scene.line((from + 2.0, y), (from + 8.0, y), thickness, colour);
+            }
+        }
+    }
+    scene.outline(area, 0.9, INK);
+    let beside = Rect { left: area.right + APART, right: area.right + APART + BAR, ..area };
+    draw_bar(scene, values(), &bar, &beside);
+    (area.bottom, holes)
+}

@@ -1,0 +1,135 @@
+//! The one font, how wide text is in it, and how text breaks into lines.
+//!
+//! DejaVu Sans is compiled in (crate `dejavu`), so that measures and pictures do not depend on the
+//! machine. An SVG names it first and then Verdana, whose letters are as wide.
+
+use std::sync::OnceLock;
+
+use ab_glyph::{Font, FontRef, Glyph, PxScale, ScaleFont, point};
+
+use hadar::{Error, Result};
+
+/// Names for documents that leave the font to the viewer.
+pub(super) const FAMILY: &str = "DejaVu Sans, Verdana, sans-serif";
+/// Ascent plus descent of DejaVu Sans in em, which is how the rasteriser states a size.
+const HEIGHT_PER_EM: f64 = 2384.0 / 2048.0;
+/// Distance of lines in em.
+pub(super) const LEADING: f64 = 1.3;
+
+fn font() -> Option<&'static FontRef<'static>> {
+    static FONT: OnceLock<Option<FontRef<'static>>> = OnceLock::new();
+    FONT.get_or_init(|| FontRef::try_from_slice(dejavu::sans::regular()).ok()).as_ref()
+}
+
+/// Letters of a line that starts at the origin, at `size` pixels per em, and where the line ends.
+fn set(font: &FontRef<'static>, text: &str, size: f64) -> (Vec<Glyph>, f32) {
+    let scale = PxScale::from((size * HEIGHT_PER_EM) as f32);
+    let scaled = font.as_scaled(scale);
+    let (mut x, mut before) = (0.0, None);
+    let mut glyphs = Vec::with_capacity(text.len());
+    for letter in text.chars() {
+        let id = scaled.glyph_id(letter);
+        x += before.map_or(0.0, |before| scaled.kern(before, id));
+        glyphs.push(id.with_scale_and_position(scale, point(x, 0.0)));
+        x += scaled.h_advance(id);
+        before = Some(id);
+    }
+    (glyphs, x)
+}
+
+/// Width of a line of text at `size` pixels per em, in pixels.
+pub(super) fn width(text: &str, size: f64) -> f64 {
+    font().map_or(0.0, |font| f64::from(set(font, text, size).1))
+}
+
+/// Calls `paint` for each pixel that a line of text covers, with its place relative to the start of the
+/// baseline and the part of it that is covered.
+pub(super) fn rasterise(
+    text: &str,
+    size: f64,
+    mut paint: impl FnMut((i32, i32), f64) -> Result<()>,
+) -> Result<()> {
+    let font = font().ok_or_else(|| {
+        Error::malformed("the embedded font cannot be read", "build hadar again from clean sources")
+    })?;
+    let mut outcome = Ok(());
+    for outline in set(font, text, size).0.into_iter().filter_map(|glyph| font.outline_glyph(glyph)) {
+        let corner = outline.px_bounds().min;
+        outline.draw(|x, y, part| {
+            let pixel = (corner.x as i32 + x as i32, corner.y as i32 + y as i32);
+            if outcome.is_ok() && part > 0.0 {
+                outcome = paint(pixel, f64::from(part.min(1.0)));
+            }
+        });
+    }
+    outcome
+}
+
+/// Text without characters that no picture can show.
+pub(super) fn clean(text: &str) -> String {
+    let printable = |c: char| if c.is_control() || matches!(c, '\u{FFFE}' | '\u{FFFF}') { ' ' } else { c };
+    text.trim().chars().map(printable).collect()
+}
+
+/// Breaks text at spaces, and words that are too long anywhere, into lines of at most `limit` pixels.
+pub(super) fn wrap(text: &str, size: f64, limit: f64) -> Vec<String> {
+    let mut lines = Vec::new();
+    for paragraph in text.lines() {
+        let mut line = String::new();
+        for word in clean(paragraph).split_whitespace() {
+            let longer = if line.is_empty() { word.to_owned() } else { format!("{line} {word}") };
+            if width(&longer, size) <= limit {
+                line = longer;
+                continue;
+            }
+            if !line.is_empty() {
+                lines.push(std::mem::take(&mut line));
+            }
+            for letter in word.chars() {
+                if !line.is_empty() && width(&format!("{line}{letter}"), size) > limit {
+                    lines.push(std::mem::take(&mut line));
+                }
+                line.push(letter);
+            }
+        }
+        if !line.is_empty() {
+            lines.push(line);
+        }
+    }
+    lines
+}
+
+/// As [`wrap`], cut with an ellipsis after `most` lines.
+pub(super) fn wrap_at_most(text: &str, size: f64, limit: f64, most: usize) -> Vec<String> {
+    let mut lines = wrap(text, size, limit);
+    if lines.len() > most {
+        lines.truncate(most);
+        if let Some(last) = lines.last_mut() {
+            while !last.is_empty() && width(&format!("{last}…"), size) > limit {
+                last.pop();
+            }
+            last.push('…');
+        }
+    }
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn widths_are_those_of_the_font() {
+        // Advance of `m` in DejaVu Sans: 1995 of 2048 units per em.
+        assert!((width("mmmm", 10.0) - 40.0 * 1995.0 / 2048.0).abs() < 1e-4);
+    }
+
+    #[test]
+    fn lines_stay_within_the_limit_and_lose_no_letter() {
+        let text = "an ordinary sentence and averyveryverylongwordthatfitsnowhere";
+        let lines = wrap(text, 10.0, 90.0);
+        assert!(lines.iter().all(|line| width(line, 10.0) <= 90.0));
+        assert_eq!(lines.concat().replace(' ', ""), text.replace(' ', ""));
+        assert!(wrap(" \n\u{0}", 10.0, 90.0).is_empty());
+    }
+}

@@ -1,0 +1,158 @@
+//! The files of a rule: a certificate of one page, tables, the rule with its defaults, margins as a plot.
+//!
+//! Nothing in them depends on when or where they were made, so that anyone can make them again, byte by byte.
+
+mod certificate;
+mod text;
+
+pub use text::text;
+
+use super::bundle::Bundle;
+use super::figures::Plot;
+use super::plot::{Axis, Figure, NamedSeries, NamedValues};
+use super::table::{Table, number, optional};
+use super::tables;
+use super::text::significant;
+use hadar::error::Result;
+use hadar::policy::Quantity;
+use hadar_study::study::{CameraVerdict, RuleAnswer, RuleStudy, Warning};
+use std::path::Path;
+
+/// What can be changed of a camera.
+const HARDWARE: [Quantity; 5] =
+    [Quantity::Exposure, Quantity::Pixel, Quantity::FNumber, Quantity::Noise, Quantity::Frames];
+
+/// All files; paths in the rule are written relative to `out` where they lie below it.
+///
+/// # Errors
+/// A table that cannot be written.
+pub fn bundle(study: &RuleStudy, answer: &RuleAnswer, out: &Path) -> Result<Bundle> {
+    let mut bundle = Bundle::default();
+    bundle.add("certificate.md", certificate::markdown(study, answer));
+    bundle.add("rule.toml", study.rule().to_toml_beside(out));
+    bundle.add("cameras.csv", cameras(answer).to_csv()?);
+    bundle.add("worst_cases.csv", worst_cases(answer).to_csv()?);
+    bundle.add("inputs.csv", inputs(answer).to_csv()?);
+    bundle.add("warnings.csv", tables::warnings(&warnings(answer)).to_csv()?);
+    bundle.add_plots(&[margins(answer)])?;
+    Ok(bundle)
+}
+
+/// All warnings, those of a camera with its name.
+fn warnings(answer: &RuleAnswer) -> Vec<Warning> {
+    let of_cameras = answer.cameras.iter().flat_map(|camera| {
+        let name = &camera.name;
+        camera.warnings.iter().map(move |warning| Warning {
+            code: warning.code,
+            message: format!("{name}: {}", warning.message),
+        })
+    });
+    answer.warnings.iter().cloned().chain(of_cameras).collect()
+}
+
+fn cameras(answer: &RuleAnswer) -> Table {
+    let fixes = HARDWARE.map(|quantity| format!("would_do_{}", quantity.key()));
+    let head = [
+        "camera",
+        "meets_the_rule",
+        "fails_by",
+        "margin",
+        "statistical_distance",
+        "detection_probability",
+        "lower_bound",
+        "certificate",
+        "motion_blur_pixels",
+    ];
+    let mut table = Table::new(head.map(str::to_owned).into_iter().chain(fixes));
+    for camera in &answer.cameras {
+        let mut row = vec![
+            camera.name.clone(),
+            if camera.passes { "yes" } else { "no" }.into(),
+            camera.fails_by.join(" "),
+            number(camera.margin),
+            number(camera.statistical_distance),
+            number(camera.detection_probability),
+            optional(camera.lower_bound),
+            camera.certificate.kind.into(),
+            optional(camera.motion_blur_pixels),
+        ];
+        row.extend(HARDWARE.map(|quantity| optional(value(camera, quantity))));
+        table.push(row);
+    }
+    table
+}
+
+fn value(camera: &CameraVerdict, wanted: Quantity) -> Option<f64> {
+    let solved = camera.fixes.iter().flat_map(|fixes| &fixes.quantities.0);
+    solved.filter(|(quantity, _)| *quantity == wanted).find_map(|(_, solution)| solution.value)
+}
+
+fn worst_cases(answer: &RuleAnswer) -> Table {
+    let joined = |values: &[f64]| values.iter().map(|&value| number(value)).collect::<Vec<_>>().join(" ");
+    let mut table = Table::new([
+        "camera",
+        "target",
+        "alternative",
+        "temperature_k",
+        "lighting",
+        "surroundings_k",
+        "distance_m",
+        "nearest_temperature_k",
+        "nearest_lighting",
+        "statistical_distance",
+        "hardware_required_m2_s",
+    ]);
+    for camera in &answer.cameras {
+        let scene = &camera.limiting;
+        table.push(vec![
+            camera.name.clone(),
+            scene.target.clone(),
+            scene.alternative.clone(),
+            number(scene.temperature_k),
+            joined(&scene.lighting),
+            joined(&scene.surroundings_k),
+            optional(scene.distance_m),
+            number(scene.nearest_state.temperature_k),
+            joined(&scene.nearest_state.lighting),
+            number(camera.statistical_distance),
+            optional(scene.hardware_m2_s),
+        ]);
+    }
+    table
+}
+
+fn inputs(answer: &RuleAnswer) -> Table {
+    let mut table = Table::new(["path", "sha256"]);
+    answer.inputs.iter().for_each(|input| table.push(vec![input.path.clone(), input.sha256.clone()]));
+    table
+}
+
+/// The margin of every camera, the best first.
+fn margins(answer: &RuleAnswer) -> Plot {
+    let mut ranked: Vec<&CameraVerdict> = answer.cameras.iter().collect();
+    ranked.sort_by(|a, b| b.margin.total_cmp(&a.margin));
+    let mut table = Table::new(["camera", "margin", "margin_proved"]);
+    let required = answer.requirement.distance;
+    for camera in &ranked {
+        let proved = camera.lower_bound.map(|bound| bound / required);
+        table.push(vec![camera.name.clone(), number(camera.margin), optional(proved)]);
+    }
+    // The margin does not show what else a camera fails by.
+    let named = |camera: &&CameraVerdict| match camera.fails_by.iter().filter(|by| **by != "distance").count()
+    {
+        0 => camera.name.clone(),
+        _ => format!("{} ({})", camera.name, camera.fails_by.join(", ")),
+    };
+    let names = ranked.iter().map(named).collect();
+    let values =
+        NamedSeries::new("least over the envelope", ranked.iter().map(|camera| camera.margin).collect());
+    let title = answer.rule.about.name.clone().or(answer.rule.scenario.title.clone());
+    let title = title.unwrap_or_else(|| "Which cameras meet the rule".into());
+    let required = significant(required, 3);
+    let figure = NamedValues::new(title, names, Axis::log("margin: statistical distance over that demanded"))
+        .subtitle(format!("Least over the envelope; demanded is d = {required}."))
+        .series(values)
+        .threshold(1.0, "demanded")
+        .below("too small: does not meet the rule");
+    Plot { name: "margins".into(), figure: Figure::from(figure), table }
+}

@@ -1,0 +1,82 @@
+//! The certificate: one page of Markdown that says what was checked, what came out, and what it rests on.
+
+use super::text;
+use crate::text::footing::{GAUSSIAN, assumptions};
+use crate::text::significant;
+use hadar_study::study::{self, CameraVerdict, RuleAnswer, RuleStudy};
+use std::fmt::Write as _;
+
+/// The page.
+pub(super) fn markdown(study: &RuleStudy, answer: &RuleAnswer) -> String {
+    let about = &answer.rule.about;
+    let title = about.name.clone().or(answer.rule.scenario.title.clone());
+    let mut out = format!("# {}\n\n", title.unwrap_or_else(|| "Which cameras meet the rule".into()));
+    for (label, value) in [("Authority", &about.authority), ("Version", &about.version)] {
+        if let Some(value) = value {
+            let _ = writeln!(out, "{label}: {value}  ");
+        }
+    }
+    let _ = writeln!(out, "Checked with hadar {}\n", env!("CARGO_PKG_VERSION"));
+    if let Some(text) = &about.text {
+        let _ = writeln!(out, "{text}\n");
+    }
+    let _ = writeln!(out, "> {}\n", answer.requirement.quotable);
+    let _ = writeln!(out, "**{}**\n", answer.sentence);
+    out.push_str("| camera | meets | margin | d at worst | right at most | certificate | limiting scene | would do |\n");
+    out.push_str("|---|---|---|---|---|---|---|---|\n");
+    answer.cameras.iter().for_each(|camera| out.push_str(&row(camera)));
+    out.push('\n');
+    if let Some(part) = &answer.not_identifiable {
+        let _ = writeln!(out, "{}.\n", text::no_camera(part).join("; "));
+    }
+    out.push_str("## What this rests on\n\n");
+    if let Some(study) = study.study() {
+        let footing = assumptions(study, GAUSSIAN);
+        footing.lines().skip(1).for_each(|line| {
+            let _ = writeln!(out, "- {}", line.trim());
+        });
+    }
+    out.push_str(
+        "- the margin is the least statistical distance over the envelope, over that demanded; no test is right more often than \
+         the probability in the table, averaged over the limiting scene and its nearest look-alike\n\
+         - it is a limit of physics: a camera that falls short of the distance cannot do the task with any software; one that \
+         reaches it may, if its software comes near the limit\n\
+         - figures of cameras are those of the documents named with them; nothing was measured here\n\n",
+    );
+    let warned = text::together(answer);
+    if !warned.is_empty() {
+        out.push_str("## Warnings\n\n");
+        warned.iter().for_each(|warning| {
+            let _ = writeln!(out, "- [{}] {}", warning.code, warning.message);
+        });
+        out.push('\n');
+    }
+    out.push_str("## Inputs\n\n| input | SHA-256 |\n|---|---|\n");
+    for input in &answer.inputs {
+        let _ = writeln!(out, "| {} | `{}` |", cell(&input.path), input.sha256);
+    }
+    out
+}
+
+fn row(camera: &CameraVerdict) -> String {
+    let fixes = camera.fixes.as_ref().map_or_else(String::new, text::would_do);
+    let cells = [
+        camera.name.clone(),
+        match camera.fails_by.as_slice() {
+            [] => "yes".into(),
+            reasons => format!("no ({})", reasons.join(", ")),
+        },
+        significant(camera.margin, 3),
+        significant(camera.statistical_distance, 3),
+        study::reliability(camera.statistical_distance),
+        camera.certificate.statement.clone(),
+        text::scene(&camera.limiting),
+        fixes,
+    ];
+    format!("| {} |\n", cells.map(|text| cell(&text)).join(" | "))
+}
+
+/// Text that cannot end a cell.
+fn cell(text: &str) -> String {
+    text.replace('|', "\\|")
+}

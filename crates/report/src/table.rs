@@ -1,0 +1,80 @@
+//! Tables as CSV, with the unit in every header.
+
+use hadar::error::{Error, Result};
+
+/// A table of text cells.
+#[derive(Debug, Clone, Default)]
+pub struct Table {
+    header: Vec<String>,
+    rows: Vec<Vec<String>>,
+}
+
+impl Table {
+    /// A table with these column headers (unit included, e.g. `wavenumber_cm1`).
+    #[must_use]
+    pub fn new<S: Into<String>>(header: impl IntoIterator<Item = S>) -> Self {
+        Self { header: header.into_iter().map(Into::into).collect(), rows: Vec::new() }
+    }
+
+    /// Adds a row of text cells.
+    pub fn push(&mut self, row: Vec<String>) {
+        self.rows.push(row);
+    }
+
+    /// Adds a row of numbers with all their digits.
+    pub fn push_numbers(&mut self, row: &[f64]) {
+        self.rows.push(row.iter().map(|&value| number(value)).collect());
+    }
+
+    /// The table as CSV text.
+    ///
+    /// # Errors
+    /// A row whose length is not the header's.
+    pub fn to_csv(&self) -> Result<String> {
+        let mut writer = csv::WriterBuilder::new().from_writer(Vec::new());
+        let failed = |error: csv::Error| Error::malformed(error.to_string(), "report this as a bug");
+        writer.write_record(&self.header).map_err(failed)?;
+        for row in &self.rows {
+            writer.write_record(row).map_err(failed)?;
+        }
+        let bytes = writer
+            .into_inner()
+            .map_err(|error| Error::malformed(error.to_string(), "report this as a bug"))?;
+        Ok(String::from_utf8_lossy(&bytes).into_owned())
+    }
+}
+
+/// A number with the digits that give it back; empty where there is none.
+#[must_use]
+pub fn number(value: f64) -> String {
+    let size = value.abs();
+    if !value.is_finite() {
+        String::new()
+    } else if size != 0.0 && !(1e-4..1e7).contains(&size) {
+        format!("{value:e}")
+    } else {
+        format!("{value}")
+    }
+}
+
+/// An optional number; empty where there is none.
+#[must_use]
+pub fn optional(value: Option<f64>) -> String {
+    value.map_or_else(String::new, number)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_survive_and_text_is_quoted() {
+        let mut table = Table::new(["name", "photons"]);
+        table.push(vec!["skin, wet".into(), number(1.276_123_456_789_012_3e6)]);
+        table.push(vec!["none".into(), optional(None)]);
+        assert_eq!(table.to_csv().unwrap(), "name,photons\n\"skin, wet\",1276123.4567890123\nnone,\n");
+        assert!(
+            Table { header: vec!["a".into()], rows: vec![vec!["1".into(), "2".into()]] }.to_csv().is_err()
+        );
+    }
+}

@@ -1,0 +1,63 @@
+//! Tables that several commands write.
+
+use super::table::{Table, number, optional};
+use hadar_study::study::{PairResult, Warning};
+
+/// All pairs as a table.
+#[must_use]
+pub fn pairs(pairs: &[PairResult]) -> Table {
+    let mut table = Table::new([
+        "target",
+        "alternative",
+        "distance_nearest_per_sqrt_photon",
+        "distance_local_per_sqrt_photon",
+        "distance_local_unknown_gain_per_sqrt_photon",
+        "distance_no_nuisance_per_sqrt_photon",
+        "distance_return_per_sqrt_photon",
+        "nearest_temperature_k",
+        "nearest_lighting",
+        "photons_required_nearest",
+        "photons_required_local",
+        "photons_required_local_unknown_gain",
+        "statistical_distance_camera",
+        "detection_probability_camera",
+        "miss_probability_camera",
+        "information_bits_camera",
+        "condition_number",
+        "relative_error_local",
+    ]);
+    for pair in pairs {
+        let lighting: Vec<String> = pair.nearest_state.lighting.iter().map(|&v| number(v)).collect();
+        table.push(vec![
+            pair.target.clone(),
+            pair.alternative.clone(),
+            number(pair.distance_nearest),
+            number(pair.distance_local),
+            number(pair.distance_local_unknown_gain),
+            number(pair.distance_no_nuisance),
+            number(pair.distance_return),
+            number(pair.nearest_state.temperature_k),
+            lighting.join(" "),
+            optional(pair.photons_required_by.nearest),
+            optional(pair.photons_required_by.local),
+            optional(pair.photons_required_by.local_unknown_gain),
+            optional(pair.statistical_distance),
+            optional(pair.detection_probability),
+            optional(pair.miss_probability),
+            optional(pair.information_bits),
+            optional(pair.condition_number),
+            number(pair.relative_error),
+        ]);
+    }
+    table
+}
+
+/// Warnings with their codes.
+#[must_use]
+pub fn warnings(warnings: &[Warning]) -> Table {
+    let mut table = Table::new(["code", "message"]);
+    for warning in warnings {
+        table.push(vec![warning.code.into(), warning.message.clone()]);
+    }
+    table
+}

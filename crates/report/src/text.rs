@@ -1,0 +1,9 @@
+//! What several answers say in the same words: numbers, pairs of materials, what results rest on, what they took.
+
+pub(crate) mod footing;
+pub(crate) mod numbers;
+pub(crate) mod pairs;
+mod stats;
+
+pub use numbers::{quantity, significant};
+pub use stats::stats;

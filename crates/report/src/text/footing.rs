@@ -1,0 +1,114 @@
+//! What results rest on, and what their reader must know.
+
+use super::numbers::{celsius, listed, quantity};
+use hadar::instrument::Readout;
+use hadar_study::scenario::{AtmosphereSource, Nuisance, Unknown};
+use hadar_study::study::{Identification, Study, Warning};
+use std::fmt::Write as _;
+
+/// What results rest on, and what the reader must know.
+pub(crate) fn footing(result: &Identification, study: &Study) -> String {
+    assumptions(study, GAUSSIAN) + &warnings(&result.warnings)
+}
+
+/// What is unknown, and what is known of it beforehand.
+fn unknown(unknown: &Unknown) -> String {
+    let named = unknown.nuisances.iter().map(|nuisance| {
+        let unit = match nuisance {
+            Nuisance::Temperature | Nuisance::EnvironmentTemperature => " K",
+            Nuisance::Lighting | Nuisance::Gain => "",
+        };
+        let prior = unknown.priors.get(nuisance).map(|sigma| format!("known to +- {sigma}{unit}"));
+        let total = unknown.lighting_total.filter(|_| *nuisance == Nuisance::Lighting);
+        let total = total.map(|total| format!("total known to be {total}"));
+        let known: Vec<String> = [prior, total].into_iter().flatten().collect();
+        match known.as_slice() {
+            [] => nuisance.name().to_owned(),
+            known => format!("{} ({})", nuisance.name(), known.join(", ")),
+        }
+    });
+    let named: Vec<String> = named.collect();
+    if named.is_empty() { "nothing but the material".into() } else { named.join(", ") }
+}
+
+/// What distances take counts for.
+pub(crate) const GAUSSIAN: &str =
+    "counts large enough to be Gaussian; two equally likely materials; d is a limit, not a promise";
+
+/// What a result rests on; `counts` says what is assumed of them.
+pub(crate) fn assumptions(study: &Study, counts: &str) -> String {
+    let scenario = study.scenario();
+    let unknown = unknown(&scenario.unknown);
+    let bands = study.bands().bands();
+    let (low, high) =
+        (bands.first().map_or(0.0, |b| b.center_cm1), bands.last().map_or(0.0, |b| b.center_cm1));
+    // As short as they were written, without the digits of a converted wavelength.
+    let (low, high) = ((low * 100.0).round() / 100.0, (high * 100.0).round() / 100.0);
+    let mut out = String::from("Assumptions\n");
+    let _ = writeln!(out, "  unknown besides the material: {unknown}");
+    let count = study.bands().len();
+    let _ = writeln!(
+        out,
+        "  {count} band{} centred from {low} to {high} cm^-1",
+        if count == 1 { "" } else { "s" }
+    );
+    let fills = match (scenario.target.size_m, &scenario.background) {
+        (Some(size), Some(behind)) => {
+            format!("of {} in front of {}", quantity(size, "m"), celsius(behind.temperature_k))
+        }
+        _ => "that fills the pixel".to_owned(),
+    };
+    let air = match &scenario.atmosphere {
+        None => "no atmosphere on the path".to_owned(),
+        Some(spec) => match &spec.source {
+            AtmosphereSource::Model(name) => format!("air `{name}` on the path, without aerosol"),
+            AtmosphereSource::Table(_) => "air of a table on the path".to_owned(),
+        },
+    };
+    let _ = writeln!(out, "  opaque Lambertian target {fills}, one scattering, {air}");
+    let _ = writeln!(out, "  {counts}");
+    let skies = study.skies_left_out();
+    if !skies.is_empty() {
+        let _ = writeln!(
+            out,
+            "  skies of the library are surroundings, no alternatives: left out {}",
+            listed(skies)
+        );
+    }
+    if let Some(camera) = study.camera() {
+        let read = match camera.readout {
+            Readout::Simultaneous => "every band is read by every pixel with the whole exposure",
+            Readout::Sequential => "bands are exposed one after the other, each by every pixel",
+            Readout::FourierTransform => {
+                "all bands at once through an interferometer, one mirror position for each"
+            }
+            Readout::Dispersive => "all bands of a line at once, side by side; an image takes line by line",
+        };
+        let curved = camera.efficiency_curves.iter().any(|curve| curve.name() == "quantum_efficiency");
+        let counted = match camera.quantum_efficiency {
+            _ if curved => "quantum efficiency by its table".to_owned(),
+            1.0 => "all photons are counted (quantum efficiency 1)".to_owned(),
+            eta => format!("quantum efficiency {eta}"),
+        };
+        let _ = writeln!(out, "  {read}; {counted}");
+    }
+    out
+}
+
+pub(crate) fn warnings(warnings: &[Warning]) -> String {
+    if warnings.is_empty() {
+        return String::new();
+    }
+    let mut out = String::from("Warnings\n");
+    // One line per code: a whole library would otherwise bury the answer.
+    for (i, warning) in warnings.iter().enumerate() {
+        if warnings[..i].iter().any(|earlier| earlier.code == warning.code) {
+            continue;
+        }
+        let more = warnings[i + 1..].iter().filter(|later| later.code == warning.code).count();
+        let rest =
+            if more > 0 { format!(" (and {more} more of this kind, see --json)") } else { String::new() };
+        let _ = writeln!(out, "  [{}] {}{rest}", warning.code, warning.message);
+    }
+    out
+}

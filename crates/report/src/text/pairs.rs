@@ -1,0 +1,46 @@
+//! The target against its alternatives, one line each.
+
+use super::numbers::{celsius, exponential, numbers, photons, shortened, significant};
+use hadar_study::study::{PairResult, Study};
+use std::fmt::Write as _;
+
+/// The pairs, that which is hardest to tell apart by the distance that decides first.
+pub(crate) fn pair_table(pairs: &[PairResult], study: &Study) -> String {
+    let kind = study.scenario().requirement.by;
+    let decisive = |pair: &PairResult| pair.statistical_distance.unwrap_or_else(|| pair.distance(kind));
+    let with_camera = pairs.iter().any(|pair| pair.statistical_distance.is_some());
+    let short = shortened(pairs.iter().map(|pair| pair.alternative.as_str()));
+    let width = short.width().max(11);
+    let mut out = String::from("  distances per sqrt(photon); photons by shot noise alone");
+    if with_camera {
+        let required = significant(study.required_distance(), 4);
+        let _ = write!(out, "; camera d: statistical distance, required {required}");
+    }
+    out.push('\n');
+    let _ = write!(
+        out,
+        "  {:<width$}  {:>9}  {:>9}  {:>9}  {:>18}  {:>24}",
+        "alternative", "nearest", "local", "S29", "photons required", "nearest state"
+    );
+    let _ = writeln!(out, "{}", if with_camera { "    camera d  told apart" } else { "" });
+    let mut sorted: Vec<&PairResult> = pairs.iter().collect();
+    sorted.sort_by(|a, b| decisive(a).total_cmp(&decisive(b)));
+    for pair in sorted {
+        let nearest = &pair.nearest_state;
+        let state = celsius(nearest.temperature_k) + &numbers(", V ", &nearest.lighting, 2);
+        let _ = write!(
+            out,
+            "  {:<width$}  {:>9}  {:>9}  {:>9}  {:>18}  {state:>24}",
+            short.of(&pair.alternative),
+            exponential(pair.distance_nearest, 2),
+            exponential(pair.distance_local, 2),
+            exponential(pair.distance_local_unknown_gain, 2),
+            photons(pair.photons_required)
+        );
+        let reached =
+            pair.statistical_distance.map_or_else(String::new, |d| format!("  {:>10}", exponential(d, 2)));
+        let told = pair.told_apart.map_or("", |told| if told { "         yes" } else { "          no" });
+        let _ = writeln!(out, "{reached}{told}");
+    }
+    out
+}

@@ -1,0 +1,270 @@
+//! The scenario: what is there, what it must be told apart from, the surroundings, the camera.
+//!
+//! A scenario is a TOML file whose quantities are strings with their unit (`"37 degC"`). Here it is plain
+//! data in one unit per dimension, which the field's name carries (`temperature_k`, `pixel_m`); every value
+//! was checked when it was read, and nothing is looked up: materials, filters and presets are names or
+//! paths that other parts resolve, who get file and line of a key from [`Scenario::place`].
+//!
+//! Symbols: T temperature in K; V thermal lighting factor (share of the hemisphere above the target that an
+//! environment object fills; V ≥ 0, ΣV ≤ 1); d statistical distance, P = Φ(d) detection probability.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use hadar::error::{Place, Result};
+pub use hadar::fisher::Nuisance;
+pub use hadar::material::Extrapolation;
+
+pub mod atmosphere;
+pub mod bands;
+pub mod camera;
+pub mod envelope;
+pub mod range;
+mod read;
+pub mod rule;
+mod section;
+pub mod sensitivity;
+pub mod source;
+mod write;
+
+pub use atmosphere::{AtmosphereSource, AtmosphereSpec};
+pub use bands::{BandSource, BandsSpec};
+pub use camera::{CameraSpec, Efficiency, Readout};
+pub use envelope::Envelope;
+pub use range::RangeScenario;
+pub use rule::Rule;
+pub use sensitivity::SensitivitySpec;
+pub use source::Source;
+
+/// Everything a scenario file says, defaults filled in.
+///
+/// Two scenarios are equal when they ask the same question: where they were read from does not count.
+#[derive(Debug, Clone)]
+pub struct Scenario {
+    /// What the scenario is about, for headings.
+    pub title: Option<String>,
+    /// What is there.
+    pub target: Target,
+    /// What is behind the target.
+    pub background: Option<Background>,
+    /// The surroundings that light the target; may be empty (cold space).
+    pub environment: Vec<EnvironmentObject>,
+    /// What the target must be told apart from.
+    pub alternatives: Alternatives,
+    /// The air between target and camera; none, if it is not given.
+    pub atmosphere: Option<AtmosphereSpec>,
+    /// The spectral bands.
+    pub bands: BandsSpec,
+    /// What is not known beforehand.
+    pub unknown: Unknown,
+    /// The camera, if there is one.
+    pub camera: Option<CameraSpec>,
+    /// How reliably, and at which speed.
+    pub requirement: Requirement,
+    /// Scenes that the requirement must hold in, if not this one alone.
+    pub envelope: Option<Envelope>,
+    /// How wrong the emissivities may be; the defaults of [`SensitivitySpec`] where it is not given.
+    pub sensitivity: Option<SensitivitySpec>,
+    /// Where it was read from.
+    pub source: Source,
+}
+
+impl Scenario {
+    /// Reads a scenario file. Relative paths in it start from its directory.
+    ///
+    /// # Errors
+    /// The first thing that is wrong, in one line with file, line and key: the file itself (missing, a
+    /// directory, not UTF-8), its syntax, an unknown or missing key, a value of the wrong type, without its
+    /// unit or outside its range, or values that contradict each other.
+    pub fn from_file(path: &Path) -> Result<Self> {
+        Self::from_toml(&read::text_of(path)?, Some(path))
+    }
+
+    /// Reads a scenario from text. `path` is the file it is from, which messages name and relative paths
+    /// start from; without it they start from the current directory.
+    ///
+    /// # Errors
+    /// As [`Scenario::from_file`], except those of the file itself.
+    ///
+    /// ```
+    /// use hadar_study::scenario::{MaterialRef, Scenario};
+    /// let text = r#"
+    ///     [target]
+    ///     material = "skin"
+    ///     temperature = "37 degC"
+    /// "#;
+    /// let scenario = Scenario::from_toml(text, None).unwrap();
+    /// assert_eq!(scenario.target.material, MaterialRef::Name("skin".to_owned()));
+    /// assert_eq!(scenario.target.temperature_k, 310.15);
+    ///
+    /// let error = Scenario::from_toml(&text.replace(" degC", ""), None).unwrap_err();
+    /// assert_eq!(
+    ///     error.to_string(),
+    ///     "line 4: target.temperature: `37` is a number without a unit; write \"37 degC\" or \"310.15 K\""
+    /// );
+    /// ```
+    pub fn from_toml(text: &str, path: Option<&Path>) -> Result<Self> {
+        read::scenario(text, path)
+    }
+
+    /// Where `key` stands (`target.material`, `environment[0].material`, `alternatives.materials[1]`), to be
+    /// put on an error with [`hadar::Error::at`]. A key that was not written has the line of its table.
+    #[must_use]
+    pub fn place(&self, key: &str) -> Place {
+        self.source.place(key)
+    }
+}
+
+impl PartialEq for Scenario {
+    fn eq(&self, other: &Self) -> bool {
+        self.title == other.title
+            && self.target == other.target
+            && self.background == other.background
+            && self.environment == other.environment
+            && self.alternatives == other.alternatives
+            && self.atmosphere == other.atmosphere
+            && self.bands == other.bands
+            && self.unknown == other.unknown
+            && self.camera == other.camera
+            && self.requirement == other.requirement
+            && self.envelope == other.envelope
+            && self.sensitivity == other.sensitivity
+    }
+}
+
+/// A material by name in the library, or a file with its spectrum.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum MaterialRef {
+    /// Name in the library, e.g. `aluminium`.
+    Name(String),
+    /// Absolute path of a CSV or ECOSTRESS file.
+    File(PathBuf),
+}
+
+/// The object that is there (`[target]`).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Target {
+    /// Its material.
+    pub material: MaterialRef,
+    /// Its temperature, K; above 0.
+    pub temperature_k: f64,
+    /// Its distance from the camera, m; above 0.
+    pub distance_m: Option<f64>,
+    /// Side of the target as the camera sees it, m; above 0. One that fills the pixel if none.
+    pub size_m: Option<f64>,
+    /// How its spectrum is continued beyond its data.
+    pub extrapolate: Option<Extrapolation>,
+}
+
+/// What is behind a target that does not fill a pixel (`[background]`); lit as the target is.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Background {
+    /// Its temperature, K; above 0.
+    pub temperature_k: f64,
+    /// Its material; a blackbody if none.
+    pub material: Option<MaterialRef>,
+    /// How its spectrum is continued beyond its data.
+    pub extrapolate: Option<Extrapolation>,
+}
+
+/// One object of the surroundings (`[[environment]]`).
+#[derive(Debug, Clone, PartialEq)]
+pub struct EnvironmentObject {
+    /// Its temperature, K; above 0.
+    pub temperature_k: f64,
+    /// Its thermal lighting factor V, in [0, 1]; the sum over all objects is at most 1.
+    pub lighting: f64,
+    /// Its material; a blackbody if none.
+    pub material: Option<MaterialRef>,
+    /// How its spectrum is continued beyond its data.
+    pub extrapolate: Option<Extrapolation>,
+}
+
+/// What the target must be told apart from (`[alternatives]`).
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Alternatives {
+    /// The materials; `None` means every other material of the library.
+    pub materials: Option<Vec<MaterialRef>>,
+    /// Range of the alternative's temperature, K, lower end first.
+    pub temperature_range_k: Option<[f64; 2]>,
+    /// Range of each lighting factor at the alternative, within [0, 1], lower end first.
+    pub lighting_range: Option<[f64; 2]>,
+    /// How the spectra of the alternatives are continued beyond their data.
+    pub extrapolate: Option<Extrapolation>,
+    /// Whether materials that do not cover the bands are left out, with a warning, instead of refused.
+    pub skip_uncovered: bool,
+}
+
+/// What is not known beforehand (`[unknown]`).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Unknown {
+    /// The unknowns, each at most once, in the order they were written; may be empty.
+    pub nuisances: Vec<Nuisance>,
+    /// Standard deviation of the prior of an unknown (K, or dimensionless: see [`Nuisance`]); above 0.
+    pub priors: BTreeMap<Nuisance, f64>,
+    /// The known sum of all lighting factors, which makes one of them no unknown of its own (S48).
+    pub lighting_total: Option<f64>,
+}
+
+impl Default for Unknown {
+    fn default() -> Self {
+        Self {
+            nuisances: vec![Nuisance::Temperature, Nuisance::Lighting],
+            priors: BTreeMap::new(),
+            lighting_total: None,
+        }
+    }
+}
+
+/// How reliable the decision must be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Reliability {
+    /// Detection probability P = Φ(d), between 0.5 (a coin) and 1, both excluded.
+    DetectionProbability(f64),
+    /// Statistical distance d; above 0. d = 1 is P = 0.8413.
+    Distance(f64),
+}
+
+/// Which distance a requirement is about; what they are is said with the distances themselves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum DistanceKind {
+    /// To the nearest state of the alternative: the limit that no test exceeds.
+    #[default]
+    Nearest,
+    /// Its tangent at the target, with the unknowns of the scenario.
+    Local,
+    /// The same with the gain unknown too: the paper's S29.
+    LocalUnknownGain,
+}
+
+impl DistanceKind {
+    /// All of them, the default first.
+    pub const ALL: [Self; 3] = [Self::Nearest, Self::Local, Self::LocalUnknownGain];
+
+    /// The name in a scenario, e.g. `local-unknown-gain`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Nearest => "nearest",
+            Self::Local => "local",
+            Self::LocalUnknownGain => "local-unknown-gain",
+        }
+    }
+}
+
+/// What is demanded (`[requirement]`).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Requirement {
+    /// How reliable the decision must be, in the terms it was written in.
+    pub reliability: Reliability,
+    /// The distance that must reach it.
+    pub by: DistanceKind,
+    /// Speed of the vehicle, m s⁻¹; above 0.
+    pub speed_m_s: Option<f64>,
+}
+
+impl Default for Requirement {
+    fn default() -> Self {
+        Self { reliability: Reliability::Distance(1.0), by: DistanceKind::Nearest, speed_m_s: None }
+    }
+}

@@ -1,0 +1,187 @@
+//! A ranging scenario: a scene or a heat cube, the stereo camera, the depth that is demanded.
+//!
+//! It shares `[bands]` and `[camera]` with a [`super::Scenario`], and their habits: quantities are strings with their unit, every value
+//! is checked when it is read, an error names file, line and key.
+
+mod read;
+mod write;
+
+use super::{BandsSpec, CameraSpec, MaterialRef, Source};
+use hadar::error::{Place, Result};
+pub use hadar::ranging::depth::Demand;
+use hadar::ranging::derivative::Derivative;
+use hadar::ranging::information::Window;
+use hadar::ranging::noise::Joined;
+use std::path::{Path, PathBuf};
+
+/// Everything a ranging scenario says, defaults filled in.
+#[derive(Debug, Clone)]
+pub struct RangeScenario {
+    /// What it is about, for headings.
+    pub title: Option<String>,
+    /// What is looked at.
+    pub subject: Subject,
+    /// The spectral bands; of a cube they are not needed.
+    pub bands: Option<BandsSpec>,
+    /// The camera; of a cube it is not needed.
+    pub camera: Option<CameraSpec>,
+    /// The pair of cameras, and how windows are looked at.
+    pub stereo: Stereo,
+    /// What is demanded.
+    pub requirement: DepthRequirement,
+    /// Where it was read from.
+    pub source: Source,
+}
+
+/// What is looked at.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Subject {
+    /// A scene that is rendered (`[scene]`).
+    Scene(SceneSpec),
+    /// Counts that were measured or computed elsewhere (`[cube]`).
+    Cube(CubeSpec),
+}
+
+/// A rendered street (`[scene]`): ground, car, person, sky. What is silent is the renderer's.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct SceneSpec {
+    /// Temperature of the ground, K.
+    pub ground_temperature_k: Option<f64>,
+    /// Temperature of the sky, a blackbody, K.
+    pub sky_temperature_k: Option<f64>,
+    /// Temperature of the car, K.
+    pub car_temperature_k: Option<f64>,
+    /// Temperature of the person, K.
+    pub person_temperature_k: Option<f64>,
+    /// Emissivity of the ground between which its texture varies, lower one first.
+    pub ground_emissivity: Option<[f64; 2]>,
+    /// Material of the car.
+    pub car: Option<MaterialRef>,
+    /// Material of the person.
+    pub person: Option<MaterialRef>,
+    /// Distance of the car, m.
+    pub car_distance_m: Option<f64>,
+    /// Distance of the person, m.
+    pub person_distance_m: Option<f64>,
+    /// Times that light is scattered before it reaches the camera.
+    pub bounces: Option<u32>,
+    /// Rows and columns of the image.
+    pub size: Option<[usize; 2]>,
+}
+
+/// A cube in a file (`[cube]`). Paths are absolute.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CubeSpec {
+    /// The left view.
+    pub left: PathBuf,
+    /// The right view; without it the right one is taken to carry as much information as the left.
+    pub right: Option<PathBuf>,
+    /// Name of the variable in a .mat file.
+    pub variable: Option<String>,
+    /// Photons that one unit of the file stands for.
+    pub photons_per_unit: f64,
+    /// Variance of the electronic noise; the camera's if silent.
+    pub noise: Option<NoiseSource>,
+    /// Depth; windows have bounds on their disparity alone if silent.
+    pub depth: Option<DepthSource>,
+}
+
+/// Where the noise variance of a cube is from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum NoiseSource {
+    /// The same for all samples, counts².
+    Uniform(f64),
+    /// A table by band, or a cube by sample.
+    File(PathBuf),
+}
+
+/// Where the depth of a cube's pixels is from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum DepthSource {
+    /// The same for all, m.
+    Uniform(f64),
+    /// An image of depths in m.
+    File(PathBuf),
+}
+
+/// The pair of cameras and how windows are looked at (`[stereo]`).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Stereo {
+    /// Distance of the two cameras, m.
+    pub baseline_m: f64,
+    /// Focal length, m; the camera's if silent.
+    pub focal_length_m: Option<f64>,
+    /// Distance of the pixels, m; the camera's if silent.
+    pub pixel_m: Option<f64>,
+    /// The window.
+    pub window: Window,
+    /// How the derivative along x is taken.
+    pub derivative: Derivative,
+    /// Electronic noise of joined samples.
+    pub joined: Joined,
+    /// Rows along which the bound is drawn and witnessed.
+    pub lines: Vec<usize>,
+    /// Diffraction.
+    pub diffraction: Diffraction,
+}
+
+/// What diffraction adds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Diffraction {
+    /// Nothing: the image is blurred already.
+    None,
+    /// The Airy pattern of the camera's aperture.
+    Airy,
+    /// A Gaussian of this deviation on the detector, m.
+    Gaussian(f64),
+}
+
+/// The depth that is demanded (`[requirement]`).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DepthRequirement {
+    /// How well depth must be known.
+    pub error: Demand,
+    /// Share of the windows that must reach it, in (0, 1].
+    pub share: f64,
+}
+
+impl RangeScenario {
+    /// Reads a ranging scenario. Relative paths in it start from its directory.
+    ///
+    /// # Errors
+    /// The first thing that is wrong, in one line with file, line and key, as [`super::Scenario::from_file`].
+    pub fn from_file(path: &Path) -> Result<Self> {
+        Self::from_toml(&super::read::text_of(path)?, Some(path))
+    }
+
+    /// Reads a ranging scenario from text; `path` as in [`super::Scenario::from_toml`].
+    ///
+    /// # Errors
+    /// As [`RangeScenario::from_file`], except those of the file itself.
+    ///
+    /// ```
+    /// use hadar_study::scenario::RangeScenario;
+    /// let text = r#"
+    ///     [scene]
+    ///     person_temperature = "37 degC"
+    ///     [camera]
+    ///     preset = "flir-a325sc"
+    ///     [stereo]
+    ///     baseline = "0.2 m"
+    /// "#;
+    /// let scenario = RangeScenario::from_toml(text, None)?;
+    /// assert_eq!(scenario.stereo.window.rows(), 5);
+    /// let error = RangeScenario::from_toml(&text.replace("0.2 m", "0 m"), None).unwrap_err();
+    /// assert!(error.to_string().starts_with("line 7: stereo.baseline: `0 m` is out of range"));
+    /// # Ok::<(), hadar::Error>(())
+    /// ```
+    pub fn from_toml(text: &str, path: Option<&Path>) -> Result<Self> {
+        read::scenario(text, path)
+    }
+
+    /// Where a key stands, as [`super::Scenario::place`].
+    #[must_use]
+    pub fn place(&self, key: &str) -> Place {
+        self.source.place(key)
+    }
+}

@@ -1,0 +1,257 @@
+//! Reads a ranging scenario: every key checked, every error one line with file, line and key.
+
+use super::super::read::{file, material, parse};
+use super::super::section::{ABOVE_ZERO, ABSOLUTE_TEMPERATURE, Entry, FROM_ZERO, Rule, SHARE, Section};
+use super::super::{BandsSpec, CameraSpec, Source};
+use super::{
+    CubeSpec, Demand, DepthRequirement, DepthSource, Diffraction, NoiseSource, RangeScenario, SceneSpec,
+    Stereo, Subject,
+};
+use hadar::error::{Error, Result};
+use hadar::ranging::derivative::Derivative;
+use hadar::ranging::information::Window;
+use hadar::ranging::noise::Joined;
+use hadar::units::Dimension;
+use std::collections::BTreeMap;
+use std::path::Path;
+
+const TABLES: &[&str] = &["title", "scene", "cube", "bands", "camera", "stereo", "requirement"];
+const MINIMUM: &str = "write [scene] for the built-in street or [cube] with left = \"left.npy\", \
+                       and [stereo] with baseline = \"0.2 m\"";
+/// Most rows or columns of a rendered image, and most bounces.
+const MOST_PIXELS: u32 = 16_384;
+const MOST_BOUNCES: u32 = 64;
+/// δz/z that is demanded where nothing is said.
+const RELATIVE_ERROR: f64 = 0.05;
+
+pub(super) fn scenario(text: &str, path: Option<&Path>) -> Result<RangeScenario> {
+    let mut source = Source { path: path.map(Path::to_owned), lines: BTreeMap::new() };
+    if text.trim().is_empty() {
+        return Err(Error::malformed("the file is empty", MINIMUM).at(source.place("")));
+    }
+    let document = parse(text, &source)?;
+    source.note_lines(text, &document);
+    let root = Section::open(&document, "", &source, TABLES)?;
+    root.at_most_one(&["scene", "cube"])?;
+    let subject = match (root.get("scene"), root.get("cube")) {
+        (Some(entry), _) => Subject::Scene(scene(&entry)?),
+        (None, Some(entry)) => Subject::Cube(cube(&entry)?),
+        (None, None) => {
+            return Err(
+                Error::malformed("there is neither a [scene] nor a [cube]", MINIMUM).at(source.place(""))
+            );
+        }
+    };
+    let camera = root.read("camera", CameraSpec::read)?;
+    if matches!(subject, Subject::Scene(_)) && camera.is_none() {
+        let found = Error::malformed("the table is missing", "write [camera] with preset = \"flir-a325sc\"");
+        return Err(root.fail("camera", found));
+    }
+    let stereo = match root.get("stereo") {
+        Some(entry) => stereo(&entry, camera.is_some(), &subject)?,
+        None => {
+            let found = Error::malformed("the table is missing", "write [stereo] with baseline = \"0.2 m\"");
+            return Err(root.fail("stereo", found));
+        }
+    };
+    let mut scenario = RangeScenario {
+        title: root.read("title", |entry| Ok(entry.text("\"How far is the person?\"")?.to_owned()))?,
+        bands: root.read("bands", BandsSpec::read)?,
+        requirement: root.read("requirement", requirement)?.unwrap_or_default(),
+        subject,
+        camera,
+        stereo,
+        source: Source::default(),
+    };
+    if matches!(scenario.subject, Subject::Scene(_)) && scenario.bands.is_none() {
+        scenario.bands = Some(BandsSpec::default());
+    }
+    scenario.source = source;
+    Ok(scenario)
+}
+
+impl Default for DepthRequirement {
+    fn default() -> Self {
+        Self { error: Demand::Relative(RELATIVE_ERROR), share: 0.5 }
+    }
+}
+
+fn scene(entry: &Entry<'_>) -> Result<SceneSpec> {
+    let section = entry.section(&[
+        "ground_temperature",
+        "sky_temperature",
+        "car_temperature",
+        "person_temperature",
+        "ground_emissivity",
+        "car",
+        "person",
+        "car_distance",
+        "person_distance",
+        "bounces",
+        "size",
+    ])?;
+    let temperature = |key| section.quantity(key, Dimension::Temperature, ABSOLUTE_TEMPERATURE);
+    let length = |key| section.quantity(key, Dimension::Length, ABOVE_ZERO);
+    Ok(SceneSpec {
+        ground_temperature_k: temperature("ground_temperature")?,
+        sky_temperature_k: temperature("sky_temperature")?,
+        car_temperature_k: temperature("car_temperature")?,
+        person_temperature_k: temperature("person_temperature")?,
+        ground_emissivity: section.read("ground_emissivity", |entry| {
+            let [low, high] = entry.pair("[0.8, 1.0]")?;
+            Ok([low.number("0.8", SHARE)?, high.number("1.0", SHARE)?])
+        })?,
+        car: section.read("car", material)?,
+        person: section.read("person", material)?,
+        car_distance_m: length("car_distance")?,
+        person_distance_m: length("person_distance")?,
+        bounces: section.read("bounces", |entry| at_most(entry, "8", MOST_BOUNCES))?,
+        size: section.read("size", |entry| {
+            let [rows, columns] = entry.pair("[480, 640]")?;
+            Ok([rows, columns].map(|side| at_most(&side, "480", MOST_PIXELS).map(|n| n as usize)))
+                .and_then(|[rows, columns]| Ok([rows?, columns?]))
+        })?,
+    })
+}
+
+fn at_most(entry: &Entry<'_>, example: &str, most: u32) -> Result<u32> {
+    let count = entry.count(example)?;
+    if count <= most {
+        return Ok(count);
+    }
+    let found = Error::malformed(format!("{count} is too many"), format!("write at most {most}"));
+    Err(entry.fail(found))
+}
+
+fn cube(entry: &Entry<'_>) -> Result<CubeSpec> {
+    let section =
+        entry.section(&["left", "right", "variable", "photons_per_unit", "noise_variance", "depth"])?;
+    Ok(CubeSpec {
+        left: file(&section.require("left", "\"left.npy\"")?)?,
+        right: section.read("right", file)?,
+        variable: section.read("variable", |entry| Ok(entry.text("\"HSI\"")?.trim().to_owned()))?,
+        photons_per_unit: section.number("photons_per_unit", "1.0", ABOVE_ZERO)?.unwrap_or(1.0),
+        noise: section.read("noise_variance", |entry| match entry.text("\"noise.csv\"") {
+            Ok(_) => file(entry).map(NoiseSource::File),
+            Err(_) => entry.number("50.0", FROM_ZERO).map(NoiseSource::Uniform),
+        })?,
+        depth: section.read("depth", |entry| {
+            let text = entry.text("\"12 m\" or \"depth.npy\"")?.trim();
+            let lower = text.to_lowercase();
+            if [".npy", ".mat"].iter().any(|ending| lower.ends_with(ending)) {
+                return file(entry).map(DepthSource::File);
+            }
+            entry.quantity(Dimension::Length, ABOVE_ZERO).map(DepthSource::Uniform)
+        })?,
+    })
+}
+
+fn stereo(entry: &Entry<'_>, camera: bool, subject: &Subject) -> Result<Stereo> {
+    let section = entry.section(&[
+        "baseline",
+        "focal_length",
+        "pixel",
+        "window",
+        "derivative",
+        "joined",
+        "lines",
+        "diffraction",
+        "psf_sigma",
+    ])?;
+    let length = |key| section.quantity(key, Dimension::Length, ABOVE_ZERO);
+    let (focal_length_m, pixel_m) = (length("focal_length")?, length("pixel")?);
+    for (key, given, example) in
+        [("focal_length", focal_length_m, "\"1.4 cm\""), ("pixel", pixel_m, "\"12 um\"")]
+    {
+        if camera && given.is_some() {
+            let found = Error::malformed(format!("{key} is the camera's"), "write it in [camera]");
+            return Err(section.fail(key, found));
+        }
+        if !camera && given.is_none() {
+            let instead = format!("write {key} = {example}, or a [camera]");
+            return Err(section.fail(key, Error::malformed("the key is missing", instead)));
+        }
+    }
+    let sigma = length("psf_sigma")?;
+    let kinds = [("none", Kind::None), ("airy", Kind::Airy), ("gaussian", Kind::Gaussian)];
+    let silent = match subject {
+        Subject::Scene(_) => Kind::Airy,
+        Subject::Cube(_) => Kind::None,
+    };
+    let diffraction = match (section.choice("diffraction", &kinds)?.unwrap_or(silent), sigma) {
+        (Kind::Gaussian, Some(sigma)) => Diffraction::Gaussian(sigma),
+        (Kind::Gaussian, None) => {
+            let found = Error::malformed("the key is missing", "write psf_sigma = \"5 um\"");
+            return Err(section.fail("psf_sigma", found));
+        }
+        (_, Some(_)) => {
+            let found = "psf_sigma without diffraction = \"gaussian\"";
+            return Err(section.fail("psf_sigma", Error::malformed(found, "add that, or leave it out")));
+        }
+        (Kind::Airy, None) if !camera => {
+            let found = "an Airy pattern needs a camera, whose aperture makes it";
+            return Err(
+                section.fail("diffraction", Error::malformed(found, "add [camera], or write \"none\""))
+            );
+        }
+        (Kind::Airy, None) => Diffraction::Airy,
+        (Kind::None, None) => Diffraction::None,
+    };
+    let schemes = Derivative::ALL.map(|scheme| (scheme.name(), scheme));
+    let joined = Joined::ALL.map(|joined| (joined.name(), joined));
+    Ok(Stereo {
+        baseline_m: section.require("baseline", "\"0.2 m\"")?.quantity(Dimension::Length, BASELINE)?,
+        focal_length_m,
+        pixel_m,
+        window: section.read("window", window)?.map_or_else(|| Window::new(5, 5), Ok)?,
+        // Central differences see too little of fine texture, and their bound comes out too large; splines see more, of noise too, which
+        // only the counts of a file have.
+        derivative: section.choice("derivative", &schemes)?.unwrap_or(match subject {
+            Subject::Scene(_) => Derivative::CubicSpline,
+            Subject::Cube(_) => Derivative::Central,
+        }),
+        joined: section.choice("joined", &joined)?.unwrap_or_default(),
+        lines: section
+            .read("lines", |entry| {
+                let items = entry.items("lines = [300]")?;
+                items.iter().map(|item| item.count("300").map(|row| row as usize)).collect()
+            })?
+            .unwrap_or_default(),
+        diffraction,
+    })
+}
+
+const BASELINE: Rule = Rule {
+    expected: "above 0: cameras at one place see no depth (cameras that turn towards each other are not treated)",
+    ..ABOVE_ZERO
+};
+
+#[derive(Clone, Copy)]
+enum Kind {
+    None,
+    Airy,
+    Gaussian,
+}
+
+fn window(entry: &Entry<'_>) -> Result<Window> {
+    let [rows, columns] = entry.pair("[5, 5]")?;
+    let (rows, columns) = (rows.count("5")?, columns.count("5")?);
+    Window::new(rows as usize, columns as usize).map_err(|error| entry.fail(error))
+}
+
+fn requirement(entry: &Entry<'_>) -> Result<DepthRequirement> {
+    let section = entry.section(&["depth_error", "relative_depth_error", "share"])?;
+    section.at_most_one(&["depth_error", "relative_depth_error"])?;
+    let share = Rule { holds: |value| value > 0.0 && value <= 1.0, expected: "above 0, at most 1" };
+    let default = DepthRequirement::default();
+    let absolute = section.quantity("depth_error", Dimension::Length, ABOVE_ZERO)?;
+    let relative = section.number("relative_depth_error", "0.05", ABOVE_ZERO)?;
+    Ok(DepthRequirement {
+        error: match (absolute, relative) {
+            (Some(error_m), _) => Demand::Absolute(error_m),
+            (None, Some(share)) => Demand::Relative(share),
+            (None, None) => default.error,
+        },
+        share: section.number("share", "0.5", share)?.unwrap_or(default.share),
+    })
+}

@@ -1,0 +1,352 @@
+//! Reads a scenario: every key checked, every error one line with file, line and key.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use toml::de::DeTable;
+
+use super::section::{ABOVE_ZERO, ABSOLUTE_TEMPERATURE, Entry, Rule, SHARE, Section};
+use super::source::LineStarts;
+use super::{
+    Alternatives, AtmosphereSpec, Background, BandsSpec, CameraSpec, DistanceKind, Envelope,
+    EnvironmentObject, Extrapolation, MaterialRef, Nuisance, Reliability, Requirement, Scenario,
+    SensitivitySpec, Source, Target, Unknown,
+};
+use hadar::error::{Error, Result};
+use hadar::units::Dimension;
+
+/// Lighting factors that should add up to a value may miss it by this: rounding, not meaning.
+const LIGHTING_ROUNDING: f64 = 1e-12;
+/// The longest file taken for a scenario, bytes.
+const LONGEST_FILE: u64 = 1 << 20;
+
+pub(super) const TABLES: [&str; 12] = [
+    "title",
+    "target",
+    "background",
+    "environment",
+    "alternatives",
+    "atmosphere",
+    "bands",
+    "unknown",
+    "camera",
+    "requirement",
+    "envelope",
+    "sensitivity",
+];
+const MINIMUM: &str = "write [target] with material = \"skin\" and temperature = \"37 degC\"";
+
+/// The text of a scenario file.
+pub(super) fn text_of(path: &Path) -> Result<String> {
+    let refuse = |reason: &str| Error::file("read the scenario", path, reason);
+    if path.is_dir() {
+        return Err(refuse("it is a directory; name the .toml file inside it"));
+    }
+    let file = std::fs::File::open(path).map_err(|error| match error.kind() {
+        std::io::ErrorKind::NotFound => refuse("there is no such file; check its name and folder"),
+        kind => refuse(&format!("{kind}; check that it may be read")),
+    })?;
+    let mut bytes = Vec::new();
+    file.take(LONGEST_FILE + 1).read_to_end(&mut bytes).map_err(|error| refuse(&error.kind().to_string()))?;
+    if bytes.len() as u64 > LONGEST_FILE {
+        return Err(refuse("it is longer than 1 MiB; name the scenario, not a data file"));
+    }
+    String::from_utf8(bytes).map_err(|error| {
+        let valid = error.utf8_error().valid_up_to();
+        let line = 1 + error.as_bytes().iter().take(valid).filter(|byte| **byte == b'\n').count();
+        Error::malformed("the file is not UTF-8 text", "name a TOML file, saved as UTF-8")
+            .on_line(line)
+            .in_file(path)
+    })
+}
+
+pub(super) fn scenario(text: &str, path: Option<&Path>) -> Result<Scenario> {
+    let mut source = Source { path: path.map(Path::to_owned), lines: BTreeMap::new() };
+    let document = document(text, &mut source)?;
+    let root = Section::open(&document, "", &source, &TABLES)?;
+    let mut scenario = of_root(&root)?;
+    scenario.camera = root.read("camera", CameraSpec::read)?;
+    scenario.source = source;
+    Ok(scenario)
+}
+
+/// The tables of a file that is not empty, whose lines `source` then knows.
+pub(super) fn document<'t>(text: &'t str, source: &mut Source) -> Result<DeTable<'t>> {
+    if text.trim().is_empty() {
+        return Err(Error::malformed("the file is empty", MINIMUM).at(source.place("")));
+    }
+    let document = parse(text, source)?;
+    source.note_lines(text, &document);
+    Ok(document)
+}
+
+/// All of a scenario but its camera and its source.
+pub(super) fn of_root(root: &Section<'_>) -> Result<Scenario> {
+    let target = match root.get("target") {
+        Some(entry) => target(&entry)?,
+        None => return Err(root.fail("target", Error::malformed("the table is missing", MINIMUM))),
+    };
+    let unknown = root.read("unknown", unknown)?.unwrap_or_default();
+    let environment = environment(root, unknown.lighting_total)?;
+    Ok(Scenario {
+        title: root.read("title", |entry| Ok(entry.text("\"Person or robot?\"")?.to_owned()))?,
+        target,
+        envelope: root.read("envelope", |entry| Envelope::read(entry, environment.len()))?,
+        environment,
+        background: root.read("background", background)?,
+        alternatives: root.read("alternatives", alternatives)?.unwrap_or_default(),
+        atmosphere: root.read("atmosphere", AtmosphereSpec::read)?,
+        bands: root.read("bands", BandsSpec::read)?.unwrap_or_default(),
+        unknown,
+        camera: None,
+        requirement: root.read("requirement", requirement)?.unwrap_or_default(),
+        sensitivity: root.read("sensitivity", SensitivitySpec::read)?,
+        source: Source::default(),
+    })
+}
+
+/// The table behind the text, or the first thing that is not TOML.
+pub(super) fn parse<'t>(text: &'t str, source: &Source) -> Result<DeTable<'t>> {
+    let (document, errors) = DeTable::parse_recoverable(text);
+    let offset = |error: &toml::de::Error| error.span().map_or(0, |span| span.start);
+    let Some(first) = errors.iter().min_by_key(|error| offset(error)) else {
+        return Ok(document.into_inner());
+    };
+    let message: String = first.message().chars().filter(|char| !char.is_control()).collect();
+    let error = Error::malformed(
+        format!("this is not TOML: {message}"),
+        match message.as_str() {
+            "duplicate key" => "write each key and each [table] once",
+            _ => "correct the line (a quantity is text in quotes, as in temperature = \"37 degC\")",
+        },
+    );
+    Err(error.on_line(LineStarts::of(text).line(offset(first))).at(source.place("")))
+}
+
+fn target(entry: &Entry<'_>) -> Result<Target> {
+    let section = entry.section(&["material", "temperature", "distance", "size", "extrapolate"])?;
+    Ok(Target {
+        material: material(&section.require("material", "\"skin\"")?)?,
+        temperature_k: section
+            .require("temperature", "\"37 degC\"")?
+            .quantity(Dimension::Temperature, ABSOLUTE_TEMPERATURE)?,
+        distance_m: section.quantity("distance", Dimension::Length, ABOVE_ZERO)?,
+        size_m: section.quantity("size", Dimension::Length, ABOVE_ZERO)?,
+        extrapolate: extrapolation(&section)?,
+    })
+}
+
+fn background(entry: &Entry<'_>) -> Result<Background> {
+    let section = entry.section(&["temperature", "material", "extrapolate"])?;
+    Ok(Background {
+        temperature_k: section
+            .require("temperature", "\"15 degC\"")?
+            .quantity(Dimension::Temperature, ABSOLUTE_TEMPERATURE)?,
+        material: section.read("material", material)?,
+        extrapolate: extrapolation(&section)?,
+    })
+}
+
+fn environment(root: &Section<'_>, total: Option<f64>) -> Result<Vec<EnvironmentObject>> {
+    let example = "[[environment]], in double brackets, once for each object";
+    let items = root.read("environment", |entry| entry.items(example))?.unwrap_or_default();
+    if items.is_empty() && total.is_some() {
+        let found = "there is no [[environment]] whose lighting this could be";
+        return Err(root.fail("unknown.lighting_total", Error::malformed(found, "add one")));
+    }
+    let mut objects = Vec::with_capacity(items.len());
+    let mut sum = 0.0;
+    for (index, item) in items.iter().enumerate() {
+        let section = item.section(&["temperature", "lighting", "material", "extrapolate"])?;
+        let written = section.number("lighting", "0.5", SHARE)?;
+        let lighting = match total {
+            Some(total) if index + 1 == items.len() => {
+                rest_of_lighting(total, sum, written).map_err(|error| section.fail("lighting", error))?
+            }
+            _ => match written {
+                Some(lighting) => lighting,
+                None => section.require("lighting", "0.5")?.number("0.5", SHARE)?,
+            },
+        };
+        sum += lighting;
+        if sum > 1.0 + LIGHTING_ROUNDING {
+            let found = format!("the lighting factors add up to {}", rounded(sum));
+            let instead = "lower them to a sum of at most 1, as they share one hemisphere";
+            return Err(section.fail("lighting", Error::malformed(found, instead)));
+        }
+        objects.push(EnvironmentObject {
+            temperature_k: section
+                .require("temperature", "\"20 degC\"")?
+                .quantity(Dimension::Temperature, ABSOLUTE_TEMPERATURE)?,
+            lighting,
+            material: section.read("material", material)?,
+            extrapolate: extrapolation(&section)?,
+        });
+    }
+    Ok(objects)
+}
+
+/// The last object's lighting factor where the total is known: what the others leave.
+fn rest_of_lighting(total: f64, others: f64, written: Option<f64>) -> Result<f64> {
+    if others > total + LIGHTING_ROUNDING {
+        return Err(Error::malformed(
+            format!("the other lighting factors add up to {}, lighting_total is {total}", rounded(others)),
+            "lower them, or raise unknown.lighting_total",
+        ));
+    }
+    let rest = (total - others).max(0.0);
+    match written {
+        Some(written) if (written - rest).abs() > LIGHTING_ROUNDING => Err(Error::malformed(
+            format!("the others and lighting_total = {total} leave {}, not {written}", rounded(rest)),
+            "leave this one out",
+        )),
+        _ => Ok(rest),
+    }
+}
+
+/// A sum as one would write it, without the last bits of its rounding.
+fn rounded(sum: f64) -> f64 {
+    (sum * 1e12).round() / 1e12
+}
+
+fn alternatives(entry: &Entry<'_>) -> Result<Alternatives> {
+    let section =
+        entry.section(&["materials", "temperature", "lighting", "extrapolate", "skip_uncovered"])?;
+    let materials = section.read("materials", |entry| {
+        let items = entry.items("materials = [\"aluminium\"]")?;
+        if items.is_empty() {
+            let instead = "name some, or leave the key out to take every other material of the library";
+            return Err(entry.fail(Error::malformed("the list is empty", instead)));
+        }
+        without_repetition(&items, material)
+    })?;
+    Ok(Alternatives {
+        materials,
+        temperature_range_k: section.read("temperature", |entry| {
+            range(entry, "[\"0 degC\", \"120 degC\"]", |end| {
+                end.quantity(Dimension::Temperature, ABSOLUTE_TEMPERATURE)
+            })
+        })?,
+        lighting_range: section
+            .read("lighting", |entry| range(entry, "[0.0, 1.0]", |end| end.number("0.5", SHARE)))?,
+        extrapolate: extrapolation(&section)?,
+        skip_uncovered: section.read("skip_uncovered", Entry::boolean)?.unwrap_or(false),
+    })
+}
+
+fn range<'a>(entry: &Entry<'a>, example: &str, read: impl Fn(&Entry<'a>) -> Result<f64>) -> Result<[f64; 2]> {
+    let [low, high] = entry.pair(example)?;
+    let (low, high) = (read(&low)?, read(&high)?);
+    if low < high {
+        return Ok([low, high]);
+    }
+    let found = "the first end of the range is not below the second";
+    let instead = format!("write the lower one first, as in {example}");
+    Err(entry.fail(Error::malformed(found, instead)))
+}
+
+fn unknown(entry: &Entry<'_>) -> Result<Unknown> {
+    let section = entry.section(&["nuisances", "priors", "lighting_total"])?;
+    let choices = Nuisance::ALL.map(|nuisance| (nuisance.name(), nuisance));
+    let nuisances = section
+        .read("nuisances", |entry| {
+            let items = entry.items("nuisances = [\"temperature\", \"lighting\"]")?;
+            without_repetition(&items, |item| item.choice(&choices))
+        })?
+        .unwrap_or_else(|| Unknown::default().nuisances);
+    let priors = section.read("priors", |entry| priors(entry, &nuisances))?.unwrap_or_default();
+    Ok(Unknown { priors, lighting_total: section.number("lighting_total", "1.0", SHARE)?, nuisances })
+}
+
+fn priors(entry: &Entry<'_>, nuisances: &[Nuisance]) -> Result<BTreeMap<Nuisance, f64>> {
+    let rule =
+        Rule { expected: "above 0 (what is known exactly is left out of unknown.nuisances)", ..ABOVE_ZERO };
+    let section = entry.section(&Nuisance::ALL.map(Nuisance::name))?;
+    let mut priors = BTreeMap::new();
+    for nuisance in Nuisance::ALL {
+        let Some(prior) = section.get(nuisance.name()) else { continue };
+        if !nuisances.contains(&nuisance) {
+            let found = format!("`{}` is not among unknown.nuisances", nuisance.name());
+            return Err(prior.fail(Error::malformed(found, "add it there, or remove its prior")));
+        }
+        let sigma = match nuisance {
+            Nuisance::Temperature | Nuisance::EnvironmentTemperature => {
+                prior.quantity(Dimension::TemperatureDifference, rule)?
+            }
+            Nuisance::Lighting | Nuisance::Gain => prior.number("0.1", rule)?,
+        };
+        priors.insert(nuisance, sigma);
+    }
+    Ok(priors)
+}
+
+fn requirement(entry: &Entry<'_>) -> Result<Requirement> {
+    let section = entry.section(&["detection_probability", "distance", "by", "speed"])?;
+    let probability = Rule {
+        holds: |value| value > 0.5 && value < 1.0,
+        expected: "above 0.5 (tossing a coin) and below 1 (never wrong)",
+    };
+    section.at_most_one(&["detection_probability", "distance"])?;
+    let detection = section.number("detection_probability", "0.8413", probability)?;
+    let distance = section.number("distance", "1.0", ABOVE_ZERO)?;
+    let default = Requirement::default();
+    Ok(Requirement {
+        reliability: match (detection, distance) {
+            (Some(probability), _) => Reliability::DetectionProbability(probability),
+            (None, Some(distance)) => Reliability::Distance(distance),
+            (None, None) => default.reliability,
+        },
+        by: section.choice("by", &DistanceKind::ALL.map(|kind| (kind.name(), kind)))?.unwrap_or(default.by),
+        speed_m_s: section.quantity("speed", Dimension::Speed, ABOVE_ZERO)?,
+    })
+}
+
+fn extrapolation(section: &Section<'_>) -> Result<Option<Extrapolation>> {
+    section.choice("extrapolate", &Extrapolation::ALL.map(|kind| (kind.name(), kind)))
+}
+
+pub(super) fn material(entry: &Entry<'_>) -> Result<MaterialRef> {
+    let text = entry.text("\"skin\"")?.trim();
+    if is_path(text) { file(entry).map(MaterialRef::File) } else { Ok(MaterialRef::Name(text.to_owned())) }
+}
+
+/// A path has a separator in it, or the ending of a data file; a name has neither.
+pub(super) fn is_path(text: &str) -> bool {
+    let lower = text.to_lowercase();
+    text.contains(['/', '\\']) || lower.ends_with(".csv") || lower.ends_with(".txt")
+}
+
+/// A path, from the scenario's directory, made absolute.
+pub(super) fn file(entry: &Entry<'_>) -> Result<PathBuf> {
+    let text = entry.text("\"my_data.csv\"")?.trim();
+    let path = entry.source().directory().join(text);
+    let path = std::path::absolute(&path).map_err(|error| {
+        entry
+            .fail(Error::malformed(format!("`{text}` is not a usable path ({error})"), "write the full path"))
+    })?;
+    // As in `x /.`: written again, it would be another path.
+    if path.file_name().is_some_and(|name| name.to_string_lossy().ends_with(char::is_whitespace)) {
+        let found = format!("`{text}` is a path that ends in a blank");
+        return Err(entry.fail(Error::malformed(found, "rename the file")));
+    }
+    Ok(path)
+}
+
+/// The items of a list, each of which may stand there once.
+pub(super) fn without_repetition<'a, T: Ord + Clone>(
+    items: &[Entry<'a>],
+    read: impl Fn(&Entry<'a>) -> Result<T>,
+) -> Result<Vec<T>> {
+    let mut values = Vec::with_capacity(items.len());
+    let mut seen = BTreeSet::new();
+    for item in items {
+        let value = read(item)?;
+        if !seen.insert(value.clone()) {
+            let found = "the same is already in the list";
+            return Err(item.fail(Error::malformed(found, "name it once")));
+        }
+        values.push(value);
+    }
+    Ok(values)
+}

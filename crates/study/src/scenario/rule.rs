@@ -1,0 +1,232 @@
+//! A rule: a requirement over an envelope of scenes, and the cameras that are held against it.
+//!
+//! A rule file is a scenario without `[camera]`, with `cameras = ["flir-a325sc"]` for known cameras as they are,
+//! `[[camera]]` tables with the keys of `[camera]` and an optional `name` for others, and `[rule]` for what a reader of
+//! the certificate must know: `name`, `text` (its wording), `authority` (whose it is), `version`.
+
+use super::read::{TABLES, document, of_root, text_of};
+use super::section::{Entry, Section};
+use super::write::{self, Document, Entries, Part, Paths};
+use super::{CameraSpec, Envelope, Scenario, Source};
+use hadar::error::{Error, Place, Result};
+use serde::{Serialize, Serializer};
+use std::collections::BTreeMap;
+use std::path::Path;
+
+const NO_CAMERA: &str = "write cameras = [\"flir-a325sc\"] above the first [table], or a [[camera]] table";
+/// A list at the top of a file stands before its tables.
+const CAMERAS: &str = "cameras = [\"flir-a325sc\", \"ideal-pnrd\"]";
+
+/// What a rule says of itself (`[rule]`).
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct About {
+    /// Its name.
+    pub name: Option<String>,
+    /// Its wording.
+    pub text: Option<String>,
+    /// Who sets it.
+    pub authority: Option<String>,
+    /// Its version.
+    pub version: Option<String>,
+}
+
+/// A camera that is held against a rule.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RuleCamera {
+    /// The name it is given, if any.
+    pub name: Option<String>,
+    /// What it is.
+    pub spec: CameraSpec,
+    /// Where it stands, e.g. `cameras[1]` or `camera[0]`.
+    pub key: String,
+}
+
+impl RuleCamera {
+    /// Whether it is a known camera named in `cameras`, without keys of its own.
+    #[must_use]
+    pub fn is_listed(&self) -> bool {
+        self.key.starts_with("cameras[")
+    }
+}
+
+/// Everything a rule file says, defaults filled in.
+#[derive(Debug, Clone)]
+pub struct Rule {
+    /// What it says of itself.
+    pub about: About,
+    /// Task, surroundings, bands, unknowns, requirement and envelope; without a camera.
+    pub scenario: Scenario,
+    /// The cameras, those of `cameras` first.
+    pub cameras: Vec<RuleCamera>,
+    /// The file as it was read.
+    pub text: String,
+}
+
+impl Rule {
+    /// Reads a rule file. Relative paths in it start from its directory.
+    ///
+    /// # Errors
+    /// As [`Scenario::from_file`]; no camera at all.
+    pub fn from_file(path: &Path) -> Result<Self> {
+        Self::from_toml(&text_of(path)?, Some(path))
+    }
+
+    /// Reads a rule from text, of the file `path` if it is from one.
+    ///
+    /// # Errors
+    /// As [`Rule::from_file`], except those of the file itself.
+    ///
+    /// ```
+    /// use hadar_study::scenario::Rule;
+    /// let text = r#"
+    ///     cameras = ["flir-a325sc", "ideal-pnrd"]
+    ///     [target]
+    ///     material = "skin"
+    ///     temperature = "37 degC"
+    ///     [envelope]
+    ///     temperature = ["30 degC", "37 degC"]
+    /// "#;
+    /// let rule = Rule::from_toml(text, None)?;
+    /// assert_eq!(rule.cameras.len(), 2);
+    /// let error = Rule::from_toml(&text.replace("[\"30", "[\"40"), None).unwrap_err().to_string();
+    /// assert!(error.starts_with("line 7: envelope.temperature: the envelope is empty"), "{error}");
+    /// # Ok::<(), hadar::Error>(())
+    /// ```
+    pub fn from_toml(text: &str, path: Option<&Path>) -> Result<Self> {
+        let mut source = Source { path: path.map(Path::to_owned), lines: BTreeMap::new() };
+        let document = document(text, &mut source)?;
+        let known = [&TABLES[..], &["rule", "cameras"]].concat();
+        let root = Section::open(&document, "", &source, &known)?;
+        let about = root.read("rule", about)?.unwrap_or_default();
+        let mut cameras = root.read("cameras", presets)?.unwrap_or_default();
+        cameras.extend(root.read("camera", tables)?.unwrap_or_default());
+        if cameras.is_empty() {
+            let key = if root.get("cameras").is_some() { "cameras" } else { "" };
+            return Err(root.fail(key, Error::malformed("the rule has no camera to check", NO_CAMERA)));
+        }
+        let scenario = of_root(&root)?;
+        let scenario = Scenario { source, ..scenario };
+        Ok(Self { about, scenario, cameras, text: text.to_owned() })
+    }
+
+    /// The envelope, with the scenario's own values where it is silent.
+    #[must_use]
+    pub fn envelope(&self) -> Envelope {
+        self.scenario.envelope.clone().unwrap_or_default().filled(&self.scenario)
+    }
+
+    /// Where `key` of the camera at an index stands.
+    #[must_use]
+    pub fn camera_place(&self, index: usize, key: &str) -> Place {
+        let key = match self.cameras.get(index) {
+            Some(camera) if camera.is_listed() => camera.key.clone(),
+            Some(camera) => format!("{}.{key}", camera.key),
+            None => "camera".to_owned(),
+        };
+        self.scenario.place(&key)
+    }
+
+    /// The scenario with the camera at an index as its `[camera]`, which then stands where the rule has it.
+    #[must_use]
+    pub fn with_camera(&self, index: usize) -> Scenario {
+        let mut scenario = self.scenario.clone();
+        let Some(camera) = self.cameras.get(index) else { return scenario };
+        scenario.camera = Some(camera.spec.clone());
+        let lines = &mut scenario.source.lines;
+        let own: Vec<(String, usize)> = lines
+            .iter()
+            .filter_map(|(key, line)| {
+                key.strip_prefix(&camera.key).map(|rest| (format!("camera{rest}"), *line))
+            })
+            .collect();
+        lines.extend(own);
+        scenario
+    }
+
+    /// The rule as TOML for a file in `directory`, every default filled in; see [`Scenario::to_toml_beside`].
+    #[must_use]
+    pub fn to_toml_beside(&self, directory: &Path) -> String {
+        let absolute = std::path::absolute(directory).ok();
+        write::text(self.document(Paths { beside: absolute.as_deref() }))
+    }
+
+    /// The rule as TOML, every default filled in, with absolute paths.
+    #[must_use]
+    pub fn to_toml(&self) -> String {
+        write::text(self.document(Paths { beside: None }))
+    }
+
+    fn document(&self, paths: Paths<'_>) -> Document {
+        let mut document = Scenario { camera: None, ..self.scenario.clone() }.document(paths);
+        let camera = |camera: &RuleCamera| {
+            Entries::default().put_if("name", camera.name.as_deref()).and(write::camera(&camera.spec, paths))
+        };
+        let about = Entries::default()
+            .put_if("name", self.about.name.as_deref())
+            .put_if("text", self.about.text.as_deref())
+            .put_if("authority", self.about.authority.as_deref())
+            .put_if("version", self.about.version.as_deref());
+        document.push(("rule", Part::Table(about)));
+        document.push(("camera", Part::Tables(self.cameras.iter().map(camera).collect())));
+        document
+    }
+}
+
+/// Two rules are equal when they ask the same question of the same cameras: where they stand does not count.
+impl PartialEq for Rule {
+    fn eq(&self, other: &Self) -> bool {
+        let same = |(a, b): (&RuleCamera, &RuleCamera)| a.name == b.name && a.spec == b.spec;
+        self.about == other.about
+            && self.scenario == other.scenario
+            && self.cameras.len() == other.cameras.len()
+            && self.cameras.iter().zip(&other.cameras).all(same)
+    }
+}
+
+/// The same keys and values as the TOML, with absolute paths.
+impl Serialize for Rule {
+    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+        write::entries(self.document(Paths { beside: None }), serializer)
+    }
+}
+
+fn about(entry: &Entry<'_>) -> Result<About> {
+    let section = entry.section(&["name", "text", "authority", "version"])?;
+    let text = |key, example: &str| section.read(key, |entry| Ok(entry.text(example)?.trim().to_owned()));
+    Ok(About {
+        name: text("name", "\"Robots that see people at night\"")?,
+        text: text("text", "\"A camera must tell a person from a robot.\"")?,
+        authority: text("authority", "\"City of Lafayette\"")?,
+        version: text("version", "\"1\"")?,
+    })
+}
+
+/// Known cameras as they are.
+fn presets(entry: &Entry<'_>) -> Result<Vec<RuleCamera>> {
+    let items = entry.items(CAMERAS)?;
+    let mut cameras: Vec<RuleCamera> = Vec::with_capacity(items.len());
+    for (index, item) in items.iter().enumerate() {
+        let name = item.text("\"flir-a325sc\"")?.trim().to_owned();
+        let spec = CameraSpec { preset: Some(name), ..CameraSpec::default() };
+        if cameras.iter().any(|camera| camera.spec == spec) {
+            return Err(item.fail(Error::malformed("the same is already in the list", "name it once")));
+        }
+        cameras.push(RuleCamera { name: None, spec, key: format!("cameras[{index}]") });
+    }
+    Ok(cameras)
+}
+
+/// Cameras of the rule's own.
+fn tables(entry: &Entry<'_>) -> Result<Vec<RuleCamera>> {
+    let items = entry.items("each camera as [[camera]], in double brackets")?;
+    items
+        .iter()
+        .enumerate()
+        .map(|(index, item)| {
+            let spec = CameraSpec::read_beside(item, &["name"])?;
+            let section = item.table()?;
+            let name = section.read("name", |entry| Ok(entry.text("\"ours\"")?.trim().to_owned()))?;
+            Ok(RuleCamera { name, spec, key: format!("camera[{index}]") })
+        })
+        .collect()
+}

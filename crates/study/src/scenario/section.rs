@@ -1,0 +1,318 @@
+//! Tables and values of a parsed scenario that know their full key, so that each error names file, line and key.
+
+use toml::de::{DeTable, DeValue};
+
+use super::source::{Source, dotted};
+use hadar::error::{Error, Place, Result};
+use hadar::units::Dimension;
+
+/// What a number must satisfy, and how that is said.
+#[derive(Clone, Copy)]
+pub(super) struct Rule {
+    pub holds: fn(f64) -> bool,
+    pub expected: &'static str,
+}
+
+pub(super) const ABOVE_ZERO: Rule = Rule { holds: |value| value > 0.0, expected: "above 0" };
+pub(super) const FROM_ZERO: Rule = Rule { holds: |value| value >= 0.0, expected: "0 or above" };
+pub(super) const SHARE: Rule =
+    Rule { holds: |value| (0.0..=1.0).contains(&value), expected: "between 0 and 1" };
+pub(super) const ABSOLUTE_TEMPERATURE: Rule =
+    Rule { holds: |value| value > 0.0, expected: "above 0 K (-273.15 degC)" };
+
+/// One table: its entries, its name, and the file they stand in.
+pub(super) struct Section<'a> {
+    table: &'a DeTable<'a>,
+    name: String,
+    source: &'a Source,
+}
+
+/// One value, with the full key it was written under.
+pub(super) struct Entry<'a> {
+    value: &'a DeValue<'a>,
+    key: String,
+    source: &'a Source,
+}
+
+impl<'a> Section<'a> {
+    /// Opens a table in which only the `known` keys may stand.
+    pub(super) fn open(
+        table: &'a DeTable<'a>,
+        name: &str,
+        source: &'a Source,
+        known: &[&str],
+    ) -> Result<Self> {
+        let unknown = table.keys().filter(|key| !known.contains(&key.get_ref().as_ref()));
+        match unknown.min_by_key(|key| key.span().start) {
+            None => Ok(Self { table, name: name.to_owned(), source }),
+            Some(key) => {
+                let line = source.place(&dotted(name, key.get_ref())).line;
+                let place = Place { line, ..source.place(name) };
+                Err(unknown_key(key.get_ref(), known).at(place))
+            }
+        }
+    }
+
+    pub(super) fn get(&self, key: &str) -> Option<Entry<'a>> {
+        let value = self.table.get(key)?;
+        Some(Entry { value: value.get_ref(), key: dotted(&self.name, key), source: self.source })
+    }
+
+    /// A key that must be there; `example` is a value to write.
+    pub(super) fn require(&self, key: &str, example: &str) -> Result<Entry<'a>> {
+        self.get(key).ok_or_else(|| {
+            self.fail(key, Error::malformed("the key is missing", format!("write {key} = {example}")))
+        })
+    }
+
+    /// The value of `key` as `read` takes it, if the key is there.
+    pub(super) fn read<T>(&self, key: &str, read: impl FnOnce(&Entry<'a>) -> Result<T>) -> Result<Option<T>> {
+        self.get(key).map(|entry| read(&entry)).transpose()
+    }
+
+    /// A quantity with its unit.
+    pub(super) fn quantity(&self, key: &str, dimension: Dimension, rule: Rule) -> Result<Option<f64>> {
+        self.read(key, |entry| entry.quantity(dimension, rule))
+    }
+
+    /// A plain number; `example` is one to write.
+    pub(super) fn number(&self, key: &str, example: &str, rule: Rule) -> Result<Option<f64>> {
+        self.read(key, |entry| entry.number(example, rule))
+    }
+
+    /// One of a few words.
+    pub(super) fn choice<T: Copy>(&self, key: &str, choices: &[(&str, T)]) -> Result<Option<T>> {
+        self.read(key, |entry| entry.choice(choices))
+    }
+
+    /// Refuses a second one of `keys`, which say the same thing in different ways; gives back the one there is.
+    pub(super) fn at_most_one<'k>(&self, keys: &[&'k str]) -> Result<Option<&'k str>> {
+        let mut given = keys.iter().copied().filter(|key| self.table.contains_key(*key));
+        match (given.next(), given.next()) {
+            (Some(first), Some(second)) => Err(self.fail(
+                second,
+                Error::malformed(format!("`{first}` is given as well"), "keep only one of the two"),
+            )),
+            (first, _) => Ok(first),
+        }
+    }
+
+    /// Adds the place of one of the section's keys to an error.
+    pub(super) fn fail(&self, key: &str, error: Error) -> Error {
+        error.at(self.source.place(&dotted(&self.name, key)))
+    }
+}
+
+impl<'a> Entry<'a> {
+    pub(super) fn source(&self) -> &'a Source {
+        self.source
+    }
+
+    pub(super) fn fail(&self, error: Error) -> Error {
+        error.at(self.source.place(&self.key))
+    }
+
+    fn wrong_type(&self, instead: String) -> Error {
+        self.fail(Error::malformed(format!("{} was found", describe(self.value)), instead))
+    }
+
+    /// The last part of the key, without an index.
+    fn leaf(&self) -> &str {
+        let key = self.key.rsplit('.').next().unwrap_or(&self.key);
+        key.split('[').next().unwrap_or(key)
+    }
+
+    /// What to write: `key = example`, or the example alone for an item of a list.
+    fn written(&self, example: &str) -> String {
+        if self.key.ends_with(']') { example.to_owned() } else { format!("{} = {example}", self.leaf()) }
+    }
+
+    /// A table with these keys, under its header `[name]`.
+    pub(super) fn section(&self, known: &[&str]) -> Result<Section<'a>> {
+        let Section { table, name, source } = self.table()?;
+        Section::open(table, &name, source, known)
+    }
+
+    /// A table whose keys were checked before.
+    pub(super) fn table(&self) -> Result<Section<'a>> {
+        match self.value {
+            DeValue::Table(table) => Ok(Section { table, name: self.key.clone(), source: self.source }),
+            _ => Err(self.wrong_type(format!("write the table as [{}], once", self.key))),
+        }
+    }
+
+    /// The items of a list; `example` is what to write.
+    pub(super) fn items(&self, example: &str) -> Result<Vec<Entry<'a>>> {
+        let DeValue::Array(items) = self.value else {
+            return Err(self.wrong_type(format!("write {example}")));
+        };
+        let entry = |(index, value): (usize, &'a toml::Spanned<DeValue<'a>>)| Entry {
+            value: value.get_ref(),
+            key: format!("{}[{index}]", self.key),
+            source: self.source,
+        };
+        Ok(items.iter().enumerate().map(entry).collect())
+    }
+
+    /// The two items of a range; `example` is one to write.
+    pub(super) fn pair(&self, example: &str) -> Result<[Entry<'a>; 2]> {
+        let example = self.written(example);
+        let items = self.items(&example)?;
+        let found = items.len();
+        <[Entry<'a>; 2]>::try_from(items).map_err(|_| {
+            let found = format!("a range has two ends, but the list has {found}");
+            self.fail(Error::malformed(found, format!("write {example}")))
+        })
+    }
+
+    /// Text on one line, not empty; `example` is what to write, quotes included.
+    pub(super) fn text(&self, example: &str) -> Result<&'a str> {
+        let DeValue::String(text) = self.value else {
+            return Err(self.wrong_type(format!("write text in quotes, e.g. {}", self.written(example))));
+        };
+        self.one_line(text)?;
+        if text.trim().is_empty() {
+            let instead = format!("write for example {}", self.written(example));
+            return Err(self.fail(Error::malformed("the text is empty", instead)));
+        }
+        Ok(text)
+    }
+
+    /// A message is one line, so what it repeats must be.
+    fn one_line(&self, text: &str) -> Result<()> {
+        if text.chars().any(char::is_control) {
+            let found = "the text contains a line break or control character";
+            return Err(self.fail(Error::malformed(found, "write it on one line")));
+        }
+        Ok(())
+    }
+
+    /// The text of what should be a quantity. A bare number is passed on as it was written, so that the
+    /// parser of the dimension says what to write.
+    pub(super) fn quantity_text(&self) -> Result<String> {
+        match self.value {
+            DeValue::String(text) => self.one_line(text).map(|()| text.to_string()),
+            DeValue::Integer(number) => Ok(number.to_string()),
+            DeValue::Float(number) => Ok(number.to_string()),
+            _ => Err(self.wrong_type("write a number and its unit in quotes".to_owned())),
+        }
+    }
+
+    /// A quantity with its unit, in the unit used inside.
+    pub(super) fn quantity(&self, dimension: Dimension, rule: Rule) -> Result<f64> {
+        let text = self.quantity_text()?;
+        let value = dimension.parse(&text).map_err(|error| self.fail(error))?;
+        if value.is_finite() && (rule.holds)(value) {
+            return Ok(value);
+        }
+        let expected = if value.is_finite() { rule.expected } else { "a finite number" };
+        Err(self.fail(Error::malformed(
+            format!("`{}` is out of range", text.trim()),
+            format!("it must be {expected}"),
+        )))
+    }
+
+    /// A finite plain number, whole or not; `example` is one to write.
+    pub(super) fn number(&self, example: &str, rule: Rule) -> Result<f64> {
+        let value = match self.value {
+            DeValue::Integer(digits) if digits.radix() == 10 => digits.as_str().parse().ok(),
+            // The digits alone, without 0x, 0o or 0b before them.
+            DeValue::Integer(digits) => {
+                i64::from_str_radix(digits.as_str(), digits.radix()).ok().map(|value| value as f64)
+            }
+            DeValue::Float(digits) => digits.as_str().parse().ok(),
+            _ => None,
+        };
+        let Some(value) = value else {
+            let instead = format!("write a plain number without quotes, e.g. {}", self.written(example));
+            return Err(self.wrong_type(instead));
+        };
+        if value.is_finite() && (rule.holds)(value) {
+            return Ok(value);
+        }
+        Err(self.fail(Error::out_of_range(self.leaf(), value, "", rule.expected)))
+    }
+
+    /// A whole number of at least 1.
+    pub(super) fn count(&self, example: &str) -> Result<u32> {
+        let whole = match self.value {
+            DeValue::Integer(digits) => u32::from_str_radix(digits.as_str(), digits.radix()).ok(),
+            _ => None,
+        };
+        whole.filter(|count| *count >= 1).ok_or_else(|| {
+            let instead =
+                format!("write a whole number from 1 to {}, e.g. {} = {example}", u32::MAX, self.leaf());
+            self.wrong_type(instead)
+        })
+    }
+
+    /// Whether the value is text.
+    pub(super) fn is_text(&self) -> bool {
+        matches!(self.value, DeValue::String(_))
+    }
+
+    /// Whether the value is a list.
+    pub(super) fn is_list(&self) -> bool {
+        matches!(self.value, DeValue::Array(_))
+    }
+
+    /// `true` or `false`.
+    pub(super) fn boolean(&self) -> Result<bool> {
+        match self.value {
+            DeValue::Boolean(value) => Ok(*value),
+            _ => {
+                Err(self.wrong_type(format!("write {0} = true or {0} = false, without quotes", self.leaf())))
+            }
+        }
+    }
+
+    /// One of a few words.
+    pub(super) fn choice<T: Copy>(&self, choices: &[(&str, T)]) -> Result<T> {
+        let names: Vec<String> = choices.iter().map(|(name, _)| format!("\"{name}\"")).collect();
+        let listed = listing(&names, " or ");
+        let text = match self.value {
+            DeValue::String(text) => text.as_ref(),
+            _ => return Err(self.wrong_type(format!("write {listed}"))),
+        };
+        self.one_line(text)?;
+        choices.iter().find(|(name, _)| *name == text).map(|(_, choice)| *choice).ok_or_else(|| {
+            self.fail(Error::malformed(format!("`{text}` is not known here"), format!("write {listed}")))
+        })
+    }
+}
+
+/// `a, b or c`.
+fn listing(names: &[String], last: &str) -> String {
+    match names {
+        [] => String::new(),
+        [one] => one.clone(),
+        [first @ .., end] => format!("{}{last}{end}", first.join(", ")),
+    }
+}
+
+fn unknown_key(key: &str, known: &[&str]) -> Error {
+    let shown: String = key.escape_debug().collect();
+    match Error::unknown_name("key", &shown, known.iter().copied()) {
+        Error::UnknownName { nearest, .. } if nearest.is_empty() => {
+            let names: Vec<String> = known.iter().map(|name| format!("`{name}`")).collect();
+            Error::malformed(
+                format!("there is no key `{shown}`"),
+                format!("what may stand here is {}", listing(&names, " or ")),
+            )
+        }
+        error => error,
+    }
+}
+
+/// A value in a few words, on one line.
+fn describe(value: &DeValue<'_>) -> String {
+    match value {
+        DeValue::String(text) => format!("the text \"{}\"", text.escape_debug()),
+        DeValue::Integer(number) => format!("the number {number}"),
+        DeValue::Float(number) => format!("the number {number}"),
+        DeValue::Boolean(value) => format!("the value {value}"),
+        DeValue::Datetime(date) => format!("the date {date}"),
+        DeValue::Array(_) => "a list".to_owned(),
+        DeValue::Table(_) => "a table".to_owned(),
+    }
+}

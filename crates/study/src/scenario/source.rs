@@ -1,0 +1,95 @@
+//! Where a scenario was read from: its file, the directory of its relative paths, the line of each key.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use toml::de::{DeTable, DeValue};
+
+use hadar::error::Place;
+
+/// Longest name of a table or list whose entries are noted, bytes. No scenario needs as much, and names of entries
+/// repeat it: a long one with a long list would fill the memory.
+const LONGEST_NAME: usize = 100;
+
+/// Where a scenario was read from.
+#[derive(Debug, Clone, Default)]
+pub struct Source {
+    /// The scenario file as it was named, `None` for text from elsewhere.
+    pub path: Option<PathBuf>,
+    /// Line of each key that was written, e.g. `target.material` or `environment[0].lighting`.
+    pub lines: BTreeMap<String, usize>,
+}
+
+impl Source {
+    /// The directory that relative paths of the scenario start from; empty for the current one.
+    #[must_use]
+    pub fn directory(&self) -> &Path {
+        self.path.as_deref().and_then(Path::parent).unwrap_or(Path::new(""))
+    }
+
+    /// Where `key` stands; see [`super::Scenario::place`].
+    #[must_use]
+    pub fn place(&self, key: &str) -> Place {
+        let mut known = key;
+        let line = loop {
+            match self.lines.get(known) {
+                Some(line) => break Some(*line),
+                None => match known.rfind(['.', '[']) {
+                    Some(end) => known = known.get(..end).unwrap_or_default(),
+                    None => break None,
+                },
+            }
+        };
+        let key = (!key.is_empty()).then(|| key.to_owned());
+        Place { path: self.path.clone(), line, key }
+    }
+
+    /// Notes the line of every key and list item of a parsed `text`.
+    pub(super) fn note_lines(&mut self, text: &str, root: &DeTable<'_>) {
+        let starts = LineStarts::of(text);
+        self.note_table(&starts, "", root);
+    }
+
+    fn note_table(&mut self, starts: &LineStarts, name: &str, table: &DeTable<'_>) {
+        for (key, value) in table {
+            let full = dotted(name, key.get_ref());
+            self.lines.insert(full.clone(), starts.line(key.span().start));
+            self.note_value(starts, &full, value.get_ref());
+        }
+    }
+
+    fn note_value(&mut self, starts: &LineStarts, name: &str, value: &DeValue<'_>) {
+        match value {
+            _ if name.len() > LONGEST_NAME => {}
+            DeValue::Table(table) => self.note_table(starts, name, table),
+            DeValue::Array(items) => {
+                for (index, item) in items.iter().enumerate() {
+                    let full = format!("{name}[{index}]");
+                    self.lines.insert(full.clone(), starts.line(item.span().start));
+                    self.note_value(starts, &full, item.get_ref());
+                }
+            }
+            _ => {}
+        }
+    }
+}
+
+/// `table.key`, or the key alone at the root.
+pub(super) fn dotted(table: &str, key: &str) -> String {
+    if table.is_empty() { key.to_owned() } else { format!("{table}.{key}") }
+}
+
+/// The byte at which each line of a text begins.
+pub(super) struct LineStarts(Vec<usize>);
+
+impl LineStarts {
+    pub(super) fn of(text: &str) -> Self {
+        let breaks = text.bytes().enumerate().filter(|(_, byte)| *byte == b'\n').map(|(at, _)| at + 1);
+        Self(std::iter::once(0).chain(breaks).collect())
+    }
+
+    /// Line, from 1, of a byte offset.
+    pub(super) fn line(&self, offset: usize) -> usize {
+        self.0.partition_point(|start| *start <= offset)
+    }
+}

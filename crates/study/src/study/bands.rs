@@ -1,0 +1,81 @@
+//! The bands of a scenario: sampled at their centres as in the paper, or integrated.
+
+use crate::scenario::{BandSource, BandsSpec, Scenario, Source};
+use hadar::error::Result;
+use hadar::material::Material;
+use hadar::scene::{EnvironmentObject, Surroundings};
+use hadar::spectrum::Bands;
+use hadar::units::Spectral;
+use std::borrow::Cow;
+
+/// The bands of a scenario as the paper samples them: at band centres.
+pub(super) fn at_centres(spec: &BandsSpec, source: &Source) -> Result<Bands> {
+    let made = match &spec.source {
+        BandSource::Grid { start, stop, step } => match (start, stop, step) {
+            (Spectral::Wavelength(start), Spectral::Wavelength(stop), Spectral::Wavelength(step)) => {
+                Bands::uniform_wavelength(*start, *stop, *step)
+            }
+            _ => Bands::uniform(start.number(), stop.number(), step.number()),
+        },
+        BandSource::Rows(path) => return Bands::from_rows_file(path),
+        BandSource::Filters(path) => return Bands::from_filters_file(path),
+        BandSource::Ranges(ranges) => {
+            let edges: Vec<(f64, f64)> = ranges
+                .iter()
+                .map(|[a, b]| (a.wavenumber_cm1(), b.wavenumber_cm1()))
+                .map(|(a, b)| (a.min(b), a.max(b)))
+                .collect();
+            Bands::from_ranges(&edges)
+        }
+    };
+    made.map_err(|error| error.at(source.place("bands")))
+}
+
+/// The materials of a scenario before they are sampled.
+pub(super) struct Materials<'a> {
+    pub(super) target: &'a Material,
+    pub(super) alternatives: &'a [Cow<'a, Material>],
+    /// One per environment object; a blackbody where `None`.
+    pub(super) environment: &'a [Option<Cow<'a, Material>>],
+}
+
+impl Materials<'_> {
+    fn surfaces(&self) -> impl Iterator<Item = &Material> {
+        std::iter::once(self.target).chain(self.alternatives.iter().map(AsRef::as_ref))
+    }
+
+    fn all(&self) -> impl Iterator<Item = &Material> {
+        self.surfaces().chain(self.environment.iter().flatten().map(AsRef::as_ref))
+    }
+}
+
+/// The same bands integrating the signals of target and alternatives, where the scenario asks for it.
+pub(super) fn integrated(scenario: &Scenario, bands: Bands, materials: &Materials<'_>) -> Result<Bands> {
+    if !scenario.bands.integrate {
+        return Ok(bands);
+    }
+    let low = bands.bands().iter().map(|band| band.low_cm1).fold(f64::INFINITY, f64::min);
+    let high = bands.bands().iter().map(|band| band.high_cm1).fold(0.0, f64::max);
+    let kinks: Vec<f64> = materials.all().flat_map(|material| material.breakpoints_cm1(low, high)).collect();
+    let lighting: Vec<f64> = scenario.environment.iter().map(|object| object.lighting).collect();
+    bands
+        .integrated(&kinks, scenario.bands.tolerance, |nodes| {
+            let objects = scenario
+                .environment
+                .iter()
+                .zip(materials.environment)
+                .map(|(object, material)| {
+                    let emissivity =
+                        material.as_ref().map(|material| material.emissivity(nodes)).transpose()?;
+                    Ok(EnvironmentObject { temperature_k: object.temperature_k, emissivity })
+                })
+                .collect::<Result<Vec<_>>>()?;
+            let surroundings = Surroundings::new(nodes, objects)?;
+            let state = surroundings.state(scenario.target.temperature_k, &lighting)?;
+            materials
+                .surfaces()
+                .map(|material| Ok(surroundings.signal(&material.emissivity(nodes)?, &state)))
+                .collect()
+        })
+        .map_err(|error| error.at(scenario.place("bands.integrate")))
+}

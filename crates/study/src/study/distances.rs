@@ -1,0 +1,179 @@
+//! Distances from the target to one alternative, by every reading: per √photon, of a camera, and the photons they ask
+//! for where priors compete with the photons.
+
+use super::{Study, Surface};
+use crate::scenario::DistanceKind;
+use hadar::demand::{Reason, Thing, Work};
+use hadar::error::Result;
+use hadar::fisher::{Counting, Nuisance, Unknowns};
+use hadar::identifiability::local::{LocalDistance, LocalSolver};
+use hadar::identifiability::nearest::{NearestDistance, NearestSolver};
+
+impl Study {
+    /// Books local distances, of whose columns of derivatives only those of the unknowns and the material are formed.
+    pub(super) fn book_local(&self, work: &mut Work, unknowns: &Unknowns, count: usize) {
+        let objects = self.surroundings.objects().len();
+        // The material, temperature and gain; lighting and temperature of every object.
+        let (asked, all) = (unknowns.parameters(objects).len() + 1, 3 + 2 * objects);
+        work.compute(Thing::LocalDistances, count as u64);
+        work.compute(Thing::DerivativeColumns, (count * asked) as u64);
+        work.spare(Thing::DerivativeColumns, Reason::NotAsked, (count * all.saturating_sub(asked)) as u64);
+    }
+
+    /// Books distances of a kind.
+    pub(super) fn book_distances(&self, work: &mut Work, kind: DistanceKind, count: usize) {
+        match kind {
+            DistanceKind::Nearest => work.compute(Thing::NearestSearches, count as u64),
+            DistanceKind::Local => self.book_local(work, &self.unknowns, count),
+            DistanceKind::LocalUnknownGain => {
+                let unknowns = self.unknowns.with(Nuisance::Gain);
+                if self.enough_bands(&unknowns) {
+                    self.book_local(work, &unknowns, count);
+                }
+            }
+        }
+    }
+
+    /// Local distance per √photon among `photons` photons.
+    pub(super) fn local(
+        &self,
+        unknowns: Unknowns,
+        alternative: &Surface,
+        photons: f64,
+        work: &mut Work,
+    ) -> Result<LocalDistance> {
+        self.book_local(work, &unknowns, 1);
+        LocalSolver::new(&self.bands, &self.surroundings, unknowns)
+            .per_photon(&self.target.emissivity, &alternative.emissivity, &self.state, photons)
+            .map_err(|error| error.at(self.scenario.place("bands")))
+    }
+
+    /// The same with gain unknown too; with no band to spare for it nothing is left, exactly.
+    pub(super) fn local_unknown_gain(
+        &self,
+        alternative: &Surface,
+        photons: f64,
+        work: &mut Work,
+    ) -> Result<f64> {
+        let unknowns = self.unknowns.with(Nuisance::Gain);
+        if !self.enough_bands(&unknowns) {
+            return Ok(0.0);
+        }
+        Ok(self.local(unknowns, alternative, photons, work)?.distance)
+    }
+
+    /// Whether there are more bands than unknowns without a prior.
+    pub(super) fn enough_bands(&self, unknowns: &Unknowns) -> bool {
+        let parameters = unknowns.parameters(self.surroundings.objects().len());
+        let free = parameters.iter().filter(|parameter| unknowns.sigma_prior(**parameter).is_none()).count();
+        self.bands.len() > free
+    }
+
+    pub(super) fn nearest(
+        &self,
+        alternative: &Surface,
+        photons: f64,
+        work: &mut Work,
+    ) -> Result<NearestDistance> {
+        work.compute(Thing::NearestSearches, 1);
+        NearestSolver::new(&self.bands, &self.surroundings, self.unknowns.clone(), self.range).per_photon(
+            &self.target.emissivity,
+            &alternative.emissivity,
+            &self.state,
+            photons,
+        )
+    }
+
+    /// From the nearest state back to the target's own material, within all that physics allows.
+    pub(super) fn return_distance(
+        &self,
+        alternative: &Surface,
+        nearest: &NearestDistance,
+        work: &mut Work,
+    ) -> Result<NearestDistance> {
+        work.compute(Thing::NearestSearches, 1);
+        NearestSolver::new(&self.bands, &self.surroundings, self.unknowns.clone(), self.range).per_photon(
+            &alternative.emissivity,
+            &self.target.emissivity,
+            &nearest.state,
+            f64::INFINITY,
+        )
+    }
+
+    /// Statistical distance d of a kind at given counts and noise.
+    pub(super) fn statistical_distance(
+        &self,
+        kind: DistanceKind,
+        alternative: &Surface,
+        counting: &Counting,
+        work: &mut Work,
+    ) -> Result<f64> {
+        self.book_distances(work, kind, 1);
+        let (target, other) = (&self.target.emissivity, &alternative.emissivity);
+        let local = |unknowns: Unknowns| {
+            LocalSolver::new(&self.bands, &self.surroundings, unknowns)
+                .with_counting(target, other, &self.state, counting)
+                .map(|local| local.distance)
+        };
+        match kind {
+            DistanceKind::Nearest => {
+                NearestSolver::new(&self.bands, &self.surroundings, self.unknowns.clone(), self.range)
+                    .with_counting(target, other, &self.state, counting)
+                    .map(|nearest| nearest.distance)
+            }
+            DistanceKind::Local => local(self.unknowns.clone()),
+            DistanceKind::LocalUnknownGain => {
+                let unknowns = self.unknowns.with(Nuisance::Gain);
+                if self.enough_bands(&unknowns) { local(unknowns) } else { Ok(0.0) }
+            }
+        }
+    }
+
+    /// Distance per √photon of a kind, priors counting as among `photons` photons.
+    pub(super) fn distance_per_photon(
+        &self,
+        kind: DistanceKind,
+        alternative: &Surface,
+        photons: f64,
+        work: &mut Work,
+    ) -> Result<f64> {
+        match kind {
+            DistanceKind::Nearest => self.nearest(alternative, photons, work).map(|nearest| nearest.distance),
+            DistanceKind::Local => {
+                self.local(self.unknowns.clone(), alternative, photons, work).map(|local| local.distance)
+            }
+            DistanceKind::LocalUnknownGain => self.local_unknown_gain(alternative, photons, work),
+        }
+    }
+
+    /// What is unknown for the distance that decides.
+    pub(super) fn decisive_unknowns(&self) -> Unknowns {
+        match self.scenario.requirement.by {
+            DistanceKind::LocalUnknownGain => self.unknowns.with(Nuisance::Gain),
+            DistanceKind::Nearest | DistanceKind::Local => self.unknowns.clone(),
+        }
+    }
+
+    /// Photons at which √N d₀(N) meets the requirement, d₀ depending on N through the priors.
+    pub(super) fn photons_with_priors(
+        &self,
+        kind: DistanceKind,
+        alternative: &Surface,
+        work: &mut Work,
+    ) -> Result<Option<f64>> {
+        let mut excess = |log: f64| {
+            let photons = log.exp();
+            let distance = self.distance_per_photon(kind, alternative, photons, work)?;
+            Ok((photons.sqrt() * distance / self.required).max(1e-300).ln())
+        };
+        // From a millionth of a photon to 10⁶⁰ of them.
+        let (low, high) = (-14.0, 138.0);
+        if excess(high)? < 0.0 {
+            return Ok(None);
+        }
+        if excess(low)? >= 0.0 {
+            return Ok(Some(0.0));
+        }
+        hadar::root::crossing(low, high, excess).map(|log| Some(log.exp()))
+    }
+}

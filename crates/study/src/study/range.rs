@@ -1,0 +1,369 @@
+//! A ranging scenario answered: bounds of every window by each signal, what would have to change, witnesses.
+
+mod bounds;
+mod resolve;
+mod results;
+mod signals;
+mod solve;
+mod subject;
+mod verdict;
+mod witness;
+
+pub use results::{
+    BoundMaps, CellMedians, DepthSolutions, DepthVerdict, Geometry, Line, Matched, ObjectBounds, PictureKind,
+    Ranging, Signal, SignalBounds,
+};
+
+pub use bounds::{median, quantile};
+
+use self::bounds::Ground;
+use self::signals::SignalMap;
+use self::subject::{Resolved, Truth, nothing_to_see};
+use super::Warning;
+use crate::scenario::RangeScenario;
+use hadar::demand::{Demand, Skipping, Thing, Work};
+use hadar::error::Result;
+use hadar::instrument::Camera;
+use hadar::ranging::cube::{Cube, Shape};
+use hadar::ranging::depth::StereoGeometry;
+use hadar::ranging::derivative::Derivative;
+use hadar::ranging::information::{Cell, InformationMap, Request, information};
+use hadar::ranging::noise::NoiseVariance;
+use hadar::render::{Part, StereoPair};
+use hadar::spectrum::Bands;
+
+/// A ranging scenario with everything it names looked up and checked.
+#[derive(Debug)]
+pub struct RangeStudy {
+    scenario: RangeScenario,
+    camera: Option<Camera>,
+    bands: Option<Bands>,
+    geometry: StereoGeometry,
+    subject: Resolved,
+    /// What it took to look everything up.
+    looked_up: Work,
+}
+
+/// How a study is to be answered.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct RangePlan {
+    /// Draws of the noise that are matched; none for the bounds alone.
+    pub trials: usize,
+    /// Seed of the draws.
+    pub seed: u64,
+    /// Whether what a proof makes needless is left out; the answer is the same.
+    pub skipping: Skipping,
+    /// Whether yes or no is enough.
+    pub verdict_alone: bool,
+}
+
+/// Is told how much of how much is done.
+pub type Progress<'a> = &'a (dyn Fn(usize, usize) + Sync);
+
+/// Sections of an answer: verdict, objects, cells, what would have to change, lines, and views matched.
+const SECTIONS: usize = 6;
+
+/// Information of every window in both views.
+struct Informed {
+    left: Vec<SignalMap>,
+    /// Empty where there is no right view.
+    right: Vec<SignalMap>,
+    /// The four cells of the left view.
+    cells: InformationMap,
+    truth: Truth,
+    pair: Option<StereoPair>,
+}
+
+impl RangeStudy {
+    /// The scenario.
+    #[must_use]
+    pub fn scenario(&self) -> &RangeScenario {
+        &self.scenario
+    }
+
+    /// Rows, columns and bands of a view.
+    ///
+    /// # Errors
+    /// A scene without bands.
+    pub fn shape(&self) -> Result<Shape> {
+        match &self.subject {
+            Resolved::Scene(scene) => {
+                Shape::new(scene.rig.rows, scene.rig.columns, self.bands.as_ref().map_or(0, Bands::len))
+            }
+            Resolved::Cube(cube) => Ok(cube.left.shape()),
+        }
+    }
+
+    /// Expected counts of the left view of a scene, and their noise; `None` of cubes, which are there.
+    ///
+    /// # Errors
+    /// A scene that cannot be rendered.
+    pub fn rendered_left(&self, progress: Progress<'_>) -> Result<Option<(Cube, &NoiseVariance)>> {
+        let (Resolved::Scene(scene), Some(bands)) = (&self.subject, &self.bands) else { return Ok(None) };
+        let pair = scene.scene.render(&scene.rig, bands, &scene.options, progress)?;
+        Ok(Some((scene.counts(&pair.left, Part::Total)?, &scene.noise)))
+    }
+
+    /// The stereo geometry.
+    #[must_use]
+    pub fn stereo_geometry(&self) -> &StereoGeometry {
+        &self.geometry
+    }
+
+    /// The bounds, what would have to change, and the witnesses that the plan asks for.
+    ///
+    /// # Errors
+    /// Counts that are negative or no numbers, a window that does not fit into the view, files that cannot be read.
+    pub fn range(&self, plan: &RangePlan, progress: Progress<'_>) -> Result<Ranging> {
+        let shape = self.shape()?;
+        if plan.verdict_alone
+            && plan.skipping == Skipping::On
+            && let Some(result) = self.verdict_alone(shape)?
+        {
+            return Ok(result);
+        }
+        let informed = self.informed(shape, progress)?;
+        let ground = self.ground(&informed.truth, shape)?;
+        let window = self.scenario.stereo.window;
+        let Some(first) = informed.left.first() else { return Err(nothing_to_see()) };
+        let windows = ground.windows(first, [window.half_rows(), window.half_columns()]);
+        let variances: Vec<Vec<f64>> = informed
+            .left
+            .iter()
+            .enumerate()
+            .map(|(i, left)| ground.variances(left, informed.right.get(i), &windows))
+            .collect();
+        let objects = ground.objects(&windows, &informed.left, &variances)?;
+        if objects.first().is_none_or(|all| all.windows == 0) {
+            return Err(nothing_to_see());
+        }
+        let mut maps = ground.maps(&windows, &informed.left, &variances);
+        if let Some(pair) = &informed.pair {
+            maps.pictures = self.pictures(pair)?;
+            maps.brightest = self.brightest(pair)?;
+        }
+        let solve_for = self.solutions(&informed, &ground, &windows, &variances)?;
+        let lines = match plan.trials {
+            0 => self.lines(plan, &informed, &maps, progress)?,
+            // The views that are matched have no diffraction.
+            _ => {
+                let sharp = Ground { var_diffraction_px2: 0.0, ..self.ground(&informed.truth, shape)? };
+                let sharp_variances: Vec<Vec<f64>> = informed
+                    .left
+                    .iter()
+                    .enumerate()
+                    .map(|(i, left)| sharp.variances(left, informed.right.get(i), &windows))
+                    .collect();
+                self.lines(
+                    plan,
+                    &informed,
+                    &sharp.maps(&windows, &informed.left, &sharp_variances),
+                    progress,
+                )?
+            }
+        };
+        let mut demand = Demand::new(plan.skipping);
+        demand.add(&self.looked_up);
+        demand.computed(Thing::Samples, shape.len() * if informed.right.is_empty() { 1 } else { 2 });
+        demand.computed(Thing::Windows, windows.len());
+        demand.computed(Thing::Sections, SECTIONS - 1);
+        let matched = demand.if_asked(plan.trials > 0, Thing::Sections, 1, |demand| {
+            let matched = self.matched(plan, &informed)?;
+            let of_lines: usize = lines.iter().map(|line| line.trials).sum();
+            demand.computed(Thing::MatchedViews, matched.len() + of_lines);
+            Ok(matched)
+        })?;
+        let mut result = Ranging {
+            scenario: self.scenario.clone(),
+            verdict: self.verdict(objects.first())?,
+            shape,
+            geometry: self.geometry(ground.var_diffraction_px2)?,
+            cells: self.cell_medians(&informed, &windows)?,
+            objects,
+            solve_for,
+            lines,
+            matched: matched.unwrap_or_default(),
+            stats: demand.into_work(),
+            warnings: Vec::new(),
+            maps,
+        };
+        result.warnings = self.warnings(&result);
+        Ok(result)
+    }
+
+    fn request<'a>(&self, noise: &'a NoiseVariance, cells: &'a [Cell], shape: Shape) -> Request<'a> {
+        let stereo = &self.scenario.stereo;
+        Request {
+            window: stereo.window,
+            derivative: stereo.derivative,
+            noise,
+            joined: stereo.joined,
+            cells,
+            centres: 0..shape.rows(),
+        }
+    }
+
+    fn informed(&self, shape: Shape, progress: Progress<'_>) -> Result<Informed> {
+        match (&self.subject, &self.bands) {
+            (Resolved::Scene(scene), Some(bands)) => {
+                let at = |error: hadar::Error| error.at(self.scenario.place("scene"));
+                let pair = scene.scene.render(&scene.rig, bands, &scene.options, progress).map_err(at)?;
+                let request = self.request(&scene.noise, &Cell::ALL, shape);
+                let (left, cells) = signals::of_scene(scene, &pair.left, bands, &request)?;
+                let (right, _) = signals::of_scene(scene, &pair.right, bands, &request)?;
+                let truth = Truth::of_scene(&scene.scene, &pair.left);
+                Ok(Informed { left, right, cells, truth, pair: Some(pair) })
+            }
+            (Resolved::Scene(_), None) => Err(nothing_to_see()),
+            (Resolved::Cube(cube), _) => {
+                // A unit of g photons: J(N, σ²) = g J(n, σ²/g) for counts n = N/g.
+                let noise = cube.noise_per_unit()?;
+                let joined = self.scenario.stereo.joined;
+                let of = |cells: &InformationMap| {
+                    let both = [
+                        SignalMap::thermal(cells, joined, shape.bands()),
+                        SignalMap::of(Signal::HeatCube, Cell::Full, cells),
+                    ];
+                    both.map(|map| map.scaled(cube.photons_per_unit)).to_vec()
+                };
+                let place = |key: &'static str| move |error: hadar::Error| error.at(self.scenario.place(key));
+                let noise = noise.as_ref().unwrap_or(&cube.noise);
+                let cells = information(&cube.left, &self.request(noise, &Cell::ALL, shape))
+                    .map_err(place("cube.left"))?;
+                let right = match &cube.right {
+                    Some(right) => {
+                        let both = [Cell::Spatial, Cell::Full];
+                        let found = information(right, &self.request(noise, &both, shape))
+                            .map_err(place("cube.right"))?;
+                        of(&found)
+                    }
+                    None => Vec::new(),
+                };
+                let truth = Truth::of_cube(cube.depth.as_ref(), shape);
+                Ok(Informed { left: of(&cells), right, cells, truth, pair: None })
+            }
+        }
+    }
+
+    fn ground<'a>(&'a self, truth: &'a Truth, shape: Shape) -> Result<Ground<'a>> {
+        Ok(Ground {
+            geometry: &self.geometry,
+            requirement: self.scenario.requirement,
+            var_diffraction_px2: self.var_diffraction_px2()?,
+            truth,
+            columns: shape.columns(),
+        })
+    }
+
+    fn geometry(&self, var_diffraction_px2: f64) -> Result<Geometry> {
+        Ok(Geometry {
+            baseline_m: self.geometry.baseline_m(),
+            focal_length_m: self.geometry.focal_length_m(),
+            pixel_m: self.geometry.pitch_m(),
+            disparity_at_10_m_px: self.geometry.disparity_px(10.0)?,
+            depth_error_per_px_at_10_m: self.geometry.depth_error_m(10.0, 1.0)?,
+            sigma_diffraction_px: var_diffraction_px2.sqrt(),
+        })
+    }
+
+    /// Medians of the four cells in the left view, and of the fullest by another derivative.
+    fn cell_medians(&self, informed: &Informed, windows: &[(usize, usize)]) -> Result<Option<CellMedians>> {
+        let Some(first) = informed.left.first() else { return Ok(None) };
+        let of = |map: &InformationMap, cell: Cell, scale: f64| {
+            let values = map.cell(cell);
+            let at = |&(row, column): &(usize, usize)| values.get(first.at(row, column)?).map(|j| j * scale);
+            median(&windows.iter().filter_map(at).collect::<Vec<_>>())
+        };
+        let scale = match &self.subject {
+            Resolved::Scene(_) => 1.0,
+            Resolved::Cube(cube) => cube.photons_per_unit,
+        };
+        let map = &informed.cells;
+        Ok(Some(CellMedians {
+            total: of(map, Cell::Total, scale),
+            spatial: of(map, Cell::Spatial, scale),
+            spectral: of(map, Cell::Spectral, scale),
+            full: of(map, Cell::Full, scale),
+            other_derivative: self.other_derivative(informed, windows, of(map, Cell::Full, scale) / scale)?,
+        }))
+    }
+
+    /// J of the heat cube by another derivative over that asked for, medians; the windows are those of the map that has fewer.
+    fn other_derivative(
+        &self,
+        informed: &Informed,
+        windows: &[(usize, usize)],
+        own: f64,
+    ) -> Result<Option<f64>> {
+        let shape = self.shape()?;
+        let derivative = match self.scenario.stereo.derivative {
+            Derivative::Central => Derivative::CubicSpline,
+            _ => Derivative::Central,
+        };
+        let made;
+        let noise;
+        let (cube, noise): (&Cube, &NoiseVariance) = match (&self.subject, &informed.pair) {
+            (Resolved::Scene(scene), Some(pair)) => {
+                made = scene.counts(&pair.left, Part::Total)?;
+                (&made, &scene.noise)
+            }
+            (Resolved::Cube(cube), _) => {
+                noise = cube.noise_per_unit()?;
+                (&cube.left, noise.as_ref().unwrap_or(&cube.noise))
+            }
+            (Resolved::Scene(_), None) => return Ok(None),
+        };
+        let request = Request { derivative, ..self.request(noise, &[Cell::Full], shape) };
+        let Ok(map) = information(cube, &request) else { return Ok(None) };
+        let map = SignalMap::of(Signal::HeatCube, Cell::Full, &map);
+        let at = |&(row, column): &(usize, usize)| map.information.get(map.at(row, column)?).copied();
+        let other = median(&windows.iter().filter_map(at).collect::<Vec<_>>());
+        Ok((own > 0.0).then(|| other / own))
+    }
+
+    /// Photons of the brightest sample of a frame.
+    fn brightest(&self, pair: &StereoPair) -> Result<Option<f64>> {
+        let (Resolved::Scene(scene), Some(camera)) = (&self.subject, &self.camera) else { return Ok(None) };
+        if camera.full_well.is_none() {
+            return Ok(None);
+        }
+        let counts = pair.left.cube(Part::Total, scene.counting.counts_per_radiance)?;
+        let most = counts.samples().iter().copied().fold(0.0, f64::max);
+        Ok(Some(most / f64::from(camera.frames)))
+    }
+
+    /// Pictures of the left view, sums over the bands.
+    fn pictures(&self, pair: &StereoPair) -> Result<Vec<(PictureKind, Vec<f64>)>> {
+        let Resolved::Scene(scene) = &self.subject else { return Ok(Vec::new()) };
+        let view = &pair.left;
+        let summed = |part: Part| {
+            let cube = view.cube(part, scene.counting.counts_per_radiance)?;
+            Ok::<_, hadar::Error>(
+                cube.samples().chunks_exact(view.shape().bands()).map(|pixel| pixel.iter().sum()).collect(),
+            )
+        };
+        let sky = |depth: &f64| depth.is_infinite();
+        let hidden = |values: Vec<f64>| -> Vec<f64> {
+            values
+                .into_iter()
+                .zip(&view.depth_m)
+                .map(|(value, z)| if sky(z) { f64::NAN } else { value })
+                .collect()
+        };
+        let surfaces = view.lighting.len() / view.depth_m.len().max(1);
+        // The sky is the first of the surfaces.
+        let not_sky =
+            view.lighting.chunks_exact(surfaces.max(1)).map(|v| 1.0 - v.first().unwrap_or(&0.0)).collect();
+        Ok(vec![
+            (PictureKind::ThermalImage, summed(Part::Total)?),
+            (PictureKind::Scattered, hidden(summed(Part::Scattered)?)),
+            (PictureKind::Temperature, view.temperature_k.iter().map(|t| t - 273.15).collect()),
+            (PictureKind::Lighting, hidden(not_sky)),
+            (PictureKind::Depth, view.depth_m.clone()),
+        ])
+    }
+
+    fn warnings(&self, result: &Ranging) -> Vec<Warning> {
+        verdict::warnings(self, result)
+    }
+}

@@ -1,0 +1,116 @@
+//! Information of every window by each signal, in one view.
+
+use super::results::Signal;
+use super::subject::Rendered;
+use hadar::error::Result;
+use hadar::ranging::cube::{Cube, Rows as _};
+use hadar::ranging::depth::WindowInformation;
+use hadar::ranging::information::{Cell, InformationMap, Request, information};
+use hadar::ranging::noise::Joined;
+use hadar::ranging::reconstruction::EmissionImage;
+use hadar::render::{Part, View};
+use hadar::spectrum::Bands;
+use std::ops::Range;
+
+/// J, photons and Σσ² of every window by one signal.
+#[derive(Debug, Clone)]
+pub(super) struct SignalMap {
+    pub(super) signal: Signal,
+    pub(super) rows: Range<usize>,
+    pub(super) columns: Range<usize>,
+    pub(super) information: Vec<f64>,
+    pub(super) photons: Vec<f64>,
+    pub(super) var_added: Vec<f64>,
+}
+
+impl SignalMap {
+    /// Takes one cell out of a map.
+    pub(super) fn of(signal: Signal, cell: Cell, map: &InformationMap) -> Self {
+        Self {
+            signal,
+            rows: map.rows.clone(),
+            columns: map.columns.clone(),
+            information: map.cell(cell).to_vec(),
+            photons: map.photons.clone(),
+            var_added: map.var_added.clone(),
+        }
+    }
+
+    /// The thermal image, whose joined bands have the noise of one reading or of all.
+    pub(super) fn thermal(map: &InformationMap, joined: Joined, bands: usize) -> Self {
+        let mut thermal = Self::of(Signal::ThermalImage, Cell::Spatial, map);
+        if joined == Joined::OneReading {
+            thermal.var_added.iter_mut().for_each(|var| *var /= bands as f64);
+        }
+        thermal
+    }
+
+    /// Counts in units of `photons` photons each: J, N and Σσ² in photons.
+    pub(super) fn scaled(mut self, photons: f64) -> Self {
+        for values in [&mut self.information, &mut self.photons, &mut self.var_added] {
+            values.iter_mut().for_each(|value| *value *= photons);
+        }
+        self
+    }
+
+    /// A window as the bounds take it.
+    pub(super) fn window(&self, at: usize) -> Option<WindowInformation> {
+        let (j, n) = (*self.information.get(at)?, *self.photons.get(at)?);
+        WindowInformation::new(j, n, *self.var_added.get(at)?).ok()
+    }
+
+    /// The place of a centre in the map.
+    pub(super) fn at(&self, row: usize, column: usize) -> Option<usize> {
+        let inside = self.rows.contains(&row) && self.columns.contains(&column);
+        inside.then(|| (row - self.rows.start) * self.columns.len() + column - self.columns.start)
+    }
+}
+
+/// All signals of one view of a scene, and the four cells of its total signal.
+pub(super) fn of_scene(
+    subject: &Rendered,
+    view: &View,
+    bands: &Bands,
+    request: &Request<'_>,
+) -> Result<(Vec<SignalMap>, InformationMap)> {
+    let factor = subject.counting.counts_per_radiance;
+    let total = view.cube(Part::Total, factor)?;
+    let emission = view.cube(Part::Emission, factor)?;
+    let scattered = view.cube(Part::Scattered, factor)?;
+    let centres: Vec<f64> = bands.bands().iter().map(|band| band.center_cm1).collect();
+    let image = EmissionImage {
+        shape: total.shape(),
+        counts: total.samples(),
+        emission: emission.samples(),
+        scattered: scattered.samples(),
+        temperature_k: &view.temperature_k,
+        wavenumbers_cm1: &centres,
+        var_added: &subject.var_per_band(bands.len()),
+    };
+    let beside = image.beside_emission(request.derivative)?;
+    let margin = request.derivative.margin();
+    let columns = view.shape().columns();
+    let photons: Vec<f64> = scattered
+        .samples()
+        .chunks_exact(bands.len())
+        .enumerate()
+        .filter(|(pixel, _)| (margin..columns - margin).contains(&(pixel % columns)))
+        .map(|(_, pixel)| pixel.iter().sum())
+        .collect();
+    drop((emission, scattered));
+    let all = information(&Cube::from(total), request)?;
+    let half = [request.window.half_rows(), request.window.half_columns()];
+    let of = |signal: Signal, pixels: &[f64]| SignalMap {
+        information: beside.windows(pixels, &all, half),
+        ..SignalMap::of(signal, Cell::Full, &all)
+    };
+    let alone = of(Signal::ScatteredAsMeasured, &beside.scattered_alone);
+    let maps = vec![
+        SignalMap::thermal(&all, request.joined, bands.len()),
+        SignalMap::of(Signal::HeatCube, Cell::Full, &all),
+        of(Signal::Reconstructed, &beside.temperature),
+        of(Signal::ReconstructedBlind, &beside.strength_too),
+        SignalMap { photons: beside.windows(&photons, &all, half), ..alone },
+    ];
+    Ok((maps, all))
+}

@@ -1,0 +1,92 @@
+//! What a scenario leaves silent: unknowns and ranges, and the echo that says everything.
+
+use super::Surface;
+use crate::scenario::{Efficiency, MaterialRef, Scenario};
+use hadar::error::{Error, Result};
+use hadar::fisher::Unknowns;
+use hadar::identifiability::nearest::StateRange;
+use hadar::instrument::{Camera, NoiseSpec};
+
+pub(super) fn alternatives_as_written(alternatives: &[Surface]) -> Vec<String> {
+    alternatives.iter().map(|surface| surface.name.clone()).collect()
+}
+
+pub(super) fn unknowns(scenario: &Scenario) -> Result<Unknowns> {
+    let unknown = &scenario.unknown;
+    let mut unknowns =
+        Unknowns::new(unknown.nuisances.iter().copied())?.lighting_total(unknown.lighting_total)?;
+    for (nuisance, sigma) in &unknown.priors {
+        unknowns = unknowns.prior(*nuisance, *sigma)?;
+    }
+    Ok(unknowns)
+}
+
+pub(super) fn state_range(scenario: &Scenario) -> StateRange {
+    let default = StateRange::default();
+    StateRange {
+        temperature_k: scenario.alternatives.temperature_range_k.unwrap_or(default.temperature_k),
+        lighting: scenario.alternatives.lighting_range.unwrap_or(default.lighting),
+        lighting_sum: default.lighting_sum,
+    }
+}
+
+/// The least lighting of all objects together must fit into what they may sum to.
+pub(super) fn check_range(scenario: &Scenario, range: &StateRange) -> Result<()> {
+    let least = range.lighting[0] * scenario.environment.len() as f64;
+    let most = scenario.unknown.lighting_total.unwrap_or(range.lighting_sum);
+    if least <= most {
+        return Ok(());
+    }
+    let found = format!("a lighting of at least {} for each object makes {least} in all", range.lighting[0]);
+    let error = Error::malformed(found, format!("lower it, so that all together stay at or below {most}"));
+    Err(error.at(scenario.place("alternatives.lighting")))
+}
+
+/// Fills in what the scenario left silent and others knew, so that its echo says everything.
+pub(super) fn fill(
+    scenario: &mut Scenario,
+    alternatives: &[String],
+    camera: Option<&Camera>,
+    range: &StateRange,
+) {
+    if scenario.alternatives.materials.is_none() {
+        scenario.alternatives.materials =
+            Some(alternatives.iter().map(|name| MaterialRef::Name(name.clone())).collect());
+    }
+    scenario.alternatives.temperature_range_k = Some(range.temperature_k);
+    scenario.alternatives.lighting_range = Some(range.lighting);
+    if let (Some(spec), Some(camera)) = (scenario.camera.as_mut(), camera) {
+        // A preset's noise stays the preset's, stated under the preset's own conditions. Noise of the
+        // scenario's own is written with its conditions, so that it stays what it is when the rest is changed.
+        match camera.noise {
+            NoiseSpec::Netd { temperature_k, f_number, pixel_m, .. } if spec.netd_k.is_some() => {
+                spec.netd_temperature_k = Some(temperature_k);
+                spec.netd_f_number = Some(f_number);
+                spec.netd_pixel_m = Some(pixel_m);
+            }
+            _ => {}
+        }
+        if spec.states_noise() {
+            spec.noise_exposure_s = Some(camera.noise_exposure_s);
+        }
+        spec.exposure_s = Some(camera.exposure_s);
+        spec.pixel_m = Some(camera.pixel_m);
+        spec.f_number = Some(camera.f_number);
+        spec.focal_length_m = Some(camera.focal_length_m);
+        spec.optics_efficiency.get_or_insert(Efficiency::Number(camera.optics_efficiency));
+        spec.quantum_efficiency.get_or_insert(Efficiency::Number(camera.quantum_efficiency));
+        spec.dark_rate_per_s = Some(camera.dark_rate_per_s);
+        spec.read_noise = Some(camera.read_noise_counts);
+        spec.quantisation_bits = camera.quantisation_bits;
+        spec.photon_bunching = Some(camera.photon_bunching);
+        spec.frame_rate_hz = camera.frame_rate_hz;
+        spec.sensor_temperature_k = camera.sensor_temperature_k;
+        spec.filter_temperature_k = camera.filter_temperature_k;
+        spec.flicker_fraction = Some(camera.flicker_fraction);
+        spec.full_well = camera.full_well;
+        spec.readout = Some(camera.readout);
+        spec.frames = Some(camera.frames);
+        spec.field_of_view_rad = camera.field_of_view_rad;
+        spec.pixels = camera.pixels;
+    }
+}

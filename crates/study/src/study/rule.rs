@@ -1,0 +1,388 @@
+//! A rule answered: every camera against a requirement that must hold in all scenes of an envelope.
+//!
+//! A camera meets a rule if its least statistical distance over the envelope, over all materials of the target and all
+//! alternatives, is at least that demanded, if nothing moves by a pixel during an exposure at the rule's speed
+//! and the least distance (Δ < 1), and if the brightest scene does not fill its well. It fails as soon as one scene below
+//! the requirement is known; that it meets the rule is proved where the lower bound of the search is above.
+//!
+//! Distances are nearest distances with the camera's own noise ([`envelope`]); gray areas are said: what was only
+//! searched is called so.
+
+mod envelope;
+mod ideal;
+mod inputs;
+mod results;
+mod search;
+
+pub use results::{
+    CameraVerdict, Certified, EnvelopeResult, FileHash, Fixes, LimitingScene, Neighbourhood, NotIdentifiable,
+    RuleAnswer, RuleRequirement,
+};
+
+use self::envelope::Sighted;
+use super::{Study, Warning, reliability};
+use crate::scenario::rule::RuleCamera;
+use crate::scenario::{DistanceKind, Envelope, MaterialRef, Rule};
+use hadar::demand::{Reason, Skipping, Thing, Work};
+use hadar::error::{Error, Result};
+use hadar::identifiability::detection;
+use hadar::instrument::presets;
+use hadar::material::Library;
+use hadar::words;
+
+/// Relative difference of counts or variance from which on a distance matters.
+const NOTICEABLE: f64 = 1e-3;
+/// Distances that are searched where air changes spectra within bands, both ends among them.
+const DISTANCES: usize = 25;
+
+/// What is asked of a rule.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct RuleAsked {
+    /// Only which cameras meet it: a camera that fails is left at the first scene that shows it.
+    pub verdict_only: bool,
+    /// Whether proofs may spare work.
+    pub skipping: Skipping,
+    /// Seed of the scenes that are drawn for the share no camera can do.
+    pub seed: u64,
+}
+
+/// A camera of a rule, before every material and from the distances that may be the worst.
+#[derive(Debug, Clone)]
+struct Candidate {
+    name: String,
+    sighted: Vec<Sighted>,
+    /// Whether what is counted depends on the distance.
+    distance_matters: bool,
+    /// Whether distances between the ends are searched too, which is no proof.
+    distance_searched: bool,
+    /// From the least distance, every material in turn.
+    near: Vec<Study>,
+}
+
+/// A rule with everything it names looked up and checked.
+#[derive(Debug, Clone)]
+pub struct RuleStudy {
+    rule: Rule,
+    envelope: Envelope,
+    candidates: Vec<Candidate>,
+    required: f64,
+    warnings: Vec<Warning>,
+    looked_up: Work,
+}
+
+impl RuleStudy {
+    /// Looks up everything that `rule` names, materials in `library`.
+    ///
+    /// # Errors
+    /// As [`Study::new`]; two cameras of one name; a requirement by another than the nearest distance.
+    ///
+    /// ```
+    /// use hadar::{material::Library, scenario::Rule, study::{RuleAsked, RuleStudy}};
+    /// let text = r#"
+    ///     cameras = ["ideal-pnrd"]
+    ///     [target]
+    ///     material = "skin"
+    ///     temperature = "37 degC"
+    ///     [[environment]]
+    ///     temperature = "20 degC"
+    ///     lighting = 0.5
+    ///     [alternatives]
+    ///     materials = ["pmma"]
+    ///     [bands]
+    ///     start = "750 cm^-1"
+    ///     stop = "1250 cm^-1"
+    ///     step = "100 cm^-1"
+    ///     [envelope]
+    ///     temperature = ["30 degC", "37 degC"]
+    /// "#;
+    /// let study = RuleStudy::new(&Rule::from_toml(text, None)?, &Library::embedded()?)?;
+    /// let answer = study.answer(&RuleAsked::default(), &|_, _| ())?;
+    /// assert!(answer.cameras[0].passes);
+    /// assert!(answer.cameras[0].limiting.temperature_k < 304.0);
+    /// # Ok::<(), hadar::Error>(())
+    /// ```
+    pub fn new(rule: &Rule, library: &Library) -> Result<Self> {
+        let place = |key: &str| rule.scenario.place(key);
+        if rule.scenario.requirement.by != DistanceKind::Nearest {
+            let found = "an envelope is searched by the nearest distance only";
+            let error = Error::malformed(found, "write by = \"nearest\", or leave the key out");
+            return Err(error.at(place("requirement.by")));
+        }
+        let envelope = rule.envelope();
+        let materials = envelope.materials.clone().unwrap_or_default();
+        for (index, material) in materials.iter().enumerate() {
+            if let MaterialRef::Name(name) = material {
+                let key = format!("envelope.materials[{index}]");
+                library.get(name).map_err(|error| error.at(place(&key)))?;
+            }
+        }
+        let mut filled = rule.clone();
+        filled.scenario.envelope = Some(envelope.clone());
+        let mut candidates: Vec<Candidate> = Vec::with_capacity(rule.cameras.len());
+        let mut warnings: Vec<Warning> = Vec::new();
+        let mut alternatives: Vec<MaterialRef> = Vec::new();
+        for index in 0..rule.cameras.len() {
+            let candidate = candidate(rule, index, &envelope, library)?;
+            if candidates.iter().any(|other| other.name == candidate.name) {
+                let found = format!("another camera is called {} too", candidate.name);
+                let error = Error::malformed(found, "give it a name of its own, as in name = \"ours\"");
+                return Err(error.at(rule.camera_place(index, "name")));
+            }
+            for study in &candidate.near {
+                let new = study.warnings.iter().filter(|warning| !warnings.contains(warning));
+                let new: Vec<Warning> = new.cloned().collect();
+                warnings.extend(new);
+                for material in study.scenario.alternatives.materials.iter().flatten() {
+                    if !alternatives.contains(material) {
+                        alternatives.push(material.clone());
+                    }
+                }
+            }
+            if let Some(study) = candidate.near.first() {
+                // Every default of the camera, and what the scenario left silent.
+                filled.cameras[index].spec = study.scenario.camera.clone().unwrap_or_default();
+                let Study { scenario, .. } = study;
+                filled.scenario.alternatives = scenario.alternatives.clone();
+            }
+            candidates.push(candidate);
+        }
+        filled.scenario.alternatives.materials = Some(alternatives);
+        let first = candidates.first().and_then(|candidate| candidate.near.first());
+        let required = first.map_or(1.0, |study| study.required);
+        let looked_up = library.work();
+        Ok(Self { rule: filled, envelope, candidates, required, warnings, looked_up })
+    }
+
+    /// The rule with its defaults filled in.
+    #[must_use]
+    pub fn rule(&self) -> &Rule {
+        &self.rule
+    }
+
+    /// The first camera before the first material, from the least distance: what all of them share.
+    #[must_use]
+    pub fn study(&self) -> Option<&Study> {
+        self.candidates.first().and_then(|candidate| candidate.near.first())
+    }
+
+    /// What the rule says of every camera; `progress` is told how many of them are done.
+    ///
+    /// # Errors
+    /// A scene without photons; a file that can no longer be read.
+    pub fn answer(&self, asked: &RuleAsked, progress: &dyn Fn(usize, usize)) -> Result<RuleAnswer> {
+        let mut stats = self.looked_up.clone();
+        let alone = asked.verdict_only && asked.skipping == Skipping::On;
+        let mut cameras = Vec::with_capacity(self.candidates.len());
+        let all = self.candidates.len();
+        for (index, candidate) in self.candidates.iter().enumerate() {
+            cameras.push(self.judged(candidate, alone, &mut stats)?);
+            progress(index + 1, all);
+        }
+        let not_identifiable = if alone {
+            stats.spare(Thing::Sections, Reason::NotAsked, 1);
+            None
+        } else {
+            stats.compute(Thing::Sections, 1);
+            Some(self.not_identifiable(asked.seed, &mut stats)?)
+        };
+        let envelope = self.envelope_result();
+        let requirement = self.requirement(&cameras, &envelope, alone);
+        Ok(RuleAnswer {
+            rule: self.rule.clone(),
+            sentence: sentence(&cameras),
+            requirement,
+            envelope,
+            cameras,
+            not_identifiable,
+            inputs: inputs::of(&self.rule)?,
+            warnings: self.warnings.clone(),
+            stats,
+        })
+    }
+
+    fn envelope_result(&self) -> EnvelopeResult {
+        let point = |value: f64| [value; 2];
+        let scenario = &self.rule.scenario;
+        let objects = &scenario.environment;
+        let studies = self.candidates.iter().flat_map(|candidate| &candidate.near);
+        let (mut materials, mut alternatives): (Vec<String>, Vec<String>) = (Vec::new(), Vec::new());
+        for study in studies {
+            let add = |names: &mut Vec<String>, name: &str| {
+                if !names.iter().any(|known| known == name) {
+                    names.push(name.to_owned());
+                }
+            };
+            add(&mut materials, &study.target.name);
+            study.alternatives.iter().for_each(|surface| add(&mut alternatives, &surface.name));
+        }
+        let Envelope { temperature_k, lighting, surroundings_k, distance_m, .. } = self.envelope.clone();
+        EnvelopeResult {
+            temperature_k: temperature_k.unwrap_or(point(scenario.target.temperature_k)),
+            lighting: lighting.unwrap_or_else(|| objects.iter().map(|o| point(o.lighting)).collect()),
+            surroundings_k: surroundings_k
+                .unwrap_or_else(|| objects.iter().map(|o| point(o.temperature_k)).collect()),
+            distance_m,
+            materials,
+            alternatives,
+        }
+    }
+
+    fn requirement(
+        &self,
+        cameras: &[CameraVerdict],
+        envelope: &EnvelopeResult,
+        alone: bool,
+    ) -> RuleRequirement {
+        let hardware: Option<Vec<f64>> = cameras.iter().map(|camera| camera.limiting.hardware_m2_s).collect();
+        let hardware = hardware.filter(|_| !alone);
+        let hardware_m2_s = hardware.map(|each| each.into_iter().fold(0.0, f64::max));
+        let speed_m_s = self.rule.scenario.requirement.speed_m_s;
+        let mut quotable = format!(
+            "A camera meets this rule if, in every scene of the envelope ({}), it tells {} from {} with {} reliability \
+             (statistical distance d of at least {})",
+            in_words(envelope),
+            either(&envelope.materials),
+            either(&envelope.alternatives),
+            reliability(self.required),
+            words::significant(self.required, 4),
+        );
+        if let Some(speed) = speed_m_s {
+            let speed = words::significant(speed, 3);
+            quotable.push_str(&format!(
+                ", and nothing that stands moves by a pixel while all bands are exposed, seen from a vehicle that drives \
+                 forward at {speed} m/s"
+            ));
+        }
+        quotable.push('.');
+        // A target smaller than its pixel, or air, takes light away that the figure of the hardware does not know of.
+        let plain = self.rule.scenario.target.size_m.is_none() && self.rule.scenario.atmosphere.is_none();
+        if let Some(hardware) = hardware_m2_s.filter(|_| plain) {
+            quotable.push_str(&format!(
+                " Where its noise is spread over the bands as its photons are, this is t A_p/((1+gamma) F^2) >= {hardware:.2e} m^2 s \
+                 (exposure t, pixel area A_p, noise over photons gamma, f-number F; lossless optics)."
+            ));
+        }
+        RuleRequirement {
+            distance: self.required,
+            detection_probability: detection::probability(self.required),
+            speed_m_s,
+            hardware_m2_s,
+            quotable,
+        }
+    }
+}
+
+/// A camera before every material of the envelope.
+fn candidate(rule: &Rule, index: usize, envelope: &Envelope, library: &Library) -> Result<Candidate> {
+    // Mistakes of the camera are told by the key that it has in the rule.
+    let spec = rule.cameras.get(index).map(|camera| &camera.spec);
+    if let Some(camera) = rule.cameras.get(index).filter(|camera| camera.is_listed()) {
+        complete(camera).map_err(|error| error.at(rule.camera_place(index, "preset")))?;
+    }
+    let camera = spec.map(|spec| super::camera::resolved_at(spec, &|key| rule.camera_place(index, key)));
+    let camera = camera.transpose()?;
+    let mut scenario = rule.with_camera(index);
+    let (mut sighted, mut near, mut distance_matters) = (Vec::new(), Vec::new(), false);
+    let mut distance_searched = false;
+    for material in envelope.materials.iter().flatten() {
+        scenario.target.material = material.clone();
+        let mut at = |distance_m: Option<f64>| {
+            scenario.target.distance_m = distance_m;
+            Study::new(&scenario, library).and_then(|study| Sighted::new(study, envelope))
+        };
+        let [least, most] = match envelope.distance_m {
+            Some([least, most]) => [Some(least), Some(most)],
+            None => [None; 2],
+        };
+        let close = at(least)?;
+        near.push(close.study.clone());
+        if least == most {
+            sighted.push(close);
+            continue;
+        }
+        let far = at(most)?;
+        distance_matters |= far.differs_from(&close, NOTICEABLE);
+        if let (true, [Some(least), Some(most)]) = (close.study.air_reshapes_bands(), [least, most]) {
+            distance_searched = true;
+            let steps = (1..DISTANCES - 1).map(|i| i as f64 / (DISTANCES - 1) as f64);
+            let between = steps.map(|share| least * (most / least).powf(share));
+            let seen = between.map(|z| Sighted::new(close.study.at_distance(z)?, envelope));
+            sighted.extend(seen.collect::<Result<Vec<_>>>()?);
+            sighted.extend([close, far]);
+            continue;
+        }
+        match (far.is_worse_than(&close), close.is_worse_than(&far)) {
+            (true, _) => sighted.push(far),
+            (false, true) => sighted.push(close),
+            (false, false) => sighted.extend([far, close]),
+        }
+    }
+    let given = rule.cameras.get(index).and_then(|camera| camera.name.clone());
+    let own = camera.map(|camera| camera.name).filter(|_| spec.is_some_and(|spec| spec.preset.is_some()));
+    let name = given.or(own).unwrap_or_else(|| format!("camera {}", index + 1));
+    Ok(Candidate { name, sighted, distance_matters, distance_searched, near })
+}
+
+/// Refuses a known camera, named alone, of which no document states all that is needed.
+fn complete(camera: &RuleCamera) -> Result<()> {
+    let Some(name) = &camera.spec.preset else { return Ok(()) };
+    let Err(missing) = presets::find(name)?.camera() else { return Ok(()) };
+    let found = format!("no document that was read states the {} of {name}", missing.key);
+    let instead =
+        format!("write a [[camera]] table with preset = {name:?} and {} = {}", missing.key, missing.example);
+    Err(Error::malformed(found, instead))
+}
+
+/// Which cameras meet the rule.
+fn sentence(cameras: &[CameraVerdict]) -> String {
+    let names = |passing: bool| -> Vec<&str> {
+        let chosen = cameras.iter().filter(|camera| camera.passes == passing);
+        chosen.map(|camera| camera.name.as_str()).collect()
+    };
+    let (meet, fail) = (names(true), names(false));
+    match (meet.as_slice(), fail.as_slice()) {
+        ([one], []) => format!("{one} meets the rule."),
+        ([], [one]) => format!("{one} does not meet the rule."),
+        (all, []) => format!("All {} cameras meet the rule: {}.", all.len(), all.join(", ")),
+        ([], all) => format!("None of {} cameras meets the rule: {}.", all.len(), all.join(", ")),
+        ([one], rest) => format!("1 of {} cameras meets the rule: {one}.", 1 + rest.len()),
+        (some, rest) => {
+            format!(
+                "{} of {} cameras meet the rule: {}.",
+                some.len(),
+                some.len() + rest.len(),
+                some.join(", ")
+            )
+        }
+    }
+}
+
+/// `a, b or c`.
+fn either(names: &[String]) -> String {
+    match names {
+        [] => "nothing".into(),
+        [one] => one.clone(),
+        [first @ .., last] => format!("{} or {last}", first.join(", ")),
+    }
+}
+
+/// The ranges of an envelope in a few words.
+fn in_words(envelope: &EnvelopeResult) -> String {
+    let celsius = |range: [f64; 2]| interval(range.map(|kelvin| kelvin - 273.15), "degC");
+    let mut parts = vec![format!("target {}", celsius(envelope.temperature_k))];
+    let objects = envelope.surroundings_k.iter().zip(&envelope.lighting);
+    parts.extend(objects.map(|(kelvin, lighting)| {
+        format!("surroundings {} lighting it by {}", celsius(*kelvin), interval(*lighting, ""))
+    }));
+    parts.extend(envelope.distance_m.map(|range| format!("distance {}", interval(range, "m"))));
+    parts.join(", ")
+}
+
+fn interval([low, high]: [f64; 2], unit: &str) -> String {
+    let shown = |value: f64| {
+        let rounded = (value * 1e6).round() / 1e6;
+        if rounded == 0.0 { "0".to_owned() } else { format!("{rounded}") }
+    };
+    let range = if low == high { shown(low) } else { format!("{} to {}", shown(low), shown(high)) };
+    if unit.is_empty() { range } else { format!("{range} {unit}") }
+}

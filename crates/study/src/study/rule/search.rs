@@ -1,0 +1,353 @@
+//! One camera against a rule: the least distance over all materials, alternatives and scenes, and what would raise it.
+//!
+//! A few scenes of every pair give an estimate from above. The pairs are then searched in the order of these estimates,
+//! each only as exactly as it matters: a pair whose distance is a multiple of the least one known needs a bound
+//! that is above that, not its own worst case to 1 %.
+
+use super::super::{NearestState, Study, Surface, Warning, warn};
+use super::envelope::{Estimate, Sighted, brightest};
+use super::results::{CameraVerdict, Certified, Fixes, LimitingScene};
+use super::{Candidate, RuleStudy};
+use hadar::demand::{Reason, Thing, Work};
+use hadar::error::{Error, Result};
+use hadar::fisher::Nuisance;
+use hadar::identifiability::detection;
+use hadar::instrument::Camera;
+use hadar::minimum::golden_section;
+use hadar::policy::envelope::{Certificate, Effort, WorstCase, worst_case};
+use hadar::policy::{self, Quantity};
+use hadar::scene::State;
+use hadar::words::significant;
+use std::collections::BTreeMap;
+
+/// How far below the distance attained a bound may be, as a share of it.
+const TOLERANCE: f64 = 0.01;
+/// Golden sections of the distance, each to 0.62 of what it was.
+const GOLDEN_STEPS: usize = 8;
+/// Boxes of the branch and bound for each pair at most: a second or so.
+const BOXES: u64 = 200_000;
+
+/// A pair's scene with what is known of it.
+struct Searched {
+    pair: Estimate,
+    /// Where it was found, if between the distances of the candidate.
+    between: Option<Box<Sighted>>,
+    certificate: Option<Certificate>,
+    lower_bound: Option<f64>,
+}
+
+/// What a camera's image of the brightest scene is like.
+#[derive(Debug, Default)]
+struct Image {
+    /// Motion during an exposure, pixels.
+    blur: Option<f64>,
+    /// Photons of the fullest reading.
+    reading: f64,
+    longest_exposure_s: Option<f64>,
+    /// What is wrong with it.
+    spoiled: Vec<&'static str>,
+}
+
+impl Searched {
+    /// What the estimate says alone.
+    fn estimated(pair: Estimate) -> Self {
+        Self { pair, between: None, certificate: None, lower_bound: None }
+    }
+}
+
+impl RuleStudy {
+    /// The verdict on one camera; `alone` asks for no more than it.
+    pub(super) fn judged(
+        &self,
+        candidate: &Candidate,
+        alone: bool,
+        work: &mut Work,
+    ) -> Result<CameraVerdict> {
+        let worst = self.worst(candidate, alone, work)?;
+        let sighted = worst.between.as_deref().unwrap_or(&candidate.sighted[worst.pair.sighted]);
+        let surface = &sighted.study.alternatives[worst.pair.alternative];
+        let distance = worst.pair.distance;
+        let at = Study { state: worst.pair.state.clone(), ..sighted.study.clone() };
+        let mut warnings = self.warnings_of(candidate);
+        let image = at.camera.as_ref().map(|camera| self.image(candidate, camera));
+        let image = image.unwrap_or_default();
+        let mut fails_by = Vec::new();
+        if distance < self.required {
+            fails_by.push("distance");
+        }
+        fails_by.extend(&image.spoiled);
+        if self.rule.scenario.requirement.speed_m_s.is_some() && image.blur.is_none() {
+            // What cannot be said is not met.
+            fails_by.push("motion-unknown");
+        }
+        let passes = fails_by.is_empty();
+        let gap = worst.lower_bound.filter(|_| distance > 0.0).map(|bound| 1.0 - bound / distance);
+        let certificate =
+            worst.certificate.map_or_else(Certified::counterexample, |found| Certified::of(found, gap));
+        if passes && worst.lower_bound.is_none_or(|bound| bound < self.required) {
+            let message = "that no scene of the envelope is below the requirement was searched, not proved";
+            warnings.push(Warning::new("not-proved", message));
+        }
+        if at.counting().is_some_and(|own| own.var_added != sighted.counting.var_added) {
+            let message = "noise that depends on the scene is taken in the brightest scene, so the distance is a lower bound; \
+                           what would fix the camera is computed in the limiting scene itself";
+            warnings.push(Warning::new("brightest-noise", message));
+        }
+        if at.atmosphere.is_some() && candidate.distance_matters && !candidate.distance_searched {
+            let message = "with air on the path it is assumed, not proved, that no distance between the ends of its range is \
+                           worse than both";
+            warnings.push(Warning::new("distance-ends", message));
+        }
+        let mut limiting = limiting(
+            candidate.distance_matters,
+            &at,
+            surface,
+            &worst.pair,
+            self.is_unknown(Nuisance::EnvironmentTemperature),
+        );
+        let mut fixes = None;
+        if !alone {
+            let shot = at.nearest(surface, f64::INFINITY, work)?;
+            limiting.hardware_m2_s = policy::photons_required(self.required, shot.distance)
+                .map(|photons| policy::hardware_required_m2_s(photons, at.photon_radiance()));
+            let local = at.local(at.unknowns.clone(), surface, f64::INFINITY, work)?;
+            if shot.distance > 0.0 && local.distance_no_nuisance > warn::FRAGILE_RATIO * shot.distance {
+                let message = "the spectra of the limiting scene are nearly featureless: errors of 0.1 % in the emissivities \
+                               can change the distance several times over";
+                warnings.push(Warning::new("fragile", message));
+            }
+            if let Some(camera) = at.camera.clone().filter(|_| distance < self.required) {
+                let task = at.task(&camera);
+                let mut quantities = at.solutions(&camera, surface, work)?;
+                // Where the target is and how fast it moves is the rule's to say.
+                quantities
+                    .0
+                    .retain(|(quantity, _)| !matches!(quantity, Quantity::Distance | Quantity::Speed));
+                let mut any = false;
+                let mut spoils = BTreeMap::new();
+                for (quantity, solution) in &quantities.0 {
+                    let Some(value) = solution.value else { continue };
+                    let mut spoiled = self.image(candidate, &task.forward(*quantity, value).camera).spoiled;
+                    // Those of the limiting scene that the brightest one does not know of.
+                    let optical = solution.caps.iter().map(|cap| cap.code);
+                    spoiled.extend(optical.filter(|code| matches!(*code, "diffraction" | "lowest-noise")));
+                    any |= spoiled.is_empty();
+                    if !spoiled.is_empty() {
+                        spoils.insert(quantity.key(), spoiled);
+                    }
+                }
+                fixes = Some(Fixes { any, spoils, quantities });
+            }
+        }
+        Ok(CameraVerdict {
+            name: candidate.name.clone(),
+            passes,
+            fails_by,
+            margin: distance / self.required,
+            statistical_distance: distance,
+            detection_probability: detection::probability(distance),
+            lower_bound: worst.lower_bound,
+            certificate,
+            limiting,
+            fixes,
+            motion_blur_pixels: image.blur,
+            brightest_reading: image.reading,
+            longest_exposure_s: image.longest_exposure_s,
+            warnings,
+        })
+    }
+
+    fn is_unknown(&self, nuisance: Nuisance) -> bool {
+        self.rule.scenario.unknown.nuisances.contains(&nuisance)
+    }
+
+    /// The image that a camera makes of the brightest scene, from the least distance.
+    fn image(&self, candidate: &Candidate, camera: &Camera) -> Image {
+        let mut image = Image::default();
+        for near in &candidate.near {
+            let Ok(ranges) = near.ranges(&self.envelope) else { continue };
+            let (state, camera) = (brightest(&ranges), Some(camera.clone()));
+            let bright = Study { state, camera, ..near.clone() };
+            let Some(seen) = bright.camera_result(bright.photon_radiance()) else { continue };
+            image.blur = seen.motion_blur_pixels;
+            image.reading = image.reading.max(seen.brightest_reading);
+        }
+        let blurred = image.blur.map(|blur| camera.exposure_s / blur);
+        let full = camera.full_well.map(|full| camera.exposure_s * full / image.reading);
+        image.longest_exposure_s = blurred.into_iter().chain(full).reduce(f64::min);
+        if image.blur.is_some_and(|blur| blur >= 1.0) {
+            image.spoiled.push("motion-blur");
+        }
+        if camera.full_well.is_some_and(|full| image.reading > full) {
+            image.spoiled.push("full-well");
+        }
+        if camera.clone().checked().is_err()
+            && camera.frame_s().is_some_and(|frame| camera.exposure_s > frame)
+        {
+            image.spoiled.push("frame-rate");
+        }
+        image
+    }
+
+    /// What is to be said of a camera before any scene is searched.
+    fn warnings_of(&self, candidate: &Candidate) -> Vec<Warning> {
+        let Some(near) = candidate.near.first() else { return Vec::new() };
+        let Some(camera) = &near.camera else { return Vec::new() };
+        let state =
+            near.ranges(&self.envelope).map_or_else(|_| near.state.clone(), |ranges| brightest(&ranges));
+        let mut warnings = Study { state, ..near.clone() }.camera_warnings();
+        if let (Some(speed), 2..) = (self.rule.scenario.requirement.speed_m_s, camera.frames) {
+            let all_s = camera.acquisition_s(near.bands.len());
+            let message = format!(
+                "its {} frames take {} s, in which the vehicle drives {} m: they must be laid over each other, and the scene \
+                 must not change",
+                camera.frames,
+                significant(all_s, 2),
+                significant(all_s * speed, 2)
+            );
+            warnings.push(Warning::new("frames-in-motion", message));
+        }
+        warnings.extend(
+            camera.assumed.iter().map(|figure| Warning::new("camera-figure-assumed", figure.clone())),
+        );
+        if self.rule.scenario.requirement.speed_m_s.is_some() && self.image(candidate, camera).blur.is_none()
+        {
+            let message = "a speed is given, but motion blur needs a distance";
+            warnings.push(Warning::new("motion-blur-unknown", message));
+        }
+        warnings
+    }
+
+    /// The worst of all pairs, or a scene that is below the requirement where no more is asked for.
+    fn worst(&self, candidate: &Candidate, alone: bool, work: &mut Work) -> Result<Searched> {
+        let mut pairs: Vec<Estimate> = Vec::new();
+        for (index, sighted) in candidate.sighted.iter().enumerate() {
+            let (estimates, searched) = sighted.estimates(index)?;
+            work.compute(Thing::NearestSearches, searched);
+            pairs.extend(estimates);
+        }
+        pairs.sort_by(|a, b| a.distance.total_cmp(&b.distance));
+        let count = pairs.len();
+        let mut found: Vec<Searched> = Vec::with_capacity(count);
+        let mut best = f64::INFINITY;
+        let mut all = true;
+        for (done, pair) in pairs.into_iter().enumerate() {
+            if alone && (pair.distance < self.required || best < self.required) {
+                work.spare(Thing::WorstCases, Reason::AnotherOne, (count - done) as u64);
+                if best >= self.required {
+                    return Ok(Searched::estimated(pair));
+                }
+                all = false;
+                break;
+            }
+            let sighted = &candidate.sighted[pair.sighted];
+            let enough = if alone { self.required } else { best };
+            let mut tolerance = (1.0 - enough / pair.distance).clamp(TOLERANCE, 1.0 - TOLERANCE);
+            let mut searched = search(sighted, pair, tolerance, work)?;
+            best = best.min(searched.pair.distance);
+            // A worst case below the estimate may leave a bound that does not reach what is enough.
+            let short = |searched: &Searched, enough: f64| {
+                let exact = searched.pair.distance * (1.0 - TOLERANCE);
+                searched.lower_bound.is_some_and(|bound| bound < exact.min(enough * (1.0 - TOLERANCE)))
+            };
+            let enough = if alone { self.required } else { best };
+            if tolerance > TOLERANCE && short(&searched, enough) {
+                tolerance = (1.0 - enough / searched.pair.distance).clamp(TOLERANCE, 1.0 - TOLERANCE);
+                searched = search(sighted, searched.pair, tolerance, work)?;
+                best = best.min(searched.pair.distance);
+            }
+            found.push(searched);
+        }
+        let lower: Option<Vec<f64>> = found.iter().map(|searched| searched.lower_bound).collect();
+        let lower = lower.map(|bounds| bounds.into_iter().fold(f64::INFINITY, f64::min));
+        let worst = found.into_iter().min_by(|a, b| a.pair.distance.total_cmp(&b.pair.distance));
+        let Some(worst) = worst else {
+            let instead = "name one in alternatives.materials";
+            return Err(Error::malformed("there is no pair of materials", instead));
+        };
+        if !all {
+            // A scene below the requirement, and other pairs not looked at.
+            return Ok(Searched::estimated(worst.pair));
+        }
+        if candidate.distance_searched {
+            let worst = self.between(candidate, worst, work)?;
+            let certificate = Some(Certificate::DenseSearch { points: candidate.sighted.len() });
+            return Ok(Searched { lower_bound: None, certificate, ..worst });
+        }
+        let distance = worst.pair.distance;
+        let certificate = match (worst.certificate, lower) {
+            (Some(Certificate::Equilibrium), _) => Some(Certificate::Equilibrium),
+            (_, None) => Some(Certificate::DenseSearch { points: 0 }),
+            (_, Some(bound)) if bound >= distance * (1.0 - TOLERANCE) => Some(Certificate::BranchAndBound),
+            (_, Some(bound)) => Some(Certificate::Bounded { gap: 1.0 - bound / distance }),
+        };
+        Ok(Searched { lower_bound: lower, certificate, ..worst })
+    }
+}
+
+impl RuleStudy {
+    /// The worst distance next to that of the worst pair found, by golden sections of its logarithm.
+    fn between(&self, candidate: &Candidate, worst: Searched, work: &mut Work) -> Result<Searched> {
+        let own = &candidate.sighted[worst.pair.sighted].study;
+        let at = |study: &Study| study.scenario.target.distance_m.unwrap_or(f64::INFINITY);
+        let middle = at(own);
+        let of_target =
+            candidate.sighted.iter().filter(|sighted| sighted.study.target.name == own.target.name);
+        let distances: Vec<f64> = of_target.map(|sighted| at(&sighted.study)).collect();
+        let low = distances.iter().copied().filter(|z| *z < middle).fold(0.0, f64::max);
+        let high = distances.iter().copied().filter(|z| *z > middle).fold(f64::INFINITY, f64::min);
+        let low = if low > 0.0 { low } else { middle };
+        let high = if high.is_finite() { high } else { middle };
+        let mut best = worst;
+        golden_section([low.ln(), high.ln()], GOLDEN_STEPS, |log_z| -> Result<f64> {
+            let sighted = Sighted::new(own.at_distance(log_z.exp())?, &self.envelope)?;
+            let anew = Estimate { distance: f64::INFINITY, ..best.pair.clone() };
+            let searched = search(&sighted, anew, TOLERANCE, work)?;
+            let distance = searched.pair.distance;
+            if distance < best.pair.distance {
+                best = Searched { between: Some(Box::new(sighted)), ..searched };
+            }
+            Ok(distance)
+        })?;
+        Ok(best)
+    }
+}
+
+/// The worst case of one pair, no worse than its estimate.
+fn search(sighted: &Sighted, pair: Estimate, tolerance: f64, work: &mut Work) -> Result<Searched> {
+    let surface = &sighted.study.alternatives[pair.alternative];
+    let effort = Effort { relative_tolerance: tolerance, boxes: BOXES };
+    let WorstCase { distance, lower_bound, state, nearest, certificate, evaluations, boxes } =
+        worst_case(&sighted.scene(surface), &sighted.ranges, &effort)?;
+    work.compute(Thing::WorstCases, 1);
+    work.compute(Thing::NearestSearches, evaluations);
+    work.compute(Thing::Boxes, boxes);
+    let pair = if distance <= pair.distance { Estimate { distance, state, nearest, ..pair } } else { pair };
+    Ok(Searched { pair, between: None, certificate: Some(certificate), lower_bound })
+}
+
+fn limiting(
+    distance_matters: bool,
+    at: &Study,
+    surface: &Surface,
+    pair: &Estimate,
+    environment: bool,
+) -> LimitingScene {
+    let State { temperature_k, lighting, environment_k, .. } = pair.state.clone();
+    LimitingScene {
+        target: at.target.name.clone(),
+        alternative: surface.name.clone(),
+        temperature_k,
+        lighting,
+        surroundings_k: environment_k,
+        distance_m: at.scenario.target.distance_m,
+        distance_matters,
+        nearest_state: NearestState {
+            temperature_k: pair.nearest.temperature_k,
+            lighting: pair.nearest.lighting.clone(),
+            gain: pair.nearest.gain,
+            environment_temperature_k: environment.then(|| pair.nearest.environment_k.clone()),
+        },
+        hardware_m2_s: None,
+    }
+}

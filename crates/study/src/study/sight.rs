@@ -1,0 +1,271 @@
+//! What a camera sees of the scene: the bands as they reach it, and the light that is mixed in.
+//!
+//! The signal of a target at distance z arrives as τ(ν, z) S and is counted with the efficiencies η(ν) of optics and
+//! detector: the weights of the bands are multiplied by τ η. Light that tells nothing of the target adds its shot noise:
+//!
+//! * the air on the path, (1 − τ) B(T_air) (its part of the pixel is all of it);
+//! * what is behind a target that fills the share φ of the pixel, (1 − φ) τ S_behind, lit as the target is;
+//! * filters in front of the sensor throw its own emission back, R_q B(T_sensor), and emit themselves,
+//!   (1 − T_q − R_q) B(T_filter), over all of the detector's spectral range (S8, S9).
+//!
+//! Source: paper S7–S9 and S11–S12.
+
+use super::{Study, Surface};
+use crate::scenario::{AtmosphereSource, Scenario};
+use hadar::atmosphere::Atmosphere;
+use hadar::error::{Error, Result};
+use hadar::grid::text_of_file;
+use hadar::instrument::view::fill;
+use hadar::instrument::{Camera, Light, NoiseSpec, View};
+use hadar::planck;
+use hadar::scene::State;
+use hadar::spectrum::{Band, Bands};
+
+/// What is behind the target, on the nodes of the bands.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Behind {
+    pub(super) surface: Surface,
+    pub(super) temperature_k: f64,
+}
+
+/// The air on the path.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Air {
+    pub(super) table: Atmosphere,
+    pub(super) temperature_k: f64,
+}
+
+impl Air {
+    /// The air of a scenario.
+    ///
+    /// # Errors
+    /// An unknown model, a table that cannot be read, a target without a distance, bands that the table does not cover.
+    pub(super) fn of(scenario: &Scenario) -> Result<Option<Self>> {
+        let Some(spec) = &scenario.atmosphere else { return Ok(None) };
+        let table = match &spec.source {
+            AtmosphereSource::Model(name) => {
+                let known = Atmosphere::embedded(name).map_err(|error| match error {
+                    Error::UnknownName { nearest, .. } if nearest.is_empty() => Error::malformed(
+                        format!("there is no model atmosphere `{name}`"),
+                        format!("choose among {}", Atmosphere::names().join(", ")),
+                    ),
+                    error => error,
+                });
+                known.map_err(|error| error.at(scenario.place("atmosphere.model")))?
+            }
+            AtmosphereSource::Table(path) => {
+                Atmosphere::from_csv(&text_of_file(path, "read the transmittances")?, path)?
+            }
+        };
+        let Some(temperature_k) = spec.temperature_k.or(table.temperature_k()) else {
+            let error = Error::malformed(
+                "the temperature of the air is not given",
+                "write temperature = \"15 degC\"",
+            );
+            return Err(error.at(scenario.place("atmosphere.temperature")));
+        };
+        if scenario.target.distance_m.is_none() {
+            let error = Error::malformed(
+                "air on the path, but the target has no distance",
+                "write distance = \"30 m\"",
+            );
+            return Err(error.at(scenario.place("target.distance")));
+        }
+        Ok(Some(Self { table, temperature_k }))
+    }
+}
+
+/// The bands as they reach a camera, and what its pixel sees beside the target.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sight {
+    /// Bands, weighed with what path, optics and detector let through.
+    pub bands: Bands,
+    /// Everything else on the pixel.
+    pub view: View,
+}
+
+impl Study {
+    /// What a pixel of `camera` sees from the scenario's distance.
+    #[must_use]
+    pub fn view_of(&self, camera: &Camera) -> View {
+        self.view(camera, &self.bands, self.scenario.target.distance_m, &self.air)
+    }
+
+    /// Whether air changes spectra within bands, so that a distance may be worse than those on either side of it.
+    pub(super) fn air_reshapes_bands(&self) -> bool {
+        self.atmosphere.is_some() && !self.open_bands.one_node_per_band()
+    }
+
+    /// The same scene from another distance.
+    ///
+    /// # Errors
+    /// A distance of which the air's table says nothing.
+    pub(super) fn at_distance(&self, distance_m: f64) -> Result<Self> {
+        let mut study = self.clone();
+        study.scenario.target.distance_m = Some(distance_m);
+        (study.bands, study.air) = study.received(study.camera.as_ref(), Some(distance_m))?;
+        Ok(study)
+    }
+
+    /// What `camera` sees from `distance_m`.
+    ///
+    /// # Errors
+    /// A distance of which the air's table says nothing.
+    pub fn sight_at(&self, camera: &Camera, distance_m: Option<f64>) -> Result<Sight> {
+        let (bands, air) = self.received(Some(camera), distance_m)?;
+        let view = self.view(camera, &bands, distance_m, &air);
+        Ok(Sight { bands, view })
+    }
+
+    /// The bands behind path, optics and detector, and the emission of the path at their nodes (empty for none).
+    pub(super) fn received(
+        &self,
+        camera: Option<&Camera>,
+        distance_m: Option<f64>,
+    ) -> Result<(Bands, Vec<f64>)> {
+        let bands =
+            camera.map_or_else(|| self.open_bands.clone(), |camera| camera.received(&self.open_bands));
+        let (Some(air), Some(distance_m)) = (&self.atmosphere, distance_m) else {
+            return Ok((bands, Vec::new()));
+        };
+        let at_distance = |error: Error| error.at(self.scenario.place("target.distance"));
+        let nodes = bands.nodes_cm1();
+        let transmittance = air.table.transmittance(nodes, distance_m).map_err(at_distance)?;
+        let emission = air.table.path_radiance(nodes, distance_m, air.temperature_k).map_err(at_distance)?;
+        Ok((bands.transmitted_at_nodes(&transmittance), emission))
+    }
+
+    /// Counts of each band that are not the target's, by the scenario's camera.
+    pub(super) fn counts_of_other_light(&self) -> Vec<f64> {
+        let counts = |camera: &Camera| {
+            let view = self.view_of(camera);
+            let kappa = camera.counts_per_radiance(&self.bands, &view) / view.fill;
+            (0..self.bands.len()).map(|w| kappa * view.other_light(w)).collect()
+        };
+        self.camera.as_ref().map_or_else(|| vec![0.0; self.bands.len()], counts)
+    }
+
+    /// Refuses what the view leaves open.
+    ///
+    /// # Errors
+    /// A size without a distance or without what is behind; what a camera's tables or range do not cover.
+    pub(super) fn check_sight(&self) -> Result<()> {
+        let scenario = &self.scenario;
+        let refuse = |key: &str, found: &str, instead: &str| {
+            Err(Error::malformed(found, instead).at(scenario.place(key)))
+        };
+        if scenario.target.size_m.is_some() {
+            if scenario.target.distance_m.is_none() {
+                return refuse(
+                    "target.size",
+                    "a size without a distance",
+                    "write distance = \"30 m\" beside it",
+                );
+            }
+            if self.behind.is_none() {
+                let instead =
+                    "write [background] with temperature = \"15 degC\" (and a material, else a blackbody)";
+                return refuse(
+                    "target.size",
+                    "a size, but nothing is said of what is behind the target",
+                    instead,
+                );
+            }
+        } else if self.behind.is_some() {
+            let instead = "write size = \"0.5 m\" in [target]; without it the target fills the pixel";
+            return refuse("background", "a background, but the target has no size", instead);
+        }
+        let Some(camera) = &self.camera else { return Ok(()) };
+        for curve in &camera.efficiency_curves {
+            let place = scenario.place(&format!("camera.{}", curve.name()));
+            curve.check_covers(&self.open_bands).map_err(|error| error.at(place))?;
+        }
+        if let NoiseSpec::Table { wavenumbers_cm1, .. } = &camera.noise
+            && let (Some(from), Some(to)) = (wavenumbers_cm1.first(), wavenumbers_cm1.last())
+        {
+            let (low, high) = self.open_bands.range_cm1();
+            if low < *from || high > *to {
+                let found = format!(
+                    "the noise is given from {from} to {to} cm^-1, the bands reach from {low} to {high} cm^-1"
+                );
+                return refuse("camera.noise_table", &found, "add rows, or narrow the bands");
+            }
+        }
+        Ok(())
+    }
+
+    fn view(&self, camera: &Camera, bands: &Bands, distance_m: Option<f64>, air: &[f64]) -> View {
+        let mut view = View::at(distance_m);
+        if let (Some(size), Some(distance)) = (self.scenario.target.size_m, distance_m) {
+            view.fill = fill(size, camera.pixel_m, camera.focal_length_m, distance);
+        }
+        if !air.is_empty() {
+            let open = camera.received(&self.open_bands);
+            view.open_widths_cm1 = open.widths_cm1();
+            // Its own transmittance is in what it sends, so only the camera's weights apply.
+            view.light.push(Light { label: "light from the path", radiance: open.weigh(air) });
+        }
+        if let Some(behind) = self.behind.as_ref().filter(|_| view.fill < 1.0) {
+            let state = State { temperature_k: behind.temperature_k, ..self.state.clone() };
+            let signal = bands.weigh(&self.surroundings.signal(&behind.surface.emissivity, &state));
+            let radiance = signal.iter().map(|s| s * (1.0 - view.fill)).collect();
+            view.light.push(Light { label: "light from behind the target", radiance });
+        }
+        for (label, radiance) in filter_light(camera, bands) {
+            view.light.push(Light { label, radiance });
+        }
+        view.signal = bands.weigh(&self.surroundings.signal(&self.target.emissivity, &self.state));
+        if camera.photon_bunching {
+            view.occupancy = self.occupancy(camera, bands, &view);
+        }
+        view
+    }
+
+    /// Photons that are counted per mode, mean over each band: those of the signal over the modes' density 2ν² (both
+    /// polarisations, S11), times the efficiencies.
+    fn occupancy(&self, camera: &Camera, bands: &Bands, view: &View) -> Vec<f64> {
+        let modes: Vec<f64> = bands.nodes_cm1().iter().map(|&nu| planck::mode_density(nu)).collect();
+        let open = self.open_bands.weigh(&modes);
+        let efficiency = camera.optics_efficiency * camera.quantum_efficiency;
+        let all = |w: usize| view.fill * view.signal[w] + view.other_light(w);
+        open.iter().enumerate().map(|(w, modes)| efficiency * all(w) / modes).collect()
+    }
+}
+
+/// Refuses bands that the detector does not see at all.
+///
+/// # Errors
+/// A filter outside the stated range of the detector, or bands all of which are.
+pub(super) fn check_detector(bands: &Bands, camera: &Camera, scenario: &Scenario) -> Result<()> {
+    // A grid that reaches beyond the range is only warned of, since that is often stated of something else than the detector.
+    let [low, high] = camera.spectral_range_cm1;
+    let is_outside = |band: &Band| band.high_cm1 <= low || band.low_cm1 >= high;
+    let all = bands.bands().iter().all(is_outside);
+    let Some(band) = bands.bands().iter().find(|band| is_outside(band) && (all || band.name.is_some()))
+    else {
+        return Ok(());
+    };
+    let which = band.name.as_ref().map_or_else(String::new, |name| format!(" of filter `{name}`"));
+    let found = format!(
+        "the band{which} from {:.0} to {:.0} cm^-1 lies outside the range of the detector, {low} to {high} cm^-1",
+        band.low_cm1, band.high_cm1
+    );
+    Err(Error::malformed(found, "leave it out, or take another camera").at(scenario.place("bands")))
+}
+
+/// What sensor and filters send onto the sensor, photons s⁻¹ m⁻² sr⁻¹ in each band.
+fn filter_light(camera: &Camera, bands: &Bands) -> Vec<(&'static str, Vec<f64>)> {
+    let Some(sensor_k) = camera.sensor_temperature_k else { return Vec::new() };
+    let filter_k = camera.filter_temperature_k.unwrap_or(sensor_k);
+    let range = camera.spectral_range_cm1;
+    let counted = |nu: f64| camera.efficiency_curves.iter().map(|curve| curve.at(nu)).product::<f64>();
+    let radiance = |nu: f64, temperature_k: f64| {
+        let mut value = [0.0];
+        planck::photon_radiance_into(&[nu], temperature_k, &mut value);
+        value[0] * counted(nu)
+    };
+    let thrown_back = bands.over_filters(range, |nu, _, r| r * radiance(nu, sensor_k));
+    let emitted = bands.over_filters(range, |nu, t, r| (1.0 - t - r).max(0.0) * radiance(nu, filter_k));
+    let lines = [("sensor emission thrown back by filters", thrown_back), ("emission of filters", emitted)];
+    lines.into_iter().filter_map(|(label, light)| light.map(|light| (label, light))).collect()
+}

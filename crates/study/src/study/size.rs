@@ -1,0 +1,405 @@
+//! The main job: does the camera meet the requirement, and what would it have to be.
+
+use super::identify::{PairResult, PhotonsRequired};
+use super::{Check, Study, Surface, Warning, reliability};
+use crate::scenario::Scenario;
+use hadar::demand::{Skipping, Work};
+use hadar::error::Result;
+use hadar::identifiability::{Status, detection};
+use hadar::instrument::{Camera, NoiseLine, gamma_per_band};
+use hadar::policy::caps::{self, Circumstances};
+use hadar::policy::{self, CameraTask, Motion, Quantity, Solution, TradeOff, Trial};
+use serde::ser::{SerializeMap, Serializer};
+
+mod curves;
+mod reach;
+mod sensitivity;
+mod trade_offs;
+
+pub(super) use curves::logarithmic;
+pub use curves::{InformationCurves, PhotonMap, Spectra};
+pub(super) use reach::{Reach, Solvers};
+pub use sensitivity::{Elasticities, EmissivityErrors, Sensitivity};
+
+/// The answer to 'can this camera do it'.
+#[derive(Debug, Clone, serde::Serialize)]
+pub struct Sizing {
+    /// The scenario with its defaults filled in.
+    pub scenario: Scenario,
+    /// Yes or no, in a sentence and in numbers.
+    pub verdict: Verdict,
+    /// What the task demands of any camera.
+    pub requirement: RequirementResult,
+    /// What this camera delivers; `None` without a camera.
+    pub camera: Option<CameraResult>,
+    /// Each hardware quantity with the others held, for the limiting alternative; `None` without a camera.
+    pub solve_for: Option<Solutions>,
+    /// What the verdict hangs on; `None` without a camera.
+    pub sensitivity: Option<Sensitivity>,
+    /// Two quantities at a time, where they were asked for ([`Study::trade_offs`]).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub trade_offs: Option<Vec<TradeOff>>,
+    /// ΣS·Δν of the target, photons s⁻¹ m⁻² sr⁻¹.
+    pub photon_radiance: f64,
+    /// All alternatives.
+    pub pairs: Vec<PairResult>,
+    /// The alternative that is hardest to tell apart.
+    pub limiting: String,
+    /// What the reader must know.
+    pub warnings: Vec<Warning>,
+    /// What it took.
+    pub stats: Work,
+}
+
+/// The answer to 'can this camera do it' by the cheapest proofs, and no more.
+#[derive(Debug, Clone, serde::Serialize)]
+pub struct VerdictAlone {
+    /// The scenario with its defaults filled in.
+    pub scenario: Scenario,
+    /// Yes or no; the distance reached is not known.
+    pub verdict: Verdict,
+    /// The first alternative found that the camera does not tell; there may be more.
+    pub not_told_from: Option<String>,
+    /// What it took.
+    pub stats: Work,
+}
+
+/// Yes or no.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct Verdict {
+    /// Whether the requirement is met; `None` without a camera.
+    pub met: Option<bool>,
+    /// What it is not met by: `distance`, `motion-blur`, `full-well`; empty if it is met or there is no camera.
+    pub fails_by: Vec<&'static str>,
+    /// The answer in a sentence.
+    pub sentence: String,
+    /// Statistical distance that the camera reaches against the limiting alternative.
+    pub statistical_distance: Option<f64>,
+    /// Statistical distance demanded.
+    pub required_distance: f64,
+    /// The first over the second.
+    pub margin: Option<f64>,
+}
+
+/// What the task demands of any camera, against the limiting alternative.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct RequirementResult {
+    /// Which distance decides.
+    pub by: &'static str,
+    /// Statistical distance demanded.
+    pub distance: f64,
+    /// Detection probability demanded, Φ of it.
+    pub detection_probability: f64,
+    /// Photons at the detector, shot noise only.
+    pub photons: Option<f64>,
+    /// H_req = t A_p/((1+γ)F²) by the paper's inequality, m² s, lossless optics.
+    pub hardware_m2_s: Option<f64>,
+    /// Photons by each reading of the distance.
+    pub photons_by: PhotonsRequired,
+    /// H_req by each reading, m² s.
+    pub hardware_by_m2_s: PhotonsRequired,
+}
+
+/// What the camera delivers in the scene.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct CameraResult {
+    /// Its figures.
+    #[serde(flatten)]
+    pub camera: Camera,
+    /// Photons of the target in all bands of all frames.
+    pub photons: f64,
+    /// Photons of the brightest band in one exposure: what the full well must hold.
+    pub brightest_reading: f64,
+    /// Electronic noise of a band (root mean square over the bands, all frames), counts.
+    pub noise_counts: f64,
+    /// γ = Σσ²/ΣN of the scene.
+    pub gamma_per_band: f64,
+    /// Étendue of a pixel, m² sr.
+    pub etendue_m2_sr: f64,
+    /// H = t A_p/((1+γ)F²), m² s.
+    pub hardware_m2_s: f64,
+    /// Least distance per √photon it resolves, d_req √((1+γ)/N).
+    pub least_distance: f64,
+    /// Time until all bands of all frames are read, s.
+    pub acquisition_s: f64,
+    /// Side of a pixel's footprint at the target, m.
+    pub footprint_m: Option<f64>,
+    /// Apparent motion during an exposure, pixels.
+    pub motion_blur_pixels: Option<f64>,
+    /// Variance of an average band, line by line.
+    pub noise_budget: Vec<NoiseLine>,
+}
+
+/// Solutions by quantity, in the order of [`Quantity::ALL`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct Solutions(pub Vec<(Quantity, Solution)>);
+
+impl serde::Serialize for Solutions {
+    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(Some(self.0.len()))?;
+        for (quantity, solution) in &self.0 {
+            map.serialize_entry(quantity.key(), solution)?;
+        }
+        map.end()
+    }
+}
+
+impl Study {
+    /// The verdict on the scenario's camera, the requirement, and every hardware quantity solved for.
+    ///
+    /// # Errors
+    /// As [`Study::identify`].
+    pub fn size(&self) -> Result<Sizing> {
+        let identification = self.identify()?;
+        let mut stats = identification.stats;
+        let mut warnings = identification.warnings.clone();
+        let limiting = identification
+            .pairs
+            .iter()
+            .zip(&self.alternatives)
+            .find(|(pair, _)| pair.alternative == identification.limiting);
+        let Some((pair, surface)) = limiting else {
+            return Err(hadar::Error::malformed(
+                "there is no alternative",
+                "name one in alternatives.materials",
+            ));
+        };
+        let requirement = self.requirement(pair, identification.photon_radiance);
+        let camera = self.camera_result(identification.photon_radiance);
+        let solve_for = match &self.camera {
+            Some(camera) => Some(self.solutions(camera, surface, &mut stats)?),
+            None => None,
+        };
+        let sensitivity = match &self.camera {
+            Some(camera) => Some(self.sensitivity(camera, surface, &mut stats)?),
+            None => None,
+        };
+        if let Some(camera) = &camera {
+            warnings.extend(self.camera_result_warnings(camera, pair));
+        }
+        let mut scenario = identification.scenario;
+        if sensitivity.is_some() {
+            scenario.sensitivity.get_or_insert_default();
+        }
+        let verdict = self.verdict(pair, &requirement, self.spoiled(camera.as_ref()));
+        Ok(Sizing {
+            scenario,
+            verdict,
+            requirement,
+            camera,
+            solve_for,
+            sensitivity,
+            trade_offs: None,
+            photon_radiance: identification.photon_radiance,
+            pairs: identification.pairs,
+            limiting: identification.limiting,
+            warnings,
+            stats,
+        })
+    }
+
+    /// Whether the camera meets the requirement, ending at the first proof; `None` without a camera, when nothing is met.
+    ///
+    /// # Errors
+    /// As [`Study::told_apart`].
+    pub fn verdict_alone(&self) -> Result<Option<VerdictAlone>> {
+        let Some(camera) = &self.camera else { return Ok(None) };
+        let check = self.check(Skipping::On)?;
+        let spoiled = self.spoiled(self.camera_result(self.photon_radiance()).as_ref());
+        let (yes, can) = match (check.identifiable, spoiled.is_empty()) {
+            (true, true) => ("Yes", "can"),
+            (true, false) => ("No", "could"),
+            (false, _) => ("No", "cannot"),
+        };
+        let but = if check.identifiable && !spoiled.is_empty() {
+            format!(", but {}", spoiled_in_words(&spoiled))
+        } else {
+            String::new()
+        };
+        let other = match (&check.not_told_from, self.alternatives.as_slice()) {
+            (Some(name), _) => name,
+            (None, [only]) => &only.name,
+            (None, _) => "every alternative",
+        };
+        let sentence = format!(
+            "{yes}: {} {can} tell {} from {other} with {} reliability{but}.",
+            camera.name,
+            self.target.name,
+            reliability(self.required)
+        );
+        let verdict = Verdict {
+            met: Some(check.identifiable && spoiled.is_empty()),
+            fails_by: (!check.identifiable).then_some("distance").into_iter().chain(spoiled).collect(),
+            sentence,
+            statistical_distance: None,
+            required_distance: self.required,
+            margin: None,
+        };
+        let Check { scenario, not_told_from, stats, .. } = check;
+        Ok(Some(VerdictAlone { scenario, verdict, not_told_from, stats }))
+    }
+
+    fn requirement(&self, pair: &PairResult, photon_radiance: f64) -> RequirementResult {
+        let hardware = |photons: Option<f64>| {
+            photons.map(|photons| policy::hardware_required_m2_s(photons, photon_radiance))
+        };
+        let by = pair.photons_required_by;
+        RequirementResult {
+            by: self.scenario.requirement.by.name(),
+            distance: self.required,
+            detection_probability: detection::probability(self.required),
+            photons: pair.photons_required,
+            hardware_m2_s: hardware(pair.photons_required),
+            photons_by: by,
+            hardware_by_m2_s: PhotonsRequired {
+                nearest: hardware(by.nearest),
+                local: hardware(by.local),
+                local_unknown_gain: hardware(by.local_unknown_gain),
+            },
+        }
+    }
+
+    pub(super) fn camera_result(&self, photon_radiance: f64) -> Option<CameraResult> {
+        let camera = self.camera.as_ref()?;
+        let counting = self.counting()?;
+        let signal = self.target_signal();
+        let photons = counting.counts_per_radiance * photon_radiance;
+        let gamma = gamma_per_band(&counting, &signal);
+        let distance_m = self.scenario.target.distance_m;
+        let blur = self.scenario.requirement.speed_m_s.and_then(|speed| {
+            let time_s = camera.sweep_s(self.bands.len());
+            Motion::of(camera, distance_m).map(|motion| motion.blur_pixels(speed, time_s))
+        });
+        let var: f64 = (0..self.bands.len()).map(|w| counting.var_added(w)).sum();
+        Some(CameraResult {
+            photons,
+            brightest_reading: camera.brightest_reading(&self.bands, &signal, &self.view_of(camera)),
+            noise_counts: (var / self.bands.len() as f64).sqrt(),
+            gamma_per_band: gamma,
+            etendue_m2_sr: camera.etendue_m2_sr(distance_m),
+            hardware_m2_s: camera.hardware_m2_s(gamma),
+            least_distance: policy::least_distance(self.required, photons, gamma),
+            acquisition_s: camera.acquisition_s(self.bands.len()),
+            footprint_m: distance_m.map(|z| camera.pixel_m * z / camera.focal_length_m),
+            motion_blur_pixels: blur,
+            noise_budget: camera.noise_budget(&self.bands, &signal, &self.view_of(camera)),
+            camera: camera.clone(),
+        })
+    }
+
+    /// What the scenario demands of its camera.
+    pub(super) fn task<'a>(&'a self, camera: &'a Camera) -> CameraTask<'a> {
+        let distance_m = self.scenario.target.distance_m;
+        CameraTask {
+            camera,
+            bands: &self.bands,
+            required: self.required,
+            distance_m,
+            size_m: self.scenario.target.size_m,
+        }
+    }
+
+    /// Counts of the fullest reading of a trial.
+    pub(super) fn brightest(&self, trial: &Trial) -> Result<f64> {
+        let sight = self.sight_at(&trial.camera, trial.distance_m)?;
+        let signal = sight.bands.weigh(&self.surroundings.signal(&self.target.emissivity, &self.state));
+        Ok(trial.camera.brightest_reading(&sight.bands, &signal, &sight.view))
+    }
+
+    pub(super) fn solutions(
+        &self,
+        camera: &Camera,
+        alternative: &Surface,
+        work: &mut Work,
+    ) -> Result<Solutions> {
+        let task = self.task(camera);
+        let brightest = |trial: &Trial| self.brightest(trial);
+        let speed_m_s = self.scenario.requirement.speed_m_s;
+        let given = Circumstances { bands: &self.bands, speed_m_s, brightest: &brightest };
+        let mut reach = Reach::new(self, alternative);
+        let mut solved = Vec::with_capacity(Quantity::ALL.len());
+        for quantity in Quantity::ALL {
+            let mut solution = reach.solve(&task, quantity)?;
+            if let Some(value) = solution.value {
+                solution.caps = caps::broken(quantity, value, &task, &given)?;
+            }
+            solved.push((quantity, solution));
+        }
+        work.add(&reach.work);
+        Ok(Solutions(solved))
+    }
+
+    fn verdict(
+        &self,
+        pair: &PairResult,
+        requirement: &RequirementResult,
+        spoiled: Vec<&'static str>,
+    ) -> Verdict {
+        let reached = pair.statistical_distance;
+        let far_enough = reached.map(|reached| reached >= self.required);
+        let met = far_enough.map(|enough| enough && spoiled.is_empty());
+        let mut fails_by = if far_enough == Some(false) { vec!["distance"] } else { Vec::new() };
+        fails_by.extend(&spoiled);
+        let (target, other) = (&pair.target, &pair.alternative);
+        let wanted = reliability(self.required);
+        let camera = self.camera.as_ref().map_or("", |camera| camera.name.as_str());
+        let sentence = match (reached, requirement.photons) {
+            (_, None) => {
+                let why = match pair.status {
+                    Status::Identical | Status::Equilibrium => "nothing in the spectrum differs",
+                    Status::Ok | Status::Blind => "the unknowns explain every difference in the spectrum",
+                };
+                format!("No camera can tell {target} from {other} here: {why}.")
+            }
+            (None, Some(photons)) => format!(
+                "Telling {target} from {other} with {wanted} reliability takes at least {photons:.2e} photons."
+            ),
+            (Some(d), Some(_)) => {
+                let reached = reliability(d);
+                match (d >= self.required, spoiled.is_empty()) {
+                    (true, false) => format!(
+                        "No: {camera} could tell {target} from {other} with {wanted} reliability, but {}.",
+                        spoiled_in_words(&spoiled)
+                    ),
+                    (enough, _) => {
+                        let (yes, what) = if enough { ("Yes", "can") } else { ("No", "cannot") };
+                        format!(
+                            "{yes}: {camera} {what} tell {target} from {other} with {wanted} reliability; \
+                             it reaches {reached} at most."
+                        )
+                    }
+                }
+            }
+        };
+        Verdict {
+            met,
+            fails_by,
+            sentence,
+            statistical_distance: reached,
+            required_distance: self.required,
+            margin: reached.map(|reached| reached / self.required),
+        }
+    }
+
+    /// What spoils the camera's image whatever the distance: the demanded speed, the full well.
+    fn spoiled(&self, camera: Option<&CameraResult>) -> Vec<&'static str> {
+        let Some(camera) = camera else { return Vec::new() };
+        let mut spoiled = Vec::new();
+        if camera.motion_blur_pixels.is_some_and(|blur| blur >= 1.0) {
+            spoiled.push("motion-blur");
+        }
+        if camera.camera.full_well.is_some_and(|full| camera.brightest_reading > full) {
+            spoiled.push("full-well");
+        }
+        spoiled
+    }
+}
+
+/// What is wrong with an image, in words.
+fn spoiled_in_words(spoiled: &[&str]) -> String {
+    let words = spoiled.iter().map(|by| match *by {
+        "motion-blur" => "the target moves by a pixel or more while all bands are exposed",
+        _ => "a reading does not fit into the full well",
+    });
+    words.collect::<Vec<_>>().join(", and ")
+}

@@ -1,0 +1,13 @@
+//! What every storey stands on: errors, units, sums, lattices, one-dimensional solvers, statistics.
+
+pub mod demand;
+pub mod error;
+pub mod grid;
+pub mod lattice_points;
+pub mod minimum;
+pub mod root;
+pub(crate) mod simd;
+pub mod statistics;
+pub mod sum;
+pub mod units;
+pub mod words;

@@ -1,0 +1,60 @@
+//! Where an increasing function crosses zero.
+
+use crate::error::{Error, Result};
+
+/// Where an increasing function of x crosses zero, to the last few bits of x.
+///
+/// # Errors
+/// An error of `f`, or ends that do not bracket the crossing.
+pub fn crossing(low: f64, high: f64, mut f: impl FnMut(f64) -> Result<f64>) -> Result<f64> {
+    // Chandrupatla's method: inverse quadratic interpolation where it is safe, else bisection
+    // (Adv. Eng. Softw. 28, 145 (1997), doi:10.1016/S0965-9978(96)00051-8).
+    let (mut a, mut b) = (low, high);
+    let (mut fa, mut fb) = (f(a)?, f(b)?);
+    if fa == 0.0 || fb == 0.0 {
+        return Ok(if fa == 0.0 { a } else { b });
+    }
+    if !(fa < 0.0 && fb > 0.0) {
+        return Err(Error::malformed("a function without a crossing in its range", "report this as a bug"));
+    }
+    let (mut c, mut fc);
+    let mut share = 0.5;
+    for _ in 0..200 {
+        let x = a + share * (b - a);
+        let fx = f(x)?;
+        if (fx < 0.0) == (fa < 0.0) {
+            (c, fc) = (a, fa);
+        } else {
+            (c, fc, b, fb) = (b, fb, a, fa);
+        }
+        (a, fa) = (x, fx);
+        let (best, f_best) = if fa.abs() < fb.abs() { (a, fa) } else { (b, fb) };
+        let tolerance = 2.0 * f64::EPSILON * best.abs() + f64::MIN_POSITIVE;
+        let share_least = tolerance / (b - a).abs();
+        if share_least > 0.5 || f_best == 0.0 {
+            return Ok(best);
+        }
+        let (xi, phi) = ((a - b) / (c - b), (fa - fb) / (fc - fb));
+        share = if phi * phi < xi && (1.0 - phi) * (1.0 - phi) < 1.0 - xi {
+            fa / (fb - fa) * (fc / (fb - fc)) + (c - a) / (b - a) * (fa / (fc - fa)) * (fb / (fc - fb))
+        } else {
+            0.5
+        };
+        share = share.clamp(share_least, 1.0 - share_least);
+    }
+    Ok(if fa.abs() < fb.abs() { a } else { b })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn crossings_are_found_to_the_last_bits() {
+        for root in [-3.7, 1e-9, 0.25, 12.0] {
+            let x = crossing(-20.0, 20.0, |x| Ok((x - root).powi(3) + 1e-3 * (x - root))).unwrap();
+            assert!((x - root).abs() <= 1e-15 * root.abs() + 1e-15, "{x} {root}");
+        }
+        assert!(crossing(0.0, 1.0, |x| Ok(x + 1.0)).is_err());
+    }
+}

@@ -1,0 +1,213 @@
+//! Loops compiled once per instruction set and chosen at run time.
+//!
+//! [`dispatched!`] wraps a plain function so that its body is compiled with the widest vector unit the
+//! processor has. Bodies use explicit `mul_add` and fixed lanes, so every processor gives the same bits;
+//! one without fused multiply-add is slower, not different. No `unsafe` of our own is involved.
+
+/// Declares a function whose body is compiled per instruction set. Borrowed arguments take `'a`.
+macro_rules! dispatched {
+    ($(#[$meta:meta])* $vis:vis fn $name:ident<'a>($($arg:ident: $ty:ty),* $(,)?) $(-> $ret:ty)? $body:block) => {
+        $(#[$meta])*
+        $vis fn $name<'a>($($arg: $ty),*) $(-> $ret)? {
+            // A named type instead of a closure: a closure's shim need not be inlined, and then the body
+            // would be compiled for the oldest processor.
+            struct Kernel<'a> {
+                $($arg: $ty,)*
+                scope: std::marker::PhantomData<&'a ()>,
+            }
+            impl<'a> pulp::NullaryFnOnce for Kernel<'a> {
+                type Output = $crate::simd::output!($($ret)?);
+                #[inline(always)]
+                fn call(self) -> Self::Output {
+                    let Self { $($arg,)* scope: _ } = self;
+                    $body
+                }
+            }
+            pulp::Arch::new().dispatch(Kernel { $($arg,)* scope: std::marker::PhantomData })
+        }
+    };
+}
+
+/// The return type, or `()` where none is written.
+macro_rules! output {
+    () => {
+        ()
+    };
+    ($ret:ty) => {
+        $ret
+    };
+}
+
+pub(crate) use {dispatched, output};
+
+/// Doubles per cache line, and per chunk of a loop with sums.
+pub(crate) const LANES: usize = 8;
+
+/// Values that are worked on side by side. They are passed by value: then the compiler keeps them in
+/// registers of any width.
+pub(crate) type Chunk = [f64; LANES];
+
+/// a·b.
+#[inline(always)]
+pub(crate) fn product(a: Chunk, b: Chunk) -> Chunk {
+    std::array::from_fn(|i| a[i] * b[i])
+}
+
+/// a·b + c.
+#[inline(always)]
+pub(crate) fn added(a: Chunk, b: Chunk, c: Chunk) -> Chunk {
+    std::array::from_fn(|i| a[i].mul_add(b[i], c[i]))
+}
+
+/// factor·a + b.
+#[inline(always)]
+pub(crate) fn fused(factor: f64, a: Chunk, b: Chunk) -> Chunk {
+    std::array::from_fn(|i| factor.mul_add(a[i], b[i]))
+}
+
+/// Fewer than [`LANES`] values, followed by zeros.
+#[inline(always)]
+pub(crate) fn padded(rest: &[f64]) -> Chunk {
+    let mut chunk = [0.0; LANES];
+    for (to, from) in chunk.iter_mut().zip(rest) {
+        *to = *from;
+    }
+    chunk
+}
+
+/// The largest magnitude so far, in every lane.
+#[derive(Default)]
+pub(crate) struct Largest(Chunk);
+
+impl Largest {
+    #[inline(always)]
+    pub(crate) fn see(&mut self, x: Chunk) {
+        let so_far = self.0;
+        self.0 = std::array::from_fn(|i| if x[i].abs() > so_far[i] { x[i].abs() } else { so_far[i] });
+    }
+
+    /// Never inlined, for the reason given at [`crate::sum::CompensatedLanes::value`].
+    #[inline(never)]
+    pub(crate) fn value(&self) -> f64 {
+        self.0.iter().fold(0.0, |largest, x| x.max(largest))
+    }
+}
+
+dispatched! {
+    /// Largest |x|.
+    pub(crate) fn largest<'a>(x: &'a [f64]) -> f64 {
+        let (eights, rest) = x.as_chunks::<LANES>();
+        let mut largest = Largest::default();
+        for x in eights {
+            largest.see(*x);
+        }
+        largest.see(padded(rest));
+        largest.value()
+    }
+}
+
+/// Room for `len` doubles such that arrays laid out one after the other do not start at nearly the same
+/// place in a page of 512 doubles: a processor takes a load for one of a store not yet done if their places in the
+/// page agree, and waits.
+pub(crate) fn spaced(len: usize) -> usize {
+    const PAGE: usize = 512;
+    const APART: usize = 64;
+    let whole = len.next_multiple_of(LANES);
+    match whole % PAGE {
+        _ if len <= APART => whole,
+        near if near < APART => whole + APART - near,
+        near if near > PAGE - APART => whole + PAGE + APART - near,
+        _ => whole,
+    }
+}
+
+/// A slice of doubles that starts at a cache line, so that no full-width access straddles two lines.
+///
+/// Only speed depends on the alignment, never a result.
+#[derive(Debug, Default)]
+pub(crate) struct Aligned {
+    storage: Vec<f64>,
+    start: usize,
+    len: usize,
+}
+
+impl Aligned {
+    /// `len` zeros.
+    pub(crate) fn zeros(len: usize) -> Self {
+        let storage = vec![0.0; spaced(len) + LANES - 1];
+        let start = storage.as_ptr().align_offset(LANES * size_of::<f64>()).min(LANES - 1);
+        Self { storage, start, len }
+    }
+
+    /// Changes the length; what the values are afterwards is not said.
+    pub(crate) fn set_len(&mut self, len: usize) {
+        if self.start + len <= self.storage.len() {
+            self.len = len;
+        } else {
+            *self = Self::zeros(len);
+        }
+    }
+}
+
+impl From<&[f64]> for Aligned {
+    fn from(values: &[f64]) -> Self {
+        let mut copy = Self::zeros(values.len());
+        copy.copy_from_slice(values);
+        copy
+    }
+}
+
+impl Clone for Aligned {
+    fn clone(&self) -> Self {
+        Self::from(&**self)
+    }
+}
+
+impl std::ops::Deref for Aligned {
+    type Target = [f64];
+
+    fn deref(&self) -> &[f64] {
+        &self.storage[self.start..self.start + self.len]
+    }
+}
+
+impl std::ops::DerefMut for Aligned {
+    fn deref_mut(&mut self) -> &mut [f64] {
+        &mut self.storage[self.start..self.start + self.len]
+    }
+}
+
+/// Adds the lanes pairwise.
+#[inline(always)]
+pub(crate) fn fold(lanes: &Chunk) -> f64 {
+    ((lanes[0] + lanes[4]) + (lanes[2] + lanes[6])) + ((lanes[1] + lanes[5]) + (lanes[3] + lanes[7]))
+}
+
+/// Adds every second half of `a` and `b` to the first ones: `HALF` lanes of each in turn.
+#[inline(always)]
+fn halved<const HALF: usize>(a: Chunk, b: Chunk) -> Chunk {
+    let lane =
+        |i: usize| (if (i / HALF).is_multiple_of(2) { a } else { b }, i / (2 * HALF) * (2 * HALF) + i % HALF);
+    std::array::from_fn(|i| {
+        let (from, at) = lane(i);
+        from[at] + from[at + HALF]
+    })
+}
+
+/// factor · the sum of the lanes of each, added in the order of [`fold`]; eight at a time, so that all
+/// lanes of all additions are used.
+#[inline(always)]
+pub(crate) fn fold_all(lanes: &[Chunk], factor: f64, sums: &mut [f64]) {
+    let (eights, rest) = lanes.as_chunks::<LANES>();
+    let (to, to_rest) = sums.split_at_mut(eights.len() * LANES);
+    for (lanes, to) in eights.iter().zip(to.as_chunks_mut::<LANES>().0) {
+        let [a, b, c, d, e, f, g, h] = *lanes;
+        // In pairs of lanes 4 apart, then 2, then 1; the order of the arguments puts the sums in theirs.
+        let fours = [halved::<4>(a, e), halved::<4>(b, f), halved::<4>(c, g), halved::<4>(d, h)];
+        let twos = [halved::<2>(fours[0], fours[2]), halved::<2>(fours[1], fours[3])];
+        *to = halved::<1>(twos[0], twos[1]).map(|sum| factor * sum);
+    }
+    for (lanes, to) in rest.iter().zip(to_rest) {
+        *to = factor * fold(lanes);
+    }
+}

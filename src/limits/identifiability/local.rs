@@ -1,0 +1,266 @@
+//! The paper's semantic distance: what one photon tells of the material, at the target's own state.
+//!
+//! d₀ = ½‖P⊥ s_g‖ per √photon, s_g the score of the mixing fraction g and P⊥ the projector that removes the
+//! span of the nuisance scores; d₀ = 1/(2σ₀) with σ₀² = [1/J⁰]_gg. It is the tangent of the two surfaces at
+//! the target: for finite separations it can err either way, see [`super::nearest`].
+//!
+//! Source: paper S24–S30, Algorithm 2.
+
+mod scaled;
+
+use super::Status;
+use crate::error::{Error, Result};
+use crate::fisher::{Counting, Projection, Projector, Reduced, Unknowns};
+use crate::scene::{Jacobian, Parameter, State, Surroundings};
+use crate::simd::Aligned;
+use crate::spectrum::Bands;
+
+/// Signals of which the sum is outside this range are whitened and scaled before they are squared.
+pub(super) const SAFE_RANGE: std::ops::Range<f64> = 1e-100..1e100;
+
+/// Local distance of a pair of materials.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LocalDistance {
+    /// d₀ per √photon, or the statistical distance d, whichever was asked for.
+    pub distance: f64,
+    /// The same with no nuisance at all.
+    pub distance_no_nuisance: f64,
+    /// Estimated bound on the relative rounding error of `distance`.
+    pub relative_error: f64,
+    /// What kind of answer it is.
+    pub status: Status,
+    /// Change of each nuisance (per unit of g) that imitates the alternative best.
+    pub imitation: Vec<(Parameter, f64)>,
+    /// Nuisances that change nothing, or nothing that the others do not.
+    pub dropped: Vec<Parameter>,
+    /// ΣS of the target, photons s⁻¹ m⁻² sr⁻¹.
+    pub photon_radiance: f64,
+    projection: Projection,
+}
+
+impl LocalDistance {
+    /// Condition number of the scaled scores (see [`Projection::condition_number`]).
+    #[must_use]
+    pub fn condition_number(&self) -> f64 {
+        self.projection.condition_number()
+    }
+}
+
+/// Computes local distances in fixed bands and surroundings, again and again without allocating much.
+///
+/// ```
+/// use hadar::fisher::{Nuisance, Unknowns};
+/// use hadar::identifiability::local::LocalSolver;
+/// use hadar::scene::{EnvironmentObject, Surroundings};
+/// use hadar::spectrum::Bands;
+///
+/// let bands = Bands::uniform(715.0, 1250.0, 1.0)?;
+/// let object = EnvironmentObject { temperature_k: 293.15, emissivity: None };
+/// let surroundings = Surroundings::new(bands.nodes_cm1(), vec![object])?;
+/// let skin = vec![0.95; bands.len()];
+/// let fabric = vec![0.88; bands.len()];
+/// let unknowns = Unknowns::new([Nuisance::Temperature, Nuisance::Lighting])?;
+/// let state = surroundings.state(310.15, &[0.5])?;
+/// let local = LocalSolver::new(&bands, &surroundings, unknowns).per_photon(&skin, &fabric, &state, f64::INFINITY)?;
+/// assert!(local.distance < 0.1 * local.distance_no_nuisance);
+/// # Ok::<(), hadar::Error>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct LocalSolver<'a> {
+    unknowns: Unknowns,
+    parameters: Vec<Parameter>,
+    jacobian: Jacobian<'a>,
+    projector: Projector,
+    columns: Vec<f64>,
+    weights: Aligned,
+    /// Weights of whitened columns.
+    ones: Vec<f64>,
+}
+
+impl<'a> LocalSolver<'a> {
+    /// A solver for one set of bands, surroundings and unknowns.
+    #[must_use]
+    pub fn new(bands: &'a Bands, surroundings: &'a Surroundings, unknowns: Unknowns) -> Self {
+        let mut parameters = unknowns.parameters(surroundings.objects().len());
+        parameters.push(Parameter::Material);
+        Self {
+            unknowns,
+            parameters,
+            jacobian: Jacobian::new(bands, surroundings),
+            projector: Projector::default(),
+            columns: Vec::new(),
+            weights: Aligned::zeros(bands.len()),
+            ones: Vec::new(),
+        }
+    }
+
+    /// d₀ per √photon, in the limit of shot noise. Priors count as they do among `photons` photons;
+    /// with infinitely many they count for nothing.
+    ///
+    /// # Errors
+    /// A scene without photons, or fewer bands than unknowns.
+    pub fn per_photon(
+        &mut self,
+        emissivity: &[f64],
+        alternative: &[f64],
+        state: &State,
+        photons: f64,
+    ) -> Result<LocalDistance> {
+        let (total, found) = self.reduce_per_photon(emissivity, alternative, state, photons.sqrt())?;
+        Ok(self.judge(found, emissivity, alternative, state, total))
+    }
+
+    /// The distance of [`LocalSolver::per_photon`] with infinitely many photons.
+    pub(super) fn distance(&mut self, emissivity: &[f64], alternative: &[f64], state: &State) -> Result<f64> {
+        let (_, found) = self.reduce_per_photon(emissivity, alternative, state, f64::INFINITY)?;
+        let status = self.status(&found, emissivity, alternative, state);
+        Ok(if status == Status::Ok { 0.5 * found.residual } else { 0.0 })
+    }
+
+    /// Statistical distance d with the camera's own noise (S27 at N photons).
+    ///
+    /// # Errors
+    /// As [`LocalSolver::per_photon`].
+    pub fn with_counting(
+        &mut self,
+        emissivity: &[f64],
+        alternative: &[f64],
+        state: &State,
+        counting: &Counting,
+    ) -> Result<LocalDistance> {
+        self.evaluate(emissivity, alternative, state);
+        let total = positive(crate::sum::sum(self.jacobian.signal()))?;
+        let counts = counting.counts_per_radiance;
+        for (w, (weight, signal)) in self.weights.iter_mut().zip(self.jacobian.signal()).enumerate() {
+            // κ²/(κS + σ²) with one κ taken out, so that nothing overflows before it must.
+            let variance = signal + counting.var_added(w) / counts;
+            *weight = if variance > 0.0 { counts / variance } else { 0.0 };
+        }
+        self.check_rank()?;
+        if !self.unknowns.has_priors() {
+            let root = |w: usize| self.weights[w].sqrt();
+            let cancellation = self.jacobian.material_cancellation(emissivity, alternative, state, root);
+            let found = self.projector.reduce(self.jacobian.columns_mut(), &self.weights, cancellation);
+            if self.projector.in_range(found) {
+                return Ok(self.judge(found, emissivity, alternative, state, total));
+            }
+            self.evaluate(emissivity, alternative, state);
+        }
+        let root = |w: usize, signal: f64| counts.sqrt() / (signal + counting.var_added(w) / counts).sqrt();
+        let found = self.reduce_scaled(emissivity, alternative, state, root, 1.0);
+        Ok(self.judge(found, emissivity, alternative, state, total))
+    }
+
+    fn evaluate(&mut self, emissivity: &[f64], alternative: &[f64], state: &State) {
+        let total_known = self.unknowns.known_lighting_total().is_some();
+        self.jacobian.evaluate(emissivity, alternative, state, &self.parameters, total_known);
+    }
+
+    /// ΣS, and the projection with the weights u = 1/(S ΣS).
+    fn reduce_per_photon(
+        &mut self,
+        emissivity: &[f64],
+        alternative: &[f64],
+        state: &State,
+        sqrt_photons: f64,
+    ) -> Result<(f64, Reduced)> {
+        self.evaluate(emissivity, alternative, state);
+        let total = positive(crate::sum::sum(self.jacobian.signal()))?;
+        self.check_rank()?;
+        let priors = self.unknowns.has_priors() && sqrt_photons.is_finite();
+        if SAFE_RANGE.contains(&total) && !priors {
+            let signal = self.jacobian.signal();
+            let root = |w: usize| if signal[w] > 0.0 { 1.0 / signal[w].sqrt() } else { 0.0 };
+            let cancellation = self.jacobian.material_cancellation(emissivity, alternative, state, root);
+            let (columns, inverse) = self.jacobian.columns_and_inverse();
+            let found = self.projector.reduce(columns, inverse, cancellation);
+            // ΣS comes in at the end, since it scales all the same.
+            let per_photon = 1.0 / total.sqrt();
+            let Reduced { residual, norm, relative_error } = found;
+            let scaled = Reduced { residual: per_photon * residual, norm: per_photon * norm, relative_error };
+            if self.projector.in_range(found) {
+                return Ok((total, scaled));
+            }
+            self.evaluate(emissivity, alternative, state);
+        }
+        let root_total = total.sqrt();
+        let root = |_, signal: f64| 1.0 / (signal.sqrt() * root_total);
+        Ok((total, self.reduce_scaled(emissivity, alternative, state, root, sqrt_photons)))
+    }
+
+    fn check_rank(&self) -> Result<()> {
+        let bands = self.jacobian.bands().len();
+        let live = |i: usize| self.jacobian.column(i).iter().any(|&value| value != 0.0);
+        let free = (0..self.parameters.len() - 1)
+            .filter(|&i| self.unknowns.sigma_prior(self.parameters[i]).is_none() && live(i))
+            .count();
+        if bands > free {
+            return Ok(());
+        }
+        let s = if bands == 1 { "" } else { "s" };
+        Err(Error::malformed(
+            format!("{bands} band{s} for {} unknowns (the material among them)", free + 1),
+            format!("give at least {} bands, fewer nuisances, or priors on them", free + 1),
+        ))
+    }
+
+    fn judge(
+        &self,
+        found: Reduced,
+        emissivity: &[f64],
+        alternative: &[f64],
+        state: &State,
+        total: f64,
+    ) -> LocalDistance {
+        let status = self.status(&found, emissivity, alternative, state);
+        let projection = self.projector.projection(found);
+        let imitation =
+            self.parameters.iter().copied().zip(projection.coefficients.iter().copied()).collect();
+        let dropped = projection.dropped.iter().map(|&i| self.parameters[i]).collect();
+        LocalDistance {
+            distance: if status == Status::Ok { 0.5 * projection.residual } else { 0.0 },
+            distance_no_nuisance: 0.5 * projection.norm,
+            relative_error: if status == Status::Ok { projection.relative_error } else { 0.0 },
+            status,
+            imitation,
+            dropped,
+            photon_radiance: total,
+            projection,
+        }
+    }
+
+    fn status(&self, found: &Reduced, emissivity: &[f64], alternative: &[f64], state: &State) -> Status {
+        if emissivity == alternative {
+            Status::Identical
+        } else if found.norm == 0.0 && self.in_equilibrium(state) {
+            Status::Equilibrium
+        } else if found.norm == 0.0 || found.relative_error >= 1.0 || found.residual == 0.0 {
+            Status::Blind
+        } else {
+            Status::Ok
+        }
+    }
+
+    /// Every object at the target's temperature, black, and together all around.
+    fn in_equilibrium(&self, state: &State) -> bool {
+        let black =
+            self.jacobian.surroundings().objects().iter().zip(&state.lighting).all(|(object, &factor)| {
+                factor == 0.0 || object.emissivity.iter().flatten().all(|&e| e == 1.0)
+            });
+        let warm = state.environment_k.iter().zip(&state.lighting);
+        black && warm.fold(true, |so_far, (t, v)| so_far && (*v == 0.0 || *t == state.temperature_k))
+    }
+}
+
+/// ΣS of a scene with photons.
+fn positive(total: f64) -> Result<f64> {
+    if total > 0.0 && total.is_finite() {
+        return Ok(total);
+    }
+    Err(Error::out_of_range(
+        "photon radiance of the target",
+        total,
+        "photons s^-1 m^-2 sr^-1",
+        "above 0: a warmer scene, or bands at lower wavenumbers",
+    ))
+}

@@ -1,0 +1,309 @@
+//! Half the separation between the target's state and the nearest state of the alternative.
+//!
+//! d = min ‖√(N + σ²) − √(N′ + σ²)‖ over the alternative's own free state θ′ (T′, V′, gain′, Tₖ′: those that
+//! are unknown, within their physical range). 2√(N + σ²) has unit variance, so d is half the separation in
+//! units of the noise, and no test, averaged over the two states, is right more often than Φ(d) (large N).
+//!
+//! Per band r = (N − N′)/(√(N+σ²) + √(N′+σ²)), with
+//! S − S′ = (e − e′)C + e′[B(T) − B(T′)] + (1 − e′)(X − X′) formed from differences that are exact to a few
+//! ulp (C contrast, X lighting; see [`crate::scene`]): nothing is lost as the materials become equal.
+//! A prior of deviation σ_p on a parameter adds the row (θ′ − θ)/(2σ_p), whose tangent is the local bound's.
+//!
+//! Search: where T′ is free, a dense grid of it with the other unknowns fitted at each point; between two
+//! points the derivative of the fitted cost along T′ tells of a minimum (`search`). Every minimum is then
+//! refined by damped Newton steps within the bounds (`residual`), and so is the target's own state. The search is
+//! dense, not a proof: two extremes between neighbouring points would be missed together. (Of 3000 random
+//! pairs with temperature, lighting and in a fifth of them gain unknown, one ended above a brute-force lattice of
+//! starts by more than 1e-6 and none by 1e-5; over a wider range of scenes with gain always unknown 1 in 200 did,
+//! by up to 3 %: valleys that run out to endless temperature and no gain. With unknown environment temperatures up to a
+//! quarter do.)
+//!
+//! Source: design of the project; Algorithm 1 of the paper is its exact counterpart on a lattice.
+
+mod residual;
+mod search;
+
+use self::residual::{Comparison, Metric, Target};
+use self::search::EmissionTable;
+pub use super::space::StateRange;
+use crate::error::{Error, Result};
+use crate::fisher::{Counting, Unknowns};
+use crate::scene::{Parameter, State, Surroundings};
+use crate::spectrum::Bands;
+
+/// Iterations of a refinement.
+const ITERATIONS: usize = 100;
+/// Relative step at which a refinement has converged.
+const STEP_TOLERANCE: f64 = 1e-9;
+/// Relative separation at which two refinements have come to the same minimum.
+const SAME_MINIMUM: f64 = 1e-5;
+/// Relative separation up to which two states are one as far as a fit that starts from either is concerned.
+const SAME_STATE: f64 = 1e-4;
+/// Share of the separation at the target's own state below which a distance is rounding noise.
+const ROUNDING: f64 = 1e-14;
+
+/// The nearest state of the alternative and its distance.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NearestDistance {
+    /// Half the separation in units of the noise: d₀ per √photon, or d, as asked for.
+    pub distance: f64,
+    /// The nearest state.
+    pub state: State,
+    /// Parameters that stand at the edge of their range.
+    pub at_edge: Vec<Parameter>,
+    /// Iterations of all refinements together.
+    pub iterations: usize,
+    /// Whether the refinement of the nearest state converged.
+    pub converged: bool,
+}
+
+/// Whether a state nearer than a limit was found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Nearer {
+    /// One is.
+    Somewhere,
+    /// The nearest one is not.
+    Nowhere,
+}
+
+/// Finds nearest states in fixed bands and surroundings.
+#[derive(Debug, Clone)]
+pub struct NearestSolver<'a> {
+    comparison: Comparison<'a>,
+    /// What the searches before have computed that the next one can use.
+    table: Option<EmissionTable>,
+}
+
+impl<'a> NearestSolver<'a> {
+    /// A solver for one set of bands, surroundings, unknowns and ranges of the alternative's state.
+    #[must_use]
+    pub fn new(
+        bands: &'a Bands,
+        surroundings: &'a Surroundings,
+        unknowns: Unknowns,
+        range: StateRange,
+    ) -> Self {
+        Self { comparison: Comparison::new(bands, surroundings, unknowns, range), table: None }
+    }
+
+    /// Nearest distance per √photon in the limit of shot noise. Priors count as among `photons` photons.
+    ///
+    /// # Errors
+    /// A scene without photons.
+    pub fn per_photon(
+        &mut self,
+        emissivity: &[f64],
+        alternative: &[f64],
+        state: &State,
+        photons: f64,
+    ) -> Result<NearestDistance> {
+        self.search(emissivity, alternative, state, Metric::PerPhoton { photons }, None, 0.0)
+    }
+
+    /// Nearest statistical distance d with the camera's own noise.
+    ///
+    /// # Errors
+    /// A scene without photons.
+    pub fn with_counting(
+        &mut self,
+        emissivity: &[f64],
+        alternative: &[f64],
+        state: &State,
+        counting: &Counting,
+    ) -> Result<NearestDistance> {
+        self.search(emissivity, alternative, state, Metric::Counting(counting), None, 0.0)
+    }
+
+    /// As [`NearestSolver::with_counting`], but only refined from a state known to be near the answer.
+    ///
+    /// # Errors
+    /// A scene without photons.
+    pub fn refine_with_counting(
+        &mut self,
+        emissivity: &[f64],
+        alternative: &[f64],
+        state: &State,
+        counting: &Counting,
+        start: &State,
+    ) -> Result<NearestDistance> {
+        self.search(emissivity, alternative, state, Metric::Counting(counting), Some(start), 0.0)
+    }
+
+    /// Whether any state of the alternative is nearer than `limit`, with the camera's own noise: the search
+    /// ends at the first one.
+    ///
+    /// # Errors
+    /// A scene without photons.
+    pub fn nearer_than(
+        &mut self,
+        emissivity: &[f64],
+        alternative: &[f64],
+        state: &State,
+        counting: &Counting,
+        limit: f64,
+    ) -> Result<Nearer> {
+        let found = self.search(emissivity, alternative, state, Metric::Counting(counting), None, limit)?;
+        Ok(if found.distance < limit { Nearer::Somewhere } else { Nearer::Nowhere })
+    }
+
+    /// Whether a descent from the target's own state comes to one of the alternative's that is nearer than `limit`. It
+    /// ends there, and sees nothing of other minima: that it finds none proves nothing.
+    ///
+    /// # Errors
+    /// A scene without photons.
+    pub fn descends_below(
+        &mut self,
+        emissivity: &[f64],
+        alternative: &[f64],
+        state: &State,
+        counting: &Counting,
+        limit: f64,
+    ) -> Result<bool> {
+        let metric = Metric::Counting(counting);
+        let found = self.search(emissivity, alternative, state, metric, Some(state), limit)?;
+        Ok(found.distance < limit)
+    }
+
+    /// Statistical distance to the alternative in the target's own state (as far as that is within the
+    /// alternative's range): an upper bound on the nearest one.
+    ///
+    /// # Errors
+    /// A scene without photons.
+    pub fn own_state_distance(
+        &mut self,
+        emissivity: &[f64],
+        alternative: &[f64],
+        state: &State,
+        counting: &Counting,
+    ) -> Result<f64> {
+        let target = self.comparison.aim(emissivity, alternative, state, Metric::Counting(counting))?;
+        let own = self.comparison.space.within_range(state);
+        Ok(self.comparison.cost(&target, &own).sqrt())
+    }
+
+    /// The nearest state, or the first one found that is nearer than `enough`.
+    fn search(
+        &mut self,
+        emissivity: &[f64],
+        alternative: &[f64],
+        state: &State,
+        metric: Metric<'_>,
+        start: Option<&State>,
+        enough: f64,
+    ) -> Result<NearestDistance> {
+        let target = self.comparison.aim(emissivity, alternative, state, metric)?;
+        let own_cost = self.comparison.cost(&target, state);
+        if own_cost < enough * enough && self.comparison.space.within_range(state) == *state {
+            // The target's own state is near enough.
+            let at_edge = self.comparison.space.edges(state);
+            let (distance, state) = (own_cost.sqrt(), state.clone());
+            return Ok(NearestDistance { distance, state, at_edge, iterations: 0, converged: false });
+        }
+        let starts = match start {
+            Some(start) => vec![self.comparison.space.free_of(start, state)],
+            None => self.comparison.starts(&mut self.table, &target, own_cost, 0.0),
+        };
+        let mut best: Option<NearestDistance> = None;
+        let mut iterations = 0;
+        for start in starts {
+            let candidate = self.refine(&target, start, best.as_ref(), enough);
+            iterations += candidate.iterations;
+            if candidate.distance < enough {
+                return Ok(candidate);
+            }
+            if best.as_ref().is_none_or(|best| candidate.distance < best.distance) {
+                best = Some(candidate);
+            }
+        }
+        match best {
+            Some(best) => {
+                // What is left of the separation at the target's own state when only rounding is left of it.
+                let nothing = best.distance <= ROUNDING * own_cost.sqrt();
+                let distance = if nothing { 0.0 } else { best.distance };
+                Ok(NearestDistance { distance, iterations, ..best })
+            }
+            None => Err(Error::malformed("the alternative has no state in its range", "widen the range")),
+        }
+    }
+
+    /// States at minima of the distance, nearest first, that lie no more than `reach` beyond the least one.
+    ///
+    /// # Errors
+    /// A scene without photons.
+    pub(crate) fn minima_with_counting(
+        &mut self,
+        emissivity: &[f64],
+        alternative: &[f64],
+        state: &State,
+        counting: &Counting,
+        reach: f64,
+    ) -> Result<Vec<NearestDistance>> {
+        let target = self.comparison.aim(emissivity, alternative, state, Metric::Counting(counting))?;
+        let own_cost = self.comparison.cost(&target, state);
+        let starts = self.comparison.starts(&mut self.table, &target, own_cost, reach);
+        let mut minima: Vec<NearestDistance> =
+            starts.into_iter().map(|start| self.refine(&target, start, None, 0.0)).collect();
+        minima.sort_by(|a, b| a.distance.total_cmp(&b.distance));
+        let farthest = minima.first().map_or(0.0, |least| least.distance + reach);
+        let mut distinct: Vec<NearestDistance> = Vec::new();
+        for minimum in minima.into_iter().filter(|minimum| minimum.distance <= farthest) {
+            if distinct
+                .iter()
+                .all(|known| self.comparison.space.separation(&known.state, &minimum.state) >= SAME_STATE)
+            {
+                distinct.push(minimum);
+            }
+        }
+        Ok(distinct)
+    }
+
+    /// Newton's method within the bounds, damped as by Levenberg and Marquardt. It ends early where it has come
+    /// to a minimum that is `known`, or nearer than `enough`.
+    fn refine(
+        &mut self,
+        target: &Target<'_>,
+        start: State,
+        known: Option<&NearestDistance>,
+        enough: f64,
+    ) -> NearestDistance {
+        let mut state = self.comparison.space.within_range(&start);
+        let mut at = self.comparison.linearise(target, &state);
+        let (mut damping, mut converged, mut iterations) =
+            (1e-7, self.comparison.space.parameters.is_empty(), 0);
+        while !converged && iterations < ITERATIONS && at.cost >= enough * enough {
+            iterations += 1;
+            let Some(step) = self.comparison.space.step(&at.quadratic, &state, damping, false) else { break };
+            let moved = self.comparison.space.moved(&state, &step);
+            let size = self.comparison.space.relative_size(&step, &state);
+            if size < STEP_TOLERANCE {
+                // The last step, whether it is taken or only rounding: the cost tells.
+                let cost = self.comparison.cost(target, &moved);
+                if cost <= at.cost {
+                    (state, at.cost) = (moved, cost);
+                }
+                converged = true;
+                break;
+            }
+            if known.is_some_and(|known| {
+                known.distance * known.distance <= at.cost
+                    && self.comparison.space.separation(&moved, &known.state) < SAME_MINIMUM
+            }) {
+                break;
+            }
+            let next = self.comparison.linearise(target, &moved);
+            if next.cost <= at.cost {
+                (state, at) = (moved, next);
+                damping = (damping * 0.05).max(1e-15);
+            } else {
+                // Below this the cost changes only by rounding.
+                converged = size < 10.0 * STEP_TOLERANCE;
+                damping = (damping * 20.0).max(1e-9);
+                if damping > 1e12 {
+                    break;
+                }
+            }
+        }
+        let at_edge = self.comparison.space.edges(&state);
+        NearestDistance { distance: at.cost.sqrt(), state, at_edge, iterations, converged }
+    }
+}

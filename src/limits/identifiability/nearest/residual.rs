@@ -1,0 +1,283 @@
+//! The residual r = √(N + σ²) − √(N′ + σ²) of a candidate state, its gradient and second derivatives.
+//!
+//! With ρ = √(κS′ + σ²) and s = ∂r/∂S′ = −κ/(2ρ), half the cost has the second derivatives
+//! Σ s²(1 + r/ρ) S′ᵢS′ⱼ + Σ r s S′ᵢⱼ. The first sum without r/ρ is the Gauss–Newton matrix; where temperature and
+//! lighting of the alternative are nearly degenerate it alone converges slowly, so the rest is added:
+//! S′_TT = G e′ B″ (`curvature`), and S′_gj = S′ⱼ for the logarithm g of the gain.
+//! (Second derivatives along environment temperatures are left out.)
+
+mod sums;
+
+use self::sums::{Lines, Sums};
+use crate::error::{Error, Result};
+use crate::fisher::{Counting, Unknowns};
+use crate::identifiability::curvature::{Curvature, curvature_into};
+use crate::identifiability::space::{Quadratic, StateRange, StateSpace, value};
+use crate::scene::{Jacobian, Parameter, State, Surroundings, check_emissivity};
+use crate::simd::{Aligned, dispatched};
+use crate::spectrum::Bands;
+
+/// What the counts are compared in.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Metric<'a> {
+    /// Shot noise per √photon, the photons being those of the target; priors as among `photons`.
+    PerPhoton { photons: f64 },
+    /// Counts with the camera's noise.
+    Counting(&'a Counting),
+}
+
+/// The target as every candidate state is compared with it.
+pub(super) struct Target<'t> {
+    pub(super) emissivity: &'t [f64],
+    pub(super) alternative: &'t [f64],
+    pub(super) state: &'t State,
+    /// Counts per unit of band signal.
+    pub(super) counts: f64,
+    pub(super) metric: Metric<'t>,
+}
+
+/// Cost ‖r‖², and half of it to second order, at a candidate state.
+pub(super) struct Linearised {
+    pub(super) cost: f64,
+    pub(super) quadratic: Quadratic,
+}
+
+/// Spectra kept between calls so that none allocates.
+#[derive(Debug, Clone)]
+struct Workspace {
+    /// σ²_w of each band, and √(N + σ²) of the target.
+    noise: Aligned,
+    root: Aligned,
+    /// S − S′ and G e′B″ in the bands.
+    separation: Aligned,
+    curvature: Aligned,
+    /// B(T) − B(T′) and X − X′ at the nodes.
+    difference: Aligned,
+    lighting: Aligned,
+    /// Spectra at the nodes on their way to the bands.
+    node: Aligned,
+}
+
+impl Workspace {
+    fn new(bands: usize, nodes: usize) -> Self {
+        let (band, node) = (|| Aligned::zeros(bands), || Aligned::zeros(nodes));
+        Self {
+            noise: band(),
+            root: band(),
+            separation: band(),
+            curvature: band(),
+            difference: node(),
+            lighting: node(),
+            node: node(),
+        }
+    }
+
+    /// Noise and √(N + σ²) of the target, once per search.
+    fn weigh_target(&mut self, target: &Target<'_>, signal: &[f64]) {
+        match target.metric {
+            Metric::PerPhoton { .. } => self.noise.fill(0.0),
+            Metric::Counting(counting) => {
+                for (band, noise) in self.noise.iter_mut().enumerate() {
+                    *noise = counting.var_added(band);
+                }
+            }
+        }
+        roots_into(target.counts, signal, &self.noise, &mut self.root);
+    }
+}
+
+/// The target and a candidate state of the alternative, band by band.
+#[derive(Debug, Clone)]
+pub(super) struct Comparison<'a> {
+    pub(super) space: StateSpace,
+    surface: Jacobian<'a>,
+    pub(super) target: Jacobian<'a>,
+    work: Workspace,
+}
+
+impl<'a> Comparison<'a> {
+    pub(super) fn new(
+        bands: &'a Bands,
+        surroundings: &'a Surroundings,
+        unknowns: Unknowns,
+        range: StateRange,
+    ) -> Self {
+        Self {
+            space: StateSpace::new(unknowns, range, surroundings.objects().len()),
+            surface: Jacobian::new(bands, surroundings),
+            target: Jacobian::new(bands, surroundings),
+            work: Workspace::new(bands.len(), surroundings.nodes_cm1().len()),
+        }
+    }
+
+    /// Evaluates the target, with which every candidate is compared.
+    pub(super) fn aim<'t>(
+        &mut self,
+        emissivity: &'t [f64],
+        alternative: &'t [f64],
+        state: &'t State,
+        metric: Metric<'t>,
+    ) -> Result<Target<'t>> {
+        self.space.range.check()?;
+        let nodes = self.target.surroundings().nodes_cm1().len();
+        check_emissivity(emissivity, nodes)?;
+        check_emissivity(alternative, nodes)?;
+        if let Metric::Counting(counting) = metric {
+            counting.check(self.target.bands().len())?;
+        }
+        self.target.evaluate(emissivity, alternative, state, &[], false);
+        let total = crate::sum::sum(self.target.signal());
+        if !(total > 0.0 && total.is_finite()) {
+            return Err(Error::out_of_range(
+                "photon radiance of the target",
+                total,
+                "photons s^-1 m^-2 sr^-1",
+                "above 0: a warmer scene, or bands at lower wavenumbers",
+            ));
+        }
+        let counts = match metric {
+            Metric::PerPhoton { .. } => 1.0 / total,
+            Metric::Counting(counting) => counting.counts_per_radiance,
+        };
+        let target = Target { emissivity, alternative, state, counts, metric };
+        self.work.weigh_target(&target, self.target.signal());
+        Ok(target)
+    }
+
+    /// Cost, gradient and second derivatives at a state of the alternative.
+    pub(super) fn linearise(&mut self, target: &Target<'_>, state: &State) -> Linearised {
+        self.separate(target, state, true);
+        let along = self.space.parameters.iter().position(|parameter| *parameter == Parameter::Temperature);
+        let (surface, work) = (&self.surface, &mut self.work);
+        if along.is_some() {
+            surface.sampling().sample(surface.bands(), &mut work.node, &mut work.curvature, |out| {
+                curvature_into(Curvature {
+                    nu: surface.surroundings().nodes_cm1(),
+                    temperature_k: state.temperature_k,
+                    gain: state.gain,
+                    emissivity: target.alternative,
+                    value: surface.radiance(),
+                    slope: surface.radiance_slope(),
+                    out,
+                });
+            });
+        }
+        let Sums { mut cost, curvature, mut quadratic } = sums::sums(self.lines(target), &self.surface);
+        let Quadratic { gradient, gauss_newton, hessian } = &mut quadratic;
+        if let Some(i) = along {
+            hessian[(i, i)] += curvature;
+        }
+        if let Some(i) = self.space.parameters.iter().position(|parameter| *parameter == Parameter::Gain) {
+            // ∂²S′/∂g∂θⱼ = ∂S′/∂θⱼ.
+            for j in 0..gradient.len() {
+                hessian[(i, j)] += gradient[j];
+                if i != j {
+                    hessian[(j, i)] += gradient[j];
+                }
+            }
+        }
+        for (i, weight, row) in self.prior_rows(target, state) {
+            cost += row * row;
+            gradient[i] += weight * row;
+            gauss_newton[(i, i)] += weight * weight;
+            hessian[(i, i)] += weight * weight;
+        }
+        Linearised { cost, quadratic }
+    }
+
+    /// The cost alone.
+    pub(super) fn cost(&mut self, target: &Target<'_>, state: &State) -> f64 {
+        self.separate(target, state, false);
+        let bands = sums::cost(self.lines(target));
+        bands + self.prior_rows(target, state).map(|(_, _, row)| row * row).sum::<f64>()
+    }
+
+    /// σ²_w of each band.
+    pub(super) fn noise(&self) -> &[f64] {
+        &self.work.noise
+    }
+
+    fn lines(&self, target: &Target<'_>) -> Lines<'_> {
+        Lines {
+            counts: target.counts,
+            root: &self.work.root,
+            noise: &self.work.noise,
+            separation: &self.work.separation,
+            curvature: &self.work.curvature,
+            signal: self.surface.signal(),
+        }
+    }
+
+    /// Index, weight 1/(2σ_p) and row (θ′ − θ)/(2σ_p) of every parameter with a prior.
+    fn prior_rows(&self, target: &Target<'_>, state: &State) -> impl Iterator<Item = (usize, f64, f64)> {
+        self.space.parameters.iter().enumerate().filter_map(move |(i, &parameter)| {
+            let sigma = self.space.unknowns.sigma_prior(parameter)?;
+            let weight = match target.metric {
+                Metric::PerPhoton { photons } => 0.5 / (sigma * photons.sqrt()),
+                Metric::Counting(_) => 0.5 / sigma,
+            };
+            Some((i, weight, weight * (value(state, parameter) - value(target.state, parameter))))
+        })
+    }
+
+    /// Evaluates the alternative, with its columns or without, and the band integrals of S − S′ from differences that
+    /// lose no digits.
+    fn separate(&mut self, target: &Target<'_>, state: &State, columns: bool) {
+        let (own, work) = (target.state, &mut self.work);
+        let total_known = self.space.unknowns.known_lighting_total().is_some();
+        let parameters = if columns { &self.space.parameters[..] } else { &[] };
+        let (alternative, difference) = (target.alternative, &mut work.difference);
+        self.surface.evaluate_beside(&self.target, alternative, state, parameters, total_known, difference);
+        self.target.lighting_difference_into(own, &self.surface, state, &mut work.lighting);
+        self.target.sampling().sample(self.target.bands(), &mut work.node, &mut work.separation, |out| {
+            separation_into(Separation {
+                gain: own.gain,
+                emissivity: target.emissivity,
+                alternative,
+                contrast: self.target.contrast(),
+                difference: &work.difference,
+                lighting: &work.lighting,
+                out,
+            });
+        });
+        let gain = state.gain - own.gain;
+        if gain != 0.0 {
+            for (separation, other) in work.separation.iter_mut().zip(self.surface.signal()) {
+                // S = G s and S′ = G′ s′: S − S′ = G(s − s′) − (G′ − G)s′.
+                *separation -= gain * other / state.gain;
+            }
+        }
+    }
+}
+
+dispatched! {
+    /// √(κS + σ²) of each band.
+    fn roots_into<'a>(counts: f64, signal: &'a [f64], noise: &'a [f64], out: &'a mut [f64]) {
+        for ((root, signal), noise) in out.iter_mut().zip(signal).zip(noise) {
+            *root = (counts * signal + noise).sqrt();
+        }
+    }
+}
+
+struct Separation<'a> {
+    gain: f64,
+    emissivity: &'a [f64],
+    alternative: &'a [f64],
+    contrast: &'a [f64],
+    difference: &'a [f64],
+    lighting: &'a [f64],
+    out: &'a mut [f64],
+}
+
+dispatched! {
+    /// (e − e′)C + e′[B(T) − B(T′)] + (1 − e′)(X − X′), times the target's gain.
+    fn separation_into<'a>(spectra: Separation<'a>) {
+        let Separation { gain, emissivity, alternative, contrast, difference, lighting, out } = spectra;
+        let own = emissivity.iter().zip(alternative);
+        let terms = contrast.iter().zip(difference).zip(lighting);
+        for ((out, (e, other)), ((contrast, difference), lighting)) in out.iter_mut().zip(own).zip(terms) {
+            let mixed = (e - other).mul_add(*contrast, other * difference);
+            *out = gain * (1.0 - other).mul_add(*lighting, mixed);
+        }
+    }
+}

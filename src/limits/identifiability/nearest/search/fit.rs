@@ -1,0 +1,208 @@
+//! The unknowns besides T′ fitted at one T′: weighted least squares in thinned bands.
+//!
+//! With the target's own weights W = κ/(2√(κS + σ²)) the residual is r = W(S − S′), and S′ is linear in the lighting
+//! factors (and, with the gain, in G′ and G′V′). The derivative of ‖r‖² along T′ follows from r alone, by the
+//! envelope theorem: −2 G′ r·W e′B′(T′), here without the 2.
+
+use super::table::{Emission, Thinned};
+use super::whitened::Whitened;
+use crate::identifiability::step::BoundedStep;
+use crate::scene::State;
+use crate::simd::{Aligned, Chunk, LANES, added, dispatched, fold, fused, product};
+use crate::sum::dot;
+use nalgebra::{DMatrix, DVector};
+
+/// Cost of a fit, and half its derivative along T′.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Fitted {
+    pub(super) cost: f64,
+    pub(super) slope: f64,
+}
+
+/// The unknowns besides T′, fitted by least squares at each T′.
+pub(super) struct Fit {
+    /// Whitened scattered light of the unknown factors, and whose they are.
+    pub(super) free: Vec<Vec<f64>>,
+    pub(super) lit: Vec<usize>,
+    /// Whitened scattered light of the others.
+    pub(super) known: Vec<f64>,
+    pub(super) range: [f64; 2],
+    /// What the unknown factors may sum to.
+    pub(super) sum_limit: f64,
+    /// Whether the overall scale is free too.
+    pub(super) gain: bool,
+}
+
+impl Fit {
+    /// At one T′, for any number of unknown factors, and the gain.
+    pub(super) fn point(
+        &self,
+        whitened: &Whitened,
+        thinned: &Thinned,
+        own: &State,
+        emission: &Emission,
+    ) -> (State, Fitted) {
+        let (mut base, slope) = whitened.emission(thinned, emission);
+        add(&mut base, 1.0, &self.known);
+        let signal = &whitened.signal;
+        let (gain, factors) =
+            if self.gain { self.scaled(signal, &base) } else { (own.gain, self.plain(signal, &base, own)) };
+        let mut state = State { temperature_k: emission.temperature_k, gain, ..own.clone() };
+        let mut residual = signal.to_vec();
+        add(&mut residual, -gain, &base);
+        for ((&factor, column), &k) in factors.iter().zip(&self.free).zip(&self.lit) {
+            add(&mut residual, -gain * factor, column);
+            state.lighting[k] = factor;
+        }
+        let slope = -gain * dot(&residual, &slope);
+        (state, Fitted { cost: dot(&residual, &residual), slope })
+    }
+
+    /// Along a grid, for at most one unknown factor, no gain and one node per band: the factor and the fit at
+    /// each T′. `None` if the scene is not of this kind.
+    pub(super) fn along(
+        &self,
+        whitened: &Whitened,
+        own: &State,
+        grid: &[&Emission],
+    ) -> Option<Vec<(f64, Fitted)>> {
+        let strength = whitened.strength.as_deref()?;
+        if self.gain || self.free.len() > 1 {
+            return None;
+        }
+        let [low, high] = self.range;
+        let high = high.min(self.sum_limit).max(low);
+        // Zeros up to a whole chunk add nothing to any sum.
+        let zeros = || Aligned::zeros(strength.len().next_multiple_of(LANES));
+        let (mut goal, mut column, mut scaled) = (zeros(), zeros(), zeros());
+        add(&mut goal, 1.0, &whitened.signal);
+        add(&mut goal, -own.gain, &self.known);
+        if let Some(free) = self.free.first() {
+            add(&mut column, own.gain, free);
+        }
+        add(&mut scaled, own.gain, strength);
+        let size = dot(&column, &column);
+        let reach = if size > 0.0 { 1.0 / size } else { 0.0 };
+        let fits = grid.iter().map(|emission| {
+            let spectra =
+                Spectra { goal: &goal, strength: &scaled, value: &emission.value, slope: &emission.slope };
+            fit_one(spectra, &column, reach, [low, high])
+        });
+        Some(fits.map(|(factor, cost, slope)| (factor, Fitted { cost, slope })).collect())
+    }
+
+    /// Factors within their range and sum, for the scale the target has.
+    fn plain(&self, signal: &[f64], base: &[f64], own: &State) -> Vec<f64> {
+        let n = self.free.len();
+        let [low, high] = self.range;
+        let mut goal = signal.to_vec();
+        add(&mut goal, -own.gain, base);
+        // p = V′ − low, so that p = 0 meets the bounds.
+        for column in &self.free {
+            add(&mut goal, -own.gain * low, column);
+        }
+        let columns: Vec<&[f64]> = self.free.iter().map(Vec::as_slice).collect();
+        let limit = (self.sum_limit - low * n as f64).max(0.0);
+        let fitted = least_squares(&columns, &goal, own.gain, high - low, limit);
+        fitted.iter().map(|p| p + low).collect()
+    }
+
+    /// Scale and factors: with u = sΣ·G − ΣG V ≥ 0 for the unused part of the sum sΣ, G·S′ is a sum with
+    /// non-negative coefficients of base/sΣ and base/sΣ + column.
+    fn scaled(&self, signal: &[f64], base: &[f64]) -> (f64, Vec<f64>) {
+        let limit = if self.free.is_empty() || self.sum_limit <= 0.0 { 1.0 } else { self.sum_limit };
+        let share: Vec<f64> = base.iter().map(|b| b / limit).collect();
+        let lit: Vec<Vec<f64>> = self
+            .free
+            .iter()
+            .map(|column| share.iter().zip(column).map(|(share, c)| share + c).collect())
+            .collect();
+        let mut columns = vec![share.as_slice()];
+        columns.extend(lit.iter().map(Vec::as_slice));
+        let fitted = least_squares(&columns, signal, 1.0, f64::INFINITY, f64::INFINITY);
+        let gain = fitted.iter().sum::<f64>() / limit;
+        if gain <= 0.0 {
+            return (1.0, vec![0.0; self.free.len()]);
+        }
+        let [low, high] = self.range;
+        (gain, fitted[1..].iter().map(|p| (p / gain).clamp(low, high)).collect())
+    }
+}
+
+/// Coefficients p of `columns` times `scale` that fit `goal` best, 0 ≤ p ≤ `upper`, Σp ≤ `sum_limit`.
+fn least_squares(columns: &[&[f64]], goal: &[f64], scale: f64, upper: f64, sum_limit: f64) -> Vec<f64> {
+    let n = columns.len();
+    let gram = DMatrix::from_fn(n, n, |i, j| scale * scale * dot(columns[i], columns[j]));
+    let size = (0..n).map(|i| gram[(i, i)]).fold(0.0, f64::max);
+    if size <= 0.0 {
+        // Nothing to fit with: any coefficients will do.
+        return vec![0.0; n];
+    }
+    let pull: Vec<f64> = columns.iter().map(|column| -scale * dot(column, goal) / size).collect();
+    if n == 1 {
+        return vec![(-pull[0] * size / gram[(0, 0)]).clamp(0.0, upper.min(sum_limit))];
+    }
+    let hessian = DMatrix::from_fn(n, n, |i, j| gram[(i, j)] / size + if i == j { 1e-13 } else { 0.0 });
+    let step = BoundedStep {
+        hessian: &hessian,
+        gradient: &DVector::from_vec(pull),
+        lower: &vec![0.0; n],
+        upper: &vec![upper; n],
+        summed: &vec![true; n],
+        sum_limit,
+    };
+    step.solve().map_or_else(|| vec![0.0; n], |step| step.as_slice().to_vec())
+}
+
+fn add(to: &mut [f64], factor: f64, column: &[f64]) {
+    for (to, column) in to.iter_mut().zip(column) {
+        *to += factor * column;
+    }
+}
+
+/// Whitened spectra of a fit with one node per band, in whole chunks.
+struct Spectra<'a> {
+    goal: &'a [f64],
+    strength: &'a [f64],
+    value: &'a [f64],
+    slope: &'a [f64],
+}
+
+dispatched! {
+    /// The factor of `column` within its limits that leaves least of goal − strength·value, with the cost and
+    /// half its derivative along T′; `reach` is 1/‖column‖², 0 for no column.
+    fn fit_one<'a>(
+        spectra: Spectra<'a>,
+        column: &'a [f64],
+        reach: f64,
+        limits: [f64; 2],
+    ) -> (f64, f64, f64) {
+        let Spectra { goal, strength, value, slope } = spectra;
+        let ((g, _), (s, _)) = (goal.as_chunks(), strength.as_chunks());
+        let ((b, _), (d, _), (c, _)) = (value.as_chunks(), slope.as_chunks(), column.as_chunks());
+        let mut pull = [0.0; LANES];
+        for (((g, s), b), c) in g.iter().zip(s).zip(b).zip(c) {
+            pull = added(left(*g, *s, *b), *c, pull);
+        }
+        let factor = (total(&pull) * reach).clamp(limits[0], limits[1]);
+        let (mut cost, mut along) = ([0.0; LANES], [0.0; LANES]);
+        for ((((g, s), b), d), c) in g.iter().zip(s).zip(b).zip(d).zip(c) {
+            let r = fused(-factor, *c, left(*g, *s, *b));
+            cost = added(r, r, cost);
+            along = added(product(r, *s), *d, along);
+        }
+        (factor, total(&cost), -total(&along))
+    }
+}
+
+/// g − s b.
+#[inline(always)]
+fn left(g: Chunk, s: Chunk, b: Chunk) -> Chunk {
+    std::array::from_fn(|i| (-s[i]).mul_add(b[i], g[i]))
+}
+
+/// Never inlined, for the reason given at [`crate::sum::CompensatedLanes::value`].
+#[inline(never)]
+fn total(lanes: &Chunk) -> f64 {
+    fold(lanes)
+}

@@ -1,0 +1,128 @@
+//! Thinned bands, and blackbody radiances at their nodes for a grid of temperatures.
+//!
+//! Temperatures grow by [`RATIO`] from the coldest there is, the same for every pair, so that what one search
+//! has computed serves the next ones; around the temperatures of a scene there are more of them.
+
+use crate::planck;
+use crate::simd::{Aligned, LANES};
+use crate::spectrum::Bands;
+
+/// Bands that are enough to find where minima are.
+const ENOUGH_BANDS: usize = 128;
+/// Lowest temperature of the grid, K, and steps in which it grows by e.
+const LOWEST_K: f64 = 0.1;
+const STEPS_PER_E: f64 = 32.0;
+/// More of them around the temperatures of the scene, as shares of these.
+const AROUND: [f64; 7] = [-0.03, -0.01, -0.003, 0.0, 0.003, 0.01, 0.03];
+
+/// Blackbody radiance and its slope along T at the thinned nodes, followed by zeros up to a whole chunk.
+#[derive(Debug, Clone)]
+pub(super) struct Emission {
+    pub(super) temperature_k: f64,
+    pub(super) value: Aligned,
+    pub(super) slope: Aligned,
+}
+
+impl Emission {
+    fn of(nodes_cm1: &[f64], temperature_k: f64) -> Self {
+        let whole = || Aligned::zeros(nodes_cm1.len().next_multiple_of(LANES));
+        let (mut value, mut slope) = (whole(), whole());
+        planck::photon_radiance_and_slope_into(nodes_cm1, temperature_k, &mut value, &mut slope);
+        Self { temperature_k, value, slope }
+    }
+}
+
+/// Every so many bands of a problem.
+#[derive(Debug, Clone)]
+pub(super) struct Thinned {
+    pub(super) bands: Bands,
+    /// Where their nodes stand among those of the whole.
+    pub(super) nodes: Vec<usize>,
+    /// Every so many bands are kept.
+    pub(super) stride: usize,
+}
+
+/// Thinned bands with the emissions computed so far.
+#[derive(Debug, Clone)]
+pub(crate) struct EmissionTable {
+    pub(super) thinned: Thinned,
+    even: Vec<Option<Emission>>,
+    around: Vec<Emission>,
+}
+
+impl EmissionTable {
+    pub(crate) fn new(whole: &Bands) -> Self {
+        let stride = (whole.len() / ENOUGH_BANDS).max(1);
+        let (bands, nodes) = whole.every(stride);
+        Self { thinned: Thinned { bands, nodes, stride }, even: Vec::new(), around: Vec::new() }
+    }
+
+    /// The first step of the grid at which `weights` emit `goal` or more, between two temperatures (K).
+    pub(super) fn step_of_emission(&mut self, weights: &[f64], goal: f64, low_k: f64, high_k: f64) -> usize {
+        let (mut below, mut above) = (step_at(low_k), step_at(high_k));
+        while below < above {
+            let middle = below.midpoint(above);
+            if crate::sum::dot(weights, &self.even(middle).value) < goal {
+                below = middle + 1;
+            } else {
+                above = middle;
+            }
+        }
+        below
+    }
+
+    /// Emissions in the order of their temperatures: the even grid over `steps`, more around the
+    /// temperatures of a scene, and the ends of the range where it cuts the grid.
+    pub(super) fn grid(
+        &mut self,
+        steps: std::ops::RangeInclusive<usize>,
+        scene_k: &[f64],
+        [low_k, high_k]: [f64; 2],
+    ) -> (&Thinned, Vec<&Emission>) {
+        for step in steps.clone() {
+            self.even(step);
+        }
+        let reach = temperature_at(*steps.start())..=temperature_at(*steps.end());
+        let nearby = scene_k.iter().flat_map(|t| AROUND.map(|share| t * (1.0 + share)));
+        let ends = [low_k, high_k].into_iter().filter(|end| reach.contains(end));
+        let mut wanted: Vec<f64> = nearby.map(|t| t.clamp(low_k, high_k)).chain(ends).collect();
+        wanted.sort_by(f64::total_cmp);
+        wanted.dedup();
+        if self.around.iter().map(|emission| emission.temperature_k).ne(wanted.iter().copied()) {
+            let mut had = std::mem::take(&mut self.around);
+            self.around = wanted
+                .iter()
+                .map(|&t| match had.iter().position(|emission| emission.temperature_k == t) {
+                    Some(place) => had.swap_remove(place),
+                    None => Emission::of(self.thinned.bands.nodes_cm1(), t),
+                })
+                .collect();
+        }
+        let even = self.even.get(steps).unwrap_or_default().iter().flatten();
+        let mut all: Vec<&Emission> = even
+            .filter(|emission| (low_k..=high_k).contains(&emission.temperature_k))
+            .chain(&self.around)
+            .collect();
+        all.sort_by(|a, b| a.temperature_k.total_cmp(&b.temperature_k));
+        all.dedup_by(|a, b| a.temperature_k == b.temperature_k);
+        (&self.thinned, all)
+    }
+
+    fn even(&mut self, step: usize) -> &Emission {
+        if self.even.len() <= step {
+            self.even.resize(step + 1, None);
+        }
+        let nodes = self.thinned.bands.nodes_cm1();
+        self.even[step].get_or_insert_with(|| Emission::of(nodes, temperature_at(step)))
+    }
+}
+
+/// The last step at or below a temperature.
+pub(super) fn step_at(temperature_k: f64) -> usize {
+    ((temperature_k / LOWEST_K).ln() * STEPS_PER_E).floor().max(0.0) as usize
+}
+
+/// Temperature of a step, K.
+fn temperature_at(step: usize) -> f64 {
+    LOWEST_K * (step as f64 / STEPS_PER_E).exp()
+}

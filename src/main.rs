@@ -1,7 +1,0 @@
-//! The `hadar` command.
-
-use std::process::ExitCode;
-
-fn main() -> ExitCode {
-    hadar::cli::main()
-}

@@ -1,0 +1,65 @@
+//! A manifest whose materials are made as they are named: a scenario of two materials reads two spectra, not all.
+
+use super::{Around, Entry, Model, entries, made};
+use crate::error::Result;
+use crate::material::Material;
+use std::borrow::Cow;
+use std::path::Path;
+use std::sync::{Arc, OnceLock};
+
+/// The text of a file that a manifest names.
+type File = fn(&str) -> Result<Cow<'static, str>>;
+
+/// The entries of a manifest, and the materials that were made of them so far.
+#[derive(Debug)]
+pub(in crate::physics::material) struct Deferred {
+    path: &'static Path,
+    file: File,
+    entries: Vec<Entry>,
+    made: Vec<OnceLock<Material>>,
+}
+
+impl Deferred {
+    /// Reads the entries, and none of their files.
+    ///
+    /// # Errors
+    /// TOML or keys that are wrong, or another version.
+    pub(in crate::physics::material) fn parse(text: &str, path: &'static Path, file: File) -> Result<Self> {
+        let entries = entries(text, path)?;
+        let made = entries.iter().map(|_| OnceLock::new()).collect();
+        Ok(Self { path, file, entries, made })
+    }
+
+    /// Names of the materials, in the order of the entries.
+    pub(in crate::physics::material) fn names(&self) -> impl Iterator<Item = &str> {
+        self.entries.iter().map(|entry| entry.name.as_str())
+    }
+
+    /// Whether a material was made.
+    pub(in crate::physics::material) fn is_made(&self, index: usize) -> bool {
+        self.made.get(index).is_some_and(|made| made.get().is_some())
+    }
+
+    /// The material of an entry, made of its files the first time it is asked for.
+    ///
+    /// # Errors
+    /// A missing file or material, a parameter out of range; no entry of that index.
+    pub(in crate::physics::material) fn material(&self, index: usize) -> Result<&Material> {
+        let (Some(slot), Some(entry)) = (self.made.get(index), self.entries.get(index)) else {
+            let names = self.names();
+            return Err(crate::Error::unknown_name("entry of the manifest", &index.to_string(), names));
+        };
+        if let Some(material) = slot.get() {
+            return Ok(material);
+        }
+        // Only entries further up count, so that none can be made of itself.
+        let earlier = |name: &str| -> Option<Result<Arc<Model>>> {
+            let found = self.entries[..index].iter().position(|entry| entry.name == name)?;
+            Some(self.material(found).map(|material| material.model.clone()))
+        };
+        let known = |name: &str| Err(crate::Error::unknown_name("material", name, self.names()));
+        let material =
+            made(entry.clone(), self.path, &Around { earlier: &earlier, file: &self.file, known: &known })?;
+        Ok(slot.get_or_init(|| material))
+    }
+}

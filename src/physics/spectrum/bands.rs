@@ -1,0 +1,198 @@
+//! Bands and the nodes that sample them.
+
+mod build;
+mod join;
+
+use super::filter::FilterCurve;
+use crate::simd::dispatched;
+
+/// Transmittance of what is opaque.
+const OPAQUE: f64 = 1e-30;
+
+/// One spectral band as reports show it.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct Band {
+    /// Centre (of a filter: its transmission-weighted mean), cm⁻¹.
+    pub center_cm1: f64,
+    /// Lower edge, cm⁻¹.
+    pub low_cm1: f64,
+    /// Upper edge, cm⁻¹.
+    pub high_cm1: f64,
+    /// Name of the filter, if it has one.
+    pub name: Option<String>,
+}
+
+/// What lets light into a band.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Shape {
+    /// Everything between the edges.
+    TopHat,
+    /// A filter curve.
+    Filter(FilterCurve),
+}
+
+/// Bands in ascending wavenumber with the nodes and weights that sample them.
+///
+/// ```
+/// use hadar::spectrum::Bands;
+/// let bands = Bands::uniform(715.0, 1250.0, 1.0)?;
+/// assert_eq!(bands.len(), 536);
+/// assert_eq!(bands.sum_nodes(bands.nodes_cm1())[0], 715.0);
+/// # Ok::<(), hadar::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Bands {
+    pub(super) bands: Vec<Band>,
+    pub(super) shapes: Vec<Shape>,
+    pub(super) nodes_cm1: Vec<f64>,
+    pub(super) weights_cm1: Vec<f64>,
+    /// First node of each band, and the number of nodes at the end.
+    pub(super) first_node: Vec<usize>,
+}
+
+impl Bands {
+    /// Number of bands W.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.bands.len()
+    }
+
+    /// Never true: a set of bands has at least one.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.bands.is_empty()
+    }
+
+    /// The bands, ascending.
+    #[must_use]
+    pub fn bands(&self) -> &[Band] {
+        &self.bands
+    }
+
+    /// Where spectra are sampled, cm⁻¹ (ascending within a band).
+    #[must_use]
+    pub fn nodes_cm1(&self) -> &[f64] {
+        &self.nodes_cm1
+    }
+
+    /// Lowest and highest node, cm⁻¹.
+    #[must_use]
+    pub fn range_cm1(&self) -> (f64, f64) {
+        let low = self.nodes_cm1.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = self.nodes_cm1.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        (low, high)
+    }
+
+    /// Whether every band has just one node, so that samples map to bands one to one.
+    #[must_use]
+    pub fn one_node_per_band(&self) -> bool {
+        self.nodes_cm1.len() == self.bands.len()
+    }
+
+    /// The same bands behind something that lets the share `transmittance` of each wavenumber (cm⁻¹) through.
+    #[must_use]
+    pub(crate) fn transmitted(&self, transmittance: impl Fn(f64) -> f64) -> Self {
+        let shares: Vec<f64> = self.nodes_cm1.iter().map(|node| transmittance(*node)).collect();
+        self.transmitted_at_nodes(&shares)
+    }
+
+    /// The same with what is let through given at the nodes.
+    #[must_use]
+    pub fn transmitted_at_nodes(&self, shares: &[f64]) -> Self {
+        let mut bands = self.clone();
+        for (weight, share) in bands.weights_cm1.iter_mut().zip(shares) {
+            // A band that nothing reaches keeps a weight that can be divided by.
+            *weight *= share.max(OPAQUE);
+        }
+        bands
+    }
+
+    /// ∫ f(ν, T, R) dν over `range_cm1` for the filter of each band, by midpoints 1 cm⁻¹ apart or closer, T its transmittance
+    /// and R its reflectance at ν; 0 for bands without a filter. `None` if there is no filter at all.
+    #[must_use]
+    pub fn over_filters(&self, range_cm1: [f64; 2], f: impl Fn(f64, f64, f64) -> f64) -> Option<Vec<f64>> {
+        if self.shapes.iter().all(|shape| *shape == Shape::TopHat) {
+            return None;
+        }
+        let [low, high] = range_cm1;
+        let count = (high - low).ceil().clamp(1.0, 1e6);
+        let step = (high - low) / count;
+        let integral = |filter: &FilterCurve| {
+            let at = |i: usize| {
+                let nu = (i as f64 + 0.5).mul_add(step, low);
+                f(nu, filter.transmittance(nu), filter.reflectance(nu))
+            };
+            step * (0..count as usize).map(at).sum::<f64>()
+        };
+        let of_shape = |shape: &Shape| match shape {
+            Shape::TopHat => 0.0,
+            Shape::Filter(filter) => integral(filter),
+        };
+        Some(self.shapes.iter().map(of_shape).collect())
+    }
+
+    /// Weight of each node, cm⁻¹.
+    pub fn weights_cm1(&self) -> &[f64] {
+        &self.weights_cm1
+    }
+
+    /// Effective width Σ_j w_j of each band, cm⁻¹.
+    #[must_use]
+    pub fn widths_cm1(&self) -> Vec<f64> {
+        let ones = vec![1.0; self.nodes_cm1.len()];
+        self.weigh(&ones)
+    }
+
+    /// Plain sum of node values over each band (for quantities that are zero or equal within a band).
+    #[must_use]
+    pub fn sum_nodes(&self, values: &[f64]) -> Vec<f64> {
+        self.first_node.windows(2).map(|nodes| values[nodes[0]..nodes[1]].iter().sum()).collect()
+    }
+
+    /// Band integrals Σ_j w_qj f(ν_j) of a spectrum given at the nodes.
+    #[must_use]
+    pub fn weigh(&self, values: &[f64]) -> Vec<f64> {
+        let mut out = vec![0.0; self.len()];
+        self.weigh_into(values, &mut out);
+        out
+    }
+
+    /// [`Bands::weigh`] into a slice of one value per band.
+    pub fn weigh_into(&self, values: &[f64], out: &mut [f64]) {
+        if self.one_node_per_band() {
+            product_into(values, &self.weights_cm1, out);
+            return;
+        }
+        for (out, nodes) in out.iter_mut().zip(self.first_node.windows(2)) {
+            let range = nodes[0]..nodes[1];
+            *out = crate::sum::dot(&values[range.clone()], &self.weights_cm1[range]);
+        }
+    }
+}
+
+dispatched! {
+    fn product_into<'a>(a: &'a [f64], b: &'a [f64], out: &'a mut [f64]) {
+        for ((out, a), b) in out.iter_mut().zip(a).zip(b) {
+            *out = a * b;
+        }
+    }
+}
+
+/// Where a band must be cut so that its transmittance is a straight line on every piece.
+pub(super) fn edges(band: &Band, shape: &Shape, more: &[f64]) -> Vec<f64> {
+    let mut edges = vec![band.low_cm1, band.high_cm1];
+    if let Shape::Filter(filter) = shape {
+        edges.extend(&filter.wavenumbers_cm1);
+    }
+    edges.extend(more.iter().filter(|&&cut| cut > band.low_cm1 && cut < band.high_cm1));
+    edges.sort_by(f64::total_cmp);
+    edges.dedup();
+    edges
+}
+
+pub(super) fn transmittance(shape: &Shape, wavenumber_cm1: f64) -> f64 {
+    match shape {
+        Shape::TopHat => 1.0,
+        Shape::Filter(filter) => filter.transmittance(wavenumber_cm1),
+    }
+}

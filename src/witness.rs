@@ -1,0 +1,4 @@
+//! Witnesses of the limits: what draws counts and views, and estimates from them.
+
+pub mod render;
+pub mod simulate;
