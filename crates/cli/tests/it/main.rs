@@ -1,6 +1,7 @@
 //! Tests of the command `hadar`, and what several packages do together.
 
 mod accuracy;
+mod arrows;
 mod cameras;
 mod cli;
 mod cli_mistakes;
@@ -19,4 +20,5 @@ mod simulate;
 mod support {
     pub mod answers;
     pub mod folder;
+    pub mod uses;
 }

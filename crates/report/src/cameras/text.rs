@@ -239,7 +239,7 @@ mod tests {
         let mut preset = hadar::instrument::presets::find("flir-a325sc").unwrap();
         (preset.full_well, preset.quantisation_bits) = (Some(1e7), Some(14));
         (preset.read_noise_counts, preset.dark_rate_per_s) = (Some(360.0), Some(3.3e5));
-        let text = camera(&Sheet::of(preset).unwrap());
+        let text = text(&Sheet::of(preset).unwrap());
         for part in ["1.00e7 counts", "full after, at 300 K", "quantisation", "read noise", "dark counts"] {
             assert!(text.contains(part), "{part}: {text}");
         }

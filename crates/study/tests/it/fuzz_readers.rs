@@ -6,6 +6,7 @@
 //! process dies, the file that was read last is still in the temporary folder (`/dev/shm` or that of the system).
 
 use crate::support::harness::{READERS, Reader};
+use crate::support::mutation::mutated;
 use flate2::{Compression, write::ZlibEncoder};
 use hadar_testing::repository;
 use std::io::Write;
@@ -56,7 +57,7 @@ fn run(name: &str) {
     }
     let inputs = std::env::var("HADAR_FUZZ_INPUTS").map_or(INPUTS, |inputs| inputs.parse().unwrap());
     for number in 0..inputs.div_ceil(READERS.len() as u64) {
-        check(reader, &number.to_string(), &mutation::mutated(&files, name, number));
+        check(reader, &number.to_string(), &mutated(&files, name, number));
     }
     memory();
 }
