@@ -11,10 +11,12 @@
 //! (1e-9) is forgiven to a model.
 
 mod dielectric;
+#[cfg(feature = "library")]
 mod embedded;
 mod fresnel;
 mod gaussian;
 mod library;
+#[cfg(feature = "library")]
 mod manifest;
 mod model;
 mod oscillator;
