@@ -34,7 +34,7 @@ fn plain_numbers_may_be_written_to_any_base_of_toml() {
             .camera
             .unwrap()
             .noise
-            .sigma_counts
+            .electrons
             .unwrap()
     };
     let texts = ["0x10", "0x1E5", "0b1010", "0o17", "1_000", "1e2", "16"];
