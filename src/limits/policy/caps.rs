@@ -14,7 +14,7 @@
 //! Source: G. C. Holst, Opt. Eng. 46, 103204 (2007), doi:10.1117/1.2790066; paper SII E (motion).
 
 use super::motion::Motion;
-use super::solve::{CameraTask, Quantity, Trial};
+use super::solve::{CameraTask, Cap, CapCode, Quantity, Trial};
 use crate::error::Result;
 use crate::instrument::Camera;
 use crate::root::crossing;
@@ -25,50 +25,6 @@ use crate::words::{quantity as in_unit, significant};
 const LOG_RANGE: f64 = 30.0;
 /// Share by which a limit may be passed: rounding.
 const ROUNDING: f64 = 1e-9;
-
-/// Which limit it is.
-// In the order of the codes' letters, in which several are listed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum CapCode {
-    /// The lens blurs a point over more than the pixel.
-    Diffraction,
-    /// An exposure is longer than a frame.
-    FrameRate,
-    /// The fullest reading does not fit into the well.
-    FullWell,
-    /// Read noise and steps of the converter stay.
-    LowestNoise,
-    /// The target moves by a pixel until all bands are exposed.
-    Motion,
-}
-
-impl CapCode {
-    /// The code, e.g. `full-well`.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Diffraction => "diffraction",
-            Self::FrameRate => "frame-rate",
-            Self::FullWell => "full-well",
-            Self::LowestNoise => "lowest-noise",
-            Self::Motion => "motion",
-        }
-    }
-}
-
-/// A limit that a value breaks.
-#[derive(Debug, Clone, PartialEq, serde::Serialize)]
-pub struct Cap {
-    /// Which.
-    pub code: CapCode,
-    /// The limit, in the unit of the quantity.
-    pub limit: f64,
-    /// Whether no value meets the task within the limit; else one on the other side of the limit meets it too.
-    pub blocks: bool,
-    /// The reason in words.
-    pub reason: String,
-}
 
 /// A limit on one quantity, the rest of the camera as it is.
 #[derive(Debug, Clone, PartialEq)]

@@ -5,8 +5,8 @@
 //! that shot noise does not know ([`super::caps`]) are drawn as lines of their own and named at every point that
 //! breaks one.
 
-use super::caps::{CapCode, Circumstances, Limit, limits};
-use super::solve::{CameraTask, Quantity, Solution};
+use super::caps::{Circumstances, Limit, limits};
+use super::solve::{CameraTask, CapCode, Quantity, Solution};
 use crate::error::Result;
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 
