@@ -6,7 +6,7 @@ use crate::text::numbers::{celsius, numbers, quantity, significant};
 use hadar::policy::{Quantity, Solution};
 use hadar::words::share;
 use hadar_study::study::{
-    self, CameraVerdict, Fixes, LimitingScene, NotIdentifiable, RuleAnswer, RuleStudy, Shortfall, Warning,
+    CameraVerdict, Fixes, LimitingScene, NotIdentifiable, RuleAnswer, RuleStudy, Shortfall, Warning,
 };
 use hadar_study::words::reliability;
 use std::fmt::Write as _;
