@@ -1,6 +1,8 @@
 //! Extended Data Fig. 6: which of five materials can be told apart.
 
-use super::{Figures, Line, Made, Order, Progress, Verdict, scene};
+use super::ledger::{Line, Verdict};
+use super::order::{Figures, Made, Order, Progress};
+use super::scene;
 use hadar::demand::Skipping;
 use hadar::error::Result;
 use hadar::simulate::sequential::Plan;

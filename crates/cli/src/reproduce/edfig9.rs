@@ -3,7 +3,9 @@
 //! 16 heating powers; the paper gives no temperatures for them, ours are even steps over a stated range. Its 20
 //! measurements at each would leave the ratio of variances uncertain by a third; ours are as many as the verdicts take.
 
-use super::{Effort, Figures, Line, Made, Order, Progress, Verdict, scene};
+use super::ledger::{Line, Verdict};
+use super::order::{Effort, Figures, Made, Order, Progress};
+use super::scene;
 use hadar::error::Result;
 use hadar::simulate::efficiency::{Errors, Verdict as Standing};
 use hadar_report::bundle::Bundle;

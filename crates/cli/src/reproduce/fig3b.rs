@@ -3,7 +3,9 @@
 //! The paper's experiment: 150 photon numbers, 5000 spectra of the person and of the nearest robot each, 25 % for
 //! training, 25 % for validation, 50 % for the test; 536 bands (Fig. 3b) or three (Fig. S7).
 
-use super::{Effort, Figures, Line, Made, Order, Progress, Verdict, scene};
+use super::ledger::{Line, Verdict};
+use super::order::{Effort, Figures, Made, Order, Progress};
+use super::scene;
 use hadar::demand::Work;
 use hadar::error::Result;
 use hadar::identifiability::detection;

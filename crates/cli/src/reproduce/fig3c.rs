@@ -1,6 +1,8 @@
 //! Fig. 3c: photons required over target temperature and lighting, with the singularity at thermal equilibrium.
 
-use super::{Figures, Line, Made, Verdict, scene};
+use super::ledger::{Line, Verdict};
+use super::order::{Figures, Made};
+use super::scene;
 use hadar::error::Result;
 use hadar_report::bundle::Bundle;
 use hadar_report::figures;

@@ -1,6 +1,7 @@
 //! Fig. 4: what ranging gains from scattered light where a thermal image has no texture; Fig. S12: measures of texture.
 
-use super::{Figures, Line, Made, Order, Progress, Verdict};
+use super::ledger::{Line, Verdict};
+use super::order::{Figures, Made, Order, Progress};
 use hadar::demand::Skipping;
 use hadar::error::Result;
 use hadar::material::Library;

@@ -1,6 +1,8 @@
 //! The paper's policy numbers: what a camera needs to tell a person from a robot.
 
-use super::{Figures, Line, Made, Verdict, scene};
+use super::ledger::{Line, Verdict};
+use super::order::{Figures, Made};
+use super::scene;
 use hadar::error::Result;
 use hadar::identifiability::detection;
 use hadar::planck;

@@ -1,6 +1,8 @@
 //! Table S2: photons and noise of the paper's detectors.
 
-use super::{Figures, Line, Made, Verdict, scene};
+use super::ledger::{Line, Verdict};
+use super::order::{Figures, Made};
+use super::scene;
 use hadar::error::Result;
 use hadar::instrument::{Camera, presets};
 use hadar::planck;
