@@ -3,7 +3,7 @@
 use super::Global;
 use clap::Args;
 use hadar::error::Result;
-use hadar_report::{rule, text};
+use hadar_report::rule;
 use hadar_study::scenario::Rule;
 use hadar_study::study::{RuleAnswer, RuleAsked, RuleStudy};
 use std::path::PathBuf;
@@ -37,7 +37,7 @@ pub(super) fn run(args: &RuleArgs, global: &Global) -> Result<ExitCode> {
     let mut stats = std::mem::take(&mut answer.stats);
     global.report(&mut stats, |out| rule::bundle(&study, &answer, out))?;
     answer.stats = stats;
-    global.answer(&answer, &text::rule(&answer, &study), &answer.stats)?;
+    global.answer(&answer, &rule::text(&answer, &study), &answer.stats)?;
     Ok(code(args, &answer))
 }
 

@@ -4,7 +4,7 @@ use super::{By, Global};
 use clap::Args;
 use hadar::demand::Skipping;
 use hadar::error::Result;
-use hadar_report::{sizing, text};
+use hadar_report::size;
 use hadar_study::study::Verdict;
 use std::io::IsTerminal as _;
 use std::path::PathBuf;
@@ -38,9 +38,9 @@ pub(super) fn run(args: &SizeArgs, global: &Global) -> Result<ExitCode> {
     if global.out.is_some() || global.json {
         result.trade_offs = Some(study.trade_offs(&result, &mut stats)?);
     }
-    global.report(&mut stats, |out| sizing::bundle(&study, &result, out))?;
+    global.report(&mut stats, |out| size::bundle(&study, &result, out))?;
     result.stats = stats;
-    global.answer(&result, &text::sizing(&result, &study), &result.stats)?;
+    global.answer(&result, &size::text(&result, &study), &result.stats)?;
     if global.out.is_none() && !global.json && std::io::stderr().is_terminal() {
         global.note("for plots and tables add --out DIR");
     }

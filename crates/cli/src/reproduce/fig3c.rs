@@ -5,7 +5,7 @@ use super::order::{Figures, Made};
 use super::scene;
 use hadar::error::Result;
 use hadar_report::bundle::Bundle;
-use hadar_report::figures;
+use hadar_report::size::figures;
 use std::path::Path;
 
 pub(super) fn make(out: &Path) -> Result<Made> {
