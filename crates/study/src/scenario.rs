@@ -19,6 +19,7 @@ pub mod atmosphere;
 pub mod bands;
 pub mod camera;
 pub mod envelope;
+pub mod examples;
 pub mod range;
 mod read;
 pub mod rule;

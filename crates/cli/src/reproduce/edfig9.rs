@@ -12,6 +12,7 @@ use hadar_report::bundle::Bundle;
 use hadar_report::figures::Plot;
 use hadar_report::simulate::thermometry;
 use hadar_report::text::significant;
+use hadar_study::scenario::examples;
 use hadar_study::study::{Reader, Thermometry, ThermometryRow};
 use std::path::Path;
 
@@ -33,8 +34,8 @@ pub(super) fn make(order: Order, out: &Path, progress: Progress<'_>) -> Result<M
     let mut lines = Vec::new();
     let mut text = String::new();
     let samples = [
-        ("sic", ["sic_errors", "sic_rmse"], scene::THERMOMETRY_SIC, PLATE_C),
-        ("skin", ["skin_errors", "skin_rmse"], scene::THERMOMETRY_SKIN, PEOPLE_C),
+        ("sic", ["sic_errors", "sic_rmse"], examples::THERMOMETRY_SIC, PLATE_C),
+        ("skin", ["skin_errors", "skin_rmse"], examples::THERMOMETRY_SKIN, PEOPLE_C),
     ];
     for (i, (name, plots, toml, [low, high])) in samples.into_iter().enumerate() {
         let study = scene::study(toml)?;
