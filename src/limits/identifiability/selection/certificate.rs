@@ -14,8 +14,8 @@
 //! Source: Jaggi, Proc. 30th Int. Conf. on Machine Learning, 427 (2013); for selection of measurements by convex
 //! relaxation Joshi and Boyd, IEEE Trans. Signal Process. 57, 451 (2009), doi:10.1109/TSP.2008.2007095.
 
+use super::information::normalised;
 use super::pair::{Fit, Pair};
-use super::scores::normalised;
 use std::ops::Range;
 
 /// Share of rounding that a bound is raised by.
