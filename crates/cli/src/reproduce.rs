@@ -6,6 +6,8 @@
 //!
 //! [`Effort::Quick`] makes fewer of the experiments of a figure, each of them the same to the last bit as in the full
 //! form, so that a quick run can be held against committed files.
+//!
+//! [`FurtherStudy`] are questions of this project beyond the paper's figures: no part of `all`, no lines of the ledger.
 
 mod edfig6;
 mod edfig9;
@@ -14,15 +16,20 @@ mod fig3c;
 mod fig4;
 mod ledger;
 mod locking;
+mod order;
 mod policy;
 mod scene;
+mod studies;
 mod tabs2;
 mod tabs5;
 
 pub use ledger::{Line, Verdict, markdown, table};
+pub use order::{Effort, Order, Progress};
+pub use studies::FurtherStudy;
 
 use hadar::error::{Error, Result};
 use hadar_report::bundle::Bundle;
+use order::Figures;
 use std::path::Path;
 
 /// What can be made again.
@@ -51,37 +58,14 @@ pub enum Item {
     Policy,
 }
 
-/// How much is computed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Effort {
-    /// Every experiment.
-    Full,
-    /// Some of them.
-    Quick,
-}
-
-/// How an item is made.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Order {
-    /// All experiments or some.
-    pub effort: Effort,
-    /// Seed of all that is drawn.
-    pub seed: u64,
-}
-
 /// What came of an item.
 #[derive(Debug, Clone)]
 pub struct Reproduction {
-    /// Which.
-    pub item: Item,
     /// Its files.
     pub bundle: Bundle,
     /// Its lines of the ledger.
     pub lines: Vec<Line>,
 }
-
-/// Is told how many experiments of how many are done.
-pub type Progress<'a> = &'a (dyn Fn(usize, usize) + Sync);
 
 impl Item {
     /// All of them, the quickest first.
@@ -136,19 +120,13 @@ impl Item {
     ///
     /// # Errors
     /// An unknown name; the message lists those there are.
-    ///
-    /// ```
-    /// use hadar_cli::reproduce::Item;
-    /// assert_eq!(Item::from_name("tabs2")?, Item::TabS2);
-    /// assert!(Item::from_name("fig9").is_err());
-    /// # Ok::<(), hadar::Error>(())
-    /// ```
     pub fn from_name(name: &str) -> Result<Self> {
         Self::ALL.into_iter().find(|item| item.name() == name).ok_or_else(|| {
             let names = Self::ALL.map(Self::name).join(", ");
+            let studies = FurtherStudy::ALL.map(FurtherStudy::name).join(", ");
             Error::malformed(
                 format!("unknown figure or table `{name}`"),
-                format!("choose among {names}, all"),
+                format!("choose among {names}, all; or the further studies {studies}"),
             )
         })
     }
@@ -172,19 +150,9 @@ impl Item {
         };
         bundle.add("ledger.csv", table(&lines).to_csv()?);
         bundle.add("README.md", page(self, order.effort, &lines, &figures));
-        Ok(Reproduction { item: self, bundle, lines })
+        Ok(Reproduction { bundle, lines })
     }
 }
-
-/// Pictures of a page with their captions, and what is printed below them.
-#[derive(Debug, Clone, Default)]
-struct Figures {
-    pictures: Vec<(&'static str, &'static str)>,
-    text: String,
-}
-
-/// Files, lines of the ledger and what its page shows.
-type Made = (Bundle, Vec<Line>, Figures);
 
 fn page(item: Item, effort: Effort, lines: &[Line], figures: &Figures) -> String {
     let name = item.name();

@@ -21,6 +21,7 @@ pub mod bands;
 mod camera;
 mod entries;
 pub mod envelope;
+pub mod examples;
 mod paths;
 pub mod range;
 mod read;

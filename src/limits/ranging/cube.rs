@@ -8,19 +8,25 @@
 
 mod band_sum;
 mod invalid;
+#[cfg(feature = "cubes")]
 mod mat;
+#[cfg(feature = "cubes")]
 mod npy;
+#[cfg(feature = "cubes")]
 mod open;
 
 pub use band_sum::panchromatic;
 pub use invalid::first_invalid;
+#[cfg(feature = "cubes")]
 pub use npy::{write_npy, write_npy_to};
+#[cfg(feature = "cubes")]
 pub(crate) use open::is_cube;
 
 use crate::error::{Error, Result};
 use std::fmt::Debug;
 use std::ops::Range;
 
+#[cfg(feature = "cubes")]
 /// What opening a cube is called in messages.
 const READ_CUBE: &str = "read the cube";
 
@@ -183,6 +189,7 @@ impl<S: Sample> Rows<S> for MemoryCube<S> {
     }
 }
 
+#[cfg(feature = "cubes")]
 /// An array of neither two nor three dimensions.
 fn dimensions(found: usize) -> Error {
     Error::malformed(

@@ -1,17 +1,21 @@
 //! `hadar reproduce`: the paper's figures and tables made again, with a ledger of what agrees.
 
 use super::Global;
-use crate::reproduce::{Effort, Item, Line, Order, Verdict, markdown, table};
+use super::progress::Bar;
+use crate::reproduce::{Effort, FurtherStudy, Item, Line, Order, Verdict, markdown, table};
 use clap::Args;
 use hadar::demand::{Reason, Thing, Work};
 use hadar::error::{Error, Result};
+use hadar::material::Library;
 use hadar_report::bundle::Bundle;
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
 
 #[derive(Debug, Args)]
 pub(super) struct ReproduceArgs {
-    /// Figures and tables: fig3b, figs7, fig3c, fig4, figs12, edfig6, edfig9, tabs2, tabs5, policy, or all
+    /// Figures and tables: fig3b, figs7, fig3c, fig4, figs12, edfig6, edfig9, tabs2, tabs5, policy, or all of these; further
+    /// studies, no part of `all`: exact-probability, priors, library-figures (with --library FILE)
     #[arg(value_name = "ID", default_value = "all")]
     items: Vec<String>,
     /// Some of the experiments only: within a minute on two cores
@@ -25,40 +29,51 @@ struct Output {
     effort: &'static str,
     seed: u64,
     ledger: Vec<Line>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    studies: Vec<Finding>,
     stats: Work,
 }
 
+/// What came of a study that is no figure of the paper.
+#[derive(serde::Serialize)]
+struct Finding {
+    study: &'static str,
+    title: &'static str,
+    finding: String,
+}
+
+/// What is asked for.
+struct Asked {
+    items: Vec<Item>,
+    studies: Vec<FurtherStudy>,
+}
+
 pub(super) fn run(args: &ReproduceArgs, global: &Global) -> Result<ExitCode> {
-    if global.only_library || !global.library.is_empty() {
-        let found = "the paper's figures are made with the built-in library";
-        return Err(Error::malformed(found, "leave out --library and --only-library"));
-    }
-    let items = items(&args.items)?;
+    let Asked { items, studies } = asked(&args.items)?;
+    let library = library(&items, &studies, global)?;
     let effort = if args.quick { Effort::Quick } else { Effort::Full };
     let order = Order { effort, seed: global.seed };
-    let mut ledger = Vec::new();
+    let count = items.len() + studies.len();
     let mut stats = Work::default();
     stats.compute(Thing::Reproductions, items.len() as u64);
     stats.spare(Thing::Reproductions, Reason::NotAsked, (Item::ALL.len() - items.len()) as u64);
+    let mut ledger = Vec::new();
     for (i, item) in items.iter().enumerate() {
-        let start = Instant::now();
-        let bar = global.progress(item.name());
         let folder = global.out.as_ref().map(|out| out.join(item.name()));
         let place = folder.clone().unwrap_or_default();
-        let made = item.make(order, &place, &|done, total| bar.set(done, total))?;
-        bar.finish();
-        let took = start.elapsed().as_secs_f64();
-        global.note(&format!("{} of {}: {}, {took:.1} s", i + 1, items.len(), item.title()));
-        let figures = made.bundle.figures() as u64;
-        if let Some(folder) = folder {
-            global.write(&made.bundle, &folder)?;
-            stats.compute(Thing::Reports, 1);
-            stats.compute(Thing::Figures, figures);
-        } else {
-            stats.spare(Thing::Reports, Reason::NotAsked, 1);
-            stats.spare(Thing::Figures, Reason::NotAsked, figures);
-        }
+        let watch = Watch::start(global, item.name());
+        let made = item.make(order, &place, &|done, total| watch.bar.set(done, total))?;
+        watch.stop(&format!("{} of {count}: {}", i + 1, item.title()));
+        write(global, &made.bundle, folder, &mut stats)?;
         ledger.extend(made.lines);
+    }
+    let mut findings = Vec::new();
+    for (i, study) in studies.iter().enumerate() {
+        let watch = Watch::start(global, study.name());
+        let (bundle, finding) = study.make(order, &library, &|done, total| watch.bar.set(done, total))?;
+        watch.stop(&format!("{} of {count}: {}", items.len() + i + 1, study.title()));
+        write(global, &bundle, global.out.as_ref().map(|out| out.join(study.folder())), &mut stats)?;
+        findings.push(Finding { study: study.name(), title: study.title(), finding });
     }
     if let Some(out) = global.out.as_ref().filter(|_| items.len() == Item::ALL.len()) {
         let mut bundle = Bundle::default();
@@ -66,28 +81,93 @@ pub(super) fn run(args: &ReproduceArgs, global: &Global) -> Result<ExitCode> {
         bundle.add("README.md", overview(&items, effort, &ledger));
         global.write(&bundle, out)?;
     }
-    let text = text(&items, &ledger);
+    let mut text = if items.is_empty() { String::new() } else { text(&items, &ledger) };
+    for found in &findings {
+        let gap = if text.is_empty() { "" } else { "\n" };
+        text.push_str(&format!("{gap}{}\n\n{}\n", found.title, found.finding));
+    }
     let effort = if args.quick { "quick" } else { "full" };
-    let output = Output { effort, seed: global.seed, ledger, stats };
+    let output = Output { effort, seed: global.seed, ledger, studies: findings, stats };
     global.answer(&output, &text, &output.stats)?;
     Ok(ExitCode::SUCCESS)
 }
 
-fn items(names: &[String]) -> Result<Vec<Item>> {
+/// A bar and a clock.
+struct Watch<'a> {
+    global: &'a Global,
+    bar: Bar,
+    start: Instant,
+}
+
+impl<'a> Watch<'a> {
+    fn start(global: &'a Global, name: &'static str) -> Self {
+        Self { global, bar: global.progress(name), start: Instant::now() }
+    }
+
+    fn stop(&self, what: &str) {
+        self.bar.finish();
+        self.global.note(&format!("{what}, {:.1} s", self.start.elapsed().as_secs_f64()));
+    }
+}
+
+/// Writes what was made where there is a folder for it, and books it.
+fn write(global: &Global, bundle: &Bundle, folder: Option<PathBuf>, stats: &mut Work) -> Result<()> {
+    let figures = bundle.figures() as u64;
+    if let Some(folder) = folder {
+        global.write(bundle, &folder)?;
+        stats.compute(Thing::Reports, 1);
+        stats.compute(Thing::Figures, figures);
+    } else {
+        stats.spare(Thing::Reports, Reason::NotAsked, 1);
+        stats.spare(Thing::Figures, Reason::NotAsked, figures);
+    }
+    Ok(())
+}
+
+fn asked(names: &[String]) -> Result<Asked> {
+    let mut asked = Asked { items: Vec::new(), studies: Vec::new() };
     if names.iter().any(|name| name == "all") {
         if names.len() > 1 {
             return Err(Error::malformed("`all` beside other names", "write `all` alone, or the names"));
         }
-        return Ok(Item::ALL.to_vec());
+        return Ok(Asked { items: Item::ALL.to_vec(), ..asked });
     }
-    let mut items = Vec::new();
     for name in names {
-        let item = Item::from_name(name)?;
-        if !items.contains(&item) {
-            items.push(item);
+        match FurtherStudy::from_name(name) {
+            Some(study) if asked.studies.contains(&study) => {}
+            Some(study) => asked.studies.push(study),
+            None => {
+                let item = Item::from_name(name)?;
+                if !asked.items.contains(&item) {
+                    asked.items.push(item);
+                }
+            }
         }
     }
-    Ok(items)
+    Ok(asked)
+}
+
+/// The materials of the studies: the built-in ones, but those of --library for the study of a whole library.
+fn library(items: &[Item], studies: &[FurtherStudy], global: &Global) -> Result<Library> {
+    let own = studies.contains(&FurtherStudy::LibraryFigures);
+    if own && items.len() + studies.len() > 1 {
+        let found = "library-figures is made with another library than the rest";
+        return Err(Error::malformed(found, "ask for it alone"));
+    }
+    if own && global.library.is_empty() {
+        return Err(Error::malformed(
+            "library-figures takes all pairs of a library that is not part of this program",
+            "give it with --library FILE; for the committed report it is the table `emiLib_synthetic` of \
+             github.com/FanglinBao/HADAR as a CSV file",
+        ));
+    }
+    if !own && (global.only_library || !global.library.is_empty()) {
+        let found = "the paper's figures are made with the built-in library";
+        return Err(Error::malformed(found, "leave out --library and --only-library"));
+    }
+    let mut library = if own { Library::empty() } else { Library::embedded()? };
+    global.library.iter().try_for_each(|path| library.add_path(path))?;
+    Ok(library)
 }
 
 fn counts(ledger: &[Line]) -> String {
@@ -145,7 +225,7 @@ fn overview(items: &[Item], effort: Effort, ledger: &[Line]) -> String {
          verdict of numbers is computed: the same within the tolerance printed beside it.\n",
     );
     page.push_str(
-        "\nFurther studies, made by the programs of `examples/`: [exact decisions](exact_probability/README.md), \
+        "\nFurther studies, made by `hadar reproduce` when asked for by name: [exact decisions](exact_probability/README.md), \
          [the paper's own library](library_figures/README.md), [priors](priors/README.md); and [run time against error](accuracy/README.md), by `hadar accuracy`.\n\n",
     );
     page.push_str(&markdown(ledger));

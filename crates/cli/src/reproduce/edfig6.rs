@@ -1,10 +1,13 @@
 //! Extended Data Fig. 6: which of five materials can be told apart.
 
-use super::{Figures, Line, Made, Order, Progress, Verdict, scene};
+use super::ledger::{Line, Verdict};
+use super::order::{Figures, Made, Order, Progress};
+use super::scene;
 use hadar::demand::Skipping;
 use hadar::error::Result;
 use hadar::simulate::sequential::Plan;
 use hadar_report::identify;
+use hadar_study::scenario::examples;
 use hadar_study::study::{Answers, Asked, Trial};
 use std::path::Path;
 
@@ -13,7 +16,7 @@ const HALF_WIDTH: f64 = 0.005;
 const TRIALS: u64 = 1_000_000;
 
 pub(super) fn make(order: Order, out: &Path, progress: Progress<'_>) -> Result<Made> {
-    let study = scene::study(scene::FIVE_MATERIALS)?;
+    let study = scene::study(examples::FIVE_MATERIALS)?;
     let asked = Asked {
         matrix: true,
         apart: false,

@@ -3,13 +3,16 @@
 //! 16 heating powers; the paper gives no temperatures for them, ours are even steps over a stated range. Its 20
 //! measurements at each would leave the ratio of variances uncertain by a third; ours are as many as the verdicts take.
 
-use super::{Effort, Figures, Line, Made, Order, Progress, Verdict, scene};
+use super::ledger::{Line, Verdict};
+use super::order::{Effort, Figures, Made, Order, Progress};
+use super::scene;
 use hadar::error::Result;
 use hadar::simulate::efficiency::{Errors, Verdict as Standing};
 use hadar_report::bundle::Bundle;
 use hadar_report::figures::Plot;
 use hadar_report::simulate::thermometry;
 use hadar_report::text::significant;
+use hadar_study::scenario::examples;
 use hadar_study::study::{Reader, Thermometry, ThermometryRow};
 use std::path::Path;
 
@@ -31,8 +34,8 @@ pub(super) fn make(order: Order, out: &Path, progress: Progress<'_>) -> Result<M
     let mut lines = Vec::new();
     let mut text = String::new();
     let samples = [
-        ("sic", ["sic_errors", "sic_rmse"], scene::THERMOMETRY_SIC, PLATE_C),
-        ("skin", ["skin_errors", "skin_rmse"], scene::THERMOMETRY_SKIN, PEOPLE_C),
+        ("sic", ["sic_errors", "sic_rmse"], examples::THERMOMETRY_SIC, PLATE_C),
+        ("skin", ["skin_errors", "skin_rmse"], examples::THERMOMETRY_SKIN, PEOPLE_C),
     ];
     for (i, (name, plots, toml, [low, high])) in samples.into_iter().enumerate() {
         let study = scene::study(toml)?;

@@ -3,7 +3,9 @@
 //! The paper's experiment: 150 photon numbers, 5000 spectra of the person and of the nearest robot each, 25 % for
 //! training, 25 % for validation, 50 % for the test; 536 bands (Fig. 3b) or three (Fig. S7).
 
-use super::{Effort, Figures, Line, Made, Order, Progress, Verdict, scene};
+use super::ledger::{Line, Verdict};
+use super::order::{Effort, Figures, Made, Order, Progress};
+use super::scene;
 use hadar::demand::Work;
 use hadar::error::Result;
 use hadar::identifiability::detection;
@@ -13,6 +15,7 @@ use hadar::simulate::experiment::Design;
 use hadar_report::bundle::Bundle;
 use hadar_report::simulate::curves;
 use hadar_report::simulate::figures::{self, SimulationCurves};
+use hadar_study::scenario::examples;
 use hadar_study::study::{
     NoiseCurves, PhotonLaw, SimulatedPerformance, Simulation, SimulationPlan, Standing, Study,
 };
@@ -37,7 +40,7 @@ const SLIGHT: f64 = 2.5;
 
 /// Fig. 3b.
 pub(super) fn all_bands(order: Order, out: &Path, progress: Progress<'_>) -> Result<Made> {
-    let study = scene::study(scene::HUMAN_VS_ROBOT)?;
+    let study = scene::study(examples::HUMAN_VS_ROBOT)?;
     let result = experiments(&study, order, SHOT, false, progress)?;
     let rival = &study.alternatives()[..1];
     let mut bundle = Bundle::default();
@@ -58,7 +61,7 @@ pub(super) fn all_bands(order: Order, out: &Path, progress: Progress<'_>) -> Res
 
 /// Fig. S7.
 pub(super) fn three_bands(order: Order, out: &Path, progress: Progress<'_>) -> Result<Made> {
-    let study = scene::study(scene::THREE_BANDS)?;
+    let study = scene::study(examples::HUMAN_VS_ROBOT_3_BANDS)?;
     let (first, second) = (AtHalf(progress, 0), AtHalf(progress, 1));
     let result = experiments(&study, order, SHOT, false, &|done, total| first.set(done, total))?;
     let noisy = experiments(&study, order, NOISY, true, &|done, total| second.set(done, total))?;

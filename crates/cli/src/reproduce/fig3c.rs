@@ -1,13 +1,16 @@
 //! Fig. 3c: photons required over target temperature and lighting, with the singularity at thermal equilibrium.
 
-use super::{Figures, Line, Made, Verdict, scene};
+use super::ledger::{Line, Verdict};
+use super::order::{Figures, Made};
+use super::scene;
 use hadar::error::Result;
 use hadar_report::bundle::Bundle;
 use hadar_report::size::figures;
+use hadar_study::scenario::examples;
 use std::path::Path;
 
 pub(super) fn make(out: &Path) -> Result<Made> {
-    let study = scene::study(scene::HUMAN_VS_ROBOT)?;
+    let study = scene::study(examples::HUMAN_VS_ROBOT)?;
     let mut bundle = Bundle::default();
     bundle.add("scenario.toml", study.scenario().to_toml_beside(out));
     let mut lines = Vec::new();

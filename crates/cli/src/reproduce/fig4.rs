@@ -1,6 +1,7 @@
 //! Fig. 4: what ranging gains from scattered light where a thermal image has no texture; Fig. S12: measures of texture.
 
-use super::{Figures, Line, Made, Order, Progress, Verdict};
+use super::ledger::{Line, Verdict};
+use super::order::{Figures, Made, Order, Progress};
 use hadar::demand::Skipping;
 use hadar::error::Result;
 use hadar::material::Library;
@@ -17,15 +18,12 @@ use hadar_report::plot::{Axis, Picture};
 use hadar_report::range;
 use hadar_report::table::{Table, number};
 use hadar_study::scenario::RangeScenario;
+use hadar_study::scenario::examples::{STREET, STREET_AT_ONE_TEMPERATURE};
 use hadar_study::study::range::{
     PictureKind, RangePlan, RangeStudy, Ranging, Signal, SignalBounds, median, quantile,
 };
 use std::path::Path;
 
-/// The paper's set-up.
-pub(super) const ONE_TEMPERATURE: &str = include_str!("../../../../examples/street_at_one_temperature.toml");
-/// The same street at night, in many bands.
-pub(super) const STREET: &str = include_str!("../../../../examples/street.toml");
 /// Draws of the noise along the lines.
 const TRIALS: usize = 100;
 /// Window of the texture maps.
@@ -37,7 +35,7 @@ pub(super) fn study(toml: &str) -> Result<RangeStudy> {
 
 pub(super) fn make(order: Order, out: &Path, progress: Progress<'_>) -> Result<Made> {
     let plan = RangePlan { trials: TRIALS, seed: order.seed, skipping: Skipping::On, verdict_alone: false };
-    let paper = study(ONE_TEMPERATURE)?.range(&plan, progress)?;
+    let paper = study(STREET_AT_ONE_TEMPERATURE)?.range(&plan, progress)?;
     let night = study(STREET)?.range(&RangePlan { trials: 0, ..plan }, progress)?;
     let dim = study(&dimmer())?.range(&plan, progress)?;
     let mut bundle = Bundle::default();
@@ -96,7 +94,7 @@ const COARSE: &str = "size = [120, 160]\n";
 
 /// What the gain depends on: bounds on the road, median, one thing changed at a time.
 fn dependence() -> Result<(Table, String)> {
-    let coarse = ONE_TEMPERATURE
+    let coarse = STREET_AT_ONE_TEMPERATURE
         .replace("size = [480, 640]                    # rows, columns\n", COARSE)
         .replace("pixel = \"12 um\"", "pixel = \"48 um\"")
         .replace("lines = [330]", "lines = [80]");
@@ -143,7 +141,9 @@ fn of(result: &Ranging, object: &str, signal: Signal) -> Option<SignalBounds> {
 
 /// A hundredth of the light, so that noise outweighs the matchers' bias, and windows of one row, along which a road has one depth.
 fn dimmer() -> String {
-    ONE_TEMPERATURE.replace("\"12 ms\"", "\"120 us\"").replace("window = [5, 5]", "window = [1, 25]")
+    STREET_AT_ONE_TEMPERATURE
+        .replace("\"12 ms\"", "\"120 us\"")
+        .replace("window = [5, 5]", "window = [1, 25]")
 }
 
 fn ledger(paper: &Ranging, night: &Ranging, dim: &Ranging, locking: &[(&str, f64)]) -> Vec<Line> {
@@ -255,7 +255,7 @@ fn ledger(paper: &Ranging, night: &Ranging, dim: &Ranging, locking: &[(&str, f64
 
 /// Fisher information, standard deviation and entropy side by side.
 pub(super) fn textures(order: Order) -> Result<Made> {
-    let paper = study(ONE_TEMPERATURE)?.range(&RangePlan::default(), &|_, _| ())?;
+    let paper = study(STREET_AT_ONE_TEMPERATURE)?.range(&RangePlan::default(), &|_, _| ())?;
     let columns = paper.shape.columns();
     let picture = |kind: PictureKind| {
         paper.maps.pictures.iter().find(|(found, _)| *found == kind).map(|(_, values)| values)

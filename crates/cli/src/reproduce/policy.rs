@@ -1,19 +1,22 @@
 //! The paper's policy numbers: what a camera needs to tell a person from a robot.
 
-use super::{Figures, Line, Made, Verdict, scene};
+use super::ledger::{Line, Verdict};
+use super::order::{Figures, Made};
+use super::scene;
 use hadar::error::Result;
 use hadar::identifiability::detection;
 use hadar::planck;
 use hadar::spectrum::Bands;
 use hadar::units::{PLANCK_J_S, SPEED_OF_LIGHT_M_S};
 use hadar_report::size;
+use hadar_study::scenario::examples;
 use hadar_study::study::Sizing;
 use std::path::Path;
 
 const PLACE: &str = "Methods, Guiding public policy";
 
 pub(super) fn make(out: &Path) -> Result<Made> {
-    let study = scene::study(scene::HUMAN_VS_ROBOT)?;
+    let study = scene::study(examples::HUMAN_VS_ROBOT)?;
     let result = study.size()?;
     let mut bundle = size::bundle(&study, &result, out)?;
     let answer = size::text(&result, &study);
@@ -108,7 +111,7 @@ fn camera(result: &Sizing) -> Option<Vec<Line>> {
 
 /// Skin against glass.
 fn glass() -> Result<Vec<Line>> {
-    let toml = scene::HUMAN_VS_ROBOT.replace("[\"aluminium\"]", "[\"soda-lime-glass\"]");
+    let toml = examples::HUMAN_VS_ROBOT.replace("[\"aluminium\"]", "[\"soda-lime-glass\"]");
     let study = scene::study(&toml)?;
     let result = study.identify()?;
     let line = |pair: &hadar_study::study::PairResult| {

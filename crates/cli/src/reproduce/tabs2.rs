@@ -1,6 +1,8 @@
 //! Table S2: photons and noise of the paper's detectors.
 
-use super::{Figures, Line, Made, Verdict, scene};
+use super::ledger::{Line, Verdict};
+use super::order::{Figures, Made};
+use super::scene;
 use hadar::error::Result;
 use hadar::instrument::{Camera, presets};
 use hadar::planck;
@@ -8,6 +10,7 @@ use hadar::spectrum::Bands;
 use hadar::units::SPEED_OF_LIGHT_M_S;
 use hadar_report::bundle::Bundle;
 use hadar_report::text::significant;
+use hadar_study::scenario::examples;
 use std::path::Path;
 
 /// Relative difference up to which a figure counts as the same: the table has three digits.
@@ -16,7 +19,7 @@ const TOLERANCE: f64 = 0.02;
 const SCENE_K: f64 = 300.0;
 
 pub(super) fn make(out: &Path) -> Result<Made> {
-    let study = scene::study(scene::HUMAN_VS_ROBOT)?;
+    let study = scene::study(examples::HUMAN_VS_ROBOT)?;
     let mut bundle = Bundle::default();
     bundle.add("scenario.toml", study.scenario().to_toml_beside(out));
     let (flir, spectrometer) = (presets::get("flir-a325sc")?, presets::get("nicolet-is50")?);

@@ -1,6 +1,7 @@
 //! Tables S4 and S5: what resolution is worth, without noise and with a detector's.
 
-use super::{Figures, Line, Made, Verdict};
+use super::ledger::{Line, Verdict};
+use super::order::{Figures, Made};
 use hadar::error::Result;
 use hadar::instrument::presets;
 use hadar::ranging::cube::{Cube, MemoryCube, Shape};

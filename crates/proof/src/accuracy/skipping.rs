@@ -11,15 +11,11 @@ use hadar::ranging::information::{Cell, Request, information};
 use hadar::simulate::classifier::Method;
 use hadar::simulate::experiment::Design;
 use hadar::simulate::sequential::{Interval, Plan};
+use hadar_study::scenario::examples::{FIVE_MATERIALS, HUMAN_VS_ROBOT, HUMAN_VS_ROBOT_3_BANDS, STREET};
 use hadar_study::scenario::{DistanceKind, RangeScenario, Scenario};
 use hadar_study::study::range::RangeStudy;
 use hadar_study::study::{Apart, Exact, PhotonLaw, Simulation, SimulationPlan, Study, Trial};
 use std::time::Instant;
-
-const FIVE_MATERIALS: &str = include_str!("../../../../examples/five_materials.toml");
-const HUMAN_VS_ROBOT: &str = include_str!("../../../../examples/human_vs_robot.toml");
-const THREE_BANDS: &str = include_str!("../../../../examples/human_vs_robot_3_bands.toml");
-const STREET: &str = include_str!("../../../../examples/street.toml");
 
 /// Times that both ways are run; with `quick` fewer.
 const RUNS: [usize; 2] = [5, 2];
@@ -76,7 +72,7 @@ pub fn skipping(quick: bool) -> Result<Vec<Skipped>> {
     let mut by_local = Scenario::from_toml(&coarse(FIVE_MATERIALS), None)?;
     by_local.requirement.by = DistanceKind::Local;
     let by_local = Study::new(&by_local, &library)?;
-    let three = study(THREE_BANDS)?;
+    let three = study(HUMAN_VS_ROBOT_3_BANDS)?;
     let street = STREET.replace("[bands]", &format!("size = [{}]\n[bands]", VIEW[level]));
     let street = RangeStudy::new(&RangeScenario::from_toml(&street, None)?, &library)?;
     let apart = "which pairs the camera tells apart";

@@ -88,7 +88,7 @@ impl Study {
 
 #[cfg(test)]
 mod tests {
-    use crate::scenario::Scenario;
+    use crate::scenario::{Scenario, examples};
     use crate::study::Study;
     use hadar::material::Library;
 
@@ -96,9 +96,11 @@ mod tests {
     /// flicker noise have half of its γ each there, and at four times the exposure one and four times as much.
     #[test]
     fn the_curves_meet_the_camera_where_it_is() {
-        let text = include_str!("../../../../../examples/human_vs_robot.toml");
-        let study =
-            Study::new(&Scenario::from_toml(text, None).unwrap(), &Library::embedded().unwrap()).unwrap();
+        let study = Study::new(
+            &Scenario::from_toml(examples::HUMAN_VS_ROBOT, None).unwrap(),
+            &Library::embedded().unwrap(),
+        )
+        .unwrap();
         let pair = &study.identify().unwrap().pairs[0];
         let photons = study.counting().unwrap().counts_per_radiance * study.photon_radiance();
         let own = photons * pair.distance_nearest.powi(2);

@@ -1,24 +1,23 @@
 //! Three bands: Algorithm 1 of the paper beside Monte Carlo.
 
-use crate::decided::{Estimate, Materials};
-use crate::{HALF_WIDTH, SEED};
+use super::decided::{Estimate, Materials};
+use hadar::error::Result;
 use hadar::identifiability::detection;
 use hadar::identifiability::lattice::{LatticeDetector, LatticeMesh};
-use hadar::simulate::sequential::Plan;
 use hadar::statistics::Statistics;
 
 /// Algorithm 1 and Monte Carlo for one pair in three bands.
-pub struct LatticeLine {
-    pub names: [&'static str; 2],
-    pub photons: f64,
-    pub promised: f64,
-    pub lattice: [f64; 2],
-    pub mesh_change: f64,
-    pub classes: [Estimate; 2],
-    pub mean: Estimate,
+pub(super) struct LatticeLine {
+    pub(super) names: [&'static str; 2],
+    pub(super) photons: f64,
+    pub(super) promised: f64,
+    pub(super) lattice: [f64; 2],
+    pub(super) mesh_change: f64,
+    pub(super) classes: [Estimate; 2],
+    pub(super) mean: Estimate,
 }
 
-pub fn lattice_line(all: &Materials, names: [&'static str; 2]) -> hadar::Result<LatticeLine> {
+pub(super) fn lattice_line(all: &Materials<'_>, names: [&'static str; 2]) -> Result<LatticeLine> {
     let scene = &all.scene;
     let library = [all.emissivity(names[0])?, all.emissivity(names[1])?];
     let state = scene.state(60.0, 0.5)?;
@@ -38,8 +37,7 @@ pub fn lattice_line(all: &Materials, names: [&'static str; 2]) -> hadar::Result<
     let theirs: f64 = scene.signal(&library[1], nearest).iter().map(|s| kappa * s).sum();
     let first = detector.detect(&library, 0, &state, photons)?;
     let second = detector.detect(&library, 1, nearest, theirs)?;
-    let plan = Plan::new(SEED, HALF_WIDTH, 100_000)?;
-    let drawn = scene.decisions(kappa, &law).balanced((&library[0], &library[1]), &state, &plan)?;
+    let drawn = scene.decisions(kappa, &law).balanced((&library[0], &library[1]), &state, &all.plan)?;
     let classes = [0, 1].map(|i| {
         let class = &drawn.classes[i];
         Estimate { value: class.probability, low: class.interval.low, high: class.interval.high }

@@ -1,14 +1,15 @@
 //! Tables and plots.
 
-use crate::decided::{Estimate, Line};
-use crate::paper_scene::bars;
-use crate::three_bands::LatticeLine;
+use super::decided::{Estimate, Line};
+use super::three_bands::LatticeLine;
+use crate::reproduce::studies::page::bars;
+use hadar::error::Result;
 use hadar::identifiability::detection;
-use hadar::report::figures::Plot;
-use hadar::report::plot::{Axis, LineFigure, Series, Style};
-use hadar::report::table::Table;
+use hadar_report::figures::Plot;
+use hadar_report::plot::{Axis, LineFigure, Series, Style};
+use hadar_report::table::Table;
 
-pub fn csv(lines: &[Line]) -> hadar::Result<String> {
+pub(super) fn csv(lines: &[Line]) -> Result<String> {
     let mut table = Table::new([
         "target",
         "alternative",
@@ -70,7 +71,7 @@ pub fn csv(lines: &[Line]) -> hadar::Result<String> {
     table.to_csv()
 }
 
-pub fn lattice_csv(lines: &[LatticeLine]) -> hadar::Result<String> {
+pub(super) fn lattice_csv(lines: &[LatticeLine]) -> Result<String> {
     let mut table = Table::new([
         "target",
         "alternative",
@@ -108,7 +109,7 @@ pub fn lattice_csv(lines: &[LatticeLine]) -> hadar::Result<String> {
 }
 
 /// What the test of best fits achieves against the distances.
-pub fn against_distances(lines: &[Line]) -> Plot {
+pub(super) fn against_distances(lines: &[Line]) -> Plot {
     let mut table = Table::new([
         "local_distance",
         "nearest_distance",
@@ -141,7 +142,7 @@ pub fn against_distances(lines: &[Line]) -> Plot {
 }
 
 /// What the test achieves against the estimates of it.
-pub fn against_estimates(lines: &[Line]) -> Plot {
+pub(super) fn against_estimates(lines: &[Line]) -> Plot {
     let mut table = Table::new([
         "probability_local",
         "probability_limit_nearest",

@@ -1,7 +1,7 @@
 //! A pair at one photon number: every reading of its distance, and simulated decisions.
 
-use crate::paper_scene::PaperScene;
-use crate::{HALF_WIDTH, MISLEADS, SEED};
+use crate::reproduce::studies::paper_scene::PaperScene;
+use hadar::error::Result;
 use hadar::fisher::{Counting, Unknowns};
 use hadar::identifiability::bracket::KnownStates;
 use hadar::identifiability::detection;
@@ -12,54 +12,59 @@ use hadar::scene::State;
 use hadar::simulate::sequential::Plan;
 use hadar::statistics::Statistics;
 
+/// Half of the 95 % interval of every simulated probability.
+pub(super) const HALF_WIDTH: f64 = 0.006;
+/// A probability that the local distance promises misleads if it is off by more than this.
+pub(super) const MISLEADS: f64 = 0.02;
+
 /// A probability with the ends of its interval.
 #[derive(Clone, Copy)]
-pub struct Estimate {
-    pub value: f64,
-    pub low: f64,
-    pub high: f64,
+pub(super) struct Estimate {
+    pub(super) value: f64,
+    pub(super) low: f64,
+    pub(super) high: f64,
 }
 
 impl Estimate {
-    pub fn print(self) -> String {
+    pub(super) fn print(self) -> String {
         format!("{:.3} ± {:.3}", self.value, 0.5 * (self.high - self.low))
     }
 }
 
 /// A pair at one photon number.
-pub struct Line {
-    pub names: [&'static str; 2],
-    pub celsius: f64,
-    pub law: &'static str,
-    pub photons: f64,
+pub(super) struct Line {
+    pub(super) names: [&'static str; 2],
+    pub(super) celsius: f64,
+    pub(super) law: &'static str,
+    pub(super) photons: f64,
     /// √N times local, local with unknown gain (none with other laws), nearest.
-    pub local: f64,
-    pub unknown_gain: f64,
-    pub nearest: f64,
-    pub return_ratio: f64,
-    pub nearest_state: State,
+    pub(super) local: f64,
+    pub(super) unknown_gain: f64,
+    pub(super) nearest: f64,
+    pub(super) return_ratio: f64,
+    pub(super) nearest_state: State,
     /// The test of best fits, averaged over the two states, and for each of them.
-    pub fitted: Estimate,
-    pub classes: [f64; 2],
-    pub known: Estimate,
+    pub(super) fitted: Estimate,
+    pub(super) classes: [f64; 2],
+    pub(super) known: Estimate,
     /// Rigorous limits of the best test between the two states.
-    pub bracket: [f64; 2],
+    pub(super) bracket: [f64; 2],
 }
 
 impl Line {
-    pub fn promised(&self) -> f64 {
+    pub(super) fn promised(&self) -> f64 {
         detection::probability(self.local)
     }
 
-    pub fn limit(&self) -> f64 {
+    pub(super) fn limit(&self) -> f64 {
         detection::probability(self.nearest)
     }
 
-    pub fn two_sided(&self) -> f64 {
+    pub(super) fn two_sided(&self) -> f64 {
         detection::two_sided_probability(self.nearest, self.return_ratio)
     }
 
-    pub fn verdict(&self) -> &'static str {
+    pub(super) fn verdict(&self) -> &'static str {
         let off = self.promised() - self.fitted.value;
         if off > MISLEADS {
             "local misleads: too optimistic"
@@ -71,23 +76,21 @@ impl Line {
     }
 }
 
-pub struct Materials {
-    pub library: Library,
-    pub scene: PaperScene,
+/// What every pair shares: spectra by name, the scene, how long decisions are drawn.
+pub(super) struct Materials<'a> {
+    pub(super) library: &'a Library,
+    pub(super) scene: PaperScene,
+    pub(super) plan: Plan,
 }
 
-impl Materials {
-    pub fn new(scene: PaperScene) -> hadar::Result<Self> {
-        Ok(Self { library: Library::embedded()?, scene })
-    }
-
-    pub fn emissivity(&self, name: &str) -> hadar::Result<Vec<f64>> {
+impl Materials<'_> {
+    pub(super) fn emissivity(&self, name: &str) -> Result<Vec<f64>> {
         self.library.get(name)?.emissivity(self.scene.bands.nodes_cm1())
     }
 }
 
 /// A law of counting whose excess over Poisson is a fixed share of each band of the target.
-pub fn statistics(law: &str, means: &[f64]) -> hadar::Result<Statistics> {
+pub(super) fn statistics(law: &str, means: &[f64]) -> Result<Statistics> {
     match law {
         "gaussian" => Statistics::gaussian(means.to_vec()),
         "negative-binomial" => Statistics::negative_binomial(means.iter().map(|n| 2.0 * n).collect()),
@@ -96,18 +99,18 @@ pub fn statistics(law: &str, means: &[f64]) -> hadar::Result<Statistics> {
 }
 
 /// Everything about a pair where √N d_nearest is `level`, d_nearest by the noise of the law.
-pub fn line(
-    all: &Materials,
+pub(super) fn line(
+    all: &Materials<'_>,
     (a, b, celsius): (&'static str, &'static str, f64),
     law: &'static str,
     level: f64,
-) -> hadar::Result<Line> {
+) -> Result<Line> {
     let scene = &all.scene;
     let (target, other) = (all.emissivity(a)?, all.emissivity(b)?);
     let state = scene.state(celsius, 0.5)?;
     let poisson = scene.distances(&target, &other, &state)?;
     let signal = scene.signal(&target, &state);
-    let counted = |kappa: f64| -> hadar::Result<(Statistics, Counting)> {
+    let counted = |kappa: f64| -> Result<(Statistics, Counting)> {
         let means: Vec<f64> = signal.iter().map(|s| kappa * s).collect();
         let statistics = statistics(law, &means)?;
         let excess = means.iter().enumerate().map(|(w, &n)| statistics.variance(w, n) - n).collect();
@@ -128,9 +131,8 @@ pub fn line(
             .map(|found| found.distance)
     };
     let decisions = scene.decisions(kappa, &statistics);
-    let plan = Plan::new(SEED, HALF_WIDTH, 100_000)?;
-    let fitted = decisions.balanced((&target, &other), &state, &plan)?;
-    let known = decisions.known_states((&target, &state), (&other, &nearest.state), &plan)?;
+    let fitted = decisions.balanced((&target, &other), &state, &all.plan)?;
+    let known = decisions.known_states((&target, &state), (&other, &nearest.state), &all.plan)?;
     let means = |emissivity: &[f64], state: &State| -> Vec<f64> {
         scene.signal(emissivity, state).iter().map(|s| kappa * s).collect()
     };

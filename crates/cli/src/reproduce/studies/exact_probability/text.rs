@@ -1,14 +1,8 @@
 //! The report's text.
 
-use crate::decided::Line;
-use crate::paper_scene::markdown;
-use crate::three_bands::LatticeLine;
-use crate::{HALF_WIDTH, MISLEADS, SEED};
-
-fn root_mean_square(values: impl Iterator<Item = f64> + Clone) -> f64 {
-    let count = values.clone().count().max(1) as f64;
-    (values.map(|v| v * v).sum::<f64>() / count).sqrt()
-}
+use super::decided::{HALF_WIDTH, Line, MISLEADS};
+use super::three_bands::LatticeLine;
+use crate::reproduce::studies::page::{markdown, root_mean_square};
 
 fn row(line: &Line) -> Vec<String> {
     let p = |value: f64| format!("{value:.3}");
@@ -43,8 +37,26 @@ const HEADER: [&str; 12] = [
     "verdict",
 ];
 
+/// How the local distance and the two-sided estimate fare.
+pub(super) fn finding(lines: &[Line]) -> String {
+    let count = |verdict: &str| lines.iter().filter(|l| l.verdict().ends_with(verdict)).count();
+    let error = |predicted: fn(&Line) -> f64| {
+        root_mean_square(&lines.iter().map(|l| predicted(l) - l.fitted.value).collect::<Vec<_>>()).0
+    };
+    format!(
+        "Of {} comparisons the local distance is too optimistic in {}, too pessimistic in {}, and agrees in {}. Its rms \
+         error is {:.2}; that of the two-sided estimate {:.3}.",
+        lines.len(),
+        count("optimistic"),
+        count("pessimistic"),
+        count("agrees"),
+        error(Line::promised),
+        error(Line::two_sided)
+    )
+}
+
 /// README.md.
-pub fn readme(lines: &[Line], lattice: &[LatticeLine], laws: &[Line]) -> String {
+pub(super) fn readme(lines: &[Line], lattice: &[LatticeLine], laws: &[Line], seed: u64) -> String {
     let at = |level: f64| lines.iter().filter(move |l| (l.nearest - level).abs() < 1e-3);
     let fewer_and_more: Vec<Vec<String>> = at(0.5)
         .zip(at(2.0))
@@ -58,10 +70,7 @@ pub fn readme(lines: &[Line], lattice: &[LatticeLine], laws: &[Line]) -> String 
             cells
         })
         .collect();
-    let count = |verdict: &str| lines.iter().filter(|l| l.verdict().ends_with(verdict)).count();
-    let total = lines.len();
-    let local = root_mean_square(lines.iter().map(|l| l.promised() - l.fitted.value));
-    let two_sided = root_mean_square(lines.iter().map(|l| l.two_sided() - l.fitted.value));
+    let (total, finding) = (lines.len(), finding(lines));
     let above = lines.iter().filter(|l| l.fitted.low > l.limit()).count();
     let outside = lines.iter().filter(|l| l.known.high < l.bracket[0] || l.known.low > l.bracket[1]).count();
     let by_lattice: Vec<Vec<String>> = lattice
@@ -122,8 +131,7 @@ pub fn readme(lines: &[Line], lattice: &[LatticeLine], laws: &[Line]) -> String 
          ## Fewer photons and more: √N·d_nearest = 0.5 and 2\n\n{}\n\
          ![Simulated decisions against estimates](against_estimates.png)\n\n\
          ## What it shows\n\n\
-         Of {total} comparisons the local distance is too optimistic in {}, too pessimistic in {}, and agrees in \
-         {}. Its rms error is {local:.2}; that of the two-sided estimate {two_sided:.3}. The test of best fits is \
+         {finding} The test of best fits is \
          above the limit, beyond its 95 % interval, in {above} of {total} (by chance alone: about one in forty \
          of those that reach the limit). The simulated test of known states is outside the bracket in \
          {outside}. The pairs were picked to show both kinds of error; how common they are in a library is in \
@@ -142,7 +150,7 @@ pub fn readme(lines: &[Line], lattice: &[LatticeLine], laws: &[Line]) -> String 
          With bunched light the nearest distance takes the variance of the target for both states, which is an \
          approximation; the bracket uses the exact law.\n\n\
          ## How it was made\n\n\
-         `cargo run --release --example exact_probability -- reports/exact_probability`. Seed {SEED}; every \
+         `hadar reproduce exact-probability --out reports`. Seed {seed}; every \
          simulation runs until its 95 % interval is ± {HALF_WIDTH} (of one class alone it is wider); all start from the same seed, so \
          that their errors may go together. Everything is \
          in `pairs.csv`, `three_bands.csv` and `other_laws.csv`.\n",
@@ -161,9 +169,6 @@ pub fn readme(lines: &[Line], lattice: &[LatticeLine], laws: &[Line]) -> String 
             ],
             &fewer_and_more
         ),
-        count("optimistic"),
-        count("pessimistic"),
-        count("agrees"),
         markdown(
             &[
                 "target",

@@ -1,0 +1,72 @@
+//! Studies of this project that are no figures of the paper: each gives the report in the folder of its name.
+
+mod exact_probability;
+mod library_figures;
+mod page;
+mod paper_scene;
+mod priors;
+
+use super::order::{Order, Progress};
+use hadar::error::Result;
+use hadar::material::Library;
+use hadar_report::bundle::Bundle;
+
+/// What is studied.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FurtherStudy {
+    /// What a test achieves, beside what the distances promise.
+    ExactProbability,
+    /// What priors on the target's state do.
+    Priors,
+    /// How often the local distance misleads in a whole library.
+    LibraryFigures,
+}
+
+impl FurtherStudy {
+    /// All of them, the quickest first.
+    pub const ALL: [Self; 3] = [Self::Priors, Self::ExactProbability, Self::LibraryFigures];
+
+    /// The name on the command line.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::ExactProbability => "exact-probability",
+            Self::Priors => "priors",
+            Self::LibraryFigures => "library-figures",
+        }
+    }
+
+    /// Its folder.
+    #[must_use]
+    pub fn folder(self) -> String {
+        self.name().replace('-', "_")
+    }
+
+    /// What it shows.
+    #[must_use]
+    pub const fn title(self) -> &'static str {
+        match self {
+            Self::ExactProbability => "What a test achieves, beside what the distances promise",
+            Self::Priors => "What priors do",
+            Self::LibraryFigures => "How often the local distance misleads in a whole library",
+        }
+    }
+
+    /// The study of a name.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|study| study.name() == name)
+    }
+
+    /// Makes its files from the materials of a library, and says what came out.
+    ///
+    /// # Errors
+    /// A library that lacks a material of the study; a figure that cannot be drawn.
+    pub fn make(self, order: Order, library: &Library, progress: Progress<'_>) -> Result<(Bundle, String)> {
+        match self {
+            Self::ExactProbability => exact_probability::make(order, library, progress),
+            Self::Priors => priors::make(order, library, progress),
+            Self::LibraryFigures => library_figures::make(order, library, progress),
+        }
+    }
+}
