@@ -4,6 +4,8 @@ pub mod allowed;
 pub mod demand;
 pub mod error;
 pub mod grid;
+pub mod lattice_points;
+pub mod minimum;
 pub mod root;
 pub(crate) mod simd;
 pub mod statistics;

@@ -1,13 +1,13 @@
 //! Sums whose rounding error does not grow with the number of terms.
 //!
-//! Terms are added in eight independent lanes over blocks of [`BLOCK`]; the lanes of the blocks are added
+//! Terms are added in eight independent lanes over blocks of `BLOCK`; the lanes of the blocks are added
 //! with the error-free transformation of Knuth (TwoSum), lane by lane, and folded once at the end, so the
 //! error stays below about (BLOCK/8 + 3) u Σ|x| for any length, u = 2⁻⁵³. The lanes are written out, so
 //! every processor adds in the same order and gives the same bits.
 //!
 //! Source: Ogita, Rump, Oishi, SIAM J. Sci. Comput. 26, 1955 (2005), doi:10.1137/030601818.
 
-use crate::simd::{Chunk, LANES, added, dispatched, padded};
+use crate::simd::{Chunk, LANES, added, dispatched, fold, padded};
 
 /// Terms per block; a multiple of [`LANES`].
 pub(crate) const BLOCK: usize = 128;
@@ -63,12 +63,6 @@ impl CompensatedLanes {
         let sum = fold(&self.sum);
         if sum.is_finite() { sum + fold(&self.error) } else { sum }
     }
-}
-
-/// Adds the lanes pairwise.
-#[inline(always)]
-pub(crate) fn fold(lanes: &Chunk) -> f64 {
-    ((lanes[0] + lanes[4]) + (lanes[2] + lanes[6])) + ((lanes[1] + lanes[5]) + (lanes[3] + lanes[7]))
 }
 
 dispatched! {

@@ -4,15 +4,21 @@
 //! for a reason that [`Camera::assumed`] gives. A new camera is an entry of one of the files; its keys are the fields of
 //! [`Preset`] and [`CameraSpec`].
 
-use super::{Camera, CameraSpec, EfficiencyCurve, NoiseSpec};
-use crate::error::{Error, Result};
+#[cfg(feature = "library")]
+use super::Camera;
+use super::{CameraSpec, EfficiencyCurve, NoiseSpec};
+use crate::error::Error;
+#[cfg(feature = "library")]
+use crate::error::Result;
 
+#[cfg(feature = "library")]
 /// The paper's cameras, and those of public data sheets.
 const FILES: [(&str, &str); 2] = [
     ("cameras/presets.toml", include_str!("../../cameras/presets.toml")),
     ("cameras/data_sheets.toml", include_str!("../../cameras/data_sheets.toml")),
 ];
 
+#[cfg(feature = "library")]
 #[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 struct File {
@@ -70,6 +76,7 @@ impl Missing {
     }
 }
 
+#[cfg(feature = "library")]
 /// All that is known of all cameras, in the order of the files.
 ///
 /// # Errors
@@ -85,6 +92,7 @@ pub fn all() -> Result<Vec<Preset>> {
     Ok(cameras)
 }
 
+#[cfg(feature = "library")]
 /// What is known of the camera of that name.
 ///
 /// # Errors
@@ -97,6 +105,7 @@ pub fn find(name: &str) -> Result<Preset> {
     }
 }
 
+#[cfg(feature = "library")]
 /// The camera of that name.
 ///
 /// # Errors
@@ -105,7 +114,7 @@ pub fn get(name: &str) -> Result<Camera> {
     find(name)?.camera().map_err(|missing| missing.error(name))?.checked()
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "library"))]
 mod tests {
     use super::*;
     use crate::instrument::View;

@@ -249,7 +249,7 @@ mod tests {
         let figures = &mut preset.figures;
         (figures.full_well, figures.quantisation_bits) = (Some(1e7), Some(14));
         (figures.read_noise_counts, figures.dark_rate_per_s) = (Some(360.0), Some(3.3e5));
-        let text = camera(&Sheet::of(preset).unwrap());
+        let text = text(&Sheet::of(preset).unwrap());
         for part in ["1.00e7 counts", "full after, at 300 K", "quantisation", "read noise", "dark counts"] {
             assert!(text.contains(part), "{part}: {text}");
         }
