@@ -54,7 +54,7 @@ impl Camera {
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "library"))]
 mod tests {
     use super::*;
     use crate::instrument::presets;
