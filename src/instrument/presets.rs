@@ -1,7 +1,7 @@
 //! Known cameras, embedded with their provenance.
 //!
 //! A figure that no document states is absent, not guessed. What a camera cannot do without is then asked for, or stands
-//! for a reason that [`Camera::assumed`] gives. A new camera is an entry of one of the files; its keys are the fields of
+//! for a reason that [`super::Camera::assumed`] gives. A new camera is an entry of one of the files; its keys are the fields of
 //! [`Preset`] and [`CameraSpec`].
 
 #[cfg(feature = "library")]
