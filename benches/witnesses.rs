@@ -4,17 +4,18 @@
 //! draws (case `draws` of `numpy_peer.py`) are of the same means.
 
 use criterion::{Criterion, criterion_group, criterion_main};
+use hadar::fisher::{Nuisance, Unknowns};
+use hadar::identifiability::nearest::{NearestSolver, StateRange};
 use hadar::identifiability::ratio::{RatioLaw, State};
 use hadar::material::Library;
-use hadar::scenario::Scenario;
+use hadar::scene::{EnvironmentObject, Surroundings};
 use hadar::simulate::classifier::{Confusion, LikelihoodRatio, Method};
 use hadar::simulate::draws::Draws;
 use hadar::simulate::ratio::RatioDraws;
 use hadar::simulate::spectra::Split;
+use hadar::spectrum::Bands;
 use hadar::statistics::Statistics;
-use hadar::study::Study;
 use std::hint::black_box;
-use std::path::Path;
 
 /// Spectra of each of two classes that are drawn and judged at once, and values of the ratio.
 const SPECTRA: usize = 5000;
@@ -22,16 +23,20 @@ const VALUES: usize = 750_000;
 
 /// Mean counts of the person and of the nearest robot in every band.
 fn means() -> hadar::Result<[Vec<f64>; 2]> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/human_vs_robot.toml");
-    let study = Study::new(&Scenario::from_file(&path)?, &Library::embedded()?)?;
-    let (robot, pair) = (&study.alternatives()[0], &study.identify()?.pairs[0]);
-    let state = study.surroundings().state(pair.nearest_state.temperature_k, &pair.nearest_state.lighting)?;
-    let photons = pair.distance_nearest.powi(-2) / study.photon_radiance();
-    let counts = |emissivity: &[f64], state| -> Vec<f64> {
-        let signal = study.bands().weigh(&study.surroundings().signal(emissivity, state));
-        signal.iter().map(|s| s * photons).collect()
-    };
-    Ok([counts(&study.target().emissivity, study.state()), counts(&robot.emissivity, &state)])
+    let bands = Bands::uniform(715.0, 1250.0, 1.0)?;
+    let object = EnvironmentObject { temperature_k: 293.15, emissivity: None };
+    let surroundings = Surroundings::new(bands.nodes_cm1(), vec![object])?;
+    let state = surroundings.state(310.15, &[0.5])?;
+    let library = Library::embedded()?;
+    let of = |name: &str| library.get(name)?.emissivity(bands.nodes_cm1());
+    let (person, robot) = (of("skin")?, of("aluminium")?);
+    let unknowns = Unknowns::new([Nuisance::Temperature, Nuisance::Lighting])?;
+    let mut solver = NearestSolver::new(&bands, &surroundings, unknowns, StateRange::default());
+    let nearest = solver.per_photon(&person, &robot, &state, f64::INFINITY)?;
+    let radiances = [(&person, &state), (&robot, &nearest.state)]
+        .map(|(e, state)| bands.weigh(&surroundings.signal(e, state)));
+    let photons = nearest.distance.powi(-2) / radiances[0].iter().sum::<f64>();
+    Ok(radiances.map(|radiance| radiance.iter().map(|s| s * photons).collect()))
 }
 
 fn witnesses(criterion: &mut Criterion) {

@@ -1,6 +1,3 @@
 #![no_main]
 
-#[path = "../harness.rs"]
-mod harness;
-
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| harness::check("mat", bytes));
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| hadar_fuzz::check("mat", bytes));

@@ -1,6 +1,3 @@
 #![no_main]
 
-#[path = "../harness.rs"]
-mod harness;
-
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| harness::check("optical_constants", bytes));
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| hadar_fuzz::check("optical_constants", bytes));

@@ -1,6 +1,6 @@
 //! Sums whose rounding error does not grow with the number of terms.
 //!
-//! Terms are added in eight independent lanes over blocks of [`BLOCK`]; the lanes of the blocks are added
+//! Terms are added in eight independent lanes over blocks of `BLOCK`; the lanes of the blocks are added
 //! with the error-free transformation of Knuth (TwoSum), lane by lane, and folded once at the end, so the
 //! error stays below about (BLOCK/8 + 3) u Σ|x| for any length, u = 2⁻⁵³. The lanes are written out, so
 //! every processor adds in the same order and gives the same bits.

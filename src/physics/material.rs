@@ -10,6 +10,8 @@
 //! unless an [`Extrapolation`] is asked for. An emissivity outside [0, 1] is an error, never clamped; only rounding
 //! (1e-9) is forgiven to a model.
 
+// What only manifests ask for is idle without them.
+#[cfg_attr(not(feature = "library"), allow(dead_code, unused_imports))]
 mod dielectric;
 #[cfg(feature = "library")]
 mod embedded;
@@ -18,9 +20,11 @@ mod gaussian;
 mod library;
 #[cfg(feature = "library")]
 mod manifest;
+#[cfg_attr(not(feature = "library"), allow(dead_code, unused_imports))]
 mod model;
 mod oscillator;
 mod provenance;
+#[cfg_attr(not(feature = "library"), allow(dead_code, unused_imports))]
 pub mod read;
 mod table;
 mod write;

@@ -17,8 +17,6 @@
 //! * [`probability`]: tail of the normal law, and exact errors of the best test between Poisson laws.
 
 pub mod extended;
-#[cfg(test)]
-mod files;
 pub mod local;
 pub mod nearest;
 pub mod planck;

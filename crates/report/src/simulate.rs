@@ -40,9 +40,6 @@ pub fn bundle(study: &Study, result: &Simulation, noise: Option<&NoiseCurves>, o
     Ok(bundle)
 }
 
-/// 'skin from aluminium', or the target from all others.
-#[must_use]
-
 /// Decisions by true and by chosen class.
 fn confusion(result: &Simulation) -> Table {
     let mut table = Table::new(["photons", "classifier", "true_class", "chosen_class", "decisions", "share"]);

@@ -8,18 +8,27 @@
 
 mod band_sum;
 mod invalid;
+#[cfg(feature = "cubes")]
 mod mat;
+#[cfg(feature = "cubes")]
 mod npy;
+#[cfg(feature = "cubes")]
 mod open;
 
 pub use band_sum::panchromatic;
 pub use invalid::first_invalid;
+#[cfg(feature = "cubes")]
 pub use npy::{write_npy, write_npy_to};
+#[cfg(feature = "cubes")]
 pub(crate) use open::is_cube;
 
 use crate::error::{Error, Result};
 use std::fmt::Debug;
 use std::ops::Range;
+
+#[cfg(feature = "cubes")]
+/// What opening a cube is called in messages.
+const READ_CUBE: &str = "read the cube";
 
 /// Rows, columns and bands of a cube; none is 0, and their product fits the address space.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
@@ -178,6 +187,15 @@ impl<S: Sample> Rows<S> for MemoryCube<S> {
             .get(rows.start.saturating_mul(len)..rows.end.saturating_mul(len))
             .ok_or_else(|| beyond(&rows, self.shape))
     }
+}
+
+#[cfg(feature = "cubes")]
+/// An array of neither two nor three dimensions.
+fn dimensions(found: usize) -> Error {
+    Error::malformed(
+        format!("the array has {found} dimension{}", if found == 1 { "" } else { "s" }),
+        "give [row][column][band], or [row][column] for one band",
+    )
 }
 
 /// Rows that a cube does not have.

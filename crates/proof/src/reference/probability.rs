@@ -205,25 +205,19 @@ mod tests {
         let exact = Extended::parse("0.144823835968958175291553516439");
         assert!(found.relative_error_to(&exact) < 1e-26);
     }
-    use std::path::Path;
 
     #[test]
     fn thirty_digit_references_are_met() {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/reference/detection.csv");
-        let Ok(file) = std::fs::read_to_string(&path) else {
-            println!("skipped: no references at {}", path.display());
-            return;
-        };
-        for line in file.lines().skip(1) {
-            let cells: Vec<&str> = line.split(',').collect();
+        let Some(references) = hadar_testing::reference_rows("detection.csv") else { return };
+        for cells in references {
             let d: f64 = cells[0].parse().unwrap();
             for (found, exact) in
-                [(normal_tail(-d), cells[1]), (normal_tail(d), cells[2]), (information_bits(d), cells[3])]
+                [(normal_tail(-d), &cells[1]), (normal_tail(d), &cells[2]), (information_bits(d), &cells[3])]
             {
                 let error = found.relative_error_to(&Extended::parse(exact));
                 // The arguments of the file are its decimal digits; the doubles are 1e-16 of d from them.
                 let bound = if d.fract() == 0.0 || d == 0.5 { 1e-27 } else { 1e-16 };
-                assert!(error < bound, "{line}: {error:e}");
+                assert!(error < bound, "{cells:?}: {error:e}");
             }
         }
     }

@@ -6,7 +6,9 @@
 use super::NoiseVariance;
 use crate::error::{Error, Result, check};
 use crate::grid::{Grid, text_of_file};
-use crate::ranging::cube::{Cube, Shape, is_cube};
+use crate::ranging::cube::Shape;
+#[cfg(feature = "cubes")]
+use crate::ranging::cube::{Cube, is_cube};
 use std::path::Path;
 
 const VARIANCE: &str = "variance_counts2";
@@ -28,6 +30,7 @@ impl NoiseVariance {
     /// # Ok::<(), hadar::Error>(())
     /// ```
     pub fn from_file(path: &Path, shape: Shape) -> Result<Self> {
+        #[cfg(feature = "cubes")]
         if !path.is_dir() && path.exists() && is_cube(path)? {
             let noise = Self::PerSample(Cube::open(path, None)?);
             noise.check(shape).map_err(|error| error.in_file(path))?;
@@ -104,7 +107,7 @@ fn in_order(
     Ok(())
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "cubes"))]
 mod tests {
     use super::*;
     use crate::ranging::cube::write_npy;

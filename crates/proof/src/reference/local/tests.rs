@@ -1,39 +1,29 @@
 use super::*;
-use crate::reference::files::{table, text};
 use hadar::fisher::Nuisance;
 use hadar::scene::EnvironmentObject;
-use std::path::Path;
-
-fn number(value: &serde_json::Value) -> f64 {
-    text(value).parse().unwrap()
-}
+use hadar_testing::{digits, number, reference_emissivity, reference_pairs};
 
 /// Tolerance 1e-27: the file's own 30 digits, less what is lost to the largest ratio of its distances without and
 /// with nuisances (its own computation carried 40). The one answer that is not defined is left out: gain at
 /// T = T₀ of a grey target.
 #[test]
 fn thirty_digit_distances_are_met() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/reference");
-    let Ok(file) = std::fs::read_to_string(root.join("pairs.json")) else {
-        println!("skipped: no references in {}", root.display());
-        return;
-    };
-    let reference: serde_json::Value = serde_json::from_str(&file).unwrap();
+    let Some(cases) = reference_pairs() else { return };
     let mut count = 0;
-    for case in reference["cases"].as_array().unwrap() {
-        let (nu, target) = table(&root, case["target"].as_str().unwrap());
-        let (_, alternative) = table(&root, case["alternative"].as_str().unwrap());
+    for case in &cases {
+        let (nu, target) = reference_emissivity(&case["target"]);
+        let (_, alternative) = reference_emissivity(&case["alternative"]);
         let bands = Bands::from_rows(nu.iter().map(|&nu| (nu, 1.0))).unwrap();
         let environment = case["environment"].as_array().unwrap();
         let objects = environment.iter().map(|object| EnvironmentObject {
             temperature_k: number(&object["T"]),
-            emissivity: object.get("material").map(|name| table(&root, name.as_str().unwrap()).1),
+            emissivity: object.get("material").map(|name| reference_emissivity(name).1),
         });
         let surroundings = Surroundings::new(bands.nodes_cm1(), objects.collect()).unwrap();
         let lighting: Vec<f64> = environment.iter().map(|object| number(&object["V"])).collect();
         let state = surroundings.state(number(&case["target_temperature_k"]), &lighting).unwrap();
         for answer in case["distance_local"].as_array().unwrap() {
-            let names: Vec<String> = answer["unknown"].as_array().unwrap().iter().map(text).collect();
+            let names: Vec<String> = answer["unknown"].as_array().unwrap().iter().map(digits).collect();
             if case["name"] == "equilibrium_T_only" && names.len() == 3 {
                 continue;
             }
@@ -42,10 +32,10 @@ fn thirty_digit_distances_are_met() {
             let pair = Pair { emissivity: &target, alternative: &alternative, state: &state };
             let noise = Noise::PerPhoton { photons: f64::INFINITY };
             let found = LocalReference::new(&bands, &surroundings, unknowns).answer(pair, noise, &[]);
-            let error = found.distance.relative_error_to(&Extended::parse(&text(&answer["value"])));
+            let error = found.distance.relative_error_to(&Extended::parse(&digits(&answer["value"])));
             println!("{} {names:?}: {error:.1e}", case["name"]);
             assert!(error < 1e-27, "{} {names:?}: {error:e}", case["name"]);
-            let radiance = Extended::parse(&text(&case["photon_radiance"]));
+            let radiance = Extended::parse(&digits(&case["photon_radiance"]));
             assert!(found.photon_radiance.relative_error_to(&radiance) < 1e-28);
             count += 1;
         }

@@ -1,26 +1,19 @@
 use super::*;
-use crate::reference::files::{table, text};
 use hadar::fisher::{Counting, Nuisance};
 use hadar::identifiability::nearest::NearestSolver;
 use hadar::scene::EnvironmentObject;
-use std::path::Path;
+use hadar_testing::{digits, number, reference_emissivity, reference_pairs};
 
 /// Nearest distances of 30 digits: from the rounded state of the file Newton's method must come to the same distance.
 /// Tolerance 1e-27: the file's digits, less what its ratio to the terms of the separation loses.
 #[test]
 fn thirty_digit_distances_are_met() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/reference");
-    let Ok(file) = std::fs::read_to_string(root.join("pairs.json")) else {
-        println!("skipped: no references in {}", root.display());
-        return;
-    };
-    let reference: serde_json::Value = serde_json::from_str(&file).unwrap();
-    let number = |value: &serde_json::Value| text(value).parse::<f64>().unwrap();
+    let Some(cases) = reference_pairs() else { return };
     let mut count = 0;
     // One case in full and each of the others would take a minute: the paper's pair and its reverse.
-    for case in reference["cases"].as_array().unwrap().iter().take(2) {
-        let (nu, target) = table(&root, case["target"].as_str().unwrap());
-        let (_, alternative) = table(&root, case["alternative"].as_str().unwrap());
+    for case in cases.iter().take(2) {
+        let (nu, target) = reference_emissivity(&case["target"]);
+        let (_, alternative) = reference_emissivity(&case["alternative"]);
         let bands = Bands::from_rows(nu.iter().map(|&nu| (nu, 1.0))).unwrap();
         let environment = case["environment"].as_array().unwrap();
         let object = EnvironmentObject { temperature_k: number(&environment[0]["T"]), emissivity: None };
@@ -38,7 +31,7 @@ fn thirty_digit_distances_are_met() {
             let noise = Noise::PerPhoton { photons: f64::INFINITY };
             let mut solver = NearestReference::new(&bands, &surroundings, unknowns, StateRange::default());
             let (found, at) = solver.nearest_from(pair, &[start], noise).unwrap();
-            let error = found.relative_error_to(&Extended::parse(&text(&answer["value"])));
+            let error = found.relative_error_to(&Extended::parse(&digits(&answer["value"])));
             println!("{}: {error:.1e}", case["name"]);
             assert!(error < 1e-27, "{}: {error:e}", case["name"]);
             assert!((at.temperature_k / number(&answer["temperature_k"]) - 1.0).abs() < 1e-14);

@@ -1,0 +1,24 @@
+//! Tests of the command `hadar`, and what several packages do together.
+
+mod accuracy;
+mod arrows;
+mod cameras;
+mod cli;
+mod cli_mistakes;
+mod demand;
+mod identify;
+mod identify_libraries;
+mod identify_mistakes;
+mod identify_sections;
+mod identify_words;
+mod range;
+mod reproduce;
+mod rule;
+mod rule_mistakes;
+mod simulate;
+
+mod support {
+    pub mod answers;
+    pub mod folder;
+    pub mod uses;
+}

@@ -1,0 +1,3 @@
+//! Tests of what holds the crate against references.
+
+mod accuracy;

@@ -1,0 +1,8 @@
+//! Tests of reports.
+
+mod figures;
+mod named_values;
+
+mod support {
+    pub mod figures;
+}

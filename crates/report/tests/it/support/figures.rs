@@ -1,0 +1,84 @@
+//! Checks of drawn figures, and numbers, words and axes of any kind.
+
+use std::fs;
+use std::path::Path;
+
+use hadar_report::plot::{Axis, Figure, render_png, render_svg};
+use proptest::prelude::*;
+
+/// Draws and checks a figure, and leaves it in `target/tmp/figures`, to be looked at.
+pub fn sample(name: &str, figure: &Figure) {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("figures");
+    fs::create_dir_all(&folder).expect("a folder for the samples");
+    let start = std::time::Instant::now();
+    let svg = render_svg(figure).expect("an SVG");
+    let middle = start.elapsed();
+    let png = render_png(figure).expect("a PNG");
+    let all = start.elapsed();
+    println!(
+        "{name}: SVG {} kB in {middle:?}, PNG {} kB in {:?}",
+        svg.len() / 1000,
+        png.len() / 1000,
+        all - middle
+    );
+    check_svg(&svg);
+    check_png(&png);
+    assert!(svg.len() < 1_000_000);
+    fs::write(folder.join(format!("{name}.svg")), svg).expect("writing the SVG");
+    fs::write(folder.join(format!("{name}.png")), png).expect("writing the PNG");
+}
+
+/// Well-formed, without numbers that are none.
+pub fn check_svg(svg: &str) {
+    assert!(svg.starts_with("<svg ") && svg.ends_with("</svg>\n"), "{}", &svg[svg.len() - 40..]);
+    assert!(!svg.contains("\"NaN\"") && !svg.contains("\"inf\""));
+    // Every mark is a self-closing element; only texts, the title and the root have an end.
+    let opened = svg.matches("<text ").count() + 2;
+    assert_eq!(svg.matches("</").count(), opened);
+    assert_eq!(svg.matches('<').count(), svg.matches("/>").count() + 2 * opened);
+}
+
+/// Readable, 2400 pixels wide, with margins that are white.
+pub fn check_png(bytes: &[u8]) {
+    let mut reader = png::Decoder::new(bytes).read_info().expect("a PNG header");
+    let mut pixels = vec![0; reader.output_buffer_size()];
+    let info = reader.next_frame(&mut pixels).expect("PNG data");
+    assert_eq!(info.width, 2400);
+    // The margin stays white: nothing is clipped at the edges.
+    let row = 3 * info.width as usize;
+    let edge = |y: usize| pixels[y * row..(y + 1) * row].iter().all(|byte| *byte == 0xFF);
+    assert!(edge(0) && edge(info.height as usize - 1));
+    assert!(
+        pixels.chunks(row).all(|line| line[..6].iter().chain(&line[row - 6..]).all(|byte| *byte == 0xFF))
+    );
+}
+
+/// Any number at all, ordinary ones more often.
+pub fn number() -> impl Strategy<Value = f64> {
+    prop_oneof![
+        4 => -100.0..100.0f64,
+        2 => Just(0.5),
+        1 => (-320.0..308.0f64).prop_map(|e| 10f64.powf(e)),
+        1 => any::<f64>(),
+        1 => prop::sample::select(vec![f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 0.0, -0.0, f64::MAX, f64::MIN]),
+    ]
+}
+
+/// A label, sometimes of odd letters.
+pub fn words() -> impl Strategy<Value = String> {
+    prop_oneof![3 => Just("a quantity (unit)".to_owned()), 1 => any::<String>(), 1 => "[ -~]{0,300}"]
+}
+
+/// Any axis.
+pub fn axis() -> impl Strategy<Value = Axis> {
+    let range = prop::option::of((number(), number()));
+    let ticks = prop::option::of(prop::collection::vec((number(), words()), 0..5));
+    (words(), any::<bool>(), range, ticks).prop_map(|(title, log, range, ticks)| {
+        let axis = if log { Axis::log(&title) } else { Axis::linear(&title) };
+        let axis = Axis { range, ..axis };
+        match ticks {
+            Some(ticks) => axis.secondary(title, ticks),
+            None => axis,
+        }
+    })
+}

@@ -1,0 +1,216 @@
+//! Every reader of files against thousands of wrong files: the harness of `fuzz/`, driven without a fuzzer.
+//!
+//! Files are made of the seeds in `fuzz/seeds` by changes that a number decides, so that a run can be repeated.
+//! `HADAR_FUZZ_INPUTS=1000000 cargo test --release -p hadar-study --test it fuzz_readers` makes so many for all readers
+//! together. One that fails is kept in `target/tmp`; copied into the reader's seeds, it is checked ever after. Where the whole
+//! process dies, the file that was read last is still in the temporary folder (`/dev/shm` or that of the system).
+
+use crate::support::harness::{READERS, Reader};
+use crate::support::mutation::mutated;
+use flate2::{Compression, write::ZlibEncoder};
+use hadar_testing::repository;
+use std::io::Write;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+/// Files that are made where nothing is said, for all readers together.
+const INPUTS: u64 = 40_000;
+/// A file of at most a megabyte takes milliseconds; this leaves room for a machine that has other work.
+const LONGEST: Duration = Duration::from_secs(10);
+/// Memory that the process may have had at most, bytes.
+const MOST_MEMORY: u64 = 1 << 30;
+
+fn seeds(name: &str) -> Vec<(String, Vec<u8>)> {
+    let folder = repository().join("fuzz/seeds").join(name);
+    let mut files: Vec<_> = std::fs::read_dir(&folder)
+        .unwrap_or_else(|error| panic!("{}: {error}", folder.display()))
+        .map(|entry| entry.unwrap().path())
+        .collect();
+    files.sort();
+    files
+        .iter()
+        .map(|path| (path.file_name().unwrap().to_string_lossy().into_owned(), std::fs::read(path).unwrap()))
+        .collect()
+}
+
+/// Checks one file; one that fails is kept and said.
+fn check(reader: &Reader, what: &str, bytes: &[u8]) {
+    let start = Instant::now();
+    let outcome = catch_unwind(AssertUnwindSafe(|| reader.check(bytes)));
+    let elapsed = start.elapsed();
+    if outcome.is_ok() && elapsed < LONGEST {
+        return;
+    }
+    let kept = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{}-{what}", reader.name));
+    std::fs::write(&kept, bytes).unwrap();
+    let shown: String =
+        bytes.iter().take(2000).flat_map(|&byte| std::ascii::escape_default(byte)).map(char::from).collect();
+    panic!("{} {what}, after {elapsed:?}, kept as {}:\n{shown}", reader.name, kept.display());
+}
+
+fn run(name: &str) {
+    let reader = READERS.iter().find(|reader| reader.name == name).unwrap();
+    let (names, files): (Vec<_>, Vec<_>) = seeds(name).into_iter().unzip();
+    for (name, bytes) in names.iter().zip(&files) {
+        check(reader, name, bytes);
+    }
+    let inputs = std::env::var("HADAR_FUZZ_INPUTS").map_or(INPUTS, |inputs| inputs.parse().unwrap());
+    for number in 0..inputs.div_ceil(READERS.len() as u64) {
+        check(reader, &number.to_string(), &mutated(&files, name, number));
+    }
+    memory();
+}
+
+/// Where the system says how much memory the process has had at most, that it was not too much.
+fn memory() {
+    let Ok(status) = std::fs::read_to_string("/proc/self/status") else { return };
+    let peak = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+    let kilobytes = peak.and_then(|peak| peak.trim().strip_suffix(" kB")?.parse::<u64>().ok());
+    let bytes = 1024 * kilobytes.expect("VmHWM in kB");
+    assert!(bytes < MOST_MEMORY, "{bytes} bytes of memory for small files");
+}
+
+macro_rules! readers {
+    ($($name:ident),* $(,)?) => {
+        $(#[test]
+        fn $name() {
+            run(stringify!($name));
+        })*
+
+        #[test]
+        fn every_reader_is_tested_and_fuzzed() {
+            let tested = [$(stringify!($name)),*];
+            assert_eq!(tested.to_vec(), READERS.iter().map(|reader| reader.name).collect::<Vec<_>>());
+            let root = repository();
+            let manifest = std::fs::read_to_string(root.join("fuzz/Cargo.toml")).unwrap();
+            for name in tested {
+                let target = std::fs::read_to_string(root.join(format!("fuzz/fuzz_targets/{name}.rs"))).unwrap();
+                assert!(target.contains(&format!("check(\"{name}\", bytes)")), "{target}");
+                assert!(manifest.contains(&format!("path = \"fuzz_targets/{name}.rs\"")), "{name}");
+            }
+        }
+    };
+}
+
+readers! {
+    material, library, manifest, optical_constants, band_rows, filters, scenario, range_scenario, quantity, npy, mat,
+    noise, model,
+}
+
+/// Files that are long, wide or deep, which no change of a seed makes.
+#[test]
+fn long_wide_and_deep_files_take_neither_long_nor_much() {
+    let most = 1 << 19;
+    let times = |text: &str| text.repeat(most / text.len());
+    let rows =
+        |start: usize, row: &dyn Fn(usize) -> String| (start..start + most / 20).map(row).collect::<String>();
+    let texts = [
+        times("a"),
+        times(","),
+        times("\n"),
+        times("\0"),
+        times("["),
+        times("{"),
+        times("("),
+        times("a."),
+        times("a=["),
+        times("a={b="),
+        times("\"a\":["),
+        times("\u{85}\u{1b}"),
+        format!("wavenumber_cm1,{}\n800{}\n900{}\n", times("a,"), ",1".repeat(9), ",1".repeat(9)),
+        // As many materials as there are columns.
+        {
+            let columns: String = (0..most / 8).map(|i| format!(",x{i}")).collect();
+            let cells = ",1".repeat(most / 8);
+            format!("wavenumber_cm1{columns}\n800{cells}\n900{cells}\n")
+        },
+        format!("wavenumber_cm1,emissivity\n{}", rows(1, &|i| format!("{i},0.5\n"))),
+        format!("wavelength_um,n,k\n{}", rows(1, &|i| format!("{i},1.5,0\n"))),
+        format!("wavelength_um,{}\n1,1\n2,1\n", times("x")),
+        format!("{}: a\n", times("Name")),
+        format!(
+            "Name: {0}\nX Units: micrometers {0}\nY Units: reflectance percent {0}\nNumber of X Values: {0}\n\n",
+            "y".repeat(most / 4)
+        ),
+        format!("variance_counts2\n{}", times("1\n")),
+        format!("band,variance_counts2\n{}", rows(0, &|i| format!("{i},1\n"))),
+        // A key that every item of its list would repeat, and tables in tables.
+        format!("{} = [{}]\n", "k".repeat(most / 2), "0,".repeat(most / 4)),
+        format!("[target]\n{}\nmaterial = \"skin\"\n", rows(0, &|i| format!("key{i} = 0\n"))),
+        format!("x = {}{}\n", format!("{{{}x = ", "y.".repeat(70)).repeat(70), "0"),
+        format!("x = {}{}{}\n", format!("{{{}x = ", "y.".repeat(70)).repeat(70), "0", "}".repeat(70)),
+        format!("[target]\nmaterial = \"{}\"\ntemperature = \"37 degC\"\n", times("m")),
+        format!("[target]\nmaterial = \"skin\"\ntemperature = \"{}\"\n", times("3")),
+        format!("[target]\nmaterial = \"skin\"\ntemperature = 1{}\n", times("0")),
+        format!(
+            "[target]\nmaterial = \"skin\"\ntemperature = \"37 degC\"\n[alternatives]\nmaterials = [{}]\n",
+            rows(0, &|i| format!("\"m{i}\","))
+        ),
+        format!(
+            "[target]\nmaterial = \"skin\"\ntemperature = \"37 degC\"\n{}",
+            times("[[environment]]\ntemperature = \"1 K\"\nlighting = 0\n")
+        ),
+        // Every material is made of the one before it: twice of it, or it alone.
+        {
+            let doubled = |i: usize| {
+                format!(
+                    "[[material]]\nname = \"m{}\"\nmodel = {{ mixture = [{{ parts = 1.0, of = {{ material = \"m{i}\" }} }}, {{ parts = 1.0, of = {{ material = \"m{i}\" }} }}] }}\n",
+                    i + 1
+                )
+            };
+            format!(
+                "version = 1\n[[material]]\nname = \"m0\"\nmodel = {{ table = \"e.csv\" }}\n{}",
+                (0..60).map(doubled).collect::<String>()
+            )
+        },
+        {
+            let rough = |i: usize| {
+                format!(
+                    "[[material]]\nname = \"m{}\"\nmodel = {{ cavity = {{ area_ratio = 2.0, of = {{ material = \"m{i}\" }} }} }}\n",
+                    i + 1
+                )
+            };
+            format!(
+                "version = 1\n[[material]]\nname = \"m0\"\nmodel = {{ constant = 0.5 }}\n{}",
+                (0..5000).map(rough).collect::<String>()
+            )
+        },
+        format!(
+            "version = 1\n{}",
+            rows(0, &|i| format!("[[material]]\nname = \"m{i}\"\nmodel = {{ constant = 0.5 }}\n"))
+        ),
+    ];
+    let mut files: Vec<Vec<u8>> = texts.into_iter().map(String::into_bytes).collect();
+    for deep in ["{", "(", "[", "{(", "([", "{1:", "b'", "-"] {
+        let header = format!("{{'descr': {}", deep.repeat(60 / deep.len()));
+        let len = u16::try_from(header.len()).unwrap().to_le_bytes();
+        files.push([b"\x93NUMPY\x01\x00", len.as_slice(), header.as_bytes()].concat());
+    }
+    files.push(announces_more_than_it_holds());
+    for reader in READERS {
+        for (number, bytes) in files.iter().enumerate() {
+            check(reader, &format!("large-{number}"), bytes);
+        }
+    }
+    memory();
+}
+
+/// A MATLAB file of 200 kB with a packed array of bytes that would be 1.6 GB of doubles.
+fn announces_more_than_it_holds() -> Vec<u8> {
+    let held = 200_000_u32;
+    let side = 14_000_u32;
+    let words = |words: &[u32]| words.iter().flat_map(|word| word.to_le_bytes()).collect::<Vec<u8>>();
+    // Flags of a double array, dimensions, the name S, bytes.
+    let head = words(&[6, 8, 6, 0, 5, 8, side, side, 1 << 16 | 1, u32::from(b'S'), 2, side * side]);
+    let len = u32::try_from(head.len()).unwrap() + side * side;
+    let array = [words(&[14, len]), head, vec![1; held as usize]].concat();
+    let mut packed = ZlibEncoder::new(Vec::new(), Compression::none());
+    packed.write_all(&array).unwrap();
+    let packed = packed.finish().unwrap();
+    let mut file = vec![b' '; 124];
+    file.extend(*b"\0\x01IM");
+    file.extend(words(&[15, u32::try_from(packed.len()).unwrap()]));
+    file.extend(packed);
+    file
+}

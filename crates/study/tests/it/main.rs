@@ -1,0 +1,16 @@
+//! Tests of scenarios and studies.
+
+mod fuzz_readers;
+mod published;
+mod rule_air;
+mod scenario;
+mod scenario_messages;
+mod search_inputs;
+mod sight;
+mod sizing;
+mod trade_offs;
+
+mod support {
+    pub mod harness;
+    pub mod mutation;
+}

@@ -1,0 +1,261 @@
+//! Solutions for distance and speed, limits, trade-off curves, elasticities and warnings of whole scenarios.
+
+use hadar::demand::Work;
+use hadar::material::Library;
+use hadar::policy::elasticity::Lever;
+use hadar::policy::trade_off::POINTS;
+use hadar::policy::{Quantity, Solution};
+use hadar_study::scenario::Scenario;
+use hadar_study::study::{Sizing, Study};
+use std::sync::OnceLock;
+
+const SCENE: &str = r#"
+[target]
+material = "skin"
+temperature = "37 degC"
+distance = "30 m"
+size = "0.3 m"
+[background]
+temperature = "15 degC"
+[[environment]]
+temperature = "20 degC"
+lighting = 0.5
+[alternatives]
+materials = ["soda-lime-glass"]
+[bands]
+step = "5 cm^-1"
+[camera]
+preset = "flir-a325sc"
+netd = "10 mK"
+flicker_fraction = 0.1
+[requirement]
+distance = 1.0
+speed = "30 mph"
+"#;
+
+fn study(text: &str) -> Study {
+    static LIBRARY: OnceLock<Library> = OnceLock::new();
+    let library = LIBRARY.get_or_init(|| Library::embedded().unwrap());
+    let scenario = Scenario::from_toml(text, None).unwrap_or_else(|error| panic!("{error}\n{text}"));
+    Study::new(&scenario, library).unwrap_or_else(|error| panic!("{error}\n{text}"))
+}
+
+fn size(text: &str) -> Sizing {
+    study(text).size().unwrap()
+}
+
+fn solution(sizing: &Sizing, quantity: Quantity) -> Solution {
+    let solutions = &sizing.solve_for.as_ref().unwrap().0;
+    solutions.iter().find(|(of, _)| *of == quantity).unwrap().1.clone()
+}
+
+fn codes(sizing: &Sizing) -> Vec<&str> {
+    sizing.warnings.iter().map(|warning| warning.code).collect()
+}
+
+fn reached(sizing: &Sizing) -> f64 {
+    sizing.verdict.statistical_distance.unwrap()
+}
+
+/// 1e-9: as every solution that goes through the text of a scenario.
+#[test]
+fn distance_and_speed_can_be_fed_back() {
+    let sizing = size(SCENE);
+    let distance = solution(&sizing, Quantity::Distance).value.unwrap();
+    let there = size(&SCENE.replace("30 m\"\nsize", &format!("{distance:e} m\"\nsize")));
+    assert!((reached(&there) - 1.0).abs() < 1e-9, "{distance}: {}", reached(&there));
+    // From there the target is smaller than its pixel, whose footprint is 0.3 m at 450 m.
+    assert!(distance > 450.0 && codes(&there).contains(&"target-smaller-than-pixel"));
+    assert!(!codes(&sizing).contains(&"target-smaller-than-pixel"));
+
+    let speed = solution(&sizing, Quantity::Speed).value.unwrap();
+    let exposure = solution(&sizing, Quantity::Exposure).value.unwrap();
+    let text = SCENE
+        .replace("\"30 mph\"", &format!("\"{speed:e} m/s\""))
+        .replace("netd =", &format!("exposure = \"{exposure:e} s\"\nnoise_exposure = \"12 ms\"\nnetd ="));
+    let then = size(&text);
+    assert!((reached(&then) - 1.0).abs() < 1e-9, "{}", reached(&then));
+    let blur = then.camera.unwrap().motion_blur_pixels.unwrap();
+    assert!((blur - 1.0).abs() < 1e-9, "{blur}");
+}
+
+#[test]
+fn a_solution_names_the_limits_it_breaks() {
+    // A demand that takes longer than motion, frame and well allow.
+    let text = SCENE
+        .replace("distance = 1.0", "distance = 9.0")
+        .replace("netd =", "frame_rate = \"60 Hz\"\nfull_well = 5.2e6\nnetd =")
+        .replace("flicker_fraction = 0.1", "flicker_fraction = 0.0");
+    let sizing = size(&text);
+    let exposure = solution(&sizing, Quantity::Exposure);
+    let of: Vec<_> = exposure.caps.iter().map(|cap| (cap.code, cap.blocks)).collect();
+    assert_eq!(of, [("motion", true), ("frame-rate", true), ("full-well", true)], "{exposure:?}");
+    assert!(exposure.value.unwrap() > 1.0 / 60.0);
+    let speed = solution(&sizing, Quantity::Speed);
+    let of: Vec<_> = speed.caps.iter().map(|cap| cap.code).collect();
+    assert_eq!(of, ["motion", "frame-rate", "full-well"]);
+    // In units of speed: a frame leads to the speed that moves a pixel in it.
+    let frame = speed.caps[1].limit / speed.value.unwrap();
+    assert!((frame / (60.0 * exposure.value.unwrap()) - 1.0).abs() < 1e-9, "{frame}");
+    // Least demanding: no limit in the way.
+    let easy = size(&SCENE.replace("distance = 1.0", "distance = 0.1"));
+    assert!(solution(&easy, Quantity::Exposure).caps.is_empty());
+    assert_eq!(solution(&easy, Quantity::FNumber).caps[0].code, "diffraction");
+}
+
+/// Points of every curve put back into the scenario meet the demand as the solutions do.
+#[test]
+fn points_of_the_curves_meet_the_demand() {
+    let study = study(SCENE);
+    let sizing = study.size().unwrap();
+    let curves = study.trade_offs(&sizing, &mut Work::default()).unwrap();
+    let pairs: Vec<_> = curves.iter().map(|curve| (curve.x.key(), curve.y.key())).collect();
+    let expected = [
+        ("f_number", "exposure_s"),
+        ("pixel_m", "noise_counts"),
+        ("distance_m", "frames"),
+        ("exposure_s", "speed_m_s"),
+    ];
+    assert_eq!(pairs, expected);
+    assert!(curves.iter().all(|curve| curve.points.len() == POINTS));
+    for i in [3, 14, 20] {
+        let point = &curves[0].points[i];
+        let (f_number, exposure) = (point.x, point.y.unwrap());
+        let keys = format!(
+            "f_number = {f_number:e}\nexposure = \"{exposure:e} s\"\nnoise_exposure = \"12 ms\"\nnetd_f_number = 1.3\nnetd ="
+        );
+        let there = reached(&size(&SCENE.replace("netd =", &keys)));
+        assert!((there - 1.0).abs() < 1e-9, "f/{f_number}, {exposure} s: {there}");
+    }
+    // The camera lies on the curve of what is as good as it is.
+    for curve in &curves {
+        let own = curve.points.iter().find(|point| (point.x / curve.camera.0 - 1.0).abs() < 1e-9);
+        let Some(own) = own else { continue };
+        assert!((own.y_as_now.unwrap() / curve.camera.1 - 1.0).abs() < 1e-5, "{:?}", curve.y);
+    }
+}
+
+/// The more distant, the more frames; one less is not enough.
+#[test]
+fn distance_is_traded_for_frames() {
+    let scene = SCENE
+        .replace("distance = 1.0", "distance = 2.0")
+        .replace("flicker_fraction = 0.1", "flicker_fraction = 0.0");
+    let study = study(&scene);
+    let sizing = study.size().unwrap();
+    let curves = study.trade_offs(&sizing, &mut Work::default()).unwrap();
+    let curve = curves.iter().find(|curve| curve.y == Quantity::Frames).unwrap();
+    let frames: Vec<f64> = curve.points.iter().filter_map(|point| point.y).collect();
+    assert!(frames.windows(2).all(|pair| pair[0] <= pair[1]) && frames.last() > Some(&1.0), "{frames:?}");
+    let point = curve.points.iter().find(|point| point.y > Some(1.0)).unwrap();
+    for (less, enough) in [(0.0, true), (1.0, false)] {
+        let count = point.y.unwrap() - less;
+        let text = scene
+            .replace("30 m\"\nsize", &format!("{:e} m\"\nsize", point.x))
+            .replace("netd =", &format!("frames = {count}\nnetd ="));
+        assert_eq!(reached(&size(&text)) >= 2.0 * (1.0 - 1e-9), enough, "{count} frames at {} m", point.x);
+    }
+}
+
+/// 1e-6: differences of two answers that are good to 1e-11 over a step of 1e-4, and their second order.
+#[test]
+fn elasticities_are_those_of_whole_answers() {
+    let sizing = size(SCENE);
+    let found = sizing.sensitivity.unwrap();
+    let of = |lever: Lever| {
+        let elasticities = &found.elasticities.0;
+        elasticities.iter().find(|(of, _)| *of == lever).unwrap().1.unwrap().value
+    };
+    let step = 1e-4f64;
+    let slope = |text: &dyn Fn(f64) -> String| {
+        let [more, less] = [step, -step].map(|step| reached(&size(&text(step.exp()))));
+        (more / less).ln() / (2.0 * step)
+    };
+    let with = |keys: String| {
+        SCENE.replace(
+            "netd =",
+            &format!(
+                "{keys}\nnoise_exposure = \"12 ms\"\nnetd_pixel = \"12 um\"\nnetd_f_number = 1.3\nnetd ="
+            ),
+        )
+    };
+    let cases: [(Lever, &dyn Fn(f64) -> String); 3] = [
+        (Lever::Exposure, &|by| with(format!("exposure = \"{:e} s\"", 12e-3 * by))),
+        (Lever::Pixel, &|by| with(format!("pixel = \"{:e} m\"", 12e-6 * by))),
+        (Lever::FNumber, &|by| with(format!("f_number = {:e}", 1.3 * by))),
+    ];
+    for (lever, text) in cases {
+        let exact = slope(text);
+        assert!((of(lever) - exact).abs() < 1e-6, "{lever:?}: {} {exact}", of(lever));
+    }
+    let noise = slope(&|by| SCENE.replace("10 mK", &format!("{:e} mK", 10.0 * by)));
+    assert!((of(Lever::Noise) - noise).abs() < 1e-6);
+}
+
+#[test]
+fn errors_of_the_emissivities_are_told() {
+    let with = |error: &str| {
+        format!("{SCENE}[sensitivity]\nemissivity_error = {error}\ncorrelation = \"10 cm^-1\"\n")
+    };
+    let none = size(&with("0.0")).sensitivity.unwrap().emissivity;
+    assert_eq!((none.distance_5, none.distance_95, none.share_met), (none.distance, none.distance, 1.0));
+    // Small errors act to first order: 5 and 95 % of a Gaussian lie 1.645 deviations out, which 64 draws tell to 20 %.
+    let small = size(&with("1e-6")).sensitivity.unwrap().emissivity;
+    let spread = (small.distance_95 - small.distance_5) / (2.0 * 1.645);
+    let ratio = spread / small.sigma_linear.unwrap();
+    assert!((0.6..1.5).contains(&ratio), "{ratio}: {small:?}");
+    // The same whatever the number of threads.
+    let pool = rayon_pool(1);
+    let one = pool(&with("0.005"));
+    assert_eq!(one, size(&with("0.005")).sensitivity.unwrap().emissivity.distance_50);
+    // The paper's pair is nearly featureless: errors only ever make the spectra differ more.
+    let fragile = SCENE
+        .replace("soda-lime-glass", "aluminium")
+        .replace("size = \"0.3 m\"\n[background]\ntemperature = \"15 degC\"\n", "");
+    let found = size(&fragile).sensitivity.unwrap().emissivity;
+    assert!(found.distance_5 > 2.0 * found.distance, "{found:?}");
+}
+
+fn rayon_pool(threads: usize) -> impl Fn(&str) -> f64 {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    move |text: &str| pool.install(|| size(text).sensitivity.unwrap().emissivity.distance_50)
+}
+
+#[test]
+fn assumptions_that_fail_are_warned_of() {
+    let cases: [(&str, &str, &str); 7] = [
+        ("diffraction", "", ""),
+        ("full-well", "netd =", "full_well = 1e3\nnetd ="),
+        ("motion-blur", "30 mph", "60 mph"),
+        ("frame-rate", "netd =", "frames = 4\nframe_rate = \"60 Hz\"\nnetd ="),
+        (
+            "outside-detector-range",
+            "step = \"5 cm^-1\"",
+            "start = \"712 cm^-1\"\nstop = \"1232 cm^-1\"\nstep = \"20 cm^-1\"",
+        ),
+        ("bunching", "37 degC", "400 degC"),
+        (
+            "motion-blur-unknown",
+            "distance = \"30 m\"\nsize = \"0.3 m\"\n[background]\ntemperature = \"15 degC\"\n",
+            "",
+        ),
+    ];
+    let usual = size(SCENE);
+    for (code, from, to) in cases {
+        let text = SCENE.replace(from, to);
+        if code != "diffraction" {
+            assert!(!codes(&usual).contains(&code), "{code}");
+        }
+        let sizing = size(&text);
+        assert!(codes(&sizing).contains(&code), "{code}: {:?}", sizing.warnings);
+    }
+    let boson = SCENE.replace("\"flir-a325sc\"", "\"flir-boson-640-14mm\"\nf_number = 1.0");
+    assert!(codes(&size(&boson)).contains(&"camera-figure-assumed"));
+    assert!(!codes(&usual).contains(&"camera-figure-assumed"));
+    // A pixel as large as the blur, and bunching that is in the noise.
+    let sharp = size(&SCENE.replace("netd =", "pixel = \"20 um\"\nnetd ="));
+    assert!(!codes(&sharp).contains(&"diffraction"));
+    let hot = size(&SCENE.replace("37 degC", "400 degC").replace("netd =", "photon_bunching = true\nnetd ="));
+    let warning = hot.warnings.iter().find(|warning| warning.code == "bunching").unwrap();
+    assert!(warning.message.contains("is included"), "{}", warning.message);
+}

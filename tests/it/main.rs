@@ -1,0 +1,22 @@
+//! Tests of the numerical crate, seen from outside.
+
+mod cameras;
+mod decision;
+mod derivatives;
+mod detection_reference;
+mod exact_probability;
+mod likelihood;
+mod many_materials;
+mod materials;
+mod nearest_minimum;
+mod nearest_search;
+mod noise_budget;
+mod pairs_reference;
+mod planck_reference;
+mod properties;
+mod ranging_reference;
+mod selection;
+
+mod support {
+    pub mod scenes;
+}
