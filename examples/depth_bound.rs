@@ -4,7 +4,8 @@
 //!
 //! The texture is a cosine of contrast m, with N photons a pixel on average and k = 2π/5 per pixel. In a window of 5 × 5
 //! pixels, one period wide, J = 25 N k² (1 − √(1 − m²)) = 1979 pixel⁻² in closed form, hence an error of the disparity
-//! of √(2/J) = 0.0318 pixels and of the depth of z² p √(2/J)/(b f) = 12.3 cm at 30 m. The program finds both.
+//! of √(2/J) = 0.0318 pixels and of the depth of z² p √(2/J)/(b f) = 12.3 cm at 30 m. Five
+//! pixels a period find J to 2e-4.
 
 use hadar::ranging::cube::{MemoryCube, Shape};
 use hadar::ranging::depth::{Image, StereoGeometry, WindowInformation};
