@@ -4,7 +4,6 @@
 //! training, 25 % for validation, 50 % for the test; 536 bands (Fig. 3b) or three (Fig. S7).
 
 use super::{Effort, Figures, Line, Made, Order, Progress, Verdict, scene};
-use hadar::demand::Work;
 use hadar::error::Result;
 use hadar::identifiability::detection;
 use hadar::instrument::{gamma_per_band, presets};
@@ -98,7 +97,7 @@ fn experiments(
     camera_noise: bool,
     progress: Progress<'_>,
 ) -> Result<Simulation> {
-    let mut photons = study.sweep(normalised, EXPERIMENTS, &[], false, &mut Work::default())?;
+    let mut photons = study.sweep(normalised, EXPERIMENTS, &[], false)?;
     if order.effort == Effort::Quick {
         photons = photons.into_iter().skip(QUICK / 2).step_by(QUICK).collect();
     }

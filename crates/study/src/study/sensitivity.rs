@@ -8,7 +8,6 @@ pub use emissivity::EmissivityErrors;
 
 use super::size::Reach;
 use super::{Study, Surface};
-use hadar::demand::Work;
 use hadar::error::Result;
 use hadar::instrument::Camera;
 use hadar::policy::elasticity::{Elasticity, Lever, elasticity};
@@ -39,12 +38,7 @@ impl serde::Serialize for Elasticities {
 
 impl Study {
     /// What the verdict on `camera` hangs on, against `alternative`.
-    pub(super) fn sensitivity(
-        &self,
-        camera: &Camera,
-        alternative: &Surface,
-        work: &mut Work,
-    ) -> Result<Sensitivity> {
+    pub(super) fn sensitivity(&self, camera: &Camera, alternative: &Surface) -> Result<Sensitivity> {
         let own = self.task(camera).own();
         let mut reach = Reach::new(self, alternative);
         reach.anew(&own)?;
@@ -58,8 +52,7 @@ impl Study {
             };
             found.push((lever, value));
         }
-        work.add(&reach.work);
-        let emissivity = self.emissivity_errors(camera, alternative, work)?;
+        let emissivity = self.emissivity_errors(camera, alternative)?;
         Ok(Sensitivity { elasticities: Elasticities(found), emissivity })
     }
 }
