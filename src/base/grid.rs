@@ -16,8 +16,11 @@ const LONGEST_FILE: u64 = 1 << 26;
 /// The header and the numbers, with the line (from 1) that each row stands on.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Grid {
+    /// Names of the columns.
     pub header: Vec<String>,
+    /// Line of the names, counted from 1.
     pub header_line: usize,
+    /// Line and cells of every row.
     pub rows: Vec<(usize, Vec<f64>)>,
 }
 

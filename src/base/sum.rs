@@ -20,6 +20,7 @@ pub struct Compensated {
 }
 
 impl Compensated {
+    /// Adds a term.
     #[inline(always)]
     pub fn add(&mut self, term: f64) {
         let sum = self.sum + term;
@@ -28,6 +29,7 @@ impl Compensated {
         self.sum = sum;
     }
 
+    /// The sum, its rounding errors added.
     #[inline(always)]
     pub fn value(self) -> f64 {
         // An infinite sum has no error to add (∞ − ∞).

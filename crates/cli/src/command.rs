@@ -188,7 +188,7 @@ impl Global {
     /// Prints a result that has its ledger in it, and with `--stats` the ledger.
     fn answer(&self, json: &impl serde::Serialize, text: &str, work: &Work) -> Result<()> {
         if self.stats {
-            self.note(text::work(work).trim_end());
+            self.note(text::stats(work).trim_end());
         }
         self.print(json, text)
     }

@@ -1,8 +1,15 @@
 //! Cameras as the reports show them: what is stated, what is missing, and what follows.
 
+mod compare;
+mod list;
 mod side_by_side;
+mod text;
+
+pub use compare::{comparison, comparison_sentence};
+pub use list::list;
 
 pub use side_by_side::{Row, SideBySide};
+pub use text::text;
 
 use hadar::error::{Error, Result};
 use hadar::instrument::comparison::SCENE_K;

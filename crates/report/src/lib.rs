@@ -1,16 +1,18 @@
-//! Results made readable: files, tables, plots and text. Physics never imports this module.
+//! Results made readable: a module a command, with its text, its tables, its figures and the files of `--out`.
+//!
+//! What they share: [`plot`] draws, [`figures`] joins a figure and its table, [`table`] writes CSV, [`tables`] and [`text`]
+//! say what several commands say, [`bundle`] puts files in place, all or none.
 
 pub mod accuracy;
 pub mod bundle;
 pub mod cameras;
 pub mod figures;
-pub mod library;
+pub mod identify;
 pub mod plot;
-pub mod ranging;
+pub mod range;
 pub mod rule;
-pub mod simulation;
-pub mod sizing;
+pub mod simulate;
+pub mod size;
 pub mod table;
 pub mod tables;
 pub mod text;
-pub mod thermometry;

@@ -3,6 +3,9 @@
 //! Nothing in them depends on when or where they were made, so that anyone can make them again, byte by byte.
 
 mod certificate;
+mod text;
+
+pub use text::text;
 
 use super::bundle::Bundle;
 use super::figures::Plot;

@@ -1,4 +1,21 @@
 //! Questions about thermal cameras answered: scenarios from files, results as data.
+//!
+//! * [`scenario`]: what a file says, checked, in one unit per dimension; errors name file, line and key.
+//! * [`study`]: a scenario with its materials, bands, surroundings and camera looked up, and what follows: a folder a command.
+//!
+//! ```
+//! use hadar::material::Library;
+//! use hadar_study::{scenario::Scenario, study::Study};
+//!
+//! let text = "[target]\nmaterial = \"skin\"\ntemperature = \"37 degC\"\n[alternatives]\nmaterials = [\"aluminium\"]";
+//! let study = Study::new(&Scenario::from_toml(text, None)?, &Library::embedded()?)?;
+//! assert_eq!(study.identify()?.pairs[0].alternative, "aluminium");
+//! # Ok::<(), hadar::Error>(())
+//! ```
 
 pub mod scenario;
 pub mod study;
+
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;

@@ -5,59 +5,39 @@
 //! each hardware quantity would have to be. Results are plain data that serialise to the JSON of the
 //! command line; text, tables and plots only render them.
 
-mod answers;
 mod bands;
-mod bands_that_matter;
 mod camera;
-mod chosen_bands;
-mod curves;
 mod distances;
-mod envelope;
-mod exact;
 mod identify;
-mod magnitudes;
-mod matrix;
-mod noise_curves;
-mod priors;
-pub mod ranging;
+pub mod range;
 mod reliability;
 mod resolve;
 mod rule;
-mod samples;
-mod scaling;
-mod sensitivity;
 mod sight;
-mod simulation;
+mod simulate;
 mod size;
-mod thermometry;
-mod trade_offs;
 mod warn;
-mod within_reach;
 
-pub use answers::{Answers, Asked};
-pub use bands_that_matter::{BandsThatMatter, Choice, Passband};
-pub use chosen_bands::Reached;
-pub use curves::{InformationCurves, PhotonMap, Spectra};
-pub use exact::{Exact, ExactLibrary, ExactPair, Law, Trial};
-pub use identify::{Identifiability, Identification, NearestState, PairResult, Prediction};
-pub use matrix::{Apart, Check, Matrix, Rows, TargetVerdict};
-pub use noise_curves::{NoiseCurve, NoiseCurves};
-pub use priors::PriorAverage;
+pub use identify::{
+    Answers, Apart, Asked, BandNumber, BandsThatMatter, Check, Choice, Exact, ExactLibrary, ExactPair,
+    Identifiability, Identification, Law, LibrarySize, Matrix, NearestState, PairResult, Passband,
+    Prediction, PriorAverage, Reached, Rows, SampleSpectra, Scaling, TargetVerdict, Trial,
+};
 pub use reliability::{probability, reliability};
 pub use resolve::{Study, Surface};
 pub use rule::{
     CameraVerdict, Certified, EnvelopeResult, FileHash, Fixes, LimitingScene, Neighbourhood, NotIdentifiable,
     RuleAnswer, RuleAsked, RuleRequirement, RuleStudy,
 };
-pub use samples::SampleSpectra;
-pub use scaling::{BandNumber, LibrarySize, Scaling};
-pub use sensitivity::{Elasticities, EmissivityErrors, Sensitivity};
 pub use sight::Sight;
-pub use simulation::{
-    PhotonLaw, SimulatedClass, SimulatedPerformance, SimulatedPoint, Simulation, SimulationPlan, Standing,
+pub use simulate::{
+    FIXED_EMISSIVITY, ImagerErrors, NoiseCurve, NoiseCurves, PhotonLaw, Reader, SimulatedClass,
+    SimulatedPerformance, SimulatedPoint, Simulation, SimulationPlan, Standing, Thermometry, ThermometryRow,
 };
-pub use size::{CameraResult, RequirementResult, Sizing, Solutions, Verdict, VerdictAlone};
-pub use thermometry::{FIXED_EMISSIVITY, ImagerErrors, Reader, Thermometry, ThermometryRow};
+pub use size::{
+    CameraResult, Elasticities, EmissivityErrors, InformationCurves, PhotonMap, RequirementResult,
+    Sensitivity, Sizing, Solutions, Spectra, Verdict, VerdictAlone,
+};
 
 /// Something the reader of a result must know, with a code that programs can rely on.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
@@ -69,6 +49,8 @@ pub struct Warning {
 }
 
 impl Warning {
+    /// A warning of that code.
+    #[must_use]
     pub fn new(code: &'static str, message: impl Into<String>) -> Self {
         Self { code, message: message.into() }
     }

@@ -5,8 +5,7 @@ use clap::{Args, Subcommand};
 use hadar::demand::{Reason, Thing, Work};
 use hadar::error::Result;
 use hadar::instrument::presets;
-use hadar_report::cameras::{Sheet, SideBySide};
-use hadar_report::text;
+use hadar_report::cameras::{self, Sheet, SideBySide};
 use std::process::ExitCode;
 
 #[derive(Debug, Args)]
@@ -40,20 +39,20 @@ pub(super) fn run(args: &CamerasArgs, global: &Global) -> Result<ExitCode> {
         Action::List => {
             let json = serde_json::json!({ "cameras": all });
             let sheets = all.into_iter().map(Sheet::stated).collect::<Vec<_>>();
-            global.answer_with(json, &text::cameras(&sheets), &work(0, known))?;
+            global.answer_with(json, &cameras::list(&sheets), &work(0, known))?;
         }
         Action::Show { name } => {
             let sheet = Sheet::of(presets::find(name)?)?;
             let work = work(usize::from(sheet.worked.is_some()), known);
-            global.answer_with(sheet.json()?.into(), &text::camera(&sheet), &work)?;
+            global.answer_with(sheet.json()?.into(), &cameras::text(&sheet), &work)?;
         }
         Action::Compare { a, b } => {
             let (a, b) = (presets::find(a)?, presets::find(b)?);
             let asked = if a.name == b.name { 1 } else { 2 };
             let both = SideBySide::of(Sheet::of(a)?, Sheet::of(b)?)?;
             let shown = [&both.a, &both.b].iter().take(asked).filter(|sheet| sheet.worked.is_some()).count();
-            let json = both.json(&text::comparison_sentence(&both))?;
-            global.answer_with(json, &text::comparison(&both), &work(shown, known))?;
+            let json = both.json(&cameras::comparison_sentence(&both))?;
+            global.answer_with(json, &cameras::comparison(&both), &work(shown, known))?;
         }
     }
     Ok(ExitCode::SUCCESS)

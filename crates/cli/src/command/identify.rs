@@ -4,7 +4,7 @@ use super::{By, Global};
 use clap::Args;
 use hadar::error::{Error, Place, Result, check};
 use hadar::simulate::sequential::Plan;
-use hadar_report::{library, text};
+use hadar_report::identify;
 use hadar_study::study::{Asked, Law, Study, Trial};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -75,9 +75,9 @@ pub(super) fn run(args: &IdentifyArgs, global: &Global) -> Result<ExitCode> {
     let bar = global.progress("pairs simulated");
     let mut answers = study.answer(&asked, &|done, total| bar.set(done, total))?;
     bar.finish();
-    let report = global.report(|out| library::bundle(&study, &answers, global.seed, out))?;
+    let report = global.report(|out| identify::bundle(&study, &answers, global.seed, out))?;
     answers.identification.stats.add(&report);
-    global.answer(&answers, &text::answers(&answers, &study), &answers.identification.stats)?;
+    global.answer(&answers, &identify::text(&answers, &study), &answers.identification.stats)?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -125,6 +125,6 @@ fn only_check(study: &Study, global: &Global) -> Result<ExitCode> {
         return Err(Error::malformed(found, "leave out --out, or --check to have the files"));
     }
     let result = study.check(global.skipping())?;
-    global.answer(&result, &text::check(&result, study), &result.stats)?;
+    global.answer(&result, &identify::check(&result, study), &result.stats)?;
     Ok(if result.identifiable { ExitCode::SUCCESS } else { ExitCode::from(3) })
 }

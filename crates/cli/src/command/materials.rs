@@ -6,7 +6,7 @@ use hadar::demand::{Reason, Thing, Work};
 use hadar::error::{Error, Result};
 use hadar::material::{Library, Material, Summary, read};
 use hadar_report::bundle::Bundle;
-use hadar_report::figures;
+use hadar_report::size::figures;
 use hadar_report::text::significant;
 use hadar_study::study::Surface;
 use std::fmt::Write as _;

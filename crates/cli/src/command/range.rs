@@ -3,10 +3,10 @@
 use super::Global;
 use clap::Args;
 use hadar::error::{Error, Result};
-use hadar_report::ranging;
+use hadar_report::range;
 use hadar_study::scenario::RangeScenario;
-use hadar_study::scenario::ranging::Subject;
-use hadar_study::study::ranging::{RangePlan, RangeStudy};
+use hadar_study::scenario::range::Subject;
+use hadar_study::study::range::{RangePlan, RangeStudy};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -55,8 +55,8 @@ pub(super) fn run(args: &RangeArgs, global: &Global) -> Result<ExitCode> {
     let bar = global.progress("rows and draws");
     let mut result = study.range(&plan, &|done, total| bar.set(done, total))?;
     bar.finish();
-    result.stats.add(&global.report(|out| ranging::bundle(&result, out))?);
-    global.answer(&result, &ranging::text(&result), &result.stats)?;
+    result.stats.add(&global.report(|out| range::bundle(&result, out))?);
+    global.answer(&result, &range::text(&result), &result.stats)?;
     let failed = args.check && result.verdict.met != Some(true);
     Ok(if failed { ExitCode::from(3) } else { ExitCode::SUCCESS })
 }

@@ -3,7 +3,7 @@
 use super::Global;
 use clap::Args;
 use hadar::error::Result;
-use hadar_report::{rule, text};
+use hadar_report::rule;
 use hadar_study::scenario::Rule;
 use hadar_study::study::{RuleAnswer, RuleAsked, RuleStudy};
 use std::path::PathBuf;
@@ -35,7 +35,7 @@ pub(super) fn run(args: &RuleArgs, global: &Global) -> Result<ExitCode> {
     let mut answer = study.answer(&asked, &|done, all| bar.set(done, all))?;
     bar.finish();
     answer.stats.add(&global.report(|out| rule::bundle(&study, &answer, out))?);
-    global.answer(&answer, &text::rule(&answer, &study), &answer.stats)?;
+    global.answer(&answer, &rule::text(&answer, &study), &answer.stats)?;
     Ok(code(args, &answer))
 }
 

@@ -10,7 +10,7 @@ use hadar::simulate::experiment::Design;
 use hadar::simulate::spectra::Parts;
 use hadar::units::Dimension;
 use hadar_report::bundle::Bundle;
-use hadar_report::{simulation, text, thermometry as thermometry_report};
+use hadar_report::simulate::{self, thermometry as thermometry_report};
 use hadar_study::study::{PhotonLaw, SimulationPlan, Study};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -134,10 +134,10 @@ pub(super) fn run(args: &SimulateArgs, global: &Global) -> Result<ExitCode> {
         let rival =
             rival.filter(|_| args.sweep.is_some()).and_then(|class| study.alternative(&class.material));
         let noise = rival.map(|rival| study.noise_curves(rival, CURVES, CURVE_POINTS)).transpose()?;
-        simulation::bundle(&study, &result, noise.as_ref(), out)
+        simulate::bundle(&study, &result, noise.as_ref(), out)
     })?;
     result.stats.add(&planning.and(&report));
-    global.answer(&result, &text::simulation(&result, &study), &result.stats)?;
+    global.answer(&result, &simulate::text(&result, &study), &result.stats)?;
     let failed = args.check && !result.limit_holds;
     Ok(if failed { ExitCode::from(3) } else { ExitCode::SUCCESS })
 }

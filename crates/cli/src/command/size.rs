@@ -4,7 +4,7 @@ use super::{By, Global};
 use clap::Args;
 use hadar::demand::{Skipping, ledger_of};
 use hadar::error::Result;
-use hadar_report::{sizing, text};
+use hadar_report::size;
 use hadar_study::study::Verdict;
 use std::io::IsTerminal as _;
 use std::path::PathBuf;
@@ -39,8 +39,8 @@ pub(super) fn run(args: &SizeArgs, global: &Global) -> Result<ExitCode> {
         result.trade_offs = Some(trade_offs);
         result.stats.add(&work);
     }
-    result.stats.add(&global.report(|out| sizing::bundle(&study, &result, out))?);
-    global.answer(&result, &text::sizing(&result, &study), &result.stats)?;
+    result.stats.add(&global.report(|out| size::bundle(&study, &result, out))?);
+    global.answer(&result, &size::text(&result, &study), &result.stats)?;
     if global.out.is_none() && !global.json && std::io::stderr().is_terminal() {
         global.note("for plots and tables add --out DIR");
     }

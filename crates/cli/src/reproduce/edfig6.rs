@@ -4,7 +4,7 @@ use super::{Figures, Line, Made, Order, Progress, Verdict, scene};
 use hadar::demand::Skipping;
 use hadar::error::Result;
 use hadar::simulate::sequential::Plan;
-use hadar_report::{library, text};
+use hadar_report::identify;
 use hadar_study::study::{Answers, Asked, Trial};
 use std::path::Path;
 
@@ -23,8 +23,8 @@ pub(super) fn make(order: Order, out: &Path, progress: Progress<'_>) -> Result<M
         exact: Some(Trial { law: None, photons: None, plan: Plan::new(order.seed, HALF_WIDTH, TRIALS)? }),
     };
     let answers = study.answer(&asked, &|done, total| progress(done, total))?;
-    let answer = text::answers(&answers, &study);
-    let mut bundle = library::bundle(&study, &answers, order.seed, out)?;
+    let answer = identify::text(&answers, &study);
+    let mut bundle = identify::bundle(&study, &answers, order.seed, out)?;
     let lines = lines(&answers);
     let text = format!(
         "`hadar identify examples/five_materials.toml --matrix --scaling --bands 6 --filters 5 --exact --half-width \

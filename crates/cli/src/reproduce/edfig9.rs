@@ -8,8 +8,8 @@ use hadar::error::Result;
 use hadar::simulate::efficiency::{Errors, Verdict as Standing};
 use hadar_report::bundle::Bundle;
 use hadar_report::figures::Plot;
+use hadar_report::simulate::thermometry;
 use hadar_report::text::significant;
-use hadar_report::thermometry;
 use hadar_study::study::{Reader, Thermometry, ThermometryRow};
 use std::path::Path;
 

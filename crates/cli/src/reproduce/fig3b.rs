@@ -10,8 +10,8 @@ use hadar::instrument::{gamma_per_band, presets};
 use hadar::simulate::classifier::Method;
 use hadar::simulate::experiment::Design;
 use hadar_report::bundle::Bundle;
-use hadar_report::figures::{self, SimulationCurves};
-use hadar_report::simulation::curves;
+use hadar_report::simulate::curves;
+use hadar_report::simulate::figures::{self, SimulationCurves};
 use hadar_study::study::{
     NoiseCurves, PhotonLaw, SimulatedPerformance, Simulation, SimulationPlan, Standing, Study,
 };

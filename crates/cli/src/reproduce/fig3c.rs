@@ -3,7 +3,7 @@
 use super::{Figures, Line, Made, Verdict, scene};
 use hadar::error::Result;
 use hadar_report::bundle::Bundle;
-use hadar_report::figures;
+use hadar_report::size::figures;
 use std::path::Path;
 
 pub(super) fn make(out: &Path) -> Result<Made> {

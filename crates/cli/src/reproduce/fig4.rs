@@ -14,10 +14,10 @@ use hadar::statistics::Statistics;
 use hadar::words::{length, significant};
 use hadar_report::bundle::Bundle;
 use hadar_report::plot::{Axis, Picture};
-use hadar_report::ranging;
+use hadar_report::range;
 use hadar_report::table::{Table, number};
 use hadar_study::scenario::RangeScenario;
-use hadar_study::study::ranging::{
+use hadar_study::study::range::{
     PictureKind, RangePlan, RangeStudy, Ranging, Signal, SignalBounds, median, quantile,
 };
 use std::path::Path;
@@ -42,21 +42,20 @@ pub(super) fn make(order: Order, out: &Path, progress: Progress<'_>) -> Result<M
     let dim = study(&dimmer())?.range(&plan, progress)?;
     let mut bundle = Bundle::default();
     bundle.add("scenario.toml", paper.scenario.to_toml_beside(out));
-    bundle.add("bounds.csv", ranging::bounds(&paper).to_csv()?);
+    bundle.add("bounds.csv", range::bounds(&paper).to_csv()?);
     bundle.add("night_scenario.toml", night.scenario.to_toml_beside(out));
-    bundle.add("night_bounds.csv", ranging::bounds(&night).to_csv()?);
-    let mut plots: Vec<_> =
-        [ranging::views(&paper), ranging::bound_maps(&paper), ranging::matched_maps(&paper)]
-            .into_iter()
-            .flatten()
-            .collect();
-    plots.extend(ranging::lines(&paper));
+    bundle.add("night_bounds.csv", range::bounds(&night).to_csv()?);
+    let mut plots: Vec<_> = [range::views(&paper), range::bound_maps(&paper), range::matched_maps(&paper)]
+        .into_iter()
+        .flatten()
+        .collect();
+    plots.extend(range::lines(&paper));
     bundle.add("dim_scenario.toml", dim.scenario.to_toml_beside(out));
-    for mut plot in ranging::lines(&dim) {
+    for mut plot in range::lines(&dim) {
         plot.name = format!("dim_{}", plot.name).into();
         plots.push(plot);
     }
-    if let Some(mut plot) = ranging::bound_maps(&night) {
+    if let Some(mut plot) = range::bound_maps(&night) {
         plot.name = "night_bounds_map".into();
         plots.push(plot);
     }
@@ -68,8 +67,8 @@ pub(super) fn make(order: Order, out: &Path, progress: Progress<'_>) -> Result<M
     let text = format!(
         "{depends}\n`hadar range examples/street_at_one_temperature.toml --trials {TRIALS}` prints:\n\n```text\n{}```\n\n\
          `hadar range examples/street.toml`, colder sky and 54 bands:\n\n```text\n{}```\n",
-        ranging::text(&paper),
-        ranging::text(&night)
+        range::text(&paper),
+        range::text(&night)
     );
     let pictures = vec![
         (
@@ -166,10 +165,10 @@ fn ledger(paper: &Ranging, night: &Ranging, dim: &Ranging, locking: &[(&str, f64
         if (30.0..=300.0).contains(&value) { Verdict::UnderAChoice } else { Verdict::NotReproduced }
     };
     let over = |method: &str| {
-        let same = |line: &&hadar_study::study::ranging::Line| {
+        let same = |line: &&hadar_study::study::range::Line| {
             line.signal == Signal::ScatteredAsMeasured && line.method == Some(method)
         };
-        let ratio = |line: &hadar_study::study::ranging::Line| {
+        let ratio = |line: &hadar_study::study::range::Line| {
             median(
                 &line.rmse_m.iter().zip(&line.bound_m).map(|(rmse, bound)| rmse / bound).collect::<Vec<_>>(),
             )
@@ -337,12 +336,7 @@ pub(super) fn textures(order: Order) -> Result<Made> {
             significant(whole, 3)
         );
         let file = if name == "thermal" { "textures_thermal" } else { "textures_scattered" };
-        plots.extend(ranging::picture_plot(
-            file,
-            &format!("Measures of texture: {title}"),
-            subtitle,
-            pictures,
-        ));
+        plots.extend(range::picture_plot(file, &format!("Measures of texture: {title}"), subtitle, pictures));
         let noise = median(&deviation_noisy.values) / median(&deviation.values);
         lines.push(Line::new(
             "Fig. S12",

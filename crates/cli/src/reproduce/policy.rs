@@ -6,8 +6,7 @@ use hadar::identifiability::detection;
 use hadar::planck;
 use hadar::spectrum::Bands;
 use hadar::units::{PLANCK_J_S, SPEED_OF_LIGHT_M_S};
-use hadar_report::sizing;
-use hadar_report::text;
+use hadar_report::size;
 use hadar_study::study::Sizing;
 use std::path::Path;
 
@@ -16,8 +15,8 @@ const PLACE: &str = "Methods, Guiding public policy";
 pub(super) fn make(out: &Path) -> Result<Made> {
     let study = scene::study(scene::HUMAN_VS_ROBOT)?;
     let result = study.size()?;
-    let mut bundle = sizing::bundle(&study, &result, out)?;
-    let answer = text::sizing(&result, &study);
+    let mut bundle = size::bundle(&study, &result, out)?;
+    let answer = size::text(&result, &study);
     let mut lines = verdicts(&result).unwrap_or_default();
     lines.extend(camera(&result).unwrap_or_default());
     lines.extend(glass()?);

@@ -9,7 +9,7 @@ use hadar::ranging::information::{Cell, Request, Window, information};
 use hadar::ranging::noise::{Joined, NoiseVariance};
 use hadar::words::significant;
 use hadar_report::bundle::Bundle;
-use hadar_report::ranging;
+use hadar_report::range;
 use hadar_report::table::{Table, number};
 use std::f64::consts::PI;
 
@@ -112,7 +112,7 @@ pub(super) fn make() -> Result<Made> {
     ];
     let mut bundle = Bundle::default();
     bundle.add("cells.csv", table.to_csv()?);
-    bundle.add_plots(&[ranging::derivative_errors()?])?;
+    bundle.add_plots(&[range::derivative_errors()?])?;
     let pictures = vec![("derivatives.png", "Error of derivatives on textures of known frequency")];
     Ok((bundle, lines, Figures { pictures, text: String::new() }))
 }

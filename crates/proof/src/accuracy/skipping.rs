@@ -12,7 +12,7 @@ use hadar::simulate::classifier::Method;
 use hadar::simulate::experiment::Design;
 use hadar::simulate::sequential::{Interval, Plan};
 use hadar_study::scenario::{DistanceKind, RangeScenario, Scenario};
-use hadar_study::study::ranging::RangeStudy;
+use hadar_study::study::range::RangeStudy;
 use hadar_study::study::{Apart, Exact, PhotonLaw, Simulation, SimulationPlan, Study, Trial};
 use std::time::Instant;
 

@@ -1,6 +1,7 @@
 //! The certificate: one page of Markdown that says what was checked, what came out, and what it rests on.
 
-use crate::text;
+use super::text;
+use crate::text::footing::{GAUSSIAN, assumptions};
 use crate::text::significant;
 use hadar_study::study::{self, CameraVerdict, RuleAnswer, RuleStudy};
 use std::fmt::Write as _;
@@ -30,7 +31,7 @@ pub(super) fn markdown(study: &RuleStudy, answer: &RuleAnswer) -> String {
     }
     out.push_str("## What this rests on\n\n");
     if let Some(study) = study.study() {
-        let footing = text::footing_of(study);
+        let footing = assumptions(study, GAUSSIAN);
         footing.lines().skip(1).for_each(|line| {
             let _ = writeln!(out, "- {}", line.trim());
         });

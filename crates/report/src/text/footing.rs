@@ -7,7 +7,7 @@ use hadar_study::study::{Identification, Study, Warning};
 use std::fmt::Write as _;
 
 /// What results rest on, and what the reader must know.
-pub(super) fn footing(result: &Identification, study: &Study) -> String {
+pub(crate) fn footing(result: &Identification, study: &Study) -> String {
     assumptions(study, GAUSSIAN) + &warnings(&result.warnings)
 }
 
@@ -32,11 +32,11 @@ fn unknown(unknown: &Unknown) -> String {
 }
 
 /// What distances take counts for.
-pub(super) const GAUSSIAN: &str =
+pub(crate) const GAUSSIAN: &str =
     "counts large enough to be Gaussian; two equally likely materials; d is a limit, not a promise";
 
 /// What a result rests on; `counts` says what is assumed of them.
-pub(super) fn assumptions(study: &Study, counts: &str) -> String {
+pub(crate) fn assumptions(study: &Study, counts: &str) -> String {
     let scenario = study.scenario();
     let unknown = unknown(&scenario.unknown);
     let bands = study.bands().bands();

@@ -4,20 +4,20 @@ pub use hadar::words::{quantity, significant};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// A number in powers of ten with `decimals` decimals; a plain 0.
-pub(super) fn exponential(value: f64, decimals: usize) -> String {
+pub(crate) fn exponential(value: f64, decimals: usize) -> String {
     if value == 0.0 { "0".into() } else { format!("{value:.decimals$e}") }
 }
 
-pub(super) fn photons(count: Option<f64>) -> String {
+pub(crate) fn photons(count: Option<f64>) -> String {
     count.map_or_else(|| "no number suffices".into(), |count| format!("{count:.2e}"))
 }
 
-pub(super) fn celsius(kelvin: f64) -> String {
+pub(crate) fn celsius(kelvin: f64) -> String {
     format!("{:.2} degC", kelvin - 273.15)
 }
 
 /// Numbers with `decimals` decimals behind a label; nothing where there are none.
-pub(super) fn numbers(label: &str, values: &[f64], decimals: usize) -> String {
+pub(crate) fn numbers(label: &str, values: &[f64], decimals: usize) -> String {
     let values: Vec<String> = values.iter().map(|value| format!("{value:.decimals$}")).collect();
     if values.is_empty() { String::new() } else { format!("{label}{}", values.join(" ")) }
 }
@@ -28,7 +28,7 @@ const LISTED: usize = 12;
 const NAME: [usize; 2] = [12, 29];
 
 /// A list, cut short where it is long.
-pub(super) fn listed<S: AsRef<str>>(all: &[S]) -> String {
+pub(crate) fn listed<S: AsRef<str>>(all: &[S]) -> String {
     let shown: Vec<&str> = all.iter().take(LISTED).map(AsRef::as_ref).collect();
     match all.len().checked_sub(LISTED) {
         Some(more) if more > 0 => format!("{} and {more} more", shown.join(", ")),
@@ -37,22 +37,22 @@ pub(super) fn listed<S: AsRef<str>>(all: &[S]) -> String {
 }
 
 /// Names as they fit into a table.
-pub(super) struct Shortened<'a>(BTreeMap<&'a str, String>);
+pub(crate) struct Shortened<'a>(BTreeMap<&'a str, String>);
 
 impl<'a> Shortened<'a> {
     /// The name as it is shown.
-    pub(super) fn of(&self, name: &'a str) -> &str {
+    pub(crate) fn of(&self, name: &'a str) -> &str {
         self.0.get(name).map_or(name, String::as_str)
     }
 
     /// Characters of the longest one.
-    pub(super) fn width(&self) -> usize {
+    pub(crate) fn width(&self) -> usize {
         self.0.values().map(|name| name.chars().count()).max().unwrap_or(0)
     }
 }
 
 /// Long names cut in the middle, since they differ at their ends; whole where two would become the same.
-pub(super) fn shortened<'a>(names: impl IntoIterator<Item = &'a str>) -> Shortened<'a> {
+pub(crate) fn shortened<'a>(names: impl IntoIterator<Item = &'a str>) -> Shortened<'a> {
     let names: BTreeSet<&str> = names.into_iter().collect();
     let mut found: BTreeMap<String, usize> = BTreeMap::new();
     for name in &names {

@@ -5,7 +5,7 @@ use hadar_study::study::{PairResult, Study};
 use std::fmt::Write as _;
 
 /// The pairs, that which is hardest to tell apart by the distance that decides first.
-pub(super) fn pair_table(pairs: &[PairResult], study: &Study) -> String {
+pub(crate) fn pair_table(pairs: &[PairResult], study: &Study) -> String {
     let kind = study.scenario().requirement.by;
     let decisive = |pair: &PairResult| pair.statistical_distance.unwrap_or_else(|| pair.distance(kind));
     let with_camera = pairs.iter().any(|pair| pair.statistical_distance.is_some());

@@ -17,11 +17,8 @@ impl Study {
         let (asked, all) = (unknowns.parameters(objects).len() + 1, 3 + 2 * objects);
         demand::computed(Thing::LocalDistances, count as u64);
         demand::computed(Thing::DerivativeColumns, (count * asked) as u64);
-        demand::spared(
-            Thing::DerivativeColumns,
-            Reason::NotAsked,
-            (count * all.saturating_sub(asked)) as u64,
-        );
+        let left_out = count * all.saturating_sub(asked);
+        demand::spared(Thing::DerivativeColumns, Reason::NotAsked, left_out as u64);
     }
 
     /// Books distances of a kind.

@@ -1,8 +1,26 @@
 //! Distances from the target to every alternative, and what a camera makes of them.
 
+mod answers;
+mod bands_that_matter;
+mod chosen_bands;
+mod exact;
+mod matrix;
+mod priors;
 mod results;
+mod samples;
+mod scaling;
+mod within_reach;
 
+pub use answers::{Answers, Asked};
+pub use bands_that_matter::{BandsThatMatter, Choice, Passband};
+pub use chosen_bands::Reached;
+pub use exact::{Exact, ExactLibrary, ExactPair, Law, Trial};
+pub use matrix::{Apart, Check, Matrix, Rows, TargetVerdict};
+pub use priors::PriorAverage;
 pub use results::{Identifiability, Identification, NearestState, PairResult, PhotonsRequired, Prediction};
+pub use samples::SampleSpectra;
+pub(super) use scaling::quantile;
+pub use scaling::{BandNumber, LibrarySize, Scaling};
 
 use super::{Study, Surface, Warning, warn};
 use crate::scenario::DistanceKind;

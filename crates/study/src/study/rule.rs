@@ -5,9 +5,10 @@
 //! and the least distance (Δ < 1), and if the brightest scene does not fill its well. It fails as soon as one scene below
 //! the requirement is known; that it meets the rule is proved where the lower bound of the search is above.
 //!
-//! Distances are nearest distances with the camera's own noise ([`super::envelope`]); gray areas are said: what was only
+//! Distances are nearest distances with the camera's own noise ([`envelope`]); gray areas are said: what was only
 //! searched is called so.
 
+mod envelope;
 mod ideal;
 mod inputs;
 mod results;
@@ -18,7 +19,7 @@ pub use results::{
     RuleAnswer, RuleRequirement,
 };
 
-use super::envelope::Sighted;
+use self::envelope::Sighted;
 use super::{Study, Warning, reliability};
 use crate::scenario::rule::RuleCamera;
 use crate::scenario::{DistanceKind, Envelope, MaterialRef, Rule};

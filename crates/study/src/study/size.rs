@@ -1,7 +1,6 @@
 //! The main job: does the camera meet the requirement, and what would it have to be.
 
 use super::identify::{PairResult, PhotonsRequired};
-use super::sensitivity::Sensitivity;
 use super::{Check, Study, Surface, Warning, reliability};
 use crate::scenario::Scenario;
 use hadar::demand::{self, Ledger, Skipping, Work};
@@ -12,9 +11,15 @@ use hadar::policy::caps::{self, Circumstances};
 use hadar::policy::{self, CameraTask, Motion, Quantity, Solution, TradeOff, Trial};
 use serde::ser::{SerializeMap, Serializer};
 
+mod curves;
 mod reach;
+mod sensitivity;
+mod trade_offs;
 
+pub(super) use curves::logarithmic;
+pub use curves::{InformationCurves, PhotonMap, Spectra};
 pub(super) use reach::{Reach, Solvers};
+pub use sensitivity::{Elasticities, EmissivityErrors, Sensitivity};
 
 /// The answer to 'can this camera do it'.
 #[derive(Debug, Clone, serde::Serialize)]

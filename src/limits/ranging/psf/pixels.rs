@@ -5,8 +5,8 @@
 
 use super::{PixelBound, PointSpread, Shape};
 use crate::error::{Error, Result};
+use libm::erfc;
 use rayon::prelude::*;
-use special::Error as _;
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
 /// Widest pixels before an Airy disk, λF.
@@ -78,7 +78,7 @@ pub(super) fn gaussian(pitch: f64, phases: usize, rows: usize) -> Vec<f64> {
 fn gaussian_pixel(low: f64, pitch: f64) -> f64 {
     // On the side where both are small, so that neither difference cancels.
     let [near, far] = if low + 0.5 * pitch >= 0.0 { [low, low + pitch] } else { [-low - pitch, -low] };
-    let tail = |x: f64| 0.5 * (FRAC_1_SQRT_2 * x).compl_error();
+    let tail = |x: f64| 0.5 * erfc(FRAC_1_SQRT_2 * x);
     let density = |x: f64| (-0.5 * x * x).exp() / (2.0 * PI).sqrt();
     // φ(near) − φ(far) = φ(near)(1 − exp(−(far − near)(far + near)/2)).
     let change = -density(near) * (-0.5 * pitch * (near + far)).exp_m1();

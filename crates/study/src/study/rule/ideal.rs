@@ -13,9 +13,9 @@
 //! Scenes: every range uniform (lighting that adds up to more than 1 left out), every pair alike; a lattice of irrational
 //! steps with random shifts (Cranley and Patterson, SIAM J. Numer. Anal. 13, 904 (1976)), whose spread is the error.
 
-use super::super::envelope::{all, lattice, scene_at};
 use super::super::{Study, reliability};
 use super::RuleStudy;
+use super::envelope::{all, lattice, scene_at};
 use super::results::{Neighbourhood, NotIdentifiable};
 use hadar::demand::{self, Thing};
 use hadar::error::Result;

@@ -4,8 +4,8 @@
 //! each only as exactly as it matters: a pair whose distance is a multiple of the least one known needs a bound
 //! that is above that, not its own worst case to 1 %.
 
-use super::super::envelope::{Estimate, Sighted, brightest};
 use super::super::{NearestState, Study, Surface, Warning, warn};
+use super::envelope::{Estimate, Sighted, brightest};
 use super::results::{CameraVerdict, Certified, Fixes, LimitingScene};
 use super::{Candidate, RuleStudy};
 use hadar::demand::{self, Reason, Thing};

@@ -1,0 +1,84 @@
+//! All known cameras, a line each.
+
+use crate::cameras::Sheet;
+use crate::text::numbers::{exponential, quantity};
+use hadar::instrument::Readout;
+use hadar::instrument::presets::{Preset, StatedNoise};
+use std::fmt::Write as _;
+
+/// All cameras, those of the paper (without a document of their own) first.
+#[must_use]
+pub fn list(sheets: &[Sheet]) -> String {
+    let complete = sheets.iter().filter(|sheet| sheet.missing.is_empty()).count();
+    let mut out = format!(
+        "{} cameras, {complete} of them complete; the others lack what no document states and a scenario must give.\n",
+        sheets.len()
+    );
+    let name = sheets.iter().map(|sheet| sheet.preset.name.len()).max().unwrap_or(0);
+    for (title, of_paper) in [("As the paper models them", true), ("From public documents", false)] {
+        let _ = writeln!(
+            out,
+            "\n{title}\n{:<name$} {:>8} {:>6}  {:<18} {:<15} give",
+            "name", "pixel", "f/#", "noise", "bands"
+        );
+        for sheet in sheets.iter().filter(|sheet| sheet.preset.document.is_none() == of_paper) {
+            let preset = &sheet.preset;
+            let give: Vec<&str> = sheet.missing.iter().map(|missing| short(missing.key)).collect();
+            let line = format!(
+                "{:<name$} {:>8} {:>6}  {:<18} {:<15} {}",
+                preset.name,
+                preset.pixel_m.map_or_else(|| "-".into(), |pixel| quantity(pixel, "m")),
+                preset.f_number.map_or_else(|| "-".into(), |f_number| format!("f/{f_number}")),
+                briefly(preset),
+                bands(preset),
+                give.join(", ")
+            );
+            let _ = writeln!(out, "{}", line.trim_end());
+        }
+    }
+    out.push_str(
+        "\n-: not stated. `hadar cameras show NAME` gives the figures, what is assumed, and the documents.\n",
+    );
+    out
+}
+
+/// A key of a scenario as a word in the list.
+fn short(key: &'static str) -> &'static str {
+    match key {
+        "f_number" => "f/#",
+        "focal_length" => "lens",
+        "netd" => "noise",
+        other => other,
+    }
+}
+
+fn briefly(preset: &Preset) -> String {
+    match &preset.noise {
+        None => "-".into(),
+        Some(StatedNoise::None) => match preset.dark_rate_per_s {
+            Some(_) => "dark counts".into(),
+            None => "photons only".into(),
+        },
+        Some(StatedNoise::Netd { netd_k, f_number, .. }) => {
+            let at = f_number.map_or_else(String::new, |f_number| format!(" at f/{f_number}"));
+            format!("{}{at}", quantity(*netd_k, "K"))
+        }
+        Some(StatedNoise::Detectivity { detectivity_cm_hz05_w, .. }) => {
+            format!("{} Jones", exponential(*detectivity_cm_hz05_w, 1))
+        }
+        Some(StatedNoise::Nep { nep_w_hz05, .. }) => format!("{} W/Hz^0.5", exponential(*nep_w_hz05, 1)),
+        Some(StatedNoise::Nesr { microflick, .. }) => format!("{microflick} uflick"),
+        Some(StatedNoise::Counts { sigma_counts }) => format!("{} counts", exponential(*sigma_counts, 1)),
+        Some(StatedNoise::Table(_)) => "a table".into(),
+    }
+}
+
+fn bands(preset: &Preset) -> String {
+    let how = match preset.readout {
+        _ if preset.filters_needed => return "one".into(),
+        None => return "-".into(),
+        Some(Readout::FourierTransform) => "interferogram",
+        Some(readout) => readout.name(),
+    };
+    preset.spectral_bands.map_or_else(|| how.to_owned(), |bands| format!("{bands} {how}"))
+}

@@ -1,0 +1,247 @@
+//! A camera with its figures, what follows from them, and where they are from.
+
+use crate::cameras::Sheet;
+use crate::text::numbers::{celsius, exponential, quantity, significant};
+use hadar::instrument::equivalents::blackbody_microflick;
+use hadar::instrument::presets::{Preset, StatedNoise};
+use hadar::instrument::{Equivalents, Figures, NoiseLine};
+use std::fmt::Write as _;
+
+const NOT_STATED: &str = "not stated";
+
+/// A camera with its figures, what follows from them, what is missing, and where they are from.
+#[must_use]
+pub fn text(sheet: &Sheet) -> String {
+    let preset = &sheet.preset;
+    let mut out = format!("{}: {}\n", preset.name, preset.description);
+    if !sheet.missing.is_empty() {
+        out.push_str(
+            "\nIt cannot be used as it is: no document that was read states all of it. Give in [camera]\n",
+        );
+        for missing in &sheet.missing {
+            let _ = writeln!(out, "  {} = {}", missing.key, missing.example);
+        }
+    }
+    out.push_str("\nFigures\n");
+    out.push_str(&figures(sheet));
+    let worked = sheet.worked.as_ref();
+    let assumed = worked.map_or(&[][..], |worked| &worked.camera.assumed);
+    section(&mut out, "Assumed", assumed);
+    if let Some(worked) = worked {
+        out.push_str(&one_exposure(&worked.figures));
+        out.push_str(&equivalents(&worked.equivalents));
+        out.push_str(&budget(&worked.noise_budget));
+    }
+    let document: Vec<String> = preset.document.iter().chain(&preset.provenance).cloned().collect();
+    section(&mut out, "Provenance", &document);
+    out
+}
+
+fn section(out: &mut String, title: &str, notes: &[String]) {
+    if notes.is_empty() {
+        return;
+    }
+    let _ = writeln!(out, "\n{title}");
+    for note in notes {
+        let _ = writeln!(out, "  - {note}");
+    }
+}
+
+fn lines(rows: &[(&str, String)]) -> String {
+    rows.iter().fold(String::new(), |mut out, (label, text)| {
+        let _ = writeln!(out, "  {label:<34} {text}");
+        out
+    })
+}
+
+fn figures(sheet: &Sheet) -> String {
+    let (preset, camera) = (&sheet.preset, sheet.worked.as_ref().map(|worked| &worked.camera));
+    let stated =
+        |value: Option<f64>, show: &dyn Fn(f64) -> String| value.map_or_else(|| NOT_STATED.to_owned(), show);
+    // What stands for a figure that is not stated is listed as assumed.
+    let taken = |stated: Option<f64>, taken: Option<f64>, show: &dyn Fn(f64) -> String| match (stated, taken)
+    {
+        (Some(value), _) => show(value),
+        (None, Some(value)) => format!("not stated; {} taken", show(value)),
+        (None, None) => NOT_STATED.to_owned(),
+    };
+    let seconds = |s: f64| quantity(s, "s");
+    let metres = |m: f64| quantity(m, "m");
+    let plain = |value: f64| format!("{value}");
+    let mut rows = vec![
+        ("exposure", taken(preset.exposure_s, camera.map(|camera| camera.exposure_s), &seconds)),
+        ("frame rate", stated(preset.frame_rate_hz, &|hz| format!("{} Hz", significant(hz, 3)))),
+        ("pixel", stated(preset.pixel_m, &metres)),
+        ("f-number", stated(preset.f_number, &|f_number| format!("f/{f_number}"))),
+        ("focal length", stated(preset.focal_length_m, &metres)),
+        (
+            "optics efficiency",
+            taken(preset.optics_efficiency, camera.map(|camera| camera.optics_efficiency), &plain),
+        ),
+        (
+            "quantum efficiency",
+            taken(preset.quantum_efficiency, camera.map(|camera| camera.quantum_efficiency), &plain),
+        ),
+        ("noise", noise(preset)),
+        (
+            "flicker share of noise variance",
+            taken(preset.flicker_fraction, camera.map(|camera| camera.flicker_fraction), &plain),
+        ),
+    ];
+    if let Some(rate) = preset.dark_rate_per_s {
+        rows.push(("dark counts", format!("{} per s", significant(rate, 3))));
+    }
+    if let Some(counts) = preset.read_noise_counts {
+        rows.push(("read noise", format!("{} counts", significant(counts, 3))));
+    }
+    rows.push((
+        "full well",
+        stated(preset.full_well, &|counts| format!("{} counts", exponential(counts, 2))),
+    ));
+    if let Some([band, range]) = sheet.worked.as_ref().and_then(|worked| worked.full_well_exposures_s) {
+        let text = format!("{} (a band of 1 cm^-1), {} (all of the range)", seconds(band), seconds(range));
+        rows.push(("full after, at 300 K", text));
+    }
+    rows.push((
+        "bits of the converter",
+        stated(preset.quantisation_bits.map(f64::from), &|bits| format!("{bits}")),
+    ));
+    rows.push(("bands", full_bands(preset)));
+    let array = match (preset.pixels, preset.lines) {
+        (Some(pixels), Some(lines)) => format!("{pixels} x {lines}"),
+        (Some(pixels), None) => format!("{pixels} across"),
+        _ => NOT_STATED.into(),
+    };
+    rows.push(("array", array));
+    let degrees = |angle: f64| format!("{} deg across", significant(angle.to_degrees(), 3));
+    rows.push(("field of view", stated(preset.field_of_view_rad, &degrees)));
+    let range = |[low, high]: [f64; 2]| format!("{low} to {high} cm^-1");
+    let range = match (preset.spectral_range_cm1, camera) {
+        (Some(stated), _) => range(stated),
+        (None, Some(camera)) => format!("not stated; {} taken", range(camera.spectral_range_cm1)),
+        (None, None) => NOT_STATED.into(),
+    };
+    rows.push(("spectral range", range));
+    let pixels = |pixels: f64| format!("{} pixels, lambda F / pixel", significant(pixels, 2));
+    rows.push(("diffraction at 10 um", stated(sheet.diffraction_pixels(), &pixels)));
+    lines(&rows)
+}
+
+fn full_bands(preset: &Preset) -> String {
+    if preset.filters_needed {
+        return "one of its own: a spectrum takes filters".into();
+    }
+    let Some(readout) = preset.readout else { return NOT_STATED.into() };
+    match preset.spectral_bands {
+        Some(bands) => format!("{bands}, {}", readout.name()),
+        None => readout.name().into(),
+    }
+}
+
+/// The noise as it is stated, with its conditions.
+pub(crate) fn noise(preset: &Preset) -> String {
+    let bandwidth = |hz: Option<f64>| {
+        hz.map_or_else(|| ", bandwidth 1/(2 x exposure)".into(), |hz| format!(" in {}", quantity(hz, "Hz")))
+    };
+    match &preset.noise {
+        None => NOT_STATED.into(),
+        Some(StatedNoise::None) => "no electronic noise".into(),
+        Some(StatedNoise::Netd { netd_k, temperature_k, f_number, .. }) => format!(
+            "NETD {} at {}, {}",
+            quantity(*netd_k, "K"),
+            temperature_k.map_or_else(|| "a temperature not stated".into(), celsius),
+            f_number.map_or_else(|| "an f-number not stated".into(), |f_number| format!("f/{f_number}")),
+        ),
+        Some(StatedNoise::Detectivity { detectivity_cm_hz05_w, bandwidth_hz }) => {
+            format!("D* {} cm Hz^0.5/W{}", exponential(*detectivity_cm_hz05_w, 2), bandwidth(*bandwidth_hz))
+        }
+        Some(StatedNoise::Nep { nep_w_hz05, bandwidth_hz }) => {
+            format!("NEP {} W/Hz^0.5{}", exponential(*nep_w_hz05, 2), bandwidth(*bandwidth_hz))
+        }
+        Some(StatedNoise::Nesr { microflick, wavelength_um }) => {
+            let at = wavelength_um.map_or_else(String::new, |um| {
+                let (all, slope) = blackbody_microflick(um, 300.0);
+                let kelvin = quantity(microflick / slope, "K");
+                format!(" at {um} um: {kelvin} of a blackbody at 300 K there, 1 of {:.0}", all / microflick)
+            });
+            format!("NESR {microflick} uflick{at}")
+        }
+        Some(StatedNoise::Counts { sigma_counts }) => format!("{} counts", exponential(*sigma_counts, 2)),
+        Some(StatedNoise::Table(_)) => "a table over wavenumber".into(),
+    }
+}
+
+fn one_exposure(figures: &Figures) -> String {
+    let head = format!("\nOne exposure of a blackbody at {}\n", celsius(figures.reference_temperature_k));
+    head + &lines(&[
+        ("photons", exponential(figures.photons, 2)),
+        ("noise of a band reading", format!("{} counts", exponential(figures.noise_counts, 2))),
+        (&format!("gamma of a band, {} bands", figures.bands), exponential(figures.gamma_per_band, 1)),
+        ("etendue of a pixel", format!("{} m^2 sr", exponential(figures.etendue_m2_sr, 2))),
+        ("t A_p / ((1+gamma) F^2)", format!("{} m^2 s", exponential(figures.hardware_m2_s, 2))),
+    ])
+}
+
+fn equivalents(noise: &Equivalents) -> String {
+    let watt = |value: f64, unit: &str| format!("{} {unit}", exponential(value, 2));
+    let head = format!(
+        "\nIts electronic noise, every way of stating it ({}; bands of 1 cm^-1; NEP, D*, NESR at {} cm^-1)\n",
+        quantity(noise.exposure_s, "s"),
+        significant(noise.mid_cm1, 4)
+    );
+    let at = format!("at {}, f/{}", celsius(noise.reference_temperature_k), noise.f_number);
+    head + &lines(&[
+        ("sigma", watt(noise.sigma_counts, "counts")),
+        ("NETD, all of the range", format!("{} {at}, behind its optics", quantity(noise.netd_k, "K"))),
+        ("NETD with shot noise", quantity(noise.netd_with_shot_noise_k, "K")),
+        ("NETD of a single band", quantity(noise.netd_of_a_band_k, "K")),
+        ("NEP", format!("{} in {} Hz", watt(noise.nep_w, "W"), significant(noise.bandwidth_hz, 3))),
+        ("NEP of 1 Hz", watt(noise.nep_w_hz05, "W/Hz^0.5")),
+        (
+            "D*",
+            noise.detectivity_cm_hz05_w.map_or_else(|| "no noise".into(), |d| watt(d, "cm Hz^0.5/W (Jones)")),
+        ),
+        ("NESR", format!("{} uflick", significant(noise.nesr_microflick, 3))),
+        ("gamma of a band", exponential(noise.gamma_per_band, 2)),
+    ])
+}
+
+fn budget(budget: &[NoiseLine]) -> String {
+    let total: f64 = budget.iter().map(|line| line.var_counts).sum();
+    let mut out = String::from("\nNoise of an average band of 1 cm^-1, blackbody at 300 K\n");
+    let _ = writeln!(out, "  {:<34} {:>12}  {:>8}  {:<8}  from", "line", "variance", "share", "grows as");
+    for line in budget {
+        let _ = writeln!(
+            out,
+            "  {:<34} {:>12}  {:>8}  {:<8}  {}",
+            line.label,
+            exponential(line.var_counts, 2),
+            percent(line.var_counts / total),
+            line.scaling,
+            line.source
+        );
+    }
+    let _ = writeln!(out, "  {:<34} {:>12}", "sum", exponential(total, 2));
+    out
+}
+
+fn percent(share: f64) -> String {
+    if share >= 1e-3 { format!("{:.1} %", 100.0 * share) } else { format!("{:.0e} %", 100.0 * share) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A camera whose every figure is stated: what the built-in ones do not show.
+    #[test]
+    fn a_full_well_and_its_bits_are_shown() {
+        let mut preset = hadar::instrument::presets::find("flir-a325sc").unwrap();
+        (preset.full_well, preset.quantisation_bits) = (Some(1e7), Some(14));
+        (preset.read_noise_counts, preset.dark_rate_per_s) = (Some(360.0), Some(3.3e5));
+        let text = camera(&Sheet::of(preset).unwrap());
+        for part in ["1.00e7 counts", "full after, at 300 K", "quantisation", "read noise", "dark counts"] {
+            assert!(text.contains(part), "{part}: {text}");
+        }
+    }
+}

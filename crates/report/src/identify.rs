@@ -1,0 +1,204 @@
+//! The files of `identify`: tables and plots of a target against a library, and of all against all.
+
+mod figures;
+mod text;
+
+pub use text::{check, text};
+
+use crate::bundle::Bundle;
+use crate::figures::Plot;
+use crate::table::{Table, number, optional};
+use crate::tables;
+use hadar::error::Result;
+use hadar_study::study::{Answers, Apart, BandsThatMatter, Exact, Matrix, Rows, Study};
+use std::path::Path;
+
+/// All files of the answers; paths in the scenario are written relative to `out` where they lie below it.
+/// `seed` is that of sample spectra.
+///
+/// # Errors
+/// A figure that cannot be drawn.
+pub fn bundle(study: &Study, answers: &Answers, seed: u64, out: &Path) -> Result<Bundle> {
+    let mut bundle = Bundle::default();
+    let result = &answers.identification;
+    bundle.add("scenario.toml", study.scenario().to_toml_beside(out));
+    bundle.add("pairs.csv", tables::pairs(&result.pairs).to_csv()?);
+    bundle.add("warnings.csv", tables::warnings(&result.warnings).to_csv()?);
+    if let Some(prediction) = &result.identifiability.prediction_heuristic {
+        let mut table = Table::new(["material", "prediction_s32_heuristic"]);
+        for entry in prediction {
+            table.push(vec![entry.material.clone(), number(entry.probability)]);
+        }
+        bundle.add("prediction.csv", table.to_csv()?);
+    }
+    let mut plots: Vec<Plot> = Vec::new();
+    if let Some(matrix) = &answers.matrix {
+        bundle.add("matrix_nearest.csv", square(matrix, &matrix.distance_nearest, PER_PHOTON).to_csv()?);
+        bundle.add("matrix_local.csv", square(matrix, &matrix.distance_local, PER_PHOTON).to_csv()?);
+        if let Some(unknown_gain) = &matrix.distance_local_unknown_gain {
+            bundle.add("matrix_local_unknown_gain.csv", square(matrix, unknown_gain, PER_PHOTON).to_csv()?);
+        }
+        if let Some(statistical) = &matrix.statistical_distance {
+            bundle.add("matrix_camera.csv", square(matrix, statistical, STATISTICAL).to_csv()?);
+        }
+        bundle.add("targets.csv", targets(matrix).to_csv()?);
+        plots.push(figures::distance_matrix(matrix));
+        plots.push(figures::minimum_distances(matrix));
+        if let Some(spectra) = study.sample_spectra(seed)? {
+            plots.push(figures::sample_spectra(&spectra));
+        }
+    }
+    if let Some(apart) = answers.apart.as_ref().or(answers.matrix.as_ref().and_then(|m| m.apart.as_ref())) {
+        bundle.add("told_apart.csv", told_apart(apart).to_csv()?);
+        bundle.add("clusters.csv", clusters(apart).to_csv()?);
+    }
+    if let Some(scaling) = &answers.scaling {
+        plots.push(figures::library_size(scaling, &study.target().name));
+        plots.push(figures::band_number(scaling, &study.target().name));
+    }
+    if let Some(bands) = &answers.bands_that_matter {
+        bundle.add("best_bands.csv", best_bands(bands, study.camera().is_some()).to_csv()?);
+        plots.push(figures::bands_that_matter(bands, &study.target().name));
+    }
+    if let Some(exact) = &answers.exact {
+        bundle.add("exact.csv", crate::identify::exact(exact).to_csv()?);
+    }
+    bundle.add_plots(&plots)?;
+    Ok(bundle)
+}
+
+/// What a distance is measured in, as it stands in the heads of columns.
+const PER_PHOTON: &str = "distance_per_sqrt_photon";
+const STATISTICAL: &str = "statistical_distance";
+
+/// A matrix with the names of its rows and columns, these with the unit.
+fn square(matrix: &Matrix, rows: &Rows, unit: &str) -> Table {
+    let columns = matrix.materials.iter().map(|name| format!("{unit}_{name}"));
+    let mut table = Table::new(std::iter::once("target".to_owned()).chain(columns));
+    for (name, row) in matrix.materials.iter().zip(rows) {
+        table.push(std::iter::once(name.clone()).chain(row.iter().map(|d| optional(*d))).collect());
+    }
+    table
+}
+
+fn targets(matrix: &Matrix) -> Table {
+    let mut table = Table::new([
+        "target",
+        "hardest_alternative",
+        "distance_minimum_per_sqrt_photon",
+        "statistical_distance_minimum_camera",
+        "identifiable",
+    ]);
+    for target in &matrix.targets {
+        table.push(vec![
+            target.material.clone(),
+            target.limiting.clone(),
+            number(target.distance_minimum),
+            optional(target.statistical_distance_minimum),
+            target.identifiable.map_or("", |yes| if yes { "yes" } else { "no" }).into(),
+        ]);
+    }
+    table
+}
+
+fn told_apart(apart: &Apart) -> Table {
+    let mut table = Table::new(["material", "other", "told_apart"]);
+    for (pairs, told) in [(&apart.told_apart, "yes"), (&apart.not_told_apart, "no")] {
+        for [a, b] in pairs {
+            table.push(vec![a.clone(), b.clone(), told.into()]);
+        }
+    }
+    table
+}
+
+fn clusters(apart: &Apart) -> Table {
+    let mut table = Table::new(["cluster", "material"]);
+    for (i, members) in apart.clusters.iter().enumerate() {
+        for member in members {
+            table.push(vec![(i + 1).to_string(), member.clone()]);
+        }
+    }
+    table
+}
+
+fn best_bands(found: &BandsThatMatter, with_camera: bool) -> Table {
+    let unit = if with_camera { "statistical_distance_camera" } else { PER_PHOTON };
+    let mut table = Table::new([
+        "choice".to_owned(),
+        "low_cm1".into(),
+        "high_cm1".into(),
+        "center_cm1".into(),
+        format!("local_{unit}"),
+        "kept_of_all_bands".into(),
+        format!("bound_local_{unit}"),
+        "proven_best".into(),
+        "nearest_statistical_distance_camera".into(),
+    ]);
+    for (choice, what) in [(&found.bands, "band"), (&found.filters, "filter")] {
+        let Some(choice) = choice else { continue };
+        for passband in &choice.passbands {
+            table.push(vec![
+                what.into(),
+                number(passband.low_cm1),
+                number(passband.high_cm1),
+                number(passband.center_cm1),
+                number(choice.distance),
+                number(choice.kept),
+                number(choice.bound),
+                if choice.exact { "yes" } else { "no" }.into(),
+                optional(choice.reached.as_ref().map(|reached| reached.statistical_distance)),
+            ]);
+        }
+    }
+    table
+}
+
+fn exact(found: &Exact) -> Table {
+    let mut table = Table::new([
+        "alternative",
+        "photons",
+        "balanced_accuracy",
+        "interval_low",
+        "interval_high",
+        "target_right",
+        "alternative_right",
+        "limit_nearest",
+        "estimate_best_fits",
+        "by_local_distance",
+        "statistical_distance_nearest",
+        "statistical_distance_local",
+        "error_lower_bound",
+        "error_upper_bound_known_states",
+        "lattice_target_right",
+        "trials",
+        "unconverged_fits",
+        "statistics",
+        "seed",
+        "generator",
+    ]);
+    for pair in &found.pairs {
+        let lattice = pair.lattice.as_ref().and_then(|lattice| lattice.probabilities.first().copied());
+        let numbers = [
+            pair.photons,
+            pair.balanced,
+            pair.balanced_interval.low,
+            pair.balanced_interval.high,
+            pair.classes[0],
+            pair.classes[1],
+            pair.limit,
+            pair.two_sided,
+            pair.local,
+            pair.statistical_distance_nearest,
+            pair.statistical_distance_local,
+            pair.error_lower,
+            pair.error_upper,
+        ];
+        let mut row = vec![pair.alternative.clone()];
+        row.extend(numbers.map(number));
+        row.push(optional(lattice));
+        row.extend([pair.trials.to_string(), pair.unconverged.to_string()]);
+        row.extend([found.statistics.into(), found.seed.to_string(), found.generator.into()]);
+        table.push(row);
+    }
+    table
+}

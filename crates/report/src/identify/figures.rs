@@ -1,0 +1,145 @@
+//! A library drawn: all materials against all.
+
+mod bands;
+mod scaling;
+
+pub(super) use bands::bands_that_matter;
+pub(super) use scaling::{band_number, library_size};
+
+use crate::figures::{Plot, wavenumber_axis};
+use crate::plot::{Axis, Figure, LineFigure, Matrix as NamedMatrix, NamedSeries, NamedValues, Series, Style};
+use crate::table::{Table, number, optional};
+use crate::text::significant;
+use hadar_study::study::{Matrix, SampleSpectra, TargetVerdict};
+
+/// All against all by the distance that decides: statistical with a camera, else per √photon. Rows and columns are
+/// ordered by clusters.
+#[must_use]
+pub fn distance_matrix(matrix: &Matrix) -> Plot {
+    let (order, starts) = by_clusters(matrix);
+    let nearest_decides = matrix.by == "nearest";
+    let rows = match (&matrix.statistical_distance, &matrix.distance_local_unknown_gain) {
+        (Some(rows), _) | (None, Some(rows)) => rows,
+        (None, None) if nearest_decides => &matrix.distance_nearest,
+        (None, None) => &matrix.distance_local,
+    };
+    let with_camera = matrix.statistical_distance.is_some();
+    let names: Vec<String> = order.iter().map(|&i| matrix.materials[i].clone()).collect();
+    let column = if with_camera { "statistical_distance" } else { "distance_per_sqrt_photon" };
+    let columns = names.iter().map(|name| format!("{column}_{name}"));
+    let mut table = Table::new(std::iter::once("target".to_owned()).chain(columns));
+    for &i in &order {
+        let row = order.iter().map(|&j| optional(rows[i][j]));
+        table.push(std::iter::once(matrix.materials[i].clone()).chain(row).collect());
+    }
+    let values: Vec<f64> =
+        order.iter().flat_map(|&i| order.iter().map(move |&j| rows[i][j].unwrap_or(f64::NAN))).collect();
+    let mut finite: Vec<f64> = values.iter().copied().filter(|d| d.is_finite() && *d > 0.0).collect();
+    finite.sort_by(f64::total_cmp);
+    let last = finite.len().saturating_sub(1);
+    let at = |share: f64| finite.get((share * last as f64) as usize).copied().unwrap_or(1.0);
+    // A few nearly identical pairs must not use up the colours.
+    let (low, high) = (at(0.02), at(1.0));
+    let title = if with_camera {
+        "Statistical distance d of every material from every other"
+    } else {
+        "Distance of every material from every other"
+    };
+    let unit = if with_camera { "statistical distance d" } else { "distance (per √photon)" };
+    let mut figure = NamedMatrix::new(
+        title,
+        ("target", names.clone()),
+        ("alternative", names),
+        (Axis::log(unit).range(low, high.max(2.0 * low)), values),
+    )
+    .subtitle(format!(
+        "By the {} distance; every target in the scenario's state.{}",
+        matrix.by,
+        if with_camera { " A pair counts as told apart only if it is both ways." } else { "" }
+    ))
+    .groups(starts);
+    if with_camera {
+        let required = significant(matrix.required_distance, 3);
+        figure = figure.threshold(
+            matrix.required_distance,
+            format!("target not told from the other: d below {required}"),
+        );
+    }
+    Plot { name: "distance_matrix".into(), figure: Figure::from(figure), table }
+}
+
+/// Distance of every material to the one hardest to tell it from, the least identifiable first: the paper's Extended
+/// Data Fig. 6b for any library.
+#[must_use]
+pub fn minimum_distances(matrix: &Matrix) -> Plot {
+    let with_camera = matrix.statistical_distance.is_some();
+    let targets = matrix.hardest_first();
+    let value = TargetVerdict::decisive_minimum;
+    let unit = if with_camera { "statistical_distance" } else { "distance_per_sqrt_photon" };
+    let mut table =
+        Table::new(["target".to_owned(), "hardest_alternative".into(), format!("minimum_{unit}")]);
+    for target in &targets {
+        table.push(vec![target.material.clone(), target.limiting.clone(), number(value(target))]);
+    }
+    let names = targets.iter().map(|target| format!("{} – {}", target.material, target.limiting)).collect();
+    let axis = if with_camera { "least statistical distance d" } else { "least distance (per √photon)" };
+    let mut figure =
+        NamedValues::new("Each material and the one hardest to tell it from", names, Axis::log(axis))
+            .subtitle(format!("By the {} distance; every target in the scenario's state.", matrix.by))
+            .series(NamedSeries::new("", targets.iter().map(|target| value(target)).collect()));
+    if with_camera {
+        figure = figure.threshold(matrix.required_distance, "required").below("not identifiable");
+    }
+    Plot { name: "minimum_distances".into(), figure: figure.into(), table }
+}
+
+/// Most materials whose readings are drawn into one plot.
+const READINGS_DRAWN: usize = 6;
+
+/// One reading of each of the first few materials, and its mean.
+#[must_use]
+pub fn sample_spectra(spectra: &SampleSpectra) -> Plot {
+    let shown = &spectra.materials[..spectra.materials.len().min(READINGS_DRAWN)];
+    let mut header = vec!["wavenumber_cm1".to_owned()];
+    header.extend(
+        shown.iter().flat_map(|(name, ..)| [format!("mean_{name}_counts"), format!("drawn_{name}_counts")]),
+    );
+    let mut table = Table::new(header);
+    let x = &spectra.wavenumber_cm1;
+    for (band, nu) in x.iter().enumerate() {
+        let mut row = vec![*nu];
+        row.extend(shown.iter().flat_map(|(_, mean, counts)| [mean[band], counts[band]]));
+        table.push_numbers(&row);
+    }
+    let title = match spectra.materials.len() {
+        all if all > shown.len() => format!("One reading of each of {} of the {all} materials", shown.len()),
+        _ => "One reading of each material".into(),
+    };
+    let mut figure =
+        LineFigure::new(title, wavenumber_axis(x), Axis::linear("counts in a band")).subtitle(format!(
+            "Solid: one reading drawn at random (seed {}). Dashed: its mean. All in the scenario's state.",
+            spectra.seed
+        ));
+    for (i, (name, _, counts)) in shown.iter().enumerate() {
+        figure = figure.series(Series::line(name, x.clone(), counts.clone()).colour(i));
+    }
+    for (i, (_, mean, _)) in shown.iter().enumerate() {
+        figure = figure.series(Series::line("", x.clone(), mean.clone()).style(Style::Dashed).colour(i));
+    }
+    Plot { name: "sample_spectra".into(), figure: figure.into(), table }
+}
+
+/// Materials cluster by cluster, then the others, and where each group begins.
+fn by_clusters(matrix: &Matrix) -> (Vec<usize>, Vec<usize>) {
+    let place = |name: &String| matrix.materials.iter().position(|known| known == name);
+    let (mut order, mut starts): (Vec<usize>, Vec<usize>) = (Vec::new(), Vec::new());
+    for cluster in matrix.apart.iter().flat_map(|apart| &apart.clusters) {
+        starts.push(order.len());
+        order.extend(cluster.iter().filter_map(place));
+    }
+    starts.push(order.len());
+    let rest: Vec<usize> = (0..matrix.materials.len()).filter(|i| !order.contains(i)).collect();
+    order.extend(rest);
+    starts.retain(|&start| start > 0 && start < order.len());
+    (order, starts)
+}

@@ -1,0 +1,144 @@
+//! What is said of many materials.
+
+mod bands;
+mod exact;
+mod matrix;
+mod terms;
+
+use self::bands::{bands, scaling};
+use self::exact::exact;
+use self::matrix::{apart, matrix};
+use self::terms::{camera, no_limit};
+use crate::text::footing::footing;
+use crate::text::numbers::{celsius, numbers, photons, significant};
+use crate::text::pairs::pair_table;
+use hadar_study::study::{self, Answers, Check, Identification, Study};
+use std::fmt::Write as _;
+
+/// Entries of the prediction vector that are shown.
+const SHOWN: usize = 5;
+/// Entries below this are not worth a name.
+const LEAST_SHOWN: f64 = 1e-3;
+
+/// All that was asked for. All against all come first where they were asked for; `apart` alone has no table of the
+/// target's.
+#[must_use]
+pub fn text(answers: &Answers, study: &Study) -> String {
+    let mut out = String::new();
+    if let Some(found) = &answers.matrix {
+        out.push_str(&matrix(found, study));
+    }
+    match &answers.apart {
+        Some(found) => out.push_str(&apart(found, study)),
+        None => out.push_str(&identification(&answers.identification, study)),
+    }
+    if let Some(found) = &answers.scaling {
+        out.push_str(&scaling(found, &study.target().name));
+    }
+    if let Some(found) = &answers.bands_that_matter {
+        out.push_str(&bands(found, study));
+    }
+    if let Some(found) = &answers.exact {
+        out.push_str(&exact(found, study));
+    }
+    out + &footing(&answers.identification, study)
+}
+
+/// Distances to all alternatives.
+fn identification(result: &Identification, study: &Study) -> String {
+    let mut out = verdict(result, study);
+    out.push_str(&pair_table(&result.pairs, study));
+    out.push_str(&prediction(result));
+    out.push('\n');
+    out
+}
+
+/// The answer in a sentence, and the hardest alternative.
+fn verdict(result: &Identification, study: &Study) -> String {
+    let mut out = String::new();
+    let Some(pair) = result.pairs.iter().find(|pair| pair.alternative == result.limiting) else {
+        return out;
+    };
+    let (target, all) = (&pair.target, result.pairs.len());
+    let reliability = study::reliability(study.required_distance());
+    // The average is finite also where the state that stands in the scenario is one of equilibrium.
+    if let Some(average) = &result.prior_average {
+        let _ = writeln!(
+            out,
+            "Averaged over the priors {target} is told from {} with {reliability} right answers by {} (hybrid Cramer-Rao bound of estimates, no limit of decisions: {}).",
+            average.alternative,
+            number_of_photons(average.photons_required),
+            number_of_photons(average.photons_required_hybrid_bound)
+        );
+        let state = study.state();
+        let _ = writeln!(
+            out,
+            "At exactly {}{}:",
+            celsius(state.temperature_k),
+            numbers(" and V ", &state.lighting, 2)
+        );
+    }
+    if let Some(told) = result.identifiability.told_from {
+        let name = camera(study);
+        let sentence = match (all, told) {
+            (1, 1) => format!("Yes: {name} tells {target} from {}", pair.alternative),
+            (1, _) => format!("No: {name} cannot tell {target} from {}", pair.alternative),
+            (_, told) if told == all => format!("Yes: {name} tells {target} from all {all} alternatives"),
+            (_, 0) => format!("No: {name} tells {target} from none of {all} alternatives"),
+            (_, told) => format!("No: {name} tells {target} from only {told} of {all} alternatives"),
+        };
+        let _ = writeln!(out, "{sentence} with {reliability} reliability{}.", no_limit(study));
+    }
+    let needed = match pair.photons_required {
+        Some(_) => {
+            format!("it takes at least {} photons, by shot noise alone", photons(pair.photons_required))
+        }
+        None => "no number of photons suffices".into(),
+    };
+    let _ =
+        writeln!(out, "{target} is hardest to tell from {}: {needed}{}.", pair.alternative, no_limit(study));
+    out.push('\n');
+    out
+}
+
+fn number_of_photons(count: Option<f64>) -> String {
+    count.map_or_else(|| "no number of photons".into(), |count| format!("{count:.2e} photons"))
+}
+
+/// The largest entries of the prediction vector.
+fn prediction(result: &Identification) -> String {
+    let Some(all) = &result.identifiability.prediction_heuristic else { return String::new() };
+    let mut sorted: Vec<_> = all.iter().collect();
+    sorted.sort_by(|a, b| b.probability.total_cmp(&a.probability));
+    let shown: Vec<String> = sorted
+        .iter()
+        .take(SHOWN)
+        .filter(|entry| entry.probability >= LEAST_SHOWN)
+        .map(|entry| format!("{} {}", entry.material, significant(entry.probability, 2)))
+        .collect();
+    let rest = if shown.len() < all.len() { ", less for the others" } else { "" };
+    format!(
+        "\nPrediction vector S32 of the paper (a heuristic: no bound, and no test's probability)\n  {}{rest}\n",
+        shown.join(", ")
+    )
+}
+
+/// The answer of a check.
+#[must_use]
+pub fn check(result: &Check, study: &Study) -> String {
+    let target = &study.target().name;
+    let camera = camera(study);
+    let reliability = study::reliability(study.required_distance());
+    match &result.not_told_from {
+        Some(other) => {
+            format!("No: {camera} cannot tell {target} from {other} with {reliability} reliability.\n")
+        }
+        None => {
+            let all = match study.alternatives() {
+                [one] => one.name.clone(),
+                all => format!("all {} alternatives", all.len()),
+            };
+            format!("Yes: {camera} tells {target} from {all} with {reliability} reliability.\n")
+        }
+    }
+}

@@ -1,0 +1,90 @@
+//! The files of `simulate`: scenario, tables and plots.
+
+pub mod figures;
+mod text;
+pub mod thermometry;
+
+pub use text::text;
+
+use self::figures::SimulationCurves;
+use self::text::pair;
+use crate::bundle::Bundle;
+use crate::table::{Table, number};
+use crate::tables;
+use hadar::error::Result;
+use hadar_study::study::{NoiseCurves, Simulation, Study};
+use std::path::Path;
+
+/// All files of a simulation; paths in the scenario are written relative to `out` where they lie below it.
+///
+/// # Errors
+/// A figure that cannot be drawn.
+pub fn bundle(study: &Study, result: &Simulation, noise: Option<&NoiseCurves>, out: &Path) -> Result<Bundle> {
+    let mut bundle = Bundle::default();
+    bundle.add("scenario.toml", study.scenario().to_toml_beside(out));
+    bundle.add("simulation.csv", figures::simulation_table(result).to_csv()?);
+    bundle.add("confusion.csv", confusion(result).to_csv()?);
+    bundle.add("warnings.csv", tables::warnings(&result.warnings).to_csv()?);
+    let pair = pair(result);
+    let plot = match result.points.as_slice() {
+        [point] => figures::accuracies(result, point, &pair),
+        _ => {
+            let title = format!("Telling {pair}: what each classifier retrieves");
+            figures::classifiers(result, &SimulationCurves { title, noise, other: None, name: "classifiers" })
+        }
+    };
+    bundle.add_plots(&[plot])?;
+    if let Some(noise) = noise {
+        bundle.add("noise_curves.csv", curves(noise).to_csv()?);
+    }
+    Ok(bundle)
+}
+
+/// 'skin from aluminium', or the target from all others.
+#[must_use]
+
+/// Decisions by true and by chosen class.
+fn confusion(result: &Simulation) -> Table {
+    let mut table = Table::new(["photons", "classifier", "true_class", "chosen_class", "decisions", "share"]);
+    for point in &result.points {
+        let name = |class: usize| point.classes.get(class).map_or("", |class| class.material.as_str());
+        for found in &point.performances {
+            let confusion = &found.performance.confusion;
+            for (class, (row, spectra)) in confusion.decisions.iter().zip(confusion.spectra()).enumerate() {
+                for (chosen, decisions) in row.iter().enumerate() {
+                    table.push(vec![
+                        number(point.photons),
+                        found.performance.name(),
+                        name(class).into(),
+                        name(chosen).into(),
+                        number(*decisions),
+                        number(decisions / spectra.max(1.0)),
+                    ]);
+                }
+            }
+        }
+    }
+    table
+}
+
+/// Limits over photons under each kind of noise.
+#[must_use]
+pub fn curves(noise: &NoiseCurves) -> Table {
+    let mut header = vec!["normalised_photons_n_d0_squared".to_owned()];
+    for curve in &noise.curves {
+        let name = curve.name.replace(' ', "_").to_lowercase();
+        header.extend(
+            ["gamma_per_band", "statistical_distance", "information_bits"].map(|q| format!("{q}_{name}")),
+        );
+    }
+    let mut table = Table::new(header);
+    let bits: Vec<Vec<f64>> = noise.curves.iter().map(|curve| curve.information_bits()).collect();
+    for (i, n) in noise.normalised_photons.iter().enumerate() {
+        let mut row = vec![*n];
+        for (curve, bits) in noise.curves.iter().zip(&bits) {
+            row.extend([curve.gamma[i], curve.distance[i], bits[i]]);
+        }
+        table.push_numbers(&row);
+    }
+    table
+}

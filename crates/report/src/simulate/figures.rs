@@ -1,0 +1,229 @@
+//! Classifiers against the limit: over photons, or side by side at one number of them.
+
+use crate::figures::Plot;
+use crate::plot::{Axis, Band, LineFigure, NamedSeries, NamedValues, Panel, Rule, Series, Style};
+use crate::table::{Table, number, optional};
+use hadar::identifiability::detection;
+use hadar::simulate::classifier::Method;
+use hadar::simulate::experiment::Performance;
+use hadar_study::study::{NoiseCurves, SimulatedPerformance, SimulatedPoint, Simulation};
+
+const LIMIT_COLOUR: usize = 0;
+
+/// All experiments and classifiers as a table, a row each.
+#[must_use]
+pub fn simulation_table(result: &Simulation) -> Table {
+    let mut table = Table::new([
+        "photons",
+        "normalised_photons_n_d0_squared",
+        "gamma_per_band",
+        "statistical_distance",
+        "statistical_distance_local",
+        "limit_accuracy",
+        "limit_accuracy_many_photons",
+        "accuracy_promised_by_local_distance",
+        "classifier",
+        "accuracy",
+        "accuracy_low",
+        "accuracy_high",
+        "information_bits",
+        "share_of_photons_used",
+        "share_of_photons_used_low",
+        "share_of_photons_used_high",
+        "against_the_limit",
+        "training",
+    ]);
+    for point in &result.points {
+        for found in &point.performances {
+            let performance = &found.performance;
+            table.push(vec![
+                number(point.photons),
+                number(point.normalised_photons),
+                number(point.gamma),
+                number(point.statistical_distance),
+                number(point.statistical_distance_local),
+                optional(point.limit_accuracy),
+                number(point.limit_accuracy_normal),
+                number(point.local_accuracy),
+                performance.name(),
+                number(performance.accuracy),
+                number(performance.interval.low),
+                number(performance.interval.high),
+                optional(found.information_bits),
+                optional(found.photon_share),
+                optional(found.photon_share_low),
+                optional(found.photon_share_high),
+                found.standing.map_or("", |standing| standing.name()).into(),
+                performance.training.clone().unwrap_or_default(),
+            ]);
+        }
+    }
+    table
+}
+
+/// What a figure of experiments over photons shows besides the points.
+#[derive(Debug, Clone, Default)]
+pub struct SimulationCurves<'a> {
+    /// Title.
+    pub title: String,
+    /// Limits under each kind of noise.
+    pub noise: Option<&'a NoiseCurves>,
+    /// Another simulation, with the camera's noise say, and what the subtitle says of its points.
+    pub other: Option<(&'a Simulation, &'static str)>,
+    /// File name without ending.
+    pub name: &'static str,
+}
+
+/// Information that each classifier retrieves against the normalised photon number, with the limits.
+#[must_use]
+pub fn classifiers(result: &Simulation, curves: &SimulationCurves<'_>) -> Plot {
+    let points = &result.points;
+    let x: Vec<f64> = points.iter().map(|point| point.normalised_photons).collect();
+    let limit: Vec<f64> = points.iter().map(|point| bits(limit_of(point))).collect();
+    let mut figure = LineFigure::new(
+        curves.title.clone(),
+        Axis::log("normalised photon number N d₀²"),
+        Axis::linear("information log₂ 2P (bits)").range(0.0, 1.05),
+    );
+    let test = (result.spectra_per_class - 2 * (result.spectra_per_class / 4)) as f64;
+    if points.len() > 2 {
+        let reach = |point: &SimulatedPoint, sign: f64| {
+            let p = limit_of(point);
+            // Two classes of so many test spectra each.
+            bits((p + sign * 1.96 * (p * (1.0 - p) / (2.0 * test)).sqrt()).clamp(0.5, 1.0))
+        };
+        let edge = |sign: f64| points.iter().map(|point| reach(point, sign)).collect();
+        let label = "where 95 % of an ideal classifier's points lie";
+        figure = figure.band(Band::new(label, x.clone(), edge(-1.0), edge(1.0)).colour(LIMIT_COLOUR));
+    }
+    match curves.noise {
+        Some(noise) => {
+            for (i, curve) in noise.curves.iter().enumerate() {
+                let style = [Style::Line, Style::Dashed, Style::Dotted, Style::Line][i.min(3)];
+                let colour = if i == 0 { LIMIT_COLOUR } else { NOISE_COLOUR };
+                let label =
+                    if i == 0 { "limit, shot noise".to_owned() } else { format!("limit, {}", curve.name) };
+                figure = figure.series(
+                    Series::line(label, noise.normalised_photons.clone(), curve.information_bits())
+                        .style(style)
+                        .colour(colour),
+                );
+            }
+        }
+        None => {
+            figure = figure.series(Series::line("limit", x.clone(), limit).colour(LIMIT_COLOUR));
+        }
+    }
+    let promised: Vec<f64> = points.iter().map(|point| bits(point.local_accuracy)).collect();
+    figure = figure.series(
+        Series::line("what the local distance would have promised", x.clone(), promised)
+            .style(Style::Dashed)
+            .colour(LOCAL_COLOUR),
+    );
+    for (place, colour, words) in methods(result) {
+        figure = figure.series(series(result, place, words).colour(colour));
+    }
+    if let Some((other, words)) = curves.other {
+        figure = figure.subtitle(words);
+        for (place, colour, _) in methods(other) {
+            figure = figure.series(series(other, place, String::new()).colour(colour));
+        }
+    }
+    figure = figure.lower(lower(result, curves.other.map(|other| other.0)));
+    let criterion = detection::information_bits(1.0);
+    figure = figure.rule(Rule::horizontal(criterion, "identifiable: d = 1"));
+    Plot { name: curves.name.into(), figure: figure.into(), table: simulation_table(result) }
+}
+
+/// Accuracies less the limit, in percentage points: what the information cannot show where points lie on the curve.
+fn lower(result: &Simulation, other: Option<&Simulation>) -> Panel {
+    let mut panel = Panel::new(Axis::linear("accuracy − limit (points)"));
+    for result in std::iter::once(result).chain(other) {
+        let x: Vec<f64> = result.points.iter().map(|point| point.normalised_photons).collect();
+        let test = (result.spectra_per_class - 2 * (result.spectra_per_class / 4)) as f64;
+        let reach = |point: &SimulatedPoint| {
+            let p = limit_of(point);
+            100.0 * 1.96 * (p * (1.0 - p) / (2.0 * test)).sqrt()
+        };
+        let edge = |sign: f64| result.points.iter().map(|point| sign * reach(point)).collect();
+        if x.len() > 2 {
+            panel = panel.band(Band::new("", x.clone(), edge(-1.0), edge(1.0)).colour(LIMIT_COLOUR));
+        }
+        for (place, colour, _) in methods(result) {
+            let of = |point: &SimulatedPoint| {
+                let found = point.performances.get(place);
+                found.map_or(f64::NAN, |found| 100.0 * (found.performance.accuracy - limit_of(point)))
+            };
+            let y = result.points.iter().map(of).collect();
+            panel = panel.series(Series::points("", x.clone(), y).colour(colour));
+        }
+    }
+    panel
+}
+
+const NOISE_COLOUR: usize = 2;
+const LOCAL_COLOUR: usize = 6;
+
+/// Each classifier's colour, the same in every figure.
+fn method_colour(method: Method) -> usize {
+    match method {
+        Method::LikelihoodRatio => 0,
+        Method::BestFits => 3,
+        Method::Discriminant => 4,
+        Method::Logistic => 5,
+        Method::Network => 1,
+    }
+}
+
+/// The classifiers, the optimum last so that it is drawn on top: each by its place, colour and name.
+fn methods(result: &Simulation) -> Vec<(usize, usize, String)> {
+    let first = result.points.first().map(|point| point.performances.as_slice());
+    let all = first.unwrap_or_default().iter().enumerate();
+    let named = |(i, found): (usize, &SimulatedPerformance)| {
+        (i, method_colour(found.performance.method), found.performance.words())
+    };
+    all.map(named).rev().collect()
+}
+
+fn series(result: &Simulation, place: usize, label: String) -> Series {
+    let of = |point: &SimulatedPoint| {
+        let bits = point.performances.get(place).and_then(|found| found.information_bits);
+        bits.map_or(f64::NAN, |bits| bits.max(0.0))
+    };
+    let x = result.points.iter().map(|point| point.normalised_photons).collect();
+    Series::points(label, x, result.points.iter().map(of).collect())
+}
+
+fn limit_of(point: &SimulatedPoint) -> f64 {
+    point.limit_accuracy.unwrap_or(point.limit_accuracy_normal)
+}
+
+fn bits(probability: f64) -> f64 {
+    (2.0 * probability).log2()
+}
+
+/// Accuracies of all classifiers in one experiment, beside the limit.
+#[must_use]
+pub fn accuracies(result: &Simulation, point: &SimulatedPoint, pair: &str) -> Plot {
+    let found = || point.performances.iter().map(|found| &found.performance);
+    let values = found().map(|performance| performance.accuracy).collect();
+    let intervals = (
+        found().map(|performance| performance.interval.low).collect(),
+        found().map(|performance| performance.interval.high).collect(),
+    );
+    let figure = NamedValues::new(
+        format!("How often each classifier tells {pair}"),
+        found().map(Performance::words).collect(),
+        Axis::linear("share of right decisions, averaged over the classes"),
+    )
+    .series(NamedSeries::new("balanced accuracy", values).intervals(intervals.0, intervals.1))
+    .interval_meaning(format!("{} % interval", 100.0 * result.level));
+    let figure = match point.limit_accuracy {
+        Some(limit) => {
+            let all = vec![limit; point.performances.len()];
+            figure.series(NamedSeries::new("limit of the likelihood ratio", all).colour(LIMIT_COLOUR + 1))
+        }
+        None => figure,
+    };
+    Plot { name: "accuracies".into(), figure: figure.into(), table: simulation_table(result) }
+}

@@ -1,0 +1,261 @@
+//! What a simulation found, as text.
+
+use crate::text::footing::{assumptions, warnings};
+use crate::text::numbers::shortened;
+use crate::text::numbers::{celsius, significant};
+use hadar_study::study::{PhotonLaw, SimulatedPerformance, SimulatedPoint, Simulation, Standing, Study};
+use std::fmt::Write as _;
+
+/// Classes that are named in a sentence beside the target.
+const NAMED: usize = 4;
+
+/// Decimals of a percentage beyond which rounding decides.
+const MOST_DECIMALS: f64 = 12.0;
+/// Shares of photons whose interval ends above this are not printed.
+const WIDEST_SHARE: f64 = 3.0;
+/// Columns that a confusion matrix may take.
+const MATRIX_WIDTH: usize = 64;
+/// Experiments that are printed; of more the first, the last and some between.
+const SHOWN: usize = 5;
+
+/// The answer, the experiments, and what they rest on.
+#[must_use]
+pub fn text(result: &Simulation, study: &Study) -> String {
+    let mut out = format!("{}\n\n", sentence(result));
+    let points = &result.points;
+    let shown: Vec<usize> = if points.len() <= SHOWN {
+        (0..points.len()).collect()
+    } else {
+        (0..SHOWN).map(|i| i * (points.len() - 1) / (SHOWN - 1)).collect()
+    };
+    if shown.len() < points.len() {
+        let _ = writeln!(out, "{} of {} experiments; --out DIR has them all\n", shown.len(), points.len());
+    }
+    for i in shown {
+        out.push_str(&experiment(&points[i], result));
+        out.push('\n');
+    }
+    if let [point] = points.as_slice() {
+        out.push_str(&confusions(point));
+    }
+    let law = match result.photon_law {
+        PhotonLaw::Poisson => "photons counted one by one (Poisson)",
+        PhotonLaw::NegativeBinomial => "bunched photons of thermal light (negative binomial)",
+        PhotonLaw::FixedTotal => "as many photons in every spectrum (multinomial)",
+    };
+    let noise = if result.camera_noise { ", and the camera's electronic noise" } else { "" };
+    let drawn = if result.skipped_spectra {
+        "the likelihood ratio itself, half as often for each class as there would be spectra".to_owned()
+    } else {
+        format!(
+            "{} spectra of each class, a quarter for training, a quarter for validation, half for the test",
+            result.spectra_per_class
+        )
+    };
+    let error = result.points.iter().filter_map(|point| point.normal_error).fold(0.0, f64::max);
+    let judged = if result.points.iter().any(|point| point.normal_error.is_some()) {
+        format!("normal (distribution function off by at most {error:.0e})")
+    } else {
+        result.judged_as.to_owned()
+    };
+    let _ = writeln!(
+        out,
+        "Drawn: {drawn};\n  {law}{noise}; likelihoods take counts to be {judged};\n  seed {}, {}\n",
+        result.seed, result.generator
+    );
+    out.push_str(&assumptions(
+        study,
+        "equally likely classes in the states above; likelihoods of single bands multiply",
+    ));
+    out.push_str(&warnings(&result.warnings));
+    out
+}
+
+/// The answer in a sentence.
+fn sentence(result: &Simulation) -> String {
+    let apart = pair(result);
+    let all = || result.points.iter().flat_map(|point| &point.performances).map(|found| &found.performance);
+    let Some(best) = all().max_by(|a, b| a.accuracy.total_cmp(&b.accuracy)) else { return String::new() };
+    let often = format!(
+        "{} of the cases ({} to {})",
+        percent(best.accuracy),
+        percent(best.interval.low),
+        percent(best.interval.high)
+    );
+    let judged = result.points.first().map_or(0, |point| point.performances.len());
+    let which = if judged == 1 { "the only one".to_owned() } else { format!("the best of {judged}") };
+    let name = format!("{which} ({})", best.words());
+    if result.comparisons == 0 {
+        return format!("In {often} {name} tells {apart}; there is no limit to hold it against.");
+    }
+    let beyond = of_standing(result, Standing::Beyond);
+    if beyond > 0 {
+        return format!(
+            "The limit does not hold: {beyond} of {} times a classifier told {apart} more often than it allows.",
+            result.comparisons
+        );
+    }
+    match result.points.as_slice() {
+        [point] => {
+            let limit = percent(point.limit_accuracy.unwrap_or(point.limit_accuracy_normal));
+            format!(
+                "No classifier beats the limit of {limit} by more than chance: {name} tells {apart} in {often}."
+            )
+        }
+        points => format!(
+            "No classifier beats the limit by more than chance: none of {judged} at {} photon numbers tells {apart} more \
+             often than it allows.",
+            points.len()
+        ),
+    }
+}
+
+fn of_standing(result: &Simulation, standing: Standing) -> usize {
+    let all = result.points.iter().flat_map(|point| &point.performances);
+    all.filter(|found| found.standing == Some(standing)).count()
+}
+
+/// In percent; short of certainty never 100, but with as many nines as it takes.
+fn percent(share: f64) -> String {
+    let missing = 1.0 - share;
+    let decimals = if missing > 0.0 && missing < 5e-4 { (-missing.log10() - 1e-9).ceil() - 2.0 } else { 1.0 };
+    format!("{:.*} %", decimals.clamp(1.0, MOST_DECIMALS) as usize, 100.0 * share)
+}
+
+/// One experiment as a table.
+fn experiment(point: &SimulatedPoint, result: &Simulation) -> String {
+    let mut out = format!(
+        "{} photons of the target{}: N d0^2 = {}, statistical distance {}\n",
+        significant(point.photons, 3),
+        if point.classes.len() > 2 { "; to the nearest of the others" } else { "" },
+        significant(point.normalised_photons, 3),
+        significant(point.statistical_distance, 3)
+    );
+    for class in &point.classes {
+        let lighting: Vec<String> = class.lighting.iter().map(|v| format!("{v:.3}")).collect();
+        let _ = writeln!(
+            out,
+            "  {:<16} {}, lighting {}, {} photons",
+            class.material,
+            celsius(class.temperature_k),
+            lighting.join(", "),
+            significant(class.photons, 4)
+        );
+    }
+    let _ = writeln!(
+        out,
+        "  {:<32} {:>8}  {:<19} {:<22} against the limit",
+        "classifier",
+        "right",
+        format!("{} % interval", 100.0 * result.level),
+        "photons made use of"
+    );
+    for found in &point.performances {
+        let performance = &found.performance;
+        let _ = writeln!(
+            out,
+            "  {:<32} {:>8}  {:<19} {:<22} {}",
+            performance.words(),
+            percent(performance.accuracy),
+            format!("{} to {}", percent(performance.interval.low), percent(performance.interval.high)),
+            used(found),
+            against(found, point)
+        );
+        if performance.confusion.unconverged > 0 {
+            let _ = writeln!(out, "    {} fits stopped early", performance.confusion.unconverged);
+        }
+    }
+    if let Some(limit) = point.limit_accuracy {
+        let _ = writeln!(out, "  {:<32} {:>8}  computed, no spectrum drawn", "limit", percent(limit));
+        let _ =
+            writeln!(out, "  {:<32} {:>8}", "promised by the local distance", percent(point.local_accuracy));
+    } else if point.classes.len() == 2 {
+        let _ =
+            writeln!(out, "  {:<32} {:>8}  for many photons", "limit", percent(point.limit_accuracy_normal));
+    }
+    out
+}
+
+/// Which class is taken for which, in percent of the true one; nothing for more classes than fit a line.
+fn confusions(point: &SimulatedPoint) -> String {
+    let names = shortened(point.classes.iter().map(|class| class.material.as_str()));
+    let width = names.width().max(9);
+    if point.classes.len() * (width + 2) > MATRIX_WIDTH {
+        return String::new();
+    }
+    let mut out =
+        "Confusion: of the spectra of each true class (rows), % taken for each (columns)\n".to_owned();
+    let _ = write!(out, "  {:<32} {:<width$}", "classifier", "true");
+    for class in &point.classes {
+        let _ = write!(out, "  {:>width$}", names.of(&class.material));
+    }
+    out.push('\n');
+    for found in &point.performances {
+        let confusion = &found.performance.confusion;
+        for (i, (row, spectra)) in confusion.decisions.iter().zip(confusion.spectra()).enumerate() {
+            let classifier = if i == 0 { found.performance.words() } else { String::new() };
+            let name = point.classes.get(i).map_or("", |class| names.of(&class.material));
+            let _ = write!(out, "  {classifier:<32} {name:<width$}");
+            for decisions in row {
+                let _ = write!(out, "  {:>width$.1}", 100.0 * decisions / spectra.max(1.0));
+            }
+            out.push('\n');
+        }
+    }
+    out.push('\n');
+    out
+}
+
+fn used(found: &SimulatedPerformance) -> String {
+    match (found.photon_share, found.photon_share_low, found.photon_share_high) {
+        // An interval as wide as that says nothing.
+        (Some(share), Some(low), Some(high)) if high < WIDEST_SHARE => {
+            let percent = |share: f64| format!("{:.0}", 100.0 * share);
+            format!("{} % ({} to {})", percent(share), percent(low), percent(high))
+        }
+        _ => "-".to_owned(),
+    }
+}
+
+fn against(found: &SimulatedPerformance, point: &SimulatedPoint) -> String {
+    let limit = point.limit_accuracy.unwrap_or(point.limit_accuracy_normal);
+    match found.standing {
+        Some(Standing::Beyond) => "BEYOND the limit".to_owned(),
+        Some(Standing::Reaches) => "reaches it".to_owned(),
+        Some(Standing::Undecided) => "may reach it; more spectra would tell".to_owned(),
+        Some(Standing::Below) => {
+            format!("{:.1} points below", 100.0 * (limit - found.performance.accuracy))
+        }
+        None => "-".to_owned(),
+    }
+}
+
+pub(super) fn pair(result: &Simulation) -> String {
+    let classes = result.points.first().map(|point| point.classes.as_slice()).unwrap_or_default();
+    match classes {
+        [target, other] => format!("{} from {}", target.material, other.material),
+        [target, others @ ..] if others.len() > NAMED => {
+            format!("{} and {} others apart", target.material, others.len())
+        }
+        [target, others @ ..] => {
+            let names: Vec<&str> = others.iter().map(|class| class.material.as_str()).collect();
+            format!("{}, {} apart", target.material, names.join(", "))
+        }
+        [] => String::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::percent;
+
+    #[test]
+    fn short_of_certain_is_never_100_percent() {
+        for (share, text) in
+            [(0.8413, "84.1 %"), (1.0, "100.0 %"), (0.99951, "99.95 %"), (0.999_99, "99.999 %")]
+        {
+            assert_eq!(percent(share), text);
+        }
+        assert_ne!(percent(1.0 - 3e-9), percent(1.0));
+    }
+}

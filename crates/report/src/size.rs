@@ -1,0 +1,144 @@
+//! The files of the main job: scenario, tables, the four plots of the limiting pair, and the trade-offs.
+
+pub mod figures;
+pub(crate) mod text;
+mod trade_off;
+
+pub use text::text;
+
+use self::figures::InformationMarks;
+use crate::bundle::Bundle;
+use crate::figures::Plot;
+use crate::table::{Table, number, optional};
+use crate::tables;
+use hadar::error::Result;
+use hadar::identifiability::detection;
+use hadar_study::study::{Sensitivity, Sizing, Study};
+use std::path::Path;
+
+/// Most alternatives that are drawn into one plot.
+const DRAWN: usize = 6;
+
+/// All files of a sizing; paths in the scenario are written relative to `out` where they lie below it.
+///
+/// # Errors
+/// A figure that cannot be drawn.
+pub fn bundle(study: &Study, result: &Sizing, out: &Path) -> Result<Bundle> {
+    let mut bundle = Bundle::default();
+    bundle.add("scenario.toml", result.scenario.to_toml_beside(out));
+    bundle.add("pairs.csv", tables::pairs(&result.pairs).to_csv()?);
+    bundle.add("requirement.csv", requirement(result).to_csv()?);
+    if let Some(camera) = &result.camera {
+        let mut table = Table::new(["line", "variance_counts2", "grows_with_integration_time_as"]);
+        for line in &camera.noise_budget {
+            table.push(vec![line.label.into(), number(line.var_counts), line.scaling.into()]);
+        }
+        bundle.add("noise_budget.csv", table.to_csv()?);
+        bundle.add("solve_for.csv", solve_for(result).to_csv()?);
+    }
+    if let Some(found) = &result.sensitivity {
+        bundle.add("sensitivity.csv", sensitivity(found).to_csv()?);
+    }
+    bundle.add("warnings.csv", tables::warnings(&result.warnings).to_csv()?);
+    bundle.add_plots(&drawn(study, result)?)?;
+    let name = result.camera.as_ref().map_or("the camera", |camera| camera.camera.name.as_str());
+    let curves = result.trade_offs.iter().flatten();
+    bundle.add_plots(&curves.map(|curve| trade_off::trade_off(curve, name)).collect::<Vec<_>>())?;
+    Ok(bundle)
+}
+
+/// The four plots of the limiting pair.
+fn drawn(study: &Study, result: &Sizing) -> Result<Vec<Plot>> {
+    let mut ranked: Vec<_> = result.pairs.iter().zip(study.alternatives()).collect();
+    ranked.sort_by(|a, b| a.0.distance_nearest.total_cmp(&b.0.distance_nearest));
+    let nodes = study.surroundings().nodes_cm1();
+    let closest: Vec<_> = ranked.iter().take(DRAWN).map(|(_, surface)| *surface).collect();
+    let title = match closest.as_slice() {
+        [one] => format!("Emissivities of {} and {}", study.target().name, one.name),
+        _ => format!("Emissivities of {} and its alternatives", study.target().name),
+    };
+    let mut drawn = vec![figures::emissivities(&title, nodes, study.target(), &closest)];
+    let limiting =
+        result.pairs.iter().zip(study.alternatives()).find(|(pair, _)| pair.alternative == result.limiting);
+    let Some((pair, surface)) = limiting else { return Ok(drawn) };
+    let (target, other) = (pair.target.as_str(), pair.alternative.as_str());
+    drawn.push(figures::spectra(&study.spectra(surface)?, target, other));
+    let marks = InformationMarks {
+        camera: match (&result.camera, pair.information_bits) {
+            (Some(camera), Some(bits)) => Some((camera.camera.name.clone(), camera.photons, bits)),
+            _ => None,
+        },
+        required_bits: detection::information_bits(study.required_distance()),
+        required_distance: study.required_distance(),
+    };
+    let curves = study.information_curves(surface, pair.distance_nearest, pair.distance_local)?;
+    drawn.push(figures::identifiability(&curves, target, other, &marks));
+    if let Some(map) = study.photon_map(surface)? {
+        let state = study.state();
+        let here = (state.temperature_k, state.lighting.first().copied().unwrap_or(0.0));
+        drawn.push(figures::photon_map(&map, target, other, here, result.requirement.by));
+    }
+    Ok(drawn)
+}
+
+fn requirement(result: &Sizing) -> Table {
+    let mut table =
+        Table::new(["reading", "distance_per_sqrt_photon", "photons", "hardware_m2_s", "decides"]);
+    let pair = result.pairs.iter().find(|pair| pair.alternative == result.limiting);
+    let (n, h) = (result.requirement.photons_by, result.requirement.hardware_by_m2_s);
+    let distances = pair.map_or([0.0; 3], |pair| {
+        [pair.distance_nearest, pair.distance_local, pair.distance_local_unknown_gain]
+    });
+    let readings = [
+        ("nearest", n.nearest, h.nearest),
+        ("local", n.local, h.local),
+        ("local-unknown-gain", n.local_unknown_gain, h.local_unknown_gain),
+    ];
+    for ((reading, photons, hardware), distance) in readings.into_iter().zip(distances) {
+        let decides = if reading == result.requirement.by { "yes" } else { "no" };
+        let row = [reading.into(), number(distance), optional(photons), optional(hardware), decides.into()];
+        table.push(row.to_vec());
+    }
+    table
+}
+
+fn solve_for(result: &Sizing) -> Table {
+    let mut table = Table::new(["quantity", "value", "camera", "statistical_distance", "reason", "caps"]);
+    for (quantity, solution) in result.solve_for.iter().flat_map(|solutions| &solutions.0) {
+        table.push(vec![
+            quantity.key().into(),
+            optional(solution.value),
+            // A distance that is not stated, a speed that nobody knows.
+            optional(Some(solution.camera).filter(|value| value.is_finite())),
+            optional(Some(solution.statistical_distance).filter(|value| value.is_finite())),
+            solution.reason.clone().unwrap_or_default(),
+            solution.caps.iter().map(|cap| cap.code).collect::<Vec<_>>().join(" "),
+        ]);
+    }
+    table
+}
+
+fn sensitivity(found: &Sensitivity) -> Table {
+    let mut table = Table::new(["quantity", "value", "numerical_error"]);
+    for (lever, elasticity) in &found.elasticities.0 {
+        let of = |number: fn(&hadar::policy::elasticity::Elasticity) -> f64| {
+            optional(elasticity.as_ref().map(number))
+        };
+        table.push(vec![format!("elasticity_{}", lever.key()), of(|e| e.value), of(|e| e.error)]);
+    }
+    let of = &found.emissivity;
+    let rows = [
+        ("emissivity_error", Some(of.error)),
+        ("emissivity_correlation_cm1", Some(of.correlation_cm1)),
+        ("distance", Some(of.distance)),
+        ("distance_5", Some(of.distance_5)),
+        ("distance_50", Some(of.distance_50)),
+        ("distance_95", Some(of.distance_95)),
+        ("share_met", Some(of.share_met)),
+        ("sigma_linear", of.sigma_linear),
+    ];
+    for (name, value) in rows {
+        table.push(vec![name.into(), optional(value), String::new()]);
+    }
+    table
+}

@@ -1,0 +1,85 @@
+//! What can be asked of a library besides the distances to the target, and the answers together.
+
+use crate::study::{Apart, BandsThatMatter, Exact, Identification, Matrix, Scaling, Study, Trial, Warning};
+use hadar::demand::{self, Ledger, Skipping, Thing, if_asked};
+use hadar::error::Result;
+
+/// What is asked besides the distances to every alternative: nothing else is computed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Asked {
+    /// All materials against all.
+    pub matrix: bool,
+    /// Only which of them can be told apart.
+    pub apart: bool,
+    /// Whether pairs that a cheap bound decides are skipped.
+    pub skipping: Skipping,
+    /// The scaling laws.
+    pub scaling: bool,
+    /// Which bands matter, and the best so many single bands and contiguous filters.
+    pub bands: Option<(Option<usize>, Option<usize>)>,
+    /// What a test that knows no state achieves, by simulation.
+    pub exact: Option<Trial>,
+}
+
+/// The distances to every alternative and whatever else was asked for, in one object.
+#[derive(Debug, Clone, serde::Serialize)]
+pub struct Answers {
+    /// The target against every alternative.
+    #[serde(flatten)]
+    pub identification: Identification,
+    /// All materials against all.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub matrix: Option<Matrix>,
+    /// Which of them can be told apart.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub apart: Option<Apart>,
+    /// The scaling laws.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub scaling: Option<Scaling>,
+    /// The bands that matter.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bands_that_matter: Option<BandsThatMatter>,
+    /// Simulated decisions.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub exact: Option<Exact>,
+}
+
+impl Study {
+    /// Answers all that is asked, and computes no more. `progress` is called with the simulated pairs done and
+    /// their number.
+    ///
+    /// # Errors
+    /// As [`Study::identify`], [`Study::matrix`] and [`Study::told_apart`].
+    pub fn answer(&self, asked: &Asked, progress: &dyn Fn(usize, usize)) -> Result<Answers> {
+        let ledger = Ledger::open();
+        let section = Thing::Sections;
+        let mut identification = self.identify()?;
+        demand::add(&identification.stats);
+        demand::computed(section, 1);
+        if asked.matrix && self.unknowns.has_priors() {
+            let message = "the matrix's distances per sqrt(photon) are those of many photons, where priors count for nothing; \
+                           its statistical distances have them";
+            identification.warnings.push(Warning::new("matrix-priors", message));
+        }
+        let matrix = if_asked(asked.matrix, section, 1, || self.matrix())?;
+        if let Some(stopped) = matrix.as_ref().map(|matrix| matrix.unconverged).filter(|&stopped| stopped > 0)
+        {
+            let message = format!("{stopped} searches for the nearest states of the matrix stopped early");
+            identification.warnings.push(Warning::new("nearest-not-converged", message));
+        }
+        let exact = if_asked(asked.exact.is_some(), section, 1, || {
+            asked.exact.map(|trial| self.exact(&trial, progress)).transpose()
+        })?;
+        let exact = exact.flatten();
+        if let (Some(exact), Some(trial)) = (&exact, asked.exact) {
+            identification.warnings.extend(exact.ended_early(&trial.plan));
+        }
+        let apart = if_asked(asked.apart, section, 1, || self.told_apart(asked.skipping))?;
+        let scaling = if_asked(asked.scaling, section, 1, || self.scaling())?;
+        let (bands, filters) = asked.bands.unwrap_or_default();
+        let bands_that_matter =
+            if_asked(asked.bands.is_some(), section, 1, || self.bands_that_matter(bands, filters))?;
+        identification.stats = ledger.close();
+        Ok(Answers { identification, matrix, apart, scaling, bands_that_matter, exact })
+    }
+}

@@ -1,0 +1,229 @@
+//! Names and files of a ranging scenario looked up: camera, bands, scene or cubes.
+
+use super::RangeStudy;
+use super::subject::{Depth, Measured, Rendered, Resolved};
+use crate::scenario::range::{CubeSpec, DepthSource, NoiseSource, SceneSpec, Subject};
+use crate::scenario::{MaterialRef, RangeScenario};
+use crate::study::{bands, camera};
+use hadar::error::{Error, Result};
+use hadar::fisher::Counting;
+use hadar::instrument::{Camera, Readout, View};
+use hadar::material::{Library, Material};
+use hadar::ranging::cube::{Cube, Shape};
+use hadar::ranging::depth::StereoGeometry;
+use hadar::ranging::noise::NoiseVariance;
+use hadar::render::{Emissivity, Options, Rig, Scene, StreetSpec};
+use hadar::spectrum::Bands;
+
+/// Samples of a rendered view that are held at a time, four times over.
+const MOST_SAMPLES: f64 = 2e8;
+
+impl RangeStudy {
+    /// Looks up everything that `scenario` names, materials in `library`, and opens its cubes.
+    ///
+    /// # Errors
+    /// An unknown material or camera, a file that cannot be used, views or noise that do not fit each other; each with file, line
+    /// and key.
+    pub fn new(scenario: &RangeScenario, library: &Library) -> Result<Self> {
+        let source = &scenario.source;
+        let camera = scenario.camera.as_ref().map(|spec| camera::resolved(spec, source)).transpose()?;
+        let bands = scenario.bands.as_ref().map(|spec| bands::at_centres(spec, source)).transpose()?;
+        let bands = match (&camera, bands) {
+            (Some(camera), Some(bands)) => Some(camera.received(&bands)),
+            (_, bands) => bands,
+        };
+        if camera.as_ref().is_some_and(|camera| camera.readout == Readout::FourierTransform) {
+            let found =
+                "an interferometer mixes all bands in every reading, which the depth bounds do not know";
+            let instead = "write readout = \"simultaneous\", or give the cube with its noise_variance";
+            return Err(Error::malformed(found, instead).at(scenario.place("camera.readout")));
+        }
+        let length = |own: Option<f64>, from: Option<f64>| own.or(from).unwrap_or(f64::NAN);
+        let stereo = &scenario.stereo;
+        let geometry = StereoGeometry::new(
+            stereo.baseline_m,
+            length(stereo.focal_length_m, camera.as_ref().map(|camera| camera.focal_length_m)),
+            length(stereo.pixel_m, camera.as_ref().map(|camera| camera.pixel_m)),
+        )
+        .map_err(|error| error.at(scenario.place("stereo")))?;
+        let subject = match &scenario.subject {
+            Subject::Scene(spec) => {
+                let (Some(camera), Some(bands)) = (&camera, &bands) else {
+                    let found = Error::malformed("a scene without camera", "write [camera]");
+                    return Err(found.at(scenario.place("scene")));
+                };
+                Resolved::Scene(Box::new(scene(spec, scenario, library, camera, bands)?))
+            }
+            Subject::Cube(spec) => {
+                Resolved::Cube(Box::new(cube(spec, scenario, camera.as_ref(), bands.as_ref())?))
+            }
+        };
+        Ok(Self { scenario: scenario.clone(), camera, bands, geometry, subject, looked_up: library.work() })
+    }
+}
+
+fn scene(
+    spec: &SceneSpec,
+    scenario: &RangeScenario,
+    library: &Library,
+    camera: &Camera,
+    bands: &Bands,
+) -> Result<Rendered> {
+    let mut street = StreetSpec::default();
+    let set = |to: &mut f64, from: Option<f64>| *to = from.unwrap_or(*to);
+    set(&mut street.ground_k, spec.ground_temperature_k);
+    set(&mut street.sky_k, spec.sky_temperature_k);
+    set(&mut street.car_k, spec.car_temperature_k);
+    set(&mut street.person_k, spec.person_temperature_k);
+    set(&mut street.car_at_m[1], spec.car_distance_m);
+    set(&mut street.person_at_m[1], spec.person_distance_m);
+    if let Some(ends) = spec.ground_emissivity {
+        street.ground_emissivity = ends.map(Emissivity::Constant);
+    }
+    let found = |key: &str, material: &MaterialRef| -> Result<Emissivity> {
+        let place = || scenario.place(&format!("scene.{key}"));
+        let emissivity = match material {
+            MaterialRef::Name(name) => {
+                library.get(name).and_then(|found| found.emissivity(bands.nodes_cm1()))
+            }
+            MaterialRef::File(path) => {
+                Material::from_file(path).and_then(|read| read.emissivity(bands.nodes_cm1()))
+            }
+        };
+        Ok(Emissivity::Spectrum(emissivity.map_err(|error| error.at(place()))?))
+    };
+    if let Some(material) = &spec.car {
+        street.car_emissivity = found("car", material)?;
+    }
+    if let Some(material) = &spec.person {
+        street.person_emissivity = found("person", material)?;
+    }
+    let mut options = Options::default();
+    if let Some(bounces) = spec.bounces {
+        options.bounces = bounces as usize;
+    }
+    let mut rig = Rig {
+        baseline_m: scenario.stereo.baseline_m,
+        focal_length_m: camera.focal_length_m,
+        pixel_m: camera.pixel_m,
+        ..Rig::default()
+    };
+    if let Some([rows, columns]) = spec.size {
+        (rig.rows, rig.columns) = (rows, columns);
+    }
+    let at_scene = |error: Error| error.at(scenario.place("scene"));
+    let scene = Scene::street(&street).map_err(at_scene)?;
+    let samples = rig.rows as f64 * rig.columns as f64 * bands.len() as f64;
+    if samples > MOST_SAMPLES {
+        let found = format!("{} x {} pixels in {} bands", rig.rows, rig.columns, bands.len());
+        let instead =
+            format!("lower scene.size or the number of bands: {MOST_SAMPLES:e} samples fit into memory");
+        return Err(at_scene(Error::malformed(found, instead)));
+    }
+    let counting = camera.counting(bands, &View::default());
+    let noise = camera_noise(&counting, bands.len());
+    Ok(Rendered { scene, rig: rig.checked().map_err(at_scene)?, options, counting, noise })
+}
+
+/// The camera's noise in every band.
+pub(super) fn camera_noise(counting: &Counting, bands: usize) -> NoiseVariance {
+    let var: Vec<f64> = (0..bands).map(|w| counting.var_added(w)).collect();
+    match var.as_slice() {
+        [first, rest @ ..] if rest.iter().all(|var| var == first) => match *first {
+            0.0 => NoiseVariance::None,
+            var => NoiseVariance::Uniform(var),
+        },
+        _ => NoiseVariance::PerBand(var),
+    }
+}
+
+fn cube(
+    spec: &CubeSpec,
+    scenario: &RangeScenario,
+    camera: Option<&Camera>,
+    bands: Option<&Bands>,
+) -> Result<Measured> {
+    // An error that names a file has no line of the scenario.
+    let at = |key: &'static str| {
+        move |error: Error| match &error {
+            Error::At { place, .. } if place.path.is_some() => error.for_key(key),
+            _ => error.at(scenario.place(key)),
+        }
+    };
+    let open = |key: &'static str, path: &std::path::Path| {
+        Cube::open(path, spec.variable.as_deref()).map_err(at(key))
+    };
+    let left = open("cube.left", &spec.left)?;
+    let shape = left.shape();
+    let right = spec.right.as_deref().map(|path| open("cube.right", path)).transpose()?;
+    if let Some(found) = right.as_ref().map(Cube::shape)
+        && found != shape
+    {
+        let error = Error::malformed(
+            format!("the right view has {}, the left one {}", dimensions(found), dimensions(shape)),
+            "give two views of one size and the same bands",
+        );
+        return Err(at("cube.right")(error));
+    }
+    if let Some(bands) = bands
+        && bands.len() != shape.bands()
+    {
+        let error = Error::malformed(
+            format!("[bands] are {}, the cube has {}", bands.len(), shape.bands()),
+            "make them those of the cube, or leave [bands] out",
+        );
+        return Err(at("bands")(error));
+    }
+    let noise = match (&spec.noise, camera) {
+        (Some(NoiseSource::Uniform(0.0)), _) => NoiseVariance::None,
+        (Some(NoiseSource::Uniform(var)), _) => NoiseVariance::Uniform(*var),
+        (Some(NoiseSource::File(path)), _) => {
+            NoiseVariance::from_file(path, shape).map_err(at("cube.noise_variance"))?
+        }
+        (None, Some(camera)) => {
+            let Some(bands) = bands else {
+                let found = "the camera's noise depends on the bands, which are not given";
+                let instead = "write [bands], or noise_variance in [cube]";
+                return Err(at("cube.noise_variance")(Error::malformed(found, instead)));
+            };
+            camera_noise(&camera.counting(bands, &View::default()), bands.len())
+        }
+        (None, None) => NoiseVariance::None,
+    };
+    let depth = match &spec.depth {
+        None => None,
+        Some(DepthSource::Uniform(depth_m)) => Some(Depth::Uniform(*depth_m)),
+        Some(DepthSource::File(path)) => {
+            let depth = Cube::open(path, None).map_err(at("cube.depth"))?;
+            Some(Depth::Map(depth_map(&depth, shape).map_err(at("cube.depth"))?))
+        }
+    };
+    Ok(Measured { left, right, noise, photons_per_unit: spec.photons_per_unit, depth })
+}
+
+fn depth_map(depth: &Cube, shape: Shape) -> Result<Vec<f64>> {
+    let found = depth.shape();
+    if (found.rows(), found.columns(), found.bands()) != (shape.rows(), shape.columns(), 1) {
+        return Err(Error::malformed(
+            format!("the depths are {}, the view is {}", dimensions(found), dimensions(shape)),
+            "give one depth per pixel of the left view",
+        ));
+    }
+    let mut map = Vec::with_capacity(shape.rows() * shape.columns());
+    match depth {
+        Cube::F32(rows) => {
+            map.extend(rows.read(0..shape.rows(), &mut Vec::new())?.iter().map(|z| f64::from(*z)))
+        }
+        Cube::F64(rows) => map.extend_from_slice(rows.read(0..shape.rows(), &mut Vec::new())?),
+    }
+    // What is not known, as such maps have it, is not above 0; nothing else is wrong with a depth.
+    map.iter_mut().filter(|z| z.is_nan() || **z <= 0.0).for_each(|z| *z = f64::NAN);
+    if map.iter().all(|z| z.is_nan()) {
+        return Err(Error::malformed("no depth is above 0 m", "give depths in metres"));
+    }
+    Ok(map)
+}
+
+fn dimensions(shape: Shape) -> String {
+    format!("{} rows, {} columns, {} bands", shape.rows(), shape.columns(), shape.bands())
+}

@@ -1,0 +1,243 @@
+//! The answer in a sentence, what diffraction adds, and what the reader must know.
+
+use super::results::{BoundMaps, DepthVerdict, ObjectBounds, Ranging, Signal, SignalBounds};
+use super::subject::{Depth, Resolved};
+use super::{RangeStudy, SECTIONS};
+use crate::scenario::range::Demand;
+use crate::study::Warning;
+use hadar::demand::{Reason, Thing};
+use hadar::error::Result;
+use hadar::ranging::cube::Shape;
+use hadar::ranging::information::Cell;
+use hadar::ranging::information::decide::{Stats, decide};
+use hadar::ranging::noise::Joined;
+use hadar::words::{self, significant};
+use std::f64::consts::PI;
+
+/// A gain of the scattered signal over the heat cube by more than rounding.
+const BEYOND: f64 = 1.0 + 1e-9;
+
+impl RangeStudy {
+    /// σ_d², pixel²: the diffraction that the image does not have in it. The pixel's own size is in the image: it is a mean
+    /// over pixels.
+    pub(super) fn var_diffraction_px2(&self) -> Result<f64> {
+        let aperture_m =
+            self.camera.as_ref().map_or(f64::NAN, |camera| camera.focal_length_m / camera.f_number);
+        let var_m2 = self
+            .var_diffraction_m2(aperture_m)
+            .map_err(|error| error.at(self.scenario.place("stereo.diffraction")))?;
+        let pitch = self.geometry.pitch_m();
+        Ok(var_m2 / (pitch * pitch))
+    }
+
+    /// Yes or no by proofs alone: for a cube of one depth and one view, where every window has the same requirement. `None` where
+    /// it takes the bounds themselves. Samples that no proof needed are not checked.
+    pub(super) fn verdict_alone(&self, shape: Shape) -> Result<Option<Ranging>> {
+        let Resolved::Cube(cube) = &self.subject else { return Ok(None) };
+        let (Some(Depth::Uniform(depth_m)), None) = (&cube.depth, &cube.right) else { return Ok(None) };
+        let var_diffraction_px2 = self.var_diffraction_px2()?;
+        if var_diffraction_px2 != 0.0 || self.scenario.stereo.joined == Joined::OneReading {
+            return Ok(None);
+        }
+        let requirement = self.scenario.requirement;
+        let allowed_px = requirement.error.at(*depth_m) / self.geometry.depth_error_m(*depth_m, 1.0)?;
+        let noise = cube.noise_per_unit()?;
+        let request = self.request(noise.as_ref().unwrap_or(&cube.noise), &[Cell::Full], shape);
+        // δd² = 2/J ≤ allowed².
+        let required = 2.0 / (allowed_px * allowed_px) / cube.photons_per_unit;
+        let decision = decide(&cube.left, &request, required)
+            .map_err(|error| error.at(self.scenario.place("cube.left")))?;
+        let windows = decision.above.len();
+        let share = decision.above.iter().filter(|above| **above).count() as f64 / windows.max(1) as f64;
+        let met = share >= requirement.share;
+        let verdict = DepthVerdict {
+            met: Some(met),
+            sentence: self.sentence(met, share, Signal::HeatCube, None),
+            share: Some(share),
+            required_share: requirement.share,
+            signal: Signal::HeatCube,
+        };
+        let mut stats = self.looked_up.clone().and(&decision.stats.work(shape.len()));
+        stats.compute(Thing::Sections, 1);
+        stats.spare(Thing::Sections, Reason::NotAsked, SECTIONS - 1);
+        Ok(Some(Ranging {
+            scenario: self.scenario.clone(),
+            verdict,
+            shape,
+            geometry: self.geometry(var_diffraction_px2)?,
+            objects: Vec::new(),
+            cells: None,
+            solve_for: None,
+            lines: Vec::new(),
+            matched: Vec::new(),
+            stats,
+            warnings: self.unseen(&decision.stats, shape, required * cube.photons_per_unit),
+            maps: BoundMaps::default(),
+        }))
+    }
+
+    /// What proofs leave unsaid: samples that were not looked at, and the noise that measured counts have of their own.
+    fn unseen(&self, stats: &Stats, shape: Shape, required_per_px2: f64) -> Vec<Warning> {
+        let mut warnings = Vec::new();
+        if stats.samples_evaluated < stats.samples_total {
+            let message = format!(
+                "{} of {} samples decided; the others were not looked at, nor checked for counts that are none: --no-skip does",
+                stats.samples_evaluated, stats.samples_total
+            );
+            warnings.push(Warning::new("samples-not-checked", message));
+        }
+        let floor = noise_floor(self, shape);
+        if floor > 0.02 * required_per_px2 {
+            let message = format!(
+                "if these counts are measured, their own noise makes an information of {} pixel^-2 of the {} demanded: give expected counts",
+                short(floor),
+                short(required_per_px2)
+            );
+            warnings.push(Warning::new("noise-in-counts", message));
+        }
+        warnings
+    }
+
+    pub(super) fn verdict(&self, all: Option<&ObjectBounds>) -> Result<DepthVerdict> {
+        let by = |signal: Signal| all.and_then(|all| all.signals.iter().find(|found| found.signal == signal));
+        // Bands joined in the detector are read once: with much noise the image then tells more than the cube.
+        let share_of = |signal: Signal| by(signal).and_then(|found| found.share).unwrap_or(-1.0);
+        let image_tells_more = self.scenario.stereo.joined == Joined::OneReading
+            && share_of(Signal::ThermalImage) > share_of(Signal::HeatCube);
+        let signal = if image_tells_more { Signal::ThermalImage } else { Signal::HeatCube };
+        let cube = by(signal);
+        let share = cube.and_then(|found| found.share);
+        let required = self.scenario.requirement.share;
+        let met = share.map(|share| share >= required);
+        let sentence = match (met, cube) {
+            (Some(met), Some(_)) => {
+                let other = if image_tells_more { Signal::HeatCube } else { Signal::ThermalImage };
+                self.sentence(met, share.unwrap_or(f64::NAN), signal, by(other))
+            }
+            (None, Some(cube)) => format!(
+                "A window's disparity can be known to {} pixels at best (median, heat cube); give the depth for what that means in metres.",
+                short(cube.disparity_error_px)
+            ),
+            (_, None) => "No window has a bound.".to_owned(),
+        };
+        Ok(DepthVerdict { met, sentence, share, required_share: required, signal })
+    }
+
+    fn sentence(&self, met: bool, share: f64, signal: Signal, other: Option<&SignalBounds>) -> String {
+        let requirement = self.scenario.requirement;
+        let beside = other.and_then(|other| Some((other.signal, other.share?)));
+        let beside = beside.map_or_else(String::new, |(signal, share)| {
+            let name = match signal {
+                Signal::ThermalImage => "thermal image, all bands together,",
+                _ => "heat cube, all bands apart,",
+            };
+            format!("; a {name} allows it in {}", words::share(share))
+        });
+        format!(
+            "{}: depth can be measured to within {} in {} of the windows at best, by the {} ({} demanded){beside}.",
+            if met { "Yes" } else { "No" },
+            demand(requirement.error),
+            words::share(share),
+            signal.name(),
+            words::share(requirement.share),
+        )
+    }
+}
+
+/// What is demanded, in words.
+pub fn demand(error: Demand) -> String {
+    match error {
+        Demand::Absolute(error_m) => words::length(error_m),
+        Demand::Relative(share) => format!("{} % of it", significant(100.0 * share, 3)),
+    }
+}
+
+fn short(value: f64) -> String {
+    significant(value, 2)
+}
+
+/// What the reader must know.
+pub(super) fn warnings(study: &RangeStudy, result: &Ranging) -> Vec<Warning> {
+    let mut warnings = Vec::new();
+    let Some(all) = result.objects.first() else { return warnings };
+    let by = |signal: Signal| all.signals.iter().find(|found| found.signal == signal);
+    if let (Some(cube), Some(alone)) = (by(Signal::HeatCube), by(Signal::ScatteredAsMeasured))
+        && alone.disparity_error_px * BEYOND < cube.disparity_error_px
+    {
+        warnings.push(Warning::new(
+            "scattered-as-measured",
+            format!(
+                "the scattered signal as if measured promises {} times less error than the heat cube holds: the photons that are emitted are \
+                 left out there, and no processing of the cube reaches it",
+                short(cube.disparity_error_px / alone.disparity_error_px)
+            ),
+        ));
+    }
+    if let (Some(full), Some(brightest)) =
+        (study.camera.as_ref().and_then(|camera| camera.full_well), result.maps.brightest)
+        && brightest > full
+    {
+        let message = format!(
+            "the brightest band of the brightest pixel holds {} photons, the well {}: shorten the exposure",
+            short(brightest),
+            short(full)
+        );
+        warnings.push(Warning::new("full-well", message));
+    }
+    if let Resolved::Cube(_) = &study.subject
+        && let Some(cube) = by(Signal::HeatCube)
+    {
+        let floor = noise_floor(study, result.shape);
+        if floor > 0.02 * cube.information_per_px2 {
+            warnings.push(Warning::new(
+                "noise-in-counts",
+                format!(
+                    "if these counts are measured, their own noise makes an information of {} pixel^-2 of the {} that were found (median): give expected \
+                     counts, or averages of many frames",
+                    short(floor),
+                    short(cube.information_per_px2)
+                ),
+            ));
+        }
+        if result.objects.iter().all(|object| object.depth_m.is_none()) {
+            let message = "no depth is given: the bounds are on disparity; write depth = \"12 m\" or a file of depths in [cube]";
+            warnings.push(Warning::new("no-depth", message));
+        }
+    }
+    if let Some(ratio) = result.cells.and_then(|cells| cells.other_derivative)
+        && !(0.5..=2.0).contains(&ratio)
+    {
+        warnings.push(Warning::new(
+            "derivative",
+            format!(
+                "texture near the limit of the pixels: another derivative gives {} times the information; bounds are uncertain by the square root of that",
+                short(ratio)
+            ),
+        ));
+    }
+    let bands = study.bands.as_ref().map_or(0, hadar::spectrum::Bands::len);
+    if bands < 3 && by(Signal::Reconstructed).is_some() {
+        let message = match bands {
+            2 => "two bands cannot tell temperature, strength of the emission and scattered light apart",
+            _ => {
+                "one band cannot tell emission from scattered light: nothing is left where the temperature is estimated"
+            }
+        };
+        warnings.push(Warning::new("few-bands", message));
+    }
+    warnings
+}
+
+/// Information that noise of N + σ² in each sample would make, pixel⁻²: Σ of the squared taps for every sample.
+fn noise_floor(study: &RangeStudy, shape: Shape) -> f64 {
+    // By Parseval: the mean of (ω·response)² over all frequencies.
+    const FREQUENCIES: usize = 1000;
+    let scheme = study.scenario.stereo.derivative;
+    let squared = |i: usize| {
+        let omega = PI * (i as f64 + 0.5) / FREQUENCIES as f64;
+        (omega * scheme.response(omega).unwrap_or(f64::NAN)).powi(2)
+    };
+    let per_sample = (0..FREQUENCIES).map(squared).sum::<f64>() / FREQUENCIES as f64;
+    let window = study.scenario.stereo.window;
+    per_sample * (window.rows() * window.columns() * shape.bands()) as f64
+}

@@ -1,0 +1,54 @@
+//! Numbers that a scene and a camera could have.
+//!
+//! Every value was checked by itself when it was read. Here they are checked together, in the unit in which they are
+//! used: a slip of the pen such as an exposure of 10²⁰⁰ s is told as such, before its square is no longer a number.
+
+use crate::study::Study;
+use hadar::error::{Error, Result};
+use std::ops::{Range, RangeInclusive};
+
+/// Photons, and noise in counts.
+const PHOTONS: Range<f64> = 1e-60..1e60;
+/// Statistical distance demanded.
+const DISTANCE: Range<f64> = 1e-9..1e9;
+/// Temperatures, K.
+const TEMPERATURE_K: RangeInclusive<f64> = 1e-6..=1e6;
+
+impl Study {
+    /// Numbers that a scene could have, a target that radiates at all, a camera whose noise can be squared.
+    pub(in crate::study) fn check_magnitudes(&self) -> Result<()> {
+        let objects = self.scenario.environment.iter().enumerate();
+        let objects =
+            objects.map(|(k, object)| (format!("environment[{k}].temperature"), object.temperature_k));
+        let target = ("target.temperature".to_owned(), self.scenario.target.temperature_k);
+        for (key, kelvin) in std::iter::once(target).chain(objects) {
+            if !TEMPERATURE_K.contains(&kelvin) {
+                let error = Error::out_of_range("temperature", kelvin, "K", "between 1e-6 and 1e6 K");
+                return Err(error.at(self.scenario.place(&key)));
+            }
+        }
+        if !DISTANCE.contains(&self.required) {
+            let error =
+                Error::out_of_range("statistical distance", self.required, "", "between 1e-9 and 1e9");
+            return Err(error.at(self.scenario.place("requirement.distance")));
+        }
+        let radiance = self.photon_radiance();
+        if !(radiance > 0.0 && radiance.is_finite()) {
+            let expected = "above 0: a warmer scene, or bands at lower wavenumbers";
+            let unit = "photons s^-1 m^-2 sr^-1";
+            return Err(Error::out_of_range("photon radiance of the target", radiance, unit, expected)
+                .at(self.scenario.place("target.temperature")));
+        }
+        let Some(counting) = self.counting() else { return Ok(()) };
+        let photons = counting.counts_per_radiance * radiance;
+        let noise = counting.var_added.iter().copied().fold(0.0, f64::max).sqrt();
+        if PHOTONS.contains(&photons) && noise < PHOTONS.end {
+            return Ok(());
+        }
+        Err(Error::malformed(
+            format!("the camera would count {photons:.0e} photons with a noise of {noise:.0e}"),
+            "check the units of its exposure, pixel, noise and frames",
+        )
+        .at(self.scenario.place("camera")))
+    }
+}

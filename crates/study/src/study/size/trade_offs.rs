@@ -1,0 +1,42 @@
+//! Two quantities at a time, for the scenario's camera and the limiting alternative.
+
+use crate::study::Study;
+use crate::study::size::{Reach, Sizing};
+use hadar::demand;
+use hadar::error::Result;
+use hadar::policy::caps::Circumstances;
+use hadar::policy::trade_off::{self, PAIRS, TradeOff};
+use hadar::policy::{Motion, Quantity, Trial};
+use rayon::prelude::*;
+
+impl Study {
+    /// The trade-off curves of the pairs in [`trade_off::PAIRS`], against the limiting alternative of `result`; none
+    /// without a camera. Those of a speed are left out where the scenario does not say enough for one, those of noise
+    /// where the detector has none, those of distance where nothing depends on it (neither size nor air).
+    ///
+    /// # Errors
+    /// As [`Study::size`].
+    pub fn trade_offs(&self, result: &Sizing) -> Result<Vec<TradeOff>> {
+        let (Some(camera), Some(alternative)) = (&self.camera, self.alternative(&result.limiting)) else {
+            return Ok(Vec::new());
+        };
+        let task = self.task(camera);
+        let as_now = result.verdict.statistical_distance.unwrap_or(0.0);
+        let known = |pair: &&(Quantity, Quantity)| match pair.1 {
+            Quantity::Speed => Motion::of(camera, task.distance_m).is_some(),
+            Quantity::Noise => task.value(Quantity::Noise) > 0.0,
+            // Else distance does not matter.
+            Quantity::Frames => task.size_m.is_some() || self.scenario.atmosphere.is_some(),
+            _ => true,
+        };
+        let pairs: Vec<_> = PAIRS.iter().filter(known).collect();
+        let traced = |pair| {
+            let brightest = |trial: &Trial| self.brightest(trial);
+            let speed_m_s = self.scenario.requirement.speed_m_s;
+            let given = Circumstances { bands: &self.bands, speed_m_s, brightest: &brightest };
+            let mut reach = Reach::new(self, alternative);
+            trade_off::trace(&task, pair, as_now, &given, &mut |task, quantity| reach.solve(task, quantity))
+        };
+        demand::gathered(pairs.into_par_iter().map(|pair| demand::ledger_of(|| traced(*pair))))
+    }
+}
