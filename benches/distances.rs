@@ -1,4 +1,4 @@
-//! How long a distance takes: one pair, a map over temperature and lighting, nearest states, a library of materials.
+//! How long a distance takes: one pair, nearest states, a library of materials.
 //!
 //! `cargo bench --bench distances`. The cases are those a NumPy user would vectorise; the first includes
 //! everything (Planck, scores, orthogonalisation), with temperature and lighting unknown over 536 bands.
@@ -8,7 +8,6 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use hadar::demand::ledger_of;
 use hadar::fisher::{Counting, Nuisance, Unknowns};
 use hadar::identifiability::local::LocalSolver;
-use hadar::identifiability::map::{MapPoint, MapScene};
 use hadar::identifiability::multi::{LibraryScene, LocalMatrix, Skipping};
 use hadar::identifiability::nearest::{NearestSolver, StateRange};
 use hadar::planck::photon_radiance;
@@ -46,17 +45,6 @@ fn distances(criterion: &mut Criterion) {
         bencher.iter(|| nearest.per_photon(black_box(&skin), black_box(&robot), &state, f64::INFINITY));
     });
 
-    let scene = MapScene {
-        bands: &bands,
-        surroundings: &surroundings,
-        unknowns: &unknowns,
-        emissivity: &skin,
-        alternative: &robot,
-        state: &state,
-    };
-    let temperatures: Vec<f64> = (0..300).map(|i| 280.0 + 60.0 * f64::from(i) / 299.0).collect();
-    let lightings: Vec<f64> = (0..300).map(|i| 0.01 + 0.98 * f64::from(i) / 299.0).collect();
-    let sum = |points: Vec<MapPoint>| points.iter().map(|point| point.distance).sum::<f64>();
     let result =
         |name: &str, value: hadar::Result<f64>| println!("{name}: {:.12}", value.expect("a valid scene"));
     let mut once = LocalSolver::new(&bands, &surroundings, unknowns.clone());
@@ -65,14 +53,6 @@ fn distances(criterion: &mut Criterion) {
         "nearest",
         nearest.per_photon(&skin, &robot, &state, f64::INFINITY).map(|nearest| nearest.distance),
     );
-    result("sum of the map", scene.local(&temperatures, &lightings).map(sum));
-
-    let mut group = criterion.benchmark_group("maps");
-    group.sample_size(20);
-    group.bench_function("local distance, 300 x 300 map", |bencher| {
-        bencher.iter(|| scene.local(black_box(&temperatures), &lightings));
-    });
-    group.finish();
 }
 
 /// Thirty made-up materials.

@@ -6,12 +6,13 @@
 //!
 //!   operations/rate,   divisions/rate,   bytes/bandwidth
 //!
-//! with the least it has to do by its own equations, written beside the code below (estimates for map, nearest state and windows). What all three do at
-//! once is not counted, neither are shuffles, calls, allocations and the folding of sums: a ratio of 1 is out of reach.
+//! with the least it has to do by its own equations, written beside the code below (estimates for nearest state and
+//! windows). What all three do at once is not counted, neither are shuffles, calls, allocations and the folding of sums: a
+//! ratio of 1 is out of reach.
 
 mod kernels;
 
-use kernels::{BANDS, CUBE, MATERIALS, ROW, Scene};
+use kernels::{BANDS, CUBE, MATERIALS, Scene};
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -170,10 +171,6 @@ fn works() -> Vec<Work> {
     let signal_and_columns = 16.0;
     // Of n columns: u a, inner products, taken off the later ones; the last once more.
     let orthogonal = |n: f64| n + n * (n + 1.0) / 2.0 + n * (n - 1.0) / 2.0 + n + 1.0;
-    // A map's row: three evaluations, four columns, and at 6 nodes 1/S and ten inner products; a point: ten
-    // polynomials of 6 terms, an elimination.
-    let (nodes, row) = (6.0, ROW as f64);
-    let in_row = two_temperatures + 3.0 * 10.0 + 6.0 + orthogonal(4.0) + nodes * 15.0;
     let materials = MATERIALS as f64;
     // A target's own: S, columns, contrast, orthogonalisation, m and kᵢ.
     let of_target = signal_and_columns + orthogonal(2.0) + 8.0;
@@ -201,16 +198,6 @@ fn works() -> Vec<Work> {
             divisions: 2.0 * bands,
             // ν, e, e′; four arrays written, read three times, three of them written twice more.
             cache_bytes: (24.0 + 32.0 + 96.0 + 24.0) * bands,
-            memory_bytes: 0.0,
-        },
-        Work {
-            kernel: "map row",
-            unit: "point of a map",
-            units: 8.0 * row,
-            calls: 10,
-            operations: in_row * bands / row + 10.0 * nodes + 30.0,
-            divisions: (3.0 + nodes) * bands / row + 4.0,
-            cache_bytes: (300.0 + 48.0 * nodes) * bands / row + 40.0,
             memory_bytes: 0.0,
         },
         Work {

@@ -5,7 +5,6 @@
 
 use hadar::fisher::{Nuisance, Unknowns};
 use hadar::identifiability::local::LocalSolver;
-use hadar::identifiability::map::MapScene;
 use hadar::identifiability::multi::LocalMatrix;
 use hadar::identifiability::nearest::{NearestSolver, StateRange};
 use hadar::identifiability::ratio::RatioLaw;
@@ -22,11 +21,10 @@ use std::hint::black_box;
 
 /// Names of the kernels, in the order of the tables.
 #[allow(dead_code, reason = "not every bench names them all")]
-pub const NAMES: [&str; 9] = [
+pub const NAMES: [&str; 8] = [
     "planck spectrum",
     "planck difference",
     "local pair",
-    "map row",
     "local matrix",
     "nearest",
     "window information",
@@ -34,9 +32,8 @@ pub const NAMES: [&str; 9] = [
     "poisson draws",
 ];
 
-/// Bands of the spectra, points of a map's row, materials of the library, samples of the cube.
+/// Bands of the spectra, materials of the library, samples of the cube.
 pub const BANDS: usize = 536;
-pub const ROW: usize = 300;
 pub const MATERIALS: usize = 30;
 pub const CUBE: [usize; 3] = [32, 64, 54];
 
@@ -98,16 +95,6 @@ impl Scene {
                     );
                 })
             }
-            "map row" => {
-                let lightings: Vec<f64> =
-                    (0..ROW).map(|i| 0.01 + 0.98 * i as f64 / (ROW - 1) as f64).collect();
-                Box::new(move |call| {
-                    // Eight rows at a time: setting up a map is no part of a row.
-                    let temperatures: Vec<f64> =
-                        (0..8).map(|i| 310.0 + (8 * (call % 2) + i) as f64).collect();
-                    black_box(self.map().local(&temperatures, &lightings).expect("sound"));
-                })
-            }
             "local matrix" => {
                 let library: Vec<Vec<f64>> = (0..MATERIALS).map(|i| self.made_up(i)).collect();
                 let mut matrix = LocalMatrix::new(&self.bands, &self.surroundings, self.unknowns.clone());
@@ -160,17 +147,6 @@ impl Scene {
             }
             _ => return None,
         })
-    }
-
-    fn map(&self) -> MapScene<'_> {
-        MapScene {
-            bands: &self.bands,
-            surroundings: &self.surroundings,
-            unknowns: &self.unknowns,
-            emissivity: &self.skin,
-            alternative: &self.robot,
-            state: &self.state,
-        }
     }
 
     /// The made-up materials of `distances.rs`.

@@ -37,25 +37,6 @@ def local(temperature_k, lighting):
     return 0.5 * np.linalg.norm(score - basis @ (basis.T @ score))
 
 
-def local_map(temperatures_k, lightings):
-    """Sum of d0 over a grid; a row of the grid at a time, Gram-Schmidt along the bands."""
-    around, _ = radiance(surroundings_k)
-    lit = lightings[:, None] * around
-    total = 0.0
-    for temperature_k in temperatures_k:
-        body, slope = radiance(temperature_k)
-        signal = skin * body + (1.0 - skin) * lit
-        weight = 1.0 / np.sqrt(signal * signal.sum(axis=1, keepdims=True))
-        columns = [skin * slope * weight, (1.0 - skin) * around * weight, (robot - skin) * (body - lit) * weight]
-        for i, column in enumerate(columns):
-            for earlier in columns[:i]:
-                column -= np.einsum("ij,ij->i", column, earlier)[:, None] * earlier
-            if i < 2:
-                column /= np.linalg.norm(column, axis=1)[:, None]
-        total += 0.5 * np.linalg.norm(columns[2], axis=1).sum()
-    return total
-
-
 def nearest(temperature_k, lighting):
     """Half the distance to the robot's nearest state: a grid of temperatures, then Gauss-Newton."""
     around, _ = radiance(surroundings_k)
@@ -186,11 +167,9 @@ def best(function, runs):
 
 
 if __name__ == "__main__":
-    grid = np.linspace(280.0, 340.0, 300), np.linspace(0.01, 0.99, 300)
     for name, function, runs in [
         ("local, one pair", lambda: local(310.15, 0.5), 2000),
         ("nearest, one pair", lambda: nearest(310.15, 0.5), 200),
-        ("local, 300 x 300 map", lambda: local_map(*grid), 5),
         ("local, 30 x 30", lambda: local_matrix().sum(), 100),
         ("nearest, 30 x 30", lambda: nearest_matrix().sum(), 5),
         ("told apart at d = 1", lambda: told_apart(1.0), 5),

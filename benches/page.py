@@ -18,7 +18,6 @@ RUNS = 4
 CASES = [
     ("local distance, one pair, 536 bands", "local, one pair", "local distance, one pair"),
     ("nearest distance, one pair, 536 bands", "nearest, one pair", "nearest distance, one pair"),
-    ("maps/local distance, 300 x 300 map", "local, 300 x 300 map", "local distance, map of 90 000 points"),
     ("30 x 30 local matrix, 536 bands", "local, 30 x 30", "30 × 30 local matrix"),
     ("libraries/30 x 30 nearest matrix, 536 bands", "nearest, 30 x 30", "30 × 30 nearest matrix"),
 ]

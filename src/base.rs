@@ -1,8 +1,11 @@
 //! What every storey stands on: errors, units, sums, lattices, one-dimensional solvers, statistics.
 
+pub mod allowed;
 pub mod demand;
 pub mod error;
 pub mod grid;
+pub mod lattice_points;
+pub mod minimum;
 pub mod root;
 pub(crate) mod simd;
 pub mod statistics;

@@ -32,8 +32,9 @@
 //! | storey | modules | what is there |
 //! |---|---|---|
 //! | base | [`error`], [`units`], [`statistics`] | errors with place and remedy; constants and quantities; laws of counts |
-//! | | [`sum`], [`root`], [`grid`] | sums without growing error, one-dimensional solvers, files of numbers |
-//! | | [`demand`], [`words`] | what a question needs and what of it was computed; numbers in words |
+//! | | [`sum`], [`root`], [`minimum`] | sums without growing error, crossings and minima in one dimension |
+//! | | [`lattice_points`], [`grid`] | points that fill the unit cube, files of numbers |
+//! | | [`demand`], [`allowed`], [`words`] | what a question needs and what of it was computed; ranges of figures; numbers in words |
 //! | physics | [`planck`] | photon radiance of a blackbody and its differences |
 //! | | [`spectrum`] | bands: grids, filters, integrals |
 //! | | [`material`] | emissivities: rows, optical constants, library with provenance |
@@ -87,7 +88,7 @@ mod witness;
 
 pub use base::error::{Error, Result};
 pub(crate) use base::simd;
-pub use base::{demand, error, grid, root, statistics, sum, units, words};
+pub use base::{allowed, demand, error, grid, lattice_points, minimum, root, statistics, sum, units, words};
 pub use limits::{fisher, identifiability, policy, ranging};
 pub use physics::{atmosphere, material, planck, scene, spectrum};
 pub use witness::{render, simulate};

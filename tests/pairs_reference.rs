@@ -2,7 +2,6 @@
 
 use hadar::fisher::{Nuisance, Unknowns};
 use hadar::identifiability::local::LocalSolver;
-use hadar::identifiability::map::MapScene;
 use hadar::identifiability::nearest::{NearestSolver, StateRange};
 use hadar::scene::{EnvironmentObject, Parameter, Surroundings};
 use hadar::spectrum::Bands;
@@ -116,49 +115,6 @@ fn local_distances_agree_with_thirty_digit_references() {
     println!(
         "{count} distances; worst {worst:.3} of the tolerance; estimate at most {widest:.0} x the true error"
     );
-}
-
-/// Rows of a map through the references' own lighting factor, wide and narrow. Tolerance as above.
-#[test]
-fn rows_of_a_map_agree_with_thirty_digit_references() {
-    let Some((root, reference)) = reference() else { return };
-    let (mut worst, mut count): (f64, u32) = (0.0, 0);
-    for value in reference["cases"].as_array().unwrap() {
-        let case = case(&root, value);
-        let state = case.surroundings.state(case.temperature_k, &case.lighting).unwrap();
-        for answer in value["distance_local"].as_array().unwrap() {
-            let unknowns = unknowns(&answer["unknown"]);
-            let scene = MapScene {
-                bands: &case.bands,
-                surroundings: &case.surroundings,
-                unknowns: &unknowns,
-                emissivity: &case.target,
-                alternative: &case.alternative,
-                state: &state,
-            };
-            let none = LocalSolver::new(&case.bands, &case.surroundings, Unknowns::default())
-                .per_photon(&case.target, &case.alternative, &state, f64::INFINITY)
-                .unwrap()
-                .distance;
-            let exact = if case.name == "equilibrium_T_only" && answer["unknown"][2] == "gain" {
-                number(&value["distance_local"][0]["value"])
-            } else {
-                number(&answer["value"])
-            };
-            for width in [1.0, 0.01] {
-                let own = case.lighting[0];
-                let lightings: Vec<f64> =
-                    (0..=40).map(|i| own + width * (f64::from(i) / 40.0 - own)).chain([own]).collect();
-                let points = scene.local(&[case.temperature_k], &lightings).unwrap();
-                let error = (points[41].distance / exact - 1.0).abs() / (1e-14 * none / exact);
-                assert!(error <= 1.0, "{} {}: {error} of the tolerance", case.name, answer["unknown"]);
-                worst = worst.max(error);
-                count += 1;
-            }
-        }
-    }
-    println!("{count} rows; worst {worst:.3} of the tolerance");
-    assert!(count > 0);
 }
 
 /// Tolerances: the distance 1e-9, since it is stationary in the state; the state 1e-6.

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use hadar::instrument::figures::NoiseFigures;
 use hadar::scenario::{
     Alternatives, AtmosphereSource, AtmosphereSpec, Background, BandSource, BandsSpec, CameraSpec,
     DistanceKind, Efficiency, Envelope, EnvironmentObject, Extrapolation, MaterialRef, Nuisance, Readout,
@@ -202,10 +203,10 @@ fn every_key_is_read_into_the_unit_of_its_name() {
         (camera.f_number, camera.optics_efficiency.clone()),
         (Some(1.0), Some(Efficiency::Number(0.95)))
     );
-    assert_eq!((camera.detectivity_cm_hz05_w, camera.flicker_fraction), (Some(4e10), Some(0.5)));
+    assert_eq!((camera.noise.detectivity_cm_hz05_w, camera.flicker_fraction), (Some(4e10), Some(0.5)));
     assert_eq!((camera.full_well, camera.readout), (Some(1e7), Some(Readout::Sequential)));
     assert_eq!((camera.frames, camera.pixels), (Some(16), Some(320)));
-    assert_eq!((camera.netd_temperature_k, camera.netd_f_number), (Some(303.15), Some(1.0)));
+    assert_eq!((camera.noise.netd_temperature_k, camera.noise.netd_f_number), (Some(303.15), Some(1.0)));
     assert_eq!(scenario.requirement.reliability, Reliability::DetectionProbability(0.99));
     assert_eq!(scenario.requirement.by, DistanceKind::LocalUnknownGain);
     assert!((scenario.requirement.speed_m_s.unwrap() - 10.0).abs() < 1e-14);
@@ -299,30 +300,33 @@ prop_compose! {
         let noise = |which: usize| quantities[which].filter(|_| which_noise == which);
         CameraSpec {
             preset,
-            netd_k: noise(0),
-            detectivity_cm_hz05_w: noise(1),
-            noise_electrons: noise(2),
+            noise: NoiseFigures {
+                netd_k: noise(0),
+                netd_temperature_k: quantities[6],
+                netd_f_number: f_numbers[1],
+                netd_pixel_m: quantities[8],
+                detectivity_cm_hz05_w: noise(1),
+                nep_w_hz05: quantities[10].filter(|_| which_noise == 3),
+                nesr_microflick: quantities[11].filter(|_| which_noise == 4),
+                electrons: noise(2),
+                table: (which_noise == 5).then(|| std::path::absolute("noise.csv").unwrap()),
+                bandwidth_hz: quantities[12],
+                ..NoiseFigures::default()
+            },
             exposure_s: quantities[3],
             pixel_m: quantities[4],
             focal_length_m: quantities[5],
-            netd_temperature_k: quantities[6],
             full_well: quantities[7],
-            netd_pixel_m: quantities[8],
             noise_exposure_s: quantities[9],
             f_number: f_numbers[0],
-            netd_f_number: f_numbers[1],
             optics_efficiency: shares[0].map(Efficiency::Number),
             quantum_efficiency: if flags[0] {
                 Some(Efficiency::File(std::path::absolute("qe.csv").unwrap()))
             } else {
                 shares[2].map(Efficiency::Number)
             },
-            nep_w_hz05: quantities[10].filter(|_| which_noise == 3),
-            nesr_microflick: quantities[11].filter(|_| which_noise == 4),
-            noise_table: (which_noise == 5).then(|| std::path::absolute("noise.csv").unwrap()),
-            noise_bandwidth_hz: quantities[12],
             dark_rate_per_s: quantities[13],
-            read_noise: quantities[14],
+            read_noise_counts: quantities[14],
             quantisation_bits: counts[2],
             photon_bunching: Some(flags[1]),
             frame_rate_hz: quantities[15],
@@ -333,6 +337,7 @@ prop_compose! {
             frames: counts[0],
             pixels: counts[1],
             field_of_view_rad,
+            ..CameraSpec::default()
         }
     }
 }

@@ -177,6 +177,12 @@ impl std::ops::DerefMut for Aligned {
     }
 }
 
+/// Adds the lanes pairwise.
+#[inline(always)]
+pub(crate) fn fold(lanes: &Chunk) -> f64 {
+    ((lanes[0] + lanes[4]) + (lanes[2] + lanes[6])) + ((lanes[1] + lanes[5]) + (lanes[3] + lanes[7]))
+}
+
 /// Adds every second half of `a` and `b` to the first ones: `HALF` lanes of each in turn.
 #[inline(always)]
 fn halved<const HALF: usize>(a: Chunk, b: Chunk) -> Chunk {
@@ -188,7 +194,7 @@ fn halved<const HALF: usize>(a: Chunk, b: Chunk) -> Chunk {
     })
 }
 
-/// factor · the sum of the lanes of each, added in the order of [`crate::sum::fold`]; eight at a time, so that all
+/// factor · the sum of the lanes of each, added in the order of [`fold`]; eight at a time, so that all
 /// lanes of all additions are used.
 #[inline(always)]
 pub(crate) fn fold_all(lanes: &[Chunk], factor: f64, sums: &mut [f64]) {
@@ -202,6 +208,6 @@ pub(crate) fn fold_all(lanes: &[Chunk], factor: f64, sums: &mut [f64]) {
         *to = halved::<1>(twos[0], twos[1]).map(|sum| factor * sum);
     }
     for (lanes, to) in rest.iter().zip(to_rest) {
-        *to = factor * crate::sum::fold(lanes);
+        *to = factor * fold(lanes);
     }
 }

@@ -7,7 +7,7 @@
 //!
 //! Source: Ogita, Rump, Oishi, SIAM J. Sci. Comput. 26, 1955 (2005), doi:10.1137/030601818.
 
-use crate::simd::{Chunk, LANES, added, dispatched, padded};
+use crate::simd::{Chunk, LANES, added, dispatched, fold, padded};
 
 /// Terms per block; a multiple of [`LANES`].
 pub(crate) const BLOCK: usize = 128;
@@ -63,12 +63,6 @@ impl CompensatedLanes {
         let sum = fold(&self.sum);
         if sum.is_finite() { sum + fold(&self.error) } else { sum }
     }
-}
-
-/// Adds the lanes pairwise.
-#[inline(always)]
-pub(crate) fn fold(lanes: &Chunk) -> f64 {
-    ((lanes[0] + lanes[4]) + (lanes[2] + lanes[6])) + ((lanes[1] + lanes[5]) + (lanes[3] + lanes[7]))
 }
 
 dispatched! {

@@ -198,7 +198,9 @@ impl Dimension {
         format!("{value} {}", self.unit())
     }
 
-    const fn name(self) -> &'static str {
+    /// Its name in a sentence.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
         match self {
             Self::Temperature => "temperature",
             Self::TemperatureDifference => "temperature difference",

@@ -23,10 +23,10 @@
 //! Assumptions: electronic noise of the bands is independent, also between mirror positions; a converter's steps are small
 //! against the other noise, so that they act as noise.
 //!
-//! Source: paper S10–S15, Table S2; photon bunching S11–S12; P. B. Fellgett, J. Phys. Radium 19, 187 (1958) for
+//! Source: paper S10–S15, Table S2; photon bunching in [`bunching`]; P. B. Fellgett, J. Phys. Radium 19, 187 (1958) for
 //! the multiplex advantage (the factors 4 and 8 are the least-squares covariance of one-sided cosines).
 
-use super::{Camera, NoiseSpec, Readout, View};
+use super::{Camera, NoiseSpec, Readout, View, bunching};
 use crate::fisher::Counting;
 use crate::spectrum::Bands;
 
@@ -118,12 +118,13 @@ impl Camera {
             push(light.label, photons(counts), "t", "light that tells nothing of the target");
         }
         if self.photon_bunching && view.occupancy.len() == view.signal.len() {
-            let counts = view
+            let counts = |w: usize, signal: f64| kappa * signal + of_light * view.other_light(w);
+            let added = view
                 .signal
                 .iter()
                 .enumerate()
-                .map(|(w, signal)| (kappa * signal + of_light * view.other_light(w)) * view.occupancy[w]);
-            push("photon bunching", photons(counts.collect()), "t", "counted photons per mode (S11, S12)");
+                .map(|(w, signal)| bunching::added_variance(counts(w, *signal), view.occupancy[w]));
+            push("photon bunching", photons(added.collect()), "t", "counted photons per mode (S11, S12)");
         }
         let frames = f64::from(self.frames);
         push("dark counts", every(self.dark_rate_per_s * self.integration_s()), "t", "dark_rate");

@@ -83,16 +83,8 @@ impl Camera {
         let mut radiance = vec![0.0; bands.nodes_cm1().len()];
         planck::photon_radiance_into(bands.nodes_cm1(), temperature_k, &mut radiance);
         let signal = bands.weigh(&radiance);
-        // Photons per mode that are counted; a band is narrow here, so that its middle stands for it.
-        let occupancy = |center: f64| {
-            let curves: f64 = self.efficiency_curves.iter().map(|curve| curve.at(center)).product();
-            planck::occupancy(center, temperature_k)
-                * self.optics_efficiency
-                * self.quantum_efficiency
-                * curves
-        };
         let occupancy = match self.photon_bunching {
-            true => bands.bands().iter().map(|band| occupancy(band.center_cm1)).collect(),
+            true => self.counts_per_mode_of_blackbody(bands, temperature_k),
             false => Vec::new(),
         };
         View { signal, occupancy, ..View::default() }

@@ -6,7 +6,6 @@
 //!
 //! Source: η° of S8.
 
-use super::Camera;
 use crate::error::{Error, Result, check};
 use crate::spectrum::Bands;
 
@@ -86,16 +85,5 @@ impl EfficiencyCurve {
             ),
             "add rows, or narrow the bands",
         ))
-    }
-}
-
-impl Camera {
-    /// The bands as the detector receives them, weighed with the efficiencies that depend on wavenumber.
-    #[must_use]
-    pub fn received(&self, bands: &Bands) -> Bands {
-        if self.efficiency_curves.is_empty() {
-            return bands.clone();
-        }
-        bands.transmitted(|nu| self.efficiency_curves.iter().map(|curve| curve.at(nu)).product())
     }
 }

@@ -14,152 +14,17 @@
 //!
 //! Source: paper Table S2 and text above it (γ = γ₀ + γ₁N).
 
+mod spec;
+
+pub use spec::NoiseSpec;
+
 use super::{Camera, View};
-use crate::error::{Error, Result, check};
 use crate::planck;
 use crate::spectrum::{Bands, interpolated};
 use crate::units::{PLANCK_J_S, SPEED_OF_LIGHT_M_S};
 
 /// 1 µflick in W m⁻² sr⁻¹ per µm.
 const MICROFLICK_W_M2_SR_UM: f64 = 1e-2;
-
-/// How the noise of a camera is stated.
-#[derive(Debug, Clone, PartialEq, serde::Serialize)]
-#[serde(rename_all = "kebab-case", tag = "kind")]
-pub enum NoiseSpec {
-    /// No electronic noise at all.
-    None,
-    /// Noise-equivalent temperature difference.
-    Netd {
-        /// NETD of one frame, K.
-        netd_k: f64,
-        /// Temperature of the blackbody at which it is stated, K.
-        temperature_k: f64,
-        /// f-number at which it is stated.
-        f_number: f64,
-        /// Optics efficiency with which its photons are counted.
-        optics_efficiency: f64,
-        /// Side of the pixel for which it is stated, m.
-        pixel_m: f64,
-    },
-    /// Specific detectivity D*.
-    Detectivity {
-        /// D*, cm √Hz W⁻¹.
-        detectivity_cm_hz05_w: f64,
-        /// Noise bandwidth Δf, Hz; that of the exposure where `None`.
-        bandwidth_hz: Option<f64>,
-    },
-    /// Noise-equivalent power of a bandwidth of 1 Hz.
-    Nep {
-        /// NEP, W Hz^-½.
-        nep_w_hz05: f64,
-        /// Noise bandwidth Δf, Hz; that of the exposure where `None`.
-        bandwidth_hz: Option<f64>,
-    },
-    /// Noise-equivalent spectral radiance, the same per wavelength in all bands.
-    SpectralRadiance {
-        /// NESR, µflick (µW cm⁻² sr⁻¹ µm⁻¹).
-        microflick: f64,
-    },
-    /// Standard deviation of a band reading.
-    Counts {
-        /// σ, counts.
-        sigma_counts: f64,
-    },
-    /// Standard deviation of a band reading over wavenumber.
-    Table {
-        /// Ascending wavenumbers, cm⁻¹.
-        wavenumbers_cm1: Vec<f64>,
-        /// σ there, counts; straight lines between, the last one beyond.
-        sigma_counts: Vec<f64>,
-    },
-}
-
-impl NoiseSpec {
-    /// A table of noise from rows (wavenumber in cm⁻¹, σ in counts) in any order.
-    ///
-    /// # Errors
-    /// No rows, a wavenumber that is not positive or comes twice, a σ below 0.
-    pub fn table(mut rows: Vec<(f64, f64)>) -> Result<Self> {
-        for &(wavenumber, sigma) in &rows {
-            check::positive("wavenumber of the noise", wavenumber, "cm^-1")?;
-            check::non_negative("noise", sigma, "counts")?;
-        }
-        rows.sort_by(|a, b| a.0.total_cmp(&b.0));
-        if rows.is_empty() || rows.windows(2).any(|pair| pair[0].0 == pair[1].0) {
-            let found = "the table of noise has no rows, or a wavenumber comes twice";
-            return Err(Error::malformed(found, "give each wavenumber one row"));
-        }
-        let (wavenumbers_cm1, sigma_counts) = rows.into_iter().unzip();
-        Ok(Self::Table { wavenumbers_cm1, sigma_counts })
-    }
-
-    /// The same kind of noise with a deviation σ `factor` times as large.
-    #[must_use]
-    pub fn scaled(&self, factor: f64) -> Self {
-        let mut noise = self.clone();
-        match &mut noise {
-            Self::None => {}
-            Self::Netd { netd_k, .. } => *netd_k *= factor,
-            Self::Detectivity { detectivity_cm_hz05_w, .. } => *detectivity_cm_hz05_w /= factor,
-            Self::Nep { nep_w_hz05, .. } => *nep_w_hz05 *= factor,
-            Self::SpectralRadiance { microflick } => *microflick *= factor,
-            Self::Counts { sigma_counts } => *sigma_counts *= factor,
-            Self::Table { sigma_counts, .. } => sigma_counts.iter_mut().for_each(|sigma| *sigma *= factor),
-        }
-        noise
-    }
-
-    /// Key of a scenario that states this kind.
-    #[must_use]
-    pub const fn key(&self) -> &'static str {
-        match self {
-            Self::None | Self::Counts { .. } => "noise_electrons",
-            Self::Netd { .. } => "netd",
-            Self::Detectivity { .. } => "detectivity",
-            Self::Nep { .. } => "nep",
-            Self::SpectralRadiance { .. } => "nesr",
-            Self::Table { .. } => "noise_table",
-        }
-    }
-
-    pub(super) fn check(&self) -> Result<()> {
-        let bandwidth = |hz: &Option<f64>| match hz {
-            Some(hz) => check::positive("noise_bandwidth", *hz, "Hz").map(drop),
-            None => Ok(()),
-        };
-        match self {
-            Self::None => {}
-            Self::Netd { netd_k, temperature_k, f_number, optics_efficiency, pixel_m } => {
-                check::positive("pixel of the NETD", *pixel_m, "m")?;
-                check::positive("netd", *netd_k, "K")?;
-                check::positive("netd_temperature", *temperature_k, "K")?;
-                check::positive("netd_f_number", *f_number, "")?;
-                check::positive("optics efficiency of the NETD", *optics_efficiency, "")?;
-            }
-            Self::Detectivity { detectivity_cm_hz05_w, bandwidth_hz } => {
-                check::positive("detectivity", *detectivity_cm_hz05_w, "cm Hz^0.5/W")?;
-                bandwidth(bandwidth_hz)?;
-            }
-            Self::Nep { nep_w_hz05, bandwidth_hz } => {
-                check::positive("nep", *nep_w_hz05, "W/Hz^0.5")?;
-                bandwidth(bandwidth_hz)?;
-            }
-            Self::SpectralRadiance { microflick } => {
-                check::positive("nesr", *microflick, "uflick")?;
-            }
-            Self::Counts { sigma_counts } => {
-                check::non_negative("noise_electrons", *sigma_counts, "")?;
-            }
-            Self::Table { sigma_counts, .. } => {
-                for sigma in sigma_counts {
-                    check::non_negative("noise", *sigma, "counts")?;
-                }
-            }
-        }
-        Ok(())
-    }
-}
 
 /// Growth of the noise variance when the integration time is `stretch` times the stated exposure.
 #[must_use]
@@ -168,63 +33,64 @@ pub fn growth(stretch: f64, flicker_fraction: f64) -> f64 {
 }
 
 /// Energy of a photon, J.
-pub(super) fn photon_energy_j(wavenumber_cm1: f64) -> f64 {
+fn photon_energy_j(wavenumber_cm1: f64) -> f64 {
     PLANCK_J_S * SPEED_OF_LIGHT_M_S * 100.0 * wavenumber_cm1
 }
 
 /// Width of a band in wavelength, µm, of a width in wavenumber that is small against its centre (both cm⁻¹).
-pub(super) fn width_um(center_cm1: f64, width_cm1: f64) -> f64 {
+fn width_um(center_cm1: f64, width_cm1: f64) -> f64 {
     1e4 * width_cm1 / (center_cm1 * center_cm1)
 }
 
-/// σ of each band reading at the stated exposure, counts.
-pub(super) fn reading_sigma(camera: &Camera, bands: &Bands) -> Option<Vec<f64>> {
-    let t = camera.noise_exposure_s;
-    // Photons that a power on the detector amounts to in a band, as it counts them.
-    let of_power = |power_w: f64| {
-        let counted = |center: f64| camera.counted(center) * power_w * t / photon_energy_j(center);
-        bands.bands().iter().map(|band| counted(band.center_cm1)).collect()
-    };
-    match &camera.noise {
-        NoiseSpec::None => None,
-        NoiseSpec::Counts { sigma_counts } => Some(vec![*sigma_counts; bands.len()]),
-        NoiseSpec::Table { wavenumbers_cm1, sigma_counts } => {
-            let at = |center: f64| interpolated(wavenumbers_cm1, sigma_counts, center);
-            Some(bands.bands().iter().map(|band| at(band.center_cm1)).collect())
-        }
-        NoiseSpec::Netd { netd_k, temperature_k, f_number, optics_efficiency, pixel_m } => {
-            let stated = Camera {
-                f_number: *f_number,
-                optics_efficiency: *optics_efficiency,
-                pixel_m: *pixel_m,
-                exposure_s: t,
-                frames: 1,
-                ..camera.clone()
-            };
-            Some(vec![netd_k * stated.counts_per_kelvin(*temperature_k); bands.len()])
-        }
-        NoiseSpec::Detectivity { detectivity_cm_hz05_w, bandwidth_hz } => {
-            let area_cm2 = (camera.pixel_m * 100.0).powi(2);
-            let bandwidth_hz = bandwidth_hz.unwrap_or(0.5 / t);
-            Some(of_power((area_cm2 * bandwidth_hz).sqrt() / detectivity_cm_hz05_w))
-        }
-        NoiseSpec::Nep { nep_w_hz05, bandwidth_hz } => {
-            Some(of_power(nep_w_hz05 * bandwidth_hz.unwrap_or(0.5 / t).sqrt()))
-        }
-        NoiseSpec::SpectralRadiance { microflick } => {
-            // Light of that radiance through the camera's own optics; the weights of the bands hold the efficiency curves.
-            let collected = camera.etendue_m2_sr(None) * camera.optics_efficiency * camera.quantum_efficiency;
-            let widths = bands.widths_cm1();
-            let sigma = bands.bands().iter().zip(widths).map(|(band, width)| {
-                let radiance = microflick * MICROFLICK_W_M2_SR_UM * width_um(band.center_cm1, width);
-                radiance * collected * t / photon_energy_j(band.center_cm1)
-            });
-            Some(sigma.collect())
+impl Camera {
+    /// σ of each band reading at the exposure the noise is stated for, in counts; `None` without noise.
+    #[must_use]
+    pub fn reading_sigma(&self, bands: &Bands) -> Option<Vec<f64>> {
+        let t = self.noise_exposure_s;
+        // Photons that a power on the detector amounts to in a band, as it counts them.
+        let of_power = |power_w: f64| {
+            let counted = |center: f64| self.counted(center) * power_w * t / photon_energy_j(center);
+            bands.bands().iter().map(|band| counted(band.center_cm1)).collect()
+        };
+        match &self.noise {
+            NoiseSpec::None => None,
+            NoiseSpec::Counts { sigma_counts } => Some(vec![*sigma_counts; bands.len()]),
+            NoiseSpec::Table { wavenumbers_cm1, sigma_counts } => {
+                let at = |center: f64| interpolated(wavenumbers_cm1, sigma_counts, center);
+                Some(bands.bands().iter().map(|band| at(band.center_cm1)).collect())
+            }
+            NoiseSpec::Netd { netd_k, temperature_k, f_number, optics_efficiency, pixel_m } => {
+                let stated = Camera {
+                    f_number: *f_number,
+                    optics_efficiency: *optics_efficiency,
+                    pixel_m: *pixel_m,
+                    exposure_s: t,
+                    frames: 1,
+                    ..self.clone()
+                };
+                Some(vec![netd_k * stated.counts_per_kelvin(*temperature_k); bands.len()])
+            }
+            NoiseSpec::Detectivity { detectivity_cm_hz05_w, bandwidth_hz } => {
+                let area_cm2 = (self.pixel_m * 100.0).powi(2);
+                let bandwidth_hz = bandwidth_hz.unwrap_or(0.5 / t);
+                Some(of_power((area_cm2 * bandwidth_hz).sqrt() / detectivity_cm_hz05_w))
+            }
+            NoiseSpec::Nep { nep_w_hz05, bandwidth_hz } => {
+                Some(of_power(nep_w_hz05 * bandwidth_hz.unwrap_or(0.5 / t).sqrt()))
+            }
+            NoiseSpec::SpectralRadiance { microflick } => {
+                // Light of that radiance through the camera's own optics; the weights of the bands hold the efficiency curves.
+                let collected = self.etendue_m2_sr(None) * self.optics_efficiency * self.quantum_efficiency;
+                let widths = bands.widths_cm1();
+                let sigma = bands.bands().iter().zip(widths).map(|(band, width)| {
+                    let radiance = microflick * MICROFLICK_W_M2_SR_UM * width_um(band.center_cm1, width);
+                    radiance * collected * t / photon_energy_j(band.center_cm1)
+                });
+                Some(sigma.collect())
+            }
         }
     }
-}
 
-impl Camera {
     /// Johnson and flicker noise of one reading at the camera's exposure, root mean square over the bands, counts.
     #[must_use]
     pub fn electronic_noise_counts(&self, bands: &Bands) -> f64 {

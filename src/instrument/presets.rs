@@ -1,11 +1,10 @@
 //! Known cameras, embedded with their provenance.
 //!
 //! A figure that no document states is absent, not guessed. What a camera cannot do without is then asked for, or stands
-//! for a stated reason: the frame time for an exposure (an NETD is of a frame, so that signal and noise stretch alike and
-//! only shot noise depends on it), an efficiency of 1 beside an NETD (which was measured through the same lens).
-//! Every such figure is listed in [`Camera::assumed`].
+//! for a reason that [`Camera::assumed`] gives. A new camera is an entry of one of the files; its keys are the fields of
+//! [`Preset`] and [`CameraSpec`].
 
-use super::{Camera, EfficiencyCurve, NoiseSpec, Readout};
+use super::{Camera, CameraSpec, EfficiencyCurve, NoiseSpec};
 use crate::error::{Error, Result};
 
 /// The paper's cameras, and those of public data sheets.
@@ -14,11 +13,6 @@ const FILES: [(&str, &str); 2] = [
     ("cameras/data_sheets.toml", include_str!("../../cameras/data_sheets.toml")),
 ];
 
-/// Temperature of the blackbody at which figures are quoted where none is stated, K.
-const REFERENCE_K: f64 = 303.15;
-/// The range in which the paper counts photons, cm⁻¹.
-const PAPER_RANGE_CM1: [f64; 2] = [715.0, 1250.0];
-
 #[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 struct File {
@@ -26,7 +20,7 @@ struct File {
     camera: Vec<Preset>,
 }
 
-/// What is stated of a camera; what is not is `None`.
+/// A known camera: its figures, and where they are from.
 #[derive(Debug, Clone, PartialEq, Default, serde::Deserialize, serde::Serialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Preset {
@@ -38,111 +32,15 @@ pub struct Preset {
     pub document: Option<String>,
     /// Where the figures are from, what is left out, and what is known to be wrong with them.
     pub provenance: Vec<String>,
-    /// Exposure of one frame, s.
-    pub exposure_s: Option<f64>,
-    /// Frames per second.
-    pub frame_rate_hz: Option<f64>,
-    /// Side of a square pixel, m.
-    pub pixel_m: Option<f64>,
-    /// f-number.
-    pub f_number: Option<f64>,
-    /// Focal length, m.
-    pub focal_length_m: Option<f64>,
-    /// Share of the photons that the optics pass.
-    pub optics_efficiency: Option<f64>,
-    /// Share of the photons on the detector that are counted.
-    pub quantum_efficiency: Option<f64>,
-    /// Efficiencies over wavenumber.
+    /// What is stated of it.
+    #[serde(flatten)]
+    pub figures: CameraSpec,
+    /// Efficiencies over wavenumber, read from the files of the figures.
     #[serde(skip)]
     pub efficiency_curves: Vec<EfficiencyCurve>,
-    /// Electronic noise of one band reading.
-    pub noise: Option<StatedNoise>,
-    /// Exposure for which the noise is stated, s.
-    pub noise_exposure_s: Option<f64>,
-    /// Share of the noise variance at that exposure which is flicker.
-    pub flicker_fraction: Option<f64>,
-    /// Counts per second without any light.
-    pub dark_rate_per_s: Option<f64>,
-    /// Deviation that every reading adds, counts.
-    pub read_noise_counts: Option<f64>,
-    /// Bits of the converter.
-    pub quantisation_bits: Option<u32>,
-    /// Counts at which a pixel is full.
-    pub full_well: Option<f64>,
-    /// Whether the bunching of thermal photons adds its noise.
-    pub photon_bunching: bool,
-    /// When the bands are exposed.
-    pub readout: Option<Readout>,
-    /// Bands of a spectral instrument.
-    pub spectral_bands: Option<u32>,
-    /// Whether it has one band of its own, so that a spectrum takes filters.
-    pub filters_needed: bool,
-    /// Frames that are averaged.
-    pub frames: Option<u32>,
-    /// Temperature of the sensor, K.
-    pub sensor_temperature_k: Option<f64>,
-    /// Temperature of the filters, K.
-    pub filter_temperature_k: Option<f64>,
-    /// Full field of view across, rad.
-    pub field_of_view_rad: Option<f64>,
-    /// Pixels across the field of view.
-    pub pixels: Option<u32>,
-    /// Pixels down the field of view.
-    pub lines: Option<u32>,
-    /// Temperature of the blackbody at which photons and γ are quoted, K.
-    pub reference_temperature_k: Option<f64>,
-    /// The spectral range of the detector, cm⁻¹.
-    pub spectral_range_cm1: Option<[f64; 2]>,
-}
-
-/// Noise as a document states it; conditions that it does not state are `None`.
-#[derive(Debug, Clone, PartialEq, serde::Deserialize, serde::Serialize)]
-#[serde(rename_all = "kebab-case", tag = "kind", deny_unknown_fields)]
-pub enum StatedNoise {
-    /// None at all.
-    None,
-    /// Noise-equivalent temperature difference of a frame.
-    Netd {
-        /// K.
-        netd_k: f64,
-        /// Temperature of the blackbody, K.
-        temperature_k: Option<f64>,
-        /// f-number.
-        f_number: Option<f64>,
-        /// Optics efficiency with which its photons are counted.
-        optics_efficiency: Option<f64>,
-        /// Side of the pixel, m.
-        pixel_m: Option<f64>,
-    },
-    /// Specific detectivity.
-    Detectivity {
-        /// cm √Hz W⁻¹.
-        detectivity_cm_hz05_w: f64,
-        /// Noise bandwidth, Hz.
-        bandwidth_hz: Option<f64>,
-    },
-    /// Noise-equivalent power of 1 Hz.
-    Nep {
-        /// W Hz^-½.
-        nep_w_hz05: f64,
-        /// Noise bandwidth, Hz.
-        bandwidth_hz: Option<f64>,
-    },
-    /// Noise-equivalent spectral radiance.
-    Nesr {
-        /// µflick.
-        microflick: f64,
-        /// Where it is stated, µm.
-        wavelength_um: Option<f64>,
-    },
-    /// Deviation of a band reading.
-    Counts {
-        /// Counts.
-        sigma_counts: f64,
-    },
-    /// Deviation over wavenumber.
+    /// Noise over wavenumber, read from the file of the figures.
     #[serde(skip)]
-    Table(NoiseSpec),
+    pub noise_table: Option<NoiseSpec>,
 }
 
 /// A figure that a camera cannot do without and nobody has given.
@@ -169,121 +67,6 @@ impl Missing {
             ),
         };
         Error::malformed(found, instead)
-    }
-}
-
-impl Preset {
-    /// Whether its noise is one of a bandwidth, D* or NEP, so that its conditions are those of another value of it too.
-    #[must_use]
-    pub fn bandwidth_is_stated(&self) -> bool {
-        matches!(self.noise, Some(StatedNoise::Detectivity { .. } | StatedNoise::Nep { .. }))
-    }
-
-    /// The camera with these figures, what stands for missing ones listed in [`Camera::assumed`].
-    ///
-    /// # Errors
-    /// The first figure that is missing and nothing can stand for.
-    pub fn camera(&self) -> std::result::Result<Camera, Missing> {
-        let mut assumed = Vec::new();
-        let need = |value: Option<f64>, key, example| value.ok_or(Missing { key, example });
-        let exposure_s = match (self.exposure_s, self.frame_rate_hz) {
-            (Some(exposure), _) => exposure,
-            (None, Some(rate)) => {
-                assumed.push(format!("exposure: not stated; the frame of {:.4} ms is taken", 1e3 / rate));
-                1.0 / rate
-            }
-            (None, None) => return Err(Missing { key: "exposure", example: "\"12 ms\"" }),
-        };
-        let pixel_m = need(self.pixel_m, "pixel", "\"12 um\"")?;
-        let f_number = need(self.f_number, "f_number", "1.3")?;
-        let focal_length_m = need(self.focal_length_m, "focal_length", "\"18 mm\"")?;
-        let optics_efficiency = self.optics_efficiency.unwrap_or_else(|| {
-            let why = match self.noise {
-                Some(StatedNoise::Netd { .. } | StatedNoise::Nesr { .. }) => {
-                    "1 is taken, the noise being stated through the same optics"
-                }
-                _ => "1 is taken",
-            };
-            assumed.push(format!("optics_efficiency: not stated; {why}"));
-            1.0
-        });
-        let Some(noise) = &self.noise else { return Err(Missing { key: "netd", example: "\"50 mK\"" }) };
-        let noise = match noise {
-            StatedNoise::None => NoiseSpec::None,
-            StatedNoise::Netd {
-                netd_k,
-                temperature_k,
-                f_number: at,
-                optics_efficiency: eta,
-                pixel_m: of,
-            } => {
-                if temperature_k.is_none() {
-                    assumed.push(format!("netd_temperature: not stated; {REFERENCE_K} K is taken"));
-                }
-                if at.is_none() {
-                    assumed.push(format!("netd_f_number: not stated; f/{f_number} is taken"));
-                }
-                NoiseSpec::Netd {
-                    netd_k: *netd_k,
-                    temperature_k: temperature_k.unwrap_or(REFERENCE_K),
-                    f_number: at.unwrap_or(f_number),
-                    optics_efficiency: eta.unwrap_or(optics_efficiency),
-                    pixel_m: of.unwrap_or(pixel_m),
-                }
-            }
-            StatedNoise::Detectivity { detectivity_cm_hz05_w, bandwidth_hz } => NoiseSpec::Detectivity {
-                detectivity_cm_hz05_w: *detectivity_cm_hz05_w,
-                bandwidth_hz: *bandwidth_hz,
-            },
-            StatedNoise::Nep { nep_w_hz05, bandwidth_hz } => {
-                NoiseSpec::Nep { nep_w_hz05: *nep_w_hz05, bandwidth_hz: *bandwidth_hz }
-            }
-            StatedNoise::Nesr { microflick, .. } => NoiseSpec::SpectralRadiance { microflick: *microflick },
-            StatedNoise::Counts { sigma_counts } => NoiseSpec::Counts { sigma_counts: *sigma_counts },
-            StatedNoise::Table(table) => table.clone(),
-        };
-        let spectral_range_cm1 = self.spectral_range_cm1.unwrap_or_else(|| {
-            let [low, high] = PAPER_RANGE_CM1;
-            assumed.push(format!("spectral range: not stated; {low} to {high} cm^-1 is taken"));
-            PAPER_RANGE_CM1
-        });
-        let flicker_fraction = self.flicker_fraction.unwrap_or_else(|| {
-            if noise != NoiseSpec::None {
-                let why = "0 is taken, so that frames average all of the noise out";
-                assumed.push(format!("flicker_fraction: not stated; {why}"));
-            }
-            0.0
-        });
-        Ok(Camera {
-            name: self.name.clone(),
-            description: self.description.clone(),
-            provenance: self.document.iter().chain(&self.provenance).cloned().collect(),
-            assumed,
-            exposure_s,
-            pixel_m,
-            f_number,
-            focal_length_m,
-            optics_efficiency,
-            quantum_efficiency: self.quantum_efficiency.unwrap_or(1.0),
-            efficiency_curves: self.efficiency_curves.clone(),
-            noise,
-            noise_exposure_s: self.noise_exposure_s.unwrap_or(exposure_s),
-            flicker_fraction,
-            dark_rate_per_s: self.dark_rate_per_s.unwrap_or(0.0),
-            read_noise_counts: self.read_noise_counts.unwrap_or(0.0),
-            quantisation_bits: self.quantisation_bits,
-            full_well: self.full_well,
-            photon_bunching: self.photon_bunching,
-            readout: self.readout.unwrap_or(Readout::Simultaneous),
-            frames: self.frames.unwrap_or(1),
-            frame_rate_hz: self.frame_rate_hz,
-            sensor_temperature_k: self.sensor_temperature_k,
-            filter_temperature_k: self.filter_temperature_k,
-            field_of_view_rad: self.field_of_view_rad,
-            pixels: self.pixels,
-            reference_temperature_k: self.reference_temperature_k.unwrap_or(REFERENCE_K),
-            spectral_range_cm1,
-        })
     }
 }
 
@@ -383,6 +166,14 @@ mod tests {
                 camera.noise_budget(&bands, &signal, &view).iter().map(|line| line.var_counts).sum();
             assert!((lines / total - 1.0).abs() < 1e-13);
         }
+    }
+
+    #[test]
+    fn a_key_that_means_nothing_is_refused() {
+        let entry = "[[camera]]\nname = \"ours\"\npixel_m = 12e-6\n";
+        let file: File = toml::from_str(entry).unwrap();
+        assert_eq!(file.camera[0].figures.pixel_m, Some(12e-6));
+        assert!(toml::from_str::<File>(&format!("{entry}pixel = 12e-6\n")).is_err());
     }
 
     #[test]

@@ -20,7 +20,6 @@ pub mod lattice;
 pub mod likelihood;
 pub mod linear;
 pub mod local;
-pub mod map;
 pub mod multi;
 pub mod nearest;
 pub mod ratio;

@@ -19,9 +19,8 @@ pub mod motion;
 pub mod solve;
 pub mod trade_off;
 
-pub use caps::Cap;
 pub use motion::Motion;
-pub use solve::{CameraTask, Quantity, Solution, Trial};
+pub use solve::{CameraTask, Cap, Quantity, Solution, Trial};
 pub use trade_off::TradeOff;
 
 use std::f64::consts::FRAC_PI_4;

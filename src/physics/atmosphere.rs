@@ -23,13 +23,11 @@ mod embedded;
 mod growth;
 mod read;
 
-use self::growth::{Growth, Lengths};
+use self::growth::same;
+use self::read::Table;
 use crate::error::{Error, Result, check};
 use crate::planck;
 use std::path::Path;
-
-/// Relative difference below which two wavenumbers, or lengths, are one: 10⁴/λ seldom hits a round one exactly.
-const SAME: f64 = 1e-12;
 
 /// Transmittances of the air by wavenumber and length of the path.
 ///
@@ -45,10 +43,7 @@ const SAME: f64 = 1e-12;
 pub struct Atmosphere {
     name: String,
     temperature_k: Option<f64>,
-    lengths: Lengths,
-    /// Ascending, at least two.
-    wavenumbers_cm1: Vec<f64>,
-    rows: Vec<Growth>,
+    table: Table,
 }
 
 impl Atmosphere {
@@ -61,8 +56,11 @@ impl Atmosphere {
             .iter()
             .find(|table| table.name == name)
             .ok_or_else(|| Error::unknown_name("model atmosphere", name, embedded::NAMES.iter().copied()))?;
-        let atmosphere = read::table(table.text, table.name.to_owned())?;
-        Ok(Self { temperature_k: Some(table.temperature_k), ..atmosphere })
+        Ok(Self {
+            name: table.name.to_owned(),
+            temperature_k: Some(table.temperature_k),
+            table: read::table(table.text)?,
+        })
     }
 
     /// The names of the embedded model atmospheres.
@@ -88,7 +86,8 @@ impl Atmosphere {
     /// one that rises with length; with file, line and column.
     pub fn from_csv(text: &str, path: &Path) -> Result<Self> {
         let name = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
-        read::table(text, name).map_err(|error| error.in_file(path))
+        let table = read::table(text).map_err(|error| error.in_file(path))?;
+        Ok(Self { name, temperature_k: None, table })
     }
 
     /// The name of the model, or of the file without folder and ending.
@@ -107,13 +106,13 @@ impl Atmosphere {
     #[must_use]
     pub fn range_cm1(&self) -> (f64, f64) {
         let end = |wavenumber: Option<&f64>| wavenumber.copied().unwrap_or(f64::NAN);
-        (end(self.wavenumbers_cm1.first()), end(self.wavenumbers_cm1.last()))
+        (end(self.table.wavenumbers_cm1.first()), end(self.table.wavenumbers_cm1.last()))
     }
 
     /// The longest path of the table, m.
     #[must_use]
     pub fn longest_m(&self) -> f64 {
-        self.lengths.longest_m()
+        self.table.lengths.longest_m()
     }
 
     /// Transmittance τ at each wavenumber (cm⁻¹, in any order) of a path of `distance_m`; 1 where that is 0. It never
@@ -147,18 +146,18 @@ impl Atmosphere {
     /// A distance that is negative, not finite or beyond the longest column; a wavenumber outside the table.
     pub fn optical_depth(&self, nodes_cm1: &[f64], distance_m: f64) -> Result<Vec<f64>> {
         check::non_negative("distance", distance_m, "m")?;
-        let position = self.lengths.locate(distance_m).ok_or_else(|| {
+        let position = self.table.lengths.locate(distance_m).ok_or_else(|| {
             let longest =
                 format!("at most {} m, the longest path in the air of `{}`", self.longest_m(), self.name);
             Error::out_of_range("distance", distance_m, "m", longest)
         })?;
-        let depths: Vec<f64> = self.rows.iter().map(|row| row.depth(position)).collect();
+        let depths: Vec<f64> = self.table.rows.iter().map(|row| row.depth(position)).collect();
         nodes_cm1.iter().map(|&node| self.between(node, &depths)).collect()
     }
 
     /// The value at a wavenumber of what has `values` at the rows.
     fn between(&self, node_cm1: f64, values: &[f64]) -> Result<f64> {
-        let rows = &self.wavenumbers_cm1;
+        let rows = &self.table.wavenumbers_cm1;
         let next = rows.partition_point(|&row| row < node_cm1);
         let row = |index: usize| Some((*rows.get(index)?, *values.get(index)?));
         let (before, after) = (next.checked_sub(1).and_then(row), row(next));
@@ -179,11 +178,6 @@ impl Atmosphere {
             }
         }
     }
-}
-
-/// Whether two wavenumbers or lengths are one and the same.
-fn same(a: f64, b: f64) -> bool {
-    (a - b).abs() <= SAME * a.abs().max(b.abs())
 }
 
 #[cfg(test)]

@@ -11,10 +11,12 @@
 //! (1e-9) is forgiven to a model.
 
 mod dielectric;
+#[cfg(feature = "library")]
 mod embedded;
 mod fresnel;
 mod gaussian;
 mod library;
+#[cfg(feature = "library")]
 mod manifest;
 mod model;
 mod oscillator;
@@ -29,7 +31,6 @@ pub use write::Summary;
 
 use crate::error::{Error, Result, check};
 use model::{Model, inside};
-use std::path::Path;
 use std::sync::Arc;
 use table::{Table, same};
 
@@ -112,22 +113,6 @@ impl Material {
         Ok(Self::of(name.into(), provenance, Model::Table(Table::new(&rows)?)))
     }
 
-    /// The one material of a file in any format that [`read`] knows.
-    ///
-    /// # Errors
-    /// As [`read::from_file`]; also a table of several materials, which must be added to a [`Library`].
-    pub fn from_file(path: &Path) -> Result<Self> {
-        let mut materials = read::from_file(path)?;
-        match (materials.pop(), materials.len()) {
-            (Some(material), 0) => Ok(material),
-            (_, others) => Err(Error::malformed(
-                format!("a table of {} materials where one is needed", others + 1),
-                "give the file to --library and name the material",
-            )
-            .in_file(path)),
-        }
-    }
-
     pub(in crate::physics::material) fn of(name: String, provenance: Provenance, model: Model) -> Self {
         Self { name, provenance, model: Arc::new(model), extrapolation: None, warnings: Vec::new() }
     }
@@ -151,13 +136,6 @@ impl Material {
         self
     }
 
-    /// The same material, known from elsewhere.
-    #[must_use]
-    pub fn with_provenance(mut self, provenance: Provenance) -> Self {
-        self.provenance = provenance;
-        self
-    }
-
     /// Name, in kebab-case.
     #[must_use]
     pub fn name(&self) -> &str {
@@ -174,12 +152,6 @@ impl Material {
     #[must_use]
     pub fn range_cm1(&self) -> Option<(f64, f64)> {
         self.model.range()
-    }
-
-    /// The rule outside the range, if any was asked for.
-    #[must_use]
-    pub fn extrapolation(&self) -> Option<Extrapolation> {
-        self.extrapolation
     }
 
     /// What a reader noticed and a user should know.

@@ -13,20 +13,9 @@ mod bands;
 mod filter;
 mod integrate;
 mod read;
+mod rows;
 
 pub use bands::{Band, Bands};
 pub use filter::FilterCurve;
 pub use integrate::INTEGRATION_TOLERANCE;
-
-/// The value at x on straight lines between rows of ascending x; beyond them that of the last one.
-pub(crate) fn interpolated(xs: &[f64], ys: &[f64], x: f64) -> f64 {
-    let right = xs.partition_point(|&row| row < x);
-    match (xs.get(right), ys.get(right)) {
-        (Some(&row), Some(&value)) if row == x || right == 0 => value,
-        (Some(&high), Some(&value_high)) => {
-            let (low, value_low) = (xs[right - 1], ys[right - 1]);
-            value_low + (value_high - value_low) * ((x - low) / (high - low))
-        }
-        _ => ys.last().copied().unwrap_or(0.0),
-    }
-}
+pub(crate) use rows::interpolated;

@@ -13,6 +13,7 @@ pub use text::text;
 
 use hadar::error::{Error, Result};
 use hadar::instrument::comparison::SCENE_K;
+use hadar::instrument::figures;
 use hadar::instrument::presets::{Missing, Preset};
 use hadar::instrument::{Camera, Equivalents, Figures, NoiseLine};
 use hadar::spectrum::Bands;
@@ -70,10 +71,8 @@ impl Sheet {
     /// λF over the pixel at 10 µm: the blur of diffraction in pixels.
     #[must_use]
     pub fn diffraction_pixels(&self) -> Option<f64> {
-        self.preset
-            .f_number
-            .zip(self.preset.pixel_m)
-            .map(|(f_number, pixel)| DIFFRACTION_M * f_number / pixel)
+        let figures = &self.preset.figures;
+        figures.f_number.zip(figures.pixel_m).map(|(f_number, pixel)| DIFFRACTION_M * f_number / pixel)
     }
 
     /// Everything under one key each, in SI units; null for what is not stated or does not follow.
@@ -124,21 +123,16 @@ impl Worked {
 /// Everything that a scenario must give before the camera can be used.
 fn missing(preset: &Preset) -> Vec<Missing> {
     let mut given = preset.clone();
-    let mut all = Vec::new();
+    let mut all: Vec<Missing> = Vec::new();
     while let Err(missing) = given.camera() {
-        match missing.key {
-            "exposure" => given.exposure_s = Some(1.0),
-            "pixel" => given.pixel_m = Some(1.0),
-            "f_number" => given.f_number = Some(1.0),
-            "focal_length" => given.focal_length_m = Some(1.0),
-            "netd" => given.noise = Some(hadar::instrument::presets::StatedNoise::None),
-            // Nothing else is missing yet; without this a new key would be asked for ever.
-            _ => {
-                all.push(missing);
-                break;
-            }
+        // A figure that a number does not give would be asked for ever.
+        if all.contains(&missing) {
+            break;
         }
         all.push(missing);
+        if let Some(row) = figures::row(missing.key) {
+            row.put_number(&mut given.figures, 1.0);
+        }
     }
     all
 }

@@ -9,16 +9,19 @@
 //! environment object fills; V ≥ 0, ΣV ≤ 1); d statistical distance, P = Φ(d) detection probability.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use hadar::error::{Place, Result};
+use hadar::error::Place;
 pub use hadar::fisher::Nuisance;
+pub use hadar::instrument::{CameraSpec, Efficiency, Readout};
 pub use hadar::material::Extrapolation;
 
 pub mod atmosphere;
 pub mod bands;
-pub mod camera;
+mod camera;
+mod entries;
 pub mod envelope;
+mod paths;
 pub mod range;
 mod read;
 pub mod rule;
@@ -29,7 +32,6 @@ mod write;
 
 pub use atmosphere::{AtmosphereSource, AtmosphereSpec};
 pub use bands::{BandSource, BandsSpec};
-pub use camera::{CameraSpec, Efficiency, Readout};
 pub use envelope::Envelope;
 pub use range::RangeScenario;
 pub use rule::Rule;
@@ -70,43 +72,6 @@ pub struct Scenario {
 }
 
 impl Scenario {
-    /// Reads a scenario file. Relative paths in it start from its directory.
-    ///
-    /// # Errors
-    /// The first thing that is wrong, in one line with file, line and key: the file itself (missing, a
-    /// directory, not UTF-8), its syntax, an unknown or missing key, a value of the wrong type, without its
-    /// unit or outside its range, or values that contradict each other.
-    pub fn from_file(path: &Path) -> Result<Self> {
-        Self::from_toml(&read::text_of(path)?, Some(path))
-    }
-
-    /// Reads a scenario from text. `path` is the file it is from, which messages name and relative paths
-    /// start from; without it they start from the current directory.
-    ///
-    /// # Errors
-    /// As [`Scenario::from_file`], except those of the file itself.
-    ///
-    /// ```
-    /// use hadar_study::scenario::{MaterialRef, Scenario};
-    /// let text = r#"
-    ///     [target]
-    ///     material = "skin"
-    ///     temperature = "37 degC"
-    /// "#;
-    /// let scenario = Scenario::from_toml(text, None).unwrap();
-    /// assert_eq!(scenario.target.material, MaterialRef::Name("skin".to_owned()));
-    /// assert_eq!(scenario.target.temperature_k, 310.15);
-    ///
-    /// let error = Scenario::from_toml(&text.replace(" degC", ""), None).unwrap_err();
-    /// assert_eq!(
-    ///     error.to_string(),
-    ///     "line 4: target.temperature: `37` is a number without a unit; write \"37 degC\" or \"310.15 K\""
-    /// );
-    /// ```
-    pub fn from_toml(text: &str, path: Option<&Path>) -> Result<Self> {
-        read::scenario(text, path)
-    }
-
     /// Where `key` stands (`target.material`, `environment[0].material`, `alternatives.materials[1]`), to be
     /// put on an error with [`hadar::Error::at`]. A key that was not written has the line of its table.
     #[must_use]

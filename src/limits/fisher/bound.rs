@@ -149,16 +149,6 @@ impl Projector {
         &self.norms
     }
 
-    /// Lengths of the columns as they came to the last reduction, and of what the columns before leave of them.
-    pub(crate) fn lengths_and_norms(&self) -> (&[f64], &[f64]) {
-        (&self.lengths, &self.norms)
-    }
-
-    /// Share of column `pivot`, as it is left, that the last reduction took off the last column.
-    pub(crate) fn share_in_last(&self, pivot: usize) -> f64 {
-        self.triangle[(pivot + 1) * self.norms.len() - 1]
-    }
-
     /// Whether the directions that the last call kept are known to about all digits.
     pub(crate) fn well_known(&self) -> bool {
         self.turned <= NEARLY_DEPENDENT
@@ -179,20 +169,44 @@ impl Projector {
     }
 
     /// [`Projector::project`] without making a [`Projection`] of it.
+    ///
+    /// 1. Nuisance after nuisance is taken off all later columns.
+    /// 2. All of them are taken off the last column once more, since the first time leaves a share of u·condition of
+    ///    the nuisances in it.
+    /// 3. What is left is the residual, and what it was made of its rounding error.
     pub(crate) fn reduce(&mut self, columns: Columns<'_>, weights: &[f64], cancellation: f64) -> Reduced {
         let Columns { values: columns, stride } = columns;
         let count = columns.len().checked_div(stride).unwrap_or(0);
         self.clear(count);
-        if count == 0 {
+        let Some(last) = count.checked_sub(1) else {
             return Reduced { residual: 0.0, norm: 0.0, relative_error: 0.0 };
-        }
+        };
         let columns = &mut columns[..count * stride];
-        let last = count - 1;
         // Pythagoras saves a pass, but wants orthogonal directions, which many nuisances may not have.
         let square = (last > FEW)
             .then(|| reduce_last(&mut columns[last * stride..], stride, weights, &[], &mut self.dots));
+        let turned = self.orthogonalise_nuisances(columns, stride, weights);
+        let once = self.take_last_nuisance_off(columns, stride, weights);
+        let norm = square.map_or_else(|| length(&self.triangle, &self.norms, last, once), f64::sqrt);
+        self.lengths[last] = norm;
+        let twice = if last == 0 { once } else { self.take_nuisances_off_again(columns, stride, weights) };
+        let residual = if self.nothing_is_left(weights) { 0.0 } else { twice.sqrt() };
+        self.triangle[count * count - 1] = 1.0;
+        self.norms[last] = residual;
+
+        back_substitute(&self.triangle, &self.norms, last, &mut self.coefficients);
+        self.turned = turned;
+        let noise = ROUNDINGS * UNIT_ROUNDOFF * (cancellation * norm + self.carried(last));
+        let relative_error = if residual > 0.0 { noise / residual + turned } else { 0.0 };
+        Reduced { residual, norm, relative_error }
+    }
+
+    /// Makes the nuisance columns orthogonal to each other, and takes all but the last of them off the last column;
+    /// Σδᵢ² of the directions that are kept.
+    fn orthogonalise_nuisances(&mut self, columns: &mut [f64], stride: usize, weights: &[f64]) -> f64 {
+        let count = self.norms.len();
         let mut turned = 0.0;
-        for pivot in 0..last {
+        for pivot in 0..count - 1 {
             eliminate(Pass { columns, stride, weights, pivot, shares: &self.shares, dots: &mut self.dots });
             let squared = self.dots[pivot];
             self.lengths[pivot] = length(&self.triangle, &self.norms, pivot, squared);
@@ -215,38 +229,37 @@ impl Projector {
                 self.triangle[pivot * count + i] = self.shares[i];
             }
         }
-        // The last pivot is still to be taken off the last column, and then all of them once more, since the
-        // first time leaves a share of u·condition of the nuisances in it.
+        turned
+    }
+
+    /// Takes the last nuisance off the last column, as the others are already; the square of what is left of it, and
+    /// in `dots` its inner products with all nuisances.
+    fn take_last_nuisance_off(&mut self, columns: &mut [f64], stride: usize, weights: &[f64]) -> f64 {
+        let last = self.norms.len() - 1;
         let share = self.shares[last];
         self.shares.fill(0.0);
         if let Some(last_pivot) = self.shares[..last].last_mut() {
             *last_pivot = share;
         }
-        let squared = reduce_last(columns, stride, weights, &self.shares[..last], &mut self.dots);
-        let norm = square.map_or_else(|| length(&self.triangle, &self.norms, last, squared), f64::sqrt);
-        self.lengths[last] = norm;
+        reduce_last(columns, stride, weights, &self.shares[..last], &mut self.dots)
+    }
+
+    /// Takes what `dots` still has of the nuisances off the last column; the square of what is left of it.
+    fn take_nuisances_off_again(&mut self, columns: &mut [f64], stride: usize, weights: &[f64]) -> f64 {
+        let (count, last) = (self.norms.len(), self.norms.len() - 1);
         for pivot in 0..last {
             let squared = self.squares[pivot];
             self.shares[pivot] = if squared > 0.0 { self.dots[pivot] / squared } else { 0.0 };
             self.triangle[pivot * count + last] += self.shares[pivot];
         }
-        let left = if last == 0 {
-            squared
-        } else {
-            reduce_last(columns, stride, weights, &self.shares[..last], &mut self.dots)
-        };
-        // As many directions as there are rows leave nothing but rounding.
-        let kept = last - self.dropped.len();
-        let nothing = kept > 0 && kept >= weights.iter().filter(|&&weight| weight > 0.0).take(count).count();
-        let residual = if nothing { 0.0 } else { left.sqrt() };
-        self.triangle[count * count - 1] = 1.0;
-        self.norms[last] = residual;
+        reduce_last(columns, stride, weights, &self.shares[..last], &mut self.dots)
+    }
 
-        back_substitute(&self.triangle, &self.norms, last, &mut self.coefficients);
-        self.turned = turned;
-        let noise = ROUNDINGS * UNIT_ROUNDOFF * (cancellation * norm + self.carried(last));
-        let relative_error = if residual > 0.0 { noise / residual + turned } else { 0.0 };
-        Reduced { residual, norm, relative_error }
+    /// Whether there are as many directions as rows that count: they leave nothing but rounding.
+    fn nothing_is_left(&self, weights: &[f64]) -> bool {
+        let count = self.norms.len();
+        let kept = count - 1 - self.dropped.len();
+        kept > 0 && kept >= weights.iter().filter(|&&weight| weight > 0.0).take(count).count()
     }
 
     /// Σ|cⱼ|‖aⱼ‖ of the coefficients of a column on those before it.
@@ -319,103 +332,4 @@ pub(crate) fn times_power_of_two(x: f64, power: i32) -> f64 {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_plane_and_a_point_above_it() {
-        // Columns (1,0,0), (1,1,0) and (3,4,5): what is left is 5; coefficients −1 and 4.
-        let mut columns = [1.0, 0.0, 0.0, 1.0, 1.0, 0.0, 3.0, 4.0, 5.0];
-        let p = Projector::default().project(&mut columns, &[1.0; 3], 1.0);
-        assert!((p.residual - 5.0).abs() < 1e-15 && (p.norm - 50f64.sqrt()).abs() < 1e-14);
-        assert!((p.coefficients[0] + 1.0).abs() < 1e-15 && (p.coefficients[1] - 4.0).abs() < 1e-15);
-        assert!(p.dropped.is_empty());
-    }
-
-    #[test]
-    fn zero_and_dependent_nuisances_are_dropped_and_reported() {
-        let mut columns = [0.0, 0.0, 0.0, 1.0, 2.0, 3.0, -2e100, -4e100, -6e100, 3.0, 2.0, 1.0];
-        let p = Projector::default().project(&mut columns, &[1.0; 3], 1.0);
-        assert_eq!(p.dropped, [0, 2]);
-        // |(3,2,1) − (10/14)(1,2,3)|² = 14 − 100/14.
-        assert!((p.residual - (14.0 - 100.0 / 14.0_f64).sqrt()).abs() < 1e-15);
-    }
-
-    #[test]
-    fn the_scaled_condition_number_of_two_columns_is_that_of_their_angle() {
-        let angle: f64 = 1e-3;
-        let mut columns = [1e9, 0.0, 1e-7 * angle.cos(), 1e-7 * angle.sin()];
-        let p = Projector::default().project(&mut columns, &[1.0; 2], 1.0);
-        let exact = ((1.0 + angle.cos()) / (1.0 - angle.cos())).sqrt();
-        assert!((p.condition_number() / exact - 1.0).abs() < 1e-6);
-    }
-
-    /// Columns with a known answer: (1, t, t²) on t = −n…n with weight 1. What is left of t² is t² − ⟨t²⟩, so
-    /// the residual is √(Σt⁴ − (Σt²)²/N) with N = 2n + 1, Σt² = n(n+1)N/3, Σt⁴ = Σt²(3n² + 3n − 1)/5.
-    fn parabola(n: i32, scales: [f64; 3]) -> (Vec<f64>, f64) {
-        let t = || (-n..=n).map(f64::from);
-        let columns =
-            t().map(|_| scales[0]).chain(t().map(|t| scales[1] * t)).chain(t().map(|t| scales[2] * t * t));
-        let (half, count) = (f64::from(n), f64::from(2 * n + 1));
-        let second = half * (half + 1.0) * count / 3.0;
-        let fourth = second * (3.0 * half * half + 3.0 * half - 1.0) / 5.0;
-        (columns.collect(), scales[2] * (fourth - second * second / count).sqrt())
-    }
-
-    /// Tolerance 8u: two sums, a square root and their squares, whatever the number of rows and the scales.
-    #[test]
-    fn widely_different_scales_cost_no_digits() {
-        for n in [3, 31, 268, 5000] {
-            for scales in [[1.0, 1.0, 1.0], [1e-60, 1e50, 3.0], [7e40, 1e-90, 1e-30]] {
-                let (mut columns, exact) = parabola(n, scales);
-                let weights = vec![1.0; 2 * n as usize + 1];
-                let p = Projector::default().project(&mut columns, &weights, 1.0);
-                let error = (p.residual / exact - 1.0).abs();
-                assert!(error < 8.0 * UNIT_ROUNDOFF, "{n} {scales:?}: {error:e}");
-                assert!(p.dropped.is_empty() && error <= p.relative_error);
-            }
-        }
-    }
-
-    /// Any number of columns, past what is worked on together: the identity's last column keeps length 1.
-    #[test]
-    fn many_columns_are_no_special_case() {
-        for count in 1..12 {
-            let rows = 2 * count + 5;
-            let mut columns = vec![0.0; count * rows];
-            for i in 0..count {
-                // Lower triangle of ones: the last is what the others leave of it, a single 1 in length.
-                columns[i * rows..i * rows + i + 1].fill(1.0);
-            }
-            let p = Projector::default().project(&mut columns, &vec![1.0; rows], 1.0);
-            assert!(
-                (p.residual - 1.0).abs() < 1e-14 && (p.norm - (count as f64).sqrt()).abs() < 1e-14,
-                "{count}"
-            );
-        }
-    }
-
-    proptest::proptest! {
-        /// Powers of two change no bit of the residual; other factors some ulp of what is projected away.
-        #[test]
-        fn scaling_a_column_changes_nothing(
-            seed in proptest::collection::vec(-1.0..1.0_f64, 4 * 37),
-            powers in proptest::array::uniform3(-200..200_i32),
-            factors in proptest::array::uniform3(1e-3..1e3_f64),
-        ) {
-            let weights: Vec<f64> = seed[..37].iter().map(|w| 1.5 + w).collect();
-            let project = |scale: &dyn Fn(usize) -> f64| {
-                let mut columns: Vec<f64> = seed.iter().enumerate().map(|(i, x)| x * scale(i / 37)).collect();
-                Projector::default().project(&mut columns, &weights, 1.0)
-            };
-            let plain = project(&|_| 1.0);
-            let shifted = project(&|i| powers.get(i).map_or(1.0, |&power| f64::from(power).exp2()));
-            proptest::prop_assert_eq!(plain.residual.to_bits(), shifted.residual.to_bits());
-            proptest::prop_assert_eq!(plain.norm.to_bits(), shifted.norm.to_bits());
-            proptest::prop_assert_eq!(plain.relative_error.to_bits(), shifted.relative_error.to_bits());
-            let scaled = project(&|i| factors.get(i).copied().unwrap_or(1.0));
-            let bound = 4.0 * f64::EPSILON + plain.relative_error;
-            proptest::prop_assert!((scaled.residual / plain.residual - 1.0).abs() <= bound);
-        }
-    }
-}
+mod tests;

@@ -124,12 +124,6 @@ impl<'a> PrecisionSolver<'a> {
         }
     }
 
-    /// The unknown parameters, in their order.
-    #[must_use]
-    pub fn parameters(&self) -> &[Parameter] {
-        &self.parameters
-    }
-
     /// The bound of one unknown parameter of a surface of `emissivity` (at the nodes) in `state`.
     ///
     /// # Errors

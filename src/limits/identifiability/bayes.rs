@@ -35,11 +35,11 @@ mod prior;
 mod stack;
 
 use self::prior::Node;
-use self::stack::Stack;
+pub use self::stack::{BayesianDistance, Pair};
+use self::stack::{MAX_STACK, Stack};
 use super::detection;
 use super::local::LocalSolver;
 use super::nearest::{NearestSolver, StateRange};
-use super::space;
 use crate::error::{Error, Result, check};
 use crate::fisher::{Counting, Unknowns};
 use crate::root::crossing;
@@ -48,23 +48,8 @@ use crate::spectrum::Bands;
 use crate::sum::Compensated;
 use rayon::prelude::*;
 
-/// More numbers than this are not stacked.
-const MAX_STACK: usize = 100_000_000;
 /// Photon numbers between e^−69 and e^69 are searched, 10⁻³⁰ to 10³⁰.
 const LOG_PHOTONS: f64 = 69.0;
-
-/// The hybrid Cramér–Rao bound as a distance.
-#[derive(Debug, Clone, PartialEq, serde::Serialize)]
-pub struct BayesianDistance {
-    /// d_B per √photon of the nominal state; 0 where no prior helps.
-    pub distance: f64,
-    /// Nodes of the average.
-    pub nodes: usize,
-    /// Relative change of the distance from a rule of half the order.
-    pub quadrature_change: f64,
-    /// Estimated bound on the relative rounding error.
-    pub relative_error: f64,
-}
 
 /// The detection probability averaged over the prior.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -87,18 +72,6 @@ pub enum Distances {
     Local,
     /// The nearest distance, over this range of the alternative's state.
     Nearest(StateRange),
-}
-
-/// The task of a [`BayesianBound`]: the pair of materials and the nominal state, about which the priors are
-/// centred.
-#[derive(Debug, Clone, Copy)]
-pub struct Pair<'a> {
-    /// Emissivity of the target at the nodes of the bands.
-    pub emissivity: &'a [f64],
-    /// Emissivity of the alternative at the nodes.
-    pub alternative: &'a [f64],
-    /// Nominal state.
-    pub state: &'a State,
 }
 
 /// Bounds with priors in fixed bands, surroundings and unknowns.
@@ -286,7 +259,7 @@ impl<'a> BayesianBound<'a> {
 
     fn stack(&self, pair: Pair<'_>, order: usize) -> Result<Stack> {
         let total = self.photon_radiance(pair)?;
-        Stack::new(self, pair, total, order)
+        Stack::new(self.bands, self.surroundings, &self.unknowns, pair, total, order)
     }
 }
 

@@ -110,16 +110,11 @@ impl<'a> LocalSolver<'a> {
         Ok(self.judge(found, emissivity, alternative, state, total))
     }
 
-    /// The distance and the photon radiance of [`LocalSolver::per_photon`] with infinitely many photons.
-    pub(super) fn point(
-        &mut self,
-        emissivity: &[f64],
-        alternative: &[f64],
-        state: &State,
-    ) -> Result<(f64, f64)> {
-        let (total, found) = self.reduce_per_photon(emissivity, alternative, state, f64::INFINITY)?;
+    /// The distance of [`LocalSolver::per_photon`] with infinitely many photons.
+    pub(super) fn distance(&mut self, emissivity: &[f64], alternative: &[f64], state: &State) -> Result<f64> {
+        let (_, found) = self.reduce_per_photon(emissivity, alternative, state, f64::INFINITY)?;
         let status = self.status(&found, emissivity, alternative, state);
-        Ok((if status == Status::Ok { 0.5 * found.residual } else { 0.0 }, total))
+        Ok(if status == Status::Ok { 0.5 * found.residual } else { 0.0 })
     }
 
     /// Statistical distance d with the camera's own noise (S27 at N photons).
@@ -154,12 +149,6 @@ impl<'a> LocalSolver<'a> {
         let root = |w: usize, signal: f64| counts.sqrt() / (signal + counting.var_added(w) / counts).sqrt();
         let found = self.reduce_scaled(emissivity, alternative, state, root, 1.0);
         Ok(self.judge(found, emissivity, alternative, state, total))
-    }
-
-    /// Signal of each band at the last evaluation.
-    #[must_use]
-    pub fn signal(&self) -> &[f64] {
-        self.jacobian.signal()
     }
 
     fn evaluate(&mut self, emissivity: &[f64], alternative: &[f64], state: &State) {

@@ -23,13 +23,12 @@
 mod residual;
 mod search;
 
-use self::residual::{Target, Workspace};
+use self::residual::{Comparison, Metric, Target};
 use self::search::EmissionTable;
 pub use super::space::StateRange;
-use super::space::StateSpace;
 use crate::error::{Error, Result};
 use crate::fisher::{Counting, Unknowns};
-use crate::scene::{Jacobian, Parameter, State, Surroundings, check_emissivity};
+use crate::scene::{Parameter, State, Surroundings};
 use crate::spectrum::Bands;
 
 /// Iterations of a refinement.
@@ -67,22 +66,10 @@ pub enum Nearer {
     Nowhere,
 }
 
-/// What the counts are compared in.
-#[derive(Debug, Clone, Copy)]
-enum Metric<'a> {
-    /// Shot noise per √photon, the photons being those of the target; priors as among `photons`.
-    PerPhoton { photons: f64 },
-    /// Counts with the camera's noise.
-    Counting(&'a Counting),
-}
-
 /// Finds nearest states in fixed bands and surroundings.
 #[derive(Debug, Clone)]
 pub struct NearestSolver<'a> {
-    space: StateSpace,
-    surface: Jacobian<'a>,
-    target: Jacobian<'a>,
-    work: Workspace,
+    comparison: Comparison<'a>,
     /// What the searches before have computed that the next one can use.
     table: Option<EmissionTable>,
 }
@@ -96,13 +83,7 @@ impl<'a> NearestSolver<'a> {
         unknowns: Unknowns,
         range: StateRange,
     ) -> Self {
-        Self {
-            space: StateSpace::new(unknowns, range, surroundings.objects().len()),
-            surface: Jacobian::new(bands, surroundings),
-            target: Jacobian::new(bands, surroundings),
-            work: Workspace::new(bands.len(), surroundings.nodes_cm1().len()),
-            table: None,
-        }
+        Self { comparison: Comparison::new(bands, surroundings, unknowns, range), table: None }
     }
 
     /// Nearest distance per √photon in the limit of shot noise. Priors count as among `photons` photons.
@@ -195,43 +176,9 @@ impl<'a> NearestSolver<'a> {
         state: &State,
         counting: &Counting,
     ) -> Result<f64> {
-        let target = self.aim(emissivity, alternative, state, Metric::Counting(counting))?;
-        let own = self.space.within_range(state);
-        Ok(self.cost(&target, &own).sqrt())
-    }
-
-    /// Evaluates the target, with which every candidate is compared.
-    fn aim<'t>(
-        &mut self,
-        emissivity: &'t [f64],
-        alternative: &'t [f64],
-        state: &'t State,
-        metric: Metric<'t>,
-    ) -> Result<Target<'t>> {
-        self.space.range.check()?;
-        let nodes = self.target.surroundings().nodes_cm1().len();
-        check_emissivity(emissivity, nodes)?;
-        check_emissivity(alternative, nodes)?;
-        if let Metric::Counting(counting) = metric {
-            counting.check(self.target.bands().len())?;
-        }
-        self.target.evaluate(emissivity, alternative, state, &[], false);
-        let total = crate::sum::sum(self.target.signal());
-        if !(total > 0.0 && total.is_finite()) {
-            return Err(Error::out_of_range(
-                "photon radiance of the target",
-                total,
-                "photons s^-1 m^-2 sr^-1",
-                "above 0: a warmer scene, or bands at lower wavenumbers",
-            ));
-        }
-        let counts = match metric {
-            Metric::PerPhoton { .. } => 1.0 / total,
-            Metric::Counting(counting) => counting.counts_per_radiance,
-        };
-        let target = Target { emissivity, alternative, state, counts, metric };
-        self.work.weigh_target(&target, self.target.signal());
-        Ok(target)
+        let target = self.comparison.aim(emissivity, alternative, state, Metric::Counting(counting))?;
+        let own = self.comparison.space.within_range(state);
+        Ok(self.comparison.cost(&target, &own).sqrt())
     }
 
     /// The nearest state, or the first one found that is nearer than `enough`.
@@ -244,17 +191,17 @@ impl<'a> NearestSolver<'a> {
         start: Option<&State>,
         enough: f64,
     ) -> Result<NearestDistance> {
-        let target = self.aim(emissivity, alternative, state, metric)?;
-        let own_cost = self.cost(&target, state);
-        if own_cost < enough * enough && self.space.within_range(state) == *state {
+        let target = self.comparison.aim(emissivity, alternative, state, metric)?;
+        let own_cost = self.comparison.cost(&target, state);
+        if own_cost < enough * enough && self.comparison.space.within_range(state) == *state {
             // The target's own state is near enough.
-            let at_edge = self.space.edges(state);
+            let at_edge = self.comparison.space.edges(state);
             let (distance, state) = (own_cost.sqrt(), state.clone());
             return Ok(NearestDistance { distance, state, at_edge, iterations: 0, converged: false });
         }
         let starts = match start {
-            Some(start) => vec![self.space.free_of(start, state)],
-            None => self.starts(&target, own_cost, 0.0),
+            Some(start) => vec![self.comparison.space.free_of(start, state)],
+            None => self.comparison.starts(&mut self.table, &target, own_cost, 0.0),
         };
         let mut best: Option<NearestDistance> = None;
         let mut iterations = 0;
@@ -291,16 +238,18 @@ impl<'a> NearestSolver<'a> {
         counting: &Counting,
         reach: f64,
     ) -> Result<Vec<NearestDistance>> {
-        let target = self.aim(emissivity, alternative, state, Metric::Counting(counting))?;
-        let own_cost = self.cost(&target, state);
-        let starts = self.starts(&target, own_cost, reach);
+        let target = self.comparison.aim(emissivity, alternative, state, Metric::Counting(counting))?;
+        let own_cost = self.comparison.cost(&target, state);
+        let starts = self.comparison.starts(&mut self.table, &target, own_cost, reach);
         let mut minima: Vec<NearestDistance> =
             starts.into_iter().map(|start| self.refine(&target, start, None, 0.0)).collect();
         minima.sort_by(|a, b| a.distance.total_cmp(&b.distance));
         let farthest = minima.first().map_or(0.0, |least| least.distance + reach);
         let mut distinct: Vec<NearestDistance> = Vec::new();
         for minimum in minima.into_iter().filter(|minimum| minimum.distance <= farthest) {
-            if distinct.iter().all(|known| self.space.separation(&known.state, &minimum.state) >= SAME_STATE)
+            if distinct
+                .iter()
+                .all(|known| self.comparison.space.separation(&known.state, &minimum.state) >= SAME_STATE)
             {
                 distinct.push(minimum);
             }
@@ -317,17 +266,18 @@ impl<'a> NearestSolver<'a> {
         known: Option<&NearestDistance>,
         enough: f64,
     ) -> NearestDistance {
-        let mut state = self.space.within_range(&start);
-        let mut at = self.linearise(target, &state);
-        let (mut damping, mut converged, mut iterations) = (1e-7, self.space.parameters.is_empty(), 0);
+        let mut state = self.comparison.space.within_range(&start);
+        let mut at = self.comparison.linearise(target, &state);
+        let (mut damping, mut converged, mut iterations) =
+            (1e-7, self.comparison.space.parameters.is_empty(), 0);
         while !converged && iterations < ITERATIONS && at.cost >= enough * enough {
             iterations += 1;
-            let Some(step) = self.space.step(&at.quadratic, &state, damping, false) else { break };
-            let moved = self.space.moved(&state, &step);
-            let size = self.space.relative_size(&step, &state);
+            let Some(step) = self.comparison.space.step(&at.quadratic, &state, damping, false) else { break };
+            let moved = self.comparison.space.moved(&state, &step);
+            let size = self.comparison.space.relative_size(&step, &state);
             if size < STEP_TOLERANCE {
                 // The last step, whether it is taken or only rounding: the cost tells.
-                let cost = self.cost(target, &moved);
+                let cost = self.comparison.cost(target, &moved);
                 if cost <= at.cost {
                     (state, at.cost) = (moved, cost);
                 }
@@ -336,11 +286,11 @@ impl<'a> NearestSolver<'a> {
             }
             if known.is_some_and(|known| {
                 known.distance * known.distance <= at.cost
-                    && self.space.separation(&moved, &known.state) < SAME_MINIMUM
+                    && self.comparison.space.separation(&moved, &known.state) < SAME_MINIMUM
             }) {
                 break;
             }
-            let next = self.linearise(target, &moved);
+            let next = self.comparison.linearise(target, &moved);
             if next.cost <= at.cost {
                 (state, at) = (moved, next);
                 damping = (damping * 0.05).max(1e-15);
@@ -353,7 +303,7 @@ impl<'a> NearestSolver<'a> {
                 }
             }
         }
-        let at_edge = self.space.edges(&state);
+        let at_edge = self.comparison.space.edges(&state);
         NearestDistance { distance: at.cost.sqrt(), state, at_edge, iterations, converged }
     }
 }

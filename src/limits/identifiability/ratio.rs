@@ -25,11 +25,13 @@
 
 mod distribution;
 mod enumeration;
+mod integrals;
 mod inversion;
 mod lattice;
 mod line;
 
 pub use self::distribution::RatioDistribution;
+use self::integrals::Integrals;
 use self::line::Line;
 use super::bracket::KnownStates;
 use super::bracket::tilted::Tilted;
@@ -94,24 +96,6 @@ impl TestError {
     #[must_use]
     pub fn accuracy(&self) -> f64 {
         1.0 - self.error
-    }
-}
-
-/// E[e^{−sΛ}; Λ > 0] and E[e^{(1−s)Λ}; Λ < 0] under the tilted law, ties by halves.
-#[derive(Debug, Clone, Copy)]
-struct Integrals {
-    first: f64,
-    second: f64,
-    /// C(s).
-    exponent: f64,
-    /// Estimated error of the sum, and of either.
-    numerical: f64,
-    numerical_class: f64,
-}
-
-impl Integrals {
-    fn relative(&self) -> f64 {
-        self.numerical / (self.first + self.second)
     }
 }
 

@@ -12,10 +12,12 @@
 mod bands;
 mod certificate;
 mod filters;
+mod information;
 mod pair;
 mod scores;
 
-pub use scores::{Information, Scores, shares_between};
+pub use information::{Information, shares_between};
+pub use scores::Scores;
 
 use self::certificate::worst;
 use self::pair::Pair;
@@ -121,11 +123,6 @@ impl Task {
             fewest,
         }
     }
-}
-
-/// Number of ways to take k of n.
-fn combinations(n: usize, k: usize) -> f64 {
-    (0..k).map(|i| (n as f64 - i as f64) / (i + 1) as f64).product()
 }
 
 /// The best k of the bands for the pairs together: the smallest distance (over what is required) is the greatest.

@@ -14,7 +14,7 @@
 //! Source: G. C. Holst, Opt. Eng. 46, 103204 (2007), doi:10.1117/1.2790066; paper SII E (motion).
 
 use super::motion::Motion;
-use super::solve::{CameraTask, Quantity, Trial};
+use super::solve::{CameraTask, Cap, Quantity, Trial};
 use crate::error::Result;
 use crate::instrument::Camera;
 use crate::root::crossing;
@@ -25,19 +25,6 @@ use crate::words::{quantity as in_unit, significant};
 const LOG_RANGE: f64 = 30.0;
 /// Share by which a limit may be passed: rounding.
 const ROUNDING: f64 = 1e-9;
-
-/// A limit that a value breaks.
-#[derive(Debug, Clone, PartialEq, serde::Serialize)]
-pub struct Cap {
-    /// Stable code, e.g. `motion`.
-    pub code: &'static str,
-    /// The limit, in the unit of the quantity.
-    pub limit: f64,
-    /// Whether no value meets the task within the limit; else one on the other side of the limit meets it too.
-    pub blocks: bool,
-    /// The reason in words.
-    pub reason: String,
-}
 
 /// A limit on one quantity, the rest of the camera as it is.
 #[derive(Debug, Clone, PartialEq)]

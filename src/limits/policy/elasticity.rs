@@ -75,8 +75,7 @@ impl Lever {
     }
 
     /// The trial with `factor` times as much of it.
-    #[must_use]
-    pub fn pulled(self, trial: &Trial, factor: f64) -> Trial {
+    fn pulled(self, trial: &Trial, factor: f64) -> Trial {
         let mut trial = trial.clone();
         let camera = &mut trial.camera;
         match self {

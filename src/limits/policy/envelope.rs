@@ -28,17 +28,17 @@ mod model;
 mod partition;
 mod prove;
 mod ranges;
+mod scene;
 mod series;
 
+pub use self::prove::Effort;
 pub use self::ranges::Ranges;
+pub use self::scene::EnvelopeScene;
 
 use self::attain::Attained;
 use self::model::Model;
 use crate::error::Result;
-use crate::fisher::{Counting, Unknowns};
-use crate::identifiability::nearest::{NearestSolver, StateRange};
-use crate::scene::{State, Surroundings, check_emissivity};
-use crate::spectrum::Bands;
+use crate::scene::State;
 
 /// Scenes that are tried before the best of them are refined, with a proof to follow and without.
 const SCENES: usize = 256;
@@ -46,55 +46,6 @@ const SCENES_WITHOUT_PROOF: usize = 2048;
 
 /// Boxes at most where priors are left out of the bound.
 const BOXES_WITH_PRIORS: u64 = 100_000;
-
-/// One pair of materials and one camera, whose worst scene is looked for.
-#[derive(Debug, Clone, Copy)]
-pub struct EnvelopeScene<'a> {
-    /// The bands of the camera.
-    pub bands: &'a Bands,
-    /// The objects around the target with their emissivities; their temperatures are those of the envelope.
-    pub surroundings: &'a Surroundings,
-    /// Emissivity of the target at the nodes of the bands.
-    pub emissivity: &'a [f64],
-    /// Emissivity of the alternative at the nodes of the bands.
-    pub alternative: &'a [f64],
-    /// Counts per radiance and added noise.
-    pub counting: &'a Counting,
-    /// What is not known of the alternative's state.
-    pub unknowns: &'a Unknowns,
-    /// Within what limits the alternative's state may be.
-    pub range: StateRange,
-}
-
-impl<'a> EnvelopeScene<'a> {
-    fn check(&self, ranges: &Ranges) -> Result<()> {
-        self.range.check()?;
-        self.counting.check(self.bands.len())?;
-        check_emissivity(self.emissivity, self.bands.nodes_cm1().len())?;
-        check_emissivity(self.alternative, self.bands.nodes_cm1().len())?;
-        ranges.check_objects(self.surroundings.objects().len())
-    }
-
-    fn solver(&self) -> NearestSolver<'a> {
-        NearestSolver::new(self.bands, self.surroundings, self.unknowns.clone(), self.range)
-    }
-}
-
-/// How much is done for a proof.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Effort {
-    /// How far below the distance attained the proved bound may be, as a share of it.
-    pub relative_tolerance: f64,
-    /// Boxes of the branch and bound at most; with 0 there is no proof.
-    pub boxes: u64,
-}
-
-impl Default for Effort {
-    /// 1 %, and some seconds on two cores at most.
-    fn default() -> Self {
-        Self { relative_tolerance: 0.01, boxes: 3_000_000 }
-    }
-}
 
 /// What is known of a worst case.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -147,7 +98,8 @@ impl WorstCase {
 /// Ranges that do not fit the surroundings; emissivities, noise or a range of states that cannot be; a scene
 /// without photons.
 pub fn worst_case(scene: &EnvelopeScene<'_>, ranges: &Ranges, effort: &Effort) -> Result<WorstCase> {
-    scene.check(ranges)?;
+    scene.check()?;
+    ranges.check_objects(scene.surroundings.objects().len())?;
     if let Some(state) = ranges.equilibrium(scene) {
         let attained = Attained { distance: 0.0, nearest: state.clone(), state, evaluations: 0 };
         return Ok(WorstCase::new(attained, Some(0.0), Certificate::Equilibrium));

@@ -8,61 +8,23 @@
 
 mod distance;
 mod quantity;
+mod solution;
+mod task;
 
 pub use quantity::{Quantity, Trial};
+pub use solution::{Cap, Solution};
+pub use task::CameraTask;
 
-use super::caps::Cap;
+use self::solution::NEVER;
 use super::motion::Motion;
 use crate::error::Result;
-use crate::instrument::{Camera, FASTEST_F_NUMBER};
+use crate::instrument::FASTEST_F_NUMBER;
 use crate::root::crossing;
-use crate::spectrum::Bands;
 
 /// Factors between 10⁻³⁰ and 10³⁰ of the camera's own value are searched.
 const LOG_RANGE: f64 = 69.0;
 /// Relative step by which a solution may be moved so that it meets the demand in spite of rounding.
 const SAFE_SIDE: f64 = 1e-11;
-/// Where the frames alone take longer than a speed allows, an exposure of no time, s.
-const SHORTEST_S: f64 = 1e-30;
-/// Why no value suffices where the distance is 0.
-const NEVER: &str = "the two cannot be told apart";
-
-/// The value of a quantity at which the task is just met, or why there is none.
-#[derive(Debug, Clone, PartialEq, serde::Serialize)]
-pub struct Solution {
-    /// The value (largest f-number, noise, distance or speed, least of the others); `None` if no value suffices.
-    pub value: Option<f64>,
-    /// The camera's own value; infinite or no number where it has none (`null` in JSON).
-    pub camera: f64,
-    /// Statistical distance at that value, or the best that the quantity alone can reach.
-    pub statistical_distance: f64,
-    /// Why no value suffices.
-    pub reason: Option<String>,
-    /// Limits that shot noise does not know and the value breaks.
-    pub caps: Vec<Cap>,
-}
-
-impl Solution {
-    fn new(value: Option<f64>, camera: f64, statistical_distance: f64, reason: Option<String>) -> Self {
-        Self { value, camera, statistical_distance, reason, caps: Vec::new() }
-    }
-}
-
-/// A camera in front of a task.
-#[derive(Debug, Clone)]
-pub struct CameraTask<'a> {
-    /// The camera.
-    pub camera: &'a Camera,
-    /// Bands, as the camera receives them.
-    pub bands: &'a Bands,
-    /// Statistical distance d_req that the task demands.
-    pub required: f64,
-    /// Distance of the target, m; infinitely far where `None`.
-    pub distance_m: Option<f64>,
-    /// Side of the target, m; it fills the pixel, however large, where `None`.
-    pub size_m: Option<f64>,
-}
-
 impl CameraTask<'_> {
     /// Solves for `quantity`; `distance` evaluates the statistical distance of a trial.
     ///
@@ -167,72 +129,6 @@ impl CameraTask<'_> {
         let value = exposure.value.map(|exposure_s| motion.fastest_m_s(self.time_s(exposure_s)));
         let reason = exposure.reason.map(|reason| format!("not even at rest: {reason}"));
         Ok(Solution::new(value, camera, exposure.statistical_distance, reason))
-    }
-
-    /// Side of the largest pixel that the target fills, m.
-    fn filled_pixel_m(&self) -> Option<f64> {
-        Some(self.size_m? * self.camera.focal_length_m / self.distance_m?)
-    }
-
-    /// Time until all bands are exposed once, s.
-    fn time_s(&self, exposure_s: f64) -> f64 {
-        Camera { exposure_s, ..self.camera.clone() }.sweep_s(self.bands.len())
-    }
-
-    /// The camera as it is, where it is.
-    #[must_use]
-    pub fn own(&self) -> Trial {
-        Trial { camera: self.camera.clone(), distance_m: self.distance_m }
-    }
-
-    /// The same with one quantity set to a value; a speed sets the exposure in which it moves the target by one pixel.
-    #[must_use]
-    pub fn forward(&self, quantity: Quantity, value: f64) -> Trial {
-        let mut trial = self.own();
-        let camera = &mut trial.camera;
-        match quantity {
-            Quantity::Exposure => camera.exposure_s = value,
-            Quantity::Pixel => camera.pixel_m = value,
-            Quantity::FNumber => camera.f_number = value,
-            Quantity::Noise => {
-                let now = self.value(Quantity::Noise);
-                camera.noise = camera.noise.scaled(if now > 0.0 { value / now } else { 0.0 });
-            }
-            // A cast saturates: more frames than fit are as good as endless.
-            Quantity::Frames => camera.frames = (value as u32).max(1),
-            Quantity::Distance => trial.distance_m = value.is_finite().then_some(value),
-            Quantity::Speed => {
-                if let Some(motion) = Motion::of(self.camera, self.distance_m) {
-                    let time_s = motion.longest_s(value);
-                    camera.exposure_s =
-                        self.camera.exposure_of_sweep_s(self.bands.len(), time_s).max(SHORTEST_S);
-                }
-            }
-        }
-        trial
-    }
-
-    /// The value that is `factor` times better than the camera's.
-    fn scaled(&self, quantity: Quantity, factor: f64) -> f64 {
-        let now = self.value(quantity);
-        if quantity.is_least() { now * factor } else { now / factor }
-    }
-
-    /// The camera's own value of a quantity: infinite for a distance that is not stated, no number for a speed that
-    /// the scenario does not tell enough for.
-    #[must_use]
-    pub fn value(&self, quantity: Quantity) -> f64 {
-        match quantity {
-            Quantity::Exposure => self.camera.exposure_s,
-            Quantity::Pixel => self.camera.pixel_m,
-            Quantity::FNumber => self.camera.f_number,
-            Quantity::Frames => f64::from(self.camera.frames),
-            // Of one reading, as it is stated and as a detector is bought, however many frames there are.
-            Quantity::Noise => self.camera.electronic_noise_counts(self.bands),
-            Quantity::Distance => self.distance_m.unwrap_or(f64::INFINITY),
-            Quantity::Speed => Motion::of(self.camera, self.distance_m)
-                .map_or(f64::NAN, |motion| motion.fastest_m_s(self.time_s(self.camera.exposure_s))),
-        }
     }
 }
 

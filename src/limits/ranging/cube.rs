@@ -21,6 +21,9 @@ use crate::error::{Error, Result};
 use std::fmt::Debug;
 use std::ops::Range;
 
+/// What opening a cube is called in messages.
+const READ_CUBE: &str = "read the cube";
+
 /// Rows, columns and bands of a cube; none is 0, and their product fits the address space.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 pub struct Shape {
@@ -178,6 +181,14 @@ impl<S: Sample> Rows<S> for MemoryCube<S> {
             .get(rows.start.saturating_mul(len)..rows.end.saturating_mul(len))
             .ok_or_else(|| beyond(&rows, self.shape))
     }
+}
+
+/// An array of neither two nor three dimensions.
+fn dimensions(found: usize) -> Error {
+    Error::malformed(
+        format!("the array has {found} dimension{}", if found == 1 { "" } else { "s" }),
+        "give [row][column][band], or [row][column] for one band",
+    )
 }
 
 /// Rows that a cube does not have.

@@ -7,8 +7,8 @@
 //! * five taps of Farid and Simoncelli, Σ d_k N[x+k] with d = (−0.109604, −0.276691, 0, 0.276691, 0.109604): D/ω with
 //!   D = 2(0.276691 sin ω + 0.109604 sin 2ω). It is meant as the derivative of the image smoothed by their prefilter
 //!   p = (0.037659, 0.249153, 0.426375, 0.249153, 0.037659): relative to that, D/(ωP), with P = 0.426375 + 2(0.249153
-//!   cos ω + 0.037659 cos 2ω), near 1 up to ω ≈ 2 ([`Derivative::response_of_smoothed`]). The counts it is divided by
-//!   are not smoothed here, nor is anything along y. No value in 2 columns at either end.
+//!   cos ω + 0.037659 cos 2ω), near 1 up to ω ≈ 2. The counts it is divided by are not smoothed here, nor is anything
+//!   along y. No value in 2 columns at either end.
 //! * derivative at the knots of the interpolating cubic spline, whose third derivative is continuous at the second
 //!   and last but one knot (not-a-knot: exact for cubics): 3 sin ω/(ω(2 + cos ω)), the influence of the ends falling
 //!   by 2 − √3 per pixel. A value in every column; the tridiagonal system is eliminated, 5 operations per sample.
@@ -47,9 +47,6 @@ pub enum Derivative {
 
 /// Farid and Simoncelli's first derivative, of the pixels at a distance of 1 and 2 to the right.
 const TAPS: [f64; 2] = [0.276_691, 0.109_604];
-
-/// Their prefilter: of the pixel itself, and at a distance of 1 and 2.
-const PREFILTER: [f64; 3] = [0.426_375, 0.249_153, 0.037_659];
 
 impl Derivative {
     /// All four.
@@ -129,22 +126,6 @@ impl Derivative {
             Self::Fourier if omega < PI => 1.0,
             Self::Fourier => 0.0,
         })
-    }
-
-    /// The same relative to the image that the scheme takes as its own: smoothed by the prefilter for
-    /// [`Derivative::Simoncelli`], [`Derivative::response`] for the others.
-    ///
-    /// # Errors
-    /// A frequency that is negative or beyond π.
-    pub fn response_of_smoothed(self, omega_rad_per_pixel: f64) -> Result<f64> {
-        let response = self.response(omega_rad_per_pixel)?;
-        if self != Self::Simoncelli {
-            return Ok(response);
-        }
-        let [own, one, two] = PREFILTER;
-        let smoothing = 2.0f64
-            .mul_add(two.mul_add((2.0 * omega_rad_per_pixel).cos(), one * omega_rad_per_pixel.cos()), own);
-        Ok(response / smoothing)
     }
 
     /// Error of the derivative of a sinusoid over its true amplitude: response − 1, negative where it comes out too

@@ -32,6 +32,8 @@ mod pixels;
 #[cfg(test)]
 mod tests;
 
+pub use pixels::{PixelBound, bands_in_pixels};
+
 use crate::error::{Error, Result, check};
 use std::f64::consts::PI;
 
@@ -118,31 +120,6 @@ impl PointSpread {
     pub fn information_per_m2(&self) -> f64 {
         1.0 / self.var_m2()
     }
-
-    /// What square pixels of pitch `pitch_m` (m) leave.
-    ///
-    /// Relative error of 1/J at any one place: 1e-12 for a Gaussian, 2e-3 for an Airy disk (some 10 ms; for a pitch below
-    /// 0.1 λF or above 2 λF some 100 ms). The mean over the places is as good up to 1.5 λF; beyond, where the centre of the
-    /// pixel all but decides it, it is that of 32 × 32 places, and the mean of all differs by 1 % at 3 λF, 5 % at 8 λF.
-    ///
-    /// # Errors
-    /// A pitch that is not positive, or is more than 8 λF before an Airy disk.
-    pub fn in_pixels(&self, pitch_m: f64) -> Result<PixelBound> {
-        bands_in_pixels(&[(*self, 1.0)], pitch_m)
-    }
-}
-
-/// 1/J of one photon counted in pixels, m², over the place of the source in its pixel (evenly distributed).
-///
-/// Infinite where pixels are so much wider than the point spread that no photon falls outside the first one.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
-pub struct PixelBound {
-    /// Mean of 1/J: the variance of position averaged over sources that are anywhere.
-    pub var_mean_m2: f64,
-    /// 1/J where it is least.
-    pub var_best_m2: f64,
-    /// 1/J where it is largest.
-    pub var_worst_m2: f64,
 }
 
 /// σ_d² = 1/J (m²) of bands that are counted apart: point spread and photons (any unit) of each, J = Σ N J/Σ N.
@@ -163,16 +140,6 @@ pub struct PixelBound {
 pub fn bands_var_m2(bands: &[(PointSpread, f64)]) -> Result<f64> {
     let total = total_photons(bands)?;
     Ok(1.0 / bands.iter().map(|(spread, photons)| photons / total * spread.information_per_m2()).sum::<f64>())
-}
-
-/// The same behind square pixels of pitch `pitch_m` (m): at every phase J is the weighted mean over the bands.
-///
-/// # Errors
-/// As [`bands_var_m2`] and [`PointSpread::in_pixels`].
-pub fn bands_in_pixels(bands: &[(PointSpread, f64)], pitch_m: f64) -> Result<PixelBound> {
-    check::positive("pixel", pitch_m, "m")?;
-    let total = total_photons(bands)?;
-    pixels::bound(bands, total, pitch_m)
 }
 
 fn total_photons(bands: &[(PointSpread, f64)]) -> Result<f64> {

@@ -17,6 +17,14 @@
 /// Half the last digit of a table: the largest τ that is written 0, and 1 − τ of the smallest that is written 1.
 const LEAST: f64 = 5e-6;
 
+/// Relative difference below which two wavenumbers, or lengths, are one: 10⁴/λ seldom hits a round one exactly.
+const SAME: f64 = 1e-12;
+
+/// Whether two wavenumbers or lengths are one and the same.
+pub(super) fn same(a: f64, b: f64) -> bool {
+    (a - b).abs() <= SAME * a.abs().max(b.abs())
+}
+
 /// The lengths of the columns.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Lengths {
@@ -53,7 +61,7 @@ impl Lengths {
         if length_m == 0.0 {
             return Some(Position::Nowhere);
         }
-        if let Some(column) = self.metres.iter().position(|&column| super::same(column, length_m)) {
+        if let Some(column) = self.metres.iter().position(|&column| same(column, length_m)) {
             return Some(Position::Column(column));
         }
         let next = self.metres.partition_point(|&column| column < length_m);

@@ -1,16 +1,24 @@
 //! Reads a table of transmittances: `wavenumber_cm1`, then a column for each length of the path, `tau_<length>km` or
 //! `tau_<length>m`.
 
-use super::Atmosphere;
-use super::growth::{Growth, Lengths};
+use super::growth::{Growth, Lengths, same};
 use crate::error::{Error, Result, check};
 use crate::grid::Grid;
 
 const COLUMNS: &str =
     "name the columns wavenumber_cm1,tau_0.1km,tau_1km or wavenumber_cm1,tau_100m,tau_1000m";
 
-/// The table in `text`, without the air's temperature.
-pub(super) fn table(text: &str, name: String) -> Result<Atmosphere> {
+/// Growth of the optical depth with length, one row for each wavenumber.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Table {
+    pub(super) lengths: Lengths,
+    /// Ascending, at least two.
+    pub(super) wavenumbers_cm1: Vec<f64>,
+    pub(super) rows: Vec<Growth>,
+}
+
+/// The table in `text`.
+pub(super) fn table(text: &str) -> Result<Table> {
     let grid = Grid::parse(text)?;
     let in_header = |error: Error| error.on_line(grid.header_line);
     let first = grid.header.first().map_or("", String::as_str);
@@ -28,7 +36,7 @@ pub(super) fn table(text: &str, name: String) -> Result<Atmosphere> {
         let found = "there is one path length, which does not say how absorption grows with it";
         return Err(in_header(Error::malformed(found, "give at least two")));
     }
-    if let Some(pair) = columns.windows(2).find(|pair| super::same(pair[0].0, pair[1].0)) {
+    if let Some(pair) = columns.windows(2).find(|pair| same(pair[0].0, pair[1].0)) {
         let found = format!("the length {} m is there twice", pair[0].0);
         return Err(in_header(Error::malformed(found, "keep one column for each length")));
     }
@@ -41,12 +49,12 @@ pub(super) fn table(text: &str, name: String) -> Result<Atmosphere> {
     if rows.len() < 2 {
         return Err(Error::malformed(format!("{} rows", rows.len()), "a spectrum needs at least 2 rows"));
     }
-    if let Some(pair) = rows.windows(2).find(|pair| super::same(pair[0].0, pair[1].0)) {
+    if let Some(pair) = rows.windows(2).find(|pair| same(pair[0].0, pair[1].0)) {
         let found = format!("the wavenumber {} cm^-1 is there twice", pair[1].0);
         return Err(Error::malformed(found, "keep one row for each wavenumber"));
     }
     let (wavenumbers_cm1, rows) = rows.into_iter().unzip();
-    Ok(Atmosphere { name, temperature_k: None, lengths, wavenumbers_cm1, rows })
+    Ok(Table { lengths, wavenumbers_cm1, rows })
 }
 
 /// The length in `tau_0.1km` or `tau_100m`, m.

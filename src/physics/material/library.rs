@@ -4,14 +4,18 @@
 //! directory define the same name, each is kept as `NAME@FILE`, and the bare name is an error that lists them.
 //! Embedded materials are made of their files only when they are named.
 
-use super::manifest::{self, Deferred, Surroundings};
+#[cfg(feature = "library")]
+mod manifests;
+
+use super::Material;
+#[cfg(feature = "library")]
+use super::manifest::Deferred;
 use super::read::{self, Content};
-use super::{Material, embedded};
 use crate::demand::{Reason, Thing, Work};
 use crate::error::{Error, Result};
-use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+#[cfg(feature = "library")]
 use std::sync::Arc;
 
 /// The name of a manifest within a directory.
@@ -38,6 +42,7 @@ pub struct Library {
 #[derive(Debug, Clone)]
 enum Stored {
     Read(Material),
+    #[cfg(feature = "library")]
     Embedded(Arc<Deferred>, usize),
 }
 
@@ -45,6 +50,7 @@ impl Stored {
     fn material(&self) -> Result<&Material> {
         match self {
             Self::Read(material) => Ok(material),
+            #[cfg(feature = "library")]
             Self::Embedded(manifest, index) => manifest.material(*index),
         }
     }
@@ -52,6 +58,7 @@ impl Stored {
     fn is_made(&self) -> bool {
         match self {
             Self::Read(_) => true,
+            #[cfg(feature = "library")]
             Self::Embedded(manifest, index) => manifest.is_made(*index),
         }
     }
@@ -62,24 +69,6 @@ impl Library {
     #[must_use]
     pub fn empty() -> Self {
         Self::default()
-    }
-
-    /// The materials that come with the crate: `spectra/manifest.toml`.
-    ///
-    /// # Errors
-    /// None that a release can have: the embedded data are tested.
-    pub fn embedded() -> Result<Self> {
-        let file = |name: &str| {
-            let text = embedded::FILES.iter().find(|(path, _)| *path == name).map(|(_, text)| *text);
-            text.map(Cow::Borrowed).ok_or_else(|| {
-                Error::unknown_name("embedded file", name, embedded::FILES.iter().map(|(path, _)| *path))
-            })
-        };
-        let path = Path::new("spectra/manifest.toml");
-        let manifest = Arc::new(Deferred::parse(embedded::MANIFEST, path, file)?);
-        let stored =
-            |(index, name): (usize, &str)| (name.to_owned(), Stored::Embedded(Arc::clone(&manifest), index));
-        Ok(Self { materials: manifest.names().enumerate().map(stored).collect(), ..Self::empty() })
     }
 
     /// Adds the materials of a directory: those of its `manifest.toml` if it has one, else those of all its
@@ -187,27 +176,6 @@ impl Library {
         &self.warnings
     }
 
-    fn add_manifest(&mut self, path: &Path, directory: &Path) -> Result<()> {
-        let text = crate::grid::text_of_file(path, "read the manifest")?;
-        let file = |name: &str| {
-            crate::grid::text_of_file(&directory.join(name), "read a file of the manifest").map(Cow::Owned)
-        };
-        for material in self.manifest(&text, path, &file)? {
-            self.add(material);
-        }
-        Ok(())
-    }
-
-    fn manifest(
-        &self,
-        text: &str,
-        path: &Path,
-        file: &dyn Fn(&str) -> Result<Cow<'static, str>>,
-    ) -> Result<Vec<Material>> {
-        let known = |name: &str| self.get(name).map(|material| material.model.clone());
-        manifest::parse(text, path, &Surroundings { file, known: &known })
-    }
-
     /// Adds the materials of files; names that more than one of them defines are qualified with the file's.
     fn add_sources(&mut self, sources: Vec<(String, Vec<Material>)>) -> Result<()> {
         let mut files_of: BTreeMap<String, Vec<String>> = BTreeMap::new();
@@ -249,6 +217,14 @@ impl Library {
             self.ambiguous.insert(name, qualified);
         }
         Ok(())
+    }
+}
+
+#[cfg(not(feature = "library"))]
+impl Library {
+    fn add_manifest(&mut self, path: &Path, _: &Path) -> Result<()> {
+        let instead = "build the crate with its feature `library`, or name the spectra themselves";
+        Err(Error::malformed("this build reads no manifests", instead).in_file(path))
     }
 }
 

@@ -10,21 +10,16 @@
 //! do no harm. Bytes that are not UTF-8 are read as Latin-1.
 
 mod columns;
+mod content;
 mod ecostress;
+
+pub(super) use self::content::{Content, kebab_case, one_line, stem};
 
 use super::Material;
 use super::dielectric::OpticalConstants;
 use crate::error::{Error, Result};
 use crate::grid::{Grid, text_of_file};
 use std::path::Path;
-
-/// What a file turned out to hold.
-pub(super) enum Content {
-    /// One or more materials.
-    Materials(Vec<Material>),
-    /// A file of a known format that has no emissivity in it, and why.
-    NoEmissivity(Error),
-}
 
 /// Reads all materials of a file. The names are those of the file's columns or header in kebab-case, else
 /// the file's own.
@@ -84,39 +79,22 @@ pub(super) fn optical_constants(text: &str, source: &Path) -> Result<OpticalCons
         .map_err(|error| error.in_file(source))
 }
 
-/// A name in kebab-case: `tilePavement` → `tile-pavement`, `Fused silica` → `fused-silica`. Qualified
-/// names keep their `@`.
-pub(super) fn kebab_case(name: &str) -> String {
-    let mut kebab = String::with_capacity(name.len() + 2);
-    let mut previous = ' ';
-    for character in name.chars() {
-        let boundary = !(character.is_alphanumeric() || character == '@');
-        let hump = character.is_uppercase() && previous.is_lowercase();
-        if (boundary || hump) && !kebab.is_empty() && !kebab.ends_with(['-', '@']) {
-            kebab.push('-');
+impl Material {
+    /// The one material of a file in any format that [`read`](self) knows.
+    ///
+    /// # Errors
+    /// As [`from_file`]; also a table of several materials, which must be added to a [`Library`](super::Library).
+    pub fn from_file(path: &Path) -> Result<Self> {
+        let mut materials = from_file(path)?;
+        match (materials.pop(), materials.len()) {
+            (Some(material), 0) => Ok(material),
+            (_, others) => Err(Error::malformed(
+                format!("a table of {} materials where one is needed", others + 1),
+                "give the file to --library and name the material",
+            )
+            .in_file(path)),
         }
-        if !boundary {
-            if character == '@' && kebab.ends_with('-') {
-                kebab.pop();
-            }
-            kebab.extend(character.to_lowercase());
-        }
-        previous = character;
     }
-    kebab.truncate(kebab.trim_end_matches('-').len());
-    kebab
-}
-
-/// Text without line breaks and other control characters, nor more than one blank at a place.
-pub(super) fn one_line(text: &str) -> String {
-    let words = text.split(|char: char| char.is_whitespace() || char.is_control());
-    words.filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ")
-}
-
-/// The file's name without folders and extension, in kebab-case.
-pub(super) fn stem(path: &Path) -> String {
-    let stem = path.file_stem().map(|stem| kebab_case(&stem.to_string_lossy())).unwrap_or_default();
-    if stem.is_empty() { "unnamed".to_owned() } else { stem }
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 use super::*;
 use proptest::prelude::*;
+use std::path::Path;
 
 fn sloped() -> Material {
     Material::from_table("slope", &[(800.0, 0.5), (900.0, 0.6), (1000.0, 0.9)]).unwrap()

@@ -4,7 +4,6 @@ mod build;
 mod join;
 
 use super::filter::FilterCurve;
-use crate::error::{Error, Result};
 use crate::simd::dispatched;
 
 /// Transmittance of what is opaque.
@@ -196,18 +195,4 @@ pub(super) fn transmittance(shape: &Shape, wavenumber_cm1: f64) -> f64 {
         Shape::TopHat => 1.0,
         Shape::Filter(filter) => filter.transmittance(wavenumber_cm1),
     }
-}
-
-pub(super) fn distinct(ascending: impl Iterator<Item = f64>, what: &str) -> Result<()> {
-    let mut last = f64::NAN;
-    for value in ascending {
-        if value == last {
-            return Err(Error::malformed(
-                format!("wavenumber {value} cm^-1 comes twice in {what}"),
-                "keep one of the rows",
-            ));
-        }
-        last = value;
-    }
-    Ok(())
 }

@@ -1,7 +1,6 @@
 //! The curves of a filter: transmittance T, reflectance R, absorptance E = 1 − T − R (S8).
 
-use super::bands::distinct;
-use super::interpolated;
+use super::rows::{distinct, interpolated};
 use crate::error::{Error, Result, check};
 
 /// By so much transmittance and reflectance may exceed 1: rounding of a table.

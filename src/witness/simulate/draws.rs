@@ -63,7 +63,6 @@ pub fn generator(seed: u64, stream: u64) -> ChaCha8Rng {
 pub struct Draws {
     bands: usize,
     photons: Photons,
-    largest_mean: f64,
     /// Added to exact counts; empty without electronic noise.
     readings: Vec<Reading>,
 }
@@ -101,9 +100,8 @@ impl Draws {
     pub fn new(statistics: &Statistics, means: &[f64]) -> Result<Self> {
         statistics.check_bands(means.len())?;
         let bands = means.iter().enumerate().map(|(band, &mean)| Band::new(statistics, band, mean));
-        let largest_mean = means.iter().copied().fold(0.0, f64::max);
         let photons = Photons::Bands(bands.collect::<Result<_>>()?);
-        Ok(Self { bands: means.len(), photons, largest_mean, readings: Vec::new() })
+        Ok(Self { bands: means.len(), photons, readings: Vec::new() })
     }
 
     /// A fixed number of photons, `total` rounded to a whole one, over bands of probabilities proportional to `weights`.
@@ -116,7 +114,7 @@ impl Draws {
             return Err(Error::out_of_range("photons of a spectrum", total, "", "at most 2^53"));
         }
         let photons = Photons::Total(Multinomial::new(total.round() as u64, weights)?);
-        Ok(Self { bands: weights.len(), photons, largest_mean: total, readings: Vec::new() })
+        Ok(Self { bands: weights.len(), photons, readings: Vec::new() })
     }
 
     /// Adds to the counts of every band a normal reading error of variance `var_added`, counts², independent in
@@ -160,12 +158,6 @@ impl Draws {
         }
         self.readings = readings;
         Ok(self)
-    }
-
-    /// Whether counts may be so many that not every whole number of them is a double.
-    #[must_use]
-    pub fn exceeds_exact_integers(&self) -> bool {
-        self.largest_mean > LARGEST_EXACT
     }
 
     /// How many bands a spectrum has.

@@ -1,17 +1,13 @@
 //! Trials of the likelihood-ratio test between two known states, without their spectra.
 //!
-//! * [`right_decisions`]: of n trials, each right with probability P on its own, Binomial(n, P) are right;
-//! * [`RatioDraws`]: values of Λ = ln(q/p) themselves, by the cheapest way that is exact:
-//!   the inverse of the distribution function of [`crate::identifiability::ratio`], where it is smooth (to 10⁻⁶ of
-//!   probability); photon by photon, the number of them Poisson about ΣN and each from band w with probability
-//!   N_w/ΣN, where photons are few; else counts of every band.
-//!
-//! Both are as good as drawing every band of every spectrum, and hundreds of times as fast. Values come in blocks
-//! with a stream of random numbers each.
+//! [`RatioDraws`] gives values of Λ = ln(q/p) themselves, by the cheapest way that is exact: the inverse of the
+//! distribution function of [`crate::identifiability::ratio`], where it is smooth (to 10⁻⁶ of probability); photon by
+//! photon, the number of them Poisson about ΣN and each from band w with probability N_w/ΣN, where photons are few;
+//! else counts of every band. That is as good as drawing every band of every spectrum, and up to hundreds of times as
+//! fast. Values come in blocks with a stream of random numbers each.
 
-use super::draws::multinomial::{MOST, binomial};
 use super::draws::{Draws, generator};
-use crate::error::{Error, Result, check};
+use crate::error::Result;
 use crate::identifiability::ratio::{RatioDistribution, RatioLaw, State};
 use crate::statistics::Statistics;
 use rand::RngExt;
@@ -24,25 +20,6 @@ use rayon::prelude::*;
 pub const VALUES: usize = 4096;
 /// Draws of a photon cost as much as the counts of this many bands.
 const PHOTONS_PER_BAND: f64 = 2.0;
-
-/// Right decisions among `trials` of which each is right with `probability`.
-///
-/// ```
-/// use hadar::simulate::{draws::generator, ratio::right_decisions};
-/// let right = right_decisions(&mut generator(1, 0), 1_500_000, 0.9)?;
-/// assert!((right as f64 - 1.35e6).abs() < 5.0 * 368.0);
-/// # Ok::<(), hadar::Error>(())
-/// ```
-///
-/// # Errors
-/// A probability outside [0, 1]; trials above 2⁵³.
-pub fn right_decisions(rng: &mut ChaCha8Rng, trials: u64, probability: f64) -> Result<u64> {
-    check::unit_interval("probability of a right decision", probability)?;
-    if trials > MOST {
-        return Err(Error::out_of_range("trials", trials as f64, "", "at most 2^53"));
-    }
-    Ok(binomial(rng, trials, probability, 1.0 - probability))
-}
 
 /// Draws of Λ = ln(q/p) while one of the two states is true.
 ///

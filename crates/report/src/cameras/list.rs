@@ -3,7 +3,8 @@
 use crate::cameras::Sheet;
 use crate::text::numbers::{exponential, quantity};
 use hadar::instrument::Readout;
-use hadar::instrument::presets::{Preset, StatedNoise};
+use hadar::instrument::figures::StatedNoise;
+use hadar::instrument::presets::Preset;
 use std::fmt::Write as _;
 
 /// All cameras, those of the paper (without a document of their own) first.
@@ -27,8 +28,8 @@ pub fn list(sheets: &[Sheet]) -> String {
             let line = format!(
                 "{:<name$} {:>8} {:>6}  {:<18} {:<15} {}",
                 preset.name,
-                preset.pixel_m.map_or_else(|| "-".into(), |pixel| quantity(pixel, "m")),
-                preset.f_number.map_or_else(|| "-".into(), |f_number| format!("f/{f_number}")),
+                preset.figures.pixel_m.map_or_else(|| "-".into(), |pixel| quantity(pixel, "m")),
+                preset.figures.f_number.map_or_else(|| "-".into(), |f_number| format!("f/{f_number}")),
                 briefly(preset),
                 bands(preset),
                 give.join(", ")
@@ -53,32 +54,31 @@ fn short(key: &'static str) -> &'static str {
 }
 
 fn briefly(preset: &Preset) -> String {
-    match &preset.noise {
+    match preset.figures.noise.stated() {
         None => "-".into(),
-        Some(StatedNoise::None) => match preset.dark_rate_per_s {
+        Some(StatedNoise::None) => match preset.figures.dark_rate_per_s {
             Some(_) => "dark counts".into(),
             None => "photons only".into(),
         },
         Some(StatedNoise::Netd { netd_k, f_number, .. }) => {
             let at = f_number.map_or_else(String::new, |f_number| format!(" at f/{f_number}"));
-            format!("{}{at}", quantity(*netd_k, "K"))
+            format!("{}{at}", quantity(netd_k, "K"))
         }
         Some(StatedNoise::Detectivity { detectivity_cm_hz05_w, .. }) => {
-            format!("{} Jones", exponential(*detectivity_cm_hz05_w, 1))
+            format!("{} Jones", exponential(detectivity_cm_hz05_w, 1))
         }
-        Some(StatedNoise::Nep { nep_w_hz05, .. }) => format!("{} W/Hz^0.5", exponential(*nep_w_hz05, 1)),
+        Some(StatedNoise::Nep { nep_w_hz05, .. }) => format!("{} W/Hz^0.5", exponential(nep_w_hz05, 1)),
         Some(StatedNoise::Nesr { microflick, .. }) => format!("{microflick} uflick"),
-        Some(StatedNoise::Counts { sigma_counts }) => format!("{} counts", exponential(*sigma_counts, 1)),
-        Some(StatedNoise::Table(_)) => "a table".into(),
+        Some(StatedNoise::Counts { sigma_counts }) => format!("{} counts", exponential(sigma_counts, 1)),
     }
 }
 
 fn bands(preset: &Preset) -> String {
-    let how = match preset.readout {
-        _ if preset.filters_needed => return "one".into(),
+    let how = match preset.figures.readout {
+        _ if preset.figures.filters_needed => return "one".into(),
         None => return "-".into(),
         Some(Readout::FourierTransform) => "interferogram",
         Some(readout) => readout.name(),
     };
-    preset.spectral_bands.map_or_else(|| how.to_owned(), |bands| format!("{bands} {how}"))
+    preset.figures.spectral_bands.map_or_else(|| how.to_owned(), |bands| format!("{bands} {how}"))
 }

@@ -69,11 +69,13 @@ impl SideBySide {
         let counts: fn(f64) -> String = |counts| format!("{} counts", exponential(counts));
         vec![
             row("exposure_s", "exposure", |s| quantity(s, "s"), &|sheet| {
-                camera(sheet, |camera| camera.exposure_s).or(sheet.preset.exposure_s)
+                camera(sheet, |camera| camera.exposure_s).or(sheet.preset.figures.exposure_s)
             }),
-            row("pixel_m", "pixel", |m| quantity(m, "m"), &|sheet| sheet.preset.pixel_m),
-            row("f_number", "f-number", |f| format!("f/{f}"), &|sheet| sheet.preset.f_number),
-            row("focal_length_m", "focal length", |m| quantity(m, "m"), &|sheet| sheet.preset.focal_length_m),
+            row("pixel_m", "pixel", |m| quantity(m, "m"), &|sheet| sheet.preset.figures.pixel_m),
+            row("f_number", "f-number", |f| format!("f/{f}"), &|sheet| sheet.preset.figures.f_number),
+            row("focal_length_m", "focal length", |m| quantity(m, "m"), &|sheet| {
+                sheet.preset.figures.focal_length_m
+            }),
             row("etendue_m2_sr", "etendue of a pixel", |e| format!("{} m^2 sr", exponential(e)), &|sheet| {
                 camera(sheet, |camera| camera.etendue_m2_sr(None))
             }),
@@ -164,7 +166,7 @@ impl SideBySide {
                 let keys: Vec<&str> = sheet.missing.iter().map(|missing| missing.key).collect();
                 all.push(format!("{name}: not stated, to be given in a scenario: {}", keys.join(", ")));
             }
-            if sheet.preset.filters_needed {
+            if sheet.preset.figures.filters_needed {
                 all.push(format!(
                     "{name} has one band of its own: a spectrum takes filters, here without loss"
                 ));

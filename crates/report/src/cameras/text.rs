@@ -3,8 +3,10 @@
 use crate::cameras::Sheet;
 use crate::text::numbers::{celsius, exponential, quantity, significant};
 use hadar::instrument::equivalents::blackbody_microflick;
-use hadar::instrument::presets::{Preset, StatedNoise};
+use hadar::instrument::figures::{CameraSpec, Kind, Line, Row, StatedNoise, TABLE};
+use hadar::instrument::presets::Preset;
 use hadar::instrument::{Equivalents, Figures, NoiseLine};
+use hadar::units::Dimension;
 use std::fmt::Write as _;
 
 const NOT_STATED: &str = "not stated";
@@ -55,84 +57,92 @@ fn lines(rows: &[(&str, String)]) -> String {
 }
 
 fn figures(sheet: &Sheet) -> String {
-    let (preset, camera) = (&sheet.preset, sheet.worked.as_ref().map(|worked| &worked.camera));
-    let stated =
-        |value: Option<f64>, show: &dyn Fn(f64) -> String| value.map_or_else(|| NOT_STATED.to_owned(), show);
-    // What stands for a figure that is not stated is listed as assumed.
-    let taken = |stated: Option<f64>, taken: Option<f64>, show: &dyn Fn(f64) -> String| match (stated, taken)
-    {
-        (Some(value), _) => show(value),
-        (None, Some(value)) => format!("not stated; {} taken", show(value)),
-        (None, None) => NOT_STATED.to_owned(),
-    };
-    let seconds = |s: f64| quantity(s, "s");
-    let metres = |m: f64| quantity(m, "m");
-    let plain = |value: f64| format!("{value}");
-    let mut rows = vec![
-        ("exposure", taken(preset.exposure_s, camera.map(|camera| camera.exposure_s), &seconds)),
-        ("frame rate", stated(preset.frame_rate_hz, &|hz| format!("{} Hz", significant(hz, 3)))),
-        ("pixel", stated(preset.pixel_m, &metres)),
-        ("f-number", stated(preset.f_number, &|f_number| format!("f/{f_number}"))),
-        ("focal length", stated(preset.focal_length_m, &metres)),
-        (
-            "optics efficiency",
-            taken(preset.optics_efficiency, camera.map(|camera| camera.optics_efficiency), &plain),
-        ),
-        (
-            "quantum efficiency",
-            taken(preset.quantum_efficiency, camera.map(|camera| camera.quantum_efficiency), &plain),
-        ),
-        ("noise", noise(preset)),
-        (
-            "flicker share of noise variance",
-            taken(preset.flicker_fraction, camera.map(|camera| camera.flicker_fraction), &plain),
-        ),
-    ];
-    if let Some(rate) = preset.dark_rate_per_s {
-        rows.push(("dark counts", format!("{} per s", significant(rate, 3))));
+    let (stated, worked) = (&sheet.preset.figures, sheet.worked.as_ref());
+    let taken = worked.map(|worked| CameraSpec::of(&worked.camera));
+    let mut rows = Vec::new();
+    for row in in_order() {
+        let line = match (row.number(stated), taken.as_ref().and_then(|taken| row.number(taken))) {
+            (Some(value), _) => shown(row, value),
+            // What stands for a figure that is not stated is listed as assumed.
+            (None, Some(value)) => format!("not stated; {} taken", shown(row, value)),
+            (None, None) => NOT_STATED.to_owned(),
+        };
+        match row.line {
+            Line::Always => rows.push((row.label, line)),
+            Line::IfStated if row.is_given(stated) => rows.push((row.label, line)),
+            _ => {}
+        }
+        match row.key {
+            "quantum_efficiency" => rows.push(("noise", noise(&sheet.preset))),
+            "full_well" => {
+                if let Some([band, range]) = worked.and_then(|worked| worked.full_well_exposures_s) {
+                    let [band, range] = [band, range].map(|s| quantity(s, "s"));
+                    let text = format!("{band} (a band of 1 cm^-1), {range} (all of the range)");
+                    rows.push(("full after, at 300 K", text));
+                }
+            }
+            "quantisation_bits" => rows.extend([("bands", full_bands(stated)), ("array", array(stated))]),
+            _ => {}
+        }
     }
-    if let Some(counts) = preset.read_noise_counts {
-        rows.push(("read noise", format!("{} counts", significant(counts, 3))));
-    }
-    rows.push((
-        "full well",
-        stated(preset.full_well, &|counts| format!("{} counts", exponential(counts, 2))),
-    ));
-    if let Some([band, range]) = sheet.worked.as_ref().and_then(|worked| worked.full_well_exposures_s) {
-        let text = format!("{} (a band of 1 cm^-1), {} (all of the range)", seconds(band), seconds(range));
-        rows.push(("full after, at 300 K", text));
-    }
-    rows.push((
-        "bits of the converter",
-        stated(preset.quantisation_bits.map(f64::from), &|bits| format!("{bits}")),
-    ));
-    rows.push(("bands", full_bands(preset)));
-    let array = match (preset.pixels, preset.lines) {
-        (Some(pixels), Some(lines)) => format!("{pixels} x {lines}"),
-        (Some(pixels), None) => format!("{pixels} across"),
-        _ => NOT_STATED.into(),
-    };
-    rows.push(("array", array));
-    let degrees = |angle: f64| format!("{} deg across", significant(angle.to_degrees(), 3));
-    rows.push(("field of view", stated(preset.field_of_view_rad, &degrees)));
     let range = |[low, high]: [f64; 2]| format!("{low} to {high} cm^-1");
-    let range = match (preset.spectral_range_cm1, camera) {
+    let range = match (stated.spectral_range_cm1, worked) {
         (Some(stated), _) => range(stated),
-        (None, Some(camera)) => format!("not stated; {} taken", range(camera.spectral_range_cm1)),
+        (None, Some(worked)) => format!("not stated; {} taken", range(worked.camera.spectral_range_cm1)),
         (None, None) => NOT_STATED.into(),
     };
     rows.push(("spectral range", range));
     let pixels = |pixels: f64| format!("{} pixels, lambda F / pixel", significant(pixels, 2));
-    rows.push(("diffraction at 10 um", stated(sheet.diffraction_pixels(), &pixels)));
+    rows.push(("diffraction at 10 um", sheet.diffraction_pixels().map_or_else(|| NOT_STATED.into(), pixels)));
     lines(&rows)
 }
 
-fn full_bands(preset: &Preset) -> String {
-    if preset.filters_needed {
+/// The rows of the table, a frame rate beside the exposure that it bounds and bits behind the well that they divide.
+fn in_order() -> Vec<&'static Row> {
+    let place = |row: &Row| {
+        let beside = match row.key {
+            "frame_rate" => "exposure",
+            "quantisation_bits" => "full_well",
+            key => key,
+        };
+        (TABLE.iter().position(|row| row.key == beside), row.key != beside)
+    };
+    let mut rows: Vec<&Row> = TABLE.iter().collect();
+    rows.sort_by_key(|row| place(row));
+    rows
+}
+
+/// A figure in the unit in which it is read best.
+fn shown(row: &Row, value: f64) -> String {
+    match (row.key, row.kind) {
+        ("f_number", _) => format!("f/{value}"),
+        ("full_well", _) => format!("{} counts", exponential(value, 2)),
+        ("read_noise", _) => format!("{} counts", significant(value, 3)),
+        (_, Kind::Quantity(Dimension::Rate, ..)) => format!("{} per s", significant(value, 3)),
+        (_, Kind::Quantity(Dimension::Frequency, ..)) => format!("{} Hz", significant(value, 3)),
+        (_, Kind::Quantity(Dimension::Angle, ..)) => {
+            format!("{} deg across", significant(value.to_degrees(), 3))
+        }
+        (_, Kind::Quantity(Dimension::Temperature, ..)) => celsius(value),
+        (_, Kind::Quantity(dimension, ..)) => quantity(value, dimension.unit()),
+        _ => format!("{value}"),
+    }
+}
+
+fn array(figures: &CameraSpec) -> String {
+    match (figures.pixels, figures.lines) {
+        (Some(pixels), Some(lines)) => format!("{pixels} x {lines}"),
+        (Some(pixels), None) => format!("{pixels} across"),
+        _ => NOT_STATED.into(),
+    }
+}
+
+fn full_bands(figures: &CameraSpec) -> String {
+    if figures.filters_needed {
         return "one of its own: a spectrum takes filters".into();
     }
-    let Some(readout) = preset.readout else { return NOT_STATED.into() };
-    match preset.spectral_bands {
+    let Some(readout) = figures.readout else { return NOT_STATED.into() };
+    match figures.spectral_bands {
         Some(bands) => format!("{bands}, {}", readout.name()),
         None => readout.name().into(),
     }
@@ -143,20 +153,20 @@ pub(crate) fn noise(preset: &Preset) -> String {
     let bandwidth = |hz: Option<f64>| {
         hz.map_or_else(|| ", bandwidth 1/(2 x exposure)".into(), |hz| format!(" in {}", quantity(hz, "Hz")))
     };
-    match &preset.noise {
+    match preset.figures.noise.stated() {
         None => NOT_STATED.into(),
         Some(StatedNoise::None) => "no electronic noise".into(),
         Some(StatedNoise::Netd { netd_k, temperature_k, f_number, .. }) => format!(
             "NETD {} at {}, {}",
-            quantity(*netd_k, "K"),
+            quantity(netd_k, "K"),
             temperature_k.map_or_else(|| "a temperature not stated".into(), celsius),
             f_number.map_or_else(|| "an f-number not stated".into(), |f_number| format!("f/{f_number}")),
         ),
         Some(StatedNoise::Detectivity { detectivity_cm_hz05_w, bandwidth_hz }) => {
-            format!("D* {} cm Hz^0.5/W{}", exponential(*detectivity_cm_hz05_w, 2), bandwidth(*bandwidth_hz))
+            format!("D* {} cm Hz^0.5/W{}", exponential(detectivity_cm_hz05_w, 2), bandwidth(bandwidth_hz))
         }
         Some(StatedNoise::Nep { nep_w_hz05, bandwidth_hz }) => {
-            format!("NEP {} W/Hz^0.5{}", exponential(*nep_w_hz05, 2), bandwidth(*bandwidth_hz))
+            format!("NEP {} W/Hz^0.5{}", exponential(nep_w_hz05, 2), bandwidth(bandwidth_hz))
         }
         Some(StatedNoise::Nesr { microflick, wavelength_um }) => {
             let at = wavelength_um.map_or_else(String::new, |um| {
@@ -166,8 +176,7 @@ pub(crate) fn noise(preset: &Preset) -> String {
             });
             format!("NESR {microflick} uflick{at}")
         }
-        Some(StatedNoise::Counts { sigma_counts }) => format!("{} counts", exponential(*sigma_counts, 2)),
-        Some(StatedNoise::Table(_)) => "a table over wavenumber".into(),
+        Some(StatedNoise::Counts { sigma_counts }) => format!("{} counts", exponential(sigma_counts, 2)),
     }
 }
 
@@ -237,8 +246,9 @@ mod tests {
     #[test]
     fn a_full_well_and_its_bits_are_shown() {
         let mut preset = hadar::instrument::presets::find("flir-a325sc").unwrap();
-        (preset.full_well, preset.quantisation_bits) = (Some(1e7), Some(14));
-        (preset.read_noise_counts, preset.dark_rate_per_s) = (Some(360.0), Some(3.3e5));
+        let figures = &mut preset.figures;
+        (figures.full_well, figures.quantisation_bits) = (Some(1e7), Some(14));
+        (figures.read_noise_counts, figures.dark_rate_per_s) = (Some(360.0), Some(3.3e5));
         let text = camera(&Sheet::of(preset).unwrap());
         for part in ["1.00e7 counts", "full after, at 300 K", "quantisation", "read noise", "dark counts"] {
             assert!(text.contains(part), "{part}: {text}");

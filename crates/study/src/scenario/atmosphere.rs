@@ -2,8 +2,10 @@
 
 use std::path::PathBuf;
 
-use super::read::file;
-use super::section::{ABSOLUTE_TEMPERATURE, Entry};
+use super::entries::Entries;
+use super::paths::{Paths, file};
+use super::section::Entry;
+use hadar::allowed::ABSOLUTE_TEMPERATURE;
 use hadar::error::{Error, Result};
 use hadar::units::Dimension;
 
@@ -46,5 +48,13 @@ impl AtmosphereSpec {
             return Err(section.fail("temperature", Error::malformed(found, instead)));
         }
         Ok(Self { source, temperature_k })
+    }
+
+    pub(super) fn written(&self, paths: Paths<'_>) -> Entries {
+        let entries = match &self.source {
+            AtmosphereSource::Model(name) => Entries::default().put("model", name.as_str()),
+            AtmosphereSource::Table(path) => Entries::default().put("table", paths.file(path)),
+        };
+        entries.put_quantity("temperature", Dimension::Temperature, self.temperature_k)
     }
 }

@@ -2,16 +2,18 @@
 
 use std::path::PathBuf;
 
-use super::read::file;
-use super::section::{Entry, Rule, Section};
+use super::entries::Entries;
+use super::paths::{Paths, file};
+use super::section::{Entry, Section};
+use hadar::allowed::Allowed;
 use hadar::error::{Error, Result};
 use hadar::units::Spectral;
 
 /// The most bands a grid may have.
 const MOST_BANDS: f64 = 1e6;
 
-const TOLERANCE: Rule =
-    Rule { holds: |value| (1e-14..=0.1).contains(&value), expected: "between 1e-14 and 0.1" };
+const TOLERANCE: Allowed =
+    Allowed { holds: |value| (1e-14..=0.1).contains(&value), expected: "between 1e-14 and 0.1" };
 
 /// The spectral bands and how a band is evaluated (`[bands]`).
 #[derive(Debug, Clone, PartialEq)]
@@ -86,6 +88,23 @@ impl BandsSpec {
             integrate: section.read("integrate", Entry::boolean)?.unwrap_or(default.integrate),
             tolerance: section.number("tolerance", "1e-9", TOLERANCE)?.unwrap_or(default.tolerance),
         })
+    }
+
+    pub(super) fn written(&self, paths: Paths<'_>) -> Entries {
+        let entries = Entries::default();
+        let entries = match &self.source {
+            BandSource::Grid { start, stop, step } => {
+                entries.put("start", start.format()).put("stop", stop.format()).put("step", step.format())
+            }
+            BandSource::Filters(path) => entries.put("filters", paths.file(path)),
+            BandSource::Rows(path) => entries.put("rows", paths.file(path)),
+            BandSource::Ranges(ranges) => {
+                let pairs: Vec<Vec<String>> =
+                    ranges.iter().map(|range| range.map(|end| end.format()).to_vec()).collect();
+                entries.put("ranges", pairs)
+            }
+        };
+        entries.put("integrate", self.integrate).put("tolerance", self.tolerance)
     }
 }
 

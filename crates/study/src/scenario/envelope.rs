@@ -3,10 +3,11 @@
 //! A range that is silent is the scenario's own value. Lighting and temperature of the surroundings have one range for
 //! every environment object, or one pair that holds for each of them. Both ends of a range may be the same.
 
-use super::read::{material, without_repetition};
-use super::section::{ABOVE_ZERO, ABSOLUTE_TEMPERATURE, Entry, SHARE, Section};
-use super::write::{Entries, Paths};
+use super::entries::Entries;
+use super::paths::{Paths, material};
+use super::section::{Entry, Section, without_repetition};
 use super::{MaterialRef, Scenario};
+use hadar::allowed::{ABOVE_ZERO, ABSOLUTE_TEMPERATURE, SHARE};
 use hadar::error::{Error, Result};
 use hadar::units::Dimension;
 

@@ -7,12 +7,12 @@ mod read;
 mod write;
 
 use super::{BandsSpec, CameraSpec, MaterialRef, Source};
-use hadar::error::{Place, Result};
+use hadar::error::Place;
 pub use hadar::ranging::depth::Demand;
 use hadar::ranging::derivative::Derivative;
 use hadar::ranging::information::Window;
 use hadar::ranging::noise::Joined;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Everything a ranging scenario says, defaults filled in.
 #[derive(Debug, Clone)]
@@ -146,39 +146,6 @@ pub struct DepthRequirement {
 }
 
 impl RangeScenario {
-    /// Reads a ranging scenario. Relative paths in it start from its directory.
-    ///
-    /// # Errors
-    /// The first thing that is wrong, in one line with file, line and key, as [`super::Scenario::from_file`].
-    pub fn from_file(path: &Path) -> Result<Self> {
-        Self::from_toml(&super::read::text_of(path)?, Some(path))
-    }
-
-    /// Reads a ranging scenario from text; `path` as in [`super::Scenario::from_toml`].
-    ///
-    /// # Errors
-    /// As [`RangeScenario::from_file`], except those of the file itself.
-    ///
-    /// ```
-    /// use hadar_study::scenario::RangeScenario;
-    /// let text = r#"
-    ///     [scene]
-    ///     person_temperature = "37 degC"
-    ///     [camera]
-    ///     preset = "flir-a325sc"
-    ///     [stereo]
-    ///     baseline = "0.2 m"
-    /// "#;
-    /// let scenario = RangeScenario::from_toml(text, None)?;
-    /// assert_eq!(scenario.stereo.window.rows(), 5);
-    /// let error = RangeScenario::from_toml(&text.replace("0.2 m", "0 m"), None).unwrap_err();
-    /// assert!(error.to_string().starts_with("line 7: stereo.baseline: `0 m` is out of range"));
-    /// # Ok::<(), hadar::Error>(())
-    /// ```
-    pub fn from_toml(text: &str, path: Option<&Path>) -> Result<Self> {
-        read::scenario(text, path)
-    }
-
     /// Where a key stands, as [`super::Scenario::place`].
     #[must_use]
     pub fn place(&self, key: &str) -> Place {

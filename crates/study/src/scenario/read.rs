@@ -1,18 +1,20 @@
 //! Reads a scenario: every key checked, every error one line with file, line and key.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::io::Read;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use toml::de::DeTable;
 
-use super::section::{ABOVE_ZERO, ABSOLUTE_TEMPERATURE, Entry, Rule, SHARE, Section};
+use super::camera;
+use super::paths::material;
+use super::section::{Entry, Section, without_repetition};
 use super::source::LineStarts;
 use super::{
-    Alternatives, AtmosphereSpec, Background, BandsSpec, CameraSpec, DistanceKind, Envelope,
-    EnvironmentObject, Extrapolation, MaterialRef, Nuisance, Reliability, Requirement, Scenario,
-    SensitivitySpec, Source, Target, Unknown,
+    Alternatives, AtmosphereSpec, Background, BandsSpec, DistanceKind, Envelope, EnvironmentObject,
+    Extrapolation, Nuisance, Reliability, Requirement, Scenario, SensitivitySpec, Source, Target, Unknown,
 };
+use hadar::allowed::{ABOVE_ZERO, ABSOLUTE_TEMPERATURE, Allowed, SHARE};
 use hadar::error::{Error, Result};
 use hadar::units::Dimension;
 
@@ -61,12 +63,51 @@ pub(super) fn text_of(path: &Path) -> Result<String> {
     })
 }
 
-pub(super) fn scenario(text: &str, path: Option<&Path>) -> Result<Scenario> {
+impl Scenario {
+    /// Reads a scenario file. Relative paths in it start from its directory.
+    ///
+    /// # Errors
+    /// The first thing that is wrong, in one line with file, line and key: the file itself (missing, a
+    /// directory, not UTF-8), its syntax, an unknown or missing key, a value of the wrong type, without its
+    /// unit or outside its range, or values that contradict each other.
+    pub fn from_file(path: &Path) -> Result<Self> {
+        Self::from_toml(&text_of(path)?, Some(path))
+    }
+
+    /// Reads a scenario from text. `path` is the file it is from, which messages name and relative paths
+    /// start from; without it they start from the current directory.
+    ///
+    /// # Errors
+    /// As [`Scenario::from_file`], except those of the file itself.
+    ///
+    /// ```
+    /// use hadar_study::scenario::{MaterialRef, Scenario};
+    /// let text = r#"
+    ///     [target]
+    ///     material = "skin"
+    ///     temperature = "37 degC"
+    /// "#;
+    /// let scenario = Scenario::from_toml(text, None).unwrap();
+    /// assert_eq!(scenario.target.material, MaterialRef::Name("skin".to_owned()));
+    /// assert_eq!(scenario.target.temperature_k, 310.15);
+    ///
+    /// let error = Scenario::from_toml(&text.replace(" degC", ""), None).unwrap_err();
+    /// assert_eq!(
+    ///     error.to_string(),
+    ///     "line 4: target.temperature: `37` is a number without a unit; write \"37 degC\" or \"310.15 K\""
+    /// );
+    /// ```
+    pub fn from_toml(text: &str, path: Option<&Path>) -> Result<Self> {
+        scenario(text, path)
+    }
+}
+
+fn scenario(text: &str, path: Option<&Path>) -> Result<Scenario> {
     let mut source = Source { path: path.map(Path::to_owned), lines: BTreeMap::new() };
     let document = document(text, &mut source)?;
     let root = Section::open(&document, "", &source, &TABLES)?;
     let mut scenario = of_root(&root)?;
-    scenario.camera = root.read("camera", CameraSpec::read)?;
+    scenario.camera = root.read("camera", camera::read)?;
     scenario.source = source;
     Ok(scenario)
 }
@@ -260,8 +301,10 @@ fn unknown(entry: &Entry<'_>) -> Result<Unknown> {
 }
 
 fn priors(entry: &Entry<'_>, nuisances: &[Nuisance]) -> Result<BTreeMap<Nuisance, f64>> {
-    let rule =
-        Rule { expected: "above 0 (what is known exactly is left out of unknown.nuisances)", ..ABOVE_ZERO };
+    let rule = Allowed {
+        expected: "above 0 (what is known exactly is left out of unknown.nuisances)",
+        ..ABOVE_ZERO
+    };
     let section = entry.section(&Nuisance::ALL.map(Nuisance::name))?;
     let mut priors = BTreeMap::new();
     for nuisance in Nuisance::ALL {
@@ -283,7 +326,7 @@ fn priors(entry: &Entry<'_>, nuisances: &[Nuisance]) -> Result<BTreeMap<Nuisance
 
 fn requirement(entry: &Entry<'_>) -> Result<Requirement> {
     let section = entry.section(&["detection_probability", "distance", "by", "speed"])?;
-    let probability = Rule {
+    let probability = Allowed {
         holds: |value| value > 0.5 && value < 1.0,
         expected: "above 0.5 (tossing a coin) and below 1 (never wrong)",
     };
@@ -304,49 +347,4 @@ fn requirement(entry: &Entry<'_>) -> Result<Requirement> {
 
 fn extrapolation(section: &Section<'_>) -> Result<Option<Extrapolation>> {
     section.choice("extrapolate", &Extrapolation::ALL.map(|kind| (kind.name(), kind)))
-}
-
-pub(super) fn material(entry: &Entry<'_>) -> Result<MaterialRef> {
-    let text = entry.text("\"skin\"")?.trim();
-    if is_path(text) { file(entry).map(MaterialRef::File) } else { Ok(MaterialRef::Name(text.to_owned())) }
-}
-
-/// A path has a separator in it, or the ending of a data file; a name has neither.
-pub(super) fn is_path(text: &str) -> bool {
-    let lower = text.to_lowercase();
-    text.contains(['/', '\\']) || lower.ends_with(".csv") || lower.ends_with(".txt")
-}
-
-/// A path, from the scenario's directory, made absolute.
-pub(super) fn file(entry: &Entry<'_>) -> Result<PathBuf> {
-    let text = entry.text("\"my_data.csv\"")?.trim();
-    let path = entry.source().directory().join(text);
-    let path = std::path::absolute(&path).map_err(|error| {
-        entry
-            .fail(Error::malformed(format!("`{text}` is not a usable path ({error})"), "write the full path"))
-    })?;
-    // As in `x /.`: written again, it would be another path.
-    if path.file_name().is_some_and(|name| name.to_string_lossy().ends_with(char::is_whitespace)) {
-        let found = format!("`{text}` is a path that ends in a blank");
-        return Err(entry.fail(Error::malformed(found, "rename the file")));
-    }
-    Ok(path)
-}
-
-/// The items of a list, each of which may stand there once.
-pub(super) fn without_repetition<'a, T: Ord + Clone>(
-    items: &[Entry<'a>],
-    read: impl Fn(&Entry<'a>) -> Result<T>,
-) -> Result<Vec<T>> {
-    let mut values = Vec::with_capacity(items.len());
-    let mut seen = BTreeSet::new();
-    for item in items {
-        let value = read(item)?;
-        if !seen.insert(value.clone()) {
-            let found = "the same is already in the list";
-            return Err(item.fail(Error::malformed(found, "name it once")));
-        }
-        values.push(value);
-    }
-    Ok(values)
 }

@@ -4,10 +4,11 @@
 //! `[[camera]]` tables with the keys of `[camera]` and an optional `name` for others, and `[rule]` for what a reader of
 //! the certificate must know: `name`, `text` (its wording), `authority` (whose it is), `version`.
 
+use super::entries::{self, Document, Entries, Part};
+use super::paths::Paths;
 use super::read::{TABLES, document, of_root, text_of};
 use super::section::{Entry, Section};
-use super::write::{self, Document, Entries, Part, Paths};
-use super::{CameraSpec, Envelope, Scenario, Source};
+use super::{CameraSpec, Envelope, Scenario, Source, camera};
 use hadar::error::{Error, Place, Result};
 use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
@@ -147,19 +148,21 @@ impl Rule {
     #[must_use]
     pub fn to_toml_beside(&self, directory: &Path) -> String {
         let absolute = std::path::absolute(directory).ok();
-        write::text(self.document(Paths { beside: absolute.as_deref() }))
+        entries::text(self.document(Paths { beside: absolute.as_deref() }))
     }
 
     /// The rule as TOML, every default filled in, with absolute paths.
     #[must_use]
     pub fn to_toml(&self) -> String {
-        write::text(self.document(Paths { beside: None }))
+        entries::text(self.document(Paths { beside: None }))
     }
 
     fn document(&self, paths: Paths<'_>) -> Document {
         let mut document = Scenario { camera: None, ..self.scenario.clone() }.document(paths);
         let camera = |camera: &RuleCamera| {
-            Entries::default().put_if("name", camera.name.as_deref()).and(write::camera(&camera.spec, paths))
+            Entries::default()
+                .put_if("name", camera.name.as_deref())
+                .and(camera::written(&camera.spec, paths))
         };
         let about = Entries::default()
             .put_if("name", self.about.name.as_deref())
@@ -186,7 +189,7 @@ impl PartialEq for Rule {
 /// The same keys and values as the TOML, with absolute paths.
 impl Serialize for Rule {
     fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
-        write::entries(self.document(Paths { beside: None }), serializer)
+        entries::entries(self.document(Paths { beside: None }), serializer)
     }
 }
 
@@ -223,7 +226,7 @@ fn tables(entry: &Entry<'_>) -> Result<Vec<RuleCamera>> {
         .iter()
         .enumerate()
         .map(|(index, item)| {
-            let spec = CameraSpec::read_beside(item, &["name"])?;
+            let spec = camera::read_beside(item, &["name"])?;
             let section = item.table()?;
             let name = section.read("name", |entry| Ok(entry.text("\"ours\"")?.trim().to_owned()))?;
             Ok(RuleCamera { name, spec, key: format!("camera[{index}]") })

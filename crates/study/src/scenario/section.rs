@@ -1,24 +1,13 @@
 //! Tables and values of a parsed scenario that know their full key, so that each error names file, line and key.
 
+use std::collections::BTreeSet;
+
 use toml::de::{DeTable, DeValue};
 
 use super::source::{Source, dotted};
+use hadar::allowed::Allowed;
 use hadar::error::{Error, Place, Result};
 use hadar::units::Dimension;
-
-/// What a number must satisfy, and how that is said.
-#[derive(Clone, Copy)]
-pub(super) struct Rule {
-    pub holds: fn(f64) -> bool,
-    pub expected: &'static str,
-}
-
-pub(super) const ABOVE_ZERO: Rule = Rule { holds: |value| value > 0.0, expected: "above 0" };
-pub(super) const FROM_ZERO: Rule = Rule { holds: |value| value >= 0.0, expected: "0 or above" };
-pub(super) const SHARE: Rule =
-    Rule { holds: |value| (0.0..=1.0).contains(&value), expected: "between 0 and 1" };
-pub(super) const ABSOLUTE_TEMPERATURE: Rule =
-    Rule { holds: |value| value > 0.0, expected: "above 0 K (-273.15 degC)" };
 
 /// One table: its entries, its name, and the file they stand in.
 pub(super) struct Section<'a> {
@@ -71,13 +60,13 @@ impl<'a> Section<'a> {
     }
 
     /// A quantity with its unit.
-    pub(super) fn quantity(&self, key: &str, dimension: Dimension, rule: Rule) -> Result<Option<f64>> {
-        self.read(key, |entry| entry.quantity(dimension, rule))
+    pub(super) fn quantity(&self, key: &str, dimension: Dimension, allowed: Allowed) -> Result<Option<f64>> {
+        self.read(key, |entry| entry.quantity(dimension, allowed))
     }
 
     /// A plain number; `example` is one to write.
-    pub(super) fn number(&self, key: &str, example: &str, rule: Rule) -> Result<Option<f64>> {
-        self.read(key, |entry| entry.number(example, rule))
+    pub(super) fn number(&self, key: &str, example: &str, allowed: Allowed) -> Result<Option<f64>> {
+        self.read(key, |entry| entry.number(example, allowed))
     }
 
     /// One of a few words.
@@ -199,13 +188,13 @@ impl<'a> Entry<'a> {
     }
 
     /// A quantity with its unit, in the unit used inside.
-    pub(super) fn quantity(&self, dimension: Dimension, rule: Rule) -> Result<f64> {
+    pub(super) fn quantity(&self, dimension: Dimension, allowed: Allowed) -> Result<f64> {
         let text = self.quantity_text()?;
         let value = dimension.parse(&text).map_err(|error| self.fail(error))?;
-        if value.is_finite() && (rule.holds)(value) {
+        if allowed.allows(value) {
             return Ok(value);
         }
-        let expected = if value.is_finite() { rule.expected } else { "a finite number" };
+        let expected = if value.is_finite() { allowed.expected } else { "a finite number" };
         Err(self.fail(Error::malformed(
             format!("`{}` is out of range", text.trim()),
             format!("it must be {expected}"),
@@ -213,7 +202,7 @@ impl<'a> Entry<'a> {
     }
 
     /// A finite plain number, whole or not; `example` is one to write.
-    pub(super) fn number(&self, example: &str, rule: Rule) -> Result<f64> {
+    pub(super) fn number(&self, example: &str, allowed: Allowed) -> Result<f64> {
         let value = match self.value {
             DeValue::Integer(digits) if digits.radix() == 10 => digits.as_str().parse().ok(),
             // The digits alone, without 0x, 0o or 0b before them.
@@ -227,10 +216,10 @@ impl<'a> Entry<'a> {
             let instead = format!("write a plain number without quotes, e.g. {}", self.written(example));
             return Err(self.wrong_type(instead));
         };
-        if value.is_finite() && (rule.holds)(value) {
+        if allowed.allows(value) {
             return Ok(value);
         }
-        Err(self.fail(Error::out_of_range(self.leaf(), value, "", rule.expected)))
+        Err(self.fail(Error::out_of_range(self.leaf(), value, "", allowed.expected)))
     }
 
     /// A whole number of at least 1.
@@ -279,6 +268,24 @@ impl<'a> Entry<'a> {
             self.fail(Error::malformed(format!("`{text}` is not known here"), format!("write {listed}")))
         })
     }
+}
+
+/// The items of a list, each of which may stand there once.
+pub(super) fn without_repetition<'a, T: Ord + Clone>(
+    items: &[Entry<'a>],
+    read: impl Fn(&Entry<'a>) -> Result<T>,
+) -> Result<Vec<T>> {
+    let mut values = Vec::with_capacity(items.len());
+    let mut seen = BTreeSet::new();
+    for item in items {
+        let value = read(item)?;
+        if !seen.insert(value.clone()) {
+            let found = "the same is already in the list";
+            return Err(item.fail(Error::malformed(found, "name it once")));
+        }
+        values.push(value);
+    }
+    Ok(values)
 }
 
 /// `a, b or c`.

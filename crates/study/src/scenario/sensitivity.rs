@@ -5,8 +5,9 @@
 //! this program for a good laboratory spectrum. How far laboratories differ: M. Langsdale et al., Remote Sens. 13, 102
 //! (2021), doi:10.3390/rs13010102; satellites' emissivities miss laboratory spectra by 0.01 and more (ASTER GED).
 
-use super::section::{ABOVE_ZERO, Entry, SHARE};
-use super::write::Entries;
+use super::entries::Entries;
+use super::section::Entry;
+use hadar::allowed::{ABOVE_ZERO, SHARE};
 use hadar::error::Result;
 use hadar::units::Dimension;
 

@@ -3,8 +3,9 @@
 use crate::scenario::{CameraSpec, Efficiency, Source};
 use hadar::error::{Error, Place, Result};
 use hadar::grid::{Grid, text_of_file};
-use hadar::instrument::presets::{self, Preset, StatedNoise};
-use hadar::instrument::{Camera, EfficiencyCurve, NoiseSpec};
+use hadar::instrument::figures::{Kind, Part, TABLE};
+use hadar::instrument::presets::{self, Preset};
+use hadar::instrument::{Camera, EfficiencyCurve, NoiseSpec, PAPER_RANGE_CM1, REFERENCE_K};
 use std::path::Path;
 
 /// The preset with what the scenario overrides; without a preset everything must be said.
@@ -26,7 +27,7 @@ pub(super) fn resolved_at(spec: &CameraSpec, place: &dyn Fn(&str) -> Place) -> R
     let mut camera_made = camera(&stated)?;
     camera_made.name = match (&spec.preset, preset) {
         (Some(name), Some(preset)) => match preset.camera() {
-            Ok(own) => match changed(&camera_made, &own).as_slice() {
+            Ok(own) => match camera_made.changed_from(&own).as_slice() {
                 [] => name.clone(),
                 keys => format!("{name} with {} changed", keys.join(", ")),
             },
@@ -48,32 +49,28 @@ pub(super) fn resolved_at(spec: &CameraSpec, place: &dyn Fn(&str) -> Place) -> R
 
 /// Conditions of a noise that is not stated, and a noise without the condition it cannot do without.
 fn check_conditions(spec: &CameraSpec, preset: Option<&Preset>, place: &dyn Fn(&str) -> Place) -> Result<()> {
-    for (key, given) in [
-        ("netd_temperature", spec.netd_temperature_k.is_some()),
-        ("netd_f_number", spec.netd_f_number.is_some()),
-        ("netd_pixel", spec.netd_pixel_m.is_some()),
-    ] {
-        if given && spec.netd_k.is_none() {
-            let error = Error::malformed(format!("{key} without a netd"), "write netd = \"50 mK\" beside it");
-            return Err(error.at(place(key)));
+    for row in TABLE.iter().filter(|row| row.part == Part::Condition(&["netd"])) {
+        if row.is_given(spec) && spec.noise.netd_k.is_none() {
+            let found = format!("{} without a netd", row.key);
+            return Err(Error::malformed(found, "write netd = \"50 mK\" beside it").at(place(row.key)));
         }
     }
     if spec.noise_exposure_s.is_some() && !spec.states_noise() {
         let instead = "write netd, detectivity or noise_electrons beside it";
         return Err(Error::malformed("noise_exposure without a noise", instead).at(place("noise_exposure")));
     }
-    let of_bandwidth = [("detectivity", spec.detectivity_cm_hz05_w), ("nep", spec.nep_w_hz05)];
+    let of_bandwidth = [("detectivity", spec.noise.detectivity_cm_hz05_w), ("nep", spec.noise.nep_w_hz05)];
     match of_bandwidth.iter().find(|(_, given)| given.is_some()) {
-        None if spec.noise_bandwidth_hz.is_some() => {
+        None if spec.noise.bandwidth_hz.is_some() => {
             let instead = "write detectivity = \"4.7e10 cm Hz^0.5/W\" or nep beside it";
             let error = Error::malformed("noise_bandwidth without a detectivity or nep", instead);
             Err(error.at(place("noise_bandwidth")))
         }
         // A preset that states such a noise states its conditions too.
         Some((key, _))
-            if spec.noise_bandwidth_hz.is_none()
+            if spec.noise.bandwidth_hz.is_none()
                 && spec.noise_exposure_s.is_none()
-                && !preset.is_some_and(|preset| preset.bandwidth_is_stated()) =>
+                && !preset.is_some_and(|preset| preset.figures.noise.is_of_bandwidth()) =>
         {
             let instead =
                 "write noise_bandwidth = \"175 kHz\", or noise_exposure = \"2.86 us\" for 1/(2 x 2.86 us)";
@@ -86,104 +83,63 @@ fn check_conditions(spec: &CameraSpec, preset: Option<&Preset>, place: &dyn Fn(&
 /// The preset with the scenario's figures laid over it.
 fn overridden(spec: &CameraSpec, preset: Preset, place: &dyn Fn(&str) -> Place) -> Result<Preset> {
     let mut stated = preset;
-    let own_noise_exposure = stated.noise_exposure_s.or(stated.exposure_s);
-    let conditions = stated.bandwidth_is_stated();
-    let own_bandwidth = match stated.noise {
-        Some(StatedNoise::Detectivity { bandwidth_hz, .. } | StatedNoise::Nep { bandwidth_hz, .. }) => {
-            bandwidth_hz
-        }
-        _ => None,
-    };
-    let bandwidth_hz = match spec.noise_exposure_s {
-        Some(_) => spec.noise_bandwidth_hz,
-        None => spec.noise_bandwidth_hz.or(own_bandwidth),
-    };
+    let figures = &mut stated.figures;
+    let own_noise_exposure = figures.noise_exposure_s.or(figures.exposure_s);
+    let conditions = figures.noise.is_of_bandwidth();
+    let own_bandwidth = figures.noise.bandwidth_hz;
     // Noise that comes with the preset is stated under the preset's conditions.
-    if let Some(StatedNoise::Netd { f_number, optics_efficiency, pixel_m, .. }) = &mut stated.noise {
-        *f_number = f_number.or(stated.f_number);
-        *optics_efficiency = optics_efficiency.or(stated.optics_efficiency);
-        *pixel_m = pixel_m.or(stated.pixel_m);
+    if figures.noise.netd_k.is_some() {
+        let noise = &mut figures.noise;
+        noise.netd_f_number = noise.netd_f_number.or(figures.f_number);
+        noise.netd_optics_efficiency =
+            noise.netd_optics_efficiency.or(figures.optics_efficiency.as_ref().and_then(Efficiency::number));
+        noise.netd_pixel_m = noise.netd_pixel_m.or(figures.pixel_m);
     }
-    let lay = |over: Option<f64>, under: &mut Option<f64>| *under = over.or(*under);
-    lay(spec.exposure_s, &mut stated.exposure_s);
-    lay(spec.pixel_m, &mut stated.pixel_m);
-    lay(spec.f_number, &mut stated.f_number);
-    lay(spec.focal_length_m, &mut stated.focal_length_m);
-    lay(spec.flicker_fraction, &mut stated.flicker_fraction);
-    lay(spec.dark_rate_per_s, &mut stated.dark_rate_per_s);
-    lay(spec.read_noise, &mut stated.read_noise_counts);
-    lay(spec.full_well, &mut stated.full_well);
-    lay(spec.frame_rate_hz, &mut stated.frame_rate_hz);
-    lay(spec.sensor_temperature_k, &mut stated.sensor_temperature_k);
-    lay(spec.filter_temperature_k, &mut stated.filter_temperature_k);
-    lay(spec.field_of_view_rad, &mut stated.field_of_view_rad);
-    stated.quantisation_bits = spec.quantisation_bits.or(stated.quantisation_bits);
-    stated.frames = spec.frames.or(stated.frames);
-    stated.pixels = spec.pixels.or(stated.pixels);
-    stated.readout = spec.readout.or(stated.readout);
-    stated.photon_bunching = spec.photon_bunching.unwrap_or(stated.photon_bunching);
     // Without a preset there is no document that could have stated an efficiency.
     if spec.preset.is_none() {
-        stated.optics_efficiency = Some(1.0);
-        stated.spectral_range_cm1 = Some([715.0, 1250.0]);
-        stated.flicker_fraction = stated.flicker_fraction.or(Some(0.0));
+        figures.optics_efficiency = Some(Efficiency::Number(1.0));
+        figures.spectral_range_cm1 = Some(PAPER_RANGE_CM1);
+        figures.flicker_fraction = Some(0.0);
     }
-    for (key, efficiency) in
-        [("optics_efficiency", &spec.optics_efficiency), ("quantum_efficiency", &spec.quantum_efficiency)]
-    {
-        let number = match efficiency {
-            None => continue,
-            Some(Efficiency::Number(number)) => *number,
-            Some(Efficiency::File(path)) => {
-                let rows = column(path, "efficiency", "read the efficiency")?;
-                let curve = EfficiencyCurve::new(key, rows).map_err(|error| error.in_file(path))?;
-                stated.efficiency_curves.push(curve);
-                1.0
-            }
-        };
-        match key {
-            "optics_efficiency" => stated.optics_efficiency = Some(number),
-            _ => stated.quantum_efficiency = Some(number),
+    for row in TABLE.iter().filter(|row| row.part == Part::Own) {
+        row.lay(spec, figures);
+        if let (Kind::Efficiency(..), Some(path)) = (row.kind, row.file(spec)) {
+            let rows = column(path, "efficiency", "read the efficiency")?;
+            let curve = EfficiencyCurve::new(row.key, rows).map_err(|error| error.in_file(path))?;
+            stated.efficiency_curves.push(curve);
         }
     }
-    let noise = if let Some(netd_k) = spec.netd_k {
-        Some(StatedNoise::Netd {
-            netd_k,
-            // Without a word on it the NETD is of the reference temperature, through the camera's own optics.
-            temperature_k: spec.netd_temperature_k.or(stated.reference_temperature_k).or(Some(303.15)),
-            f_number: spec.netd_f_number.or(stated.f_number),
-            optics_efficiency: None,
-            pixel_m: spec.netd_pixel_m,
-        })
-    } else if let Some(detectivity_cm_hz05_w) = spec.detectivity_cm_hz05_w {
-        Some(StatedNoise::Detectivity { detectivity_cm_hz05_w, bandwidth_hz })
-    } else if let Some(nep_w_hz05) = spec.nep_w_hz05 {
-        Some(StatedNoise::Nep { nep_w_hz05, bandwidth_hz })
-    } else if let Some(microflick) = spec.nesr_microflick {
-        Some(StatedNoise::Nesr { microflick, wavelength_um: None })
-    } else if let Some(path) = &spec.noise_table {
+    if !spec.states_noise() {
+        if figures.noise.stated().is_none() && spec.preset.is_none() {
+            return Err(Error::malformed(
+                "the camera's noise is not given",
+                "write netd = \"50 mK\", detectivity = \"4.7e10 cm Hz^0.5/W\" or noise_electrons = 0",
+            )
+            .at(place("netd")));
+        }
+        // Noise that comes with the preset is stated at the preset's exposure.
+        figures.noise_exposure_s = own_noise_exposure.or(figures.exposure_s);
+        return Ok(stated);
+    }
+    let mut noise = spec.noise.clone();
+    if noise.netd_k.is_some() {
+        // Without a word on it the NETD is of the reference temperature, through the camera's own optics.
+        let reference_k = figures.reference_temperature_k.unwrap_or(REFERENCE_K);
+        noise.netd_temperature_k.get_or_insert(reference_k);
+        noise.netd_f_number = noise.netd_f_number.or(figures.f_number);
+    }
+    // Noise of the scenario's own is stated at the camera's exposure, one of the preset's kind at the preset's.
+    let exposure_s =
+        if noise.is_of_bandwidth() && conditions { own_noise_exposure } else { figures.exposure_s };
+    if noise.is_of_bandwidth() && spec.noise_exposure_s.is_none() {
+        noise.bandwidth_hz = noise.bandwidth_hz.or(own_bandwidth);
+    }
+    if let Some(path) = &noise.table {
         let rows = column(path, "sigma_counts", "read the noise")?;
-        let table = NoiseSpec::table(rows).map_err(|error| error.in_file(path))?;
-        Some(StatedNoise::Table(table))
-    } else {
-        spec.noise_electrons.map(|sigma_counts| StatedNoise::Counts { sigma_counts })
-    };
-    if noise.is_none() && stated.noise.is_none() && spec.preset.is_none() {
-        return Err(Error::malformed(
-            "the camera's noise is not given",
-            "write netd = \"50 mK\", detectivity = \"4.7e10 cm Hz^0.5/W\" or noise_electrons = 0",
-        )
-        .at(place("netd")));
+        stated.noise_table = Some(NoiseSpec::table(rows).map_err(|error| error.in_file(path))?);
     }
-    // Noise that comes with the preset is stated at the preset's exposure, other noise at its own.
-    stated.noise_exposure_s = match noise {
-        Some(StatedNoise::Detectivity { .. } | StatedNoise::Nep { .. }) if conditions => {
-            spec.noise_exposure_s.or(own_noise_exposure)
-        }
-        Some(_) => spec.noise_exposure_s.or(stated.exposure_s),
-        None => own_noise_exposure.or(stated.exposure_s),
-    };
-    stated.noise = noise.or(stated.noise);
+    figures.noise_exposure_s = spec.noise_exposure_s.or(exposure_s);
+    figures.noise = noise;
     Ok(stated)
 }
 
@@ -204,74 +160,12 @@ fn column(path: &Path, name: &str, action: &str) -> Result<Vec<(f64, f64)>> {
     read().map_err(|error| error.in_file(path))
 }
 
-/// Keys of the figures in which a camera is not its preset, but for the rounding of a conversion of units.
-fn changed(camera: &Camera, preset: &Camera) -> Vec<&'static str> {
-    const ROUNDING: f64 = 1e-9;
-    let same = |a: f64, b: f64| (a - b).abs() <= ROUNDING * a.abs().max(b.abs());
-    let same_or_none = |a: Option<f64>, b: Option<f64>| match (a, b) {
-        (Some(a), Some(b)) => same(a, b),
-        (a, b) => a.is_none() && b.is_none(),
-    };
-    let noise = match (&camera.noise, &preset.noise) {
-        (NoiseSpec::None, NoiseSpec::None) => None,
-        (NoiseSpec::Counts { sigma_counts: 0.0 }, NoiseSpec::None) => None,
-        (
-            NoiseSpec::Netd { netd_k: a, temperature_k: t, f_number: f, pixel_m: p, .. },
-            NoiseSpec::Netd { netd_k: b, temperature_k: at, f_number: of, pixel_m: by, .. },
-        ) => (!(same(*a, *b) && same(*t, *at) && same(*f, *of) && same(*p, *by))).then_some("netd"),
-        (NoiseSpec::Counts { sigma_counts: a }, NoiseSpec::Counts { sigma_counts: b }) => {
-            (!same(*a, *b)).then_some("noise_electrons")
-        }
-        (NoiseSpec::SpectralRadiance { microflick: a }, NoiseSpec::SpectralRadiance { microflick: b }) => {
-            (!same(*a, *b)).then_some("nesr")
-        }
-        (
-            NoiseSpec::Detectivity { detectivity_cm_hz05_w: a, bandwidth_hz: of },
-            NoiseSpec::Detectivity { detectivity_cm_hz05_w: b, bandwidth_hz: by },
-        ) => (!(same(*a, *b) && same_or_none(*of, *by))).then_some("detectivity"),
-        (
-            NoiseSpec::Nep { nep_w_hz05: a, bandwidth_hz: of },
-            NoiseSpec::Nep { nep_w_hz05: b, bandwidth_hz: by },
-        ) => (!(same(*a, *b) && same_or_none(*of, *by))).then_some("nep"),
-        (own, _) => Some(own.key()),
-    };
-    let noiseless = matches!(camera.noise, NoiseSpec::None);
-    let figures = [
-        ("exposure", same(camera.exposure_s, preset.exposure_s)),
-        ("pixel", same(camera.pixel_m, preset.pixel_m)),
-        ("f_number", same(camera.f_number, preset.f_number)),
-        ("focal_length", same(camera.focal_length_m, preset.focal_length_m)),
-        (
-            "optics_efficiency",
-            same(camera.optics_efficiency, preset.optics_efficiency)
-                && camera.efficiency_curves == preset.efficiency_curves,
-        ),
-        ("quantum_efficiency", same(camera.quantum_efficiency, preset.quantum_efficiency)),
-        (noise.unwrap_or_default(), noise.is_none()),
-        // Noise of the same figures at another exposure is another noise, where there is any.
-        (
-            "noise_exposure",
-            noiseless || noise.is_some() || same(camera.noise_exposure_s, preset.noise_exposure_s),
-        ),
-        ("flicker_fraction", same(camera.flicker_fraction, preset.flicker_fraction)),
-        ("dark_rate", same(camera.dark_rate_per_s, preset.dark_rate_per_s)),
-        ("read_noise", same(camera.read_noise_counts, preset.read_noise_counts)),
-        ("quantisation_bits", camera.quantisation_bits == preset.quantisation_bits),
-        ("photon_bunching", camera.photon_bunching == preset.photon_bunching),
-        ("frame_rate", same_or_none(camera.frame_rate_hz, preset.frame_rate_hz)),
-        ("full_well", same_or_none(camera.full_well, preset.full_well)),
-        ("readout", camera.readout == preset.readout),
-        ("frames", camera.frames == preset.frames),
-        ("field_of_view", same_or_none(camera.field_of_view_rad, preset.field_of_view_rad)),
-        ("pixels", camera.pixels == preset.pixels),
-    ];
-    figures.into_iter().filter(|(_, same)| !same).map(|(key, _)| key).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::scenario::Scenario;
+    use hadar::instrument::Readout;
+    use hadar::instrument::figures::{self, Row};
 
     #[test]
     fn a_preset_that_was_changed_says_in_what() {
@@ -290,13 +184,82 @@ mod tests {
         assert_eq!(name(&|spec| spec.pixel_m = Some(own.pixel_m * (1.0 + 1e-12))), "flir-a325sc");
         let changed = name(&|spec| {
             spec.exposure_s = Some(2.0 * own.exposure_s);
-            spec.netd_k = Some(0.2);
+            spec.noise.netd_k = Some(0.2);
         });
         assert_eq!(changed, "flir-a325sc with exposure, netd changed");
         assert_eq!(
-            name(&|spec| spec.noise_electrons = Some(7.0)),
+            name(&|spec| spec.noise.electrons = Some(7.0)),
             "flir-a325sc with noise_electrons changed"
         );
         assert_eq!(name(&|spec| spec.frames = Some(16)), "flir-a325sc with frames changed");
+    }
+
+    /// A camera like the FLIR of the paper with one figure changed, and what that figure cannot be stated without.
+    fn with_changed(row: &Row, table: &Path) -> CameraSpec {
+        let own = CameraSpec::of(&presets::get("flir-a325sc").unwrap());
+        let mut spec = CameraSpec { preset: Some("flir-a325sc".into()), ..CameraSpec::default() };
+        match row.key {
+            "noise_bandwidth" => spec.noise.detectivity_cm_hz05_w = Some(1e10),
+            "detectivity" | "nep" => spec.noise_exposure_s = own.noise_exposure_s,
+            "quantisation_bits" => spec.full_well = Some(1e7),
+            "filter_temperature" => spec.sensor_temperature_k = Some(300.0),
+            _ if matches!(row.part, Part::Condition(_)) => spec.noise.netd_k = own.noise.netd_k,
+            _ => {}
+        }
+        match row.kind {
+            Kind::Quantity(..) | Kind::Number(..) | Kind::Efficiency(..) => {
+                let value = row.number(&own).filter(|value| *value > 0.0).map_or(1.0, |value| 0.9 * value);
+                row.put_number(&mut spec, value);
+            }
+            Kind::Count(slot) => {
+                *(slot.at)(&mut spec) = (slot.of)(&own).map_or(Some(2), |count| Some(count + 1))
+            }
+            Kind::Flag(slot) => *(slot.at)(&mut spec) = (slot.of)(&own).map(|flag| !flag),
+            Kind::Readout(slot) => *(slot.at)(&mut spec) = Some(Readout::Sequential),
+            Kind::File(slot) => *(slot.at)(&mut spec) = Some(table.to_owned()),
+            Kind::Name(_) => {}
+        }
+        spec
+    }
+
+    #[test]
+    fn every_figure_that_is_changed_is_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let table = folder.path().join("table.csv");
+        std::fs::write(&table, "wavenumber_cm1,sigma_counts,efficiency\n700,1e5,0.5\n1300,2e5,0.8\n")
+            .unwrap();
+        let name = |spec: &CameraSpec| resolved(spec, &Source::default()).unwrap().name;
+        for row in TABLE.iter().filter(|row| row.key != "preset") {
+            let name = name(&with_changed(row, &table));
+            let keys = name.strip_prefix("flir-a325sc with ").and_then(|rest| rest.strip_suffix(" changed"));
+            let expected = match row.part {
+                // A noise under other conditions is another noise.
+                Part::Condition(noises) if row.key != "noise_exposure" => noises[0],
+                _ => row.key,
+            };
+            let named = keys.is_some_and(|keys| keys.split(", ").any(|key| key == expected));
+            assert!(named, "{}: {name}", row.key);
+        }
+        for key in ["optics_efficiency", "quantum_efficiency"] {
+            let mut spec = CameraSpec { preset: Some("flir-a325sc".into()), ..CameraSpec::default() };
+            if let Some(Kind::Efficiency(_, slot)) = figures::row(key).map(|row| row.kind) {
+                *(slot.at)(&mut spec) = Some(Efficiency::File(table.clone()));
+            }
+            assert_eq!(name(&spec), format!("flir-a325sc with {key} changed"));
+        }
+    }
+
+    /// Every example of the table can be read, and is written as it was.
+    #[test]
+    fn the_examples_of_the_table_are_read_and_written() {
+        for row in TABLE {
+            let text = format!(
+                "[target]\nmaterial = \"skin\"\ntemperature = \"37 degC\"\n[camera]\n{} = {}\n",
+                row.key, row.example
+            );
+            let scenario = Scenario::from_toml(&text, None).unwrap_or_else(|error| panic!("{error}"));
+            assert!(scenario.camera.as_ref().is_some_and(|spec| row.is_given(spec)), "{}", row.key);
+            assert_eq!(Scenario::from_toml(&scenario.to_toml(), None).unwrap(), scenario, "{}", row.key);
+        }
     }
 }

@@ -216,19 +216,9 @@ impl Study {
         }
         view.signal = bands.weigh(&self.surroundings.signal(&self.target.emissivity, &self.state));
         if camera.photon_bunching {
-            view.occupancy = self.occupancy(camera, bands, &view);
+            view.occupancy = camera.counts_per_mode(&self.open_bands, &view);
         }
         view
-    }
-
-    /// Photons that are counted per mode, mean over each band: those of the signal over the modes' density 2ν² (both
-    /// polarisations, S11), times the efficiencies.
-    fn occupancy(&self, camera: &Camera, bands: &Bands, view: &View) -> Vec<f64> {
-        let modes: Vec<f64> = bands.nodes_cm1().iter().map(|&nu| planck::mode_density(nu)).collect();
-        let open = self.open_bands.weigh(&modes);
-        let efficiency = camera.optics_efficiency * camera.quantum_efficiency;
-        let all = |w: usize| view.fill * view.signal[w] + view.other_light(w);
-        open.iter().enumerate().map(|(w, modes)| efficiency * all(w) / modes).collect()
     }
 }
 

@@ -1,8 +1,8 @@
 //! Nodes and weights that average over the Gaussian priors of a state.
 
-use super::space::{set, value};
 use crate::error::{Error, Result};
 use crate::fisher::{Nuisance, Unknowns};
+use crate::identifiability::space::{set, value};
 use crate::scene::{Parameter, State};
 
 /// Deviations from the mean beyond which a prior is nothing (2.6e-12 of it, 1.3e-10 of its variance).

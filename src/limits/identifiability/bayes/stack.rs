@@ -1,11 +1,39 @@
 //! The columns of all states of a prior under each other, and the material's projected off the others.
 
 use super::prior::{self, Node};
-use super::{BayesianBound, BayesianDistance, MAX_STACK, Pair};
 use crate::error::Result;
-use crate::fisher::Projector;
-use crate::scene::{Jacobian, Parameter};
+use crate::fisher::{Projector, Unknowns};
+use crate::scene::{Jacobian, Parameter, State, Surroundings};
+use crate::spectrum::Bands;
 use crate::sum::dot;
+
+/// More numbers than this are not stacked.
+pub(super) const MAX_STACK: usize = 100_000_000;
+
+/// The task of a [`BayesianBound`](super::BayesianBound): the pair of materials and the nominal state, about which the priors are
+/// centred.
+#[derive(Debug, Clone, Copy)]
+pub struct Pair<'a> {
+    /// Emissivity of the target at the nodes of the bands.
+    pub emissivity: &'a [f64],
+    /// Emissivity of the alternative at the nodes.
+    pub alternative: &'a [f64],
+    /// Nominal state.
+    pub state: &'a State,
+}
+
+/// The hybrid Cramér–Rao bound as a distance.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct BayesianDistance {
+    /// d_B per √photon of the nominal state; 0 where no prior helps.
+    pub distance: f64,
+    /// Nodes of the average.
+    pub nodes: usize,
+    /// Relative change of the distance from a rule of half the order.
+    pub quadrature_change: f64,
+    /// Estimated bound on the relative rounding error.
+    pub relative_error: f64,
+}
 
 /// Columns of all nodes: nuisances in their order, the material last.
 pub(super) struct Stack {
@@ -21,19 +49,25 @@ pub(super) struct Stack {
 
 impl Stack {
     /// `total` is ΣS of the nominal state.
-    pub(super) fn new(bound: &BayesianBound<'_>, pair: Pair<'_>, total: f64, order: usize) -> Result<Self> {
-        let (bands, unknowns) = (bound.bands.len(), &bound.unknowns);
-        let mut parameters = unknowns.parameters(bound.surroundings.objects().len());
+    pub(super) fn new(
+        bands: &Bands,
+        surroundings: &Surroundings,
+        unknowns: &Unknowns,
+        pair: Pair<'_>,
+        total: f64,
+        order: usize,
+    ) -> Result<Self> {
+        let mut parameters = unknowns.parameters(surroundings.objects().len());
         let priors: Vec<(usize, f64)> = parameters
             .iter()
             .enumerate()
             .filter_map(|(i, parameter)| unknowns.sigma_prior(*parameter).map(|sigma| (i, sigma)))
             .collect();
         parameters.push(Parameter::Material);
-        let nodes = prior::nodes(unknowns, pair.state, order, MAX_STACK / (bands * parameters.len()))?;
-        let mut jacobian = Jacobian::new(bound.bands, bound.surroundings);
-        let mut columns = vec![Vec::with_capacity(nodes.len() * bands); parameters.len()];
-        let mut weights = Vec::with_capacity(nodes.len() * bands);
+        let nodes = prior::nodes(unknowns, pair.state, order, MAX_STACK / (bands.len() * parameters.len()))?;
+        let mut jacobian = Jacobian::new(bands, surroundings);
+        let mut columns = vec![Vec::with_capacity(nodes.len() * bands.len()); parameters.len()];
+        let mut weights = Vec::with_capacity(nodes.len() * bands.len());
         let (mut square, mut error) = (0.0, 0.0);
         let total_known = unknowns.known_lighting_total().is_some();
         for Node { state, weight } in &nodes {

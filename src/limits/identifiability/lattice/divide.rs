@@ -6,8 +6,8 @@
 //! first 64 boxes are spread over the threads and added up in their order, so the result does not depend on
 //! the number of threads.
 
-use super::MAX_BANDS;
 use super::counts::Axis;
+use super::detector::MAX_BANDS;
 use super::surface::{Likelihood, Surfaces};
 use crate::sum::Compensated;
 use rayon::prelude::*;

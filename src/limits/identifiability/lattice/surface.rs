@@ -10,9 +10,9 @@
 //! Materials of one and the same emissivity share one surface.
 
 use super::super::space::{StateSpace, set, value};
-use super::{LatticeDetector, LatticeMesh, MAX_BANDS, StateRange};
-use crate::error::{Error, Result, check};
-use crate::fisher::{Nuisance, Unknowns};
+use super::detector::{LatticeDetector, LatticeMesh, MAX_BANDS};
+use crate::error::{Error, Result};
+use crate::fisher::Nuisance;
 use crate::scene::{Jacobian, Parameter, State};
 use crate::statistics::Statistics;
 use rayon::prelude::*;
@@ -213,22 +213,4 @@ fn meshed(
         return Err(Error::malformed("a mesh without states", "widen the range or mesh it more finely"));
     }
     Ok(states)
-}
-
-/// Makes sure that the unknowns can be meshed over the range.
-pub(super) fn check_unknowns(unknowns: &Unknowns, range: &StateRange) -> Result<()> {
-    if unknowns.contains(Nuisance::EnvironmentTemperature) {
-        return Err(Error::malformed(
-            "an environment temperature among the unknowns of a lattice",
-            "take it as known, or simulate the decision",
-        ));
-    }
-    let [low, high] = range.temperature_k;
-    check::positive("lowest temperature of the range", low, "K")?;
-    check::non_negative("width of the range of temperatures", high - low, "K")?;
-    let [low, high] = range.lighting;
-    check::unit_interval("lowest lighting factor of the range", low)?;
-    check::unit_interval("highest lighting factor of the range", high)?;
-    check::non_negative("width of the range of lighting factors", high - low, "")?;
-    check::unit_interval("largest sum of the lighting factors", range.lighting_sum).map(drop)
 }

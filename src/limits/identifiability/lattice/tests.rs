@@ -1,7 +1,9 @@
 use super::*;
-use crate::fisher::Nuisance;
+use crate::fisher::{Nuisance, Unknowns};
 use crate::identifiability::{detection, linear, local::LocalSolver};
-use crate::scene::EnvironmentObject;
+use crate::scene::{EnvironmentObject, Surroundings};
+use crate::spectrum::Bands;
+use crate::statistics::Statistics;
 use rand::SeedableRng;
 use rand_distr::{Distribution, Normal, Poisson};
 use statrs::function::gamma::ln_gamma;

@@ -8,8 +8,8 @@ use super::terms::Terms;
 use crate::identifiability::curvature::{Curvature, curvature_into};
 use crate::identifiability::space::Quadratic;
 use crate::scene::{Jacobian, Parameter, State};
-use crate::simd::{Aligned, Chunk, LANES, added, dispatched, padded, product};
-use crate::sum::{dot, fold};
+use crate::simd::{Aligned, Chunk, LANES, added, dispatched, fold, padded, product};
+use crate::sum::dot;
 use nalgebra::{DMatrix, DVector};
 
 /// Spectra for the second derivative along T.

@@ -268,7 +268,7 @@ impl<'a> LocalMatrix<'a> {
     /// One pair, judged with all care.
     fn alone(&mut self, own: &[f64], other: &[f64], state: &State, weights: Weights<'_>) -> Result<f64> {
         match weights {
-            Weights::PerPhoton => self.pair.point(own, other, state).map(|point| point.0),
+            Weights::PerPhoton => self.pair.distance(own, other, state),
             Weights::Counting(counting) => {
                 self.pair.with_counting(own, other, state, counting).map(|local| local.distance)
             }

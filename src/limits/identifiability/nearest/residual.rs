@@ -9,11 +9,22 @@
 mod sums;
 
 use self::sums::{Lines, Sums};
-use super::{Metric, NearestSolver};
+use crate::error::{Error, Result};
+use crate::fisher::{Counting, Unknowns};
 use crate::identifiability::curvature::{Curvature, curvature_into};
-use crate::identifiability::space::{Quadratic, value};
-use crate::scene::{Parameter, State};
+use crate::identifiability::space::{Quadratic, StateRange, StateSpace, value};
+use crate::scene::{Jacobian, Parameter, State, Surroundings, check_emissivity};
 use crate::simd::{Aligned, dispatched};
+use crate::spectrum::Bands;
+
+/// What the counts are compared in.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Metric<'a> {
+    /// Shot noise per √photon, the photons being those of the target; priors as among `photons`.
+    PerPhoton { photons: f64 },
+    /// Counts with the camera's noise.
+    Counting(&'a Counting),
+}
 
 /// The target as every candidate state is compared with it.
 pub(super) struct Target<'t> {
@@ -33,7 +44,7 @@ pub(super) struct Linearised {
 
 /// Spectra kept between calls so that none allocates.
 #[derive(Debug, Clone)]
-pub(super) struct Workspace {
+struct Workspace {
     /// σ²_w of each band, and √(N + σ²) of the target.
     noise: Aligned,
     root: Aligned,
@@ -48,7 +59,7 @@ pub(super) struct Workspace {
 }
 
 impl Workspace {
-    pub(super) fn new(bands: usize, nodes: usize) -> Self {
+    fn new(bands: usize, nodes: usize) -> Self {
         let (band, node) = (|| Aligned::zeros(bands), || Aligned::zeros(nodes));
         Self {
             noise: band(),
@@ -62,7 +73,7 @@ impl Workspace {
     }
 
     /// Noise and √(N + σ²) of the target, once per search.
-    pub(super) fn weigh_target(&mut self, target: &Target<'_>, signal: &[f64]) {
+    fn weigh_target(&mut self, target: &Target<'_>, signal: &[f64]) {
         match target.metric {
             Metric::PerPhoton { .. } => self.noise.fill(0.0),
             Metric::Counting(counting) => {
@@ -73,14 +84,66 @@ impl Workspace {
         }
         roots_into(target.counts, signal, &self.noise, &mut self.root);
     }
-
-    /// σ²_w of each band.
-    pub(super) fn noise(&self) -> &[f64] {
-        &self.noise
-    }
 }
 
-impl NearestSolver<'_> {
+/// The target and a candidate state of the alternative, band by band.
+#[derive(Debug, Clone)]
+pub(super) struct Comparison<'a> {
+    pub(super) space: StateSpace,
+    surface: Jacobian<'a>,
+    pub(super) target: Jacobian<'a>,
+    work: Workspace,
+}
+
+impl<'a> Comparison<'a> {
+    pub(super) fn new(
+        bands: &'a Bands,
+        surroundings: &'a Surroundings,
+        unknowns: Unknowns,
+        range: StateRange,
+    ) -> Self {
+        Self {
+            space: StateSpace::new(unknowns, range, surroundings.objects().len()),
+            surface: Jacobian::new(bands, surroundings),
+            target: Jacobian::new(bands, surroundings),
+            work: Workspace::new(bands.len(), surroundings.nodes_cm1().len()),
+        }
+    }
+
+    /// Evaluates the target, with which every candidate is compared.
+    pub(super) fn aim<'t>(
+        &mut self,
+        emissivity: &'t [f64],
+        alternative: &'t [f64],
+        state: &'t State,
+        metric: Metric<'t>,
+    ) -> Result<Target<'t>> {
+        self.space.range.check()?;
+        let nodes = self.target.surroundings().nodes_cm1().len();
+        check_emissivity(emissivity, nodes)?;
+        check_emissivity(alternative, nodes)?;
+        if let Metric::Counting(counting) = metric {
+            counting.check(self.target.bands().len())?;
+        }
+        self.target.evaluate(emissivity, alternative, state, &[], false);
+        let total = crate::sum::sum(self.target.signal());
+        if !(total > 0.0 && total.is_finite()) {
+            return Err(Error::out_of_range(
+                "photon radiance of the target",
+                total,
+                "photons s^-1 m^-2 sr^-1",
+                "above 0: a warmer scene, or bands at lower wavenumbers",
+            ));
+        }
+        let counts = match metric {
+            Metric::PerPhoton { .. } => 1.0 / total,
+            Metric::Counting(counting) => counting.counts_per_radiance,
+        };
+        let target = Target { emissivity, alternative, state, counts, metric };
+        self.work.weigh_target(&target, self.target.signal());
+        Ok(target)
+    }
+
     /// Cost, gradient and second derivatives at a state of the alternative.
     pub(super) fn linearise(&mut self, target: &Target<'_>, state: &State) -> Linearised {
         self.separate(target, state, true);
@@ -127,6 +190,11 @@ impl NearestSolver<'_> {
         self.separate(target, state, false);
         let bands = sums::cost(self.lines(target));
         bands + self.prior_rows(target, state).map(|(_, _, row)| row * row).sum::<f64>()
+    }
+
+    /// σ²_w of each band.
+    pub(super) fn noise(&self) -> &[f64] {
+        &self.work.noise
     }
 
     fn lines(&self, target: &Target<'_>) -> Lines<'_> {

@@ -18,10 +18,9 @@ pub(super) use self::table::EmissionTable;
 use self::fit::{Fit, Fitted};
 use self::table::{Emission, Thinned, step_at};
 use self::whitened::Whitened;
-use super::residual::Target;
-use super::{NearestSolver, State};
+use super::residual::{Comparison, Target};
 use crate::fisher::Nuisance;
-use crate::scene::Parameter;
+use crate::scene::{Parameter, State};
 use crate::units::SECOND_RADIATION_CM_K;
 
 /// Where environment temperatures are unknown, the grid is made for surroundings this many times as warm.
@@ -37,22 +36,23 @@ struct Start {
     cost: f64,
 }
 
-impl NearestSolver<'_> {
+impl Comparison<'_> {
     /// States to refine from: the target's own, which costs `own_cost`, and one for every minimum along T′. Left out
     /// are those that are both many times as costly as the cheapest and more than `reach` farther away.
-    pub(super) fn starts(&mut self, target: &Target<'_>, own_cost: f64, reach: f64) -> Vec<State> {
+    pub(super) fn starts(
+        &mut self,
+        table: &mut Option<EmissionTable>,
+        target: &Target<'_>,
+        own_cost: f64,
+        reach: f64,
+    ) -> Vec<State> {
         let own = self.space.within_range(target.state);
         let own_cost = if own == *target.state { own_cost } else { self.cost(target, &own) };
         if !self.space.unknowns.contains(Nuisance::Temperature) {
             return vec![own];
         }
-        // Taken out while the solver's other parts are worked with.
-        let mut table = match self.table.take() {
-            Some(table) => table,
-            None => EmissionTable::new(self.target.bands()),
-        };
-        let mut minima = self.minima(&mut table, target, &own);
-        self.table = Some(table);
+        let table = table.get_or_insert_with(|| EmissionTable::new(self.target.bands()));
+        let mut minima = self.minima(table, target, &own);
         minima.sort_by(|a, b| a.cost.total_cmp(&b.cost));
         minima.truncate(REFINED);
         let cheapest = minima.first().map_or(f64::INFINITY, |start| start.cost);

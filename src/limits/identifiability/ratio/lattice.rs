@@ -9,7 +9,7 @@
 //!
 //! Splitting and the transform: as for privacy losses, Doroshenko et al., Proc. Priv. Enhancing Technol. 2022(4), 552.
 
-use super::Integrals;
+use super::integrals::Integrals;
 use super::line::{Line, Mode};
 use std::f64::consts::PI;
 

@@ -92,7 +92,7 @@ pub(super) fn choose(pairs: &[Pair], k: usize, rounds: usize) -> Chosen {
     for (_, selection) in &found.met {
         exchange.improve(selection.iter().map(|filter| filter.start).collect());
     }
-    if super::combinations(pairs.first().map_or(0, Pair::bands), k) > FEW {
+    if combinations(pairs.first().map_or(0, Pair::bands), k) > FEW {
         exchange.restart(&found);
     }
     let mut bands = exchange.best.1;
@@ -350,4 +350,9 @@ impl<'a> Enumeration<'a> {
         }
         true
     }
+}
+
+/// Number of ways to take k of n.
+pub(super) fn combinations(n: usize, k: usize) -> f64 {
+    (0..k).map(|i| (n as f64 - i as f64) / (i + 1) as f64).product()
 }

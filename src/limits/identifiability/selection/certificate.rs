@@ -14,8 +14,10 @@
 //! Source: Jaggi, Proc. 30th Int. Conf. on Machine Learning, 427 (2013); for selection of measurements by convex
 //! relaxation Joshi and Boyd, IEEE Trans. Signal Process. 57, 451 (2009), doi:10.1109/TSP.2008.2007095.
 
+use super::information::normalised;
 use super::pair::{Fit, Pair};
-use super::scores::normalised;
+use crate::minimum::golden_section;
+use std::convert::Infallible;
 use std::ops::Range;
 
 /// Share of rounding that a bound is raised by.
@@ -184,22 +186,8 @@ fn mixed(pairs: &[Pair], old: &[Vec<f64>], new: &[Vec<f64>], hardness: f64) -> V
             .collect();
         soft_minimum(&squares, hardness).0
     };
-    // Golden section on [0, 1]; the value is concave up to the scale of the soft minimum.
-    let golden = 0.5 * (5f64.sqrt() - 1.0);
-    let (mut low, mut high) = (0.0, 1.0);
-    let (mut inner, mut outer) = (1.0 - golden, golden);
-    let (mut at_inner, mut at_outer) = (value(inner), value(outer));
-    for _ in 0..LINE_STEPS {
-        if at_inner > at_outer {
-            (high, outer, at_outer) = (outer, inner, at_inner);
-            inner = high - golden * (high - low);
-            at_inner = value(inner);
-        } else {
-            (low, inner, at_inner) = (inner, outer, at_outer);
-            outer = low + golden * (high - low);
-            at_outer = value(outer);
-        }
-    }
+    // The value is concave up to the scale of the soft minimum.
+    let Ok([low, high]) = golden_section::<Infallible>([0.0, 1.0], LINE_STEPS, |part| Ok(-value(part)));
     blend(0.5 * (low + high))
 }
 

@@ -8,6 +8,7 @@
 //! one that two filters share), by moving a filter elsewhere, and by starting anew with a third of the edges drawn
 //! at random (a fixed sequence); few enough choices are gone through one by one.
 
+use super::bands::combinations;
 use super::certificate::{Certificate, Opponent, bound, worst};
 use super::pair::{Fit, Pair};
 use rand::rngs::ChaCha8Rng;
@@ -117,7 +118,7 @@ pub(super) fn choose(pairs: &[Pair], k: usize, rounds: usize) -> Chosen {
     let found = bound(pairs, &mut opponent, rounds);
     let mut best: (f64, Vec<Range<usize>>) = (0.0, Vec::new());
     // 2k edges, of which neighbouring filters may share some.
-    let few = super::combinations(bands + k, 2 * k) <= FEW;
+    let few = combinations(bands + k, 2 * k) <= FEW;
     let mut edges = Edges::new(pairs);
     let mut random = ChaCha8Rng::seed_from_u64(1);
     let mut starts: Vec<Vec<Range<usize>>> = found.met.iter().map(|met| met.1.clone()).collect();

@@ -9,7 +9,7 @@
 //! Searches use the normal equations of these scaled columns, which are good to some eight digits or more;
 //! any c whatever gives a valid bound, and distances that are reported come from orthogonalised rows.
 
-use super::scores::{Scores, normalised};
+use super::scores::Scores;
 use crate::fisher::Projector;
 use std::ops::Range;
 
@@ -206,24 +206,6 @@ impl Pair {
     pub(super) fn noise_from(&self, start: usize) -> impl Iterator<Item = f64> {
         let low = self.variance_sums[start];
         self.variance_sums[start + 1..].iter().enumerate().map(move |(i, high)| noise(*high, low, i + 1))
-    }
-
-    /// Shares of the bands in d², and what of d² is lost without each.
-    pub(super) fn shares(&self) -> (Vec<f64>, Vec<f64>) {
-        let squares: Vec<f64> = self.rows.chunks(self.width).map(|row| residual(row, &[]).powi(2)).collect();
-        let prior = self.prior_cost(&[]);
-        let whole = crate::sum::sum(&squares) + prior;
-        let lost = self.rows.chunks(self.width).zip(&squares).map(|(row, square)| {
-            let leverage: f64 = row[..self.width - 1].iter().map(|q| q * q).sum();
-            let rest = (1.0 - leverage).max(f64::EPSILON);
-            if whole > 0.0 { (square / rest / whole).min(1.0) } else { 0.0 }
-        });
-        let lost = lost.collect();
-        let mut with_prior = squares;
-        with_prior.push(prior);
-        let mut share = normalised(with_prior);
-        share.pop();
-        (share, lost)
     }
 }
 

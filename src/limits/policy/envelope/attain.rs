@@ -1,16 +1,17 @@
 //! The worst case from above: a dense set of scenes, and descents from the best of them.
 //!
-//! Scenes are points of a lattice of irrational steps (the generalised golden ratio: Roberts, 'The unreasonable
-//! effectiveness of quasirandom sequences', 2018), stretched a little beyond the envelope and cut off at its faces, where
+//! Scenes are points of a lattice ([`GoldenLattice`]), stretched a little beyond the envelope and cut off at its faces, where
 //! least distances often lie, and every corner. In each the nearest state is searched for. A descent then moves
 //! along one range at a time and along what two rounds have gained (Hooke and Jeeves, J. ACM 8, 212 (1961)), with steps
 //! that halve. Neither proves anything.
 
-use super::joint::{self, Point};
-use super::model::{Model, Region};
-use super::{EnvelopeScene, Ranges};
+use super::joint;
+use super::model::{Model, Point, Region};
+use super::ranges::Ranges;
+use super::scene::EnvelopeScene;
 use crate::error::Result;
 use crate::identifiability::nearest::NearestSolver;
+use crate::lattice_points::GoldenLattice;
 use crate::scene::State;
 use rayon::prelude::*;
 
@@ -160,17 +161,13 @@ fn places(free: &[bool], points: usize) -> Vec<Vec<f64>> {
     if n == 0 {
         return vec![lay(&|_| 0.0)];
     }
-    // φ with φⁿ⁺¹ = φ + 1; steps φ⁻¹, φ⁻², …
-    let golden = (0..60).fold(1.5f64, |phi, _| (1.0 + phi).powf(1.0 / (n as f64 + 1.0)));
-    let steps: Vec<f64> = (1..=n).map(|i| golden.powi(-(i as i32))).collect();
-    let lattice = (0..points).map(|point| {
-        lay(&|i| {
-            let x = (0.5 + steps[i] * (point as f64 + 1.0)).fract();
-            (x * (1.0 + 2.0 * BEYOND) - BEYOND).clamp(0.0, 1.0)
-        })
+    let lattice = GoldenLattice::new(vec![0.5; n]);
+    let scenes = (1..=points).map(|index| {
+        let point = lattice.point(index);
+        lay(&|i| (point[i] * (1.0 + 2.0 * BEYOND) - BEYOND).clamp(0.0, 1.0))
     });
     let corners = 0..if n <= CORNERS { 1usize << n } else { 0 };
-    corners.map(|corner| lay(&|i| ((corner >> i) & 1) as f64)).chain(lattice).collect()
+    corners.map(|corner| lay(&|i| ((corner >> i) & 1) as f64)).chain(scenes).collect()
 }
 
 /// The best of the scenes that are not close to a better one.

@@ -1,23 +1,24 @@
 //! A lower bound of the distance in a box of all sources' temperatures and factors.
 //!
-//! Let Δ = Qᵀω(N − N′) (see `cell`), Δ_c its value at the centre and A its derivatives times the half widths. Of the linear
-//! model the point x, |x_i| ≤ 1, nearest to the origin is found, and u = (Δ_c + Ax)/‖Δ_c + Ax‖. For this one direction
+//! In terms of Δ = Qᵀω(N − N′) and the matrix M of the variances (see `cell`), for any direction u
 //!
-//! min over the box of u·Δ = Σ_s min over (T, v, w) of u·[v f(T) + w g(T)]
+//! d ≥ [min over the box of u·Δ]/√(uᵀMu),   min u·Δ = Σ_s min over (T, v, w) of u·[v f(T) + w g(T)].
 //!
-//! is bounded below source by source: linear in v and w, so that only the four corners of their ranges matter, and on each
-//! of them a parabola in T minimised on its interval, less the cubic term and the remainder. A linear model loses nothing
-//! by the choice of u (duality of the nearest point of a convex set); so the bound misses the least distance in the box
-//! by its second derivatives alone. *Any* u gives a valid bound: how well the nearest point is solved for matters for
-//! tightness alone.
+//! 1. Linear model (`linear`): Δ ≈ Δ_c + Ax, |x_i| ≤ 1, Δ_c its value at the centre and A its derivatives times the half
+//!    widths, in coordinates in which M is the unit matrix.
+//! 2. Its point nearest to the origin (`nearest`) gives the direction, u ∝ Δ_c + Ax. A linear model loses nothing by
+//!    that choice (duality of the nearest point of a convex set); so the bound misses the least distance in the box by
+//!    its second derivatives alone. How well the nearest point is solved for matters for tightness alone.
+//! 3. For this one u, source by source (`least`): u·Δ is linear in v and w, so that only the four corners of their
+//!    ranges matter, and on each of them a parabola in T minimised on its interval, less the cubic term and the
+//!    remainder.
+//! 4. Split is along what bends u·Δ, moves it, or changes the variance most.
 //!
 //! Where a sum of lighting factors is limited, Σv ≤ V, λ(Σv − V) ≤ 0 may be added for any λ ≥ 0 (a price on v); λ is the
 //! multiplier that the linear model has, found with the limit as one more row of great weight.
-//!
-//! Split is along what bends u·Δ, moves it, or changes the variance most.
 
-use super::cell::{Cell, Node, PAIRS, RANK, Vector};
-use super::linear::{COLUMNS, Factor, Gram, Limit};
+use super::cell::{Cell, Node};
+use super::linear::{COLUMNS, Factor, Gram, Limit, PAIRS, RANK, Vector};
 use super::model::{Model, SOURCES};
 
 /// About how fast Planck's function grows with temperature, both relative.
@@ -83,6 +84,44 @@ fn centre([low, high]: [f64; 2]) -> (f64, f64) {
     (0.5 * (low + high), 0.5 * (high - low))
 }
 
+/// Δ_c + Ax, |x_i| ≤ 1: a column of A for T, v and w of each source.
+struct Linear {
+    middle: Vector,
+    columns: [Vector; COLUMNS],
+    /// Columns that count, the first ones.
+    count: usize,
+}
+
+impl Linear {
+    #[inline(always)]
+    fn at(&self, x: &[f64; COLUMNS]) -> Vector {
+        let mut point = self.middle;
+        for (x, column) in x.iter().zip(&self.columns) {
+            add(&mut point, *x, column);
+        }
+        point
+    }
+
+    /// Its normal equations, with a row more for each limit.
+    #[inline(always)]
+    fn gram(&self, limits: &[Limit; 2]) -> Gram {
+        let Self { middle, columns, count } = self;
+        Gram::new(
+            *count,
+            dot(middle, middle) + limits.iter().map(|l| l.middle * l.middle).sum::<f64>(),
+            |i, j| dot(&columns[i], &columns[j]) + limits.iter().map(|l| l.row[i] * l.row[j]).sum::<f64>(),
+            |i| dot(&columns[i], middle) + limits.iter().map(|l| l.row[i] * l.middle).sum::<f64>(),
+        )
+    }
+}
+
+/// Where a linear model is nearest to the origin.
+struct Nearest {
+    gram: Gram,
+    x: [f64; COLUMNS],
+    limits: [Limit; 2],
+}
+
 impl Cell {
     fn node_of(&self, cube: &Cube, s: usize) -> &Node {
         &self.sources[s].nodes[cube.nodes[s] as usize]
@@ -90,9 +129,36 @@ impl Cell {
 
     /// Sets bound and split of a cube; the bound never falls below what it was.
     pub(super) fn bound(&self, model: &Model<'_>, cube: &mut Cube) {
-        let sources = self.sources.len();
+        let variance = self.variance_of(cube);
+        let factor = Factor::new(&variance, self.rank);
+        let linear = self.linear(cube, &factor);
+        let Nearest { gram, x, limits } = self.nearest(model, cube, &linear);
+        let mut point = linear.at(&x);
+        if dot(&point, &point).sqrt() <= REACHED * dot(&linear.middle, &linear.middle).sqrt() {
+            cube.split = self.best_split(cube, |i| gram.size(i));
+            return;
+        }
+        factor.solve_transposed(&mut point);
+        let norm = dot(&point, &point).sqrt();
+        let u = point.map(|x| x / norm);
+        let prices = [0, 1].map(|which: usize| limits[which].price(&x) / norm);
+        let mut weight = [0.0; COLUMNS];
+        let total = self.least_of_all(model, cube, &u, prices, &mut weight);
+        if total > 0.0 {
+            let spread = along(&variance, &u);
+            self.weigh_variance(cube, &u, 0.5 * total / spread, &mut weight);
+            // A denominator some hundred roundings too large, never too small.
+            cube.bound = cube.bound.max(total / (spread.sqrt() * (1.0 + 1e-13)));
+        }
+        cube.split = self.best_split(cube, |i| weight[i]);
+    }
+
+    /// Δ_c and A of a cube, in coordinates in which M is the unit matrix.
+    #[inline(always)]
+    fn linear(&self, cube: &Cube, factor: &Factor) -> Linear {
+        let count = 3 * self.sources.len();
         let (mut middle, mut columns) = ([0.0; RANK], [[0.0; RANK]; COLUMNS]);
-        for s in 0..sources {
+        for s in 0..self.sources.len() {
             let node = self.node_of(cube, s);
             let ((v, dv), (w, dw)) = (centre(cube.own[s]), centre(cube.other[s]));
             add(&mut middle, v, &node.own[0]);
@@ -104,60 +170,46 @@ impl Cell {
                 add(&mut columns[3 * s + 2], dw, &node.other[0]);
             }
         }
-        // In coordinates in which M is the unit matrix.
-        let variance = self.variance_of(cube);
-        let factor = Factor::new(&variance, self.rank);
-        for column in columns[..3 * sources].iter_mut().chain([&mut middle]) {
+        for column in columns[..count].iter_mut().chain([&mut middle]) {
             factor.solve(column);
         }
+        Linear { middle, columns, count }
+    }
+
+    /// The x that brings the linear model nearest to the origin, within the sums that lighting factors may have.
+    #[inline(always)]
+    fn nearest(&self, model: &Model<'_>, cube: &Cube, linear: &Linear) -> Nearest {
         let mut limits = [Limit::default(), Limit::default()];
-        let (gram, x) = loop {
-            let gram = Gram::new(
-                3 * sources,
-                dot(&middle, &middle) + limits.iter().map(|l| l.middle * l.middle).sum::<f64>(),
-                |i, j| {
-                    dot(&columns[i], &columns[j]) + limits.iter().map(|l| l.row[i] * l.row[j]).sum::<f64>()
-                },
-                |i| dot(&columns[i], &middle) + limits.iter().map(|l| l.row[i] * l.middle).sum::<f64>(),
-            );
+        loop {
+            let gram = linear.gram(&limits);
             let x = gram.nearest();
             // At most once for each sum: a row that is there is not put there again.
-            if !(model.limited && self.exceeded(model, cube, &x, &columns, &mut limits)) {
-                break (gram, x);
+            if !(model.limited && self.exceeded(model, cube, &x, &linear.columns, &mut limits)) {
+                return Nearest { gram, x, limits };
             }
-        };
-        let mut point = middle;
-        for (x, column) in x.iter().zip(&columns) {
-            add(&mut point, *x, column);
         }
-        if dot(&point, &point).sqrt() <= REACHED * dot(&middle, &middle).sqrt() {
-            cube.split = self.best_split(cube, |i| gram.size(i));
-            return;
-        }
-        factor.solve_transposed(&mut point);
-        let norm = dot(&point, &point).sqrt();
-        let u = point.map(|x| x / norm);
-        let prices = [0, 1].map(|which: usize| limits[which].price(&x) / norm);
-        let mut weight = [0.0; COLUMNS];
+    }
+
+    /// min over the cube of u·Δ with the prices of v and w, less rounding; adds to `weight` what each range accounts for.
+    #[inline(always)]
+    fn least_of_all(
+        &self,
+        model: &Model<'_>,
+        cube: &Cube,
+        u: &Vector,
+        prices: [f64; 2],
+        weight: &mut [f64; COLUMNS],
+    ) -> f64 {
         let mut total = -self.slack;
         for (price, sum) in prices.iter().zip(model.sums) {
             // A sum of factors may be this much larger, by the rounding of the user's own numbers.
             total -= price * (sum + 1e-12);
         }
-        for s in 0..sources {
+        for s in 0..self.sources.len() {
             let prices = if model.sources[s].object { prices } else { [0.0; 2] };
-            total += self.least(cube, s, &u, prices, &mut weight);
+            total += self.least(cube, s, u, prices, weight);
         }
-        if total > 0.0 {
-            let spread = along(&variance, &u);
-            self.weigh_variance(cube, &u, 0.5 * total / spread, &mut weight);
-            // A denominator some hundred roundings too large, never too small.
-            let bound = total / (spread.sqrt() * (1.0 + 1e-13));
-            if bound > cube.bound {
-                cube.bound = bound;
-            }
-        }
-        cube.split = self.best_split(cube, |i| weight[i]);
+        total
     }
 
     /// Adds a row for every sum of factors that the point x breaks; whether any is new.

@@ -2,29 +2,31 @@
 //!
 //! In a cell counts are divided by 2√c, c a variance of each band in the middle of what target and alternative can both
 //! be there: ω = 1/(2√c). Spectra are then kept as their components along an orthonormal basis Q of whitened spectra of the
-//! cell. Neither c nor Q is an approximation in a bound: for *any* weights z of the bands and any upper bounds ĉ of the
-//! variances,
+//! cell. For *any* weights z of the bands,
 //!
 //! d(θ, θ′) ≥ Σ z_w ω_w(N − N′)_w / √(Σ z_w² ĉ_w/c_w),   ĉ = ¼(1 + s)(N + v) + ¼(1 + 1/s)(N′ + v) at the upper ends of a box,
 //!
-//! by Cauchy and Schwarz and because √(N+v) − √(N′+v) = (N − N′)/(√(N+v) + √(N′+v)), where (√a + √b)²/4 ≤ ĉ for any s > 0
-//! (2√(ab) ≤ sa + b/s; best where s² = b/a, which is taken from the best scene known), and N and N′ grow with every
-//! temperature and lighting factor. With z = Qu the numerator is u·Qᵀω(N − N′), for which
-//! Qᵀω f(T) is kept as a cubic with its remainder (`series`), and the denominator √(uᵀMu), M = Σ_w q_w q_wᵀ ĉ_w/c_w. A
-//! basis or weights that are not the best lose only in the second order of what they miss.
+//! because √(N+v) − √(N′+v) = (N − N′)/(√(N+v) + √(N′+v)), (√a + √b)² ≤ 4ĉ for any s > 0 (2√(ab) ≤ sa + b/s; best where
+//! s² = b/a, which is taken from the best scene known), N and N′ grow with every temperature and lighting factor, and by
+//! Cauchy and Schwarz. With z = Qu:
+//!
+//! | | | kept here as |
+//! |---|---|---|
+//! | numerator | u·Qᵀω(N − N′) = Σ_s u·Qᵀω[v f(T) + w g(T)] | Qᵀωf, Qᵀωg as cubics in T with remainders (`series`) |
+//! | denominator | √(uᵀMu), M = Σ_w q_w q_wᵀ ĉ_w/c_w | shares of v and w in M at the upper end of T |
+//!
+//! Neither c nor Q is an approximation in a bound: a basis or weights that are not the best lose only in the second
+//! order of what they miss.
 //!
 //! Rounding: components are sums over W bands and R basis vectors; 2√R W ulp of the largest whitened signals, and some
 //! hundred more for Planck's function and the short sums, are taken off every bound.
 
+use super::linear::{PAIRS, RANK, Vector};
 use super::model::{Model, Region, SOURCES, Span};
-use super::partition::Part;
+use super::partition::{FAINT, Part};
 use super::series::{TERMS, planck_series, remainder};
 use crate::sum::dot;
 
-/// Components that are kept of a spectrum.
-pub(super) const RANK: usize = 16;
-/// Entries of a symmetric matrix.
-pub(super) const PAIRS: usize = RANK * (RANK + 1) / 2;
 /// Radii of the discs of Cauchy's estimate, as shares of the lowest temperature.
 const RADII: [f64; 5] = [0.2, 0.4, 0.6, 0.8, 0.95];
 /// The basis is complete when nothing is left of a spectrum but this share of the distance attained.
@@ -32,12 +34,9 @@ const LEFT_OVER: f64 = 1e-3;
 /// What is left of a spectrum times the skew of variances is this much less of a loss: the weights of bands need not be
 /// known as well as their differences.
 const WEIGHT_OF_SKEW: f64 = 0.03;
-/// A source that is weaker than this share of the distance attained is not resolved in temperature.
-pub(super) const FAINT: f64 = 3e-4;
 /// Intervals are not halved below this share of their temperature.
 const NARROWEST: f64 = 1e-9;
 
-pub(super) type Vector = [f64; RANK];
 pub(super) type Cubic = [Vector; TERMS];
 
 /// An interval of the temperature of a source.
@@ -97,32 +96,39 @@ impl Cell {
             var_spread: Box::new([0.0; PAIRS]),
             slack: 0.0,
         };
-        cell.span_samples(model, &part.skew, LEFT_OVER * attained);
+        let samples = cell.samples(model, &part.skew);
+        cell.set_basis(&orthonormal(samples, LEFT_OVER * attained));
         let shares = model.shares[0].iter().zip(&model.shares[1]);
         let var: Vec<f64> = model.var.iter().zip(shares).map(|(v, (a, b))| v * (a + b)).collect();
         cell.var_spread = cell.spread(&var);
         let mut size = 0.0;
         for s in 0..cell.region.len().min(SOURCES) {
-            let Span { t, own, other } = cell.region[s];
-            let norms = |temperature_k: f64| cell.norms(model, s, temperature_k);
-            let (own_top, other_top) = norms(t[1]);
-            size += own[1] * own_top + other[1] * other_top;
-            let reach = RADII.map(|share| norms(t[1] + share * t[0]));
-            let intervals = Intervals {
-                nodes: Vec::new(),
-                lowest_k: t[0],
-                own_reach: reach.map(|norms| norms.0),
-                other_reach: reach.map(|norms| norms.1),
-                faint: own[1] * own_top + other[1] * other_top <= FAINT * attained,
-            };
+            let (intervals, largest) = cell.unhalved(model, s, FAINT * attained);
+            size += largest;
             cell.sources.push(intervals);
-            let top = cell.spreads(model, s, t[1]);
-            let node = cell.node(model, s, t, top);
-            cell.sources[s].nodes.push(node);
+            let t = cell.region[s].t;
+            let root = cell.node(model, s, t, cell.spreads(model, s, t[1]));
+            cell.sources[s].nodes.push(root);
         }
         let ulps = 2.0 * (RANK as f64).sqrt() * variance.len() as f64 + 400.0;
         cell.slack = ulps * f64::EPSILON * size;
         cell
+    }
+
+    /// A source without intervals yet, and the norm of the most that it can give.
+    fn unhalved(&self, model: &Model<'_>, s: usize, faint: f64) -> (Intervals, f64) {
+        let Span { t, own, other } = self.region[s];
+        let (own_top, other_top) = self.norms(model, s, t[1]);
+        let largest = own[1] * own_top + other[1] * other_top;
+        let reach = RADII.map(|share| self.norms(model, s, t[1] + share * t[0]));
+        let intervals = Intervals {
+            nodes: Vec::new(),
+            lowest_k: t[0],
+            own_reach: reach.map(|norms| norms.0),
+            other_reach: reach.map(|norms| norms.1),
+            faint: largest <= faint,
+        };
+        (intervals, largest)
     }
 
     /// Norms of the whitened magnitudes of f and g at a temperature.
@@ -141,10 +147,10 @@ impl Cell {
         counts
     }
 
-    /// The basis: whitened spectra at Chebyshev points of every temperature, and what they become if the variances change,
-    /// largest remainder first (Gram and Schmidt, twice).
-    fn span_samples(&mut self, model: &Model<'_>, skew: &[f64], negligible: f64) {
-        let mut samples: Vec<Vec<f64>> = Vec::new();
+    /// What the basis has to span: whitened spectra at Chebyshev points of every temperature, and what they become if the
+    /// variances change.
+    fn samples(&self, model: &Model<'_>, skew: &[f64]) -> Vec<Vec<f64>> {
+        let mut samples = Vec::new();
         for (source, span) in model.sources.iter().zip(&self.region) {
             for point in 0..5 {
                 let place = (f64::from(2 * point + 1) * std::f64::consts::PI / 10.0).cos();
@@ -160,29 +166,13 @@ impl Cell {
                 }
             }
         }
-        let mut basis: Vec<Vec<f64>> = Vec::new();
-        while basis.len() < RANK {
-            let norms: Vec<f64> = samples.iter().map(|sample| dot(sample, sample)).collect();
-            let Some(largest) = (0..norms.len()).max_by(|&a, &b| norms[a].total_cmp(&norms[b])) else {
-                break;
-            };
-            let mut next = samples.swap_remove(largest);
-            if norms[largest].sqrt() <= negligible {
-                break;
-            }
-            for known in basis.iter() {
-                remove(&mut next, known);
-            }
-            let norm = dot(&next, &next).sqrt();
-            if norm <= 0.0 {
-                continue;
-            }
-            next.iter_mut().for_each(|x| *x /= norm);
-            samples.iter_mut().for_each(|sample| remove(sample, &next));
-            basis.push(next);
-        }
-        self.rank = basis.len();
-        for (r, vector) in basis.iter().enumerate() {
+        samples
+    }
+
+    /// Takes orthonormal vectors, at most [`RANK`], as the basis.
+    fn set_basis(&mut self, vectors: &[Vec<f64>]) {
+        self.rank = vectors.len();
+        for (r, vector) in vectors.iter().enumerate() {
             for (row, x) in self.basis.iter_mut().zip(vector) {
                 row[r] = *x;
             }
@@ -290,6 +280,31 @@ impl Cell {
     }
 }
 
+/// An orthonormal basis of samples but for what is negligible, the largest remainder first (Gram and Schmidt, twice).
+fn orthonormal(mut samples: Vec<Vec<f64>>, negligible: f64) -> Vec<Vec<f64>> {
+    let mut basis: Vec<Vec<f64>> = Vec::new();
+    while basis.len() < RANK {
+        let norms: Vec<f64> = samples.iter().map(|sample| dot(sample, sample)).collect();
+        let Some(largest) = (0..norms.len()).max_by(|&a, &b| norms[a].total_cmp(&norms[b])) else {
+            break;
+        };
+        let mut next = samples.swap_remove(largest);
+        if norms[largest].sqrt() <= negligible {
+            break;
+        }
+        basis.iter().for_each(|known| remove(&mut next, known));
+        let norm = dot(&next, &next).sqrt();
+        if norm <= 0.0 {
+            continue;
+        }
+        next.iter_mut().for_each(|x| *x /= norm);
+        samples.iter_mut().for_each(|sample| remove(sample, &next));
+        basis.push(next);
+    }
+    basis
+}
+
+/// Takes from a vector what it has along a unit vector.
 fn remove(from: &mut [f64], unit: &[f64]) {
     let along = dot(from, unit);
     from.iter_mut().zip(unit).for_each(|(x, u)| *x -= along * u);

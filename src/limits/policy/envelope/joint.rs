@@ -1,12 +1,16 @@
 //! Descent over a scene and the alternative's state together, where all of it can be written as sources (`model`).
 //!
-//! d² = ‖√(N+v) − √(N′+v)‖² is a nonlinear least-squares problem in all temperatures, v and w at once. Gauss's step is
-//! taken within a box that grows with success and shrinks without (a trust region that the ranges cut off), which is the
-//! same bounded linear problem as that of a bound. Unlike a descent over scenes alone it follows narrow valleys
-//! that run across scene and state.
+//! With p all temperatures, v and w, and r(p) = √(N+v) − √(N′+v) band by band, d² = ‖r(p)‖² is a nonlinear least-squares
+//! problem. Each step is Gauss's within a box about p,
+//!
+//! min over |xᵢ| ≤ 1 of ‖r(p + m) + Σᵢ xᵢ hᵢ ∂r/∂pᵢ‖,   r(p + m) ≈ r(p) + Σᵢ mᵢ ∂r/∂pᵢ,
+//!
+//! m the middle of the box less p and h its half widths: the bounded linear problem that a bound has too (`linear`). The
+//! box doubles where the step gains and shrinks to a quarter where it does not (a trust region that the ranges cut
+//! off). Unlike a descent over scenes alone it follows narrow valleys that run across scene and state.
 
 use super::linear::{COLUMNS, Gram};
-use super::model::{Model, Region, SOURCES};
+use super::model::{Model, Point, Region, SOURCES};
 use super::series::planck_series;
 use crate::sum::dot;
 
@@ -22,12 +26,6 @@ const NO_GAIN: f64 = 1e-9;
 /// How much more a broken sum of factors weighs than what they do.
 const STIFF: f64 = 30.0;
 
-/// Values of the temperatures, v and w of all sources.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Point {
-    pub(super) values: [[f64; 3]; SOURCES],
-}
-
 /// Counts and residual of a point, and its derivatives.
 pub(super) struct Residual {
     pub(super) target: Vec<f64>,
@@ -39,14 +37,10 @@ pub(super) struct Residual {
 
 /// Where a descent from `point` ends, with the distance there.
 pub(super) fn descend(model: &Model<'_>, whole: &Region, mut point: Point) -> (Point, f64) {
-    let range = |i: usize| {
-        let span = &whole[i / 3];
-        [span.t, span.own, span.other][i % 3]
-    };
-    let count = 3 * whole.len().min(SOURCES);
-    for i in 0..count {
-        let [low, high] = range(i);
-        point.values[i / 3][i % 3] = point.values[i / 3][i % 3].clamp(low, high);
+    let ranges: Vec<[f64; 2]> =
+        whole.iter().take(SOURCES).flat_map(|span| [span.t, span.own, span.other]).collect();
+    for (value, [low, high]) in point.values.as_flattened_mut().iter_mut().zip(&ranges) {
+        *value = value.clamp(*low, *high);
     }
     model.scale(&mut point);
     let mut at = residual(model, &point);
@@ -55,61 +49,7 @@ pub(super) fn descend(model: &Model<'_>, whole: &Region, mut point: Point) -> (P
         if !(size > LAST && at.square > 0.0) {
             break;
         }
-        // The box: its middle and half widths.
-        let (mut middle, mut half) = ([0.0; COLUMNS], [0.0; COLUMNS]);
-        for i in 0..count {
-            let [low, high] = range(i);
-            let mut width = FIRST * (high - low);
-            if i % 3 == 0 {
-                width = width.min(FIRST_K);
-            }
-            let now = point.values[i / 3][i % 3];
-            let [from, to] = [(now - size * width).max(low), (now + size * width).min(high)];
-            (middle[i], half[i]) = (0.5 * (from + to) - now, 0.5 * (to - from));
-        }
-        let mut rows = at.rows.clone();
-        let mut scaled = at.columns.clone();
-        for (i, column) in scaled.iter_mut().enumerate() {
-            for (row, x) in rows.iter_mut().zip(column.iter_mut()) {
-                *row += middle[i] * *x;
-                *x *= half[i];
-            }
-        }
-        let solve = |rows: &[f64], scaled: &[Vec<f64>]| {
-            let gram = Gram::new(
-                count,
-                dot(rows, rows),
-                |i, j| dot(&scaled[i], &scaled[j]),
-                |i| dot(&scaled[i], rows),
-            );
-            let x = gram.nearest();
-            let mut next = point;
-            for i in 0..count {
-                let [low, high] = range(i);
-                let value = &mut next.values[i / 3][i % 3];
-                *value = (*value + middle[i] + half[i] * x[i]).clamp(low, high);
-            }
-            next
-        };
-        let mut next = solve(&rows, &scaled);
-        if model.limited && model.excesses(&next) != [false; 2] {
-            // A sum that is broken becomes one more row, of great weight.
-            for (which, _) in model.excesses(&next).iter().enumerate().filter(|(_, broken)| **broken) {
-                let lit = |i: usize| i % 3 == which + 1 && model.sources[i / 3].object;
-                let stiff = (0..count)
-                    .filter(|&i| lit(i) && half[i] > 0.0)
-                    .map(|i| STIFF * dot(&scaled[i], &scaled[i]).sqrt() / half[i])
-                    .fold(0.0, f64::max);
-                let sum: f64 =
-                    (0..count).filter(|&i| lit(i)).map(|i| point.values[i / 3][i % 3] + middle[i]).sum();
-                rows.push(stiff * (sum - model.sums[which]));
-                for (i, column) in scaled.iter_mut().enumerate() {
-                    column.push(if lit(i) { stiff * half[i] } else { 0.0 });
-                }
-            }
-            next = solve(&rows, &scaled);
-            model.scale(&mut next);
-        }
+        let next = step(model, &ranges, &point, &at, size);
         let moved = residual(model, &next);
         if moved.square < at.square {
             let gain = 1.0 - moved.square / at.square;
@@ -125,6 +65,87 @@ pub(super) fn descend(model: &Model<'_>, whole: &Region, mut point: Point) -> (P
     (point, at.square.sqrt())
 }
 
+/// The best point of the linear model in a box of `size` times the first.
+fn step(model: &Model<'_>, ranges: &[[f64; 2]], point: &Point, at: &Residual, size: f64) -> Point {
+    let mut linear = Linear::new(ranges, point, at, size);
+    let next = linear.best(ranges, point);
+    if !model.limited {
+        return next;
+    }
+    let excesses = model.excesses(&next);
+    if excesses == [false; 2] {
+        return next;
+    }
+    for which in (0..2).filter(|&which| excesses[which]) {
+        linear.limit(model, point, which);
+    }
+    let mut next = linear.best(ranges, point);
+    model.scale(&mut next);
+    next
+}
+
+/// The residual in a box about a point: rows + Σ xᵢ columnᵢ, |xᵢ| ≤ 1.
+struct Linear {
+    /// Of the box less the point, and half its widths.
+    middle: [f64; COLUMNS],
+    half: [f64; COLUMNS],
+    rows: Vec<f64>,
+    columns: Vec<Vec<f64>>,
+}
+
+impl Linear {
+    fn new(ranges: &[[f64; 2]], point: &Point, at: &Residual, size: f64) -> Self {
+        let (mut middle, mut half) = ([0.0; COLUMNS], [0.0; COLUMNS]);
+        for (i, (now, [low, high])) in point.values.as_flattened().iter().zip(ranges).enumerate() {
+            let share = FIRST * (high - low);
+            let width = if i % 3 == 0 { share.min(FIRST_K) } else { share };
+            let [from, to] = [(now - size * width).max(*low), (now + size * width).min(*high)];
+            (middle[i], half[i]) = (0.5 * (from + to) - now, 0.5 * (to - from));
+        }
+        let (mut rows, mut columns) = (at.rows.clone(), at.columns.clone());
+        for (i, column) in columns.iter_mut().enumerate() {
+            for (row, x) in rows.iter_mut().zip(column.iter_mut()) {
+                *row += middle[i] * *x;
+                *x *= half[i];
+            }
+        }
+        Self { middle, half, rows, columns }
+    }
+
+    /// Adds a row of great weight for the sum of V (`which` = 0) or V′ (1), which is not to exceed what it may be.
+    fn limit(&mut self, model: &Model<'_>, point: &Point, which: usize) {
+        let lit = |i: usize| i % 3 == which + 1 && model.sources[i / 3].object;
+        let factors = || (0..self.columns.len()).filter(|&i| lit(i));
+        let stiff = factors()
+            .filter(|&i| self.half[i] > 0.0)
+            .map(|i| STIFF * dot(&self.columns[i], &self.columns[i]).sqrt() / self.half[i])
+            .fold(0.0, f64::max);
+        let sum: f64 = factors().map(|i| point.values[i / 3][i % 3] + self.middle[i]).sum();
+        self.rows.push(stiff * (sum - model.sums[which]));
+        for (i, column) in self.columns.iter_mut().enumerate() {
+            column.push(if lit(i) { stiff * self.half[i] } else { 0.0 });
+        }
+    }
+
+    /// The point of the box where the linear model is nearest to the origin.
+    fn best(&self, ranges: &[[f64; 2]], point: &Point) -> Point {
+        let Self { middle, half, rows, columns } = self;
+        let gram = Gram::new(
+            columns.len(),
+            dot(rows, rows),
+            |i, j| dot(&columns[i], &columns[j]),
+            |i| dot(&columns[i], rows),
+        );
+        let x = gram.nearest();
+        let mut next = *point;
+        for (i, (value, [low, high])) in next.values.as_flattened_mut().iter_mut().zip(ranges).enumerate() {
+            *value = (*value + middle[i] + half[i] * x[i]).clamp(*low, *high);
+        }
+        next
+    }
+}
+
+/// Counts, residual and derivatives at a point.
 pub(super) fn residual(model: &Model<'_>, point: &Point) -> Residual {
     let bands = model.var.len();
     let (mut target, mut alternative, mut apart) = (vec![0.0; bands], vec![0.0; bands], vec![0.0; bands]);

@@ -11,8 +11,8 @@
 //! | object k, lighting unknown | Vₖ | (1 − e)εₖ | Vₖ′ | −(1 − e′)εₖ |
 //! | object k, lighting known | Vₖ | (e′ − e)εₖ | | |
 
-use super::joint::Point;
-use super::{EnvelopeScene, Ranges};
+use super::ranges::Ranges;
+use super::scene::EnvelopeScene;
 use crate::fisher::{Nuisance, Unknowns};
 use crate::planck;
 use crate::scene::State;
@@ -44,6 +44,12 @@ pub(super) struct Span {
 
 /// Ranges of all sources.
 pub(super) type Region = Vec<Span>;
+
+/// Values of the temperatures, v and w of all sources.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Point {
+    pub(super) values: [[f64; 3]; SOURCES],
+}
 
 /// Everything about a pair that does not depend on the ranges.
 #[derive(Debug)]

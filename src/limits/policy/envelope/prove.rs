@@ -5,12 +5,12 @@
 //! the least bound of all boxes ever left aside or waiting. The batches do not depend on the number of
 //! threads. Where the lowest box promises a scene below the best one known, a descent from it is tried.
 
+use super::attain::{self, Attained};
 use super::bound::Cube;
 use super::cell::{Cell, Node};
-use super::joint::Point;
-use super::model::{Model, Region, SOURCES};
+use super::model::{Model, Point, Region, SOURCES};
 use super::partition::partition;
-use super::{Effort, Ranges, attain};
+use super::ranges::Ranges;
 use crate::error::Result;
 use rayon::prelude::*;
 use std::cmp::Ordering;
@@ -21,11 +21,27 @@ const EVERY: u64 = 8;
 /// Boxes halved together.
 const BATCH: usize = 2048;
 
+/// How much is done for a proof.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Effort {
+    /// How far below the distance attained the proved bound may be, as a share of it.
+    pub relative_tolerance: f64,
+    /// Boxes of the branch and bound at most; with 0 there is no proof.
+    pub boxes: u64,
+}
+
+impl Default for Effort {
+    /// 1 %, and some seconds on two cores at most.
+    fn default() -> Self {
+        Self { relative_tolerance: 0.01, boxes: 3_000_000 }
+    }
+}
+
 /// What has come of an attempt.
 pub(super) struct Proof {
     pub(super) lower_bound: f64,
     pub(super) boxes: u64,
-    pub(super) attained: attain::Attained,
+    pub(super) attained: Attained,
 }
 
 /// A box in its queue: the lowest bound first, then the oldest.
@@ -69,7 +85,7 @@ pub(super) fn prove(
     joint: &(Model<'_>, Region),
     ranges: &Ranges,
     effort: &Effort,
-    mut attained: attain::Attained,
+    mut attained: Attained,
 ) -> Result<Proof> {
     // A little more than asked for, so that a bound rounded down does not miss it.
     let share = 1.0 - 0.999 * effort.relative_tolerance;
@@ -99,7 +115,7 @@ pub(super) fn prove(
             let (better, evaluations) = attain::attain_from(joint, ranges, start, below)?;
             attained.evaluations += evaluations;
             if let Some(better) = better {
-                attained = attain::Attained { evaluations: attained.evaluations, ..better };
+                attained = Attained { evaluations: attained.evaluations, ..better };
                 search.threshold = share * attained.distance;
             }
         }

@@ -5,7 +5,7 @@
 //! the least distance is 0, and no camera meets a requirement over it. Two gray materials need no more than one
 //! temperature for that: another lighting factor makes up for another emissivity.
 
-use super::EnvelopeScene;
+use super::scene::EnvelopeScene;
 use crate::error::{Error, Result, check};
 use crate::fisher::Nuisance;
 use crate::scene::{State, unlit};

@@ -1,14 +1,16 @@
 use super::bound::Cube;
 use super::cell::Cell;
-use super::joint::{Point, residual};
-use super::model::SOURCES;
+use super::joint::residual;
+use super::model::{Point, SOURCES};
 use super::partition::partition;
 use super::*;
-use crate::fisher::Nuisance;
+use crate::fisher::{Counting, Nuisance, Unknowns};
+use crate::identifiability::nearest::StateRange;
 use crate::instrument::{View, presets};
 use crate::material::Library;
 use crate::planck::photon_radiance;
-use crate::scene::EnvironmentObject;
+use crate::scene::{EnvironmentObject, Surroundings};
+use crate::spectrum::Bands;
 use proptest::prelude::*;
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 

@@ -6,7 +6,9 @@
 //! within a wide band too, so that d may rise and fall: the answer is how far the task is met without a gap from the
 //! nearest distance at which it is, by steps of a factor, and it is said where that is not right before the lens.
 
-use super::{CameraTask, NEVER, Quantity, Solution, Trial};
+use super::quantity::{Quantity, Trial};
+use super::solution::{NEVER, Solution};
+use super::task::CameraTask;
 use crate::error::Result;
 use crate::root::crossing;
 

@@ -2,7 +2,8 @@
 
 use super::*;
 use crate::fisher::Counting;
-use crate::instrument::{View, presets};
+use crate::instrument::{Camera, View, presets};
+use crate::spectrum::Bands;
 
 /// d² = N²/(N + σ²)·10⁻⁶ for one band: closed form of every solution.
 fn one_band(trial: &Trial) -> Result<f64> {

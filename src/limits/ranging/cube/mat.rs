@@ -10,18 +10,14 @@ mod element;
 mod planes;
 mod stored;
 
-use self::element::{Class, Element, Head};
-use super::{Cube, MemoryCube, Sample, Shape};
+use self::element::{COMPRESSED, Class, Element, Head, MATRIX};
+use super::{Cube, MemoryCube, Shape, dimensions};
 use crate::error::{Error, Result};
 use std::fs::File;
 use std::io::{BufReader, Read, Seek, SeekFrom};
 
 /// Bytes before the first element.
 const HEADER: u64 = 128;
-
-/// The type of an element that is an array, and of one that is a zlib stream of one.
-const MATRIX: u32 = 14;
-const COMPRESSED: u32 = 15;
 
 /// An array of the file, and where it is.
 #[derive(Debug)]
@@ -151,7 +147,7 @@ fn numeric(head: &Head) -> Result<(Class, Shape)> {
     let [rows, columns, bands] = match *head.dimensions {
         [rows, columns] => [rows, columns, 1],
         [rows, columns, bands] => [rows, columns, bands],
-        ref other => return Err(super::npy::dimensions(other.len())),
+        ref other => return Err(dimensions(other.len())),
     };
     Ok((class, Shape::new(rows as usize, columns as usize, bands as usize)?))
 }

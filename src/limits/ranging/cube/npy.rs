@@ -5,7 +5,7 @@
 //!
 //! Source: NumPy, `numpy.lib.format` (versions 1.0, 2.0, 3.0).
 
-use super::{Cube, Rows, Sample, Shape, beyond};
+use super::{Cube, READ_CUBE, Rows, Sample, Shape, beyond, dimensions};
 use crate::error::{Error, Result};
 use npyz::{DType, Endianness, NpyHeader, Order, TypeChar};
 use std::fs::File;
@@ -38,7 +38,7 @@ struct NpyCube<S> {
 
 /// Opens an NPY file.
 pub(super) fn open(mut file: File, path: &Path) -> Result<Cube> {
-    let unreadable = |error: std::io::Error| Error::file(super::open::READ_CUBE, path, error);
+    let unreadable = |error: std::io::Error| Error::file(READ_CUBE, path, error);
     let len = file.metadata().map_err(unreadable)?.len();
     let (header, start) = header(&mut file, len)?;
     let (double, order) = sample_type(&header.dtype())?;
@@ -149,14 +149,6 @@ fn shape(header: &NpyHeader) -> Result<Shape> {
     }
     .map(|n| usize::try_from(n).unwrap_or(usize::MAX));
     Shape::new(rows, columns, bands)
-}
-
-/// An array of neither two nor three dimensions.
-pub(super) fn dimensions(found: usize) -> Error {
-    Error::malformed(
-        format!("the array has {found} dimension{}", if found == 1 { "" } else { "s" }),
-        "give [row][column][band], or [row][column] for one band",
-    )
 }
 
 fn truncated(found: String) -> Error {

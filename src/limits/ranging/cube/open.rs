@@ -1,13 +1,10 @@
 //! Cubes from files: which kind of file it is, by its first bytes.
 
-use super::{Cube, mat, npy};
+use super::{Cube, READ_CUBE, mat, npy};
 use crate::error::{Error, Result};
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
-
-/// What opening a cube is called in messages.
-pub(super) const READ_CUBE: &str = "read the cube";
 
 /// What a file begins with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,10 +1,8 @@
 //! Derivative of the trigonometric interpolation of a row and its mirror image.
 //!
 //! The row of n pixels is followed by itself in reverse, a sequence with a period of 2n and no jump. Its discrete
-//! Fourier coefficients
-//! are multiplied by iω_k, ω_k = πk/n for |k| < n (that of the Nyquist frequency is 0), and transformed back. Two
-//! bands
-//! are transformed at once, as the real and the imaginary part.
+//! Fourier coefficients are multiplied by iω_k, ω_k = πk/n for |k| < n (that of the Nyquist frequency is 0), and
+//! transformed back. Two bands are transformed at once, as the real and the imaginary part.
 
 use rustfft::num_complex::Complex;
 use rustfft::{Fft, FftPlanner};

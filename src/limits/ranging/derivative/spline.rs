@@ -1,10 +1,9 @@
 //! Derivatives at the knots of the interpolating cubic spline.
 //!
 //! With slopes m and unit spacing, continuity of the second derivative asks m[x−1] + 4 m[x] + m[x+1] = 3(N[x+1] −
-//! N[x−1]); that of
-//! the third at the second knot, with the first of these, m[0] + 2 m[1] = (5(N[1] − N[0]) + (N[2] − N[1]))/2, and
-//! its mirror image at the other end. The pivots of the elimination lie between 2 and 4, but for the first (1)
-//! and the last (2 − √3 + …, at least 3/7), so no exchange of rows is needed.
+//! N[x−1]); that of the third at the second knot, with the first of these, m[0] + 2 m[1] = (5(N[1] − N[0]) + (N[2]
+//! − N[1]))/2, and its mirror image at the other end. The pivots of the elimination lie between 2 and 4, but for
+//! the first (1) and the last (2 − √3 + …, at least 3/7), so no exchange of rows is needed.
 
 use crate::simd::dispatched;
 

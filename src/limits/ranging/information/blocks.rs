@@ -1,9 +1,9 @@
 //! What a request comes to, and its division into blocks of rows and strips of columns.
 
-use super::checks;
 use super::direct::{MOST_COLUMNS, MOST_ROWS};
 use super::kernels::stride;
-use super::{Cell, Request};
+use super::limits;
+use super::request::{Cell, Request};
 use crate::error::{Error, Result};
 use crate::ranging::cube::Shape;
 use crate::ranging::derivative::Derivative;
@@ -43,7 +43,7 @@ pub(super) struct Plan<'a> {
 
 impl<'a> Plan<'a> {
     pub(super) fn new(shape: Shape, request: &'a Request<'a>) -> Result<Self> {
-        checks::variances(request.noise, shape)?;
+        limits::variances(request.noise, shape)?;
         let window = request.window;
         let margin = request.derivative.margin();
         request.derivative.check_columns(shape.columns())?;
@@ -82,7 +82,7 @@ impl<'a> Plan<'a> {
             var_window: Vec::new(),
             var_band,
         };
-        let pixels = (window.rows() * window.columns()) as f64;
+        let pixels = plan.pixels();
         plan.var_window = padded(&plan.var_band, bands, stride, pixels * plan.share(pixels));
         Ok(plan)
     }
@@ -118,6 +118,15 @@ impl<'a> Plan<'a> {
             Joined::SumOfReadings => 1.0,
             Joined::OneReading => joined.recip(),
         }
+    }
+
+    /// Bands of a sample, and pixels of a window, as numbers of what is joined.
+    pub(super) fn bands(&self) -> f64 {
+        self.shape.bands() as f64
+    }
+
+    pub(super) fn pixels(&self) -> f64 {
+        (self.request.window.rows() * self.request.window.columns()) as f64
     }
 
     /// Rows of pixels in any window.

@@ -2,15 +2,14 @@
 //!
 //! Rows are cut into blocks as high as the window. A window of h rows reaches over two blocks at most: its sum is
 //! the sum of the last rows of the one (from below, kept for every row) and of the first rows of the other (from
-//! above,
-//! kept as it grows). Nothing is ever subtracted, so the error is at most h roundings of sums of magnitudes;
-//! the blocks begin at multiples of h, so that the sum of a window does not depend on where the work began.
-//! Columns are summed in the same way.
+//! above, kept as it grows). Nothing is ever subtracted, so the error is at most h roundings of sums of magnitudes;
+//! the blocks begin at multiples of h, so that the sum of a window does not depend on where the work began. Columns
+//! are summed in the same way.
 //!
 //! Source: van Herk, Pattern Recognit. Lett. 13, 517 (1992), doi:10.1016/0167-8655(92)90069-C; Gil and Werman, IEEE
 //! TPAMI 15, 504 (1993), doi:10.1109/34.211471 (there for maxima).
 
-use super::Window;
+use super::request::Window;
 use crate::simd::{Aligned, Chunk, LANES, dispatched, spaced};
 
 /// Makes room for `len` values, if there is not.

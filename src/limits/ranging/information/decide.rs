@@ -1,12 +1,10 @@
 //! Whether J(full) of a window reaches what is required, without looking at every sample.
 //!
 //! All terms of J are 0 or above, and rounding does not reverse an order. The sum of a window with some of its
-//! pixels left
-//! out (as 0), added in the order of the two-level sums, is therefore never above the sum that [`super::information`]
-//! gives: where it
-//! reaches the requirement, so does J, without any margin. First one row in as many as the window is high is
-//! evaluated, of which each window has exactly one; then those pixels that windows still open need. The answer is
-//! the same.
+//! pixels left out (as 0), added in the order of the two-level sums, is therefore never above the sum that
+//! [`super::information`] gives: where it reaches the requirement, so does J, without any margin. First one row in
+//! as many as the window is high is evaluated, of which each window has exactly one; then those pixels that windows
+//! still open need. The answer is the same.
 //!
 //! Windows that the first rows let expect to stay below by far are then tried with an upper bound of every pixel not
 //! yet evaluated (`bounds`): where the sum of the bounds, and a margin for rounding, stays below the

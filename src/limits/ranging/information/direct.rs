@@ -6,8 +6,8 @@
 //! terms they take less time than sums in two levels ([`super::boxes`]), which have to be written and read again.
 
 use super::boxes::{chunks, chunks_mut};
-use super::checks::MOST;
 use super::kernels::{Quotients, Seen, minus, plus, square, stride};
+use super::limits::MOST;
 use crate::ranging::cube::Sample;
 use crate::simd::{Chunk, LANES, dispatched, fold_all};
 

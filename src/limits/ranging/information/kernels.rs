@@ -1,14 +1,13 @@
 //! The loops over samples: widening them to `f64`, and the sums over bands.
 //!
 //! A column takes a whole number of vectors ([`stride`]): the lanes beyond its last band hold counts of 0 and a
-//! variance of 1 and
-//! so add nothing. The quotients of a column are added as one fraction, a/b + c/d = (ad + cb)/(bd), up to
-//! [`TOGETHER`] of them in every lane, which leaves one division for as many vectors. All of them are positive, so
-//! a rounding
-//! is relative to the sum (at most some 3 per term), and none overflows: see [`super::checks`].
+//! variance of 1 and so add nothing. The quotients of a column are added as one fraction, a/b + c/d = (ad +
+//! cb)/(bd), up to [`TOGETHER`] of them in every lane, which leaves one division for as many vectors. All of them
+//! are positive, so a rounding is relative to the sum (at most some 3 per term), and none overflows: see
+//! [`super::limits`].
 
 use super::boxes::{chunks, chunks_mut};
-use super::checks::MOST;
+use super::limits::MOST;
 use crate::ranging::cube::Sample;
 use crate::simd::{Chunk, LANES, dispatched, fold_all};
 

@@ -1,17 +1,20 @@
-//! First pass, over the samples: of every pixel the sum over bands and the information of its bands, of every
-//! window the
-//! information of its bands.
+//! First pass, over the samples: of every pixel the sums over its bands, of every window the information of its bands.
 //!
-//! A block of rows is worked on in strips of columns, so that what is kept of the last rows (as many as a window
-//! has) stays in
-//! cache. For the sums over windows see [`super::boxes`].
+//! | of | what | for |
+//! |---|---|---|
+//! | pixels | Σ_b N, Σ_b σ² | all cells |
+//! | pixels | Σ_b (∂N)²/(N + σ²) | both resolutions |
+//! | windows | Σ_b (Σ_p ∂N)²/Σ_p (N + σ²) | spectral alone |
+//!
+//! Blocks of rows are shared out to threads. A block owns the rows of pixels from its first to that of the next block, and
+//! reads on to the end of its last window; it is worked on in strips of columns, so that what is kept of the last rows
+//! (as many as a window has) stays in cache ([`super::strips`]; for the sums over windows see [`super::boxes`]).
 
-use super::Cell;
 use super::blocks::{Plan, Strip, run};
 use super::checks::Checked;
-use super::kernels::totals;
+use super::request::Cell;
 use super::rows::Buffer;
-use super::strips::StripRoom;
+use super::strips::{StripRoom, StripRow};
 use crate::error::Result;
 use crate::ranging::cube::Cube;
 use crate::ranging::noise::NoiseVariance;
@@ -32,6 +35,7 @@ pub(super) struct BandSums {
 
 /// Rows of the results that a block makes.
 struct Block<'a> {
+    /// First rows of its windows, and the rows of pixels that it and no other block makes.
     tops: Range<usize>,
     owned: Range<usize>,
     quotients: &'a mut [f64],
@@ -81,8 +85,7 @@ pub(super) fn band_sums(cube: &Cube, plan: &Plan<'_>, block_rows: usize) -> Resu
 }
 
 /// The quotients of one row of pixels, in some of the strips of a plan for [`Cell::Full`] alone; `to` is for all
-/// columns with a
-/// derivative.
+/// columns with a derivative.
 pub(super) fn pixels_of_row(
     cube: &Cube,
     plan: &Plan<'_>,
@@ -100,13 +103,14 @@ pub(super) fn pixels_of_row(
     room.strip.prepare(plan)?;
     for strip in strips {
         let to = &mut to[strip.quotients.start - plan.margin..strip.quotients.end - plan.margin];
+        let row = StripRow { y, plan, strip, checked: &checked };
         if plan.direct() {
-            room.strip.pixels(y, plan, strip, &checked, None, to)?;
+            room.strip.direct_pixels(row, None, to)?;
             continue;
         }
         room.strip.start(plan, strip, y, variances.is_some());
-        room.strip.widen(y, plan, strip, &checked)?;
-        room.strip.quotients(y, plan, strip, variances.is_some(), to)?;
+        room.strip.widen(row)?;
+        room.strip.quotients(row, to)?;
     }
     Ok(())
 }
@@ -156,7 +160,7 @@ impl Block<'_> {
             }
             for y in read.clone() {
                 for strip in strips {
-                    self.row(y, plan, strip, &checked, &mut room.strip)?;
+                    self.take_in(StripRow { y, plan, strip, checked: &checked }, &mut room.strip)?;
                 }
             }
         }
@@ -164,83 +168,62 @@ impl Block<'_> {
     }
 
     /// Takes a row of a strip into the sums.
-    fn row(
-        &mut self,
-        y: usize,
-        plan: &Plan<'_>,
-        strip: &Strip,
-        checked: &Checked<'_>,
-        room: &mut StripRoom,
-    ) -> Result<()> {
+    fn take_in(&mut self, row: StripRow<'_>, room: &mut StripRoom) -> Result<()> {
+        let StripRow { y, plan, .. } = row;
         if self.owned.contains(&y) {
-            self.pixels(y, plan, strip, checked, room)?;
+            self.pixels(row, room)?;
         } else if !plan.direct_windows() {
-            room.widen(y, plan, strip, checked)?;
+            room.widen(row)?;
         }
-        if plan.wants(Cell::Spectral) {
-            let top = (y + 1).checked_sub(plan.request.window.rows()).filter(|top| self.tops.contains(top));
-            let to = top.map(|top| {
-                let centres = plan.centres();
-                let row = (top - self.tops.start) * centres.len();
-                let (start, end) = (strip.centres.start - centres.start, strip.centres.end - centres.start);
-                &mut self.spectral[row + start..row + end]
-            });
-            if plan.direct_windows() {
-                if let Some(to) = to {
-                    room.direct(y, plan, strip, checked, to);
-                }
-                return Ok(());
-            }
-            let variances = checked.variances.is_some();
-            room.counts.push(y);
-            if variances {
-                room.variances.push(y);
-            }
-            if let Some(to) = to {
-                room.spectral(y, plan, strip, variances, to)?;
-            }
-            room.counts.finish(y);
-            if variances {
-                room.variances.finish(y);
-            }
-        }
-        Ok(())
+        if plan.wants(Cell::Spectral) { self.windows(row, room) } else { Ok(()) }
     }
 
     /// Sums and quotients over the bands of each pixel.
-    fn pixels(
-        &mut self,
-        y: usize,
-        plan: &Plan<'_>,
-        strip: &Strip,
-        checked: &Checked<'_>,
-        room: &mut StripRoom,
-    ) -> Result<()> {
-        let (stride, columns, inner) = (plan.stride, plan.shape.columns(), plan.inner().len());
-        let of = |range: &Range<usize>, first: usize| range.start - first..range.end - first;
-        let row = y - self.owned.start;
-        let to_totals = row * columns + strip.totals.start..row * columns + strip.totals.end;
+    fn pixels(&mut self, row: StripRow<'_>, room: &mut StripRoom) -> Result<()> {
+        let StripRow { y, plan, strip, .. } = row;
+        let (columns, inner) = (plan.shape.columns(), plan.inner().len());
+        let own = y - self.owned.start;
+        let to_totals = own * columns + strip.totals.start..own * columns + strip.totals.end;
         let to_ratios = if plan.wants(Cell::Full) {
-            let to = of(&strip.quotients, plan.margin);
-            row * inner + to.start..row * inner + to.end
+            let [from, to] = [strip.quotients.start, strip.quotients.end].map(|x| x - plan.margin);
+            own * inner + from..own * inner + to
         } else {
             0..0
         };
         if plan.direct() {
             let (to_totals, to) = (&mut self.counts[to_totals], &mut self.quotients[to_ratios]);
-            return room.pixels(y, plan, strip, checked, Some(to_totals), to);
+            return room.direct_pixels(row, Some(to_totals), to);
         }
-        room.widen(y, plan, strip, checked)?;
-        let local = of(&strip.totals, strip.read.start);
-        let samples = local.start * stride..local.end * stride;
-        let (counts, lanes) = (&room.counts.row(y)[samples.clone()], &mut room.lanes);
-        totals(counts, stride, lanes, &mut self.counts[to_totals.clone()]);
-        if checked.variances.is_some() {
-            totals(&room.variances.row(y)[samples], stride, &mut room.lanes, &mut self.variances[to_totals]);
-        }
+        room.widen(row)?;
+        let to_variances = if row.variances() { to_totals.clone() } else { 0..0 };
+        room.band_sums(row, &mut self.counts[to_totals], &mut self.variances[to_variances]);
         if plan.wants(Cell::Full) {
-            room.quotients(y, plan, strip, checked.variances.is_some(), &mut self.quotients[to_ratios])?;
+            room.quotients(row, &mut self.quotients[to_ratios])?;
         }
+        Ok(())
+    }
+
+    /// The information of the bands of each window that ends with a row.
+    fn windows(&mut self, row: StripRow<'_>, room: &mut StripRoom) -> Result<()> {
+        let StripRow { y, plan, strip, .. } = row;
+        let top = (y + 1).checked_sub(plan.request.window.rows()).filter(|top| self.tops.contains(top));
+        let to = top.map(|top| {
+            let centres = plan.centres();
+            let own = (top - self.tops.start) * centres.len();
+            let [start, end] = [strip.centres.start, strip.centres.end].map(|x| x - centres.start);
+            &mut self.spectral[own + start..own + end]
+        });
+        if plan.direct_windows() {
+            if let Some(to) = to {
+                room.direct_windows(row, to);
+            }
+            return Ok(());
+        }
+        room.push(row);
+        if let Some(to) = to {
+            room.windows(row, to)?;
+        }
+        room.finish(row);
         Ok(())
     }
 }

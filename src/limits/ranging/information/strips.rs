@@ -1,20 +1,50 @@
-//! What a thread keeps of the rows of a strip of columns, and what it makes of them.
+//! One row of a strip of columns: what it gives of its pixels, and of the windows that end with it.
+//!
+//! Of every pixel, over its bands b: Σ_b N, Σ_b σ², and the quotients Σ_b (∂N)²/(N + σ²). Of every window, with the sums
+//! over its pixels p taken band by band first: Σ_b (Σ_p ∂N)²/Σ_p (N + σ²). There are two ways to each.
+//!
+//! | | straight from the rows as stored (`direct`) | from widened rows |
+//! |---|---|---|
+//! | for | the central difference and variances per band; small windows | all else |
+//! | pixels | [`StripRoom::direct_pixels`], with a check on the way | [`StripRoom::widen`], then [`StripRoom::quotients`] |
+//! | windows | [`StripRoom::direct_windows`], over the window's rows anew | [`StripRoom::windows`], over a [`Stack`] of rows |
+//!
+//! Where the derivative is not the central difference, it is taken of whole rows ([`Differentiator`]); it is linear, so that
+//! Σ_p ∂N is the window sum of the derivative of the summed rows.
 
-use super::Cell;
 use super::blocks::{Plan, Strip};
 use super::boxes::{Along, Stack, add_to, along, grow};
 use super::checks::Checked;
 use super::direct::{Lanes, Pixels, windows};
-use super::kernels::{Below, ratios, ratios_central, ratios_ends};
+use super::kernels::{Below, ratios, ratios_central, ratios_ends, totals};
+use super::request::Cell;
 use crate::error::Result;
 use crate::ranging::derivative::Differentiator;
 use crate::simd::{Aligned, Chunk, LANES};
 
+/// A row of the cube within a strip.
+#[derive(Clone, Copy)]
+pub(super) struct StripRow<'a> {
+    pub(super) y: usize,
+    pub(super) plan: &'a Plan<'a>,
+    pub(super) strip: &'a Strip,
+    pub(super) checked: &'a Checked<'a>,
+}
+
+impl StripRow<'_> {
+    /// Whether every sample has a variance of its own.
+    pub(super) fn variances(&self) -> bool {
+        self.checked.variances.is_some()
+    }
+}
+
+/// What a thread keeps from row to row.
 #[derive(Default)]
 pub(super) struct StripRoom {
     slopes: Option<Differentiator>,
-    pub(super) counts: Stack,
-    pub(super) variances: Stack,
+    /// Widened rows, as many as a window has.
+    counts: Stack,
+    variances: Stack,
     /// Σ of the counts over the rows of windows.
     sum: Aligned,
     /// What stands below the fraction.
@@ -32,6 +62,7 @@ pub(super) struct StripRoom {
 }
 
 impl StripRoom {
+    /// Makes what takes derivatives, once for all strips.
     pub(super) fn prepare(&mut self, plan: &Plan<'_>) -> Result<()> {
         if !plan.central() && self.slopes.is_none() {
             self.slopes = Some(Differentiator::new(plan.request.derivative, plan.shape.columns())?);
@@ -39,21 +70,7 @@ impl StripRoom {
         Ok(())
     }
 
-    /// Widens and checks row `y` of a strip.
-    pub(super) fn widen(
-        &mut self,
-        y: usize,
-        plan: &Plan<'_>,
-        strip: &Strip,
-        checked: &Checked<'_>,
-    ) -> Result<()> {
-        let bands = plan.shape.bands();
-        let start = checked.at(y, strip.read.start);
-        let seen = checked.counts.widen(start, bands, self.counts.row(y));
-        let seen_var = checked.variances.map(|raw| raw.widen(start, bands, self.variances.row(y)));
-        checked.look(seen, seen_var)
-    }
-
+    /// Begins a strip with row `first`.
     pub(super) fn start(&mut self, plan: &Plan<'_>, strip: &Strip, first: usize, variances: bool) {
         let len = strip.read.len() * plan.stride;
         let height = if plan.wants(Cell::Spectral) { plan.request.window.rows() } else { 1 };
@@ -77,16 +94,40 @@ impl StripRoom {
         }
     }
 
-    /// The sums and, if there is room for them, the quotients of row `y` over the bands of each pixel.
-    pub(super) fn pixels(
+    /// Widens and checks a row.
+    pub(super) fn widen(&mut self, row: StripRow<'_>) -> Result<()> {
+        let StripRow { y, plan, strip, checked } = row;
+        let bands = plan.shape.bands();
+        let start = checked.at(y, strip.read.start);
+        let seen = checked.counts.widen(start, bands, self.counts.row(y));
+        let seen_var = checked.variances.map(|raw| raw.widen(start, bands, self.variances.row(y)));
+        checked.look(seen, seen_var)
+    }
+
+    /// Takes a widened row into the sums over rows, before the windows that end with it are summed.
+    pub(super) fn push(&mut self, row: StripRow<'_>) {
+        self.counts.push(row.y);
+        if row.variances() {
+            self.variances.push(row.y);
+        }
+    }
+
+    /// The same, after them.
+    pub(super) fn finish(&mut self, row: StripRow<'_>) {
+        self.counts.finish(row.y);
+        if row.variances() {
+            self.variances.finish(row.y);
+        }
+    }
+
+    /// Σ_b N of each pixel, and its quotients if there is room for them.
+    pub(super) fn direct_pixels(
         &mut self,
-        y: usize,
-        plan: &Plan<'_>,
-        strip: &Strip,
-        checked: &Checked<'_>,
+        row: StripRow<'_>,
         to_totals: Option<&mut [f64]>,
         ratios: &mut [f64],
     ) -> Result<()> {
+        let StripRow { y, plan, strip, checked } = row;
         // With the columns on either side that a difference takes.
         let stacked = plan.wants(Cell::Spectral) && !plan.direct_windows();
         let own =
@@ -109,15 +150,9 @@ impl StripRoom {
         Ok(())
     }
 
-    /// The quotients of small windows that end with row `y`, over their bands.
-    pub(super) fn direct(
-        &mut self,
-        y: usize,
-        plan: &Plan<'_>,
-        strip: &Strip,
-        checked: &Checked<'_>,
-        to: &mut [f64],
-    ) {
+    /// The quotients of small windows that end with a row.
+    pub(super) fn direct_windows(&mut self, row: StripRow<'_>, to: &mut [f64]) {
+        let StripRow { y, plan, strip, checked } = row;
         let window = plan.request.window;
         let len = strip.read.len() * plan.stride;
         grow(&mut self.sum, len);
@@ -127,54 +162,54 @@ impl StripRoom {
         windows(&self.sum[..len], window.columns(), &plan.var_window, &mut self.direct, to);
     }
 
-    /// The quotients of row `y`, over the bands of each pixel.
-    pub(super) fn quotients(
-        &mut self,
-        y: usize,
-        plan: &Plan<'_>,
-        strip: &Strip,
-        variances: bool,
-        to: &mut [f64],
-    ) -> Result<()> {
+    /// Σ_b N of each pixel of a widened row, and Σ_b σ² if every sample has its own.
+    pub(super) fn band_sums(&mut self, row: StripRow<'_>, counts: &mut [f64], variances: &mut [f64]) {
+        let StripRow { y, plan, strip, .. } = row;
+        let first = strip.read.start;
+        let samples = (strip.totals.start - first) * plan.stride..(strip.totals.end - first) * plan.stride;
+        totals(&self.counts.row(y)[samples.clone()], plan.stride, &mut self.lanes, counts);
+        if row.variances() {
+            totals(&self.variances.row(y)[samples], plan.stride, &mut self.lanes, variances);
+        }
+    }
+
+    /// The quotients of each pixel of a widened row.
+    pub(super) fn quotients(&mut self, row: StripRow<'_>, to: &mut [f64]) -> Result<()> {
+        let StripRow { y, plan, strip, .. } = row;
         let stride = plan.stride;
         let from = strip.quotients.start - strip.read.start;
         let samples = from * stride..(from + strip.quotients.len()) * stride;
-        let row = &self.counts.row(y)[..];
-        let below = if variances {
-            self.below[..row.len()].copy_from_slice(row);
+        let counts = &self.counts.row(y)[..];
+        let below = if row.variances() {
+            self.below[..counts.len()].copy_from_slice(counts);
             add_to(self.variances.row(y), &mut self.below);
             &self.below[samples]
         } else {
-            &row[samples]
+            &counts[samples]
         };
         let mut of = Below { below, var: &plan.var_sample, derivative: &[], stride };
         if let Some(slopes) = &mut self.slopes {
             let len = plan.inner().len() * stride;
-            slopes.apply(row, stride, &mut self.slope[..len])?;
+            slopes.apply(counts, stride, &mut self.slope[..len])?;
             of.derivative = &self.slope[..len];
             ratios(of, &mut self.lanes, to);
         } else {
-            ratios_central(&row[(from - 1) * stride..], of, &mut self.lanes, to);
+            ratios_central(&counts[(from - 1) * stride..], of, &mut self.lanes, to);
         }
         Ok(())
     }
 
-    /// The quotients of the windows that end with row `y`, over their bands.
-    pub(super) fn spectral(
-        &mut self,
-        y: usize,
-        plan: &Plan<'_>,
-        strip: &Strip,
-        variances: bool,
-        to: &mut [f64],
-    ) -> Result<()> {
+    /// The quotients of the windows that end with a row that has been pushed.
+    pub(super) fn windows(&mut self, row: StripRow<'_>, to: &mut [f64]) -> Result<()> {
+        let StripRow { y, plan, strip, .. } = row;
         let stride = plan.stride;
         let width = plan.request.window.columns();
         let len = strip.read.len() * stride;
+        // Over the rows of the windows.
         self.counts.sum(y, &mut self.sum[..len]);
         let inside = plan.margin * stride..(strip.read.len() - plan.margin) * stride;
-        let below = if variances {
-            let share = plan.share((plan.request.window.rows() * width) as f64);
+        let below = if row.variances() {
+            let share = plan.share(plan.pixels());
             self.variances.sum(y, &mut self.below[..len]);
             for (below, count) in self.below[..len].iter_mut().zip(self.sum.iter()) {
                 *below = share * *below + *count;
@@ -183,15 +218,16 @@ impl StripRoom {
         } else {
             &self.sum[inside]
         };
+        // Over their columns.
         let place = Along { stride, width, first: strip.read.start + plan.margin };
         along(below, place, &mut self.ends, &mut self.begin, &mut self.below_sums);
         let windows = strip.centres.len() * stride;
         let mut of =
             Below { below: &self.below_sums[..windows], var: &plan.var_window, derivative: &[], stride };
         if let Some(slopes) = &mut self.slopes {
-            let len = plan.inner().len() * stride;
-            slopes.apply(&self.sum[..strip.read.len() * stride], stride, &mut self.slope[..len])?;
-            along(&self.slope[..len], place, &mut self.ends, &mut self.begin, &mut self.slope_sums);
+            let inner = plan.inner().len() * stride;
+            slopes.apply(&self.sum[..len], stride, &mut self.slope[..inner])?;
+            along(&self.slope[..inner], place, &mut self.ends, &mut self.begin, &mut self.slope_sums);
             of.derivative = &self.slope_sums[..windows];
             ratios(of, &mut self.lanes, to);
         } else {

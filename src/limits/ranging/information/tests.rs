@@ -1,7 +1,8 @@
 use super::decide::decide;
 use super::*;
 use crate::ranging::cube::{MemoryCube, Shape};
-use crate::ranging::derivative::Differentiator;
+use crate::ranging::derivative::{Derivative, Differentiator};
+use crate::ranging::noise::{Joined, NoiseVariance};
 use proptest::prelude::*;
 
 /// Counts from a small generator, [row][column][band]; whole numbers, so that f32 holds them exactly.

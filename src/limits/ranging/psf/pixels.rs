@@ -3,8 +3,8 @@
 //! Lengths are in units of σ (Gaussian) or λF (Airy). Phases are multiples of 1/M of the pitch, so that their mean is
 //! the trapezoidal rule of a periodic function.
 
-use super::{PixelBound, PointSpread, Shape};
-use crate::error::{Error, Result};
+use super::{PointSpread, Shape, total_photons};
+use crate::error::{Error, Result, check};
 use libm::erfc;
 use rayon::prelude::*;
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
@@ -18,8 +18,45 @@ const FINEST: f64 = 0.05;
 /// Largest part of a pixel over which h is integrated at once, λF; its fringes repeat at 1.
 const PART: f64 = 0.125;
 
+/// 1/J of one photon counted in pixels, m², over the place of the source in its pixel (evenly distributed).
+///
+/// Infinite where pixels are so much wider than the point spread that no photon falls outside the first one.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+pub struct PixelBound {
+    /// Mean of 1/J: the variance of position averaged over sources that are anywhere.
+    pub var_mean_m2: f64,
+    /// 1/J where it is least.
+    pub var_best_m2: f64,
+    /// 1/J where it is largest.
+    pub var_worst_m2: f64,
+}
+
+impl PointSpread {
+    /// What square pixels of pitch `pitch_m` (m) leave.
+    ///
+    /// Relative error of 1/J at any one place: 1e-12 for a Gaussian, 2e-3 for an Airy disk (some 10 ms; for a pitch below
+    /// 0.1 λF or above 2 λF some 100 ms). The mean over the places is as good up to 1.5 λF; beyond, where the centre of the
+    /// pixel all but decides it, it is that of 32 × 32 places, and the mean of all differs by 1 % at 3 λF, 5 % at 8 λF.
+    ///
+    /// # Errors
+    /// A pitch that is not positive, or is more than 8 λF before an Airy disk.
+    pub fn in_pixels(&self, pitch_m: f64) -> Result<PixelBound> {
+        bands_in_pixels(&[(*self, 1.0)], pitch_m)
+    }
+}
+
+/// 1/J of bands that are counted apart behind square pixels of pitch `pitch_m` (m): at every phase J is the weighted mean over the bands.
+///
+/// # Errors
+/// As [`bands_var_m2`](super::bands_var_m2) and [`PointSpread::in_pixels`].
+pub fn bands_in_pixels(bands: &[(PointSpread, f64)], pitch_m: f64) -> Result<PixelBound> {
+    check::positive("pixel", pitch_m, "m")?;
+    let total = total_photons(bands)?;
+    bound(bands, total, pitch_m)
+}
+
 /// Mean, best and worst of 1/J over the phases, J the mean over the bands.
-pub(super) fn bound(bands: &[(PointSpread, f64)], total: f64, pitch_m: f64) -> Result<PixelBound> {
+fn bound(bands: &[(PointSpread, f64)], total: f64, pitch_m: f64) -> Result<PixelBound> {
     let widths: Vec<f64> = bands.iter().map(|(spread, _)| pitch_m / spread.scale_m).collect();
     let airy = bands.iter().any(|(spread, _)| spread.shape == Shape::Airy);
     let widest = widths.iter().fold(0.0_f64, |widest, w| widest.max(*w));

@@ -1,6 +1,6 @@
 //! What the columns of a CSV file mean: axis first, then emissivity, reflectance, n and k, or materials.
 
-use super::{kebab_case, one_line, stem};
+use super::content::{kebab_case, one_line, stem};
 use crate::error::{Error, Result, check};
 use crate::grid::Grid;
 use crate::material::Material;

@@ -10,7 +10,7 @@
 //! Source: Meerdink et al., Remote Sens. Environ. 230, 111196 (2019), doi:10.1016/j.rse.2019.05.015; Baldridge et al.,
 //! Remote Sens. Environ. 113, 711 (2009), doi:10.1016/j.rse.2008.11.007. Layout from the files themselves.
 
-use super::{Content, kebab_case, one_line, stem};
+use super::content::{Content, kebab_case, one_line, stem};
 use crate::error::{Error, Result, check};
 use crate::grid;
 use crate::material::Material;

@@ -1,8 +1,9 @@
 //! Bands from grids, rows, centres, ranges and filter curves.
 
-use super::{Band, Bands, Shape, distinct, edges, transmittance};
+use super::{Band, Bands, Shape, edges, transmittance};
 use crate::error::{Error, Result, check};
 use crate::spectrum::FilterCurve;
+use crate::spectrum::rows::distinct;
 
 /// Widest stretch of a range or filter that one midpoint node may stand for, cm⁻¹: the paper's step.
 const NODE_SPACING_CM1: f64 = 1.0;

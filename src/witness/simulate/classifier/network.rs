@@ -11,98 +11,22 @@
 //! Source: Methods of the HADAR paper, doi:10.1038/s41586-023-06174-6.
 
 mod convolution;
-mod file;
 mod layers;
 mod options;
 mod real;
+mod standard;
+mod trained;
 mod training;
 
 pub use options::{NetworkOptions, Settings};
+pub use trained::Network;
+pub use training::Outcome;
 
 use super::{Classifier, Judge};
-use crate::error::{Error, Result, check};
+use crate::error::{Error, Result};
 use crate::simulate::spectra::LabelledSpectra;
 use layers::{Layers, Workspace};
-
-/// Mean of every band and the reciprocal of its deviation.
-#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Standard {
-    means: Vec<f64>,
-    /// 0 for a band without scatter.
-    scales: Vec<f64>,
-}
-
-impl Standard {
-    /// From the spectra's own scatter.
-    fn new(spectra: &LabelledSpectra) -> Result<Self> {
-        let n = spectra.len() as f64;
-        let mut means = vec![0.0; spectra.bands()];
-        for (counts, _) in spectra.iter() {
-            means.iter_mut().zip(counts).for_each(|(mean, count)| *mean += count / n);
-        }
-        let mut variances = vec![0.0; spectra.bands()];
-        for (counts, _) in spectra.iter() {
-            for ((variance, mean), count) in variances.iter_mut().zip(&means).zip(counts) {
-                *variance += (count - mean).powi(2) / n;
-            }
-        }
-        let scale = |(band, variance): (usize, &f64)| {
-            let mut counts = spectra.counts().iter().skip(band).step_by(spectra.bands());
-            let first = counts.next();
-            // The mean's rounding would leave a scatter that is none.
-            if counts.all(|count| Some(count) == first) {
-                return Ok(0.0);
-            }
-            let variance = check::positive("variance of a band", *variance, "")?;
-            check::positive("reciprocal deviation of a band", 1.0 / variance.sqrt(), "")
-        };
-        let scales = variances.iter().enumerate().map(scale).collect::<Result<_>>()?;
-        Ok(Self { means, scales })
-    }
-
-    fn apply<'a, T: real::Real>(&'a self, counts: &'a [f64]) -> impl Iterator<Item = T> + 'a {
-        let each = counts.iter().zip(&self.means).zip(&self.scales);
-        each.map(|((count, mean), scale)| T::of((count - mean) * scale))
-    }
-}
-
-/// How a training went.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Outcome {
-    /// Epochs gone through.
-    pub epochs: usize,
-    /// The epoch after which the weights were as they are now; 0 if nothing lowered the validation loss.
-    pub best_epoch: usize,
-    /// Mean cross-entropy of the validation part, nats.
-    pub validation_loss: f64,
-    /// Number of weights, biases among them.
-    pub weights: usize,
-}
-
-/// A trained network.
-///
-/// ```
-/// use hadar::simulate::classifier::network::{Network, NetworkOptions};
-/// use hadar::simulate::{classifier::Classifier, draws::Draws, spectra::Split};
-/// use hadar::statistics::Statistics;
-/// let class = |means: &[f64]| Draws::new(&Statistics::Poisson, means);
-/// let split = Split::draw(&[class(&[1e4, 1e4])?, class(&[1.1e4, 0.9e4])?], 400, 1)?;
-/// let network = Network::train(&split.training, &split.validation, &NetworkOptions::default(), &|_, _| ())?;
-/// let mut scores = [0.0; 2];
-/// assert!(network.judge().score(&[1.1e4, 0.9e4], &mut scores) && scores[1] > scores[0]);
-/// # Ok::<(), hadar::Error>(())
-/// ```
-#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
-#[serde(try_from = "file::Stored", into = "file::Stored")]
-pub struct Network {
-    layers: Layers,
-    options: NetworkOptions,
-    standard: Standard,
-    weights: Vec<f32>,
-    outcome: Outcome,
-}
+use standard::Standard;
 
 impl Network {
     /// Trains on one part of the spectra until those of the other show no more progress; `progress` is told after

@@ -76,7 +76,7 @@ impl Multinomial {
 }
 
 /// Successes of `trials`, of probability p = 1 − q; both are given, so that the smaller is known well.
-pub(in crate::witness::simulate) fn binomial(rng: &mut ChaCha8Rng, trials: u64, p: f64, q: f64) -> u64 {
+fn binomial(rng: &mut ChaCha8Rng, trials: u64, p: f64, q: f64) -> u64 {
     let rarer = p.min(q);
     let of_rarer = if trials == 0 || rarer == 0.0 {
         0

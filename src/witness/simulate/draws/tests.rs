@@ -196,12 +196,6 @@ fn electronic_noise_is_added_to_exact_counts() {
     }
 }
 
-#[test]
-fn counts_beyond_whole_numbers_are_known() {
-    let beyond = |mean: f64| Draws::new(&Statistics::Poisson, &[1.0, mean]).unwrap().exceeds_exact_integers();
-    assert!(!beyond(LARGEST_EXACT) && beyond(1e16));
-}
-
 /// 536 bands, a stream for each spectrum, Λ = Σ n a: what 1.5 million spectra take. Run by name to see it.
 #[test]
 fn spectra_are_quick() {

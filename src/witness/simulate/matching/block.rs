@@ -14,23 +14,13 @@
 //!
 //! Source: Shimizu and Okutomi, Int. J. Comput. Vis. 63, 207 (2005), doi:10.1007/s11263-005-6878-5 (bias of fits).
 
+pub use super::strip::Score;
+
 use super::layout::View;
+use super::search::{Failure, Match, Search};
 use super::strip::Strip;
-use super::{Failure, Match, Search};
 use crate::ranging::information::Window;
 use std::ops::Range;
-
-/// How alike two windows are.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Score {
-    /// Zero-normalised cross-correlation, all bands together, each less its own mean: gain and offset do not
-    /// matter.
-    #[default]
-    Correlation,
-    /// Sum of squared differences, negative.
-    SquaredDifferences,
-}
 
 /// The curve through three scores.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]

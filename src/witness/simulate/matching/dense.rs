@@ -5,7 +5,7 @@
 
 use super::block::Block;
 use super::layout::{Layout, View};
-use super::{Match, Search, StereoPair, check_window};
+use super::search::{Match, Search, StereoPair, check_window};
 use crate::error::Result;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -32,12 +32,6 @@ impl DisparityMap {
             return None;
         }
         self.matches.get((row - self.rows.start) * self.columns.len() + column - self.columns.start).copied()
-    }
-
-    /// Pixels of disparity, `missing` where there is none.
-    #[must_use]
-    pub fn values_or(&self, missing: f64) -> Vec<f64> {
-        self.matches.iter().map(|found| found.unwrap_or(missing)).collect()
     }
 }
 

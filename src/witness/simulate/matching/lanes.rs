@@ -2,8 +2,7 @@
 //! in step.
 
 use super::layout::View;
-use crate::simd::{Chunk, LANES, added, dispatched, fused, product};
-use crate::sum::fold;
+use crate::simd::{Chunk, LANES, added, dispatched, fold, fused, product};
 use std::ops::Range;
 
 /// Samples of some rows; 0 in lanes that have no row.

@@ -39,10 +39,11 @@ pub use super::interpolation::Interpolation;
 use super::interpolation::{LOBES, Weights};
 use super::lanes::{Lanes, Sums, chunks, differences, interpolate, window_sums};
 use super::layout::View;
-use super::trials::Noisy;
-use super::{Failure, Match, Search};
+use super::search::{Failure, Match, Search};
+use crate::minimum::golden_section;
 use crate::ranging::information::Window;
 use crate::simd::{Chunk, LANES};
+use std::convert::Infallible;
 use std::ops::Range;
 
 /// Steps of a refinement.
@@ -59,6 +60,30 @@ const NARROWINGS: usize = 26;
 const REACH: f64 = 1.0;
 /// Times that v follows the estimate, if the right view is known.
 const ROUNDS: usize = 3;
+
+/// Which views are noisy.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Noisy {
+    /// Both, as cameras have it; bound 1/J_left + 1/J_right.
+    #[default]
+    Both,
+    /// The left one; the right one is as expected, a known template; bound 1/J_left.
+    Left,
+}
+
+impl Noisy {
+    /// Variance of the difference of two readings, σ² the electronic noise of one.
+    #[inline(always)]
+    fn variance(self, left: f64, right: f64, var: f64) -> f64 {
+        match self {
+            // Nothing at all was read: one photon more would be one.
+            Self::Both => (left + right + 2.0 * var).max(1.0),
+            // Interpolation may fall below 0 where there are hardly any photons.
+            Self::Left => (right + var).max(1e-6),
+        }
+    }
+}
 
 /// Maximum-likelihood matching.
 ///
@@ -260,12 +285,8 @@ impl Place<'_> {
         if best.abs() == PLACES {
             return Err(Failure::Unconverged);
         }
-        let golden = 0.5 * (5_f64.sqrt() - 1.0);
-        let (mut low, mut high) = (at(best - 1), at(best + 1));
-        for _ in 0..NARROWINGS {
-            let (a, b) = (high - golden * (high - low), low + golden * (high - low));
-            if of(a) < of(b) { high = b } else { low = a }
-        }
+        let around = [at(best - 1), at(best + 1)];
+        let Ok([low, high]) = golden_section::<Infallible>(around, NARROWINGS, |shift| Ok(of(shift)));
         Ok(0.5 * (low + high))
     }
 }

@@ -14,13 +14,25 @@
 //! lie side by side.
 
 use super::layout::View;
-use super::{Search, block::Score};
+use super::search::Search;
 use crate::ranging::information::Window;
 use crate::simd::{Chunk, LANES, dispatched, fused};
 use std::ops::Range;
 
 /// V below this share of Σ L² is rounding.
 const FLAT: f64 = 1e-13;
+
+/// How alike two windows are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Score {
+    /// Zero-normalised cross-correlation, all bands together, each less its own mean: gain and offset do not
+    /// matter.
+    #[default]
+    Correlation,
+    /// Sum of squared differences, negative.
+    SquaredDifferences,
+}
 
 /// Scores of the windows of a row, and the room to work them out.
 #[derive(Debug, Clone)]

@@ -8,7 +8,8 @@ use super::likelihood::{Interpolation, Likelihood};
 use super::texture::Texture;
 use super::trials::{Centre, Matches, MatchingTrials, Noisy, Run, Setup};
 use super::*;
-use crate::ranging::cube::{Cube, MemoryCube};
+use crate::error::Error;
+use crate::ranging::cube::{Cube, MemoryCube, Shape};
 use crate::ranging::noise::NoiseVariance;
 use crate::simulate::draws::generator;
 use rand::RngExt;
@@ -156,8 +157,9 @@ fn a_whole_shift_is_found_exactly_and_gain_and_offset_do_not_matter() {
     let brighter: Vec<f64> = right.iter().map(|x| 3.7 * x + 5e4).collect();
     let other = StereoPair::new(shape, &left, &brighter).unwrap();
     let block = Block::new(window());
-    let maps = [pair, other].map(|pair| disparity_map(&pair, &block, search).unwrap().values_or(-1.0));
+    let maps = [pair, other].map(|pair| disparity_map(&pair, &block, search).unwrap().matches);
     for (a, b) in maps[0].iter().zip(&maps[1]) {
+        let [a, b] = [a, b].map(|found| found.unwrap_or(-1.0));
         assert!((a - b).abs() < 1e-8, "{a} {b}");
     }
 }

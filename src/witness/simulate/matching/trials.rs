@@ -4,10 +4,11 @@
 //! Poisson photons and normal electronic noise. The views of trial i have streams 2i (left) and 2i + 1 (right)
 //! of the run's.
 
+use super::Matcher;
 use super::layout::{Layout, View};
 use super::likelihood::Scratch;
+use super::search::{Match, Search, StereoPair, check_window};
 use super::strip::Strip;
-use super::{Match, Matcher, Search, StereoPair, check_window};
 use crate::error::{Error, Result, check};
 use crate::ranging::noise::NoiseVariance;
 use crate::simulate::draws::{Draws, STREAMS, generator};
@@ -16,6 +17,7 @@ use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
+pub use super::likelihood::Noisy;
 pub use crate::simulate::thermometry::Run;
 
 /// Columns beyond the search that an interpolation may look at.
@@ -32,30 +34,6 @@ pub struct Centre {
     pub column: usize,
     /// True disparity there, pixels.
     pub disparity: f64,
-}
-
-/// Which views are noisy.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Noisy {
-    /// Both, as cameras have it; bound 1/J_left + 1/J_right.
-    #[default]
-    Both,
-    /// The left one; the right one is as expected, a known template; bound 1/J_left.
-    Left,
-}
-
-impl Noisy {
-    /// Variance of the difference of two readings, σ² the electronic noise of one.
-    #[inline(always)]
-    pub(super) fn variance(self, left: f64, right: f64, var: f64) -> f64 {
-        match self {
-            // Nothing at all was read: one photon more would be one.
-            Self::Both => (left + right + 2.0 * var).max(1.0),
-            // Interpolation may fall below 0 where there are hardly any photons.
-            Self::Left => (right + var).max(1e-6),
-        }
-    }
 }
 
 /// What is matched.

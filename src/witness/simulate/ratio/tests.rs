@@ -109,24 +109,6 @@ fn bands_dark_in_one_state_decide_at_once() {
     assert_eq!(none.values(1, 0, 3), [-3.0; 3]);
 }
 
-/// Binomial: mean and variance within 4.5 deviations (by chance 1.4e-5), the ends exactly.
-#[test]
-fn right_decisions_are_binomial() {
-    let mut rng = generator(2, 0);
-    let draws: Vec<f64> =
-        (0..20_000).map(|_| right_decisions(&mut rng, 1000, 0.83).unwrap() as f64).collect();
-    let mean = draws.iter().sum::<f64>() / 2e4;
-    let variance = draws.iter().map(|x| (x - 830.0).powi(2)).sum::<f64>() / 2e4;
-    assert!((mean - 830.0).abs() < 4.5 * (141.1_f64 / 2e4).sqrt());
-    assert!((variance / 141.1 - 1.0).abs() < 4.5 * (2.0_f64 / 2e4).sqrt());
-    assert_eq!(right_decisions(&mut rng, 7, 1.0).unwrap(), 7);
-    assert_eq!(right_decisions(&mut rng, 7, 0.0).unwrap(), 0);
-    for wrong in [-0.1, 1.1, f64::NAN] {
-        assert!(right_decisions(&mut rng, 7, wrong).is_err());
-    }
-    assert!(right_decisions(&mut rng, u64::MAX, 0.5).is_err());
-}
-
 /// 1.5 million values of 536 bands, with the set-up; run by name to see the time.
 #[test]
 fn values_are_quick() {

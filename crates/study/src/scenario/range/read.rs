@@ -1,12 +1,14 @@
 //! Reads a ranging scenario: every key checked, every error one line with file, line and key.
 
-use super::super::read::{file, material, parse};
-use super::super::section::{ABOVE_ZERO, ABSOLUTE_TEMPERATURE, Entry, FROM_ZERO, Rule, SHARE, Section};
-use super::super::{BandsSpec, CameraSpec, Source};
+use super::super::paths::{file, material};
+use super::super::read::{parse, text_of};
+use super::super::section::{Entry, Section};
+use super::super::{BandsSpec, Source, camera};
 use super::{
     CubeSpec, Demand, DepthRequirement, DepthSource, Diffraction, NoiseSource, RangeScenario, SceneSpec,
     Stereo, Subject,
 };
+use hadar::allowed::{ABOVE_ZERO, ABSOLUTE_TEMPERATURE, Allowed, FROM_ZERO, SHARE};
 use hadar::error::{Error, Result};
 use hadar::ranging::derivative::Derivative;
 use hadar::ranging::information::Window;
@@ -24,7 +26,42 @@ const MOST_BOUNCES: u32 = 64;
 /// δz/z that is demanded where nothing is said.
 const RELATIVE_ERROR: f64 = 0.05;
 
-pub(super) fn scenario(text: &str, path: Option<&Path>) -> Result<RangeScenario> {
+impl RangeScenario {
+    /// Reads a ranging scenario. Relative paths in it start from its directory.
+    ///
+    /// # Errors
+    /// The first thing that is wrong, in one line with file, line and key, as [`crate::scenario::Scenario::from_file`].
+    pub fn from_file(path: &Path) -> Result<Self> {
+        Self::from_toml(&text_of(path)?, Some(path))
+    }
+
+    /// Reads a ranging scenario from text; `path` as in [`crate::scenario::Scenario::from_toml`].
+    ///
+    /// # Errors
+    /// As [`RangeScenario::from_file`], except those of the file itself.
+    ///
+    /// ```
+    /// use hadar_study::scenario::RangeScenario;
+    /// let text = r#"
+    ///     [scene]
+    ///     person_temperature = "37 degC"
+    ///     [camera]
+    ///     preset = "flir-a325sc"
+    ///     [stereo]
+    ///     baseline = "0.2 m"
+    /// "#;
+    /// let scenario = RangeScenario::from_toml(text, None)?;
+    /// assert_eq!(scenario.stereo.window.rows(), 5);
+    /// let error = RangeScenario::from_toml(&text.replace("0.2 m", "0 m"), None).unwrap_err();
+    /// assert!(error.to_string().starts_with("line 7: stereo.baseline: `0 m` is out of range"));
+    /// # Ok::<(), hadar::Error>(())
+    /// ```
+    pub fn from_toml(text: &str, path: Option<&Path>) -> Result<Self> {
+        scenario(text, path)
+    }
+}
+
+fn scenario(text: &str, path: Option<&Path>) -> Result<RangeScenario> {
     let mut source = Source { path: path.map(Path::to_owned), lines: BTreeMap::new() };
     if text.trim().is_empty() {
         return Err(Error::malformed("the file is empty", MINIMUM).at(source.place("")));
@@ -42,7 +79,7 @@ pub(super) fn scenario(text: &str, path: Option<&Path>) -> Result<RangeScenario>
             );
         }
     };
-    let camera = root.read("camera", CameraSpec::read)?;
+    let camera = root.read("camera", camera::read)?;
     if matches!(subject, Subject::Scene(_)) && camera.is_none() {
         let found = Error::malformed("the table is missing", "write [camera] with preset = \"flir-a325sc\"");
         return Err(root.fail("camera", found));
@@ -221,7 +258,7 @@ fn stereo(entry: &Entry<'_>, camera: bool, subject: &Subject) -> Result<Stereo> 
     })
 }
 
-const BASELINE: Rule = Rule {
+const BASELINE: Allowed = Allowed {
     expected: "above 0: cameras at one place see no depth (cameras that turn towards each other are not treated)",
     ..ABOVE_ZERO
 };
@@ -242,7 +279,7 @@ fn window(entry: &Entry<'_>) -> Result<Window> {
 fn requirement(entry: &Entry<'_>) -> Result<DepthRequirement> {
     let section = entry.section(&["depth_error", "relative_depth_error", "share"])?;
     section.at_most_one(&["depth_error", "relative_depth_error"])?;
-    let share = Rule { holds: |value| value > 0.0 && value <= 1.0, expected: "above 0, at most 1" };
+    let share = Allowed { holds: |value| value > 0.0 && value <= 1.0, expected: "above 0, at most 1" };
     let default = DepthRequirement::default();
     let absolute = section.quantity("depth_error", Dimension::Length, ABOVE_ZERO)?;
     let relative = section.number("relative_depth_error", "0.05", ABOVE_ZERO)?;

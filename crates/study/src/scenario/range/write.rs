@@ -1,6 +1,8 @@
 //! Writes a ranging scenario with every default filled in, as TOML and, in the same structure, for JSON.
 
-use super::super::write::{Document, Entries, Part, Paths, bands, camera, entries, text};
+use super::super::camera;
+use super::super::entries::{Document, Entries, Part, entries, text};
+use super::super::paths::Paths;
 use super::{
     CubeSpec, Demand, DepthRequirement, DepthSource, Diffraction, NoiseSource, RangeScenario, SceneSpec,
     Stereo, Subject,
@@ -42,10 +44,10 @@ impl RangeScenario {
             Subject::Cube(spec) => ("cube", Part::Table(cube(spec, paths))),
         });
         if let Some(spec) = &self.bands {
-            document.push(("bands", Part::Table(bands(spec, paths))));
+            document.push(("bands", Part::Table(spec.written(paths))));
         }
         if let Some(spec) = &self.camera {
-            document.push(("camera", Part::Table(camera(spec, paths))));
+            document.push(("camera", Part::Table(camera::written(spec, paths))));
         }
         document.push(("stereo", Part::Table(stereo(&self.stereo))));
         document.push(("requirement", Part::Table(requirement(self.requirement))));

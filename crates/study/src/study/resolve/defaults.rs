@@ -1,11 +1,12 @@
 //! What a scenario leaves silent: unknowns and ranges, and the echo that says everything.
 
 use super::Surface;
-use crate::scenario::{Efficiency, MaterialRef, Scenario};
+use crate::scenario::{MaterialRef, Scenario};
 use hadar::error::{Error, Result};
 use hadar::fisher::Unknowns;
 use hadar::identifiability::nearest::StateRange;
-use hadar::instrument::{Camera, NoiseSpec};
+use hadar::instrument::figures::{self, Part, TABLE};
+use hadar::instrument::{Camera, CameraSpec};
 
 pub(super) fn alternatives_as_written(alternatives: &[Surface]) -> Vec<String> {
     alternatives.iter().map(|surface| surface.name.clone()).collect()
@@ -58,35 +59,18 @@ pub(super) fn fill(
     if let (Some(spec), Some(camera)) = (scenario.camera.as_mut(), camera) {
         // A preset's noise stays the preset's, stated under the preset's own conditions. Noise of the
         // scenario's own is written with its conditions, so that it stays what it is when the rest is changed.
-        match camera.noise {
-            NoiseSpec::Netd { temperature_k, f_number, pixel_m, .. } if spec.netd_k.is_some() => {
-                spec.netd_temperature_k = Some(temperature_k);
-                spec.netd_f_number = Some(f_number);
-                spec.netd_pixel_m = Some(pixel_m);
+        let used = CameraSpec::of(camera);
+        for row in TABLE {
+            let is_filled = match row.part {
+                Part::Own => true,
+                Part::Noise => false,
+                Part::Condition(noises) => {
+                    noises.iter().any(|key| figures::row(key).is_some_and(|noise| noise.is_given(spec)))
+                }
+            };
+            if is_filled && !row.is_given(spec) {
+                row.lay(&used, spec);
             }
-            _ => {}
         }
-        if spec.states_noise() {
-            spec.noise_exposure_s = Some(camera.noise_exposure_s);
-        }
-        spec.exposure_s = Some(camera.exposure_s);
-        spec.pixel_m = Some(camera.pixel_m);
-        spec.f_number = Some(camera.f_number);
-        spec.focal_length_m = Some(camera.focal_length_m);
-        spec.optics_efficiency.get_or_insert(Efficiency::Number(camera.optics_efficiency));
-        spec.quantum_efficiency.get_or_insert(Efficiency::Number(camera.quantum_efficiency));
-        spec.dark_rate_per_s = Some(camera.dark_rate_per_s);
-        spec.read_noise = Some(camera.read_noise_counts);
-        spec.quantisation_bits = camera.quantisation_bits;
-        spec.photon_bunching = Some(camera.photon_bunching);
-        spec.frame_rate_hz = camera.frame_rate_hz;
-        spec.sensor_temperature_k = camera.sensor_temperature_k;
-        spec.filter_temperature_k = camera.filter_temperature_k;
-        spec.flicker_fraction = Some(camera.flicker_fraction);
-        spec.full_well = camera.full_well;
-        spec.readout = Some(camera.readout);
-        spec.frames = Some(camera.frames);
-        spec.field_of_view_rad = camera.field_of_view_rad;
-        spec.pixels = camera.pixels;
     }
 }

@@ -25,6 +25,7 @@ use crate::study::{Study, Surface};
 use hadar::error::Result;
 use hadar::fisher::Counting;
 use hadar::identifiability::nearest::NearestSolver;
+use hadar::lattice_points::GoldenLattice;
 use hadar::policy::envelope::{EnvelopeScene, Ranges};
 use hadar::scene::State;
 use rayon::prelude::*;
@@ -179,15 +180,6 @@ pub(in crate::study) fn scene_at(ranges: &Ranges, place: &[f64]) -> Option<State
     (state.lighting.iter().sum::<f64>() <= 1.0 + SAME).then_some(state)
 }
 
-/// Point `index` of a lattice of irrational steps in the unit cube, begun at `shift` (R. Roberts's generalised golden
-/// ratio φ with φⁿ⁺¹ = φ + 1: steps φ⁻¹, φ⁻², …).
-pub(in crate::study) fn lattice(index: usize, shift: &[f64]) -> Vec<f64> {
-    let n = shift.len() as f64;
-    let golden = (0..60).fold(1.5f64, |phi, _| (1.0 + phi).powf(1.0 / (n + 1.0)));
-    let step = |i: usize| golden.powi(-(i as i32 + 1));
-    shift.iter().enumerate().map(|(i, start)| (start + step(i) * index as f64).fract()).collect()
-}
-
 /// Corners and a few scenes between them.
 fn scattered(ranges: &Ranges) -> Vec<State> {
     let ranges_all = all(ranges);
@@ -199,9 +191,9 @@ fn scattered(ranges: &Ranges) -> Vec<State> {
     };
     let corners = 0..if free.len() <= CORNERS { 1usize << free.len() } else { 0 };
     let scenes = 0..if free.is_empty() { 0 } else { SCENES };
-    let shift = vec![0.5; free.len()];
+    let lattice = GoldenLattice::new(vec![0.5; free.len()]);
     let places = corners.map(|corner| lay(&|i| ((corner >> i) & 1) as f64)).chain(scenes.map(|index| {
-        let point = lattice(index, &shift);
+        let point = lattice.point(index);
         lay(&|i| point[i])
     }));
     let mut states: Vec<State> = places.filter_map(|place| scene_at(ranges, &place)).collect();
@@ -229,16 +221,5 @@ mod tests {
         assert_eq!(brightest(&ranges).lighting, [0.9, 0.5]);
         let point = Ranges::new([300.0; 2], vec![[0.5; 2]], vec![[280.0; 2]]).unwrap();
         assert_eq!(scattered(&point).len(), 1);
-    }
-
-    #[test]
-    fn the_lattice_fills_the_square() {
-        let points: Vec<Vec<f64>> = (0..256).map(|i| lattice(i, &[0.1, 0.7])).collect();
-        for corner in 0..16 {
-            let (x, y) = (f64::from(corner % 4) / 4.0, f64::from(corner / 4) / 4.0);
-            let inside = |p: &&Vec<f64>| p[0] >= x && p[0] < x + 0.25 && p[1] >= y && p[1] < y + 0.25;
-            let count = points.iter().filter(inside).count();
-            assert!((12..=20).contains(&count), "{count}");
-        }
     }
 }

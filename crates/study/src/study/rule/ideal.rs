@@ -15,13 +15,14 @@
 
 use super::super::{Study, reliability};
 use super::RuleStudy;
-use super::envelope::{all, lattice, scene_at};
+use super::envelope::{all, scene_at};
 use super::results::{Neighbourhood, NotIdentifiable};
 use hadar::demand::{self, Thing};
 use hadar::error::Result;
 use hadar::fisher::Counting;
 use hadar::identifiability::nearest::NearestSolver;
 use hadar::instrument::{Camera, FASTEST_F_NUMBER};
+use hadar::lattice_points::GoldenLattice;
 use hadar::planck;
 use hadar::policy::Motion;
 use hadar::policy::envelope::Ranges;
@@ -71,15 +72,15 @@ impl RuleStudy {
             .collect::<Result<Vec<(&Study, Bands, Ranges)>>>()?;
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         let dimensions = scenes.first().map_or(0, |(_, _, ranges)| all(ranges).len());
-        let shifts: Vec<Vec<f64>> =
-            (0..SHIFTS).map(|_| (0..dimensions).map(|_| random.random::<f64>()).collect()).collect();
+        let mut shifted = || GoldenLattice::new((0..dimensions).map(|_| random.random::<f64>()).collect());
+        let lattices: Vec<GoldenLattice> = (0..SHIFTS).map(|_| shifted()).collect();
         let each = (SCENES / (SHIFTS * pairs.len().max(1))).max(4);
         let jobs: Vec<(usize, usize)> =
             (0..SHIFTS).flat_map(|shift| (0..pairs.len()).map(move |pair| (shift, pair))).collect();
         let drawn = jobs.into_par_iter().map(|(shift, pair)| {
             let (target, other) = pairs[pair];
             let (study, bands, ranges) = &scenes[target];
-            let places = (0..each).map(|index| lattice(index * pairs.len() + pair, &shifts[shift]));
+            let places = (0..each).map(|index| lattices[shift].point(index * pairs.len() + pair));
             let states: Vec<State> = places.filter_map(|place| scene_at(ranges, &place)).collect();
             let Study { surroundings, unknowns, range, .. } = study;
             let mut solver = NearestSolver::new(bands, surroundings, unknowns.clone(), *range);

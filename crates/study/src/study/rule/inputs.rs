@@ -4,8 +4,9 @@
 //! or its provenance does, and not when another camera is added.
 
 use super::results::FileHash;
-use crate::scenario::{AtmosphereSource, BandSource, CameraSpec, Efficiency, MaterialRef, Rule};
+use crate::scenario::{AtmosphereSource, BandSource, MaterialRef, Rule};
 use hadar::error::{Error, Result};
+use hadar::instrument::figures::TABLE;
 use hadar::instrument::presets;
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
@@ -63,15 +64,8 @@ fn files(rule: &Rule) -> Vec<PathBuf> {
     if let Some(AtmosphereSource::Table(path)) = scenario.atmosphere.as_ref().map(|air| &air.source) {
         files.push(path);
     }
-    let of_camera = |spec: &CameraSpec| {
-        let efficiency = |efficiency: &Option<Efficiency>| match efficiency {
-            Some(Efficiency::File(path)) => Some(path.clone()),
-            _ => None,
-        };
-        [spec.noise_table.clone(), efficiency(&spec.optics_efficiency), efficiency(&spec.quantum_efficiency)]
-    };
-    let own = rule.cameras.iter().flat_map(|camera| of_camera(&camera.spec)).flatten();
-    let mut files: Vec<PathBuf> = files.into_iter().map(Path::to_owned).chain(own).collect();
+    let own = rule.cameras.iter().flat_map(|camera| TABLE.iter().filter_map(|row| row.file(&camera.spec)));
+    let mut files: Vec<PathBuf> = files.into_iter().chain(own).map(Path::to_owned).collect();
     files.sort();
     files.dedup();
     files

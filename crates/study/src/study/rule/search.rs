@@ -13,6 +13,7 @@ use hadar::error::{Error, Result};
 use hadar::fisher::Nuisance;
 use hadar::identifiability::detection;
 use hadar::instrument::Camera;
+use hadar::minimum::golden_section;
 use hadar::policy::envelope::{Certificate, Effort, WorstCase, worst_case};
 use hadar::policy::{self, Quantity};
 use hadar::scene::State;
@@ -23,7 +24,6 @@ use std::collections::BTreeMap;
 const TOLERANCE: f64 = 0.01;
 /// Golden sections of the distance, each to 0.62 of what it was.
 const GOLDEN_STEPS: usize = 8;
-const GOLDEN: f64 = 0.618_033_988_749_895;
 /// Boxes of the branch and bound for each pair at most: a second or so.
 const BOXES: u64 = 200_000;
 
@@ -294,21 +294,16 @@ impl RuleStudy {
         let low = if low > 0.0 { low } else { middle };
         let high = if high.is_finite() { high } else { middle };
         let mut best = worst;
-        let (mut a, mut b) = (low.ln(), high.ln());
-        for _ in 0..GOLDEN_STEPS {
-            let ends = [b - GOLDEN * (b - a), a + GOLDEN * (b - a)];
-            let mut found = [f64::INFINITY; 2];
-            for (found, end) in found.iter_mut().zip(ends) {
-                let sighted = Sighted::new(own.at_distance(end.exp())?, &self.envelope)?;
-                let searched =
-                    search(&sighted, Estimate { distance: f64::INFINITY, ..best.pair.clone() }, TOLERANCE)?;
-                *found = searched.pair.distance;
-                if *found < best.pair.distance {
-                    best = Searched { between: Some(Box::new(sighted)), ..searched };
-                }
+        golden_section([low.ln(), high.ln()], GOLDEN_STEPS, |log_z| -> Result<f64> {
+            let sighted = Sighted::new(own.at_distance(log_z.exp())?, &self.envelope)?;
+            let anew = Estimate { distance: f64::INFINITY, ..best.pair.clone() };
+            let searched = search(&sighted, anew, TOLERANCE)?;
+            let distance = searched.pair.distance;
+            if distance < best.pair.distance {
+                best = Searched { between: Some(Box::new(sighted)), ..searched };
             }
-            if found[0] <= found[1] { b = ends[1] } else { a = ends[0] }
-        }
+            Ok(distance)
+        })?;
         Ok(best)
     }
 }

@@ -96,7 +96,7 @@ mod tests {
     /// flicker noise have half of its γ each there, and at four times the exposure one and four times as much.
     #[test]
     fn the_curves_meet_the_camera_where_it_is() {
-        let text = include_str!("../../../../examples/human_vs_robot.toml");
+        let text = include_str!("../../../../../examples/human_vs_robot.toml");
         let study =
             Study::new(&Scenario::from_toml(text, None).unwrap(), &Library::embedded().unwrap()).unwrap();
         let pair = &study.identify().unwrap().pairs[0];

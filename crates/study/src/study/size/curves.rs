@@ -5,11 +5,12 @@ use crate::study::{Study, Surface};
 use hadar::error::Result;
 use hadar::fisher::Nuisance;
 use hadar::identifiability::detection;
-use hadar::identifiability::map::MapScene;
+use hadar::identifiability::local::LocalSolver;
 use hadar::identifiability::nearest::NearestSolver;
 use hadar::instrument::Camera;
 use hadar::policy;
 use hadar::scene::State;
+use rayon::prelude::*;
 
 /// Points of a curve over photons.
 const CURVE_POINTS: usize = 81;
@@ -163,22 +164,7 @@ impl Study {
         let top = 1.0 - others;
         let lightings: Vec<f64> = (0..count).map(|i| top * f64::from(i) / f64::from(count - 1)).collect();
         let kind = self.scenario.requirement.by;
-        let unknowns = match kind {
-            DistanceKind::LocalUnknownGain => self.unknowns.with(Nuisance::Gain),
-            _ => self.unknowns.clone(),
-        };
-        let scene = MapScene {
-            bands: &self.bands,
-            surroundings: &self.surroundings,
-            unknowns: &unknowns,
-            emissivity: &self.target.emissivity,
-            alternative: &alternative.emissivity,
-            state: &self.state,
-        };
-        let distances = match kind {
-            DistanceKind::Nearest => scene.nearest(self.range, &temperatures_k, &lightings)?,
-            _ => scene.local(&temperatures_k, &lightings)?.iter().map(|point| point.distance).collect(),
-        };
+        let distances = self.map_distances(kind, alternative, &temperatures_k, &lightings)?;
         let mut photons = vec![f64::INFINITY; distances.len()];
         for (i, row) in distances.chunks(lightings.len()).enumerate() {
             for (j, &distance) in row.iter().enumerate() {
@@ -188,6 +174,50 @@ impl Study {
             }
         }
         Ok(Some(PhotonMap { temperatures_k, lightings, photons, equilibrium_k }))
+    }
+
+    /// Distances per √photon, temperature after temperature, lighting of the first environment object within.
+    fn map_distances(
+        &self,
+        kind: DistanceKind,
+        alternative: &Surface,
+        temperatures_k: &[f64],
+        lightings: &[f64],
+    ) -> Result<Vec<f64>> {
+        let (own, other) = (&self.target.emissivity, &alternative.emissivity);
+        let states = |temperature_k: f64| {
+            lightings.iter().map(move |&lighting| {
+                let mut state = State { temperature_k, ..self.state.clone() };
+                state.lighting.iter_mut().take(1).for_each(|first| *first = lighting);
+                state
+            })
+        };
+        let solver =
+            || NearestSolver::new(&self.bands, &self.surroundings, self.unknowns.clone(), self.range);
+        let tangent = || {
+            let unknowns = match kind {
+                DistanceKind::LocalUnknownGain => self.unknowns.with(Nuisance::Gain),
+                _ => self.unknowns.clone(),
+            };
+            LocalSolver::new(&self.bands, &self.surroundings, unknowns)
+        };
+        let rows: Result<Vec<Vec<f64>>> = match kind {
+            DistanceKind::Nearest => temperatures_k
+                .par_iter()
+                .map_init(solver, |solver, &temperature_k| {
+                    let found = |state| Ok(solver.per_photon(own, other, &state, f64::INFINITY)?.distance);
+                    states(temperature_k).map(found).collect()
+                })
+                .collect(),
+            _ => temperatures_k
+                .par_iter()
+                .map_init(tangent, |solver, &temperature_k| {
+                    let found = |state| Ok(solver.per_photon(own, other, &state, f64::INFINITY)?.distance);
+                    states(temperature_k).map(found).collect()
+                })
+                .collect(),
+        };
+        rows.map(|rows| rows.concat())
     }
 }
 

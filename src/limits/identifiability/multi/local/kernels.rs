@@ -1,9 +1,18 @@
 //! Passes over the bands of one target with several alternatives, compiled per instruction set.
 //!
 //! Symbols as in [`super`]: u weights, c = G w C, m = u c², kᵢ = u c q̂ᵢ, Δ = e′ − e.
+//!
+//! * For the target: its spectra u, c, m and kᵢ.
+//! * First pass, [`projections`]: Σ m Δ² and Σ kᵢ Δ of [`TOGETHER`] alternatives. A matrix waits for memory more than for
+//!   arithmetic, so that what is read of the target serves a group of alternatives.
+//! * Second pass, [`residual_square`]: Σ u r² of one alternative, with the residual r formed band by band.
+//!
+//! Both passes have three steps: the number N of directions becomes one that the compiler knows, so that their sums stay in
+//! registers; spectra are cut into chunks of [`LANES`] bands and a rest, which is padded with zeros that add nothing;
+//! chunks are gone through in blocks, after each of which the lanes are added to compensated sums.
 
-use crate::simd::{Chunk, LANES, added, dispatched, fused, padded, product};
-use crate::sum::{Compensated, CompensatedLanes, fold};
+use crate::simd::{Chunk, LANES, added, dispatched, fold, fused, padded, product};
+use crate::sum::{Compensated, CompensatedLanes};
 
 /// Alternatives worked on together.
 pub(super) const TOGETHER: usize = 5;
@@ -12,18 +21,24 @@ pub(super) const MOST_NUISANCES: usize = 4;
 /// Chunks in a block of a compensated sum: more than elsewhere, since a group of pairs ends a dozen of them.
 const BLOCK_CHUNKS: usize = 96;
 
-/// Spectra of the target that a pass over the bands reads.
+/// Spectra of the target that the first pass reads.
 #[derive(Clone, Copy)]
 pub(super) struct Lent<'a> {
+    /// e.
     pub(super) own: &'a [f64],
+    /// m.
     pub(super) square: &'a [f64],
+    /// kᵢ.
     pub(super) directions: [&'a [f64]; MOST_NUISANCES],
 }
 
+/// What [`contrast_into`] reads, and where it writes.
 pub(super) struct Contrast<'a> {
+    /// G.
     pub(super) gain: f64,
     /// κ, or 1 for weights per unit of band signal.
     pub(super) counts: f64,
+    /// C, w and S of each band.
     pub(super) contrast: &'a [f64],
     pub(super) widths: &'a [f64],
     pub(super) signal: &'a [f64],
@@ -71,6 +86,26 @@ dispatched! {
     }
 }
 
+/// A spectrum in chunks of bands, and the bands that are left.
+#[derive(Clone, Copy)]
+struct Cut<'a> {
+    chunks: &'a [Chunk],
+    rest: &'a [f64],
+}
+
+/// The first `bands` of a spectrum.
+#[inline(always)]
+fn cut(spectrum: &[f64], bands: usize) -> Cut<'_> {
+    let (chunks, rest) = spectrum[..bands].as_chunks();
+    Cut { chunks, rest }
+}
+
+/// a − b.
+#[inline(always)]
+fn less(a: Chunk, b: Chunk) -> Chunk {
+    std::array::from_fn(|i| a[i] - b[i])
+}
+
 /// Σ m Δ² of each alternative, and Σ kᵢ Δ of each alternative along each direction.
 pub(super) type Projections = ([f64; TOGETHER], [[f64; MOST_NUISANCES]; TOGETHER]);
 
@@ -87,58 +122,39 @@ dispatched! {
     }
 }
 
-/// Sums over the bands of a group of pairs.
-struct Sums<const N: usize> {
-    squares: [Compensated; TOGETHER],
-    dots: [[Compensated; N]; TOGETHER],
-}
-
-impl<const N: usize> Sums<N> {
-    /// Adds the lanes of a block. Never inlined: the lanes then go through memory all at once, which keeps the
-    /// loop before in full-width registers.
-    #[inline(never)]
-    #[allow(
-        clippy::needless_range_loop,
-        reason = "as nested iterators it takes a sixth of the time of a whole matrix more"
-    )]
-    fn add(&mut self, squares: &[Chunk; TOGETHER], dots: &[[Chunk; N]; TOGETHER]) {
-        for a in 0..TOGETHER {
-            self.squares[a].add(fold(&squares[a]));
-            for i in 0..N {
-                self.dots[a][i].add(fold(&dots[a][i]));
-            }
-        }
-    }
-}
-
+/// [`Projections`] on N directions.
 #[inline(always)]
 fn project<const N: usize>(lent: Lent<'_>, others: [&[f64]; TOGETHER]) -> Projections {
     let bands = lent.own.len();
-    let (e, e_rest) = lent.own.as_chunks();
-    let (m, m_rest) = lent.square[..bands].as_chunks();
-    let k: [_; N] = std::array::from_fn(|i| lent.directions[i][..bands].as_chunks());
-    let o = others.map(|other| other[..bands].as_chunks());
-    let mut sums =
-        Sums { squares: [Compensated::default(); TOGETHER], dots: [[Compensated::default(); N]; TOGETHER] };
-    run(e, m, k.map(|k| k.0), o.map(|o| o.0), &mut sums);
-    if !e_rest.is_empty() {
-        let (k, o) = (k.map(|k| [padded(k.1)]), o.map(|o| [padded(o.1)]));
-        let (k, o) = (k.each_ref().map(|k| &k[..]), o.each_ref().map(|o| &o[..]));
-        run(&[padded(e_rest)], &[padded(m_rest)], k, o, &mut sums);
+    let (own, square) = (cut(lent.own, bands), cut(lent.square, bands));
+    let directions: [_; N] = std::array::from_fn(|i| cut(lent.directions[i], bands));
+    let others = others.map(|other| cut(other, bands));
+    let mut sums = Sums::new();
+    project_chunks(
+        own.chunks,
+        square.chunks,
+        directions.map(|k| k.chunks),
+        others.map(|other| other.chunks),
+        &mut sums,
+    );
+    if !own.rest.is_empty() {
+        let directions = directions.map(|k| [padded(k.rest)]);
+        let others = others.map(|other| [padded(other.rest)]);
+        project_chunks(
+            &[padded(own.rest)],
+            &[padded(square.rest)],
+            directions.each_ref().map(|k| &k[..]),
+            others.each_ref().map(|other| &other[..]),
+            &mut sums,
+        );
     }
-    let mut along = [[0.0; MOST_NUISANCES]; TOGETHER];
-    for (along, dots) in along.iter_mut().zip(&sums.dots) {
-        for (along, dot) in along.iter_mut().zip(dots) {
-            *along = dot.value();
-        }
-    }
-    (sums.squares.map(|square| square.value()), along)
+    sums.values()
 }
 
-/// The bands of [`project`] in whole chunks. Values pass through locals, chunk by chunk: only then are they
-/// kept in full-width registers.
+/// The chunks of [`project`]. Values pass through locals, chunk by chunk: only then are they kept in full-width
+/// registers.
 #[inline(always)]
-fn run<const N: usize>(
+fn project_chunks<const N: usize>(
     own: &[Chunk],
     square: &[Chunk],
     directions: [&[Chunk]; N],
@@ -165,10 +181,44 @@ fn run<const N: usize>(
     }
 }
 
-/// a − b.
-#[inline(always)]
-fn less(a: Chunk, b: Chunk) -> Chunk {
-    std::array::from_fn(|i| a[i] - b[i])
+/// [`Projections`] while they are summed over the bands.
+struct Sums<const N: usize> {
+    squares: [Compensated; TOGETHER],
+    dots: [[Compensated; N]; TOGETHER],
+}
+
+impl<const N: usize> Sums<N> {
+    #[inline(always)]
+    fn new() -> Self {
+        Self { squares: [Compensated::default(); TOGETHER], dots: [[Compensated::default(); N]; TOGETHER] }
+    }
+
+    /// Adds the lanes of a block. Never inlined: the lanes then go through memory all at once, which keeps the
+    /// loop before in full-width registers.
+    #[inline(never)]
+    #[allow(
+        clippy::needless_range_loop,
+        reason = "as nested iterators it takes a sixth of the time of a whole matrix more"
+    )]
+    fn add(&mut self, squares: &[Chunk; TOGETHER], dots: &[[Chunk; N]; TOGETHER]) {
+        for a in 0..TOGETHER {
+            self.squares[a].add(fold(&squares[a]));
+            for i in 0..N {
+                self.dots[a][i].add(fold(&dots[a][i]));
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn values(self) -> Projections {
+        let mut along = [[0.0; MOST_NUISANCES]; TOGETHER];
+        for (along, dots) in along.iter_mut().zip(&self.dots) {
+            for (along, dot) in along.iter_mut().zip(dots) {
+                *along = dot.value();
+            }
+        }
+        (self.squares.map(|square| square.value()), along)
+    }
 }
 
 dispatched! {
@@ -181,44 +231,37 @@ dispatched! {
         taken: [(f64, &'a [f64]); MOST_NUISANCES],
         count: usize,
     ) -> f64 {
+        let spectra = [own, other, c, u];
         match count {
-            0 | 1 => left_over::<1>(own, other, c, u, taken),
-            2 => left_over::<2>(own, other, c, u, taken),
-            3 => left_over::<3>(own, other, c, u, taken),
-            _ => left_over::<4>(own, other, c, u, taken),
+            0 | 1 => left_over::<1>(spectra, taken),
+            2 => left_over::<2>(spectra, taken),
+            3 => left_over::<3>(spectra, taken),
+            _ => left_over::<4>(spectra, taken),
         }
     }
 }
 
+/// [`residual_square`] with N columns taken off; the spectra are those of target and alternative, c and u.
 #[inline(always)]
-fn left_over<const N: usize>(
-    own: &[f64],
-    other: &[f64],
-    c: &[f64],
-    u: &[f64],
-    taken: [(f64, &[f64]); MOST_NUISANCES],
-) -> f64 {
-    let bands = own.len();
+fn left_over<const N: usize>(spectra: [&[f64]; 4], taken: [(f64, &[f64]); MOST_NUISANCES]) -> f64 {
+    let bands = spectra[0].len();
+    let spectra = spectra.map(|spectrum| cut(spectrum, bands));
     let shares: [f64; N] = std::array::from_fn(|i| taken[i].0);
-    let q: [_; N] = std::array::from_fn(|i| taken[i].1[..bands].as_chunks());
-    let (e, e_rest) = own.as_chunks();
-    let (o, o_rest) = other[..bands].as_chunks();
-    let (c, c_rest) = c[..bands].as_chunks();
-    let (u, u_rest) = u[..bands].as_chunks();
+    let columns: [_; N] = std::array::from_fn(|i| cut(taken[i].1, bands));
     let mut total = CompensatedLanes::default();
-    run_off([e, o, c, u], q.map(|q| q.0), shares, &mut total);
-    if !e_rest.is_empty() {
-        let rest = [e_rest, o_rest, c_rest, u_rest].map(|rest| [padded(rest)]);
-        let q = q.map(|q| [padded(q.1)]);
-        let (rest, q) = (rest.each_ref().map(|rest| &rest[..]), q.each_ref().map(|q| &q[..]));
-        run_off(rest, q, shares, &mut total);
+    left_over_chunks(spectra.map(|x| x.chunks), columns.map(|q| q.chunks), shares, &mut total);
+    if !spectra[0].rest.is_empty() {
+        let spectra = spectra.map(|x| [padded(x.rest)]);
+        let columns = columns.map(|q| [padded(q.rest)]);
+        let (spectra, columns) = (spectra.each_ref().map(|x| &x[..]), columns.each_ref().map(|q| &q[..]));
+        left_over_chunks(spectra, columns, shares, &mut total);
     }
     total.value()
 }
 
-/// The bands of [`left_over`] in whole chunks: target, alternative, c and u; and the columns taken off.
+/// The chunks of [`left_over`].
 #[inline(always)]
-fn run_off<const N: usize>(
+fn left_over_chunks<const N: usize>(
     spectra: [&[Chunk]; 4],
     columns: [&[Chunk]; N],
     shares: [f64; N],

@@ -6,8 +6,8 @@
 
 use crate::identifiability::space::Quadratic;
 use crate::scene::Jacobian;
-use crate::simd::{Chunk, LANES, added, dispatched, fused, padded, product};
-use crate::sum::{Compensated, fold};
+use crate::simd::{Chunk, LANES, added, dispatched, fold, fused, padded, product};
+use crate::sum::Compensated;
 use nalgebra::{DMatrix, DVector};
 
 /// Columns that are worked on together; more of them go two by two.

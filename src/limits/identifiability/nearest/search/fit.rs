@@ -6,10 +6,10 @@
 
 use super::table::{Emission, Thinned};
 use super::whitened::Whitened;
-use crate::identifiability::nearest::State;
 use crate::identifiability::step::BoundedStep;
-use crate::simd::{Aligned, Chunk, LANES, added, dispatched, fused, product};
-use crate::sum::{dot, fold};
+use crate::scene::State;
+use crate::simd::{Aligned, Chunk, LANES, added, dispatched, fold, fused, product};
+use crate::sum::dot;
 use nalgebra::{DMatrix, DVector};
 
 /// Cost of a fit, and half its derivative along T′.

@@ -44,14 +44,14 @@ pub(super) struct Thinned {
 
 /// Thinned bands with the emissions computed so far.
 #[derive(Debug, Clone)]
-pub(in crate::limits::identifiability::nearest) struct EmissionTable {
+pub(crate) struct EmissionTable {
     pub(super) thinned: Thinned,
     even: Vec<Option<Emission>>,
     around: Vec<Emission>,
 }
 
 impl EmissionTable {
-    pub(in crate::limits::identifiability::nearest) fn new(whole: &Bands) -> Self {
+    pub(crate) fn new(whole: &Bands) -> Self {
         let stride = (whole.len() / ENOUGH_BANDS).max(1);
         let (bands, nodes) = whole.every(stride);
         Self { thinned: Thinned { bands, nodes, stride }, even: Vec::new(), around: Vec::new() }

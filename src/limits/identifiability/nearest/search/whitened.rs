@@ -1,8 +1,7 @@
 //! A pair in thinned bands, whitened by the target's own noise.
 
 use super::table::{Emission, Thinned};
-use crate::identifiability::nearest::NearestSolver;
-use crate::identifiability::nearest::residual::Target;
+use crate::identifiability::nearest::residual::{Comparison, Target};
 use crate::simd::Aligned;
 
 /// What does not depend on the alternative's state.
@@ -17,12 +16,12 @@ pub(super) struct Whitened {
 }
 
 impl Whitened {
-    pub(super) fn new(solver: &NearestSolver<'_>, thinned: &Thinned, target: &Target<'_>) -> Self {
+    pub(super) fn new(comparison: &Comparison<'_>, thinned: &Thinned, target: &Target<'_>) -> Self {
         let kept = |values: &[f64]| -> Vec<f64> { values.iter().copied().step_by(thinned.stride).collect() };
-        let signal = kept(solver.target.signal());
+        let signal = kept(comparison.target.signal());
         let whitening: Vec<f64> = signal
             .iter()
-            .zip(kept(solver.work.noise()))
+            .zip(kept(comparison.noise()))
             .map(|(signal, noise)| (target.counts * signal + noise).sqrt())
             .map(|root| if root > 0.0 { 0.5 * target.counts / root } else { 0.0 })
             .collect();

@@ -2,11 +2,15 @@
 
 use super::planes::Number;
 use super::stored::{Stored, decode};
-use super::{COMPRESSED, MATRIX};
 use crate::error::{Error, Result};
+use crate::ranging::cube::READ_CUBE;
 use flate2::read::ZlibDecoder;
 use std::fmt;
 use std::io::Read;
+
+/// The type of an element that is an array, and of one that is a zlib stream of one.
+pub(super) const MATRIX: u32 = 14;
+pub(super) const COMPRESSED: u32 = 15;
 
 /// Most that one byte of a zlib stream can stand for (RFC 1951: 258 bytes in two bits).
 const MAX_INFLATION: u64 = 1032;
@@ -263,6 +267,6 @@ pub(super) fn unreadable(error: std::io::Error) -> Error {
         std::io::ErrorKind::InvalidInput | std::io::ErrorKind::InvalidData => {
             damaged("a compressed array cannot be unpacked")
         }
-        _ => Error::File { action: super::super::open::READ_CUBE.to_owned(), reason: error.to_string() },
+        _ => Error::File { action: READ_CUBE.to_owned(), reason: error.to_string() },
     }
 }

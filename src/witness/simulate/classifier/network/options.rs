@@ -15,6 +15,9 @@
 use super::convolution::BLOCK;
 use crate::error::{Error, Result, check};
 
+/// Spectra that are worked on side by side in training.
+pub(super) const LANES: usize = 16;
+
 /// Sizes and training of a network, as they are written; [`NetworkOptions`] once they have been checked.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields, default)]
@@ -103,7 +106,7 @@ impl NetworkOptions {
         whole("channels", channels, multiple(channels, BLOCK), "a multiple of 8 up to 1024")?;
         whole("taps", taps, taps % 2 == 1 && taps < 1024, "an odd number below 1024")?;
         whole("stride", stride, (1..=1024).contains(&stride), "between 1 and 1024")?;
-        whole("batch", batch, multiple(batch, super::training::LANES), "a multiple of 16 up to 1024")?;
+        whole("batch", batch, multiple(batch, LANES), "a multiple of 16 up to 1024")?;
         whole("epochs", epochs, epochs > 0, "at least 1")?;
         whole("patience", patience, patience > 0, "at least 1")?;
         check::positive("learning rate", learning_rate, "")?;

@@ -41,10 +41,10 @@ fn right(network: &Network, means: &[Vec<f64>; 2], test: &LabelledSpectra) -> [f
     right
 }
 
-/// Every weight and bias of every layer, with strides, more taps than bands, two blocks of channels, and a lane left
-/// over. Central differences of step h are
-/// good to h² and 1e-16/h, together 1e-10 of the loss for h = 1e-5: 1e-6 of the gradient, or 1e-8 of the largest one
-/// where it nearly vanishes. Weights in whose step a ReLU has its kink are left out, and are few.
+/// Every weight and bias of every layer, with strides, more taps than bands, two blocks of channels, and a lane
+/// left over. Central differences of step h are good to h² and 1e-16/h, together 1e-10 of the loss for h = 1e-5:
+/// 1e-6 of the gradient, or 1e-8 of the largest one where it nearly vanishes. Weights in whose step a ReLU has its
+/// kink are left out, and are few.
 #[test]
 fn gradients_are_those_of_central_differences() {
     const STEP: f64 = 1e-5;

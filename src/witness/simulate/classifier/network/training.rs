@@ -10,9 +10,9 @@
 //! (decay beside Adam); He et al., ICCV 2015, doi:10.1109/ICCV.2015.123 (first weights).
 
 use super::layers::{Layers, Workspace};
-use super::options::Settings;
+use super::options::{LANES, Settings};
 use super::real::Real;
-use super::{Outcome, Standard};
+use super::standard::Standard;
 use crate::simulate::draws::generator;
 use crate::simulate::spectra::LabelledSpectra;
 use rand::rngs::ChaCha8Rng;
@@ -20,10 +20,22 @@ use rand::seq::SliceRandom;
 use rand_distr::{Distribution, StandardNormal};
 use rayon::prelude::*;
 
-/// Spectra that are worked on side by side.
-pub(super) const LANES: usize = 16;
 /// Streams of random numbers that no spectrum has.
 const STREAM: u64 = 1 << 63;
+
+/// How a training went.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Outcome {
+    /// Epochs gone through.
+    pub epochs: usize,
+    /// The epoch after which the weights were as they are now; 0 if nothing lowered the validation loss.
+    pub best_epoch: usize,
+    /// Mean cross-entropy of the validation part, nats.
+    pub validation_loss: f64,
+    /// Number of weights, biases among them.
+    pub weights: usize,
+}
 
 /// First and second moments of the gradients so far.
 #[derive(Debug, Clone)]

@@ -1,13 +1,38 @@
-//! A trained network as it is written: everything that decides its scores, and nothing that follows from it.
+//! A trained network, and how it is written: everything that decides its scores, and nothing that follows from it.
 
 use super::layers::Layers;
-use super::{Network, NetworkOptions, Outcome, Standard};
+use super::options::NetworkOptions;
+use super::standard::Standard;
+use super::training::Outcome;
 use crate::error::{Error, Result};
+
+/// A trained network.
+///
+/// ```
+/// use hadar::simulate::classifier::network::{Network, NetworkOptions};
+/// use hadar::simulate::{classifier::Classifier, draws::Draws, spectra::Split};
+/// use hadar::statistics::Statistics;
+/// let class = |means: &[f64]| Draws::new(&Statistics::Poisson, means);
+/// let split = Split::draw(&[class(&[1e4, 1e4])?, class(&[1.1e4, 0.9e4])?], 400, 1)?;
+/// let network = Network::train(&split.training, &split.validation, &NetworkOptions::default(), &|_, _| ())?;
+/// let mut scores = [0.0; 2];
+/// assert!(network.judge().score(&[1.1e4, 0.9e4], &mut scores) && scores[1] > scores[0]);
+/// # Ok::<(), hadar::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(try_from = "Stored", into = "Stored")]
+pub struct Network {
+    pub(super) layers: Layers,
+    pub(super) options: NetworkOptions,
+    pub(super) standard: Standard,
+    pub(super) weights: Vec<f32>,
+    pub(super) outcome: Outcome,
+}
 
 /// What is written of a [`Network`]. f32 and f64 come back with the same bits from any format that keeps them.
 #[derive(serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Stored {
+struct Stored {
     bands: usize,
     classes: usize,
     options: NetworkOptions,

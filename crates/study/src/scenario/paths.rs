@@ -1,0 +1,56 @@
+//! Materials and files as they are named in a scenario, read and written.
+
+use std::path::{Path, PathBuf};
+
+use super::MaterialRef;
+use super::section::Entry;
+use hadar::error::{Error, Result};
+
+/// How file paths are written.
+#[derive(Clone, Copy)]
+pub(super) struct Paths<'a> {
+    pub(super) beside: Option<&'a Path>,
+}
+
+impl Paths<'_> {
+    pub(super) fn file(self, path: &Path) -> String {
+        let inside = self.beside.and_then(|directory| path.strip_prefix(directory).ok());
+        let text = inside.unwrap_or(path).to_string_lossy().into_owned();
+        // A bare `skin` would be read as a name of the library, and a blank at the beginning would be lost.
+        if is_path(&text) && !text.starts_with(char::is_whitespace) { text } else { format!("./{text}") }
+    }
+
+    pub(super) fn material(self, material: &MaterialRef) -> String {
+        match material {
+            MaterialRef::Name(name) => name.clone(),
+            MaterialRef::File(path) => self.file(path),
+        }
+    }
+}
+
+pub(super) fn material(entry: &Entry<'_>) -> Result<MaterialRef> {
+    let text = entry.text("\"skin\"")?.trim();
+    if is_path(text) { file(entry).map(MaterialRef::File) } else { Ok(MaterialRef::Name(text.to_owned())) }
+}
+
+/// A path has a separator in it, or the ending of a data file; a name has neither.
+pub(super) fn is_path(text: &str) -> bool {
+    let lower = text.to_lowercase();
+    text.contains(['/', '\\']) || lower.ends_with(".csv") || lower.ends_with(".txt")
+}
+
+/// A path, from the scenario's directory, made absolute.
+pub(super) fn file(entry: &Entry<'_>) -> Result<PathBuf> {
+    let text = entry.text("\"my_data.csv\"")?.trim();
+    let path = entry.source().directory().join(text);
+    let path = std::path::absolute(&path).map_err(|error| {
+        entry
+            .fail(Error::malformed(format!("`{text}` is not a usable path ({error})"), "write the full path"))
+    })?;
+    // As in `x /.`: written again, it would be another path.
+    if path.file_name().is_some_and(|name| name.to_string_lossy().ends_with(char::is_whitespace)) {
+        let found = format!("`{text}` is a path that ends in a blank");
+        return Err(entry.fail(Error::malformed(found, "rename the file")));
+    }
+    Ok(path)
+}

@@ -1,0 +1,212 @@
+//! A camera with every figure that it needs, and what follows from them alone.
+//!
+//! * étendue of a pixel π A_p/(4F² + (f/z)²) (S7), A_p pixel area (m²), F f-number, f focal length (m),
+//!   z distance (m);
+//! * H = t A_p/((1 + γ)F²), the hardware figure of the paper's policy inequality, m² s.
+//!
+//! Source: paper S7, Methods 'Guiding public policy'.
+
+use super::{EfficiencyCurve, NoiseSpec, Readout, View};
+use crate::error::Result;
+use crate::fisher::Counting;
+use crate::planck;
+use crate::spectrum::Bands;
+
+/// A spectral thermal camera.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct Camera {
+    /// Name, as in `camera.preset`.
+    pub name: String,
+    /// What it is, in one line.
+    pub description: String,
+    /// Where the figures are from, and what is known to be wrong with them.
+    pub provenance: Vec<String>,
+    /// Figures that no document states, and what stands for them.
+    pub assumed: Vec<String>,
+    /// Exposure of one frame, s.
+    pub exposure_s: f64,
+    /// Side of a square pixel, m.
+    pub pixel_m: f64,
+    /// f-number F.
+    pub f_number: f64,
+    /// Focal length, m.
+    pub focal_length_m: f64,
+    /// Share of the photons that the optics pass, in (0, 1].
+    pub optics_efficiency: f64,
+    /// Share of the photons on the detector that are counted, in (0, 1].
+    pub quantum_efficiency: f64,
+    /// Efficiencies that depend on wavenumber, of the optics and of the detector, to be multiplied with the two above.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub efficiency_curves: Vec<EfficiencyCurve>,
+    /// Electronic noise of one band reading.
+    pub noise: NoiseSpec,
+    /// Exposure at which that noise is stated, s.
+    pub noise_exposure_s: f64,
+    /// Share of the noise variance at that exposure which is flicker, in [0, 1].
+    pub flicker_fraction: f64,
+    /// Counts per second without any light.
+    pub dark_rate_per_s: f64,
+    /// Deviation that every reading adds whatever its exposure, counts.
+    pub read_noise_counts: f64,
+    /// Bits of the converter that divides the full well into steps, if known.
+    pub quantisation_bits: Option<u32>,
+    /// Counts at which a pixel is full, if known.
+    pub full_well: Option<f64>,
+    /// Whether the bunching of thermal photons adds its noise.
+    pub photon_bunching: bool,
+    /// When the bands are exposed.
+    pub readout: Readout,
+    /// Frames that are averaged.
+    pub frames: u32,
+    /// Frames per second, if known: an exposure is no longer than a frame.
+    pub frame_rate_hz: Option<f64>,
+    /// Temperature of the sensor, whose emission filters throw back onto it (K of S8), K, if known.
+    pub sensor_temperature_k: Option<f64>,
+    /// Temperature of the filters (F of S8), K, if known; else that of the sensor.
+    pub filter_temperature_k: Option<f64>,
+    /// Full field of view across, rad, if known.
+    pub field_of_view_rad: Option<f64>,
+    /// Pixels across the field of view, if known.
+    pub pixels: Option<u32>,
+    /// Temperature of the blackbody at which photons and γ are quoted, K.
+    pub reference_temperature_k: f64,
+    /// The spectral range of the detector, cm⁻¹, in which NETD and photons are quoted.
+    pub spectral_range_cm1: [f64; 2],
+}
+
+impl Camera {
+    /// Étendue of a pixel, m² sr, for a target at `distance_m` (infinitely far where `None`) (S7).
+    ///
+    /// ```
+    /// let camera = hadar::instrument::presets::get("flir-a325sc")?;
+    /// let far = camera.etendue_m2_sr(None);
+    /// let exact = std::f64::consts::PI * 12e-6 * 12e-6 / (4.0 * 1.3 * 1.3);
+    /// assert!((far / exact - 1.0).abs() < 1e-15);
+    /// assert!(camera.etendue_m2_sr(Some(0.1)) < far);
+    /// # Ok::<(), hadar::Error>(())
+    /// ```
+    #[must_use]
+    pub fn etendue_m2_sr(&self, distance_m: Option<f64>) -> f64 {
+        let near = distance_m.map_or(0.0, |z| self.focal_length_m / z);
+        std::f64::consts::PI * self.pixel_m * self.pixel_m
+            / (4.0 * self.f_number * self.f_number + near * near)
+    }
+
+    /// The bands as the detector receives them, weighed with the efficiencies that depend on wavenumber.
+    #[must_use]
+    pub fn received(&self, bands: &Bands) -> Bands {
+        if self.efficiency_curves.is_empty() {
+            return bands.clone();
+        }
+        bands.transmitted(|nu| self.efficiency_curves.iter().map(|curve| curve.at(nu)).product())
+    }
+
+    /// Total integration time of a band, s: exposure × frames.
+    #[must_use]
+    pub fn integration_s(&self) -> f64 {
+        self.exposure_s * f64::from(self.frames)
+    }
+
+    /// Time until all bands of all frames are read, s. Exposures wait for their frames where the frame rate is known.
+    #[must_use]
+    pub fn acquisition_s(&self, bands: usize) -> f64 {
+        self.series_s(self.readout.exposures(bands) as f64 * f64::from(self.frames))
+    }
+
+    /// Time until all bands are exposed once, s.
+    #[must_use]
+    pub fn sweep_s(&self, bands: usize) -> f64 {
+        self.series_s(self.readout.exposures(bands) as f64)
+    }
+
+    /// From the begin of the first to the end of the last of so many exposures, s.
+    fn series_s(&self, exposures: f64) -> f64 {
+        self.exposure_s + (exposures - 1.0) * self.exposure_s.max(self.frame_s().unwrap_or(0.0))
+    }
+
+    /// The exposure with which all bands are exposed once in `time_s`; not positive where the frames alone take longer.
+    #[must_use]
+    pub fn exposure_of_sweep_s(&self, bands: usize, time_s: f64) -> f64 {
+        let exposures = self.readout.exposures(bands) as f64;
+        match self.frame_s() {
+            Some(frame_s) if time_s < exposures * frame_s => time_s - (exposures - 1.0) * frame_s,
+            _ => time_s / exposures,
+        }
+    }
+
+    /// The longest exposure of a frame, s, where the frame rate is known.
+    #[must_use]
+    pub fn frame_s(&self) -> Option<f64> {
+        self.frame_rate_hz.map(f64::recip)
+    }
+
+    /// The bands in which NETD, photons and γ of the camera itself are quoted: 1 cm⁻¹ over its range.
+    ///
+    /// # Errors
+    /// A range that makes no bands.
+    pub fn own_bands(&self) -> Result<Bands> {
+        let [low, high] = self.spectral_range_cm1;
+        Bands::uniform(low, high, 1.0)
+    }
+
+    /// Photons per exposure of a blackbody at the reference temperature, noise and figures of merit.
+    ///
+    /// # Errors
+    /// As [`Camera::own_bands`].
+    pub fn figures(&self) -> Result<Figures> {
+        let bands = self.own_bands()?;
+        let one_frame = Self { frames: 1, ..self.clone() };
+        let bands = one_frame.received(&bands);
+        let counting = one_frame.counting(&bands, &View::default());
+        // Photons between the ends of the range; the outermost bands of Table S2 reach half a band beyond.
+        let [low, high] = self.spectral_range_cm1;
+        let range = one_frame.received(&Bands::from_ranges(&[(low, high)])?);
+        let mut blackbody = vec![0.0; range.nodes_cm1().len()];
+        planck::photon_radiance_into(range.nodes_cm1(), self.reference_temperature_k, &mut blackbody);
+        let photons = counting.counts_per_radiance * range.weigh(&blackbody).iter().sum::<f64>();
+        let var: f64 = (0..bands.len()).map(|w| counting.var_added(w)).sum();
+        let gamma = var / photons;
+        Ok(Figures {
+            reference_temperature_k: self.reference_temperature_k,
+            bands: bands.len(),
+            photons,
+            noise_counts: (var / bands.len() as f64).sqrt(),
+            gamma_per_band: gamma,
+            etendue_m2_sr: self.etendue_m2_sr(None),
+            hardware_m2_s: one_frame.hardware_m2_s(gamma),
+        })
+    }
+
+    /// H = t A_p/((1 + γ)F²), m² s, t the integration time.
+    #[must_use]
+    pub fn hardware_m2_s(&self, gamma: f64) -> f64 {
+        self.integration_s() * self.pixel_m * self.pixel_m / ((1.0 + gamma) * self.f_number * self.f_number)
+    }
+}
+
+/// What a camera does in one exposure of a blackbody at its reference temperature.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct Figures {
+    /// Temperature of the blackbody, K.
+    pub reference_temperature_k: f64,
+    /// Number of 1 cm⁻¹ bands over the camera's spectral range.
+    pub bands: usize,
+    /// Photons in all bands together.
+    pub photons: f64,
+    /// Electronic noise of one band reading (root mean square over the bands), counts.
+    pub noise_counts: f64,
+    /// γ = Σσ²/ΣN: noise over photons of a band.
+    pub gamma_per_band: f64,
+    /// Étendue of a pixel for a far target, m² sr.
+    pub etendue_m2_sr: f64,
+    /// H = t A_p/((1 + γ)F²), m² s.
+    pub hardware_m2_s: f64,
+}
+
+/// γ = Σσ²_w/ΣN_w of a scene whose band signals are `signal`.
+#[must_use]
+pub fn gamma_per_band(counting: &Counting, signal: &[f64]) -> f64 {
+    let photons: f64 = signal.iter().map(|s| s * counting.counts_per_radiance).sum();
+    let var: f64 = (0..signal.len()).map(|w| counting.var_added(w)).sum();
+    if photons > 0.0 { var / photons } else { f64::INFINITY }
+}

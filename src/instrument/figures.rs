@@ -1,0 +1,54 @@
+//! What may be stated of a camera: every figure once.
+//!
+//! [`CameraSpec`] holds what is stated, each figure or none: by a document ([`super::presets`]), by the `[camera]` of a
+//! scenario, or by both, one laid over the other. [`TABLE`] has a [`Row`] for every key of `[camera]`: what kind of value it
+//! is, which are allowed, an example, what it means, and where it stands in [`CameraSpec`]. Reading and writing a scenario,
+//! laying one camera over another, checking ranges, naming a changed camera, the sheet of a camera, what is asked
+//! for where it is missing, and the documentation of `[camera]` ([`documentation`]) are loops over it.
+//!
+//! A new figure takes
+//!
+//! 1. a field of [`CameraSpec`], whose name is its key in the cameras' documents and in JSON;
+//! 2. a row of [`TABLE`];
+//! 3. its use: a field of [`super::Camera`], filled in and read back in `made.rs`, where the compiler asks for both, and the
+//!    physics that takes it.
+
+mod noise;
+mod row;
+mod spec;
+mod table;
+
+pub use noise::{NoiseFigures, StatedNoise};
+pub use row::{Kind, Line, Part, Row, Slot};
+pub use spec::{CameraSpec, Efficiency};
+pub use table::{FASTEST_F_NUMBER, NOISES, TABLE};
+
+/// The row of a key.
+#[must_use]
+pub fn row(key: &str) -> Option<&'static Row> {
+    TABLE.iter().find(|row| row.key == key)
+}
+
+/// The keys of `[camera]` as a table in Markdown: key, what may be written, example, meaning.
+///
+/// ```
+/// let table = hadar::instrument::figures::documentation();
+/// assert!(table.contains("| `f_number` | number, at least 0.5"));
+/// ```
+#[must_use]
+pub fn documentation() -> String {
+    let mut table = String::from("| key | value | example | meaning |\n|---|---|---|---|\n");
+    for row in TABLE {
+        let Row { key, example, meaning, .. } = row;
+        table.push_str(&format!("| `{key}` | {} | `{example}` | {meaning} |\n", row.value()));
+    }
+    table
+}
+
+impl CameraSpec {
+    /// Whether it states a noise of its own.
+    #[must_use]
+    pub fn states_noise(&self) -> bool {
+        NOISES.iter().any(|key| row(key).is_some_and(|row| row.is_given(self)))
+    }
+}

@@ -1,0 +1,291 @@
+//! A camera made from what is stated of it, and what is stated of a camera that is made.
+//!
+//! What a camera cannot do without and nobody states is asked for, or stands for a stated reason: the frame time for an
+//! exposure (an NETD is of a frame, so that signal and noise stretch alike and only shot noise depends on it), an efficiency
+//! of 1 beside an NETD (which was measured through the same lens). Every such figure is listed in [`Camera::assumed`].
+//!
+//! [`Preset::camera`] and [`CameraSpec::of`] take every field apart: a figure that one of them forgets does not compile.
+
+use super::figures::{NoiseFigures, Part, StatedNoise, TABLE, row};
+use super::presets::{Missing, Preset};
+use super::{Camera, CameraSpec, Efficiency, NoiseSpec, Readout};
+
+/// Temperature of the blackbody at which figures are quoted where none is stated, K.
+pub const REFERENCE_K: f64 = 303.15;
+/// The range in which the paper counts photons, cm⁻¹.
+pub const PAPER_RANGE_CM1: [f64; 2] = [715.0, 1250.0];
+
+impl Preset {
+    /// The camera with these figures, what stands for missing ones listed in [`Camera::assumed`].
+    ///
+    /// # Errors
+    /// The first figure that is missing and nothing can stand for.
+    pub fn camera(&self) -> Result<Camera, Missing> {
+        let CameraSpec {
+            preset: _,
+            exposure_s,
+            frame_rate_hz,
+            pixel_m,
+            f_number,
+            focal_length_m,
+            optics_efficiency,
+            quantum_efficiency,
+            noise,
+            noise_exposure_s,
+            flicker_fraction,
+            dark_rate_per_s,
+            read_noise_counts,
+            quantisation_bits,
+            full_well,
+            photon_bunching,
+            readout,
+            spectral_bands: _,
+            filters_needed: _,
+            frames,
+            sensor_temperature_k,
+            filter_temperature_k,
+            field_of_view_rad,
+            pixels,
+            lines: _,
+            reference_temperature_k,
+            spectral_range_cm1,
+        } = self.figures.clone();
+        let mut assumed = Vec::new();
+        let exposure_s = match (exposure_s, frame_rate_hz) {
+            (Some(exposure), _) => exposure,
+            (None, Some(rate)) => {
+                assumed.push(format!("exposure: not stated; the frame of {:.4} ms is taken", 1e3 / rate));
+                1.0 / rate
+            }
+            (None, None) => return Err(Missing::of("exposure")),
+        };
+        let pixel_m = pixel_m.ok_or(Missing::of("pixel"))?;
+        let f_number = f_number.ok_or(Missing::of("f_number"))?;
+        let focal_length_m = focal_length_m.ok_or(Missing::of("focal_length"))?;
+        // What depends on wavenumber is in the curves.
+        let number = |efficiency: Efficiency| efficiency.number().unwrap_or(1.0);
+        let stated = noise.stated();
+        let optics_efficiency = optics_efficiency.map(number).unwrap_or_else(|| {
+            let why = match stated {
+                Some(StatedNoise::Netd { .. } | StatedNoise::Nesr { .. }) => {
+                    "1 is taken, the noise being stated through the same optics"
+                }
+                _ => "1 is taken",
+            };
+            assumed.push(format!("optics_efficiency: not stated; {why}"));
+            1.0
+        });
+        let noise = match (&self.noise_table, stated) {
+            (Some(table), _) => table.clone(),
+            (None, None) => return Err(Missing::of("netd")),
+            (None, Some(StatedNoise::None)) => NoiseSpec::None,
+            (
+                None,
+                Some(StatedNoise::Netd {
+                    netd_k,
+                    temperature_k,
+                    f_number: at,
+                    optics_efficiency: eta,
+                    pixel_m: of,
+                }),
+            ) => {
+                if temperature_k.is_none() {
+                    assumed.push(format!("netd_temperature: not stated; {REFERENCE_K} K is taken"));
+                }
+                if at.is_none() {
+                    assumed.push(format!("netd_f_number: not stated; f/{f_number} is taken"));
+                }
+                NoiseSpec::Netd {
+                    netd_k,
+                    temperature_k: temperature_k.unwrap_or(REFERENCE_K),
+                    f_number: at.unwrap_or(f_number),
+                    optics_efficiency: eta.unwrap_or(optics_efficiency),
+                    pixel_m: of.unwrap_or(pixel_m),
+                }
+            }
+            (None, Some(StatedNoise::Detectivity { detectivity_cm_hz05_w, bandwidth_hz })) => {
+                NoiseSpec::Detectivity { detectivity_cm_hz05_w, bandwidth_hz }
+            }
+            (None, Some(StatedNoise::Nep { nep_w_hz05, bandwidth_hz })) => {
+                NoiseSpec::Nep { nep_w_hz05, bandwidth_hz }
+            }
+            (None, Some(StatedNoise::Nesr { microflick, .. })) => NoiseSpec::SpectralRadiance { microflick },
+            (None, Some(StatedNoise::Counts { sigma_counts })) => NoiseSpec::Counts { sigma_counts },
+        };
+        let spectral_range_cm1 = spectral_range_cm1.unwrap_or_else(|| {
+            let [low, high] = PAPER_RANGE_CM1;
+            assumed.push(format!("spectral range: not stated; {low} to {high} cm^-1 is taken"));
+            PAPER_RANGE_CM1
+        });
+        let flicker_fraction = flicker_fraction.unwrap_or_else(|| {
+            if noise != NoiseSpec::None {
+                let why = "0 is taken, so that frames average all of the noise out";
+                assumed.push(format!("flicker_fraction: not stated; {why}"));
+            }
+            0.0
+        });
+        Ok(Camera {
+            name: self.name.clone(),
+            description: self.description.clone(),
+            provenance: self.document.iter().chain(&self.provenance).cloned().collect(),
+            assumed,
+            exposure_s,
+            pixel_m,
+            f_number,
+            focal_length_m,
+            optics_efficiency,
+            quantum_efficiency: quantum_efficiency.map_or(1.0, number),
+            efficiency_curves: self.efficiency_curves.clone(),
+            noise,
+            noise_exposure_s: noise_exposure_s.unwrap_or(exposure_s),
+            flicker_fraction,
+            dark_rate_per_s: dark_rate_per_s.unwrap_or(0.0),
+            read_noise_counts: read_noise_counts.unwrap_or(0.0),
+            quantisation_bits,
+            full_well,
+            photon_bunching: photon_bunching.unwrap_or(false),
+            readout: readout.unwrap_or(Readout::Simultaneous),
+            frames: frames.unwrap_or(1),
+            frame_rate_hz,
+            sensor_temperature_k,
+            filter_temperature_k,
+            field_of_view_rad,
+            pixels,
+            reference_temperature_k: reference_temperature_k.unwrap_or(REFERENCE_K),
+            spectral_range_cm1,
+        })
+    }
+}
+
+impl CameraSpec {
+    /// Every figure of a camera, as it would be stated; curves and tables over wavenumber are no figures.
+    #[must_use]
+    pub fn of(camera: &Camera) -> Self {
+        let Camera {
+            name: _,
+            description: _,
+            provenance: _,
+            assumed: _,
+            exposure_s,
+            pixel_m,
+            f_number,
+            focal_length_m,
+            optics_efficiency,
+            quantum_efficiency,
+            efficiency_curves: _,
+            ref noise,
+            noise_exposure_s,
+            flicker_fraction,
+            dark_rate_per_s,
+            read_noise_counts,
+            quantisation_bits,
+            full_well,
+            photon_bunching,
+            readout,
+            frames,
+            frame_rate_hz,
+            sensor_temperature_k,
+            filter_temperature_k,
+            field_of_view_rad,
+            pixels,
+            reference_temperature_k,
+            spectral_range_cm1,
+        } = *camera;
+        Self {
+            preset: None,
+            exposure_s: Some(exposure_s),
+            frame_rate_hz,
+            pixel_m: Some(pixel_m),
+            f_number: Some(f_number),
+            focal_length_m: Some(focal_length_m),
+            optics_efficiency: Some(Efficiency::Number(optics_efficiency)),
+            quantum_efficiency: Some(Efficiency::Number(quantum_efficiency)),
+            noise: NoiseFigures::of(noise),
+            noise_exposure_s: Some(noise_exposure_s),
+            flicker_fraction: Some(flicker_fraction),
+            dark_rate_per_s: Some(dark_rate_per_s),
+            read_noise_counts: Some(read_noise_counts),
+            quantisation_bits,
+            full_well,
+            photon_bunching: Some(photon_bunching),
+            readout: Some(readout),
+            spectral_bands: None,
+            filters_needed: false,
+            frames: Some(frames),
+            sensor_temperature_k,
+            filter_temperature_k,
+            field_of_view_rad,
+            pixels,
+            lines: None,
+            reference_temperature_k: Some(reference_temperature_k),
+            spectral_range_cm1: Some(spectral_range_cm1),
+        }
+    }
+}
+
+impl NoiseFigures {
+    /// No noise is one of 0 counts.
+    fn of(noise: &NoiseSpec) -> Self {
+        Self::from(match *noise {
+            NoiseSpec::None => StatedNoise::Counts { sigma_counts: 0.0 },
+            NoiseSpec::Netd { netd_k, temperature_k, f_number, optics_efficiency, pixel_m } => {
+                StatedNoise::Netd {
+                    netd_k,
+                    temperature_k: Some(temperature_k),
+                    f_number: Some(f_number),
+                    optics_efficiency: Some(optics_efficiency),
+                    pixel_m: Some(pixel_m),
+                }
+            }
+            NoiseSpec::Detectivity { detectivity_cm_hz05_w, bandwidth_hz } => {
+                StatedNoise::Detectivity { detectivity_cm_hz05_w, bandwidth_hz }
+            }
+            NoiseSpec::Nep { nep_w_hz05, bandwidth_hz } => StatedNoise::Nep { nep_w_hz05, bandwidth_hz },
+            NoiseSpec::SpectralRadiance { microflick } => {
+                StatedNoise::Nesr { microflick, wavelength_um: None }
+            }
+            NoiseSpec::Counts { sigma_counts } => StatedNoise::Counts { sigma_counts },
+            NoiseSpec::Table { .. } => return Self::default(),
+        })
+    }
+}
+
+impl Camera {
+    /// Keys of the figures in which it is not another camera, but for the rounding of a conversion of units. Whatever of the
+    /// electronic noise differs goes by the key that states that noise.
+    #[must_use]
+    pub fn changed_from(&self, other: &Self) -> Vec<&'static str> {
+        let (own, others) = (CameraSpec::of(self), CameraSpec::of(other));
+        let curves = |camera: &Self, key: &str| -> Vec<_> {
+            camera.efficiency_curves.iter().filter(|curve| curve.name() == key).cloned().collect()
+        };
+        let mut keys = Vec::new();
+        for row in TABLE {
+            if row.is_same(&own, &others) && curves(self, row.key) == curves(other, row.key) {
+                continue;
+            }
+            let key = match row.part {
+                // Noise of the same figures at another exposure is another noise, where there is any.
+                _ if row.key == "noise_exposure" => {
+                    if self.noise == NoiseSpec::None || keys.contains(&self.noise.key()) {
+                        continue;
+                    }
+                    row.key
+                }
+                Part::Own => row.key,
+                Part::Noise | Part::Condition(_) => self.noise.key(),
+            };
+            if !keys.contains(&key) {
+                keys.push(key);
+            }
+        }
+        keys
+    }
+}
+
+impl Missing {
+    /// A key of the table.
+    fn of(key: &'static str) -> Self {
+        Self { key, example: row(key).map_or("", |row| row.example) }
+    }
+}

@@ -1,0 +1,117 @@
+//! The electronic noise of a camera as it is stated, its conditions complete.
+
+use crate::error::{Error, Result, check};
+
+/// How the noise of a camera is stated.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[serde(rename_all = "kebab-case", tag = "kind")]
+pub enum NoiseSpec {
+    /// No electronic noise at all.
+    None,
+    /// Noise-equivalent temperature difference.
+    Netd {
+        /// NETD of one frame, K.
+        netd_k: f64,
+        /// Temperature of the blackbody at which it is stated, K.
+        temperature_k: f64,
+        /// f-number at which it is stated.
+        f_number: f64,
+        /// Optics efficiency with which its photons are counted.
+        optics_efficiency: f64,
+        /// Side of the pixel for which it is stated, m.
+        pixel_m: f64,
+    },
+    /// Specific detectivity D*.
+    Detectivity {
+        /// D*, cm √Hz W⁻¹.
+        detectivity_cm_hz05_w: f64,
+        /// Noise bandwidth Δf, Hz; that of the exposure where `None`.
+        bandwidth_hz: Option<f64>,
+    },
+    /// Noise-equivalent power of a bandwidth of 1 Hz.
+    Nep {
+        /// NEP, W Hz^-½.
+        nep_w_hz05: f64,
+        /// Noise bandwidth Δf, Hz; that of the exposure where `None`.
+        bandwidth_hz: Option<f64>,
+    },
+    /// Noise-equivalent spectral radiance, the same per wavelength in all bands.
+    SpectralRadiance {
+        /// NESR, µflick (µW cm⁻² sr⁻¹ µm⁻¹).
+        microflick: f64,
+    },
+    /// Standard deviation of a band reading.
+    Counts {
+        /// σ, counts.
+        sigma_counts: f64,
+    },
+    /// Standard deviation of a band reading over wavenumber.
+    Table {
+        /// Ascending wavenumbers, cm⁻¹.
+        wavenumbers_cm1: Vec<f64>,
+        /// σ there, counts; straight lines between, the last one beyond.
+        sigma_counts: Vec<f64>,
+    },
+}
+
+impl NoiseSpec {
+    /// A table of noise from rows (wavenumber in cm⁻¹, σ in counts) in any order.
+    ///
+    /// # Errors
+    /// No rows, a wavenumber that is not positive or comes twice, a σ below 0.
+    pub fn table(mut rows: Vec<(f64, f64)>) -> Result<Self> {
+        for &(wavenumber, sigma) in &rows {
+            check::positive("wavenumber of the noise", wavenumber, "cm^-1")?;
+            check::non_negative("noise", sigma, "counts")?;
+        }
+        rows.sort_by(|a, b| a.0.total_cmp(&b.0));
+        if rows.is_empty() || rows.windows(2).any(|pair| pair[0].0 == pair[1].0) {
+            let found = "the table of noise has no rows, or a wavenumber comes twice";
+            return Err(Error::malformed(found, "give each wavenumber one row"));
+        }
+        let (wavenumbers_cm1, sigma_counts) = rows.into_iter().unzip();
+        Ok(Self::Table { wavenumbers_cm1, sigma_counts })
+    }
+
+    /// The same kind of noise with a deviation σ `factor` times as large.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        let mut noise = self.clone();
+        match &mut noise {
+            Self::None => {}
+            Self::Netd { netd_k, .. } => *netd_k *= factor,
+            Self::Detectivity { detectivity_cm_hz05_w, .. } => *detectivity_cm_hz05_w /= factor,
+            Self::Nep { nep_w_hz05, .. } => *nep_w_hz05 *= factor,
+            Self::SpectralRadiance { microflick } => *microflick *= factor,
+            Self::Counts { sigma_counts } => *sigma_counts *= factor,
+            Self::Table { sigma_counts, .. } => sigma_counts.iter_mut().for_each(|sigma| *sigma *= factor),
+        }
+        noise
+    }
+
+    /// Key of a scenario that states this kind.
+    #[must_use]
+    pub const fn key(&self) -> &'static str {
+        match self {
+            Self::None | Self::Counts { .. } => "noise_electrons",
+            Self::Netd { .. } => "netd",
+            Self::Detectivity { .. } => "detectivity",
+            Self::Nep { .. } => "nep",
+            Self::SpectralRadiance { .. } => "nesr",
+            Self::Table { .. } => "noise_table",
+        }
+    }
+
+    /// Checks what no key of a scenario states.
+    pub(in crate::instrument) fn check(&self) -> Result<()> {
+        match self {
+            Self::Netd { optics_efficiency, .. } => {
+                check::positive("optics efficiency of the NETD", *optics_efficiency, "").map(drop)
+            }
+            Self::Table { sigma_counts, .. } => sigma_counts
+                .iter()
+                .try_for_each(|sigma| check::non_negative("noise", *sigma, "counts").map(drop)),
+            _ => Ok(()),
+        }
+    }
+}
