@@ -1,7 +1,7 @@
 //! Many materials at once: the same distances as pair by pair, the same decisions with and without shortcuts.
 
 use crate::support::scenes::{Curve, Scene, curve, ever_more_unknowns, radiance, recipe};
-use hadar::demand::{Reason, Skipping, Thing};
+use hadar::demand::{Reason, Skipping, Thing, ledger_of};
 use hadar::fisher::{Counting, Nuisance, Unknowns};
 use hadar::identifiability::local::LocalSolver;
 use hadar::identifiability::multi::{LibraryScene, LocalMatrix};
@@ -119,16 +119,16 @@ proptest! {
         let at = (share * (distances.len() - 1) as f64) as usize;
         let required = (0.5 * (distances[at] + distances[(at + 1).min(distances.len() - 1)])).max(1e-6);
         prop_assume!(distances.iter().all(|d| (d / required - 1.0).abs() > 1e-9));
-        let skipped = library.told_apart(&materials, &counting, required, Skipping::On).unwrap();
-        let full = library.told_apart(&materials, &counting, required, Skipping::Off).unwrap();
+        let told = |skipping| ledger_of(|| library.told_apart(&materials, &counting, required, skipping)).unwrap();
+        let ((skipped, work), (full, work_in_full)) = (told(Skipping::On), told(Skipping::Off));
         let count = materials.len();
         for a in 0..count {
             for b in 0..count {
                 prop_assert_eq!(skipped.told_apart(a, b), full.told_apart(a, b), "{} {}", a, b);
             }
             for skipping in [Skipping::On, Skipping::Off] {
-                let (failed, work) =
-                    library.first_not_told_from(a, &materials, &counting, required, skipping).unwrap();
+                let ask = || library.first_not_told_from(a, &materials, &counting, required, skipping);
+                let (failed, work) = ledger_of(ask).unwrap();
                 let row = (0..count).filter(|&b| b != a);
                 let row = row.map(|b| found[a * count + b].as_ref().unwrap().distance);
                 prop_assert_eq!(failed.is_some(), row.clone().any(|d| d < required));
@@ -141,10 +141,10 @@ proptest! {
         }
         // Every distance is accounted for once.
         let distances = (count * (count - 1)) as u64;
-        for work in [&skipped.work, &full.work] {
+        for work in [&work, &work_in_full] {
             prop_assert_eq!(work.possible(Thing::NearestSearches), distances);
         }
-        prop_assert_eq!(full.work.computed(Thing::NearestSearches), distances);
+        prop_assert_eq!(work_in_full.computed(Thing::NearestSearches), distances);
         // What the distances in the own state decide, by the distances themselves: each is asked for unless the other
         // direction was nearer than required, and so is each after it.
         let mut solver = NearestSolver::new(&scene.bands, &scene.surroundings, unknowns.clone(), library.range);
@@ -163,9 +163,9 @@ proptest! {
                 }
             }
         }
-        prop_assert_eq!(skipped.work.computed(Thing::OwnStateDistances), asked);
-        prop_assert_eq!(skipped.work.spared(Thing::NearestSearches, Reason::OwnState), decided);
-        prop_assert_eq!(skipped.work.spared(Thing::NearestSearches, Reason::AnotherOne), distances - asked);
+        prop_assert_eq!(work.computed(Thing::OwnStateDistances), asked);
+        prop_assert_eq!(work.spared(Thing::NearestSearches, Reason::OwnState), decided);
+        prop_assert_eq!(work.spared(Thing::NearestSearches, Reason::AnotherOne), distances - asked);
     }
 }
 

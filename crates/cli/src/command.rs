@@ -171,17 +171,18 @@ impl Global {
         if self.no_skip { Skipping::Off } else { Skipping::On }
     }
 
-    /// Makes and writes a report where there is a folder for it, and books it.
-    fn report(&self, work: &mut Work, make: impl FnOnce(&Path) -> Result<Bundle>) -> Result<()> {
+    /// Makes and writes a report where there is a folder for it; what that took.
+    fn report(&self, make: impl FnOnce(&Path) -> Result<Bundle>) -> Result<Work> {
+        let mut work = Work::default();
         let Some(out) = &self.out else {
             work.spare(Thing::Reports, Reason::NotAsked, 1);
-            return Ok(());
+            return Ok(work);
         };
         let bundle = make(out)?;
         self.write(&bundle, out)?;
         work.compute(Thing::Reports, 1);
         work.compute(Thing::Figures, bundle.figures() as u64);
-        Ok(())
+        Ok(work)
     }
 
     /// Prints a result that has its ledger in it, and with `--stats` the ledger.

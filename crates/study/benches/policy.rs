@@ -3,7 +3,6 @@
 //! `cargo bench --bench policy`. Skin against aluminium over 536 bands from 30 m, seen by the bolometer of the paper.
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use hadar::demand::Work;
 use hadar::material::Library;
 use hadar_study::scenario::Scenario;
 use hadar_study::study::Study;
@@ -18,7 +17,7 @@ fn policy(criterion: &mut Criterion) {
         bencher.iter(|| study.size());
     });
     criterion.bench_function("trade-off curves, four of 41 points", |bencher| {
-        bencher.iter(|| study.trade_offs(&result, &mut Work::default()));
+        bencher.iter(|| study.trade_offs(&result));
     });
 }
 

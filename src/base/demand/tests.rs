@@ -1,6 +1,7 @@
 use super::*;
 use crate::error::Error;
 use proptest::prelude::*;
+use rayon::prelude::*;
 use std::cell::Cell;
 
 const THINGS: [Thing; 3] = [Thing::OwnStateDistances, Thing::FewBandSearches, Thing::NearestSearches];
@@ -43,15 +44,64 @@ proptest! {
 
 #[test]
 fn what_is_not_asked_for_is_not_run() {
-    let mut demand = Demand::new(Skipping::Off);
-    let none = demand.if_asked(false, Thing::Figures, 4, |_| -> Result<u8> {
+    let ledger = Ledger::open();
+    let none = if_asked(false, Thing::Figures, 4, || -> Result<u8> {
         Err(Error::malformed("ran", "do not run it"))
     });
     assert_eq!(none.unwrap(), None);
-    assert_eq!(demand.if_asked(true, Thing::Figures, 2, |_| Ok(7)).unwrap(), Some(7));
-    let work = demand.into_work();
+    assert_eq!(if_asked(true, Thing::Figures, 2, || Ok(7)).unwrap(), Some(7));
+    let work = ledger.close();
     assert_eq!((work.possible(Thing::Figures), work.computed(Thing::Figures)), (6, 2));
     assert_eq!(work.spared(Thing::Figures, Reason::NotAsked), 4);
+}
+
+/// What is booked goes to the innermost ledger that is open, and nowhere where none is; one that is left early or in
+/// panic leaves the outer one as it was.
+#[test]
+fn ledgers_nest_and_keep_to_themselves() {
+    let book = |count| computed(Thing::Windows, count);
+    let of = |work: Work| work.computed(Thing::Windows);
+    book(1);
+    let outer = Ledger::open();
+    book(2);
+    let ((), inner) = ledger_of(|| Ok(book(4))).unwrap();
+    let fails = || -> Result<()> {
+        book(8);
+        Err(Error::malformed("failed", "try again"))
+    };
+    assert!(ledger_of(fails).is_err());
+    let _ = std::panic::catch_unwind(|| {
+        let _ledger = Ledger::open();
+        book(16);
+        panic!("left in the middle");
+    });
+    book(32);
+    add(&inner);
+    assert_eq!((of(inner), of(outer.close())), (4, 2 + 4 + 32));
+    book(64);
+    assert_eq!(Ledger::open().close(), Work::default());
+}
+
+/// Jobs that wait for jobs of their own, so that threads take up each other's.
+#[test]
+fn jobs_in_parallel_add_up_for_any_number_of_threads() {
+    let task = |inner: u64| {
+        computed(Thing::Samples, 1);
+        Ok(inner)
+    };
+    let job = |outer: u64| {
+        computed(Thing::Windows, 1);
+        let found = gathered((0..outer).into_par_iter().map(|inner| ledger_of(|| task(inner))))?;
+        computed(Thing::Windows, 1);
+        Ok(found.len() as u64)
+    };
+    for threads in [1, 2, 7] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let all = || gathered((0..40).into_par_iter().map(|outer| ledger_of(|| job(outer))));
+        let (found, work) = pool.install(|| ledger_of(all)).unwrap();
+        assert_eq!(found, (0..40).collect::<Vec<u64>>());
+        assert_eq!((work.computed(Thing::Windows), work.computed(Thing::Samples)), (80, 780));
+    }
 }
 
 /// Which of two proofs and the full way run, counted by themselves.
@@ -76,10 +126,9 @@ fn a_proof_spares_what_comes_after_it_and_nothing_before() {
                 ran[2].set(ran[2].get() + 1);
                 Ok(("answer", None))
             };
-            let mut demand = Demand::new(skipping);
-            let answer = demand.first_proof(&mut (), &proofs, THINGS[2], &in_full).unwrap();
+            let (answer, work) =
+                ledger_of(|| skipping.first_proof(&mut (), &proofs, THINGS[2], &in_full)).unwrap();
             assert_eq!(answer, "answer");
-            let work = demand.into_work();
             for (i, thing) in THINGS.into_iter().enumerate() {
                 assert_eq!(work.computed(thing), ran[i].get(), "{skipping:?} {winner} {i}");
                 let asked = skipping == Skipping::On || i == 2;
@@ -94,9 +143,8 @@ fn a_proof_spares_what_comes_after_it_and_nothing_before() {
 fn a_hopeless_proof_is_left_out() {
     let proof =
         Proof { of: Some(THINGS[1]), spares: Reason::FewBands, find: &|_: &mut ()| Ok(Attempt::NotTried) };
-    let mut demand = Demand::new(Skipping::On);
-    let answer = demand.first_proof(&mut (), &[proof], THINGS[2], &|_| Ok((5, None))).unwrap();
-    let work = demand.work();
+    let (answer, work) =
+        ledger_of(|| Skipping::On.first_proof(&mut (), &[proof], THINGS[2], &|_| Ok((5, None)))).unwrap();
     assert_eq!((answer, work.computed(THINGS[2])), (5, 1));
     assert_eq!((work.computed(THINGS[1]), work.spared(THINGS[1], Reason::Hopeless)), (0, 1));
 }
@@ -105,19 +153,18 @@ fn a_hopeless_proof_is_left_out() {
 fn the_first_item_that_settles_it_ends_the_work() {
     let things = [Thing::Windows, Thing::Samples];
     for (skipping, looked_at) in [(Skipping::On, 3), (Skipping::Off, 5)] {
-        let mut demand = Demand::new(skipping);
-        let found = demand.until(0..5, &things, |demand, item| {
-            things.iter().for_each(|thing| demand.computed(*thing, 1));
+        let settles = |item| {
+            things.iter().for_each(|thing| computed(*thing, 1));
             Ok((item >= 2).then_some(item))
-        });
-        assert_eq!(found.unwrap(), Some(2));
+        };
+        let (found, work) = ledger_of(|| skipping.until(0..5, &things, settles)).unwrap();
+        assert_eq!(found, Some(2));
         for thing in things {
-            assert_eq!((demand.work().computed(thing), demand.work().possible(thing)), (looked_at, 5));
+            assert_eq!((work.computed(thing), work.possible(thing)), (looked_at, 5));
         }
     }
-    let mut demand = Demand::new(Skipping::On);
-    let none = demand.until(0..5, &things, |_, _| Ok(None::<u8>)).unwrap();
-    assert_eq!((none, demand.work().possible(Thing::Windows)), (None, 0));
+    let (none, work) = ledger_of(|| Skipping::On.until(0..5, &things, |_| Ok(None::<u8>))).unwrap();
+    assert_eq!((none, work.possible(Thing::Windows)), (None, 0));
 }
 
 #[test]

@@ -75,9 +75,8 @@ pub(super) fn run(args: &IdentifyArgs, global: &Global) -> Result<ExitCode> {
     let bar = global.progress("pairs simulated");
     let mut answers = study.answer(&asked, &|done, total| bar.set(done, total))?;
     bar.finish();
-    let mut stats = std::mem::take(&mut answers.identification.stats);
-    global.report(&mut stats, |out| identify::bundle(&study, &answers, global.seed, out))?;
-    answers.identification.stats = stats;
+    let report = global.report(|out| identify::bundle(&study, &answers, global.seed, out))?;
+    answers.identification.stats.add(&report);
     global.answer(&answers, &identify::text(&answers, &study), &answers.identification.stats)?;
     Ok(ExitCode::SUCCESS)
 }

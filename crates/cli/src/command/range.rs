@@ -55,9 +55,7 @@ pub(super) fn run(args: &RangeArgs, global: &Global) -> Result<ExitCode> {
     let bar = global.progress("rows and draws");
     let mut result = study.range(&plan, &|done, total| bar.set(done, total))?;
     bar.finish();
-    let mut stats = std::mem::take(&mut result.stats);
-    global.report(&mut stats, |out| range::bundle(&result, out))?;
-    result.stats = stats;
+    result.stats.add(&global.report(|out| range::bundle(&result, out))?);
     global.answer(&result, &range::text(&result), &result.stats)?;
     let failed = args.check && result.verdict.met != Some(true);
     Ok(if failed { ExitCode::from(3) } else { ExitCode::SUCCESS })

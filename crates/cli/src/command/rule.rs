@@ -34,9 +34,7 @@ pub(super) fn run(args: &RuleArgs, global: &Global) -> Result<ExitCode> {
     let bar = global.progress("cameras");
     let mut answer = study.answer(&asked, &|done, all| bar.set(done, all))?;
     bar.finish();
-    let mut stats = std::mem::take(&mut answer.stats);
-    global.report(&mut stats, |out| rule::bundle(&study, &answer, out))?;
-    answer.stats = stats;
+    answer.stats.add(&global.report(|out| rule::bundle(&study, &answer, out))?);
     global.answer(&answer, &rule::text(&answer, &study), &answer.stats)?;
     Ok(code(args, &answer))
 }

@@ -2,7 +2,7 @@
 
 use super::Global;
 use clap::Args;
-use hadar::demand::Work;
+use hadar::demand::ledger_of;
 use hadar::error::{Error, Result, check};
 use hadar::grid::text_of_file;
 use hadar::simulate::classifier::{Method, SavedModel};
@@ -111,8 +111,7 @@ pub(super) fn run(args: &SimulateArgs, global: &Global) -> Result<ExitCode> {
     if let Some(range) = &args.thermometry {
         return thermometry(range, args, &study, global);
     }
-    let mut work = Work::default();
-    let plan = plan(args, &study, global, &mut work)?;
+    let (plan, planning) = ledger_of(|| plan(args, &study, global))?;
     if let Some(folder) = &args.save_models {
         Bundle::check_destination(folder)?;
     }
@@ -130,15 +129,14 @@ pub(super) fn run(args: &SimulateArgs, global: &Global) -> Result<ExitCode> {
         }
         global.write(&bundle, folder)?;
     }
-    work.add(&result.stats);
-    global.report(&mut work, |out| {
+    let report = global.report(|out| {
         let rival = result.points.first().and_then(|point| point.classes.get(1));
         let rival =
             rival.filter(|_| args.sweep.is_some()).and_then(|class| study.alternative(&class.material));
         let noise = rival.map(|rival| study.noise_curves(rival, CURVES, CURVE_POINTS)).transpose()?;
         simulate::bundle(&study, &result, noise.as_ref(), out)
     })?;
-    result.stats = work;
+    result.stats.add(&planning.and(&report));
     global.answer(&result, &simulate::text(&result, &study), &result.stats)?;
     let failed = args.check && !result.limit_holds;
     Ok(if failed { ExitCode::from(3) } else { ExitCode::SUCCESS })
@@ -170,14 +168,12 @@ fn thermometry(range: &str, args: &SimulateArgs, study: &Study, global: &Global)
     let mut result =
         study.thermometry(&temperatures, args.spectra, global.seed, &|done, total| bar.set(done, total))?;
     bar.finish();
-    let mut stats = std::mem::take(&mut result.stats);
-    global.report(&mut stats, |out| thermometry_report::bundle(study, &result, out))?;
-    result.stats = stats;
+    result.stats.add(&global.report(|out| thermometry_report::bundle(study, &result, out))?);
     global.answer(&result, &thermometry_report::text(&result), &result.stats)?;
     Ok(ExitCode::SUCCESS)
 }
 
-fn plan(args: &SimulateArgs, study: &Study, global: &Global, work: &mut Work) -> Result<SimulationPlan> {
+fn plan(args: &SimulateArgs, study: &Study, global: &Global) -> Result<SimulationPlan> {
     let methods = if args.classifiers.is_empty() && args.skip_spectra {
         vec![Method::LikelihoodRatio]
     } else if args.classifiers.is_empty() && args.model.is_empty() {
@@ -199,7 +195,7 @@ fn plan(args: &SimulateArgs, study: &Study, global: &Global, work: &mut Work) ->
     };
     let models: Vec<SavedModel> = args.model.iter().map(|path| saved(path)).collect::<Result<_>>()?;
     for (saved, path) in models.iter().zip(&args.model) {
-        study.check_model(saved, &against, work).map_err(|error| error.in_file(path))?;
+        study.check_model(saved, &against).map_err(|error| error.in_file(path))?;
     }
     Parts::of(args.spectra).map_err(|error| error.for_key("--spectra"))?;
     for &photons in &args.photons {
@@ -207,7 +203,7 @@ fn plan(args: &SimulateArgs, study: &Study, global: &Global, work: &mut Work) ->
     }
     let photons = match args.sweep {
         Some(experiments) => study
-            .sweep(SWEEP, experiments, &against, !args.shot_noise_only, work)
+            .sweep(SWEEP, experiments, &against, !args.shot_noise_only)
             .map_err(|error| error.for_key("--sweep"))?,
         None => args.photons.clone(),
     };

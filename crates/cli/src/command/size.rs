@@ -2,7 +2,7 @@
 
 use super::{By, Global};
 use clap::Args;
-use hadar::demand::Skipping;
+use hadar::demand::{Skipping, ledger_of};
 use hadar::error::Result;
 use hadar_report::size;
 use hadar_study::study::Verdict;
@@ -33,13 +33,13 @@ pub(super) fn run(args: &SizeArgs, global: &Global) -> Result<ExitCode> {
         return Ok(code(args, &result.verdict));
     }
     let mut result = study.size()?;
-    let mut stats = std::mem::take(&mut result.stats);
     // Curves are for files and programs: nobody reads them off a terminal.
     if global.out.is_some() || global.json {
-        result.trade_offs = Some(study.trade_offs(&result, &mut stats)?);
+        let (trade_offs, work) = ledger_of(|| study.trade_offs(&result))?;
+        result.trade_offs = Some(trade_offs);
+        result.stats.add(&work);
     }
-    global.report(&mut stats, |out| size::bundle(&study, &result, out))?;
-    result.stats = stats;
+    result.stats.add(&global.report(|out| size::bundle(&study, &result, out))?);
     global.answer(&result, &size::text(&result, &study), &result.stats)?;
     if global.out.is_none() && !global.json && std::io::stderr().is_terminal() {
         global.note("for plots and tables add --out DIR");

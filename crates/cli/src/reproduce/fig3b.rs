@@ -6,7 +6,6 @@
 use super::ledger::{Line, Verdict};
 use super::order::{Effort, Figures, Made, Order, Progress};
 use super::scene;
-use hadar::demand::Work;
 use hadar::error::Result;
 use hadar::identifiability::detection;
 use hadar::instrument::{gamma_per_band, presets};
@@ -101,7 +100,7 @@ fn experiments(
     camera_noise: bool,
     progress: Progress<'_>,
 ) -> Result<Simulation> {
-    let mut photons = study.sweep(normalised, EXPERIMENTS, &[], false, &mut Work::default())?;
+    let mut photons = study.sweep(normalised, EXPERIMENTS, &[], false)?;
     if order.effort == Effort::Quick {
         photons = photons.into_iter().skip(QUICK / 2).step_by(QUICK).collect();
     }

@@ -3,7 +3,7 @@
 //! Both ways are timed one after the other several times, the least of each counts, and the answers are compared. Of
 //! the seven questions one is of a kind that nothing can be spared of.
 
-use hadar::demand::{Skipping, Work};
+use hadar::demand::{self, Skipping, Work, ledger_of};
 use hadar::error::{Error, Result};
 use hadar::material::Library;
 use hadar::ranging::information::decide::decide;
@@ -77,16 +77,15 @@ pub fn skipping(quick: bool) -> Result<Vec<Skipped>> {
     let street = RangeStudy::new(&RangeScenario::from_toml(&street, None)?, &library)?;
     let apart = "which pairs the camera tells apart";
     let told = |study: &'static str, at: &Study| {
-        bench.compared((study, apart), |skipping| at.told_apart(skipping), same_pairs, |apart| &apart.work)
+        bench.compared((study, apart), |skipping| at.told_apart(skipping), same_pairs)
     };
     Ok(vec![
         told("five materials", &five)?,
         told("the built-in library", &all_at_once)?,
         bench.compared(
             ("a person among the built-in library", "whether the camera tells the target from all"),
-            |skipping| person.check(skipping),
+            |skipping| person.check(skipping).inspect(|check| demand::add(&check.stats)),
             |a, b| (a.identifiable, &a.not_told_from) == (b.identifiable, &b.not_told_from),
-            |check| &check.stats,
         )?,
         windows(&bench, &street)?,
         decision(&bench, &three, HALF_WIDTH[level])?,
@@ -112,17 +111,16 @@ impl Bench {
         (scenario, question): (&'static str, &'static str),
         answer: impl Fn(Skipping) -> Result<A>,
         same: impl Fn(&A, &A) -> bool,
-        work: impl Fn(&A) -> &Work,
     ) -> Result<Skipped> {
         let [mut on, mut off] = [f64::INFINITY; 2];
         let mut answers_equal = true;
         let mut took = Work::default();
         for _ in 0..self.runs {
-            let (skipped, seconds_on) = timed(|| answer(Skipping::On))?;
+            let ((skipped, work), seconds_on) = timed(|| ledger_of(|| answer(Skipping::On)))?;
             let (whole, seconds_off) = timed(|| answer(Skipping::Off))?;
             (on, off) = (on.min(seconds_on), off.min(seconds_off));
             answers_equal &= same(&skipped, &whole);
-            took = work(&skipped).clone();
+            took = work;
         }
         Ok(Skipped { scenario, question, seconds_on: on, seconds_off: off, answers_equal, work: took })
     }
@@ -159,16 +157,17 @@ fn windows(bench: &Bench, study: &RangeStudy) -> Result<Skipped> {
     let answer = |skipping: Skipping| match skipping {
         Skipping::On => {
             let decision = decide(&cube, &request, required)?;
-            Ok((decision.above, decision.stats.work(shape.len())))
+            demand::add(&decision.stats.work(shape.len()));
+            Ok(decision.above)
         }
         Skipping::Off => {
             let map = information(&cube, &request)?;
             let above = map.cell(Cell::Full).iter().map(|j| *j >= required);
-            Ok((above.collect(), Work::default()))
+            Ok(above.collect())
         }
     };
     let names = ("a street's heat cube", "which windows allow 1 % of the depth at 12 m");
-    bench.compared(names, answer, |a: &(Vec<bool>, Work), b| a.0 == b.0, |answer| &answer.1)
+    bench.compared(names, answer, |a: &Vec<bool>, b| a == b)
 }
 
 /// The accuracy of the best decision within so much: in rounds until the interval is narrow enough, and with as many
@@ -194,7 +193,7 @@ fn decision(bench: &Bench, study: &Study, half_width: f64) -> Result<Skipped> {
         _ => false,
     };
     let names = ("a person or a robot in three bands", "how often the best decision is right");
-    bench.compared(names, answer, agree, |exact| &exact.work)
+    bench.compared(names, answer, agree)
 }
 
 /// How often the likelihood ratio is right: alone, and among all classifiers.
@@ -214,7 +213,9 @@ fn classifier(bench: &Bench, study: &Study, per_class: usize) -> Result<Skipped>
             design,
             models: Vec::new(),
         };
-        study.simulate(&plan, &|_, _| ()).map(|(result, _)| result)
+        let (result, _) = study.simulate(&plan, &|_, _| ())?;
+        demand::add(&result.stats);
+        Ok(result)
     };
     let ratio = |found: &Simulation| {
         let performances = found.points.first().map(|point| point.performances.as_slice());
@@ -223,5 +224,5 @@ fn classifier(bench: &Bench, study: &Study, per_class: usize) -> Result<Skipped>
         own.map(|own| (own.performance.accuracy, own.performance.interval))
     };
     let names = ("a person or a robot in three bands", "how often the likelihood ratio is right");
-    bench.compared(names, answer, |a, b| ratio(a).is_some() && ratio(a) == ratio(b), |found| &found.stats)
+    bench.compared(names, answer, |a, b| ratio(a).is_some() && ratio(a) == ratio(b))
 }

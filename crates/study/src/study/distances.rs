@@ -3,7 +3,7 @@
 
 use super::{Study, Surface};
 use crate::scenario::DistanceKind;
-use hadar::demand::{Reason, Thing, Work};
+use hadar::demand::{self, Reason, Thing};
 use hadar::error::Result;
 use hadar::fisher::{Counting, Nuisance, Unknowns};
 use hadar::identifiability::local::{LocalDistance, LocalSolver};
@@ -11,24 +11,25 @@ use hadar::identifiability::nearest::{NearestDistance, NearestSolver};
 
 impl Study {
     /// Books local distances, of whose columns of derivatives only those of the unknowns and the material are formed.
-    pub(super) fn book_local(&self, work: &mut Work, unknowns: &Unknowns, count: usize) {
+    pub(super) fn book_local(&self, unknowns: &Unknowns, count: usize) {
         let objects = self.surroundings.objects().len();
         // The material, temperature and gain; lighting and temperature of every object.
         let (asked, all) = (unknowns.parameters(objects).len() + 1, 3 + 2 * objects);
-        work.compute(Thing::LocalDistances, count as u64);
-        work.compute(Thing::DerivativeColumns, (count * asked) as u64);
-        work.spare(Thing::DerivativeColumns, Reason::NotAsked, (count * all.saturating_sub(asked)) as u64);
+        demand::computed(Thing::LocalDistances, count as u64);
+        demand::computed(Thing::DerivativeColumns, (count * asked) as u64);
+        let left_out = count * all.saturating_sub(asked);
+        demand::spared(Thing::DerivativeColumns, Reason::NotAsked, left_out as u64);
     }
 
     /// Books distances of a kind.
-    pub(super) fn book_distances(&self, work: &mut Work, kind: DistanceKind, count: usize) {
+    pub(super) fn book_distances(&self, kind: DistanceKind, count: usize) {
         match kind {
-            DistanceKind::Nearest => work.compute(Thing::NearestSearches, count as u64),
-            DistanceKind::Local => self.book_local(work, &self.unknowns, count),
+            DistanceKind::Nearest => demand::computed(Thing::NearestSearches, count as u64),
+            DistanceKind::Local => self.book_local(&self.unknowns, count),
             DistanceKind::LocalUnknownGain => {
                 let unknowns = self.unknowns.with(Nuisance::Gain);
                 if self.enough_bands(&unknowns) {
-                    self.book_local(work, &unknowns, count);
+                    self.book_local(&unknowns, count);
                 }
             }
         }
@@ -40,26 +41,20 @@ impl Study {
         unknowns: Unknowns,
         alternative: &Surface,
         photons: f64,
-        work: &mut Work,
     ) -> Result<LocalDistance> {
-        self.book_local(work, &unknowns, 1);
+        self.book_local(&unknowns, 1);
         LocalSolver::new(&self.bands, &self.surroundings, unknowns)
             .per_photon(&self.target.emissivity, &alternative.emissivity, &self.state, photons)
             .map_err(|error| error.at(self.scenario.place("bands")))
     }
 
     /// The same with gain unknown too; with no band to spare for it nothing is left, exactly.
-    pub(super) fn local_unknown_gain(
-        &self,
-        alternative: &Surface,
-        photons: f64,
-        work: &mut Work,
-    ) -> Result<f64> {
+    pub(super) fn local_unknown_gain(&self, alternative: &Surface, photons: f64) -> Result<f64> {
         let unknowns = self.unknowns.with(Nuisance::Gain);
         if !self.enough_bands(&unknowns) {
             return Ok(0.0);
         }
-        Ok(self.local(unknowns, alternative, photons, work)?.distance)
+        Ok(self.local(unknowns, alternative, photons)?.distance)
     }
 
     /// Whether there are more bands than unknowns without a prior.
@@ -69,13 +64,8 @@ impl Study {
         self.bands.len() > free
     }
 
-    pub(super) fn nearest(
-        &self,
-        alternative: &Surface,
-        photons: f64,
-        work: &mut Work,
-    ) -> Result<NearestDistance> {
-        work.compute(Thing::NearestSearches, 1);
+    pub(super) fn nearest(&self, alternative: &Surface, photons: f64) -> Result<NearestDistance> {
+        demand::computed(Thing::NearestSearches, 1);
         NearestSolver::new(&self.bands, &self.surroundings, self.unknowns.clone(), self.range).per_photon(
             &self.target.emissivity,
             &alternative.emissivity,
@@ -89,9 +79,8 @@ impl Study {
         &self,
         alternative: &Surface,
         nearest: &NearestDistance,
-        work: &mut Work,
     ) -> Result<NearestDistance> {
-        work.compute(Thing::NearestSearches, 1);
+        demand::computed(Thing::NearestSearches, 1);
         NearestSolver::new(&self.bands, &self.surroundings, self.unknowns.clone(), self.range).per_photon(
             &alternative.emissivity,
             &self.target.emissivity,
@@ -106,9 +95,8 @@ impl Study {
         kind: DistanceKind,
         alternative: &Surface,
         counting: &Counting,
-        work: &mut Work,
     ) -> Result<f64> {
-        self.book_distances(work, kind, 1);
+        self.book_distances(kind, 1);
         let (target, other) = (&self.target.emissivity, &alternative.emissivity);
         let local = |unknowns: Unknowns| {
             LocalSolver::new(&self.bands, &self.surroundings, unknowns)
@@ -135,14 +123,13 @@ impl Study {
         kind: DistanceKind,
         alternative: &Surface,
         photons: f64,
-        work: &mut Work,
     ) -> Result<f64> {
         match kind {
-            DistanceKind::Nearest => self.nearest(alternative, photons, work).map(|nearest| nearest.distance),
+            DistanceKind::Nearest => self.nearest(alternative, photons).map(|nearest| nearest.distance),
             DistanceKind::Local => {
-                self.local(self.unknowns.clone(), alternative, photons, work).map(|local| local.distance)
+                self.local(self.unknowns.clone(), alternative, photons).map(|local| local.distance)
             }
-            DistanceKind::LocalUnknownGain => self.local_unknown_gain(alternative, photons, work),
+            DistanceKind::LocalUnknownGain => self.local_unknown_gain(alternative, photons),
         }
     }
 
@@ -159,11 +146,10 @@ impl Study {
         &self,
         kind: DistanceKind,
         alternative: &Surface,
-        work: &mut Work,
     ) -> Result<Option<f64>> {
-        let mut excess = |log: f64| {
+        let excess = |log: f64| {
             let photons = log.exp();
-            let distance = self.distance_per_photon(kind, alternative, photons, work)?;
+            let distance = self.distance_per_photon(kind, alternative, photons)?;
             Ok((photons.sqrt() * distance / self.required).max(1e-300).ln())
         };
         // From a millionth of a photon to 10⁶⁰ of them.

@@ -24,7 +24,7 @@ pub use scaling::{BandNumber, LibrarySize, Scaling};
 
 use super::{Study, Surface, Warning, warn};
 use crate::scenario::DistanceKind;
-use hadar::demand::Work;
+use hadar::demand::{self, Ledger};
 use hadar::error::Result;
 use hadar::fisher::{Counting, Nuisance};
 use hadar::identifiability::Status;
@@ -41,17 +41,11 @@ impl Study {
     /// # Errors
     /// A scene without photons, or fewer bands than unknowns.
     pub fn identify(&self) -> Result<Identification> {
-        let found = self.alternatives.par_iter().map(|alternative| {
-            let mut work = Work::default();
-            self.pair(alternative, &mut work).map(|(pair, warnings)| (pair, warnings, work))
-        });
-        let (mut pairs, mut pair_warnings) = (Vec::new(), Vec::new());
-        let mut stats = self.looked_up.clone();
-        for (pair, warnings, work) in found.collect::<Result<Vec<_>>>()? {
-            pairs.push(pair);
-            pair_warnings.extend(warnings);
-            stats.add(&work);
-        }
+        let ledger = Ledger::open();
+        demand::add(&self.looked_up);
+        let found =
+            self.alternatives.par_iter().map(|alternative| demand::ledger_of(|| self.pair(alternative)));
+        let (pairs, pair_warnings): (Vec<_>, Vec<_>) = demand::gathered(found)?.into_iter().unzip();
         let kind = self.scenario.requirement.by;
         let decisive = |pair: &PairResult| pair.statistical_distance.unwrap_or_else(|| pair.distance(kind));
         let limiting = pairs
@@ -63,7 +57,7 @@ impl Study {
         if self.scenario.envelope.is_some() {
             warnings.push(Warning::EnvelopeNotSearched);
         }
-        warnings.extend(pair_warnings);
+        warnings.extend(pair_warnings.into_iter().flatten());
         Ok(Identification {
             scenario: self.scenario.clone(),
             photon_radiance: self.photon_radiance(),
@@ -75,7 +69,7 @@ impl Study {
             pairs,
             limiting,
             warnings,
-            stats,
+            stats: ledger.close(),
         })
     }
 
@@ -125,7 +119,7 @@ impl Study {
         camera.counting(&self.bands, &self.view_of(camera))
     }
 
-    fn pair(&self, alternative: &Surface, work: &mut Work) -> Result<(PairResult, Vec<Warning>)> {
+    fn pair(&self, alternative: &Surface) -> Result<(PairResult, Vec<Warning>)> {
         let kind = self.scenario.requirement.by;
         let counting = self.counting();
         let signal = self.target_signal();
@@ -134,31 +128,27 @@ impl Study {
         // Priors weigh by the number of photons they compete with: the camera's, else those required.
         let with_priors = if self.unknowns.has_priors() {
             Some(PhotonsRequired {
-                nearest: self.photons_with_priors(DistanceKind::Nearest, alternative, work)?,
-                local: self.photons_with_priors(DistanceKind::Local, alternative, work)?,
-                local_unknown_gain: self.photons_with_priors(
-                    DistanceKind::LocalUnknownGain,
-                    alternative,
-                    work,
-                )?,
+                nearest: self.photons_with_priors(DistanceKind::Nearest, alternative)?,
+                local: self.photons_with_priors(DistanceKind::Local, alternative)?,
+                local_unknown_gain: self.photons_with_priors(DistanceKind::LocalUnknownGain, alternative)?,
             })
         } else {
             None
         };
         let photons = camera_photons.or(with_priors.and_then(|by| by.of(kind))).unwrap_or(f64::INFINITY);
-        let local = self.local(self.unknowns.clone(), alternative, photons, work)?;
-        let nearest = self.nearest(alternative, photons, work)?;
-        let unknown_gain = self.local_unknown_gain(alternative, photons, work)?;
+        let local = self.local(self.unknowns.clone(), alternative, photons)?;
+        let nearest = self.nearest(alternative, photons)?;
+        let unknown_gain = self.local_unknown_gain(alternative, photons)?;
         let required = |distance: f64| policy::photons_required(self.required, distance);
         let required_by = with_priors.unwrap_or_else(|| PhotonsRequired {
             nearest: required(nearest.distance),
             local: required(local.distance),
             local_unknown_gain: required(unknown_gain),
         });
-        let back = self.return_distance(alternative, &nearest, work)?;
+        let back = self.return_distance(alternative, &nearest)?;
         let statistical = counting
             .as_ref()
-            .map(|counting| self.statistical_distance(kind, alternative, counting, work))
+            .map(|counting| self.statistical_distance(kind, alternative, counting))
             .transpose()?;
         let shortcut = counting.as_ref().map(|counting| {
             let gamma = hadar::instrument::gamma_per_band(counting, &signal);

@@ -22,7 +22,7 @@ use self::signals::SignalMap;
 use self::subject::{Resolved, Truth, nothing_to_see};
 use super::Warning;
 use crate::scenario::RangeScenario;
-use hadar::demand::{Demand, Skipping, Thing, Work};
+use hadar::demand::{self, Ledger, Skipping, Thing, Work};
 use hadar::error::Result;
 use hadar::instrument::Camera;
 use hadar::ranging::cube::{Cube, Shape};
@@ -62,7 +62,7 @@ pub struct RangePlan {
 pub type Progress<'a> = &'a (dyn Fn(usize, usize) + Sync);
 
 /// Sections of an answer: verdict, objects, cells, what would have to change, lines, and views matched.
-const SECTIONS: usize = 6;
+const SECTIONS: u64 = 6;
 
 /// Information of every window in both views.
 struct Informed {
@@ -163,15 +163,16 @@ impl RangeStudy {
                 )?
             }
         };
-        let mut demand = Demand::new(plan.skipping);
-        demand.add(&self.looked_up);
-        demand.computed(Thing::Samples, shape.len() * if informed.right.is_empty() { 1 } else { 2 });
-        demand.computed(Thing::Windows, windows.len());
-        demand.computed(Thing::Sections, SECTIONS - 1);
-        let matched = demand.if_asked(plan.trials > 0, Thing::Sections, 1, |demand| {
+        let ledger = Ledger::open();
+        demand::add(&self.looked_up);
+        let views = if informed.right.is_empty() { 1 } else { 2 };
+        demand::computed(Thing::Samples, (shape.len() * views) as u64);
+        demand::computed(Thing::Windows, windows.len() as u64);
+        demand::computed(Thing::Sections, SECTIONS - 1);
+        let matched = demand::if_asked(plan.trials > 0, Thing::Sections, 1, || {
             let matched = self.matched(plan, &informed)?;
             let of_lines: usize = lines.iter().map(|line| line.trials).sum();
-            demand.computed(Thing::MatchedViews, matched.len() + of_lines);
+            demand::computed(Thing::MatchedViews, (matched.len() + of_lines) as u64);
             Ok(matched)
         })?;
         let mut result = Ranging {
@@ -184,7 +185,7 @@ impl RangeStudy {
             solve_for,
             lines,
             matched: matched.unwrap_or_default(),
-            stats: demand.into_work(),
+            stats: ledger.close(),
             warnings: Vec::new(),
             maps,
         };

@@ -24,7 +24,7 @@ use self::envelope::Sighted;
 use super::{Study, Warning};
 use crate::scenario::rule::RuleCamera;
 use crate::scenario::{DistanceKind, Envelope, MaterialRef, Rule};
-use hadar::demand::{Reason, Skipping, Thing, Work};
+use hadar::demand::{self, Ledger, Reason, Skipping, Thing, Work};
 use hadar::error::{Error, Result};
 use hadar::identifiability::detection;
 use hadar::instrument::presets;
@@ -170,20 +170,21 @@ impl RuleStudy {
     /// # Errors
     /// A scene without photons; a file that can no longer be read.
     pub fn answer(&self, asked: &RuleAsked, progress: &dyn Fn(usize, usize)) -> Result<RuleAnswer> {
-        let mut stats = self.looked_up.clone();
+        let ledger = Ledger::open();
+        demand::add(&self.looked_up);
         let alone = asked.verdict_only && asked.skipping == Skipping::On;
         let mut cameras = Vec::with_capacity(self.candidates.len());
         let all = self.candidates.len();
         for (index, candidate) in self.candidates.iter().enumerate() {
-            cameras.push(self.judged(candidate, alone, &mut stats)?);
+            cameras.push(self.judged(candidate, alone)?);
             progress(index + 1, all);
         }
         let not_identifiable = if alone {
-            stats.spare(Thing::Sections, Reason::NotAsked, 1);
+            demand::spared(Thing::Sections, Reason::NotAsked, 1);
             None
         } else {
-            stats.compute(Thing::Sections, 1);
-            Some(self.not_identifiable(asked.seed, &mut stats)?)
+            demand::computed(Thing::Sections, 1);
+            Some(self.not_identifiable(asked.seed)?)
         };
         let envelope = self.envelope_result();
         let requirement = self.requirement(&cameras, &envelope, alone);
@@ -196,7 +197,7 @@ impl RuleStudy {
             not_identifiable,
             inputs: inputs::of(&self.rule)?,
             warnings: self.warnings.clone(),
-            stats,
+            stats: ledger.close(),
         })
     }
 

@@ -20,7 +20,7 @@ pub use standing::{SimulatedPerformance, Standing};
 pub use thermometry::{FIXED_EMISSIVITY, ImagerErrors, Reader, Thermometry, ThermometryRow};
 
 use super::{Study, Warning};
-use hadar::demand::{Thing, Work};
+use hadar::demand::{self, Ledger, Thing, Work};
 use hadar::error::Result;
 use hadar::fisher::Unknowns;
 use hadar::instrument::Camera;
@@ -159,9 +159,10 @@ impl Study {
             let camera = self.camera.clone().map(|camera| Camera { photon_bunching: false, ..camera });
             return Self { camera, ..self.clone() }.simulate(plan, progress);
         }
-        let mut stats = self.looked_up.clone();
-        let rivals = self.rivals(&plan.against, &mut stats)?;
-        let photons = self.photon_numbers(plan, &rivals, &mut stats)?;
+        let ledger = Ledger::open();
+        demand::add(&self.looked_up);
+        let rivals = self.rivals(&plan.against)?;
+        let photons = self.photon_numbers(plan, &rivals)?;
         let names: Vec<String> =
             std::iter::once(&self.target).chain(rivals.iter().copied()).map(|s| s.name.clone()).collect();
         let centres = self.band_centres_cm1();
@@ -183,9 +184,9 @@ impl Study {
             .collect::<Result<_>>()?;
         for _ in &photons {
             // States of the rivals, and the nearest of them once more without electronic noise.
-            stats.compute(Thing::NearestSearches, rivals.len() as u64 + 1);
-            self.book_local(&mut stats, &self.unknowns, 1);
-            stats.add(&plan.design.work(names.len())?);
+            demand::computed(Thing::NearestSearches, rivals.len() as u64 + 1);
+            self.book_local(&self.unknowns, 1);
+            demand::add(&plan.design.work(names.len())?);
         }
         let (points, mut trained): (Vec<_>, Vec<_>) = experiments.into_iter().unzip();
         let last = photons.last().copied().unwrap_or(0.0);
@@ -211,7 +212,7 @@ impl Study {
                     .any(|found| found.standing == Some(Standing::Beyond)),
                 points,
                 warnings,
-                stats,
+                stats: ledger.close(),
             },
             models.into_iter().map(save).collect::<Result<_>>()?,
         ))
@@ -221,8 +222,8 @@ impl Study {
     ///
     /// # Errors
     /// Other bands or classes; an unknown alternative.
-    pub fn check_model(&self, saved: &SavedModel, against: &[String], work: &mut Work) -> Result<()> {
-        let rivals = self.rivals(against, work)?;
+    pub fn check_model(&self, saved: &SavedModel, against: &[String]) -> Result<()> {
+        let rivals = self.rivals(against)?;
         let all = std::iter::once(&self.target).chain(rivals);
         let names: Vec<String> = all.map(|surface| surface.name.clone()).collect();
         saved.check_fits(&self.band_centres_cm1(), &names)

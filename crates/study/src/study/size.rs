@@ -3,7 +3,7 @@
 use super::identify::{PairResult, PhotonsRequired};
 use super::{Check, Shortfall, Study, Surface, Warning};
 use crate::scenario::Scenario;
-use hadar::demand::{Skipping, Work};
+use hadar::demand::{self, Ledger, Skipping, Work};
 use hadar::error::Result;
 use hadar::identifiability::{Status, detection};
 use hadar::instrument::{Camera, NoiseLine, gamma_per_band};
@@ -190,7 +190,8 @@ impl Study {
     /// As [`Study::identify`].
     pub fn size(&self) -> Result<Sizing> {
         let identification = self.identify()?;
-        let mut stats = identification.stats;
+        let ledger = Ledger::open();
+        demand::add(&identification.stats);
         let mut warnings = identification.warnings.clone();
         let limiting = identification
             .pairs
@@ -206,11 +207,11 @@ impl Study {
         let requirement = self.requirement(pair, identification.photon_radiance);
         let camera = self.camera_result(identification.photon_radiance);
         let solve_for = match &self.camera {
-            Some(camera) => Some(self.solutions(camera, surface, &mut stats)?),
+            Some(camera) => Some(self.solutions(camera, surface)?),
             None => None,
         };
         let sensitivity = match &self.camera {
-            Some(camera) => Some(self.sensitivity(camera, surface, &mut stats)?),
+            Some(camera) => Some(self.sensitivity(camera, surface)?),
             None => None,
         };
         if let Some(camera) = &camera {
@@ -233,7 +234,7 @@ impl Study {
             pairs: identification.pairs,
             limiting: identification.limiting,
             warnings,
-            stats,
+            stats: ledger.close(),
         })
     }
 
@@ -340,12 +341,7 @@ impl Study {
         Ok(trial.camera.brightest_reading(&sight.bands, &signal, &sight.view))
     }
 
-    pub(super) fn solutions(
-        &self,
-        camera: &Camera,
-        alternative: &Surface,
-        work: &mut Work,
-    ) -> Result<Solutions> {
+    pub(super) fn solutions(&self, camera: &Camera, alternative: &Surface) -> Result<Solutions> {
         let task = self.task(camera);
         let brightest = |trial: &Trial| self.brightest(trial);
         let speed_m_s = self.scenario.requirement.speed_m_s;
@@ -359,7 +355,6 @@ impl Study {
             }
             solved.push((quantity, solution));
         }
-        work.add(&reach.work);
         Ok(Solutions(solved))
     }
 

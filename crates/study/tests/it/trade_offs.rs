@@ -1,6 +1,5 @@
 //! Solutions for distance and speed, limits, trade-off curves, elasticities and warnings of whole scenarios.
 
-use hadar::demand::Work;
 use hadar::material::Library;
 use hadar::policy::elasticity::Lever;
 use hadar::policy::trade_off::POINTS;
@@ -109,7 +108,7 @@ fn a_solution_names_the_limits_it_breaks() {
 fn points_of_the_curves_meet_the_demand() {
     let study = study(SCENE);
     let sizing = study.size().unwrap();
-    let curves = study.trade_offs(&sizing, &mut Work::default()).unwrap();
+    let curves = study.trade_offs(&sizing).unwrap();
     let pairs: Vec<_> = curves.iter().map(|curve| (curve.x.key(), curve.y.key())).collect();
     let expected = [
         ("f_number", "exposure_s"),
@@ -144,7 +143,7 @@ fn distance_is_traded_for_frames() {
         .replace("flicker_fraction = 0.1", "flicker_fraction = 0.0");
     let study = study(&scene);
     let sizing = study.size().unwrap();
-    let curves = study.trade_offs(&sizing, &mut Work::default()).unwrap();
+    let curves = study.trade_offs(&sizing).unwrap();
     let curve = curves.iter().find(|curve| curve.y == Quantity::Frames).unwrap();
     let frames: Vec<f64> = curve.points.iter().filter_map(|point| point.y).collect();
     assert!(frames.windows(2).all(|pair| pair[0] <= pair[1]) && frames.last() > Some(&1.0), "{frames:?}");

@@ -16,7 +16,7 @@
 //! One direction that fails decides the pair. Proofs are as good as the search for the nearest state is.
 
 use super::LibraryScene;
-use crate::demand::{Attempt, Demand, Proof, Reason, Skipping, Thing, Work};
+use crate::demand::{self, Attempt, Proof, Reason, Skipping, Thing};
 use crate::error::{Error, Result, check};
 use crate::fisher::Counting;
 use crate::identifiability::local::LocalSolver;
@@ -47,8 +47,6 @@ pub struct Decisions {
     count: usize,
     /// Row-major, symmetric; true on the diagonal.
     apart: Vec<bool>,
-    /// What it took.
-    pub work: Work,
 }
 
 impl Decisions {
@@ -123,27 +121,23 @@ impl LibraryScene<'_> {
         let question = Question { scene: self, emissivities, counting, required, few: few.as_ref() };
         let pairs: Vec<(usize, usize)> =
             (0..count).flat_map(|a| (a + 1..count).map(move |b| (a, b))).collect();
-        let answers: Result<Vec<(bool, Work)>> = pairs
-            .par_iter()
-            .map_init(
+        let is_told = |solvers: &mut Solvers<'_>, (a, b)| {
+            let nearer = skipping.until([(a, b), (b, a)], question.things(), |(a, b)| {
+                let reached = question.reaches(solvers, skipping, a, b, None)?;
+                Ok((!reached).then_some(()))
+            })?;
+            Ok(nearer.is_none())
+        };
+        let answers =
+            demand::gathered(pairs.par_iter().map_init(
                 || question.solvers(),
-                |solvers, &(a, b)| {
-                    let mut demand = Demand::new(skipping);
-                    let nearer = demand.until([(a, b), (b, a)], question.things(), |demand, (a, b)| {
-                        let reached = question.reaches(solvers, demand, a, b, None)?;
-                        Ok((!reached).then_some(()))
-                    })?;
-                    Ok((nearer.is_none(), demand.into_work()))
-                },
-            )
-            .collect();
+                |solvers, &pair| demand::ledger_of(|| is_told(solvers, pair)),
+            ))?;
         let mut apart = vec![true; count * count];
-        let mut work = Work::default();
-        for (&(a, b), (told, took)) in pairs.iter().zip(answers?) {
+        for (&(a, b), told) in pairs.iter().zip(answers) {
             (apart[a * count + b], apart[b * count + a]) = (told, told);
-            work.add(&took);
         }
-        Ok(Decisions { count, apart, work })
+        Ok(Decisions { count, apart })
     }
 }
 
@@ -160,7 +154,7 @@ impl LibraryScene<'_> {
         counting: &Counting,
         required: f64,
         skipping: Skipping,
-    ) -> Result<(Option<usize>, Work)> {
+    ) -> Result<Option<usize>> {
         check::positive("required distance", required, "")?;
         if target >= emissivities.len() {
             let found = emissivities.len();
@@ -172,22 +166,20 @@ impl LibraryScene<'_> {
         };
         let question = Question { scene: self, emissivities, counting, required, few: few.as_ref() };
         let mut solvers = question.solvers();
-        let mut demand = Demand::new(skipping);
         let mut ranked = Vec::new();
         for other in (0..emissivities.len()).filter(|&other| other != target) {
             let (own, other_e) = (emissivities[target], emissivities[other]);
             let distance = solvers.all.own_state_distance(own, other_e, self.state, counting)?;
-            demand.computed(Thing::OwnStateDistances, 1);
+            demand::computed(Thing::OwnStateDistances, 1);
             ranked.push((distance, other));
         }
         ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
         // The first of the things stands in the ranking already.
         let things = &question.things()[1..];
-        let failed = demand.until(ranked, things, |demand, (distance, other)| {
-            let reached = question.reaches(&mut solvers, demand, target, other, Some(distance))?;
+        skipping.until(ranked, things, |(distance, other)| {
+            let reached = question.reaches(&mut solvers, skipping, target, other, Some(distance))?;
             Ok((!reached).then_some(other))
-        })?;
-        Ok((failed, demand.into_work()))
+        })
     }
 }
 
@@ -220,7 +212,7 @@ impl<'q> Question<'q> {
     fn reaches(
         &self,
         solvers: &mut Solvers<'_>,
-        demand: &mut Demand,
+        skipping: Skipping,
         a: usize,
         b: usize,
         in_own_state: Option<f64>,
@@ -264,9 +256,8 @@ impl<'q> Question<'q> {
             let found = solver.nearer_than(own, other, state, &few.counting, required)?;
             Ok((found == Nearer::Nowhere).then_some(true).into())
         };
-        let skips = demand.skips();
         let in_full = |solvers: &mut Solvers<'_>| {
-            if !skips {
+            if !skipping.skips() {
                 let found = solvers.all.with_counting(own, other, state, counting)?;
                 return Ok((found.distance >= required, None));
             }
@@ -283,6 +274,6 @@ impl<'q> Question<'q> {
             Proof { of: Some(Thing::FewBandSearches), spares: Reason::FewBands, find: &few_bands },
         ];
         let proofs = if self.few.is_some() { &proofs[..] } else { &proofs[..1] };
-        demand.first_proof(solvers, proofs, Thing::NearestSearches, &in_full)
+        skipping.first_proof(solvers, proofs, Thing::NearestSearches, &in_full)
     }
 }

@@ -1,7 +1,7 @@
 //! What can be asked of a library besides the distances to the target, and the answers together.
 
 use crate::study::{Apart, BandsThatMatter, Exact, Identification, Matrix, Scaling, Study, Trial, Warning};
-use hadar::demand::{Demand, Skipping, Thing};
+use hadar::demand::{self, Ledger, Skipping, Thing, if_asked};
 use hadar::error::Result;
 
 /// What is asked besides the distances to every alternative: nothing else is computed.
@@ -51,41 +51,33 @@ impl Study {
     /// # Errors
     /// As [`Study::identify`], [`Study::matrix`] and [`Study::told_apart`].
     pub fn answer(&self, asked: &Asked, progress: &dyn Fn(usize, usize)) -> Result<Answers> {
-        let mut demand = Demand::new(asked.skipping);
+        let ledger = Ledger::open();
         let section = Thing::Sections;
         let mut identification = self.identify()?;
-        demand.computed(section, 1);
+        demand::add(&identification.stats);
+        demand::computed(section, 1);
         if asked.matrix && self.unknowns.has_priors() {
             identification.warnings.push(Warning::MatrixPriors);
         }
-        let matrix = demand.if_asked(asked.matrix, section, 1, |demand| {
-            self.matrix().inspect(|matrix| demand.add(&matrix.work))
-        })?;
+        let matrix = if_asked(asked.matrix, section, 1, || self.matrix())?;
         if let Some(searches) =
             matrix.as_ref().map(|matrix| matrix.unconverged).filter(|&stopped| stopped > 0)
         {
             identification.warnings.push(Warning::MatrixNotConverged { searches });
         }
-        let exact = demand.if_asked(asked.exact.is_some(), section, 1, |demand| {
-            let exact = asked.exact.map(|trial| self.exact(&trial, progress)).transpose()?;
-            exact.iter().for_each(|exact| demand.add(&exact.work));
-            Ok(exact)
+        let exact = if_asked(asked.exact.is_some(), section, 1, || {
+            asked.exact.map(|trial| self.exact(&trial, progress)).transpose()
         })?;
         let exact = exact.flatten();
         if let (Some(exact), Some(trial)) = (&exact, asked.exact) {
             identification.warnings.extend(exact.ended_early(&trial.plan));
         }
-        let apart = demand.if_asked(asked.apart, section, 1, |demand| {
-            self.told_apart(demand.skipping()).inspect(|apart| demand.add(&apart.work))
-        })?;
-        let scaling = demand.if_asked(asked.scaling, section, 1, |demand| {
-            self.scaling().inspect(|scaling| demand.add(&scaling.work))
-        })?;
+        let apart = if_asked(asked.apart, section, 1, || self.told_apart(asked.skipping))?;
+        let scaling = if_asked(asked.scaling, section, 1, || self.scaling())?;
         let (bands, filters) = asked.bands.unwrap_or_default();
-        let bands_that_matter = demand.if_asked(asked.bands.is_some(), section, 1, |demand| {
-            self.bands_that_matter(bands, filters).inspect(|found| demand.add(&found.work))
-        })?;
-        identification.stats.add(demand.work());
+        let bands_that_matter =
+            if_asked(asked.bands.is_some(), section, 1, || self.bands_that_matter(bands, filters))?;
+        identification.stats = ledger.close();
         Ok(Answers { identification, matrix, apart, scaling, bands_that_matter, exact })
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::study::identify::chosen_bands::{Reached, fewest_as_good};
 use crate::study::{Study, Surface};
-use hadar::demand::{Thing, Work};
+use hadar::demand::{self, Thing};
 use hadar::error::{Error, Result};
 use hadar::identifiability::selection::{
     FilterSelection, Quality, Scores, best_bands, best_filters, shares_between,
@@ -72,9 +72,6 @@ pub struct BandsThatMatter {
     pub bands: Option<Choice>,
     /// The best contiguous filters; `None` if not asked for.
     pub filters: Option<Choice>,
-    /// What it took.
-    #[serde(skip)]
-    pub work: Work,
 }
 
 impl Study {
@@ -103,9 +100,8 @@ impl Study {
             .collect::<Result<_>>()?;
         let (useful, blind): (Vec<usize>, Vec<usize>) =
             (0..scores.len()).partition(|&i| self.is_told_by_all_bands(&self.alternatives[i]));
-        let mut work = Work::default();
-        self.book_local(&mut work, &unknowns, scores.len());
-        let (_, beyond) = self.within_reach(&mut work)?;
+        self.book_local(&unknowns, scores.len());
+        let (_, beyond) = self.within_reach()?;
         let (out_of_reach, reachable): (Vec<usize>, Vec<usize>) =
             useful.iter().partition(|i| beyond.contains(i));
         let (counted, out_of_reach) =
@@ -156,7 +152,7 @@ impl Study {
         let chosen_filters = filters.map(best_few).transpose()?;
         let alternative = told[hardest].0;
         let state: State = self.spectra(alternative)?.state;
-        work.compute(Thing::NearestSearches, 1);
+        demand::computed(Thing::NearestSearches, 1);
         let nearest = self.bands.weigh(&self.surroundings.signal(&alternative.emissivity, &state));
         Ok(BandsThatMatter {
             alternatives: told.iter().map(|(surface, _)| surface.name.clone()).collect(),
@@ -169,7 +165,6 @@ impl Study {
             share_nearest: shares_between(&self.target_signal(), &nearest, counting.as_ref())?,
             bands: chosen_bands,
             filters: chosen_filters,
-            work,
         })
     }
 

@@ -10,7 +10,7 @@ pub use results::{Exact, ExactLibrary, ExactPair};
 
 use crate::study::simulate::normal_error;
 use crate::study::{Study, Surface};
-use hadar::demand::{Reason, Thing, Work};
+use hadar::demand::{self, Reason, Thing};
 use hadar::error::{Error, Result};
 use hadar::fisher::{Counting, Nuisance};
 use hadar::identifiability::bracket::KnownStates;
@@ -61,8 +61,7 @@ impl Study {
     /// # Errors
     /// A scene without photons, or too many of them to draw; electronic noise without a camera.
     pub fn exact(&self, trial: &Trial, progress: &dyn Fn(usize, usize)) -> Result<Exact> {
-        let mut work = Work::default();
-        let hardest_first = self.hardest_first(trial, &mut work)?;
+        let hardest_first = self.hardest_first(trial)?;
         let photons = match (trial.photons, self.counting()) {
             (Some(photons), _) => photons,
             (None, Some(counting)) => counting.counts_per_radiance * self.photon_radiance(),
@@ -99,15 +98,12 @@ impl Study {
         };
         for pair in &pairs {
             // From the nearest state back, and the local distance.
-            work.compute(Thing::NearestSearches, 1);
-            self.book_local(&mut work, &self.unknowns, 1);
-            book_trials(&mut work, pair.trials, 2, &trial.plan);
+            demand::computed(Thing::NearestSearches, 1);
+            self.book_local(&self.unknowns, 1);
+            book_trials(pair.trials, 2, &trial.plan);
         }
-        library
-            .iter()
-            .for_each(|library: &ExactLibrary| book_trials(&mut work, library.trials, 1, &trial.plan));
+        library.iter().for_each(|library: &ExactLibrary| book_trials(library.trials, 1, &trial.plan));
         Ok(Exact {
-            work,
             statistics: statistics.name(),
             normal_error: normal_error(
                 &statistics,
@@ -123,18 +119,15 @@ impl Study {
 
     /// The alternatives with their nearest distances per √photon, nearest first; a single one whose distance nobody
     /// asks for has none.
-    fn hardest_first(&self, trial: &Trial, work: &mut Work) -> Result<Vec<(f64, &Surface)>> {
+    fn hardest_first(&self, trial: &Trial) -> Result<Vec<(f64, &Surface)>> {
         let photons_are_known = trial.photons.is_some() || self.camera.is_some();
         if let ([only], true) = (self.alternatives.as_slice(), photons_are_known) {
-            work.spare(Thing::NearestSearches, Reason::NotAsked, 1);
+            demand::spared(Thing::NearestSearches, Reason::NotAsked, 1);
             return Ok(vec![(f64::NAN, only)]);
         }
-        work.compute(Thing::NearestSearches, self.alternatives.len() as u64);
-        let ranked = self.alternatives.par_iter().map(|alternative| {
-            let distance = self.nearest(alternative, f64::INFINITY, &mut Work::default())?.distance;
-            Ok((distance, alternative))
-        });
-        let mut ranked = ranked.collect::<Result<Vec<(f64, &Surface)>>>()?;
+        let mut ranked = demand::gathered(self.alternatives.par_iter().map(|alternative| {
+            demand::ledger_of(|| Ok((self.nearest(alternative, f64::INFINITY)?.distance, alternative)))
+        }))?;
         ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
         Ok(ranked)
     }
@@ -276,8 +269,8 @@ impl Study {
 }
 
 /// Trials of so many truths, of each as many as the plan has at most.
-fn book_trials(work: &mut Work, trials: u64, truths: u64, plan: &Plan) {
-    work.compute(Thing::Trials, trials);
+fn book_trials(trials: u64, truths: u64, plan: &Plan) {
+    demand::computed(Thing::Trials, trials);
     let most = truths.saturating_mul(plan.most_trials());
-    work.spare(Thing::Trials, Reason::NarrowEnough, most.saturating_sub(trials));
+    demand::spared(Thing::Trials, Reason::NarrowEnough, most.saturating_sub(trials));
 }

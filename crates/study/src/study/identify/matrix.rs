@@ -6,10 +6,10 @@ pub use results::{Apart, Check, Matrix, Rows, TargetVerdict};
 
 use crate::scenario::DistanceKind;
 use crate::study::{Study, Surface};
-use hadar::demand::{Demand, Reason, Skipping, Thing, Work};
+use hadar::demand::{self, Ledger, Reason, Skipping, Thing};
 use hadar::error::{Error, Result};
 use hadar::fisher::{Counting, Nuisance, Unknowns};
-use hadar::identifiability::multi::{self, Decisions, LibraryScene, LocalMatrix, Passes};
+use hadar::identifiability::multi::{self, LibraryScene, LocalMatrix, Passes};
 use hadar::identifiability::nearest::NearestDistance;
 
 impl Study {
@@ -74,13 +74,13 @@ impl Study {
             DistanceKind::LocalUnknownGain => of(kind, None)?,
         };
         let distances_asked = count * (count - 1);
-        let mut work = self.work_of_passes(solver.passes(), distances_asked);
-        work.compute(Thing::NearestSearches, distances_asked as u64);
+        self.book_passes(solver.passes(), distances_asked);
+        demand::computed(Thing::NearestSearches, distances_asked as u64);
         if statistical.is_some() {
-            self.book_distances(&mut work, kind, distances_asked);
+            self.book_distances(kind, distances_asked);
         }
         if kind == DistanceKind::LocalUnknownGain {
-            self.book_distances(&mut work, kind, distances_asked);
+            self.book_distances(kind, distances_asked);
         }
         let required = self.required;
         let targets = (0..count)
@@ -103,7 +103,7 @@ impl Study {
             .collect();
         let apart = statistical.as_ref().map(|d| {
             let told = |a: usize, b: usize| d[a * count + b] >= required && d[b * count + a] >= required;
-            sorted_out(&names, told, Work::default())
+            sorted_out(&names, told)
         });
         Ok(Matrix {
             by: kind.name(),
@@ -118,24 +118,21 @@ impl Study {
             unconverged,
             passes: solver.passes(),
             materials: names,
-            work,
         })
     }
 
     /// The local distances of a matrix, with the columns of derivatives that targets lent to all their pairs.
-    fn work_of_passes(&self, passes: Passes, distances: usize) -> Work {
-        let mut work = Work::default();
-        self.book_local(&mut work, &self.unknowns, passes.alone);
+    fn book_passes(&self, passes: Passes, distances: usize) {
+        self.book_local(&self.unknowns, passes.alone);
         let shared = distances.saturating_sub(passes.alone);
         let objects = self.surroundings.objects().len();
         let (asked, all) = (self.unknowns.parameters(objects).len(), 3 + 2 * objects);
         // A target's nuisances are formed once, and the alternatives' columns band by band as they are used.
         let formed = passes.shared_targets * asked;
-        work.compute(Thing::LocalDistances, shared as u64);
-        work.compute(Thing::DerivativeColumns, formed as u64);
-        work.spare(Thing::DerivativeColumns, Reason::Shared, (shared * asked - formed) as u64);
-        work.spare(Thing::DerivativeColumns, Reason::NotAsked, (shared * (all - asked)) as u64);
-        work
+        demand::computed(Thing::LocalDistances, shared as u64);
+        demand::computed(Thing::DerivativeColumns, formed as u64);
+        demand::spared(Thing::DerivativeColumns, Reason::Shared, (shared * asked - formed) as u64);
+        demand::spared(Thing::DerivativeColumns, Reason::NotAsked, (shared * (all - asked)) as u64);
     }
 
     /// Which materials the camera tells apart, stopping at the first proof of each pair.
@@ -149,19 +146,16 @@ impl Study {
         let counting = self.needed_counting()?;
         let kind = self.scenario.requirement.by;
         if kind == DistanceKind::Nearest {
-            let found: Decisions =
-                self.library_scene().told_apart(&emissivities, &counting, self.required, skipping)?;
-            let work = found.work.clone();
-            return Ok(sorted_out(&names, |a, b| found.told_apart(a, b), work));
+            let found = self.library_scene().told_apart(&emissivities, &counting, self.required, skipping)?;
+            return Ok(sorted_out(&names, |a, b| found.told_apart(a, b)));
         }
         // All local distances together take less time than bounds on each would.
         let d = self.all_distances(kind, &emissivities, Some(&counting))?;
         let count = names.len();
         let told =
             |a: usize, b: usize| d[a * count + b] >= self.required && d[b * count + a] >= self.required;
-        let mut work = Work::default();
-        self.book_distances(&mut work, kind, count * (count - 1));
-        Ok(sorted_out(&names, told, work))
+        self.book_distances(kind, count * (count - 1));
+        Ok(sorted_out(&names, told))
     }
 
     /// Whether the camera tells the target from every alternative, ending at the first one it does not.
@@ -171,29 +165,25 @@ impl Study {
     pub fn check(&self, skipping: Skipping) -> Result<Check> {
         let counting = self.needed_counting()?;
         let kind = self.scenario.requirement.by;
-        let (failed, work) = if kind == DistanceKind::Nearest {
+        let ledger = Ledger::open();
+        demand::add(&self.looked_up);
+        let failed = if kind == DistanceKind::Nearest {
             let emissivities: Vec<&[f64]> =
                 std::iter::once(&self.target).chain(&self.alternatives).map(|m| &m.emissivity[..]).collect();
             let scene = self.library_scene();
-            let (failed, work) =
-                scene.first_not_told_from(0, &emissivities, &counting, self.required, skipping)?;
-            (failed.map(|i| &self.alternatives[i - 1]), work)
+            let failed = scene.first_not_told_from(0, &emissivities, &counting, self.required, skipping)?;
+            failed.map(|i| &self.alternatives[i - 1])
         } else {
-            let mut demand = Demand::new(skipping);
-            let failed =
-                demand.until(&self.alternatives, &[Thing::LocalDistances], |demand, alternative| {
-                    let mut work = Work::default();
-                    let distance = self.statistical_distance(kind, alternative, &counting, &mut work)?;
-                    demand.add(&work);
-                    Ok((distance < self.required).then_some(alternative))
-                })?;
-            (failed, demand.into_work())
+            skipping.until(&self.alternatives, &[Thing::LocalDistances], |alternative| {
+                let distance = self.statistical_distance(kind, alternative, &counting)?;
+                Ok((distance < self.required).then_some(alternative))
+            })?
         };
         Ok(Check {
             scenario: self.scenario.clone(),
             identifiable: failed.is_none(),
             not_told_from: failed.map(|surface| surface.name.clone()),
-            stats: self.looked_up.clone().and(&work),
+            stats: ledger.close(),
         })
     }
 
@@ -250,7 +240,7 @@ fn rows(distances: &[f64], count: usize) -> Rows {
     distances.chunks(count).enumerate().map(row).collect()
 }
 
-fn sorted_out(names: &[String], told: impl Fn(usize, usize) -> bool, work: Work) -> Apart {
+fn sorted_out(names: &[String], told: impl Fn(usize, usize) -> bool) -> Apart {
     let (mut told_apart, mut not_told_apart) = (Vec::new(), Vec::new());
     for a in 0..names.len() {
         for b in a + 1..names.len() {
@@ -264,5 +254,5 @@ fn sorted_out(names: &[String], told: impl Fn(usize, usize) -> bool, work: Work)
     let alike = |a: usize, b: usize| a != b && !told(a, b);
     let clusters = named(multi::clusters(names.len(), alike));
     let chains = named(multi::chains(names.len(), alike));
-    Apart { told_apart, not_told_apart, clusters, chains, work }
+    Apart { told_apart, not_told_apart, clusters, chains }
 }

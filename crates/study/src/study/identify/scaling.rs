@@ -6,7 +6,6 @@
 
 use crate::scenario::DistanceKind;
 use crate::study::{Study, Surface};
-use hadar::demand::Work;
 use hadar::error::Result;
 use hadar::fisher::Counting;
 use hadar::identifiability::local::LocalSolver;
@@ -55,9 +54,6 @@ pub struct Scaling {
     pub library: LibrarySize,
     /// Against the number of bands.
     pub bands: BandNumber,
-    /// What it took.
-    #[serde(skip)]
-    pub work: Work,
 }
 
 impl Study {
@@ -67,18 +63,15 @@ impl Study {
     /// As [`Study::matrix`].
     pub fn scaling(&self) -> Result<Scaling> {
         let kind = self.scenario.requirement.by;
-        let mut work = Work::default();
-        let library = self.library_size(kind, &mut work)?;
-        let bands = self.band_number(kind, &mut work)?;
-        Ok(Scaling { by: kind.name(), library, bands, work })
+        Ok(Scaling { by: kind.name(), library: self.library_size(kind)?, bands: self.band_number(kind)? })
     }
 
-    fn library_size(&self, kind: DistanceKind, work: &mut Work) -> Result<LibrarySize> {
+    fn library_size(&self, kind: DistanceKind) -> Result<LibrarySize> {
         let materials = self.materials()?;
         let emissivities: Vec<&[f64]> = materials.iter().map(|m| m.emissivity.as_slice()).collect();
         let count = materials.len();
         let distances = self.all_distances(kind, &emissivities, None)?;
-        self.book_distances(work, kind, count * (count - 1));
+        self.book_distances(kind, count * (count - 1));
         let curves: Vec<Vec<f64>> = (0..count)
             .map(|target| {
                 let row = &distances[target * count..(target + 1) * count];
@@ -100,8 +93,8 @@ impl Study {
         Ok(LibrarySize { materials: (2..=count).collect(), target, quantiles, whole_library })
     }
 
-    fn band_number(&self, kind: DistanceKind, work: &mut Work) -> Result<BandNumber> {
-        let (within, beyond) = self.within_reach(work)?;
+    fn band_number(&self, kind: DistanceKind) -> Result<BandNumber> {
+        let (within, beyond) = self.within_reach()?;
         let beyond = if within.is_empty() { Vec::new() } else { beyond };
         let counted = self.alternatives.iter().enumerate().filter(|(i, _)| !beyond.contains(i));
         let counted: Vec<Surface> = counted.map(|(_, surface)| surface.clone()).collect();
@@ -123,14 +116,14 @@ impl Study {
                 continue;
             }
             let (least, median) = study.least_and_median(kind, None)?;
-            study.book_distances(work, kind, counted.len());
+            study.book_distances(kind, counted.len());
             found.bands.push(study.bands.len());
             found.shot_noise.push(least);
             found.shot_noise_median.push(median);
             let noisy = |counting: &Counting| counting.var_added.iter().any(|&var| var > 0.0);
             if let Some(counting) = study.counting().filter(noisy) {
                 let (least, median) = study.least_and_median(kind, Some(&counting))?;
-                study.book_distances(work, kind, counted.len());
+                study.book_distances(kind, counted.len());
                 found.camera.push(least);
                 found.camera_median.push(median);
             }

@@ -3,8 +3,8 @@
 //!
 //! A choice for the alternative that fares worst would else be made for one that stays hopeless whatever is chosen.
 
-use crate::study::{Study, Surface};
-use hadar::demand::Work;
+use crate::study::Study;
+use hadar::demand;
 use hadar::error::Result;
 use hadar::fisher::Counting;
 use rayon::prelude::*;
@@ -12,16 +12,17 @@ use rayon::prelude::*;
 impl Study {
     /// Indices of the alternatives that the camera's photons tell as required in all bands with shot noise alone, by
     /// the distance that decides, and of the others. All are of the first kind without a camera.
-    pub(in crate::study) fn within_reach(&self, work: &mut Work) -> Result<(Vec<usize>, Vec<usize>)> {
+    pub(in crate::study) fn within_reach(&self) -> Result<(Vec<usize>, Vec<usize>)> {
         let Some(Counting { counts_per_radiance, .. }) = self.counting() else {
             return Ok(((0..self.alternatives.len()).collect(), Vec::new()));
         };
         let shot = Counting { counts_per_radiance, var_added: Vec::new() };
         let kind = self.scenario.requirement.by;
-        let distance =
-            |surface: &Surface| self.statistical_distance(kind, surface, &shot, &mut Work::default());
-        let distances = self.alternatives.par_iter().map(distance).collect::<Result<Vec<f64>>>()?;
-        self.book_distances(work, kind, distances.len());
+        let distances = demand::gathered(
+            self.alternatives
+                .par_iter()
+                .map(|surface| demand::ledger_of(|| self.statistical_distance(kind, surface, &shot))),
+        )?;
         Ok((0..distances.len()).partition(|&i| distances[i] >= self.required))
     }
 

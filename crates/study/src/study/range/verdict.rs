@@ -57,7 +57,7 @@ impl RangeStudy {
         };
         let mut stats = self.looked_up.clone().and(&decision.stats.work(shape.len()));
         stats.compute(Thing::Sections, 1);
-        stats.spare(Thing::Sections, Reason::NotAsked, SECTIONS as u64 - 1);
+        stats.spare(Thing::Sections, Reason::NotAsked, SECTIONS - 1);
         Ok(Some(Ranging {
             scenario: self.scenario.clone(),
             verdict,

@@ -17,7 +17,7 @@ use super::super::Study;
 use super::RuleStudy;
 use super::envelope::{all, scene_at};
 use super::results::{EmissivityError, IdealCamera, LightTime, Neighbourhood, NotIdentifiable};
-use hadar::demand::{Thing, Work};
+use hadar::demand::{self, Thing};
 use hadar::error::Result;
 use hadar::fisher::Counting;
 use hadar::identifiability::nearest::NearestSolver;
@@ -50,7 +50,7 @@ struct Drawn {
 
 impl RuleStudy {
     /// The share of the envelope in which an ideal camera does not tell the materials apart.
-    pub(super) fn not_identifiable(&self, seed: u64, work: &mut Work) -> Result<NotIdentifiable> {
+    pub(super) fn not_identifiable(&self, seed: u64) -> Result<NotIdentifiable> {
         let cameras: Vec<&Camera> = self.cameras().collect();
         let pixel_m = cameras.iter().map(|camera| camera.pixel_m).fold(0.0, f64::max);
         let (time_s, why) = self.longest(&cameras);
@@ -93,7 +93,7 @@ impl RuleStudy {
             Ok(drawn)
         });
         let drawn: Vec<Drawn> = drawn.collect::<Result<Vec<_>>>()?.into_iter().flatten().collect();
-        work.compute(Thing::NearestSearches, drawn.len() as u64);
+        demand::computed(Thing::NearestSearches, drawn.len() as u64);
         let (fraction, standard_error) = share(&drawn, |scene| !scene.told);
         let (within, error_within) = share(&drawn, |scene| scene.within_error);
         let definition = IdealCamera {

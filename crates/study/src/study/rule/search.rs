@@ -8,7 +8,7 @@ use super::super::{NearestState, Shortfall, Study, Surface, Warning, warn};
 use super::envelope::{Estimate, Sighted, brightest};
 use super::results::{CameraVerdict, Certified, Fixes, LimitingScene};
 use super::{Candidate, RuleStudy};
-use hadar::demand::{Reason, Thing, Work};
+use hadar::demand::{self, Reason, Thing};
 use hadar::error::{Error, Result};
 use hadar::fisher::Nuisance;
 use hadar::identifiability::detection;
@@ -56,13 +56,8 @@ impl Searched {
 
 impl RuleStudy {
     /// The verdict on one camera; `alone` asks for no more than it.
-    pub(super) fn judged(
-        &self,
-        candidate: &Candidate,
-        alone: bool,
-        work: &mut Work,
-    ) -> Result<CameraVerdict> {
-        let worst = self.worst(candidate, alone, work)?;
+    pub(super) fn judged(&self, candidate: &Candidate, alone: bool) -> Result<CameraVerdict> {
+        let worst = self.worst(candidate, alone)?;
         let sighted = worst.between.as_deref().unwrap_or(&candidate.sighted[worst.pair.sighted]);
         let surface = &sighted.study.alternatives[worst.pair.alternative];
         let distance = worst.pair.distance;
@@ -101,16 +96,16 @@ impl RuleStudy {
         );
         let mut fixes = None;
         if !alone {
-            let shot = at.nearest(surface, f64::INFINITY, work)?;
+            let shot = at.nearest(surface, f64::INFINITY)?;
             limiting.hardware_m2_s = policy::photons_required(self.required, shot.distance)
                 .map(|photons| policy::hardware_required_m2_s(photons, at.photon_radiance()));
-            let local = at.local(at.unknowns.clone(), surface, f64::INFINITY, work)?;
+            let local = at.local(at.unknowns.clone(), surface, f64::INFINITY)?;
             if shot.distance > 0.0 && local.distance_no_nuisance > warn::FRAGILE_RATIO * shot.distance {
                 warnings.push(Warning::FragileScene);
             }
             if let Some(camera) = at.camera.clone().filter(|_| distance < self.required) {
                 let task = at.task(&camera);
-                let mut quantities = at.solutions(&camera, surface, work)?;
+                let mut quantities = at.solutions(&camera, surface)?;
                 // Where the target is and how fast it moves is the rule's to say.
                 quantities
                     .0
@@ -206,11 +201,11 @@ impl RuleStudy {
     }
 
     /// The worst of all pairs, or a scene that is below the requirement where no more is asked for.
-    fn worst(&self, candidate: &Candidate, alone: bool, work: &mut Work) -> Result<Searched> {
+    fn worst(&self, candidate: &Candidate, alone: bool) -> Result<Searched> {
         let mut pairs: Vec<Estimate> = Vec::new();
         for (index, sighted) in candidate.sighted.iter().enumerate() {
             let (estimates, searched) = sighted.estimates(index)?;
-            work.compute(Thing::NearestSearches, searched);
+            demand::computed(Thing::NearestSearches, searched);
             pairs.extend(estimates);
         }
         pairs.sort_by(|a, b| a.distance.total_cmp(&b.distance));
@@ -220,7 +215,7 @@ impl RuleStudy {
         let mut all = true;
         for (done, pair) in pairs.into_iter().enumerate() {
             if alone && (pair.distance < self.required || best < self.required) {
-                work.spare(Thing::WorstCases, Reason::AnotherOne, (count - done) as u64);
+                demand::spared(Thing::WorstCases, Reason::AnotherOne, (count - done) as u64);
                 if best >= self.required {
                     return Ok(Searched::estimated(pair));
                 }
@@ -230,7 +225,7 @@ impl RuleStudy {
             let sighted = &candidate.sighted[pair.sighted];
             let enough = if alone { self.required } else { best };
             let mut tolerance = (1.0 - enough / pair.distance).clamp(TOLERANCE, 1.0 - TOLERANCE);
-            let mut searched = search(sighted, pair, tolerance, work)?;
+            let mut searched = search(sighted, pair, tolerance)?;
             best = best.min(searched.pair.distance);
             // A worst case below the estimate may leave a bound that does not reach what is enough.
             let short = |searched: &Searched, enough: f64| {
@@ -240,7 +235,7 @@ impl RuleStudy {
             let enough = if alone { self.required } else { best };
             if tolerance > TOLERANCE && short(&searched, enough) {
                 tolerance = (1.0 - enough / searched.pair.distance).clamp(TOLERANCE, 1.0 - TOLERANCE);
-                searched = search(sighted, searched.pair, tolerance, work)?;
+                searched = search(sighted, searched.pair, tolerance)?;
                 best = best.min(searched.pair.distance);
             }
             found.push(searched);
@@ -257,7 +252,7 @@ impl RuleStudy {
             return Ok(Searched::estimated(worst.pair));
         }
         if candidate.distance_searched {
-            let worst = self.between(candidate, worst, work)?;
+            let worst = self.between(candidate, worst)?;
             let certificate = Some(Certificate::DenseSearch { points: candidate.sighted.len() });
             return Ok(Searched { lower_bound: None, certificate, ..worst });
         }
@@ -274,7 +269,7 @@ impl RuleStudy {
 
 impl RuleStudy {
     /// The worst distance next to that of the worst pair found, by golden sections of its logarithm.
-    fn between(&self, candidate: &Candidate, worst: Searched, work: &mut Work) -> Result<Searched> {
+    fn between(&self, candidate: &Candidate, worst: Searched) -> Result<Searched> {
         let own = &candidate.sighted[worst.pair.sighted].study;
         let at = |study: &Study| study.scenario.target.distance_m.unwrap_or(f64::INFINITY);
         let middle = at(own);
@@ -289,7 +284,7 @@ impl RuleStudy {
         golden_section([low.ln(), high.ln()], GOLDEN_STEPS, |log_z| -> Result<f64> {
             let sighted = Sighted::new(own.at_distance(log_z.exp())?, &self.envelope)?;
             let anew = Estimate { distance: f64::INFINITY, ..best.pair.clone() };
-            let searched = search(&sighted, anew, TOLERANCE, work)?;
+            let searched = search(&sighted, anew, TOLERANCE)?;
             let distance = searched.pair.distance;
             if distance < best.pair.distance {
                 best = Searched { between: Some(Box::new(sighted)), ..searched };
@@ -301,14 +296,14 @@ impl RuleStudy {
 }
 
 /// The worst case of one pair, no worse than its estimate.
-fn search(sighted: &Sighted, pair: Estimate, tolerance: f64, work: &mut Work) -> Result<Searched> {
+fn search(sighted: &Sighted, pair: Estimate, tolerance: f64) -> Result<Searched> {
     let surface = &sighted.study.alternatives[pair.alternative];
     let effort = Effort { relative_tolerance: tolerance, boxes: BOXES };
     let WorstCase { distance, lower_bound, state, nearest, certificate, evaluations, boxes } =
         worst_case(&sighted.scene(surface), &sighted.ranges, &effort)?;
-    work.compute(Thing::WorstCases, 1);
-    work.compute(Thing::NearestSearches, evaluations);
-    work.compute(Thing::Boxes, boxes);
+    demand::computed(Thing::WorstCases, 1);
+    demand::computed(Thing::NearestSearches, evaluations);
+    demand::computed(Thing::Boxes, boxes);
     let pair = if distance <= pair.distance { Estimate { distance, state, nearest, ..pair } } else { pair };
     Ok(Searched { pair, between: None, certificate: Some(certificate), lower_bound })
 }

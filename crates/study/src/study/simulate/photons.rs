@@ -3,7 +3,7 @@
 use super::SimulationPlan;
 use crate::study::size::logarithmic;
 use crate::study::{Study, Surface};
-use hadar::demand::{Reason, Thing, Work};
+use hadar::demand::{self, Reason, Thing};
 use hadar::error::{Error, Result, check};
 use hadar::fisher::Counting;
 use hadar::instrument::{Camera, gamma_per_band};
@@ -18,13 +18,13 @@ const MOST_EXPERIMENTS: usize = 10_000;
 
 impl Study {
     /// The alternatives that are classes: those named, else the one nearest to the target.
-    pub(super) fn rivals(&self, against: &[String], work: &mut Work) -> Result<Vec<&Surface>> {
+    pub(super) fn rivals(&self, against: &[String]) -> Result<Vec<&Surface>> {
         if let ([], [only]) = (against, self.alternatives.as_slice()) {
-            work.spare(Thing::NearestSearches, Reason::NotAsked, 1);
+            demand::spared(Thing::NearestSearches, Reason::NotAsked, 1);
             return Ok(vec![only]);
         }
         if against.is_empty() {
-            let ranked = self.nearest_distances(&self.alternatives.iter().collect::<Vec<_>>(), work)?;
+            let ranked = self.nearest_distances(&self.alternatives.iter().collect::<Vec<_>>())?;
             let nearest = self.alternatives.iter().zip(ranked).min_by(|a, b| a.1.total_cmp(&b.1));
             return Ok(nearest.map(|(surface, _)| surface).into_iter().collect());
         }
@@ -44,22 +44,17 @@ impl Study {
     }
 
     /// Nearest distances per √photon in shot noise.
-    fn nearest_distances(&self, surfaces: &[&Surface], work: &mut Work) -> Result<Vec<f64>> {
+    fn nearest_distances(&self, surfaces: &[&Surface]) -> Result<Vec<f64>> {
         let distance =
-            |surface: &&Surface| self.nearest(surface, f64::INFINITY, work).map(|nearest| nearest.distance);
+            |surface: &&Surface| self.nearest(surface, f64::INFINITY).map(|nearest| nearest.distance);
         surfaces.iter().map(distance).collect()
     }
 
     /// Photons of each experiment.
-    pub(super) fn photon_numbers(
-        &self,
-        plan: &SimulationPlan,
-        rivals: &[&Surface],
-        work: &mut Work,
-    ) -> Result<Vec<f64>> {
+    pub(super) fn photon_numbers(&self, plan: &SimulationPlan, rivals: &[&Surface]) -> Result<Vec<f64>> {
         let numbers = match (plan.photons.as_slice(), self.counting()) {
             ([], Some(counting)) => vec![counting.counts_per_radiance * self.photon_radiance()],
-            ([], None) => vec![self.photons_for(rivals, work)?],
+            ([], None) => vec![self.photons_for(rivals)?],
             (given, _) => given.to_vec(),
         };
         for &photons in &numbers {
@@ -73,8 +68,8 @@ impl Study {
     }
 
     /// Photons at which the nearest of the rivals that differs at all is told apart as required.
-    fn photons_for(&self, rivals: &[&Surface], work: &mut Work) -> Result<f64> {
-        let distances = self.nearest_distances(rivals, work)?;
+    fn photons_for(&self, rivals: &[&Surface]) -> Result<f64> {
+        let distances = self.nearest_distances(rivals)?;
         let needed =
             distances.iter().filter_map(|distance| policy::photons_required(self.required, *distance));
         let most = needed.fold(0.0, f64::max);
@@ -99,14 +94,13 @@ impl Study {
         experiments: usize,
         against: &[String],
         camera_noise: bool,
-        work: &mut Work,
     ) -> Result<Vec<f64>> {
         if experiments == 0 || experiments > MOST_EXPERIMENTS {
             let expected = format!("1 to {MOST_EXPERIMENTS}");
             return Err(Error::out_of_range("experiments of a sweep", experiments as f64, "", expected));
         }
-        let rivals = self.rivals(against, work)?;
-        let distances = self.nearest_distances(&rivals, work)?;
+        let rivals = self.rivals(against)?;
+        let distances = self.nearest_distances(&rivals)?;
         let least = distances.into_iter().fold(f64::INFINITY, f64::min);
         if !(least > 0.0 && least.is_finite()) {
             let found =

@@ -2,7 +2,6 @@
 
 use crate::scenario::DistanceKind;
 use crate::study::{Study, Surface};
-use hadar::demand::Work;
 use hadar::error::Result;
 use hadar::fisher::Nuisance;
 use hadar::identifiability::detection;
@@ -146,8 +145,7 @@ impl Study {
             .iter()
             .map(|n| {
                 let counting = self.counting_with(camera, *n);
-                self.statistical_distance(kind, alternative, &counting, &mut Work::default())
-                    .map(detection::information_bits)
+                self.statistical_distance(kind, alternative, &counting).map(detection::information_bits)
             })
             .collect()
     }

@@ -5,7 +5,7 @@
 
 use super::super::{Study, Surface};
 use crate::scenario::DistanceKind;
-use hadar::demand::{Thing, Work};
+use hadar::demand::{self, Thing};
 use hadar::error::Result;
 use hadar::fisher::Counting;
 use hadar::identifiability::local::LocalSolver;
@@ -42,24 +42,23 @@ impl<'a> Solvers<'a> {
         [target, other]: [&[f64]; 2],
         counting: &Counting,
         start: Option<&State>,
-        work: &mut Work,
     ) -> Result<(f64, Option<State>)> {
         if study.scenario.requirement.by != DistanceKind::Nearest {
             let unknowns = study.decisive_unknowns();
             if !study.enough_bands(&unknowns) {
                 return Ok((0.0, None));
             }
-            study.book_local(work, &unknowns, 1);
+            study.book_local(&unknowns, 1);
             let local = self.local.with_counting(target, other, &study.state, counting)?;
             return Ok((local.distance, None));
         }
         let nearest = match start {
             Some(start) => {
-                work.compute(Thing::RefinedSearches, 1);
+                demand::computed(Thing::RefinedSearches, 1);
                 self.nearest.refine_with_counting(target, other, &study.state, counting, start)?
             }
             None => {
-                work.compute(Thing::NearestSearches, 1);
+                demand::computed(Thing::NearestSearches, 1);
                 self.nearest.with_counting(target, other, &study.state, counting)?
             }
         };
@@ -74,14 +73,12 @@ pub(in crate::study) struct Reach<'a> {
     /// Of the scenario's own distance, where the bands are always the same.
     own: Solvers<'a>,
     state: Option<State>,
-    /// What it took.
-    pub(in crate::study) work: Work,
 }
 
 impl<'a> Reach<'a> {
     pub(in crate::study) fn new(study: &'a Study, alternative: &'a Surface) -> Self {
         let own = Solvers::new(study, &study.bands);
-        Self { study, alternative, own, state: None, work: Work::default() }
+        Self { study, alternative, own, state: None }
     }
 
     /// The statistical distance of a trial, its nearest state followed from the trial before.
@@ -97,15 +94,15 @@ impl<'a> Reach<'a> {
     fn evaluate(&mut self, trial: &Trial, follow: bool) -> Result<f64> {
         let study = self.study;
         let start = self.state.take().filter(|_| follow);
-        let (start, work) = (start.as_ref(), &mut self.work);
+        let start = start.as_ref();
         let pair = [study.target.emissivity.as_slice(), self.alternative.emissivity.as_slice()];
         let (distance, state) = if trial.distance_m == study.scenario.target.distance_m {
             let counting = study.counting_of(&trial.camera);
-            self.own.reached(study, pair, &counting, start, work)?
+            self.own.reached(study, pair, &counting, start)?
         } else {
             let sight = study.sight_at(&trial.camera, trial.distance_m)?;
             let counting = trial.camera.counting(&sight.bands, &sight.view);
-            Solvers::new(study, &sight.bands).reached(study, pair, &counting, start, work)?
+            Solvers::new(study, &sight.bands).reached(study, pair, &counting, start)?
         };
         self.state = state;
         Ok(distance)

@@ -8,7 +8,6 @@ pub use emissivity::EmissivityErrors;
 
 use crate::study::size::Reach;
 use crate::study::{Study, Surface};
-use hadar::demand::Work;
 use hadar::error::Result;
 use hadar::instrument::Camera;
 use hadar::policy::elasticity::{Elasticity, Lever, elasticity};
@@ -43,7 +42,6 @@ impl Study {
         &self,
         camera: &Camera,
         alternative: &Surface,
-        work: &mut Work,
     ) -> Result<Sensitivity> {
         let own = self.task(camera).own();
         let mut reach = Reach::new(self, alternative);
@@ -58,8 +56,7 @@ impl Study {
             };
             found.push((lever, value));
         }
-        work.add(&reach.work);
-        let emissivity = self.emissivity_errors(camera, alternative, work)?;
+        let emissivity = self.emissivity_errors(camera, alternative)?;
         Ok(Sensitivity { elasticities: Elasticities(found), emissivity })
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::study::Study;
 use crate::study::size::{Reach, Sizing};
-use hadar::demand::Work;
+use hadar::demand;
 use hadar::error::Result;
 use hadar::policy::caps::Circumstances;
 use hadar::policy::trade_off::{self, PAIRS, TradeOff};
@@ -16,7 +16,7 @@ impl Study {
     ///
     /// # Errors
     /// As [`Study::size`].
-    pub fn trade_offs(&self, result: &Sizing, work: &mut Work) -> Result<Vec<TradeOff>> {
+    pub fn trade_offs(&self, result: &Sizing) -> Result<Vec<TradeOff>> {
         let (Some(camera), Some(alternative)) = (&self.camera, self.alternative(&result.limiting)) else {
             return Ok(Vec::new());
         };
@@ -30,21 +30,13 @@ impl Study {
             _ => true,
         };
         let pairs: Vec<_> = PAIRS.iter().filter(known).collect();
-        let traced = pairs.into_par_iter().map(|pair| {
+        let traced = |pair| {
             let brightest = |trial: &Trial| self.brightest(trial);
             let speed_m_s = self.scenario.requirement.speed_m_s;
             let given = Circumstances { bands: &self.bands, speed_m_s, brightest: &brightest };
             let mut reach = Reach::new(self, alternative);
-            let curve = trade_off::trace(&task, *pair, as_now, &given, &mut |task, quantity| {
-                reach.solve(task, quantity)
-            })?;
-            Ok((curve, reach.work))
-        });
-        let mut curves = Vec::new();
-        for (curve, taken) in traced.collect::<Result<Vec<_>>>()? {
-            work.add(&taken);
-            curves.push(curve);
-        }
-        Ok(curves)
+            trade_off::trace(&task, pair, as_now, &given, &mut |task, quantity| reach.solve(task, quantity))
+        };
+        demand::gathered(pairs.into_par_iter().map(|pair| demand::ledger_of(|| traced(*pair))))
     }
 }

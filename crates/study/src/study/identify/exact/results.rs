@@ -1,7 +1,6 @@
 //! Simulated decisions as data.
 
 use crate::study::Warning;
-use hadar::demand::Work;
 use hadar::identifiability::lattice::LatticeDetection;
 use hadar::simulate::sequential::{Interval, Plan};
 
@@ -76,9 +75,6 @@ pub struct Exact {
     pub pairs: Vec<ExactPair>,
     /// Among all of them; `None` for a single alternative.
     pub library: Option<ExactLibrary>,
-    /// What it took.
-    #[serde(skip)]
-    pub work: Work,
 }
 
 impl Exact {

@@ -34,9 +34,6 @@ pub struct Matrix {
     pub unconverged: usize,
     /// How the local distances per √photon were computed: what the targets lent to their pairs.
     pub passes: Passes,
-    /// What it took.
-    #[serde(skip)]
-    pub work: Work,
 }
 
 /// One material against all others.
@@ -83,9 +80,6 @@ pub struct Apart {
     pub clusters: Vec<Vec<String>>,
     /// Groups that hang together by pairs that are not told apart, if only by a chain of them.
     pub chains: Vec<Vec<String>>,
-    /// What was computed for it and what was not; nothing where all distances were wanted anyway.
-    #[serde(skip)]
-    pub work: Work,
 }
 
 /// The answer to 'is the target identifiable', and no more.

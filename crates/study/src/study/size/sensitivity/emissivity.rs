@@ -12,7 +12,7 @@ use super::linear;
 use crate::study::identify::quantile;
 use crate::study::size::Solvers;
 use crate::study::{Study, Surface};
-use hadar::demand::Work;
+use hadar::demand;
 use hadar::error::Result;
 use hadar::instrument::Camera;
 use rand::SeedableRng;
@@ -86,28 +86,22 @@ impl Study {
         &self,
         camera: &Camera,
         alternative: &Surface,
-        work: &mut Work,
     ) -> Result<EmissivityErrors> {
         let spec = self.scenario.sensitivity.unwrap_or_default();
         let counting = self.counting_of(camera);
         let pair = [self.target.emissivity.as_slice(), alternative.emissivity.as_slice()];
         let mut solvers = Solvers::new(self, &self.bands);
-        let (distance, nearest) = solvers.reached(self, pair, &counting, None, work)?;
+        let (distance, nearest) = solvers.reached(self, pair, &counting, None)?;
         let ripple = Ripple::new(self.bands.nodes_cm1(), spec.emissivity_error, spec.correlation_cm1);
         let draw = |solvers: &mut Solvers<'_>, stream: usize| {
             let mut random = ChaCha8Rng::seed_from_u64(SEED);
             random.set_stream(stream as u64);
             let shaken = pair.map(|emissivity| ripple.applied(emissivity, &mut random));
-            let mut work = Work::default();
             let pair = [shaken[0].as_slice(), shaken[1].as_slice()];
-            solvers.reached(self, pair, &counting, None, &mut work).map(|(distance, _)| (distance, work))
+            demand::ledger_of(|| Ok(solvers.reached(self, pair, &counting, None)?.0))
         };
-        let draws = (0..DRAWS)
-            .into_par_iter()
-            .map_init(|| Solvers::new(self, &self.bands), draw)
-            .collect::<Result<Vec<(f64, Work)>>>()?;
-        draws.iter().for_each(|(_, taken)| work.add(taken));
-        let mut distances: Vec<f64> = draws.into_iter().map(|(distance, _)| distance).collect();
+        let draws = (0..DRAWS).into_par_iter().map_init(|| Solvers::new(self, &self.bands), draw);
+        let mut distances = demand::gathered(draws)?;
         distances.sort_by(f64::total_cmp);
         let met = distances.iter().filter(|distance| **distance >= self.required).count();
         let sigma_linear = nearest

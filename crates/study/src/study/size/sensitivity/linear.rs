@@ -106,7 +106,7 @@ mod tests {
         let counting = study.counting().unwrap();
         let reached = |target: &[f64], other: &[f64]| {
             Solvers::new(&study, &study.bands)
-                .reached(&study, [target, other], &counting, None, &mut Default::default())
+                .reached(&study, [target, other], &counting, None)
                 .unwrap()
         };
         let (target, other) = (&study.target.emissivity, &alternative.emissivity);
