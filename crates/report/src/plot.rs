@@ -21,6 +21,7 @@
 //! ```
 
 mod axis;
+mod backend;
 mod colour;
 mod contour;
 mod dots;

@@ -5,10 +5,12 @@
 //! each hardware quantity would have to be. Results are plain data that serialise to the JSON of the
 //! command line; text, tables and plots only render them.
 
+mod air;
 mod bands;
 mod camera;
 mod distances;
 mod identify;
+mod looked_up;
 pub mod range;
 mod resolve;
 mod rule;
@@ -16,6 +18,7 @@ mod shortfall;
 mod sight;
 mod simulate;
 mod size;
+mod surface;
 mod warn;
 
 pub use crate::warning::Warning;
@@ -24,7 +27,7 @@ pub use identify::{
     Identifiability, Identification, Law, LibrarySize, Matrix, NearestState, PairResult, Passband,
     Prediction, PriorAverage, Reached, Rows, SampleSpectra, Scaling, TargetVerdict, Trial,
 };
-pub use resolve::{Study, Surface};
+pub use looked_up::Study;
 pub use rule::{
     CameraVerdict, Certified, EmissivityError, EnvelopeResult, FileHash, Fixes, IdealCamera, LightTime,
     LimitingScene, Neighbourhood, NotIdentifiable, Proof, Quotable, RuleAnswer, RuleAsked, RuleRequirement,
@@ -40,3 +43,4 @@ pub use size::{
     Answer, CameraResult, Elasticities, EmissivityErrors, Finding, InformationCurves, PhotonMap,
     RequirementResult, Sensitivity, Sizing, Solutions, Spectra, Verdict, VerdictAlone,
 };
+pub use surface::Surface;

@@ -4,7 +4,7 @@
 //! tanh-sinh rule in extended precision, each half of the band apart.
 
 use super::chart::{Chart, Measured};
-use super::off;
+use super::item::off;
 use super::quadrature::integral;
 use super::timing::{Budget, seconds_of};
 use super::{Item, Order};

@@ -61,7 +61,7 @@ fn chart(
         let pair = pair(count)?;
         let truth = pair.local()?;
         let budget = Budget::of(order.quick);
-        let off = |distance: f64| super::off(distance, &truth);
+        let off = |distance: f64| super::item::off(distance, &truth);
         let effort = count as f64;
         let question = || format!("one pair, {count} bands");
         for (name, residual) in [

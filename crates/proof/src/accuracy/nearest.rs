@@ -1,7 +1,7 @@
 //! Nearest distance of a pair: the search, lattices of states, and the local distance that stands for it at times.
 
 use super::chart::{Chart, Measured};
-use super::off;
+use super::item::off;
 use super::scene::{Pair, unknowns};
 use super::timing::{Budget, seconds_of};
 use super::{Item, Order};

@@ -1,7 +1,7 @@
 //! Photon radiance of a blackbody: value by value, spectrum by spectrum, and as textbooks write it.
 
 use super::chart::{Chart, Measured};
-use super::off;
+use super::item::off;
 use super::timing::{Budget, seconds_of};
 use super::{Item, Order};
 use crate::reference::planck as reference;

@@ -26,8 +26,8 @@ mod report;
 mod requirement;
 mod scene;
 
-pub use findings::Family;
-pub use report::{Failure, FamilyReport, Point, StressReport};
+pub use findings::{Family, Point};
+pub use report::{Failure, FamilyReport, StressReport};
 
 use self::draw::Draw;
 use self::findings::Findings;

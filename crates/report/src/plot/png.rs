@@ -3,10 +3,10 @@
 use plotters::backend::{BitMapBackend, DrawingBackend};
 use plotters::style::Color;
 
+use super::backend::{failure, rgba};
 use super::colour::Colour;
 use super::mask::Mask;
 use super::scene::{Anchor, Mark, Point, Rect, Scene};
-use super::svg::{failure, rgba};
 use super::text;
 use hadar::Result;
 

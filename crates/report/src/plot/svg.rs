@@ -5,16 +5,15 @@
 
 use plotters::backend::{DrawingBackend, SVGBackend};
 use plotters::style::text_anchor::{HPos, Pos, VPos};
-use plotters::style::{
-    Color, FontDesc, FontFamily, FontStyle, FontTransform, RGBAColor, ShapeStyle, TextStyle,
-};
+use plotters::style::{Color, FontDesc, FontFamily, FontStyle, FontTransform, ShapeStyle, TextStyle};
 
+use super::backend::{failure, rgba};
 use super::colour::{Colour, WHITE};
 use super::png;
 use super::scene::{Anchor, Mark, Point, Rect, Scene};
 use super::text;
 use base64::prelude::{BASE64_STANDARD, Engine as _};
-use hadar::{Error, Result};
+use hadar::Result;
 
 const SCALE: f64 = 10.0;
 
@@ -113,21 +112,12 @@ fn draw(backend: &mut SVGBackend<'_>, mark: &Mark) -> Result<()> {
     .map_err(failure)
 }
 
-/// A refusal of the drawing library, which no valid scene meets.
-pub(super) fn failure(error: impl std::fmt::Display) -> Error {
-    Error::malformed(format!("the figure cannot be drawn ({error})"), "report this as an error")
-}
-
 fn at((x, y): Point) -> (i32, i32) {
     ((x * SCALE).round() as i32, (y * SCALE).round() as i32)
 }
 
 fn shape(colour: Colour, width: f64) -> ShapeStyle {
     ShapeStyle { color: rgba(colour), filled: true, stroke_width: (width * SCALE).round() as u32 }
-}
-
-pub(super) fn rgba(Colour { rgb: (r, g, b), opacity }: Colour) -> RGBAColor {
-    RGBAColor(r, g, b, opacity)
 }
 
 fn escape(text: &str) -> String {

@@ -1,10 +1,11 @@
 //! The bands of a scenario: sampled at their centres as in the paper, or integrated.
 
 use crate::scenario::{BandSource, BandsSpec, Scenario, Source};
-use hadar::error::Result;
+use hadar::error::{Error, Result};
+use hadar::instrument::Camera;
 use hadar::material::Material;
 use hadar::scene::{EnvironmentObject, Surroundings};
-use hadar::spectrum::Bands;
+use hadar::spectrum::{Band, Bands};
 use hadar::units::Spectral;
 use std::borrow::Cow;
 
@@ -78,4 +79,25 @@ pub(super) fn integrated(scenario: &Scenario, bands: Bands, materials: &Material
                 .collect()
         })
         .map_err(|error| error.at(scenario.place("bands.integrate")))
+}
+
+/// Refuses bands that the detector does not see at all.
+///
+/// # Errors
+/// A filter outside the stated range of the detector, or bands all of which are.
+pub(super) fn check_detector(bands: &Bands, camera: &Camera, scenario: &Scenario) -> Result<()> {
+    // A grid that reaches beyond the range is only warned of, since that is often stated of something else than the detector.
+    let [low, high] = camera.spectral_range_cm1;
+    let is_outside = |band: &Band| band.high_cm1 <= low || band.low_cm1 >= high;
+    let all = bands.bands().iter().all(is_outside);
+    let Some(band) = bands.bands().iter().find(|band| is_outside(band) && (all || band.name.is_some()))
+    else {
+        return Ok(());
+    };
+    let which = band.name.as_ref().map_or_else(String::new, |name| format!(" of filter `{name}`"));
+    let found = format!(
+        "the band{which} from {:.0} to {:.0} cm^-1 lies outside the range of the detector, {low} to {high} cm^-1",
+        band.low_cm1, band.high_cm1
+    );
+    Err(Error::malformed(found, "leave it out, or take another camera").at(scenario.place("bands")))
 }

@@ -1,6 +1,7 @@
 //! A ranging scenario answered: bounds of every window by each signal, what would have to change, witnesses.
 
 mod bounds;
+mod looked_up;
 mod resolve;
 mod results;
 mod signals;
@@ -10,6 +11,7 @@ mod verdict;
 mod witness;
 mod wording;
 
+pub use looked_up::RangeStudy;
 pub use results::{
     BoundMaps, CellMedians, DepthFinding, DepthSolutions, DepthVerdict, Geometry, Line, Matched,
     ObjectBounds, PictureKind, Ranging, Signal, SignalBounds,
@@ -18,13 +20,13 @@ pub use results::{
 pub use bounds::{median, quantile};
 
 use self::bounds::Ground;
+use self::looked_up::SECTIONS;
 use self::signals::SignalMap;
 use self::subject::{Resolved, Truth, nothing_to_see};
 use super::Warning;
 use crate::scenario::RangeScenario;
-use hadar::demand::{self, Ledger, Skipping, Thing, Work};
+use hadar::demand::{self, Ledger, Skipping, Thing};
 use hadar::error::Result;
-use hadar::instrument::Camera;
 use hadar::ranging::cube::{Cube, Shape};
 use hadar::ranging::depth::StereoGeometry;
 use hadar::ranging::derivative::Derivative;
@@ -32,18 +34,6 @@ use hadar::ranging::information::{Cell, InformationMap, Request, information};
 use hadar::ranging::noise::NoiseVariance;
 use hadar::render::{Part, StereoPair};
 use hadar::spectrum::Bands;
-
-/// A ranging scenario with everything it names looked up and checked.
-#[derive(Debug)]
-pub struct RangeStudy {
-    scenario: RangeScenario,
-    camera: Option<Camera>,
-    bands: Option<Bands>,
-    geometry: StereoGeometry,
-    subject: Resolved,
-    /// What it took to look everything up.
-    looked_up: Work,
-}
 
 /// How a study is to be answered.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -60,9 +50,6 @@ pub struct RangePlan {
 
 /// Is told how much of how much is done.
 pub type Progress<'a> = &'a (dyn Fn(usize, usize) + Sync);
-
-/// Sections of an answer: verdict, objects, cells, what would have to change, lines, and views matched.
-const SECTIONS: u64 = 6;
 
 /// Information of every window in both views.
 struct Informed {

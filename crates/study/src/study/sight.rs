@@ -10,70 +10,13 @@
 //!
 //! Source: paper S7–S9 and S11–S12.
 
-use super::{Study, Surface};
-use crate::scenario::{AtmosphereSource, Scenario};
-use hadar::atmosphere::Atmosphere;
+use super::Study;
 use hadar::error::{Error, Result};
-use hadar::grid::text_of_file;
 use hadar::instrument::view::fill;
 use hadar::instrument::{Camera, Light, NoiseSpec, View};
 use hadar::planck;
 use hadar::scene::State;
-use hadar::spectrum::{Band, Bands};
-
-/// What is behind the target, on the nodes of the bands.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Behind {
-    pub(super) surface: Surface,
-    pub(super) temperature_k: f64,
-}
-
-/// The air on the path.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Air {
-    pub(super) table: Atmosphere,
-    pub(super) temperature_k: f64,
-}
-
-impl Air {
-    /// The air of a scenario.
-    ///
-    /// # Errors
-    /// An unknown model, a table that cannot be read, a target without a distance, bands that the table does not cover.
-    pub(super) fn of(scenario: &Scenario) -> Result<Option<Self>> {
-        let Some(spec) = &scenario.atmosphere else { return Ok(None) };
-        let table = match &spec.source {
-            AtmosphereSource::Model(name) => {
-                let known = Atmosphere::embedded(name).map_err(|error| match error {
-                    Error::UnknownName { nearest, .. } if nearest.is_empty() => Error::malformed(
-                        format!("there is no model atmosphere `{name}`"),
-                        format!("choose among {}", Atmosphere::names().join(", ")),
-                    ),
-                    error => error,
-                });
-                known.map_err(|error| error.at(scenario.place("atmosphere.model")))?
-            }
-            AtmosphereSource::Table(path) => {
-                Atmosphere::from_csv(&text_of_file(path, "read the transmittances")?, path)?
-            }
-        };
-        let Some(temperature_k) = spec.temperature_k.or(table.temperature_k()) else {
-            let error = Error::malformed(
-                "the temperature of the air is not given",
-                "write temperature = \"15 degC\"",
-            );
-            return Err(error.at(scenario.place("atmosphere.temperature")));
-        };
-        if scenario.target.distance_m.is_none() {
-            let error = Error::malformed(
-                "air on the path, but the target has no distance",
-                "write distance = \"30 m\"",
-            );
-            return Err(error.at(scenario.place("target.distance")));
-        }
-        Ok(Some(Self { table, temperature_k }))
-    }
-}
+use hadar::spectrum::Bands;
 
 /// The bands as they reach a camera, and what its pixel sees beside the target.
 #[derive(Debug, Clone, PartialEq)]
@@ -220,27 +163,6 @@ impl Study {
         }
         view
     }
-}
-
-/// Refuses bands that the detector does not see at all.
-///
-/// # Errors
-/// A filter outside the stated range of the detector, or bands all of which are.
-pub(super) fn check_detector(bands: &Bands, camera: &Camera, scenario: &Scenario) -> Result<()> {
-    // A grid that reaches beyond the range is only warned of, since that is often stated of something else than the detector.
-    let [low, high] = camera.spectral_range_cm1;
-    let is_outside = |band: &Band| band.high_cm1 <= low || band.low_cm1 >= high;
-    let all = bands.bands().iter().all(is_outside);
-    let Some(band) = bands.bands().iter().find(|band| is_outside(band) && (all || band.name.is_some()))
-    else {
-        return Ok(());
-    };
-    let which = band.name.as_ref().map_or_else(String::new, |name| format!(" of filter `{name}`"));
-    let found = format!(
-        "the band{which} from {:.0} to {:.0} cm^-1 lies outside the range of the detector, {low} to {high} cm^-1",
-        band.low_cm1, band.high_cm1
-    );
-    Err(Error::malformed(found, "leave it out, or take another camera").at(scenario.place("bands")))
 }
 
 /// What sensor and filters send onto the sensor, photons s⁻¹ m⁻² sr⁻¹ in each band.

@@ -1,6 +1,21 @@
 //! What one case finds: comparisons with the reference, and what is wrong.
 
-use super::report::Point;
+/// One scene near equilibrium: what its distance keeps of its digits.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+pub struct Point {
+    /// Case.
+    pub case: u64,
+    /// |T − T₀|/T₀.
+    pub apart: f64,
+    /// 1 − V: the part of the hemisphere that is dark.
+    pub unlit: f64,
+    /// Digits kept by the differences that the crate forms.
+    pub digits: f64,
+    /// Digits kept by B(T) − V·B(T₀) in doubles.
+    pub digits_naive: f64,
+    /// Digits that the solver itself claims.
+    pub digits_claimed: f64,
+}
 
 /// What cases of one kind stress.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]

@@ -2,7 +2,8 @@
 
 use super::draw::Draw;
 use super::findings::Findings;
-use super::report::{Point, digits};
+use super::findings::Point;
+use super::report::digits;
 use super::scene::{Hardship, Scene, band_count};
 use crate::reference::Extended;
 use crate::reference::local::{LocalAnswer, LocalReference, Noise, Pair, Share};

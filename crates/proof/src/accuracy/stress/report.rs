@@ -1,6 +1,6 @@
 //! What a run of the suite tells, family by family.
 
-use super::findings::{Family, Findings};
+use super::findings::{Family, Findings, Point};
 use std::collections::BTreeMap;
 
 /// Failures that are told in full.
@@ -17,23 +17,6 @@ pub struct Failure {
     pub case: u64,
     /// What is wrong.
     pub what: String,
-}
-
-/// One scene near equilibrium: what its distance keeps of its digits.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
-pub struct Point {
-    /// Case.
-    pub case: u64,
-    /// |T − T₀|/T₀.
-    pub apart: f64,
-    /// 1 − V: the part of the hemisphere that is dark.
-    pub unlit: f64,
-    /// Digits kept by the differences that the crate forms.
-    pub digits: f64,
-    /// Digits kept by B(T) − V·B(T₀) in doubles.
-    pub digits_naive: f64,
-    /// Digits that the solver itself claims.
-    pub digits_claimed: f64,
 }
 
 /// Digits of a relative error, between 0 and 16.

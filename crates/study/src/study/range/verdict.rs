@@ -1,8 +1,8 @@
 //! The answer in a sentence, what diffraction adds, and what the reader must know.
 
+use super::looked_up::{RangeStudy, SECTIONS};
 use super::results::{BoundMaps, DepthFinding, DepthVerdict, ObjectBounds, Ranging, Signal, SignalBounds};
 use super::subject::{Depth, Resolved};
-use super::{RangeStudy, SECTIONS};
 use crate::study::Warning;
 use hadar::demand::{Reason, Thing};
 use hadar::error::Result;

@@ -3,6 +3,7 @@
 
 mod emissivity;
 mod linear;
+mod ripple;
 
 pub use emissivity::EmissivityErrors;
 

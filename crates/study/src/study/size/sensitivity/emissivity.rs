@@ -9,6 +9,7 @@
 //! Assumptions: the noise is that of the spectra as they are; the limiting alternative stays the limiting one.
 
 use super::linear;
+use super::ripple::Ripple;
 use crate::study::identify::quantile;
 use crate::study::size::Solvers;
 use crate::study::{Study, Surface};
@@ -17,7 +18,6 @@ use hadar::error::Result;
 use hadar::instrument::Camera;
 use rand::SeedableRng;
 use rand::rngs::ChaCha8Rng;
-use rand_distr::{Distribution, StandardNormal};
 use rayon::prelude::*;
 
 /// Pairs that are drawn.
@@ -45,39 +45,6 @@ pub struct EmissivityErrors {
     pub share_met: f64,
     /// Deviation of the distance to first order in the errors; `None` for local distances and where it is 0.
     pub sigma_linear: Option<f64>,
-}
-
-/// Correlated errors at the nodes of the bands.
-pub(super) struct Ripple {
-    /// Nodes in ascending wavenumber, with the correlation to the one before.
-    pub(super) chain: Vec<(usize, f64)>,
-    sigma: f64,
-}
-
-impl Ripple {
-    pub(super) fn new(nodes_cm1: &[f64], sigma: f64, correlation_cm1: f64) -> Self {
-        let mut order: Vec<usize> = (0..nodes_cm1.len()).collect();
-        order.sort_by(|a, b| nodes_cm1[*a].total_cmp(&nodes_cm1[*b]));
-        let mut before = f64::NEG_INFINITY;
-        let chain = order.into_iter().map(|node| {
-            let correlation = ((before - nodes_cm1[node]) / correlation_cm1).exp();
-            before = nodes_cm1[node];
-            (node, correlation)
-        });
-        Self { chain: chain.collect(), sigma }
-    }
-
-    /// An emissivity with errors.
-    fn applied(&self, emissivity: &[f64], random: &mut ChaCha8Rng) -> Vec<f64> {
-        let mut shaken = emissivity.to_vec();
-        let mut error = 0.0;
-        for (node, correlation) in &self.chain {
-            let fresh: f64 = StandardNormal.sample(random);
-            error = correlation * error + (1.0 - correlation * correlation).sqrt() * fresh;
-            shaken[*node] = (emissivity[*node] + self.sigma * error).clamp(0.0, 1.0);
-        }
-        shaken
-    }
 }
 
 impl Study {

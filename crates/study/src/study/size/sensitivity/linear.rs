@@ -7,7 +7,7 @@
 //!
 //! and the variance is Σ_jk g_j g_k ρ_jk for each surface; with ρ a chain along ascending wavenumber that is one sum.
 
-use super::emissivity::Ripple;
+use super::ripple::Ripple;
 use crate::study::{Study, Surface};
 use hadar::fisher::Counting;
 use hadar::scene::State;
@@ -105,9 +105,7 @@ mod tests {
         let alternative = &study.alternatives[0];
         let counting = study.counting().unwrap();
         let reached = |target: &[f64], other: &[f64]| {
-            Solvers::new(&study, &study.bands)
-                .reached(&study, [target, other], &counting, None)
-                .unwrap()
+            Solvers::new(&study, &study.bands).reached(&study, [target, other], &counting, None).unwrap()
         };
         let (target, other) = (&study.target.emissivity, &alternative.emissivity);
         let (distance, state) = reached(target, other);
