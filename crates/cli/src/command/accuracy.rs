@@ -1,6 +1,6 @@
 //! `hadar accuracy`: run time against error, method by method.
 
-use super::{Global, as_json};
+use super::global::{Global, as_json};
 use clap::Args;
 use hadar::demand::{Reason, Thing, Work};
 use hadar::error::{Error, Result};

@@ -1,6 +1,6 @@
 //! `hadar cameras`: the known cameras.
 
-use super::Global;
+use super::global::Global;
 use clap::{Args, Subcommand};
 use hadar::demand::{Reason, Thing, Work};
 use hadar::error::Result;

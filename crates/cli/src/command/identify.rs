@@ -1,6 +1,6 @@
 //! `hadar identify`: distances from the target to every alternative, all against all, bands, simulated decisions.
 
-use super::{By, Global};
+use super::global::{By, Global};
 use clap::Args;
 use hadar::error::{Error, Place, Result, check};
 use hadar::simulate::sequential::Plan;

@@ -1,6 +1,6 @@
 //! `hadar materials`: the library.
 
-use super::{Global, as_json};
+use super::global::{Global, as_json};
 use clap::{Args, Subcommand};
 use hadar::demand::{Reason, Thing, Work};
 use hadar::error::{Error, Result};

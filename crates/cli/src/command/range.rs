@@ -1,6 +1,6 @@
 //! `hadar range`: bounds of passive stereo ranging from a scene or a heat cube.
 
-use super::Global;
+use super::global::Global;
 use clap::Args;
 use hadar::error::{Error, Result};
 use hadar_report::range;

@@ -1,6 +1,6 @@
 //! `hadar reproduce`: the paper's figures and tables made again, with a ledger of what agrees.
 
-use super::Global;
+use super::global::Global;
 use super::progress::Bar;
 use crate::reproduce::{Effort, FurtherStudy, Item, Line, Order, Verdict, markdown, table};
 use clap::Args;

@@ -1,6 +1,6 @@
 //! `hadar rule`: which cameras meet a rule.
 
-use super::Global;
+use super::global::Global;
 use clap::Args;
 use hadar::error::Result;
 use hadar_report::rule;

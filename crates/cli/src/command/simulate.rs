@@ -1,6 +1,6 @@
 //! `hadar simulate`: spectra drawn, classifiers trained and judged, held against the limit.
 
-use super::Global;
+use super::global::Global;
 use clap::Args;
 use hadar::demand::ledger_of;
 use hadar::error::{Error, Result, check};

@@ -1,6 +1,6 @@
 //! `hadar size`: the verdict on a camera.
 
-use super::{By, Global};
+use super::global::{By, Global};
 use clap::Args;
 use hadar::demand::{Skipping, ledger_of};
 use hadar::error::Result;

@@ -1,0 +1,177 @@
+//! What every command shares: its options, the library, the study, and how answers leave the process.
+
+use super::progress::Bar;
+use clap::Args;
+use hadar::demand::{Reason, Skipping, Thing, Work};
+use hadar::error::{Error, Result};
+use hadar::material::Library;
+use hadar_report::bundle::Bundle;
+use hadar_report::text;
+use hadar_study::scenario::Scenario;
+use hadar_study::study::Study;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+/// Options of every command.
+#[derive(Debug, Args)]
+pub(super) struct Global {
+    /// Print one JSON object on stdout and nothing else
+    #[arg(long, global = true)]
+    pub(super) json: bool,
+    /// Write scenario, tables and plots into this folder
+    #[arg(long, global = true, value_name = "DIR")]
+    pub(super) out: Option<PathBuf>,
+    /// Materials of your own, a folder or a file; may be given several times
+    #[arg(long, global = true, value_name = "DIR")]
+    pub(super) library: Vec<PathBuf>,
+    /// Use the materials of --library alone, not the built-in ones
+    #[arg(long, global = true)]
+    pub(super) only_library: bool,
+    /// Leave out alternatives whose spectra do not cover the bands, with a warning
+    #[arg(long, global = true)]
+    pub(super) skip_uncovered: bool,
+    /// Seed of random numbers; the same seed gives the same result, for any number of threads
+    #[arg(long, global = true, value_name = "N", default_value_t = 1)]
+    pub(super) seed: u64,
+    /// Number of threads (default: all cores); the result does not depend on it
+    #[arg(long, global = true, value_name = "N")]
+    pub(super) threads: Option<usize>,
+    /// Say on stderr what was computed, what was not, and why (with --json always under `stats`)
+    #[arg(long, global = true)]
+    pub(super) stats: bool,
+    /// Compute in full what a proof would spare; the answer is the same
+    #[arg(long, global = true)]
+    pub(super) no_skip: bool,
+    /// Print nothing on stderr but errors
+    #[arg(short, long, global = true)]
+    pub(super) quiet: bool,
+}
+
+impl Global {
+    /// The embedded library with the user's own materials, and what is to be said about them.
+    pub(super) fn library(&self) -> Result<Library> {
+        let mut library = if self.only_library { Library::empty() } else { Library::embedded()? };
+        for path in &self.library {
+            library.add_path(path)?;
+        }
+        if library.is_empty() {
+            let instead = "add spectra with --library DIR, or leave out --only-library";
+            return Err(Error::malformed("the library is empty", instead));
+        }
+        for warning in library.warnings() {
+            self.note(&format!("warning: {warning}"));
+        }
+        Ok(library)
+    }
+
+    /// A bar on stderr for long work; nothing where stderr is no terminal, or quiet.
+    pub(super) fn progress(&self, what: &'static str) -> Bar {
+        Bar::new(what, self.quiet)
+    }
+
+    /// A line on stderr, unless quiet.
+    pub(super) fn note(&self, text: &str) {
+        if !self.quiet {
+            eprintln!("{text}");
+        }
+    }
+
+    /// Whether proofs may spare work.
+    pub(super) fn skipping(&self) -> Skipping {
+        if self.no_skip { Skipping::Off } else { Skipping::On }
+    }
+
+    /// Makes and writes a report where there is a folder for it; what that took.
+    pub(super) fn report(&self, make: impl FnOnce(&Path) -> Result<Bundle>) -> Result<Work> {
+        let mut work = Work::default();
+        let Some(out) = &self.out else {
+            work.spare(Thing::Reports, Reason::NotAsked, 1);
+            return Ok(work);
+        };
+        let bundle = make(out)?;
+        self.write(&bundle, out)?;
+        work.compute(Thing::Reports, 1);
+        work.compute(Thing::Figures, bundle.figures() as u64);
+        Ok(work)
+    }
+
+    /// Prints a result that has its ledger in it, and with `--stats` the ledger.
+    pub(super) fn answer(&self, json: &impl serde::Serialize, text: &str, work: &Work) -> Result<()> {
+        if self.stats {
+            self.note(text::stats(work).trim_end());
+        }
+        self.print(json, text)
+    }
+
+    /// Prints a result that has no ledger in it, with `stats` beside its keys.
+    pub(super) fn answer_with(&self, mut json: serde_json::Value, text: &str, work: &Work) -> Result<()> {
+        if let Some(object) = json.as_object_mut() {
+            object.insert("stats".into(), as_json(work)?);
+        }
+        self.answer(&json, text, work)
+    }
+
+    /// Prints a result: JSON with `--json`, else the text.
+    pub(super) fn print(&self, json: &impl serde::Serialize, text: &str) -> Result<()> {
+        let text = if self.json {
+            serde_json::to_string_pretty(json)
+                .map_err(|error| Error::malformed(error.to_string(), "report this as a bug"))?
+        } else {
+            text.trim_end().to_owned()
+        };
+        match writeln!(std::io::stdout(), "{text}") {
+            // A reader that has seen enough (`| head`) is no error.
+            Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+                Err(Error::file("print the result", Path::new("stdout"), error))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    pub(super) fn study(
+        &self,
+        path: &Path,
+        by: Option<hadar_study::scenario::DistanceKind>,
+    ) -> Result<Study> {
+        let mut scenario = Scenario::from_file(path)?;
+        if let Some(by) = by {
+            scenario.requirement.by = by;
+        }
+        scenario.alternatives.skip_uncovered |= self.skip_uncovered;
+        Study::new(&scenario, &self.library()?)
+    }
+
+    /// Writes the files and says where.
+    pub(super) fn write(&self, bundle: &Bundle, out: &Path) -> Result<()> {
+        bundle.write(out)?;
+        let names: Vec<&str> = bundle.names().collect();
+        self.note(&format!("wrote {} to {}", names.join(", "), out.display()));
+        Ok(())
+    }
+}
+
+/// Anything as JSON.
+pub(super) fn as_json(value: &impl serde::Serialize) -> Result<serde_json::Value> {
+    serde_json::to_value(value).map_err(|error| Error::malformed(error.to_string(), "report this as a bug"))
+}
+
+/// The distance that decides, as a flag.
+#[derive(Debug, Clone, Copy, clap::ValueEnum)]
+pub(super) enum By {
+    /// To the nearest state of the alternative: the limit
+    Nearest,
+    /// The paper's local distance, calibrated camera (S27)
+    Local,
+    /// The paper's local distance with unknown gain (S29)
+    LocalUnknownGain,
+}
+
+impl From<By> for hadar_study::scenario::DistanceKind {
+    fn from(by: By) -> Self {
+        match by {
+            By::Nearest => Self::Nearest,
+            By::Local => Self::Local,
+            By::LocalUnknownGain => Self::LocalUnknownGain,
+        }
+    }
+}
