@@ -21,7 +21,7 @@ use std::hint::black_box;
 
 /// Names of the kernels, in the order of the tables.
 #[allow(dead_code, reason = "not every bench names them all")]
-pub const NAMES: [&str; 8] = [
+pub(crate) const NAMES: [&str; 8] = [
     "planck spectrum",
     "planck difference",
     "local pair",
@@ -33,12 +33,12 @@ pub const NAMES: [&str; 8] = [
 ];
 
 /// Bands of the spectra, materials of the library, samples of the cube.
-pub const BANDS: usize = 536;
-pub const MATERIALS: usize = 30;
-pub const CUBE: [usize; 3] = [32, 64, 54];
+pub(crate) const BANDS: usize = 536;
+pub(crate) const MATERIALS: usize = 30;
+pub(crate) const CUBE: [usize; 3] = [32, 64, 54];
 
 /// What the kernels work on.
-pub struct Scene {
+pub(crate) struct Scene {
     bands: Bands,
     surroundings: Surroundings,
     unknowns: Unknowns,
@@ -48,7 +48,7 @@ pub struct Scene {
 }
 
 impl Scene {
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         let bands = Bands::uniform(715.0, 1250.0, 1.0).expect("valid bands");
         let object = EnvironmentObject { temperature_k: 293.15, emissivity: None };
         let surroundings = Surroundings::new(bands.nodes_cm1(), vec![object]).expect("valid surroundings");
@@ -65,7 +65,7 @@ impl Scene {
     }
 
     /// One call of a kernel; `call` counts them.
-    pub fn kernel(&self, name: &str) -> Option<Box<dyn FnMut(usize) + '_>> {
+    pub(crate) fn kernel(&self, name: &str) -> Option<Box<dyn FnMut(usize) + '_>> {
         let nu = self.bands.nodes_cm1();
         let spectrum = || vec![0.0; BANDS];
         let at = |call: usize| State { temperature_k: 310.15 + (call % 2) as f64, ..self.state.clone() };

@@ -18,5 +18,5 @@ mod ranging_reference;
 mod selection;
 
 mod support {
-    pub mod scenes;
+    pub(crate) mod scenes;
 }

@@ -61,7 +61,7 @@ const MOST_THREADS: usize = 1024;
 
 /// Runs the command line of this process.
 #[must_use]
-pub fn main() -> ExitCode {
+pub(crate) fn main() -> ExitCode {
     let cli = Cli::parse();
     if let Some(threads) = cli.global.threads {
         if threads > MOST_THREADS {

@@ -23,9 +23,9 @@ mod studies;
 mod tabs2;
 mod tabs5;
 
-pub use ledger::{Line, Verdict, markdown, table};
-pub use order::{Effort, Order, Progress};
-pub use studies::FurtherStudy;
+pub(crate) use ledger::{Line, Verdict, markdown, table};
+pub(crate) use order::{Effort, Order, Progress};
+pub(crate) use studies::FurtherStudy;
 
 use hadar::error::{Error, Result};
 use hadar_report::bundle::Bundle;
@@ -35,7 +35,7 @@ use std::path::Path;
 /// What can be made again.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Item {
+pub(crate) enum Item {
     /// Classifiers against the limit over photons, 536 bands.
     Fig3b,
     /// The same in three bands, and with a detector's noise.
@@ -60,7 +60,7 @@ pub enum Item {
 
 /// What came of an item.
 #[derive(Debug, Clone)]
-pub struct Reproduction {
+pub(crate) struct Reproduction {
     /// Its files.
     pub bundle: Bundle,
     /// Its lines of the ledger.
@@ -69,7 +69,7 @@ pub struct Reproduction {
 
 impl Item {
     /// All of them, the quickest first.
-    pub const ALL: [Self; 10] = [
+    pub(crate) const ALL: [Self; 10] = [
         Self::TabS2,
         Self::TabS5,
         Self::Policy,
@@ -84,7 +84,7 @@ impl Item {
 
     /// The name on the command line, and of its folder.
     #[must_use]
-    pub const fn name(self) -> &'static str {
+    pub(crate) const fn name(self) -> &'static str {
         match self {
             Self::Fig3b => "fig3b",
             Self::FigS7 => "figs7",
@@ -101,7 +101,7 @@ impl Item {
 
     /// What it shows.
     #[must_use]
-    pub const fn title(self) -> &'static str {
+    pub(crate) const fn title(self) -> &'static str {
         match self {
             Self::Fig3b => "Fig. 3b: classifiers against the shot-noise limit, 536 bands",
             Self::FigS7 => "Fig. S7: the same in three bands, and with a detector's noise",
@@ -120,7 +120,7 @@ impl Item {
     ///
     /// # Errors
     /// An unknown name; the message lists those there are.
-    pub fn from_name(name: &str) -> Result<Self> {
+    pub(crate) fn from_name(name: &str) -> Result<Self> {
         Self::ALL.into_iter().find(|item| item.name() == name).ok_or_else(|| {
             let names = Self::ALL.map(Self::name).join(", ");
             let studies = FurtherStudy::ALL.map(FurtherStudy::name).join(", ");
@@ -135,7 +135,7 @@ impl Item {
     ///
     /// # Errors
     /// A figure that cannot be drawn.
-    pub fn make(self, order: Order, out: &Path, progress: Progress<'_>) -> Result<Reproduction> {
+    pub(crate) fn make(self, order: Order, out: &Path, progress: Progress<'_>) -> Result<Reproduction> {
         let (mut bundle, lines, figures) = match self {
             Self::Fig3b => fig3b::all_bands(order, out, progress)?,
             Self::FigS7 => fig3b::three_bands(order, out, progress)?,

@@ -8,13 +8,13 @@ use proptest::prelude::*;
 
 /// A smooth spectrum in (0, 1): a level and six cosines over 700–1300 cm⁻¹ that stay within it.
 #[derive(Debug, Clone)]
-pub struct Curve {
+pub(crate) struct Curve {
     level: f64,
     waves: Vec<(f64, f64)>,
 }
 
 impl Curve {
-    pub fn at(&self, nu_cm1: f64) -> f64 {
+    pub(crate) fn at(&self, nu_cm1: f64) -> f64 {
         let t = (nu_cm1 - 700.0) / 600.0;
         let total: f64 = self.waves.iter().map(|wave| wave.0.abs()).sum::<f64>().max(1e-3);
         let reach = 0.95 * self.level.min(1.0 - self.level);
@@ -24,19 +24,19 @@ impl Curve {
         self.level + reach * wave.sum::<f64>()
     }
 
-    pub fn on(&self, nodes_cm1: &[f64]) -> Vec<f64> {
+    pub(crate) fn on(&self, nodes_cm1: &[f64]) -> Vec<f64> {
         nodes_cm1.iter().map(|&nu| self.at(nu)).collect()
     }
 }
 
-pub fn curve() -> impl Strategy<Value = Curve> {
+pub(crate) fn curve() -> impl Strategy<Value = Curve> {
     (0.05..0.95, proptest::collection::vec((-1.0..1.0, 0.0..6.3), 6))
         .prop_map(|(level, waves)| Curve { level, waves })
 }
 
 /// An environment object as it was drawn.
 #[derive(Debug, Clone)]
-pub struct Object {
+pub(crate) struct Object {
     pub temperature_k: f64,
     pub lighting: f64,
     pub emissivity: Option<Curve>,
@@ -44,7 +44,7 @@ pub struct Object {
 
 /// What a scene is made of, so that it can be made again on other bands.
 #[derive(Debug, Clone)]
-pub struct Recipe {
+pub(crate) struct Recipe {
     pub start_cm1: f64,
     pub step_cm1: f64,
     pub count: usize,
@@ -56,7 +56,7 @@ pub struct Recipe {
 
 /// A scene on its bands.
 #[derive(Debug, Clone)]
-pub struct Scene {
+pub(crate) struct Scene {
     pub bands: Bands,
     pub surroundings: Surroundings,
     pub state: State,
@@ -66,17 +66,17 @@ pub struct Scene {
 
 impl Recipe {
     /// Band centres.
-    pub fn centers(&self) -> Vec<f64> {
+    pub(crate) fn centers(&self) -> Vec<f64> {
         (0..self.count).map(|i| self.start_cm1 + i as f64 * self.step_cm1).collect()
     }
 
     /// The scene with one node per band.
-    pub fn scene(&self) -> Scene {
+    pub(crate) fn scene(&self) -> Scene {
         self.on(Bands::from_rows(self.centers().into_iter().map(|nu| (nu, self.step_cm1))).unwrap())
     }
 
     /// The same scene seen in other bands.
-    pub fn on(&self, bands: Bands) -> Scene {
+    pub(crate) fn on(&self, bands: Bands) -> Scene {
         let nodes = bands.nodes_cm1();
         let objects = self.objects.iter().map(|object| EnvironmentObject {
             temperature_k: object.temperature_k,
@@ -90,7 +90,7 @@ impl Recipe {
     }
 
     /// The same scene with black surroundings.
-    pub fn black(mut self) -> Self {
+    pub(crate) fn black(mut self) -> Self {
         self.objects.iter_mut().for_each(|object| object.emissivity = None);
         self
     }
@@ -128,7 +128,7 @@ prop_compose! {
 }
 
 /// The sets of nuisances, each holding the one before; as many as `bands` bands can bear.
-pub fn ever_more_unknowns(bands: usize, objects: usize) -> Vec<Unknowns> {
+pub(crate) fn ever_more_unknowns(bands: usize, objects: usize) -> Vec<Unknowns> {
     (0..=4)
         .map(|count| Unknowns::new(Nuisance::ALL.into_iter().take(count)).unwrap())
         .filter(|unknowns| unknowns.parameters(objects).len() < bands)
@@ -136,14 +136,14 @@ pub fn ever_more_unknowns(bands: usize, objects: usize) -> Vec<Unknowns> {
 }
 
 /// Photon radiance 2cν²/(eˣ − 1) per cm⁻¹, ν in cm⁻¹, of any number that can be differentiated.
-pub fn radiance<D: DualNum<Primitive = f64> + Copy>(nu_cm1: f64, temperature_k: D) -> D {
+pub(crate) fn radiance<D: DualNum<Primitive = f64> + Copy>(nu_cm1: f64, temperature_k: D) -> D {
     let x = temperature_k.recip() * (1.438_776_877_503_933_8 * nu_cm1);
     x.exp_m1().recip() * (2.0 * 299_792_458.0 * 1e6 * nu_cm1 * nu_cm1)
 }
 
 /// What the heat signal at one node depends on.
 #[derive(Debug, Clone)]
-pub struct Inputs<D> {
+pub(crate) struct Inputs<D> {
     pub mixing: D,
     pub temperature_k: D,
     pub lighting: Vec<D>,
@@ -152,7 +152,7 @@ pub struct Inputs<D> {
 }
 
 impl<D: DualNum<Primitive = f64> + Copy> Inputs<D> {
-    pub fn of(state: &State) -> Self {
+    pub(crate) fn of(state: &State) -> Self {
         Self {
             mixing: D::from(0.0),
             temperature_k: D::from(state.temperature_k),
@@ -163,7 +163,7 @@ impl<D: DualNum<Primitive = f64> + Copy> Inputs<D> {
     }
 
     /// G·[e B(T) + (1 − e) Σ Vₖ εₖ B(Tₖ)] with e = (1 − g) e₁ + g e₂.
-    pub fn signal(&self, nu_cm1: f64, e1: f64, e2: f64, objects: &[Option<f64>]) -> D {
+    pub(crate) fn signal(&self, nu_cm1: f64, e1: f64, e2: f64, objects: &[Option<f64>]) -> D {
         let e = (D::from(1.0) - self.mixing) * e1 + self.mixing * e2;
         let lit = (0..objects.len()).fold(D::from(0.0), |sum, k| {
             sum + self.lighting[k] * radiance(nu_cm1, self.environment_k[k]) * objects[k].unwrap_or(1.0)
@@ -174,12 +174,12 @@ impl<D: DualNum<Primitive = f64> + Copy> Inputs<D> {
 
 impl Scene {
     /// εₖ at node j.
-    pub fn objects_at(&self, j: usize) -> Vec<Option<f64>> {
+    pub(crate) fn objects_at(&self, j: usize) -> Vec<Option<f64>> {
         self.surroundings.objects().iter().map(|o| o.emissivity.as_ref().map(|e| e[j])).collect()
     }
 
     /// The signal (or its derivative, with dual numbers) at every node.
-    pub fn signal<D: DualNum<Primitive = f64> + Copy>(&self, inputs: &Inputs<D>) -> Vec<D> {
+    pub(crate) fn signal<D: DualNum<Primitive = f64> + Copy>(&self, inputs: &Inputs<D>) -> Vec<D> {
         let nodes = self.surroundings.nodes_cm1();
         (0..nodes.len())
             .map(|j| inputs.signal(nodes[j], self.emissivity[j], self.alternative[j], &self.objects_at(j)))
@@ -187,7 +187,7 @@ impl Scene {
     }
 
     /// Signal of a surface in a state, band by band (one node each), by the formula above.
-    pub fn counts(&self, surface: &[f64], state: &State) -> Vec<f64> {
+    pub(crate) fn counts(&self, surface: &[f64], state: &State) -> Vec<f64> {
         let inputs = Inputs::<f64>::of(state);
         let nodes = self.surroundings.nodes_cm1();
         let widths = self.bands.widths_cm1();
@@ -197,7 +197,7 @@ impl Scene {
     }
 
     /// Half the separation ½·‖2√p − 2√p′‖ per √photon of the target, straight from its definition.
-    pub fn half_separation(&self, state: &State) -> f64 {
+    pub(crate) fn half_separation(&self, state: &State) -> f64 {
         let target = self.counts(&self.emissivity, &self.state);
         let other = self.counts(&self.alternative, state);
         let total: f64 = target.iter().sum();

@@ -5,7 +5,7 @@ use hadar_report::table::Table;
 /// Whether a value of the paper comes out again.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Verdict {
+pub(crate) enum Verdict {
     /// It does.
     Reproduced,
     /// Under a choice that the paper does not state.
@@ -25,7 +25,7 @@ pub enum Verdict {
 impl Verdict {
     /// In words.
     #[must_use]
-    pub const fn words(self) -> &'static str {
+    pub(crate) const fn words(self) -> &'static str {
         match self {
             Self::Reproduced => "reproduced",
             Self::UnderAChoice => "reproduced under a stated choice",
@@ -40,7 +40,7 @@ impl Verdict {
 
 /// One value.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
-pub struct Line {
+pub(crate) struct Line {
     /// Figure, table or section of the paper.
     pub place: &'static str,
     /// What, with its unit.
@@ -99,7 +99,7 @@ impl Line {
 
 /// The ledger as CSV.
 #[must_use]
-pub fn table(lines: &[Line]) -> Table {
+pub(crate) fn table(lines: &[Line]) -> Table {
     let mut table = Table::new(["place", "quantity", "paper", "ours", "tolerance", "verdict", "why"]);
     lines.iter().for_each(|line| table.push(line.cells().to_vec()));
     table
@@ -107,7 +107,7 @@ pub fn table(lines: &[Line]) -> Table {
 
 /// The ledger in Markdown.
 #[must_use]
-pub fn markdown(lines: &[Line]) -> String {
+pub(crate) fn markdown(lines: &[Line]) -> String {
     let mut text = String::from(
         "| place | quantity | paper | ours | tolerance | verdict | why |\n|---|---|---|---|---|---|---|\n",
     );

@@ -5,7 +5,7 @@ use hadar_report::bundle::Bundle;
 
 /// How much is computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Effort {
+pub(crate) enum Effort {
     /// Every experiment.
     Full,
     /// Some of them.
@@ -14,7 +14,7 @@ pub enum Effort {
 
 /// How an item is made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Order {
+pub(crate) struct Order {
     /// All experiments or some.
     pub effort: Effort,
     /// Seed of all that is drawn.
@@ -37,7 +37,7 @@ impl Order {
 }
 
 /// Is told how many experiments of how many are done.
-pub type Progress<'a> = &'a (dyn Fn(usize, usize) + Sync);
+pub(crate) type Progress<'a> = &'a (dyn Fn(usize, usize) + Sync);
 
 /// Pictures of a page with their captions, and what is printed below them.
 #[derive(Debug, Clone, Default)]

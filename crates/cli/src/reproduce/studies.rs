@@ -13,7 +13,7 @@ use hadar_report::bundle::Bundle;
 
 /// What is studied.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum FurtherStudy {
+pub(crate) enum FurtherStudy {
     /// What a test achieves, beside what the distances promise.
     ExactProbability,
     /// What priors on the target's state do.
@@ -24,11 +24,11 @@ pub enum FurtherStudy {
 
 impl FurtherStudy {
     /// All of them, the quickest first.
-    pub const ALL: [Self; 3] = [Self::Priors, Self::ExactProbability, Self::LibraryFigures];
+    pub(crate) const ALL: [Self; 3] = [Self::Priors, Self::ExactProbability, Self::LibraryFigures];
 
     /// The name on the command line.
     #[must_use]
-    pub const fn name(self) -> &'static str {
+    pub(crate) const fn name(self) -> &'static str {
         match self {
             Self::ExactProbability => "exact-probability",
             Self::Priors => "priors",
@@ -38,13 +38,13 @@ impl FurtherStudy {
 
     /// Its folder.
     #[must_use]
-    pub fn folder(self) -> String {
+    pub(crate) fn folder(self) -> String {
         self.name().replace('-', "_")
     }
 
     /// What it shows.
     #[must_use]
-    pub const fn title(self) -> &'static str {
+    pub(crate) const fn title(self) -> &'static str {
         match self {
             Self::ExactProbability => "What a test achieves, beside what the distances promise",
             Self::Priors => "What priors do",
@@ -54,7 +54,7 @@ impl FurtherStudy {
 
     /// The study of a name.
     #[must_use]
-    pub fn from_name(name: &str) -> Option<Self> {
+    pub(crate) fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|study| study.name() == name)
     }
 
@@ -62,7 +62,12 @@ impl FurtherStudy {
     ///
     /// # Errors
     /// A library that lacks a material of the study; a figure that cannot be drawn.
-    pub fn make(self, order: Order, library: &Library, progress: Progress<'_>) -> Result<(Bundle, String)> {
+    pub(crate) fn make(
+        self,
+        order: Order,
+        library: &Library,
+        progress: Progress<'_>,
+    ) -> Result<(Bundle, String)> {
         match self {
             Self::ExactProbability => exact_probability::make(order, library, progress),
             Self::Priors => priors::make(order, library, progress),

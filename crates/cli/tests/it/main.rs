@@ -18,7 +18,7 @@ mod rule_mistakes;
 mod simulate;
 
 mod support {
-    pub mod answers;
-    pub mod folder;
-    pub mod uses;
+    pub(crate) mod answers;
+    pub(crate) mod folder;
+    pub(crate) mod uses;
 }

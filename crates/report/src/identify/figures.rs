@@ -15,7 +15,7 @@ use hadar_study::study::{Matrix, SampleSpectra, TargetVerdict};
 /// All against all by the distance that decides: statistical with a camera, else per √photon. Rows and columns are
 /// ordered by clusters.
 #[must_use]
-pub fn distance_matrix(matrix: &Matrix) -> Plot {
+pub(super) fn distance_matrix(matrix: &Matrix) -> Plot {
     let (order, starts) = by_clusters(matrix);
     let nearest_decides = matrix.by == "nearest";
     let rows = match (&matrix.statistical_distance, &matrix.distance_local_unknown_gain) {
@@ -71,7 +71,7 @@ pub fn distance_matrix(matrix: &Matrix) -> Plot {
 /// Distance of every material to the one hardest to tell it from, the least identifiable first: the paper's Extended
 /// Data Fig. 6b for any library.
 #[must_use]
-pub fn minimum_distances(matrix: &Matrix) -> Plot {
+pub(super) fn minimum_distances(matrix: &Matrix) -> Plot {
     let with_camera = matrix.statistical_distance.is_some();
     let targets = matrix.hardest_first();
     let value = TargetVerdict::decisive_minimum;
@@ -98,7 +98,7 @@ const READINGS_DRAWN: usize = 6;
 
 /// One reading of each of the first few materials, and its mean.
 #[must_use]
-pub fn sample_spectra(spectra: &SampleSpectra) -> Plot {
+pub(super) fn sample_spectra(spectra: &SampleSpectra) -> Plot {
     let shown = &spectra.materials[..spectra.materials.len().min(READINGS_DRAWN)];
     let mut header = vec!["wavenumber_cm1".to_owned()];
     header.extend(

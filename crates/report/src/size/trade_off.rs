@@ -15,7 +15,7 @@ const FARTHEST: f64 = 1e6;
 
 /// The curve with which the demand is met, that with which the camera is as good as it is now, and the limits.
 #[must_use]
-pub fn trade_off(curve: &TradeOff, camera: &str) -> Plot {
+pub(super) fn trade_off(curve: &TradeOff, camera: &str) -> Plot {
     let (x, y) = (curve.x, curve.y);
     let mut header = vec![x.key().to_owned(), y.key().to_owned(), format!("{}_as_now", y.key())];
     header.extend(["capped".to_owned(), "reason".to_owned()]);

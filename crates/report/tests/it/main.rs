@@ -4,5 +4,5 @@ mod figures;
 mod named_values;
 
 mod support {
-    pub mod figures;
+    pub(crate) mod figures;
 }

@@ -11,6 +11,6 @@ mod sizing;
 mod trade_offs;
 
 mod support {
-    pub mod harness;
-    pub mod mutation;
+    pub(crate) mod harness;
+    pub(crate) mod mutation;
 }

@@ -5,7 +5,7 @@ use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Five materials and an ideal camera that tells some of them apart, in bands that are quick.
-pub const FIVE: &str = r#"[target]
+pub(crate) const FIVE: &str = r#"[target]
 material = "skin"
 temperature = "60 degC"
 [[environment]]
@@ -24,7 +24,7 @@ noise_electrons = 0
 "#;
 
 /// The whole built-in library by the camera of the paper.
-pub const LIBRARY: &str = r#"[target]
+pub(crate) const LIBRARY: &str = r#"[target]
 material = "skin"
 temperature = "37 degC"
 [[environment]]
@@ -36,56 +36,56 @@ step = "10 cm^-1"
 preset = "flir-a325sc"
 "#;
 
-pub const EVERYTHING: [&str; 9] =
+pub(crate) const EVERYTHING: [&str; 9] =
     ["--matrix", "--scaling", "--bands", "3", "--filters", "3", "--exact", "--half-width", "0.05"];
 
-pub fn example() -> String {
+pub(crate) fn example() -> String {
     hadar_testing::repository().join("examples/five_materials.toml").display().to_string()
 }
 
-pub fn identify(folder: &Folder, more: &[&str]) -> Value {
+pub(crate) fn identify(folder: &Folder, more: &[&str]) -> Value {
     folder.json(&[&["identify", "a.toml"], more].concat())
 }
 
 #[track_caller]
-pub fn number(value: &Value) -> f64 {
+pub(crate) fn number(value: &Value) -> f64 {
     value.as_f64().unwrap_or_else(|| panic!("not a number: {value}"))
 }
 
 #[track_caller]
-pub fn numbers(value: &Value) -> Vec<f64> {
+pub(crate) fn numbers(value: &Value) -> Vec<f64> {
     value.as_array().unwrap_or_else(|| panic!("not a list: {value}")).iter().map(number).collect()
 }
 
 #[track_caller]
-pub fn texts(value: &Value) -> Vec<&str> {
+pub(crate) fn texts(value: &Value) -> Vec<&str> {
     value.as_array().unwrap().iter().map(|text| text.as_str().unwrap()).collect()
 }
 
 #[track_caller]
-pub fn close(what: &str, a: f64, b: f64, relative: f64) {
+pub(crate) fn close(what: &str, a: f64, b: f64, relative: f64) {
     assert!((a - b).abs() <= relative * a.abs().max(b.abs()), "{what}: {a:e} {b:e}");
 }
 
-pub fn keys(value: &Value) -> Vec<&str> {
+pub(crate) fn keys(value: &Value) -> Vec<&str> {
     value.as_object().map(|object| object.keys().map(String::as_str).collect()).unwrap_or_default()
 }
 
 #[track_caller]
-pub fn has(value: &Value, expected: &[&str]) {
+pub(crate) fn has(value: &Value, expected: &[&str]) {
     for key in expected {
         assert!(keys(value).contains(key), "`{key}` is missing among {:?}", keys(value));
     }
 }
 
 /// Pair by pair of the target: what a key says about each alternative.
-pub fn by_alternative<'a>(result: &'a Value, key: &str) -> BTreeMap<&'a str, &'a Value> {
+pub(crate) fn by_alternative<'a>(result: &'a Value, key: &str) -> BTreeMap<&'a str, &'a Value> {
     let pairs = result["pairs"].as_array().unwrap().iter();
     pairs.map(|pair| (pair["alternative"].as_str().unwrap(), &pair[key])).collect()
 }
 
 /// Pairs of names, each in order.
-pub fn pairs(value: &Value) -> BTreeSet<(String, String)> {
+pub(crate) fn pairs(value: &Value) -> BTreeSet<(String, String)> {
     let sorted = |pair: &Value| {
         let (a, b) = (pair[0].as_str().unwrap().to_owned(), pair[1].as_str().unwrap().to_owned());
         if a < b { (a, b) } else { (b, a) }
@@ -95,7 +95,7 @@ pub fn pairs(value: &Value) -> BTreeSet<(String, String)> {
 
 /// The same answer but for rounding.
 #[track_caller]
-pub fn same(a: &Value, b: &Value, path: &str) {
+pub(crate) fn same(a: &Value, b: &Value, path: &str) {
     match (a, b) {
         (Value::Object(x), Value::Object(y)) => {
             assert_eq!(x.keys().collect::<Vec<_>>(), y.keys().collect::<Vec<_>>(), "{path}");

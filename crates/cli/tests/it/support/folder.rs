@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
 /// A small scenario that every test changes to its needs.
-pub const SCENARIO: &str = r#"[target]
+pub(crate) const SCENARIO: &str = r#"[target]
 material = "skin"
 temperature = "37 degC"
 [[environment]]
@@ -22,33 +22,33 @@ preset = "flir-a325sc"
 "#;
 
 /// A folder with `a.toml` in it, in which the program runs.
-pub struct Folder(TempDir);
+pub(crate) struct Folder(TempDir);
 
 /// What the program left behind.
-pub struct Outcome {
+pub(crate) struct Outcome {
     pub code: i32,
     pub stdout: String,
     pub stderr: String,
 }
 
 impl Folder {
-    pub fn with(scenario: &str) -> Self {
+    pub(crate) fn with(scenario: &str) -> Self {
         let folder = Self(tempfile::tempdir().unwrap());
         folder.file("a.toml", scenario);
         folder
     }
 
-    pub fn path(&self) -> &Path {
+    pub(crate) fn path(&self) -> &Path {
         self.0.path()
     }
 
-    pub fn file(&self, name: &str, content: &str) -> PathBuf {
+    pub(crate) fn file(&self, name: &str, content: &str) -> PathBuf {
         let path = self.path().join(name);
         fs::write(&path, content).unwrap();
         path
     }
 
-    pub fn run(&self, arguments: &[&str]) -> Outcome {
+    pub(crate) fn run(&self, arguments: &[&str]) -> Outcome {
         let output = Command::new(assert_cmd::cargo::cargo_bin!("hadar"))
             .current_dir(self.path())
             .args(arguments)
@@ -61,14 +61,14 @@ impl Folder {
         }
     }
 
-    pub fn json(&self, arguments: &[&str]) -> Value {
+    pub(crate) fn json(&self, arguments: &[&str]) -> Value {
         let outcome = self.run(&[arguments, &["--json"]].concat());
         assert_eq!(outcome.code, 0, "{arguments:?}: {}", outcome.stderr);
         serde_json::from_str(&outcome.stdout).unwrap_or_else(|error| panic!("{error}: {}", outcome.stdout))
     }
 
     /// Names of all files below, sorted.
-    pub fn files(&self) -> Vec<String> {
+    pub(crate) fn files(&self) -> Vec<String> {
         let mut found = Vec::new();
         let mut folders = vec![self.path().to_owned()];
         while let Some(folder) = folders.pop() {
@@ -86,7 +86,7 @@ impl Folder {
 
     /// The one line said about a mistake; nothing on stdout, nothing written.
     #[track_caller]
-    pub fn refusal(&self, arguments: &[&str]) -> String {
+    pub(crate) fn refusal(&self, arguments: &[&str]) -> String {
         let before = self.files();
         let outcome = self.run(arguments);
         assert_eq!(outcome.code, 1, "{arguments:?}: {}{}", outcome.stdout, outcome.stderr);

@@ -45,13 +45,13 @@ fn expand(before: &str, tree: &str, found: &mut Vec<(String, String)>) {
 
 /// What a file uses: from which module in it, by which path, and whether it is handed on; and names handed on.
 #[derive(Default)]
-pub struct File {
+pub(crate) struct File {
     pub used: Vec<(String, String, bool)>,
     pub exported: BTreeMap<String, String>,
 }
 
 impl File {
-    pub fn read(module: &str, source: &str) -> Self {
+    pub(crate) fn read(module: &str, source: &str) -> Self {
         let mut found = Vec::new();
         words(source.parse().unwrap_or_else(|error| panic!("{module}: {error}")), &mut found);
         // Paths become one word each: `a::b::c`, in a `use` line also `a::{`.
@@ -99,10 +99,10 @@ impl File {
     }
 }
 
-pub fn join(module: &str, name: &str) -> String {
+pub(crate) fn join(module: &str, name: &str) -> String {
     if module.is_empty() { name.to_owned() } else { format!("{module}::{name}") }
 }
 
-pub fn above(module: &str) -> &str {
+pub(crate) fn above(module: &str) -> &str {
     module.rsplit_once("::").map_or("", |(above, _)| above)
 }

@@ -7,7 +7,7 @@ use hadar_study::study::BandsThatMatter;
 
 /// Share of every band in the distance, with the best bands and filters marked.
 #[must_use]
-pub fn bands_that_matter(found: &BandsThatMatter, target: &str) -> Plot {
+pub(crate) fn bands_that_matter(found: &BandsThatMatter, target: &str) -> Plot {
     let x = &found.center_cm1;
     let mut table = Table::new([
         "center_cm1",

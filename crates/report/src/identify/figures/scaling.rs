@@ -7,7 +7,7 @@ use hadar_study::study::Scaling;
 
 /// Least distance against the size of the library.
 #[must_use]
-pub fn library_size(scaling: &Scaling, target: &str) -> Plot {
+pub(crate) fn library_size(scaling: &Scaling, target: &str) -> Plot {
     let library = &scaling.library;
     let mut table = Table::new([
         "materials".to_owned(),
@@ -39,7 +39,7 @@ pub fn library_size(scaling: &Scaling, target: &str) -> Plot {
 
 /// Least and median distance against the number of bands.
 #[must_use]
-pub fn band_number(scaling: &Scaling, target: &str) -> Plot {
+pub(crate) fn band_number(scaling: &Scaling, target: &str) -> Plot {
     let bands = &scaling.bands;
     let with_camera = !bands.camera.is_empty();
     let mut header = vec!["bands", "minimum_per_sqrt_photon", "median_per_sqrt_photon"];

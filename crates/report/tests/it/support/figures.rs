@@ -7,7 +7,7 @@ use hadar_report::plot::{Axis, Figure, render_png, render_svg};
 use proptest::prelude::*;
 
 /// Draws and checks a figure, and leaves it in `target/tmp/figures`, to be looked at.
-pub fn sample(name: &str, figure: &Figure) {
+pub(crate) fn sample(name: &str, figure: &Figure) {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("figures");
     fs::create_dir_all(&folder).expect("a folder for the samples");
     let start = std::time::Instant::now();
@@ -29,7 +29,7 @@ pub fn sample(name: &str, figure: &Figure) {
 }
 
 /// Well-formed, without numbers that are none.
-pub fn check_svg(svg: &str) {
+pub(crate) fn check_svg(svg: &str) {
     assert!(svg.starts_with("<svg ") && svg.ends_with("</svg>\n"), "{}", &svg[svg.len() - 40..]);
     assert!(!svg.contains("\"NaN\"") && !svg.contains("\"inf\""));
     // Every mark is a self-closing element; only texts, the title and the root have an end.
@@ -39,7 +39,7 @@ pub fn check_svg(svg: &str) {
 }
 
 /// Readable, 2400 pixels wide, with margins that are white.
-pub fn check_png(bytes: &[u8]) {
+pub(crate) fn check_png(bytes: &[u8]) {
     let mut reader = png::Decoder::new(bytes).read_info().expect("a PNG header");
     let mut pixels = vec![0; reader.output_buffer_size()];
     let info = reader.next_frame(&mut pixels).expect("PNG data");
@@ -54,7 +54,7 @@ pub fn check_png(bytes: &[u8]) {
 }
 
 /// Any number at all, ordinary ones more often.
-pub fn number() -> impl Strategy<Value = f64> {
+pub(crate) fn number() -> impl Strategy<Value = f64> {
     prop_oneof![
         4 => -100.0..100.0f64,
         2 => Just(0.5),
@@ -65,12 +65,12 @@ pub fn number() -> impl Strategy<Value = f64> {
 }
 
 /// A label, sometimes of odd letters.
-pub fn words() -> impl Strategy<Value = String> {
+pub(crate) fn words() -> impl Strategy<Value = String> {
     prop_oneof![3 => Just("a quantity (unit)".to_owned()), 1 => any::<String>(), 1 => "[ -~]{0,300}"]
 }
 
 /// Any axis.
-pub fn axis() -> impl Strategy<Value = Axis> {
+pub(crate) fn axis() -> impl Strategy<Value = Axis> {
     let range = prop::option::of((number(), number()));
     let ticks = prop::option::of(prop::collection::vec((number(), words()), 0..5));
     (words(), any::<bool>(), range, ticks).prop_map(|(title, log, range, ticks)| {

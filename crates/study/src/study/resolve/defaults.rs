@@ -1,7 +1,7 @@
 //! What a scenario leaves silent: unknowns and ranges, and the echo that says everything.
 
-use super::Surface;
 use crate::scenario::{MaterialRef, Scenario};
+use crate::study::surface::Surface;
 use hadar::error::{Error, Result};
 use hadar::fisher::Unknowns;
 use hadar::identifiability::nearest::StateRange;

@@ -16,13 +16,13 @@ use hadar_study::scenario::{RangeScenario, Scenario};
 use std::path::{Path, PathBuf};
 
 /// A reader of files, by the name of its target and of its folder of seeds.
-pub struct Reader {
+pub(crate) struct Reader {
     pub name: &'static str,
     check: fn(&Folder, &[u8]),
 }
 
 /// All of them.
-pub const READERS: &[Reader] = &[
+pub(crate) const READERS: &[Reader] = &[
     Reader { name: "material", check: material },
     Reader { name: "library", check: library },
     Reader { name: "manifest", check: manifest },
@@ -48,7 +48,7 @@ impl Reader {
     ///
     /// # Panics
     /// Where the reader does not do what it should.
-    pub fn check(&self, bytes: &[u8]) {
+    pub(crate) fn check(&self, bytes: &[u8]) {
         thread_local!(static FOLDER: Folder = Folder::new());
         FOLDER.with(|folder| (self.check)(folder, bytes));
     }

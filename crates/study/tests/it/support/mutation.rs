@@ -138,7 +138,7 @@ const WORDS: &[u64] = &[
 ];
 
 /// The file that belongs to a number: the same one always.
-pub fn mutated(seeds: &[Vec<u8>], stream: &str, number: u64) -> Vec<u8> {
+pub(crate) fn mutated(seeds: &[Vec<u8>], stream: &str, number: u64) -> Vec<u8> {
     // FNV, so that every reader has inputs of its own.
     let hash = stream
         .bytes()
