@@ -26,8 +26,8 @@
 //! Source: paper S10–S15, Table S2; photon bunching in [`bunching`]; P. B. Fellgett, J. Phys. Radium 19, 187 (1958) for
 //! the multiplex advantage (the factors 4 and 8 are the least-squares covariance of one-sided cosines).
 
+use super::counting::Counting;
 use super::{Camera, NoiseSpec, Readout, View, bunching};
-use crate::fisher::Counting;
 use crate::spectrum::Bands;
 
 /// One line of the noise budget of a band.

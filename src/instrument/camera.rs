@@ -6,9 +6,9 @@
 //!
 //! Source: paper S7, Methods 'Guiding public policy'.
 
+use super::counting::Counting;
 use super::{EfficiencyCurve, NoiseSpec, Readout, View};
 use crate::error::Result;
-use crate::fisher::Counting;
 use crate::planck;
 use crate::spectrum::Bands;
 

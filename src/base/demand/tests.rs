@@ -64,7 +64,11 @@ fn ledgers_nest_and_keep_to_themselves() {
     book(1);
     let outer = Ledger::open();
     book(2);
-    let ((), inner) = ledger_of(|| Ok(book(4))).unwrap();
+    let ((), inner) = ledger_of(|| {
+        book(4);
+        Ok(())
+    })
+    .unwrap();
     let fails = || -> Result<()> {
         book(8);
         Err(Error::malformed("failed", "try again"))

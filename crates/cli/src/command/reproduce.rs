@@ -64,7 +64,7 @@ pub(super) fn run(args: &ReproduceArgs, global: &Global) -> Result<ExitCode> {
         let watch = Watch::start(global, item.name());
         let made = item.make(order, &place, &|done, total| watch.bar.set(done, total))?;
         watch.stop(&format!("{} of {count}: {}", i + 1, item.title()));
-        write(global, &made.bundle, folder, &mut stats)?;
+        stats.add(&write(global, &made.bundle, folder)?);
         ledger.extend(made.lines);
     }
     let mut findings = Vec::new();
@@ -72,7 +72,8 @@ pub(super) fn run(args: &ReproduceArgs, global: &Global) -> Result<ExitCode> {
         let watch = Watch::start(global, study.name());
         let (bundle, finding) = study.make(order, &library, &|done, total| watch.bar.set(done, total))?;
         watch.stop(&format!("{} of {count}: {}", items.len() + i + 1, study.title()));
-        write(global, &bundle, global.out.as_ref().map(|out| out.join(study.folder())), &mut stats)?;
+        let folder = global.out.as_ref().map(|out| out.join(study.folder()));
+        stats.add(&write(global, &bundle, folder)?);
         findings.push(Finding { study: study.name(), title: study.title(), finding });
     }
     if let Some(out) = global.out.as_ref().filter(|_| items.len() == Item::ALL.len()) {
@@ -110,8 +111,9 @@ impl<'a> Watch<'a> {
     }
 }
 
-/// Writes what was made where there is a folder for it, and books it.
-fn write(global: &Global, bundle: &Bundle, folder: Option<PathBuf>, stats: &mut Work) -> Result<()> {
+/// Writes what was made where there is a folder for it; what that took.
+fn write(global: &Global, bundle: &Bundle, folder: Option<PathBuf>) -> Result<Work> {
+    let mut stats = Work::default();
     let figures = bundle.figures() as u64;
     if let Some(folder) = folder {
         global.write(bundle, &folder)?;
@@ -121,7 +123,7 @@ fn write(global: &Global, bundle: &Bundle, folder: Option<PathBuf>, stats: &mut 
         stats.spare(Thing::Reports, Reason::NotAsked, 1);
         stats.spare(Thing::Figures, Reason::NotAsked, figures);
     }
-    Ok(())
+    Ok(stats)
 }
 
 fn asked(names: &[String]) -> Result<Asked> {

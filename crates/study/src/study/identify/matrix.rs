@@ -131,7 +131,11 @@ impl Study {
         let formed = passes.shared_targets * asked;
         demand::computed(Thing::LocalDistances, shared as u64);
         demand::computed(Thing::DerivativeColumns, formed as u64);
-        demand::spared(Thing::DerivativeColumns, Reason::Shared, (shared * asked - formed) as u64);
+        demand::spared(
+            Thing::DerivativeColumns,
+            Reason::Shared,
+            (shared * asked).saturating_sub(formed) as u64,
+        );
         demand::spared(Thing::DerivativeColumns, Reason::NotAsked, (shared * (all - asked)) as u64);
     }
 
