@@ -1,6 +1,7 @@
 //! What the tests of several packages share: the repository's files and those beside it, and properties whose failures
 //! come back.
 
+#[cfg(feature = "proptest")]
 use proptest::test_runner::{Config, RngSeed};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -75,6 +76,7 @@ pub fn number(value: &Value) -> f64 {
 }
 
 /// So many cases of a property, the same in every run.
+#[cfg(feature = "proptest")]
 #[must_use]
 pub fn seeded(seed: u64, cases: u32) -> Config {
     Config { cases, rng_seed: RngSeed::Fixed(seed), failure_persistence: None, ..Config::default() }

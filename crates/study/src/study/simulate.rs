@@ -64,6 +64,7 @@ pub struct SimulationPlan {
 
 /// A class of spectra.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct SimulatedClass {
     /// Material.
     pub material: String,
@@ -77,6 +78,7 @@ pub struct SimulatedClass {
 
 /// One experiment.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct SimulatedPoint {
     /// Photons of the target in all bands, on average.
     pub photons: f64,
@@ -106,6 +108,7 @@ pub struct SimulatedPoint {
 
 /// What came of a simulation.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct Simulation {
     /// Law of the photons.
     pub photon_law: PhotonLaw,

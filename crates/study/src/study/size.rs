@@ -24,6 +24,7 @@ pub use sensitivity::{Elasticities, EmissivityErrors, Sensitivity};
 
 /// The answer to 'can this camera do it'.
 #[derive(Debug, Clone, serde::Serialize)]
+#[non_exhaustive]
 pub struct Sizing {
     /// The scenario with its defaults filled in.
     pub scenario: Scenario,
@@ -54,6 +55,7 @@ pub struct Sizing {
 
 /// The answer to 'can this camera do it' by the cheapest proofs, and no more.
 #[derive(Debug, Clone, serde::Serialize)]
+#[non_exhaustive]
 pub struct VerdictAlone {
     /// The scenario with its defaults filled in.
     pub scenario: Scenario,
@@ -67,6 +69,7 @@ pub struct VerdictAlone {
 
 /// Yes or no.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct Verdict {
     /// Whether the requirement is met; `None` without a camera.
     pub met: Option<bool>,
@@ -122,6 +125,7 @@ pub enum Answer {
 
 /// What the task demands of any camera, against the limiting alternative.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct RequirementResult {
     /// Which distance decides.
     pub by: &'static str,
@@ -141,6 +145,7 @@ pub struct RequirementResult {
 
 /// What the camera delivers in the scene.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct CameraResult {
     /// Its figures.
     #[serde(flatten)]

@@ -23,6 +23,7 @@ pub struct Asked {
 
 /// The distances to every alternative and whatever else was asked for, in one object.
 #[derive(Debug, Clone, serde::Serialize)]
+#[non_exhaustive]
 pub struct Answers {
     /// The target against every alternative.
     #[serde(flatten)]

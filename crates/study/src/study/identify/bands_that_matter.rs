@@ -14,6 +14,7 @@ use std::ops::Range;
 
 /// A band, or a filter made of neighbouring bands.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct Passband {
     /// Lower edge, cm⁻¹.
     pub low_cm1: f64,
@@ -25,6 +26,7 @@ pub struct Passband {
 
 /// A choice of bands or filters and how good it is.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct Choice {
     /// The bands or filters, rising.
     pub passbands: Vec<Passband>,
@@ -50,6 +52,7 @@ pub struct Choice {
 
 /// Information band by band, and the choices asked for.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct BandsThatMatter {
     /// Alternatives that are counted.
     pub alternatives: Vec<String>,

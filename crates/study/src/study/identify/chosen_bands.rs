@@ -13,6 +13,7 @@ const WORTH: f64 = 1e-3;
 
 /// What the camera reaches with the chosen bands alone.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct Reached {
     /// Least nearest statistical distance to the alternatives that were counted.
     pub statistical_distance: f64,

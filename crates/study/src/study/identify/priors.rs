@@ -9,6 +9,7 @@ use hadar::identifiability::detection;
 /// The target's state drawn from the priors, instead of standing where the scenario says: finite also where the
 /// nominal state is in thermal equilibrium.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct PriorAverage {
     /// The alternative.
     pub alternative: String,

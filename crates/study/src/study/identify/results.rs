@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 
 /// What can be told apart from the target, alternative by alternative.
 #[derive(Debug, Clone, serde::Serialize)]
+#[non_exhaustive]
 pub struct Identification {
     /// The scenario with its defaults filled in.
     pub scenario: Scenario,
@@ -31,6 +32,7 @@ pub struct Identification {
 
 /// A target against all its alternatives (Algorithm 3): the one hardest to tell apart decides.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct Identifiability {
     /// Least distance per √photon, by the distance that decides (S33).
     pub distance_minimum: f64,
@@ -50,6 +52,7 @@ pub struct Identifiability {
 
 /// An entry of the prediction vector S32.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct Prediction {
     /// The material.
     pub material: String,
@@ -59,6 +62,7 @@ pub struct Prediction {
 
 /// The state of the alternative that looks most like the target.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct NearestState {
     /// Its temperature, K.
     pub temperature_k: f64,
@@ -73,6 +77,7 @@ pub struct NearestState {
 
 /// Photons for the requirement by each reading of the distance, shot noise only.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct PhotonsRequired {
     /// By the nearest distance.
     pub nearest: Option<f64>,
@@ -96,6 +101,7 @@ impl PhotonsRequired {
 
 /// One target against one alternative.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct PairResult {
     /// The target's material.
     pub target: String,

@@ -15,6 +15,7 @@ use rayon::prelude::*;
 
 /// Expected least distance against the size of the library.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct LibrarySize {
     /// Materials in the library, the target among them.
     pub materials: Vec<usize>,
@@ -28,6 +29,7 @@ pub struct LibrarySize {
 
 /// Least distance from the target to any alternative against the number of bands.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct BandNumber {
     /// Alternatives left out since not even all bands with shot noise alone tell them as required; none where that
     /// holds for all.
@@ -47,6 +49,7 @@ pub struct BandNumber {
 
 /// Both scaling laws.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct Scaling {
     /// Which distance they are of.
     pub by: &'static str,

@@ -10,6 +10,7 @@ use std::collections::BTreeMap;
 
 /// Which cameras meet a rule.
 #[derive(Debug, Clone, serde::Serialize)]
+#[non_exhaustive]
 pub struct RuleAnswer {
     /// The rule with its defaults filled in.
     pub rule: Rule,
@@ -42,6 +43,7 @@ pub struct WhoMeets {
 
 /// What a rule demands of any camera.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct RuleRequirement {
     /// Statistical distance demanded.
     pub distance: f64,
@@ -71,6 +73,7 @@ pub struct Quotable {
 
 /// The envelope as it was searched.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct EnvelopeResult {
     /// Temperature of the target, K.
     pub temperature_k: [f64; 2],
@@ -88,6 +91,7 @@ pub struct EnvelopeResult {
 
 /// One camera against the rule.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct CameraVerdict {
     /// Its name.
     pub name: String,
@@ -178,6 +182,7 @@ impl Certified {
 
 /// The scene in which a camera is nearest to failing.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct LimitingScene {
     /// Material of the target.
     pub target: String,
@@ -201,6 +206,7 @@ pub struct LimitingScene {
 
 /// What would let a camera reach the distance in its limiting scene, each with the rest of it as it is.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct Fixes {
     /// Whether any single quantity does, and spoils nothing else.
     pub any: bool,
@@ -224,6 +230,7 @@ impl Fixes {
 
 /// The part of an envelope in which no camera could do what the rule demands.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct NotIdentifiable {
     /// Share of all scenes and pairs, each range uniform, each pair alike.
     pub fraction: f64,
@@ -282,6 +289,7 @@ pub struct EmissivityError(pub f64);
 
 /// How near to equilibrium scenes are, nine tenths of them.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct Neighbourhood {
     /// |T − T₀| at most, T₀ the mean temperature of the surroundings weighed by their lighting, K.
     pub temperature_difference_k: f64,
@@ -291,6 +299,7 @@ pub struct Neighbourhood {
 
 /// A file or embedded entry, by its content.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
+#[non_exhaustive]
 pub struct FileHash {
     /// Where it is.
     pub path: String,

@@ -8,6 +8,7 @@ use hadar::simulate::experiment::Performance;
 const NARROW: f64 = 0.25;
 /// What one classifier achieved, held against the limit.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct SimulatedPerformance {
     /// How often it was right.
     #[serde(flatten)]

@@ -43,6 +43,7 @@ const HELD: f64 = 1e-3;
 
 /// A series of true temperatures and what is read at each.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct Thermometry {
     /// The target.
     pub target: String,
@@ -84,6 +85,7 @@ pub struct Thermometry {
 
 /// One true temperature.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct ThermometryRow {
     /// True temperature, K.
     pub temperature_k: f64,
@@ -106,6 +108,7 @@ pub struct ThermometryRow {
 
 /// Maximum-likelihood estimates of the temperature beside their bound.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct Reader {
     /// Cramér–Rao bound of an unbiased estimate's deviation, K (hybrid, if there are priors); `None` if it is infinite.
     pub bound_k: Option<f64>,
@@ -129,6 +132,7 @@ pub struct Reader {
 
 /// Errors of a thermal imager.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct ImagerErrors {
     /// Bias and errors of the readings, K; `None` if there are fewer than two.
     pub errors: Option<Errors>,

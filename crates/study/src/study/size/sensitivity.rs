@@ -16,6 +16,7 @@ use serde::ser::{SerializeMap, Serializer};
 
 /// What the verdict on a camera hangs on, against the limiting alternative.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct Sensitivity {
     /// ∂ln d/∂ln q.
     pub elasticities: Elasticities,

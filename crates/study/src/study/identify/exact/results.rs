@@ -6,6 +6,7 @@ use hadar::simulate::sequential::{Interval, Plan};
 
 /// The simulated decision of one pair beside its limits.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct ExactPair {
     /// The alternative.
     pub alternative: String,
@@ -42,6 +43,7 @@ pub struct ExactPair {
 
 /// The simulated decision among all materials at once.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct ExactLibrary {
     /// Share of trials in which the target is recognised among all alternatives.
     pub probability: f64,
@@ -58,6 +60,7 @@ pub struct ExactLibrary {
 
 /// All simulated decisions.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct Exact {
     /// Law of counting.
     pub statistics: &'static str,

@@ -10,6 +10,7 @@ pub type Rows = Vec<Vec<Option<f64>>>;
 /// Distances of every material of the scenario, target and alternatives, against every other one, each target
 /// in the target's state.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct Matrix {
     /// Names of the materials, the order of rows and columns.
     pub materials: Vec<String>,
@@ -38,6 +39,7 @@ pub struct Matrix {
 
 /// One material against all others.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct TargetVerdict {
     /// The material.
     pub material: String,
@@ -71,6 +73,7 @@ impl Matrix {
 
 /// Pairs that can be told apart, those that cannot, and the groups that these make.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct Apart {
     /// Pairs told apart, either of them the target.
     pub told_apart: Vec<[String; 2]>,
@@ -84,6 +87,7 @@ pub struct Apart {
 
 /// The answer to 'is the target identifiable', and no more.
 #[derive(Debug, Clone, serde::Serialize)]
+#[non_exhaustive]
 pub struct Check {
     /// The scenario with its defaults filled in.
     pub scenario: Scenario,

@@ -26,6 +26,7 @@ const SEED: u64 = 1;
 
 /// The statistical distance where the emissivities have errors.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
 pub struct EmissivityErrors {
     /// Root mean square error of each emissivity.
     pub error: f64,
