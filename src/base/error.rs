@@ -151,9 +151,9 @@ impl Error {
             .into_iter()
             .filter(|candidate| comparable && candidate.len() <= LONGEST_NAME)
             .map(|candidate| {
-                // A part of a name, in whatever case, is meant for it.
+                // A part of a name, in whatever case, is meant for it; of several the most alike comes first.
                 let part = lower.len() > 2 && candidate.to_lowercase().contains(&lower);
-                (if part { 1.0 } else { strsim::jaro_winkler(name, candidate) }, candidate)
+                (f64::from(u8::from(part)) + strsim::jaro_winkler(name, candidate), candidate)
             })
             .filter(|(score, _)| *score > 0.6)
             .collect();

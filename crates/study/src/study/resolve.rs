@@ -22,7 +22,8 @@ impl Study {
     /// does not cover the bands; each with file, line and key.
     ///
     /// ```
-    /// use hadar::{material::Library, scenario::Scenario, study::Study};
+    /// use hadar::material::Library;
+    /// use hadar_study::{scenario::Scenario, study::Study};
     /// let text = r#"
     ///     [target]
     ///     material = "skin"

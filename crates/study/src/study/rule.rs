@@ -77,7 +77,8 @@ impl RuleStudy {
     /// As [`Study::new`]; two cameras of one name; a requirement by another than the nearest distance.
     ///
     /// ```
-    /// use hadar::{material::Library, scenario::Rule, study::{RuleAsked, RuleStudy}};
+    /// use hadar::material::Library;
+    /// use hadar_study::{scenario::Rule, study::{RuleAsked, RuleStudy}};
     /// let text = r#"
     ///     cameras = ["ideal-pnrd"]
     ///     [target]

@@ -149,7 +149,8 @@ impl Study {
     /// spectra at each; too many photons to draw.
     ///
     /// ```
-    /// use hadar::{material::Library, scenario::Scenario, study::Study};
+    /// use hadar::material::Library;
+    /// use hadar_study::{scenario::Scenario, study::Study};
     /// let text = r#"
     ///     [target]
     ///     material = "silicon-carbide"
