@@ -8,8 +8,8 @@
 //! N counts of the target, N′ of the alternative amid the same surroundings, v added variance of each band. So
 //! d* is one minimisation over θ and θ′ together.
 //!
-//! * From above (`attain`): a dense set of scenes with [`NearestSolver`] in each, and descents from the best of
-//!   them. The distance reported is that of [`NearestSolver::with_counting`] at the scene reported.
+//! * From above (`attain`): a dense set of scenes with [`NearestSolver`](crate::identifiability::nearest::NearestSolver) in each, and descents from the best of
+//!   them. The distance reported is that of [`NearestSolver::with_counting`](crate::identifiability::nearest::NearestSolver::with_counting) at the scene reported.
 //! * From below (`prove`, `bound`): branch and bound over θ and θ′ together, where the alternative's unknowns
 //!   are temperature or lighting or both, without gain. Priors only add to the distance, so what is proved
 //!   without them is true with them, but need not meet the distance attained.

@@ -8,7 +8,7 @@
 //! * spectral alone:     J = Σ_b (Σ_p ∂N)²/Σ_p (N + σ²)
 //! * neither:            J = (Σ_p Σ_b ∂N)²/Σ_p Σ_b (N + σ²)
 //!
-//! in pixel⁻². Where samples are joined, Σσ² is what [`Joined`] says. Without electronic noise none of the four exceeds the
+//! in pixel⁻². Where samples are joined, Σσ² is what [`Joined`](crate::ranging::noise::Joined) says. Without electronic noise none of the four exceeds the
 //! one above it in this list that has all of its resolutions and more (Cauchy–Schwarz).
 //!
 //! The information of one photon is J⁰ = J (1 + γ)/N with the window's photons N = ΣΣN and γ = ΣΣσ²/N; σ_c² = 1/J⁰.

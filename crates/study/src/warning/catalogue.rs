@@ -6,6 +6,7 @@ macro_rules! catalogue {
         /// Stable code of a warning.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
         #[non_exhaustive]
+        #[allow(rustdoc::broken_intra_doc_links, reason = "a remedy names tables such as [camera], which are no links")]
         pub enum Code {
             $(
                 #[doc = concat!("`", $name, "`:")]
