@@ -1,7 +1,8 @@
 //! One experiment: spectra of known classes drawn, classifiers trained on a part of them, all judged on the rest.
 //!
-//! A quarter of the spectra of each class is for training, a quarter for validation, half for the test, as in the paper. Test spectra are drawn, judged by every classifier and forgotten, so that their number takes no memory;
-//! training spectra are drawn only if something is trained.
+//! A quarter of the spectra of each class is for training, a quarter for validation, half for the test, as in the paper.
+//! Test spectra are drawn, judged by every classifier and forgotten, so that their number takes no memory; training spectra
+//! are drawn only if something is trained.
 
 use super::classifier::{BestFits, Classifier, Confusion, LikelihoodRatio, Method, Trained, share};
 use super::draws::{Draws, STREAMS};
