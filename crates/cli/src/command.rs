@@ -14,10 +14,13 @@ mod reproduce;
 mod rule;
 mod simulate;
 mod size;
+mod stderr;
+mod threads;
 
 use self::global::Global;
+use self::stderr::say;
 use clap::{Parser, Subcommand};
-use hadar::error::Result;
+use hadar::error::{Error, Result};
 use hadar_report::bundle::Bundle;
 use std::process::ExitCode;
 
@@ -56,31 +59,25 @@ enum Command {
     Cameras(cameras::CamerasArgs),
 }
 
-/// Most threads that can be asked for.
-const MOST_THREADS: usize = 1024;
-
 /// Runs the command line of this process.
 #[must_use]
 pub(crate) fn main() -> ExitCode {
     let cli = Cli::parse();
-    if let Some(threads) = cli.global.threads {
-        if threads > MOST_THREADS {
-            eprintln!("error: --threads is {threads}; it must be at most {MOST_THREADS}, or 0 for all cores");
-            return ExitCode::from(1);
-        }
-        // Fails only if a pool is there already, which is then the one that is used.
-        let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
-    }
     match run(&cli) {
         Ok(code) => code,
         Err(error) => {
-            eprintln!("error: {error}");
+            say(&format!("error: {error}"));
             ExitCode::from(1)
         }
     }
 }
 
 fn run(cli: &Cli) -> Result<ExitCode> {
+    if let Some(threads) = cli.global.threads.filter(|threads| *threads > threads::MOST) {
+        let expected = format!("at most {}, or 0 for all cores", threads::MOST);
+        return Err(Error::out_of_range("--threads", threads as f64, "", expected));
+    }
+    threads::start(cli.global.threads, cli.global.quiet);
     if let Some(out) = &cli.global.out {
         Bundle::check_destination(out)?;
     }

@@ -1,6 +1,7 @@
 //! What every command shares: its options, the library, the study, and how answers leave the process.
 
 use super::progress::Bar;
+use super::stderr::say;
 use clap::Args;
 use hadar::demand::{Reason, Skipping, Thing, Work};
 use hadar::error::{Error, Result};
@@ -72,7 +73,7 @@ impl Global {
     /// A line on stderr, unless quiet.
     pub(super) fn note(&self, text: &str) {
         if !self.quiet {
-            eprintln!("{text}");
+            say(text);
         }
     }
 
