@@ -55,8 +55,9 @@ impl Grid {
         let name = self.header.first().map_or("", String::as_str);
         if !matches!(name, "wavenumber_cm1" | "wavelength_um") {
             let found = "the first column has another name";
-            return Err(Error::malformed(found, "name it wavenumber_cm1 or wavelength_um")
-                .on_line(self.header_line));
+            return Err(
+                Error::malformed(found, "name it wavenumber_cm1 or wavelength_um").on_line(self.header_line)
+            );
         }
         let mut seen: Vec<(f64, usize)> = Vec::new();
         for (line, cells) in &self.rows {

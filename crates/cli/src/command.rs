@@ -22,6 +22,8 @@ use self::stderr::say;
 use clap::{Parser, Subcommand};
 use hadar::error::{Error, Result};
 use hadar_report::bundle::Bundle;
+use std::io::ErrorKind;
+use std::path::Path;
 use std::process::ExitCode;
 
 /// The physical limits of seeing by heat: can this thermal camera tell one material from another?
@@ -62,13 +64,19 @@ enum Command {
 /// Runs the command line of this process.
 #[must_use]
 pub(crate) fn main() -> ExitCode {
-    let cli = Cli::parse();
-    match run(&cli) {
-        Ok(code) => code,
-        Err(error) => {
-            say(&format!("error: {error}"));
-            ExitCode::from(1)
-        }
+    let failed = |error: Error| {
+        say(&format!("error: {error}"));
+        ExitCode::from(1)
+    };
+    match Cli::try_parse() {
+        Ok(cli) => run(&cli).unwrap_or_else(failed),
+        // What is wrong goes to stderr, where nobody need listen; what was asked for, such as --help, does not.
+        Err(usage) => match usage.print() {
+            Err(error) if !usage.use_stderr() && error.kind() != ErrorKind::BrokenPipe => {
+                failed(Error::file("print the help", Path::new("stdout"), error))
+            }
+            _ => ExitCode::from(usage.exit_code() as u8),
+        },
     }
 }
 

@@ -1,11 +1,11 @@
 //! The main job as text: the verdict first, then the numbers, what would do, and what it hangs on.
 
-use crate::text::footing::{GAUSSIAN, assumptions, warnings};
+use crate::text::footing::{assumptions, gaussian, warnings};
 use crate::text::numbers::{celsius, exponential, numbers, photons, quantity, significant};
 use crate::text::pairs::pair_table;
 use hadar::policy::Quantity;
 use hadar::words::share;
-use hadar_study::study::{PairResult, Sizing, Study};
+use hadar_study::study::{PairResult, Sizing, Study, no_limit};
 use hadar_study::words::probability;
 use std::fmt::Write as _;
 
@@ -36,9 +36,10 @@ pub fn text(result: &Sizing, study: &Study) -> String {
         line(of_band, format!("{} counts", exponential(camera.noise_counts, 3)));
         line("gamma, noise / photons of a band", exponential(camera.gamma_per_band, 2));
         line("t A_p / ((1+gamma) F^2)", format!("{:.3e} m^2 s", camera.hardware_m2_s));
+        let by_local = no_limit(study.scenario().requirement.by).is_some();
         if let Some(d) = pair.statistical_distance {
             line(
-                "statistical distance reached",
+                if by_local { "statistical distance, local reading" } else { "statistical distance reached" },
                 format!(
                     "{} (required {})",
                     significant(d, 3),
@@ -50,10 +51,18 @@ pub fn text(result: &Sizing, study: &Study) -> String {
             (pair.statistical_distance, pair.miss_probability, pair.information_bits)
         {
             line(
-                "detection probability at most",
+                if by_local {
+                    "probability by it, which is no limit"
+                } else {
+                    "detection probability at most"
+                },
                 format!("{} (error {})", probability(d, 4), significant(miss, 3)),
             );
             line("information log2 2P", format!("{} bit", significant(bits, 3)));
+        }
+        if let (true, Some(d)) = (by_local, pair.statistical_distance_nearest) {
+            let limit = format!("{} (probability {})", significant(d, 3), probability(d, 4));
+            line("the limit, by the nearest distance", limit);
         }
         line("least distance it resolves", format!("{:.2e} per sqrt(photon)", camera.least_distance));
         if let Some(footprint) = camera.footprint_m {
@@ -62,7 +71,7 @@ pub fn text(result: &Sizing, study: &Study) -> String {
         if let Some(blur) = camera.motion_blur_pixels {
             let of_bands = camera.camera.readout.exposures(study.bands().len()) > 1;
             let label = if of_bands { "motion while bands are exposed" } else { "motion during an exposure" };
-            line(label, format!("{} pixel at most", significant(blur, 2)));
+            line(label, format!("up to {} pixel", significant(blur, 2)));
         }
         out.push('\n');
     }
@@ -73,7 +82,7 @@ pub fn text(result: &Sizing, study: &Study) -> String {
         out.push_str(&pair_table(&result.pairs, study));
         out.push('\n');
     }
-    out.push_str(&assumptions(study, GAUSSIAN));
+    out.push_str(&assumptions(study, gaussian(study)));
     out.push_str(&warnings(&result.warnings));
     out
 }
@@ -165,8 +174,8 @@ fn solutions(result: &Sizing) -> String {
         for cap in &solution.caps {
             let side = if cap.blocks { "but" } else { "better" };
             let bound = match (cap.blocks, solved.is_least()) {
-                (true, true) | (false, false) => "at most",
-                (true, false) | (false, true) => "at least",
+                (true, true) | (false, false) => "no more than",
+                (true, false) | (false, true) => "no less than",
             };
             let limit = in_unit(*solved, cap.limit);
             let _ =

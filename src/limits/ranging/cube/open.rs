@@ -94,10 +94,7 @@ pub(crate) fn is_cube(path: &Path) -> Result<bool> {
 fn opened(path: &Path) -> Result<(File, Vec<u8>)> {
     let file = file::open(path, READ_CUBE)?;
     let mut start = Vec::with_capacity(128);
-    (&file)
-        .take(128)
-        .read_to_end(&mut start)
-        .map_err(|error| Error::file(READ_CUBE, path, error))?;
+    (&file).take(128).read_to_end(&mut start).map_err(|error| Error::file(READ_CUBE, path, error))?;
     Ok((file, start))
 }
 

@@ -97,8 +97,9 @@ fn wavenumbers(grid: &Grid) -> Result<Vec<f64>> {
         "wavenumber_cm1" => |x| x,
         "wavelength_um" => |x| 1e4 / x,
         _ => {
-            return Err(Error::malformed("this is not the header of a spectrum", HEADERS)
-                .on_line(grid.header_line));
+            return Err(
+                Error::malformed("this is not the header of a spectrum", HEADERS).on_line(grid.header_line)
+            );
         }
     };
     let unit = if axis == "wavelength_um" { "um" } else { "cm^-1" };
