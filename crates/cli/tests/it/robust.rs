@@ -269,3 +269,21 @@ fn a_local_distance_is_never_called_a_limit() {
         }
     }
 }
+
+/// A mirror in all but empty space beside a metal: its distance is beyond all numbers, which is said, not `null` and `ok`.
+#[test]
+fn a_distance_beyond_all_numbers_is_refused() {
+    let dark =
+        SCENARIO.replace("\"skin\"", "\"mirror.csv\"").replace("[camera]\npreset = \"flir-a325sc\"\n", "");
+    for lighting in ["1e-300", "1e-310", "5e-324"] {
+        let folder = Folder::with(&dark.replace("lighting = 0.5", &format!("lighting = {lighting}")));
+        folder.file("mirror.csv", "wavenumber_cm1,emissivity\n600,0\n1400,0\n");
+        let said = folder.refusal(&["identify", "a.toml"]);
+        assert!(said.contains("a distance beyond all numbers: the target sends next to nothing"), "{said}");
+    }
+    // As little light as still has a distance.
+    let folder = Folder::with(&dark.replace("lighting = 0.5", "lighting = 1e-130"));
+    folder.file("mirror.csv", "wavenumber_cm1,emissivity\n600,0\n1400,0\n");
+    let pair = &folder.json(&["identify", "a.toml"])["pairs"][0];
+    assert!(pair["distance_nearest"].as_f64().is_some_and(|distance| distance > 1.0), "{pair}");
+}
