@@ -10,7 +10,7 @@ use std::fmt::Write as _;
 /// All cameras, those of the paper (without a document of their own) first.
 #[must_use]
 pub fn list(sheets: &[Sheet]) -> String {
-    let complete = sheets.iter().filter(|sheet| sheet.missing.is_empty()).count();
+    let complete = sheets.iter().filter(|sheet| sheet.missing.0.is_empty()).count();
     let mut out = format!(
         "{} cameras, {complete} of them complete; the others lack what no document states and a scenario must give.\n",
         sheets.len()
@@ -24,7 +24,7 @@ pub fn list(sheets: &[Sheet]) -> String {
         );
         for sheet in sheets.iter().filter(|sheet| sheet.preset.document.is_none() == of_paper) {
             let preset = &sheet.preset;
-            let give: Vec<&str> = sheet.missing.iter().map(|missing| short(missing.key)).collect();
+            let give: Vec<&str> = sheet.missing.0.iter().map(|key| short(key)).collect();
             let line = format!(
                 "{:<name$} {:>8} {:>6}  {:<18} {:<15} {}",
                 preset.name,

@@ -163,7 +163,7 @@ impl SideBySide {
                 all.push(format!("{name}: {assumed}"));
             }
             if sheet.worked.is_none() {
-                let keys: Vec<&str> = sheet.missing.iter().map(|missing| missing.key).collect();
+                let keys = &sheet.missing.0;
                 all.push(format!("{name}: not stated, to be given in a scenario: {}", keys.join(", ")));
             }
             if sheet.preset.figures.filters_needed {

@@ -16,12 +16,15 @@ const NOT_STATED: &str = "not stated";
 pub fn text(sheet: &Sheet) -> String {
     let preset = &sheet.preset;
     let mut out = format!("{}: {}\n", preset.name, preset.description);
-    if !sheet.missing.is_empty() {
-        out.push_str(
-            "\nIt cannot be used as it is: no document that was read states all of it. Give in [camera]\n",
+    if !sheet.missing.0.is_empty() {
+        let _ = writeln!(
+            out,
+            "\nIt cannot be used as it is: no document that was read states all of it. Write in a scenario, with what the \
+             camera has in place of the dots:\n\n  [camera]\n  preset = {:?}",
+            preset.name
         );
-        for missing in &sheet.missing {
-            let _ = writeln!(out, "  {} = {}", missing.key, missing.example);
+        for line in sheet.missing.lines() {
+            let _ = writeln!(out, "  {line}");
         }
     }
     out.push_str("\nFigures\n");

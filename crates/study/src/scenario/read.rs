@@ -16,6 +16,7 @@ use super::{
 };
 use hadar::allowed::{ABOVE_ZERO, ABSOLUTE_TEMPERATURE, Allowed, SHARE};
 use hadar::error::{Error, Result};
+use hadar::instrument::figures::BLANK;
 use hadar::units::Dimension;
 
 /// Lighting factors that should add up to a value may miss it by this: rounding, not meaning.
@@ -155,6 +156,12 @@ pub(super) fn parse<'t>(text: &'t str, source: &Source) -> Result<DeTable<'t>> {
         return Ok(document.into_inner());
     };
     let message: String = first.message().chars().filter(|char| !char.is_control()).collect();
+    let line = LineStarts::of(text).line(offset(first));
+    if text.lines().nth(line - 1).is_some_and(|line| line.contains(BLANK)) {
+        let error =
+            Error::malformed(format!("`{BLANK}` stands for a figure"), "write the camera's own in its place");
+        return Err(error.on_line(line).at(source.place("")));
+    }
     let error = Error::malformed(
         format!("this is not TOML: {message}"),
         match message.as_str() {
@@ -162,7 +169,7 @@ pub(super) fn parse<'t>(text: &'t str, source: &Source) -> Result<DeTable<'t>> {
             _ => "correct the line (a quantity is text in quotes, as in temperature = \"37 degC\")",
         },
     );
-    Err(error.on_line(LineStarts::of(text).line(offset(first))).at(source.place("")))
+    Err(error.on_line(line).at(source.place("")))
 }
 
 fn target(entry: &Entry<'_>) -> Result<Target> {
