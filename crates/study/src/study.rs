@@ -8,6 +8,7 @@
 mod air;
 mod bands;
 mod camera;
+mod camera_bands;
 mod distances;
 mod identify;
 mod looked_up;

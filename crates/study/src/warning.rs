@@ -8,6 +8,7 @@ mod message;
 pub use catalogue::Code;
 
 use hadar::fisher::Nuisance;
+use hadar::instrument::Readout;
 use hadar::scene::Parameter;
 use hadar::simulate::classifier::Method;
 use serde::ser::{Serialize, SerializeStruct, Serializer};
@@ -56,6 +57,8 @@ pub enum Warning {
     /// An envelope beside the one scene.
     EnvelopeNotSearched,
 
+    /// A camera of one band that is modelled with so many.
+    BandsModelled { camera: String, bands: usize, readout: Readout },
     /// Time until all bands are read.
     SequentialReadout { acquisition_s: f64, bands: usize },
     /// Motion until all bands are exposed.
@@ -160,6 +163,7 @@ impl Warning {
             Self::NearestSearch { .. } => Code::NearestSearch,
             Self::Bunching { .. } => Code::Bunching,
             Self::EnvelopeNotSearched => Code::EnvelopeNotSearched,
+            Self::BandsModelled { .. } => Code::BandsModelled,
             Self::SequentialReadout { .. } => Code::SequentialReadout,
             Self::MotionBlur { .. } => Code::MotionBlur,
             Self::MotionBlurUnknown | Self::RuleMotionBlurUnknown => Code::MotionBlurUnknown,

@@ -13,6 +13,11 @@ pub(super) fn resolved(spec: &CameraSpec, source: &Source) -> Result<Camera> {
     resolved_at(spec, &|key| source.place(&format!("camera.{key}")))
 }
 
+/// What a camera is called in a message: a known one by its name, whatever was changed of it.
+pub(super) fn called(camera: &Camera, spec: &CameraSpec) -> String {
+    spec.preset.clone().unwrap_or_else(|| camera.name.clone())
+}
+
 /// The same for a camera whose keys stand where `place` says.
 pub(super) fn resolved_at(spec: &CameraSpec, place: &dyn Fn(&str) -> Place) -> Result<Camera> {
     let preset = match &spec.preset {

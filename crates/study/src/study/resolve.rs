@@ -7,7 +7,7 @@ use self::defaults::{alternatives_as_written, check_range, fill, state_range, un
 use self::finder::Finder;
 use super::air::{Air, Behind};
 use super::bands::{self, check_detector};
-use super::{Study, Surface, camera};
+use super::{Study, Surface, camera, camera_bands};
 use crate::scenario::{Reliability, Scenario};
 use hadar::error::{Error, Result};
 use hadar::identifiability::detection;
@@ -64,11 +64,14 @@ impl Study {
                 Some((temperature_k, Some(finder.find("background.material", material, extrapolate)?)))
             }
         };
-        let bands = bands::at_centres(&scenario.bands, &scenario.source)?;
         let camera =
             scenario.camera.as_ref().map(|spec| camera::resolved(spec, &scenario.source)).transpose()?;
-        if let Some(camera) = &camera {
+        let asked = camera_bands::asked(&scenario.bands.source, camera.as_ref());
+        let bands = bands::at_centres(&asked, &scenario.source)?;
+        if let (Some(camera), Some(spec)) = (&camera, &scenario.camera) {
             check_detector(&bands, camera, &scenario)?;
+            let place = |key: &str| scenario.place(key);
+            finder.warnings.extend(camera_bands::check(camera, spec, &asked, &bands, &place)?);
         }
         let alternatives = finder.alternatives(&target, &bands)?;
         let Finder { warnings, skies, .. } = finder;
@@ -124,6 +127,7 @@ impl Study {
             }
         };
         let atmosphere = Air::of(&scenario)?;
+        scenario.bands.source = asked;
         let unknowns = unknowns(&scenario).map_err(|error| error.at(scenario.place("unknown")))?;
         let range = state_range(&scenario);
         check_range(&scenario, &range)?;

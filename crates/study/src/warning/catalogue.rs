@@ -73,6 +73,8 @@ catalogue! {
     /// The scenario has an envelope, and this answer is for its one scene.
     EnvelopeNotSearched = "envelope-not-searched", "Ask `hadar rule` for the worst scene of the envelope.";
 
+    /// The camera has one band, and its entry models it as if it read all bands at once, as no such camera does.
+    BandsModelled = "bands-modelled", "Write camera.readout = \"sequential\" for filters before it, one after the other.";
     /// Bands are read one after the other, and the scene must hold still for all of them.
     SequentialReadout = "sequential-readout", "Shorten the exposure, or take a camera that reads all bands at once.";
     /// The target moves by a pixel or more while all bands are exposed; the bound assumes less.

@@ -2,6 +2,7 @@
 
 use super::Warning;
 use hadar::fisher::Nuisance;
+use hadar::instrument::Readout;
 use hadar::scene::Parameter;
 use hadar::words::{quantity, significant};
 use std::fmt::{self, Display, Formatter};
@@ -68,6 +69,15 @@ impl Display for Warning {
             }
             Self::EnvelopeNotSearched => f.write_str(
                 "this is the answer for the one scene; the [envelope] is searched by `hadar rule`",
+            ),
+            Self::BandsModelled { camera, bands, readout } => write!(
+                f,
+                "{camera} has one band; its entry models it as if it read {bands} bands {}, as no such camera does",
+                match readout {
+                    Readout::FourierTransform => "through an interferometer",
+                    Readout::Dispersive => "side by side",
+                    Readout::Simultaneous | Readout::Sequential => "at once",
+                }
             ),
             Self::SequentialReadout { acquisition_s, bands } => write!(
                 f,

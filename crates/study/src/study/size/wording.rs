@@ -3,6 +3,7 @@
 use super::{Answer, Finding};
 use crate::study::Shortfall;
 use crate::words::reliability;
+use hadar::fisher::Nuisance;
 use serde::{Serialize, Serializer};
 use std::fmt::{self, Display, Formatter};
 
@@ -19,6 +20,19 @@ impl Display for Finding {
                 f,
                 "No camera can tell {target} from {other} here: the unknowns explain every difference in the spectrum."
             ),
+            Answer::TooFewBands { bands, unknowns } => {
+                let (yes, colon) = if camera.is_empty() {
+                    (format!("No camera can tell {target} from {other} here"), String::new())
+                } else {
+                    ("No".into(), format!(": {camera} cannot tell {target} from {other}"))
+                };
+                let (unknown, are) = together(unknowns);
+                let many = match bands {
+                    1 => "one band".into(),
+                    bands => format!("{bands} bands"),
+                };
+                write!(f, "{yes}: {many} cannot tell materials while {unknown} {are} unknown{colon}.")
+            }
             Answer::Takes { photons } => write!(
                 f,
                 "Telling {target} from {other} with {wanted} reliability takes at least {photons:.2e} photons."
@@ -37,6 +51,16 @@ impl Display for Finding {
                 }
             }
         }
+    }
+}
+
+/// Unknowns in a sentence, and the verb that goes with them.
+fn together(unknowns: &[Nuisance]) -> (String, &'static str) {
+    let names: Vec<&str> = unknowns.iter().map(|nuisance| nuisance.name()).collect();
+    match names.as_slice() {
+        [] => ("nothing".into(), "is"),
+        [one] => ((*one).into(), "is"),
+        [most @ .., last] => (format!("{} and {last}", most.join(", ")), "are"),
     }
 }
 
