@@ -1,7 +1,7 @@
 //! All known cameras, a line each.
 
 use crate::cameras::Sheet;
-use crate::text::numbers::{exponential, quantity};
+use crate::text::numbers::{quantity, significant};
 use hadar::instrument::Readout;
 use hadar::instrument::figures::StatedNoise;
 use hadar::instrument::presets::Preset;
@@ -65,11 +65,11 @@ fn briefly(preset: &Preset) -> String {
             format!("{}{at}", quantity(netd_k, "K"))
         }
         Some(StatedNoise::Detectivity { detectivity_cm_hz05_w, .. }) => {
-            format!("{} Jones", exponential(detectivity_cm_hz05_w, 1))
+            format!("{} Jones", significant(detectivity_cm_hz05_w, 2))
         }
-        Some(StatedNoise::Nep { nep_w_hz05, .. }) => format!("{} W/Hz^0.5", exponential(nep_w_hz05, 1)),
+        Some(StatedNoise::Nep { nep_w_hz05, .. }) => format!("{} W/Hz^0.5", significant(nep_w_hz05, 2)),
         Some(StatedNoise::Nesr { microflick, .. }) => format!("{microflick} uflick"),
-        Some(StatedNoise::Counts { sigma_counts }) => format!("{} counts", exponential(sigma_counts, 1)),
+        Some(StatedNoise::Counts { sigma_counts }) => format!("{} counts", significant(sigma_counts, 2)),
     }
 }
 

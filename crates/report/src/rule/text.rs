@@ -2,18 +2,20 @@
 
 use crate::size::text::in_unit;
 use crate::text::footing::{GAUSSIAN, assumptions, warnings};
-use crate::text::numbers::{celsius, numbers, quantity, significant};
+use crate::text::numbers::{numbers, quantity, significant};
 use hadar::policy::{Quantity, Solution};
 use hadar::words::share;
+use hadar_study::scenario::Units;
 use hadar_study::study::{
     CameraVerdict, Fixes, LimitingScene, NotIdentifiable, RuleAnswer, RuleStudy, Shortfall, Warning,
 };
-use hadar_study::words::reliability;
+use hadar_study::words::{demanded, reliability};
 use std::fmt::Write as _;
 
 /// The answer and everything behind it.
 #[must_use]
 pub fn text(answer: &RuleAnswer, study: &RuleStudy) -> String {
+    let units = answer.rule.scenario.units();
     let mut out = format!("{}\n\n", answer.sentence);
     let width = answer.cameras.iter().map(|camera| camera.name.chars().count()).max().unwrap_or(0).max(6);
     let head = ["meets", "margin", "d at worst", "right at most", "limited by"];
@@ -39,9 +41,9 @@ pub fn text(answer: &RuleAnswer, study: &RuleStudy) -> String {
         out,
         "  margin: least d over the envelope / {} demanded ({})\n",
         significant(answer.requirement.distance, 4),
-        reliability(answer.requirement.distance)
+        demanded(answer.requirement.distance)
     );
-    answer.cameras.iter().for_each(|camera| out.push_str(&details(camera)));
+    answer.cameras.iter().for_each(|camera| out.push_str(&details(camera, units)));
     if let Some(part) = &answer.not_identifiable {
         let _ = writeln!(out, "{}\n", no_camera(part).join("\n  "));
     }
@@ -73,12 +75,12 @@ pub(crate) fn together(answer: &RuleAnswer) -> Vec<Warning> {
 }
 
 /// What limits a camera, how sure that is, and what would help.
-fn details(camera: &CameraVerdict) -> String {
+fn details(camera: &CameraVerdict, units: Units) -> String {
     let mut out = format!("{}\n", camera.name);
     let mut line = |label: &str, text: String| {
         let _ = writeln!(out, "  {label:<12} {text}");
     };
-    line("limited by", scene(&camera.limiting));
+    line("limited by", scene(&camera.limiting, units));
     line("certificate", camera.certificate.to_string());
     let spoiled: Vec<Shortfall> =
         camera.fails_by.iter().copied().filter(|reason| *reason != Shortfall::Distance).collect();
@@ -89,7 +91,7 @@ fn details(camera: &CameraVerdict) -> String {
         line("fails by", format!("{}{longest}", in_words(&spoiled)));
     }
     if let Some(fixes) = &camera.fixes {
-        line("would do", would_do(fixes));
+        line("would do", would_do(fixes, units));
     }
     if let Some(blur) = camera.motion_blur_pixels {
         line("motion blur", format!("{} pixels at the least distance", significant(blur, 2)));
@@ -99,10 +101,10 @@ fn details(camera: &CameraVerdict) -> String {
 }
 
 /// A scene in one line.
-pub(crate) fn scene(scene: &LimitingScene) -> String {
-    let kelvin: Vec<String> = scene.surroundings_k.iter().map(|kelvin| celsius(*kelvin)).collect();
+pub(crate) fn scene(scene: &LimitingScene, units: Units) -> String {
+    let kelvin: Vec<String> = scene.surroundings_k.iter().map(|kelvin| units.temperature(*kelvin)).collect();
     let distance = match scene.distance_m {
-        Some(distance) if scene.distance_matters => format!(", {} m away", significant(distance, 3)),
+        Some(distance) if scene.distance_matters => format!(", {} away", units.length(distance)),
         Some(_) => ", at any distance".into(),
         None => String::new(),
     };
@@ -114,19 +116,19 @@ pub(crate) fn scene(scene: &LimitingScene) -> String {
     format!(
         "{} at {} against {}{surroundings}{distance}",
         scene.target,
-        celsius(scene.temperature_k),
+        units.temperature(scene.temperature_k),
         scene.alternative
     )
 }
 
 /// What would help, each alone.
-pub(crate) fn would_do(fixes: &Fixes) -> String {
+pub(crate) fn would_do(fixes: &Fixes, units: Units) -> String {
     let texts: Vec<String> = fixes
         .that_do()
         .map(|(quantity, solution, spoiled)| {
             let spoiled =
                 if spoiled.is_empty() { String::new() } else { format!(", but: {}", in_words(spoiled)) };
-            format!("{}{spoiled}", one(quantity, solution))
+            format!("{}{spoiled}", one(quantity, solution, units))
         })
         .collect();
     if texts.is_empty() {
@@ -155,9 +157,9 @@ fn in_words(spoiled: &[Shortfall]) -> String {
     words.collect::<Vec<_>>().join(", ")
 }
 
-fn one(solved: Quantity, solution: &Solution) -> String {
-    let value = solution.value.map_or_else(|| "-".into(), |value| in_unit(solved, value));
-    format!("{} {value} (now {})", solved.name(), in_unit(solved, solution.camera))
+fn one(solved: Quantity, solution: &Solution, units: Units) -> String {
+    let value = solution.value.map_or_else(|| "-".into(), |value| in_unit(solved, value, units));
+    format!("{} {value} (now {})", solved.name(), in_unit(solved, solution.camera, units))
 }
 
 /// The part of the envelope that no camera does, line by line.

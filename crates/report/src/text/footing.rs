@@ -1,8 +1,8 @@
 //! What results rest on, and what their reader must know.
 
-use super::numbers::{celsius, listed, quantity};
+use super::numbers::listed;
 use hadar::instrument::Readout;
-use hadar_study::scenario::{AtmosphereSource, Nuisance, Unknown};
+use hadar_study::scenario::{AtmosphereSource, Nuisance, Scenario};
 use hadar_study::study::{Identification, Study, Warning};
 use std::fmt::Write as _;
 
@@ -12,13 +12,18 @@ pub(crate) fn footing(result: &Identification, study: &Study) -> String {
 }
 
 /// What is unknown, and what is known of it beforehand.
-fn unknown(unknown: &Unknown) -> String {
+fn unknown(scenario: &Scenario) -> String {
+    let unknown = &scenario.unknown;
     let named = unknown.nuisances.iter().map(|nuisance| {
         let unit = match nuisance {
             Nuisance::Temperature | Nuisance::EnvironmentTemperature => " K",
             Nuisance::Lighting | Nuisance::Gain => "",
         };
-        let prior = unknown.priors.get(nuisance).map(|sigma| format!("known to +- {sigma}{unit}"));
+        let prior = unknown.priors.get(nuisance).map(|sigma| {
+            let written = scenario.source.written(&format!("unknown.priors.{}", nuisance.name()));
+            let sigma = written.map_or_else(|| format!("{sigma}{unit}"), str::to_owned);
+            format!("known to +- {sigma}")
+        });
         let total = unknown.lighting_total.filter(|_| *nuisance == Nuisance::Lighting);
         let total = total.map(|total| format!("total known to be {total}"));
         let known: Vec<String> = [prior, total].into_iter().flatten().collect();
@@ -38,7 +43,7 @@ pub(crate) const GAUSSIAN: &str =
 /// What a result rests on; `counts` says what is assumed of them.
 pub(crate) fn assumptions(study: &Study, counts: &str) -> String {
     let scenario = study.scenario();
-    let unknown = unknown(&scenario.unknown);
+    let unknown = unknown(scenario);
     let bands = study.bands().bands();
     let (low, high) =
         (bands.first().map_or(0.0, |b| b.center_cm1), bands.last().map_or(0.0, |b| b.center_cm1));
@@ -52,9 +57,10 @@ pub(crate) fn assumptions(study: &Study, counts: &str) -> String {
         "  {count} band{} centred from {low} to {high} cm^-1",
         if count == 1 { "" } else { "s" }
     );
+    let units = study.units();
     let fills = match (scenario.target.size_m, &scenario.background) {
         (Some(size), Some(behind)) => {
-            format!("of {} in front of {}", quantity(size, "m"), celsius(behind.temperature_k))
+            format!("of {} in front of {}", units.length(size), units.temperature(behind.temperature_k))
         }
         _ => "that fills the pixel".to_owned(),
     };

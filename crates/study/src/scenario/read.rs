@@ -17,7 +17,7 @@ use super::{
 use hadar::allowed::{ABOVE_ZERO, ABSOLUTE_TEMPERATURE, Allowed, SHARE};
 use hadar::error::{Error, Result};
 use hadar::instrument::figures::BLANK;
-use hadar::units::Dimension;
+use hadar::units::{Dimension, decimal_comma};
 
 /// Lighting factors that should add up to a value may miss it by this: rounding, not meaning.
 const LIGHTING_ROUNDING: f64 = 1e-12;
@@ -104,7 +104,7 @@ impl Scenario {
 }
 
 fn scenario(text: &str, path: Option<&Path>) -> Result<Scenario> {
-    let mut source = Source { path: path.map(Path::to_owned), lines: BTreeMap::new() };
+    let mut source = Source { path: path.map(Path::to_owned), ..Source::default() };
     let document = document(text, &mut source)?;
     let root = Section::open(&document, "", &source, &TABLES)?;
     let mut scenario = of_root(&root)?;
@@ -160,6 +160,11 @@ pub(super) fn parse<'t>(text: &'t str, source: &Source) -> Result<DeTable<'t>> {
     if text.lines().nth(line - 1).is_some_and(|line| line.contains(BLANK)) {
         let error =
             Error::malformed(format!("`{BLANK}` stands for a figure"), "write the camera's own in its place");
+        return Err(error.on_line(line).at(source.place("")));
+    }
+    // `f_number = 1,3`: a list of nothing, and a number.
+    let value = text.lines().nth(line - 1).and_then(|line| line.split_once('=')).map(|(_, value)| value);
+    if let Some(error) = value.and_then(|value| decimal_comma(value.split('#').next().unwrap_or(value))) {
         return Err(error.on_line(line).at(source.place("")));
     }
     let error = Error::malformed(
@@ -272,26 +277,15 @@ fn alternatives(entry: &Entry<'_>) -> Result<Alternatives> {
     Ok(Alternatives {
         materials,
         temperature_range_k: section.read("temperature", |entry| {
-            range(entry, "[\"0 degC\", \"120 degC\"]", |end| {
-                end.quantity(Dimension::Temperature, ABSOLUTE_TEMPERATURE)
-            })
+            let kelvin = |end: &Entry<'_>| end.quantity(Dimension::Temperature, ABSOLUTE_TEMPERATURE);
+            entry.wide_range("[\"0 degC\", \"120 degC\"]", kelvin, |kelvin| kelvin)
         })?,
-        lighting_range: section
-            .read("lighting", |entry| range(entry, "[0.0, 1.0]", |end| end.number("0.5", SHARE)))?,
+        lighting_range: section.read("lighting", |entry| {
+            entry.wide_range("[0.0, 1.0]", |end| end.number("0.5", SHARE), |share| share)
+        })?,
         extrapolate: extrapolation(&section)?,
         skip_uncovered: section.read("skip_uncovered", Entry::boolean)?.unwrap_or(false),
     })
-}
-
-fn range<'a>(entry: &Entry<'a>, example: &str, read: impl Fn(&Entry<'a>) -> Result<f64>) -> Result<[f64; 2]> {
-    let [low, high] = entry.pair(example)?;
-    let (low, high) = (read(&low)?, read(&high)?);
-    if low < high {
-        return Ok([low, high]);
-    }
-    let found = "the first end of the range is not below the second";
-    let instead = format!("write the lower one first, as in {example}");
-    Err(entry.fail(Error::malformed(found, instead)))
 }
 
 fn unknown(entry: &Entry<'_>) -> Result<Unknown> {

@@ -246,6 +246,7 @@ impl RuleStudy {
             required: self.required,
             speed_m_s,
             hardware_m2_s: hardware_m2_s.filter(|_| plain),
+            units: self.rule.scenario.units(),
         };
         RuleRequirement {
             distance: self.required,

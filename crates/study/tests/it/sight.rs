@@ -231,7 +231,7 @@ fn a_camera_that_no_document_completes_asks_for_what_is_missing() {
     let (head, block) = message.split_once('\n').unwrap();
     assert_eq!(
         head,
-        "line 11: camera.preset: no document that was read states exposure, pixel, f_number, focal_length of flir-a655sc; \
+        "line 10: camera.exposure: no document that was read states exposure, pixel, f_number, focal_length of flir-a655sc; \
          write what the camera has in place of the dots:"
     );
     assert!(

@@ -14,7 +14,6 @@ use hadar::ranging::derivative::Derivative;
 use hadar::ranging::information::Window;
 use hadar::ranging::noise::Joined;
 use hadar::units::Dimension;
-use std::collections::BTreeMap;
 use std::path::Path;
 
 const TABLES: &[&str] = &["title", "scene", "cube", "bands", "camera", "stereo", "requirement"];
@@ -62,7 +61,7 @@ impl RangeScenario {
 }
 
 fn scenario(text: &str, path: Option<&Path>) -> Result<RangeScenario> {
-    let mut source = Source { path: path.map(Path::to_owned), lines: BTreeMap::new() };
+    let mut source = Source { path: path.map(Path::to_owned), ..Source::default() };
     if text.trim().is_empty() {
         return Err(Error::malformed("the file is empty", MINIMUM).at(source.place("")));
     }
@@ -135,8 +134,7 @@ fn scene(entry: &Entry<'_>) -> Result<SceneSpec> {
         car_temperature_k: temperature("car_temperature")?,
         person_temperature_k: temperature("person_temperature")?,
         ground_emissivity: section.read("ground_emissivity", |entry| {
-            let [low, high] = entry.pair("[0.8, 1.0]")?;
-            Ok([low.number("0.8", SHARE)?, high.number("1.0", SHARE)?])
+            entry.range("[0.8, 1.0]", |end| end.number("0.8", SHARE), |share| share)
         })?,
         car: section.read("car", material)?,
         person: section.read("person", material)?,
