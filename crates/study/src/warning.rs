@@ -32,6 +32,8 @@ pub enum Warning {
 
     /// Equal emissivities.
     Identical,
+    /// What both of a pair are entered as.
+    Placeholders { target: String, alternative: String, emissivities: [f64; 2] },
     /// Equal temperatures.
     Equilibrium,
     /// The unknowns imitate the material.
@@ -71,6 +73,10 @@ pub enum Warning {
     FilterLightLeftOut,
     /// A temperature of the sensor and no filters.
     SensorTemperatureIdle,
+    /// Nothing around the target.
+    NoSurroundings,
+    /// Side of a pixel's footprint, m.
+    TargetSizeUnknown { footprint_m: f64 },
     /// Share of the pixel that the target fills.
     TargetSmallerThanPixel { fill: f64 },
     /// Blur λF and radius of the first dark ring at the longest wavelength, beside the pixel.
@@ -168,6 +174,9 @@ impl Warning {
             Self::MotionBlur { .. } => Code::MotionBlur,
             Self::MotionBlurUnknown | Self::RuleMotionBlurUnknown => Code::MotionBlurUnknown,
             Self::FilterLightLeftOut | Self::SensorTemperatureIdle => Code::FilterLight,
+            Self::Placeholders { .. } => Code::Placeholders,
+            Self::NoSurroundings => Code::NoSurroundings,
+            Self::TargetSizeUnknown { .. } => Code::TargetSizeUnknown,
             Self::TargetSmallerThanPixel { .. } => Code::TargetSmallerThanPixel,
             Self::Diffraction { .. } => Code::Diffraction,
             Self::FrameRate { .. } => Code::FrameRate,

@@ -139,7 +139,7 @@ fn plot(library: &Library, names: &[String], global: &Global) -> Result<()> {
     let surfaces = materials
         .iter()
         .map(|material| {
-            Ok(Surface { name: material.name().to_owned(), emissivity: material.emissivity(&nodes)? })
+            Surface::of(material, &nodes)
         })
         .collect::<Result<Vec<_>>>()?;
     let Some((first, others)) = surfaces.split_first() else { return Ok(()) };
