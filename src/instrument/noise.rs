@@ -92,7 +92,12 @@ impl Camera {
             NoiseSpec::SpectralRadiance { microflick } => {
                 // Light of that radiance through the camera's own optics; the weights of the bands hold the efficiency curves.
                 let collected = self.etendue_m2_sr(None) * self.optics_efficiency * self.quantum_efficiency;
-                Some(photons_of_flick(bands, *microflick).iter().map(|photons| photons * collected * t).collect())
+                Some(
+                    photons_of_flick(bands, *microflick)
+                        .iter()
+                        .map(|photons| photons * collected * t)
+                        .collect(),
+                )
             }
         }
     }

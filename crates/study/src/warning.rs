@@ -61,6 +61,8 @@ pub enum Warning {
 
     /// A camera of one band that is modelled with so many.
     BandsModelled { camera: String, bands: usize, readout: Readout },
+    /// Width of the widest band that is taken at its centre, cm⁻¹.
+    BandsSampled { width_cm1: f64 },
     /// Time until all bands are read.
     SequentialReadout { acquisition_s: f64, bands: usize },
     /// Motion until all bands are exposed.
@@ -170,6 +172,7 @@ impl Warning {
             Self::Bunching { .. } => Code::Bunching,
             Self::EnvelopeNotSearched => Code::EnvelopeNotSearched,
             Self::BandsModelled { .. } => Code::BandsModelled,
+            Self::BandsSampled { .. } => Code::BandsSampled,
             Self::SequentialReadout { .. } => Code::SequentialReadout,
             Self::MotionBlur { .. } => Code::MotionBlur,
             Self::MotionBlurUnknown | Self::RuleMotionBlurUnknown => Code::MotionBlurUnknown,

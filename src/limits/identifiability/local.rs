@@ -230,10 +230,7 @@ impl<'a> LocalSolver<'a> {
             Status::Identical
         } else if found.norm == 0.0 && self.in_equilibrium(state) {
             Status::Equilibrium
-        } else if self.few_bands
-            || found.norm == 0.0
-            || found.relative_error >= 1.0
-            || found.residual == 0.0
+        } else if self.few_bands || found.norm == 0.0 || found.relative_error >= 1.0 || found.residual == 0.0
         {
             Status::Blind
         } else {

@@ -45,9 +45,8 @@ pub(super) fn check(
         Some(preset) => presets::find(preset)?.figures,
         None => CameraSpec::default(),
     };
-    let refuse = |key: &str, found: String, instead: String| {
-        Err(Error::malformed(found, instead).at(place(key)))
-    };
+    let refuse =
+        |key: &str, found: String, instead: String| Err(Error::malformed(found, instead).at(place(key)));
     if own == 1 && count > 1 && camera.readout != Readout::Sequential {
         let how = camera.readout.name();
         if (documented.spectral_bands, documented.readout) == (Some(own), Some(camera.readout)) {
@@ -78,7 +77,8 @@ pub(super) fn check(
         let mean = (high - low).min((1e4 / low - 1e4 / high) * center * center / 1e4) * of_all;
         band.high_cm1 - band.low_cm1 < FINEST * mean
     };
-    if own > 1 && documented.spectral_range_cm1.is_some()
+    if own > 1
+        && documented.spectral_range_cm1.is_some()
         && let Some(band) = bands.bands().iter().find(finer)
     {
         let found = format!(

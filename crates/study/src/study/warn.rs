@@ -17,6 +17,8 @@ use hadar::scene::{Parameter, State};
 const LINEAR_FACTOR: f64 = 2.0;
 /// Share of a distance that emissivity errors of 0.1 % can make up before a word of caution is due.
 pub(super) const FRAGILE_RATIO: f64 = 50.0;
+/// The widest band that may be taken at its centre without a word, cm⁻¹: features of solids are wider.
+const SAMPLED_CM1: f64 = 10.0;
 /// How wide a person is, m.
 const PERSON_M: f64 = 0.5;
 /// Photons per mode beyond which bunching is no longer negligible.
@@ -97,6 +99,10 @@ impl Study {
             warnings.push(Warning::NearestSearch { unknown: Nuisance::EnvironmentTemperature });
         } else if self.is_unknown(Nuisance::Gain) {
             warnings.push(Warning::NearestSearch { unknown: Nuisance::Gain });
+        }
+        let width_cm1 = self.open_bands.widths_cm1().into_iter().fold(0.0, f64::max);
+        if self.open_bands.one_node_per_band() && width_cm1 > SAMPLED_CM1 {
+            warnings.push(Warning::BandsSampled { width_cm1 });
         }
         if self.surroundings.objects().is_empty() {
             warnings.push(Warning::NoSurroundings);

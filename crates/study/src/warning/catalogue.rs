@@ -77,6 +77,8 @@ catalogue! {
 
     /// The camera has one band, and its entry models it as if it read all bands at once, as no such camera does.
     BandsModelled = "bands-modelled", "Write camera.readout = \"sequential\" for filters before it, one after the other.";
+    /// Wide bands of a grid or of rows are taken at their centres alone, which may miss what tells materials apart in them.
+    BandsSampled = "bands-sampled", "Write bands.integrate = true, or the bands as ranges.";
     /// Bands are read one after the other, and the scene must hold still for all of them.
     SequentialReadout = "sequential-readout", "Shorten the exposure, or take a camera that reads all bands at once.";
     /// The target moves by a pixel or more while all bands are exposed; the bound assumes less.

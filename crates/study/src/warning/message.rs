@@ -79,6 +79,11 @@ impl Display for Warning {
                     Readout::Simultaneous | Readout::Sequential => "at once",
                 }
             ),
+            Self::BandsSampled { width_cm1 } => write!(
+                f,
+                "bands up to {} cm^-1 wide are taken at their centres alone; integrated, a distance may be another",
+                significant(*width_cm1, 3)
+            ),
             Self::SequentialReadout { acquisition_s, bands } => write!(
                 f,
                 "bands are read one after the other: {acquisition_s:.3e} s until all {bands} are there, during which nothing \

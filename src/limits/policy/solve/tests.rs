@@ -122,7 +122,9 @@ fn the_farthest_distance_is_where_the_task_is_just_met() {
         let solution = task.solve(Quantity::Distance, known).unwrap();
         match solution.value {
             Some(value) => assert!(end_m > 30.0 && (value / 30.0 - 1.0).abs() < 1e-12, "{solution:?}"),
-            None => assert!(end_m < 30.0 && solution.reason.unwrap().contains("as far as the air is known, 29.9 m")),
+            None => assert!(
+                end_m < 30.0 && solution.reason.unwrap().contains("as far as the air is known, 29.9 m")
+            ),
         }
     }
 }

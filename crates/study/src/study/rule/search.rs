@@ -180,9 +180,8 @@ impl RuleStudy {
             image.reading = image.reading.max(seen.brightest_reading);
         }
         let bands = candidate.near.first().map_or(1, |near| near.bands.len());
-        let blurred = image
-            .blur
-            .map(|blur| camera.exposure_of_sweep_s(bands, camera.sweep_s(bands) / blur).max(0.0));
+        let blurred =
+            image.blur.map(|blur| camera.exposure_of_sweep_s(bands, camera.sweep_s(bands) / blur).max(0.0));
         let full = camera.full_well.map(|full| camera.exposure_s * full / image.reading);
         image.longest_exposure_s = blurred.into_iter().chain(full).reduce(f64::min);
         if image.blur.is_some_and(|blur| blur >= 1.0) {
@@ -234,7 +233,8 @@ impl RuleStudy {
             let (estimates, searched) = sighted.estimates(index)?;
             demand::computed(Thing::NearestSearches, searched);
             let Study { target, alternatives, .. } = &sighted.study;
-            pairs.extend(estimates.into_iter().filter(|pair| counts(target, &alternatives[pair.alternative])));
+            pairs
+                .extend(estimates.into_iter().filter(|pair| counts(target, &alternatives[pair.alternative])));
         }
         pairs.sort_by(|a, b| a.distance.total_cmp(&b.distance));
         let count = pairs.len();
