@@ -94,6 +94,12 @@ impl Camera {
             / (4.0 * self.f_number * self.f_number + near * near)
     }
 
+    /// Side of what a pixel sees at a distance in m, m.
+    #[must_use]
+    pub fn footprint_m(&self, distance_m: f64) -> f64 {
+        self.pixel_m * distance_m / self.focal_length_m
+    }
+
     /// The bands as the detector receives them, weighed with the efficiencies that depend on wavenumber.
     #[must_use]
     pub fn received(&self, bands: &Bands) -> Bands {

@@ -22,6 +22,7 @@ mod camera;
 mod entries;
 pub mod envelope;
 pub mod examples;
+mod kind;
 mod paths;
 pub mod range;
 mod read;

@@ -75,8 +75,8 @@ fn every_mistake_in_a_rule_is_one_line_with_file_line_and_key() {
         (
             "[\"25 degC\", \"37 degC\"]",
             "[\"37 degC\", \"25 degC\"]",
-            "a.toml:15: envelope.temperature: the envelope is empty: the first end of the range is above the second; \
-             write the lower one first, as in [\"30 degC\", \"40 degC\"]",
+            "a.toml:15: envelope.temperature: the range goes from 37 degC to 25 degC; write the lower end first: \
+             [\"25 degC\", \"37 degC\"]",
         ),
         (
             "[\"25 degC\", \"37 degC\"]",
@@ -169,7 +169,7 @@ fn the_least_lighting_of_all_objects_must_leave_room() {
 #[test]
 fn a_rule_is_no_scenario_and_the_other_way_round() {
     let folder = Folder::with(RULE);
-    assert!(folder.refusal(&["size", "a.toml"]).starts_with("a.toml:1: there is no key `cameras`"));
+    assert!(folder.refusal(&["size", "a.toml"]).starts_with("a.toml:1: this is a rule; hadar rule a.toml"));
     folder.file("b.toml", &RULE.replace("cameras = [\"flir-a325sc\", \"ideal-pnrd\"]\n", ""));
     assert!(folder.refusal(&["rule", "b.toml"]).starts_with("b.toml: the rule has no camera to check"));
     assert!(folder.refusal(&["rule", "none.toml"]).contains("there is no such file"));

@@ -24,8 +24,8 @@ pub(super) fn markdown(study: &RuleStudy, answer: &RuleAnswer) -> String {
     }
     let _ = writeln!(out, "> {}\n", answer.requirement.quotable);
     let _ = writeln!(out, "**{}**\n", answer.sentence);
-    out.push_str("| camera | meets | margin | d at worst | right at most | certificate | limiting scene | would do |\n");
-    out.push_str("|---|---|---|---|---|---|---|---|\n");
+    out.push_str("| camera | meets | margin | d at worst | right at most | bands | certificate | limiting scene | would do |\n");
+    out.push_str("|---|---|---|---|---|---|---|---|---|\n");
     answer.cameras.iter().for_each(|camera| out.push_str(&row(camera, units)));
     out.push('\n');
     if let Some(part) = &answer.not_identifiable {
@@ -64,13 +64,11 @@ fn row(camera: &CameraVerdict, units: Units) -> String {
     let fixes = camera.fixes.as_ref().map_or_else(String::new, |fixes| text::would_do(fixes, units));
     let cells = [
         camera.name.clone(),
-        match camera.fails_by.as_slice() {
-            [] => "yes".into(),
-            reasons => format!("no ({})", text::codes(reasons, ", ")),
-        },
+        text::meets(camera),
         significant(camera.margin, 3),
         significant(camera.statistical_distance, 3),
         reliability(camera.statistical_distance),
+        text::reading(camera),
         camera.certificate.to_string(),
         text::scene(&camera.limiting, units),
         fixes,

@@ -7,6 +7,7 @@ use std::path::Path;
 use toml::de::DeTable;
 
 use super::camera;
+use super::kind::Kind;
 use super::paths::material;
 use super::section::{Entry, Section, without_repetition};
 use super::source::LineStarts;
@@ -38,7 +39,7 @@ pub(super) const TABLES: [&str; 12] = [
     "envelope",
     "sensitivity",
 ];
-const MINIMUM: &str = "write [target] with material = \"skin\" and temperature = \"37 degC\"";
+pub(super) const MINIMUM: &str = "write [target] with material = \"skin\" and temperature = \"37 degC\"";
 
 /// The text of a scenario file.
 pub(super) fn text_of(path: &Path) -> Result<String> {
@@ -105,7 +106,7 @@ impl Scenario {
 
 fn scenario(text: &str, path: Option<&Path>) -> Result<Scenario> {
     let mut source = Source { path: path.map(Path::to_owned), ..Source::default() };
-    let document = document(text, &mut source)?;
+    let document = document(text, (Kind::Scenario, MINIMUM), &mut source)?;
     let root = Section::open(&document, "", &source, &TABLES)?;
     let mut scenario = of_root(&root)?;
     scenario.camera = root.read("camera", camera::read)?;
@@ -113,13 +114,18 @@ fn scenario(text: &str, path: Option<&Path>) -> Result<Scenario> {
     Ok(scenario)
 }
 
-/// The tables of a file that is not empty, whose lines `source` then knows.
-pub(super) fn document<'t>(text: &'t str, source: &mut Source) -> Result<DeTable<'t>> {
+/// The tables of a file that is of a kind and has its least in it, whose lines `source` then knows.
+pub(super) fn document<'t>(
+    text: &'t str,
+    (kind, minimum): (Kind, &str),
+    source: &mut Source,
+) -> Result<DeTable<'t>> {
     if text.trim().is_empty() {
-        return Err(Error::malformed("the file is empty", MINIMUM).at(source.place("")));
+        return Err(Error::malformed("the file is empty", minimum).at(source.place("")));
     }
     let document = parse(text, source)?;
     source.note_lines(text, &document);
+    kind.check(&document, source)?;
     Ok(document)
 }
 
@@ -149,7 +155,7 @@ pub(super) fn of_root(root: &Section<'_>) -> Result<Scenario> {
 }
 
 /// The table behind the text, or the first thing that is not TOML.
-pub(super) fn parse<'t>(text: &'t str, source: &Source) -> Result<DeTable<'t>> {
+fn parse<'t>(text: &'t str, source: &Source) -> Result<DeTable<'t>> {
     let (document, errors) = DeTable::parse_recoverable(text);
     let offset = |error: &toml::de::Error| error.span().map_or(0, |span| span.start);
     let Some(first) = errors.iter().min_by_key(|error| offset(error)) else {

@@ -5,8 +5,9 @@
 //! the certificate must know: `name`, `text` (its wording), `authority` (whose it is), `version`.
 
 use super::entries::{self, Document, Entries, Part};
+use super::kind::Kind;
 use super::paths::Paths;
-use super::read::{TABLES, document, of_root, text_of};
+use super::read::{MINIMUM, TABLES, document, of_root, text_of};
 use super::section::{Entry, Section};
 use super::{CameraSpec, Envelope, Scenario, Source, camera};
 use hadar::error::{Error, Place, Result};
@@ -89,12 +90,12 @@ impl Rule {
     /// let rule = Rule::from_toml(text, None)?;
     /// assert_eq!(rule.cameras.len(), 2);
     /// let error = Rule::from_toml(&text.replace("[\"30", "[\"40"), None).unwrap_err().to_string();
-    /// assert!(error.starts_with("line 7: envelope.temperature: the range goes from \"40 degC\" to \"37 degC\""), "{error}");
+    /// assert!(error.starts_with("line 7: envelope.temperature: the range goes from 40 degC to 37 degC"), "{error}");
     /// # Ok::<(), hadar::Error>(())
     /// ```
     pub fn from_toml(text: &str, path: Option<&Path>) -> Result<Self> {
         let mut source = Source { path: path.map(Path::to_owned), ..Source::default() };
-        let document = document(text, &mut source)?;
+        let document = document(text, (Kind::Rule, MINIMUM), &mut source)?;
         let known = [&TABLES[..], &["rule", "cameras"]].concat();
         let root = Section::open(&document, "", &source, &known)?;
         let about = root.read("rule", about)?.unwrap_or_default();

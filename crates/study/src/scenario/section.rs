@@ -168,11 +168,14 @@ impl<'a> Entry<'a> {
             return Ok(range);
         }
         let [low, high] = [low, high].map(|end| match end.value {
-            DeValue::String(text) => format!("\"{}\"", text.trim()),
-            value => describe(value).trim_start_matches("the number ").to_owned(),
+            DeValue::String(text) => (text.trim().to_owned(), format!("\"{}\"", text.trim())),
+            value => {
+                let number = describe(value).trim_start_matches("the number ").to_owned();
+                (number.clone(), number)
+            }
         });
-        let found = format!("the range goes from {low} to {high}");
-        Err(self.fail(Error::malformed(found, format!("write the lower end first: [{high}, {low}]"))))
+        let found = format!("the range goes from {} to {}", low.0, high.0);
+        Err(self.fail(Error::malformed(found, format!("write the lower end first: [{}, {}]", high.1, low.1))))
     }
 
     /// The same where the ends must differ, since there is something to search between them.

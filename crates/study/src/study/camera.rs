@@ -102,11 +102,9 @@ fn overridden(spec: &CameraSpec, preset: Preset) -> Result<Preset> {
             noise.netd_optics_efficiency.or(figures.optics_efficiency.as_ref().and_then(Efficiency::number));
         noise.netd_pixel_m = noise.netd_pixel_m.or(figures.pixel_m);
     }
-    // Without a preset there is no document that could have stated an efficiency.
     if spec.preset.is_none() {
-        figures.optics_efficiency = Some(Efficiency::Number(1.0));
+        // There is no key for it; a camera of one's own is taken to see what it is asked to.
         figures.spectral_range_cm1 = Some(PAPER_RANGE_CM1);
-        figures.flicker_fraction = Some(0.0);
     }
     for row in TABLE.iter().filter(|row| row.part == Part::Own) {
         row.lay(spec, figures);

@@ -82,8 +82,7 @@ impl Study {
 
         let nodes = bands.nodes_cm1();
         let on_nodes = |material: &Material, key: &str| {
-            let emissivity = material.emissivity(nodes).map_err(|error| error.at(scenario.place(key)))?;
-            Ok(Surface { name: material.name().to_owned(), emissivity })
+            Surface::of(material, nodes).map_err(|error| error.at(scenario.place(key)))
         };
         let objects = scenario
             .environment
@@ -114,7 +113,7 @@ impl Study {
             .map(|(temperature_k, material)| {
                 let surface = match &material {
                     Some(material) => on_nodes(material, "background.material")?,
-                    None => Surface { name: "blackbody".into(), emissivity: vec![1.0; nodes.len()] },
+                    None => Surface::of(&Material::constant("blackbody", 1.0)?, nodes)?,
                 };
                 Ok::<_, Error>(Behind { surface, temperature_k })
             })

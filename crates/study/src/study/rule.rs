@@ -17,7 +17,8 @@ mod wording;
 
 pub use results::{
     CameraVerdict, Certified, EmissivityError, EnvelopeResult, FileHash, Fixes, IdealCamera, LightTime,
-    LimitingScene, Neighbourhood, NotIdentifiable, Proof, Quotable, RuleAnswer, RuleRequirement, WhoMeets,
+    LimitingScene, Neighbourhood, NotIdentifiable, Proof, Proviso, Quotable, RuleAnswer, RuleRequirement,
+    WhoMeets, WithoutPlaceholders,
 };
 
 use self::envelope::Sighted;
@@ -321,9 +322,19 @@ fn complete(camera: &RuleCamera) -> Result<()> {
 
 /// Which cameras meet the rule.
 fn who_meets(cameras: &[CameraVerdict]) -> WhoMeets {
-    let names = |passing: bool| {
-        let chosen = cameras.iter().filter(|camera| camera.passes == passing);
-        chosen.map(|camera| camera.name.clone()).collect()
-    };
-    WhoMeets { meet: names(true), fail: names(false) }
+    let mut who = WhoMeets { meet: Vec::new(), fail: Vec::new(), placeholders: Vec::new() };
+    for camera in cameras {
+        match camera.passes {
+            true => who.meet.push((camera.name.clone(), camera.provided)),
+            false => who.fail.push(camera.name.clone()),
+        }
+        let LimitingScene { target, alternative, placeholders, .. } = &camera.limiting;
+        if let Some(numbers) = placeholders {
+            let pair = (target.clone(), alternative.clone(), *numbers);
+            if !who.placeholders.contains(&pair) {
+                who.placeholders.push(pair);
+            }
+        }
+    }
+    who
 }

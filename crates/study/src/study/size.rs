@@ -99,6 +99,8 @@ pub struct Finding {
     pub required: f64,
     /// What was found.
     pub answer: Answer,
+    /// Emissivities of the two, where each is entered as one number.
+    pub placeholders: Option<[f64; 2]>,
 }
 
 /// What was found.
@@ -268,9 +270,10 @@ impl Study {
         let sentence = Finding {
             camera: camera.name.clone(),
             target: self.target.name.clone(),
-            alternative,
             required: self.required,
             answer: self.too_few_bands().filter(|_| !check.identifiable).unwrap_or(judged),
+            placeholders: alternative.as_deref().and_then(|name| self.one_numbers(name)),
+            alternative,
         };
         let verdict = Verdict {
             met: Some(check.identifiable && spoiled.is_empty()),
@@ -329,7 +332,7 @@ impl Study {
             hardware_m2_s: camera.hardware_m2_s(gamma),
             least_distance: policy::least_distance(self.required, photons, gamma),
             acquisition_s: camera.acquisition_s(self.bands.len()),
-            footprint_m: distance_m.map(|z| camera.pixel_m * z / camera.focal_length_m),
+            footprint_m: distance_m.map(|z| camera.footprint_m(z)),
             motion_blur_pixels: blur,
             noise_budget: camera.noise_budget(&self.bands, &signal, &self.view_of(camera)),
             camera: camera.clone(),
@@ -344,6 +347,7 @@ impl Study {
             bands: &self.bands,
             required: self.required,
             distance_m,
+            farthest_m: self.atmosphere.as_ref().map(|air| air.table.longest_m()),
             size_m: self.scenario.target.size_m,
         }
     }
@@ -397,6 +401,7 @@ impl Study {
             alternative: Some(pair.alternative.clone()),
             required: self.required,
             answer,
+            placeholders: self.one_numbers(&pair.alternative),
         };
         Verdict {
             met,
@@ -406,6 +411,11 @@ impl Study {
             required_distance: self.required,
             margin: reached.map(|reached| reached / self.required),
         }
+    }
+
+    /// Emissivities of the target and of an alternative by its name, where each is entered as one number.
+    fn one_numbers(&self, alternative: &str) -> Option<[f64; 2]> {
+        self.target.placeholders(self.alternative(alternative)?)
     }
 
     /// That there are no more bands than unknowns, where it is so.

@@ -4,7 +4,7 @@ use super::Warning;
 use hadar::fisher::Nuisance;
 use hadar::instrument::Readout;
 use hadar::scene::Parameter;
-use hadar::words::{quantity, significant};
+use hadar::words::{length, quantity, significant};
 use std::fmt::{self, Display, Formatter};
 
 impl Display for Warning {
@@ -80,6 +80,11 @@ impl Display for Warning {
                     Readout::Simultaneous | Readout::Sequential => "at once",
                 }
             ),
+            Self::BandsSampled { width_cm1 } => write!(
+                f,
+                "bands up to {} cm^-1 wide are taken at their centres alone; integrated, a distance may be another",
+                significant(*width_cm1, 3)
+            ),
             Self::SequentialReadout { acquisition_s, bands } => write!(
                 f,
                 "bands are read one after the other: {} until all {bands} are there, during which nothing may change",
@@ -100,6 +105,20 @@ impl Display for Warning {
             ),
             Self::SensorTemperatureIdle => f.write_str(
                 "sensor_temperature changes nothing: there are no filters that throw its light back",
+            ),
+            Self::Placeholders { target, alternative, emissivities } => write!(
+                f,
+                "{target} and {alternative} are each entered as one number ({} and {}): that they can or cannot be told apart \
+                 says nothing of real surfaces",
+                emissivities[0], emissivities[1]
+            ),
+            Self::NoSurroundings => f.write_str(
+                "there are no surroundings: the target is in empty space, and nothing is seen but its own emission",
+            ),
+            Self::TargetSizeUnknown { footprint_m } => write!(
+                f,
+                "a pixel sees {} at the target, which is taken to fill it; a person does not",
+                length(*footprint_m)
             ),
             Self::TargetSmallerThanPixel { fill } => write!(
                 f,

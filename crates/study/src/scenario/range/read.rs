@@ -1,7 +1,8 @@
 //! Reads a ranging scenario: every key checked, every error one line with file, line and key.
 
+use super::super::kind::Kind as FileKind;
 use super::super::paths::{file, material};
-use super::super::read::{parse, text_of};
+use super::super::read::{document, text_of};
 use super::super::section::{Entry, Section};
 use super::super::{BandsSpec, Source, camera};
 use super::{
@@ -62,11 +63,7 @@ impl RangeScenario {
 
 fn scenario(text: &str, path: Option<&Path>) -> Result<RangeScenario> {
     let mut source = Source { path: path.map(Path::to_owned), ..Source::default() };
-    if text.trim().is_empty() {
-        return Err(Error::malformed("the file is empty", MINIMUM).at(source.place("")));
-    }
-    let document = parse(text, &source)?;
-    source.note_lines(text, &document);
+    let document = document(text, (FileKind::Range, MINIMUM), &mut source)?;
     let root = Section::open(&document, "", &source, TABLES)?;
     root.at_most_one(&["scene", "cube"])?;
     let subject = match (root.get("scene"), root.get("cube")) {

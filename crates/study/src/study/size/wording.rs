@@ -10,6 +10,19 @@ use std::fmt::{self, Display, Formatter};
 
 impl Display for Finding {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        self.answered(f)?;
+        match self.placeholders {
+            Some([one, other]) => write!(
+                f,
+                " Both are entered as one number ({one} and {other}): that says nothing of real surfaces."
+            ),
+            None => Ok(()),
+        }
+    }
+}
+
+impl Finding {
+    fn answered(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let Self { camera, target, .. } = self;
         let other = self.alternative.as_deref().unwrap_or("every alternative");
         let wanted = demanded(self.required);
