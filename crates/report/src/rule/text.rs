@@ -19,19 +19,22 @@ pub fn text(answer: &RuleAnswer, study: &RuleStudy) -> String {
     let units = answer.rule.scenario.units();
     let mut out = format!("{}\n\n", answer.sentence);
     let width = answer.cameras.iter().map(|camera| camera.name.chars().count()).max().unwrap_or(0).max(6);
+    let right: Vec<String> =
+        answer.cameras.iter().map(|camera| reliability(camera.statistical_distance)).collect();
+    let most = "right at most";
+    let wide = right.iter().map(String::len).max().unwrap_or(0).max(most.len());
     let _ = writeln!(
         out,
-        "{:<width$}  {:>8}  {:>10}  {:>13}  meets the rule",
-        "camera", "margin", "d at worst", "right at most"
+        "{:<width$}  {:>8}  {:>10}  {most:>wide$}  meets the rule",
+        "camera", "margin", "d at worst"
     );
-    for camera in &answer.cameras {
+    for (camera, right) in answer.cameras.iter().zip(right) {
         let _ = writeln!(
             out,
-            "{:<width$}  {:>8}  {:>10}  {:>13}  {}",
+            "{:<width$}  {:>8}  {:>10}  {right:>wide$}  {}",
             camera.name,
             significant(camera.margin, 3),
             significant(camera.statistical_distance, 3),
-            reliability(camera.statistical_distance),
             meets(camera),
         );
     }
@@ -202,9 +205,8 @@ fn one(solved: Quantity, solution: &Solution, units: Units) -> String {
 /// The part of the envelope that no camera does, line by line.
 pub(crate) fn no_camera(part: &NotIdentifiable) -> Vec<String> {
     let found = if part.fraction > 0.0 {
-        let part_of =
-            format!("In {} (+- {}) of the envelope", share(part.fraction), error(part.standard_error));
-        format!("{part_of} no camera could do it")
+        let part_of = share(part.fraction) + &error(part.standard_error);
+        format!("In {part_of} of the envelope no camera could do it")
     } else {
         format!("In all of {} scenes drawn from the envelope some camera could do it", part.scenes)
     };
@@ -216,19 +218,15 @@ pub(crate) fn no_camera(part: &NotIdentifiable) -> Vec<String> {
             significant(near.unlit, 2)
         ));
     }
-    lines.push(format!(
-        "in {} (+- {}) {}",
-        share(part.fraction_within_emissivity_error),
-        error(part.standard_error_within_emissivity_error),
-        part.emissivity_error
-    ));
+    let within = part.fraction_within_emissivity_error;
+    if within > 0.0 {
+        let of = share(within) + &error(part.standard_error_within_emissivity_error);
+        lines.push(format!("in {of} {}", part.emissivity_error));
+    }
     lines
 }
 
-/// The error of a share.
+/// The error of a share, behind it.
 fn error(share: f64) -> String {
-    if share < 1e-6 {
-        return "0 %".into();
-    }
-    format!("{} %", significant(100.0 * share, 2))
+    if share < 1e-6 { String::new() } else { format!(" (+- {} %)", significant(100.0 * share, 2)) }
 }

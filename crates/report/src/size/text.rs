@@ -3,7 +3,7 @@
 use crate::text::footing::{GAUSSIAN, assumptions, warnings};
 use crate::text::numbers::{numbers, photons, quantity, significant};
 use crate::text::pairs::pair_table;
-use hadar::policy::Quantity;
+use hadar::policy::{Quantity, Solution};
 use hadar::words::share;
 use hadar_study::scenario::Units;
 use hadar_study::study::{PairResult, Sizing, Study};
@@ -138,6 +138,14 @@ fn solutions(result: &Sizing, units: Units) -> String {
         _ => "What would meet the requirement, each with the rest of the camera as it is",
     };
     let mut out = format!("{head}\n");
+    // Where nothing helps for one and the same reason, that is all there is to say.
+    let hopeless = |solution: &Solution| solution.value.is_none() && solution.statistical_distance == 0.0;
+    if solutions.0.iter().all(|(_, solution)| hopeless(solution))
+        && let Some(reason) = solutions.0.iter().find_map(|(_, solution)| solution.reason.as_ref())
+    {
+        let _ = writeln!(out, "  nothing: {reason}\n");
+        return out;
+    }
     for (solved, solution) in &solutions.0 {
         // A speed that was not asked for and cannot be worked out is of no interest.
         if *solved == Quantity::Speed && solution.camera.is_nan() {
@@ -202,6 +210,10 @@ pub(crate) fn in_unit(solved: Quantity, value: f64, units: Units) -> String {
 /// What the verdict hangs on, in a few lines.
 fn sensitivity(result: &Sizing) -> String {
     let Some(found) = &result.sensitivity else { return String::new() };
+    // A distance of 0 hangs on nothing.
+    if found.emissivity.distance == 0.0 {
+        return String::new();
+    }
     let mut out = String::from("What the verdict hangs on\n");
     let levers = found.elasticities.0.iter().filter_map(|(lever, elasticity)| {
         let value = elasticity.as_ref()?.value;

@@ -14,7 +14,12 @@ pub(crate) fn footing(result: &Identification, study: &Study) -> String {
 /// What is unknown, and what is known of it beforehand.
 fn unknown(scenario: &Scenario) -> String {
     let unknown = &scenario.unknown;
-    let named = unknown.nuisances.iter().map(|nuisance| {
+    // What there is none of is neither known nor unknown.
+    let there = |nuisance: &&Nuisance| {
+        !scenario.environment.is_empty()
+            || !matches!(nuisance, Nuisance::Lighting | Nuisance::EnvironmentTemperature)
+    };
+    let named = unknown.nuisances.iter().filter(there).map(|nuisance| {
         let unit = match nuisance {
             Nuisance::Temperature | Nuisance::EnvironmentTemperature => " K",
             Nuisance::Lighting | Nuisance::Gain => "",
@@ -51,12 +56,10 @@ pub(crate) fn assumptions(study: &Study, counts: &str) -> String {
     let (low, high) = ((low * 100.0).round() / 100.0, (high * 100.0).round() / 100.0);
     let mut out = String::from("Assumptions\n");
     let _ = writeln!(out, "  unknown besides the material: {unknown}");
-    let count = study.bands().len();
-    let _ = writeln!(
-        out,
-        "  {count} band{} centred from {low} to {high} cm^-1",
-        if count == 1 { "" } else { "s" }
-    );
+    let _ = match study.bands().len() {
+        1 => writeln!(out, "  1 band centred at {low} cm^-1"),
+        count => writeln!(out, "  {count} bands centred from {low} to {high} cm^-1"),
+    };
     let units = study.units();
     let fills = match (scenario.target.size_m, &scenario.background) {
         (Some(size), Some(behind)) => {

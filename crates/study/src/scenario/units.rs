@@ -4,6 +4,9 @@ use super::Source;
 use hadar::units::Dimension;
 use hadar::words::{quantity, significant};
 
+/// Below it a length is told in inches by whoever writes feet.
+const FOOT_M: f64 = 0.3048;
+
 /// Units of temperatures, lengths and speeds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Units {
@@ -58,13 +61,15 @@ impl Units {
         format!("{:.2} {}", self.temperature_number(kelvin), self.temperature)
     }
 
-    /// A length in m; a metric one with a prefix that keeps it short.
+    /// A length in m; a metric one with a prefix that keeps it short, a short one of feet in inches.
     #[must_use]
     pub fn length(self, metres: f64) -> String {
-        match (self.length, Dimension::Length.in_unit(metres, self.length)) {
-            (unit @ ("ft" | "in"), Some(number)) => format!("{} {unit}", significant(number, 3)),
-            _ => quantity(metres, "m"),
+        if !matches!(self.length, "ft" | "in") {
+            return quantity(metres, "m");
         }
+        let unit = if metres < FOOT_M { "in" } else { self.length };
+        let number = Dimension::Length.in_unit(metres, unit).unwrap_or(metres);
+        format!("{} {unit}", significant(number, 3))
     }
 
     /// A speed in m s⁻¹.

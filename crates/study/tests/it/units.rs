@@ -49,8 +49,8 @@ fn all_there(texts: impl IntoIterator<Item = String>, written: &str) {
 #[test]
 fn a_scenario_is_written_in_the_units_of_its_author() {
     let mut scenario = Scenario::from_toml(SCENARIO, None).unwrap();
-    let texts = scenario.source.texts.clone().into_values();
-    let quantities = texts.clone().filter(|text| text.starts_with(|c: char| c.is_ascii_digit() || c == '-'));
+    let texts: Vec<String> = scenario.source.texts.values().cloned().collect();
+    let quantities = texts.iter().filter(|text| text.starts_with(|c: char| c.is_ascii_digit() || c == '-'));
     assert_eq!(quantities.count(), 20);
     all_there(texts, &scenario.to_toml());
     assert_eq!(Scenario::from_toml(&scenario.to_toml(), None).unwrap(), scenario);
@@ -107,6 +107,7 @@ fn answers_speak_in_the_units_of_the_scenario() {
     assert_eq!(units.temperature(310.15), "98.60 degF");
     assert_eq!((units.length(30.48), units.speed(13.4112)), ("100 ft".into(), "30.0 mph".into()));
     assert_eq!(units.temperatures([273.15, 310.15]), "32 to 98.6 degF");
+    assert_eq!(units.length(0.0254), "1.00 in");
     let metric = Units::default();
     assert_eq!((metric.length(0.05), metric.speed(2.0)), ("50.0 mm".into(), "2.00 m/s".into()));
     assert_eq!(metric.temperature(273.15), "0.00 degC");
