@@ -149,6 +149,12 @@ impl RuleStudy {
             candidates.push(candidate);
         }
         filled.scenario.alternatives.materials = Some(alternatives);
+        // Where nothing is said of them, cameras may have bands of their own.
+        let near = || candidates.iter().flat_map(|candidate| &candidate.near);
+        let source = near().next().map(|study| study.scenario.bands.source.clone());
+        if let Some(source) = source.filter(|one| near().all(|study| study.scenario.bands.source == *one)) {
+            filled.scenario.bands.source = source;
+        }
         let first = candidates.first().and_then(|candidate| candidate.near.first());
         let required = first.map_or(1.0, |study| study.required);
         let looked_up = library.work();
