@@ -15,10 +15,12 @@ mod rule;
 mod simulate;
 mod size;
 mod stderr;
+mod terminal;
 mod threads;
 
 use self::global::Global;
 use self::stderr::say;
+use self::terminal::Stream;
 use clap::{Parser, Subcommand};
 use hadar::error::{Error, Result};
 use hadar_report::bundle::Bundle;
@@ -65,7 +67,7 @@ enum Command {
 #[must_use]
 pub(crate) fn main() -> ExitCode {
     let failed = |error: Error| {
-        say(&format!("error: {error}"));
+        say(&Stream::Err.message("error:", &error.to_string()));
         ExitCode::from(1)
     };
     match Cli::try_parse() {

@@ -2,10 +2,12 @@
 
 use super::progress::Bar;
 use super::stderr::say;
+use super::terminal::Stream;
 use clap::Args;
 use hadar::demand::{Reason, Skipping, Thing, Work};
 use hadar::error::{Error, Result};
 use hadar::material::Library;
+use hadar::units::decimal_comma;
 use hadar_report::bundle::Bundle;
 use hadar_report::text;
 use hadar_study::scenario::Scenario;
@@ -60,7 +62,7 @@ impl Global {
             return Err(Error::malformed("the library is empty", instead));
         }
         for warning in library.warnings() {
-            self.note(&format!("warning: {warning}"));
+            self.note(&Stream::Err.message("warning:", &warning.to_string()));
         }
         Ok(library)
     }
@@ -118,7 +120,7 @@ impl Global {
             serde_json::to_string_pretty(json)
                 .map_err(|error| Error::malformed(error.to_string(), "report this as a bug"))?
         } else {
-            text.trim_end().to_owned()
+            Stream::Out.answer(text.trim_end())
         };
         match writeln!(std::io::stdout(), "{text}") {
             // A reader that has seen enough (`| head`) is no error.
@@ -154,6 +156,13 @@ impl Global {
 /// Anything as JSON.
 pub(super) fn as_json(value: &impl serde::Serialize) -> Result<serde_json::Value> {
     serde_json::to_value(value).map_err(|error| Error::malformed(error.to_string(), "report this as a bug"))
+}
+
+/// A number given to a flag.
+pub(super) fn plain_number(text: &str) -> std::result::Result<f64, String> {
+    text.parse().map_err(|error: std::num::ParseFloatError| {
+        decimal_comma(text).map_or_else(|| error.to_string(), |comma| comma.to_string())
+    })
 }
 
 /// The distance that decides, as a flag.

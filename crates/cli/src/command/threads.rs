@@ -2,6 +2,7 @@
 //! and not in the middle of the work.
 
 use super::stderr::say;
+use super::terminal::Stream;
 use std::sync::{Arc, Mutex, mpsc};
 
 /// Most threads that can be asked for.
@@ -10,16 +11,16 @@ pub(super) const MOST: usize = 1024;
 /// Starts as many as were asked for, here or by `RAYON_NUM_THREADS`, else one per core. Where the system does not give so
 /// many, the work is done by this one.
 pub(super) fn start(asked: Option<usize>, quiet: bool) {
-    let note = |text: String| {
+    let warn = |text: String| {
         if !quiet {
-            say(&text);
+            say(&Stream::Err.message("warning:", &text));
         }
     };
     let named = || std::env::var("RAYON_NUM_THREADS").ok()?.trim().parse::<usize>().ok();
     let count = match asked.or_else(named).unwrap_or(0) {
         0 => std::thread::available_parallelism().map_or(1, usize::from).min(MOST),
         most if most > MOST => {
-            note(format!("warning: RAYON_NUM_THREADS is {most}; {MOST} threads are taken"));
+            warn(format!("RAYON_NUM_THREADS is {most}; {MOST} threads are taken"));
             MOST
         }
         count => count,
@@ -45,9 +46,9 @@ pub(super) fn start(asked: Option<usize>, quiet: bool) {
             .build_global()
     };
     if let Some(reason) = failed {
-        note(format!("warning: {count} threads cannot be started ({reason}); one does the work"));
+        warn(format!("{count} threads cannot be started ({reason}); one does the work"));
     }
     if let Err(error) = started {
-        note(format!("warning: {error}"));
+        warn(format!("{error}"));
     }
 }

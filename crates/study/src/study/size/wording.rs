@@ -3,15 +3,30 @@
 use super::{Answer, Finding};
 use crate::scenario::DistanceKind;
 use crate::study::Shortfall;
-use crate::words::reliability;
+use crate::words::{demanded, reliability};
+use hadar::fisher::Nuisance;
+use hadar::words::significant;
 use serde::{Serialize, Serializer};
 use std::fmt::{self, Display, Formatter};
 
 impl Display for Finding {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        self.answered(f)?;
+        match self.placeholders {
+            Some([one, other]) => write!(
+                f,
+                " Both are entered as one number ({one} and {other}): that says nothing of real surfaces."
+            ),
+            None => Ok(()),
+        }
+    }
+}
+
+impl Finding {
+    fn answered(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let Self { camera, target, .. } = self;
         let other = self.alternative.as_deref().unwrap_or("every alternative");
-        let wanted = reliability(self.required);
+        let wanted = demanded(self.required);
         if let Some(reading) = no_limit(self.by) {
             return self.by_local(f, reading, other, &wanted);
         }
@@ -23,9 +38,23 @@ impl Display for Finding {
                 f,
                 "No camera can tell {target} from {other} here: the unknowns explain every difference in the spectrum."
             ),
+            Answer::TooFewBands { bands, unknowns } => {
+                let (yes, colon) = if camera.is_empty() {
+                    (format!("No camera can tell {target} from {other} here"), String::new())
+                } else {
+                    ("No".into(), format!(": {camera} cannot tell {target} from {other}"))
+                };
+                let (unknown, are) = together(unknowns);
+                let many = match bands {
+                    1 => "one band".into(),
+                    bands => format!("{bands} bands"),
+                };
+                write!(f, "{yes}: {many} cannot tell materials while {unknown} {are} unknown{colon}.")
+            }
             Answer::Takes { photons, .. } => write!(
                 f,
-                "Telling {target} from {other} with {wanted} reliability takes at least {photons:.2e} photons."
+                "Telling {target} from {other} with {wanted} reliability takes at least {} photons.",
+                significant(*photons, 3)
             ),
             Answer::Judged { enough, spoiled, reached, .. } => {
                 let (yes, can) = match (enough, spoiled.is_empty()) {
@@ -70,14 +99,23 @@ impl Finding {
                 "{target} is not told from {other} here by {reading}: to first order the unknowns explain every \
                  difference in the spectrum."
             ),
-            Answer::Takes { photons, limit } => {
+            Answer::TooFewBands { bands, unknowns } => {
+                let (unknown, are) = together(unknowns);
                 write!(
                     f,
-                    "Telling {target} from {other} with {wanted} reliability takes {photons:.2e} photons by {reading}; \
-                     by the nearest, the limit, "
+                    "No: {target} is not told from {other} here by {reading}: there are {bands} bands, and {unknown} {are} \
+                     unknown."
+                )
+            }
+            Answer::Takes { photons, limit } => {
+                let photons = significant(*photons, 3);
+                write!(
+                    f,
+                    "Telling {target} from {other} with {wanted} reliability takes {photons} photons by {reading}; by the \
+                     nearest, the limit, "
                 )?;
                 match limit {
-                    Some(limit) => write!(f, "{limit:.2e}."),
+                    Some(limit) => write!(f, "{}.", significant(*limit, 3)),
                     None => f.write_str("no number suffices."),
                 }
             }
@@ -101,6 +139,16 @@ impl Finding {
                 }
             }
         }
+    }
+}
+
+/// Unknowns in a sentence, and the verb that goes with them.
+fn together(unknowns: &[Nuisance]) -> (String, &'static str) {
+    let names: Vec<&str> = unknowns.iter().map(|nuisance| nuisance.name()).collect();
+    match names.as_slice() {
+        [] => ("nothing".into(), "is"),
+        [one] => ((*one).into(), "is"),
+        [most @ .., last] => (format!("{} and {last}", most.join(", ")), "are"),
     }
 }
 
