@@ -4,6 +4,7 @@ pub mod allowed;
 pub mod demand;
 pub mod error;
 pub mod grid;
+pub mod inputs;
 pub mod lattice_points;
 pub mod minimum;
 pub mod root;

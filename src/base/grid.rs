@@ -152,6 +152,7 @@ pub fn text_of_file(path: &Path, action: &str) -> Result<String> {
     if bytes.len() as u64 > LONGEST_FILE {
         return Err(Error::file(action, path, "it is longer than 64 MiB, more than such a file needs"));
     }
+    crate::inputs::file(path);
     // Latin-1 is the first 256 code points
     Ok(String::from_utf8(bytes)
         .unwrap_or_else(|error| error.as_bytes().iter().map(|&b| char::from(b)).collect()))

@@ -16,6 +16,7 @@ use super::{
 };
 use hadar::allowed::{ABOVE_ZERO, ABSOLUTE_TEMPERATURE, Allowed, SHARE};
 use hadar::error::{Error, Result};
+use hadar::inputs;
 use hadar::units::Dimension;
 
 /// Lighting factors that should add up to a value may miss it by this: rounding, not meaning.
@@ -54,6 +55,7 @@ pub(super) fn text_of(path: &Path) -> Result<String> {
     if bytes.len() as u64 > LONGEST_FILE {
         return Err(refuse("it is longer than 1 MiB; name the scenario, not a data file"));
     }
+    inputs::file(path);
     String::from_utf8(bytes).map_err(|error| {
         let valid = error.utf8_error().valid_up_to();
         let line = 1 + error.as_bytes().iter().take(valid).filter(|byte| **byte == b'\n').count();

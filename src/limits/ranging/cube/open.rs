@@ -105,6 +105,7 @@ fn opened(path: &Path) -> Result<(File, Vec<u8>)> {
     let file = File::open(path).map_err(|error| refused(&error))?;
     let mut start = Vec::with_capacity(128);
     (&file).take(128).read_to_end(&mut start).map_err(|error| refused(&error))?;
+    crate::inputs::file(path);
     Ok((file, start))
 }
 
