@@ -92,7 +92,10 @@ mod tests {
         // Its own entry, that of the brass it is made of, and the constants of that, not those of others.
         let content = &found.built_in[&("material", "brass-rough".to_owned())];
         let content = String::from_utf8(content.clone()).unwrap();
-        assert!(content.contains("name = \"brass-rough\"") && content.contains("name = \"brass\""), "{content}");
+        assert!(
+            content.contains("name = \"brass-rough\"") && content.contains("name = \"brass\""),
+            "{content}"
+        );
         assert!(content.contains("n,k") || content.lines().count() > 50, "{content}");
         assert!(!content.contains("name = \"iron\""));
         drop(noting);

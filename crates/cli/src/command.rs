@@ -9,6 +9,7 @@ mod global;
 mod identify;
 mod materials;
 mod progress;
+mod provenance;
 mod range;
 mod reproduce;
 mod rule;
@@ -18,7 +19,7 @@ mod size;
 use self::global::Global;
 use clap::{Parser, Subcommand};
 use hadar::error::Result;
-use hadar_report::bundle::Bundle;
+use hadar::inputs::Noting;
 use std::process::ExitCode;
 
 /// The physical limits of seeing by heat: can this thermal camera tell one material from another?
@@ -81,8 +82,12 @@ pub(crate) fn main() -> ExitCode {
 }
 
 fn run(cli: &Cli) -> Result<ExitCode> {
-    if let Some(out) = &cli.global.out {
-        Bundle::check_destination(out)?;
+    let _noting = Noting::open();
+    // Figures of the paper have a folder each, which their command looks at.
+    if let Some(out) = &cli.global.out
+        && !matches!(cli.command, Command::Reproduce(_))
+    {
+        cli.global.folder(out).check()?;
     }
     match &cli.command {
         Command::Size(args) => size::run(args, &cli.global),

@@ -148,7 +148,7 @@ impl Item {
             Self::TabS2 => tabs2::make(out)?,
             Self::Policy => policy::make(out)?,
         };
-        bundle.add("ledger.csv", table(&lines).to_csv()?);
+        bundle.add_table("ledger.csv", table(&lines))?;
         bundle.add("README.md", page(self, order.effort, &lines, &figures));
         Ok(Reproduction { bundle, lines })
     }

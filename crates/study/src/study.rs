@@ -29,9 +29,9 @@ pub use identify::{
 };
 pub use looked_up::Study;
 pub use rule::{
-    CameraVerdict, Certified, EmissivityError, EnvelopeResult, FileHash, Fixes, IdealCamera, LightTime,
-    LimitingScene, Neighbourhood, NotIdentifiable, Proof, Quotable, RuleAnswer, RuleAsked, RuleRequirement,
-    RuleStudy, WhoMeets,
+    CameraVerdict, Certified, EmissivityError, EnvelopeResult, Fixes, IdealCamera, LightTime, LimitingScene,
+    Neighbourhood, NotIdentifiable, Proof, Quotable, RuleAnswer, RuleAsked, RuleRequirement, RuleStudy,
+    WhoMeets,
 };
 pub use shortfall::Shortfall;
 pub use sight::Sight;

@@ -16,9 +16,11 @@ mod reproduce;
 mod rule;
 mod rule_mistakes;
 mod simulate;
+mod written;
 
 mod support {
     pub(crate) mod answers;
     pub(crate) mod folder;
+    pub(crate) mod page;
     pub(crate) mod uses;
 }

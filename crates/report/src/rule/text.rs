@@ -142,7 +142,7 @@ pub(crate) fn codes(shortfalls: &[Shortfall], between: &str) -> String {
 }
 
 /// What is wrong with an image.
-fn in_words(spoiled: &[Shortfall]) -> String {
+pub(super) fn in_words(spoiled: &[Shortfall]) -> String {
     let words = spoiled.iter().map(|reason| match reason {
         Shortfall::MotionBlur => "motion blur of a pixel or more",
         Shortfall::MotionUnknown => "motion that is not known without a distance",

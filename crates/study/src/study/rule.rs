@@ -10,14 +10,13 @@
 
 mod envelope;
 mod ideal;
-mod inputs;
 mod results;
 mod search;
 mod wording;
 
 pub use results::{
-    CameraVerdict, Certified, EmissivityError, EnvelopeResult, FileHash, Fixes, IdealCamera, LightTime,
-    LimitingScene, Neighbourhood, NotIdentifiable, Proof, Quotable, RuleAnswer, RuleRequirement, WhoMeets,
+    CameraVerdict, Certified, EmissivityError, EnvelopeResult, Fixes, IdealCamera, LightTime, LimitingScene,
+    Neighbourhood, NotIdentifiable, Proof, Quotable, RuleAnswer, RuleRequirement, WhoMeets,
 };
 
 use self::envelope::Sighted;
@@ -196,7 +195,6 @@ impl RuleStudy {
             envelope,
             cameras,
             not_identifiable,
-            inputs: inputs::of(&self.rule)?,
             warnings: self.warnings.clone(),
             stats: ledger.close(),
         })

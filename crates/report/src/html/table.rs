@@ -1,0 +1,68 @@
+//! A table of a page. One too wide for paper is set in several, each with the first column; of a long one the beginning.
+
+use super::escape;
+use crate::table::Table;
+use crate::text::significant;
+use std::fmt::Write as _;
+
+/// Most columns beside the first.
+const COLUMNS: usize = 6;
+/// Most rows.
+const ROWS: usize = 60;
+/// Digits of a number; the file has all of them.
+const DIGITS: usize = 4;
+
+/// The table of a file.
+pub(super) fn html(name: &str, table: &Table) -> String {
+    let (header, rows) = (table.header(), table.rows());
+    let Some((first, others)) = header.split_first() else { return String::new() };
+    if rows.is_empty() {
+        return String::new();
+    }
+    let parts = others.len().div_ceil(COLUMNS).max(1);
+    let mut out = String::new();
+    for part in 0..parts {
+        let columns = part * COLUMNS + 1..(part * COLUMNS + 1 + COLUMNS).min(header.len());
+        let more = if parts > 1 { format!(", part {} of {parts}", part + 1) } else { String::new() };
+        let cut = match rows.len() {
+            all if all > ROWS => format!(": the first {ROWS} of {all} rows"),
+            _ => String::new(),
+        };
+        let caption = format!("{}{more}{cut}", escape(name));
+        let _ = writeln!(
+            out,
+            "<div class=\"wide\" tabindex=\"0\" role=\"group\" aria-label=\"{caption}\">\n<table>\n<caption>{caption}</caption>\n\
+             <thead><tr><th scope=\"col\">{}</th>{}</tr></thead>\n<tbody>",
+            head(first),
+            header[columns.clone()]
+                .iter()
+                .map(|name| format!("<th scope=\"col\">{}</th>", head(name)))
+                .collect::<String>()
+        );
+        for row in rows.iter().take(ROWS) {
+            let cells = row.get(columns.clone()).unwrap_or_default().iter().map(|text| cell(text));
+            let first = row.first().map_or_else(String::new, |text| escape(&short(text)));
+            let _ = writeln!(out, "<tr><th scope=\"row\">{first}</th>{}</tr>", cells.collect::<String>());
+        }
+        out.push_str("</tbody>\n</table>\n</div>\n");
+    }
+    out
+}
+
+/// The head of a column, which may break where its words end.
+fn head(name: &str) -> String {
+    escape(name).replace('_', "_<wbr>")
+}
+
+fn cell(text: &str) -> String {
+    let class = if text.parse::<f64>().is_ok() { " class=\"number\"" } else { "" };
+    format!("<td{class}>{}</td>", escape(&short(text)))
+}
+
+/// A number with the digits that are read.
+fn short(text: &str) -> String {
+    match text.parse::<f64>() {
+        Ok(value) if text.len() > DIGITS + 2 => significant(value, DIGITS),
+        _ => text.to_owned(),
+    }
+}
