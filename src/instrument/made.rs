@@ -39,8 +39,7 @@ impl Preset {
             full_well,
             photon_bunching,
             readout,
-            spectral_bands: _,
-            filters_needed: _,
+            spectral_bands,
             frames,
             sensor_temperature_k,
             filter_temperature_k,
@@ -118,12 +117,23 @@ impl Preset {
             PAPER_RANGE_CM1
         });
         let flicker_fraction = flicker_fraction.unwrap_or_else(|| {
-            if noise != NoiseSpec::None {
+            if noise != NoiseSpec::None && noise != (NoiseSpec::Counts { sigma_counts: 0.0 }) {
                 let why = "0 is taken, so that frames average all of the noise out";
                 assumed.push(format!("flicker_fraction: not stated; {why}"));
             }
             0.0
         });
+        let readout = readout.unwrap_or(match spectral_bands {
+            // Filters before a camera of one band are exposed one after the other.
+            Some(1) => Readout::Sequential,
+            _ => Readout::Simultaneous,
+        });
+        let frames = frames.unwrap_or(1);
+        if frame_rate_hz.is_none() && (frames > 1 || readout.exposures(2) > 1) {
+            assumed.push(
+                "frame_rate: not stated; exposures are taken to follow each other without a pause".into(),
+            );
+        }
         Ok(Camera {
             name: self.name.clone(),
             description: self.description.clone(),
@@ -144,8 +154,9 @@ impl Preset {
             quantisation_bits,
             full_well,
             photon_bunching: photon_bunching.unwrap_or(false),
-            readout: readout.unwrap_or(Readout::Simultaneous),
-            frames: frames.unwrap_or(1),
+            readout,
+            spectral_bands,
+            frames,
             frame_rate_hz,
             sensor_temperature_k,
             filter_temperature_k,
@@ -182,6 +193,7 @@ impl CameraSpec {
             full_well,
             photon_bunching,
             readout,
+            spectral_bands,
             frames,
             frame_rate_hz,
             sensor_temperature_k,
@@ -209,8 +221,7 @@ impl CameraSpec {
             full_well,
             photon_bunching: Some(photon_bunching),
             readout: Some(readout),
-            spectral_bands: None,
-            filters_needed: false,
+            spectral_bands,
             frames: Some(frames),
             sensor_temperature_k,
             filter_temperature_k,

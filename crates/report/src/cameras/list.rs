@@ -75,8 +75,11 @@ fn briefly(preset: &Preset) -> String {
 
 fn bands(preset: &Preset) -> String {
     let how = match preset.figures.readout {
-        _ if preset.figures.filters_needed => return "one".into(),
+        None if preset.figures.spectral_bands == Some(1) => return "one".into(),
         None => return "-".into(),
+        Some(readout) if readout != Readout::Sequential && preset.figures.spectral_bands == Some(1) => {
+            return "one, modelled".into();
+        }
         Some(Readout::FourierTransform) => "interferogram",
         Some(readout) => readout.name(),
     };

@@ -3,7 +3,7 @@
 use super::{Sheet, value};
 use hadar::error::Result;
 use hadar::instrument::comparison::{Comparison, SCENE_K, compare};
-use hadar::instrument::{Camera, Equivalents};
+use hadar::instrument::{Camera, Equivalents, Readout};
 use hadar::words::{quantity, significant};
 use serde_json::{Map, Value};
 
@@ -166,10 +166,16 @@ impl SideBySide {
                 let keys: Vec<&str> = sheet.missing.iter().map(|missing| missing.key).collect();
                 all.push(format!("{name}: not stated, to be given in a scenario: {}", keys.join(", ")));
             }
-            if sheet.preset.figures.filters_needed {
-                all.push(format!(
-                    "{name} has one band of its own: a spectrum takes filters, here without loss"
-                ));
+            let figures = &sheet.preset.figures;
+            match (figures.spectral_bands, figures.readout) {
+                (Some(1), None | Some(Readout::Sequential)) => all.push(format!(
+                    "{name} has one band of its own: a spectrum takes filters, one after the other, here without loss"
+                )),
+                (Some(1), Some(readout)) => all.push(format!(
+                    "{name} has one band of its own and is modelled as if it read a whole spectrum, {}",
+                    readout.name()
+                )),
+                _ => {}
             }
             if self.b.preset.name == self.a.preset.name {
                 break;

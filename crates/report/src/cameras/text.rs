@@ -5,7 +5,7 @@ use crate::text::numbers::{celsius, exponential, quantity, significant};
 use hadar::instrument::equivalents::blackbody_microflick;
 use hadar::instrument::figures::{CameraSpec, Kind, Line, Row, StatedNoise, TABLE};
 use hadar::instrument::presets::Preset;
-use hadar::instrument::{Equivalents, Figures, NoiseLine};
+use hadar::instrument::{Equivalents, Figures, NoiseLine, Readout};
 use hadar::units::Dimension;
 use std::fmt::Write as _;
 
@@ -138,11 +138,15 @@ fn array(figures: &CameraSpec) -> String {
 }
 
 fn full_bands(figures: &CameraSpec) -> String {
-    if figures.filters_needed {
-        return "one of its own: a spectrum takes filters".into();
-    }
-    let Some(readout) = figures.readout else { return NOT_STATED.into() };
+    let one = "one of its own: a spectrum takes filters, one after the other";
+    let Some(readout) = figures.readout else {
+        return if figures.spectral_bands == Some(1) { one } else { NOT_STATED }.into();
+    };
     match figures.spectral_bands {
+        Some(1) if readout != Readout::Sequential => {
+            format!("one of its own, modelled as any number, {}", readout.name())
+        }
+        Some(1) => one.into(),
         Some(bands) => format!("{bands}, {}", readout.name()),
         None => readout.name().into(),
     }

@@ -2,7 +2,7 @@
 
 use super::text;
 use crate::manifest::{Provenance, VERSION};
-use crate::text::footing::{GAUSSIAN, assumptions};
+use crate::text::footing::{GAUSSIAN, of_scene};
 use crate::text::significant;
 use hadar_study::study::{CameraVerdict, RuleAnswer, RuleStudy};
 use hadar_study::words::reliability;
@@ -24,8 +24,8 @@ pub(super) fn markdown(study: &RuleStudy, answer: &RuleAnswer, provenance: &Prov
     }
     let _ = writeln!(out, "> {}\n", answer.requirement.quotable);
     let _ = writeln!(out, "**{}**\n", answer.sentence);
-    out.push_str("| camera | meets | margin | d at worst | right at most | certificate | limiting scene | would do |\n");
-    out.push_str("|---|---|---|---|---|---|---|---|\n");
+    out.push_str("| camera | meets | margin | d at worst | right at most | bands | certificate | limiting scene | would do |\n");
+    out.push_str("|---|---|---|---|---|---|---|---|---|\n");
     answer.cameras.iter().for_each(|camera| out.push_str(&row(camera)));
     out.push('\n');
     if let Some(part) = &answer.not_identifiable {
@@ -33,7 +33,7 @@ pub(super) fn markdown(study: &RuleStudy, answer: &RuleAnswer, provenance: &Prov
     }
     out.push_str("## What this rests on\n\n");
     if let Some(study) = study.study() {
-        let footing = assumptions(study, GAUSSIAN);
+        let footing = of_scene(study, GAUSSIAN);
         footing.lines().skip(1).for_each(|line| {
             let _ = writeln!(out, "- {}", line.trim());
         });
@@ -78,13 +78,11 @@ fn row(camera: &CameraVerdict) -> String {
     let fixes = camera.fixes.as_ref().map_or_else(String::new, text::would_do);
     let cells = [
         camera.name.clone(),
-        match camera.fails_by.as_slice() {
-            [] => "yes".into(),
-            reasons => format!("no ({})", text::codes(reasons, ", ")),
-        },
+        text::meets(camera),
         significant(camera.margin, 3),
         significant(camera.statistical_distance, 3),
         reliability(camera.statistical_distance),
+        text::reading(camera),
         camera.certificate.to_string(),
         text::scene(&camera.limiting),
         fixes,

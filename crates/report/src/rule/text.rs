@@ -1,8 +1,9 @@
 //! Which cameras meet a rule, as text: the sentence, a table, then what limits each camera and what would help it.
 
 use crate::size::text::in_unit;
-use crate::text::footing::{GAUSSIAN, assumptions, warnings};
+use crate::text::footing::{GAUSSIAN, of_scene, warnings};
 use crate::text::numbers::{celsius, numbers, quantity, significant};
+use hadar::instrument::Readout;
 use hadar::policy::{Quantity, Solution};
 use hadar::words::share;
 use hadar_study::study::{
@@ -16,24 +17,21 @@ use std::fmt::Write as _;
 pub fn text(answer: &RuleAnswer, study: &RuleStudy) -> String {
     let mut out = format!("{}\n\n", answer.sentence);
     let width = answer.cameras.iter().map(|camera| camera.name.chars().count()).max().unwrap_or(0).max(6);
-    let head = ["meets", "margin", "d at worst", "right at most", "limited by"];
     let _ = writeln!(
         out,
-        "{:<width$}  {:<5}  {:>8}  {:>10}  {:>13}  {}",
-        "camera", head[0], head[1], head[2], head[3], head[4]
+        "{:<width$}  {:>8}  {:>10}  {:>13}  meets the rule",
+        "camera", "margin", "d at worst", "right at most"
     );
     for camera in &answer.cameras {
-        let row = format!(
-            "{:<width$}  {:<5}  {:>8}  {:>10}  {:>13}  {} against {}",
+        let _ = writeln!(
+            out,
+            "{:<width$}  {:>8}  {:>10}  {:>13}  {}",
             camera.name,
-            if camera.passes { "yes" } else { "no" },
             significant(camera.margin, 3),
             significant(camera.statistical_distance, 3),
             reliability(camera.statistical_distance),
-            camera.limiting.target,
-            camera.limiting.alternative,
+            meets(camera),
         );
-        let _ = writeln!(out, "{row}");
     }
     let _ = writeln!(
         out,
@@ -47,7 +45,7 @@ pub fn text(answer: &RuleAnswer, study: &RuleStudy) -> String {
     }
     let _ = writeln!(out, "The rule in a sentence\n  {}\n", answer.requirement.quotable);
     if let Some(study) = study.study() {
-        out.push_str(&assumptions(study, GAUSSIAN));
+        out.push_str(&of_scene(study, GAUSSIAN));
     }
     out.push_str(&warnings(&together(answer)));
     out
@@ -72,19 +70,57 @@ pub(crate) fn together(answer: &RuleAnswer) -> Vec<Warning> {
     answer.warnings.iter().cloned().chain(of_cameras).collect()
 }
 
+/// Yes or no, and why.
+pub(crate) fn meets(camera: &CameraVerdict) -> String {
+    let LimitingScene { target, alternative, .. } = &camera.limiting;
+    let said = match (camera.fails_by.as_slice(), &camera.provided) {
+        ([], None) => "yes".into(),
+        ([], Some(proviso)) => format!("yes, if {proviso}"),
+        (reasons, _) => {
+            let words = reasons.iter().map(|reason| match reason {
+                Shortfall::Distance if camera.bands == 1 => "one band cannot tell materials".into(),
+                Shortfall::Distance => format!("it cannot tell {target} from {alternative}"),
+                other => in_words(&[*other]),
+            });
+            format!("no: {}", words.collect::<Vec<_>>().join("; "))
+        }
+    };
+    match &camera.without_placeholders {
+        None => said,
+        Some(without) => {
+            let margin = significant(without.margin, 3);
+            format!("{said}; without pairs of placeholders the margin is {margin}")
+        }
+    }
+}
+
+/// How many bands a camera reads, and how.
+pub(crate) fn reading(camera: &CameraVerdict) -> String {
+    let how = match camera.readout {
+        _ if camera.bands == 1 => return "one band".into(),
+        Readout::Simultaneous => "at once",
+        Readout::Sequential => "one after the other",
+        Readout::FourierTransform => "through an interferometer",
+        Readout::Dispersive => "side by side, line by line",
+    };
+    format!("{} bands {how}, {} for all of them", camera.bands, quantity(camera.sweep_s, "s"))
+}
+
 /// What limits a camera, how sure that is, and what would help.
 fn details(camera: &CameraVerdict) -> String {
     let mut out = format!("{}\n", camera.name);
     let mut line = |label: &str, text: String| {
         let _ = writeln!(out, "  {label:<12} {text}");
     };
+    line("bands", reading(camera));
     line("limited by", scene(&camera.limiting));
     line("certificate", camera.certificate.to_string());
     let spoiled: Vec<Shortfall> =
         camera.fails_by.iter().copied().filter(|reason| *reason != Shortfall::Distance).collect();
     if !spoiled.is_empty() {
-        let longest = camera.longest_exposure_s.map_or_else(String::new, |longest| {
-            format!(": exposures of {} and more are too long", quantity(longest, "s"))
+        let longest = camera.longest_exposure_s.map_or_else(String::new, |longest| match longest {
+            0.0 => ": the frames alone take too long, however short the exposures".into(),
+            longest => format!(": exposures of {} and more are too long", quantity(longest, "s")),
         });
         line("fails by", format!("{}{longest}", in_words(&spoiled)));
     }
@@ -148,6 +184,7 @@ pub(super) fn in_words(spoiled: &[Shortfall]) -> String {
         Shortfall::MotionUnknown => "motion that is not known without a distance",
         Shortfall::FullWell => "the brightest scene fills the well",
         Shortfall::FrameRate => "longer than a frame",
+        Shortfall::Impractical => "not a practical camera",
         Shortfall::Diffraction => "diffraction blurs over more than a pixel",
         Shortfall::LowestNoise => "below what read noise and converter leave",
         other => other.code(),

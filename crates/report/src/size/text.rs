@@ -9,6 +9,11 @@ use hadar_study::study::{PairResult, Sizing, Study};
 use hadar_study::words::probability;
 use std::fmt::Write as _;
 
+/// Share of the draws that settles a question, and how many times the distance of the entries half of them must exceed to say
+/// that errors outweigh it.
+const SETTLED: f64 = 0.95;
+const DROWNED: f64 = 2.0;
+
 /// The verdict and everything behind it.
 #[must_use]
 pub fn text(result: &Sizing, study: &Study) -> String {
@@ -215,9 +220,28 @@ fn sensitivity(result: &Sizing) -> String {
         line(&format!("emissivities wrong by {} rms", of.error), spread);
         line(
             &format!("  correlated over {} cm^-1", of.correlation_cm1),
-            format!("{} of the draws meet the requirement", share(of.share_met)),
+            format!("{} of the draws meet the requirement: {}", share(of.share_met), conclusion(result)),
         );
     }
     out.push('\n');
     out
+}
+
+/// What errors of the emissivities mean for the distance.
+fn conclusion(result: &Sizing) -> String {
+    let Some(found) = &result.sensitivity else { return String::new() };
+    let of = &found.emissivity;
+    let drowned = of.distance_50 > DROWNED * of.distance;
+    let what = match (of.distance >= result.requirement.distance, of.share_met) {
+        (true, met) if met >= SETTLED => "such errors leave it met",
+        (true, _) => "such errors can undo it; measure these emissivities before relying on it",
+        (false, met) if met <= 1.0 - SETTLED => "such errors do not make it met",
+        (false, _) => "within such errors it may be met or not; measure these emissivities first",
+    };
+    let more = if drowned {
+        ", but look more different than the materials do: d is that of the entries, to be measured"
+    } else {
+        ""
+    };
+    format!("{what}{more}")
 }

@@ -39,8 +39,31 @@ fn unknown(unknown: &Unknown) -> String {
 pub(crate) const GAUSSIAN: &str =
     "counts large enough to be Gaussian; two equally likely materials; d is a limit, not a promise";
 
-/// What a result rests on; `counts` says what is assumed of them.
+/// What a result rests on, its camera included; `counts` says what is assumed of them.
 pub(crate) fn assumptions(study: &Study, counts: &str) -> String {
+    let mut out = of_scene(study, counts);
+    if let Some(camera) = study.camera() {
+        let read = match camera.readout {
+            Readout::Simultaneous => "every band is read by every pixel with the whole exposure",
+            Readout::Sequential => "bands are exposed one after the other, each by every pixel",
+            Readout::FourierTransform => {
+                "all bands at once through an interferometer, one mirror position for each"
+            }
+            Readout::Dispersive => "all bands of a line at once, side by side; an image takes line by line",
+        };
+        let curved = camera.efficiency_curves.iter().any(|curve| curve.name() == "quantum_efficiency");
+        let counted = match camera.quantum_efficiency {
+            _ if curved => "quantum efficiency by its table".to_owned(),
+            1.0 => "all photons are counted (quantum efficiency 1)".to_owned(),
+            eta => format!("quantum efficiency {eta}"),
+        };
+        let _ = writeln!(out, "  {read}; {counted}");
+    }
+    out
+}
+
+/// What a result rests on whatever the camera.
+pub(crate) fn of_scene(study: &Study, counts: &str) -> String {
     let scenario = study.scenario();
     let unknown = unknown(&scenario.unknown);
     let bands = study.bands().bands();
@@ -69,7 +92,8 @@ pub(crate) fn assumptions(study: &Study, counts: &str) -> String {
             AtmosphereSource::Table(_) => "air of a table on the path".to_owned(),
         },
     };
-    let _ = writeln!(out, "  opaque Lambertian target {fills}, one scattering, {air}");
+    let around = if scenario.environment.is_empty() { ", in empty space" } else { "" };
+    let _ = writeln!(out, "  opaque Lambertian target {fills}{around}, one scattering, {air}");
     let _ = writeln!(out, "  {counts}");
     let skies = study.skies_left_out();
     if !skies.is_empty() {
@@ -78,23 +102,6 @@ pub(crate) fn assumptions(study: &Study, counts: &str) -> String {
             "  skies of the library are surroundings, no alternatives: left out {}",
             listed(skies)
         );
-    }
-    if let Some(camera) = study.camera() {
-        let read = match camera.readout {
-            Readout::Simultaneous => "every band is read by every pixel with the whole exposure",
-            Readout::Sequential => "bands are exposed one after the other, each by every pixel",
-            Readout::FourierTransform => {
-                "all bands at once through an interferometer, one mirror position for each"
-            }
-            Readout::Dispersive => "all bands of a line at once, side by side; an image takes line by line",
-        };
-        let curved = camera.efficiency_curves.iter().any(|curve| curve.name() == "quantum_efficiency");
-        let counted = match camera.quantum_efficiency {
-            _ if curved => "quantum efficiency by its table".to_owned(),
-            1.0 => "all photons are counted (quantum efficiency 1)".to_owned(),
-            eta => format!("quantum efficiency {eta}"),
-        };
-        let _ = writeln!(out, "  {read}; {counted}");
     }
     out
 }

@@ -13,6 +13,11 @@ pub(super) fn resolved(spec: &CameraSpec, source: &Source) -> Result<Camera> {
     resolved_at(spec, &|key| source.place(&format!("camera.{key}")))
 }
 
+/// What a camera is called in a message: a known one by its name, whatever was changed of it.
+pub(super) fn called(camera: &Camera, spec: &CameraSpec) -> String {
+    spec.preset.clone().unwrap_or_else(|| camera.name.clone())
+}
+
 /// The same for a camera whose keys stand where `place` says.
 pub(super) fn resolved_at(spec: &CameraSpec, place: &dyn Fn(&str) -> Place) -> Result<Camera> {
     let preset = match &spec.preset {
@@ -95,11 +100,9 @@ fn overridden(spec: &CameraSpec, preset: Preset, place: &dyn Fn(&str) -> Place) 
             noise.netd_optics_efficiency.or(figures.optics_efficiency.as_ref().and_then(Efficiency::number));
         noise.netd_pixel_m = noise.netd_pixel_m.or(figures.pixel_m);
     }
-    // Without a preset there is no document that could have stated an efficiency.
     if spec.preset.is_none() {
-        figures.optics_efficiency = Some(Efficiency::Number(1.0));
+        // There is no key for it; a camera of one's own is taken to see what it is asked to.
         figures.spectral_range_cm1 = Some(PAPER_RANGE_CM1);
-        figures.flicker_fraction = Some(0.0);
     }
     for row in TABLE.iter().filter(|row| row.part == Part::Own) {
         row.lay(spec, figures);

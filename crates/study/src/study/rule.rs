@@ -16,7 +16,8 @@ mod wording;
 
 pub use results::{
     CameraVerdict, Certified, EmissivityError, EnvelopeResult, Fixes, IdealCamera, LightTime, LimitingScene,
-    Neighbourhood, NotIdentifiable, Proof, Quotable, RuleAnswer, RuleRequirement, WhoMeets,
+    Neighbourhood, NotIdentifiable, Proof, Proviso, Quotable, RuleAnswer, RuleRequirement, WhoMeets,
+    WithoutPlaceholders,
 };
 
 use self::envelope::Sighted;
@@ -147,6 +148,12 @@ impl RuleStudy {
             candidates.push(candidate);
         }
         filled.scenario.alternatives.materials = Some(alternatives);
+        // Where nothing is said of them, cameras may have bands of their own.
+        let near = || candidates.iter().flat_map(|candidate| &candidate.near);
+        let source = near().next().map(|study| study.scenario.bands.source.clone());
+        if let Some(source) = source.filter(|one| near().all(|study| study.scenario.bands.source == *one)) {
+            filled.scenario.bands.source = source;
+        }
         let first = candidates.first().and_then(|candidate| candidate.near.first());
         let required = first.map_or(1.0, |study| study.required);
         let looked_up = library.work();
@@ -318,9 +325,19 @@ fn complete(camera: &RuleCamera) -> Result<()> {
 
 /// Which cameras meet the rule.
 fn who_meets(cameras: &[CameraVerdict]) -> WhoMeets {
-    let names = |passing: bool| {
-        let chosen = cameras.iter().filter(|camera| camera.passes == passing);
-        chosen.map(|camera| camera.name.clone()).collect()
-    };
-    WhoMeets { meet: names(true), fail: names(false) }
+    let mut who = WhoMeets { meet: Vec::new(), fail: Vec::new(), placeholders: Vec::new() };
+    for camera in cameras {
+        match camera.passes {
+            true => who.meet.push((camera.name.clone(), camera.provided)),
+            false => who.fail.push(camera.name.clone()),
+        }
+        let LimitingScene { target, alternative, placeholders, .. } = &camera.limiting;
+        if let Some(numbers) = placeholders {
+            let pair = (target.clone(), alternative.clone(), *numbers);
+            if !who.placeholders.contains(&pair) {
+                who.placeholders.push(pair);
+            }
+        }
+    }
+    who
 }

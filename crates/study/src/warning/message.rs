@@ -2,8 +2,9 @@
 
 use super::Warning;
 use hadar::fisher::Nuisance;
+use hadar::instrument::Readout;
 use hadar::scene::Parameter;
-use hadar::words::{quantity, significant};
+use hadar::words::{length, quantity, significant};
 use std::fmt::{self, Display, Formatter};
 
 impl Display for Warning {
@@ -69,6 +70,20 @@ impl Display for Warning {
             Self::EnvelopeNotSearched => f.write_str(
                 "this is the answer for the one scene; the [envelope] is searched by `hadar rule`",
             ),
+            Self::BandsModelled { camera, bands, readout } => write!(
+                f,
+                "{camera} has one band; its entry models it as if it read {bands} bands {}, as no such camera does",
+                match readout {
+                    Readout::FourierTransform => "through an interferometer",
+                    Readout::Dispersive => "side by side",
+                    Readout::Simultaneous | Readout::Sequential => "at once",
+                }
+            ),
+            Self::BandsSampled { width_cm1 } => write!(
+                f,
+                "bands up to {} cm^-1 wide are taken at their centres alone; integrated, a distance may be another",
+                significant(*width_cm1, 3)
+            ),
             Self::SequentialReadout { acquisition_s, bands } => write!(
                 f,
                 "bands are read one after the other: {acquisition_s:.3e} s until all {bands} are there, during which nothing \
@@ -89,6 +104,20 @@ impl Display for Warning {
             ),
             Self::SensorTemperatureIdle => f.write_str(
                 "sensor_temperature changes nothing: there are no filters that throw its light back",
+            ),
+            Self::Placeholders { target, alternative, emissivities } => write!(
+                f,
+                "{target} and {alternative} are each entered as one number ({} and {}): that they can or cannot be told apart \
+                 says nothing of real surfaces",
+                emissivities[0], emissivities[1]
+            ),
+            Self::NoSurroundings => f.write_str(
+                "there are no surroundings: the target is in empty space, and nothing is seen but its own emission",
+            ),
+            Self::TargetSizeUnknown { footprint_m } => write!(
+                f,
+                "a pixel sees {} at the target, which is taken to fill it; a person does not",
+                length(*footprint_m)
             ),
             Self::TargetSmallerThanPixel { fill } => write!(
                 f,

@@ -1,5 +1,6 @@
 //! Tests of scenarios and studies.
 
+mod camera_bands;
 mod fuzz_readers;
 mod published;
 mod rule_air;

@@ -1,26 +1,57 @@
 //! What comes of a rule in sentences.
 
 use super::results::{
-    Certified, EmissivityError, EnvelopeResult, IdealCamera, LightTime, Proof, Quotable, WhoMeets,
+    Certified, EmissivityError, EnvelopeResult, IdealCamera, LightTime, Proof, Proviso, Quotable, WhoMeets,
 };
 use crate::words::reliability;
-use hadar::words::{quantity, significant};
+use hadar::words::{length, quantity, significant};
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 use std::fmt::{self, Display, Formatter};
 
 impl Display for WhoMeets {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        match (self.meet.as_slice(), self.fail.as_slice()) {
+        let all = self.meet.len() + self.fail.len();
+        let meet: Vec<String> = self
+            .meet
+            .iter()
+            .map(|(name, proviso)| match proviso {
+                None => name.clone(),
+                Some(Proviso { frames, .. }) => format!("{name} (if its {frames} frames can be registered)"),
+            })
+            .collect();
+        match (meet.as_slice(), self.fail.as_slice()) {
             ([one], []) => write!(f, "{one} meets the rule."),
             ([], [one]) => write!(f, "{one} does not meet the rule."),
-            (all, []) => write!(f, "All {} cameras meet the rule: {}.", all.len(), all.join(", ")),
-            ([], all) => write!(f, "None of {} cameras meets the rule: {}.", all.len(), all.join(", ")),
-            ([one], rest) => write!(f, "1 of {} cameras meets the rule: {one}.", 1 + rest.len()),
-            (some, rest) => {
-                let all = some.len() + rest.len();
-                write!(f, "{} of {all} cameras meet the rule: {}.", some.len(), some.join(", "))
-            }
-        }
+            (names, []) => write!(f, "All {all} cameras meet the rule: {}.", names.join(", ")),
+            ([], names) => write!(f, "None of {all} cameras meets the rule: {}.", names.join(", ")),
+            ([one], _) => write!(f, "1 of {all} cameras meets the rule: {one}."),
+            (some, _) => write!(f, "{} of {all} cameras meet the rule: {}.", some.len(), some.join(", ")),
+        }?;
+        self.placeholders.iter().try_for_each(|(target, alternative, [one, other])| {
+            write!(
+                f,
+                " It hangs on {target} against {alternative}, which are entered as one number each ({one} and {other}): that \
+                 says nothing of real surfaces."
+            )
+        })
+    }
+}
+
+impl Display for Proviso {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "its {} frames can be registered ({}, in which the vehicle drives {})",
+            self.frames,
+            quantity(self.time_s, "s"),
+            length(self.way_m)
+        )
+    }
+}
+
+impl Serialize for Proviso {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
     }
 }
 
