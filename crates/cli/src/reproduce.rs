@@ -150,7 +150,7 @@ impl Item {
         };
         bundle.add_table("ledger.csv", table(&lines))?;
         bundle.add("README.md", page(self, order.effort, &lines, &figures));
-        Ok(Reproduction { bundle, lines })
+        Ok(Reproduction { bundle: bundle.titled(self.title()), lines })
     }
 }
 

@@ -55,6 +55,12 @@ impl Bundle {
         Self { title: title.map(str::to_owned), ..Self::default() }
     }
 
+    /// The same files under another title.
+    #[must_use]
+    pub fn titled(self, title: &str) -> Self {
+        Self { title: Some(title.to_owned()), ..self }
+    }
+
     /// Adds a file.
     pub fn add(&mut self, name: impl Into<String>, content: impl Into<Vec<u8>>) {
         self.files.push((name.into(), Content::Bytes(content.into())));
@@ -120,9 +126,12 @@ impl Bundle {
     /// A figure that cannot be drawn; a folder that cannot be written to. Then none of the files is there.
     pub fn write_report(&self, folder: &Folder, about: &About<'_>) -> Result<usize> {
         let mut files = self.drawn()?;
-        let drawings = files
-            .iter()
-            .filter_map(|(name, bytes)| Some((name.strip_suffix(".svg")?, std::str::from_utf8(bytes).ok()?)));
+        let svgs = files.iter().filter(|(name, _)| name.ends_with(".svg"));
+        let drawings = svgs.zip(&self.figures).map(|((name, svg), figure)| html::Drawing {
+            name: name.trim_end_matches(".svg"),
+            svg: String::from_utf8_lossy(svg),
+            said: figure.subtitle(),
+        });
         let page = html::page(self, about, &drawings.collect::<Vec<_>>());
         if self.names().all(|name| name != ANSWER) {
             files.push((ANSWER.into(), format!("{}\n", about.answer.trim_end()).into_bytes()));

@@ -11,18 +11,26 @@ use crate::bundle::{About, Bundle};
 use crate::manifest::{Provenance, VERSION};
 use hadar_study::study::Warning;
 use hadar_study::warning::Code;
+use std::borrow::Cow;
 use std::fmt::Write as _;
 
 const STYLE: &str = include_str!("html/style.css");
 
-/// The page of a bundle; `drawings` are its figures as SVG, by name.
-pub(crate) fn page(bundle: &Bundle, about: &About<'_>, drawings: &[(&str, &str)]) -> String {
+/// A figure.
+pub(crate) struct Drawing<'a> {
+    /// Of its files, without ending.
+    pub(crate) name: &'a str,
+    pub(crate) svg: Cow<'a, str>,
+    /// What is said of it beside its title; nothing where empty.
+    pub(crate) said: &'a str,
+}
+
+/// The page of a bundle with its figures.
+pub(crate) fn page(bundle: &Bundle, about: &About<'_>, drawings: &[Drawing<'_>]) -> String {
     let answer = answer::Answer::of(about.answer);
     let title = escape(bundle.title.as_deref().unwrap_or("What a thermal camera can see"));
-    let mut sections =
-        vec![("answer", "Answer", format!("<pre tabindex=\"0\">{}</pre>\n", escape(answer.details)))];
-    let pictures: String =
-        drawings.iter().enumerate().map(|(i, (name, svg))| figure(i + 1, name, svg)).collect();
+    let mut sections = vec![("answer", "Answer", lines(answer.details))];
+    let pictures: String = drawings.iter().enumerate().map(|(i, drawing)| figure(i + 1, drawing)).collect();
     sections.push(("pictures", "Pictures", pictures));
     let tables: String = bundle.tables.iter().map(|(name, rows)| table::html(name, rows)).collect();
     sections.push(("tables", "Tables", tables));
@@ -30,7 +38,7 @@ pub(crate) fn page(bundle: &Bundle, about: &About<'_>, drawings: &[(&str, &str)]
     sections.push(("warnings", "Warnings", warnings(&bundle.warnings)));
     let asked = bundle.asked.as_ref().map_or_else(String::new, |(name, text)| {
         let given = "All of it, with what was left to the program filled in. Given to the program again, it gives this report again.";
-        format!("<p><code>{name}</code>: {given}</p>\n<pre tabindex=\"0\">{}</pre>\n", escape(text.trim_end()))
+        format!("<p><code>{name}</code>: {given}</p>\n{}", verbatim(name, &escape(text.trim_end())))
     });
     sections.push(("question", "The question", asked));
     sections.push(("provenance", "Provenance", provenance(about.provenance)));
@@ -56,15 +64,43 @@ pub(crate) fn page(bundle: &Bundle, about: &About<'_>, drawings: &[(&str, &str)]
 }
 
 /// A picture within the page, named by its own title.
-fn figure(number: usize, name: &str, svg: &str) -> String {
+fn figure(number: usize, drawing: &Drawing<'_>) -> String {
+    let (id, name) = (format!("figure-{number}"), drawing.name);
+    let (described, said) = match drawing.said {
+        "" => Default::default(),
+        said => {
+            let described = format!(" aria-describedby=\"{id}-said\"");
+            (described, format!("\n<desc id=\"{id}-said\">{}</desc>", escape(said)))
+        }
+    };
     // Within a page the names of elements need no address.
-    let svg = svg.replacen(" xmlns=\"http://www.w3.org/2000/svg\"", "", 1);
-    let svg = svg.replacen("<svg ", &format!("<svg aria-labelledby=\"figure-{number}\" "), 1);
-    let svg = svg.replacen("<title>", &format!("<title id=\"figure-{number}\">"), 1);
+    let svg = drawing.svg.replacen(" xmlns=\"http://www.w3.org/2000/svg\"", "", 1);
+    let svg = svg.replacen("<svg ", &format!("<svg aria-labelledby=\"{id}\"{described} "), 1);
+    let svg = svg.replacen("<title>", &format!("<title id=\"{id}\">"), 1);
+    let svg = svg.replacen("</title>", &format!("</title>{said}"), 1);
     format!(
-        "<figure>\n<div class=\"wide\" tabindex=\"0\" role=\"group\" aria-label=\"Figure {number}\">\n{svg}</div>\n\
-         <figcaption>Figure {number}. Its numbers are in <code>{name}.csv</code>.</figcaption>\n</figure>\n"
+        "<figure>\n{}<figcaption>Figure {number}. Its numbers are in <code>{name}.csv</code>.</figcaption>\n</figure>\n",
+        wide(&format!("Figure {number}"), &svg)
     )
+}
+
+/// What may be wider than the page, and is then moved by itself, by keys too.
+fn wide(name: &str, content: &str) -> String {
+    format!("<div class=\"wide\" tabindex=\"0\" role=\"group\" aria-label=\"{name}\">\n{content}</div>\n")
+}
+
+/// Text as it stands in a file.
+fn verbatim(name: &str, text: &str) -> String {
+    format!("<pre tabindex=\"0\" role=\"group\" aria-label=\"{name}\">{text}</pre>\n")
+}
+
+/// Text as it is printed; a line too long for the page goes on indented.
+fn lines(text: &str) -> String {
+    if text.is_empty() {
+        return String::new();
+    }
+    let lines = text.lines().map(|line| format!("<span class=\"line\">{}</span>\n", escape(line)));
+    verbatim("Answer", &lines.collect::<String>())
 }
 
 fn list(items: &[String]) -> String {
@@ -106,20 +142,16 @@ fn provenance(made: &Provenance) -> String {
     let rows = rows.map(|(name, value)| format!("<dt>{name}</dt><dd><code>{}</code></dd>\n", escape(&value)));
     let mut out = format!("<dl>\n{}</dl>\n", rows.concat());
     if !made.inputs.is_empty() {
-        out.push_str(
-            "<div class=\"wide\" tabindex=\"0\" role=\"group\" aria-label=\"Inputs\">\n<table class=\"hashes\">\n\
-             <caption>All that was read</caption>\n\
+        let mut table = String::from(
+            "<table class=\"hashes\">\n<caption>All that was read</caption>\n\
              <thead><tr><th scope=\"col\">input</th><th scope=\"col\">SHA-256</th></tr></thead>\n<tbody>\n",
         );
         for input in &made.inputs {
             let hash = input.sha256.as_deref().unwrap_or("can be read only once");
-            let _ = writeln!(
-                out,
-                "<tr><th scope=\"row\">{}</th><td><code>{hash}</code></td></tr>",
-                escape(&input.path)
-            );
+            let path = escape(&input.path);
+            let _ = writeln!(table, "<tr><th scope=\"row\">{path}</th><td><code>{hash}</code></td></tr>");
         }
-        out.push_str("</tbody>\n</table>\n</div>\n");
+        out.push_str(&wide("Inputs", &(table + "</tbody>\n</table>\n")));
     }
     out + "<p>The files that were written with this one are listed in <code>hadar.json</code>, with their hashes. It bears no date: the \
            same program, command and inputs make the same bytes.</p>\n"

@@ -210,7 +210,7 @@ fn quiet_is_quiet() {
     let arguments = ["size", "a.toml", "--out", "report", "--library", "skin.csv"];
     let loud = folder.run(&arguments);
     assert!(
-        loud.stderr.contains("wrote scenario.toml") && loud.stderr.contains("`skin` is replaced"),
+        loud.stderr.contains(" files to report/") && loud.stderr.contains("`skin` is replaced"),
         "{}",
         loud.stderr
     );

@@ -24,9 +24,9 @@ const DEAD_AFTER: Duration = Duration::from_secs(24 * 3600);
 /// A folder of this process.
 #[derive(Debug)]
 pub(super) struct Staging {
-    // Removed before the lock is given back.
-    folder: TempDir,
+    // Given back first: not every system removes a file that is open.
     _lock: File,
+    folder: TempDir,
 }
 
 impl Staging {

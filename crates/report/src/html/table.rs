@@ -1,6 +1,6 @@
 //! A table of a page. One too wide for paper is set in several, each with the first column; of a long one the beginning.
 
-use super::escape;
+use super::{escape, wide};
 use crate::table::Table;
 use crate::text::significant;
 use std::fmt::Write as _;
@@ -28,25 +28,29 @@ pub(super) fn html(name: &str, table: &Table) -> String {
             all if all > ROWS => format!(": the first {ROWS} of {all} rows"),
             _ => String::new(),
         };
-        let caption = format!("{}{more}{cut}", escape(name));
-        let _ = writeln!(
-            out,
-            "<div class=\"wide\" tabindex=\"0\" role=\"group\" aria-label=\"{caption}\">\n<table>\n<caption>{caption}</caption>\n\
-             <thead><tr><th scope=\"col\">{}</th>{}</tr></thead>\n<tbody>",
+        let caption = format!("{} ({}){more}{cut}", escape(&title(name)), escape(name));
+        let heads =
+            header[columns.clone()].iter().map(|name| format!("<th scope=\"col\">{}</th>", head(name)));
+        let mut html = format!(
+            "<table>\n<caption>{caption}</caption>\n<thead><tr><th scope=\"col\">{}</th>{}</tr></thead>\n<tbody>\n",
             head(first),
-            header[columns.clone()]
-                .iter()
-                .map(|name| format!("<th scope=\"col\">{}</th>", head(name)))
-                .collect::<String>()
+            heads.collect::<String>()
         );
         for row in rows.iter().take(ROWS) {
             let cells = row.get(columns.clone()).unwrap_or_default().iter().map(|text| cell(text));
             let first = row.first().map_or_else(String::new, |text| escape(&short(text)));
-            let _ = writeln!(out, "<tr><th scope=\"row\">{first}</th>{}</tr>", cells.collect::<String>());
+            let _ = writeln!(html, "<tr><th scope=\"row\">{first}</th>{}</tr>", cells.collect::<String>());
         }
-        out.push_str("</tbody>\n</table>\n</div>\n");
+        out.push_str(&wide(&caption, &(html + "</tbody>\n</table>\n")));
     }
     out
+}
+
+/// `noise_budget.csv` as it is spoken.
+fn title(name: &str) -> String {
+    let words = name.strip_suffix(".csv").unwrap_or(name).replace('_', " ");
+    let mut letters = words.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
 /// The head of a column, which may break where its words end.

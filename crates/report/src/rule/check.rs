@@ -1,6 +1,6 @@
 //! `--check`: a line a camera, what is known of it and how.
 
-use super::text::{in_words, scene};
+use super::text::{fails_by, without_placeholders};
 use crate::text::significant;
 use hadar_study::study::{CameraVerdict, RuleAnswer, Shortfall};
 
@@ -13,29 +13,22 @@ pub fn check(answer: &RuleAnswer) -> String {
 
 fn line(camera: &CameraVerdict, required: f64) -> String {
     let times = |distance: f64| format!("{} times the demand", at_least(distance / required));
-    if camera.passes {
-        return match camera.lower_bound {
+    let said = if camera.passes {
+        let known = match camera.lower_bound {
             Some(bound) if bound >= required => format!("proved: at least {} everywhere", times(bound)),
-            _ => format!(
-                "met, but searched and not proved: {} where it is least",
-                times(camera.statistical_distance)
-            ),
+            _ => {
+                let least = times(camera.statistical_distance);
+                format!("met, but searched and not proved: {least} where it is least")
+            }
         };
-    }
-    let spoiled: Vec<Shortfall> =
-        camera.fails_by.iter().copied().filter(|reason| *reason != Shortfall::Distance).collect();
-    let mut reasons = Vec::new();
-    if camera.fails_by.contains(&Shortfall::Distance) {
-        reasons.push(format!(
-            "at most {} times the demand for {}",
-            significant(camera.margin, 3),
-            scene(&camera.limiting)
-        ));
-    }
-    if !spoiled.is_empty() {
-        reasons.push(in_words(&spoiled));
-    }
-    format!("not met: {}", reasons.join("; "))
+        let proviso = camera.provided.as_ref().map_or_else(String::new, |proviso| format!(", if {proviso}"));
+        known + &proviso
+    } else {
+        let short = camera.fails_by.contains(&Shortfall::Distance) && camera.margin > 0.0;
+        let margin = format!(" ({} times the demand)", significant(camera.margin, 3));
+        format!("not met: {}{}", fails_by(camera), if short { margin.as_str() } else { "" })
+    };
+    said + &without_placeholders(camera)
 }
 
 /// Three digits, none of them rounded up: what is promised is kept.
