@@ -99,7 +99,7 @@ fn lines(text: &str) -> String {
     if text.is_empty() {
         return String::new();
     }
-    let lines = text.lines().map(|line| format!("<span class=\"line\">{}</span>\n", escape(line)));
+    let lines = text.lines().map(|line| format!("<span class=\"line\">{}</span>", escape(line)));
     verbatim("Answer", &lines.collect::<String>())
 }
 

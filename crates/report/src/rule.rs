@@ -35,7 +35,7 @@ pub fn bundle(study: &RuleStudy, answer: &RuleAnswer, provenance: &Provenance, o
     bundle.add_asked("rule.toml", study.rule().to_toml_beside(out));
     bundle.add_table("cameras.csv", cameras(answer))?;
     bundle.add_table("worst_cases.csv", worst_cases(answer))?;
-    bundle.add_table("inputs.csv", inputs(provenance))?;
+    bundle.add("inputs.csv", inputs(provenance).to_csv()?);
     bundle.add_warnings(&warnings(answer))?;
     bundle.add_plots(&[margins(answer)])?;
     Ok(bundle)

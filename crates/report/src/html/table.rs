@@ -7,10 +7,16 @@ use std::fmt::Write as _;
 
 /// Most columns beside the first.
 const COLUMNS: usize = 6;
+/// Most columns that are set at all.
+const WIDEST: usize = 30;
 /// Most rows.
 const ROWS: usize = 60;
 /// Digits of a number; the file has all of them.
 const DIGITS: usize = 4;
+
+fn text(row: &[String], column: usize) -> &str {
+    row.get(column).map_or("", String::as_str)
+}
 
 /// The table of a file.
 pub(super) fn html(name: &str, table: &Table) -> String {
@@ -18,6 +24,14 @@ pub(super) fn html(name: &str, table: &Table) -> String {
     let Some((first, others)) = header.split_first() else { return String::new() };
     if rows.is_empty() {
         return String::new();
+    }
+    // Numbers stand below each other, and their heads above them.
+    let is_number = |text: &str| text.is_empty() || text.parse::<f64>().is_ok();
+    let numeric = (0..header.len()).map(|i| rows.iter().all(|row| is_number(text(row, i))));
+    let classes: Vec<&str> = numeric.map(|yes| if yes { " class=\"number\"" } else { "" }).collect();
+    if header.len() > WIDEST {
+        let name = escape(name);
+        return format!("<p><code>{name}</code> has {} columns, too many for a page.</p>\n", header.len());
     }
     let parts = others.len().div_ceil(COLUMNS).max(1);
     let mut out = String::new();
@@ -30,15 +44,16 @@ pub(super) fn html(name: &str, table: &Table) -> String {
         };
         let caption = format!("{} ({}){more}{cut}", escape(&title(name)), escape(name));
         let heads =
-            header[columns.clone()].iter().map(|name| format!("<th scope=\"col\">{}</th>", head(name)));
+            columns.clone().map(|i| format!("<th scope=\"col\"{}>{}</th>", classes[i], head(&header[i])));
         let mut html = format!(
             "<table>\n<caption>{caption}</caption>\n<thead><tr><th scope=\"col\">{}</th>{}</tr></thead>\n<tbody>\n",
             head(first),
             heads.collect::<String>()
         );
         for row in rows.iter().take(ROWS) {
-            let cells = row.get(columns.clone()).unwrap_or_default().iter().map(|text| cell(text));
-            let first = row.first().map_or_else(String::new, |text| escape(&short(text)));
+            let cells =
+                columns.clone().map(|i| format!("<td{}>{}</td>", classes[i], escape(&short(text(row, i)))));
+            let first = escape(&short(text(row, 0)));
             let _ = writeln!(html, "<tr><th scope=\"row\">{first}</th>{}</tr>", cells.collect::<String>());
         }
         out.push_str(&wide(&caption, &(html + "</tbody>\n</table>\n")));
@@ -56,11 +71,6 @@ fn title(name: &str) -> String {
 /// The head of a column, which may break where its words end.
 fn head(name: &str) -> String {
     escape(name).replace('_', "_<wbr>")
-}
-
-fn cell(text: &str) -> String {
-    let class = if text.parse::<f64>().is_ok() { " class=\"number\"" } else { "" };
-    format!("<td{class}>{}</td>", escape(&short(text)))
 }
 
 /// A number with the digits that are read.

@@ -25,8 +25,8 @@ fn line(camera: &CameraVerdict, required: f64) -> String {
         known + &proviso
     } else {
         let short = camera.fails_by.contains(&Shortfall::Distance) && camera.margin > 0.0;
-        let margin = format!(" ({} times the demand)", significant(camera.margin, 3));
-        format!("not met: {}{}", fails_by(camera), if short { margin.as_str() } else { "" })
+        let margin = format!("{} times the demand: ", significant(camera.margin, 3));
+        format!("not met: {}{}", if short { margin.as_str() } else { "" }, fails_by(camera))
     };
     said + &without_placeholders(camera)
 }
