@@ -2,11 +2,13 @@
 
 use super::progress::Bar;
 use super::provenance;
+use super::terminal::Stream;
 use clap::Args;
 use hadar::demand::{Reason, Skipping, Thing, Work};
 use hadar::error::{Error, Result};
 use hadar::inputs;
 use hadar::material::Library;
+use hadar::units::decimal_comma;
 use hadar_report::bundle::{About, Bundle};
 use hadar_report::folder::{Folder, Strangers};
 use hadar_report::manifest::{Provenance, SCHEMA, VERSION};
@@ -67,7 +69,7 @@ impl Global {
             return Err(Error::malformed("the library is empty", instead));
         }
         for warning in library.warnings() {
-            self.note(&format!("warning: {warning}"));
+            self.note(&Stream::Err.message("warning:", &warning.to_string()));
         }
         Ok(library)
     }
@@ -148,7 +150,7 @@ impl Global {
             serde_json::to_string_pretty(&Versioned { hadar: VERSION, schema: SCHEMA, answer: json })
                 .map_err(|error| Error::malformed(error.to_string(), "report this as a bug"))?
         } else {
-            text.trim_end().to_owned()
+            Stream::Out.answer(text.trim_end())
         };
         match writeln!(std::io::stdout(), "{text}") {
             // A reader that has seen enough (`| head`) is no error.
@@ -207,6 +209,13 @@ struct Versioned<'a, T: serde::Serialize> {
 /// Anything as JSON.
 pub(super) fn as_json(value: &impl serde::Serialize) -> Result<serde_json::Value> {
     serde_json::to_value(value).map_err(|error| Error::malformed(error.to_string(), "report this as a bug"))
+}
+
+/// A number given to a flag.
+pub(super) fn plain_number(text: &str) -> std::result::Result<f64, String> {
+    text.parse().map_err(|error: std::num::ParseFloatError| {
+        decimal_comma(text).map_or_else(|| error.to_string(), |comma| comma.to_string())
+    })
 }
 
 /// The distance that decides, as a flag.

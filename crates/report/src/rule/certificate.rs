@@ -4,13 +4,14 @@ use super::text;
 use crate::manifest::{Provenance, VERSION};
 use crate::text::footing::{GAUSSIAN, of_scene};
 use crate::text::significant;
+use hadar_study::scenario::Units;
 use hadar_study::study::{CameraVerdict, RuleAnswer, RuleStudy};
 use hadar_study::words::reliability;
 use std::fmt::Write as _;
 
 /// The page.
 pub(super) fn markdown(study: &RuleStudy, answer: &RuleAnswer, provenance: &Provenance) -> String {
-    let about = &answer.rule.about;
+    let (about, units) = (&answer.rule.about, answer.rule.scenario.units());
     let mut out = format!("# {}\n\n", title(answer));
     for (label, value) in [("Authority", &about.authority), ("Version", &about.version)] {
         if let Some(value) = value {
@@ -26,7 +27,7 @@ pub(super) fn markdown(study: &RuleStudy, answer: &RuleAnswer, provenance: &Prov
     let _ = writeln!(out, "**{}**\n", answer.sentence);
     out.push_str("| camera | meets | margin | d at worst | right at most | bands | certificate | limiting scene | would do |\n");
     out.push_str("|---|---|---|---|---|---|---|---|---|\n");
-    answer.cameras.iter().for_each(|camera| out.push_str(&row(camera)));
+    answer.cameras.iter().for_each(|camera| out.push_str(&row(camera, units)));
     out.push('\n');
     if let Some(part) = &answer.not_identifiable {
         let _ = writeln!(out, "{}.\n", text::no_camera(part).join("; "));
@@ -74,8 +75,8 @@ pub(super) fn title(answer: &RuleAnswer) -> String {
     title.unwrap_or_else(|| "Which cameras meet the rule".into())
 }
 
-fn row(camera: &CameraVerdict) -> String {
-    let fixes = camera.fixes.as_ref().map_or_else(String::new, text::would_do);
+fn row(camera: &CameraVerdict, units: Units) -> String {
+    let fixes = camera.fixes.as_ref().map_or_else(String::new, |fixes| text::would_do(fixes, units));
     let cells = [
         camera.name.clone(),
         text::meets(camera),
@@ -84,7 +85,7 @@ fn row(camera: &CameraVerdict) -> String {
         reliability(camera.statistical_distance),
         text::reading(camera),
         camera.certificate.to_string(),
-        text::scene(&camera.limiting),
+        text::scene(&camera.limiting, units),
         fixes,
     ];
     format!("| {} |\n", cells.map(|text| cell(&text)).join(" | "))

@@ -2,34 +2,39 @@
 
 use crate::size::text::in_unit;
 use crate::text::footing::{GAUSSIAN, of_scene, warnings};
-use crate::text::numbers::{celsius, numbers, quantity, significant};
+use crate::text::numbers::{numbers, quantity, significant};
 use hadar::instrument::Readout;
 use hadar::policy::{Quantity, Solution};
 use hadar::words::share;
+use hadar_study::scenario::Units;
 use hadar_study::study::{
     CameraVerdict, Fixes, LimitingScene, NotIdentifiable, RuleAnswer, RuleStudy, Shortfall, Warning,
 };
-use hadar_study::words::reliability;
+use hadar_study::words::{demanded, reliability};
 use std::fmt::Write as _;
 
 /// The answer and everything behind it.
 #[must_use]
 pub fn text(answer: &RuleAnswer, study: &RuleStudy) -> String {
+    let units = answer.rule.scenario.units();
     let mut out = format!("{}\n\n", answer.sentence);
     let width = answer.cameras.iter().map(|camera| camera.name.chars().count()).max().unwrap_or(0).max(6);
+    let right: Vec<String> =
+        answer.cameras.iter().map(|camera| reliability(camera.statistical_distance)).collect();
+    let most = "right at most";
+    let wide = right.iter().map(String::len).max().unwrap_or(0).max(most.len());
     let _ = writeln!(
         out,
-        "{:<width$}  {:>8}  {:>10}  {:>13}  meets the rule",
-        "camera", "margin", "d at worst", "right at most"
+        "{:<width$}  {:>8}  {:>10}  {most:>wide$}  meets the rule",
+        "camera", "margin", "d at worst"
     );
-    for camera in &answer.cameras {
+    for (camera, right) in answer.cameras.iter().zip(right) {
         let _ = writeln!(
             out,
-            "{:<width$}  {:>8}  {:>10}  {:>13}  {}",
+            "{:<width$}  {:>8}  {:>10}  {right:>wide$}  {}",
             camera.name,
             significant(camera.margin, 3),
             significant(camera.statistical_distance, 3),
-            reliability(camera.statistical_distance),
             meets(camera),
         );
     }
@@ -37,9 +42,9 @@ pub fn text(answer: &RuleAnswer, study: &RuleStudy) -> String {
         out,
         "  margin: least d over the envelope / {} demanded ({})\n",
         significant(answer.requirement.distance, 4),
-        reliability(answer.requirement.distance)
+        demanded(answer.requirement.distance)
     );
-    answer.cameras.iter().for_each(|camera| out.push_str(&details(camera)));
+    answer.cameras.iter().for_each(|camera| out.push_str(&details(camera, units)));
     if let Some(part) = &answer.not_identifiable {
         let _ = writeln!(out, "{}\n", no_camera(part).join("\n  "));
     }
@@ -111,13 +116,13 @@ pub(crate) fn reading(camera: &CameraVerdict) -> String {
 }
 
 /// What limits a camera, how sure that is, and what would help.
-fn details(camera: &CameraVerdict) -> String {
+fn details(camera: &CameraVerdict, units: Units) -> String {
     let mut out = format!("{}\n", camera.name);
     let mut line = |label: &str, text: String| {
         let _ = writeln!(out, "  {label:<12} {text}");
     };
     line("bands", reading(camera));
-    line("limited by", scene(&camera.limiting));
+    line("limited by", scene(&camera.limiting, units));
     line("certificate", camera.certificate.to_string());
     let spoiled: Vec<Shortfall> =
         camera.fails_by.iter().copied().filter(|reason| *reason != Shortfall::Distance).collect();
@@ -129,7 +134,7 @@ fn details(camera: &CameraVerdict) -> String {
         line("fails by", format!("{}{longest}", in_words(&spoiled)));
     }
     if let Some(fixes) = &camera.fixes {
-        line("would do", would_do(fixes));
+        line("would do", would_do(fixes, units));
     }
     if let Some(blur) = camera.motion_blur_pixels {
         line("motion blur", format!("{} pixels at the least distance", significant(blur, 2)));
@@ -139,10 +144,10 @@ fn details(camera: &CameraVerdict) -> String {
 }
 
 /// A scene in one line.
-pub(crate) fn scene(scene: &LimitingScene) -> String {
-    let kelvin: Vec<String> = scene.surroundings_k.iter().map(|kelvin| celsius(*kelvin)).collect();
+pub(crate) fn scene(scene: &LimitingScene, units: Units) -> String {
+    let kelvin: Vec<String> = scene.surroundings_k.iter().map(|kelvin| units.temperature(*kelvin)).collect();
     let distance = match scene.distance_m {
-        Some(distance) if scene.distance_matters => format!(", {} m away", significant(distance, 3)),
+        Some(distance) if scene.distance_matters => format!(", {} away", units.length(distance)),
         Some(_) => ", at any distance".into(),
         None => String::new(),
     };
@@ -154,19 +159,19 @@ pub(crate) fn scene(scene: &LimitingScene) -> String {
     format!(
         "{} at {} against {}{surroundings}{distance}",
         scene.target,
-        celsius(scene.temperature_k),
+        units.temperature(scene.temperature_k),
         scene.alternative
     )
 }
 
 /// What would help, each alone.
-pub(crate) fn would_do(fixes: &Fixes) -> String {
+pub(crate) fn would_do(fixes: &Fixes, units: Units) -> String {
     let texts: Vec<String> = fixes
         .that_do()
         .map(|(quantity, solution, spoiled)| {
             let spoiled =
                 if spoiled.is_empty() { String::new() } else { format!(", but: {}", in_words(spoiled)) };
-            format!("{}{spoiled}", one(quantity, solution))
+            format!("{}{spoiled}", one(quantity, solution, units))
         })
         .collect();
     if texts.is_empty() {
@@ -196,17 +201,16 @@ fn in_words(spoiled: &[Shortfall]) -> String {
     words.collect::<Vec<_>>().join(", ")
 }
 
-fn one(solved: Quantity, solution: &Solution) -> String {
-    let value = solution.value.map_or_else(|| "-".into(), |value| in_unit(solved, value));
-    format!("{} {value} (now {})", solved.name(), in_unit(solved, solution.camera))
+fn one(solved: Quantity, solution: &Solution, units: Units) -> String {
+    let value = solution.value.map_or_else(|| "-".into(), |value| in_unit(solved, value, units));
+    format!("{} {value} (now {})", solved.name(), in_unit(solved, solution.camera, units))
 }
 
 /// The part of the envelope that no camera does, line by line.
 pub(crate) fn no_camera(part: &NotIdentifiable) -> Vec<String> {
     let found = if part.fraction > 0.0 {
-        let part_of =
-            format!("In {} (+- {}) of the envelope", share(part.fraction), error(part.standard_error));
-        format!("{part_of} no camera could do it")
+        let part_of = share(part.fraction) + &error(part.standard_error);
+        format!("In {part_of} of the envelope no camera could do it")
     } else {
         format!("In all of {} scenes drawn from the envelope some camera could do it", part.scenes)
     };
@@ -218,19 +222,15 @@ pub(crate) fn no_camera(part: &NotIdentifiable) -> Vec<String> {
             significant(near.unlit, 2)
         ));
     }
-    lines.push(format!(
-        "in {} (+- {}) {}",
-        share(part.fraction_within_emissivity_error),
-        error(part.standard_error_within_emissivity_error),
-        part.emissivity_error
-    ));
+    let within = part.fraction_within_emissivity_error;
+    if within > 0.0 {
+        let of = share(within) + &error(part.standard_error_within_emissivity_error);
+        lines.push(format!("in {of} {}", part.emissivity_error));
+    }
     lines
 }
 
-/// The error of a share.
+/// The error of a share, behind it.
 fn error(share: f64) -> String {
-    if share < 1e-6 {
-        return "0 %".into();
-    }
-    format!("{} %", significant(100.0 * share, 2))
+    if share < 1e-6 { String::new() } else { format!(" (+- {} %)", significant(100.0 * share, 2)) }
 }

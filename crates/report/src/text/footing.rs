@@ -1,8 +1,8 @@
 //! What results rest on, and what their reader must know.
 
-use super::numbers::{celsius, listed, quantity};
+use super::numbers::listed;
 use hadar::instrument::Readout;
-use hadar_study::scenario::{AtmosphereSource, Nuisance, Unknown};
+use hadar_study::scenario::{AtmosphereSource, Nuisance, Scenario};
 use hadar_study::study::{Identification, Study, Warning};
 use std::fmt::Write as _;
 
@@ -16,13 +16,23 @@ pub(crate) fn footing(result: &Identification, study: &Study) -> String {
 }
 
 /// What is unknown, and what is known of it beforehand.
-fn unknown(unknown: &Unknown) -> String {
-    let named = unknown.nuisances.iter().map(|nuisance| {
+fn unknown(scenario: &Scenario) -> String {
+    let unknown = &scenario.unknown;
+    // What there is none of is neither known nor unknown.
+    let there = |nuisance: &&Nuisance| {
+        !scenario.environment.is_empty()
+            || !matches!(nuisance, Nuisance::Lighting | Nuisance::EnvironmentTemperature)
+    };
+    let named = unknown.nuisances.iter().filter(there).map(|nuisance| {
         let unit = match nuisance {
             Nuisance::Temperature | Nuisance::EnvironmentTemperature => " K",
             Nuisance::Lighting | Nuisance::Gain => "",
         };
-        let prior = unknown.priors.get(nuisance).map(|sigma| format!("known to +- {sigma}{unit}"));
+        let prior = unknown.priors.get(nuisance).map(|sigma| {
+            let written = scenario.source.written(&format!("unknown.priors.{}", nuisance.name()));
+            let sigma = written.map_or_else(|| format!("{sigma}{unit}"), str::to_owned);
+            format!("known to +- {sigma}")
+        });
         let total = unknown.lighting_total.filter(|_| *nuisance == Nuisance::Lighting);
         let total = total.map(|total| format!("total known to be {total}"));
         let known: Vec<String> = [prior, total].into_iter().flatten().collect();
@@ -65,7 +75,7 @@ pub(crate) fn assumptions(study: &Study, counts: &str) -> String {
 /// What a result rests on whatever the camera.
 pub(crate) fn of_scene(study: &Study, counts: &str) -> String {
     let scenario = study.scenario();
-    let unknown = unknown(&scenario.unknown);
+    let unknown = unknown(scenario);
     let bands = study.bands().bands();
     let (low, high) =
         (bands.first().map_or(0.0, |b| b.center_cm1), bands.last().map_or(0.0, |b| b.center_cm1));
@@ -73,15 +83,14 @@ pub(crate) fn of_scene(study: &Study, counts: &str) -> String {
     let (low, high) = ((low * 100.0).round() / 100.0, (high * 100.0).round() / 100.0);
     let mut out = format!("{ASSUMPTIONS}\n");
     let _ = writeln!(out, "  unknown besides the material: {unknown}");
-    let count = study.bands().len();
-    let _ = writeln!(
-        out,
-        "  {count} band{} centred from {low} to {high} cm^-1",
-        if count == 1 { "" } else { "s" }
-    );
+    let _ = match study.bands().len() {
+        1 => writeln!(out, "  1 band centred at {low} cm^-1"),
+        count => writeln!(out, "  {count} bands centred from {low} to {high} cm^-1"),
+    };
+    let units = study.units();
     let fills = match (scenario.target.size_m, &scenario.background) {
         (Some(size), Some(behind)) => {
-            format!("of {} in front of {}", quantity(size, "m"), celsius(behind.temperature_k))
+            format!("of {} in front of {}", units.length(size), units.temperature(behind.temperature_k))
         }
         _ => "that fills the pixel".to_owned(),
     };

@@ -7,7 +7,7 @@ use super::paths::{Paths, file};
 use super::section::{Entry, Section};
 use hadar::allowed::Allowed;
 use hadar::error::{Error, Result};
-use hadar::units::Spectral;
+use hadar::units::{Dimension, Spectral};
 
 /// Start, stop and step of the paper's bands, cm⁻¹.
 const PAPERS_GRID: [f64; 3] = [715.0, 1250.0, 1.0];
@@ -99,14 +99,18 @@ impl BandsSpec {
         let entries = match &self.source {
             BandSource::Unsaid => entries,
             BandSource::Grid { start, stop, step } => {
-                entries.put("start", start.format()).put("stop", stop.format()).put("step", step.format())
+                let put = |entries: Entries, key, end: &Spectral| {
+                    entries.put_written(key, end.dimension(), end.format())
+                };
+                put(put(put(entries, "start", start), "stop", stop), "step", step)
             }
             BandSource::Filters(path) => entries.put("filters", paths.file(path)),
             BandSource::Rows(path) => entries.put("rows", paths.file(path)),
             BandSource::Ranges(ranges) => {
                 let pairs: Vec<Vec<String>> =
                     ranges.iter().map(|range| range.map(|end| end.format()).to_vec()).collect();
-                entries.put("ranges", pairs)
+                let dimension = ranges.first().map_or(Dimension::Wavenumber, |[low, _]| low.dimension());
+                entries.put_written("ranges", dimension, pairs)
             }
         };
         entries.put("integrate", self.integrate).put("tolerance", self.tolerance)
@@ -162,18 +166,15 @@ fn ranges(entry: &Entry<'_>) -> Result<Vec<[Spectral; 2]>> {
 }
 
 fn range(entry: &Entry<'_>) -> Result<[Spectral; 2]> {
-    let refuse = |found: String, instead: &str| Err(entry.fail(Error::malformed(found, instead)));
-    let [low, high] = entry.pair("[\"715 cm^-1\", \"800 cm^-1\"]")?;
+    let example = "[\"715 cm^-1\", \"800 cm^-1\"]";
+    let [low, high] = entry.pair(example)?;
     let (low, high) = (spectral(&low)?, spectral(&high)?);
     if !same_axis(low, high) {
         let found = format!("the range goes from {} to {}", low.format(), high.format());
-        return refuse(found, "write both ends in cm^-1, or both in um or nm");
+        let instead = "write both ends in cm^-1, or both in um or nm";
+        return Err(entry.fail(Error::malformed(found, instead)));
     }
-    if high.number() <= low.number() {
-        let found = format!("the range goes from {} to {}", low.format(), high.format());
-        return refuse(found, "write the lower end first");
-    }
-    Ok([low, high])
+    entry.wide_range(example, spectral, Spectral::number)
 }
 
 /// A position or step above 0.

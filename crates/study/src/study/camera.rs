@@ -25,9 +25,11 @@ pub(super) fn resolved_at(spec: &CameraSpec, place: &dyn Fn(&str) -> Place) -> R
         None => None,
     };
     check_conditions(spec, preset.as_ref(), place)?;
-    let stated = overridden(spec, preset.clone().unwrap_or_default(), place)?;
+    let stated = overridden(spec, preset.clone().unwrap_or_default())?;
     let camera = |preset: &Preset| {
-        preset.camera().map_err(|missing| missing.error(&preset.name).at(place(missing.key)))
+        preset.camera().map_err(|missing| {
+            missing.error(&preset.name).at(place(missing.0.first().copied().unwrap_or("preset")))
+        })
     };
     let mut camera_made = camera(&stated)?;
     camera_made.name = match (&spec.preset, preset) {
@@ -86,7 +88,7 @@ fn check_conditions(spec: &CameraSpec, preset: Option<&Preset>, place: &dyn Fn(&
 }
 
 /// The preset with the scenario's figures laid over it.
-fn overridden(spec: &CameraSpec, preset: Preset, place: &dyn Fn(&str) -> Place) -> Result<Preset> {
+fn overridden(spec: &CameraSpec, preset: Preset) -> Result<Preset> {
     let mut stated = preset;
     let figures = &mut stated.figures;
     let own_noise_exposure = figures.noise_exposure_s.or(figures.exposure_s);
@@ -113,13 +115,6 @@ fn overridden(spec: &CameraSpec, preset: Preset, place: &dyn Fn(&str) -> Place) 
         }
     }
     if !spec.states_noise() {
-        if figures.noise.stated().is_none() && spec.preset.is_none() {
-            return Err(Error::malformed(
-                "the camera's noise is not given",
-                "write netd = \"50 mK\", detectivity = \"4.7e10 cm Hz^0.5/W\" or noise_electrons = 0",
-            )
-            .at(place("netd")));
-        }
         // Noise that comes with the preset is stated at the preset's exposure.
         figures.noise_exposure_s = own_noise_exposure.or(figures.exposure_s);
         return Ok(stated);

@@ -251,6 +251,7 @@ impl RuleStudy {
             required: self.required,
             speed_m_s,
             hardware_m2_s: hardware_m2_s.filter(|_| plain),
+            units: self.rule.scenario.units(),
         };
         RuleRequirement {
             distance: self.required,
@@ -317,10 +318,10 @@ fn candidate(rule: &Rule, index: usize, envelope: &Envelope, library: &Library) 
 fn complete(camera: &RuleCamera) -> Result<()> {
     let Some(name) = &camera.spec.preset else { return Ok(()) };
     let Err(missing) = presets::find(name)?.camera() else { return Ok(()) };
-    let found = format!("no document that was read states the {} of {name}", missing.key);
-    let instead =
-        format!("write a [[camera]] table with preset = {name:?} and {} = {}", missing.key, missing.example);
-    Err(Error::malformed(found, instead))
+    let found = format!("no document that was read states {} of {name}", missing.0.join(", "));
+    let instead = "write it as a table of its own, with what the camera has in place of the dots:".into();
+    let head = [String::from("[[camera]]"), format!("preset = {name:?}")];
+    Err(Error::Incomplete { found, instead, lines: head.into_iter().chain(missing.lines()).collect() })
 }
 
 /// Which cameras meet the rule.

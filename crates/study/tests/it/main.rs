@@ -10,6 +10,7 @@ mod search_inputs;
 mod sight;
 mod sizing;
 mod trade_offs;
+mod units;
 
 mod support {
     pub(crate) mod harness;

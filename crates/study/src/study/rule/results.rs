@@ -1,6 +1,6 @@
 //! What comes of a rule, as data.
 
-use crate::scenario::Rule;
+use crate::scenario::{Rule, Units};
 use crate::study::size::Solutions;
 use crate::study::{NearestState, Shortfall, Warning};
 use hadar::demand::Work;
@@ -96,6 +96,8 @@ pub struct Quotable {
     pub speed_m_s: Option<f64>,
     /// H_req, m² s; `None` where that figure of the hardware does not tell all.
     pub hardware_m2_s: Option<f64>,
+    /// Units of the sentence.
+    pub units: Units,
 }
 
 /// The envelope as it was searched.
@@ -305,6 +307,8 @@ pub struct IdealCamera {
     pub distance_m: Option<f64>,
     /// Statistical distance demanded.
     pub required: f64,
+    /// Units of the sentence.
+    pub units: Units,
 }
 
 /// Why light is collected for so long.
@@ -318,6 +322,8 @@ pub enum LightTime {
         speed_m_s: f64,
         /// Least distance, m.
         distance_m: f64,
+        /// Units of the sentence.
+        units: Units,
     },
     /// No camera collects it longer.
     LongestIntegration,

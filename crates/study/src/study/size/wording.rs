@@ -2,8 +2,9 @@
 
 use super::{Answer, Finding};
 use crate::study::Shortfall;
-use crate::words::reliability;
+use crate::words::{demanded, reliability};
 use hadar::fisher::Nuisance;
+use hadar::words::significant;
 use serde::{Serialize, Serializer};
 use std::fmt::{self, Display, Formatter};
 
@@ -24,7 +25,7 @@ impl Finding {
     fn answered(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let Self { camera, target, .. } = self;
         let other = self.alternative.as_deref().unwrap_or("every alternative");
-        let wanted = reliability(self.required);
+        let wanted = demanded(self.required);
         match &self.answer {
             Answer::NothingDiffers => {
                 write!(f, "No camera can tell {target} from {other} here: nothing in the spectrum differs.")
@@ -48,7 +49,8 @@ impl Finding {
             }
             Answer::Takes { photons } => write!(
                 f,
-                "Telling {target} from {other} with {wanted} reliability takes at least {photons:.2e} photons."
+                "Telling {target} from {other} with {wanted} reliability takes at least {} photons.",
+                significant(*photons, 3)
             ),
             Answer::Judged { enough, spoiled, reached } => {
                 let (yes, can) = match (enough, spoiled.is_empty()) {
