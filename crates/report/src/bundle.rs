@@ -19,13 +19,13 @@ const ANSWER: &str = "answer.txt";
 /// Files of a report, by name.
 #[derive(Debug, Clone, Default)]
 pub struct Bundle {
-    pub(crate) title: Option<String>,
+    title: Option<String>,
     files: Vec<(String, Content)>,
     figures: Vec<Figure>,
-    pub(crate) tables: Vec<(String, Table)>,
-    pub(crate) warnings: Vec<Warning>,
+    tables: Vec<(String, Table)>,
+    warnings: Vec<Warning>,
     /// What was asked, as a file that asks it again.
-    pub(crate) asked: Option<(&'static str, String)>,
+    asked: Option<(&'static str, String)>,
 }
 
 /// What a file holds.
@@ -132,7 +132,15 @@ impl Bundle {
             svg: String::from_utf8_lossy(svg),
             said: figure.subtitle(),
         });
-        let page = html::page(self, about, &drawings.collect::<Vec<_>>());
+        let page = html::page(&html::Page {
+            title: self.title.as_deref(),
+            answer: about.answer,
+            drawings: drawings.collect(),
+            tables: &self.tables,
+            warnings: &self.warnings,
+            asked: self.asked.as_ref().map(|(name, text)| (*name, text.as_str())),
+            provenance: about.provenance,
+        });
         if self.names().all(|name| name != ANSWER) {
             files.push((ANSWER.into(), format!("{}\n", about.answer.trim_end()).into_bytes()));
         }

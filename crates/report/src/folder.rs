@@ -57,6 +57,12 @@ impl Folder {
         &self.named
     }
 
+    /// Whether another name is one of the same folder.
+    #[must_use]
+    pub fn is(&self, other: &Self) -> bool {
+        self.place().ok().zip(other.place().ok()).is_some_and(|(own, other)| own == other)
+    }
+
     /// Makes sure that a report can be written, before any work is done for it. Finishes what a run that was killed has left.
     ///
     /// # Errors

@@ -7,8 +7,8 @@
 mod answer;
 mod table;
 
-use crate::bundle::{About, Bundle};
 use crate::manifest::{Provenance, VERSION};
+use crate::table::Table;
 use hadar_study::study::Warning;
 use hadar_study::warning::Code;
 use std::borrow::Cow;
@@ -25,26 +25,41 @@ pub(crate) struct Drawing<'a> {
     pub(crate) said: &'a str,
 }
 
-/// The page of a bundle with its figures.
-pub(crate) fn page(bundle: &Bundle, about: &About<'_>, drawings: &[Drawing<'_>]) -> String {
-    let answer = answer::Answer::of(about.answer);
-    let title = escape(bundle.title.as_deref().unwrap_or("What a thermal camera can see"));
+/// What is on a page.
+pub(crate) struct Page<'a> {
+    pub(crate) title: Option<&'a str>,
+    /// The answer, as it is printed.
+    pub(crate) answer: &'a str,
+    pub(crate) drawings: Vec<Drawing<'a>>,
+    /// Tables with the names of their files.
+    pub(crate) tables: &'a [(String, Table)],
+    pub(crate) warnings: &'a [Warning],
+    /// What was asked: the name of a file that asks it again, and its text.
+    pub(crate) asked: Option<(&'a str, &'a str)>,
+    pub(crate) provenance: &'a Provenance,
+}
+
+/// The page as a file.
+pub(crate) fn page(page: &Page<'_>) -> String {
+    let answer = answer::Answer::of(page.answer);
+    let title = escape(page.title.unwrap_or("What a thermal camera can see"));
     let mut sections = vec![("answer", "Answer", lines(answer.details))];
-    let pictures: String = drawings.iter().enumerate().map(|(i, drawing)| figure(i + 1, drawing)).collect();
+    let pictures: String =
+        page.drawings.iter().enumerate().map(|(i, drawing)| figure(i + 1, drawing)).collect();
     sections.push(("pictures", "Pictures", pictures));
-    let tables: String = bundle.tables.iter().map(|(name, rows)| table::html(name, rows)).collect();
+    let tables: String = page.tables.iter().map(|(name, rows)| table::html(name, rows)).collect();
     sections.push(("tables", "Tables", tables));
     sections.push(("assumptions", "What this rests on", list(&answer.assumptions)));
-    sections.push(("warnings", "Warnings", warnings(&bundle.warnings)));
-    let asked = bundle.asked.as_ref().map_or_else(String::new, |(name, text)| {
+    sections.push(("warnings", "Warnings", warnings(page.warnings)));
+    let asked = page.asked.map_or_else(String::new, |(name, text)| {
         let given = "All of it, with what was left to the program filled in. Given to the program again, it gives this report again.";
         format!("<p><code>{name}</code>: {given}</p>\n{}", verbatim(name, &escape(text.trim_end())))
     });
     sections.push(("question", "The question", asked));
-    sections.push(("provenance", "Provenance", provenance(about.provenance)));
+    sections.push(("provenance", "Provenance", provenance(page.provenance)));
     sections.retain(|(_, _, content)| !content.is_empty());
 
-    let mut page = format!(
+    let mut out = format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
          <meta name=\"generator\" content=\"hadar {VERSION}\">\n<title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n\
@@ -52,15 +67,15 @@ pub(crate) fn page(bundle: &Bundle, about: &About<'_>, drawings: &[Drawing<'_>])
         escape(answer.verdict)
     );
     for (id, heading, _) in &sections {
-        let _ = writeln!(page, "<li><a href=\"#{id}\">{heading}</a></li>");
+        let _ = writeln!(out, "<li><a href=\"#{id}\">{heading}</a></li>");
     }
-    page.push_str("</ul>\n</nav>\n</header>\n<main>\n");
+    out.push_str("</ul>\n</nav>\n</header>\n<main>\n");
     for (id, heading, content) in &sections {
-        let _ = writeln!(page, "<section id=\"{id}\" aria-labelledby=\"{id}-heading\">");
-        let _ = writeln!(page, "<h2 id=\"{id}-heading\">{heading}</h2>\n{content}</section>");
+        let _ = writeln!(out, "<section id=\"{id}\" aria-labelledby=\"{id}-heading\">");
+        let _ = writeln!(out, "<h2 id=\"{id}-heading\">{heading}</h2>\n{content}</section>");
     }
-    page.push_str("</main>\n</body>\n</html>\n");
-    page
+    out.push_str("</main>\n</body>\n</html>\n");
+    out
 }
 
 /// A picture within the page, named by its own title.

@@ -112,7 +112,12 @@ pub(super) fn run(args: &SimulateArgs, global: &Global) -> Result<ExitCode> {
         return thermometry(range, args, &study, global);
     }
     if let Some(folder) = &args.save_models {
-        global.folder(folder).check()?;
+        let models = global.folder(folder);
+        models.check()?;
+        if global.out.as_ref().is_some_and(|out| global.folder(out).is(&models)) {
+            let found = "--save-models and --out name one folder, where one would replace the other";
+            return Err(Error::malformed(found, "name a folder within, such as --save-models DIR/models"));
+        }
     }
     let (plan, planning) = ledger_of(|| plan(args, &study, global))?;
     if args.check && (plan.against.len() > 1 || plan.law == PhotonLaw::FixedTotal) {

@@ -272,6 +272,29 @@ fn a_check_is_a_line_a_camera() {
     assert!((1.0..=proved).contains(&said), "{said} of {proved}");
 }
 
+#[test]
+fn models_and_report_have_a_folder_each() {
+    let folder = Folder::with(SCENARIO);
+    let ask = [
+        "simulate",
+        "a.toml",
+        "--spectra",
+        "40",
+        "--classifiers",
+        "likelihood-ratio",
+        "--out",
+        "out",
+        "--save-models",
+    ];
+    let said = folder.refusal(&[ask.as_slice(), &["./out"]].concat());
+    assert!(said.contains("name one folder"), "{said}");
+    for _ in 0..2 {
+        assert_eq!(folder.run(&[ask.as_slice(), &["out/models"]].concat()).code, 0);
+    }
+    let out = folder.path().join("out");
+    assert!(out.join("models/hadar.json").exists() && out.join("report.html").exists());
+}
+
 fn names_of<'e>(page: &'e [Element], attribute: &str) -> Vec<&'e str> {
     page.iter().filter_map(|element| element.attributes.get(attribute)).map(String::as_str).collect()
 }
