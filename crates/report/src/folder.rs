@@ -287,7 +287,7 @@ fn publish(ready: &Path, place: &Path) -> io::Result<()> {
     let old = ready.with_file_name("old");
     if Manifest::in_folder(place).is_some() {
         fs::create_dir_all(&old)?;
-        rename(&place.join(manifest::NAME), &old.join(manifest::NAME))?;
+        rename(place.join(manifest::NAME), old.join(manifest::NAME))?;
     }
     if let Some(old) = Manifest::in_folder(&old) {
         let obsolete = old.files.iter().map(|file| &file.name).filter(|name| !new.lists(name));
@@ -298,7 +298,7 @@ fn publish(ready: &Path, place: &Path) -> io::Result<()> {
     let names = new.files.iter().map(|file| file.name.as_str()).chain([manifest::NAME]);
     names
         .filter(|name| ready.join(name).exists())
-        .try_for_each(|name| rename(&ready.join(name), &place.join(name)))
+        .try_for_each(|name| rename(ready.join(name), place.join(name)))
 }
 
 #[cfg(not(test))]

@@ -8,7 +8,7 @@ thread_local! {
 }
 
 /// Moves a file, unless the process is dead by then.
-pub(super) fn rename(from: &Path, to: &Path) -> io::Result<()> {
+pub(super) fn rename(from: impl AsRef<Path>, to: impl AsRef<Path>) -> io::Result<()> {
     let left = MOVES_LEFT.get();
     if left == 0 {
         return Err(io::Error::other("killed"));
