@@ -5,8 +5,10 @@
 //! of reading. It is set for a telephone, a screen and paper by one style sheet.
 
 mod answer;
+mod element;
 mod table;
 
+use self::element::{escape, wide};
 use crate::manifest::{Provenance, VERSION};
 use crate::table::Table;
 use hadar_study::study::Warning;
@@ -99,11 +101,6 @@ fn figure(number: usize, drawing: &Drawing<'_>) -> String {
     )
 }
 
-/// What may be wider than the page, and is then moved by itself, by keys too.
-fn wide(name: &str, content: &str) -> String {
-    format!("<div class=\"wide\" tabindex=\"0\" role=\"group\" aria-label=\"{name}\">\n{content}</div>\n")
-}
-
 /// Text as it stands in a file.
 fn verbatim(name: &str, text: &str) -> String {
     format!("<pre tabindex=\"0\" role=\"group\" aria-label=\"{name}\">{text}</pre>\n")
@@ -170,22 +167,4 @@ fn provenance(made: &Provenance) -> String {
     }
     out + "<p>The files that were written with this one are listed in <code>hadar.json</code>, with their hashes. It bears no date: the \
            same program, command and inputs make the same bytes.</p>\n"
-}
-
-/// Text that can stand anywhere in the page.
-pub(crate) fn escape(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for char in text.chars() {
-        match char {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            '\'' => out.push_str("&#39;"),
-            // What no page may hold.
-            char if char.is_control() && !char.is_whitespace() => out.push(char::REPLACEMENT_CHARACTER),
-            char => out.push(char),
-        }
-    }
-    out
 }

@@ -1,6 +1,6 @@
 //! A table of a page. One too wide for paper is set in several, each with the first column; of a long one the beginning.
 
-use super::{escape, wide};
+use super::element::{escape, wide};
 use crate::table::Table;
 use crate::text::significant;
 use std::fmt::Write as _;
