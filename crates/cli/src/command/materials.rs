@@ -142,10 +142,9 @@ fn plot(library: &Library, names: &[String], global: &Global) -> Result<()> {
             Ok(Surface { name: material.name().to_owned(), emissivity: material.emissivity(&nodes)? })
         })
         .collect::<Result<Vec<_>>>()?;
-    let Some((first, others)) = surfaces.split_first() else { return Ok(()) };
-    let others: Vec<&Surface> = others.iter().collect();
+    let drawn: Vec<&Surface> = surfaces.iter().collect();
     let mut bundle = Bundle::default();
-    bundle.add_plots(&[figures::emissivities("Emissivities", &nodes, first, &others)])?;
+    bundle.add_plots(&figures::emissivities("Emissivities", &nodes, &drawn))?;
     global.write(&bundle, out)?;
     let drawn: Vec<Summary> = materials.iter().map(|material| material.summary()).collect();
     let mut work = library.work();

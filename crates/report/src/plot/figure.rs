@@ -15,8 +15,10 @@ pub enum Style {
     Dashed,
     /// A dotted line.
     Dotted,
-    /// Unconnected points.
+    /// Unconnected points, whose shape goes with the colour.
     Points,
+    /// Points joined by a line.
+    Marked,
 }
 
 /// Numbers drawn as one curve, with one entry in the legend.
@@ -33,12 +35,14 @@ pub struct Series {
     /// Index into the palette; the place among the series of the figure where `None`. Beyond the seven
     /// colours the palette starts again with another dash.
     pub colour: Option<usize>,
+    /// Points are white inside.
+    pub open: bool,
 }
 
 impl Series {
     /// A line.
     pub fn line(label: impl Into<String>, x: Vec<f64>, y: Vec<f64>) -> Self {
-        Self { label: label.into(), x, y, style: Style::Line, colour: None }
+        Self { label: label.into(), x, y, style: Style::Line, colour: None, open: false }
     }
 
     /// Unconnected points.
@@ -50,6 +54,13 @@ impl Series {
     #[must_use]
     pub fn colour(mut self, index: usize) -> Self {
         self.colour = Some(index);
+        self
+    }
+
+    /// Draws points white inside.
+    #[must_use]
+    pub fn open(mut self) -> Self {
+        self.open = true;
         self
     }
 

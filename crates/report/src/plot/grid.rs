@@ -141,17 +141,17 @@ impl Grid {
     }
 
     fn draw_names(&self, scene: &mut Scene, area: &Rect) {
-        for (i, line) in self.rows.printed() {
-            let y = area.top + self.cell.1 * (i as f64 + 0.5) + 0.36 * self.rows.size;
+        for (i, below, line) in self.rows.printed() {
+            let y = area.top + self.cell.1 * (i as f64 + 0.5) + 0.36 * self.rows.size + below;
             scene.text((area.left - NAME_GAP, y), line, self.rows.size, INK, Anchor::End);
         }
-        for (i, line) in self.columns.printed() {
+        for (i, below, line) in self.columns.printed() {
             let (x, y) = (area.left + self.cell.0 * (i as f64 + 0.5), area.top - NAME_GAP);
             let size = self.columns.size;
             if self.columns.turned {
-                scene.turned((x + 0.36 * size, y), line, size, INK, Anchor::Start);
+                scene.turned((x + 0.36 * size + below, y), line, size, INK, Anchor::Start);
             } else {
-                scene.text((x, y - 1.0), line, size, INK, Anchor::Middle);
+                scene.text((x, y - 1.0 + below - self.columns.drop()), line, size, INK, Anchor::Middle);
             }
         }
     }
