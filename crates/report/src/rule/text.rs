@@ -24,14 +24,13 @@ pub fn text(answer: &RuleAnswer, study: &RuleStudy) -> String {
     );
     for camera in &answer.cameras {
         let row = format!(
-            "{:<width$}  {:<5}  {:>8}  {:>10}  {:>13}  {} against {}",
+            "{:<width$}  {:<5}  {:>8}  {:>10}  {:>13}  {}",
             camera.name,
             if camera.passes { "yes" } else { "no" },
             significant(camera.margin, 3),
             significant(camera.statistical_distance, 3),
             reliability(camera.statistical_distance),
-            camera.limiting.target,
-            camera.limiting.alternative,
+            limited_by(camera),
         );
         let _ = writeln!(out, "{row}");
     }
@@ -51,6 +50,19 @@ pub fn text(answer: &RuleAnswer, study: &RuleStudy) -> String {
     }
     out.push_str(&warnings(&together(answer)));
     out
+}
+
+/// The pair that limits a camera, or what spoils its images where it tells that pair.
+fn limited_by(camera: &CameraVerdict) -> String {
+    match camera.passes || camera.fails_by.contains(&Shortfall::Distance) {
+        true => format!("{} against {}", camera.limiting.target, camera.limiting.alternative),
+        false => no(&camera.fails_by),
+    }
+}
+
+/// That a camera does not meet the rule, and by what.
+pub(crate) fn no(shortfalls: &[Shortfall]) -> String {
+    format!("no: {}", codes(shortfalls, ", ").replace('-', " "))
 }
 
 /// All warnings; what is said of several cameras is said once, with their names.
