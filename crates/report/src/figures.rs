@@ -30,7 +30,7 @@ pub(crate) fn information_axis(title: &str) -> Axis {
 }
 
 /// More bands than this are drawn as a curve through their centres.
-const MOST_STEPS: usize = 60;
+const MOST_STEPS: usize = 30;
 
 /// A value for each band as a curve: level across each of a few wide bands, through the centres of many.
 pub(crate) fn over_bands(bands: &Bands, values: &[f64]) -> (Vec<f64>, Vec<f64>) {
@@ -70,4 +70,21 @@ pub(crate) fn wavenumber_axis(wavenumbers_cm1: &[f64]) -> Axis {
         keep
     });
     Axis::linear("wavenumber (cm⁻¹)").range(low, high).secondary("wavelength (µm)", ticks)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn few_bands_are_level_and_many_are_a_curve() {
+        let bands = Bands::from_rows([(800.0, 1.0), (801.0, 1.0)]).unwrap();
+        let (x, y) = over_bands(&bands, &[5.0, 7.0]);
+        assert_eq!(x, [799.5, 800.5, 800.5, 800.5, 801.5, 801.5]);
+        assert_eq!((y[0], y[1], y[3], y[4]), (5.0, 5.0, 7.0, 7.0));
+        assert!(y[2].is_nan() && y[5].is_nan());
+        let many = Bands::from_rows((0..100).map(|i| (800.0 + f64::from(i), 1.0))).unwrap();
+        let values: Vec<f64> = (0..100).map(f64::from).collect();
+        assert_eq!(over_bands(&many, &values), ((0..100).map(|i| 800.0 + f64::from(i)).collect(), values));
+    }
 }

@@ -12,6 +12,7 @@ use super::figures::Plot;
 use super::plot::{Axis, Figure, NamedSeries, NamedValues};
 use super::table::{Table, number, optional};
 use super::tables;
+use super::text::shortfalls::no;
 use super::text::significant;
 use hadar::error::Result;
 use hadar::policy::Quantity;
@@ -143,7 +144,7 @@ fn margins(answer: &RuleAnswer) -> Plot {
     // The margin does not show what else a camera fails by.
     let named = |camera: &&CameraVerdict| match camera.passes {
         true => camera.name.clone(),
-        false => format!("{}\n{}", camera.name, text::no(&camera.fails_by)),
+        false => format!("{}\n{}", camera.name, no(&camera.fails_by)),
     };
     let names = ranked.iter().map(named).collect();
     let values =

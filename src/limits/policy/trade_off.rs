@@ -189,7 +189,8 @@ pub fn trace(
 /// A point of a curve, and the limits on the second quantity there.
 type Found = (Point, Vec<Limit>);
 
-/// The last points at which something holds, to a part of a step; not where they are known.
+/// The last points at which something holds and the first at which it does not, to a part of a step; not where they are
+/// known.
 fn edges(
     found: &[Found],
     known: &[f64],
@@ -204,20 +205,19 @@ fn edges(
             (false, true) => (b.x, a.x),
             _ => continue,
         };
-        if known.contains(&inside) {
-            continue;
-        }
-        let mut last = None;
+        let (mut last, mut first) = (None, None);
         for _ in 0..HALVINGS {
             let middle = (inside * outside).sqrt();
             let tried = at(middle)?;
             if holds(&tried.0) {
                 (inside, last) = (middle, Some(tried));
             } else {
-                outside = middle;
+                (outside, first) = (middle, Some(tried));
             }
         }
-        edges.extend(last);
+        // What is known exactly needs no neighbour inside.
+        edges.extend(last.filter(|(point, _)| !known.iter().any(|at| (point.x / at - 1.0).abs() < SAME)));
+        edges.extend(first);
     }
     Ok(edges)
 }

@@ -85,7 +85,7 @@ pub(super) fn minimum_distances(matrix: &Matrix) -> Plot {
     for target in &targets {
         table.push(vec![target.material.clone(), target.limiting.clone(), number(value(target))]);
     }
-    let names = targets.iter().map(|target| format!("{}\n– {}", target.material, target.limiting)).collect();
+    let names = targets.iter().map(|target| format!("{} – {}", target.material, target.limiting)).collect();
     let axis = if with_camera { "least statistical distance d" } else { "least distance (per √photon)" };
     let mut figure =
         NamedValues::new("Each material and the one hardest to tell it from", names, Axis::log(axis))
@@ -126,7 +126,7 @@ pub(super) fn sample_spectra(spectra: &SampleSpectra, bands: &Bands, limiting: &
     let mut figure = LineFigure::new(title, band_axis(bands), Axis::linear("mean counts in a band"))
         .subtitle(format!(
             "Above: means, all in the scenario's state. Below: the target and {limiting}, one reading of each drawn at random \
-             (seed {}), and the mean that is to be seen in them.",
+             (seed {}), less the target's mean, and the mean that is to be seen in them.",
             spectra.seed
         ));
     for (i, (name, mean, _)) in shown.iter().enumerate() {
@@ -137,8 +137,7 @@ pub(super) fn sample_spectra(spectra: &SampleSpectra, bands: &Bands, limiting: &
         let off = |counts: &[f64]| -> Vec<f64> {
             counts.iter().zip(own).map(|(counts, mean)| 100.0 * (counts / mean - 1.0)).collect()
         };
-        let mut lower =
-            Panel::new(Axis::linear("above the target's mean (%)")).rule(Rule::horizontal(0.0, ""));
+        let mut lower = Panel::new(Axis::linear("difference (%)")).rule(Rule::horizontal(0.0, ""));
         for (i, (name, mean, counts)) in shown.iter().enumerate().take(2) {
             let label = format!("{name}, one reading");
             let points = Series::points(label, spectra.wavenumber_cm1.clone(), off(counts)).colour(i);

@@ -35,7 +35,7 @@ pub(super) fn scene(figure: &NamedValues) -> Result<Scene> {
     figure.check()?;
     let rows = Rows::new(figure);
     let ruler = ruler(figure);
-    let names = Names::new(&figure.names, rows.pitch, None);
+    let names = Names::new(&figure.names, rows.pitch, names::WIDE, None);
     // The first label of the axis sticks out to the left.
     let left = (EDGE + names.room + NAME_GAP).max(50.0);
     let trial = Horizontal::new(&figure.axis, ruler, frame::WIDTH - left - 24.0);
@@ -153,7 +153,7 @@ fn symbol(index: usize, series: &NamedSeries, open: bool) -> Symbol {
 
 /// Colour and dashes of a further line.
 fn line_look(index: usize) -> (Colour, &'static [f64]) {
-    if index == 0 { (colour::series(1).0, &[]) } else { (GREY, &[3.0, 3.0]) }
+    if index == 0 { (GREY, &[3.0, 3.0]) } else { (colour::series(index).0, &[]) }
 }
 
 /// An arrow towards this end of the axis.

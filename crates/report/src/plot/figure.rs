@@ -37,12 +37,14 @@ pub struct Series {
     pub colour: Option<usize>,
     /// Points are white inside.
     pub open: bool,
+    /// Points are pale, so that a line of the same colour is seen among them.
+    pub pale: bool,
 }
 
 impl Series {
     /// A line.
     pub fn line(label: impl Into<String>, x: Vec<f64>, y: Vec<f64>) -> Self {
-        Self { label: label.into(), x, y, style: Style::Line, colour: None, open: false }
+        Self { label: label.into(), x, y, style: Style::Line, colour: None, open: false, pale: false }
     }
 
     /// Unconnected points.
@@ -61,6 +63,13 @@ impl Series {
     #[must_use]
     pub fn open(mut self) -> Self {
         self.open = true;
+        self
+    }
+
+    /// Draws points in a pale colour.
+    #[must_use]
+    pub fn pale(mut self) -> Self {
+        self.pale = true;
         self
     }
 

@@ -65,13 +65,14 @@ impl Vertical {
     pub(super) fn draw_secondary(&self, scene: &mut Scene, frame: &Rect) {
         let Some(Secondary { title, ticks }) = &self.secondary else { return };
         let place = |value: f64| self.ruler.fraction(value).filter(|at| (-1e-9..=1.0 + 1e-9).contains(at));
-        let mut free_from = f64::INFINITY;
-        for (at, label) in ticks.iter().filter_map(|(value, label)| Some((place(*value)?, label))) {
+        // From the last one on, which is certainty.
+        let mut free_from = f64::NEG_INFINITY;
+        for (at, label) in ticks.iter().rev().filter_map(|(value, label)| Some((place(*value)?, label))) {
             let (x, y) = frame.at(1.0, at);
             scene.line((x, y), (x + 4.5, y), 0.7, INK);
-            if y <= free_from {
+            if y >= free_from {
                 scene.text((x + LABEL_GAP, y + 0.36 * TICK), label, TICK, INK, Anchor::Start);
-                free_from = y - TICK;
+                free_from = y + TICK;
             }
         }
         let middle = (frame.right + self.room_right() - 0.3 * AXIS_TITLE, 0.5 * (frame.top + frame.bottom));

@@ -265,3 +265,23 @@ fn draw_ring(scene: &mut Scene, (x, y): Point) {
         scene.marks.push(Mark::Stroke { points: points.clone(), width, colour });
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn colours_are_linear_between_centres_and_end_at_cells_without_value() {
+        let axis = || Axis::linear("");
+        let values = vec![0.0, 1.0, 2.0, f64::NAN];
+        let map = HeatMap::new("", (axis(), vec![0.0, 1.0]), (axis(), vec![0.0, 1.0]), (axis(), values));
+        let colours = Ruler::fit(map.colour.scale, Some((0.0, 2.0)), std::iter::empty(), 0.0);
+        let lattice = Lattice::new(&map, &colours);
+        assert_eq!(
+            (lattice.at(0.0, 0.0), lattice.at(1.0, 0.0), lattice.at(0.0, 1.0)),
+            (Some(0.0), Some(0.5), Some(1.0))
+        );
+        assert_eq!((lattice.at(0.25, 0.0), lattice.at(-0.4, 0.25)), (Some(0.125), Some(0.25)));
+        assert_eq!((lattice.at(0.9, 0.9), lattice.at(-0.6, 0.0)), (None, None));
+    }
+}

@@ -82,7 +82,7 @@ impl Legend {
         let more = entries.len().saturating_sub(MOST);
         entries.truncate(MOST);
         let broken = |limit: f64| -> Vec<(Key, Vec<String>)> {
-            let lines = |entry: &Entry| text::wrap_at_most(&entry.label, SIZE, limit, 3);
+            let lines = |entry: &Entry| text::wrap_at_most(&entry.label, SIZE, limit, 5);
             entries.iter().map(|entry| (entry.key.clone(), lines(entry))).collect()
         };
         if entries.len() > 4 {

@@ -18,6 +18,7 @@ const SOLID: &[f64] = &[];
 const DASHES: [&[f64]; 5] = [SOLID, &[7.0, 4.0], &[0.5, 3.8], &[9.0, 3.5, 0.5, 3.5], &[3.5, 3.0]];
 
 const POINT: f64 = 2.8;
+const PALE: f64 = 0.5;
 
 /// A panel grows up to this height where the legend beside it needs that.
 const HIGHEST: f64 = 560.0;
@@ -151,7 +152,9 @@ fn has_points(style: Style) -> bool {
 /// Colour and shape together tell points apart.
 fn symbol(index: usize, series: &Series) -> Symbol {
     let index = series.colour.unwrap_or(index);
-    Symbol { shape: Shape::series(index), colour: colour::series(index).0, open: series.open }
+    let colour = colour::series(index).0;
+    let colour = if series.pale { colour.opacity(PALE) } else { colour };
+    Symbol { shape: Shape::series(index), colour, open: series.open }
 }
 
 /// Curves first, then bands; what appears in both panels under one name is listed once.

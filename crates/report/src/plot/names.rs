@@ -7,10 +7,11 @@
 use super::frame::TICK;
 use super::text;
 
-/// Widest line of a name.
-const LONGEST: f64 = 190.0;
+/// Widest line of a name, of rows of points and of a matrix.
+pub(super) const WIDE: f64 = 270.0;
+pub(super) const NARROW: f64 = 190.0;
 /// Most lines of a name.
-const MOST: usize = 4;
+const MOST: usize = 5;
 /// Smallest letters, and those of a name as a share of the distance of names.
 const SMALLEST: f64 = 4.6;
 pub(super) const SHARE: f64 = 0.84;
@@ -28,19 +29,20 @@ pub(super) struct Names {
 
 /// Lines that the longest of the names takes at the largest size.
 pub(super) fn most_lines(names: &[String]) -> usize {
-    names.iter().map(|name| text::wrap(name, TICK, LONGEST).len()).max().unwrap_or(1).clamp(1, MOST)
+    names.iter().map(|name| text::wrap(name, TICK, WIDE).len()).max().unwrap_or(1).clamp(1, MOST)
 }
 
 impl Names {
-    /// Names at distances of `pitch`; beside their cells, or across them where there is `width` for each.
-    pub(super) fn new(names: &[String], pitch: f64, width: Option<f64>) -> Self {
+    /// Names at distances of `pitch` in lines of at most `longest`; beside their cells, or across them where there is
+    /// `width` for each.
+    pub(super) fn new(names: &[String], pitch: f64, longest: f64, width: Option<f64>) -> Self {
         let size = (SHARE * pitch).min(TICK);
         let stride = (SMALLEST / size).ceil().max(1.0) as usize;
         let size = (size * stride as f64).min(TICK);
         let most = (pitch / (size * text::LEADING)).floor().max(1.0) as usize;
-        let broken = |name: &String| match text::wrap(name, size, LONGEST) {
+        let broken = |name: &String| match text::wrap(name, size, longest) {
             lines if lines.len() <= most.min(MOST) => lines,
-            _ => vec![text::cut(&name.replace('\n', " "), size, LONGEST)],
+            _ => vec![text::cut(&name.replace('\n', " "), size, longest)],
         };
         let lines: Vec<Vec<String>> = names.iter().map(broken).collect();
         let longest = lines.iter().flatten().map(|line| text::width(line, size)).fold(0.0, f64::max);

@@ -14,7 +14,7 @@ use hadar::{Error, Result};
 const BAR: f64 = 11.0;
 const APART: f64 = 8.0;
 /// Shorter lines between signs are noise, in logical pixels.
-const SHORTEST: f64 = 24.0;
+const SHORTEST: f64 = 40.0;
 /// Between two pictures.
 const GAP: f64 = 14.0;
 const TITLE: f64 = 12.5;

@@ -209,15 +209,15 @@ pub fn lines(result: &Ranging) -> Vec<Plot> {
         .collect()
 }
 
-/// Colour and style of a signal's bound, and colour of its matches.
-const fn look(signal: Signal) -> (usize, Style, usize) {
+/// Colour of a signal, and style of its bound.
+const fn look(signal: Signal) -> (usize, Style) {
     match signal {
-        Signal::ThermalImage => (0, Style::Line, 5),
+        Signal::ThermalImage => (0, Style::Line),
         // Where nothing but the whole image has texture, these two are one line.
-        Signal::HeatCube => (1, Style::Dashed, 4),
-        Signal::ScatteredAsMeasured => (2, Style::Line, 3),
-        Signal::Reconstructed => (3, Style::Line, 3),
-        Signal::ReconstructedBlind => (4, Style::Line, 3),
+        Signal::HeatCube => (1, Style::Dashed),
+        Signal::ScatteredAsMeasured => (2, Style::Line),
+        Signal::Reconstructed => (3, Style::Line),
+        Signal::ReconstructedBlind => (4, Style::Line),
     }
 }
 
@@ -232,10 +232,10 @@ fn line(row: usize, lines: Vec<&Line>, result: &Ranging) -> Plot {
     for line in &lines {
         let Some(method) = line.method else { continue };
         let label = format!("{method}, {}", line.signal.name());
-        let (.., colour) = look(line.signal);
+        let (colour, _) = look(line.signal);
         // The second method of a signal has open symbols.
         let points = |label: String, values: &[f64]| {
-            let points = Series::points(label, x(line), values.to_vec()).colour(colour);
+            let points = Series::points(label, x(line), values.to_vec()).colour(colour).pale();
             if method.starts_with("block") { points } else { points.open() }
         };
         figure = figure.series(points(label, &line.rmse_m));
@@ -261,7 +261,7 @@ fn line(row: usize, lines: Vec<&Line>, result: &Ranging) -> Plot {
         }
         let sharp = if witnessed { " without diffraction" } else { "" };
         let label = format!("bound{sharp}, {}", line.signal.name());
-        let (colour, style, _) = look(line.signal);
+        let (colour, style) = look(line.signal);
         let shown = bound.iter().map(|bound| if *bound > most { f64::NAN } else { *bound }).collect();
         figure = figure.series(Series::line(label, x(line), shown).colour(colour).style(style));
     }

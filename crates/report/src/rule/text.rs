@@ -3,6 +3,7 @@
 use crate::size::text::in_unit;
 use crate::text::footing::{GAUSSIAN, assumptions, warnings};
 use crate::text::numbers::{celsius, numbers, quantity, significant};
+use crate::text::shortfalls::no;
 use hadar::policy::{Quantity, Solution};
 use hadar::words::share;
 use hadar_study::study::{
@@ -58,11 +59,6 @@ fn limited_by(camera: &CameraVerdict) -> String {
         true => format!("{} against {}", camera.limiting.target, camera.limiting.alternative),
         false => no(&camera.fails_by),
     }
-}
-
-/// That a camera does not meet the rule, and by what.
-pub(crate) fn no(shortfalls: &[Shortfall]) -> String {
-    format!("no: {}", codes(shortfalls, ", ").replace('-', " "))
 }
 
 /// All warnings; what is said of several cameras is said once, with their names.

@@ -3,6 +3,7 @@
 use crate::figures::{Plot, information_axis};
 use crate::plot::{Axis, Band, LineFigure, NamedSeries, NamedValues, Panel, Rule, Series, Style};
 use crate::table::{Table, number, optional};
+use crate::text::significant;
 use hadar::identifiability::detection;
 use hadar::simulate::classifier::Method;
 use hadar::simulate::experiment::Performance;
@@ -220,10 +221,10 @@ pub fn accuracies(result: &Simulation, point: &SimulatedPoint, pair: &str) -> Pl
     .interval_meaning(format!("{} % interval", 100.0 * result.level));
     let classes = point.classes.len().max(2);
     let chance = 1.0 / classes as f64;
+    let figure = figure.line(chance, format!("guessing among {classes}: {}", significant(chance, 3)));
     let figure = match point.limit_accuracy {
         Some(limit) => figure.line(limit, format!("limit of the likelihood ratio: {limit:.4}")),
         None => figure,
     };
-    let figure = figure.line(chance, format!("guessing among {classes}: {chance:.4}"));
     Plot { name: "accuracies".into(), figure: figure.into(), table: simulation_table(result) }
 }

@@ -280,3 +280,33 @@ pub fn photon_map(
     }
     Plot { name: "required_photons".into(), figure: figure.into(), table }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn surface(emissivity: &[f64]) -> Surface {
+        Surface { name: "a".into(), emissivity: emissivity.to_vec() }
+    }
+
+    #[test]
+    fn emissivities_are_drawn_where_they_are_and_seven_at_a_time() {
+        let [flat, black, both] = [surface(&[0.5, 0.5]), surface(&[1.0, 0.98]), surface(&[0.0, 1.0])];
+        let range = |drawn: &[&Surface]| emissivity_range(drawn);
+        let close = |(a, b): (f64, f64), (c, d): (f64, f64)| (a - c).abs() < 1e-12 && (b - d).abs() < 1e-12;
+        assert!(close(range(&[&flat]), (0.45, 0.55)), "{:?}", range(&[&flat]));
+        assert!(close(range(&[&black]), (0.9, 1.0)), "{:?}", range(&[&black]));
+        assert!(close(range(&[&both, &flat]), (0.0, 1.0)));
+        let drawn = emissivities("E", &[800.0, 900.0], &[&flat; 15]);
+        let names: Vec<&str> = drawn.iter().map(|plot| plot.name.as_ref()).collect();
+        assert_eq!(names, ["emissivities", "emissivities_2", "emissivities_3"]);
+        assert!(drawn[2].table.to_csv().unwrap().starts_with("wavenumber_cm1,emissivity_a\n"));
+    }
+
+    #[test]
+    fn noise_and_difference_are_both_in_view() {
+        let (low, high) = share_range(&[0.3, 0.0], &[0.04], &[42.0]).unwrap();
+        assert!(low <= 0.015 && high >= 42.0);
+        assert_eq!(share_range(&[0.0], &[0.0], &[1.0]), None);
+    }
+}

@@ -6,6 +6,7 @@
 use crate::figures::Plot;
 use crate::plot::{self, Axis, Band, LineFigure, Marker, Rule, Series, Style};
 use crate::table::{Table, number, optional};
+use crate::text::shortfalls::no;
 use crate::text::{quantity, significant};
 use hadar::policy::{CapCode, Quantity, TradeOff, trade_off::Point};
 use hadar_study::study::Sizing;
@@ -103,10 +104,11 @@ pub(super) fn trade_off(curve: &TradeOff, result: &Sizing) -> Plot {
     }
     if own.0.is_finite() && own.1.is_finite() {
         let name = if camera.chars().count() > LONG { "this camera" } else { camera };
-        let reasons: Vec<String> =
-            result.verdict.fails_by.iter().map(|by| by.code().replace('-', " ")).collect();
-        let no = if reasons.is_empty() { String::new() } else { format!(" (no: {})", reasons.join(", ")) };
-        figure = figure.marker(Marker::new(format!("{name}{no}"), own.0, own.1));
+        let label = match result.verdict.fails_by.as_slice() {
+            [] => name.to_owned(),
+            reasons => format!("{name} ({})", no(reasons)),
+        };
+        figure = figure.marker(Marker::new(label, own.0, own.1));
     }
     if let Some(point) = just_enough(curve) {
         let value = point.y.unwrap_or(f64::NAN);
@@ -246,5 +248,65 @@ const fn words(code: CapCode, limited: Quantity) -> &'static str {
         CapCode::FrameRate => "a whole frame",
         CapCode::FullWell => "full well",
         CapCode::LowestNoise => "read noise and converter",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plot::Figure;
+    use hadar::material::Library;
+    use hadar_study::scenario::Scenario;
+    use hadar_study::study::Study;
+
+    /// A camera that needs a longer exposure than it has, in a frame of 60 Hz.
+    const SCENE: &str = "[target]\nmaterial = \"skin\"\ntemperature = \"37 degC\"\ndistance = \"30 m\"\n\
+        [[environment]]\ntemperature = \"20 degC\"\nlighting = 0.5\n\
+        [alternatives]\nmaterials = [\"soda-lime-glass\"]\n[bands]\nstep = \"20 cm^-1\"\n\
+        [camera]\npreset = \"flir-a325sc\"\nnetd = \"10 mK\"\nflicker_fraction = 0.1\nframe_rate = \"60 Hz\"\n\
+        [requirement]\ndistance = REQUIRED\nspeed = \"3 mph\"";
+
+    fn figures(required: &str) -> (Sizing, Vec<(TradeOff, LineFigure)>) {
+        let scenario = Scenario::from_toml(&SCENE.replace("REQUIRED", required), None).unwrap();
+        let study = Study::new(&scenario, &Library::embedded().unwrap()).unwrap();
+        let sizing = study.size().unwrap();
+        let drawn = study.trade_offs(&sizing).unwrap().into_iter().map(|curve| {
+            let Figure::Line(figure) = trade_off(&curve, &sizing).figure else { panic!("no curves") };
+            (curve, figure)
+        });
+        let drawn = drawn.collect();
+        (sizing, drawn)
+    }
+
+    #[test]
+    fn the_solution_is_marked_on_the_curve_and_green_ends_at_the_limits() {
+        for required in ["1.0", "6.0", "8.0"] {
+            let (sizing, drawn) = figures(required);
+            let solved = &sizing.solve_for.as_ref().unwrap().0;
+            for (curve, figure) in drawn {
+                let marker = figure.panel.markers.iter().find(|marker| !marker.label.contains("flir"));
+                let marker = marker.unwrap_or_else(|| panic!("{:?} {required}", curve.y));
+                let just = figure.panel.series.iter().find(|series| series.label == "just met").unwrap();
+                assert!(just.x.iter().zip(&just.y).any(|(x, y)| (*x, *y) == (marker.x, marker.y)));
+                let (_, solution) = solved.iter().find(|(quantity, _)| *quantity == curve.y).unwrap();
+                let value = solution.value.unwrap();
+                assert!((marker.y / value - 1.0).abs() < 1e-6, "{:?}: {} {value}", curve.y, marker.y);
+                // Nothing green above a frame, and grey there instead.
+                if curve.y == Quantity::Exposure {
+                    let green = figure.panel.bands.iter().find(|band| band.colour == Some(2)).unwrap();
+                    let inside = |y: &&f64| !y.is_nan();
+                    assert!(green.high.iter().filter(inside).all(|y| *y <= 1.0 / 60.0 * (1.0 + 1e-9)));
+                    assert!(figure.panel.bands.iter().any(|band| band.colour.is_none()));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn whole_numbers_are_drawn_as_steps() {
+        let (x, y) = stairs(&[1.0, 2.0, 3.0], &[4.0, 5.0, f64::NAN]);
+        assert_eq!(x, [1.0, 1.0, 2.0, 2.0, 2.0, 3.0, 3.0]);
+        assert_eq!(y[..4], [4.0, 5.0, 5.0, 5.0]);
+        assert!(y[4..].iter().all(|y| y.is_nan()));
     }
 }
