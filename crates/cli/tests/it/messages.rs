@@ -52,7 +52,8 @@ fn a_file_for_another_command_is_sent_there() {
 fn answers_and_the_scenario_that_is_written_speak_in_the_units_of_their_author() {
     let text = SCENARIO
         .replace("\"37 degC\"", "\"98.6 °F\"\ndistance = \"100 ft\"")
-        .replace("\"20 degC\"", "\"68 °F\"");
+        .replace("\"20 degC\"", "\"68 °F\"")
+        .replace("flir-a325sc", "ideal-pnrd");
     let folder = Folder::with(&format!("{text}[requirement]\nspeed = \"30 mph\"\n"));
     let outcome = folder.run(&["size", "a.toml", "--out", "out"]);
     assert_eq!(outcome.code, 0, "{}", outcome.stderr);
