@@ -116,7 +116,7 @@ fn every_mistake_in_a_rule_is_one_line_with_file_line_and_key() {
         (
             "[\"-10 degC\", \"15 degC\"]",
             "[\"15 degC\", \"-10 degC\"]",
-            "a.toml:17: envelope.surroundings: the envelope is empty",
+            "a.toml:17: envelope.surroundings: the range goes from 15 degC to -10 degC; write",
         ),
         (
             "[\"5 m\", \"15 m\"]",
