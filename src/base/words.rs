@@ -16,7 +16,9 @@ pub fn significant(value: f64, digits: usize) -> String {
     let exponent = in_powers.split_once('e').and_then(|(_, power)| power.parse().ok()).unwrap_or(i32::MAX);
     if PLAIN.contains(&exponent) {
         let decimals = usize::try_from(last as i32 - exponent).unwrap_or(0);
-        format!("{value:.decimals$}")
+        // As it was rounded: 44032 of three digits is 44000.
+        let rounded: f64 = in_powers.parse().unwrap_or(value);
+        format!("{rounded:.decimals$}")
     } else {
         in_powers
     }
