@@ -175,9 +175,10 @@ fn in_words(of: Quantity, value: f64) -> String {
     match of {
         Quantity::Exposure => quantity(value, "s").replace(" us", " µs"),
         Quantity::Pixel | Quantity::Distance => quantity(value, "m").replace(" um", " µm"),
-        Quantity::Speed => format!("{} m/s", significant(value, 3)),
+        Quantity::Speed => format!("{} m/s", plot::number(value)),
         Quantity::FNumber => format!("f/{}", significant(value, 3)),
         Quantity::Noise => format!("{} counts", plot::number(value)),
+        Quantity::Frames if value == 1.0 => "1 frame".into(),
         Quantity::Frames => format!("{value} frames"),
     }
 }
