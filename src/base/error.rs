@@ -104,6 +104,16 @@ pub enum Error {
         /// What to write instead.
         instead: String,
     },
+    /// Several things that nobody has given, all of them at once.
+    #[error("{}; {}{}", Shown(.found, LONGEST_PART), Shown(.instead, LONGEST_PART), below(.lines))]
+    Incomplete {
+        /// What is missing.
+        found: String,
+        /// What to do with the lines.
+        instead: String,
+        /// Lines to paste, each with a place to fill in; the only part of a message that is not on its one line.
+        lines: Vec<String>,
+    },
     /// The operating system refused a file operation.
     #[error("cannot {}: {}", Shown(.action, LONGEST_PART), Shown(.reason, LONGEST_PART))]
     File {
@@ -235,6 +245,11 @@ impl fmt::Display for Shown<'_> {
         f.write_str(" … ")?;
         put(f, &text[text.len() - end..])
     }
+}
+
+/// Lines below a message, indented.
+fn below(lines: &[String]) -> String {
+    lines.iter().map(|line| format!("\n  {}", Shown(line, LONGEST_PART))).collect()
 }
 
 /// A number in the shortest form that gives it back.

@@ -1,6 +1,7 @@
 //! Files of numbers: CSV with comment lines, one header line, and rows as long as the header.
 
 use crate::error::{Error, Result, check};
+use crate::units::decimal_comma;
 use std::io::Read;
 use std::path::Path;
 
@@ -94,7 +95,9 @@ fn check_header(header: &[String], line: &str) -> Result<()> {
     }
     if header.len() < 2 {
         let shown: String = line.chars().take(40).collect();
-        let instead = if line.contains([';', '\t', ' ']) {
+        let instead = if line.contains(';') {
+            "write commas between the columns and decimal points, as in wavenumber_cm1,emissivity and 715,0.95"
+        } else if line.contains(['\t', ' ']) {
             "write commas between the columns, as in wavenumber_cm1,emissivity"
         } else {
             EXAMPLE
@@ -107,10 +110,13 @@ fn check_header(header: &[String], line: &str) -> Result<()> {
 fn numbers(row: &str, header: &[String]) -> Result<Vec<f64>> {
     let found = cells(row).count();
     if found != header.len() {
-        return Err(Error::malformed(
-            format!("{found} cells where the header has {}", header.len()),
-            "write one number for every column",
-        ));
+        let found = format!("{found} cells where the header has {}", header.len());
+        // A decimal comma makes two cells of a number.
+        let instead = match cells(row).count() > header.len() {
+            true => "write one number for every column, with a decimal point: 0.95, not 0,95",
+            false => "write one number for every column",
+        };
+        return Err(Error::malformed(found, instead));
     }
     cells(row).zip(header).map(|(cell, column)| number(cell).map_err(|error| error.for_key(column))).collect()
 }
@@ -124,6 +130,9 @@ pub fn number(cell: &str) -> Result<f64> {
         }
         _ => {
             let shown: String = cell.chars().take(40).collect();
+            if let Some(error) = decimal_comma(&shown) {
+                return Err(error);
+            }
             Err(Error::malformed(
                 format!("`{shown}` is not a finite number"),
                 "write a number such as 0.95 or delete the row",

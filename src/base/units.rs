@@ -165,8 +165,10 @@ impl Dimension {
     /// ```
     pub fn parse(self, text: &str) -> Result<f64> {
         let text = text.trim();
-        let split = number_end(text);
-        let (number, spelling) = (text[..split].trim(), text[split..].trim());
+        let (number, spelling) = parts(text);
+        if let Some(error) = decimal_comma(text) {
+            return Err(error);
+        }
         let value: f64 = number.parse().map_err(|_| {
             Error::malformed(
                 format!("`{text}` does not begin with a number"),
@@ -180,7 +182,7 @@ impl Dimension {
                 format!("write {}", self.example()),
             ));
         }
-        match self.units().iter().find(|unit| unit.spelling == spelling) {
+        match self.unit_spelt(spelling) {
             Some(unit) => match value * unit.factor + unit.offset {
                 value if value.is_finite() => Ok(value),
                 _ => Err(Error::malformed(format!("`{text}` is out of range"), "it must be a finite number")),
@@ -196,6 +198,22 @@ impl Dimension {
     #[must_use]
     pub fn format(self, value: f64) -> String {
         format!("{value} {}", self.unit())
+    }
+
+    /// The unit of a quantity as its author wrote it, e.g. `mph` of `"30 mph"`; none of another dimension.
+    #[must_use]
+    pub fn unit_in(self, text: &str) -> Option<&'static str> {
+        self.unit_spelt(parts(text.trim()).1).map(|unit| unit.spelling)
+    }
+
+    /// A value of the unit used inside as a number of another one of its units.
+    #[must_use]
+    pub fn in_unit(self, value: f64, spelling: &str) -> Option<f64> {
+        self.unit_spelt(spelling).map(|unit| (value - unit.offset) / unit.factor)
+    }
+
+    fn unit_spelt(self, spelling: &str) -> Option<&'static Unit> {
+        self.units().iter().find(|unit| unit.spelling == spelling)
     }
 
     /// Its name in a sentence.
@@ -251,6 +269,15 @@ impl Spectral {
         }
     }
 
+    /// What its number measures.
+    #[must_use]
+    pub const fn dimension(self) -> Dimension {
+        match self {
+            Self::Wavenumber(_) => Dimension::Wavenumber,
+            Self::Wavelength(_) => Dimension::Wavelength,
+        }
+    }
+
     /// The number on its own axis, cm⁻¹ or µm.
     #[must_use]
     pub const fn number(self) -> f64 {
@@ -267,6 +294,30 @@ impl Spectral {
             Self::Wavelength(value) => 1e4 / value,
         }
     }
+}
+
+/// The leading number of a text, and the rest.
+fn parts(text: &str) -> (&str, &str) {
+    let (number, rest) = text.split_at(number_end(text));
+    (number.trim(), rest.trim())
+}
+
+/// A number with a comma where its decimal point belongs, named as such; none where that is not what is wrong.
+///
+/// ```
+/// let error = hadar::units::decimal_comma("37,5 degC").unwrap().to_string();
+/// assert_eq!(error, "`37,5 degC` has a decimal comma; write 37.5, as in \"37.5 degC\"");
+/// assert!(hadar::units::decimal_comma("37.5 degC").is_none());
+/// ```
+#[must_use]
+pub fn decimal_comma(text: &str) -> Option<Error> {
+    let text = text.trim();
+    let (whole, rest) = text.split_at(number_end(text));
+    let point = format!("{whole}.{}", rest.strip_prefix(',')?);
+    let (number, unit) = parts(&point);
+    number.parse::<f64>().ok().filter(|_| number.len() > whole.len() + 1)?;
+    let whole_unit = if unit.is_empty() { String::new() } else { format!(", as in \"{number} {unit}\"") };
+    Some(Error::malformed(format!("`{text}` has a decimal comma"), format!("write {number}{whole_unit}")))
 }
 
 /// End of the leading number of `text` (an `e` is part of it only before digits or a sign).
@@ -349,6 +400,15 @@ mod tests {
         assert!(Dimension::Temperature.parse("NaN K").is_err());
         assert!(Dimension::Temperature.parse("").is_err());
         assert!(Dimension::Length.parse("1e308 km").is_err());
+        for (text, point) in [("37,5 degC", "37.5 degC"), ("-1,25e-3K", "-1.25e-3 K"), ("0,5 mK", "0.5 mK")] {
+            let error = Dimension::Temperature.parse(text).unwrap_err().to_string();
+            assert!(error.contains("has a decimal comma; write ") && error.contains(point), "{error}");
+        }
+        assert!(["1, 2", "a,5", "1.5,5", ",5", "5,"].iter().all(|text| decimal_comma(text).is_none()));
+        assert_eq!(Dimension::Speed.unit_in("30 mph"), Some("mph"));
+        assert_eq!(Dimension::Length.unit_in("30 mph"), None);
+        let fahrenheit = Dimension::Temperature.in_unit(310.15, "°F").unwrap();
+        assert!((fahrenheit / 98.6 - 1.0).abs() < 1e-14, "{fahrenheit}");
         assert_eq!(Spectral::parse("8 um").unwrap(), Spectral::Wavelength(8.0));
         assert_eq!(Spectral::parse("715 cm^-1").unwrap(), Spectral::Wavenumber(715.0));
         assert!(Spectral::parse("8").is_err());

@@ -1,18 +1,26 @@
 //! Numbers in words: as short as they can be without losing what matters.
 
-/// A number with `digits` significant digits, plain where that is short, else in powers of ten.
+/// Powers of ten within which a number is written plainly: from 0.001 to 99999.
+const PLAIN: std::ops::Range<i32> = -3..5;
+
+/// A number with `digits` significant digits, plain where that is short, else in powers of ten: the one style of all
+/// numbers in a text.
 #[must_use]
 pub fn significant(value: f64, digits: usize) -> String {
     if value == 0.0 || !value.is_finite() {
-        return format!("{value}");
+        return format!("{}", value + 0.0);
     }
-    let exponent = value.abs().log10().floor() as i32;
     let last = digits.saturating_sub(1);
-    if (-4..6).contains(&exponent) {
+    // The power of ten after rounding: 0.0009999 may be 0.00100.
+    let in_powers = format!("{value:.last$e}");
+    let exponent = in_powers.split_once('e').and_then(|(_, power)| power.parse().ok()).unwrap_or(i32::MAX);
+    if PLAIN.contains(&exponent) {
         let decimals = usize::try_from(last as i32 - exponent).unwrap_or(0);
-        format!("{value:.decimals$}")
+        // As it was rounded: 44032 of three digits is 44000.
+        let rounded: f64 = in_powers.parse().unwrap_or(value);
+        format!("{rounded:.decimals$}")
     } else {
-        format!("{value:.last$e}")
+        in_powers
     }
 }
 
@@ -70,7 +78,17 @@ mod tests {
     #[test]
     fn numbers_are_short_and_keep_their_digits() {
         assert_eq!(significant(0.056_23, 3), "0.0562");
-        assert_eq!(significant(663_212.0, 3), "663212");
+        assert_eq!(significant(66_321.0, 3), "66321");
+        assert_eq!(significant(663_212.0, 3), "6.63e5");
+        assert_eq!(
+            [0.629, 0.0569, 0.001, 0.000_999].map(|x| significant(x, 3)),
+            ["0.629", "0.0569", "0.00100", "9.99e-4"]
+        );
+        assert_eq!([99_999.9, 0.000_999_96, 9.999].map(|x| significant(x, 3)), ["1.00e5", "0.00100", "10.0"]);
+        assert_eq!(
+            [0.0, -0.0, f64::INFINITY, -f64::INFINITY].map(|x| significant(x, 3)),
+            ["0", "0", "inf", "-inf"]
+        );
         assert_eq!(significant(6.632e8, 3), "6.63e8");
         assert_eq!(quantity(12e-6, "m"), "12.0 um");
         assert_eq!(quantity(0.012, "s"), "12.0 ms");

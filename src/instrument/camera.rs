@@ -56,6 +56,8 @@ pub struct Camera {
     pub photon_bunching: bool,
     /// When the bands are exposed.
     pub readout: Readout,
+    /// Bands that it has of its own, if known; with one of them a spectrum takes filters.
+    pub spectral_bands: Option<u32>,
     /// Frames that are averaged.
     pub frames: u32,
     /// Frames per second, if known: an exposure is no longer than a frame.
@@ -90,6 +92,12 @@ impl Camera {
         let near = distance_m.map_or(0.0, |z| self.focal_length_m / z);
         std::f64::consts::PI * self.pixel_m * self.pixel_m
             / (4.0 * self.f_number * self.f_number + near * near)
+    }
+
+    /// Side of what a pixel sees at a distance in m, m.
+    #[must_use]
+    pub fn footprint_m(&self, distance_m: f64) -> f64 {
+        self.pixel_m * distance_m / self.focal_length_m
     }
 
     /// The bands as the detector receives them, weighed with the efficiencies that depend on wavenumber.
@@ -158,12 +166,9 @@ impl Camera {
         let one_frame = Self { frames: 1, ..self.clone() };
         let bands = one_frame.received(&bands);
         let counting = one_frame.counting(&bands, &View::default());
-        // Photons between the ends of the range; the outermost bands of Table S2 reach half a band beyond.
-        let [low, high] = self.spectral_range_cm1;
-        let range = one_frame.received(&Bands::from_ranges(&[(low, high)])?);
-        let mut blackbody = vec![0.0; range.nodes_cm1().len()];
-        planck::photon_radiance_into(range.nodes_cm1(), self.reference_temperature_k, &mut blackbody);
-        let photons = counting.counts_per_radiance * range.weigh(&blackbody).iter().sum::<f64>();
+        let mut blackbody = vec![0.0; bands.nodes_cm1().len()];
+        planck::photon_radiance_into(bands.nodes_cm1(), self.reference_temperature_k, &mut blackbody);
+        let photons = counting.counts_per_radiance * crate::sum::sum(&bands.weigh(&blackbody));
         let var: f64 = (0..bands.len()).map(|w| counting.var_added(w)).sum();
         let gamma = var / photons;
         Ok(Figures {

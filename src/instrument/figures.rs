@@ -19,7 +19,7 @@ mod spec;
 mod table;
 
 pub use noise::{NoiseFigures, StatedNoise};
-pub use row::{Kind, Line, Part, Row, Slot};
+pub use row::{BLANK, Kind, Line, Part, Row, Slot};
 pub use spec::{CameraSpec, Efficiency};
 pub use table::{FASTEST_F_NUMBER, NOISES, TABLE};
 

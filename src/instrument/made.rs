@@ -6,7 +6,7 @@
 //!
 //! [`Preset::camera`] and [`CameraSpec::of`] take every field apart: a figure that one of them forgets does not compile.
 
-use super::figures::{NoiseFigures, Part, StatedNoise, TABLE, row};
+use super::figures::{NoiseFigures, Part, StatedNoise, TABLE};
 use super::presets::{Missing, Preset};
 use super::{Camera, CameraSpec, Efficiency, NoiseSpec, Readout};
 
@@ -19,7 +19,7 @@ impl Preset {
     /// The camera with these figures, what stands for missing ones listed in [`Camera::assumed`].
     ///
     /// # Errors
-    /// The first figure that is missing and nothing can stand for.
+    /// All figures that are missing and nothing can stand for.
     pub fn camera(&self) -> Result<Camera, Missing> {
         let CameraSpec {
             preset: _,
@@ -39,8 +39,7 @@ impl Preset {
             full_well,
             photon_bunching,
             readout,
-            spectral_bands: _,
-            filters_needed: _,
+            spectral_bands,
             frames,
             sensor_temperature_k,
             filter_temperature_k,
@@ -51,17 +50,29 @@ impl Preset {
             spectral_range_cm1,
         } = self.figures.clone();
         let mut assumed = Vec::new();
+        let mut missing = Missing::default();
+        // What is missing is asked for with all else that is, before anything is made of it.
+        let mut ask = |key| {
+            missing.0.push(key);
+            f64::NAN
+        };
         let exposure_s = match (exposure_s, frame_rate_hz) {
             (Some(exposure), _) => exposure,
             (None, Some(rate)) => {
                 assumed.push(format!("exposure: not stated; the frame of {:.4} ms is taken", 1e3 / rate));
                 1.0 / rate
             }
-            (None, None) => return Err(Missing::of("exposure")),
+            (None, None) => ask("exposure"),
         };
-        let pixel_m = pixel_m.ok_or(Missing::of("pixel"))?;
-        let f_number = f_number.ok_or(Missing::of("f_number"))?;
-        let focal_length_m = focal_length_m.ok_or(Missing::of("focal_length"))?;
+        let pixel_m = pixel_m.unwrap_or_else(|| ask("pixel"));
+        let f_number = f_number.unwrap_or_else(|| ask("f_number"));
+        let focal_length_m = focal_length_m.unwrap_or_else(|| ask("focal_length"));
+        if self.noise_table.is_none() && noise.stated().is_none() {
+            ask("netd");
+        }
+        if !missing.0.is_empty() {
+            return Err(missing);
+        }
         // What depends on wavenumber is in the curves.
         let number = |efficiency: Efficiency| efficiency.number().unwrap_or(1.0);
         let stated = noise.stated();
@@ -77,8 +88,7 @@ impl Preset {
         });
         let noise = match (&self.noise_table, stated) {
             (Some(table), _) => table.clone(),
-            (None, None) => return Err(Missing::of("netd")),
-            (None, Some(StatedNoise::None)) => NoiseSpec::None,
+            (None, None | Some(StatedNoise::None)) => NoiseSpec::None,
             (
                 None,
                 Some(StatedNoise::Netd {
@@ -118,12 +128,23 @@ impl Preset {
             PAPER_RANGE_CM1
         });
         let flicker_fraction = flicker_fraction.unwrap_or_else(|| {
-            if noise != NoiseSpec::None {
+            if noise != NoiseSpec::None && noise != (NoiseSpec::Counts { sigma_counts: 0.0 }) {
                 let why = "0 is taken, so that frames average all of the noise out";
                 assumed.push(format!("flicker_fraction: not stated; {why}"));
             }
             0.0
         });
+        let readout = readout.unwrap_or(match spectral_bands {
+            // Filters before a camera of one band are exposed one after the other.
+            Some(1) => Readout::Sequential,
+            _ => Readout::Simultaneous,
+        });
+        let frames = frames.unwrap_or(1);
+        if frame_rate_hz.is_none() && (frames > 1 || readout.exposures(2) > 1) {
+            assumed.push(
+                "frame_rate: not stated; exposures are taken to follow each other without a pause".into(),
+            );
+        }
         Ok(Camera {
             name: self.name.clone(),
             description: self.description.clone(),
@@ -144,8 +165,9 @@ impl Preset {
             quantisation_bits,
             full_well,
             photon_bunching: photon_bunching.unwrap_or(false),
-            readout: readout.unwrap_or(Readout::Simultaneous),
-            frames: frames.unwrap_or(1),
+            readout,
+            spectral_bands,
+            frames,
             frame_rate_hz,
             sensor_temperature_k,
             filter_temperature_k,
@@ -182,6 +204,7 @@ impl CameraSpec {
             full_well,
             photon_bunching,
             readout,
+            spectral_bands,
             frames,
             frame_rate_hz,
             sensor_temperature_k,
@@ -209,8 +232,7 @@ impl CameraSpec {
             full_well,
             photon_bunching: Some(photon_bunching),
             readout: Some(readout),
-            spectral_bands: None,
-            filters_needed: false,
+            spectral_bands,
             frames: Some(frames),
             sensor_temperature_k,
             filter_temperature_k,
@@ -280,12 +302,5 @@ impl Camera {
             }
         }
         keys
-    }
-}
-
-impl Missing {
-    /// A key of the table.
-    fn of(key: &'static str) -> Self {
-        Self { key, example: row(key).map_or("", |row| row.example) }
     }
 }

@@ -4,7 +4,7 @@
 //!   optics efficiency in all of the detector's spectral range, per exposure;
 //! * specific detectivity: NEP = √(A_p Δf)/D*, σ_w = η_q NEP t/(hcν_w), η_q quantum efficiency;
 //! * noise-equivalent power: of a bandwidth Δf, or per √Hz and then NEP = n √Δf;
-//! * noise-equivalent spectral radiance L (flicks, W cm⁻² sr⁻¹ µm⁻¹): σ_w = L Δλ_w × étendue × η t/(hcν_w);
+//! * noise-equivalent spectral radiance L (flicks, W cm⁻² sr⁻¹ µm⁻¹): σ_w = étendue × η t × ∫ L dλ/(hcν) over the band;
 //! * counts: as given, or as a table over wavenumber.
 //!
 //! The bandwidth of a reading that integrates for t is Δf = 1/(2t) where no other is stated.
@@ -37,9 +37,20 @@ fn photon_energy_j(wavenumber_cm1: f64) -> f64 {
     PLANCK_J_S * SPEED_OF_LIGHT_M_S * 100.0 * wavenumber_cm1
 }
 
-/// Width of a band in wavelength, µm, of a width in wavenumber that is small against its centre (both cm⁻¹).
-fn width_um(center_cm1: f64, width_cm1: f64) -> f64 {
-    1e4 * width_cm1 / (center_cm1 * center_cm1)
+/// Photons s⁻¹ m⁻² sr⁻¹ in every band of a spectral radiance in µflick: ∫ L (10⁴/ν²)/(hcν) dν, which is L/ν³ but for constants.
+fn photons_of_flick(bands: &Bands, microflick: f64) -> Vec<f64> {
+    let at = |nu: f64| microflick * MICROFLICK_W_M2_SR_UM * 1e4 / (nu * nu) / photon_energy_j(nu);
+    if bands.one_node_per_band() {
+        // One node may stand for a wide band: the mean of ν⁻³ between its ends is (ν₁ + ν₂)/(2 ν₁²ν₂²).
+        let with_width = bands.bands().iter().zip(bands.widths_cm1());
+        return with_width
+            .map(|(band, width)| {
+                let (low, high) = (band.low_cm1 / band.center_cm1, band.high_cm1 / band.center_cm1);
+                width * at(band.center_cm1) * 0.5 * (low + high) / (low * high).powi(2)
+            })
+            .collect();
+    }
+    bands.weigh(&bands.nodes_cm1().iter().map(|nu| at(*nu)).collect::<Vec<_>>())
 }
 
 impl Camera {
@@ -81,12 +92,12 @@ impl Camera {
             NoiseSpec::SpectralRadiance { microflick } => {
                 // Light of that radiance through the camera's own optics; the weights of the bands hold the efficiency curves.
                 let collected = self.etendue_m2_sr(None) * self.optics_efficiency * self.quantum_efficiency;
-                let widths = bands.widths_cm1();
-                let sigma = bands.bands().iter().zip(widths).map(|(band, width)| {
-                    let radiance = microflick * MICROFLICK_W_M2_SR_UM * width_um(band.center_cm1, width);
-                    radiance * collected * t / photon_energy_j(band.center_cm1)
-                });
-                Some(sigma.collect())
+                Some(
+                    photons_of_flick(bands, *microflick)
+                        .iter()
+                        .map(|photons| photons * collected * t)
+                        .collect(),
+                )
             }
         }
     }

@@ -6,6 +6,7 @@
 
 #[cfg(feature = "library")]
 use super::Camera;
+use super::figures::{self, NOISES, Part, Row};
 use super::{CameraSpec, EfficiencyCurve, NoiseSpec};
 use crate::error::Error;
 #[cfg(feature = "library")]
@@ -49,30 +50,41 @@ pub struct Preset {
     pub noise_table: Option<NoiseSpec>,
 }
 
-/// A figure that a camera cannot do without and nobody has given.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Missing {
-    /// Its key in a scenario.
-    pub key: &'static str,
-    /// A value to write.
-    pub example: &'static str,
-}
+/// The keys of all figures that a camera cannot do without and nobody has given, in the order of the table.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Missing(pub Vec<&'static str>);
 
 impl Missing {
+    /// A line for each to be filled in, and what it is.
+    #[must_use]
+    pub fn lines(&self) -> Vec<String> {
+        let rows: Vec<&Row> = self.0.iter().filter_map(|key| figures::row(key)).collect();
+        let width = rows.iter().map(|row| row.blank().chars().count()).max().unwrap_or(0);
+        let line = |row: &&Row| {
+            let meaning = row.meaning.trim_end_matches('.');
+            let other = if row.part == Part::Noise { "; or another of " } else { "" };
+            let noises: Vec<&str> = NOISES.into_iter().filter(|key| *key != row.key).collect();
+            let noises = if other.is_empty() { String::new() } else { noises.join(", ") };
+            format!("{:<width$}  # {meaning}{other}{noises}", row.blank())
+        };
+        rows.iter().map(line).collect()
+    }
+
     /// The message, of a camera of that name.
     #[must_use]
-    pub fn error(self, camera: &str) -> Error {
-        let (found, instead) = match (self.key, camera) {
-            (key, "") => (
-                format!("neither a preset nor camera.{key} is given"),
-                format!("write {key} = {}, or preset = \"flir-a325sc\"", self.example),
+    pub fn error(&self, camera: &str) -> Error {
+        let keys = self.0.join(", ");
+        let (found, instead) = match camera {
+            "" => (
+                format!("neither a preset nor {keys} is given"),
+                "name a preset (`hadar cameras list` has them), or write what the camera has in place of the dots:",
             ),
-            (key, name) => (
-                format!("no document that was read states the {key} of {name}"),
-                format!("write {key} = {}", self.example),
+            name => (
+                format!("no document that was read states {keys} of {name}"),
+                "write what the camera has in place of the dots:",
             ),
         };
-        Error::malformed(found, instead)
+        Error::Incomplete { found, instead: instead.into(), lines: self.lines() }
     }
 }
 
@@ -151,7 +163,17 @@ mod tests {
                 }
                 Err(missing) => {
                     let message = missing.error(&preset.name).to_string();
-                    assert!(message.contains(missing.key) && message.contains(&preset.name), "{message}");
+                    assert!(message.contains(&preset.name), "{message}");
+                    assert_eq!(missing.lines().len(), missing.0.len());
+                    for (key, line) in missing.0.iter().zip(missing.lines()) {
+                        assert!(
+                            message.contains(&line) && line.starts_with(&format!("{key} = ")),
+                            "{message}"
+                        );
+                        // No number that could be taken for one of this camera.
+                        let value = line.split_once('#').unwrap().0;
+                        assert!(!value.contains(|char: char| char.is_ascii_digit()), "{line}");
+                    }
                 }
             }
         }

@@ -14,8 +14,10 @@ mod reproduce;
 mod rule;
 mod simulate;
 mod size;
+mod terminal;
 
 use self::global::Global;
+use self::terminal::Stream;
 use clap::{Parser, Subcommand};
 use hadar::error::Result;
 use hadar_report::bundle::Bundle;
@@ -65,7 +67,9 @@ pub(crate) fn main() -> ExitCode {
     let cli = Cli::parse();
     if let Some(threads) = cli.global.threads {
         if threads > MOST_THREADS {
-            eprintln!("error: --threads is {threads}; it must be at most {MOST_THREADS}, or 0 for all cores");
+            let found =
+                format!("--threads is {threads}; it must be at most {MOST_THREADS}, or 0 for all cores");
+            eprintln!("{}", Stream::Err.message("error:", &found));
             return ExitCode::from(1);
         }
         // Fails only if a pool is there already, which is then the one that is used.
@@ -74,7 +78,7 @@ pub(crate) fn main() -> ExitCode {
     match run(&cli) {
         Ok(code) => code,
         Err(error) => {
-            eprintln!("error: {error}");
+            eprintln!("{}", Stream::Err.message("error:", &error.to_string()));
             ExitCode::from(1)
         }
     }

@@ -13,7 +13,6 @@ pub use text::text;
 
 use hadar::error::{Error, Result};
 use hadar::instrument::comparison::SCENE_K;
-use hadar::instrument::figures;
 use hadar::instrument::presets::{Missing, Preset};
 use hadar::instrument::{Camera, Equivalents, Figures, NoiseLine};
 use hadar::spectrum::Bands;
@@ -28,7 +27,7 @@ pub struct Sheet {
     /// What documents state.
     pub preset: Preset,
     /// What they do not and a scenario must give.
-    pub missing: Vec<Missing>,
+    pub missing: Missing,
     /// What follows; none where something is missing.
     pub worked: Option<Worked>,
 }
@@ -53,7 +52,7 @@ impl Sheet {
     /// What is stated of a camera and what is missing, with nothing worked out.
     #[must_use]
     pub fn stated(preset: Preset) -> Self {
-        Self { missing: missing(&preset), preset, worked: None }
+        Self { missing: preset.camera().err().unwrap_or_default(), preset, worked: None }
     }
 
     /// The sheet of a known camera.
@@ -89,8 +88,10 @@ impl Sheet {
         let full = worked.and_then(|worked| worked.full_well_exposures_s);
         let missing: Vec<Value> = self
             .missing
+            .0
             .iter()
-            .map(|missing| serde_json::json!({ "key": missing.key, "example": missing.example }))
+            .zip(self.missing.lines())
+            .map(|(key, line)| serde_json::json!({ "key": key, "write": line }))
             .collect();
         all.insert("missing".into(), missing.into());
         all.insert("equivalents".into(), value(&worked.map(|worked| &worked.equivalents))?);
@@ -118,23 +119,6 @@ impl Worked {
             camera,
         })
     }
-}
-
-/// Everything that a scenario must give before the camera can be used.
-fn missing(preset: &Preset) -> Vec<Missing> {
-    let mut given = preset.clone();
-    let mut all: Vec<Missing> = Vec::new();
-    while let Err(missing) = given.camera() {
-        // A figure that a number does not give would be asked for ever.
-        if all.contains(&missing) {
-            break;
-        }
-        all.push(missing);
-        if let Some(row) = figures::row(missing.key) {
-            row.put_number(&mut given.figures, 1.0);
-        }
-    }
-    all
 }
 
 fn value(of: &impl serde::Serialize) -> Result<Value> {

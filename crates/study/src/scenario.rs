@@ -22,6 +22,7 @@ mod camera;
 mod entries;
 pub mod envelope;
 pub mod examples;
+mod kind;
 mod paths;
 pub mod range;
 mod read;
@@ -29,6 +30,7 @@ pub mod rule;
 mod section;
 pub mod sensitivity;
 pub mod source;
+mod units;
 mod write;
 
 pub use atmosphere::{AtmosphereSource, AtmosphereSpec};
@@ -38,6 +40,8 @@ pub use range::RangeScenario;
 pub use rule::Rule;
 pub use sensitivity::SensitivitySpec;
 pub use source::Source;
+pub use units::Units;
+pub(crate) use units::interval;
 
 /// Everything a scenario file says, defaults filled in.
 ///
@@ -78,6 +82,12 @@ impl Scenario {
     #[must_use]
     pub fn place(&self, key: &str) -> Place {
         self.source.place(key)
+    }
+
+    /// The units in which it was written.
+    #[must_use]
+    pub fn units(&self) -> Units {
+        Units::of(&self.source)
     }
 }
 

@@ -8,6 +8,7 @@
 mod air;
 mod bands;
 mod camera;
+mod camera_bands;
 mod distances;
 mod identify;
 mod looked_up;
@@ -30,8 +31,8 @@ pub use identify::{
 pub use looked_up::Study;
 pub use rule::{
     CameraVerdict, Certified, EmissivityError, EnvelopeResult, FileHash, Fixes, IdealCamera, LightTime,
-    LimitingScene, Neighbourhood, NotIdentifiable, Proof, Quotable, RuleAnswer, RuleAsked, RuleRequirement,
-    RuleStudy, WhoMeets,
+    LimitingScene, Neighbourhood, NotIdentifiable, Proof, Proviso, Quotable, RuleAnswer, RuleAsked,
+    RuleRequirement, RuleStudy, WhoMeets, WithoutPlaceholders,
 };
 pub use shortfall::Shortfall;
 pub use sight::Sight;

@@ -8,6 +8,7 @@ mod message;
 pub use catalogue::Code;
 
 use hadar::fisher::Nuisance;
+use hadar::instrument::Readout;
 use hadar::scene::Parameter;
 use hadar::simulate::classifier::Method;
 use serde::ser::{Serialize, SerializeStruct, Serializer};
@@ -31,6 +32,8 @@ pub enum Warning {
 
     /// Equal emissivities.
     Identical,
+    /// What both of a pair are entered as.
+    Placeholders { target: String, alternative: String, emissivities: [f64; 2] },
     /// Equal temperatures.
     Equilibrium,
     /// The unknowns imitate the material.
@@ -56,6 +59,10 @@ pub enum Warning {
     /// An envelope beside the one scene.
     EnvelopeNotSearched,
 
+    /// A camera of one band that is modelled with so many.
+    BandsModelled { camera: String, bands: usize, readout: Readout },
+    /// Width of the widest band that is taken at its centre, cm⁻¹.
+    BandsSampled { width_cm1: f64 },
     /// Time until all bands are read.
     SequentialReadout { acquisition_s: f64, bands: usize },
     /// Motion until all bands are exposed.
@@ -68,6 +75,10 @@ pub enum Warning {
     FilterLightLeftOut,
     /// A temperature of the sensor and no filters.
     SensorTemperatureIdle,
+    /// Nothing around the target.
+    NoSurroundings,
+    /// Side of a pixel's footprint, m.
+    TargetSizeUnknown { footprint_m: f64 },
     /// Share of the pixel that the target fills.
     TargetSmallerThanPixel { fill: f64 },
     /// Blur λF and radius of the first dark ring at the longest wavelength, beside the pixel.
@@ -160,10 +171,15 @@ impl Warning {
             Self::NearestSearch { .. } => Code::NearestSearch,
             Self::Bunching { .. } => Code::Bunching,
             Self::EnvelopeNotSearched => Code::EnvelopeNotSearched,
+            Self::BandsModelled { .. } => Code::BandsModelled,
+            Self::BandsSampled { .. } => Code::BandsSampled,
             Self::SequentialReadout { .. } => Code::SequentialReadout,
             Self::MotionBlur { .. } => Code::MotionBlur,
             Self::MotionBlurUnknown | Self::RuleMotionBlurUnknown => Code::MotionBlurUnknown,
             Self::FilterLightLeftOut | Self::SensorTemperatureIdle => Code::FilterLight,
+            Self::Placeholders { .. } => Code::Placeholders,
+            Self::NoSurroundings => Code::NoSurroundings,
+            Self::TargetSizeUnknown { .. } => Code::TargetSizeUnknown,
             Self::TargetSmallerThanPixel { .. } => Code::TargetSmallerThanPixel,
             Self::Diffraction { .. } => Code::Diffraction,
             Self::FrameRate { .. } => Code::FrameRate,

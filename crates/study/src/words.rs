@@ -3,31 +3,33 @@
 
 use hadar::identifiability::detection;
 
-/// Decimals of a share beyond which its distance from 1 says more than its nines.
+/// Decimals of a demanded share beyond which more nines say nothing.
 const MOST_DECIMALS: usize = 12;
+/// The same of one that is reached.
+const MOST_REACHED: usize = 6;
 
-/// Reliability Φ(d) of a decision at statistical distance d: `84.1 %`, `99.9999 %`, `1 - 7.6e-24`.
+/// Reliability Φ(d) of a decision at statistical distance d: `84.1 %`, `99.9999 %`, `more than 99.9999 %`.
 #[must_use]
 pub fn reliability(distance: f64) -> String {
-    match decimals(distance) {
-        Some(decimals) => {
-            let decimals = decimals.max(3) - 2;
-            format!("{:.decimals$} %", 100.0 * detection::probability(distance))
-        }
-        None => nearly_certain(distance),
-    }
+    in_percent(distance, MOST_REACHED)
 }
 
-/// The same as a share of 1, with `least` decimals where those are enough: `0.8413`, `0.999999`.
+/// A reliability that somebody demands, with all the nines that were asked for.
+#[must_use]
+pub fn demanded(distance: f64) -> String {
+    in_percent(distance, MOST_DECIMALS)
+}
+
+/// Φ(d) as a share of 1, with `least` decimals where those are enough: `0.8413`, `0.999999`.
 #[must_use]
 pub fn probability(distance: f64, least: usize) -> String {
-    match decimals(distance) {
-        Some(decimals) => {
-            let decimals = decimals.max(least);
-            format!("{:.decimals$}", detection::probability(distance))
-        }
-        None => nearly_certain(distance),
-    }
+    as_share(distance, least, MOST_REACHED)
+}
+
+/// The same of one that somebody demands.
+#[must_use]
+pub fn demanded_probability(distance: f64, least: usize) -> String {
+    as_share(distance, least, MOST_DECIMALS)
 }
 
 /// A share that was found, in percent: short of 1 never 100, but with as many nines as it takes.
@@ -38,18 +40,26 @@ pub fn percent(share: f64) -> String {
     format!("{:.*} %", decimals.clamp(1.0, MOST_DECIMALS as f64) as usize, 100.0 * share)
 }
 
-/// Decimals at which Φ(d) is not yet rounded to 1; `None` where they would be too many.
-fn decimals(distance: f64) -> Option<usize> {
-    // A probability that was given as 0.999999 comes back with a rounding error.
-    let wanted = (-detection::miss_probability(distance).log10() - 1e-6).ceil().max(0.0);
-    (wanted <= MOST_DECIMALS as f64).then_some(wanted as usize)
+fn in_percent(distance: f64, most: usize) -> String {
+    match decimals(distance) {
+        wanted if wanted <= most => {
+            format!("{:.*} %", wanted.max(3) - 2, 100.0 * detection::probability(distance))
+        }
+        _ => "more than 99.9999 %".into(),
+    }
 }
 
-fn nearly_certain(distance: f64) -> String {
-    match detection::miss_probability(distance) {
-        0.0 => "more than 1 - 1e-300".into(),
-        miss => format!("1 - {miss:.1e}"),
+fn as_share(distance: f64, least: usize, most: usize) -> String {
+    match decimals(distance) {
+        wanted if wanted <= most => format!("{:.*}", wanted.max(least), detection::probability(distance)),
+        _ => "more than 0.999999".into(),
     }
+}
+
+/// Decimals at which Φ(d) is not yet rounded to 1.
+fn decimals(distance: f64) -> usize {
+    // A probability that was given as 0.999999 comes back with a rounding error.
+    (-detection::miss_probability(distance).log10() - 1e-6).ceil().max(0.0) as usize
 }
 
 #[cfg(test)]
@@ -78,13 +88,19 @@ mod tests {
             (0.999_999, "99.9999 %"),
             (0.999_999_9, "99.99999 %"),
         ] {
-            assert_eq!(reliability(distance_for_probability(probability).unwrap()), said);
+            let distance = distance_for_probability(probability).unwrap();
+            assert_eq!(demanded(distance), said);
+            let reached = if probability > 0.999_999 { "more than 99.9999 %" } else { said };
+            assert_eq!(reliability(distance), reached);
         }
         assert_eq!((reliability(0.0), super::probability(1.0, 4)), ("50.0 %".into(), "0.8413".into()));
         let distance = distance_for_probability(0.999_999).unwrap();
         assert_eq!(super::probability(distance, 4), "0.999999");
-        assert_eq!(reliability(10.0), "1 - 7.6e-24");
-        assert_eq!(reliability(60.0), "more than 1 - 1e-300");
+        assert_eq!((reliability(10.0), reliability(60.0)), ("more than 99.9999 %".into(), reliability(7.0)));
+        assert_eq!(
+            (demanded(10.0), super::probability(6.0, 4)),
+            (reliability(10.0), "more than 0.999999".into())
+        );
         for i in 0..700 {
             let d = 0.01 * f64::from(i);
             assert!(!reliability(d).starts_with("100"), "{d}");

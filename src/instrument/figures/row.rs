@@ -10,6 +10,9 @@ use std::path::{Path, PathBuf};
 /// Share by which two values of a figure may differ and are still the same: the rounding of a conversion of units.
 const ROUNDING: f64 = 1e-9;
 
+/// Stands where a figure is to be filled in.
+pub const BLANK: &str = "…";
+
 /// Where a figure stands in [`CameraSpec`].
 #[derive(Debug)]
 pub struct Slot<T: 'static> {
@@ -179,6 +182,17 @@ impl Row {
             }
             _ => Ok(()),
         }
+    }
+
+    /// `key = …` with the unit of the example: a figure to be filled in, of which nothing is known.
+    #[must_use]
+    pub fn blank(&self) -> String {
+        let number = |char: char| char.is_ascii_digit() || matches!(char, '.' | '-');
+        let value = match self.example.strip_prefix('"') {
+            Some(quantity) => format!("\"{BLANK} {}", quantity.trim_start_matches(number).trim_start()),
+            None => BLANK.to_owned(),
+        };
+        format!("{} = {value}", self.key)
     }
 
     /// What may be written, in a few words.

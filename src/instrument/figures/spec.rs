@@ -65,10 +65,8 @@ pub struct CameraSpec {
     pub photon_bunching: Option<bool>,
     /// When the bands are exposed.
     pub readout: Option<Readout>,
-    /// Bands of a spectral instrument. Documents only, as is all that has no row in [`super::TABLE`].
+    /// Bands that it has of its own; with one of them a spectrum takes filters.
     pub spectral_bands: Option<u32>,
-    /// Whether it has one band of its own, so that a spectrum takes filters. Documents only.
-    pub filters_needed: bool,
     /// Frames that are averaged.
     pub frames: Option<u32>,
     /// Temperature of the sensor, K.
@@ -79,7 +77,7 @@ pub struct CameraSpec {
     pub field_of_view_rad: Option<f64>,
     /// Pixels across the field of view.
     pub pixels: Option<u32>,
-    /// Pixels down the field of view. Documents only.
+    /// Pixels down the field of view. Documents only, as is all that has no row in [`super::TABLE`].
     pub lines: Option<u32>,
     /// Temperature of the blackbody at which photons and γ are quoted, K. Documents only.
     pub reference_temperature_k: Option<f64>,

@@ -255,6 +255,15 @@ pub const TABLE: &[Row] = &[
     )
     .elsewhere(),
     row(
+        "spectral_bands",
+        "bands of its own",
+        Kind::Count(slot!(spectral_bands)),
+        "1",
+        "Bands that the camera has of its own: with 1 a spectrum takes filters, one after the other; as many as the scenario \
+         asks for where it is not stated.",
+    )
+    .elsewhere(),
+    row(
         "frames",
         "averaged frames",
         Kind::Count(slot!(frames)),

@@ -75,6 +75,8 @@ pub struct LocalSolver<'a> {
     weights: Aligned,
     /// Weights of whitened columns.
     ones: Vec<f64>,
+    /// Whether the unknowns of the last evaluation are as many as the bands.
+    few_bands: bool,
 }
 
 impl<'a> LocalSolver<'a> {
@@ -91,6 +93,7 @@ impl<'a> LocalSolver<'a> {
             columns: Vec::new(),
             weights: Aligned::zeros(bands.len()),
             ones: Vec::new(),
+            few_bands: false,
         }
     }
 
@@ -98,7 +101,7 @@ impl<'a> LocalSolver<'a> {
     /// with infinitely many they count for nothing.
     ///
     /// # Errors
-    /// A scene without photons, or fewer bands than unknowns.
+    /// A scene without photons.
     pub fn per_photon(
         &mut self,
         emissivity: &[f64],
@@ -136,7 +139,6 @@ impl<'a> LocalSolver<'a> {
             let variance = signal + counting.var_added(w) / counts;
             *weight = if variance > 0.0 { counts / variance } else { 0.0 };
         }
-        self.check_rank()?;
         if !self.unknowns.has_priors() {
             let root = |w: usize| self.weights[w].sqrt();
             let cancellation = self.jacobian.material_cancellation(emissivity, alternative, state, root);
@@ -154,6 +156,7 @@ impl<'a> LocalSolver<'a> {
     fn evaluate(&mut self, emissivity: &[f64], alternative: &[f64], state: &State) {
         let total_known = self.unknowns.known_lighting_total().is_some();
         self.jacobian.evaluate(emissivity, alternative, state, &self.parameters, total_known);
+        self.few_bands = self.unknowns_fill_the_bands();
     }
 
     /// ΣS, and the projection with the weights u = 1/(S ΣS).
@@ -166,7 +169,6 @@ impl<'a> LocalSolver<'a> {
     ) -> Result<(f64, Reduced)> {
         self.evaluate(emissivity, alternative, state);
         let total = positive(crate::sum::sum(self.jacobian.signal()))?;
-        self.check_rank()?;
         let priors = self.unknowns.has_priors() && sqrt_photons.is_finite();
         if SAFE_RANGE.contains(&total) && !priors {
             let signal = self.jacobian.signal();
@@ -188,20 +190,14 @@ impl<'a> LocalSolver<'a> {
         Ok((total, self.reduce_scaled(emissivity, alternative, state, root, sqrt_photons)))
     }
 
-    fn check_rank(&self) -> Result<()> {
-        let bands = self.jacobian.bands().len();
+    /// Whether the unknowns that change anything are as many as the bands: together they then imitate any change of the
+    /// material, whatever rounding leaves of it.
+    fn unknowns_fill_the_bands(&self) -> bool {
         let live = |i: usize| self.jacobian.column(i).iter().any(|&value| value != 0.0);
         let free = (0..self.parameters.len() - 1)
             .filter(|&i| self.unknowns.sigma_prior(self.parameters[i]).is_none() && live(i))
             .count();
-        if bands > free {
-            return Ok(());
-        }
-        let s = if bands == 1 { "" } else { "s" };
-        Err(Error::malformed(
-            format!("{bands} band{s} for {} unknowns (the material among them)", free + 1),
-            format!("give at least {} bands, fewer nuisances, or priors on them", free + 1),
-        ))
+        self.jacobian.bands().len() <= free
     }
 
     fn judge(
@@ -234,7 +230,8 @@ impl<'a> LocalSolver<'a> {
             Status::Identical
         } else if found.norm == 0.0 && self.in_equilibrium(state) {
             Status::Equilibrium
-        } else if found.norm == 0.0 || found.relative_error >= 1.0 || found.residual == 0.0 {
+        } else if self.few_bands || found.norm == 0.0 || found.relative_error >= 1.0 || found.residual == 0.0
+        {
             Status::Blind
         } else {
             Status::Ok

@@ -6,10 +6,14 @@
 //! | `full-well` | counts of the fullest reading ≤ full well | on exposure, pixel, f-number |
 //! | `motion` | time until all bands are exposed ≤ r θ/(v_⊥ L) | [`super::motion`]; the speed that the scenario demands |
 //! | `frame-rate` | exposure ≤ 1/frame rate | |
+//! | `impractical` | exposure ≤ 1 s, pixel ≤ 100 µm, time of all frames ≤ 60 s | or what the camera itself has |
 //! | `lowest-noise` | σ ≥ √(ρ² + q²/12) | read noise ρ and steps q of the converter stay whatever the detector |
 //!
 //! λF is the diffraction blur at which an image goes from detector-limited to optics-limited (Fλ/pixel = 1; the first dark
 //! ring of a point has the radius 1.22 λF): below it a smaller pixel shows no more detail and sees what is beside it.
+//!
+//! `impractical` is a convention, not physics: pitches of thermal arrays are 5 to 50 µm, their frames milliseconds, and what
+//! is looked at seldom holds still for a minute.
 //!
 //! Source: G. C. Holst, Opt. Eng. 46, 103204 (2007), doi:10.1117/1.2790066; paper SII E (motion).
 
@@ -23,6 +27,10 @@ use crate::words::{quantity as in_unit, significant};
 
 /// Logarithm of the largest factor by which a pixel or f-number is changed to fill the well.
 const LOG_RANGE: f64 = 30.0;
+/// The longest exposure (s), largest pixel (m) and longest time for all frames (s) in practice.
+const LONGEST_EXPOSURE_S: f64 = 1.0;
+const LARGEST_PIXEL_M: f64 = 100e-6;
+const LONGEST_ACQUISITION_S: f64 = 60.0;
 /// Share by which a limit may be passed: rounding.
 const ROUNDING: f64 = 1e-9;
 
@@ -108,10 +116,14 @@ pub fn limits(quantity: Quantity, trial: &Trial, given: &Circumstances<'_>) -> R
             if let Some(frame) = camera.frame_s() {
                 push(CapCode::FrameRate, frame, false, "a frame is no longer".into());
             }
+            let longest = LONGEST_EXPOSURE_S.max(camera.exposure_s);
+            push(CapCode::Impractical, longest, false, "no thermal array is exposed for longer".into());
         }
         Quantity::Pixel => {
             let reason = format!("{blur} blurs over lambda F");
             push(CapCode::Diffraction, wavelength_m * camera.f_number, true, reason);
+            let largest = LARGEST_PIXEL_M.max(camera.pixel_m);
+            push(CapCode::Impractical, largest, false, "no thermal array has larger ones".into());
         }
         Quantity::FNumber => {
             let reason = format!("{blur} blurs over more than the pixel");
@@ -129,7 +141,14 @@ pub fn limits(quantity: Quantity, trial: &Trial, given: &Circumstances<'_>) -> R
                 push(CapCode::Motion, speed, true, "this speed is demanded".into());
             }
         }
-        Quantity::Frames | Quantity::Distance => {}
+        Quantity::Frames => {
+            let bands = given.bands.len();
+            let one_s = Camera { frames: 1, ..camera.clone() }.acquisition_s(bands);
+            let most = (LONGEST_ACQUISITION_S / one_s).floor().max(f64::from(camera.frames));
+            let reason = format!("more take longer than {}", in_unit(LONGEST_ACQUISITION_S, "s"));
+            push(CapCode::Impractical, most, false, reason);
+        }
+        Quantity::Distance => {}
     }
     if let Some(full) = camera.full_well
         && let Some((value, is_least)) = fills(quantity, trial, full, given)?

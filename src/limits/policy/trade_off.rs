@@ -326,6 +326,7 @@ mod tests {
             camera: &camera,
             bands: &bands,
             required: 2.0,
+            farthest_m: None,
             distance_m: Some(30.0),
             size_m: None,
         };

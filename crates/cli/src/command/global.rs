@@ -1,10 +1,12 @@
 //! What every command shares: its options, the library, the study, and how answers leave the process.
 
 use super::progress::Bar;
+use super::terminal::Stream;
 use clap::Args;
 use hadar::demand::{Reason, Skipping, Thing, Work};
 use hadar::error::{Error, Result};
 use hadar::material::Library;
+use hadar::units::decimal_comma;
 use hadar_report::bundle::Bundle;
 use hadar_report::text;
 use hadar_study::scenario::Scenario;
@@ -59,7 +61,7 @@ impl Global {
             return Err(Error::malformed("the library is empty", instead));
         }
         for warning in library.warnings() {
-            self.note(&format!("warning: {warning}"));
+            self.note(&Stream::Err.message("warning:", &warning.to_string()));
         }
         Ok(library)
     }
@@ -117,7 +119,7 @@ impl Global {
             serde_json::to_string_pretty(json)
                 .map_err(|error| Error::malformed(error.to_string(), "report this as a bug"))?
         } else {
-            text.trim_end().to_owned()
+            Stream::Out.answer(text.trim_end())
         };
         match writeln!(std::io::stdout(), "{text}") {
             // A reader that has seen enough (`| head`) is no error.
@@ -153,6 +155,13 @@ impl Global {
 /// Anything as JSON.
 pub(super) fn as_json(value: &impl serde::Serialize) -> Result<serde_json::Value> {
     serde_json::to_value(value).map_err(|error| Error::malformed(error.to_string(), "report this as a bug"))
+}
+
+/// A number given to a flag.
+pub(super) fn plain_number(text: &str) -> std::result::Result<f64, String> {
+    text.parse().map_err(|error: std::num::ParseFloatError| {
+        decimal_comma(text).map_or_else(|| error.to_string(), |comma| comma.to_string())
+    })
 }
 
 /// The distance that decides, as a flag.

@@ -1,6 +1,6 @@
 //! `hadar identify`: distances from the target to every alternative, all against all, bands, simulated decisions.
 
-use super::global::{By, Global};
+use super::global::{By, Global, plain_number};
 use clap::Args;
 use hadar::error::{Error, Place, Result, check};
 use hadar::simulate::sequential::Plan;
@@ -42,10 +42,10 @@ pub(super) struct IdentifyArgs {
     #[arg(long, requires = "exact", help_heading = EXACT)]
     statistics: Option<Statistics>,
     /// Photons of the target in the simulation (default: the camera's; without one those required)
-    #[arg(long, value_name = "N", requires = "exact", allow_negative_numbers = true, help_heading = EXACT)]
+    #[arg(long, value_name = "N", requires = "exact", allow_negative_numbers = true, value_parser = plain_number, help_heading = EXACT)]
     photons: Option<f64>,
     /// Half width of the 95 % interval at which the simulation stops
-    #[arg(long, value_name = "P", default_value_t = 0.01, requires = "exact", allow_negative_numbers = true, help_heading = EXACT)]
+    #[arg(long, value_name = "P", default_value_t = 0.01, requires = "exact", allow_negative_numbers = true, value_parser = plain_number, help_heading = EXACT)]
     half_width: f64,
     /// Most trials of a state in the simulation
     #[arg(long, value_name = "N", default_value_t = 1_000_000, requires = "exact", help_heading = EXACT)]

@@ -136,12 +136,8 @@ fn plot(library: &Library, names: &[String], global: &Global) -> Result<()> {
     let materials = names.iter().map(|name| library.get(name)).collect::<Result<Vec<_>>>()?;
     let nodes: Vec<f64> =
         (0..=(SHOWN_CM1.1 - SHOWN_CM1.0) as u32).map(|i| SHOWN_CM1.0 + f64::from(i)).collect();
-    let surfaces = materials
-        .iter()
-        .map(|material| {
-            Ok(Surface { name: material.name().to_owned(), emissivity: material.emissivity(&nodes)? })
-        })
-        .collect::<Result<Vec<_>>>()?;
+    let surfaces =
+        materials.iter().map(|material| Surface::of(material, &nodes)).collect::<Result<Vec<_>>>()?;
     let drawn: Vec<&Surface> = surfaces.iter().collect();
     let mut bundle = Bundle::default();
     bundle.add_plots(&figures::emissivities("Emissivities", &nodes, &drawn))?;

@@ -151,7 +151,13 @@ fn thermometry(range: &str, args: &SimulateArgs, study: &Study, global: &Global)
             return Err(Error::out_of_range("--temperatures", rows as f64, "", "at least 2 for a range"));
         }
         (Some((low, high)), rows) => {
+            let ends = [low, high].map(str::trim);
             let (low, high) = (temperature(low)?, temperature(high)?);
+            if low > high {
+                let found = format!("the range goes from {} to {}", ends[0], ends[1]);
+                let instead = format!("write the lower end first: \"{}..{}\"", ends[1], ends[0]);
+                return Err(at_flag(Error::malformed(found, instead)));
+            }
             if rows > MOST_TEMPERATURES {
                 let expected = format!("at most {MOST_TEMPERATURES}");
                 return Err(Error::out_of_range("--temperatures", rows as f64, "", expected));

@@ -11,6 +11,7 @@ mod identify_libraries;
 mod identify_mistakes;
 mod identify_sections;
 mod identify_words;
+mod messages;
 mod range;
 mod reproduce;
 mod rule;

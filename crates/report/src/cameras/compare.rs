@@ -67,7 +67,7 @@ fn times(ratio: f64) -> String {
 
 fn incomplete(a: &Sheet, b: &Sheet) -> String {
     let lacks = |sheet: &Sheet| {
-        let keys: Vec<&str> = sheet.missing.iter().map(|missing| missing.key).collect();
+        let keys = &sheet.missing.0;
         (!keys.is_empty()).then(|| format!("the {} of {}", keys.join(", "), sheet.preset.name))
     };
     let mut lacking: Vec<String> = [a, b].into_iter().filter_map(lacks).collect();

@@ -1,7 +1,7 @@
 //! All known cameras, a line each.
 
 use crate::cameras::Sheet;
-use crate::text::numbers::{exponential, quantity};
+use crate::text::numbers::{quantity, significant};
 use hadar::instrument::Readout;
 use hadar::instrument::figures::StatedNoise;
 use hadar::instrument::presets::Preset;
@@ -10,7 +10,7 @@ use std::fmt::Write as _;
 /// All cameras, those of the paper (without a document of their own) first.
 #[must_use]
 pub fn list(sheets: &[Sheet]) -> String {
-    let complete = sheets.iter().filter(|sheet| sheet.missing.is_empty()).count();
+    let complete = sheets.iter().filter(|sheet| sheet.missing.0.is_empty()).count();
     let mut out = format!(
         "{} cameras, {complete} of them complete; the others lack what no document states and a scenario must give.\n",
         sheets.len()
@@ -24,7 +24,7 @@ pub fn list(sheets: &[Sheet]) -> String {
         );
         for sheet in sheets.iter().filter(|sheet| sheet.preset.document.is_none() == of_paper) {
             let preset = &sheet.preset;
-            let give: Vec<&str> = sheet.missing.iter().map(|missing| short(missing.key)).collect();
+            let give: Vec<&str> = sheet.missing.0.iter().map(|key| short(key)).collect();
             let line = format!(
                 "{:<name$} {:>8} {:>6}  {:<18} {:<15} {}",
                 preset.name,
@@ -65,18 +65,21 @@ fn briefly(preset: &Preset) -> String {
             format!("{}{at}", quantity(netd_k, "K"))
         }
         Some(StatedNoise::Detectivity { detectivity_cm_hz05_w, .. }) => {
-            format!("{} Jones", exponential(detectivity_cm_hz05_w, 1))
+            format!("{} Jones", significant(detectivity_cm_hz05_w, 2))
         }
-        Some(StatedNoise::Nep { nep_w_hz05, .. }) => format!("{} W/Hz^0.5", exponential(nep_w_hz05, 1)),
+        Some(StatedNoise::Nep { nep_w_hz05, .. }) => format!("{} W/Hz^0.5", significant(nep_w_hz05, 2)),
         Some(StatedNoise::Nesr { microflick, .. }) => format!("{microflick} uflick"),
-        Some(StatedNoise::Counts { sigma_counts }) => format!("{} counts", exponential(sigma_counts, 1)),
+        Some(StatedNoise::Counts { sigma_counts }) => format!("{} counts", significant(sigma_counts, 2)),
     }
 }
 
 fn bands(preset: &Preset) -> String {
     let how = match preset.figures.readout {
-        _ if preset.figures.filters_needed => return "one".into(),
+        None if preset.figures.spectral_bands == Some(1) => return "one".into(),
         None => return "-".into(),
+        Some(readout) if readout != Readout::Sequential && preset.figures.spectral_bands == Some(1) => {
+            return "one, modelled".into();
+        }
         Some(Readout::FourierTransform) => "interferogram",
         Some(readout) => readout.name(),
     };

@@ -3,7 +3,7 @@
 use super::{Sheet, value};
 use hadar::error::Result;
 use hadar::instrument::comparison::{Comparison, SCENE_K, compare};
-use hadar::instrument::{Camera, Equivalents};
+use hadar::instrument::{Camera, Equivalents, Readout};
 use hadar::words::{quantity, significant};
 use serde_json::{Map, Value};
 
@@ -66,7 +66,7 @@ impl SideBySide {
         let noise = |sheet: &Sheet, of: fn(&Equivalents) -> Option<f64>| {
             sheet.worked.as_ref().and_then(|worked| of(&worked.equivalents))
         };
-        let counts: fn(f64) -> String = |counts| format!("{} counts", exponential(counts));
+        let counts: fn(f64) -> String = |counts| format!("{} counts", significant(counts, 3));
         vec![
             row("exposure_s", "exposure", |s| quantity(s, "s"), &|sheet| {
                 camera(sheet, |camera| camera.exposure_s).or(sheet.preset.figures.exposure_s)
@@ -76,9 +76,12 @@ impl SideBySide {
             row("focal_length_m", "focal length", |m| quantity(m, "m"), &|sheet| {
                 sheet.preset.figures.focal_length_m
             }),
-            row("etendue_m2_sr", "etendue of a pixel", |e| format!("{} m^2 sr", exponential(e)), &|sheet| {
-                camera(sheet, |camera| camera.etendue_m2_sr(None))
-            }),
+            row(
+                "etendue_m2_sr",
+                "etendue of a pixel",
+                |e| format!("{} m^2 sr", significant(e, 3)),
+                &|sheet| camera(sheet, |camera| camera.etendue_m2_sr(None)),
+            ),
             row("efficiency", "efficiency, optics x quantum", |share| significant(share, 3), &|sheet| {
                 camera(sheet, |camera| camera.optics_efficiency * camera.quantum_efficiency)
             }),
@@ -94,7 +97,7 @@ impl SideBySide {
             row("netd_k", "NETD, all of its range", |k| quantity(k, "K"), &|sheet| {
                 noise(sheet, |noise| Some(noise.netd_k))
             }),
-            row("detectivity_cm_hz05_w", "D*", |d| format!("{} cm Hz^0.5/W", exponential(d)), &|sheet| {
+            row("detectivity_cm_hz05_w", "D*", |d| format!("{} cm Hz^0.5/W", significant(d, 3)), &|sheet| {
                 noise(sheet, |noise| noise.detectivity_cm_hz05_w)
             }),
             row(
@@ -103,13 +106,16 @@ impl SideBySide {
                 |l| format!("{} uflick", significant(l, 3)),
                 &|sheet| noise(sheet, |noise| Some(noise.nesr_microflick)),
             ),
-            row("gamma_per_band", "gamma of a band at its reference", exponential, &|sheet| {
-                sheet.worked.as_ref().map(|worked| worked.figures.gamma_per_band)
-            }),
+            row(
+                "gamma_per_band",
+                "gamma of a band at its reference",
+                |gamma| significant(gamma, 3),
+                &|sheet| sheet.worked.as_ref().map(|worked| worked.figures.gamma_per_band),
+            ),
             row(
                 "hardware_m2_s",
                 "t A_p / ((1+gamma) F^2)",
-                |h| format!("{} m^2 s", exponential(h)),
+                |h| format!("{} m^2 s", significant(h, 3)),
                 &|sheet| sheet.worked.as_ref().map(|worked| worked.figures.hardware_m2_s),
             ),
         ]
@@ -131,12 +137,12 @@ impl SideBySide {
             row("acquisition_s", "time for all bands", [a.acquisition_s, b.acquisition_s], |s| {
                 quantity(s, "s")
             }),
-            row("photons", "photons, all bands", [a.photons, b.photons], exponential),
+            row("photons", "photons, all bands", [a.photons, b.photons], |photons| significant(photons, 3)),
             row(
                 "noise_counts",
                 "noise of a band beside its photons",
                 [a.noise_counts, b.noise_counts],
-                |counts| format!("{} counts", exponential(counts)),
+                |counts| format!("{} counts", significant(counts, 3)),
             ),
             row(
                 "noise_over_photons",
@@ -163,13 +169,19 @@ impl SideBySide {
                 all.push(format!("{name}: {assumed}"));
             }
             if sheet.worked.is_none() {
-                let keys: Vec<&str> = sheet.missing.iter().map(|missing| missing.key).collect();
+                let keys = &sheet.missing.0;
                 all.push(format!("{name}: not stated, to be given in a scenario: {}", keys.join(", ")));
             }
-            if sheet.preset.figures.filters_needed {
-                all.push(format!(
-                    "{name} has one band of its own: a spectrum takes filters, here without loss"
-                ));
+            let figures = &sheet.preset.figures;
+            match (figures.spectral_bands, figures.readout) {
+                (Some(1), None | Some(Readout::Sequential)) => all.push(format!(
+                    "{name} has one band of its own: a spectrum takes filters, one after the other, here without loss"
+                )),
+                (Some(1), Some(readout)) => all.push(format!(
+                    "{name} has one band of its own and is modelled as if it read a whole spectrum, {}",
+                    readout.name()
+                )),
+                _ => {}
             }
             if self.b.preset.name == self.a.preset.name {
                 break;
@@ -210,8 +222,4 @@ impl SideBySide {
             "caveats": self.caveats(),
         }))
     }
-}
-
-fn exponential(value: f64) -> String {
-    if value == 0.0 { "0".into() } else { format!("{value:.2e}") }
 }

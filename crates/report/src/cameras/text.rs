@@ -1,11 +1,11 @@
 //! A camera with its figures, what follows from them, and where they are from.
 
 use crate::cameras::Sheet;
-use crate::text::numbers::{celsius, exponential, quantity, significant};
+use crate::text::numbers::{celsius, quantity, significant};
 use hadar::instrument::equivalents::blackbody_microflick;
 use hadar::instrument::figures::{CameraSpec, Kind, Line, Row, StatedNoise, TABLE};
 use hadar::instrument::presets::Preset;
-use hadar::instrument::{Equivalents, Figures, NoiseLine};
+use hadar::instrument::{Equivalents, Figures, NoiseLine, Readout};
 use hadar::units::Dimension;
 use std::fmt::Write as _;
 
@@ -16,12 +16,15 @@ const NOT_STATED: &str = "not stated";
 pub fn text(sheet: &Sheet) -> String {
     let preset = &sheet.preset;
     let mut out = format!("{}: {}\n", preset.name, preset.description);
-    if !sheet.missing.is_empty() {
-        out.push_str(
-            "\nIt cannot be used as it is: no document that was read states all of it. Give in [camera]\n",
+    if !sheet.missing.0.is_empty() {
+        let _ = writeln!(
+            out,
+            "\nIt cannot be used as it is: no document that was read states all of it. Write in a scenario, with what the \
+             camera has in place of the dots:\n\n  [camera]\n  preset = {:?}",
+            preset.name
         );
-        for missing in &sheet.missing {
-            let _ = writeln!(out, "  {} = {}", missing.key, missing.example);
+        for line in sheet.missing.lines() {
+            let _ = writeln!(out, "  {line}");
         }
     }
     out.push_str("\nFigures\n");
@@ -116,7 +119,7 @@ fn in_order() -> Vec<&'static Row> {
 fn shown(row: &Row, value: f64) -> String {
     match (row.key, row.kind) {
         ("f_number", _) => format!("f/{value}"),
-        ("full_well", _) => format!("{} counts", exponential(value, 2)),
+        ("full_well", _) => format!("{} counts", significant(value, 3)),
         ("read_noise", _) => format!("{} counts", significant(value, 3)),
         (_, Kind::Quantity(Dimension::Rate, ..)) => format!("{} per s", significant(value, 3)),
         (_, Kind::Quantity(Dimension::Frequency, ..)) => format!("{} Hz", significant(value, 3)),
@@ -138,11 +141,15 @@ fn array(figures: &CameraSpec) -> String {
 }
 
 fn full_bands(figures: &CameraSpec) -> String {
-    if figures.filters_needed {
-        return "one of its own: a spectrum takes filters".into();
-    }
-    let Some(readout) = figures.readout else { return NOT_STATED.into() };
+    let one = "one of its own: a spectrum takes filters, one after the other";
+    let Some(readout) = figures.readout else {
+        return if figures.spectral_bands == Some(1) { one } else { NOT_STATED }.into();
+    };
     match figures.spectral_bands {
+        Some(1) if readout != Readout::Sequential => {
+            format!("one of its own, modelled as any number, {}", readout.name())
+        }
+        Some(1) => one.into(),
         Some(bands) => format!("{bands}, {}", readout.name()),
         None => readout.name().into(),
     }
@@ -163,10 +170,10 @@ pub(crate) fn noise(preset: &Preset) -> String {
             f_number.map_or_else(|| "an f-number not stated".into(), |f_number| format!("f/{f_number}")),
         ),
         Some(StatedNoise::Detectivity { detectivity_cm_hz05_w, bandwidth_hz }) => {
-            format!("D* {} cm Hz^0.5/W{}", exponential(detectivity_cm_hz05_w, 2), bandwidth(bandwidth_hz))
+            format!("D* {} cm Hz^0.5/W{}", significant(detectivity_cm_hz05_w, 3), bandwidth(bandwidth_hz))
         }
         Some(StatedNoise::Nep { nep_w_hz05, bandwidth_hz }) => {
-            format!("NEP {} W/Hz^0.5{}", exponential(nep_w_hz05, 2), bandwidth(bandwidth_hz))
+            format!("NEP {} W/Hz^0.5{}", significant(nep_w_hz05, 3), bandwidth(bandwidth_hz))
         }
         Some(StatedNoise::Nesr { microflick, wavelength_um }) => {
             let at = wavelength_um.map_or_else(String::new, |um| {
@@ -176,23 +183,23 @@ pub(crate) fn noise(preset: &Preset) -> String {
             });
             format!("NESR {microflick} uflick{at}")
         }
-        Some(StatedNoise::Counts { sigma_counts }) => format!("{} counts", exponential(sigma_counts, 2)),
+        Some(StatedNoise::Counts { sigma_counts }) => format!("{} counts", significant(sigma_counts, 3)),
     }
 }
 
 fn one_exposure(figures: &Figures) -> String {
     let head = format!("\nOne exposure of a blackbody at {}\n", celsius(figures.reference_temperature_k));
     head + &lines(&[
-        ("photons", exponential(figures.photons, 2)),
-        ("noise of a band reading", format!("{} counts", exponential(figures.noise_counts, 2))),
-        (&format!("gamma of a band, {} bands", figures.bands), exponential(figures.gamma_per_band, 1)),
-        ("etendue of a pixel", format!("{} m^2 sr", exponential(figures.etendue_m2_sr, 2))),
-        ("t A_p / ((1+gamma) F^2)", format!("{} m^2 s", exponential(figures.hardware_m2_s, 2))),
+        ("photons", significant(figures.photons, 3)),
+        ("noise of a band reading", format!("{} counts", significant(figures.noise_counts, 3))),
+        (&format!("gamma of a band, {} bands", figures.bands), significant(figures.gamma_per_band, 2)),
+        ("etendue of a pixel", format!("{} m^2 sr", significant(figures.etendue_m2_sr, 3))),
+        ("t A_p / ((1+gamma) F^2)", format!("{} m^2 s", significant(figures.hardware_m2_s, 3))),
     ])
 }
 
 fn equivalents(noise: &Equivalents) -> String {
-    let watt = |value: f64, unit: &str| format!("{} {unit}", exponential(value, 2));
+    let watt = |value: f64, unit: &str| format!("{} {unit}", significant(value, 3));
     let head = format!(
         "\nIts electronic noise, every way of stating it ({}; bands of 1 cm^-1; NEP, D*, NESR at {} cm^-1)\n",
         quantity(noise.exposure_s, "s"),
@@ -211,7 +218,7 @@ fn equivalents(noise: &Equivalents) -> String {
             noise.detectivity_cm_hz05_w.map_or_else(|| "no noise".into(), |d| watt(d, "cm Hz^0.5/W (Jones)")),
         ),
         ("NESR", format!("{} uflick", significant(noise.nesr_microflick, 3))),
-        ("gamma of a band", exponential(noise.gamma_per_band, 2)),
+        ("gamma of a band", significant(noise.gamma_per_band, 3)),
     ])
 }
 
@@ -224,18 +231,22 @@ fn budget(budget: &[NoiseLine]) -> String {
             out,
             "  {:<34} {:>12}  {:>8}  {:<8}  {}",
             line.label,
-            exponential(line.var_counts, 2),
+            significant(line.var_counts, 3),
             part(line.var_counts / total),
             line.scaling,
             line.source
         );
     }
-    let _ = writeln!(out, "  {:<34} {:>12}", "sum", exponential(total, 2));
+    let _ = writeln!(out, "  {:<34} {:>12}", "sum", significant(total, 3));
     out
 }
 
 fn part(share: f64) -> String {
-    if share >= 1e-3 { format!("{:.1} %", 100.0 * share) } else { format!("{:.0e} %", 100.0 * share) }
+    if share >= 1e-3 {
+        format!("{:.1} %", 100.0 * share)
+    } else {
+        format!("{} %", significant(100.0 * share, 1))
+    }
 }
 
 #[cfg(test)]

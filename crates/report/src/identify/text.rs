@@ -10,7 +10,7 @@ use self::exact::exact;
 use self::matrix::{apart, matrix};
 use self::terms::{camera, no_limit};
 use crate::text::footing::footing;
-use crate::text::numbers::{celsius, numbers, photons, significant};
+use crate::text::numbers::{numbers, photons, significant};
 use crate::text::pairs::pair_table;
 use hadar_study::study::{Answers, Check, Identification, Study};
 use hadar_study::words;
@@ -61,7 +61,7 @@ fn verdict(result: &Identification, study: &Study) -> String {
         return out;
     };
     let (target, all) = (&pair.target, result.pairs.len());
-    let reliability = words::reliability(study.required_distance());
+    let reliability = words::demanded(study.required_distance());
     // The average is finite also where the state that stands in the scenario is one of equilibrium.
     if let Some(average) = &result.prior_average {
         let _ = writeln!(
@@ -75,7 +75,7 @@ fn verdict(result: &Identification, study: &Study) -> String {
         let _ = writeln!(
             out,
             "At exactly {}{}:",
-            celsius(state.temperature_k),
+            study.units().temperature(state.temperature_k),
             numbers(" and V ", &state.lighting, 2)
         );
     }
@@ -103,7 +103,7 @@ fn verdict(result: &Identification, study: &Study) -> String {
 }
 
 fn number_of_photons(count: Option<f64>) -> String {
-    count.map_or_else(|| "no number of photons".into(), |count| format!("{count:.2e} photons"))
+    count.map_or_else(|| "no number of photons".into(), |count| format!("{} photons", significant(count, 3)))
 }
 
 /// The largest entries of the prediction vector.
@@ -129,7 +129,7 @@ fn prediction(result: &Identification) -> String {
 pub fn check(result: &Check, study: &Study) -> String {
     let target = &study.target().name;
     let camera = camera(study);
-    let reliability = words::reliability(study.required_distance());
+    let reliability = words::demanded(study.required_distance());
     match &result.not_told_from {
         Some(other) => {
             format!("No: {camera} cannot tell {target} from {other} with {reliability} reliability.\n")

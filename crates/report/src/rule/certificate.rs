@@ -1,15 +1,16 @@
 //! The certificate: one page of Markdown that says what was checked, what came out, and what it rests on.
 
 use super::text;
-use crate::text::footing::{GAUSSIAN, assumptions};
+use crate::text::footing::{GAUSSIAN, of_scene};
 use crate::text::significant;
+use hadar_study::scenario::Units;
 use hadar_study::study::{CameraVerdict, RuleAnswer, RuleStudy};
 use hadar_study::words::reliability;
 use std::fmt::Write as _;
 
 /// The page.
 pub(super) fn markdown(study: &RuleStudy, answer: &RuleAnswer) -> String {
-    let about = &answer.rule.about;
+    let (about, units) = (&answer.rule.about, answer.rule.scenario.units());
     let title = about.name.clone().or(answer.rule.scenario.title.clone());
     let mut out = format!("# {}\n\n", title.unwrap_or_else(|| "Which cameras meet the rule".into()));
     for (label, value) in [("Authority", &about.authority), ("Version", &about.version)] {
@@ -23,16 +24,16 @@ pub(super) fn markdown(study: &RuleStudy, answer: &RuleAnswer) -> String {
     }
     let _ = writeln!(out, "> {}\n", answer.requirement.quotable);
     let _ = writeln!(out, "**{}**\n", answer.sentence);
-    out.push_str("| camera | meets | margin | d at worst | right at most | certificate | limiting scene | would do |\n");
-    out.push_str("|---|---|---|---|---|---|---|---|\n");
-    answer.cameras.iter().for_each(|camera| out.push_str(&row(camera)));
+    out.push_str("| camera | meets | margin | d at worst | right at most | bands | certificate | limiting scene | would do |\n");
+    out.push_str("|---|---|---|---|---|---|---|---|---|\n");
+    answer.cameras.iter().for_each(|camera| out.push_str(&row(camera, units)));
     out.push('\n');
     if let Some(part) = &answer.not_identifiable {
         let _ = writeln!(out, "{}.\n", text::no_camera(part).join("; "));
     }
     out.push_str("## What this rests on\n\n");
     if let Some(study) = study.study() {
-        let footing = assumptions(study, GAUSSIAN);
+        let footing = of_scene(study, GAUSSIAN);
         footing.lines().skip(1).for_each(|line| {
             let _ = writeln!(out, "- {}", line.trim());
         });
@@ -59,19 +60,17 @@ pub(super) fn markdown(study: &RuleStudy, answer: &RuleAnswer) -> String {
     out
 }
 
-fn row(camera: &CameraVerdict) -> String {
-    let fixes = camera.fixes.as_ref().map_or_else(String::new, text::would_do);
+fn row(camera: &CameraVerdict, units: Units) -> String {
+    let fixes = camera.fixes.as_ref().map_or_else(String::new, |fixes| text::would_do(fixes, units));
     let cells = [
         camera.name.clone(),
-        match camera.fails_by.as_slice() {
-            [] => "yes".into(),
-            reasons => format!("no ({})", text::codes(reasons, ", ")),
-        },
+        text::meets(camera),
         significant(camera.margin, 3),
         significant(camera.statistical_distance, 3),
         reliability(camera.statistical_distance),
+        text::reading(camera),
         camera.certificate.to_string(),
-        text::scene(&camera.limiting),
+        text::scene(&camera.limiting, units),
         fixes,
     ];
     format!("| {} |\n", cells.map(|text| cell(&text)).join(" | "))

@@ -1,64 +1,59 @@
 //! Which cameras meet a rule, as text: the sentence, a table, then what limits each camera and what would help it.
 
 use crate::size::text::in_unit;
-use crate::text::footing::{GAUSSIAN, assumptions, warnings};
-use crate::text::numbers::{celsius, numbers, quantity, significant};
-use crate::text::shortfalls::no;
+use crate::text::footing::{GAUSSIAN, of_scene, warnings};
+use crate::text::numbers::{numbers, quantity, significant};
+use hadar::instrument::Readout;
 use hadar::policy::{Quantity, Solution};
 use hadar::words::share;
+use hadar_study::scenario::Units;
 use hadar_study::study::{
     CameraVerdict, Fixes, LimitingScene, NotIdentifiable, RuleAnswer, RuleStudy, Shortfall, Warning,
 };
-use hadar_study::words::reliability;
+use hadar_study::words::{demanded, reliability};
 use std::fmt::Write as _;
 
 /// The answer and everything behind it.
 #[must_use]
 pub fn text(answer: &RuleAnswer, study: &RuleStudy) -> String {
+    let units = answer.rule.scenario.units();
     let mut out = format!("{}\n\n", answer.sentence);
     let width = answer.cameras.iter().map(|camera| camera.name.chars().count()).max().unwrap_or(0).max(6);
-    let head = ["meets", "margin", "d at worst", "right at most", "limited by"];
+    let right: Vec<String> =
+        answer.cameras.iter().map(|camera| reliability(camera.statistical_distance)).collect();
+    let most = "right at most";
+    let wide = right.iter().map(String::len).max().unwrap_or(0).max(most.len());
     let _ = writeln!(
         out,
-        "{:<width$}  {:<5}  {:>8}  {:>10}  {:>13}  {}",
-        "camera", head[0], head[1], head[2], head[3], head[4]
+        "{:<width$}  {:>8}  {:>10}  {most:>wide$}  meets the rule",
+        "camera", "margin", "d at worst"
     );
-    for camera in &answer.cameras {
-        let row = format!(
-            "{:<width$}  {:<5}  {:>8}  {:>10}  {:>13}  {}",
+    for (camera, right) in answer.cameras.iter().zip(right) {
+        let _ = writeln!(
+            out,
+            "{:<width$}  {:>8}  {:>10}  {right:>wide$}  {}",
             camera.name,
-            if camera.passes { "yes" } else { "no" },
             significant(camera.margin, 3),
             significant(camera.statistical_distance, 3),
-            reliability(camera.statistical_distance),
-            limited_by(camera),
+            meets(camera),
         );
-        let _ = writeln!(out, "{row}");
     }
     let _ = writeln!(
         out,
         "  margin: least d over the envelope / {} demanded ({})\n",
         significant(answer.requirement.distance, 4),
-        reliability(answer.requirement.distance)
+        demanded(answer.requirement.distance)
     );
-    answer.cameras.iter().for_each(|camera| out.push_str(&details(camera)));
+    answer.cameras.iter().for_each(|camera| out.push_str(&details(camera, units)));
     if let Some(part) = &answer.not_identifiable {
         let _ = writeln!(out, "{}\n", no_camera(part).join("\n  "));
     }
     let _ = writeln!(out, "The rule in a sentence\n  {}\n", answer.requirement.quotable);
     if let Some(study) = study.study() {
-        out.push_str(&assumptions(study, GAUSSIAN));
+        out.push_str(&of_scene(study, GAUSSIAN));
     }
     out.push_str(&warnings(&together(answer)));
     out
-}
-
-/// The pair that limits a camera, or what spoils its images where it tells that pair.
-fn limited_by(camera: &CameraVerdict) -> String {
-    match camera.passes || camera.fails_by.contains(&Shortfall::Distance) {
-        true => format!("{} against {}", camera.limiting.target, camera.limiting.alternative),
-        false => no(&camera.fails_by),
-    }
 }
 
 /// All warnings; what is said of several cameras is said once, with their names.
@@ -80,24 +75,62 @@ pub(crate) fn together(answer: &RuleAnswer) -> Vec<Warning> {
     answer.warnings.iter().cloned().chain(of_cameras).collect()
 }
 
+/// Yes or no, and why.
+pub(crate) fn meets(camera: &CameraVerdict) -> String {
+    let LimitingScene { target, alternative, .. } = &camera.limiting;
+    let said = match (camera.fails_by.as_slice(), &camera.provided) {
+        ([], None) => "yes".into(),
+        ([], Some(proviso)) => format!("yes, if {proviso}"),
+        (reasons, _) => {
+            let words = reasons.iter().map(|reason| match reason {
+                Shortfall::Distance if camera.bands == 1 => "one band cannot tell materials".into(),
+                Shortfall::Distance => format!("it cannot tell {target} from {alternative}"),
+                other => in_words(&[*other]),
+            });
+            format!("no: {}", words.collect::<Vec<_>>().join("; "))
+        }
+    };
+    match &camera.without_placeholders {
+        None => said,
+        Some(without) => {
+            let margin = significant(without.margin, 3);
+            format!("{said}; without pairs of placeholders the margin is {margin}")
+        }
+    }
+}
+
+/// How many bands a camera reads, and how.
+pub(crate) fn reading(camera: &CameraVerdict) -> String {
+    let how = match camera.readout {
+        _ if camera.bands == 1 => return "one band".into(),
+        Readout::Simultaneous => "at once",
+        Readout::Sequential => "one after the other",
+        Readout::FourierTransform => "through an interferometer",
+        Readout::Dispersive => "side by side, line by line",
+    };
+    format!("{} bands {how}, {} for all of them", camera.bands, quantity(camera.sweep_s, "s"))
+}
+
 /// What limits a camera, how sure that is, and what would help.
-fn details(camera: &CameraVerdict) -> String {
+fn details(camera: &CameraVerdict, units: Units) -> String {
     let mut out = format!("{}\n", camera.name);
     let mut line = |label: &str, text: String| {
         let _ = writeln!(out, "  {label:<12} {text}");
     };
-    line("limited by", scene(&camera.limiting));
+    line("bands", reading(camera));
+    line("limited by", scene(&camera.limiting, units));
     line("certificate", camera.certificate.to_string());
     let spoiled: Vec<Shortfall> =
         camera.fails_by.iter().copied().filter(|reason| *reason != Shortfall::Distance).collect();
     if !spoiled.is_empty() {
-        let longest = camera.longest_exposure_s.map_or_else(String::new, |longest| {
-            format!(": exposures of {} and more are too long", quantity(longest, "s"))
+        let longest = camera.longest_exposure_s.map_or_else(String::new, |longest| match longest {
+            0.0 => ": the frames alone take too long, however short the exposures".into(),
+            longest => format!(": exposures of {} and more are too long", quantity(longest, "s")),
         });
         line("fails by", format!("{}{longest}", in_words(&spoiled)));
     }
     if let Some(fixes) = &camera.fixes {
-        line("would do", would_do(fixes));
+        line("would do", would_do(fixes, units));
     }
     if let Some(blur) = camera.motion_blur_pixels {
         line("motion blur", format!("{} pixels at the least distance", significant(blur, 2)));
@@ -107,10 +140,10 @@ fn details(camera: &CameraVerdict) -> String {
 }
 
 /// A scene in one line.
-pub(crate) fn scene(scene: &LimitingScene) -> String {
-    let kelvin: Vec<String> = scene.surroundings_k.iter().map(|kelvin| celsius(*kelvin)).collect();
+pub(crate) fn scene(scene: &LimitingScene, units: Units) -> String {
+    let kelvin: Vec<String> = scene.surroundings_k.iter().map(|kelvin| units.temperature(*kelvin)).collect();
     let distance = match scene.distance_m {
-        Some(distance) if scene.distance_matters => format!(", {} m away", significant(distance, 3)),
+        Some(distance) if scene.distance_matters => format!(", {} away", units.length(distance)),
         Some(_) => ", at any distance".into(),
         None => String::new(),
     };
@@ -122,19 +155,19 @@ pub(crate) fn scene(scene: &LimitingScene) -> String {
     format!(
         "{} at {} against {}{surroundings}{distance}",
         scene.target,
-        celsius(scene.temperature_k),
+        units.temperature(scene.temperature_k),
         scene.alternative
     )
 }
 
 /// What would help, each alone.
-pub(crate) fn would_do(fixes: &Fixes) -> String {
+pub(crate) fn would_do(fixes: &Fixes, units: Units) -> String {
     let texts: Vec<String> = fixes
         .that_do()
         .map(|(quantity, solution, spoiled)| {
             let spoiled =
                 if spoiled.is_empty() { String::new() } else { format!(", but: {}", in_words(spoiled)) };
-            format!("{}{spoiled}", one(quantity, solution))
+            format!("{}{spoiled}", one(quantity, solution, units))
         })
         .collect();
     if texts.is_empty() {
@@ -156,6 +189,7 @@ fn in_words(spoiled: &[Shortfall]) -> String {
         Shortfall::MotionUnknown => "motion that is not known without a distance",
         Shortfall::FullWell => "the brightest scene fills the well",
         Shortfall::FrameRate => "longer than a frame",
+        Shortfall::Impractical => "not a practical camera",
         Shortfall::Diffraction => "diffraction blurs over more than a pixel",
         Shortfall::LowestNoise => "below what read noise and converter leave",
         other => other.code(),
@@ -163,17 +197,16 @@ fn in_words(spoiled: &[Shortfall]) -> String {
     words.collect::<Vec<_>>().join(", ")
 }
 
-fn one(solved: Quantity, solution: &Solution) -> String {
-    let value = solution.value.map_or_else(|| "-".into(), |value| in_unit(solved, value));
-    format!("{} {value} (now {})", solved.name(), in_unit(solved, solution.camera))
+fn one(solved: Quantity, solution: &Solution, units: Units) -> String {
+    let value = solution.value.map_or_else(|| "-".into(), |value| in_unit(solved, value, units));
+    format!("{} {value} (now {})", solved.name(), in_unit(solved, solution.camera, units))
 }
 
 /// The part of the envelope that no camera does, line by line.
 pub(crate) fn no_camera(part: &NotIdentifiable) -> Vec<String> {
     let found = if part.fraction > 0.0 {
-        let part_of =
-            format!("In {} (+- {}) of the envelope", share(part.fraction), error(part.standard_error));
-        format!("{part_of} no camera could do it")
+        let part_of = share(part.fraction) + &error(part.standard_error);
+        format!("In {part_of} of the envelope no camera could do it")
     } else {
         format!("In all of {} scenes drawn from the envelope some camera could do it", part.scenes)
     };
@@ -185,19 +218,15 @@ pub(crate) fn no_camera(part: &NotIdentifiable) -> Vec<String> {
             significant(near.unlit, 2)
         ));
     }
-    lines.push(format!(
-        "in {} (+- {}) {}",
-        share(part.fraction_within_emissivity_error),
-        error(part.standard_error_within_emissivity_error),
-        part.emissivity_error
-    ));
+    let within = part.fraction_within_emissivity_error;
+    if within > 0.0 {
+        let of = share(within) + &error(part.standard_error_within_emissivity_error);
+        lines.push(format!("in {of} {}", part.emissivity_error));
+    }
     lines
 }
 
-/// The error of a share.
+/// The error of a share, behind it.
 fn error(share: f64) -> String {
-    if share < 1e-6 {
-        return "0 %".into();
-    }
-    format!("{} %", significant(100.0 * share, 2))
+    if share < 1e-6 { String::new() } else { format!(" (+- {} %)", significant(100.0 * share, 2)) }
 }

@@ -2,7 +2,8 @@
 
 use crate::text::footing::{assumptions, warnings};
 use crate::text::numbers::shortened;
-use crate::text::numbers::{celsius, significant};
+use crate::text::numbers::significant;
+use hadar_study::scenario::Units;
 use hadar_study::study::{PhotonLaw, SimulatedPerformance, SimulatedPoint, Simulation, Standing, Study};
 use hadar_study::words::percent;
 use std::fmt::Write as _;
@@ -31,7 +32,7 @@ pub fn text(result: &Simulation, study: &Study) -> String {
         let _ = writeln!(out, "{} of {} experiments; --out DIR has them all\n", shown.len(), points.len());
     }
     for i in shown {
-        out.push_str(&experiment(&points[i], result));
+        out.push_str(&experiment(&points[i], result, study.units()));
         out.push('\n');
     }
     if let [point] = points.as_slice() {
@@ -53,7 +54,7 @@ pub fn text(result: &Simulation, study: &Study) -> String {
     };
     let error = result.points.iter().filter_map(|point| point.normal_error).fold(0.0, f64::max);
     let judged = if result.points.iter().any(|point| point.normal_error.is_some()) {
-        format!("normal (distribution function off by at most {error:.0e})")
+        format!("normal (distribution function off by at most {})", significant(error, 1))
     } else {
         result.judged_as.to_owned()
     };
@@ -115,7 +116,7 @@ fn of_standing(result: &Simulation, standing: Standing) -> usize {
 }
 
 /// One experiment as a table.
-fn experiment(point: &SimulatedPoint, result: &Simulation) -> String {
+fn experiment(point: &SimulatedPoint, result: &Simulation, units: Units) -> String {
     let mut out = format!(
         "{} photons of the target{}: N d0^2 = {}, statistical distance {}\n",
         significant(point.photons, 3),
@@ -129,7 +130,7 @@ fn experiment(point: &SimulatedPoint, result: &Simulation) -> String {
             out,
             "  {:<16} {}, lighting {}, {} photons",
             class.material,
-            celsius(class.temperature_k),
+            units.temperature(class.temperature_k),
             lighting.join(", "),
             significant(class.photons, 4)
         );

@@ -1,13 +1,19 @@
 //! The main job as text: the verdict first, then the numbers, what would do, and what it hangs on.
 
 use crate::text::footing::{GAUSSIAN, assumptions, warnings};
-use crate::text::numbers::{celsius, exponential, numbers, photons, quantity, significant};
+use crate::text::numbers::{numbers, photons, quantity, significant};
 use crate::text::pairs::pair_table;
-use hadar::policy::Quantity;
+use hadar::policy::{Quantity, Solution};
 use hadar::words::share;
+use hadar_study::scenario::Units;
 use hadar_study::study::{PairResult, Sizing, Study};
-use hadar_study::words::probability;
+use hadar_study::words::{demanded_probability, probability};
 use std::fmt::Write as _;
+
+/// Share of the draws that settles a question, and how many times the distance of the entries half of them must exceed to say
+/// that errors outweigh it.
+const SETTLED: f64 = 0.95;
+const DROWNED: f64 = 2.0;
 
 /// The verdict and everything behind it.
 #[must_use]
@@ -16,7 +22,7 @@ pub fn text(result: &Sizing, study: &Study) -> String {
     let _ = writeln!(out, "{}\n", result.verdict.sentence);
     let limiting = result.pairs.iter().find(|pair| pair.alternative == result.limiting);
     if let Some(pair) = limiting {
-        out.push_str(&readings(pair, result));
+        out.push_str(&readings(pair, result, study));
     }
     if let (Some(camera), Some(pair)) = (&result.camera, limiting) {
         let name = if study.scenario().camera.as_ref().is_some_and(|spec| spec.preset.is_some()) {
@@ -28,14 +34,14 @@ pub fn text(result: &Sizing, study: &Study) -> String {
         let mut line = |label: &str, text: String| {
             let _ = writeln!(out, "  {label:<34} {text}");
         };
-        line("photons at the detector, all bands", exponential(camera.photons, 3));
+        line("photons at the detector, all bands", significant(camera.photons, 4));
         let of_band = match camera.camera.frames {
             1 => "electronic noise of a band reading",
             _ => "electronic noise of a band",
         };
-        line(of_band, format!("{} counts", exponential(camera.noise_counts, 3)));
-        line("gamma, noise / photons of a band", exponential(camera.gamma_per_band, 2));
-        line("t A_p / ((1+gamma) F^2)", format!("{:.3e} m^2 s", camera.hardware_m2_s));
+        line(of_band, format!("{} counts", significant(camera.noise_counts, 4)));
+        line("gamma, noise / photons of a band", significant(camera.gamma_per_band, 3));
+        line("t A_p / ((1+gamma) F^2)", format!("{} m^2 s", significant(camera.hardware_m2_s, 4)));
         if let Some(d) = pair.statistical_distance {
             line(
                 "statistical distance reached",
@@ -55,9 +61,12 @@ pub fn text(result: &Sizing, study: &Study) -> String {
             );
             line("information log2 2P", format!("{} bit", significant(bits, 3)));
         }
-        line("least distance it resolves", format!("{:.2e} per sqrt(photon)", camera.least_distance));
+        line(
+            "least distance it resolves",
+            format!("{} per sqrt(photon)", significant(camera.least_distance, 3)),
+        );
         if let Some(footprint) = camera.footprint_m {
-            line("pixel footprint at the target", quantity(footprint, "m"));
+            line("pixel footprint at the target", study.units().length(footprint));
         }
         if let Some(blur) = camera.motion_blur_pixels {
             let of_bands = camera.camera.readout.exposures(study.bands().len()) > 1;
@@ -66,7 +75,7 @@ pub fn text(result: &Sizing, study: &Study) -> String {
         }
         out.push('\n');
     }
-    out.push_str(&solutions(result));
+    out.push_str(&solutions(result, study.units()));
     out.push_str(&sensitivity(result));
     if result.pairs.len() > 1 {
         out.push_str("All alternatives, hardest first\n");
@@ -79,7 +88,7 @@ pub fn text(result: &Sizing, study: &Study) -> String {
 }
 
 /// The three readings of the distance, side by side.
-fn readings(pair: &PairResult, result: &Sizing) -> String {
+fn readings(pair: &PairResult, result: &Sizing, study: &Study) -> String {
     let mut out = String::new();
     let requirement = &result.requirement;
     let _ = writeln!(
@@ -88,7 +97,7 @@ fn readings(pair: &PairResult, result: &Sizing) -> String {
         pair.target,
         pair.alternative,
         significant(requirement.distance, 4),
-        probability(requirement.distance, 4)
+        demanded_probability(requirement.distance, 4)
     );
     let _ =
         writeln!(out, "  {:<34} {:>10}  {:>18}  {:>14}", "reading", "distance", "photons", "H_req [m^2 s]");
@@ -106,28 +115,37 @@ fn readings(pair: &PairResult, result: &Sizing) -> String {
     ];
     for (key, label, distance, count, hardware) in rows {
         let mark = if key == requirement.by { "* " } else { "  " };
-        let hardware = hardware.map_or_else(|| "-".into(), |h| format!("{h:.1e}"));
-        let _ = writeln!(out, "{mark}{label:<34} {distance:>10.2e}  {:>18}  {hardware:>14}", photons(count));
+        let hardware = hardware.map_or_else(|| "-".into(), |h| significant(h, 2));
+        let distance = significant(distance, 3);
+        let _ = writeln!(out, "{mark}{label:<34} {distance:>10}  {:>18}  {hardware:>14}", photons(count));
     }
     let state = &pair.nearest_state;
     let _ = writeln!(
         out,
         "  * decides. Nearest state of {} by shot noise: {}{}.\n",
         pair.alternative,
-        celsius(state.temperature_k),
+        study.units().temperature(state.temperature_k),
         numbers(", lighting ", &state.lighting, 3)
     );
     out
 }
 
 /// What would do, quantity by quantity, and what stands against it.
-fn solutions(result: &Sizing) -> String {
+fn solutions(result: &Sizing, units: Units) -> String {
     let Some(solutions) = &result.solve_for else { return String::new() };
     let head = match result.verdict.met {
         Some(true) => "How far each figure may go, with the rest of the camera as it is",
         _ => "What would meet the requirement, each with the rest of the camera as it is",
     };
     let mut out = format!("{head}\n");
+    // Where nothing helps for one and the same reason, that is all there is to say.
+    let hopeless = |solution: &Solution| solution.value.is_none() && solution.statistical_distance == 0.0;
+    if solutions.0.iter().all(|(_, solution)| hopeless(solution))
+        && let Some(reason) = solutions.0.iter().find_map(|(_, solution)| solution.reason.as_ref())
+    {
+        let _ = writeln!(out, "  nothing: {reason}\n");
+        return out;
+    }
     for (solved, solution) in &solutions.0 {
         // A speed that was not asked for and cannot be worked out is of no interest.
         if *solved == Quantity::Speed && solution.camera.is_nan() {
@@ -141,13 +159,13 @@ fn solutions(result: &Sizing) -> String {
                 }
                 _ => String::new(),
             };
-            format!("(now {}{factor})", in_unit(*solved, solution.camera))
+            format!("(now {}{factor})", in_unit(*solved, solution.camera, units))
         } else {
             String::new()
         };
         let answer = match (solution.value, &solution.reason) {
-            (Some(value), None) => format!("{:<18} {now}", in_unit(*solved, value)),
-            (Some(value), Some(reason)) => format!("{:<18} {now}; {reason}", in_unit(*solved, value)),
+            (Some(value), None) => format!("{:<18} {now}", in_unit(*solved, value, units)),
+            (Some(value), Some(reason)) => format!("{:<18} {now}; {reason}", in_unit(*solved, value, units)),
             (None, Some(reason)) if solution.statistical_distance >= result.requirement.distance => {
                 format!("any: {reason}")
             }
@@ -168,7 +186,7 @@ fn solutions(result: &Sizing) -> String {
                 (true, true) | (false, false) => "at most",
                 (true, false) | (false, true) => "at least",
             };
-            let limit = in_unit(*solved, cap.limit);
+            let limit = in_unit(*solved, cap.limit, units);
             let _ =
                 writeln!(out, "  {:<34} [{}] {side} {bound} {limit}: {}", "", cap.code.name(), cap.reason);
         }
@@ -177,21 +195,25 @@ fn solutions(result: &Sizing) -> String {
     out
 }
 
-pub(crate) fn in_unit(solved: Quantity, value: f64) -> String {
+pub(crate) fn in_unit(solved: Quantity, value: f64, units: Units) -> String {
     match solved {
         Quantity::Exposure => quantity(value, "s"),
         Quantity::Pixel => quantity(value, "m"),
         Quantity::FNumber => format!("f/{}", significant(value, 3)),
-        Quantity::Noise => format!("{} counts", exponential(value, 2)),
+        Quantity::Noise => format!("{} counts", significant(value, 3)),
         Quantity::Frames => format!("{value:.0}"),
-        Quantity::Distance => quantity(value, "m"),
-        Quantity::Speed => format!("{} m/s", significant(value, 3)),
+        Quantity::Distance => units.length(value),
+        Quantity::Speed => units.speed(value),
     }
 }
 
 /// What the verdict hangs on, in a few lines.
 fn sensitivity(result: &Sizing) -> String {
     let Some(found) = &result.sensitivity else { return String::new() };
+    // A distance of 0 hangs on nothing.
+    if found.emissivity.distance == 0.0 {
+        return String::new();
+    }
     let mut out = String::from("What the verdict hangs on\n");
     let levers = found.elasticities.0.iter().filter_map(|(lever, elasticity)| {
         let value = elasticity.as_ref()?.value;
@@ -215,9 +237,28 @@ fn sensitivity(result: &Sizing) -> String {
         line(&format!("emissivities wrong by {} rms", of.error), spread);
         line(
             &format!("  correlated over {} cm^-1", of.correlation_cm1),
-            format!("{} of the draws meet the requirement", share(of.share_met)),
+            format!("{} of the draws meet the requirement: {}", share(of.share_met), conclusion(result)),
         );
     }
     out.push('\n');
     out
+}
+
+/// What errors of the emissivities mean for the distance.
+fn conclusion(result: &Sizing) -> String {
+    let Some(found) = &result.sensitivity else { return String::new() };
+    let of = &found.emissivity;
+    let drowned = of.distance_50 > DROWNED * of.distance;
+    let what = match (of.distance >= result.requirement.distance, of.share_met) {
+        (true, met) if met >= SETTLED => "such errors leave it met",
+        (true, _) => "such errors can undo it; measure these emissivities before relying on it",
+        (false, met) if met <= 1.0 - SETTLED => "such errors do not make it met",
+        (false, _) => "within such errors it may be met or not; measure these emissivities first",
+    };
+    let more = if drowned {
+        ", but look more different than the materials do: d is that of the entries, to be measured"
+    } else {
+        ""
+    };
+    format!("{what}{more}")
 }

@@ -248,6 +248,7 @@ const fn words(code: CapCode, limited: Quantity) -> &'static str {
         CapCode::Motion => "motion of one pixel",
         CapCode::FrameRate => "a whole frame",
         CapCode::FullWell => "full well",
+        CapCode::Impractical => "practice",
         CapCode::LowestNoise => "read noise and converter",
     }
 }

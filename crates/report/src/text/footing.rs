@@ -1,8 +1,8 @@
 //! What results rest on, and what their reader must know.
 
-use super::numbers::{celsius, listed, quantity};
+use super::numbers::listed;
 use hadar::instrument::Readout;
-use hadar_study::scenario::{AtmosphereSource, Nuisance, Unknown};
+use hadar_study::scenario::{AtmosphereSource, Nuisance, Scenario};
 use hadar_study::study::{Identification, Study, Warning};
 use std::fmt::Write as _;
 
@@ -12,13 +12,23 @@ pub(crate) fn footing(result: &Identification, study: &Study) -> String {
 }
 
 /// What is unknown, and what is known of it beforehand.
-fn unknown(unknown: &Unknown) -> String {
-    let named = unknown.nuisances.iter().map(|nuisance| {
+fn unknown(scenario: &Scenario) -> String {
+    let unknown = &scenario.unknown;
+    // What there is none of is neither known nor unknown.
+    let there = |nuisance: &&Nuisance| {
+        !scenario.environment.is_empty()
+            || !matches!(nuisance, Nuisance::Lighting | Nuisance::EnvironmentTemperature)
+    };
+    let named = unknown.nuisances.iter().filter(there).map(|nuisance| {
         let unit = match nuisance {
             Nuisance::Temperature | Nuisance::EnvironmentTemperature => " K",
             Nuisance::Lighting | Nuisance::Gain => "",
         };
-        let prior = unknown.priors.get(nuisance).map(|sigma| format!("known to +- {sigma}{unit}"));
+        let prior = unknown.priors.get(nuisance).map(|sigma| {
+            let written = scenario.source.written(&format!("unknown.priors.{}", nuisance.name()));
+            let sigma = written.map_or_else(|| format!("{sigma}{unit}"), str::to_owned);
+            format!("known to +- {sigma}")
+        });
         let total = unknown.lighting_total.filter(|_| *nuisance == Nuisance::Lighting);
         let total = total.map(|total| format!("total known to be {total}"));
         let known: Vec<String> = [prior, total].into_iter().flatten().collect();
@@ -35,46 +45,9 @@ fn unknown(unknown: &Unknown) -> String {
 pub(crate) const GAUSSIAN: &str =
     "counts large enough to be Gaussian; two equally likely materials; d is a limit, not a promise";
 
-/// What a result rests on; `counts` says what is assumed of them.
+/// What a result rests on, its camera included; `counts` says what is assumed of them.
 pub(crate) fn assumptions(study: &Study, counts: &str) -> String {
-    let scenario = study.scenario();
-    let unknown = unknown(&scenario.unknown);
-    let bands = study.bands().bands();
-    let (low, high) =
-        (bands.first().map_or(0.0, |b| b.center_cm1), bands.last().map_or(0.0, |b| b.center_cm1));
-    // As short as they were written, without the digits of a converted wavelength.
-    let (low, high) = ((low * 100.0).round() / 100.0, (high * 100.0).round() / 100.0);
-    let mut out = String::from("Assumptions\n");
-    let _ = writeln!(out, "  unknown besides the material: {unknown}");
-    let count = study.bands().len();
-    let _ = writeln!(
-        out,
-        "  {count} band{} centred from {low} to {high} cm^-1",
-        if count == 1 { "" } else { "s" }
-    );
-    let fills = match (scenario.target.size_m, &scenario.background) {
-        (Some(size), Some(behind)) => {
-            format!("of {} in front of {}", quantity(size, "m"), celsius(behind.temperature_k))
-        }
-        _ => "that fills the pixel".to_owned(),
-    };
-    let air = match &scenario.atmosphere {
-        None => "no atmosphere on the path".to_owned(),
-        Some(spec) => match &spec.source {
-            AtmosphereSource::Model(name) => format!("air `{name}` on the path, without aerosol"),
-            AtmosphereSource::Table(_) => "air of a table on the path".to_owned(),
-        },
-    };
-    let _ = writeln!(out, "  opaque Lambertian target {fills}, one scattering, {air}");
-    let _ = writeln!(out, "  {counts}");
-    let skies = study.skies_left_out();
-    if !skies.is_empty() {
-        let _ = writeln!(
-            out,
-            "  skies of the library are surroundings, no alternatives: left out {}",
-            listed(skies)
-        );
-    }
+    let mut out = of_scene(study, counts);
     if let Some(camera) = study.camera() {
         let read = match camera.readout {
             Readout::Simultaneous => "every band is read by every pixel with the whole exposure",
@@ -91,6 +64,49 @@ pub(crate) fn assumptions(study: &Study, counts: &str) -> String {
             eta => format!("quantum efficiency {eta}"),
         };
         let _ = writeln!(out, "  {read}; {counted}");
+    }
+    out
+}
+
+/// What a result rests on whatever the camera.
+pub(crate) fn of_scene(study: &Study, counts: &str) -> String {
+    let scenario = study.scenario();
+    let unknown = unknown(scenario);
+    let bands = study.bands().bands();
+    let (low, high) =
+        (bands.first().map_or(0.0, |b| b.center_cm1), bands.last().map_or(0.0, |b| b.center_cm1));
+    // As short as they were written, without the digits of a converted wavelength.
+    let (low, high) = ((low * 100.0).round() / 100.0, (high * 100.0).round() / 100.0);
+    let mut out = String::from("Assumptions\n");
+    let _ = writeln!(out, "  unknown besides the material: {unknown}");
+    let _ = match study.bands().len() {
+        1 => writeln!(out, "  1 band centred at {low} cm^-1"),
+        count => writeln!(out, "  {count} bands centred from {low} to {high} cm^-1"),
+    };
+    let units = study.units();
+    let fills = match (scenario.target.size_m, &scenario.background) {
+        (Some(size), Some(behind)) => {
+            format!("of {} in front of {}", units.length(size), units.temperature(behind.temperature_k))
+        }
+        _ => "that fills the pixel".to_owned(),
+    };
+    let air = match &scenario.atmosphere {
+        None => "no atmosphere on the path".to_owned(),
+        Some(spec) => match &spec.source {
+            AtmosphereSource::Model(name) => format!("air `{name}` on the path, without aerosol"),
+            AtmosphereSource::Table(_) => "air of a table on the path".to_owned(),
+        },
+    };
+    let around = if scenario.environment.is_empty() { ", in empty space" } else { "" };
+    let _ = writeln!(out, "  opaque Lambertian target {fills}{around}, one scattering, {air}");
+    let _ = writeln!(out, "  {counts}");
+    let skies = study.skies_left_out();
+    if !skies.is_empty() {
+        let _ = writeln!(
+            out,
+            "  skies of the library are surroundings, no alternatives: left out {}",
+            listed(skies)
+        );
     }
     out
 }

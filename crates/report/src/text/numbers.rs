@@ -3,13 +3,8 @@
 pub use hadar::words::{quantity, significant};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A number in powers of ten with `decimals` decimals; a plain 0.
-pub(crate) fn exponential(value: f64, decimals: usize) -> String {
-    if value == 0.0 { "0".into() } else { format!("{value:.decimals$e}") }
-}
-
 pub(crate) fn photons(count: Option<f64>) -> String {
-    count.map_or_else(|| "no number suffices".into(), |count| format!("{count:.2e}"))
+    count.map_or_else(|| "no number suffices".into(), |count| significant(count, 3))
 }
 
 pub(crate) fn celsius(kelvin: f64) -> String {

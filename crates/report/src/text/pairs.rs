@@ -1,6 +1,6 @@
 //! The target against its alternatives, one line each.
 
-use super::numbers::{celsius, exponential, numbers, photons, shortened, significant};
+use super::numbers::{numbers, photons, shortened, significant};
 use hadar_study::study::{PairResult, Study};
 use std::fmt::Write as _;
 
@@ -27,18 +27,18 @@ pub(crate) fn pair_table(pairs: &[PairResult], study: &Study) -> String {
     sorted.sort_by(|a, b| decisive(a).total_cmp(&decisive(b)));
     for pair in sorted {
         let nearest = &pair.nearest_state;
-        let state = celsius(nearest.temperature_k) + &numbers(", V ", &nearest.lighting, 2);
+        let state = study.units().temperature(nearest.temperature_k) + &numbers(", V ", &nearest.lighting, 2);
         let _ = write!(
             out,
             "  {:<width$}  {:>9}  {:>9}  {:>9}  {:>18}  {state:>24}",
             short.of(&pair.alternative),
-            exponential(pair.distance_nearest, 2),
-            exponential(pair.distance_local, 2),
-            exponential(pair.distance_local_unknown_gain, 2),
+            significant(pair.distance_nearest, 3),
+            significant(pair.distance_local, 3),
+            significant(pair.distance_local_unknown_gain, 3),
             photons(pair.photons_required)
         );
         let reached =
-            pair.statistical_distance.map_or_else(String::new, |d| format!("  {:>10}", exponential(d, 2)));
+            pair.statistical_distance.map_or_else(String::new, |d| format!("  {:>10}", significant(d, 3)));
         let told = pair.told_apart.map_or("", |told| if told { "         yes" } else { "          no" });
         let _ = writeln!(out, "{reached}{told}");
     }

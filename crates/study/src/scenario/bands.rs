@@ -7,8 +7,10 @@ use super::paths::{Paths, file};
 use super::section::{Entry, Section};
 use hadar::allowed::Allowed;
 use hadar::error::{Error, Result};
-use hadar::units::Spectral;
+use hadar::units::{Dimension, Spectral};
 
+/// Start, stop and step of the paper's bands, cm⁻¹.
+const PAPERS_GRID: [f64; 3] = [715.0, 1250.0, 1.0];
 /// The most bands a grid may have.
 const MOST_BANDS: f64 = 1e6;
 
@@ -29,6 +31,8 @@ pub struct BandsSpec {
 /// Where the bands come from. File paths are absolute.
 #[derive(Debug, Clone, PartialEq)]
 pub enum BandSource {
+    /// Nothing is said: the one band of a camera that has one, else 715 to 1250 cm⁻¹ in steps of 1 cm⁻¹.
+    Unsaid,
     /// Band centres `start`, `start + step`, … up to and including `stop`; a band is one `step` wide.
     /// All three in wavenumber or all three in wavelength; `0 < start < stop`, `0 < step ≤ stop − start`.
     Grid {
@@ -49,15 +53,15 @@ pub enum BandSource {
 
 impl Default for BandsSpec {
     fn default() -> Self {
-        Self {
-            source: BandSource::Grid {
-                start: Spectral::Wavenumber(715.0),
-                stop: Spectral::Wavenumber(1250.0),
-                step: Spectral::Wavenumber(1.0),
-            },
-            integrate: false,
-            tolerance: 1e-9,
-        }
+        Self { source: BandSource::Unsaid, integrate: false, tolerance: 1e-9 }
+    }
+}
+
+impl BandSource {
+    /// The grid of the paper: 715 to 1250 cm⁻¹ in steps of 1 cm⁻¹.
+    pub(crate) fn papers_grid() -> Self {
+        let [start, stop, step] = PAPERS_GRID.map(Spectral::Wavenumber);
+        Self::Grid { start, stop, step }
     }
 }
 
@@ -93,28 +97,37 @@ impl BandsSpec {
     pub(super) fn written(&self, paths: Paths<'_>) -> Entries {
         let entries = Entries::default();
         let entries = match &self.source {
+            BandSource::Unsaid => entries,
             BandSource::Grid { start, stop, step } => {
-                entries.put("start", start.format()).put("stop", stop.format()).put("step", step.format())
+                let put = |entries: Entries, key, end: &Spectral| {
+                    entries.put_written(key, end.dimension(), end.format())
+                };
+                put(put(put(entries, "start", start), "stop", stop), "step", step)
             }
             BandSource::Filters(path) => entries.put("filters", paths.file(path)),
             BandSource::Rows(path) => entries.put("rows", paths.file(path)),
             BandSource::Ranges(ranges) => {
                 let pairs: Vec<Vec<String>> =
                     ranges.iter().map(|range| range.map(|end| end.format()).to_vec()).collect();
-                entries.put("ranges", pairs)
+                let dimension = ranges.first().map_or(Dimension::Wavenumber, |[low, _]| low.dimension());
+                entries.put_written("ranges", dimension, pairs)
             }
         };
         entries.put("integrate", self.integrate).put("tolerance", self.tolerance)
     }
 }
 
-/// An even grid, what is silent taken from 715–1250 cm⁻¹ in steps of 1 cm⁻¹.
+/// An even grid, what is silent of it taken from the paper's.
 fn grid(section: &Section<'_>) -> Result<BandSource> {
+    if ["start", "stop", "step"].iter().all(|key| section.get(key).is_none()) {
+        return Ok(BandSource::Unsaid);
+    }
     let read = |key: &'static str, silent: f64| {
         let written = section.read(key, spectral)?;
         Ok((key, written.is_some(), written.unwrap_or(Spectral::Wavenumber(silent))))
     };
-    let keys = [read("start", 715.0)?, read("stop", 1250.0)?, read("step", 1.0)?];
+    let [start, stop, step] = PAPERS_GRID;
+    let keys = [read("start", start)?, read("stop", stop)?, read("step", step)?];
     let is_wavenumber = |value: Spectral| matches!(value, Spectral::Wavenumber(_));
     if keys.iter().any(|(_, _, value)| !is_wavenumber(*value))
         && let Some((key, written, value)) = keys.iter().find(|(_, _, value)| is_wavenumber(*value))
@@ -153,18 +166,15 @@ fn ranges(entry: &Entry<'_>) -> Result<Vec<[Spectral; 2]>> {
 }
 
 fn range(entry: &Entry<'_>) -> Result<[Spectral; 2]> {
-    let refuse = |found: String, instead: &str| Err(entry.fail(Error::malformed(found, instead)));
-    let [low, high] = entry.pair("[\"715 cm^-1\", \"800 cm^-1\"]")?;
+    let example = "[\"715 cm^-1\", \"800 cm^-1\"]";
+    let [low, high] = entry.pair(example)?;
     let (low, high) = (spectral(&low)?, spectral(&high)?);
     if !same_axis(low, high) {
         let found = format!("the range goes from {} to {}", low.format(), high.format());
-        return refuse(found, "write both ends in cm^-1, or both in um or nm");
+        let instead = "write both ends in cm^-1, or both in um or nm";
+        return Err(entry.fail(Error::malformed(found, instead)));
     }
-    if high.number() <= low.number() {
-        let found = format!("the range goes from {} to {}", low.format(), high.format());
-        return refuse(found, "write the lower end first");
-    }
-    Ok([low, high])
+    entry.wide_range(example, spectral, Spectral::number)
 }
 
 /// A position or step above 0.

@@ -51,7 +51,7 @@ pub(super) fn written(spec: &CameraSpec, paths: Paths<'_>) -> Entries {
     TABLE.iter().fold(Entries::default(), |entries, row| {
         let value = match row.kind {
             Kind::Quantity(dimension, _, slot) => {
-                (slot.of)(spec).map(|value| Value::from(dimension.format(value)))
+                return entries.put_quantity(row.key, dimension, *(slot.of)(spec));
             }
             Kind::Number(_, slot) => (slot.of)(spec).map(Value::from),
             Kind::Efficiency(_, slot) => (slot.of)(spec).as_ref().map(|efficiency| match efficiency {

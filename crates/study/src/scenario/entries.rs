@@ -4,6 +4,7 @@ use serde::Serialize;
 use serde::ser::{SerializeMap, Serializer};
 use toml::Value;
 
+use super::source::{Source, dotted};
 use hadar::units::Dimension;
 
 /// One entry of the document.
@@ -15,24 +16,65 @@ pub(super) enum Part {
 
 /// Keys in the order in which they are written; a silent one is not there.
 #[derive(Default)]
-pub(super) struct Entries(Vec<(&'static str, Value)>);
+pub(super) struct Entries {
+    entries: Vec<Entry>,
+    /// Where the table was read from, if that is not where it is written.
+    read_from: Option<String>,
+}
+
+struct Entry {
+    key: &'static str,
+    value: Value,
+    /// What its texts measure, where they are quantities.
+    dimension: Option<Dimension>,
+}
 
 /// The parts of a scenario in the order in which they are written.
 pub(super) type Document = Vec<(&'static str, Part)>;
 
-/// A document as TOML.
-pub(super) fn text(document: Document) -> String {
+/// A document as TOML, quantities as their author wrote them in `source`.
+pub(super) fn text(document: Document, source: &Source) -> String {
     let mut text = String::new();
     for (name, part) in document {
         match part {
             Part::Value(value) => text.push_str(&format!("{name} = {value}\n")),
-            Part::Table(entries) => entries.write(&mut text, &format!("[{name}]")),
+            Part::Table(entries) => entries.write(&mut text, &format!("[{name}]"), name, source),
             Part::Tables(tables) => {
-                tables.iter().for_each(|entries| entries.write(&mut text, &format!("[[{name}]]")));
+                for (index, entries) in tables.iter().enumerate() {
+                    entries.write(&mut text, &format!("[[{name}]]"), &format!("{name}[{index}]"), source);
+                }
             }
         }
     }
     text
+}
+
+/// A value in the unit in which it was written under that key, if it is still the same to the last bit.
+fn as_written(value: &Value, key: &str, dimension: Dimension, source: &Source) -> Value {
+    let written = |inside: &str| {
+        let same =
+            |text: &&str| dimension.parse(text).is_ok_and(|value| dimension.parse(inside) == Ok(value));
+        // One range may stand for the ranges of all objects.
+        let of_all = || key.rsplit_once('[').and_then(|(list, end)| Some((list.rsplit_once('[')?.0, end)));
+        let found = source.written(key).filter(same);
+        found.or_else(|| {
+            of_all().and_then(|(list, end)| source.written(&format!("{list}[{end}"))).filter(same)
+        })
+    };
+    match value {
+        Value::String(inside) => written(inside).map_or_else(|| value.clone(), Value::from),
+        Value::Array(items) => {
+            let item = |(index, item)| as_written(item, &format!("{key}[{index}]"), dimension, source);
+            Value::Array(items.iter().enumerate().map(item).collect())
+        }
+        Value::Table(table) => {
+            let inner = |(name, item): (&String, &Value)| {
+                (name.clone(), as_written(item, &dotted(key, name), dimension, source))
+            };
+            Value::Table(table.iter().map(inner).collect())
+        }
+        other => other.clone(),
+    }
 }
 
 /// A document as a map.
@@ -50,13 +92,24 @@ pub(super) fn entries<S: Serializer>(document: Document, serializer: S) -> Resul
 
 impl Serialize for Entries {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_map(self.0.iter().map(|(key, value)| (key, value)))
+        serializer.collect_map(self.entries.iter().map(|entry| (entry.key, &entry.value)))
     }
 }
 
 impl Entries {
     pub(super) fn put(mut self, key: &'static str, value: impl Into<Value>) -> Self {
-        self.0.push((key, value.into()));
+        self.entries.push(Entry { key, value: value.into(), dimension: None });
+        self
+    }
+
+    /// Quantities: one, a range, a list of ranges, a table of some.
+    pub(super) fn put_written(
+        mut self,
+        key: &'static str,
+        dimension: Dimension,
+        value: impl Into<Value>,
+    ) -> Self {
+        self.entries.push(Entry { key, value: value.into(), dimension: Some(dimension) });
         self
     }
 
@@ -68,21 +121,42 @@ impl Entries {
     }
 
     pub(super) fn put_quantity(self, key: &'static str, dimension: Dimension, value: Option<f64>) -> Self {
-        self.put_if(key, value.map(|value| dimension.format(value)))
+        match value {
+            Some(value) => self.put_written(key, dimension, dimension.format(value)),
+            None => self,
+        }
+    }
+
+    /// A range of quantities.
+    pub(super) fn put_range(self, key: &'static str, dimension: Dimension, range: Option<[f64; 2]>) -> Self {
+        match range {
+            Some(range) => self.put_written(key, dimension, range.map(|end| dimension.format(end)).to_vec()),
+            None => self,
+        }
+    }
+
+    /// The same, read from a table of that name.
+    pub(super) fn read_from(self, key: &str) -> Self {
+        Self { read_from: Some(key.to_owned()), ..self }
     }
 
     /// These, then others.
     pub(super) fn and(mut self, other: Self) -> Self {
-        self.0.extend(other.0);
+        self.entries.extend(other.entries);
         self
     }
 
-    fn write(&self, text: &mut String, header: &str) {
+    fn write(&self, text: &mut String, header: &str, name: &str, source: &Source) {
         if !text.is_empty() {
             text.push('\n');
         }
         text.push_str(&format!("{header}\n"));
-        for (key, value) in &self.0 {
+        let name = self.read_from.as_deref().unwrap_or(name);
+        for Entry { key, value, dimension } in &self.entries {
+            let value = match dimension {
+                Some(dimension) => &as_written(value, &dotted(name, key), *dimension, source),
+                None => value,
+            };
             text.push_str(&format!("{key} = {value}\n"));
         }
     }

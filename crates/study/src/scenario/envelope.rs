@@ -77,19 +77,23 @@ impl Envelope {
     }
 
     pub(super) fn written(&self, paths: Paths<'_>) -> Entries {
-        let texts =
-            |dimension: Dimension| move |range: [f64; 2]| range.map(|end| dimension.format(end)).to_vec();
-        let [kelvins, metres] = [Dimension::Temperature, Dimension::Length].map(texts);
         let names = |materials: &Vec<MaterialRef>| -> Vec<String> {
             materials.iter().map(|material| paths.material(material)).collect()
         };
         let pairs = |ranges: &Vec<[f64; 2]>| ranges.iter().map(|range| range.to_vec()).collect::<Vec<_>>();
-        let all = |ranges: &Vec<[f64; 2]>| ranges.iter().copied().map(kelvins).collect::<Vec<_>>();
-        Entries::default()
-            .put_if("temperature", self.temperature_k.map(kelvins))
-            .put_if("lighting", self.lighting.as_ref().map(pairs))
-            .put_if("surroundings", self.surroundings_k.as_ref().map(all))
-            .put_if("distance", self.distance_m.map(metres))
+        let kelvins = |range: &[f64; 2]| range.map(|end| Dimension::Temperature.format(end)).to_vec();
+        let entries = Entries::default()
+            .put_range("temperature", Dimension::Temperature, self.temperature_k)
+            .put_if("lighting", self.lighting.as_ref().map(pairs));
+        let entries = match &self.surroundings_k {
+            Some(ranges) => {
+                let ranges: Vec<_> = ranges.iter().map(kelvins).collect();
+                entries.put_written("surroundings", Dimension::Temperature, ranges)
+            }
+            None => entries,
+        };
+        entries
+            .put_range("distance", Dimension::Length, self.distance_m)
             .put_if("materials", self.materials.as_ref().map(names))
     }
 
@@ -120,13 +124,7 @@ fn closed<'a>(
     example: &str,
     read: impl Fn(&Entry<'a>) -> Result<f64>,
 ) -> Result<[f64; 2]> {
-    let [low, high] = entry.pair(example)?;
-    let (low, high) = (read(&low)?, read(&high)?);
-    if low <= high {
-        return Ok([low, high]);
-    }
-    let found = "the envelope is empty: the first end of the range is above the second";
-    Err(entry.fail(Error::malformed(found, format!("write the lower one first, as in {example}"))))
+    entry.range(example, read, |end| end)
 }
 
 /// One range for every object: a list of them, or one that holds for each.

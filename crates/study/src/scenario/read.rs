@@ -7,6 +7,7 @@ use std::path::Path;
 use toml::de::DeTable;
 
 use super::camera;
+use super::kind::Kind;
 use super::paths::material;
 use super::section::{Entry, Section, without_repetition};
 use super::source::LineStarts;
@@ -16,7 +17,8 @@ use super::{
 };
 use hadar::allowed::{ABOVE_ZERO, ABSOLUTE_TEMPERATURE, Allowed, SHARE};
 use hadar::error::{Error, Result};
-use hadar::units::Dimension;
+use hadar::instrument::figures::BLANK;
+use hadar::units::{Dimension, decimal_comma};
 
 /// Lighting factors that should add up to a value may miss it by this: rounding, not meaning.
 const LIGHTING_ROUNDING: f64 = 1e-12;
@@ -37,7 +39,7 @@ pub(super) const TABLES: [&str; 12] = [
     "envelope",
     "sensitivity",
 ];
-const MINIMUM: &str = "write [target] with material = \"skin\" and temperature = \"37 degC\"";
+pub(super) const MINIMUM: &str = "write [target] with material = \"skin\" and temperature = \"37 degC\"";
 
 /// The text of a scenario file.
 pub(super) fn text_of(path: &Path) -> Result<String> {
@@ -103,8 +105,8 @@ impl Scenario {
 }
 
 fn scenario(text: &str, path: Option<&Path>) -> Result<Scenario> {
-    let mut source = Source { path: path.map(Path::to_owned), lines: BTreeMap::new() };
-    let document = document(text, &mut source)?;
+    let mut source = Source { path: path.map(Path::to_owned), ..Source::default() };
+    let document = document(text, (Kind::Scenario, MINIMUM), &mut source)?;
     let root = Section::open(&document, "", &source, &TABLES)?;
     let mut scenario = of_root(&root)?;
     scenario.camera = root.read("camera", camera::read)?;
@@ -112,13 +114,18 @@ fn scenario(text: &str, path: Option<&Path>) -> Result<Scenario> {
     Ok(scenario)
 }
 
-/// The tables of a file that is not empty, whose lines `source` then knows.
-pub(super) fn document<'t>(text: &'t str, source: &mut Source) -> Result<DeTable<'t>> {
+/// The tables of a file that is of a kind and has its least in it, whose lines `source` then knows.
+pub(super) fn document<'t>(
+    text: &'t str,
+    (kind, minimum): (Kind, &str),
+    source: &mut Source,
+) -> Result<DeTable<'t>> {
     if text.trim().is_empty() {
-        return Err(Error::malformed("the file is empty", MINIMUM).at(source.place("")));
+        return Err(Error::malformed("the file is empty", minimum).at(source.place("")));
     }
     let document = parse(text, source)?;
     source.note_lines(text, &document);
+    kind.check(&document, source)?;
     Ok(document)
 }
 
@@ -148,13 +155,24 @@ pub(super) fn of_root(root: &Section<'_>) -> Result<Scenario> {
 }
 
 /// The table behind the text, or the first thing that is not TOML.
-pub(super) fn parse<'t>(text: &'t str, source: &Source) -> Result<DeTable<'t>> {
+fn parse<'t>(text: &'t str, source: &Source) -> Result<DeTable<'t>> {
     let (document, errors) = DeTable::parse_recoverable(text);
     let offset = |error: &toml::de::Error| error.span().map_or(0, |span| span.start);
     let Some(first) = errors.iter().min_by_key(|error| offset(error)) else {
         return Ok(document.into_inner());
     };
     let message: String = first.message().chars().filter(|char| !char.is_control()).collect();
+    let line = LineStarts::of(text).line(offset(first));
+    if text.lines().nth(line - 1).is_some_and(|line| line.contains(BLANK)) {
+        let error =
+            Error::malformed(format!("`{BLANK}` stands for a figure"), "write the camera's own in its place");
+        return Err(error.on_line(line).at(source.place("")));
+    }
+    // `f_number = 1,3`: a list of nothing, and a number.
+    let value = text.lines().nth(line - 1).and_then(|line| line.split_once('=')).map(|(_, value)| value);
+    if let Some(error) = value.and_then(|value| decimal_comma(value.split('#').next().unwrap_or(value))) {
+        return Err(error.on_line(line).at(source.place("")));
+    }
     let error = Error::malformed(
         format!("this is not TOML: {message}"),
         match message.as_str() {
@@ -162,7 +180,7 @@ pub(super) fn parse<'t>(text: &'t str, source: &Source) -> Result<DeTable<'t>> {
             _ => "correct the line (a quantity is text in quotes, as in temperature = \"37 degC\")",
         },
     );
-    Err(error.on_line(LineStarts::of(text).line(offset(first))).at(source.place("")))
+    Err(error.on_line(line).at(source.place("")))
 }
 
 fn target(entry: &Entry<'_>) -> Result<Target> {
@@ -265,26 +283,15 @@ fn alternatives(entry: &Entry<'_>) -> Result<Alternatives> {
     Ok(Alternatives {
         materials,
         temperature_range_k: section.read("temperature", |entry| {
-            range(entry, "[\"0 degC\", \"120 degC\"]", |end| {
-                end.quantity(Dimension::Temperature, ABSOLUTE_TEMPERATURE)
-            })
+            let kelvin = |end: &Entry<'_>| end.quantity(Dimension::Temperature, ABSOLUTE_TEMPERATURE);
+            entry.wide_range("[\"0 degC\", \"120 degC\"]", kelvin, |kelvin| kelvin)
         })?,
-        lighting_range: section
-            .read("lighting", |entry| range(entry, "[0.0, 1.0]", |end| end.number("0.5", SHARE)))?,
+        lighting_range: section.read("lighting", |entry| {
+            entry.wide_range("[0.0, 1.0]", |end| end.number("0.5", SHARE), |share| share)
+        })?,
         extrapolate: extrapolation(&section)?,
         skip_uncovered: section.read("skip_uncovered", Entry::boolean)?.unwrap_or(false),
     })
-}
-
-fn range<'a>(entry: &Entry<'a>, example: &str, read: impl Fn(&Entry<'a>) -> Result<f64>) -> Result<[f64; 2]> {
-    let [low, high] = entry.pair(example)?;
-    let (low, high) = (read(&low)?, read(&high)?);
-    if low < high {
-        return Ok([low, high]);
-    }
-    let found = "the first end of the range is not below the second";
-    let instead = format!("write the lower one first, as in {example}");
-    Err(entry.fail(Error::malformed(found, instead)))
 }
 
 fn unknown(entry: &Entry<'_>) -> Result<Unknown> {

@@ -5,13 +5,13 @@
 //! the certificate must know: `name`, `text` (its wording), `authority` (whose it is), `version`.
 
 use super::entries::{self, Document, Entries, Part};
+use super::kind::Kind;
 use super::paths::Paths;
-use super::read::{TABLES, document, of_root, text_of};
+use super::read::{MINIMUM, TABLES, document, of_root, text_of};
 use super::section::{Entry, Section};
 use super::{CameraSpec, Envelope, Scenario, Source, camera};
 use hadar::error::{Error, Place, Result};
 use serde::{Serialize, Serializer};
-use std::collections::BTreeMap;
 use std::path::Path;
 
 const NO_CAMERA: &str = "write cameras = [\"flir-a325sc\"] above the first [table], or a [[camera]] table";
@@ -90,12 +90,12 @@ impl Rule {
     /// let rule = Rule::from_toml(text, None)?;
     /// assert_eq!(rule.cameras.len(), 2);
     /// let error = Rule::from_toml(&text.replace("[\"30", "[\"40"), None).unwrap_err().to_string();
-    /// assert!(error.starts_with("line 7: envelope.temperature: the envelope is empty"), "{error}");
+    /// assert!(error.starts_with("line 7: envelope.temperature: the range goes from 40 degC to 37 degC"), "{error}");
     /// # Ok::<(), hadar::Error>(())
     /// ```
     pub fn from_toml(text: &str, path: Option<&Path>) -> Result<Self> {
-        let mut source = Source { path: path.map(Path::to_owned), lines: BTreeMap::new() };
-        let document = document(text, &mut source)?;
+        let mut source = Source { path: path.map(Path::to_owned), ..Source::default() };
+        let document = document(text, (Kind::Rule, MINIMUM), &mut source)?;
         let known = [&TABLES[..], &["rule", "cameras"]].concat();
         let root = Section::open(&document, "", &source, &known)?;
         let about = root.read("rule", about)?.unwrap_or_default();
@@ -148,13 +148,13 @@ impl Rule {
     #[must_use]
     pub fn to_toml_beside(&self, directory: &Path) -> String {
         let absolute = std::path::absolute(directory).ok();
-        entries::text(self.document(Paths { beside: absolute.as_deref() }))
+        entries::text(self.document(Paths { beside: absolute.as_deref() }), &self.scenario.source)
     }
 
     /// The rule as TOML, every default filled in, with absolute paths.
     #[must_use]
     pub fn to_toml(&self) -> String {
-        entries::text(self.document(Paths { beside: None }))
+        entries::text(self.document(Paths { beside: None }), &self.scenario.source)
     }
 
     fn document(&self, paths: Paths<'_>) -> Document {
@@ -163,6 +163,7 @@ impl Rule {
             Entries::default()
                 .put_if("name", camera.name.as_deref())
                 .and(camera::written(&camera.spec, paths))
+                .read_from(&camera.key)
         };
         let about = Entries::default()
             .put_if("name", self.about.name.as_deref())
@@ -186,7 +187,7 @@ impl PartialEq for Rule {
     }
 }
 
-/// The same keys and values as the TOML, with absolute paths.
+/// The same keys as the TOML, quantities in the units used inside, with absolute paths.
 impl Serialize for Rule {
     fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
         entries::entries(self.document(Paths { beside: None }), serializer)

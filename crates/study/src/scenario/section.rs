@@ -7,7 +7,7 @@ use toml::de::{DeTable, DeValue};
 use super::source::{Source, dotted};
 use hadar::allowed::Allowed;
 use hadar::error::{Error, Place, Result};
-use hadar::units::Dimension;
+use hadar::units::{Dimension, decimal_comma};
 
 /// One table: its entries, its name, and the file they stand in.
 pub(super) struct Section<'a> {
@@ -154,6 +154,45 @@ impl<'a> Entry<'a> {
         })
     }
 
+    /// A range, its lower end first, as `read` takes an end; `number` is what ends are compared by. A scene may be held
+    /// at one value by two ends that are the same.
+    pub(super) fn range<T: Copy>(
+        &self,
+        example: &str,
+        read: impl Fn(&Entry<'a>) -> Result<T>,
+        number: impl Fn(T) -> f64,
+    ) -> Result<[T; 2]> {
+        let [low, high] = self.pair(example)?;
+        let range = [read(&low)?, read(&high)?];
+        if number(range[0]) <= number(range[1]) {
+            return Ok(range);
+        }
+        let [low, high] = [low, high].map(|end| match end.value {
+            DeValue::String(text) => (text.trim().to_owned(), format!("\"{}\"", text.trim())),
+            value => {
+                let number = describe(value).trim_start_matches("the number ").to_owned();
+                (number.clone(), number)
+            }
+        });
+        let found = format!("the range goes from {} to {}", low.0, high.0);
+        Err(self.fail(Error::malformed(found, format!("write the lower end first: [{}, {}]", high.1, low.1))))
+    }
+
+    /// The same where the ends must differ, since there is something to search between them.
+    pub(super) fn wide_range<T: Copy>(
+        &self,
+        example: &str,
+        read: impl Fn(&Entry<'a>) -> Result<T>,
+        number: impl Fn(T) -> f64,
+    ) -> Result<[T; 2]> {
+        let range = self.range(example, read, &number)?;
+        if number(range[0]) < number(range[1]) {
+            return Ok(range);
+        }
+        let found = "the two ends of the range are the same";
+        Err(self.fail(Error::malformed(found, format!("write two that differ, as in {example}"))))
+    }
+
     /// Text on one line, not empty; `example` is what to write, quotes included.
     pub(super) fn text(&self, example: &str) -> Result<&'a str> {
         let DeValue::String(text) = self.value else {
@@ -213,6 +252,11 @@ impl<'a> Entry<'a> {
             _ => None,
         };
         let Some(value) = value else {
+            if let DeValue::String(text) = self.value
+                && let Some(error) = decimal_comma(text)
+            {
+                return Err(self.fail(error));
+            }
             let instead = format!("write a plain number without quotes, e.g. {}", self.written(example));
             return Err(self.wrong_type(instead));
         };

@@ -11,6 +11,9 @@ use hadar::error::Place;
 /// repeat it: a long one with a long list would fill the memory.
 const LONGEST_NAME: usize = 100;
 
+/// Longest text that is noted, bytes: longer ones are no quantities.
+const LONGEST_TEXT: usize = 40;
+
 /// Where a scenario was read from.
 #[derive(Debug, Clone, Default)]
 pub struct Source {
@@ -18,6 +21,8 @@ pub struct Source {
     pub path: Option<PathBuf>,
     /// Line of each key that was written, e.g. `target.material` or `environment[0].lighting`.
     pub lines: BTreeMap<String, usize>,
+    /// Short texts, among them all quantities, as they were written, e.g. `37 degC` at `target.temperature`.
+    pub texts: BTreeMap<String, String>,
 }
 
 impl Source {
@@ -44,6 +49,12 @@ impl Source {
         Place { path: self.path.clone(), line, key }
     }
 
+    /// The short text at `key` as it was written.
+    #[must_use]
+    pub fn written(&self, key: &str) -> Option<&str> {
+        self.texts.get(key).map(String::as_str)
+    }
+
     /// Notes the line of every key and list item of a parsed `text`.
     pub(super) fn note_lines(&mut self, text: &str, root: &DeTable<'_>) {
         let starts = LineStarts::of(text);
@@ -61,6 +72,9 @@ impl Source {
     fn note_value(&mut self, starts: &LineStarts, name: &str, value: &DeValue<'_>) {
         match value {
             _ if name.len() > LONGEST_NAME => {}
+            DeValue::String(text) if text.len() <= LONGEST_TEXT => {
+                self.texts.insert(name.to_owned(), text.trim().to_owned());
+            }
             DeValue::Table(table) => self.note_table(starts, name, table),
             DeValue::Array(items) => {
                 for (index, item) in items.iter().enumerate() {

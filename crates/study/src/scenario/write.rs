@@ -1,6 +1,7 @@
 //! Writes a scenario with every default filled in, as TOML and, in the same structure, for JSON.
 //!
-//! Quantities are strings in the unit used inside, with all digits, so that reading gives the same bits back.
+//! Quantities are strings, in the TOML as their author wrote them, else and in JSON in the unit used inside with all
+//! digits: reading gives the same bits back.
 
 use std::path::Path;
 
@@ -42,7 +43,7 @@ impl Scenario {
     }
 
     fn text(&self, paths: Paths<'_>) -> String {
-        text(self.document(paths))
+        text(self.document(paths), &self.source)
     }
 
     pub(super) fn document(&self, paths: Paths<'_>) -> Document {
@@ -76,7 +77,7 @@ impl Scenario {
     }
 }
 
-/// The same keys and values as the TOML, with absolute paths.
+/// The same keys as the TOML, quantities in the units used inside, with absolute paths.
 impl Serialize for Scenario {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         entries(self.document(Paths { beside: None }), serializer)
@@ -111,10 +112,9 @@ fn alternatives(alternatives: &Alternatives, paths: Paths<'_>) -> Entries {
     let names = |materials: &Vec<MaterialRef>| -> Vec<String> {
         materials.iter().map(|material| paths.material(material)).collect()
     };
-    let kelvins = |range: [f64; 2]| range.map(|end| Dimension::Temperature.format(end)).to_vec();
     Entries::default()
         .put_if("materials", alternatives.materials.as_ref().map(names))
-        .put_if("temperature", alternatives.temperature_range_k.map(kelvins))
+        .put_range("temperature", Dimension::Temperature, alternatives.temperature_range_k)
         .put_if("lighting", alternatives.lighting_range.map(|range| range.to_vec()))
         .put_if("extrapolate", alternatives.extrapolate.map(Extrapolation::name))
         .put_if("skip_uncovered", alternatives.skip_uncovered.then_some(true))
@@ -134,7 +134,7 @@ fn unknown(unknown: &Unknown) -> Entries {
     let priors: toml::Table = unknown.priors.iter().map(prior).collect();
     Entries::default()
         .put("nuisances", names)
-        .put("priors", priors)
+        .put_written("priors", Dimension::TemperatureDifference, priors)
         .put_if("lighting_total", unknown.lighting_total)
 }
 

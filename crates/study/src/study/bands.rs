@@ -1,6 +1,6 @@
 //! The bands of a scenario: sampled at their centres as in the paper, or integrated.
 
-use crate::scenario::{BandSource, BandsSpec, Scenario, Source};
+use crate::scenario::{BandSource, Scenario, Source};
 use hadar::error::{Error, Result};
 use hadar::instrument::Camera;
 use hadar::material::Material;
@@ -10,8 +10,9 @@ use hadar::units::Spectral;
 use std::borrow::Cow;
 
 /// The bands of a scenario as the paper samples them: at band centres.
-pub(super) fn at_centres(spec: &BandsSpec, source: &Source) -> Result<Bands> {
-    let made = match &spec.source {
+pub(super) fn at_centres(spec: &BandSource, source: &Source) -> Result<Bands> {
+    let made = match spec {
+        BandSource::Unsaid => return at_centres(&BandSource::papers_grid(), source),
         BandSource::Grid { start, stop, step } => match (start, stop, step) {
             (Spectral::Wavelength(start), Spectral::Wavelength(stop), Spectral::Wavelength(step)) => {
                 Bands::uniform_wavelength(*start, *stop, *step)

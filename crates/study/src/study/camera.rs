@@ -13,6 +13,11 @@ pub(super) fn resolved(spec: &CameraSpec, source: &Source) -> Result<Camera> {
     resolved_at(spec, &|key| source.place(&format!("camera.{key}")))
 }
 
+/// What a camera is called in a message: a known one by its name, whatever was changed of it.
+pub(super) fn called(camera: &Camera, spec: &CameraSpec) -> String {
+    spec.preset.clone().unwrap_or_else(|| camera.name.clone())
+}
+
 /// The same for a camera whose keys stand where `place` says.
 pub(super) fn resolved_at(spec: &CameraSpec, place: &dyn Fn(&str) -> Place) -> Result<Camera> {
     let preset = match &spec.preset {
@@ -20,9 +25,11 @@ pub(super) fn resolved_at(spec: &CameraSpec, place: &dyn Fn(&str) -> Place) -> R
         None => None,
     };
     check_conditions(spec, preset.as_ref(), place)?;
-    let stated = overridden(spec, preset.clone().unwrap_or_default(), place)?;
+    let stated = overridden(spec, preset.clone().unwrap_or_default())?;
     let camera = |preset: &Preset| {
-        preset.camera().map_err(|missing| missing.error(&preset.name).at(place(missing.key)))
+        preset.camera().map_err(|missing| {
+            missing.error(&preset.name).at(place(missing.0.first().copied().unwrap_or("preset")))
+        })
     };
     let mut camera_made = camera(&stated)?;
     camera_made.name = match (&spec.preset, preset) {
@@ -81,7 +88,7 @@ fn check_conditions(spec: &CameraSpec, preset: Option<&Preset>, place: &dyn Fn(&
 }
 
 /// The preset with the scenario's figures laid over it.
-fn overridden(spec: &CameraSpec, preset: Preset, place: &dyn Fn(&str) -> Place) -> Result<Preset> {
+fn overridden(spec: &CameraSpec, preset: Preset) -> Result<Preset> {
     let mut stated = preset;
     let figures = &mut stated.figures;
     let own_noise_exposure = figures.noise_exposure_s.or(figures.exposure_s);
@@ -95,11 +102,9 @@ fn overridden(spec: &CameraSpec, preset: Preset, place: &dyn Fn(&str) -> Place) 
             noise.netd_optics_efficiency.or(figures.optics_efficiency.as_ref().and_then(Efficiency::number));
         noise.netd_pixel_m = noise.netd_pixel_m.or(figures.pixel_m);
     }
-    // Without a preset there is no document that could have stated an efficiency.
     if spec.preset.is_none() {
-        figures.optics_efficiency = Some(Efficiency::Number(1.0));
+        // There is no key for it; a camera of one's own is taken to see what it is asked to.
         figures.spectral_range_cm1 = Some(PAPER_RANGE_CM1);
-        figures.flicker_fraction = Some(0.0);
     }
     for row in TABLE.iter().filter(|row| row.part == Part::Own) {
         row.lay(spec, figures);
@@ -110,13 +115,6 @@ fn overridden(spec: &CameraSpec, preset: Preset, place: &dyn Fn(&str) -> Place) 
         }
     }
     if !spec.states_noise() {
-        if figures.noise.stated().is_none() && spec.preset.is_none() {
-            return Err(Error::malformed(
-                "the camera's noise is not given",
-                "write netd = \"50 mK\", detectivity = \"4.7e10 cm Hz^0.5/W\" or noise_electrons = 0",
-            )
-            .at(place("netd")));
-        }
         // Noise that comes with the preset is stated at the preset's exposure.
         figures.noise_exposure_s = own_noise_exposure.or(figures.exposure_s);
         return Ok(stated);

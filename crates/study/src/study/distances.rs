@@ -27,10 +27,7 @@ impl Study {
             DistanceKind::Nearest => demand::computed(Thing::NearestSearches, count as u64),
             DistanceKind::Local => self.book_local(&self.unknowns, count),
             DistanceKind::LocalUnknownGain => {
-                let unknowns = self.unknowns.with(Nuisance::Gain);
-                if self.enough_bands(&unknowns) {
-                    self.book_local(&unknowns, count);
-                }
+                self.book_local(&self.unknowns.with(Nuisance::Gain), count);
             }
         }
     }
@@ -48,13 +45,9 @@ impl Study {
             .map_err(|error| error.at(self.scenario.place("bands")))
     }
 
-    /// The same with gain unknown too; with no band to spare for it nothing is left, exactly.
+    /// The same with gain unknown too.
     pub(super) fn local_unknown_gain(&self, alternative: &Surface, photons: f64) -> Result<f64> {
-        let unknowns = self.unknowns.with(Nuisance::Gain);
-        if !self.enough_bands(&unknowns) {
-            return Ok(0.0);
-        }
-        Ok(self.local(unknowns, alternative, photons)?.distance)
+        Ok(self.local(self.unknowns.with(Nuisance::Gain), alternative, photons)?.distance)
     }
 
     /// Whether there are more bands than unknowns without a prior.
@@ -110,10 +103,7 @@ impl Study {
                     .map(|nearest| nearest.distance)
             }
             DistanceKind::Local => local(self.unknowns.clone()),
-            DistanceKind::LocalUnknownGain => {
-                let unknowns = self.unknowns.with(Nuisance::Gain);
-                if self.enough_bands(&unknowns) { local(unknowns) } else { Ok(0.0) }
-            }
+            DistanceKind::LocalUnknownGain => local(self.unknowns.with(Nuisance::Gain)),
         }
     }
 

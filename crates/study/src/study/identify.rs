@@ -169,6 +169,7 @@ impl Study {
         let result = PairResult {
             target: self.target.name.clone(),
             alternative: alternative.name.clone(),
+            placeholders: self.target.placeholders(alternative).is_some(),
             distance_local: local.distance,
             distance_local_unknown_gain: unknown_gain,
             distance_no_nuisance: local.distance_no_nuisance,
@@ -197,8 +198,20 @@ impl Study {
             status: local.status,
             blind_direction: blind,
         };
-        let warnings = warn::of_pair(&result, &local, &nearest, kind, &self.range);
+        let mut warnings = warn::of_pair(&result, &local, &nearest, kind, &self.range);
+        warnings.extend(self.placeholders(alternative));
         Ok((result, warnings))
+    }
+}
+
+impl Study {
+    /// What is to be said of an alternative of which, as of the target, nothing but one number is known.
+    pub(super) fn placeholders(&self, alternative: &Surface) -> Option<Warning> {
+        self.target.placeholders(alternative).map(|emissivities| Warning::Placeholders {
+            target: self.target.name.clone(),
+            alternative: alternative.name.clone(),
+            emissivities,
+        })
     }
 }
 

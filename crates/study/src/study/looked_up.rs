@@ -3,7 +3,7 @@
 use super::Warning;
 use super::air::{Air, Behind};
 use super::surface::Surface;
-use crate::scenario::Scenario;
+use crate::scenario::{Scenario, Units};
 use hadar::demand::Work;
 use hadar::fisher::{Nuisance, Unknowns};
 use hadar::identifiability::nearest::StateRange;
@@ -45,6 +45,12 @@ impl Study {
     #[must_use]
     pub fn scenario(&self) -> &Scenario {
         &self.scenario
+    }
+
+    /// The units in which the scenario was written.
+    #[must_use]
+    pub fn units(&self) -> Units {
+        self.scenario.units()
     }
 
     /// The bands.

@@ -7,7 +7,7 @@ use self::defaults::{alternatives_as_written, check_range, fill, state_range, un
 use self::finder::Finder;
 use super::air::{Air, Behind};
 use super::bands::{self, check_detector};
-use super::{Study, Surface, camera};
+use super::{Study, Surface, camera, camera_bands};
 use crate::scenario::{Reliability, Scenario};
 use hadar::error::{Error, Result};
 use hadar::identifiability::detection;
@@ -64,11 +64,14 @@ impl Study {
                 Some((temperature_k, Some(finder.find("background.material", material, extrapolate)?)))
             }
         };
-        let bands = bands::at_centres(&scenario.bands, &scenario.source)?;
         let camera =
             scenario.camera.as_ref().map(|spec| camera::resolved(spec, &scenario.source)).transpose()?;
-        if let Some(camera) = &camera {
+        let asked = camera_bands::asked(&scenario.bands.source, camera.as_ref());
+        let bands = bands::at_centres(&asked, &scenario.source)?;
+        if let (Some(camera), Some(spec)) = (&camera, &scenario.camera) {
             check_detector(&bands, camera, &scenario)?;
+            let place = |key: &str| scenario.place(key);
+            finder.warnings.extend(camera_bands::check(camera, spec, &asked, &bands, &place)?);
         }
         let alternatives = finder.alternatives(&target, &bands)?;
         let Finder { warnings, skies, .. } = finder;
@@ -79,8 +82,7 @@ impl Study {
 
         let nodes = bands.nodes_cm1();
         let on_nodes = |material: &Material, key: &str| {
-            let emissivity = material.emissivity(nodes).map_err(|error| error.at(scenario.place(key)))?;
-            Ok(Surface { name: material.name().to_owned(), emissivity })
+            Surface::of(material, nodes).map_err(|error| error.at(scenario.place(key)))
         };
         let objects = scenario
             .environment
@@ -111,7 +113,7 @@ impl Study {
             .map(|(temperature_k, material)| {
                 let surface = match &material {
                     Some(material) => on_nodes(material, "background.material")?,
-                    None => Surface { name: "blackbody".into(), emissivity: vec![1.0; nodes.len()] },
+                    None => Surface::of(&Material::constant("blackbody", 1.0)?, nodes)?,
                 };
                 Ok::<_, Error>(Behind { surface, temperature_k })
             })
@@ -124,6 +126,7 @@ impl Study {
             }
         };
         let atmosphere = Air::of(&scenario)?;
+        scenario.bands.source = asked;
         let unknowns = unknowns(&scenario).map_err(|error| error.at(scenario.place("unknown")))?;
         let range = state_range(&scenario);
         check_range(&scenario, &range)?;

@@ -17,7 +17,8 @@ mod wording;
 
 pub use results::{
     CameraVerdict, Certified, EmissivityError, EnvelopeResult, FileHash, Fixes, IdealCamera, LightTime,
-    LimitingScene, Neighbourhood, NotIdentifiable, Proof, Quotable, RuleAnswer, RuleRequirement, WhoMeets,
+    LimitingScene, Neighbourhood, NotIdentifiable, Proof, Proviso, Quotable, RuleAnswer, RuleRequirement,
+    WhoMeets, WithoutPlaceholders,
 };
 
 use self::envelope::Sighted;
@@ -148,6 +149,12 @@ impl RuleStudy {
             candidates.push(candidate);
         }
         filled.scenario.alternatives.materials = Some(alternatives);
+        // Where nothing is said of them, cameras may have bands of their own.
+        let near = || candidates.iter().flat_map(|candidate| &candidate.near);
+        let source = near().next().map(|study| study.scenario.bands.source.clone());
+        if let Some(source) = source.filter(|one| near().all(|study| study.scenario.bands.source == *one)) {
+            filled.scenario.bands.source = source;
+        }
         let first = candidates.first().and_then(|candidate| candidate.near.first());
         let required = first.map_or(1.0, |study| study.required);
         let looked_up = library.work();
@@ -246,6 +253,7 @@ impl RuleStudy {
             required: self.required,
             speed_m_s,
             hardware_m2_s: hardware_m2_s.filter(|_| plain),
+            units: self.rule.scenario.units(),
         };
         RuleRequirement {
             distance: self.required,
@@ -312,17 +320,27 @@ fn candidate(rule: &Rule, index: usize, envelope: &Envelope, library: &Library) 
 fn complete(camera: &RuleCamera) -> Result<()> {
     let Some(name) = &camera.spec.preset else { return Ok(()) };
     let Err(missing) = presets::find(name)?.camera() else { return Ok(()) };
-    let found = format!("no document that was read states the {} of {name}", missing.key);
-    let instead =
-        format!("write a [[camera]] table with preset = {name:?} and {} = {}", missing.key, missing.example);
-    Err(Error::malformed(found, instead))
+    let found = format!("no document that was read states {} of {name}", missing.0.join(", "));
+    let instead = "write it as a table of its own, with what the camera has in place of the dots:".into();
+    let head = [String::from("[[camera]]"), format!("preset = {name:?}")];
+    Err(Error::Incomplete { found, instead, lines: head.into_iter().chain(missing.lines()).collect() })
 }
 
 /// Which cameras meet the rule.
 fn who_meets(cameras: &[CameraVerdict]) -> WhoMeets {
-    let names = |passing: bool| {
-        let chosen = cameras.iter().filter(|camera| camera.passes == passing);
-        chosen.map(|camera| camera.name.clone()).collect()
-    };
-    WhoMeets { meet: names(true), fail: names(false) }
+    let mut who = WhoMeets { meet: Vec::new(), fail: Vec::new(), placeholders: Vec::new() };
+    for camera in cameras {
+        match camera.passes {
+            true => who.meet.push((camera.name.clone(), camera.provided)),
+            false => who.fail.push(camera.name.clone()),
+        }
+        let LimitingScene { target, alternative, placeholders, .. } = &camera.limiting;
+        if let Some(numbers) = placeholders {
+            let pair = (target.clone(), alternative.clone(), *numbers);
+            if !who.placeholders.contains(&pair) {
+                who.placeholders.push(pair);
+            }
+        }
+    }
+    who
 }

@@ -19,6 +19,8 @@ pub enum Shortfall {
     FrameRate,
     /// The lens blurs a point over more than the pixel.
     Diffraction,
+    /// No camera is built or used like that.
+    Impractical,
     /// Read noise and steps of the converter leave more noise than that, whatever the detector.
     LowestNoise,
 }
@@ -34,6 +36,7 @@ impl Shortfall {
             Self::FullWell => "full-well",
             Self::FrameRate => "frame-rate",
             Self::Diffraction => "diffraction",
+            Self::Impractical => "impractical",
             Self::LowestNoise => "lowest-noise",
         }
     }

@@ -5,6 +5,7 @@ use super::{Check, Shortfall, Study, Surface, Warning};
 use crate::scenario::Scenario;
 use hadar::demand::{self, Ledger, Skipping, Work};
 use hadar::error::Result;
+use hadar::fisher::Nuisance;
 use hadar::identifiability::{Status, detection};
 use hadar::instrument::{Camera, NoiseLine, gamma_per_band};
 use hadar::policy::caps::{self, Circumstances};
@@ -98,6 +99,8 @@ pub struct Finding {
     pub required: f64,
     /// What was found.
     pub answer: Answer,
+    /// Emissivities of the two, where each is entered as one number.
+    pub placeholders: Option<[f64; 2]>,
 }
 
 /// What was found.
@@ -107,6 +110,13 @@ pub enum Answer {
     NothingDiffers,
     /// No photons suffice: the unknowns imitate the other material.
     UnknownsExplain,
+    /// The unknowns are as many as the bands, and so imitate the other material.
+    TooFewBands {
+        /// Number of bands.
+        bands: usize,
+        /// What is unknown.
+        unknowns: Vec<Nuisance>,
+    },
     /// There is no camera to judge.
     Takes {
         /// Photons that any camera needs.
@@ -256,12 +266,14 @@ impl Study {
             (None, [only]) => Some(only.name.clone()),
             (None, _) => None,
         };
+        let judged = Answer::Judged { enough: check.identifiable, spoiled: spoiled.clone(), reached: None };
         let sentence = Finding {
             camera: camera.name.clone(),
             target: self.target.name.clone(),
-            alternative,
             required: self.required,
-            answer: Answer::Judged { enough: check.identifiable, spoiled: spoiled.clone(), reached: None },
+            answer: self.too_few_bands().filter(|_| !check.identifiable).unwrap_or(judged),
+            placeholders: alternative.as_deref().and_then(|name| self.one_numbers(name)),
+            alternative,
         };
         let verdict = Verdict {
             met: Some(check.identifiable && spoiled.is_empty()),
@@ -320,7 +332,7 @@ impl Study {
             hardware_m2_s: camera.hardware_m2_s(gamma),
             least_distance: policy::least_distance(self.required, photons, gamma),
             acquisition_s: camera.acquisition_s(self.bands.len()),
-            footprint_m: distance_m.map(|z| camera.pixel_m * z / camera.focal_length_m),
+            footprint_m: distance_m.map(|z| camera.footprint_m(z)),
             motion_blur_pixels: blur,
             noise_budget: camera.noise_budget(&self.bands, &signal, &self.view_of(camera)),
             camera: camera.clone(),
@@ -335,6 +347,7 @@ impl Study {
             bands: &self.bands,
             required: self.required,
             distance_m,
+            farthest_m: self.atmosphere.as_ref().map(|air| air.table.longest_m()),
             size_m: self.scenario.target.size_m,
         }
     }
@@ -374,8 +387,10 @@ impl Study {
         let met = far_enough.map(|enough| enough && spoiled.is_empty());
         let mut fails_by = if far_enough == Some(false) { vec![Shortfall::Distance] } else { Vec::new() };
         fails_by.extend(&spoiled);
+        let few = self.too_few_bands().filter(|_| far_enough != Some(true));
         let answer = match (reached, requirement.photons, pair.status) {
             (_, None, Status::Identical | Status::Equilibrium) => Answer::NothingDiffers,
+            (_, _, Status::Blind) if few.is_some() => few.unwrap_or(Answer::UnknownsExplain),
             (_, None, Status::Ok | Status::Blind) => Answer::UnknownsExplain,
             (None, Some(photons), _) => Answer::Takes { photons },
             (Some(d), Some(_), _) => Answer::Judged { enough: d >= self.required, spoiled, reached },
@@ -386,6 +401,7 @@ impl Study {
             alternative: Some(pair.alternative.clone()),
             required: self.required,
             answer,
+            placeholders: self.one_numbers(&pair.alternative),
         };
         Verdict {
             met,
@@ -395,6 +411,20 @@ impl Study {
             required_distance: self.required,
             margin: reached.map(|reached| reached / self.required),
         }
+    }
+
+    /// Emissivities of the target and of an alternative by its name, where each is entered as one number.
+    fn one_numbers(&self, alternative: &str) -> Option<[f64; 2]> {
+        self.target.placeholders(self.alternative(alternative)?)
+    }
+
+    /// That there are no more bands than unknowns, where it is so.
+    fn too_few_bands(&self) -> Option<Answer> {
+        let unknowns = self.decisive_unknowns();
+        (!self.enough_bands(&unknowns)).then(|| {
+            let named = Nuisance::ALL.into_iter().filter(|nuisance| unknowns.contains(*nuisance));
+            Answer::TooFewBands { bands: self.bands.len(), unknowns: named.collect() }
+        })
     }
 
     /// What spoils the camera's image whatever the distance: the demanded speed, the full well.

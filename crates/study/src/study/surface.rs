@@ -1,5 +1,8 @@
 //! A material where the bands look at it.
 
+use hadar::error::Result;
+use hadar::material::{Basis, Material};
+
 /// A material on the nodes of the bands.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Surface {
@@ -7,4 +10,27 @@ pub struct Surface {
     pub name: String,
     /// Emissivity at the nodes.
     pub emissivity: Vec<f64>,
+    /// The one number that it is entered as, where nothing is known of its spectrum.
+    pub one_number: Option<f64>,
+}
+
+impl Surface {
+    /// A material at `nodes_cm1`.
+    ///
+    /// # Errors
+    /// As [`Material::emissivity`].
+    pub fn of(material: &Material, nodes_cm1: &[f64]) -> Result<Self> {
+        let emissivity = material.emissivity(nodes_cm1)?;
+        let flat = emissivity.windows(2).all(|pair| pair[0] == pair[1])
+            && (emissivity.len() > 1 || material.provenance().basis == Basis::Constant);
+        let one_number = emissivity.first().copied().filter(|_| flat);
+        Ok(Self { name: material.name().to_owned(), emissivity, one_number })
+    }
+
+    /// What a pair is entered as where nothing is known of either spectrum: what then tells the two apart is not in the
+    /// entries.
+    #[must_use]
+    pub fn placeholders(&self, other: &Self) -> Option<[f64; 2]> {
+        Some([self.one_number?, other.one_number?])
+    }
 }

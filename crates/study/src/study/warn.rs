@@ -17,6 +17,10 @@ use hadar::scene::{Parameter, State};
 const LINEAR_FACTOR: f64 = 2.0;
 /// Share of a distance that emissivity errors of 0.1 % can make up before a word of caution is due.
 pub(super) const FRAGILE_RATIO: f64 = 50.0;
+/// The widest band that may be taken at its centre without a word, cm⁻¹: features of solids are wider.
+const SAMPLED_CM1: f64 = 10.0;
+/// How wide a person is, m.
+const PERSON_M: f64 = 0.5;
 /// Photons per mode beyond which bunching is no longer negligible.
 const OCCUPANCY: f64 = 0.1;
 
@@ -96,10 +100,24 @@ impl Study {
         } else if self.is_unknown(Nuisance::Gain) {
             warnings.push(Warning::NearestSearch { unknown: Nuisance::Gain });
         }
+        let width_cm1 = self.open_bands.widths_cm1().into_iter().fold(0.0, f64::max);
+        if self.open_bands.one_node_per_band() && width_cm1 > SAMPLED_CM1 {
+            warnings.push(Warning::BandsSampled { width_cm1 });
+        }
+        if self.surroundings.objects().is_empty() {
+            warnings.push(Warning::NoSurroundings);
+        }
         if let Some(camera) = &self.camera {
             warnings.extend(sequential(camera, self.bands.len()));
         }
         warnings
+    }
+
+    /// Where a target of no stated size is taken to fill a pixel that sees more than a person from a distance.
+    pub(super) fn size_unknown(&self, camera: &Camera, distance_m: Option<f64>) -> Option<Warning> {
+        let footprint_m = camera.footprint_m(distance_m?);
+        (self.scenario.target.size_m.is_none() && footprint_m > PERSON_M)
+            .then_some(Warning::TargetSizeUnknown { footprint_m })
     }
 }
 

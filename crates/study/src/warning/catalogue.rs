@@ -52,6 +52,8 @@ catalogue! {
 
     /// The two materials have equal emissivities in every band: no camera tells them apart.
     Identical = "identical", "Choose bands in which they differ.";
+    /// Both materials are entered as one number for all wavenumbers, so that nothing is known of what tells them apart.
+    Placeholders = "placeholders", "Give a measured spectrum of at least one of them.";
     /// Target and surroundings are in thermal equilibrium, where every material looks like a blackbody.
     Equilibrium = "equilibrium", "Look at another time or place, where temperatures differ, or light the scene.";
     /// A change of the unknowns looks exactly like the change of material, to first order.
@@ -73,6 +75,10 @@ catalogue! {
     /// The scenario has an envelope, and this answer is for its one scene.
     EnvelopeNotSearched = "envelope-not-searched", "Ask `hadar rule` for the worst scene of the envelope.";
 
+    /// The camera has one band, and its entry models it as if it read all bands at once, as no such camera does.
+    BandsModelled = "bands-modelled", "Write camera.readout = \"sequential\" for filters before it, one after the other.";
+    /// Wide bands of a grid or of rows are taken at their centres alone, which may miss what tells materials apart in them.
+    BandsSampled = "bands-sampled", "Write bands.integrate = true, or the bands as ranges.";
     /// Bands are read one after the other, and the scene must hold still for all of them.
     SequentialReadout = "sequential-readout", "Shorten the exposure, or take a camera that reads all bands at once.";
     /// The target moves by a pixel or more while all bands are exposed; the bound assumes less.
@@ -81,6 +87,10 @@ catalogue! {
     MotionBlurUnknown = "motion-blur-unknown", "Write target.distance, or distance in [envelope].";
     /// Light of filters and of the sensor is left out, or the sensor's temperature is given where it does nothing.
     FilterLight = "filter-light", "Write camera.sensor_temperature where there are filters, and only there.";
+    /// There are no surroundings: the target is in empty space, where nothing but its own emission is seen.
+    NoSurroundings = "no-surroundings", "Write [[environment]] with what is around the target: walls, ground, sky.";
+    /// A pixel sees more than a person at the target's distance, and the target is taken to fill it.
+    TargetSizeUnknown = "target-size-unknown", "Write target.size and a [background], or come nearer.";
     /// The target does not fill its pixel.
     TargetSmallerThanPixel = "target-smaller-than-pixel", "Keep a margin for targets between pixels, or magnify.";
     /// The lens blurs a point over more than a pixel.

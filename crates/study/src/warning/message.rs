@@ -2,8 +2,9 @@
 
 use super::Warning;
 use hadar::fisher::Nuisance;
+use hadar::instrument::Readout;
 use hadar::scene::Parameter;
-use hadar::words::{quantity, significant};
+use hadar::words::{length, quantity, significant};
 use std::fmt::{self, Display, Formatter};
 
 impl Display for Warning {
@@ -36,8 +37,9 @@ impl Display for Warning {
             }
             Self::LocalDiffers { local, nearest, ratio } => write!(
                 f,
-                "local ({local:.2e}) and nearest ({nearest:.2e}) distance differ by a factor {ratio:.1}; \
-                 only the nearest one is a limit"
+                "local ({}) and nearest ({}) distance differ by a factor {ratio:.1}; only the nearest one is a limit",
+                significant(*local, 3),
+                significant(*nearest, 3)
             ),
             Self::Fragile => f.write_str(
                 "the spectra are nearly featureless: errors of 0.1 % in the emissivities can change this distance several \
@@ -69,10 +71,24 @@ impl Display for Warning {
             Self::EnvelopeNotSearched => f.write_str(
                 "this is the answer for the one scene; the [envelope] is searched by `hadar rule`",
             ),
+            Self::BandsModelled { camera, bands, readout } => write!(
+                f,
+                "{camera} has one band; its entry models it as if it read {bands} bands {}, as no such camera does",
+                match readout {
+                    Readout::FourierTransform => "through an interferometer",
+                    Readout::Dispersive => "side by side",
+                    Readout::Simultaneous | Readout::Sequential => "at once",
+                }
+            ),
+            Self::BandsSampled { width_cm1 } => write!(
+                f,
+                "bands up to {} cm^-1 wide are taken at their centres alone; integrated, a distance may be another",
+                significant(*width_cm1, 3)
+            ),
             Self::SequentialReadout { acquisition_s, bands } => write!(
                 f,
-                "bands are read one after the other: {acquisition_s:.3e} s until all {bands} are there, during which nothing \
-                 may change"
+                "bands are read one after the other: {} until all {bands} are there, during which nothing may change",
+                quantity(*acquisition_s, "s")
             ),
             Self::MotionBlur { pixels } => write!(
                 f,
@@ -89,6 +105,20 @@ impl Display for Warning {
             ),
             Self::SensorTemperatureIdle => f.write_str(
                 "sensor_temperature changes nothing: there are no filters that throw its light back",
+            ),
+            Self::Placeholders { target, alternative, emissivities } => write!(
+                f,
+                "{target} and {alternative} are each entered as one number ({} and {}): that they can or cannot be told apart \
+                 says nothing of real surfaces",
+                emissivities[0], emissivities[1]
+            ),
+            Self::NoSurroundings => f.write_str(
+                "there are no surroundings: the target is in empty space, and nothing is seen but its own emission",
+            ),
+            Self::TargetSizeUnknown { footprint_m } => write!(
+                f,
+                "a pixel sees {} at the target, which is taken to fill it; a person does not",
+                length(*footprint_m)
             ),
             Self::TargetSmallerThanPixel { fill } => write!(
                 f,
@@ -125,7 +155,8 @@ impl Display for Warning {
                 )
             }
             Self::FullWell { counts, full_well } => {
-                write!(f, "{counts:.2e} photons in one reading exceed the full well of {full_well:.2e}")
+                let (counts, full_well) = (significant(*counts, 3), significant(*full_well, 3));
+                write!(f, "{counts} photons in one reading exceed the full well of {full_well}")
             }
             Self::PixelFull { counts, full_well } => write!(
                 f,
@@ -208,23 +239,26 @@ impl Display for Warning {
                 "priors are left out: the spectra that are drawn, and what is learnt from them, know nothing of them",
             ),
             Self::SpectraEmpty { photons } => {
-                write!(f, "with {photons:.2e} photons most spectra are empty in every band")
+                write!(f, "with {} photons most spectra are empty in every band", significant(*photons, 3))
             }
             Self::CountsRounded { photons } => write!(
                 f,
-                "with {photons:.1e} photons counts of a band leave the whole numbers that 64-bit floating point holds: \
-                 they are rounded to it"
+                "with {} photons counts of a band leave the whole numbers that 64-bit floating point holds: \
+                 they are rounded to it",
+                short(*photons)
             ),
             Self::FewSpectra { training } => write!(f, "{training} training spectra of each class teach little"),
             Self::ModelPhotons { method, photons } => write!(
                 f,
-                "the saved {} was trained with {photons:.3e} photons: with others its scale is wrong",
-                method.words()
+                "the saved {} was trained with {} photons: with others its scale is wrong",
+                method.words(),
+                significant(*photons, 4)
             ),
             Self::NormalLikelihood { error } => write!(
                 f,
-                "likelihoods take counts for normal; their distribution function is up to {error:.1e} off, so the \
-                 likelihood ratio may fall short of the optimum (draws are exact)"
+                "likelihoods take counts for normal; their distribution function is up to {} off, so the \
+                 likelihood ratio may fall short of the optimum (draws are exact)",
+                short(*error)
             ),
             Self::LimitNormal => f.write_str(
                 "with a fixed total only the limit of many photons is known; nothing is held against it",

@@ -1,5 +1,6 @@
 //! Tests of scenarios and studies.
 
+mod camera_bands;
 mod fuzz_readers;
 mod published;
 mod rule_air;
@@ -9,6 +10,7 @@ mod search_inputs;
 mod sight;
 mod sizing;
 mod trade_offs;
+mod units;
 
 mod support {
     pub(crate) mod harness;

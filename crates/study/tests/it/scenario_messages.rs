@@ -190,7 +190,13 @@ fn alternatives_are_named_once_and_ranges_go_upwards() {
         "[alternatives]\nmaterials = [\n  \"gold\",\n  \"gold\",\n]" =>
             "a.toml:7: alternatives.materials[1]: the same is already in the list; name it once",
         "[alternatives]\ntemperature = [\"120 degC\", \"0 degC\"]" =>
-            r#"a.toml:5: alternatives.temperature: the first end of the range is not below the second; write the lower one first, as in ["0 degC", "120 degC"]"#,
+            r#"a.toml:5: alternatives.temperature: the range goes from 120 degC to 0 degC; write the lower end first: ["0 degC", "120 degC"]"#,
+        "[alternatives]\ntemperature = [\"20 degC\", \"20 degC\"]" =>
+            r#"a.toml:5: alternatives.temperature: the two ends of the range are the same; write two that differ, as in ["0 degC", "120 degC"]"#,
+        "[alternatives]\nlighting = [0.9, 0.1]" =>
+            "a.toml:5: alternatives.lighting: the range goes from 0.9 to 0.1; write the lower end first: [0.1, 0.9]",
+        "[envelope]\ntemperature = [\"40 °C\", \"30 °C\"]" =>
+            r#"a.toml:5: envelope.temperature: the range goes from 40 °C to 30 °C; write the lower end first: ["30 °C", "40 °C"]"#,
         "[alternatives]\ntemperature = [\"120 degC\"]" =>
             r#"a.toml:5: alternatives.temperature: a range has two ends, but the list has 1; write temperature = ["0 degC", "120 degC"]"#,
         "[alternatives]\ntemperature = [0, 120]" =>
@@ -230,7 +236,9 @@ fn bands_have_one_source_and_one_axis() {
         "[bands]\nranges = [\"715 cm^-1\", \"800 cm^-1\"]" =>
             r#"a.toml:5: bands.ranges[0]: the text "715 cm^-1" was found; write ["715 cm^-1", "800 cm^-1"]"#,
         "[bands]\nranges = [[\"800 cm^-1\", \"715 cm^-1\"]]" =>
-            "a.toml:5: bands.ranges[0]: the range goes from 800 cm^-1 to 715 cm^-1; write the lower end first",
+            r#"a.toml:5: bands.ranges[0]: the range goes from 800 cm^-1 to 715 cm^-1; write the lower end first: ["715 cm^-1", "800 cm^-1"]"#,
+        "[bands]\nranges = [[\"8 um\", \"8 um\"]]" =>
+            r#"a.toml:5: bands.ranges[0]: the two ends of the range are the same; write two that differ, as in ["715 cm^-1", "800 cm^-1"]"#,
         "[bands]\nranges = [[\"715 cm^-1\", \"8 um\"]]" =>
             "a.toml:5: bands.ranges[0]: the range goes from 715 cm^-1 to 8 um; write both ends in cm^-1, or both in um or nm",
         "[bands]\nranges = []" =>
@@ -333,5 +341,19 @@ fn a_requirement_is_one_and_can_be_met() {
             r#"a.toml:5: requirement.speed: `30` is a number without a unit; write "30 mph" or "13.4 m/s""#,
         "[requirement]\nspeed = 1979-05-27" =>
             "a.toml:5: requirement.speed: the date 1979-05-27 was found; write a number and its unit in quotes",
+    }
+}
+
+#[test]
+fn a_decimal_comma_is_named() {
+    messages! { message:
+        "[camera]\nexposure = \"12,5 ms\"" =>
+            r#"a.toml:5: camera.exposure: `12,5 ms` has a decimal comma; write 12.5, as in "12.5 ms""#,
+        "[camera]\nf_number = \"1,3\"" => "a.toml:5: camera.f_number: `1,3` has a decimal comma; write 1.3",
+        "[camera]\nf_number = 1,3  # fast" => "a.toml:5: `1,3` has a decimal comma; write 1.3",
+        "[bands]\nstart = \"7,5 um\"" =>
+            r#"a.toml:5: bands.start: `7,5 um` has a decimal comma; write 7.5, as in "7.5 um""#,
+        "[alternatives]\ntemperature = [\"0,5 degC\", \"20 degC\"]" =>
+            r#"a.toml:5: alternatives.temperature[0]: `0,5 degC` has a decimal comma; write 0.5, as in "0.5 degC""#,
     }
 }

@@ -228,9 +228,30 @@ fn what_is_left_open_is_asked_for() {
 fn a_camera_that_no_document_completes_asks_for_what_is_missing() {
     let text = format!("{HEAD}{REST}[camera]\npreset = \"flir-a655sc\"\n");
     let message = made(&text).unwrap_err().to_string();
-    assert!(message.contains("no document that was read states the"), "{message}");
-    let whole =
-        format!("{text}exposure = \"8 ms\"\npixel = \"17 um\"\nf_number = 1.0\nfocal_length = \"24.6 mm\"\n");
+    let (head, block) = message.split_once('\n').unwrap();
+    assert_eq!(
+        head,
+        "line 10: camera.exposure: no document that was read states exposure, pixel, f_number, focal_length of flir-a655sc; \
+         write what the camera has in place of the dots:"
+    );
+    assert!(
+        made(&format!("{text}{block}\n")).unwrap_err().to_string().contains("does not begin with a number")
+    );
+    let whole = format!("{text}{}\n", block.replace('…', "16"));
     let camera: Camera = study(&whole).camera().unwrap().clone();
     assert!(camera.name.contains("as completed") && !camera.assumed.is_empty(), "{camera:?}");
+}
+
+/// Without a preset all figures are asked for at once, and the lines of the message are what to paste.
+#[test]
+fn a_camera_of_ones_own_asks_for_all_that_it_lacks() {
+    let text = format!("{HEAD}{REST}[camera]\nf_number = 1.0\n");
+    let message = made(&text).unwrap_err().to_string();
+    let (head, block) = message.split_once('\n').unwrap();
+    let found = "neither a preset nor exposure, pixel, focal_length, netd is given";
+    assert!(head.contains(found) && !message.contains("flir"), "{message}");
+    let whole = format!("{text}{}\n", block.replace('…', "16"));
+    assert!(made(&whole).unwrap().camera().is_some());
+    let blank = made(&format!("{HEAD}{REST}[camera]\nf_number = …\n")).unwrap_err().to_string();
+    assert_eq!(blank, "line 11: `…` stands for a figure; write the camera's own in its place");
 }

@@ -11,6 +11,7 @@ use super::solution::{NEVER, Solution};
 use super::task::CameraTask;
 use crate::error::Result;
 use crate::root::crossing;
+use crate::words::quantity;
 
 /// Nearer than so many focal lengths nothing is imaged at all.
 const NEAR_FOCAL_LENGTHS: f64 = 2.0;
@@ -19,7 +20,7 @@ const FAR_M: f64 = 1e8;
 /// Nearer than this nobody asks, m.
 const CLOSE_M: f64 = 5.0;
 /// Factor from one distance to the next as the crossing is bracketed.
-const STEP: f64 = 2.0;
+const STEP: f64 = std::f64::consts::SQRT_2;
 
 pub(super) fn solve(
     task: &CameraTask<'_>,
@@ -35,18 +36,11 @@ pub(super) fn solve(
         caps: Vec::new(),
     };
     let near = NEAR_FOCAL_LENGTHS * task.camera.focal_length_m;
-    let mut far = FAR_M;
-    // A table of the air may end before.
-    let beyond = loop {
-        match at(far) {
-            Ok(reached) => break reached,
-            Err(error) if far / STEP < near => return Err(error),
-            Err(_) => far /= STEP,
-        }
-    };
+    let far = task.farthest_m.unwrap_or(FAR_M);
+    let beyond = at(far)?;
     if beyond >= task.required {
-        let reason = if far < FAR_M {
-            format!("it is met as far as the air is known, {far:.3e} m")
+        let reason = if task.farthest_m.is_some() {
+            format!("it is met as far as the air is known, {}", quantity(far, "m"))
         } else {
             "distance does not matter: the target fills its pixels, and there is no air that would end it"
                 .into()

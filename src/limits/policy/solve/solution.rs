@@ -14,6 +14,8 @@ pub enum CapCode {
     FrameRate,
     /// The fullest reading does not fit into the well.
     FullWell,
+    /// No camera is built or used like that.
+    Impractical,
     /// Read noise and steps of the converter stay.
     LowestNoise,
     /// The target moves by a pixel until all bands are exposed.
@@ -28,6 +30,7 @@ impl CapCode {
             Self::Diffraction => "diffraction",
             Self::FrameRate => "frame-rate",
             Self::FullWell => "full-well",
+            Self::Impractical => "impractical",
             Self::LowestNoise => "lowest-noise",
             Self::Motion => "motion",
         }

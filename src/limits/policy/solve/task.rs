@@ -19,6 +19,8 @@ pub struct CameraTask<'a> {
     pub required: f64,
     /// Distance of the target, m; infinitely far where `None`.
     pub distance_m: Option<f64>,
+    /// The farthest distance of which anything is known, m: the longest path in a table of the air.
+    pub farthest_m: Option<f64>,
     /// Side of the target, m; it fills the pixel, however large, where `None`.
     pub size_m: Option<f64>,
 }

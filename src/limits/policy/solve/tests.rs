@@ -18,7 +18,7 @@ fn seen(camera: &Camera) -> Counting {
 }
 
 fn task<'a>(camera: &'a Camera, bands: &'a Bands, required: f64) -> CameraTask<'a> {
-    CameraTask { camera, bands, required, distance_m: Some(30.0), size_m: None }
+    CameraTask { camera, bands, required, distance_m: Some(30.0), farthest_m: None, size_m: None }
 }
 
 #[test]
@@ -111,15 +111,22 @@ fn the_farthest_distance_is_where_the_task_is_just_met() {
     // Nearer than two focal lengths there is no image.
     let solution = task(&camera, &bands, 1e4).solve(Quantity::Distance, reached).unwrap();
     assert!(solution.value.is_none() && solution.reason.unwrap().contains("short enough"));
-    // A table that ends at 5 km.
-    let known = |trial: &Trial| match trial.distance_m {
-        Some(z) if z > 5e3 => Err(crate::Error::malformed("the table ends", "go nearer")),
-        _ => reached(trial),
-    };
-    let solution = task(&camera, &bands, 1.0).solve(Quantity::Distance, known).unwrap();
-    assert!((solution.value.unwrap() / 30.0 - 1.0).abs() < 1e-12);
-    let solution = task(&camera, &bands, 1e-4).solve(Quantity::Distance, known).unwrap();
-    assert!(solution.value.is_none() && solution.reason.unwrap().contains("as far as the air is known"));
+    // Tables of the air that end, the first just before, the others just behind where the task is no longer met: nothing is
+    // asked of them beyond their end, and nothing is left out before it.
+    for end_m in [29.9, 30.1, 47.0, 90.0, 8803.0] {
+        let known = |trial: &Trial| match trial.distance_m {
+            Some(z) if z > end_m => Err(crate::Error::malformed("the table ends", "go nearer")),
+            _ => reached(trial),
+        };
+        let task = CameraTask { farthest_m: Some(end_m), ..task(&camera, &bands, 1.0) };
+        let solution = task.solve(Quantity::Distance, known).unwrap();
+        match solution.value {
+            Some(value) => assert!(end_m > 30.0 && (value / 30.0 - 1.0).abs() < 1e-12, "{solution:?}"),
+            None => assert!(
+                end_m < 30.0 && solution.reason.unwrap().contains("as far as the air is known, 29.9 m")
+            ),
+        }
+    }
 }
 
 #[test]

@@ -29,12 +29,18 @@ impl Bands {
         if step_um >= 2.0 * start_um {
             return Err(Error::out_of_range("band step", step_um, "um", "below twice the first wavelength"));
         }
-        Self::from_rows((0..count).map(|i| {
-            let center_um = (i as f64).mul_add(step_um, start_um);
+        let center_um = |i: usize| (i as f64).mul_add(step_um, start_um);
+        let mut bands = Self::from_rows((0..count).map(|i| {
             // 10⁴/(λ − δ) − 10⁴/(λ + δ) with δ half the step, without the subtraction.
-            let width = 1e4 * step_um / ((center_um - 0.5 * step_um) * (center_um + 0.5 * step_um));
-            (1e4 / center_um, width)
-        }))
+            let width = 1e4 * step_um / ((center_um(i) - 0.5 * step_um) * (center_um(i) + 0.5 * step_um));
+            (1e4 / center_um(i), width)
+        }))?;
+        // The centre in wavelength is not the middle in wavenumber, and rows are taken for symmetric.
+        for (i, band) in bands.bands.iter_mut().rev().enumerate() {
+            band.low_cm1 = 1e4 / (center_um(i) + 0.5 * step_um);
+            band.high_cm1 = 1e4 / (center_um(i) - 0.5 * step_um);
+        }
+        Ok(bands)
     }
 
     /// Bands given by rows (centre, width) in cm⁻¹, in any order, one node each.
@@ -213,8 +219,8 @@ mod tests {
     fn wavelength_bands_tile_the_wavenumber_axis() {
         let bands = Bands::uniform_wavelength(8.0, 14.0, 0.05).unwrap();
         for pair in bands.bands().windows(2) {
-            // Widths are formed around 10⁴/λ, which is not the mid-point; the total must still fit.
             assert!(pair[0].center_cm1 < pair[1].center_cm1);
+            assert!((pair[0].high_cm1 / pair[1].low_cm1 - 1.0).abs() < 1e-14);
         }
         let total: f64 = bands.widths_cm1().iter().sum();
         let exact = 1e4 / 7.975 - 1e4 / 14.025;

@@ -1,6 +1,6 @@
 //! Bands: which of them matter, and how their number and that of the materials change the distances.
 
-use crate::text::numbers::{exponential, listed, significant};
+use crate::text::numbers::{listed, significant};
 use hadar_study::study::{BandsThatMatter, Scaling, Study};
 use std::fmt::Write as _;
 
@@ -14,8 +14,8 @@ pub(super) fn scaling(scaling: &Scaling, target: &str) -> String {
         let _ = writeln!(
             out,
             "  least     {} per sqrt(photon) against 1 alternative on average, {} against {}",
-            exponential(*first, 2),
-            exponential(*last, 2),
+            significant(*first, 3),
+            significant(*last, 3),
             size - 1
         );
     }
@@ -25,10 +25,11 @@ pub(super) fn scaling(scaling: &Scaling, target: &str) -> String {
         let at = values.iter().position(|v| *v == best).and_then(|i| bands.bands.get(i));
         match (values.first(), values.last(), at, bands.bands.first(), bands.bands.last()) {
             (Some(first), Some(last), Some(at), Some(few), Some(many)) if best > 0.0 => format!(
-                "  {what}  {} in {few} band{}, {} in {many}; most in {at}: {best:.2e}\n",
-                exponential(*first, 2),
+                "  {what}  {} in {few} band{}, {} in {many}; most in {at}: {}\n",
+                significant(*first, 3),
                 if *few == 1 { "" } else { "s" },
-                exponential(*last, 2)
+                significant(*last, 3),
+                significant(best, 3)
             ),
             _ => format!("  {what}  0 in any number of bands\n"),
         }
@@ -94,12 +95,12 @@ pub(super) fn bands(found: &BandsThatMatter, study: &Study) -> String {
         let unit = if study.camera().is_some() { "camera d" } else { "per sqrt(photon)" };
         let _ = writeln!(
             out,
-            "  best {count} {what}{plural}: {}{} the distance of all {} bands read one by one ({unit} {:.2e}, all bands {:.2e}; worst against {limiting}); {proof}",
+            "  best {count} {what}{plural}: {}{} the distance of all {} bands read one by one ({unit} {}, all bands {}; worst against {limiting}); {proof}",
             share(choice.distance),
             if choice.kept < 1.5 { " of" } else { "" },
             found.center_cm1.len(),
-            choice.distance,
-            choice.distance_all_bands
+            significant(choice.distance, 3),
+            significant(choice.distance_all_bands, 3)
         );
         let places: Vec<String> = choice
             .passbands

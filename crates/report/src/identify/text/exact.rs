@@ -1,6 +1,6 @@
 //! Simulated decisions beside their limits.
 
-use crate::text::numbers::shortened;
+use crate::text::numbers::{shortened, significant};
 use hadar_study::study::{Exact, ExactPair, Study};
 use std::fmt::Write as _;
 
@@ -11,7 +11,7 @@ const CERTAIN: f64 = 0.9995;
 pub(super) fn exact(found: &Exact, study: &Study) -> String {
     let percent = 100.0 * found.level;
     let normal = found.normal_error.map_or_else(String::new, |error| {
-        format!(", distribution function of a band off by at most {error:.0e}")
+        format!(", distribution function of a band off by at most {}", significant(error, 1))
     });
     let mut out = format!(
         "Maximum-likelihood decision, states unknown, {} counts{normal} (seed {}, {percent:.0} % intervals)\n",
@@ -29,9 +29,9 @@ pub(super) fn exact(found: &Exact, study: &Study) -> String {
     for pair in found.pairs.iter().filter(shown) {
         let _ = write!(
             out,
-            "  {:<width$}  {:>9.2e}  {:>9.3} +- {:.3}    {:>12.3}  {:>11.3}  {:>9.3}  {:>8.3} to {:.3}",
+            "  {:<width$}  {:>9}  {:>9.3} +- {:.3}    {:>12.3}  {:>11.3}  {:>9.3}  {:>8.3} to {:.3}",
             short.of(&pair.alternative),
-            pair.photons,
+            significant(pair.photons, 3),
             pair.balanced,
             pair.balanced_interval.half_width(),
             pair.limit,

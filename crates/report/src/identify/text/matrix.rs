@@ -1,7 +1,7 @@
 //! All materials against all: who can be told from whom.
 
 use super::terms::{camera, no_limit};
-use crate::text::numbers::{exponential, listed, shortened};
+use crate::text::numbers::{listed, shortened, significant};
 use hadar_study::study::{Apart, Matrix, Study};
 use hadar_study::words;
 use std::collections::BTreeSet;
@@ -14,7 +14,7 @@ pub(super) fn apart(apart: &Apart, study: &Study) -> String {
         name => name,
     };
     let pairs = apart.told_apart.len() + apart.not_told_apart.len();
-    let reliability = words::reliability(study.required_distance());
+    let reliability = words::demanded(study.required_distance());
     let mut out = format!(
         "{camera} tells {} of {pairs} pairs apart with {reliability} reliability, either of them the target{}\n",
         apart.told_apart.len(),
@@ -83,11 +83,11 @@ pub(super) fn matrix(matrix: &Matrix, study: &Study) -> String {
             "  {:<width$}  {:<width$}  {:>12}",
             short.of(&target.material),
             short.of(&target.limiting),
-            exponential(target.distance_minimum, 2)
+            significant(target.distance_minimum, 3)
         );
         if let (Some(d), Some(yes)) = (target.statistical_distance_minimum, target.identifiable) {
             let answer = if yes { "yes" } else { "no" };
-            let _ = write!(out, "  {:>10}  {answer:>11}", exponential(d, 2));
+            let _ = write!(out, "  {:>10}  {answer:>11}", significant(d, 3));
         }
         out.push('\n');
     }

@@ -6,6 +6,7 @@ use hadar::fisher::Nuisance;
 use hadar::fisher::precision::Sight;
 use hadar::simulate::efficiency::{Errors, Verdict};
 use hadar::simulate::sequential::Interval;
+use hadar_study::scenario::Units;
 use hadar_study::study::{Reader, Thermometry, ThermometryRow};
 use std::fmt::Write as _;
 
@@ -21,8 +22,8 @@ fn decimal(value: f64, decimals: usize) -> String {
     unsigned_zero(format!("{value:.decimals$}"))
 }
 
-fn celsius(temperature_k: f64, decimals: usize) -> String {
-    decimal(temperature_k - 273.15, decimals)
+fn degrees(temperature_k: f64, decimals: usize, units: Units) -> String {
+    decimal(units.temperature_number(temperature_k), decimals)
 }
 
 /// Three digits at most, of which the last is no finer than a tenth of half the interval.
@@ -73,6 +74,7 @@ fn list(items: &[&str]) -> String {
 #[must_use]
 pub fn text(result: &Thermometry) -> String {
     let rows = rising(result);
+    let units = result.units;
     let two = rows.iter().any(|row| row.lighting_unknown.is_some());
     let mut out = headline(result, &rows);
     out.push_str(
@@ -84,12 +86,12 @@ pub fn text(result: &Thermometry) -> String {
         format!("  {t:>8}  {known:>34}{unknown}  {fixed:>9}  {manual:>9}\n")
     };
     let known = if result.environment_k.is_empty() { "maximum likelihood" } else { "lighting known" };
-    out.push_str(&line(["degC", known, "lighting unknown", "e fixed", "e manual"]));
+    out.push_str(&line([units.temperature_unit(), known, "lighting unknown", "e fixed", "e manual"]));
     for row in &rows {
         let imager =
             |errors: Option<Errors>| errors.map_or("none".into(), |e| trusted(e.bias, e.bias_interval));
         out.push_str(&line([
-            &celsius(row.temperature_k, 2),
+            &degrees(row.temperature_k, 2, units),
             &reader(&row.lighting_known),
             &row.lighting_unknown.as_ref().map_or_else(String::new, reader),
             &imager(row.fixed.errors),
@@ -110,8 +112,9 @@ pub fn text(result: &Thermometry) -> String {
 }
 
 fn assumptions(result: &Thermometry) -> Vec<String> {
+    let shown = |kelvin| format!("{} {}", degrees(kelvin, 2, result.units), result.units.temperature_unit());
     let environment: Vec<String> = (result.environment_k.iter().zip(&result.lighting))
-        .map(|(t, v)| format!("{} degC with lighting {}", celsius(*t, 2), unsigned_zero(significant(*v, 3))))
+        .map(|(t, v)| format!("{} with lighting {}", shown(*t), unsigned_zero(significant(*v, 3))))
         .collect();
     let bare = environment.is_empty();
     let is_unknown = |nuisance: Nuisance| result.unknown.contains(&nuisance.name());
@@ -167,12 +170,12 @@ fn assumptions(result: &Thermometry) -> Vec<String> {
     lines.push(format!(
         "imaging with emissivity {}: black surroundings at {} all around are subtracted",
         result.fixed.emissivity,
-        result.fixed.reflected_k.map_or("no temperature".to_owned(), |t| format!("{} degC", celsius(t, 2)))
+        result.fixed.reflected_k.map_or("no temperature".to_owned(), |t| shown(t))
     ));
     lines.push(format!(
-        "imaging with emissivity {} by hand: right at {} degC, nothing subtracted",
+        "imaging with emissivity {} by hand: right at {}, nothing subtracted",
         significant(result.manual.emissivity, 4),
-        celsius(result.calibrated_k, 2)
+        shown(result.calibrated_k)
     ));
     lines
 }
@@ -203,7 +206,7 @@ fn likelihood(result: &Thermometry, rows: &[&ThermometryRow]) -> String {
         let errors: Vec<f64> = readers.iter().map(|reader| reader.errors.rmse).collect();
         span(&errors, "K", |k| significant(k, digits))
     };
-    let at = span(&temperatures, "degC", |k| celsius(k, 1));
+    let at = span(&temperatures, result.units.temperature_unit(), |k| degrees(k, 1, result.units));
     let own: Vec<&Reader> = rows.iter().map(|row| decisive(row)).collect();
     let unknown = rows.iter().any(|row| row.lighting_unknown.is_some());
     let seen: Vec<&Reader> = own.iter().copied().filter(|reader| reader.sight == Sight::Seen).collect();
@@ -303,7 +306,8 @@ mod tests {
             ["-0.0", "-0", "-0.01", "-1e-20"].map(|x| unsigned_zero(x.into())),
             ["0.0", "0", "-0.01", "-1e-20"]
         );
-        assert_eq!((celsius(273.149, 1), celsius(273.05, 1)), ("0.0".into(), "-0.1".into()));
+        let degrees = |kelvin| degrees(kelvin, 1, Units::default());
+        assert_eq!((degrees(273.149), degrees(273.05)), ("0.0".into(), "-0.1".into()));
         let interval = |low, high| Interval { low, high };
         assert_eq!(trusted_ratio(0.50912, interval(0.1012, 518.723)), "0.51 [0.10, 519]");
         assert_eq!(trusted_ratio(1.0123, interval(0.9861, 1.0398)), "1.012 [0.986, 1.040]");

@@ -1,7 +1,8 @@
 //! Reads a ranging scenario: every key checked, every error one line with file, line and key.
 
+use super::super::kind::Kind as FileKind;
 use super::super::paths::{file, material};
-use super::super::read::{parse, text_of};
+use super::super::read::{document, text_of};
 use super::super::section::{Entry, Section};
 use super::super::{BandsSpec, Source, camera};
 use super::{
@@ -14,7 +15,6 @@ use hadar::ranging::derivative::Derivative;
 use hadar::ranging::information::Window;
 use hadar::ranging::noise::Joined;
 use hadar::units::Dimension;
-use std::collections::BTreeMap;
 use std::path::Path;
 
 const TABLES: &[&str] = &["title", "scene", "cube", "bands", "camera", "stereo", "requirement"];
@@ -62,12 +62,8 @@ impl RangeScenario {
 }
 
 fn scenario(text: &str, path: Option<&Path>) -> Result<RangeScenario> {
-    let mut source = Source { path: path.map(Path::to_owned), lines: BTreeMap::new() };
-    if text.trim().is_empty() {
-        return Err(Error::malformed("the file is empty", MINIMUM).at(source.place("")));
-    }
-    let document = parse(text, &source)?;
-    source.note_lines(text, &document);
+    let mut source = Source { path: path.map(Path::to_owned), ..Source::default() };
+    let document = document(text, (FileKind::Range, MINIMUM), &mut source)?;
     let root = Section::open(&document, "", &source, TABLES)?;
     root.at_most_one(&["scene", "cube"])?;
     let subject = match (root.get("scene"), root.get("cube")) {
@@ -135,8 +131,7 @@ fn scene(entry: &Entry<'_>) -> Result<SceneSpec> {
         car_temperature_k: temperature("car_temperature")?,
         person_temperature_k: temperature("person_temperature")?,
         ground_emissivity: section.read("ground_emissivity", |entry| {
-            let [low, high] = entry.pair("[0.8, 1.0]")?;
-            Ok([low.number("0.8", SHARE)?, high.number("1.0", SHARE)?])
+            entry.range("[0.8, 1.0]", |end| end.number("0.8", SHARE), |share| share)
         })?,
         car: section.read("car", material)?,
         person: section.read("person", material)?,

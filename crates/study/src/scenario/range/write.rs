@@ -24,14 +24,14 @@ impl RangeScenario {
     /// ```
     #[must_use]
     pub fn to_toml(&self) -> String {
-        text(self.document(Paths { beside: None }))
+        text(self.document(Paths { beside: None }), &self.source)
     }
 
     /// As [`RangeScenario::to_toml`], with paths below `directory` written relative to it.
     #[must_use]
     pub fn to_toml_beside(&self, directory: &Path) -> String {
         let absolute = std::path::absolute(directory).ok();
-        text(self.document(Paths { beside: absolute.as_deref() }))
+        text(self.document(Paths { beside: absolute.as_deref() }), &self.source)
     }
 
     fn document(&self, paths: Paths<'_>) -> Document {
@@ -55,7 +55,7 @@ impl RangeScenario {
     }
 }
 
-/// The same keys and values as the TOML, with absolute paths.
+/// The same keys as the TOML, quantities in the units used inside, with absolute paths.
 impl Serialize for RangeScenario {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         entries(self.document(Paths { beside: None }), serializer)

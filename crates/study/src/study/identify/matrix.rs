@@ -207,10 +207,6 @@ impl Study {
         counting: Option<&Counting>,
     ) -> Result<Vec<f64>> {
         let local = |unknowns: Unknowns| {
-            if !self.enough_bands(&unknowns) && kind == DistanceKind::LocalUnknownGain {
-                // With no band to spare for the gain nothing is left, exactly.
-                return Ok(vec![0.0; emissivities.len() * emissivities.len()]);
-            }
             let mut matrix = LocalMatrix::new(&self.bands, &self.surroundings, unknowns);
             match counting {
                 Some(counting) => matrix.with_counting(emissivities, &self.state, counting),

@@ -107,6 +107,8 @@ pub struct PairResult {
     pub target: String,
     /// The alternative.
     pub alternative: String,
+    /// Whether each of the two is entered as one number for all wavenumbers: nothing is then known of what tells them apart.
+    pub placeholders: bool,
     /// Local distance per √photon, nuisances of the scenario.
     pub distance_local: f64,
     /// The same with gain unknown too: the paper's S29.

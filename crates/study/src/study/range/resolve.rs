@@ -4,7 +4,7 @@ use super::RangeStudy;
 use super::subject::{Depth, Measured, Rendered, Resolved};
 use crate::scenario::range::{CubeSpec, DepthSource, NoiseSource, SceneSpec, Subject};
 use crate::scenario::{MaterialRef, RangeScenario};
-use crate::study::{bands, camera};
+use crate::study::{bands, camera, camera_bands};
 use hadar::error::{Error, Result};
 use hadar::fisher::Counting;
 use hadar::instrument::{Camera, Readout, View};
@@ -27,7 +27,17 @@ impl RangeStudy {
     pub fn new(scenario: &RangeScenario, library: &Library) -> Result<Self> {
         let source = &scenario.source;
         let camera = scenario.camera.as_ref().map(|spec| camera::resolved(spec, source)).transpose()?;
-        let bands = scenario.bands.as_ref().map(|spec| bands::at_centres(spec, source)).transpose()?;
+        let mut scenario = scenario.clone();
+        if let Some(spec) = &mut scenario.bands {
+            spec.source = camera_bands::asked(&spec.source, camera.as_ref());
+        }
+        let asked = scenario.bands.as_ref().map(|spec| &spec.source);
+        let bands = asked.map(|asked| bands::at_centres(asked, source)).transpose()?;
+        if let (Some(camera), Some(spec), Some(asked), Some(bands)) =
+            (&camera, &scenario.camera, asked, &bands)
+        {
+            camera_bands::check(camera, spec, asked, bands, &|key| scenario.place(key))?;
+        }
         let bands = match (&camera, bands) {
             (Some(camera), Some(bands)) => Some(camera.received(&bands)),
             (_, bands) => bands,
@@ -52,13 +62,13 @@ impl RangeStudy {
                     let found = Error::malformed("a scene without camera", "write [camera]");
                     return Err(found.at(scenario.place("scene")));
                 };
-                Resolved::Scene(Box::new(scene(spec, scenario, library, camera, bands)?))
+                Resolved::Scene(Box::new(scene(spec, &scenario, library, camera, bands)?))
             }
             Subject::Cube(spec) => {
-                Resolved::Cube(Box::new(cube(spec, scenario, camera.as_ref(), bands.as_ref())?))
+                Resolved::Cube(Box::new(cube(spec, &scenario, camera.as_ref(), bands.as_ref())?))
             }
         };
-        Ok(Self { scenario: scenario.clone(), camera, bands, geometry, subject, looked_up: library.work() })
+        Ok(Self { scenario, camera, bands, geometry, subject, looked_up: library.work() })
     }
 }
 

@@ -103,6 +103,7 @@ impl RuleStudy {
             why,
             distance_m: near.first().and_then(|study| study.scenario.target.distance_m),
             required: self.required,
+            units: self.rule.scenario.units(),
         };
         Ok(NotIdentifiable {
             fraction,
@@ -129,9 +130,10 @@ impl RuleStudy {
         let least = self.envelope.distance_m.map(|[least, _]| least);
         let sharp = cameras.iter().filter_map(|camera| Some(Motion::of(camera, least)?.longest_s(speed?)));
         match (sharp.reduce(f64::max), speed, self.envelope.distance_m) {
-            (Some(exposure), Some(speed_m_s), Some([distance_m, _])) => {
-                (exposure * f64::from(frames), LightTime::Sharp { frames, speed_m_s, distance_m })
-            }
+            (Some(exposure), Some(speed_m_s), Some([distance_m, _])) => (
+                exposure * f64::from(frames),
+                LightTime::Sharp { frames, speed_m_s, distance_m, units: self.rule.scenario.units() },
+            ),
             _ => {
                 let longest = cameras.iter().map(|camera| camera.integration_s()).fold(0.0, f64::max);
                 (longest, LightTime::LongestIntegration)
@@ -173,8 +175,11 @@ fn share(drawn: &[Drawn], of: impl Fn(&Drawn) -> bool) -> (f64, f64) {
     (mean, if n > 1.0 { (spread / (n * (n - 1.0))).sqrt() } else { 0.0 })
 }
 
-/// How near to equilibrium the scenes are in which no camera could do it.
+/// How near to equilibrium the scenes are in which no camera could do it; without surroundings there is none.
 fn neighbourhood(drawn: &[Drawn]) -> Option<Neighbourhood> {
+    if drawn.iter().all(|scene| scene.state.lighting.iter().all(|lighting| *lighting == 0.0)) {
+        return None;
+    }
     let bad = || drawn.iter().filter(|scene| !scene.told).map(|scene| &scene.state);
     let most = |mut values: Vec<f64>| {
         values.sort_by(f64::total_cmp);

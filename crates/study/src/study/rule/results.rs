@@ -1,9 +1,10 @@
 //! What comes of a rule, as data.
 
-use crate::scenario::Rule;
+use crate::scenario::{Rule, Units};
 use crate::study::size::Solutions;
 use crate::study::{NearestState, Shortfall, Warning};
 use hadar::demand::Work;
+use hadar::instrument::Readout;
 use hadar::policy::envelope::Certificate;
 use hadar::policy::{Quantity, Solution};
 use std::collections::BTreeMap;
@@ -32,13 +33,41 @@ pub struct RuleAnswer {
     pub stats: Work,
 }
 
-/// Names of the cameras that meet a rule, and of the others. Its `Display` is a sentence.
-#[derive(Debug, Clone, PartialEq, Eq)]
+/// Names of the cameras that meet a rule, and of the others. Its `Display` is a sentence, and another one where
+/// placeholders decide.
+#[derive(Debug, Clone, PartialEq)]
 pub struct WhoMeets {
-    /// Those that do.
-    pub meet: Vec<String>,
+    /// Those that do, each with what it hangs on.
+    pub meet: Vec<(String, Option<Proviso>)>,
     /// Those that do not.
     pub fail: Vec<String>,
+    /// Pairs that limit a camera though each of the two is entered as one number, with the numbers.
+    pub placeholders: Vec<(String, String, [f64; 2])>,
+}
+
+/// What a 'yes' hangs on. Its `Display` completes 'yes, if '.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Proviso {
+    /// Frames that must be laid over each other.
+    pub frames: u32,
+    /// Time until all are read, s.
+    pub time_s: f64,
+    /// Way of the vehicle meanwhile, m.
+    pub way_m: f64,
+}
+
+/// A camera over the pairs of which more than one number is known of one of the two.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
+pub struct WithoutPlaceholders {
+    /// Statistical distance over that demanded, least over the envelope.
+    pub margin: f64,
+    /// Statistical distance, least over the envelope.
+    pub statistical_distance: f64,
+    /// Of the target.
+    pub target: String,
+    /// What it is the least against.
+    pub alternative: String,
 }
 
 /// What a rule demands of any camera.
@@ -69,6 +98,8 @@ pub struct Quotable {
     pub speed_m_s: Option<f64>,
     /// H_req, m² s; `None` where that figure of the hardware does not tell all.
     pub hardware_m2_s: Option<f64>,
+    /// Units of the sentence.
+    pub units: Units,
 }
 
 /// The envelope as it was searched.
@@ -99,6 +130,14 @@ pub struct CameraVerdict {
     pub passes: bool,
     /// What it does not meet.
     pub fails_by: Vec<Shortfall>,
+    /// What meeting it hangs on; in JSON what completes 'yes, if '.
+    pub provided: Option<Proviso>,
+    /// Number of bands.
+    pub bands: usize,
+    /// How they are read.
+    pub readout: Readout,
+    /// Time until all of them are exposed once, s.
+    pub sweep_s: f64,
     /// Statistical distance over that demanded, in the limiting scene.
     pub margin: f64,
     /// Statistical distance in the limiting scene.
@@ -111,13 +150,16 @@ pub struct CameraVerdict {
     pub certificate: Certified,
     /// The scene that limits.
     pub limiting: LimitingScene,
+    /// Where that is of a pair entered as one number each: what the camera does without such pairs, if there are others.
+    pub without_placeholders: Option<WithoutPlaceholders>,
     /// What would fix it, in the limiting scene; `None` where nothing needs to be fixed or that was not asked for.
     pub fixes: Option<Fixes>,
     /// Apparent motion during an exposure at the rule's speed and the least distance, pixels; `None` where it cannot be known.
     pub motion_blur_pixels: Option<f64>,
     /// Photons of the fullest reading in the brightest scene, at most.
     pub brightest_reading: f64,
-    /// The longest exposure without a pixel of blur and without a full well, s; `None` where neither can be known.
+    /// The longest exposure without a pixel of blur and without a full well, s; 0 where the frames alone take too long, `None`
+    /// where neither can be known.
     pub longest_exposure_s: Option<f64>,
     /// What the reader must know.
     pub warnings: Vec<Warning>,
@@ -198,6 +240,8 @@ pub struct LimitingScene {
     pub distance_m: Option<f64>,
     /// Whether the counts at the least and the greatest distance of the envelope differ by more than a thousandth.
     pub distance_matters: bool,
+    /// Emissivities of the two where each is entered as one number.
+    pub placeholders: Option<[f64; 2]>,
     /// The state of the alternative that is nearest to it.
     pub nearest_state: NearestState,
     /// H_req of the paper's inequality in this scene, m² s; `None` where no hardware suffices.
@@ -265,6 +309,8 @@ pub struct IdealCamera {
     pub distance_m: Option<f64>,
     /// Statistical distance demanded.
     pub required: f64,
+    /// Units of the sentence.
+    pub units: Units,
 }
 
 /// Why light is collected for so long.
@@ -278,6 +324,8 @@ pub enum LightTime {
         speed_m_s: f64,
         /// Least distance, m.
         distance_m: f64,
+        /// Units of the sentence.
+        units: Units,
     },
     /// No camera collects it longer.
     LongestIntegration,

@@ -6,13 +6,13 @@
 
 use super::super::{NearestState, Shortfall, Study, Surface, Warning, warn};
 use super::envelope::{Estimate, Sighted, brightest};
-use super::results::{CameraVerdict, Certified, Fixes, LimitingScene};
+use super::results::{CameraVerdict, Certified, Fixes, LimitingScene, Proviso, WithoutPlaceholders};
 use super::{Candidate, RuleStudy};
 use hadar::demand::{self, Reason, Thing};
 use hadar::error::{Error, Result};
 use hadar::fisher::Nuisance;
 use hadar::identifiability::detection;
-use hadar::instrument::Camera;
+use hadar::instrument::{Camera, Readout};
 use hadar::minimum::golden_section;
 use hadar::policy::envelope::{Certificate, Effort, WorstCase, worst_case};
 use hadar::policy::{self, CapCode, Quantity};
@@ -57,7 +57,9 @@ impl Searched {
 impl RuleStudy {
     /// The verdict on one camera; `alone` asks for no more than it.
     pub(super) fn judged(&self, candidate: &Candidate, alone: bool) -> Result<CameraVerdict> {
-        let worst = self.worst(candidate, alone)?;
+        let worst = self.worst(candidate, alone, &|_, _| true)?.ok_or_else(|| {
+            Error::malformed("there is no pair of materials", "name one in alternatives.materials")
+        })?;
         let sighted = worst.between.as_deref().unwrap_or(&candidate.sighted[worst.pair.sighted]);
         let surface = &sighted.study.alternatives[worst.pair.alternative];
         let distance = worst.pair.distance;
@@ -94,7 +96,11 @@ impl RuleStudy {
             &worst.pair,
             self.is_unknown(Nuisance::EnvironmentTemperature),
         );
-        let mut fixes = None;
+        let (mut fixes, mut without_placeholders) = (None, None);
+        if let Some(warning) = at.placeholders(surface) {
+            warnings.push(warning);
+            without_placeholders = if alone { None } else { self.without_placeholders(candidate)? };
+        }
         if !alone {
             let shot = at.nearest(surface, f64::INFINITY)?;
             limiting.hardware_m2_s = policy::photons_required(self.required, shot.distance)
@@ -118,6 +124,7 @@ impl RuleStudy {
                     // Those of the limiting scene that the brightest one does not know of.
                     spoiled.extend(solution.caps.iter().filter_map(|cap| match cap.code {
                         CapCode::Diffraction => Some(Shortfall::Diffraction),
+                        CapCode::Impractical => Some(Shortfall::Impractical),
                         CapCode::LowestNoise => Some(Shortfall::LowestNoise),
                         CapCode::FrameRate | CapCode::FullWell | CapCode::Motion => None,
                     }));
@@ -129,10 +136,20 @@ impl RuleStudy {
                 fixes = Some(Fixes { any, spoils, quantities });
             }
         }
+        let frames = warnings.iter().find_map(|warning| match *warning {
+            Warning::FramesInMotion { frames, time_s, way_m } => Some(Proviso { frames, time_s, way_m }),
+            _ => None,
+        });
+        let bands = at.bands.len();
         Ok(CameraVerdict {
             name: candidate.name.clone(),
             passes,
             fails_by,
+            provided: frames.filter(|_| passes),
+            bands,
+            readout: at.camera.as_ref().map_or(Readout::Simultaneous, |camera| camera.readout),
+            sweep_s: at.camera.as_ref().map_or(0.0, |camera| camera.sweep_s(bands)),
+            without_placeholders,
             margin: distance / self.required,
             statistical_distance: distance,
             detection_probability: detection::probability(distance),
@@ -162,7 +179,9 @@ impl RuleStudy {
             image.blur = seen.motion_blur_pixels;
             image.reading = image.reading.max(seen.brightest_reading);
         }
-        let blurred = image.blur.map(|blur| camera.exposure_s / blur);
+        let bands = candidate.near.first().map_or(1, |near| near.bands.len());
+        let blurred =
+            image.blur.map(|blur| camera.exposure_of_sweep_s(bands, camera.sweep_s(bands) / blur).max(0.0));
         let full = camera.full_well.map(|full| camera.exposure_s * full / image.reading);
         image.longest_exposure_s = blurred.into_iter().chain(full).reduce(f64::min);
         if image.blur.is_some_and(|blur| blur >= 1.0) {
@@ -191,6 +210,8 @@ impl RuleStudy {
             let (frames, way_m) = (camera.frames, time_s * speed);
             warnings.push(Warning::FramesInMotion { frames, time_s, way_m });
         }
+        let farthest_m = self.envelope.distance_m.map(|[_, most]| most);
+        warnings.extend(near.size_unknown(camera, farthest_m));
         let assumed = camera.assumed.iter().cloned();
         warnings.extend(assumed.map(|figure| Warning::CameraFigureAssumed { figure }));
         if self.rule.scenario.requirement.speed_m_s.is_some() && self.image(candidate, camera).blur.is_none()
@@ -201,12 +222,19 @@ impl RuleStudy {
     }
 
     /// The worst of all pairs, or a scene that is below the requirement where no more is asked for.
-    fn worst(&self, candidate: &Candidate, alone: bool) -> Result<Searched> {
+    fn worst(
+        &self,
+        candidate: &Candidate,
+        alone: bool,
+        counts: &dyn Fn(&Surface, &Surface) -> bool,
+    ) -> Result<Option<Searched>> {
         let mut pairs: Vec<Estimate> = Vec::new();
         for (index, sighted) in candidate.sighted.iter().enumerate() {
             let (estimates, searched) = sighted.estimates(index)?;
             demand::computed(Thing::NearestSearches, searched);
-            pairs.extend(estimates);
+            let Study { target, alternatives, .. } = &sighted.study;
+            pairs
+                .extend(estimates.into_iter().filter(|pair| counts(target, &alternatives[pair.alternative])));
         }
         pairs.sort_by(|a, b| a.distance.total_cmp(&b.distance));
         let count = pairs.len();
@@ -217,7 +245,7 @@ impl RuleStudy {
             if alone && (pair.distance < self.required || best < self.required) {
                 demand::spared(Thing::WorstCases, Reason::AnotherOne, (count - done) as u64);
                 if best >= self.required {
-                    return Ok(Searched::estimated(pair));
+                    return Ok(Some(Searched::estimated(pair)));
                 }
                 all = false;
                 break;
@@ -243,18 +271,15 @@ impl RuleStudy {
         let lower: Option<Vec<f64>> = found.iter().map(|searched| searched.lower_bound).collect();
         let lower = lower.map(|bounds| bounds.into_iter().fold(f64::INFINITY, f64::min));
         let worst = found.into_iter().min_by(|a, b| a.pair.distance.total_cmp(&b.pair.distance));
-        let Some(worst) = worst else {
-            let instead = "name one in alternatives.materials";
-            return Err(Error::malformed("there is no pair of materials", instead));
-        };
+        let Some(worst) = worst else { return Ok(None) };
         if !all {
             // A scene below the requirement, and other pairs not looked at.
-            return Ok(Searched::estimated(worst.pair));
+            return Ok(Some(Searched::estimated(worst.pair)));
         }
         if candidate.distance_searched {
             let worst = self.between(candidate, worst)?;
             let certificate = Some(Certificate::DenseSearch { points: candidate.sighted.len() });
-            return Ok(Searched { lower_bound: None, certificate, ..worst });
+            return Ok(Some(Searched { lower_bound: None, certificate, ..worst }));
         }
         let distance = worst.pair.distance;
         let certificate = match (worst.certificate, lower) {
@@ -263,7 +288,21 @@ impl RuleStudy {
             (_, Some(bound)) if bound >= distance * (1.0 - TOLERANCE) => Some(Certificate::BranchAndBound),
             (_, Some(bound)) => Some(Certificate::Bounded { gap: 1.0 - bound / distance }),
         };
-        Ok(Searched { lower_bound: lower, certificate, ..worst })
+        Ok(Some(Searched { lower_bound: lower, certificate, ..worst }))
+    }
+
+    /// The worst of the pairs that are more than two numbers, where one of numbers alone is the worst of all.
+    fn without_placeholders(&self, candidate: &Candidate) -> Result<Option<WithoutPlaceholders>> {
+        let known = |target: &Surface, other: &Surface| target.placeholders(other).is_none();
+        Ok(self.worst(candidate, false, &known)?.map(|worst| {
+            let Study { target, alternatives, .. } = &candidate.sighted[worst.pair.sighted].study;
+            WithoutPlaceholders {
+                margin: worst.pair.distance / self.required,
+                statistical_distance: worst.pair.distance,
+                target: target.name.clone(),
+                alternative: alternatives[worst.pair.alternative].name.clone(),
+            }
+        }))
     }
 }
 
@@ -330,6 +369,7 @@ fn limiting(
             gain: pair.nearest.gain,
             environment_temperature_k: environment.then(|| pair.nearest.environment_k.clone()),
         },
+        placeholders: at.target.placeholders(surface),
         hardware_m2_s: None,
     }
 }

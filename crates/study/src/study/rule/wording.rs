@@ -1,26 +1,58 @@
 //! What comes of a rule in sentences.
 
 use super::results::{
-    Certified, EmissivityError, EnvelopeResult, IdealCamera, LightTime, Proof, Quotable, WhoMeets,
+    Certified, EmissivityError, EnvelopeResult, IdealCamera, LightTime, Proof, Proviso, Quotable, WhoMeets,
 };
-use crate::words::reliability;
-use hadar::words::{quantity, significant};
+use crate::scenario::{Units, interval};
+use crate::words::demanded;
+use hadar::words::{length, quantity, significant};
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 use std::fmt::{self, Display, Formatter};
 
 impl Display for WhoMeets {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        match (self.meet.as_slice(), self.fail.as_slice()) {
+        let all = self.meet.len() + self.fail.len();
+        let meet: Vec<String> = self
+            .meet
+            .iter()
+            .map(|(name, proviso)| match proviso {
+                None => name.clone(),
+                Some(Proviso { frames, .. }) => format!("{name} (if its {frames} frames can be registered)"),
+            })
+            .collect();
+        match (meet.as_slice(), self.fail.as_slice()) {
             ([one], []) => write!(f, "{one} meets the rule."),
             ([], [one]) => write!(f, "{one} does not meet the rule."),
-            (all, []) => write!(f, "All {} cameras meet the rule: {}.", all.len(), all.join(", ")),
-            ([], all) => write!(f, "None of {} cameras meets the rule: {}.", all.len(), all.join(", ")),
-            ([one], rest) => write!(f, "1 of {} cameras meets the rule: {one}.", 1 + rest.len()),
-            (some, rest) => {
-                let all = some.len() + rest.len();
-                write!(f, "{} of {all} cameras meet the rule: {}.", some.len(), some.join(", "))
-            }
-        }
+            (names, []) => write!(f, "All {all} cameras meet the rule: {}.", names.join(", ")),
+            ([], names) => write!(f, "None of {all} cameras meets the rule: {}.", names.join(", ")),
+            ([one], _) => write!(f, "1 of {all} cameras meets the rule: {one}."),
+            (some, _) => write!(f, "{} of {all} cameras meet the rule: {}.", some.len(), some.join(", ")),
+        }?;
+        self.placeholders.iter().try_for_each(|(target, alternative, [one, other])| {
+            write!(
+                f,
+                " It hangs on {target} against {alternative}, which are entered as one number each ({one} and {other}): that \
+                 says nothing of real surfaces."
+            )
+        })
+    }
+}
+
+impl Display for Proviso {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "its {} frames can be registered ({}, in which the vehicle drives {})",
+            self.frames,
+            quantity(self.time_s, "s"),
+            length(self.way_m)
+        )
+    }
+}
+
+impl Serialize for Proviso {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
     }
 }
 
@@ -30,26 +62,27 @@ impl Display for Quotable {
             f,
             "A camera meets this rule if, in every scene of the envelope ({}), it tells {} from {} with {} reliability \
              (statistical distance d of at least {})",
-            in_words(&self.envelope),
+            in_words(&self.envelope, self.units),
             either(&self.envelope.materials),
             either(&self.envelope.alternatives),
-            reliability(self.required),
+            demanded(self.required),
             significant(self.required, 4),
         )?;
         if let Some(speed) = self.speed_m_s {
-            let speed = significant(speed, 3);
+            let speed = self.units.speed(speed);
             write!(
                 f,
                 ", and nothing that stands moves by a pixel while all bands are exposed, seen from a vehicle that drives \
-                 forward at {speed} m/s"
+                 forward at {speed}"
             )?;
         }
         f.write_str(".")?;
         if let Some(hardware) = self.hardware_m2_s {
             write!(
                 f,
-                " Where its noise is spread over the bands as its photons are, this is t A_p/((1+gamma) F^2) >= {hardware:.2e} m^2 s \
-                 (exposure t, pixel area A_p, noise over photons gamma, f-number F; lossless optics)."
+                " Where its noise is spread over the bands as its photons are, this is t A_p/((1+gamma) F^2) >= {} m^2 s \
+                 (exposure t, pixel area A_p, noise over photons gamma, f-number F; lossless optics).",
+                significant(hardware, 3)
             )?;
         }
         Ok(())
@@ -75,7 +108,7 @@ impl Display for Certified {
 
 impl Display for IdealCamera {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let distance = self.distance_m.map_or_else(String::new, |z| format!(" at {} m", significant(z, 3)));
+        let distance = self.distance_m.map_or_else(String::new, |z| format!(" at {}", self.units.length(z)));
         write!(
             f,
             "no camera: a detector that counts every photon and adds no noise, f/{}, pixel {} (the largest of the \
@@ -84,7 +117,7 @@ impl Display for IdealCamera {
             quantity(self.pixel_m, "m"),
             quantity(self.time_s, "s"),
             self.why,
-            reliability(self.required)
+            demanded(self.required)
         )
     }
 }
@@ -92,12 +125,12 @@ impl Display for IdealCamera {
 impl Display for LightTime {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Sharp { frames, speed_m_s, distance_m } => {
+            Self::Sharp { frames, speed_m_s, distance_m, units } => {
                 if *frames > 1 {
                     write!(f, "{frames} frames, each ")?;
                 }
-                let speed = significant(*speed_m_s, 3);
-                write!(f, "as long as less than a pixel of blur allows at {speed} m/s and {distance_m} m")
+                let (speed, distance) = (units.speed(*speed_m_s), units.length(*distance_m));
+                write!(f, "as long as less than a pixel of blur allows at {speed} and {distance}")
             }
             Self::LongestIntegration => f.write_str("the longest integration among the cameras"),
         }
@@ -125,24 +158,14 @@ fn either(names: &[String]) -> String {
 }
 
 /// The ranges of an envelope in a few words.
-fn in_words(envelope: &EnvelopeResult) -> String {
-    let celsius = |range: [f64; 2]| interval(range.map(|kelvin| kelvin - 273.15), "degC");
-    let mut parts = vec![format!("target {}", celsius(envelope.temperature_k))];
+fn in_words(envelope: &EnvelopeResult, units: Units) -> String {
+    let mut parts = vec![format!("target {}", units.temperatures(envelope.temperature_k))];
     let objects = envelope.surroundings_k.iter().zip(&envelope.lighting);
     parts.extend(objects.map(|(kelvin, lighting)| {
-        format!("surroundings {} lighting it by {}", celsius(*kelvin), interval(*lighting, ""))
+        format!("surroundings {} lighting it by {}", units.temperatures(*kelvin), interval(*lighting, ""))
     }));
-    parts.extend(envelope.distance_m.map(|range| format!("distance {}", interval(range, "m"))));
+    parts.extend(envelope.distance_m.map(|range| format!("distance {}", units.lengths(range))));
     parts.join(", ")
-}
-
-fn interval([low, high]: [f64; 2], unit: &str) -> String {
-    let shown = |value: f64| {
-        let rounded = (value * 1e6).round() / 1e6;
-        if rounded == 0.0 { "0".to_owned() } else { format!("{rounded}") }
-    };
-    let range = if low == high { shown(low) } else { format!("{} to {}", shown(low), shown(high)) };
-    if unit.is_empty() { range } else { format!("{range} {unit}") }
 }
 
 impl Serialize for Certified {

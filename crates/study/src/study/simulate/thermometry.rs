@@ -23,6 +23,7 @@
 //! Trans. Acoust. Speech Signal Process. 35, 286 (1987) (hybrid bound); Gill and Levit, Bernoulli 1, 59 (1995),
 //! doi:10.2307/3318681 (law).
 
+use crate::scenario::Units;
 use crate::study::{Study, Warning};
 use hadar::demand::{Reason, Thing, Work};
 use hadar::error::{Error, Result};
@@ -51,6 +52,9 @@ pub struct Thermometry {
     pub camera: String,
     /// Law of the counts.
     pub statistics: &'static str,
+    /// Units in which its scenario was written.
+    #[serde(skip)]
+    pub units: Units,
     /// True lighting factors.
     pub lighting: Vec<f64>,
     /// Temperatures of the surroundings, K.
@@ -236,6 +240,7 @@ impl Study {
             target: self.target.name.clone(),
             camera: camera.name.clone(),
             statistics: scene.statistics()?.name(),
+            units: self.units(),
             lighting: self.state.lighting.clone(),
             environment_k: self.state.environment_k.clone(),
             unknown: unknown.iter().map(|nuisance| nuisance.name()).collect(),

@@ -45,9 +45,6 @@ impl<'a> Solvers<'a> {
     ) -> Result<(f64, Option<State>)> {
         if study.scenario.requirement.by != DistanceKind::Nearest {
             let unknowns = study.decisive_unknowns();
-            if !study.enough_bands(&unknowns) {
-                return Ok((0.0, None));
-            }
             study.book_local(&unknowns, 1);
             let local = self.local.with_counting(target, other, &study.state, counting)?;
             return Ok((local.distance, None));

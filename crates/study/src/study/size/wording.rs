@@ -2,15 +2,30 @@
 
 use super::{Answer, Finding};
 use crate::study::Shortfall;
-use crate::words::reliability;
+use crate::words::{demanded, reliability};
+use hadar::fisher::Nuisance;
+use hadar::words::significant;
 use serde::{Serialize, Serializer};
 use std::fmt::{self, Display, Formatter};
 
 impl Display for Finding {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        self.answered(f)?;
+        match self.placeholders {
+            Some([one, other]) => write!(
+                f,
+                " Both are entered as one number ({one} and {other}): that says nothing of real surfaces."
+            ),
+            None => Ok(()),
+        }
+    }
+}
+
+impl Finding {
+    fn answered(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let Self { camera, target, .. } = self;
         let other = self.alternative.as_deref().unwrap_or("every alternative");
-        let wanted = reliability(self.required);
+        let wanted = demanded(self.required);
         match &self.answer {
             Answer::NothingDiffers => {
                 write!(f, "No camera can tell {target} from {other} here: nothing in the spectrum differs.")
@@ -19,9 +34,23 @@ impl Display for Finding {
                 f,
                 "No camera can tell {target} from {other} here: the unknowns explain every difference in the spectrum."
             ),
+            Answer::TooFewBands { bands, unknowns } => {
+                let (yes, colon) = if camera.is_empty() {
+                    (format!("No camera can tell {target} from {other} here"), String::new())
+                } else {
+                    ("No".into(), format!(": {camera} cannot tell {target} from {other}"))
+                };
+                let (unknown, are) = together(unknowns);
+                let many = match bands {
+                    1 => "one band".into(),
+                    bands => format!("{bands} bands"),
+                };
+                write!(f, "{yes}: {many} cannot tell materials while {unknown} {are} unknown{colon}.")
+            }
             Answer::Takes { photons } => write!(
                 f,
-                "Telling {target} from {other} with {wanted} reliability takes at least {photons:.2e} photons."
+                "Telling {target} from {other} with {wanted} reliability takes at least {} photons.",
+                significant(*photons, 3)
             ),
             Answer::Judged { enough, spoiled, reached } => {
                 let (yes, can) = match (enough, spoiled.is_empty()) {
@@ -37,6 +66,16 @@ impl Display for Finding {
                 }
             }
         }
+    }
+}
+
+/// Unknowns in a sentence, and the verb that goes with them.
+fn together(unknowns: &[Nuisance]) -> (String, &'static str) {
+    let names: Vec<&str> = unknowns.iter().map(|nuisance| nuisance.name()).collect();
+    match names.as_slice() {
+        [] => ("nothing".into(), "is"),
+        [one] => ((*one).into(), "is"),
+        [most @ .., last] => (format!("{} and {last}", most.join(", ")), "are"),
     }
 }
 

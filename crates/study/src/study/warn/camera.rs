@@ -26,6 +26,7 @@ impl Study {
             self.motion(result),
             full_well(result),
             self.small_target(camera),
+            self.size_unknown(camera, self.scenario.target.distance_m),
             self.diffraction(camera),
             self.frame_rate(camera),
             self.outside_range(camera),
