@@ -96,7 +96,7 @@ fn drawn(study: &Study, result: &Sizing) -> Result<Vec<Plot>> {
         let here = (state.temperature_k, state.lighting.first().copied().unwrap_or(0.0));
         let collected = collected(result, pair);
         let by = result.requirement.by;
-        drawn.push(figures::photon_map(&map, [target, other], here, by, collected.as_ref()));
+        drawn.extend(figures::photon_map(&map, [target, other], here, by, collected.as_ref()));
     }
     Ok(drawn)
 }
