@@ -70,7 +70,7 @@ pub fn bounds(result: &Ranging) -> Table {
             table.push(vec![
                 object.name.clone(),
                 found.signal.name().to_owned(),
-                object.windows.to_string(),
+                found.windows.to_string(),
                 optional(object.depth_m.map(|depth| depth[1])),
                 number(found.photons),
                 number(found.gamma),

@@ -1,6 +1,7 @@
 //! What every command shares: its options, the library, the study, and how answers leave the process.
 
 use super::progress::Bar;
+use super::stderr::say;
 use super::terminal::Stream;
 use clap::Args;
 use hadar::demand::{Reason, Skipping, Thing, Work};
@@ -74,7 +75,7 @@ impl Global {
     /// A line on stderr, unless quiet.
     pub(super) fn note(&self, text: &str) {
         if !self.quiet {
-            eprintln!("{text}");
+            say(text);
         }
     }
 

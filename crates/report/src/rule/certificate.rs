@@ -1,7 +1,7 @@
 //! The certificate: one page of Markdown that says what was checked, what came out, and what it rests on.
 
 use super::text;
-use crate::text::footing::{GAUSSIAN, of_scene};
+use crate::text::footing::{gaussian, of_scene};
 use crate::text::significant;
 use hadar_study::scenario::Units;
 use hadar_study::study::{CameraVerdict, RuleAnswer, RuleStudy};
@@ -33,7 +33,7 @@ pub(super) fn markdown(study: &RuleStudy, answer: &RuleAnswer) -> String {
     }
     out.push_str("## What this rests on\n\n");
     if let Some(study) = study.study() {
-        let footing = of_scene(study, GAUSSIAN);
+        let footing = of_scene(study, gaussian(study));
         footing.lines().skip(1).for_each(|line| {
             let _ = writeln!(out, "- {}", line.trim());
         });
