@@ -228,7 +228,7 @@ fn a_folder_that_cannot_be_written_to_is_refused_before_any_work() {
         }
     }
     fs::create_dir_all(folder.path().join("report/pairs.csv")).unwrap();
-    let said = folder.refusal(&["size", "a.toml", "--out", "report"]);
+    let said = folder.refusal(&["size", "a.toml", "--out", "report", "--force"]);
     assert!(said.contains("its `pairs.csv` is a folder"), "{said}");
 }
 
