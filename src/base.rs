@@ -3,6 +3,7 @@
 pub mod allowed;
 pub mod demand;
 pub mod error;
+pub mod file;
 pub mod grid;
 pub mod inputs;
 pub mod lattice_points;

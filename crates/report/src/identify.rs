@@ -6,7 +6,7 @@ mod text;
 pub use text::{check, text};
 
 use crate::bundle::Bundle;
-use crate::figures::Plot;
+use crate::size::pictures_of_pairs;
 use crate::table::{Table, number, optional};
 use crate::tables;
 use hadar::error::Result;
@@ -31,7 +31,8 @@ pub fn bundle(study: &Study, answers: &Answers, seed: u64, out: &Path) -> Result
         }
         bundle.add_table("prediction.csv", table)?;
     }
-    let mut plots: Vec<Plot> = Vec::new();
+    let mut plots = vec![figures::distances(study, &result.pairs)];
+    plots.extend(pictures_of_pairs(study, &result.pairs, &result.limiting)?);
     if let Some(matrix) = &answers.matrix {
         bundle.add_table("matrix_nearest.csv", square(matrix, &matrix.distance_nearest, PER_PHOTON))?;
         bundle.add_table("matrix_local.csv", square(matrix, &matrix.distance_local, PER_PHOTON))?;
@@ -45,7 +46,7 @@ pub fn bundle(study: &Study, answers: &Answers, seed: u64, out: &Path) -> Result
         plots.push(figures::distance_matrix(matrix));
         plots.push(figures::minimum_distances(matrix));
         if let Some(spectra) = study.sample_spectra(seed)? {
-            plots.push(figures::sample_spectra(&spectra));
+            plots.push(figures::sample_spectra(&spectra, study.bands(), &result.limiting));
         }
     }
     if let Some(apart) = answers.apart.as_ref().or(answers.matrix.as_ref().and_then(|m| m.apart.as_ref())) {
@@ -53,12 +54,12 @@ pub fn bundle(study: &Study, answers: &Answers, seed: u64, out: &Path) -> Result
         bundle.add_table("clusters.csv", clusters(apart))?;
     }
     if let Some(scaling) = &answers.scaling {
-        plots.push(figures::library_size(scaling, &study.target().name));
-        plots.push(figures::band_number(scaling, &study.target().name));
+        plots.extend(figures::library_size(scaling, &study.target().name));
+        plots.extend(figures::band_number(scaling, study));
     }
     if let Some(bands) = &answers.bands_that_matter {
         bundle.add_table("best_bands.csv", best_bands(bands, study.camera().is_some()))?;
-        plots.push(figures::bands_that_matter(bands, &study.target().name));
+        plots.push(figures::bands_that_matter(bands, study));
     }
     if let Some(exact) = &answers.exact {
         bundle.add_table("exact.csv", crate::identify::exact(exact))?;

@@ -55,6 +55,11 @@ pub use pictures::{Picture, Pictures};
 
 use hadar::Result;
 
+/// A number as it is written in pictures: three digits, powers of ten with superscripts.
+pub(crate) fn number(value: f64) -> String {
+    ticks::label(value)
+}
+
 /// Anything that can be drawn.
 #[derive(Debug, Clone)]
 pub enum Figure {

@@ -69,7 +69,7 @@ pub fn bounds(result: &Ranging) -> Table {
             table.push(vec![
                 object.name.clone(),
                 found.signal.name().to_owned(),
-                object.windows.to_string(),
+                found.windows.to_string(),
                 optional(object.depth_m.map(|depth| depth[1])),
                 number(found.photons),
                 number(found.gamma),
@@ -107,7 +107,17 @@ fn cells(result: &Ranging) -> Option<Table> {
 /// Bounds and witnesses along lines, a row for every window.
 pub(super) fn lines_table<'a>(lines: impl IntoIterator<Item = &'a Line>) -> Table {
     let mut table = Table::new([
-        "row", "column", "signal", "method", "depth_m", "bound_m", "rmse_m", "bias_m", "outliers", "trials",
+        "row",
+        "column",
+        "signal",
+        "method",
+        "depth_m",
+        "bound_m",
+        "bound_without_diffraction_m",
+        "rmse_m",
+        "bias_m",
+        "outliers",
+        "trials",
     ]);
     for line in lines {
         for (i, column) in line.columns.iter().enumerate() {
@@ -119,6 +129,7 @@ pub(super) fn lines_table<'a>(lines: impl IntoIterator<Item = &'a Line>) -> Tabl
                 line.method.unwrap_or_default().to_owned(),
                 at(&line.depth_m),
                 at(&line.bound_m),
+                at(&line.bound_without_diffraction_m),
                 at(&line.rmse_m),
                 at(&line.bias_m),
                 at(&line.outliers),

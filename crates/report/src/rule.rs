@@ -14,10 +14,11 @@ use super::figures::Plot;
 use super::manifest::{Input, Provenance};
 use super::plot::{Axis, Figure, NamedSeries, NamedValues};
 use super::table::{Table, number, optional};
+use super::text::shortfalls::no;
 use super::text::significant;
 use hadar::error::Result;
 use hadar::policy::Quantity;
-use hadar_study::study::{CameraVerdict, RuleAnswer, RuleStudy, Shortfall, Warning};
+use hadar_study::study::{CameraVerdict, RuleAnswer, RuleStudy, Warning};
 use std::path::Path;
 
 /// What can be changed of a camera.
@@ -136,25 +137,26 @@ fn inputs(provenance: &Provenance) -> Table {
     table
 }
 
-/// The margin of every camera, the best first.
+/// The margin of every camera: those that meet the rule first, then the others, each with what it fails by.
 fn margins(answer: &RuleAnswer) -> Plot {
     let mut ranked: Vec<&CameraVerdict> = answer.cameras.iter().collect();
-    ranked.sort_by(|a, b| b.margin.total_cmp(&a.margin));
-    let mut table = Table::new(["camera", "margin", "margin_proved"]);
+    ranked.sort_by(|a, b| b.passes.cmp(&a.passes).then(b.margin.total_cmp(&a.margin)));
+    let mut table = Table::new(["camera", "meets_the_rule", "fails_by", "margin", "margin_proved"]);
     let required = answer.requirement.distance;
     for camera in &ranked {
         let proved = camera.lower_bound.map(|bound| bound / required);
-        table.push(vec![camera.name.clone(), number(camera.margin), optional(proved)]);
+        table.push(vec![
+            camera.name.clone(),
+            if camera.passes { "yes" } else { "no" }.into(),
+            text::codes(&camera.fails_by, " "),
+            number(camera.margin),
+            optional(proved),
+        ]);
     }
     // The margin does not show what else a camera fails by.
-    let named = |camera: &&CameraVerdict| match camera
-        .fails_by
-        .iter()
-        .filter(|by| **by != Shortfall::Distance)
-        .count()
-    {
-        0 => camera.name.clone(),
-        _ => format!("{} ({})", camera.name, text::codes(&camera.fails_by, ", ")),
+    let named = |camera: &&CameraVerdict| match camera.passes {
+        true => camera.name.clone(),
+        false => format!("{}\n{}", camera.name, no(&camera.fails_by)),
     };
     let names = ranked.iter().map(named).collect();
     let values =
@@ -163,9 +165,13 @@ fn margins(answer: &RuleAnswer) -> Plot {
     let title = title.unwrap_or_else(|| "Which cameras meet the rule".into());
     let required = significant(required, 3);
     let figure = NamedValues::new(title, names, Axis::log("margin: statistical distance over that demanded"))
-        .subtitle(format!("Least over the envelope; demanded is d = {required}."))
+        .subtitle(format!(
+            "Least over the envelope; demanded is d = {required}. Full symbols meet the rule; a camera may have signal enough and \
+             still fail by its image."
+        ))
         .series(values)
         .threshold(1.0, "demanded")
-        .below("too small: does not meet the rule");
+        .failing(ranked.iter().map(|camera| !camera.passes).collect())
+        .below("does not meet the rule");
     Plot { name: "margins".into(), figure: Figure::from(figure), table }
 }

@@ -42,6 +42,6 @@ pub use simulate::{
 };
 pub use size::{
     Answer, CameraResult, Elasticities, EmissivityErrors, Finding, InformationCurves, PhotonMap,
-    RequirementResult, Sensitivity, Sizing, Solutions, Spectra, Verdict, VerdictAlone,
+    RequirementResult, Sensitivity, Sizing, Solutions, Spectra, Verdict, VerdictAlone, no_limit,
 };
 pub use surface::Surface;

@@ -2,6 +2,7 @@
 
 use super::progress::Bar;
 use super::provenance;
+use super::stderr::say;
 use super::terminal::Stream;
 use clap::Args;
 use hadar::demand::{Reason, Skipping, Thing, Work};
@@ -82,7 +83,7 @@ impl Global {
     /// A line on stderr, unless quiet.
     pub(super) fn note(&self, text: &str) {
         if !self.quiet {
-            eprintln!("{text}");
+            say(text);
         }
     }
 

@@ -141,10 +141,9 @@ fn plot(library: &Library, names: &[String], global: &Global) -> Result<()> {
         (0..=(SHOWN_CM1.1 - SHOWN_CM1.0) as u32).map(|i| SHOWN_CM1.0 + f64::from(i)).collect();
     let surfaces =
         materials.iter().map(|material| Surface::of(material, &nodes)).collect::<Result<Vec<_>>>()?;
-    let Some((first, others)) = surfaces.split_first() else { return Ok(()) };
-    let others: Vec<&Surface> = others.iter().collect();
+    let drawn: Vec<&Surface> = surfaces.iter().collect();
     let mut bundle = Bundle::about(Some("Emissivities"));
-    bundle.add_plots(&[figures::emissivities("Emissivities", &nodes, first, &others)])?;
+    bundle.add_plots(&figures::emissivities("Emissivities", &nodes, &drawn))?;
     let text = format!("drew {}", names.join(", "));
     global.write(&bundle, out, Some(&text))?;
     let drawn: Vec<Summary> = materials.iter().map(|material| material.summary()).collect();

@@ -170,7 +170,12 @@ fn ledger(paper: &Ranging, night: &Ranging, dim: &Ranging, locking: &[(&str, f64
         };
         let ratio = |line: &hadar_study::study::range::Line| {
             median(
-                &line.rmse_m.iter().zip(&line.bound_m).map(|(rmse, bound)| rmse / bound).collect::<Vec<_>>(),
+                &line
+                    .rmse_m
+                    .iter()
+                    .zip(&line.bound_without_diffraction_m)
+                    .map(|(rmse, bound)| rmse / bound)
+                    .collect::<Vec<_>>(),
             )
         };
         dim.lines.iter().find(same).map_or(f64::NAN, ratio)

@@ -6,6 +6,8 @@ mod cameras;
 mod cli;
 mod cli_mistakes;
 mod demand;
+mod extremes;
+mod fuzz;
 mod identify;
 mod identify_libraries;
 mod identify_mistakes;
@@ -14,6 +16,7 @@ mod identify_words;
 mod messages;
 mod range;
 mod reproduce;
+mod robust;
 mod rule;
 mod rule_mistakes;
 mod simulate;
@@ -22,6 +25,9 @@ mod written;
 mod support {
     pub(crate) mod answers;
     pub(crate) mod folder;
+    #[path = "../../../../study/tests/it/support/mutation.rs"]
+    pub(crate) mod mutation;
     pub(crate) mod page;
+    pub(crate) mod sound;
     pub(crate) mod uses;
 }

@@ -2,7 +2,7 @@
 
 use super::text;
 use crate::manifest::{Provenance, VERSION};
-use crate::text::footing::{GAUSSIAN, of_scene};
+use crate::text::footing::{gaussian, of_scene};
 use crate::text::significant;
 use hadar_study::scenario::Units;
 use hadar_study::study::{CameraVerdict, RuleAnswer, RuleStudy};
@@ -34,7 +34,7 @@ pub(super) fn markdown(study: &RuleStudy, answer: &RuleAnswer, provenance: &Prov
     }
     out.push_str("## What this rests on\n\n");
     if let Some(study) = study.study() {
-        let footing = of_scene(study, GAUSSIAN);
+        let footing = of_scene(study, gaussian(study));
         footing.lines().skip(1).for_each(|line| {
             let _ = writeln!(out, "- {}", line.trim());
         });

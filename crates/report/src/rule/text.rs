@@ -1,7 +1,7 @@
 //! Which cameras meet a rule, as text: the sentence, a table, then what limits each camera and what would help it.
 
 use crate::size::text::in_unit;
-use crate::text::footing::{GAUSSIAN, of_scene, warnings};
+use crate::text::footing::{gaussian, of_scene, warnings};
 use crate::text::numbers::{numbers, quantity, significant};
 use hadar::instrument::Readout;
 use hadar::policy::{Quantity, Solution};
@@ -50,7 +50,7 @@ pub fn text(answer: &RuleAnswer, study: &RuleStudy) -> String {
     }
     let _ = writeln!(out, "The rule in a sentence\n  {}\n", answer.requirement.quotable);
     if let Some(study) = study.study() {
-        out.push_str(&of_scene(study, GAUSSIAN));
+        out.push_str(&of_scene(study, gaussian(study)));
     }
     out.push_str(&warnings(&together(answer)));
     out

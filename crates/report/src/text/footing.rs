@@ -2,7 +2,7 @@
 
 use super::numbers::listed;
 use hadar::instrument::Readout;
-use hadar_study::scenario::{AtmosphereSource, Nuisance, Scenario};
+use hadar_study::scenario::{AtmosphereSource, DistanceKind, Nuisance, Scenario};
 use hadar_study::study::{Identification, Study, Warning};
 use std::fmt::Write as _;
 
@@ -12,7 +12,7 @@ pub(crate) const WARNINGS: &str = "Warnings";
 
 /// What results rest on, and what the reader must know.
 pub(crate) fn footing(result: &Identification, study: &Study) -> String {
-    assumptions(study, GAUSSIAN) + &warnings(&result.warnings)
+    assumptions(study, gaussian(study)) + &warnings(&result.warnings)
 }
 
 /// What is unknown, and what is known of it beforehand.
@@ -45,9 +45,17 @@ fn unknown(scenario: &Scenario) -> String {
     if named.is_empty() { "nothing but the material".into() } else { named.join(", ") }
 }
 
-/// What distances take counts for.
-pub(crate) const GAUSSIAN: &str =
-    "counts large enough to be Gaussian; two equally likely materials; d is a limit, not a promise";
+/// What distances take counts for, and what the one that decides is.
+pub(crate) fn gaussian(study: &Study) -> &'static str {
+    match study.scenario().requirement.by {
+        DistanceKind::Nearest => {
+            "counts large enough to be Gaussian; two equally likely materials; d is a limit, not a promise"
+        }
+        DistanceKind::Local | DistanceKind::LocalUnknownGain => {
+            "counts large enough to be Gaussian; two equally likely materials; d is the paper's local reading, no limit"
+        }
+    }
+}
 
 /// What a result rests on, its camera included; `counts` says what is assumed of them.
 pub(crate) fn assumptions(study: &Study, counts: &str) -> String {
