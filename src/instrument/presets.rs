@@ -10,7 +10,7 @@ use super::figures::{self, NOISES, Part, Row};
 use super::{CameraSpec, EfficiencyCurve, NoiseSpec};
 use crate::error::Error;
 #[cfg(feature = "library")]
-use crate::error::Result;
+use crate::{error::Result, inputs};
 
 #[cfg(feature = "library")]
 /// The paper's cameras, and those of public data sheets.
@@ -112,7 +112,10 @@ pub fn all() -> Result<Vec<Preset>> {
 pub fn find(name: &str) -> Result<Preset> {
     let cameras = all()?;
     match cameras.iter().find(|camera| camera.name == name) {
-        Some(camera) => Ok(camera.clone()),
+        Some(camera) => {
+            inputs::built_in("camera", name, || serde_json::to_vec(camera).unwrap_or_default());
+            Ok(camera.clone())
+        }
         None => Err(Error::unknown_name("camera", name, cameras.iter().map(|camera| camera.name.as_str()))),
     }
 }

@@ -210,7 +210,7 @@ fn quiet_is_quiet() {
     let arguments = ["size", "a.toml", "--out", "report", "--library", "skin.csv"];
     let loud = folder.run(&arguments);
     assert!(
-        loud.stderr.contains("wrote scenario.toml") && loud.stderr.contains("`skin` is replaced"),
+        loud.stderr.contains(" files to report/") && loud.stderr.contains("`skin` is replaced"),
         "{}",
         loud.stderr
     );
@@ -256,7 +256,8 @@ fn materials_are_listed_shown_drawn_and_imported() {
     assert!(folder.run(&["materials", "show", "aluminium"]).stdout.contains("source"));
     let drawn = folder.run(&["materials", "plot", "skin", "aluminium", "--out", "drawn"]);
     assert_eq!(drawn.code, 0, "{}", drawn.stderr);
-    assert_eq!(fs::read_dir(folder.path().join("drawn")).unwrap().count(), 3);
+    // The picture in three forms, answer, page and manifest.
+    assert_eq!(fs::read_dir(folder.path().join("drawn")).unwrap().count(), 6);
     // In and out again: the same values, now as emissivity over wavenumber.
     folder.file("paint.csv", "wavelength_um,reflectance\n8,0.25\n10,0.125\n12.5,0.5\n");
     let imported = folder.json(&["materials", "import", "paint.csv", "--out", "mine"]);

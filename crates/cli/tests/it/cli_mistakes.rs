@@ -198,10 +198,13 @@ fn files_that_are_not_there_or_are_folders_are_named() {
         assert!(said_now.starts_with(said), "{arguments:?}: {said_now}");
     }
     for (key, said) in [
-        ("rows = \"none.csv\"", "none.csv: cannot read the bands: there is no such file; check the name"),
+        (
+            "rows = \"none.csv\"",
+            "none.csv: cannot read the bands: there is no such file; check its name and folder",
+        ),
         (
             "filters = \"none.csv\"",
-            "none.csv: cannot read the filters: there is no such file; check the name",
+            "none.csv: cannot read the filters: there is no such file; check its name and folder",
         ),
     ] {
         let said_now = with_line("step = \"5 cm^-1\"", key);
@@ -225,7 +228,7 @@ fn a_folder_that_cannot_be_written_to_is_refused_before_any_work() {
         }
     }
     fs::create_dir_all(folder.path().join("report/pairs.csv")).unwrap();
-    let said = folder.refusal(&["size", "a.toml", "--out", "report"]);
+    let said = folder.refusal(&["size", "a.toml", "--out", "report", "--force"]);
     assert!(said.contains("its `pairs.csv` is a folder"), "{said}");
 }
 

@@ -13,6 +13,9 @@ const CURVES: usize = 7;
 /// Emissivities are drawn over a range no smaller than this: what is flat shall look flat.
 const LEAST_RANGE: f64 = 0.1;
 
+/// Share of the axis by which curves must differ to be seen apart.
+const SEEN: f64 = 4e-3;
+
 /// Emissivities at the nodes: as many pictures as it takes to tell the curves apart.
 #[must_use]
 pub fn emissivities(title: &str, wavenumbers_cm1: &[f64], surfaces: &[&Surface]) -> Vec<Plot> {
@@ -32,16 +35,21 @@ pub fn emissivities(title: &str, wavenumbers_cm1: &[f64], surfaces: &[&Surface])
         };
         let axis = Axis::linear("emissivity").range(low, high);
         let mut figure = LineFigure::new(title, wavenumber_axis(wavenumbers_cm1), axis);
-        for surface in drawn {
-            figure = figure.series(Series::line(
-                &surface.name,
-                wavenumbers_cm1.to_vec(),
-                surface.emissivity.clone(),
-            ));
+        for (i, surface) in drawn.iter().enumerate() {
+            // On top of an equal curve, so that both are seen.
+            let equal = drawn[..i].iter().filter(|other| coincide(surface, other, SEEN * (high - low)));
+            let style = [Style::Line, Style::Dashed, Style::Dotted][equal.count().min(2)];
+            let curve = Series::line(&surface.name, wavenumbers_cm1.to_vec(), surface.emissivity.clone());
+            figure = figure.series(curve.style(style));
         }
         Plot { name, figure: figure.into(), table }
     };
     surfaces.chunks(CURVES).enumerate().map(one).collect()
+}
+
+/// Whether two curves lie on each other.
+fn coincide(a: &Surface, b: &Surface, within: f64) -> bool {
+    a.emissivity.iter().zip(&b.emissivity).all(|(a, b)| (a - b).abs() <= within)
 }
 
 fn numbered(i: usize) -> String {
@@ -220,6 +228,7 @@ pub struct Collected {
 }
 
 /// Required photons over target temperature and lighting; the equilibrium singularity is marked, and the scene `here`.
+/// Nothing where no number of photons suffices anywhere.
 #[must_use]
 pub fn photon_map(
     map: &PhotonMap,
@@ -227,7 +236,7 @@ pub fn photon_map(
     here: (f64, f64),
     by: &str,
     collected: Option<&Collected>,
-) -> Plot {
+) -> Option<Plot> {
     let [target, alternative] = pair;
     let mut table = Table::new(["temperature_k", "lighting", "photons_required"]);
     for (j, &lighting) in map.lightings.iter().enumerate() {
@@ -236,6 +245,9 @@ pub fn photon_map(
         }
     }
     let mut finite: Vec<f64> = map.photons.iter().copied().filter(|n| n.is_finite()).collect();
+    if finite.is_empty() {
+        return None;
+    }
     finite.sort_by(f64::total_cmp);
     let quantile = |share: f64| {
         let last = finite.len().saturating_sub(1);
@@ -278,7 +290,7 @@ pub fn photon_map(
                 .mark(*worth, format!("what they are worth with its own noise: {}", plot::number(*worth)));
         }
     }
-    Plot { name: "required_photons".into(), figure: figure.into(), table }
+    Some(Plot { name: "required_photons".into(), figure: figure.into(), table })
 }
 
 #[cfg(test)]

@@ -175,9 +175,10 @@ fn in_words(of: Quantity, value: f64) -> String {
     match of {
         Quantity::Exposure => quantity(value, "s").replace(" us", " µs"),
         Quantity::Pixel | Quantity::Distance => quantity(value, "m").replace(" um", " µm"),
-        Quantity::Speed => format!("{} m/s", significant(value, 3)),
+        Quantity::Speed => format!("{} m/s", plot::number(value)),
         Quantity::FNumber => format!("f/{}", significant(value, 3)),
         Quantity::Noise => format!("{} counts", plot::number(value)),
+        Quantity::Frames if value == 1.0 => "1 frame".into(),
         Quantity::Frames => format!("{value} frames"),
     }
 }
@@ -285,8 +286,8 @@ mod tests {
             let (sizing, drawn) = figures(required);
             let solved = &sizing.solve_for.as_ref().unwrap().0;
             for (curve, figure) in drawn {
-                let marker = figure.panel.markers.iter().find(|marker| !marker.label.contains("flir"));
-                let marker = marker.unwrap_or_else(|| panic!("{:?} {required}", curve.y));
+                // The camera, and where the solver arrives.
+                let [_, marker] = figure.panel.markers.as_slice() else { panic!("{:?} {required}", curve.y) };
                 let just = figure.panel.series.iter().find(|series| series.label == "just met").unwrap();
                 assert!(just.x.iter().zip(&just.y).any(|(x, y)| (*x, *y) == (marker.x, marker.y)));
                 let (_, solution) = solved.iter().find(|(quantity, _)| *quantity == curve.y).unwrap();
