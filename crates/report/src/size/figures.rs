@@ -298,7 +298,7 @@ mod tests {
     use super::*;
 
     fn surface(emissivity: &[f64]) -> Surface {
-        Surface { name: "a".into(), emissivity: emissivity.to_vec() }
+        Surface { name: "a".into(), emissivity: emissivity.to_vec(), one_number: None }
     }
 
     #[test]
