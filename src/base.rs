@@ -3,7 +3,9 @@
 pub mod allowed;
 pub mod demand;
 pub mod error;
+pub mod file;
 pub mod grid;
+pub mod inputs;
 pub mod lattice_points;
 pub mod minimum;
 pub mod root;

@@ -1,8 +1,8 @@
 //! Files of numbers: CSV with comment lines, one header line, and rows as long as the header.
 
 use crate::error::{Error, Result, check};
+use crate::file;
 use crate::units::decimal_comma;
-use std::io::Read;
 use std::path::Path;
 
 /// What a file should begin with, for messages.
@@ -11,7 +11,7 @@ pub const EXAMPLE: &str = "begin the file with a line such as wavenumber_cm1,emi
 /// What reading a material is called in messages.
 pub const READ_SPECTRUM: &str = "read the spectrum";
 
-/// The longest file that is taken for text, bytes: a manifest may name anything, a device without end among it.
+/// The longest file that is taken for text, bytes.
 const LONGEST_FILE: u64 = 1 << 26;
 
 /// The header and the numbers, with the line (from 1) that each row stands on.
@@ -55,12 +55,10 @@ impl Grid {
     pub fn wavenumbers_cm1(&self) -> Result<Vec<f64>> {
         let name = self.header.first().map_or("", String::as_str);
         if !matches!(name, "wavenumber_cm1" | "wavelength_um") {
-            return Err(Error::malformed(
-                format!("a first column `{name}`"),
-                "name it wavenumber_cm1 or wavelength_um",
-            )
-            .for_key(name)
-            .on_line(self.header_line));
+            let found = "the first column has another name";
+            return Err(
+                Error::malformed(found, "name it wavenumber_cm1 or wavelength_um").on_line(self.header_line)
+            );
         }
         let mut seen: Vec<(f64, usize)> = Vec::new();
         for (line, cells) in &self.rows {
@@ -94,7 +92,7 @@ fn check_header(header: &[String], line: &str) -> Result<()> {
         return Err(Error::malformed("there is no header, only numbers", EXAMPLE));
     }
     if header.len() < 2 {
-        let shown: String = line.chars().take(40).collect();
+        // What the line says is not repeated: the file may be anything that a scenario names.
         let instead = if line.contains(';') {
             "write commas between the columns and decimal points, as in wavenumber_cm1,emissivity and 715,0.95"
         } else if line.contains(['\t', ' ']) {
@@ -102,7 +100,7 @@ fn check_header(header: &[String], line: &str) -> Result<()> {
         } else {
             EXAMPLE
         };
-        return Err(Error::malformed(format!("`{shown}` is not the header of a spectrum"), instead));
+        return Err(Error::malformed("this is not the header of a spectrum", instead));
     }
     Ok(())
 }
@@ -144,23 +142,12 @@ pub fn number(cell: &str) -> Result<f64> {
 /// Text of a file, as UTF-8 or else Latin-1.
 ///
 /// # Errors
-/// No such file, a directory, or no permission; the message says what `action` could not be done.
+/// As [`file::bytes`]; the message says what `action` could not be done.
 pub fn text_of_file(path: &Path, action: &str) -> Result<String> {
-    if path.is_dir() {
-        let library = if action == READ_SPECTRUM { ", or give it to --library" } else { "" };
-        return Err(Error::file(action, path, format!("this is a directory; name a file{library}")));
+    if action == READ_SPECTRUM && path.is_dir() {
+        return Err(Error::file(action, path, "this is a directory; name a file, or give it to --library"));
     }
-    let failed = |error: std::io::Error| match error.kind() {
-        std::io::ErrorKind::NotFound => Error::file(action, path, "there is no such file; check the name"),
-        _ => Error::file(action, path, error),
-    };
-    let mut bytes = Vec::new();
-    std::fs::File::open(path)
-        .and_then(|file| file.take(LONGEST_FILE + 1).read_to_end(&mut bytes))
-        .map_err(failed)?;
-    if bytes.len() as u64 > LONGEST_FILE {
-        return Err(Error::file(action, path, "it is longer than 64 MiB, more than such a file needs"));
-    }
+    let bytes = file::bytes(path, action, LONGEST_FILE)?;
     // Latin-1 is the first 256 code points
     Ok(String::from_utf8(bytes)
         .unwrap_or_else(|error| error.as_bytes().iter().map(|&b| char::from(b)).collect()))

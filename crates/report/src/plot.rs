@@ -75,6 +75,20 @@ pub enum Figure {
     Pictures(Pictures),
 }
 
+impl Figure {
+    /// The small print under the title; nothing where empty.
+    #[must_use]
+    pub fn subtitle(&self) -> &str {
+        match self {
+            Self::Line(figure) => &figure.subtitle,
+            Self::HeatMap(figure) => &figure.subtitle,
+            Self::Matrix(figure) => &figure.subtitle,
+            Self::Named(figure) => &figure.subtitle,
+            Self::Pictures(figure) => &figure.subtitle,
+        }
+    }
+}
+
 impl From<LineFigure> for Figure {
     fn from(figure: LineFigure) -> Self {
         Self::Line(figure)

@@ -8,7 +8,6 @@ pub use text::text;
 
 use crate::bundle::Bundle;
 use crate::table::{Table, number, optional};
-use crate::tables;
 use hadar::error::Result;
 use hadar::ranging::cube::{Shape, write_npy_to};
 use hadar_study::study::range::{Line, Ranging};
@@ -19,13 +18,13 @@ use std::path::Path;
 /// # Errors
 /// A figure that cannot be drawn.
 pub fn bundle(result: &Ranging, out: &Path) -> Result<Bundle> {
-    let mut bundle = Bundle::default();
-    bundle.add("scenario.toml", result.scenario.to_toml_beside(out));
-    bundle.add("bounds.csv", bounds(result).to_csv()?);
+    let mut bundle = Bundle::about(result.scenario.title.as_deref());
+    bundle.add_asked("scenario.toml", result.scenario.to_toml_beside(out));
+    bundle.add_table("bounds.csv", bounds(result))?;
     if let Some(cells) = cells(result) {
-        bundle.add("cells.csv", cells.to_csv()?);
+        bundle.add_table("cells.csv", cells)?;
     }
-    bundle.add("warnings.csv", tables::warnings(&result.warnings).to_csv()?);
+    bundle.add_warnings(&result.warnings)?;
     let maps = &result.maps;
     if let Ok(shape) = Shape::new(maps.rows.len(), maps.columns.len(), 1) {
         for (signal, values) in &maps.disparity_error_px {
@@ -70,7 +69,7 @@ pub fn bounds(result: &Ranging) -> Table {
             table.push(vec![
                 object.name.clone(),
                 found.signal.name().to_owned(),
-                object.windows.to_string(),
+                found.windows.to_string(),
                 optional(object.depth_m.map(|depth| depth[1])),
                 number(found.photons),
                 number(found.gamma),

@@ -3,15 +3,17 @@
 //! Nothing in them depends on when or where they were made, so that anyone can make them again, byte by byte.
 
 mod certificate;
+mod check;
 mod text;
 
+pub use check::check;
 pub use text::text;
 
 use super::bundle::Bundle;
 use super::figures::Plot;
+use super::manifest::{Input, Provenance};
 use super::plot::{Axis, Figure, NamedSeries, NamedValues};
 use super::table::{Table, number, optional};
-use super::tables;
 use super::text::shortfalls::no;
 use super::text::significant;
 use hadar::error::Result;
@@ -27,14 +29,15 @@ const HARDWARE: [Quantity; 5] =
 ///
 /// # Errors
 /// A table that cannot be written.
-pub fn bundle(study: &RuleStudy, answer: &RuleAnswer, out: &Path) -> Result<Bundle> {
-    let mut bundle = Bundle::default();
-    bundle.add("certificate.md", certificate::markdown(study, answer));
-    bundle.add("rule.toml", study.rule().to_toml_beside(out));
-    bundle.add("cameras.csv", cameras(answer).to_csv()?);
-    bundle.add("worst_cases.csv", worst_cases(answer).to_csv()?);
-    bundle.add("inputs.csv", inputs(answer).to_csv()?);
-    bundle.add("warnings.csv", tables::warnings(&warnings(answer)).to_csv()?);
+pub fn bundle(study: &RuleStudy, answer: &RuleAnswer, provenance: &Provenance, out: &Path) -> Result<Bundle> {
+    let title = certificate::title(answer);
+    let mut bundle = Bundle::about(Some(&title));
+    bundle.add("certificate.md", certificate::markdown(study, answer, provenance));
+    bundle.add_asked("rule.toml", study.rule().to_toml_beside(out));
+    bundle.add_table("cameras.csv", cameras(answer))?;
+    bundle.add_table("worst_cases.csv", worst_cases(answer))?;
+    bundle.add("inputs.csv", inputs(provenance).to_csv()?);
+    bundle.add_warnings(&warnings(answer))?;
     bundle.add_plots(&[margins(answer)])?;
     Ok(bundle)
 }
@@ -127,9 +130,10 @@ fn worst_cases(answer: &RuleAnswer) -> Table {
     table
 }
 
-fn inputs(answer: &RuleAnswer) -> Table {
+fn inputs(provenance: &Provenance) -> Table {
     let mut table = Table::new(["path", "sha256"]);
-    answer.inputs.iter().for_each(|input| table.push(vec![input.path.clone(), input.sha256.clone()]));
+    let row = |input: &Input| vec![input.path.clone(), input.sha256.clone().unwrap_or_default()];
+    provenance.inputs.iter().for_each(|input| table.push(row(input)));
     table
 }
 

@@ -24,22 +24,22 @@ const DRAWN: usize = 6;
 /// # Errors
 /// A figure that cannot be drawn.
 pub fn bundle(study: &Study, result: &Sizing, out: &Path) -> Result<Bundle> {
-    let mut bundle = Bundle::default();
-    bundle.add("scenario.toml", result.scenario.to_toml_beside(out));
-    bundle.add("pairs.csv", tables::pairs(&result.pairs).to_csv()?);
-    bundle.add("requirement.csv", requirement(result).to_csv()?);
+    let mut bundle = Bundle::about(study.scenario().title.as_deref());
+    bundle.add_asked("scenario.toml", result.scenario.to_toml_beside(out));
+    bundle.add_table("pairs.csv", tables::pairs(&result.pairs))?;
+    bundle.add_table("requirement.csv", requirement(result))?;
     if let Some(camera) = &result.camera {
         let mut table = Table::new(["line", "variance_counts2", "grows_with_integration_time_as"]);
         for line in &camera.noise_budget {
             table.push(vec![line.label.into(), number(line.var_counts), line.scaling.into()]);
         }
-        bundle.add("noise_budget.csv", table.to_csv()?);
-        bundle.add("solve_for.csv", solve_for(result).to_csv()?);
+        bundle.add_table("noise_budget.csv", table)?;
+        bundle.add_table("solve_for.csv", solve_for(result))?;
     }
     if let Some(found) = &result.sensitivity {
-        bundle.add("sensitivity.csv", sensitivity(found).to_csv()?);
+        bundle.add_table("sensitivity.csv", sensitivity(found))?;
     }
-    bundle.add("warnings.csv", tables::warnings(&result.warnings).to_csv()?);
+    bundle.add_warnings(&result.warnings)?;
     bundle.add_plots(&drawn(study, result)?)?;
     let curves = result.trade_offs.iter().flatten();
     bundle.add_plots(&curves.map(|curve| trade_off::trade_off(curve, result)).collect::<Vec<_>>())?;

@@ -30,9 +30,9 @@ pub use identify::{
 };
 pub use looked_up::Study;
 pub use rule::{
-    CameraVerdict, Certified, EmissivityError, EnvelopeResult, FileHash, Fixes, IdealCamera, LightTime,
-    LimitingScene, Neighbourhood, NotIdentifiable, Proof, Proviso, Quotable, RuleAnswer, RuleAsked,
-    RuleRequirement, RuleStudy, WhoMeets, WithoutPlaceholders,
+    CameraVerdict, Certified, EmissivityError, EnvelopeResult, Fixes, IdealCamera, LightTime, LimitingScene,
+    Neighbourhood, NotIdentifiable, Proof, Proviso, Quotable, RuleAnswer, RuleAsked, RuleRequirement,
+    RuleStudy, WhoMeets, WithoutPlaceholders,
 };
 pub use shortfall::Shortfall;
 pub use sight::Sight;
@@ -42,6 +42,6 @@ pub use simulate::{
 };
 pub use size::{
     Answer, CameraResult, Elasticities, EmissivityErrors, Finding, InformationCurves, PhotonMap,
-    RequirementResult, Sensitivity, Sizing, Solutions, Spectra, Verdict, VerdictAlone,
+    RequirementResult, Sensitivity, Sizing, Solutions, Spectra, Verdict, VerdictAlone, no_limit,
 };
 pub use surface::Surface;

@@ -120,6 +120,8 @@ pub enum Warning {
     NoiseOfFound { floor_per_px2: f64, found_per_px2: f64 },
     /// Disparity error of the cube over that promised.
     ScatteredAsMeasured { ratio: f64 },
+    /// Windows that have no bound by a signal.
+    DarkSamples { signal: &'static str, left_out: usize, windows: usize },
     /// A cube without depth.
     NoDepth,
     /// Information by another derivative over that by the one asked for.
@@ -195,6 +197,7 @@ impl Warning {
             Self::FramesInMotion { .. } => Code::FramesInMotion,
             Self::SamplesNotChecked { .. } => Code::SamplesNotChecked,
             Self::NoiseOfDemanded { .. } | Self::NoiseOfFound { .. } => Code::NoiseInCounts,
+            Self::DarkSamples { .. } => Code::DarkSamples,
             Self::ScatteredAsMeasured { .. } => Code::ScatteredAsMeasured,
             Self::NoDepth => Code::NoDepth,
             Self::Derivative { .. } => Code::Derivative,

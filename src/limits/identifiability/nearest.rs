@@ -193,6 +193,13 @@ impl<'a> NearestSolver<'a> {
     ) -> Result<NearestDistance> {
         let target = self.comparison.aim(emissivity, alternative, state, metric)?;
         let own_cost = self.comparison.cost(&target, state);
+        if !own_cost.is_finite() {
+            let found = "a distance beyond all numbers: the target sends next to nothing, and the alternative does not";
+            return Err(Error::malformed(
+                found,
+                "take a warmer scene, more lighting, or bands at lower wavenumbers",
+            ));
+        }
         if own_cost < enough * enough && self.comparison.space.within_range(state) == *state {
             // The target's own state is near enough.
             let at_edge = self.comparison.space.edges(state);

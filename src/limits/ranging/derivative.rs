@@ -113,7 +113,7 @@ impl Derivative {
     /// A frequency that is negative or beyond π.
     pub fn response(self, omega_rad_per_pixel: f64) -> Result<f64> {
         let omega = frequency(omega_rad_per_pixel)?;
-        let (sin, cos) = omega.sin_cos();
+        let (sin, cos) = libm::sincos(omega);
         let over_omega = |slope: f64, limit: f64| if omega == 0.0 { limit } else { slope / omega };
         Ok(match self {
             Self::Central => over_omega(sin, 1.0),

@@ -96,7 +96,11 @@ impl Sums {
         let error = truth - predicted;
         let relative = error / predicted;
         // ln(t/p) of nearly equal depths, without the rounding of either logarithm.
-        let log = if relative.abs() < 0.5 { relative.ln_1p() } else { truth.ln() - predicted.ln() };
+        let log = if relative.abs() < 0.5 {
+            libm::log1p(relative)
+        } else {
+            libm::log(truth) - libm::log(predicted)
+        };
         self.relative.add(error.abs() / truth);
         self.squared_relative.add(error * (error / truth));
         self.squared.add(error * error);

@@ -135,7 +135,10 @@ mod tests {
                 "line 3: wavelength_um: wavenumber 1250 cm^-1 is there already on line 2; keep one of the two rows",
             ),
             ("wavelength_um,a\n8,0\n9,1.2\n", "line 3: a: transmittance is 1.2; it must be between 0 and 1"),
-            ("nm,a\n8,0\n", "line 1: nm: a first column `nm`; name it wavenumber_cm1 or wavelength_um"),
+            (
+                "nm,a\n8,0\n",
+                "line 1: the first column has another name; name it wavenumber_cm1 or wavelength_um",
+            ),
         ] {
             assert_eq!(filters(text).unwrap_err().to_string(), found);
         }

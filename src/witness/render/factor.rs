@@ -84,7 +84,7 @@ impl Polygon {
             let across = cross(here, next);
             let sine = norm(across);
             if sine > 0.0 {
-                sum = along(sum, sine.atan2(dot(here, next)) / sine, across);
+                sum = along(sum, libm::atan2(sine, dot(here, next)) / sine, across);
             }
             middle = along(middle, 1.0, here);
         }

@@ -9,12 +9,15 @@ use super::lighting::{Factors, factors};
 use super::rig::{Camera, Rig};
 use super::scene::{GROUND, SURFACES, Scene};
 use super::vector::{UP, Vector, along};
+use crate::error::{Error, Result};
 use rayon::prelude::*;
 
 /// Pixels between nodes.
 const STEP: f64 = 2.0;
-/// More nodes than this are thinned out.
+/// More nodes than this are thinned out,
 const MAX_NODES: f64 = 4e5;
+/// but not further than this, pixels.
+const WIDEST_STEP: f64 = 64.0;
 
 #[derive(Debug)]
 pub(super) struct LightMap {
@@ -28,18 +31,29 @@ pub(super) struct LightMap {
 }
 
 impl LightMap {
-    pub(super) fn new(scene: &Scene, rig: &Rig) -> Self {
+    /// # Errors
+    /// Cameras so far apart that the ground between what they see is a map without end.
+    pub(super) fn new(scene: &Scene, rig: &Rig) -> Result<Self> {
         let camera = rig.camera(0.0);
         let mut map = Self { camera, step: STEP, first: [0.0; 2], columns: 0, rows: 0, nodes: Vec::new() };
         // The nearest ground, at the lowest row, is displaced the most.
         let lowest = camera.direction(0.0, rig.rows as f64);
         if lowest[1] >= 0.0 || scene.wall.is_some() || scene.lights.is_empty() {
-            return map;
+            return Ok(map);
         }
         let depth = rig.height_m / -lowest[1];
         let margin = 0.5 * rig.disparity_px(depth) + 4.0;
         let (across, down) = (rig.columns as f64 + 2.0 * margin, rig.rows as f64 + 8.0);
         map.step = STEP.max((across * down / MAX_NODES).sqrt());
+        if map.step > WIDEST_STEP {
+            let most = WIDEST_STEP * WIDEST_STEP * MAX_NODES / down;
+            let expected = format!(
+                "at most {:.0e} pixels: a shorter baseline, a shorter focal length or larger pixels",
+                0.5 * most
+            );
+            let quantity = "disparity of the nearest ground";
+            return Err(Error::out_of_range(quantity, rig.disparity_px(depth), "pixels", expected));
+        }
         map.first = [-margin, -4.0];
         map.columns = (across / map.step).ceil() as usize + 1;
         map.rows = (down / map.step).ceil() as usize + 1;
@@ -59,7 +73,7 @@ impl LightMap {
                 factors(scene, point, UP, None).map(|factor| factor.above)
             })
             .collect();
-        map
+        Ok(map)
     }
 
     /// Vector form factors at a point of the ground; none beyond the map.

@@ -90,7 +90,7 @@ impl Rig {
 
     /// The camera at x = `side` × b.
     pub(super) fn camera(&self, side: f64) -> Camera {
-        let (sin, cos) = self.pitch_rad.sin_cos();
+        let (sin, cos) = libm::sincos(self.pitch_rad);
         Camera {
             origin: [side * self.baseline_m, self.height_m, 0.0],
             up: [0.0, cos, sin],

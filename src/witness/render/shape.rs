@@ -186,7 +186,7 @@ impl Shape {
                 let u = unit(along(across, -dot(across, ahead), ahead));
                 let v = super::vector::cross(ahead, u);
                 for i in 0..2 * n * 4 * n {
-                    let (sin, cos) = (((i % (4 * n)) as f64 + 0.5) * 2.0 * PI / (4 * n) as f64).sin_cos();
+                    let (sin, cos) = libm::sincos(((i % (4 * n)) as f64 + 0.5) * 2.0 * PI / (4 * n) as f64);
                     let normal = along(scaled(u, cos), sin, v);
                     let start = along(ends[0], ((i / (4 * n)) as f64 + 0.5) / (2 * n) as f64, axis);
                     let area_m2 = 2.0 * PI * radius * length / (2 * n * 4 * n) as f64;
@@ -204,7 +204,7 @@ fn on_ball(n: usize, patch: impl Fn(Vector, f64) -> Patch) -> Vec<Patch> {
     (0..bands * sectors)
         .map(|i| {
             let y = ((i / sectors) as f64 + 0.5) * 2.0 / bands as f64 - 1.0;
-            let (sin, cos) = (((i % sectors) as f64 + 0.5) * 2.0 * PI / sectors as f64).sin_cos();
+            let (sin, cos) = libm::sincos(((i % sectors) as f64 + 0.5) * 2.0 * PI / sectors as f64);
             let r = (1.0 - y * y).sqrt();
             patch([r * cos, y, r * sin], 4.0 * PI / (bands * sectors) as f64)
         })

@@ -247,7 +247,7 @@ impl Texture {
             Self::Road(road) => road.at(point[0], point[2], footprint),
             Self::Waves { mean, waves } => waves.iter().fold(*mean, |sum, wave| {
                 let cycles = wave.cycles_per_m[0] * point[0] + wave.cycles_per_m[1] * point[1];
-                sum + wave.amplitude * (std::f64::consts::TAU * cycles + wave.phase_rad).cos()
+                sum + wave.amplitude * libm::cos(std::f64::consts::TAU * cycles + wave.phase_rad)
             }),
         }
     }

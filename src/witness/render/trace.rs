@@ -99,7 +99,7 @@ impl Scene {
         self.check(&rig)?;
         let shape = Shape::new(rig.rows, rig.columns, bands.len())?;
         let basis = Arc::new(Basis::new(self, &mean_shares(self, PATCHES), bands, options.bounces)?);
-        let map = LightMap::new(self, &rig);
+        let map = LightMap::new(self, &rig)?;
         let done = AtomicUsize::new(0);
         let tell = || progress(done.fetch_add(1, Ordering::Relaxed) + 1, 2 * rig.rows);
         let draw = |side: f64| {

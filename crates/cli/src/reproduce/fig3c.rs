@@ -12,7 +12,7 @@ use std::path::Path;
 pub(super) fn make(out: &Path) -> Result<Made> {
     let study = scene::study(examples::HUMAN_VS_ROBOT)?;
     let mut bundle = Bundle::default();
-    bundle.add("scenario.toml", study.scenario().to_toml_beside(out));
+    bundle.add_asked("scenario.toml", study.scenario().to_toml_beside(out));
     let mut lines = Vec::new();
     let result = study.identify()?;
     if let ([rival], [pair]) = (study.alternatives(), result.pairs.as_slice())

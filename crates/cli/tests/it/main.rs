@@ -6,6 +6,8 @@ mod cameras;
 mod cli;
 mod cli_mistakes;
 mod demand;
+mod extremes;
+mod fuzz;
 mod identify;
 mod identify_libraries;
 mod identify_mistakes;
@@ -14,12 +16,18 @@ mod identify_words;
 mod messages;
 mod range;
 mod reproduce;
+mod robust;
 mod rule;
 mod rule_mistakes;
 mod simulate;
+mod written;
 
 mod support {
     pub(crate) mod answers;
     pub(crate) mod folder;
+    #[path = "../../../../study/tests/it/support/mutation.rs"]
+    pub(crate) mod mutation;
+    pub(crate) mod page;
+    pub(crate) mod sound;
     pub(crate) mod uses;
 }

@@ -8,7 +8,7 @@ mod terms;
 use self::bands::{bands, scaling};
 use self::exact::exact;
 use self::matrix::{apart, matrix};
-use self::terms::{camera, no_limit};
+use self::terms::{camera, does_not_tell, no_limit};
 use crate::text::footing::footing;
 use crate::text::numbers::{numbers, photons, significant};
 use crate::text::pairs::pair_table;
@@ -83,16 +83,26 @@ fn verdict(result: &Identification, study: &Study) -> String {
         let name = camera(study);
         let sentence = match (all, told) {
             (1, 1) => format!("Yes: {name} tells {target} from {}", pair.alternative),
-            (1, _) => format!("No: {name} cannot tell {target} from {}", pair.alternative),
+            (1, _) => format!("No: {name} {} {target} from {}", does_not_tell(study), pair.alternative),
             (_, told) if told == all => format!("Yes: {name} tells {target} from all {all} alternatives"),
             (_, 0) => format!("No: {name} tells {target} from none of {all} alternatives"),
             (_, told) => format!("No: {name} tells {target} from only {told} of {all} alternatives"),
         };
         let _ = writeln!(out, "{sentence} with {reliability} reliability{}.", no_limit(study));
+        if let (false, Some(limit)) = (no_limit(study).is_empty(), pair.statistical_distance_nearest) {
+            let _ = writeln!(
+                out,
+                "The limit, by the nearest distance: {} against {}, of {} required.",
+                words::reliability(limit),
+                pair.alternative,
+                reliability
+            );
+        }
     }
     let needed = match pair.photons_required {
         Some(_) => {
-            format!("it takes at least {} photons, by shot noise alone", photons(pair.photons_required))
+            let least = if no_limit(study).is_empty() { "at least " } else { "" };
+            format!("it takes {least}{} photons, by shot noise alone", photons(pair.photons_required))
         }
         None => "no number of photons suffices".into(),
     };
@@ -132,14 +142,17 @@ pub fn check(result: &Check, study: &Study) -> String {
     let reliability = words::demanded(study.required_distance());
     match &result.not_told_from {
         Some(other) => {
-            format!("No: {camera} cannot tell {target} from {other} with {reliability} reliability.\n")
+            let cannot = does_not_tell(study);
+            let by = no_limit(study);
+            format!("No: {camera} {cannot} {target} from {other} with {reliability} reliability{by}.\n")
         }
         None => {
             let all = match study.alternatives() {
                 [one] => one.name.clone(),
                 all => format!("all {} alternatives", all.len()),
             };
-            format!("Yes: {camera} tells {target} from {all} with {reliability} reliability.\n")
+            let by = no_limit(study);
+            format!("Yes: {camera} tells {target} from {all} with {reliability} reliability{by}.\n")
         }
     }
 }

@@ -1,12 +1,12 @@
 //! The main job as text: the verdict first, then the numbers, what would do, and what it hangs on.
 
-use crate::text::footing::{GAUSSIAN, assumptions, warnings};
+use crate::text::footing::{assumptions, gaussian, warnings};
 use crate::text::numbers::{numbers, photons, quantity, significant};
 use crate::text::pairs::pair_table;
 use hadar::policy::{Quantity, Solution};
 use hadar::words::share;
 use hadar_study::scenario::Units;
-use hadar_study::study::{PairResult, Sizing, Study};
+use hadar_study::study::{PairResult, Sizing, Study, no_limit};
 use hadar_study::words::{demanded_probability, probability};
 use std::fmt::Write as _;
 
@@ -42,9 +42,10 @@ pub fn text(result: &Sizing, study: &Study) -> String {
         line(of_band, format!("{} counts", significant(camera.noise_counts, 4)));
         line("gamma, noise / photons of a band", significant(camera.gamma_per_band, 3));
         line("t A_p / ((1+gamma) F^2)", format!("{} m^2 s", significant(camera.hardware_m2_s, 4)));
+        let by_local = no_limit(study.scenario().requirement.by).is_some();
         if let Some(d) = pair.statistical_distance {
             line(
-                "statistical distance reached",
+                if by_local { "statistical distance, local reading" } else { "statistical distance reached" },
                 format!(
                     "{} (required {})",
                     significant(d, 3),
@@ -56,10 +57,21 @@ pub fn text(result: &Sizing, study: &Study) -> String {
             (pair.statistical_distance, pair.miss_probability, pair.information_bits)
         {
             line(
-                "detection probability at most",
-                format!("{} (error {})", probability(d, 4), significant(miss, 3)),
+                if by_local {
+                    "probability by it, which is no limit"
+                } else {
+                    "detection probability at most"
+                },
+                match miss {
+                    0.0 => format!("{} (error below 1e-300)", probability(d, 4)),
+                    miss => format!("{} (error {})", probability(d, 4), significant(miss, 3)),
+                },
             );
             line("information log2 2P", format!("{} bit", significant(bits, 3)));
+        }
+        if let (true, Some(d)) = (by_local, pair.statistical_distance_nearest) {
+            let limit = format!("{} (probability {})", significant(d, 3), probability(d, 4));
+            line("the limit, by the nearest distance", limit);
         }
         line(
             "least distance it resolves",
@@ -71,7 +83,7 @@ pub fn text(result: &Sizing, study: &Study) -> String {
         if let Some(blur) = camera.motion_blur_pixels {
             let of_bands = camera.camera.readout.exposures(study.bands().len()) > 1;
             let label = if of_bands { "motion while bands are exposed" } else { "motion during an exposure" };
-            line(label, format!("{} pixel at most", significant(blur, 2)));
+            line(label, format!("up to {} pixel", significant(blur, 2)));
         }
         out.push('\n');
     }
@@ -82,7 +94,7 @@ pub fn text(result: &Sizing, study: &Study) -> String {
         out.push_str(&pair_table(&result.pairs, study));
         out.push('\n');
     }
-    out.push_str(&assumptions(study, GAUSSIAN));
+    out.push_str(&assumptions(study, gaussian(study)));
     out.push_str(&warnings(&result.warnings));
     out
 }
@@ -183,8 +195,8 @@ fn solutions(result: &Sizing, units: Units) -> String {
         for cap in &solution.caps {
             let side = if cap.blocks { "but" } else { "better" };
             let bound = match (cap.blocks, solved.is_least()) {
-                (true, true) | (false, false) => "at most",
-                (true, false) | (false, true) => "at least",
+                (true, true) | (false, false) => "no more than",
+                (true, false) | (false, true) => "no less than",
             };
             let limit = in_unit(*solved, cap.limit, units);
             let _ =

@@ -2,13 +2,17 @@
 
 use super::numbers::listed;
 use hadar::instrument::Readout;
-use hadar_study::scenario::{AtmosphereSource, Nuisance, Scenario};
+use hadar_study::scenario::{AtmosphereSource, DistanceKind, Nuisance, Scenario};
 use hadar_study::study::{Identification, Study, Warning};
 use std::fmt::Write as _;
 
+/// Headings that end an answer, in this order.
+pub(crate) const ASSUMPTIONS: &str = "Assumptions";
+pub(crate) const WARNINGS: &str = "Warnings";
+
 /// What results rest on, and what the reader must know.
 pub(crate) fn footing(result: &Identification, study: &Study) -> String {
-    assumptions(study, GAUSSIAN) + &warnings(&result.warnings)
+    assumptions(study, gaussian(study)) + &warnings(&result.warnings)
 }
 
 /// What is unknown, and what is known of it beforehand.
@@ -41,9 +45,17 @@ fn unknown(scenario: &Scenario) -> String {
     if named.is_empty() { "nothing but the material".into() } else { named.join(", ") }
 }
 
-/// What distances take counts for.
-pub(crate) const GAUSSIAN: &str =
-    "counts large enough to be Gaussian; two equally likely materials; d is a limit, not a promise";
+/// What distances take counts for, and what the one that decides is.
+pub(crate) fn gaussian(study: &Study) -> &'static str {
+    match study.scenario().requirement.by {
+        DistanceKind::Nearest => {
+            "counts large enough to be Gaussian; two equally likely materials; d is a limit, not a promise"
+        }
+        DistanceKind::Local | DistanceKind::LocalUnknownGain => {
+            "counts large enough to be Gaussian; two equally likely materials; d is the paper's local reading, no limit"
+        }
+    }
+}
 
 /// What a result rests on, its camera included; `counts` says what is assumed of them.
 pub(crate) fn assumptions(study: &Study, counts: &str) -> String {
@@ -77,7 +89,7 @@ pub(crate) fn of_scene(study: &Study, counts: &str) -> String {
         (bands.first().map_or(0.0, |b| b.center_cm1), bands.last().map_or(0.0, |b| b.center_cm1));
     // As short as they were written, without the digits of a converted wavelength.
     let (low, high) = ((low * 100.0).round() / 100.0, (high * 100.0).round() / 100.0);
-    let mut out = String::from("Assumptions\n");
+    let mut out = format!("{ASSUMPTIONS}\n");
     let _ = writeln!(out, "  unknown besides the material: {unknown}");
     let _ = match study.bands().len() {
         1 => writeln!(out, "  1 band centred at {low} cm^-1"),
@@ -115,7 +127,7 @@ pub(crate) fn warnings(warnings: &[Warning]) -> String {
     if warnings.is_empty() {
         return String::new();
     }
-    let mut out = String::from("Warnings\n");
+    let mut out = format!("{WARNINGS}\n");
     // One line per code: a whole library would otherwise bury the answer.
     for (i, warning) in warnings.iter().enumerate() {
         if warnings[..i].iter().any(|earlier| earlier.code() == warning.code()) {

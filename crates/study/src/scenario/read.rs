@@ -1,7 +1,6 @@
 //! Reads a scenario: every key checked, every error one line with file, line and key.
 
 use std::collections::BTreeMap;
-use std::io::Read;
 use std::path::Path;
 
 use toml::de::DeTable;
@@ -17,6 +16,7 @@ use super::{
 };
 use hadar::allowed::{ABOVE_ZERO, ABSOLUTE_TEMPERATURE, Allowed, SHARE};
 use hadar::error::{Error, Result};
+use hadar::file;
 use hadar::instrument::figures::BLANK;
 use hadar::units::{Dimension, decimal_comma};
 
@@ -43,19 +43,11 @@ pub(super) const MINIMUM: &str = "write [target] with material = \"skin\" and te
 
 /// The text of a scenario file.
 pub(super) fn text_of(path: &Path) -> Result<String> {
-    let refuse = |reason: &str| Error::file("read the scenario", path, reason);
+    let action = "read the scenario";
     if path.is_dir() {
-        return Err(refuse("it is a directory; name the .toml file inside it"));
+        return Err(Error::file(action, path, "it is a directory; name the .toml file inside it"));
     }
-    let file = std::fs::File::open(path).map_err(|error| match error.kind() {
-        std::io::ErrorKind::NotFound => refuse("there is no such file; check its name and folder"),
-        kind => refuse(&format!("{kind}; check that it may be read")),
-    })?;
-    let mut bytes = Vec::new();
-    file.take(LONGEST_FILE + 1).read_to_end(&mut bytes).map_err(|error| refuse(&error.kind().to_string()))?;
-    if bytes.len() as u64 > LONGEST_FILE {
-        return Err(refuse("it is longer than 1 MiB; name the scenario, not a data file"));
-    }
+    let bytes = file::bytes(path, action, LONGEST_FILE)?;
     String::from_utf8(bytes).map_err(|error| {
         let valid = error.utf8_error().valid_up_to();
         let line = 1 + error.as_bytes().iter().take(valid).filter(|byte| **byte == b'\n').count();

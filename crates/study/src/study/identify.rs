@@ -151,6 +151,12 @@ impl Study {
             .as_ref()
             .map(|counting| self.statistical_distance(kind, alternative, counting))
             .transpose()?;
+        let limit = match (kind, &counting) {
+            (DistanceKind::Nearest, _) | (_, None) => statistical,
+            (_, Some(counting)) => {
+                Some(self.statistical_distance(DistanceKind::Nearest, alternative, counting)?)
+            }
+        };
         let shortcut = counting.as_ref().map(|counting| {
             let gamma = hadar::instrument::gamma_per_band(counting, &signal);
             let distance = match kind {
@@ -185,6 +191,7 @@ impl Study {
             photons_required: required_by.of(kind),
             photons_required_by: required_by,
             statistical_distance: statistical,
+            statistical_distance_nearest: limit,
             told_apart: statistical.map(|d| d >= self.required),
             statistical_distance_shortcut: shortcut,
             detection_probability: statistical.map(detection::probability),
@@ -192,7 +199,9 @@ impl Study {
             information_bits: statistical.map(detection::information_bits),
             mutual_information_bits: statistical.map(detection::mutual_information_bits),
             two_sided_probability: statistical.map(|d| detection::two_sided_probability(d, ratio)),
-            error_bracket: statistical.map(detection::error_bracket),
+            error_bracket: statistical
+                .filter(|_| kind == DistanceKind::Nearest)
+                .map(detection::error_bracket),
             condition_number: condition.is_finite().then_some(condition),
             relative_error: local.relative_error,
             status: local.status,

@@ -2,7 +2,7 @@
 
 use super::identify::{PairResult, PhotonsRequired};
 use super::{Check, Shortfall, Study, Surface, Warning};
-use crate::scenario::Scenario;
+use crate::scenario::{DistanceKind, Scenario};
 use hadar::demand::{self, Ledger, Skipping, Work};
 use hadar::error::Result;
 use hadar::fisher::Nuisance;
@@ -22,6 +22,7 @@ pub(super) use curves::logarithmic;
 pub use curves::{InformationCurves, PhotonMap, Spectra};
 pub(super) use reach::{Reach, Solvers};
 pub use sensitivity::{Elasticities, EmissivityErrors, Sensitivity};
+pub use wording::no_limit;
 
 /// The answer to 'can this camera do it'.
 #[derive(Debug, Clone, serde::Serialize)]
@@ -80,9 +81,11 @@ pub struct Verdict {
     pub sentence: Finding,
     /// Statistical distance that the camera reaches against the limiting alternative.
     pub statistical_distance: Option<f64>,
+    /// The limit of it, whichever distance decides: that of the nearest.
+    pub statistical_distance_nearest: Option<f64>,
     /// Statistical distance demanded.
     pub required_distance: f64,
-    /// The first over the second.
+    /// That reached over that demanded.
     pub margin: Option<f64>,
 }
 
@@ -97,6 +100,8 @@ pub struct Finding {
     pub alternative: Option<String>,
     /// Statistical distance demanded.
     pub required: f64,
+    /// Which distance decides: only the nearest is a limit.
+    pub by: DistanceKind,
     /// What was found.
     pub answer: Answer,
     /// Emissivities of the two, where each is entered as one number.
@@ -119,8 +124,10 @@ pub enum Answer {
     },
     /// There is no camera to judge.
     Takes {
-        /// Photons that any camera needs.
+        /// Photons by the distance that decides.
         photons: f64,
+        /// Photons that any camera needs, by the nearest; none suffice where `None`.
+        limit: Option<f64>,
     },
     /// The camera was judged.
     Judged {
@@ -130,6 +137,8 @@ pub enum Answer {
         spoiled: Vec<Shortfall>,
         /// Statistical distance reached, where it is known.
         reached: Option<f64>,
+        /// That of the nearest distance, where it is known.
+        limit: Option<f64>,
     },
 }
 
@@ -266,11 +275,17 @@ impl Study {
             (None, [only]) => Some(only.name.clone()),
             (None, _) => None,
         };
-        let judged = Answer::Judged { enough: check.identifiable, spoiled: spoiled.clone(), reached: None };
+        let judged = Answer::Judged {
+            enough: check.identifiable,
+            spoiled: spoiled.clone(),
+            reached: None,
+            limit: None,
+        };
         let sentence = Finding {
             camera: camera.name.clone(),
             target: self.target.name.clone(),
             required: self.required,
+            by: self.scenario.requirement.by,
             answer: self.too_few_bands().filter(|_| !check.identifiable).unwrap_or(judged),
             placeholders: alternative.as_deref().and_then(|name| self.one_numbers(name)),
             alternative,
@@ -284,6 +299,7 @@ impl Study {
                 .collect(),
             sentence,
             statistical_distance: None,
+            statistical_distance_nearest: None,
             required_distance: self.required,
             margin: None,
         };
@@ -382,7 +398,7 @@ impl Study {
         requirement: &RequirementResult,
         spoiled: Vec<Shortfall>,
     ) -> Verdict {
-        let reached = pair.statistical_distance;
+        let (reached, limit) = (pair.statistical_distance, pair.statistical_distance_nearest);
         let far_enough = reached.map(|reached| reached >= self.required);
         let met = far_enough.map(|enough| enough && spoiled.is_empty());
         let mut fails_by = if far_enough == Some(false) { vec![Shortfall::Distance] } else { Vec::new() };
@@ -392,14 +408,15 @@ impl Study {
             (_, None, Status::Identical | Status::Equilibrium) => Answer::NothingDiffers,
             (_, _, Status::Blind) if few.is_some() => few.unwrap_or(Answer::UnknownsExplain),
             (_, None, Status::Ok | Status::Blind) => Answer::UnknownsExplain,
-            (None, Some(photons), _) => Answer::Takes { photons },
-            (Some(d), Some(_), _) => Answer::Judged { enough: d >= self.required, spoiled, reached },
+            (None, Some(photons), _) => Answer::Takes { photons, limit: requirement.photons_by.nearest },
+            (Some(d), Some(_), _) => Answer::Judged { enough: d >= self.required, spoiled, reached, limit },
         };
         let sentence = Finding {
             camera: self.camera.as_ref().map_or_else(String::new, |camera| camera.name.clone()),
             target: pair.target.clone(),
             alternative: Some(pair.alternative.clone()),
             required: self.required,
+            by: self.scenario.requirement.by,
             answer,
             placeholders: self.one_numbers(&pair.alternative),
         };
@@ -408,6 +425,7 @@ impl Study {
             fails_by,
             sentence,
             statistical_distance: reached,
+            statistical_distance_nearest: limit,
             required_distance: self.required,
             margin: reached.map(|reached| reached / self.required),
         }

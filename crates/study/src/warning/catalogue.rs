@@ -124,6 +124,9 @@ catalogue! {
     SamplesNotChecked = "samples-not-checked", "Use --no-skip to have all of them checked.";
     /// Measured counts have noise of their own, which looks like texture and makes bounds too good.
     NoiseInCounts = "noise-in-counts", "Give expected counts, or averages of many frames.";
+    /// A signal has samples of exactly 0 without noise, whose information has no value: such windows are left out. A cube, or a
+    /// scene, whose counts are so is refused.
+    DarkSamples = "dark-samples", "Give the camera its noise, or the surfaces emissivities below 1.";
     /// The scattered light as if it were measured alone promises more than the cube holds.
     ScatteredAsMeasured = "scattered-as-measured", "Use the bounds of the heat cube.";
     /// No depth is given, so that bounds are on disparity, in pixels.

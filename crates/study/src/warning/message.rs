@@ -214,6 +214,10 @@ impl Display for Warning {
                 short(*floor_per_px2),
                 short(*found_per_px2)
             ),
+            Self::DarkSamples { signal, left_out, windows } => write!(
+                f,
+                "{signal}: {left_out} of {windows} windows have no bound, for a sample in them is 0 and has no noise"
+            ),
             Self::ScatteredAsMeasured { ratio } => write!(
                 f,
                 "the scattered signal as if measured promises {} times less error than the heat cube holds: the photons that \

@@ -52,7 +52,7 @@ fn a_file_that_cannot_be_read_is_said_to_be_so() {
     );
     assert_eq!(
         message("a.toml", Some(&vec![b' '; (1 << 20) + 1])),
-        ": cannot read the scenario: it is longer than 1 MiB; name the scenario, not a data file"
+        ": cannot read the scenario: it is longer than 1 MiB, more than such a file needs"
     );
 }
 

@@ -298,7 +298,7 @@ fn assumptions_that_fail_are_warned_of() {
         let sizing = size(&text);
         assert!(codes(&sizing).contains(&code), "{code}: {:?}", sizing.warnings);
     }
-    let boson = SCENE.replace("\"flir-a325sc\"", "\"flir-boson-640-14mm\"\nf_number = 1.0");
+    let boson = SCENE.replace("\"flir-a325sc\"", "\"flir-boson-640-14mm\"\nf_number = 1.0\nreadout = \"sequential\"");
     assert!(codes(&size(&boson)).contains(&"camera-figure-assumed"));
     assert!(!codes(&usual).contains(&"camera-figure-assumed"));
     // A pixel as large as the blur, and bunching that is in the noise.

@@ -2,6 +2,7 @@
 
 use super::{Cube, READ_CUBE, mat, npy};
 use crate::error::{Error, Result};
+use crate::file;
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
@@ -91,20 +92,9 @@ pub(crate) fn is_cube(path: &Path) -> Result<bool> {
 }
 
 fn opened(path: &Path) -> Result<(File, Vec<u8>)> {
-    let refused = |reason: &dyn std::fmt::Display| Error::file(READ_CUBE, path, reason);
-    let found = std::fs::metadata(path).map_err(|error| match error.kind() {
-        std::io::ErrorKind::NotFound => refused(&"there is no such file; check the name"),
-        _ => refused(&error),
-    })?;
-    if found.is_dir() {
-        return Err(refused(&"this is a directory; name a file"));
-    }
-    if !found.is_file() {
-        return Err(refused(&"this is no ordinary file, and rows are read in any order; copy it to one"));
-    }
-    let file = File::open(path).map_err(|error| refused(&error))?;
+    let file = file::open(path, READ_CUBE)?;
     let mut start = Vec::with_capacity(128);
-    (&file).take(128).read_to_end(&mut start).map_err(|error| refused(&error))?;
+    (&file).take(128).read_to_end(&mut start).map_err(|error| Error::file(READ_CUBE, path, error))?;
     Ok((file, start))
 }
 

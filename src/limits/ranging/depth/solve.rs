@@ -146,10 +146,11 @@ impl DepthTask<'_> {
                 Demand::Relative(_) => 2.0 * c / (a + (a * a + 4.0 * b * c).sqrt()),
                 // u⁴(A + B u²) = C, between half of what either term alone allows and all that the first does.
                 Demand::Absolute(_) => {
-                    let high = 0.5 * (c / a).ln();
-                    let low = (0.5 * (0.5 * c / a).ln()).min((0.5 * c / b).ln() / 3.0);
-                    let excess = |log: f64| Ok((2.0 * log - c.ln()) + (a + b * log.exp()).ln());
-                    crossing(low - 1e-9, high + 1e-9, excess)?.exp()
+                    let high = 0.5 * libm::log(c / a);
+                    let low = (0.5 * libm::log(0.5 * c / a)).min(libm::log(0.5 * c / b) / 3.0);
+                    let excess =
+                        |log: f64| Ok((2.0 * log - libm::log(c)) + libm::log(a + b * libm::exp(log)));
+                    libm::exp(crossing(low - 1e-9, high + 1e-9, excess)?)
                 }
             };
             Ok(self.distance_m * square.sqrt())
@@ -190,10 +191,10 @@ impl DepthTask<'_> {
             let expected = format!("at most {widest} m: no lens in air is faster than f/{FASTEST_F_NUMBER}");
             return Err(Error::out_of_range("aperture", aperture_m, "m", expected));
         }
-        let best = (widest / aperture_m).ln();
+        let best = libm::log(widest / aperture_m);
         let reason = format!("no lens in air is faster than f/{FASTEST_F_NUMBER}");
         let at = |log: f64| {
-            let factor = log.exp();
+            let factor = libm::exp(log);
             let image = match self.image {
                 Image::Measured => Image::Measured,
                 Image::Ideal { .. } => {
@@ -217,7 +218,7 @@ impl DepthTask<'_> {
         let growth = |factor: f64| noise::growth(stretch * factor, noise.flicker_fraction);
         let reason = "flicker noise grows as fast as the signal: no exposure is long enough";
         let at = |log: f64| {
-            let factor = log.exp();
+            let factor = libm::exp(log);
             Ok((self.windows(factor, growth(factor) / growth(1.0))?, self.image))
         };
         self.solve(noise.exposure_s, LOG_RANGE, 1.0, reason, at)
@@ -230,7 +231,7 @@ impl DepthTask<'_> {
     /// A distance or demand that is not positive.
     pub fn noise(&self) -> Result<DepthSolution> {
         let camera = self.views[0].noise_counts();
-        let at = |log: f64| Ok((self.windows(1.0, (-2.0 * log).exp())?, self.image));
+        let at = |log: f64| Ok((self.windows(1.0, libm::exp(-2.0 * log))?, self.image));
         if self.views.iter().all(|view| view.noise_counts() == 0.0) {
             let (sigma_z_m, met) = (self.bound()?.sigma_z_m, self.allowed_m()?);
             if sigma_z_m.is_infinite() {
@@ -276,9 +277,9 @@ impl DepthTask<'_> {
         } else if error_at(-LOG_RANGE)? <= allowed {
             -LOG_RANGE
         } else {
-            crossing(-LOG_RANGE, best, |log| Ok((allowed / error_at(log)?).ln().max(-1e3)))?
+            crossing(-LOG_RANGE, best, |log| Ok(libm::log(allowed / error_at(log)?).max(-1e3)))?
         };
-        let value = Some(camera * (power * log).exp());
+        let value = Some(camera * libm::exp(power * log));
         Ok(DepthSolution { value, camera, sigma_z_m: error_at(log)?, reason: None })
     }
 

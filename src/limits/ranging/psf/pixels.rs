@@ -116,9 +116,9 @@ fn gaussian_pixel(low: f64, pitch: f64) -> f64 {
     // On the side where both are small, so that neither difference cancels.
     let [near, far] = if low + 0.5 * pitch >= 0.0 { [low, low + pitch] } else { [-low - pitch, -low] };
     let tail = |x: f64| 0.5 * erfc(FRAC_1_SQRT_2 * x);
-    let density = |x: f64| (-0.5 * x * x).exp() / (2.0 * PI).sqrt();
+    let density = |x: f64| libm::exp(-0.5 * x * x) / (2.0 * PI).sqrt();
     // φ(near) − φ(far) = φ(near)(1 − exp(−(far − near)(far + near)/2)).
-    let change = -density(near) * (-0.5 * pitch * (near + far)).exp_m1();
+    let change = -density(near) * libm::expm1(-0.5 * pitch * (near + far));
     let share = tail(near) - tail(far);
     if share > 0.0 { change * (change / share) } else { 0.0 }
 }

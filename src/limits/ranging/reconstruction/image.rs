@@ -50,7 +50,8 @@ pub struct BesideEmission {
     pub temperature: Vec<f64>,
     /// Temperature and strength of the emission estimated.
     pub strength_too: Vec<f64>,
-    /// The scattered signal as if it were measured, Σ(∂R)²/(R + σ²); a pixel that scatters nothing tells nothing.
+    /// The scattered signal as if it were measured, Σ(∂R)²/(R + σ²); NaN where a sample is 0 and has no noise, since its quotient
+    /// has no value: such samples of a cube are refused by [`information`](crate::ranging::information::information).
     pub scattered_alone: Vec<f64>,
 }
 
@@ -115,9 +116,12 @@ impl EmissionImage<'_> {
                             work.pixel(self, x, &counts[own.clone()], &emission[own.clone()], temperature_k);
                         let slope = &work.scattered[x * bands..(x + 1) * bands];
                         let terms = scattered[own].iter().zip(self.var_added).zip(slope);
-                        let alone = terms.map(
-                            |((r, var), slope)| if r + var > 0.0 { slope * slope / (r + var) } else { 0.0 },
-                        );
+                        let alone =
+                            terms.map(
+                                |((r, var), slope)| {
+                                    if r + var > 0.0 { slope * slope / (r + var) } else { f64::NAN }
+                                },
+                            );
                         [temperature, strength_too, alone.sum()]
                     };
                     Ok((0..columns).map(pixel).collect())

@@ -70,7 +70,7 @@ pub fn global_entropy(image: &MemoryCube<f64>, range: Option<[f64; 2]>) -> Resul
     levels(image, range)?.iter().for_each(|&level| counts[usize::from(level)] += 1);
     let count = image.samples.len() as f64;
     // − p log₂ p of each level: no term is negative.
-    let bits = counts.iter().filter(|&&n| n > 0).map(|&n| n as f64 / count * (count / n as f64).log2());
+    let bits = counts.iter().filter(|&&n| n > 0).map(|&n| n as f64 / count * libm::log2(count / n as f64));
     Ok(crate::sum::sum(&bits.collect::<Vec<_>>()))
 }
 
@@ -109,9 +109,9 @@ struct Table {
 
 impl Table {
     fn of(pixels: usize) -> Self {
-        let f = |c: usize| if c == 0 { 0.0 } else { c as f64 * (c as f64).log2() };
+        let f = |c: usize| if c == 0 { 0.0 } else { c as f64 * libm::log2(c as f64) };
         // So large that f(n) still fits with a bit to spare, and no larger than f64 has digits for f(2).
-        let shift = (61 - (f(pixels) + 1.0).log2().ceil() as i32).min(51);
+        let shift = (61 - libm::log2(f(pixels) + 1.0).ceil() as i32).min(51);
         let scale = f64::from(shift).exp2();
         Self { scaled: (0..=pixels).map(|c| (f(c) * scale).round() as i64).collect(), shift }
     }

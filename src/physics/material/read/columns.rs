@@ -96,10 +96,10 @@ fn wavenumbers(grid: &Grid) -> Result<Vec<f64>> {
     let to_wavenumber: fn(f64) -> f64 = match axis {
         "wavenumber_cm1" => |x| x,
         "wavelength_um" => |x| 1e4 / x,
-        other => {
-            return Err(Error::malformed(format!("a first column `{other}`"), HEADERS)
-                .for_key(other)
-                .on_line(grid.header_line));
+        _ => {
+            return Err(
+                Error::malformed("this is not the header of a spectrum", HEADERS).on_line(grid.header_line)
+            );
         }
     };
     let unit = if axis == "wavelength_um" { "um" } else { "cm^-1" };

@@ -102,7 +102,7 @@ fn lanczos(u: f64) -> (f64, f64) {
             // Next terms: a⁴/120 and a³/30.
             return (1.0 - a * a / 6.0, -PI * a / 3.0);
         }
-        (a.sin() / a, PI * (a.cos() - a.sin() / a) / a)
+        (libm::sin(a) / a, PI * (libm::cos(a) - libm::sin(a) / a) / a)
     };
     let ((f, df), (g, dg)) = (sinc(u), sinc(u / reach));
     (f * g, df * g + f * dg / reach)

@@ -62,7 +62,7 @@ impl Texture {
     /// # Errors
     /// A shape of another number of bands; a disparity that is not finite.
     pub fn view(&self, shape: Shape, disparity: f64) -> Result<Vec<f64>> {
-        self.sample(shape, disparity, |phase, _| phase.cos(), 1.0)
+        self.sample(shape, disparity, |phase, _| libm::cos(phase), 1.0)
     }
 
     /// ∂N/∂x of it, counts per pixel.
@@ -70,7 +70,7 @@ impl Texture {
     /// # Errors
     /// As [`Self::view`].
     pub fn derivative(&self, shape: Shape, disparity: f64) -> Result<Vec<f64>> {
-        self.sample(shape, disparity, |phase, u| -TAU * u * phase.sin(), 0.0)
+        self.sample(shape, disparity, |phase, u| -TAU * u * libm::sin(phase), 0.0)
     }
 
     fn sample(

@@ -1,7 +1,7 @@
 //! What the camera and the limit are called.
 
 use hadar_study::scenario::DistanceKind;
-use hadar_study::study::Study;
+use hadar_study::study::{self, Study};
 
 /// The camera by its name, where it has one.
 pub(super) fn camera(study: &Study) -> &str {
@@ -12,12 +12,12 @@ pub(super) fn camera(study: &Study) -> &str {
 }
 
 /// What must be added to an answer that is not by the nearest distance.
-pub(super) fn no_limit(study: &Study) -> &'static str {
-    match study.scenario().requirement.by {
-        DistanceKind::Nearest => "",
-        DistanceKind::Local => ", by the local distance, which is no limit and can err either way",
-        DistanceKind::LocalUnknownGain => {
-            ", by the local distance with unknown gain (S29), which is no limit"
-        }
-    }
+pub(super) fn no_limit(study: &Study) -> String {
+    study::no_limit(study.scenario().requirement.by)
+        .map_or_else(String::new, |reading| format!(", by {reading}"))
+}
+
+/// That it is not told apart: a limit forbids it, a reading that is none does not.
+pub(super) fn does_not_tell(study: &Study) -> &'static str {
+    if study.scenario().requirement.by == DistanceKind::Nearest { "cannot tell" } else { "does not tell" }
 }

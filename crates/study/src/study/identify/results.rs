@@ -129,7 +129,9 @@ pub struct PairResult {
     pub photons_required_by: PhotonsRequired,
     /// Statistical distance of the camera by the chosen distance, with its noise.
     pub statistical_distance: Option<f64>,
-    /// Whether that reaches the requirement.
+    /// The same by the nearest distance: the limit, whichever decides.
+    pub statistical_distance_nearest: Option<f64>,
+    /// Whether that of the chosen distance reaches the requirement.
     pub told_apart: Option<bool>,
     /// What the paper's shortcut √(N/(1+γ))·d₀ makes of it.
     pub statistical_distance_shortcut: Option<f64>,
@@ -143,7 +145,7 @@ pub struct PairResult {
     pub mutual_information_bits: Option<f64>,
     /// Estimate for a test that must fit temperature and lighting itself.
     pub two_sided_probability: Option<f64>,
-    /// Rigorous bounds on the error of the best test between the two states.
+    /// Rigorous bounds on the error of the best test between the two states; only by the nearest distance, which alone has two.
     pub error_bracket: Option<ErrorBracket>,
     /// Condition number of the scaled scores; `None` if infinite.
     pub condition_number: Option<f64>,

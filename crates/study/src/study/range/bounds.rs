@@ -101,10 +101,11 @@ impl Ground<'_> {
         variances: &[Vec<f64>],
         own: &dyn Fn(&(usize, usize)) -> bool,
     ) -> Result<ObjectBounds> {
-        // A window counts if every signal has a partner for it.
-        let chosen: Vec<usize> = (0..windows.len())
-            .filter(|&i| own(&windows[i]) && variances.iter().all(|var| !var[i].is_nan()))
-            .collect();
+        // A window counts if it has a partner in every signal that a camera measures: what only might be does not decide.
+        let measured = |map: &SignalMap| map.signal != Signal::ScatteredAsMeasured;
+        let has_partner =
+            |i: usize| maps.iter().zip(variances).all(|(map, var)| !(measured(map) && var[i].is_nan()));
+        let chosen: Vec<usize> = (0..windows.len()).filter(|&i| own(&windows[i]) && has_partner(i)).collect();
         let depth = |i: usize| {
             let (row, column) = windows[i];
             self.truth.depth_m.get(row * self.columns + column).copied().unwrap_or(f64::NAN)
@@ -116,6 +117,7 @@ impl Ground<'_> {
             .map(|(map, var)| {
                 let bounds: Vec<Bound> = chosen
                     .iter()
+                    .filter(|&&i| !var[i].is_nan())
                     .filter_map(|&i| {
                         let place = map.at(windows[i].0, windows[i].1)?;
                         Some(Bound { place, depth_m: depth(i), var_px2: var[i] })
@@ -156,6 +158,7 @@ impl Ground<'_> {
             bounds.iter().map(|bound| self.largest_depth_m(bound.var_px2.sqrt())).collect();
         Ok(SignalBounds {
             signal: map.signal,
+            windows: bounds.len(),
             photons,
             gamma,
             information_per_px2: of(&map.information),

@@ -15,8 +15,9 @@ use hadar::ranging::noise::NoiseVariance;
 use hadar::render::{Emissivity, Options, Rig, Scene, StreetSpec};
 use hadar::spectrum::Bands;
 
-/// Samples of a rendered view that are held at a time, four times over.
+/// Samples of a rendered view that are held at a time, four times over; a pixel takes as much as so many beside its own.
 const MOST_SAMPLES: f64 = 2e8;
+const SAMPLES_OF_PIXEL: usize = 32;
 
 impl RangeStudy {
     /// Looks up everything that `scenario` names, materials in `library`, and opens its cubes.
@@ -29,7 +30,7 @@ impl RangeStudy {
         let camera = scenario.camera.as_ref().map(|spec| camera::resolved(spec, source)).transpose()?;
         let mut scenario = scenario.clone();
         if let Some(spec) = &mut scenario.bands {
-            spec.source = camera_bands::asked(&spec.source, camera.as_ref());
+            spec.source = camera_bands::asked(&spec.source, camera.as_ref().zip(scenario.camera.as_ref()));
         }
         let asked = scenario.bands.as_ref().map(|spec| &spec.source);
         let bands = asked.map(|asked| bands::at_centres(asked, source)).transpose()?;
@@ -123,11 +124,13 @@ fn scene(
     }
     let at_scene = |error: Error| error.at(scenario.place("scene"));
     let scene = Scene::street(&street).map_err(at_scene)?;
-    let samples = rig.rows as f64 * rig.columns as f64 * bands.len() as f64;
+    let samples = rig.rows as f64 * rig.columns as f64 * (bands.len() + SAMPLES_OF_PIXEL) as f64;
     if samples > MOST_SAMPLES {
         let found = format!("{} x {} pixels in {} bands", rig.rows, rig.columns, bands.len());
-        let instead =
-            format!("lower scene.size or the number of bands: {MOST_SAMPLES:e} samples fit into memory");
+        let instead = format!(
+            "lower scene.size or the number of bands: {:.0e} pixels fit into memory",
+            MOST_SAMPLES / (bands.len() + SAMPLES_OF_PIXEL) as f64
+        );
         return Err(at_scene(Error::malformed(found, instead)));
     }
     let counting = camera.counting(bands, &View::default());

@@ -170,6 +170,8 @@ pub struct ObjectBounds {
 pub struct SignalBounds {
     /// Which.
     pub signal: Signal,
+    /// How many have a bound; not those in which a sample is 0 and has no noise, whose information has no value.
+    pub windows: usize,
     /// Photons of a window.
     pub photons: f64,
     /// γ: electronic noise over shot noise of a window.

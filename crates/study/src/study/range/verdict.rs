@@ -135,6 +135,10 @@ pub(super) fn warnings(study: &RangeStudy, result: &Ranging) -> Vec<Warning> {
         let ratio = cube.disparity_error_px / alone.disparity_error_px;
         warnings.push(Warning::ScatteredAsMeasured { ratio });
     }
+    for found in all.signals.iter().filter(|found| found.windows < all.windows) {
+        let (signal, left_out) = (found.signal.name(), all.windows - found.windows);
+        warnings.push(Warning::DarkSamples { signal, left_out, windows: all.windows });
+    }
     if let (Some(full_well), Some(counts)) =
         (study.camera.as_ref().and_then(|camera| camera.full_well), result.maps.brightest)
         && counts > full_well

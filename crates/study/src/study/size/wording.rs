@@ -1,6 +1,7 @@
 //! The verdict on a camera in a sentence.
 
 use super::{Answer, Finding};
+use crate::scenario::DistanceKind;
 use crate::study::Shortfall;
 use crate::words::{demanded, reliability};
 use hadar::fisher::Nuisance;
@@ -26,6 +27,9 @@ impl Finding {
         let Self { camera, target, .. } = self;
         let other = self.alternative.as_deref().unwrap_or("every alternative");
         let wanted = demanded(self.required);
+        if let Some(reading) = no_limit(self.by) {
+            return self.by_local(f, reading, other, &wanted);
+        }
         match &self.answer {
             Answer::NothingDiffers => {
                 write!(f, "No camera can tell {target} from {other} here: nothing in the spectrum differs.")
@@ -47,12 +51,12 @@ impl Finding {
                 };
                 write!(f, "{yes}: {many} cannot tell materials while {unknown} {are} unknown{colon}.")
             }
-            Answer::Takes { photons } => write!(
+            Answer::Takes { photons, .. } => write!(
                 f,
                 "Telling {target} from {other} with {wanted} reliability takes at least {} photons.",
                 significant(*photons, 3)
             ),
-            Answer::Judged { enough, spoiled, reached } => {
+            Answer::Judged { enough, spoiled, reached, .. } => {
                 let (yes, can) = match (enough, spoiled.is_empty()) {
                     (true, true) => ("Yes", "can"),
                     (true, false) => ("No", "could"),
@@ -63,6 +67,75 @@ impl Finding {
                     _ if *enough && !spoiled.is_empty() => write!(f, ", but {}.", in_words(spoiled)),
                     Some(reached) => write!(f, "; it reaches {} at most.", reliability(*reached)),
                     None => f.write_str("."),
+                }
+            }
+        }
+    }
+}
+
+/// What a reading that is no limit is called; nothing of the limit.
+#[must_use]
+pub const fn no_limit(by: DistanceKind) -> Option<&'static str> {
+    match by {
+        DistanceKind::Nearest => None,
+        DistanceKind::Local => Some("the paper's local distance, which is no limit and can err either way"),
+        DistanceKind::LocalUnknownGain => Some(
+            "the paper's local distance with unknown gain (S29), which is no limit and can err either way",
+        ),
+    }
+}
+
+impl Finding {
+    /// By a reading that is no limit: what it says, what it is, and what the limit is. It rules nothing out.
+    fn by_local(&self, f: &mut Formatter<'_>, reading: &str, other: &str, wanted: &str) -> fmt::Result {
+        let Self { camera, target, .. } = self;
+        match &self.answer {
+            Answer::NothingDiffers => write!(
+                f,
+                "{target} is not told from {other} here by {reading}: to first order nothing in the spectrum differs."
+            ),
+            Answer::UnknownsExplain => write!(
+                f,
+                "{target} is not told from {other} here by {reading}: to first order the unknowns explain every \
+                 difference in the spectrum."
+            ),
+            Answer::TooFewBands { bands, unknowns } => {
+                let (unknown, are) = together(unknowns);
+                write!(
+                    f,
+                    "No: {target} is not told from {other} here by {reading}: there are {bands} bands, and {unknown} {are} \
+                     unknown."
+                )
+            }
+            Answer::Takes { photons, limit } => {
+                let photons = significant(*photons, 3);
+                write!(
+                    f,
+                    "Telling {target} from {other} with {wanted} reliability takes {photons} photons by {reading}; by the \
+                     nearest, the limit, "
+                )?;
+                match limit {
+                    Some(limit) => write!(f, "{}.", significant(*limit, 3)),
+                    None => f.write_str("no number suffices."),
+                }
+            }
+            Answer::Judged { enough, spoiled, reached, limit } => {
+                let (yes, tells) = match (enough, spoiled.is_empty()) {
+                    (true, true) => ("Yes", "tells"),
+                    (true, false) => ("No", "would tell"),
+                    (false, _) => ("No", "does not tell"),
+                };
+                write!(f, "{yes}: {camera} {tells} {target} from {other} with {wanted} reliability")?;
+                if *enough && !spoiled.is_empty() {
+                    write!(f, ", but {}", in_words(spoiled))?;
+                }
+                write!(f, ", by {reading}")?;
+                match (reached, limit) {
+                    (Some(reached), Some(limit)) => {
+                        let [reached, limit] = [reached, limit].map(|d| reliability(*d));
+                        write!(f, ": it reads {reached}; the limit, by the nearest distance, is {limit}.")
+                    }
+                    _ => f.write_str("."),
                 }
             }
         }

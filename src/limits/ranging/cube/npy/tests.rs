@@ -256,7 +256,10 @@ fn files_of_another_kind_are_told_apart() {
     let named = Cube::open(&folder.file(&f4("(1, 1)", &[0; 4])), Some("S")).unwrap_err().to_string();
     assert!(named.contains("a variable `S` is named, but an NPY file has one array"), "{named}");
     let missing = Cube::open(&folder.0.path().join("none.npy"), None).unwrap_err().to_string();
-    assert!(missing.ends_with("cannot read the cube: there is no such file; check the name"), "{missing}");
+    assert!(
+        missing.ends_with("cannot read the cube: there is no such file; check its name and folder"),
+        "{missing}"
+    );
     let directory = Cube::open(folder.0.path(), None).unwrap_err().to_string();
     assert!(directory.ends_with("this is a directory; name a file"), "{directory}");
     if cfg!(unix) {

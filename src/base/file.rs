@@ -1,0 +1,46 @@
+//! Files of a user's: only those with an end. A pipe that nobody writes would be waited for, a device has no end.
+
+use crate::error::{Error, Result};
+use crate::inputs;
+use std::fs::File;
+use std::io::{ErrorKind, Read};
+use std::path::Path;
+
+/// Opens an ordinary file, and notes that it was read.
+///
+/// # Errors
+/// No such file, a directory, a pipe or device, no permission; the message says what `action` could not be done.
+pub fn open(path: &Path, action: &str) -> Result<File> {
+    let refused = |reason: &str| Error::file(action, path, reason);
+    let failed = |error: std::io::Error| match error.kind() {
+        ErrorKind::NotFound => refused("there is no such file; check its name and folder"),
+        kind => refused(&format!("{kind}; check that it may be read")),
+    };
+    // Asked before it is opened, which alone may take forever.
+    let found = std::fs::metadata(path).map_err(failed)?;
+    if found.is_dir() {
+        return Err(refused("this is a directory; name a file"));
+    }
+    if !found.is_file() {
+        return Err(refused("this is no ordinary file but a pipe or a device; copy its content to one"));
+    }
+    let file = File::open(path).map_err(failed)?;
+    inputs::file(path);
+    Ok(file)
+}
+
+/// All bytes of an ordinary file.
+///
+/// # Errors
+/// As [`open`]; a file of more than `most` bytes.
+pub fn bytes(path: &Path, action: &str, most: u64) -> Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    let read = open(path, action)?.take(most + 1).read_to_end(&mut bytes);
+    read.map_err(|error| Error::file(action, path, format!("{}; check that it may be read", error.kind())))?;
+    if bytes.len() as u64 > most {
+        let mebibytes = most >> 20;
+        let reason = format!("it is longer than {mebibytes} MiB, more than such a file needs");
+        return Err(Error::file(action, path, reason));
+    }
+    Ok(bytes)
+}
