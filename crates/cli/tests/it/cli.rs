@@ -196,7 +196,7 @@ fn the_number_of_threads_changes_no_byte() {
     assert!(one.stdout == two.stdout, "the JSON differs");
     let names: Vec<_> =
         fs::read_dir(folder.path().join("one")).unwrap().map(|e| e.unwrap().file_name()).collect();
-    assert!(names.len() >= 18);
+    assert!(names.len() >= 15, "{names:?}");
     for name in names {
         let read = |of: &str| fs::read(folder.path().join(of).join(&name)).unwrap();
         assert!(read("one") == read("two"), "{name:?} differs");
