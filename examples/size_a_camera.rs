@@ -31,8 +31,14 @@ fn main() -> hadar::Result<()> {
         Ok(solver.with_counting(&skin, &aluminium, &person, &counting)?.distance)
     };
 
-    let task =
-        CameraTask { camera: &camera, bands: &bands, required: 1.0, distance_m: Some(30.0), size_m: None };
+    let task = CameraTask {
+        camera: &camera,
+        bands: &bands,
+        required: 1.0,
+        distance_m: Some(30.0),
+        farthest_m: None,
+        size_m: None,
+    };
     println!(
         "{}: statistical distance d = {:.4}, demanded {}",
         camera.name,

@@ -5,6 +5,7 @@ pub mod demand;
 pub mod error;
 pub mod file;
 pub mod grid;
+pub mod inputs;
 pub mod lattice_points;
 pub mod minimum;
 pub mod root;

@@ -89,7 +89,7 @@ mod witness;
 pub use base::error::{Error, Result};
 pub(crate) use base::simd;
 pub use base::{
-    allowed, demand, error, file, grid, lattice_points, minimum, root, statistics, sum, units, words,
+    allowed, demand, error, file, grid, inputs, lattice_points, minimum, root, statistics, sum, units, words,
 };
 pub use limits::{fisher, identifiability, policy, ranging};
 pub use physics::{atmosphere, material, planck, scene, spectrum};

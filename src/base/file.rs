@@ -1,11 +1,12 @@
 //! Files of a user's: only those with an end. A pipe that nobody writes would be waited for, a device has no end.
 
 use crate::error::{Error, Result};
+use crate::inputs;
 use std::fs::File;
 use std::io::{ErrorKind, Read};
 use std::path::Path;
 
-/// Opens an ordinary file.
+/// Opens an ordinary file, and notes that it was read.
 ///
 /// # Errors
 /// No such file, a directory, a pipe or device, no permission; the message says what `action` could not be done.
@@ -23,7 +24,9 @@ pub fn open(path: &Path, action: &str) -> Result<File> {
     if !found.is_file() {
         return Err(refused("this is no ordinary file but a pipe or a device; copy its content to one"));
     }
-    File::open(path).map_err(failed)
+    let file = File::open(path).map_err(failed)?;
+    inputs::file(path);
+    Ok(file)
 }
 
 /// All bytes of an ordinary file.

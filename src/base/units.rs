@@ -404,7 +404,7 @@ mod tests {
             let error = Dimension::Temperature.parse(text).unwrap_err().to_string();
             assert!(error.contains("has a decimal comma; write ") && error.contains(point), "{error}");
         }
-        assert!(["1, 2", "a,5", "1.5,5", ",5", "5,"].iter().all(|text| decimal_comma(text).is_none()));
+        assert!(["1, 2", "a,5", "1.5,5", "5,"].iter().all(|text| decimal_comma(text).is_none()));
         assert_eq!(Dimension::Speed.unit_in("30 mph"), Some("mph"));
         assert_eq!(Dimension::Length.unit_in("30 mph"), None);
         let fahrenheit = Dimension::Temperature.in_unit(310.15, "°F").unwrap();

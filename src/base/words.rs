@@ -16,7 +16,9 @@ pub fn significant(value: f64, digits: usize) -> String {
     let exponent = in_powers.split_once('e').and_then(|(_, power)| power.parse().ok()).unwrap_or(i32::MAX);
     if PLAIN.contains(&exponent) {
         let decimals = usize::try_from(last as i32 - exponent).unwrap_or(0);
-        format!("{value:.decimals$}")
+        // As it was rounded: 44032 of three digits is 44000.
+        let rounded: f64 = in_powers.parse().unwrap_or(value);
+        format!("{rounded:.decimals$}")
     } else {
         in_powers
     }
@@ -76,7 +78,7 @@ mod tests {
     #[test]
     fn numbers_are_short_and_keep_their_digits() {
         assert_eq!(significant(0.056_23, 3), "0.0562");
-        assert_eq!(significant(66_321.0, 3), "66321");
+        assert_eq!(significant(66_321.0, 3), "66300");
         assert_eq!(significant(663_212.0, 3), "6.63e5");
         assert_eq!(
             [0.629, 0.0569, 0.001, 0.000_999].map(|x| significant(x, 3)),

@@ -26,6 +26,7 @@ mod read;
 use self::growth::same;
 use self::read::Table;
 use crate::error::{Error, Result, check};
+use crate::inputs;
 use crate::planck;
 use std::path::Path;
 
@@ -56,6 +57,7 @@ impl Atmosphere {
             .iter()
             .find(|table| table.name == name)
             .ok_or_else(|| Error::unknown_name("model atmosphere", name, embedded::NAMES.iter().copied()))?;
+        inputs::built_in("air", table.name, || table.text.into());
         Ok(Self {
             name: table.name.to_owned(),
             temperature_k: Some(table.temperature_k),

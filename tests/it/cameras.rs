@@ -168,12 +168,12 @@ fn the_bolometer_and_the_mct_detector_by_hand() {
     close(noise.sigma_counts, 1.769e6);
     // Stated in front of the optics, which pass 0.99.
     close(noise.netd_k, 47.8e-3 / 0.99);
-    close(noise.netd_with_shot_noise_k, 47.8e-3 / 0.99 * (1.0 + 2.500e9 / 1.769e6_f64.powi(2)).sqrt());
+    close(noise.netd_with_shot_noise_k, 47.8e-3 / 0.99 * (1.0 + 2.505e9 / 1.769e6_f64.powi(2)).sqrt());
     let nep_w = 1.769e6 * PLANCK * LIGHT * 98_250.0 / 12e-3;
     close(noise.nep_w, nep_w);
     close(noise.nep_w_hz05, nep_w / (1.0 / 24e-3_f64).sqrt());
     close(noise.detectivity_cm_hz05_w.unwrap(), 12e-4 * (1.0 / 24e-3_f64).sqrt() / nep_w);
-    close(noise.gamma_per_band, 536.0 * 1.769e6_f64.powi(2) / 2.500e9);
+    close(noise.gamma_per_band, 536.0 * 1.769e6_f64.powi(2) / 2.505e9);
     let mct = get("nicolet-is50");
     let nep_w = equivalents::nep_of_detectivity(4.7e10, 1e-3, 0.5 / 2.86e-6);
     close(nep_w, 0.1 * 174_825_f64.sqrt() / 4.7e10);

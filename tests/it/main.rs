@@ -5,6 +5,7 @@ mod decision;
 mod derivatives;
 mod detection_reference;
 mod exact_probability;
+mod inputs;
 mod likelihood;
 mod many_materials;
 mod materials;

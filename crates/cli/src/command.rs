@@ -9,6 +9,7 @@ mod global;
 mod identify;
 mod materials;
 mod progress;
+mod provenance;
 mod range;
 mod reproduce;
 mod rule;
@@ -23,7 +24,7 @@ use self::stderr::say;
 use self::terminal::Stream;
 use clap::{Parser, Subcommand};
 use hadar::error::{Error, Result};
-use hadar_report::bundle::Bundle;
+use hadar::inputs::Noting;
 use std::io::ErrorKind;
 use std::path::Path;
 use std::process::ExitCode;
@@ -88,8 +89,12 @@ fn run(cli: &Cli) -> Result<ExitCode> {
         return Err(Error::out_of_range("--threads", threads as f64, "", expected));
     }
     threads::start(cli.global.threads, cli.global.quiet);
-    if let Some(out) = &cli.global.out {
-        Bundle::check_destination(out)?;
+    let _noting = Noting::open();
+    // Figures of the paper have a folder each, which their command looks at.
+    if let Some(out) = &cli.global.out
+        && !matches!(cli.command, Command::Reproduce(_))
+    {
+        cli.global.folder(out).check()?;
     }
     match &cli.command {
         Command::Size(args) => size::run(args, &cli.global),

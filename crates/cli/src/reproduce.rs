@@ -148,9 +148,9 @@ impl Item {
             Self::TabS2 => tabs2::make(out)?,
             Self::Policy => policy::make(out)?,
         };
-        bundle.add("ledger.csv", table(&lines).to_csv()?);
+        bundle.add_table("ledger.csv", table(&lines))?;
         bundle.add("README.md", page(self, order.effort, &lines, &figures));
-        Ok(Reproduction { bundle, lines })
+        Ok(Reproduction { bundle: bundle.titled(self.title()), lines })
     }
 }
 

@@ -9,7 +9,7 @@ pub use skipping::{skipping_table, skipping_text};
 pub use stress::{stress_plots, stress_text};
 
 use super::figures::Plot;
-use super::plot::{Axis, LineFigure, Marker, Series, Style};
+use super::plot::{self, Axis, LineFigure, Marker, Series, Style};
 use super::table::{Table, number, optional};
 use hadar::words::{quantity, significant};
 use hadar_proof::accuracy::{Chart, Measured, ROUNDED};
@@ -27,32 +27,27 @@ pub fn plot(chart: &Chart) -> Plot {
     )
     .subtitle(
         format!(
-            "Along a line: {}. Reference: {}. Errors below {} are drawn there: exact to the last bit.",
+            "Along a line: {}. Full symbols: the Pareto front{}, nothing is both faster and better. Reference: {}. Errors below {} \
+             are drawn there: exact to the last bit.",
             chart.effort,
+            if chart.questions().len() > 1 { " of each question" } else { "" },
             chart.reference,
-            significant(FLOOR, 1)
+            plot::number(FLOOR)
         )
         .replace("^-1", "⁻¹"),
     );
     let drawn = |measured: &Measured| (measured.seconds, measured.error.max(FLOOR));
     for (colour, method) in chart.methods().into_iter().enumerate() {
-        let of = chart.measured.iter().filter(|measured| measured.method == method);
-        let (x, y): (Vec<f64>, Vec<f64>) = of.map(drawn).unzip();
-        figure = figure
-            .series(Series::points(method.replace("^-1", "⁻¹"), x.clone(), y.clone()).colour(colour))
-            .series(Series::line("", x, y).colour(colour));
-    }
-    for (i, question) in chart.questions().into_iter().enumerate() {
-        let of = chart.measured.iter().filter(|measured| measured.on_front && measured.question == question);
-        let mut front: Vec<(f64, f64)> = of.map(drawn).collect();
-        front.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let (x, y) = front.into_iter().unzip();
-        let label = match (i, chart.questions().len()) {
-            (0, 1) => "Pareto front",
-            (0, _) => "Pareto fronts, one for each question",
-            _ => "",
+        let of = |on_front: Option<bool>| -> (Vec<f64>, Vec<f64>) {
+            let all = chart.measured.iter().filter(|measured| measured.method == method);
+            all.filter(|measured| on_front.is_none_or(|front| measured.on_front == front)).map(drawn).unzip()
         };
-        figure = figure.series(Series::line(label, x, y).colour(chart.methods().len()).style(Style::Dotted));
+        let label = method.replace("^-1", "⁻¹");
+        let (x, y) = of(None);
+        figure = figure.series(Series::line(label, x, y).style(Style::Marked).open().colour(colour));
+        // Filled where nothing else is both faster and more accurate.
+        let (x, y) = of(Some(true));
+        figure = figure.series(Series::points("", x, y).colour(colour));
     }
     for default in chart.defaults() {
         let (x, y) = drawn(default);

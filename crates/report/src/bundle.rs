@@ -1,21 +1,31 @@
-//! Files that appear together or not at all.
+//! What a command has to say in files: what was asked, tables, figures, warnings, and all of it in one page.
 //!
-//! Everything is written into a fresh folder beside the destination first and moved into place only when
-//! the last file is complete, so that a full disk or a missing permission leaves nothing half-written. Figures are drawn
-//! only as they are written.
+//! Figures are drawn only as they are written, and all files appear together or not at all ([`Folder`]).
 
 use super::figures::Plot;
+use super::folder::Folder;
+use super::html;
+use super::manifest::Provenance;
 use super::plot::{Figure, render_png, render_svg};
-use hadar::error::{Error, Result};
+use super::table::Table;
+use super::tables;
+use hadar::error::Result;
+use hadar_study::study::Warning;
 use rayon::prelude::*;
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
+
+const ANSWER: &str = "answer.txt";
 
 /// Files of a report, by name.
 #[derive(Debug, Clone, Default)]
 pub struct Bundle {
+    title: Option<String>,
     files: Vec<(String, Content)>,
     figures: Vec<Figure>,
+    tables: Vec<(String, Table)>,
+    warnings: Vec<Warning>,
+    /// What was asked, as a file that asks it again.
+    asked: Option<(&'static str, String)>,
 }
 
 /// What a file holds.
@@ -27,10 +37,60 @@ enum Content {
     Png(usize),
 }
 
+/// What is written beside the files of a bundle.
+#[derive(Debug, Clone, Copy)]
+pub struct About<'a> {
+    /// The answer, as it is printed.
+    pub answer: &'a str,
+    /// Who made it of what.
+    pub provenance: &'a Provenance,
+    /// Files that were read, which are never replaced.
+    pub inputs: &'a [PathBuf],
+}
+
 impl Bundle {
+    /// Files about something.
+    #[must_use]
+    pub fn about(title: Option<&str>) -> Self {
+        Self { title: title.map(str::to_owned), ..Self::default() }
+    }
+
+    /// The same files under another title.
+    #[must_use]
+    pub fn titled(self, title: &str) -> Self {
+        Self { title: Some(title.to_owned()), ..self }
+    }
+
     /// Adds a file.
     pub fn add(&mut self, name: impl Into<String>, content: impl Into<Vec<u8>>) {
         self.files.push((name.into(), Content::Bytes(content.into())));
+    }
+
+    /// Adds what was asked, as a file that asks it again.
+    pub fn add_asked(&mut self, name: &'static str, text: impl Into<String>) {
+        let text = text.into();
+        self.add(name, text.clone());
+        self.asked = Some((name, text));
+    }
+
+    /// Adds a table as CSV.
+    ///
+    /// # Errors
+    /// A row whose length is not the header's.
+    pub fn add_table(&mut self, name: &str, table: Table) -> Result<()> {
+        self.add(name, table.to_csv()?);
+        self.tables.push((name.to_owned(), table));
+        Ok(())
+    }
+
+    /// Adds the warnings as a table.
+    ///
+    /// # Errors
+    /// As [`Bundle::add_table`].
+    pub fn add_warnings(&mut self, warnings: &[Warning]) -> Result<()> {
+        self.add("warnings.csv", tables::warnings(warnings).to_csv()?);
+        self.warnings = warnings.to_vec();
+        Ok(())
     }
 
     /// Adds SVG, PNG and CSV of every plot.
@@ -48,131 +108,69 @@ impl Bundle {
         Ok(())
     }
 
+    /// Names of the files, in the order they were added.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.files.iter().map(|(name, _)| name.as_str())
+    }
+
     /// How many figures there are to draw.
     #[must_use]
     pub fn figures(&self) -> usize {
         self.figures.len()
     }
 
-    /// Names of the files, in the order they were added.
-    pub fn names(&self) -> impl Iterator<Item = &str> {
-        self.files.iter().map(|(name, _)| name.as_str())
-    }
-
-    /// Makes sure that a folder can be made or written to, before any work is done for it.
+    /// Writes all files into a folder, which is made if it is not there, with the answer as text and everything on one page;
+    /// how many there are.
     ///
     /// # Errors
-    /// A path that is a file, or where nothing may be written.
-    pub fn check_destination(directory: &Path) -> Result<()> {
-        let staging = stage(directory)?;
-        fs::remove_dir_all(&staging).map_err(|error| refused(directory, &error))
+    /// A figure that cannot be drawn; a folder that cannot be written to. Then none of the files is there.
+    pub fn write_report(&self, folder: &Folder, about: &About<'_>) -> Result<usize> {
+        let mut files = self.drawn()?;
+        let svgs = files.iter().filter(|(name, _)| name.ends_with(".svg"));
+        let drawings = svgs.zip(&self.figures).map(|((name, svg), figure)| html::Drawing {
+            name: name.trim_end_matches(".svg"),
+            svg: String::from_utf8_lossy(svg),
+            said: figure.subtitle(),
+        });
+        let page = html::page(&html::Page {
+            title: self.title.as_deref(),
+            answer: about.answer,
+            drawings: drawings.collect(),
+            tables: &self.tables,
+            warnings: &self.warnings,
+            asked: self.asked.as_ref().map(|(name, text)| (*name, text.as_str())),
+            provenance: about.provenance,
+        });
+        if self.names().all(|name| name != ANSWER) {
+            files.push((ANSWER.into(), format!("{}\n", about.answer.trim_end()).into_bytes()));
+        }
+        files.push(("report.html".into(), page.into_bytes()));
+        folder.write(&files, about.provenance, about.inputs)?;
+        Ok(files.len() + 1)
     }
 
-    /// Writes all files into `directory`, which is made if it is not there.
+    /// Writes the files alone, without an answer and a page; how many there are.
     ///
     /// # Errors
-    /// A figure that cannot be drawn; the folder cannot be made or written to. Then none of the files is there.
-    pub fn write(&self, directory: &Path) -> Result<()> {
-        let drawn: Result<Vec<(Vec<u8>, Vec<u8>)>> = self
+    /// As [`Bundle::write_report`].
+    pub fn write_files(&self, folder: &Folder, about: &About<'_>) -> Result<usize> {
+        let files = self.drawn()?;
+        folder.write(&files, about.provenance, about.inputs)?;
+        Ok(files.len() + 1)
+    }
+
+    /// Every file with its content.
+    fn drawn(&self) -> Result<Vec<(String, Vec<u8>)>> {
+        let drawn: Vec<(Vec<u8>, Vec<u8>)> = self
             .figures
             .par_iter()
             .map(|figure| Ok((render_svg(figure)?.into_bytes(), render_png(figure)?)))
-            .collect();
-        let drawn = drawn?;
-        let staging = stage(directory)?;
-        let result = self.fill(&staging, &drawn).and_then(|()| self.publish(&staging, directory));
-        // What is left of the staging folder is of no use to anyone, whether or not it can be removed.
-        let _ = fs::remove_dir_all(&staging);
-        result.map_err(|error| refused(directory, &error))
-    }
-
-    /// Writes every file; `drawn` are the figures as SVG and PNG.
-    fn fill(&self, staging: &Path, drawn: &[(Vec<u8>, Vec<u8>)]) -> std::io::Result<()> {
-        self.files.iter().try_for_each(|(name, content)| {
-            let content = match content {
-                Content::Bytes(bytes) => bytes,
-                Content::Svg(figure) => &drawn[*figure].0,
-                Content::Png(figure) => &drawn[*figure].1,
-            };
-            fs::write(staging.join(name), content)
-        })
-    }
-
-    fn publish(&self, staging: &Path, directory: &Path) -> std::io::Result<()> {
-        fs::create_dir_all(directory)?;
-        // A file cannot take the place of a folder: found out before the first one is moved.
-        if let Some(name) = self.names().find(|name| directory.join(name).is_dir()) {
-            return Err(std::io::Error::other(format!(
-                "its `{name}` is a folder, which no file may replace"
-            )));
-        }
-        self.files.iter().try_for_each(|(name, _)| fs::rename(staging.join(name), directory.join(name)))
-    }
-}
-
-/// A fresh folder on the same file system as `directory`.
-fn stage(directory: &Path) -> Result<PathBuf> {
-    if directory.is_file() {
-        return Err(Error::file("write the report", directory, "this is a file; name a folder"));
-    }
-    // The part of the path that is there already; a relative path ends in an empty one, the current folder.
-    let home = match directory.ancestors().find(|part| part.exists()) {
-        Some(part) if part.is_dir() => part.to_owned(),
-        Some(_) => return Err(refused(directory, &std::io::ErrorKind::NotADirectory.into())),
-        None => PathBuf::from("."),
-    };
-    let staging = home.join(format!(".hadar-{}.tmp", std::process::id()));
-    fs::create_dir_all(&staging).map_err(|error| refused(directory, &error))?;
-    Ok(staging)
-}
-
-fn refused(directory: &Path, error: &std::io::Error) -> Error {
-    let reason = match error.kind() {
-        std::io::ErrorKind::PermissionDenied => "no permission; name a folder you may write to".to_owned(),
-        std::io::ErrorKind::ReadOnlyFilesystem => "read-only; name a folder you may write to".to_owned(),
-        std::io::ErrorKind::NotADirectory => "part of the path is a file; name a folder".to_owned(),
-        _ => format!("{error}; name a folder you may write to"),
-    };
-    Error::file("write the report", directory, reason)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn all_files_appear_and_no_staging_stays() {
-        let home = tempfile::tempdir().unwrap();
-        let target = home.path().join("a/b");
-        let mut bundle = Bundle::default();
-        bundle.add("x.csv", "1\n");
-        bundle.add("y.csv", "2\n");
-        Bundle::check_destination(&target).unwrap();
-        assert!(!target.exists());
-        bundle.write(&target).unwrap();
-        bundle.write(&target).unwrap();
-        assert_eq!(fs::read_to_string(target.join("y.csv")).unwrap(), "2\n");
-        assert_eq!(fs::read_dir(home.path()).unwrap().count(), 1);
-    }
-
-    #[test]
-    fn a_file_is_no_folder_and_a_failed_write_leaves_nothing() {
-        let home = tempfile::tempdir().unwrap();
-        let file = home.path().join("file");
-        fs::write(&file, "").unwrap();
-        assert!(Bundle::check_destination(&file).unwrap_err().to_string().contains("this is a file"));
-        assert!(Bundle::check_destination(&file.join("below")).is_err());
-        let mut bundle = Bundle::default();
-        bundle.add("good.csv", "1\n");
-        bundle.add("no/such/folder.csv", "2\n");
-        let target = home.path().join("out");
-        assert!(bundle.write(&target).is_err());
-        assert!(!target.exists());
-        let mut bundle = Bundle::default();
-        bundle.add("a.csv", "1\n");
-        bundle.add("b.csv", "2\n");
-        fs::create_dir_all(target.join("b.csv")).unwrap();
-        assert!(bundle.write(&target).unwrap_err().to_string().contains("`b.csv` is a folder"));
-        assert!(!target.join("a.csv").exists());
+            .collect::<Result<_>>()?;
+        let content = |content: &Content| match content {
+            Content::Bytes(bytes) => bytes.clone(),
+            Content::Svg(figure) => drawn[*figure].0.clone(),
+            Content::Png(figure) => drawn[*figure].1.clone(),
+        };
+        Ok(self.files.iter().map(|(name, kind)| (name.clone(), content(kind))).collect())
     }
 }

@@ -6,7 +6,7 @@ mod text;
 pub use text::{check, text};
 
 use crate::bundle::Bundle;
-use crate::figures::Plot;
+use crate::size::pictures_of_pairs;
 use crate::table::{Table, number, optional};
 use crate::tables;
 use hadar::error::Result;
@@ -19,49 +19,50 @@ use std::path::Path;
 /// # Errors
 /// A figure that cannot be drawn.
 pub fn bundle(study: &Study, answers: &Answers, seed: u64, out: &Path) -> Result<Bundle> {
-    let mut bundle = Bundle::default();
+    let mut bundle = Bundle::about(study.scenario().title.as_deref());
     let result = &answers.identification;
-    bundle.add("scenario.toml", study.scenario().to_toml_beside(out));
-    bundle.add("pairs.csv", tables::pairs(&result.pairs).to_csv()?);
-    bundle.add("warnings.csv", tables::warnings(&result.warnings).to_csv()?);
+    bundle.add_asked("scenario.toml", study.scenario().to_toml_beside(out));
+    bundle.add_table("pairs.csv", tables::pairs(&result.pairs))?;
+    bundle.add_warnings(&result.warnings)?;
     if let Some(prediction) = &result.identifiability.prediction_heuristic {
         let mut table = Table::new(["material", "prediction_s32_heuristic"]);
         for entry in prediction {
             table.push(vec![entry.material.clone(), number(entry.probability)]);
         }
-        bundle.add("prediction.csv", table.to_csv()?);
+        bundle.add_table("prediction.csv", table)?;
     }
-    let mut plots: Vec<Plot> = Vec::new();
+    let mut plots = vec![figures::distances(study, &result.pairs)];
+    plots.extend(pictures_of_pairs(study, &result.pairs, &result.limiting)?);
     if let Some(matrix) = &answers.matrix {
-        bundle.add("matrix_nearest.csv", square(matrix, &matrix.distance_nearest, PER_PHOTON).to_csv()?);
-        bundle.add("matrix_local.csv", square(matrix, &matrix.distance_local, PER_PHOTON).to_csv()?);
+        bundle.add_table("matrix_nearest.csv", square(matrix, &matrix.distance_nearest, PER_PHOTON))?;
+        bundle.add_table("matrix_local.csv", square(matrix, &matrix.distance_local, PER_PHOTON))?;
         if let Some(unknown_gain) = &matrix.distance_local_unknown_gain {
-            bundle.add("matrix_local_unknown_gain.csv", square(matrix, unknown_gain, PER_PHOTON).to_csv()?);
+            bundle.add_table("matrix_local_unknown_gain.csv", square(matrix, unknown_gain, PER_PHOTON))?;
         }
         if let Some(statistical) = &matrix.statistical_distance {
-            bundle.add("matrix_camera.csv", square(matrix, statistical, STATISTICAL).to_csv()?);
+            bundle.add_table("matrix_camera.csv", square(matrix, statistical, STATISTICAL))?;
         }
-        bundle.add("targets.csv", targets(matrix).to_csv()?);
+        bundle.add_table("targets.csv", targets(matrix))?;
         plots.push(figures::distance_matrix(matrix));
         plots.push(figures::minimum_distances(matrix));
         if let Some(spectra) = study.sample_spectra(seed)? {
-            plots.push(figures::sample_spectra(&spectra));
+            plots.push(figures::sample_spectra(&spectra, study.bands(), &result.limiting));
         }
     }
     if let Some(apart) = answers.apart.as_ref().or(answers.matrix.as_ref().and_then(|m| m.apart.as_ref())) {
-        bundle.add("told_apart.csv", told_apart(apart).to_csv()?);
-        bundle.add("clusters.csv", clusters(apart).to_csv()?);
+        bundle.add_table("told_apart.csv", told_apart(apart))?;
+        bundle.add_table("clusters.csv", clusters(apart))?;
     }
     if let Some(scaling) = &answers.scaling {
-        plots.push(figures::library_size(scaling, &study.target().name));
-        plots.push(figures::band_number(scaling, &study.target().name));
+        plots.extend(figures::library_size(scaling, &study.target().name));
+        plots.extend(figures::band_number(scaling, study));
     }
     if let Some(bands) = &answers.bands_that_matter {
-        bundle.add("best_bands.csv", best_bands(bands, study.camera().is_some()).to_csv()?);
-        plots.push(figures::bands_that_matter(bands, &study.target().name));
+        bundle.add_table("best_bands.csv", best_bands(bands, study.camera().is_some()))?;
+        plots.push(figures::bands_that_matter(bands, study));
     }
     if let Some(exact) = &answers.exact {
-        bundle.add("exact.csv", crate::identify::exact(exact).to_csv()?);
+        bundle.add_table("exact.csv", crate::identify::exact(exact))?;
     }
     bundle.add_plots(&plots)?;
     Ok(bundle)

@@ -1,13 +1,17 @@
 //! Results made readable: a module a command, with its text, its tables, its figures and the files of `--out`.
 //!
 //! What they share: [`plot`] draws, [`figures`] joins a figure and its table, [`table`] writes CSV, [`tables`] and [`text`]
-//! say what several commands say, [`bundle`] puts files in place, all or none.
+//! say what several commands say, [`bundle`] gathers files and makes one page of them, [`folder`] puts them in place, all or none,
+//! with a [`manifest`] of whose they are.
 
 pub mod accuracy;
 pub mod bundle;
 pub mod cameras;
 pub mod figures;
+pub mod folder;
+mod html;
 pub mod identify;
+pub mod manifest;
 pub mod plot;
 pub mod range;
 pub mod rule;

@@ -55,6 +55,11 @@ pub use pictures::{Picture, Pictures};
 
 use hadar::Result;
 
+/// A number as it is written in pictures: three digits, powers of ten with superscripts.
+pub(crate) fn number(value: f64) -> String {
+    ticks::label(value)
+}
+
 /// Anything that can be drawn.
 #[derive(Debug, Clone)]
 pub enum Figure {
@@ -68,6 +73,20 @@ pub enum Figure {
     Named(NamedValues),
     /// Images side by side.
     Pictures(Pictures),
+}
+
+impl Figure {
+    /// The small print under the title; nothing where empty.
+    #[must_use]
+    pub fn subtitle(&self) -> &str {
+        match self {
+            Self::Line(figure) => &figure.subtitle,
+            Self::HeatMap(figure) => &figure.subtitle,
+            Self::Matrix(figure) => &figure.subtitle,
+            Self::Named(figure) => &figure.subtitle,
+            Self::Pictures(figure) => &figure.subtitle,
+        }
+    }
 }
 
 impl From<LineFigure> for Figure {

@@ -8,7 +8,6 @@ pub use text::text;
 
 use crate::bundle::Bundle;
 use crate::table::{Table, number, optional};
-use crate::tables;
 use hadar::error::Result;
 use hadar::ranging::cube::{Shape, write_npy_to};
 use hadar_study::study::range::{Line, Ranging};
@@ -19,13 +18,13 @@ use std::path::Path;
 /// # Errors
 /// A figure that cannot be drawn.
 pub fn bundle(result: &Ranging, out: &Path) -> Result<Bundle> {
-    let mut bundle = Bundle::default();
-    bundle.add("scenario.toml", result.scenario.to_toml_beside(out));
-    bundle.add("bounds.csv", bounds(result).to_csv()?);
+    let mut bundle = Bundle::about(result.scenario.title.as_deref());
+    bundle.add_asked("scenario.toml", result.scenario.to_toml_beside(out));
+    bundle.add_table("bounds.csv", bounds(result))?;
     if let Some(cells) = cells(result) {
-        bundle.add("cells.csv", cells.to_csv()?);
+        bundle.add_table("cells.csv", cells)?;
     }
-    bundle.add("warnings.csv", tables::warnings(&result.warnings).to_csv()?);
+    bundle.add_warnings(&result.warnings)?;
     let maps = &result.maps;
     if let Ok(shape) = Shape::new(maps.rows.len(), maps.columns.len(), 1) {
         for (signal, values) in &maps.disparity_error_px {
@@ -108,7 +107,17 @@ fn cells(result: &Ranging) -> Option<Table> {
 /// Bounds and witnesses along lines, a row for every window.
 pub(super) fn lines_table<'a>(lines: impl IntoIterator<Item = &'a Line>) -> Table {
     let mut table = Table::new([
-        "row", "column", "signal", "method", "depth_m", "bound_m", "rmse_m", "bias_m", "outliers", "trials",
+        "row",
+        "column",
+        "signal",
+        "method",
+        "depth_m",
+        "bound_m",
+        "bound_without_diffraction_m",
+        "rmse_m",
+        "bias_m",
+        "outliers",
+        "trials",
     ]);
     for line in lines {
         for (i, column) in line.columns.iter().enumerate() {
@@ -120,6 +129,7 @@ pub(super) fn lines_table<'a>(lines: impl IntoIterator<Item = &'a Line>) -> Tabl
                 line.method.unwrap_or_default().to_owned(),
                 at(&line.depth_m),
                 at(&line.bound_m),
+                at(&line.bound_without_diffraction_m),
                 at(&line.rmse_m),
                 at(&line.bias_m),
                 at(&line.outliers),

@@ -3,19 +3,22 @@
 //! Nothing in them depends on when or where they were made, so that anyone can make them again, byte by byte.
 
 mod certificate;
+mod check;
 mod text;
 
+pub use check::check;
 pub use text::text;
 
 use super::bundle::Bundle;
 use super::figures::Plot;
+use super::manifest::{Input, Provenance};
 use super::plot::{Axis, Figure, NamedSeries, NamedValues};
 use super::table::{Table, number, optional};
-use super::tables;
+use super::text::shortfalls::no;
 use super::text::significant;
 use hadar::error::Result;
 use hadar::policy::Quantity;
-use hadar_study::study::{CameraVerdict, RuleAnswer, RuleStudy, Shortfall, Warning};
+use hadar_study::study::{CameraVerdict, RuleAnswer, RuleStudy, Warning};
 use std::path::Path;
 
 /// What can be changed of a camera.
@@ -26,14 +29,15 @@ const HARDWARE: [Quantity; 5] =
 ///
 /// # Errors
 /// A table that cannot be written.
-pub fn bundle(study: &RuleStudy, answer: &RuleAnswer, out: &Path) -> Result<Bundle> {
-    let mut bundle = Bundle::default();
-    bundle.add("certificate.md", certificate::markdown(study, answer));
-    bundle.add("rule.toml", study.rule().to_toml_beside(out));
-    bundle.add("cameras.csv", cameras(answer).to_csv()?);
-    bundle.add("worst_cases.csv", worst_cases(answer).to_csv()?);
-    bundle.add("inputs.csv", inputs(answer).to_csv()?);
-    bundle.add("warnings.csv", tables::warnings(&warnings(answer)).to_csv()?);
+pub fn bundle(study: &RuleStudy, answer: &RuleAnswer, provenance: &Provenance, out: &Path) -> Result<Bundle> {
+    let title = certificate::title(answer);
+    let mut bundle = Bundle::about(Some(&title));
+    bundle.add("certificate.md", certificate::markdown(study, answer, provenance));
+    bundle.add_asked("rule.toml", study.rule().to_toml_beside(out));
+    bundle.add_table("cameras.csv", cameras(answer))?;
+    bundle.add_table("worst_cases.csv", worst_cases(answer))?;
+    bundle.add("inputs.csv", inputs(provenance).to_csv()?);
+    bundle.add_warnings(&warnings(answer))?;
     bundle.add_plots(&[margins(answer)])?;
     Ok(bundle)
 }
@@ -126,31 +130,33 @@ fn worst_cases(answer: &RuleAnswer) -> Table {
     table
 }
 
-fn inputs(answer: &RuleAnswer) -> Table {
+fn inputs(provenance: &Provenance) -> Table {
     let mut table = Table::new(["path", "sha256"]);
-    answer.inputs.iter().for_each(|input| table.push(vec![input.path.clone(), input.sha256.clone()]));
+    let row = |input: &Input| vec![input.path.clone(), input.sha256.clone().unwrap_or_default()];
+    provenance.inputs.iter().for_each(|input| table.push(row(input)));
     table
 }
 
-/// The margin of every camera, the best first.
+/// The margin of every camera: those that meet the rule first, then the others, each with what it fails by.
 fn margins(answer: &RuleAnswer) -> Plot {
     let mut ranked: Vec<&CameraVerdict> = answer.cameras.iter().collect();
-    ranked.sort_by(|a, b| b.margin.total_cmp(&a.margin));
-    let mut table = Table::new(["camera", "margin", "margin_proved"]);
+    ranked.sort_by(|a, b| b.passes.cmp(&a.passes).then(b.margin.total_cmp(&a.margin)));
+    let mut table = Table::new(["camera", "meets_the_rule", "fails_by", "margin", "margin_proved"]);
     let required = answer.requirement.distance;
     for camera in &ranked {
         let proved = camera.lower_bound.map(|bound| bound / required);
-        table.push(vec![camera.name.clone(), number(camera.margin), optional(proved)]);
+        table.push(vec![
+            camera.name.clone(),
+            if camera.passes { "yes" } else { "no" }.into(),
+            text::codes(&camera.fails_by, " "),
+            number(camera.margin),
+            optional(proved),
+        ]);
     }
     // The margin does not show what else a camera fails by.
-    let named = |camera: &&CameraVerdict| match camera
-        .fails_by
-        .iter()
-        .filter(|by| **by != Shortfall::Distance)
-        .count()
-    {
-        0 => camera.name.clone(),
-        _ => format!("{} ({})", camera.name, text::codes(&camera.fails_by, ", ")),
+    let named = |camera: &&CameraVerdict| match camera.passes {
+        true => camera.name.clone(),
+        false => format!("{}\n{}", camera.name, no(&camera.fails_by)),
     };
     let names = ranked.iter().map(named).collect();
     let values =
@@ -159,9 +165,13 @@ fn margins(answer: &RuleAnswer) -> Plot {
     let title = title.unwrap_or_else(|| "Which cameras meet the rule".into());
     let required = significant(required, 3);
     let figure = NamedValues::new(title, names, Axis::log("margin: statistical distance over that demanded"))
-        .subtitle(format!("Least over the envelope; demanded is d = {required}."))
+        .subtitle(format!(
+            "Least over the envelope; demanded is d = {required}. Full symbols meet the rule; a camera may have signal enough and \
+             still fail by its image."
+        ))
         .series(values)
         .threshold(1.0, "demanded")
-        .below("too small: does not meet the rule");
+        .failing(ranked.iter().map(|camera| !camera.passes).collect())
+        .below("does not meet the rule");
     Plot { name: "margins".into(), figure: Figure::from(figure), table }
 }

@@ -10,7 +10,6 @@ use self::figures::SimulationCurves;
 use self::text::pair;
 use crate::bundle::Bundle;
 use crate::table::{Table, number};
-use crate::tables;
 use hadar::error::Result;
 use hadar_study::study::{NoiseCurves, Simulation, Study};
 use std::path::Path;
@@ -20,11 +19,11 @@ use std::path::Path;
 /// # Errors
 /// A figure that cannot be drawn.
 pub fn bundle(study: &Study, result: &Simulation, noise: Option<&NoiseCurves>, out: &Path) -> Result<Bundle> {
-    let mut bundle = Bundle::default();
-    bundle.add("scenario.toml", study.scenario().to_toml_beside(out));
-    bundle.add("simulation.csv", figures::simulation_table(result).to_csv()?);
-    bundle.add("confusion.csv", confusion(result).to_csv()?);
-    bundle.add("warnings.csv", tables::warnings(&result.warnings).to_csv()?);
+    let mut bundle = Bundle::about(study.scenario().title.as_deref());
+    bundle.add_asked("scenario.toml", study.scenario().to_toml_beside(out));
+    bundle.add_table("simulation.csv", figures::simulation_table(result))?;
+    bundle.add_table("confusion.csv", confusion(result))?;
+    bundle.add_warnings(&result.warnings)?;
     let pair = pair(result);
     let plot = match result.points.as_slice() {
         [point] => figures::accuracies(result, point, &pair),
@@ -35,7 +34,7 @@ pub fn bundle(study: &Study, result: &Simulation, noise: Option<&NoiseCurves>, o
     };
     bundle.add_plots(&[plot])?;
     if let Some(noise) = noise {
-        bundle.add("noise_curves.csv", curves(noise).to_csv()?);
+        bundle.add_table("noise_curves.csv", curves(noise))?;
     }
     Ok(bundle)
 }

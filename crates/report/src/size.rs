@@ -6,14 +6,14 @@ mod trade_off;
 
 pub use text::text;
 
-use self::figures::InformationMarks;
+use self::figures::{Collected, InformationMarks};
 use crate::bundle::Bundle;
 use crate::figures::Plot;
 use crate::table::{Table, number, optional};
 use crate::tables;
 use hadar::error::Result;
 use hadar::identifiability::detection;
-use hadar_study::study::{Sensitivity, Sizing, Study};
+use hadar_study::study::{PairResult, Sensitivity, Sizing, Study};
 use std::path::Path;
 
 /// Most alternatives that are drawn into one plot.
@@ -24,61 +24,92 @@ const DRAWN: usize = 6;
 /// # Errors
 /// A figure that cannot be drawn.
 pub fn bundle(study: &Study, result: &Sizing, out: &Path) -> Result<Bundle> {
-    let mut bundle = Bundle::default();
-    bundle.add("scenario.toml", result.scenario.to_toml_beside(out));
-    bundle.add("pairs.csv", tables::pairs(&result.pairs).to_csv()?);
-    bundle.add("requirement.csv", requirement(result).to_csv()?);
+    let mut bundle = Bundle::about(study.scenario().title.as_deref());
+    bundle.add_asked("scenario.toml", result.scenario.to_toml_beside(out));
+    bundle.add_table("pairs.csv", tables::pairs(&result.pairs))?;
+    bundle.add_table("requirement.csv", requirement(result))?;
     if let Some(camera) = &result.camera {
         let mut table = Table::new(["line", "variance_counts2", "grows_with_integration_time_as"]);
         for line in &camera.noise_budget {
             table.push(vec![line.label.into(), number(line.var_counts), line.scaling.into()]);
         }
-        bundle.add("noise_budget.csv", table.to_csv()?);
-        bundle.add("solve_for.csv", solve_for(result).to_csv()?);
+        bundle.add_table("noise_budget.csv", table)?;
+        bundle.add_table("solve_for.csv", solve_for(result))?;
     }
     if let Some(found) = &result.sensitivity {
-        bundle.add("sensitivity.csv", sensitivity(found).to_csv()?);
+        bundle.add_table("sensitivity.csv", sensitivity(found))?;
     }
-    bundle.add("warnings.csv", tables::warnings(&result.warnings).to_csv()?);
+    bundle.add_warnings(&result.warnings)?;
     bundle.add_plots(&drawn(study, result)?)?;
-    let name = result.camera.as_ref().map_or("the camera", |camera| camera.camera.name.as_str());
     let curves = result.trade_offs.iter().flatten();
-    bundle.add_plots(&curves.map(|curve| trade_off::trade_off(curve, name)).collect::<Vec<_>>())?;
+    bundle.add_plots(&curves.map(|curve| trade_off::trade_off(curve, result)).collect::<Vec<_>>())?;
     Ok(bundle)
 }
 
-/// The four plots of the limiting pair.
-fn drawn(study: &Study, result: &Sizing) -> Result<Vec<Plot>> {
-    let mut ranked: Vec<_> = result.pairs.iter().zip(study.alternatives()).collect();
+/// The emissivities of the target and of the alternatives nearest to it, and what the camera receives of the target and of
+/// the nearest one.
+///
+/// # Errors
+/// A scene without photons.
+pub(crate) fn pictures_of_pairs(study: &Study, pairs: &[PairResult], limiting: &str) -> Result<Vec<Plot>> {
+    let mut ranked: Vec<_> = pairs.iter().zip(study.alternatives()).collect();
     ranked.sort_by(|a, b| a.0.distance_nearest.total_cmp(&b.0.distance_nearest));
     let nodes = study.surroundings().nodes_cm1();
-    let closest: Vec<_> = ranked.iter().take(DRAWN).map(|(_, surface)| *surface).collect();
-    let title = match closest.as_slice() {
-        [one] => format!("Emissivities of {} and {}", study.target().name, one.name),
-        _ => format!("Emissivities of {} and its alternatives", study.target().name),
+    let mut closest = vec![study.target()];
+    closest.extend(ranked.iter().take(DRAWN).map(|(_, surface)| *surface));
+    let target = &study.target().name;
+    let title = match (closest.as_slice(), ranked.len()) {
+        ([_, one], _) => format!("Emissivities of {target} and {}", one.name),
+        (_, all) if all > DRAWN => {
+            format!("Emissivities of {target} and the {DRAWN} nearest of its {all} alternatives")
+        }
+        _ => format!("Emissivities of {target} and its alternatives"),
     };
-    let mut drawn = vec![figures::emissivities(&title, nodes, study.target(), &closest)];
+    let mut drawn = figures::emissivities(&title, nodes, &closest);
+    if let Some(surface) = study.alternative(limiting) {
+        drawn.push(figures::spectra(&study.spectra(surface)?, study.bands(), target, &surface.name));
+    }
+    Ok(drawn)
+}
+
+/// The four plots of the limiting pair; what it takes is left out where nothing suffices.
+fn drawn(study: &Study, result: &Sizing) -> Result<Vec<Plot>> {
+    let mut drawn = pictures_of_pairs(study, &result.pairs, &result.limiting)?;
     let limiting =
         result.pairs.iter().zip(study.alternatives()).find(|(pair, _)| pair.alternative == result.limiting);
     let Some((pair, surface)) = limiting else { return Ok(drawn) };
     let (target, other) = (pair.target.as_str(), pair.alternative.as_str());
-    drawn.push(figures::spectra(&study.spectra(surface)?, target, other));
-    let marks = InformationMarks {
-        camera: match (&result.camera, pair.information_bits) {
-            (Some(camera), Some(bits)) => Some((camera.camera.name.clone(), camera.photons, bits)),
-            _ => None,
-        },
-        required_bits: detection::information_bits(study.required_distance()),
-        required_distance: study.required_distance(),
-    };
-    let curves = study.information_curves(surface, pair.distance_nearest, pair.distance_local)?;
-    drawn.push(figures::identifiability(&curves, target, other, &marks));
+    if result.requirement.photons.is_some() {
+        let marks = InformationMarks {
+            camera: match (&result.camera, pair.information_bits) {
+                (Some(camera), Some(bits)) => Some((camera.camera.name.clone(), camera.photons, bits)),
+                _ => None,
+            },
+            required_bits: detection::information_bits(study.required_distance()),
+            required_distance: study.required_distance(),
+        };
+        let curves = study.information_curves(surface, pair.distance_nearest, pair.distance_local)?;
+        drawn.push(figures::identifiability(&curves, target, other, &marks));
+    }
     if let Some(map) = study.photon_map(surface)? {
         let state = study.state();
         let here = (state.temperature_k, state.lighting.first().copied().unwrap_or(0.0));
-        drawn.push(figures::photon_map(&map, target, other, here, result.requirement.by));
+        let collected = collected(result, pair);
+        let by = result.requirement.by;
+        drawn.extend(figures::photon_map(&map, [target, other], here, by, collected.as_ref()));
     }
     Ok(drawn)
+}
+
+/// Photons of the camera, and the number without other noise that reaches the same statistical distance.
+fn collected(result: &Sizing, pair: &PairResult) -> Option<Collected> {
+    let (camera, needed) = (result.camera.as_ref()?, result.requirement.photons?);
+    let margin = pair.statistical_distance? / result.requirement.distance;
+    Some(Collected {
+        camera: camera.camera.name.clone(),
+        photons: camera.photons,
+        worth: needed * margin * margin,
+    })
 }
 
 fn requirement(result: &Sizing) -> Table {

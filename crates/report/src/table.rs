@@ -26,6 +26,18 @@ impl Table {
         self.rows.push(row.iter().map(|&value| number(value)).collect());
     }
 
+    /// Names of the columns.
+    #[must_use]
+    pub fn header(&self) -> &[String] {
+        &self.header
+    }
+
+    /// All rows.
+    #[must_use]
+    pub fn rows(&self) -> &[Vec<String>] {
+        &self.rows
+    }
+
     /// The table as CSV text.
     ///
     /// # Errors

@@ -3,6 +3,7 @@
 pub(crate) mod footing;
 pub(crate) mod numbers;
 pub(crate) mod pairs;
+pub(crate) mod shortfalls;
 mod stats;
 
 pub use numbers::{quantity, significant};

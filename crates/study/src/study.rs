@@ -30,9 +30,9 @@ pub use identify::{
 };
 pub use looked_up::Study;
 pub use rule::{
-    CameraVerdict, Certified, EmissivityError, EnvelopeResult, FileHash, Fixes, IdealCamera, LightTime,
-    LimitingScene, Neighbourhood, NotIdentifiable, Proof, Proviso, Quotable, RuleAnswer, RuleAsked,
-    RuleRequirement, RuleStudy, WhoMeets, WithoutPlaceholders,
+    CameraVerdict, Certified, EmissivityError, EnvelopeResult, Fixes, IdealCamera, LightTime, LimitingScene,
+    Neighbourhood, NotIdentifiable, Proof, Proviso, Quotable, RuleAnswer, RuleAsked, RuleRequirement,
+    RuleStudy, WhoMeets, WithoutPlaceholders,
 };
 pub use shortfall::Shortfall;
 pub use sight::Sight;

@@ -3,22 +3,35 @@
 //! Along a curve everything else stays as the camera has it. Beside the demand a second curve tells with which pairs the
 //! camera is as good as it is now: it passes through the camera, and is there too where nothing meets the demand. Limits
 //! that shot noise does not know ([`super::caps`]) are drawn as lines of their own and named at every point that
-//! breaks one.
+//! breaks one; what lies within all of them but diffraction, which only blurs, is told at every point as a range of the
+//! second quantity.
+//!
+//! The values of the first quantity are evenly spread in the logarithm. To them are added the camera's own, the one that
+//! alone would meet the demand, those of upright limits, and the last ones that have a solution, so that no boundary of the
+//! plane lies between two points.
 
 use super::caps::{Circumstances, Limit, limits};
 use super::solve::{CameraTask, CapCode, Quantity, Solution};
 use crate::error::Result;
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 
-/// Points of a curve.
+/// Points of a curve that are evenly spread; there are some more at boundaries.
 pub const POINTS: usize = 41;
 /// f-numbers, as far as lenses are made; factors around the camera's own value of the others.
 const SLOWEST_F_NUMBER: f64 = 8.0;
 const PIXELS: f64 = 8.0;
 const EXPOSURES: f64 = 100.0;
 const DISTANCES: f64 = 30.0;
+/// The range is extended to the value that alone meets the demand, as far as this factor from the camera's own.
+const FARTHEST: f64 = 1e6;
+/// How far the range reaches beyond that value.
+const BEYOND: f64 = 1.5;
+/// Halvings of a step at whose one end nothing meets the demand.
+const HALVINGS: usize = 8;
 /// Share by which frames that are as good as now may be worse: a whole frame more is no price for the last digits.
-const AS_GOOD: f64 = 1e-3;
+const AS_GOOD: f64 = 1e-6;
+/// Values closer than this share are one.
+const SAME: f64 = 1e-9;
 /// Distance around which distances are drawn where none is stated, m.
 const DISTANCE_M: f64 = 30.0;
 
@@ -39,6 +52,9 @@ pub struct Point {
     pub y: Option<f64>,
     /// Value of the second with which the camera is as good as it is now.
     pub y_as_now: Option<f64>,
+    /// Least and largest value of the second that meet the task and break no limit but diffraction, 0 or infinite (`null`
+    /// in JSON) where that end is open; `None` if there is none.
+    pub within_limits: Option<(f64, f64)>,
     /// Codes of the limits that the pair (x, y) breaks.
     pub capped: Vec<CapCode>,
     /// Why no value suffices.
@@ -89,10 +105,18 @@ impl Serialize for TradeOff {
     }
 }
 
-/// Where a quantity is varied around the camera's own value.
-fn range(task: &CameraTask<'_>, quantity: Quantity) -> [f64; 2] {
+impl TradeOff {
+    /// Whether any pair of values meets the demand.
+    #[must_use]
+    pub fn has_solution(&self) -> bool {
+        self.points.iter().any(|point| point.y.is_some())
+    }
+}
+
+/// Where a quantity is varied: around the camera's own value, and to the one that alone meets the demand.
+fn range(task: &CameraTask<'_>, quantity: Quantity, alone: Option<f64>) -> [f64; 2] {
     let own = task.value(quantity);
-    match quantity {
+    let [low, high] = match quantity {
         Quantity::FNumber => [crate::instrument::FASTEST_F_NUMBER, SLOWEST_F_NUMBER.max(2.0 * own)],
         Quantity::Pixel => [own / PIXELS, own * PIXELS],
         Quantity::Distance => {
@@ -100,59 +124,57 @@ fn range(task: &CameraTask<'_>, quantity: Quantity) -> [f64; 2] {
             [middle / DISTANCES, middle * DISTANCES]
         }
         _ => [own / EXPOSURES, own * EXPOSURES],
+    };
+    match alone.filter(|value| *value >= low / FARTHEST && *value <= high * FARTHEST) {
+        Some(value) if value < low => [value / BEYOND, high],
+        Some(value) if value > high => [low, value * BEYOND],
+        _ => [low, high],
     }
 }
 
-/// Traces a curve. `solve` solves a task for a quantity; `as_now` is the statistical distance of the camera as it is.
+/// Traces a curve. `solve` solves a task for a quantity; `as_now` is the statistical distance of the camera as it is,
+/// `alone` the value of the first quantity that alone meets the demand.
 ///
 /// # Errors
 /// Those of `solve` and of the limits.
 pub fn trace(
     task: &CameraTask<'_>,
-    (x, y): (Quantity, Quantity),
+    pair: (Quantity, Quantity),
     as_now: f64,
+    alone: Option<f64>,
     given: &Circumstances<'_>,
     solve: &mut dyn FnMut(&CameraTask<'_>, Quantity) -> Result<Solution>,
 ) -> Result<TradeOff> {
-    let [low, high] = range(task, x);
+    let (x, y) = pair;
+    let [low, high] = range(task, x, alone);
+    let of_x = limits(x, &task.own(), given)?;
+    let exact = of_x.iter().map(|limit| limit.value).chain(alone).chain([task.value(x)]);
+    let exact: Vec<f64> = exact.filter(|value| (low..=high).contains(value)).collect();
     let last = (POINTS - 1) as f64;
-    let mut points = Vec::with_capacity(POINTS);
-    let mut lines: Vec<LimitLine> = Vec::new();
-    for i in 0..POINTS {
-        let at = (low.ln() + (high / low).ln() * i as f64 / last).exp();
-        let trial = task.forward(x, at);
-        let here = CameraTask { camera: &trial.camera, distance_m: trial.distance_m, ..task.clone() };
-        let solution = match solved(&here, y, solve) {
-            // A table of the air may end before.
-            Err(error) if x == Quantity::Distance => {
-                let reason = Some(error.to_string());
-                points.push(Point { x: at, y: None, y_as_now: None, capped: Vec::new(), reason });
-                continue;
-            }
-            solution => solution?,
-        };
-        let of_y = limits(y, &trial, given)?;
-        for limit in &of_y {
-            record(&mut lines, limit, at);
-        }
-        let mut capped = Vec::new();
-        if let Some(value) = solution.value {
-            let both = here.forward(y, value);
-            // A speed is limited where the exposure that sets it is.
-            let of_x =
-                if y == Quantity::Speed { limits(x, &trial, given)? } else { limits(x, &both, given)? };
-            let of_x = of_x.iter().filter(|limit| !(y == Quantity::Speed && limit.code == CapCode::Motion));
-            let broken = of_y.iter().filter_map(|limit| limit.broken_by(value));
-            capped = broken.chain(of_x.filter_map(|limit| limit.broken_by(at))).map(|cap| cap.code).collect();
-            capped.sort_unstable();
-            capped.dedup();
-        }
-        let slack = if y == Quantity::Frames { AS_GOOD } else { 0.0 };
-        let now = CameraTask { required: as_now * (1.0 - slack), ..here.clone() };
-        let y_as_now = if as_now > 0.0 { solved(&now, y, solve)?.value } else { None };
-        points.push(Point { x: at, y: solution.value, y_as_now, capped, reason: solution.reason });
+    let even = (0..POINTS).map(|i| (low.ln() + (high / low).ln() * i as f64 / last).exp());
+    let near = |a: f64, b: f64| (a / b - 1.0).abs() < SAME;
+    let mut places: Vec<f64> = even.filter(|at| !exact.iter().any(|one| near(*one, *at))).collect();
+    places.extend(&exact);
+    places.sort_by(f64::total_cmp);
+    places.dedup_by(|a, b| near(*a, *b));
+
+    let mut found = Vec::with_capacity(places.len());
+    for at in places {
+        found.push(point(task, pair, at, as_now, given, solve)?);
     }
-    for limit in limits(x, &task.own(), given)? {
+    for holds in [|point: &Point| point.y.is_some(), |point: &Point| point.within_limits.is_some()] {
+        let mut at = |at| point(task, pair, at, as_now, given, solve);
+        found.extend(edges(&found, &exact, holds, &mut at)?);
+        found.sort_by(|(a, _), (b, _)| a.x.total_cmp(&b.x));
+    }
+
+    let mut lines: Vec<LimitLine> = Vec::new();
+    let mut points = Vec::with_capacity(found.len());
+    for (point, of_y) in found {
+        of_y.iter().for_each(|limit| record(&mut lines, limit, point.x));
+        points.push(point);
+    }
+    for limit in of_x {
         // What depends on the second quantity too is a line of that one.
         let drawn = lines.iter().any(|line| line.code == limit.code);
         if !drawn && limit.value >= low && limit.value <= high {
@@ -162,6 +184,95 @@ pub fn trace(
     }
     let camera = (task.value(x), task.value(y));
     Ok(TradeOff { x, y, camera, required: task.required, as_now, points, limits: lines })
+}
+
+/// A point of a curve, and the limits on the second quantity there.
+type Found = (Point, Vec<Limit>);
+
+/// The last points at which something holds and the first at which it does not, to a part of a step; not where they are
+/// known.
+fn edges(
+    found: &[Found],
+    known: &[f64],
+    holds: fn(&Point) -> bool,
+    at: &mut dyn FnMut(f64) -> Result<Found>,
+) -> Result<Vec<Found>> {
+    let mut edges = Vec::new();
+    for pair in found.windows(2) {
+        let [(a, _), (b, _)] = pair else { continue };
+        let (mut inside, mut outside) = match (holds(a), holds(b)) {
+            (true, false) => (a.x, b.x),
+            (false, true) => (b.x, a.x),
+            _ => continue,
+        };
+        let (mut last, mut first) = (None, None);
+        for _ in 0..HALVINGS {
+            let middle = (inside * outside).sqrt();
+            let tried = at(middle)?;
+            if holds(&tried.0) {
+                (inside, last) = (middle, Some(tried));
+            } else {
+                (outside, first) = (middle, Some(tried));
+            }
+        }
+        // What is known exactly needs no neighbour inside.
+        edges.extend(last.filter(|(point, _)| !known.iter().any(|at| (point.x / at - 1.0).abs() < SAME)));
+        edges.extend(first);
+    }
+    Ok(edges)
+}
+
+/// One point, and the limits on the second quantity there.
+fn point(
+    task: &CameraTask<'_>,
+    (x, y): (Quantity, Quantity),
+    at: f64,
+    as_now: f64,
+    given: &Circumstances<'_>,
+    solve: &mut dyn FnMut(&CameraTask<'_>, Quantity) -> Result<Solution>,
+) -> Result<Found> {
+    let trial = task.forward(x, at);
+    let here = CameraTask { camera: &trial.camera, distance_m: trial.distance_m, ..task.clone() };
+    let solution = match solved(&here, y, solve) {
+        // A table of the air may end before.
+        Err(error) if x == Quantity::Distance => {
+            let reason = Some(error.to_string());
+            let (capped, within_limits) = (Vec::new(), None);
+            return Ok((Point { x: at, y: None, y_as_now: None, within_limits, capped, reason }, Vec::new()));
+        }
+        solution => solution?,
+    };
+    let of_y = limits(y, &trial, given)?;
+    // What the camera breaks there whatever the second quantity: everything that makes an image useless limits exposures.
+    let whatever: Vec<CapCode> = limits(Quantity::Exposure, &trial, given)?
+        .iter()
+        .filter(|limit| y != Quantity::Exposure && !of_y.iter().any(|other| other.code == limit.code))
+        .filter_map(|limit| limit.broken_by(trial.camera.exposure_s))
+        .map(|cap| cap.code)
+        .collect();
+    let (mut capped, mut within_limits) = (Vec::new(), None);
+    if let Some(value) = solution.value {
+        let both = here.forward(y, value);
+        // A speed is limited where the exposure that sets it is.
+        let of_x = limits(x, if y == Quantity::Speed { &trial } else { &both }, given)?;
+        let of_x = of_x.iter().filter(|limit| !(y == Quantity::Speed && limit.code == CapCode::Motion));
+        let broken = of_y.iter().filter_map(|limit| limit.broken_by(value));
+        capped = broken.chain(of_x.filter_map(|limit| limit.broken_by(at))).map(|cap| cap.code).collect();
+        capped.extend(&whatever);
+        capped.sort_unstable();
+        capped.dedup();
+        let met = if y.is_least() { (value, f64::INFINITY) } else { (0.0, value) };
+        let range = of_y.iter().fold(met, |(low, high), limit| match limit.is_least {
+            true => (low.max(limit.value), high),
+            false => (low, high.min(limit.value)),
+        });
+        within_limits = Some(range).filter(|(low, high)| whatever.is_empty() && low <= high);
+    }
+    let slack = if y == Quantity::Frames { AS_GOOD } else { 0.0 };
+    let now = CameraTask { required: as_now * (1.0 - slack), ..here.clone() };
+    let y_as_now = if as_now > 0.0 { solved(&now, y, solve)?.value } else { None };
+    let reason = solution.reason;
+    Ok((Point { x: at, y: solution.value, y_as_now, within_limits, capped, reason }, of_y))
 }
 
 fn record(lines: &mut Vec<LimitLine>, limit: &Limit, at: f64) {
@@ -220,7 +331,8 @@ mod tests {
             size_m: None,
         };
         let given = Circumstances { bands: &bands, speed_m_s: Some(10.0), brightest: &|_| Ok(0.0) };
-        trace(&task, (x, y), shot(&task.own()).unwrap(), &given, &mut |task, quantity| {
+        let alone = task.solve(x, shot).unwrap().value;
+        trace(&task, (x, y), shot(&task.own()).unwrap(), alone, &given, &mut |task, quantity| {
             task.solve(quantity, shot)
         })
         .unwrap()
@@ -229,7 +341,7 @@ mod tests {
     #[test]
     fn exposure_grows_as_the_square_of_the_f_number() {
         let curve = traced(Quantity::FNumber, Quantity::Exposure);
-        assert_eq!(curve.points.len(), POINTS);
+        assert!(curve.points.len() >= POINTS && curve.points.is_sorted_by(|a, b| a.x < b.x));
         let first = curve.points[0].y.unwrap() / curve.points[0].x.powi(2);
         for point in &curve.points {
             let (y, now) = (point.y.unwrap(), point.y_as_now.unwrap());
@@ -242,6 +354,30 @@ mod tests {
         }
         let codes: Vec<_> = curve.limits.iter().map(|line| (line.code, line.upright)).collect();
         assert_eq!(codes, [(CapCode::Motion, false), (CapCode::Diffraction, true)]);
+        // At 10 m/s the target moves a pixel in this time: longer exposures meet the demand and spoil the image.
+        let longest = 30.0 * 0.4 / (320.0 * 0.2f64.sin() * 10.0);
+        for point in &curve.points {
+            let least = point.y.unwrap();
+            let expected = (least <= longest).then_some((least, longest));
+            assert_eq!(point.within_limits.is_some(), expected.is_some(), "{point:?}");
+            if let (Some((low, high)), Some(expected)) = (point.within_limits, expected) {
+                assert!(low == expected.0 && (high / expected.1 - 1.0).abs() < 1e-12, "{point:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_alone_meets_the_demand_is_a_point_however_far() {
+        // 1e-3 √N is 2 at an exposure: where speeds begin, and where the curve of exposures passes the camera's f-number.
+        let by_speed = traced(Quantity::Exposure, Quantity::Speed);
+        let by_lens = traced(Quantity::FNumber, Quantity::Exposure);
+        let own = by_lens.points.iter().find(|point| point.x == by_lens.camera.0).unwrap();
+        let first = by_speed.points.iter().find(|point| point.y.is_some()).unwrap();
+        assert!((first.x / own.y.unwrap() - 1.0).abs() < 1e-9, "{} {:?}", first.x, own.y);
+        // The lens that does with the camera's own exposure.
+        let lens = by_lens.camera.0 * by_lens.as_now / 2.0;
+        let there = by_lens.points.iter().find(|point| (point.x / lens - 1.0).abs() < 1e-9).unwrap();
+        assert!((there.y.unwrap() / by_lens.camera.1 - 1.0).abs() < 1e-9);
     }
 
     #[test]

@@ -51,7 +51,7 @@ impl Stored {
         match self {
             Self::Read(material) => Ok(material),
             #[cfg(feature = "library")]
-            Self::Embedded(manifest, index) => manifest.material(*index),
+            Self::Embedded(manifest, index) => manifest.named(*index),
         }
     }
 

@@ -78,7 +78,8 @@ impl Task {
 pub(super) fn run(args: &AccuracyArgs, global: &Global) -> Result<ExitCode> {
     let tasks = tasks(&args.items)?;
     let order = Order { quick: args.quick, seed: global.seed };
-    let (mut output, mut bundle, mut text) = (Output::default(), Bundle::default(), String::new());
+    let (mut output, mut bundle, mut text) =
+        (Output::default(), Bundle::about(Some("Run time against error")), String::new());
     for (i, task) in tasks.iter().enumerate() {
         let start = Instant::now();
         match task {
@@ -97,7 +98,7 @@ pub(super) fn run(args: &AccuracyArgs, global: &Global) -> Result<ExitCode> {
             Task::Skipping => {
                 let found = skipping(order.quick)?;
                 text.push_str(&format!("{}\n", report::skipping_text(&found)));
-                bundle.add("skipping.csv", report::skipping_table(&found).to_csv()?);
+                bundle.add_table("skipping.csv", report::skipping_table(&found))?;
                 output.skipping = found;
             }
             Task::Stress => {
@@ -115,9 +116,9 @@ pub(super) fn run(args: &AccuracyArgs, global: &Global) -> Result<ExitCode> {
         global.note(&format!("{} of {}: {}, {took:.1} s", i + 1, tasks.len(), task.name()));
     }
     if let Some(out) = &global.out {
-        bundle.add("accuracy.csv", report::table(&output.charts).to_csv()?);
+        bundle.add_table("accuracy.csv", report::table(&output.charts))?;
         bundle.add("README.md", page(&output, args.quick));
-        global.write(&bundle, out)?;
+        global.write(&bundle, out, Some(&text))?;
     }
     let mut work = Work::default();
     work.compute(Thing::Sections, tasks.len() as u64);

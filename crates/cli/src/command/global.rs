@@ -1,14 +1,18 @@
 //! What every command shares: its options, the library, the study, and how answers leave the process.
 
 use super::progress::Bar;
+use super::provenance;
 use super::stderr::say;
 use super::terminal::Stream;
 use clap::Args;
 use hadar::demand::{Reason, Skipping, Thing, Work};
 use hadar::error::{Error, Result};
+use hadar::inputs;
 use hadar::material::Library;
 use hadar::units::decimal_comma;
-use hadar_report::bundle::Bundle;
+use hadar_report::bundle::{About, Bundle};
+use hadar_report::folder::{Folder, Strangers};
+use hadar_report::manifest::{Provenance, SCHEMA, VERSION};
 use hadar_report::text;
 use hadar_study::scenario::Scenario;
 use hadar_study::study::Study;
@@ -21,9 +25,13 @@ pub(super) struct Global {
     /// Print one JSON object on stdout and nothing else
     #[arg(long, global = true)]
     pub(super) json: bool,
-    /// Write scenario, tables and plots into this folder
+    /// Write a report into this folder: one page, the answer, scenario, tables and plots
     #[arg(long, global = true, value_name = "DIR")]
     pub(super) out: Option<PathBuf>,
+    /// Take an --out folder although it holds files that hadar did not write, or that were changed: those in the way are
+    /// replaced, the others stay
+    #[arg(long, global = true)]
+    pub(super) force: bool,
     /// Materials of your own, a folder or a file; may be given several times
     #[arg(long, global = true, value_name = "DIR")]
     pub(super) library: Vec<PathBuf>,
@@ -84,15 +92,38 @@ impl Global {
         if self.no_skip { Skipping::Off } else { Skipping::On }
     }
 
+    /// A folder to be written to.
+    pub(super) fn folder(&self, path: &Path) -> Folder {
+        Folder::new(path, if self.force { Strangers::KeepBesides } else { Strangers::Refuse })
+    }
+
+    /// Makes sure, before the work, that what was read so far is not where the report will be.
+    pub(super) fn inputs_are_safe(&self) -> Result<()> {
+        match &self.out {
+            Some(out) => self.folder(out).check_inputs(&inputs::so_far().files, &provenance::USUAL_NAMES),
+            None => Ok(()),
+        }
+    }
+
+    /// Refuses a folder for what writes nothing.
+    pub(super) fn writes_nothing(&self, what: &str) -> Result<()> {
+        match self.out {
+            Some(_) => {
+                Err(Error::malformed(format!("{what} has nothing to write into --out"), "leave out --out"))
+            }
+            None => Ok(()),
+        }
+    }
+
     /// Makes and writes a report where there is a folder for it; what that took.
-    pub(super) fn report(&self, make: impl FnOnce(&Path) -> Result<Bundle>) -> Result<Work> {
+    pub(super) fn report(&self, answer: &str, make: impl FnOnce(&Path) -> Result<Bundle>) -> Result<Work> {
         let mut work = Work::default();
         let Some(out) = &self.out else {
             work.spare(Thing::Reports, Reason::NotAsked, 1);
             return Ok(work);
         };
         let bundle = make(out)?;
-        self.write(&bundle, out)?;
+        self.write(&bundle, out, Some(answer))?;
         work.compute(Thing::Reports, 1);
         work.compute(Thing::Figures, bundle.figures() as u64);
         Ok(work)
@@ -114,10 +145,10 @@ impl Global {
         self.answer(&json, text, work)
     }
 
-    /// Prints a result: JSON with `--json`, else the text.
+    /// Prints a result: JSON with `--json`, with the version of the program and of its form, else the text.
     pub(super) fn print(&self, json: &impl serde::Serialize, text: &str) -> Result<()> {
         let text = if self.json {
-            serde_json::to_string_pretty(json)
+            serde_json::to_string_pretty(&Versioned { hadar: VERSION, schema: SCHEMA, answer: json })
                 .map_err(|error| Error::malformed(error.to_string(), "report this as a bug"))?
         } else {
             Stream::Out.answer(text.trim_end())
@@ -141,16 +172,39 @@ impl Global {
             scenario.requirement.by = by;
         }
         scenario.alternatives.skip_uncovered |= self.skip_uncovered;
-        Study::new(&scenario, &self.library()?)
+        let study = Study::new(&scenario, &self.library()?)?;
+        self.inputs_are_safe()?;
+        Ok(study)
     }
 
-    /// Writes the files and says where.
-    pub(super) fn write(&self, bundle: &Bundle, out: &Path) -> Result<()> {
-        bundle.write(out)?;
-        let names: Vec<&str> = bundle.names().collect();
-        self.note(&format!("wrote {} to {}", names.join(", "), out.display()));
+    /// Who makes the report of what.
+    pub(super) fn provenance(&self) -> Result<Provenance> {
+        provenance::of_this_run(self.seed)
+    }
+
+    /// Writes the files, with the answer and a page of all where there is an answer, and says where.
+    pub(super) fn write(&self, bundle: &Bundle, out: &Path, answer: Option<&str>) -> Result<()> {
+        let (provenance, inputs) = (self.provenance()?, inputs::so_far().files);
+        let about = About { answer: answer.unwrap_or_default(), provenance: &provenance, inputs: &inputs };
+        let folder = self.folder(out);
+        let count = match answer {
+            Some(_) => bundle.write_report(&folder, &about)?,
+            None => bundle.write_files(&folder, &about)?,
+        };
+        let (page, out) = (out.join("report.html"), out.join(""));
+        let look = answer.map_or_else(String::new, |_| format!("; {} shows them all", page.display()));
+        self.note(&format!("wrote {count} files to {}{look}", out.display()));
         Ok(())
     }
+}
+
+/// A result as it is printed.
+#[derive(serde::Serialize)]
+struct Versioned<'a, T: serde::Serialize> {
+    hadar: &'static str,
+    schema: u32,
+    #[serde(flatten)]
+    answer: &'a T,
 }
 
 /// Anything as JSON.

@@ -75,9 +75,10 @@ pub(super) fn run(args: &IdentifyArgs, global: &Global) -> Result<ExitCode> {
     let bar = global.progress("pairs simulated");
     let mut answers = study.answer(&asked, &|done, total| bar.set(done, total))?;
     bar.finish();
-    let report = global.report(|out| identify::bundle(&study, &answers, global.seed, out))?;
+    let text = identify::text(&answers, &study);
+    let report = global.report(&text, |out| identify::bundle(&study, &answers, global.seed, out))?;
     answers.identification.stats.add(&report);
-    global.answer(&answers, &identify::text(&answers, &study), &answers.identification.stats)?;
+    global.answer(&answers, &text, &answers.identification.stats)?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -120,10 +121,7 @@ fn trial(args: &IdentifyArgs, global: &Global) -> Result<Trial> {
 
 /// The answer to one question, at the first proof.
 fn only_check(study: &Study, global: &Global) -> Result<ExitCode> {
-    if global.out.is_some() {
-        let found = "--check answers yes or no and has nothing to write into --out";
-        return Err(Error::malformed(found, "leave out --out, or --check to have the files"));
-    }
+    global.writes_nothing("--check, which answers yes or no,")?;
     let result = study.check(global.skipping())?;
     global.answer(&result, &identify::check(&result, study), &result.stats)?;
     Ok(if result.identifiable { ExitCode::SUCCESS } else { ExitCode::from(3) })

@@ -46,6 +46,9 @@ enum Action {
 }
 
 pub(super) fn run(args: &MaterialsArgs, global: &Global) -> Result<ExitCode> {
+    if matches!(args.action, Action::List | Action::Show { .. }) {
+        global.writes_nothing("a list on the terminal")?;
+    }
     match &args.action {
         Action::List => list(&global.library()?, global)?,
         Action::Show { name } => show(&global.library()?, name, global)?,
@@ -138,15 +141,14 @@ fn plot(library: &Library, names: &[String], global: &Global) -> Result<()> {
         (0..=(SHOWN_CM1.1 - SHOWN_CM1.0) as u32).map(|i| SHOWN_CM1.0 + f64::from(i)).collect();
     let surfaces =
         materials.iter().map(|material| Surface::of(material, &nodes)).collect::<Result<Vec<_>>>()?;
-    let Some((first, others)) = surfaces.split_first() else { return Ok(()) };
-    let others: Vec<&Surface> = others.iter().collect();
-    let mut bundle = Bundle::default();
-    bundle.add_plots(&[figures::emissivities("Emissivities", &nodes, first, &others)])?;
-    global.write(&bundle, out)?;
+    let drawn: Vec<&Surface> = surfaces.iter().collect();
+    let mut bundle = Bundle::about(Some("Emissivities"));
+    bundle.add_plots(&figures::emissivities("Emissivities", &nodes, &drawn))?;
+    let text = format!("drew {}", names.join(", "));
+    global.write(&bundle, out, Some(&text))?;
     let drawn: Vec<Summary> = materials.iter().map(|material| material.summary()).collect();
     let mut work = library.work();
     work.compute(Thing::Figures, bundle.figures() as u64);
-    let text = format!("drew {}", names.join(", "));
     global.answer_with(serde_json::json!({ "materials": drawn }), &text, &work)
 }
 
@@ -173,7 +175,13 @@ fn import(files: &[PathBuf], global: &Global) -> Result<()> {
     let mut work = Work::default();
     work.compute(Thing::LibrarySpectra, summaries.len() as u64);
     if let Some(directory) = &global.out {
-        global.write(&bundle, directory)?;
+        // Spectra imported before stay: a library grows.
+        for (name, content) in global.folder(directory).own_files()? {
+            if bundle.names().all(|known| known != name) {
+                bundle.add(name, content);
+            }
+        }
+        global.write(&bundle, directory, None)?;
         let _ = writeln!(out, "use them with --library {}", directory.display());
         work.compute(Thing::Reports, 1);
     } else {

@@ -36,6 +36,7 @@ pub(super) fn run(args: &RangeArgs, global: &Global) -> Result<ExitCode> {
     }
     let scenario = RangeScenario::from_file(&args.scenario)?;
     let study = RangeStudy::new(&scenario, &global.library()?)?;
+    global.inputs_are_safe()?;
     let plan = RangePlan {
         trials: args.trials,
         seed: global.seed,
@@ -55,8 +56,12 @@ pub(super) fn run(args: &RangeArgs, global: &Global) -> Result<ExitCode> {
     let bar = global.progress("rows and draws");
     let mut result = study.range(&plan, &|done, total| bar.set(done, total))?;
     bar.finish();
-    result.stats.add(&global.report(|out| range::bundle(&result, out))?);
-    global.answer(&result, &range::text(&result), &result.stats)?;
+    let text = match plan.verdict_alone {
+        true => result.verdict.sentence.to_string(),
+        false => range::text(&result),
+    };
+    result.stats.add(&global.report(&text, |out| range::bundle(&result, out))?);
+    global.answer(&result, &text, &result.stats)?;
     let failed = args.check && result.verdict.met != Some(true);
     Ok(if failed { ExitCode::from(3) } else { ExitCode::SUCCESS })
 }

@@ -54,6 +54,14 @@ pub(super) fn run(args: &ReproduceArgs, global: &Global) -> Result<ExitCode> {
     let effort = if args.quick { Effort::Quick } else { Effort::Full };
     let order = Order { effort, seed: global.seed };
     let count = items.len() + studies.len();
+    if let Some(out) = &global.out {
+        let folders =
+            items.iter().map(|item| item.name().to_owned()).chain(studies.iter().map(|study| study.folder()));
+        folders.map(|name| out.join(name)).try_for_each(|folder| global.folder(&folder).check())?;
+        if items.len() == Item::ALL.len() {
+            global.folder(out).check()?;
+        }
+    }
     let mut stats = Work::default();
     stats.compute(Thing::Reproductions, items.len() as u64);
     stats.spare(Thing::Reproductions, Reason::NotAsked, (Item::ALL.len() - items.len()) as u64);
@@ -64,7 +72,7 @@ pub(super) fn run(args: &ReproduceArgs, global: &Global) -> Result<ExitCode> {
         let watch = Watch::start(global, item.name());
         let made = item.make(order, &place, &|done, total| watch.bar.set(done, total))?;
         watch.stop(&format!("{} of {count}: {}", i + 1, item.title()));
-        stats.add(&write(global, &made.bundle, folder)?);
+        stats.add(&write(global, &made.bundle, folder, &text(&[*item], &made.lines))?);
         ledger.extend(made.lines);
     }
     let mut findings = Vec::new();
@@ -73,14 +81,14 @@ pub(super) fn run(args: &ReproduceArgs, global: &Global) -> Result<ExitCode> {
         let (bundle, finding) = study.make(order, &library, &|done, total| watch.bar.set(done, total))?;
         watch.stop(&format!("{} of {count}: {}", items.len() + i + 1, study.title()));
         let folder = global.out.as_ref().map(|out| out.join(study.folder()));
-        stats.add(&write(global, &bundle, folder)?);
+        stats.add(&write(global, &bundle, folder, &finding)?);
         findings.push(Finding { study: study.name(), title: study.title(), finding });
     }
     if let Some(out) = global.out.as_ref().filter(|_| items.len() == Item::ALL.len()) {
-        let mut bundle = Bundle::default();
-        bundle.add("ledger.csv", table(&ledger).to_csv()?);
+        let mut bundle = Bundle::about(Some("What of the paper comes out again"));
+        bundle.add_table("ledger.csv", table(&ledger))?;
         bundle.add("README.md", overview(&items, effort, &ledger));
-        global.write(&bundle, out)?;
+        global.write(&bundle, out, Some(&text(&items, &ledger)))?;
     }
     let mut text = if items.is_empty() { String::new() } else { text(&items, &ledger) };
     for found in &findings {
@@ -112,11 +120,11 @@ impl<'a> Watch<'a> {
 }
 
 /// Writes what was made where there is a folder for it; what that took.
-fn write(global: &Global, bundle: &Bundle, folder: Option<PathBuf>) -> Result<Work> {
+fn write(global: &Global, bundle: &Bundle, folder: Option<PathBuf>, answer: &str) -> Result<Work> {
     let mut stats = Work::default();
     let figures = bundle.figures() as u64;
     if let Some(folder) = folder {
-        global.write(bundle, &folder)?;
+        global.write(bundle, &folder, Some(answer))?;
         stats.compute(Thing::Reports, 1);
         stats.compute(Thing::Figures, figures);
     } else {

@@ -3,6 +3,7 @@
 use super::global::Global;
 use clap::Args;
 use hadar::error::Result;
+use hadar_report::manifest::Input;
 use hadar_report::rule;
 use hadar_study::scenario::Rule;
 use hadar_study::study::{RuleAnswer, RuleAsked, RuleStudy};
@@ -13,8 +14,8 @@ use std::process::ExitCode;
 pub(super) struct RuleArgs {
     /// The rule file (TOML): a scenario with [envelope], cameras = [...] or [[camera]] tables, and [rule]
     rule: PathBuf,
-    /// Exit with code 3 unless every camera meets the rule; without --out the verdicts alone, each by the first scene that
-    /// decides it
+    /// Exit with code 3 unless every camera meets the rule; without --out a line a camera, each decided by the first scene that
+    /// does
     #[arg(long)]
     check: bool,
     /// With --check: one camera that meets the rule is enough
@@ -26,6 +27,7 @@ pub(super) fn run(args: &RuleArgs, global: &Global) -> Result<ExitCode> {
     let mut rule_read = Rule::from_file(&args.rule)?;
     rule_read.scenario.alternatives.skip_uncovered |= global.skip_uncovered;
     let study = RuleStudy::new(&rule_read, &global.library()?)?;
+    global.inputs_are_safe()?;
     let asked = RuleAsked {
         verdict_only: args.check && global.out.is_none(),
         skipping: global.skipping(),
@@ -34,9 +36,20 @@ pub(super) fn run(args: &RuleArgs, global: &Global) -> Result<ExitCode> {
     let bar = global.progress("cameras");
     let mut answer = study.answer(&asked, &|done, all| bar.set(done, all))?;
     bar.finish();
-    answer.stats.add(&global.report(|out| rule::bundle(&study, &answer, out))?);
-    global.answer(&answer, &rule::text(&answer, &study), &answer.stats)?;
+    let text = if asked.verdict_only { rule::check(&answer) } else { rule::text(&answer, &study) };
+    let provenance = global.provenance()?;
+    answer.stats.add(&global.report(&text, |out| rule::bundle(&study, &answer, &provenance, out))?);
+    global.answer(&Output { answer: &answer, inputs: &provenance.inputs }, &text, &answer.stats)?;
     Ok(code(args, &answer))
+}
+
+/// What is printed with `--json`.
+#[derive(serde::Serialize)]
+struct Output<'a> {
+    #[serde(flatten)]
+    answer: &'a RuleAnswer,
+    /// All that the answer rests on, by its content.
+    inputs: &'a [Input],
 }
 
 fn code(args: &RuleArgs, answer: &RuleAnswer) -> ExitCode {

@@ -111,10 +111,15 @@ pub(super) fn run(args: &SimulateArgs, global: &Global) -> Result<ExitCode> {
     if let Some(range) = &args.thermometry {
         return thermometry(range, args, &study, global);
     }
-    let (plan, planning) = ledger_of(|| plan(args, &study, global))?;
     if let Some(folder) = &args.save_models {
-        Bundle::check_destination(folder)?;
+        let models = global.folder(folder);
+        models.check()?;
+        if global.out.as_ref().is_some_and(|out| global.folder(out).is(&models)) {
+            let found = "--save-models and --out name one folder, where one would replace the other";
+            return Err(Error::malformed(found, "name a folder within, such as --save-models DIR/models"));
+        }
     }
+    let (plan, planning) = ledger_of(|| plan(args, &study, global))?;
     if args.check && (plan.against.len() > 1 || plan.law == PhotonLaw::FixedTotal) {
         let found = "--check holds two classes against their limit, which is not known here";
         return Err(Error::malformed(found, "name one alternative with --against, or leave out fixed-total"));
@@ -127,9 +132,10 @@ pub(super) fn run(args: &SimulateArgs, global: &Global) -> Result<ExitCode> {
         for saved in &models {
             bundle.add(format!("{}.json", saved.model.method().name()), saved.to_json()?);
         }
-        global.write(&bundle, folder)?;
+        global.write(&bundle, folder, None)?;
     }
-    let report = global.report(|out| {
+    let text = simulate::text(&result, &study);
+    let report = global.report(&text, |out| {
         let rival = result.points.first().and_then(|point| point.classes.get(1));
         let rival =
             rival.filter(|_| args.sweep.is_some()).and_then(|class| study.alternative(&class.material));
@@ -137,7 +143,7 @@ pub(super) fn run(args: &SimulateArgs, global: &Global) -> Result<ExitCode> {
         simulate::bundle(&study, &result, noise.as_ref(), out)
     })?;
     result.stats.add(&planning.and(&report));
-    global.answer(&result, &simulate::text(&result, &study), &result.stats)?;
+    global.answer(&result, &text, &result.stats)?;
     let failed = args.check && !result.limit_holds;
     Ok(if failed { ExitCode::from(3) } else { ExitCode::SUCCESS })
 }
@@ -174,8 +180,9 @@ fn thermometry(range: &str, args: &SimulateArgs, study: &Study, global: &Global)
     let mut result =
         study.thermometry(&temperatures, args.spectra, global.seed, &|done, total| bar.set(done, total))?;
     bar.finish();
-    result.stats.add(&global.report(|out| thermometry_report::bundle(study, &result, out))?);
-    global.answer(&result, &thermometry_report::text(&result), &result.stats)?;
+    let text = thermometry_report::text(&result);
+    result.stats.add(&global.report(&text, |out| thermometry_report::bundle(study, &result, out))?);
+    global.answer(&result, &text, &result.stats)?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -39,8 +39,9 @@ pub(super) fn run(args: &SizeArgs, global: &Global) -> Result<ExitCode> {
         result.trade_offs = Some(trade_offs);
         result.stats.add(&work);
     }
-    result.stats.add(&global.report(|out| size::bundle(&study, &result, out))?);
-    global.answer(&result, &size::text(&result, &study), &result.stats)?;
+    let text = size::text(&result, &study);
+    result.stats.add(&global.report(&text, |out| size::bundle(&study, &result, out))?);
+    global.answer(&result, &text, &result.stats)?;
     if global.out.is_none() && !global.json && std::io::stderr().is_terminal() {
         global.note("for plots and tables add --out DIR");
     }

@@ -131,7 +131,7 @@ fn hanging(line: &str) -> Option<usize> {
     let gaps = |from: usize| {
         (from..letters.len().saturating_sub(1)).filter(|at| letters[*at] == ' ' && letters[at + 1] == ' ')
     };
-    match gaps(indent).last() {
+    match gaps(indent).next_back() {
         None => Some(indent),
         Some(at) => {
             let words = letters[at + 2..].split(|letter| *letter == ' ').count();

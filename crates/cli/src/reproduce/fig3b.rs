@@ -43,11 +43,11 @@ pub(super) fn all_bands(order: Order, out: &Path, progress: Progress<'_>) -> Res
     let result = experiments(&study, order, SHOT, false, progress)?;
     let rival = &study.alternatives()[..1];
     let mut bundle = Bundle::default();
-    bundle.add("scenario.toml", study.scenario().to_toml_beside(out));
+    bundle.add_asked("scenario.toml", study.scenario().to_toml_beside(out));
     let mut lines = robot(&result);
     if let [rival] = rival {
         let noise = study.noise_curves(rival, CURVES, CURVE_POINTS)?;
-        bundle.add("noise_curves.csv", curves(&noise).to_csv()?);
+        bundle.add_table("noise_curves.csv", curves(&noise))?;
         let title = "Person or robot, 536 bands: no classifier beats the limit".to_owned();
         let plot = SimulationCurves { title, noise: Some(&noise), other: None, name: "fig3b" };
         bundle.add_plots(&[figures::classifiers(&result, &plot)])?;
@@ -65,16 +65,16 @@ pub(super) fn three_bands(order: Order, out: &Path, progress: Progress<'_>) -> R
     let result = experiments(&study, order, SHOT, false, &|done, total| first.set(done, total))?;
     let noisy = experiments(&study, order, NOISY, true, &|done, total| second.set(done, total))?;
     let mut bundle = Bundle::default();
-    bundle.add("scenario.toml", study.scenario().to_toml_beside(out));
+    bundle.add_asked("scenario.toml", study.scenario().to_toml_beside(out));
     let mut lines = Vec::new();
     if let [rival] = study.alternatives() {
         let noise = study.noise_curves(rival, CURVES, CURVE_POINTS)?;
-        bundle.add("noise_curves.csv", curves(&noise).to_csv()?);
+        bundle.add_table("noise_curves.csv", curves(&noise))?;
         let title = "Person or robot, three bands: trained classifiers come to the limit".to_owned();
         let other = Some((&noisy, "Points on the right, along the lower curve: with mixed noise."));
         let plot = SimulationCurves { title, noise: Some(&noise), other, name: "figs7" };
         bundle.add_plots(&[figures::classifiers(&result, &plot)])?;
-        bundle.add("figs7_mixed_noise.csv", figures::simulation_table(&noisy).to_csv()?);
+        bundle.add_table("figs7_mixed_noise.csv", figures::simulation_table(&noisy))?;
         lines.push(noise_of_three_bands(&study)?);
         lines.extend(floor("Fig. S7", &noise));
     }

@@ -12,7 +12,7 @@ use std::path::Path;
 pub(super) fn make(out: &Path) -> Result<Made> {
     let study = scene::study(examples::HUMAN_VS_ROBOT)?;
     let mut bundle = Bundle::default();
-    bundle.add("scenario.toml", study.scenario().to_toml_beside(out));
+    bundle.add_asked("scenario.toml", study.scenario().to_toml_beside(out));
     let mut lines = Vec::new();
     let result = study.identify()?;
     if let ([rival], [pair]) = (study.alternatives(), result.pairs.as_slice())
@@ -21,7 +21,9 @@ pub(super) fn make(out: &Path) -> Result<Made> {
         let state = study.state();
         let here = (state.temperature_k, state.lighting.first().copied().unwrap_or(0.0));
         let by = study.scenario().requirement.by.name();
-        bundle.add_plots(&[figures::photon_map(&map, &study.target().name, &rival.name, here, by)])?;
+        let pair_names = [study.target().name.as_str(), rival.name.as_str()];
+        let drawn = figures::photon_map(&map, pair_names, here, by, None);
+        bundle.add_plots(&drawn.into_iter().collect::<Vec<_>>())?;
         let endless = map.photons.iter().filter(|photons| photons.is_infinite()).count();
         let least = map.photons.iter().copied().fold(f64::INFINITY, f64::min);
         let most = map.photons.iter().copied().filter(|n| n.is_finite()).fold(0.0, f64::max);

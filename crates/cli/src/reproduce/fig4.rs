@@ -39,10 +39,10 @@ pub(super) fn make(order: Order, out: &Path, progress: Progress<'_>) -> Result<M
     let night = study(STREET)?.range(&RangePlan { trials: 0, ..plan }, progress)?;
     let dim = study(&dimmer())?.range(&plan, progress)?;
     let mut bundle = Bundle::default();
-    bundle.add("scenario.toml", paper.scenario.to_toml_beside(out));
-    bundle.add("bounds.csv", range::bounds(&paper).to_csv()?);
+    bundle.add_asked("scenario.toml", paper.scenario.to_toml_beside(out));
+    bundle.add_table("bounds.csv", range::bounds(&paper))?;
     bundle.add("night_scenario.toml", night.scenario.to_toml_beside(out));
-    bundle.add("night_bounds.csv", range::bounds(&night).to_csv()?);
+    bundle.add_table("night_bounds.csv", range::bounds(&night))?;
     let mut plots: Vec<_> = [range::views(&paper), range::bound_maps(&paper), range::matched_maps(&paper)]
         .into_iter()
         .flatten()
@@ -61,7 +61,7 @@ pub(super) fn make(order: Order, out: &Path, progress: Progress<'_>) -> Result<M
     plots.push(locked);
     bundle.add_plots(&plots)?;
     let (table, depends) = dependence()?;
-    bundle.add("dependence.csv", table.to_csv()?);
+    bundle.add_table("dependence.csv", table)?;
     let text = format!(
         "{depends}\n`hadar range examples/street_at_one_temperature.toml --trials {TRIALS}` prints:\n\n```text\n{}```\n\n\
          `hadar range examples/street.toml`, colder sky and 54 bands:\n\n```text\n{}```\n",
@@ -170,7 +170,12 @@ fn ledger(paper: &Ranging, night: &Ranging, dim: &Ranging, locking: &[(&str, f64
         };
         let ratio = |line: &hadar_study::study::range::Line| {
             median(
-                &line.rmse_m.iter().zip(&line.bound_m).map(|(rmse, bound)| rmse / bound).collect::<Vec<_>>(),
+                &line
+                    .rmse_m
+                    .iter()
+                    .zip(&line.bound_without_diffraction_m)
+                    .map(|(rmse, bound)| rmse / bound)
+                    .collect::<Vec<_>>(),
             )
         };
         dim.lines.iter().find(same).map_or(f64::NAN, ratio)

@@ -68,10 +68,11 @@ impl FurtherStudy {
         library: &Library,
         progress: Progress<'_>,
     ) -> Result<(Bundle, String)> {
-        match self {
+        let (bundle, finding) = match self {
             Self::ExactProbability => exact_probability::make(order, library, progress),
             Self::Priors => priors::make(order, library, progress),
             Self::LibraryFigures => library_figures::make(order, library, progress),
-        }
+        }?;
+        Ok((bundle.titled(self.title()), finding))
     }
 }

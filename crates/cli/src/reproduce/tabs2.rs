@@ -21,7 +21,7 @@ const SCENE_K: f64 = 300.0;
 pub(super) fn make(out: &Path) -> Result<Made> {
     let study = scene::study(examples::HUMAN_VS_ROBOT)?;
     let mut bundle = Bundle::default();
-    bundle.add("scenario.toml", study.scenario().to_toml_beside(out));
+    bundle.add_asked("scenario.toml", study.scenario().to_toml_beside(out));
     let (flir, spectrometer) = (presets::get("flir-a325sc")?, presets::get("nicolet-is50")?);
     let mut lines = microbolometer(&flir)?;
     lines.extend(mct(&spectrometer)?);

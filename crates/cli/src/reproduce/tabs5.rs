@@ -112,7 +112,7 @@ pub(super) fn make() -> Result<Made> {
         ),
     ];
     let mut bundle = Bundle::default();
-    bundle.add("cells.csv", table.to_csv()?);
+    bundle.add_table("cells.csv", table)?;
     bundle.add_plots(&[range::derivative_errors()?])?;
     let pictures = vec![("derivatives.png", "Error of derivatives on textures of known frequency")];
     Ok((bundle, lines, Figures { pictures, text: String::new() }))

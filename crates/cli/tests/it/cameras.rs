@@ -49,7 +49,18 @@ fn the_json_of_show_and_compare() {
     let keys: Vec<&String> = both.as_object().unwrap().keys().collect();
     assert_eq!(
         keys,
-        ["a", "b", "caveats", "common_range_cm1", "ratios", "scene_temperature_k", "sentence", "stats"]
+        [
+            "a",
+            "b",
+            "caveats",
+            "common_range_cm1",
+            "hadar",
+            "ratios",
+            "scene_temperature_k",
+            "schema",
+            "sentence",
+            "stats"
+        ]
     );
     for (key, ratio) in both["ratios"].as_object().unwrap() {
         let (a, b) = (&both["a"], &both["b"]);

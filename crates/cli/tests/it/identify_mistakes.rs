@@ -133,16 +133,6 @@ fn every_mistake_in_a_flag_is_one_line_that_names_it() {
             vec!["--exact", "--photons", "1e30"],
             "1.00e30 photons are too many to draw; ask for at most 1e18 with --photons",
         ),
-        (
-            &SCENARIO.replace(STEP, "ranges = [[\"8 um\", \"14 um\"]]"),
-            vec!["--matrix"],
-            "bands: 1 band for 3 unknowns (the material among them); give at least 3 bands",
-        ),
-        (
-            &SCENARIO.replace(STEP, "ranges = [[\"8 um\", \"10 um\"], [\"10 um\", \"14 um\"]]"),
-            vec!["--exact"],
-            "bands: 2 bands for 3 unknowns (the material among them); give at least 3 bands",
-        ),
     ] {
         let said_now = refused(scenario, &flags);
         assert!(said_now.contains(said), "{flags:?}: {said_now}");

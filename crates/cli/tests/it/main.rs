@@ -20,12 +20,14 @@ mod robust;
 mod rule;
 mod rule_mistakes;
 mod simulate;
+mod written;
 
 mod support {
     pub(crate) mod answers;
     pub(crate) mod folder;
     #[path = "../../../../study/tests/it/support/mutation.rs"]
     pub(crate) mod mutation;
+    pub(crate) mod page;
     pub(crate) mod sound;
     pub(crate) mod uses;
 }

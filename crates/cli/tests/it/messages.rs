@@ -51,8 +51,9 @@ fn a_file_for_another_command_is_sent_there() {
 #[test]
 fn answers_and_the_scenario_that_is_written_speak_in_the_units_of_their_author() {
     let text = SCENARIO
-        .replace("\"37 degC\"", "\"98.6 °F\"\ndistance = \"100 ft\"")
-        .replace("\"20 degC\"", "\"68 °F\"");
+        .replace("\"37 degC\"", "\"98.6 °F\"\ndistance = \"3000 ft\"")
+        .replace("\"20 degC\"", "\"68 °F\"")
+        .replace("flir-a325sc", "ideal-pnrd");
     let folder = Folder::with(&format!("{text}[requirement]\nspeed = \"30 mph\"\n"));
     let outcome = folder.run(&["size", "a.toml", "--out", "out"]);
     assert_eq!(outcome.code, 0, "{}", outcome.stderr);
@@ -61,7 +62,7 @@ fn answers_and_the_scenario_that_is_written_speak_in_the_units_of_their_author()
     }
     assert!(!outcome.stdout.contains("degC") && !outcome.stdout.contains(" m/s"), "{}", outcome.stdout);
     let written = std::fs::read_to_string(folder.path().join("out/scenario.toml")).unwrap();
-    for quantity in ["\"98.6 °F\"", "\"100 ft\"", "\"68 °F\"", "\"30 mph\""] {
+    for quantity in ["\"98.6 °F\"", "\"3000 ft\"", "\"68 °F\"", "\"30 mph\""] {
         assert!(written.contains(quantity), "{written}");
     }
 }

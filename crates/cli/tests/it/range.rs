@@ -178,6 +178,20 @@ fn a_report_has_every_plot_with_its_table_and_its_maps() {
     assert_eq!(again.code, 0, "{}", again.stderr);
     let line = fs::read_to_string(folder.path().join("out/line_38.csv")).unwrap();
     assert!(line.contains("block matching") && line.contains("maximum likelihood"));
+    // Both bounds, whether there are trials or not: matches are of views without diffraction.
+    let bare = folder.run(&["range", "a.toml", "--out", "bare", "-q"]);
+    assert_eq!(bare.code, 0, "{}", bare.stderr);
+    let bounds = |text: &str| -> Vec<[f64; 2]> {
+        let head: Vec<&str> = text.lines().next().unwrap().split(',').collect();
+        let at = ["bound_m", "bound_without_diffraction_m"]
+            .map(|name| head.iter().position(|column| *column == name).unwrap());
+        let of_thermal = text.lines().filter(|line| line.contains("thermal image"));
+        let rows = of_thermal.map(|line| line.split(',').collect::<Vec<_>>());
+        rows.map(|row| at.map(|i| row[i].parse().unwrap())).collect()
+    };
+    let bare = bounds(&fs::read_to_string(folder.path().join("bare/line_38.csv")).unwrap());
+    assert!(!bare.is_empty() && bare.iter().all(|[with, without]| with > without), "{bare:?}");
+    assert_eq!(bounds(&line)[..bare.len()], bare);
 }
 
 #[test]

@@ -172,9 +172,11 @@ fn json_has_the_agreed_keys() {
     for input in json["inputs"].as_array().unwrap() {
         assert_eq!(input["sha256"].as_str().unwrap().len(), 64, "{input}");
     }
-    // The rule and the entries of two cameras.
-    assert_eq!(json["inputs"].as_array().unwrap().len(), 3);
-    assert_eq!(json["inputs"][0]["path"], "a.toml");
+    // The rule, the entries of two cameras and of every material.
+    let inputs = json["inputs"].as_array().unwrap().iter().map(|input| input["path"].as_str().unwrap());
+    let (materials, others): (Vec<&str>, Vec<&str>) = inputs.partition(|path| path.contains("material"));
+    assert_eq!(others, ["a.toml", "built-in: camera flir-a325sc", "built-in: camera ideal-pnrd"]);
+    assert!(materials.len() == 4 && materials.contains(&"built-in: material skin"), "{materials:?}");
 }
 
 #[test]
@@ -436,6 +438,25 @@ fn blur_and_a_full_well_fail_a_camera_that_sees_enough() {
     }
 }
 
+/// What the picture is drawn from: a camera that has signal enough and fails by its image is below all that meet the rule.
+#[test]
+fn a_full_well_is_drawn_as_failing_and_named() {
+    let rule = format!("{RULE}[[camera]]\nname = \"ours\"\npreset = \"ideal-pnrd\"\nfull_well = 1e6\n");
+    let folder = Folder::with(&rule);
+    let outcome = folder.run(&["rule", "a.toml", "--out", "out"]);
+    assert_eq!(outcome.code, 0, "{}", outcome.stderr);
+    let row = outcome.stdout.lines().find(|line| line.starts_with("ours")).unwrap();
+    assert!(row.contains("no: "), "{row}");
+    let margins = fs::read_to_string(folder.path().join("out/margins.csv")).unwrap();
+    let rows: Vec<Vec<&str>> = margins.lines().skip(1).map(|line| line.split(',').collect()).collect();
+    let met: Vec<&str> = rows.iter().map(|row| row[1]).collect();
+    assert_eq!(met, ["yes", "no", "no"], "{margins}");
+    let ours = rows.iter().find(|row| row[0] == "ours").unwrap();
+    assert!(ours[2] == "full-well" && ours[3].parse::<f64>().unwrap() > 1.0, "{margins}");
+    let svg = fs::read_to_string(folder.path().join("out/margins.svg")).unwrap();
+    assert!(svg.contains("no: full well") && svg.contains("no: d too small"));
+}
+
 #[test]
 fn the_report_is_complete_and_the_same_every_time() {
     let folder = Folder::with(RULE);
@@ -462,7 +483,7 @@ fn the_report_is_complete_and_the_same_every_time() {
     for part in [
         "> A camera meets this rule if",
         "t A_p/((1+gamma) F^2) >=",
-        "| flir-a325sc | no (distance)",
+        "| flir-a325sc | no: it cannot tell ",
         "## Inputs",
     ] {
         assert!(certificate.contains(part), "{part}\n{certificate}");

@@ -88,7 +88,11 @@ fn every_mistake_in_a_rule_is_one_line_with_file_line_and_key() {
             "[25, 37]",
             "a.toml:15: envelope.temperature[0]: `25` is a number without a unit",
         ),
-        ("[0.2, 0.8]", "[0.8, 0.2]", "a.toml:16: envelope.lighting: the envelope is empty"),
+        (
+            "[0.2, 0.8]",
+            "[0.8, 0.2]",
+            "a.toml:16: envelope.lighting: the range goes from 0.8 to 0.2; write the lower",
+        ),
         (
             "[0.2, 0.8]",
             "[0.2, 1.2]",
@@ -112,7 +116,7 @@ fn every_mistake_in_a_rule_is_one_line_with_file_line_and_key() {
         (
             "[\"-10 degC\", \"15 degC\"]",
             "[\"15 degC\", \"-10 degC\"]",
-            "a.toml:17: envelope.surroundings: the envelope is empty",
+            "a.toml:17: envelope.surroundings: the range goes from 15 degC to -10 degC; write",
         ),
         (
             "[\"5 m\", \"15 m\"]",

@@ -6,11 +6,15 @@ mod scaling;
 pub(super) use bands::bands_that_matter;
 pub(super) use scaling::{band_number, library_size};
 
-use crate::figures::{Plot, wavenumber_axis};
-use crate::plot::{Axis, Figure, LineFigure, Matrix as NamedMatrix, NamedSeries, NamedValues, Series, Style};
+use crate::figures::{Plot, band_axis, over_bands};
+use crate::plot::{
+    Axis, Figure, LineFigure, Matrix as NamedMatrix, NamedSeries, NamedValues, Panel, Rule, Series, Style,
+};
 use crate::table::{Table, number, optional};
 use crate::text::significant;
-use hadar_study::study::{Matrix, SampleSpectra, TargetVerdict};
+use hadar::spectrum::Bands;
+use hadar_study::scenario::DistanceKind;
+use hadar_study::study::{Matrix, PairResult, SampleSpectra, Study, TargetVerdict};
 
 /// All against all by the distance that decides: statistical with a camera, else per √photon. Rows and columns are
 /// ordered by clusters.
@@ -93,40 +97,103 @@ pub(super) fn minimum_distances(matrix: &Matrix) -> Plot {
     Plot { name: "minimum_distances".into(), figure: figure.into(), table }
 }
 
-/// Most materials whose readings are drawn into one plot.
-const READINGS_DRAWN: usize = 6;
+/// Most materials whose mean readings are drawn into one plot.
+const MEANS_DRAWN: usize = 6;
 
-/// One reading of each of the first few materials, and its mean.
+/// The mean readings of some materials, and below them one reading of the target and of the one hardest to tell from it,
+/// against the target's mean: whether noise or the material is what is seen.
 #[must_use]
-pub(super) fn sample_spectra(spectra: &SampleSpectra) -> Plot {
-    let shown = &spectra.materials[..spectra.materials.len().min(READINGS_DRAWN)];
+pub(super) fn sample_spectra(spectra: &SampleSpectra, bands: &Bands, limiting: &str) -> Plot {
+    // The target comes first; the hardest of the others is always among those drawn.
+    let all = &spectra.materials;
+    let mut shown: Vec<&(String, Vec<f64>, Vec<f64>)> = all.iter().take(1).collect();
+    shown.extend(all.iter().skip(1).filter(|(name, ..)| name == limiting));
+    shown.extend(all.iter().skip(1).filter(|(name, ..)| name != limiting).take(MEANS_DRAWN - shown.len()));
     let mut header = vec!["wavenumber_cm1".to_owned()];
     header.extend(
         shown.iter().flat_map(|(name, ..)| [format!("mean_{name}_counts"), format!("drawn_{name}_counts")]),
     );
     let mut table = Table::new(header);
-    let x = &spectra.wavenumber_cm1;
-    for (band, nu) in x.iter().enumerate() {
+    for (band, nu) in spectra.wavenumber_cm1.iter().enumerate() {
         let mut row = vec![*nu];
         row.extend(shown.iter().flat_map(|(_, mean, counts)| [mean[band], counts[band]]));
         table.push_numbers(&row);
     }
-    let title = match spectra.materials.len() {
-        all if all > shown.len() => format!("One reading of each of {} of the {all} materials", shown.len()),
-        _ => "One reading of each material".into(),
+    let title = match all.len() {
+        all if all > shown.len() => format!("What is read of {} of the {all} materials", shown.len()),
+        _ => "What is read of each material".into(),
     };
-    let mut figure =
-        LineFigure::new(title, wavenumber_axis(x), Axis::linear("counts in a band")).subtitle(format!(
-            "Solid: one reading drawn at random (seed {}). Dashed: its mean. All in the scenario's state.",
+    let mut figure = LineFigure::new(title, band_axis(bands), Axis::linear("mean counts in a band"))
+        .subtitle(format!(
+            "Above: means, all in the scenario's state. Below: the target and {limiting}, one reading of each drawn at random \
+             (seed {}), less the target's mean, and the mean that is to be seen in them.",
             spectra.seed
         ));
-    for (i, (name, _, counts)) in shown.iter().enumerate() {
-        figure = figure.series(Series::line(name, x.clone(), counts.clone()).colour(i));
+    for (i, (name, mean, _)) in shown.iter().enumerate() {
+        let (x, y) = over_bands(bands, mean);
+        figure = figure.series(Series::line(name, x, y).colour(i));
     }
-    for (i, (_, mean, _)) in shown.iter().enumerate() {
-        figure = figure.series(Series::line("", x.clone(), mean.clone()).style(Style::Dashed).colour(i));
+    if let Some((target, own, _)) = shown.first() {
+        let off = |counts: &[f64]| -> Vec<f64> {
+            counts.iter().zip(own).map(|(counts, mean)| 100.0 * (counts / mean - 1.0)).collect()
+        };
+        let mut lower = Panel::new(Axis::linear("difference (%)")).rule(Rule::horizontal(0.0, ""));
+        for (i, (name, mean, counts)) in shown.iter().enumerate().take(2) {
+            let label = format!("{name}, one reading");
+            let points = Series::points(label, spectra.wavenumber_cm1.clone(), off(counts)).colour(i);
+            // Full ones would hide each other.
+            lower = lower.series(if i == 0 { points } else { points.open() });
+            if name != target {
+                let (x, y) = over_bands(bands, &off(mean));
+                lower =
+                    lower.series(Series::line(format!("{name}, mean"), x, y).style(Style::Dashed).colour(6));
+            }
+        }
+        figure = figure.lower(lower);
     }
     Plot { name: "sample_spectra".into(), figure: figure.into(), table }
+}
+
+/// The target's distance from every alternative, the hardest first: statistical with a camera, else per √photon.
+#[must_use]
+pub(super) fn distances(study: &Study, pairs: &[PairResult]) -> Plot {
+    let with_camera = study.camera().is_some();
+    let target = &study.target().name;
+    let by = study.scenario().requirement.by;
+    let per_photon = |pair: &PairResult| match by {
+        DistanceKind::Nearest => pair.distance_nearest,
+        DistanceKind::Local => pair.distance_local,
+        DistanceKind::LocalUnknownGain => pair.distance_local_unknown_gain,
+    };
+    let value = |pair: &PairResult| match with_camera {
+        true => pair.statistical_distance.unwrap_or(f64::NAN),
+        false => per_photon(pair),
+    };
+    let mut ranked: Vec<&PairResult> = pairs.iter().collect();
+    ranked.sort_by(|a, b| value(a).total_cmp(&value(b)));
+    let unit = if with_camera { "statistical_distance" } else { "distance_per_sqrt_photon" };
+    let mut table = Table::new(["alternative", unit, "told_apart"]);
+    let required = study.required_distance();
+    for pair in &ranked {
+        let told = match with_camera {
+            true if value(pair) >= required => "yes",
+            true => "no",
+            false => "",
+        };
+        table.push(vec![pair.alternative.clone(), number(value(pair)), told.into()]);
+    }
+    let names = ranked.iter().map(|pair| pair.alternative.clone()).collect();
+    let axis = if with_camera { "statistical distance d" } else { "distance (per √photon)" };
+    let mut figure =
+        NamedValues::new(format!("How far {target} is from each alternative"), names, Axis::log(axis))
+            .subtitle(format!("By the {} distance, in the scenario's state.", by.name()))
+            .series(NamedSeries::new("", ranked.iter().map(|pair| value(pair)).collect()));
+    if with_camera {
+        figure = figure
+            .threshold(required, format!("demanded: d = {}", significant(required, 3)))
+            .below("not told apart as demanded");
+    }
+    Plot { name: "distances".into(), figure: figure.into(), table }
 }
 
 /// Materials cluster by cluster, then the others, and where each group begins.

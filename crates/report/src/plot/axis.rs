@@ -14,7 +14,7 @@ pub enum Scale {
     Log,
 }
 
-/// A second reading of the horizontal axis, drawn above the plot, e.g. wavelength above wavenumber.
+/// A second reading of an axis, drawn above or at the right of the plot, e.g. wavelength above wavenumber.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Secondary {
     /// Title with unit.
@@ -33,7 +33,7 @@ pub struct Axis {
     /// First and last value, in the unit of the title; the range of the data where `None` or unusable.
     /// A first value above the last one turns the axis round.
     pub range: Option<(f64, f64)>,
-    /// Another reading of the same axis; drawn for the horizontal axis only.
+    /// Another reading of the same axis; not drawn for colours.
     pub secondary: Option<Secondary>,
 }
 
@@ -55,7 +55,7 @@ impl Axis {
         self
     }
 
-    /// Adds a second reading above the plot: positions on this axis and what to print there.
+    /// Adds a second reading at the other side of the plot: positions on this axis and what to print there.
     #[must_use]
     pub fn secondary(mut self, title: impl Into<String>, ticks: Vec<(f64, String)>) -> Self {
         self.secondary = Some(Secondary { title: title.into(), ticks });

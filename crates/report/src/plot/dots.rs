@@ -10,7 +10,7 @@ use super::geometry;
 use super::label;
 use super::legend::{Entry, Key, Legend};
 use super::named::{NamedSeries, NamedValues};
-use super::names::Names;
+use super::names::{self, Names};
 use super::scene::{Anchor, Mark, Point, Rect, Scene};
 use super::symbol::{Shape, Symbol};
 use super::text;
@@ -35,7 +35,7 @@ pub(super) fn scene(figure: &NamedValues) -> Result<Scene> {
     figure.check()?;
     let rows = Rows::new(figure);
     let ruler = ruler(figure);
-    let names = Names::new(&figure.names, rows.pitch, None);
+    let names = Names::new(&figure.names, rows.pitch, names::WIDE, None);
     // The first label of the axis sticks out to the left.
     let left = (EDGE + names.room + NAME_GAP).max(50.0);
     let trial = Horizontal::new(&figure.axis, ruler, frame::WIDTH - left - 24.0);
@@ -56,6 +56,14 @@ pub(super) fn scene(figure: &NamedValues) -> Result<Scene> {
     rows.draw_ground(&mut scene, figure, &area);
     x.draw_grid(&mut scene, &area);
     rows.draw_guides(&mut scene, &area);
+    for (i, (value, _)) in figure.lines.iter().enumerate() {
+        let Some(part) = ruler.fraction(*value).filter(|part| (0.0..=1.0).contains(part)) else { continue };
+        let (at, _) = area.at(part, 0.0);
+        let (colour, dash) = line_look(i);
+        for points in geometry::dash(&[(at, area.bottom), (at, area.top)], dash) {
+            scene.marks.push(Mark::Stroke { points, width: 1.4, colour });
+        }
+    }
     let taken = line.map(|(part, _)| area.at(part, 0.0).0);
     if let Some((part, words)) = line {
         let (at, _) = area.at(part, 0.0);
@@ -76,9 +84,9 @@ pub(super) fn scene(figure: &NamedValues) -> Result<Scene> {
     if twice > 0.0 {
         x.draw_labels_above(&mut scene, &area, taken);
     }
-    for (row, line) in names.printed() {
+    for (row, below, line) in names.printed() {
         let colour = if figure.fails(row) { GREY } else { INK };
-        let y = rows.middle(row, &area) + 0.36 * names.size;
+        let y = rows.middle(row, &area) + 0.36 * names.size + below;
         scene.text((left - NAME_GAP, y), line, names.size, colour, Anchor::End);
     }
     rows.draw_values(&mut scene, figure, &ruler, &area);
@@ -93,7 +101,7 @@ fn ruler(figure: &NamedValues) -> Ruler {
         let ends = series.intervals.iter().flat_map(|(low, high)| low.iter().chain(high));
         series.values.iter().chain(ends).copied()
     });
-    let threshold = figure.threshold.iter().map(|(value, _)| *value);
+    let threshold = figure.threshold.iter().chain(&figure.lines).map(|(value, _)| *value);
     Ruler::fit(figure.axis.scale, figure.axis.range, series.chain(threshold), 0.03)
 }
 
@@ -143,6 +151,11 @@ fn symbol(index: usize, series: &NamedSeries, open: bool) -> Symbol {
     Symbol { shape: Shape::series(index), colour, open }
 }
 
+/// Colour and dashes of a further line.
+fn line_look(index: usize) -> (Colour, &'static [f64]) {
+    if index == 0 { (GREY, &[3.0, 3.0]) } else { (colour::series(index).0, &[]) }
+}
+
 /// An arrow towards this end of the axis.
 fn arrow(end: f64, colour: Colour) -> Symbol {
     Symbol { shape: if end == 0.0 { Shape::Left } else { Shape::Right }, colour, open: true }
@@ -159,12 +172,17 @@ fn entries(figure: &NamedValues, ruler: &Ruler) -> Vec<Entry> {
             Entry { key, label: series.label.clone() }
         }));
     }
+    for (i, (_, label)) in figure.lines.iter().enumerate() {
+        let (colour, dash) = line_look(i);
+        entries.push(Entry { key: Key::Line { colour, dash }, label: label.clone() });
+    }
     let colour = only.map_or(INK, |symbol| symbol.colour);
     let has_intervals = figure.series.iter().any(|series| series.intervals.is_some());
     if has_intervals {
         entries.push(Entry { key: Key::Whisker { colour }, label: figure.interval_meaning.clone() });
     }
-    if all().any(|value| figure.is_below(value)) {
+    let below = |row: usize| figure.series.iter().any(|series| figure.is_below(row, series.at(row).0));
+    if (0..figure.names.len()).any(below) {
         let label = figure.below.clone();
         match only {
             Some(symbol) => entries.push(Entry { key: Key::Symbol { symbol, ground: Some(SHADE) }, label }),
@@ -224,7 +242,10 @@ impl Rows {
         let (rows, series) = (figure.names.len().max(1) as f64, figure.series.len().max(1) as f64);
         let widest = PITCH.end() + MORE_PITCH * (series - 1.0);
         let pitch = (TALL / rows).clamp(*PITCH.start(), widest).max(SERIES_PITCH * series);
-        let pitch = pitch.min(TALLEST / rows);
+        // Long names take lines of their own.
+        let lines = names::most_lines(&figure.names) as f64;
+        let named = if lines > 1.0 { lines * frame::TICK * text::LEADING + 3.0 } else { 0.0 };
+        let pitch = pitch.max(named).min(TALLEST / rows);
         let step = 0.8 * pitch / series;
         // Symbols of neighbouring series at the same value do not touch.
         Self { pitch, step, radius: (0.27 * pitch).min(0.46 * step).min(LARGEST_SYMBOL) }
@@ -264,7 +285,7 @@ impl Rows {
             for (i, series) in figure.series.iter().enumerate() {
                 let (value, interval) = series.at(row);
                 let y = self.middle(row, area) + self.step * (i as f64 - middle);
-                let symbol = symbol(i, series, figure.is_below(value));
+                let symbol = symbol(i, series, figure.is_below(row, value));
                 let ends = interval.and_then(|(a, b)| Some((end(ruler, a)?, end(ruler, b)?)));
                 if let Some((a, b)) = ends.filter(|(a, b)| a != b) {
                     // The round ends stay inside the frame.

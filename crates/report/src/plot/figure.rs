@@ -15,8 +15,10 @@ pub enum Style {
     Dashed,
     /// A dotted line.
     Dotted,
-    /// Unconnected points.
+    /// Unconnected points, whose shape goes with the colour.
     Points,
+    /// Points joined by a line.
+    Marked,
 }
 
 /// Numbers drawn as one curve, with one entry in the legend.
@@ -33,12 +35,16 @@ pub struct Series {
     /// Index into the palette; the place among the series of the figure where `None`. Beyond the seven
     /// colours the palette starts again with another dash.
     pub colour: Option<usize>,
+    /// Points are white inside.
+    pub open: bool,
+    /// Points are pale, so that a line of the same colour is seen among them.
+    pub pale: bool,
 }
 
 impl Series {
     /// A line.
     pub fn line(label: impl Into<String>, x: Vec<f64>, y: Vec<f64>) -> Self {
-        Self { label: label.into(), x, y, style: Style::Line, colour: None }
+        Self { label: label.into(), x, y, style: Style::Line, colour: None, open: false, pale: false }
     }
 
     /// Unconnected points.
@@ -50,6 +56,20 @@ impl Series {
     #[must_use]
     pub fn colour(mut self, index: usize) -> Self {
         self.colour = Some(index);
+        self
+    }
+
+    /// Draws points white inside.
+    #[must_use]
+    pub fn open(mut self) -> Self {
+        self.open = true;
+        self
+    }
+
+    /// Draws points in a pale colour.
+    #[must_use]
+    pub fn pale(mut self) -> Self {
+        self.pale = true;
         self
     }
 

@@ -36,6 +36,7 @@ pub(super) struct Vertical {
     pub(super) ruler: Ruler,
     ticks: Ticks,
     title: Vec<String>,
+    secondary: Option<Secondary>,
 }
 
 impl Vertical {
@@ -48,7 +49,34 @@ impl Vertical {
             wanted += 1;
             ticks = Ticks::new(&ruler, wanted);
         }
-        Self { ruler, ticks, title: broken_title(&axis.title, height + 20.0) }
+        let title = broken_title(&axis.title, height + 20.0);
+        Self { ruler, ticks, title, secondary: axis.secondary.clone() }
+    }
+
+    /// Width that the second reading needs at the right of the frame.
+    pub(super) fn room_right(&self) -> f64 {
+        self.secondary.as_ref().map_or(0.0, |secondary| {
+            let labels = secondary.ticks.iter().map(|(_, label)| text::width(label, TICK));
+            LABEL_GAP + labels.fold(0.0, f64::max) + 6.0 + AXIS_TITLE * LEADING
+        })
+    }
+
+    /// The second reading at the right of the frame; labels that would touch their neighbour are left out.
+    pub(super) fn draw_secondary(&self, scene: &mut Scene, frame: &Rect) {
+        let Some(Secondary { title, ticks }) = &self.secondary else { return };
+        let place = |value: f64| self.ruler.fraction(value).filter(|at| (-1e-9..=1.0 + 1e-9).contains(at));
+        // From the last one on, which is certainty.
+        let mut free_from = f64::NEG_INFINITY;
+        for (at, label) in ticks.iter().rev().filter_map(|(value, label)| Some((place(*value)?, label))) {
+            let (x, y) = frame.at(1.0, at);
+            scene.line((x, y), (x + 4.5, y), 0.7, INK);
+            if y >= free_from {
+                scene.text((x + LABEL_GAP, y + 0.36 * TICK), label, TICK, INK, Anchor::Start);
+                free_from = y + TICK;
+            }
+        }
+        let middle = (frame.right + self.room_right() - 0.3 * AXIS_TITLE, 0.5 * (frame.top + frame.bottom));
+        scene.turned(middle, title, AXIS_TITLE, INK, Anchor::Middle);
     }
 
     fn labels_width(&self) -> f64 {

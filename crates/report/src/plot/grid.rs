@@ -9,7 +9,7 @@ use super::frame::{self, AXIS_TITLE, EDGE, TICK, Vertical};
 use super::heat;
 use super::legend::{self, Entry, Key, Legend};
 use super::matrix::Matrix;
-use super::names::{Names, SHARE};
+use super::names::{NARROW, Names, SHARE};
 use super::scene::{Anchor, Mark, Rect, Scene};
 use super::text;
 use super::ticks;
@@ -125,13 +125,13 @@ impl Grid {
         let right = frame::WIDTH - grid.bar.room() - BAR - BAR_GAP;
         let widest = snapped((right - grid.left) / columns, f64::floor).max(1.0 / PIXELS);
         grid.cell.0 = grid.cell.0.min(widest);
-        grid.columns = Names::new(&matrix.columns, grid.cell.0, Some(grid.cell.0));
+        grid.columns = Names::new(&matrix.columns, grid.cell.0, NARROW, Some(grid.cell.0));
         grid
     }
 
     fn with(matrix: &Matrix, colours: Ruler, cell: (f64, f64), title: f64) -> Self {
-        let rows = Names::new(&matrix.rows, cell.1, None);
-        let columns = Names::new(&matrix.columns, cell.0, Some(cell.0));
+        let rows = Names::new(&matrix.rows, cell.1, NARROW, None);
+        let columns = Names::new(&matrix.columns, cell.0, NARROW, Some(cell.0));
         let height = cell.1 * matrix.rows.len() as f64;
         let bar_height = height.clamp(BAR_HEIGHT.start, BAR_HEIGHT.end);
         let bar = Vertical::new(&matrix.colour, colours, bar_height);
@@ -141,17 +141,17 @@ impl Grid {
     }
 
     fn draw_names(&self, scene: &mut Scene, area: &Rect) {
-        for (i, line) in self.rows.printed() {
-            let y = area.top + self.cell.1 * (i as f64 + 0.5) + 0.36 * self.rows.size;
+        for (i, below, line) in self.rows.printed() {
+            let y = area.top + self.cell.1 * (i as f64 + 0.5) + 0.36 * self.rows.size + below;
             scene.text((area.left - NAME_GAP, y), line, self.rows.size, INK, Anchor::End);
         }
-        for (i, line) in self.columns.printed() {
+        for (i, below, line) in self.columns.printed() {
             let (x, y) = (area.left + self.cell.0 * (i as f64 + 0.5), area.top - NAME_GAP);
             let size = self.columns.size;
             if self.columns.turned {
-                scene.turned((x + 0.36 * size, y), line, size, INK, Anchor::Start);
+                scene.turned((x + 0.36 * size + below, y), line, size, INK, Anchor::Start);
             } else {
-                scene.text((x, y - 1.0), line, size, INK, Anchor::Middle);
+                scene.text((x, y - 1.0 + below - self.columns.drop()), line, size, INK, Anchor::Middle);
             }
         }
     }

@@ -9,15 +9,16 @@ use super::heatmap::{HeatMap, edges};
 use super::label::{Placer, RIM};
 use super::legend::{self, Entry, Key, Legend};
 use super::scene::{Mark, Point, Rect, Scene};
+use super::symbol::{Shape, Symbol};
 use super::ticks;
 use hadar::Result;
 
 const HEIGHT: f64 = 420.0;
 const BAR: f64 = 18.0;
-/// Shades of colour, halved until at most so many rectangles are drawn or the coarsest are reached.
-const FINEST: u16 = 128;
-const GROUND: u16 = 16;
-const MOST_CELLS: usize = 10_000;
+/// Pixels of the raster in a logical one.
+const FINE: f64 = 1.5;
+/// Steps of colour: no eye sees more, and a palette of a file holds them.
+const SHADES: f64 = 200.0;
 /// Patches without value that are hatched; more of them are plain grey.
 const MOST_HATCHED: usize = 500;
 
@@ -36,8 +37,7 @@ pub(super) fn scene(map: &HeatMap) -> Result<Scene> {
     let top = frame::heading(&mut scene, &map.title, &map.subtitle) + x.room_above().max(factor) + 14.0;
     let area = Rect { left, right, top, bottom: top + HEIGHT };
 
-    let lattice = Lattice::new(&x, &y, &columns, &rows, area);
-    let missing = draw_cells(&mut scene, map, &colours, &lattice);
+    let missing = draw_cells(&mut scene, &Lattice::new(map, &colours), &x, &y, area);
     let mut placer = Placer::new(area);
     draw_contours(&mut scene, &mut placer, map, &x, &y, &area);
     scene.outline(area, 0.9, INK);
@@ -51,11 +51,22 @@ pub(super) fn scene(map: &HeatMap) -> Result<Scene> {
         placer.point(&mut scene, at, &marker.label);
     }
     let values = map.values.iter().copied();
-    draw_bar(&mut scene, values, &bar, &Rect { left: right + 18.0, right: right + 18.0 + BAR, ..area });
+    let beside = Rect { left: right + 18.0, right: right + 18.0 + BAR, ..area };
+    draw_bar(&mut scene, values, &bar, &beside);
+    let mut entries = Vec::new();
+    for (i, (value, label)) in map.marks.iter().enumerate() {
+        let symbol = Symbol { shape: Shape::Right, colour: INK, open: i > 0 };
+        // A value beyond the scale is marked at its end.
+        let Some(part) = bar.ruler.fraction(*value) else { continue };
+        let (x, y) = beside.at(0.0, part.clamp(0.0, 1.0));
+        symbol.draw(&mut scene, (x - 6.0, y), 4.0);
+        let beyond = if (0.0..=1.0).contains(&part) { "" } else { ", beyond the scale" };
+        entries.push(Entry { key: Key::Symbol { symbol, ground: None }, label: format!("{label}{beyond}") });
+    }
 
     let below = x.draw_labels(&mut scene, &area);
-    let missing = missing.map(|key| Entry { key, label: map.no_value.clone() });
-    let legend = Legend::new(missing.into_iter().collect(), right - left, HEIGHT);
+    entries.extend(missing.map(|key| Entry { key, label: map.no_value.clone() }));
+    let legend = Legend::new(entries, right - left, 0.0);
     scene.height = (legend.draw_below(&mut scene, left, frame::WIDTH - 12.0, below) + 10.0).ceil();
     Ok(scene)
 }
@@ -66,131 +77,114 @@ fn over(axis: &Axis, edges: &[f64]) -> Ruler {
     Ruler::over(axis.scale, axis.range, low.unwrap_or(f64::INFINITY), high.unwrap_or(f64::NEG_INFINITY), 0.0)
 }
 
-/// A lattice of cells in pixels: the edges of the columns and of the rows.
-struct Lattice {
-    x: Vec<f64>,
-    y: Vec<f64>,
-    frame: Rect,
+/// Cells between their edges, and their centres, on the transformed scales.
+struct Lattice<'a> {
+    map: &'a HeatMap,
+    columns: (Vec<f64>, Vec<f64>),
+    rows: (Vec<f64>, Vec<f64>),
+    /// Parts of the colour scale, `None` where there is no value.
+    parts: Vec<Option<f64>>,
 }
 
-impl Lattice {
-    fn new(x: &Horizontal, y: &Vertical, columns: &[f64], rows: &[f64], frame: Rect) -> Self {
-        let x = columns.iter().map(|t| frame.at(x.ruler.place(*t), 0.0).0).collect();
-        let y = rows.iter().map(|t| frame.at(0.0, y.ruler.place(*t)).1).collect();
-        Self { x, y, frame }
+impl<'a> Lattice<'a> {
+    fn new(map: &'a HeatMap, colours: &Ruler) -> Self {
+        let side = |centres: &[f64], scale| {
+            let t = centres.iter().filter_map(|centre| transform(scale, *centre)).collect();
+            (edges(centres, scale), t)
+        };
+        let parts = map.values.iter().map(|value| colours.fraction(*value)).collect();
+        Self { map, columns: side(&map.columns, map.x.scale), rows: side(&map.rows, map.y.scale), parts }
     }
 
-    /// The part of a block, grown by some pixels, that is in view.
-    fn area(&self, block: &Block, grown: f64) -> Option<Rect> {
-        let edges = |edges: &[f64], (from, to): (usize, usize)| {
-            edges.get(from).zip(edges.get(to)).map(|(a, b)| (a.min(*b) - grown, a.max(*b) + grown))
-        };
-        let ((left, right), (top, bottom)) = (edges(&self.x, block.columns)?, edges(&self.y, block.rows)?);
-        let area = Rect {
-            left: left.max(self.frame.left),
-            right: right.min(self.frame.right),
-            top: top.max(self.frame.top),
-            bottom: bottom.min(self.frame.bottom),
-        };
-        (area.width() > 0.0 && area.height() > 0.0).then_some(area)
+    fn part(&self, row: usize, column: usize) -> Option<f64> {
+        self.parts.get(row * self.map.columns.len() + column).copied().flatten()
+    }
+
+    /// Part of the colour scale at a position: linear between the centres around it; none in a cell without value.
+    fn at(&self, x: f64, y: f64) -> Option<f64> {
+        let (column, across) = between(&self.columns, x)?;
+        let (row, up) = between(&self.rows, y)?;
+        // The cell that the position is in has the last word.
+        self.part(row + usize::from(up >= 0.5), column + usize::from(across >= 0.5))?;
+        let corners = [
+            (row, column, (1.0 - up) * (1.0 - across)),
+            (row, column + 1, (1.0 - up) * across),
+            (row + 1, column, up * (1.0 - across)),
+            (row + 1, column + 1, up * across),
+        ];
+        let known =
+            corners.into_iter().filter_map(|(row, column, weight)| Some((self.part(row, column)?, weight)));
+        let (sum, weights) = known.fold((0.0, 0.0), |(sum, all), (part, w)| (sum + w * part, all + w));
+        (weights > 0.0).then(|| sum / weights)
     }
 }
 
-/// Cells as blocks of one out of `shades` shades.
-fn shaded(map: &HeatMap, colours: &Ruler, shades: u16) -> Vec<Block> {
-    let shade = |value: &f64| {
-        let part = colours.fraction(*value)?.clamp(0.0, 1.0);
-        Some(((part * f64::from(shades)) as u16).min(shades - 1))
+/// The last centre at or before a position, and how far towards the next it is; none beyond the outermost edges.
+fn between((edges, centres): &(Vec<f64>, Vec<f64>), at: f64) -> Option<(usize, f64)> {
+    let (first, last) = (*edges.first()?, *edges.last()?);
+    if at < first || at > last {
+        return None;
+    }
+    let before = centres.partition_point(|centre| *centre <= at).saturating_sub(1);
+    let (Some(low), Some(high)) = (centres.get(before), centres.get(before + 1)) else {
+        return Some((before, 0.0));
     };
-    merged(&map.values.iter().map(shade).collect::<Vec<_>>(), map.columns.len())
+    Some((before, ((at - low) / (high - low)).clamp(0.0, 1.0)))
 }
 
-fn shade_colour(shade: u16, shades: u16) -> Colour {
-    colour::quantity((f64::from(shade) + 0.5) / f64::from(shades))
-}
-
-/// Draws the cells; says how those without value look, if there are any.
-fn draw_cells(scene: &mut Scene, map: &HeatMap, colours: &Ruler, lattice: &Lattice) -> Option<Key> {
-    // Where two cells meet inside a pixel, the ground shines through: similar colours are laid below.
-    let ground = shaded(map, colours, GROUND);
-    for block in ground.iter().filter(|_| ground.len() <= MOST_CELLS / 4) {
-        if let Some((shade, area)) = block.shade.zip(lattice.area(block, 0.7)) {
-            scene.fill(area, shade_colour(shade, GROUND));
+/// Draws the map as a raster; says how cells without value look, if there are any.
+fn draw_cells(
+    scene: &mut Scene,
+    lattice: &Lattice<'_>,
+    x: &Horizontal,
+    y: &Vertical,
+    area: Rect,
+) -> Option<Key> {
+    let (width, height) = ((area.width() * FINE) as usize, (area.height() * FINE) as usize);
+    let along = |ruler: &Ruler, part: f64| ruler.first + part * (ruler.last - ruler.first);
+    let mut pixels = Vec::with_capacity(width * height);
+    for row in 0..height {
+        let at_y = along(&y.ruler, 1.0 - (row as f64 + 0.5) / height as f64);
+        for column in 0..width {
+            let at_x = along(&x.ruler, (column as f64 + 0.5) / width as f64);
+            pixels.push(lattice.at(at_x, at_y).map_or(NO_VALUE, shade).rgb);
         }
     }
-    let mut shades = FINEST;
-    let mut blocks = shaded(map, colours, shades);
-    while blocks.len() > MOST_CELLS && shades > GROUND {
-        shades /= 2;
-        blocks = shaded(map, colours, shades);
-    }
-    let mut missing = Vec::new();
-    for block in &blocks {
-        let Some(area) = lattice.area(block, 0.0) else { continue };
-        match block.shade {
-            Some(shade) => scene.fill(area, shade_colour(shade, shades)),
-            None => missing.push(area),
-        }
-    }
+    scene.marks.push(Mark::Image { area, columns: width, pixels });
+    let missing: Vec<Rect> = lattice.cells_without_value(x, y, &area);
     if missing.len() > MOST_HATCHED {
-        missing.iter().for_each(|area| scene.fill(*area, NO_VALUE));
         return Some(Key::Area { colour: NO_VALUE });
     }
-    missing.iter().for_each(|area| legend::hatch(scene, *area));
-    outline_missing(scene, map, colours, lattice);
+    missing.iter().for_each(|cell| legend::hatch(scene, *cell));
+    missing.iter().for_each(|cell| scene.outline(*cell, 0.7, GREY));
     (!missing.is_empty()).then_some(Key::Hatched)
 }
 
-/// Lines between cells with and without value.
-fn outline_missing(scene: &mut Scene, map: &HeatMap, colours: &Ruler, lattice: &Lattice) {
-    let width = map.columns.len();
-    let known: Vec<bool> = map.values.iter().map(|value| colours.fraction(*value).is_some()).collect();
-    let at = |row: usize, column: usize| known.get(row * width + column).copied();
-    let mut line = |from: Option<Point>, to: Option<Point>| {
-        for points in from.zip(to).map(|(a, b)| geometry::clip(&[a, b], &lattice.frame)).unwrap_or_default() {
-            scene.marks.push(Mark::Stroke { points, width: 0.7, colour: GREY });
-        }
-    };
-    let node = |row: usize, column: usize| Some((*lattice.x.get(column)?, *lattice.y.get(row)?));
-    for row in 0..map.rows.len() {
-        for column in 0..width {
-            if column + 1 < width && at(row, column) != at(row, column + 1) {
-                line(node(row, column + 1), node(row + 1, column + 1));
-            }
-            if row + 1 < map.rows.len() && at(row, column) != at(row + 1, column) {
-                line(node(row + 1, column), node(row + 1, column + 1));
-            }
-        }
+impl Lattice<'_> {
+    /// Places of the cells without value, as far as they are in view.
+    fn cells_without_value(&self, x: &Horizontal, y: &Vertical, frame: &Rect) -> Vec<Rect> {
+        let width = self.map.columns.len();
+        let missing = self.parts.iter().enumerate().filter(|(_, part)| part.is_none());
+        let place = |at: usize| {
+            let (row, column) = (at / width, at % width);
+            let across = |i: usize| Some(frame.at(x.ruler.place(*self.columns.0.get(i)?), 0.0).0);
+            let up = |i: usize| Some(frame.at(0.0, y.ruler.place(*self.rows.0.get(i)?)).1);
+            let (a, b, c, d) = (across(column)?, across(column + 1)?, up(row)?, up(row + 1)?);
+            let cell = Rect {
+                left: a.min(b).max(frame.left),
+                right: a.max(b).min(frame.right),
+                top: c.min(d).max(frame.top),
+                bottom: c.max(d).min(frame.bottom),
+            };
+            (cell.width() > 0.0 && cell.height() > 0.0).then_some(cell)
+        };
+        missing.filter_map(|(at, _)| place(at)).collect()
     }
 }
 
-/// A rectangle of cells of one shade: columns and rows from the first to before the last.
-struct Block {
-    shade: Option<u16>,
-    columns: (usize, usize),
-    rows: (usize, usize),
-}
-
-/// Covers the grid with rectangles of one shade, each as wide and then as high as it can be.
-fn merged(shades: &[Option<u16>], width: usize) -> Vec<Block> {
-    let height = shades.len().checked_div(width).unwrap_or(0);
-    let mut free = vec![true; shades.len()];
-    let mut blocks = Vec::new();
-    for row in (0..height).rev() {
-        for column in 0..width {
-            let start = row * width + column;
-            let (Some(true), Some(&shade)) = (free.get(start), shades.get(start)) else { continue };
-            let same = |free: &[bool], i: usize| free.get(i) == Some(&true) && shades.get(i) == Some(&shade);
-            let end = (column..width).find(|c| !same(&free, row * width + c)).unwrap_or(width);
-            let fits = |r: &usize| (column..end).all(|c| same(&free, r * width + c));
-            let low = (0..row).rev().take_while(fits).last().unwrap_or(row);
-            for flags in (low..=row).map(|r| (r * width + column, r * width + end)) {
-                free.get_mut(flags.0..flags.1).unwrap_or_default().fill(false);
-            }
-            blocks.push(Block { shade, columns: (column, end), rows: (low, row + 1) });
-        }
-    }
-    blocks
+/// Colour at a part of the scale, in the steps that a palette holds.
+pub(super) fn shade(part: f64) -> Colour {
+    colour::quantity((part.clamp(0.0, 1.0) * SHADES).round() / SHADES)
 }
 
 fn draw_contours(
@@ -269,5 +263,25 @@ fn draw_ring(scene: &mut Scene, (x, y): Point) {
     let points: Vec<Point> = (0..=48).map(|i| (x + RIM * round(i).cos(), y + RIM * round(i).sin())).collect();
     for (width, colour) in [(4.0, WHITE), (1.8, INK)] {
         scene.marks.push(Mark::Stroke { points: points.clone(), width, colour });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn colours_are_linear_between_centres_and_end_at_cells_without_value() {
+        let axis = || Axis::linear("");
+        let values = vec![0.0, 1.0, 2.0, f64::NAN];
+        let map = HeatMap::new("", (axis(), vec![0.0, 1.0]), (axis(), vec![0.0, 1.0]), (axis(), values));
+        let colours = Ruler::fit(map.colour.scale, Some((0.0, 2.0)), std::iter::empty(), 0.0);
+        let lattice = Lattice::new(&map, &colours);
+        assert_eq!(
+            (lattice.at(0.0, 0.0), lattice.at(1.0, 0.0), lattice.at(0.0, 1.0)),
+            (Some(0.0), Some(0.5), Some(1.0))
+        );
+        assert_eq!((lattice.at(0.25, 0.0), lattice.at(-0.4, 0.25)), (Some(0.125), Some(0.25)));
+        assert_eq!((lattice.at(0.9, 0.9), lattice.at(-0.6, 0.0)), (None, None));
     }
 }

@@ -4,9 +4,9 @@ use super::axis::{Axis, Scale, transform};
 use super::figure::Marker;
 use hadar::{Error, Result};
 
-/// A quantity over a plane: one colour per cell, contour lines, markers, a colour bar.
+/// A quantity over a plane: colours, contour lines, markers, a colour bar.
 ///
-/// Cells are given by the positions of their centres; they meet half-way (on the scale of the axis). A
+/// Cells are given by the positions of their centres, between which colours are interpolated; they meet half-way (on the scale of the axis). A
 /// value that is not finite, or zero or below on a logarithmic colour scale, is drawn as "no value".
 #[derive(Debug, Clone, PartialEq)]
 pub struct HeatMap {
@@ -33,6 +33,8 @@ pub struct HeatMap {
     pub contours: Vec<f64>,
     /// Labelled points.
     pub markers: Vec<Marker>,
+    /// Values marked beside the colour bar, with what the legend says of them.
+    pub marks: Vec<(f64, String)>,
 }
 
 impl HeatMap {
@@ -55,6 +57,7 @@ impl HeatMap {
             no_value: "no value".to_owned(),
             contours: vec![],
             markers: vec![],
+            marks: vec![],
         }
     }
 
@@ -76,6 +79,13 @@ impl HeatMap {
     #[must_use]
     pub fn contours(mut self, levels: Vec<f64>) -> Self {
         self.contours = levels;
+        self
+    }
+
+    /// Marks a value beside the colour bar.
+    #[must_use]
+    pub fn mark(mut self, value: f64, label: impl Into<String>) -> Self {
+        self.marks.push((value, label.into()));
         self
     }
 

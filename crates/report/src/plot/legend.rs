@@ -1,6 +1,6 @@
 //! The legend: outside of the data, below the plot when short, in a column at its right when long.
 
-use super::colour::{Colour, GREY, INK};
+use super::colour::{Colour, GREY, INK, WHITE};
 use super::geometry;
 use super::scene::{Anchor, Mark, Point, Rect, Scene};
 use super::symbol::Symbol;
@@ -15,6 +15,9 @@ const COLUMN: f64 = 190.0;
 /// Most entries that are drawn; the rest is counted.
 const MOST: usize = 120;
 
+/// Widths and colours of a line that is seen on any colour.
+pub(super) const CASED: [(f64, Colour); 2] = [(2.8, INK), (1.2, WHITE)];
+
 /// What an entry looks like in the plot.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Key {
@@ -22,13 +25,17 @@ pub(super) enum Key {
         colour: Colour,
         dash: &'static [f64],
     },
-    Points {
-        colour: Colour,
+    /// A line with a symbol on it.
+    Marked {
+        symbol: Symbol,
+        dash: &'static [f64],
     },
     Area {
         colour: Colour,
     },
     Hatched,
+    /// A light line with a dark rim, that is seen on any colour.
+    Cased,
     /// A patch of colour with a dot.
     Dotted {
         colour: Colour,
@@ -75,7 +82,7 @@ impl Legend {
         let more = entries.len().saturating_sub(MOST);
         entries.truncate(MOST);
         let broken = |limit: f64| -> Vec<(Key, Vec<String>)> {
-            let lines = |entry: &Entry| text::wrap_at_most(&entry.label, SIZE, limit, 3);
+            let lines = |entry: &Entry| text::wrap_at_most(&entry.label, SIZE, limit, 5);
             entries.iter().map(|entry| (entry.key.clone(), lines(entry))).collect()
         };
         if entries.len() > 4 {
@@ -172,11 +179,18 @@ fn entry(scene: &mut Scene, key: &Key, lines: &[String], (left, top): Point) {
                 scene.marks.push(Mark::Stroke { points, width: 1.8, colour: *colour });
             }
         }
-        Key::Points { colour } => {
-            let centre = (left + 0.5 * KEY, middle);
-            scene.marks.push(Mark::Disc { centre, radius: 3.0, colour: *colour });
+        Key::Marked { symbol, dash } => {
+            for points in geometry::dash(&[(left, middle), (left + KEY, middle)], dash) {
+                scene.marks.push(Mark::Stroke { points, width: 1.8, colour: symbol.colour });
+            }
+            symbol.draw(scene, (left + 0.5 * KEY, middle), 3.2);
         }
         Key::Area { colour } => scene.fill(area, *colour),
+        Key::Cased => {
+            for (width, colour) in CASED {
+                scene.line((left, middle), (left + KEY, middle), width, colour);
+            }
+        }
         Key::Hatched => {
             hatch(scene, area);
             scene.outline(area, 0.7, GREY);

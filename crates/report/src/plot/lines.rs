@@ -8,6 +8,7 @@ use super::geometry;
 use super::label::Placer;
 use super::legend::{Entry, Key, Legend};
 use super::scene::{Mark, Point, Rect, Scene};
+use super::symbol::{Shape, Symbol};
 use hadar::Result;
 
 const HEIGHT: f64 = 345.0;
@@ -15,6 +16,9 @@ const UPPER_HEIGHT: f64 = 270.0;
 const LOWER_HEIGHT: f64 = 135.0;
 const SOLID: &[f64] = &[];
 const DASHES: [&[f64]; 5] = [SOLID, &[7.0, 4.0], &[0.5, 3.8], &[9.0, 3.5, 0.5, 3.5], &[3.5, 3.0]];
+
+const POINT: f64 = 2.8;
+const PALE: f64 = 0.5;
 
 /// A panel grows up to this height where the legend beside it needs that.
 const HIGHEST: f64 = 560.0;
@@ -51,7 +55,8 @@ pub(super) fn scene(figure: &LineFigure) -> Result<Scene> {
     let legend = Legend::new(entries, frame::WIDTH - 12.0 - left, HIGHEST);
     // The last label may stick out, unless a legend stands there anyway.
     let trial = Horizontal::new(&figure.x, x_ruler, frame::WIDTH - left - 24.0);
-    let right = frame::WIDTH - trial.room().max(24.0) - legend.width();
+    let beside = axes.iter().map(|(_, y)| y.room_right()).fold(0.0, f64::max);
+    let right = frame::WIDTH - trial.room().max(24.0).max(beside + 12.0) - legend.width();
     let x = Horizontal::new(&figure.x, x_ruler, right - left);
 
     let mut scene = Scene::new(&figure.title, frame::WIDTH);
@@ -70,9 +75,10 @@ pub(super) fn scene(figure: &LineFigure) -> Result<Scene> {
         if i == 0 {
             x.draw_secondary(&mut scene, &area);
         }
+        y.draw_secondary(&mut scene, &area);
         y.draw_left(&mut scene, &area, if i == 0 && x.room_above() > 0.0 { 14.0 } else { 0.0 });
     }
-    legend.draw_right(&mut scene, (right + 16.0, top));
+    legend.draw_right(&mut scene, (right + beside + 16.0, top));
     let lowest = Rect { left, right, top, bottom };
     let below = x.draw_labels(&mut scene, &lowest);
     let below = legend.draw_below(&mut scene, left, frame::WIDTH - 12.0, below);
@@ -91,7 +97,7 @@ fn x_ruler(axis: &Axis, parts: &[Part]) -> Ruler {
             Rule::Vertical { x, .. } => Some(*x),
             Rule::Horizontal { .. } => None,
         }));
-        any_points |= !panel.markers.is_empty() || panel.series.iter().any(|s| s.style == Style::Points);
+        any_points |= !panel.markers.is_empty() || panel.series.iter().any(|s| has_points(s.style));
     }
     Ruler::fit(axis.scale, axis.range, values.into_iter(), if any_points { 0.03 } else { 0.0 })
 }
@@ -132,11 +138,23 @@ fn band_colour(band: &Band) -> Colour {
 fn series_look(index: usize, series: &Series) -> (Colour, &'static [f64]) {
     let (colour, round) = colour::series(series.colour.unwrap_or(index));
     let style = match series.style {
-        Style::Line | Style::Points => 0,
+        Style::Line | Style::Points | Style::Marked => 0,
         Style::Dashed => 1,
         Style::Dotted => 2,
     };
     (colour, DASHES.get((style + round) % DASHES.len()).copied().unwrap_or(SOLID))
+}
+
+fn has_points(style: Style) -> bool {
+    matches!(style, Style::Points | Style::Marked)
+}
+
+/// Colour and shape together tell points apart.
+fn symbol(index: usize, series: &Series) -> Symbol {
+    let index = series.colour.unwrap_or(index);
+    let colour = colour::series(index).0;
+    let colour = if series.pale { colour.opacity(PALE) } else { colour };
+    Symbol { shape: Shape::series(index), colour, open: series.open }
 }
 
 /// Curves first, then bands; what appears in both panels under one name is listed once.
@@ -145,7 +163,8 @@ fn entries(parts: &[Part]) -> Vec<Entry> {
         part.panel.series.iter().enumerate().map(|(i, series)| {
             let (colour, dash) = series_look(part.colours_from + i, series);
             let key = match series.style {
-                Style::Points => Key::Points { colour },
+                Style::Points => Key::Symbol { symbol: symbol(part.colours_from + i, series), ground: None },
+                Style::Marked => Key::Marked { symbol: symbol(part.colours_from + i, series), dash },
                 _ => Key::Line { colour, dash },
             };
             Entry { key, label: series.label.clone() }
@@ -192,16 +211,18 @@ fn draw_panel(scene: &mut Scene, part: &Part, x: &Horizontal, y: &Vertical, area
     let width = if panel.series.len() > 10 { 1.3 } else { 1.8 };
     for (i, series) in panel.series.iter().enumerate() {
         let (colour, dash) = series_look(part.colours_from + i, series);
-        let points = series.x.iter().zip(&series.y).map(|(x, y)| place(*x, *y));
-        if series.style == Style::Points {
-            for centre in points.flatten().filter(|point| area.grown(0.01).contains(*point)) {
-                scene.marks.push(Mark::Disc { centre, radius: 2.8, colour });
+        let points = || series.x.iter().zip(&series.y).map(|(x, y)| place(*x, *y));
+        if series.style != Style::Points {
+            for run in geometry::runs(points()) {
+                draw_run(scene, &mut placer, &run, &area, width, colour, dash);
+            }
+        }
+        if has_points(series.style) {
+            let symbol = symbol(part.colours_from + i, series);
+            for centre in points().flatten().filter(|point| area.grown(0.01).contains(*point)) {
+                symbol.draw(scene, centre, POINT);
                 placer.avoid_line(&[centre]);
             }
-            continue;
-        }
-        for run in geometry::runs(points) {
-            draw_run(scene, &mut placer, &run, &area, width, colour, dash);
         }
     }
     scene.outline(area, 0.9, INK);

@@ -81,6 +81,10 @@ pub struct NamedValues {
     /// The least value that is good enough, in the unit of the axis, and what is printed at its line. Lower
     /// values have open symbols, names that have no other values are grey.
     pub threshold: Option<(f64, String)>,
+    /// Which names fail, where more than the threshold decides: their rows are grey and their symbols open.
+    pub failing: Option<Vec<bool>>,
+    /// Further values of the axis at which lines are drawn, with their legend entries.
+    pub lines: Vec<(f64, String)>,
     /// What a value below the threshold means, for the legend.
     pub below: String,
     /// What the intervals are, for the legend; nothing where empty.
@@ -99,6 +103,8 @@ impl NamedValues {
             axis,
             series: vec![],
             threshold: None,
+            failing: None,
+            lines: vec![],
             below: "below the threshold".to_owned(),
             interval_meaning: String::new(),
             no_value: "no value".to_owned(),
@@ -126,6 +132,20 @@ impl NamedValues {
         self
     }
 
+    /// Says of every name whether it fails, whatever its values.
+    #[must_use]
+    pub fn failing(mut self, failing: Vec<bool>) -> Self {
+        self.failing = Some(failing);
+        self
+    }
+
+    /// Draws a further line, that divides nothing.
+    #[must_use]
+    pub fn line(mut self, value: f64, label: impl Into<String>) -> Self {
+        self.lines.push((value, label.into()));
+        self
+    }
+
     /// Says what a value below the threshold means.
     #[must_use]
     pub fn below(mut self, meaning: impl Into<String>) -> Self {
@@ -149,6 +169,9 @@ impl NamedValues {
 
     pub(super) fn check(&self) -> Result<()> {
         let expected = self.names.len();
+        if let Some(found) = self.failing.as_ref().map(Vec::len).filter(|found| *found != expected) {
+            return Err(Error::Length { what: "names said to fail or not".into(), found, expected });
+        }
         for NamedSeries { label, values, intervals, .. } in &self.series {
             let ends = intervals.iter().flat_map(|(low, high)| {
                 [("lower ends of the intervals", low), ("upper ends of the intervals", high)]
@@ -163,16 +186,22 @@ impl NamedValues {
         Ok(())
     }
 
-    /// Whether a value is not good enough.
-    pub(super) fn is_below(&self, value: f64) -> bool {
-        self.threshold.as_ref().is_some_and(|(least, _)| value < *least)
+    /// Whether a value of this name is not good enough.
+    pub(super) fn is_below(&self, row: usize, value: f64) -> bool {
+        match &self.failing {
+            Some(failing) => failing.get(row) == Some(&true),
+            None => self.threshold.as_ref().is_some_and(|(least, _)| value < *least),
+        }
     }
 
-    /// Whether the name with this index has values, none of them good enough.
+    /// Whether the name with this index is said to fail, or has values, none of them good enough.
     pub(super) fn fails(&self, row: usize) -> bool {
+        if let Some(failing) = &self.failing {
+            return failing.get(row) == Some(&true);
+        }
         let mut known = self.series.iter().map(|series| series.at(row).0).filter(|value| !value.is_nan());
         let first = known.next();
-        first.is_some_and(|value| self.is_below(value)) && known.all(|value| self.is_below(value))
+        first.is_some_and(|value| self.is_below(row, value)) && known.all(|value| self.is_below(row, value))
     }
 }
 
@@ -209,6 +238,10 @@ mod tests {
         assert!(!figure.fails(0));
         let figure = figure.threshold(1.0, "").series(NamedSeries::new("b", vec![f64::NAN, f64::NAN]));
         assert!(figure.fails(0) && !figure.fails(1) && !figure.fails(2));
-        assert!(!figure.series(NamedSeries::new("c", vec![1.0, 1.0])).fails(0));
+        assert!(!figure.clone().series(NamedSeries::new("c", vec![1.0, 1.0])).fails(0));
+        // What is said of a name outweighs its values.
+        let said = figure.failing(vec![false, true]);
+        assert!(!said.fails(0) && said.fails(1) && said.is_below(1, 9.0) && !said.is_below(0, 0.5));
+        assert!(said.failing(vec![true]).check().is_err());
     }
 }

@@ -1,20 +1,24 @@
 //! Names along one side of a figure.
 //!
-//! The letters follow from the distance of the names. Where even the smallest letters would touch, only
-//! every second (third, …) name is printed.
+//! The letters follow from the distance of the names. A long name takes several lines where there is room for them, and
+//! is cut in the middle where there is not. Where even the smallest letters would touch, only every second (third, …) name
+//! is printed.
 
 use super::frame::TICK;
 use super::text;
 
-/// Longest name; longer ones are cut with an ellipsis.
-const LONGEST: f64 = 190.0;
+/// Widest line of a name, of rows of points and of a matrix.
+pub(super) const WIDE: f64 = 270.0;
+pub(super) const NARROW: f64 = 190.0;
+/// Most lines of a name.
+const MOST: usize = 5;
 /// Smallest letters, and those of a name as a share of the distance of names.
 const SMALLEST: f64 = 4.6;
 pub(super) const SHARE: f64 = 0.84;
 
-/// Names along one side, cut to what fits.
+/// Names along one side, in lines.
 pub(super) struct Names {
-    lines: Vec<String>,
+    lines: Vec<Vec<String>>,
     pub(super) size: f64,
     /// Every how many names one is printed.
     stride: usize,
@@ -23,24 +27,48 @@ pub(super) struct Names {
     pub(super) turned: bool,
 }
 
+/// Lines that the longest of the names takes at the largest size.
+pub(super) fn most_lines(names: &[String]) -> usize {
+    names.iter().map(|name| text::wrap(name, TICK, WIDE).len()).max().unwrap_or(1).clamp(1, MOST)
+}
+
 impl Names {
-    /// Names at distances of `pitch`; beside their cells, or across them where there is `width` for each.
-    pub(super) fn new(names: &[String], pitch: f64, width: Option<f64>) -> Self {
+    /// Names at distances of `pitch` in lines of at most `longest`; beside their cells, or across them where there is
+    /// `width` for each.
+    pub(super) fn new(names: &[String], pitch: f64, longest: f64, width: Option<f64>) -> Self {
         let size = (SHARE * pitch).min(TICK);
         let stride = (SMALLEST / size).ceil().max(1.0) as usize;
         let size = (size * stride as f64).min(TICK);
-        let cut = |name: &String| text::wrap_at_most(name, size, LONGEST, 1).into_iter().next();
-        let lines: Vec<String> = names.iter().map(|name| cut(name).unwrap_or_default()).collect();
-        let longest = lines.iter().map(|line| text::width(line, size)).fold(0.0, f64::max);
+        let most = (pitch / (size * text::LEADING)).floor().max(1.0) as usize;
+        let broken = |name: &String| match text::wrap(name, size, longest) {
+            lines if lines.len() <= most.min(MOST) => lines,
+            _ => vec![text::cut(&name.replace('\n', " "), size, longest)],
+        };
+        let lines: Vec<Vec<String>> = names.iter().map(broken).collect();
+        let longest = lines.iter().flatten().map(|line| text::width(line, size)).fold(0.0, f64::max);
         match width {
             Some(width) if longest + 8.0 <= width => {
-                Self { lines, size: TICK.min(size), stride, room: size * text::LEADING, turned: false }
+                let most = lines.iter().map(Vec::len).max().unwrap_or(1) as f64;
+                Self { lines, size, stride, room: most * size * text::LEADING, turned: false }
             }
             _ => Self { lines, size, stride, room: longest, turned: true },
         }
     }
 
-    pub(super) fn printed(&self) -> impl Iterator<Item = (usize, &String)> {
-        self.lines.iter().enumerate().step_by(self.stride)
+    /// Every printed line: the name it belongs to, how far its baseline is from that of a lone line, and its letters.
+    pub(super) fn printed(&self) -> impl Iterator<Item = (usize, f64, &str)> {
+        let leading = self.size * text::LEADING;
+        self.lines.iter().enumerate().step_by(self.stride).flat_map(move |(name, lines)| {
+            let middle = 0.5 * (lines.len() as f64 - 1.0);
+            lines
+                .iter()
+                .enumerate()
+                .map(move |(i, line)| (name, (i as f64 - middle) * leading, line.as_str()))
+        })
+    }
+
+    /// How far below its own lines the lowest of a name are, from a lone one.
+    pub(super) fn drop(&self) -> f64 {
+        if self.turned { 0.0 } else { 0.5 * (self.room - self.size * text::LEADING) }
     }
 }

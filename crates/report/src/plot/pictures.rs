@@ -1,19 +1,20 @@
 //! Images side by side, each with its own colour bar: a raster of numbers per picture.
 
 use super::axis::{Axis, Ruler};
-use super::colour::{self, INK, NO_VALUE, WHITE};
+use super::colour::{INK, NO_VALUE, WHITE};
+use super::contour;
 use super::frame::{self, Vertical};
-use super::heat::draw_bar;
-use super::legend::{Entry, Key, Legend};
-use super::scene::{Anchor, Mark, Rect, Scene};
+use super::heat::{draw_bar, shade};
+use super::legend::{CASED, Entry, Key, Legend};
+use super::scene::{Anchor, Mark, Point, Rect, Scene};
 use super::text::{self, LEADING};
 use hadar::{Error, Result};
 
 /// Width of a colour bar, and its distance from the picture.
 const BAR: f64 = 11.0;
 const APART: f64 = 8.0;
-/// Steps of colour: no eye sees more, and a palette of a file holds them.
-const SHADES: f64 = 200.0;
+/// Shorter lines between signs are noise, in logical pixels.
+const SHORTEST: f64 = 40.0;
 /// Between two pictures.
 const GAP: f64 = 14.0;
 const TITLE: f64 = 12.5;
@@ -33,6 +34,8 @@ pub struct Picture {
     pub values: Vec<f64>,
     /// Rows that are marked by a dashed line.
     pub lines: Vec<usize>,
+    /// Values, one for each pixel, between whose signs a line is drawn; nowhere where empty.
+    pub boundary: Vec<f64>,
 }
 
 /// Images side by side, two in a row.
@@ -46,12 +49,14 @@ pub struct Pictures {
     pub pictures: Vec<Picture>,
     /// What a pixel without value means, for the legend.
     pub no_value: String,
+    /// What the lines between signs mean, for the legend.
+    pub boundary_meaning: String,
 }
 
 impl Picture {
     /// An image of `columns` × (number of values / `columns`) pixels.
     pub fn new(title: impl Into<String>, colour: Axis, columns: usize, values: Vec<f64>) -> Self {
-        Self { title: title.into(), colour, columns, values, lines: Vec::new() }
+        Self { title: title.into(), colour, columns, values, lines: Vec::new(), boundary: Vec::new() }
     }
 
     /// Marks rows by dashed lines.
@@ -61,11 +66,22 @@ impl Picture {
         self
     }
 
+    /// Draws a line where these values, one for each pixel, change their sign.
+    #[must_use]
+    pub fn boundary(mut self, values: Vec<f64>) -> Self {
+        self.boundary = values;
+        self
+    }
+
     fn rows(&self) -> usize {
         self.values.len().checked_div(self.columns).unwrap_or(0)
     }
 
     fn check(&self) -> Result<()> {
+        if !self.boundary.is_empty() && self.boundary.len() != self.values.len() {
+            let what = format!("values between which `{}` has a line", self.title);
+            return Err(Error::Length { what, found: self.boundary.len(), expected: self.values.len() });
+        }
         let expected = self.rows() * self.columns;
         if expected > 0 && expected == self.values.len() {
             return Ok(());
@@ -78,13 +94,26 @@ impl Picture {
 impl Pictures {
     /// Images under a common title.
     pub fn new(title: impl Into<String>, pictures: Vec<Picture>) -> Self {
-        Self { title: title.into(), subtitle: String::new(), pictures, no_value: "no value".to_owned() }
+        Self {
+            title: title.into(),
+            subtitle: String::new(),
+            pictures,
+            no_value: "no value".to_owned(),
+            boundary_meaning: String::new(),
+        }
     }
 
     /// Sets the small print under the title.
     #[must_use]
     pub fn subtitle(mut self, subtitle: impl Into<String>) -> Self {
         self.subtitle = subtitle.into();
+        self
+    }
+
+    /// Says what the lines between signs mean.
+    #[must_use]
+    pub fn boundary_meaning(mut self, meaning: impl Into<String>) -> Self {
+        self.boundary_meaning = meaning.into();
         self
     }
 
@@ -121,9 +150,17 @@ pub(super) fn scene(figure: &Pictures) -> Result<Scene> {
         }
         top = lowest + 12.0;
     }
+    let mut entries = Vec::new();
+    if figure.pictures.iter().any(|picture| !picture.boundary.is_empty()) {
+        let key = Key::Cased;
+        entries.push(Entry { key, label: figure.boundary_meaning.clone() });
+    }
     if missing {
         let key = Key::Area { colour: NO_VALUE };
-        let legend = Legend::new(vec![Entry { key, label: figure.no_value.clone() }], frame::WIDTH, HIGHEST);
+        entries.push(Entry { key, label: figure.no_value.clone() });
+    }
+    if !entries.is_empty() {
+        let legend = Legend::new(entries, frame::WIDTH, HIGHEST);
         top = legend.draw_below(&mut scene, frame::EDGE, frame::WIDTH - frame::EDGE, top);
     }
     scene.height = (top + 6.0).ceil();
@@ -142,12 +179,13 @@ fn draw(scene: &mut Scene, picture: &Picture, left: f64, top: f64, slot: f64) ->
     let area = Rect { left, right: left + width, top, bottom: top + width * ratio };
     let bar = Vertical::new(&picture.colour, ruler, area.height());
     let colour_of = |value: &f64| match ruler.fraction(*value) {
-        Some(part) => colour::quantity((part.clamp(0.0, 1.0) * SHADES).round() / SHADES).rgb,
+        Some(part) => shade(part).rgb,
         None => NO_VALUE.rgb,
     };
     let holes = picture.values.iter().any(|value| ruler.fraction(*value).is_none());
     let pixels = picture.values.iter().map(colour_of).collect();
     scene.marks.push(Mark::Image { area, columns: picture.columns, pixels });
+    draw_boundary(scene, picture, &area);
     for row in &picture.lines {
         let y = area.top + (*row as f64 + 0.5) / picture.rows() as f64 * area.height();
         let dashes = (area.width() / 12.0) as u32;
@@ -162,4 +200,26 @@ fn draw(scene: &mut Scene, picture: &Picture, left: f64, top: f64, slot: f64) ->
     let beside = Rect { left: area.right + APART, right: area.right + APART + BAR, ..area };
     draw_bar(scene, values(), &bar, &beside);
     (area.bottom, holes)
+}
+
+/// Lines where the values of the boundary change their sign, but for those around specks.
+fn draw_boundary(scene: &mut Scene, picture: &Picture, area: &Rect) {
+    if picture.boundary.is_empty() {
+        return;
+    }
+    let x: Vec<f64> = (0..picture.columns)
+        .map(|i| area.left + (i as f64 + 0.5) / picture.columns as f64 * area.width())
+        .collect();
+    let y: Vec<f64> = (0..picture.rows())
+        .map(|i| area.top + (i as f64 + 0.5) / picture.rows() as f64 * area.height())
+        .collect();
+    let length = |line: &[Point]| -> f64 {
+        line.windows(2).map(|ends| (ends[1].0 - ends[0].0).hypot(ends[1].1 - ends[0].1)).sum()
+    };
+    let lines = contour::lines(&x, &y, &picture.boundary, 0.0);
+    for line in lines.into_iter().filter(|line| length(line) >= SHORTEST) {
+        for (width, colour) in CASED {
+            scene.marks.push(Mark::Stroke { points: line.clone(), width, colour });
+        }
+    }
 }

@@ -71,7 +71,10 @@ pub(super) fn clean(text: &str) -> String {
     text.trim().chars().map(printable).collect()
 }
 
-/// Breaks text at spaces, and words that are too long anywhere, into lines of at most `limit` pixels.
+/// Where a long word may be broken: after these.
+const JOINTS: [char; 5] = ['-', '_', '/', '@', '.'];
+
+/// Breaks text at spaces, words that are too long at their joints and else anywhere, into lines of at most `limit` pixels.
 pub(super) fn wrap(text: &str, size: f64, limit: f64) -> Vec<String> {
     let mut lines = Vec::new();
     for paragraph in text.lines() {
@@ -87,7 +90,10 @@ pub(super) fn wrap(text: &str, size: f64, limit: f64) -> Vec<String> {
             }
             for letter in word.chars() {
                 if !line.is_empty() && width(&format!("{line}{letter}"), size) > limit {
-                    lines.push(std::mem::take(&mut line));
+                    // A joint in the first half would leave most of the line empty.
+                    let joint = line.rfind(JOINTS).filter(|at| 2 * at >= line.len());
+                    let rest = joint.map_or_else(String::new, |at| line.split_off(at + 1));
+                    lines.push(std::mem::replace(&mut line, rest));
                 }
                 line.push(letter);
             }
@@ -97,6 +103,21 @@ pub(super) fn wrap(text: &str, size: f64, limit: f64) -> Vec<String> {
         }
     }
     lines
+}
+
+/// One line, cut in the middle with an ellipsis where it is too long: long names differ at their ends.
+pub(super) fn cut(text: &str, size: f64, limit: f64) -> String {
+    let letters: Vec<char> = clean(text).chars().collect();
+    let shown = |kept: usize| {
+        let first = kept / 3;
+        let part = |range: &[char]| range.iter().collect::<String>();
+        format!("{}…{}", part(&letters[..first]), part(&letters[letters.len() - (kept - first)..]))
+    };
+    let whole: String = letters.iter().collect();
+    if width(&whole, size) <= limit {
+        return whole;
+    }
+    (0..letters.len()).rev().map(shown).find(|line| width(line, size) <= limit).unwrap_or_default()
 }
 
 /// As [`wrap`], cut with an ellipsis after `most` lines.
@@ -131,5 +152,15 @@ mod tests {
         assert!(lines.iter().all(|line| width(line, 10.0) <= 90.0));
         assert_eq!(lines.concat().replace(' ', ""), text.replace(' ', ""));
         assert!(wrap(" \n\u{0}", 10.0, 90.0).is_empty());
+        let name = "basalt@rock-igneous-mafic-solid-basalt-h1-jhu-nicolet";
+        let lines = wrap(name, 10.0, 120.0);
+        assert!(lines.iter().rev().skip(1).all(|line| line.ends_with(['-', '@'])), "{lines:?}");
+        assert_eq!(lines.concat(), name);
+        let short = cut(name, 10.0, 120.0);
+        assert!(
+            width(&short, 10.0) <= 120.0 && short.starts_with("bas") && short.ends_with("jhu-nicolet"),
+            "{short}"
+        );
+        assert_eq!(cut("skin", 10.0, 120.0), "skin");
     }
 }

@@ -1,7 +1,7 @@
 //! Where an axis carries marks, and what is printed at them.
 //!
 //! Linear axes: steps of 1, 2 or 5 times a power of ten, a common power of ten taken out when the numbers
-//! are long. Logarithmic axes: decades, 0.01 … 100 in full and others as 10ⁿ, with unlabelled marks
+//! are long. Logarithmic axes: decades, 0.001 … 1000 in full and others as 10ⁿ, with unlabelled marks
 //! between; below one decade the 1–2–5 multiples, and below that the marks of a linear axis.
 
 use super::axis::{Ruler, Scale};
@@ -96,8 +96,8 @@ fn signed(value: f64, decimals: usize) -> String {
 /// m·10ⁿ as a person writes it.
 fn number(mantissa: i32, exponent: i32) -> String {
     match exponent {
-        0..=2 => format!("{}", mantissa * 10i32.pow(exponent.unsigned_abs())),
-        -2..0 => {
+        0..=3 => format!("{}", mantissa * 10i32.pow(exponent.unsigned_abs())),
+        -3..0 => {
             let decimals = exponent.unsigned_abs() as usize;
             format!("{:.decimals$}", f64::from(mantissa) * 10f64.powi(exponent))
         }
@@ -164,7 +164,7 @@ mod tests {
         let (radiance, factor) = labels(Scale::Linear, 4e18, 6e18, 4);
         assert_eq!(radiance, ["4.0", "4.5", "5.0", "5.5", "6.0"]);
         assert_eq!(factor.as_deref(), Some("×10¹⁸"));
-        assert_eq!(labels(Scale::Log, 0.1, 1e4, 9).0, ["0.1", "1", "10", "100", "10³", "10⁴"]);
+        assert_eq!(labels(Scale::Log, 0.1, 1e4, 9).0, ["0.1", "1", "10", "100", "1000", "10⁴"]);
         assert_eq!(labels(Scale::Log, 1e-9, 1e9, 7).0.len(), 7);
         assert_eq!(labels(Scale::Log, 1.5e5, 8e5, 5).0, ["2×10⁵", "5×10⁵"]);
         assert_eq!(labels(Scale::Log, 3.1, 3.3, 4).0, ["3.10", "3.15", "3.20", "3.25", "3.30"]);

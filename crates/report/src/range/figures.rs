@@ -1,18 +1,24 @@
 //! Pictures of the view and of its bounds, lines with their witnesses, errors of derivatives.
 
 use crate::figures::Plot;
-use crate::plot::{Axis, LineFigure, Panel, Picture, Pictures, Series, Style};
+use crate::plot::{self, Axis, LineFigure, Panel, Picture, Pictures, Series, Style};
 use crate::range::lines_table;
 use crate::table::{Table, number};
 use hadar::error::Result;
 use hadar::ranging::derivative::{Derivative, Differentiator};
+use hadar_study::scenario::range::Demand;
 use hadar_study::study::range::{Line, PictureKind, Ranging, Signal, quantile};
 use std::f64::consts::PI;
+use std::fmt::Write as _;
 
 /// A picture's table holds so many of its columns at most: the maps themselves are in NPY files.
 const COLUMNS: usize = 80;
 /// The share of the values at either end that a colour scale does not cover.
 const TAIL: f64 = 0.01;
+/// Relative spread below which values are one and the same.
+const FLAT: f64 = 1e-9;
+/// Errors of so many times the largest depth are not drawn.
+const BEYOND: f64 = 10.0;
 
 /// What the left camera sees: thermal image, scattered signal and the truth behind them.
 #[must_use]
@@ -47,11 +53,37 @@ pub fn views(result: &Ranging) -> Option<Plot> {
             (key.to_owned(), Picture::new(title, axis, columns, values.clone()).lines(&lines))
         })
         .collect();
+    // One colour shows nothing: what is the same everywhere is said.
+    let mut said = String::new();
+    let pictures = pictures.into_iter().filter(|(_, picture)| {
+        let flat = constant(&picture.values);
+        if let Some(value) = flat {
+            let _ = write!(
+                said,
+                " {}: {} everywhere ({}).",
+                picture.title,
+                plot::number(value),
+                picture.colour.title
+            );
+        }
+        flat.is_none() && picture.values.iter().any(|value| value.is_finite())
+    });
+    let pictures: Vec<_> = pictures.collect();
     let subtitle = format!(
-        "Left camera, {} × {columns} pixels. Colours cover all but the lowest and highest percent of the values.",
+        "Left camera, {} × {columns} pixels. Colours cover all but the lowest and highest percent of the values.{said}",
         result.shape.rows()
     );
-    plot("views", "What the left camera sees", subtitle, "sky", pictures, [0, 0])
+    let figure = |pictures| {
+        Pictures::new("What the left camera sees", pictures).subtitle(subtitle.clone()).no_value("sky")
+    };
+    plot("views", figure, pictures, [0, 0])
+}
+
+/// The value that all of them have but for rounding, if there is one.
+fn constant(values: &[f64]) -> Option<f64> {
+    let finite = || values.iter().copied().filter(|value| value.is_finite());
+    let (low, high) = (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max));
+    (high - low <= FLAT * high.abs()).then_some(high).filter(|value| value.is_finite())
 }
 
 /// Least depth error of every window by each signal (disparity where depth is not known).
@@ -70,35 +102,63 @@ pub fn bound_maps(result: &Ranging) -> Option<Plot> {
             (*signal, errors.iter().zip(&maps.depth_m).map(value).collect())
         })
         .collect();
-    // One scale for all, so that they can be compared.
+    let no_bound = |values: &[f64]| values.iter().all(|value| !value.is_finite());
+    let without: Vec<&str> =
+        per_signal.iter().filter(|(_, values)| no_bound(values)).map(|(signal, _)| signal.name()).collect();
+    // One scale for all, so that they can be compared; an error larger than any depth is no depth.
     let all: Vec<f64> =
         per_signal.iter().flat_map(|(_, values)| values).copied().filter(|v| v.is_finite()).collect();
-    let (low, high) = (quantile(&all, TAIL), quantile(&all, 1.0 - TAIL));
+    let deepest = maps.depth_m.iter().copied().filter(|z| z.is_finite()).fold(0.0, f64::max);
+    let most = if deepest > 0.0 { deepest } else { f64::INFINITY };
+    let high = quantile(&all, 1.0 - TAIL).min(most);
+    let low = quantile(&all, TAIL).min(0.1 * high);
     let unit = if with_depth { "depth error (m)" } else { "disparity error (pixels)" };
     let suffix = if with_depth { "depth_error_m" } else { "disparity_error_px" };
-    let pictures = per_signal
-        .into_iter()
+    let demand = result.scenario.requirement.error;
+    let pictures: Vec<_> = per_signal
+        .iter()
+        .filter(|(_, values)| !no_bound(values))
         .map(|(signal, values)| {
             let axis = Axis::log(unit).range(low, high);
             let key = format!("{suffix}_{}", signal.key());
-            (key, Picture::new(format!("Bound, {}", signal.name()), axis, maps.columns.len(), values))
+            let title = format!("Bound, {}", signal.name());
+            let picture = Picture::new(title, axis, maps.columns.len(), values.clone());
+            let over = |(error, depth): (&f64, &f64)| (error / demand.at(*depth)).ln();
+            let beyond: Vec<f64> = values.iter().zip(&maps.depth_m).map(over).collect();
+            (key, if with_depth { picture.boundary(beyond) } else { picture })
         })
         .collect();
     let window = result.scenario.stereo.window;
+    let clipped = if with_depth {
+        " Colours end at the largest depth, beyond which an error is no depth at all."
+    } else {
+        ""
+    };
+    let missing = match without.as_slice() {
+        [] => String::new(),
+        names => format!(" Nothing at all is told by: {}.", names.join("; ")),
+    };
     let subtitle = format!(
-        "Least error of windows of {} × {} pixels, at their centres in the left view. One colour scale for all.",
+        "Least error of windows of {} × {} pixels, at their centres in the left view. One colour scale for all.{clipped}{missing}",
         window.rows(),
         window.columns()
     );
-    let first = [maps.rows.start, maps.columns.start];
-    plot(
-        "bounds_map",
-        "How well depth can be measured",
-        subtitle,
-        "sky, not seen by both cameras, or no texture at all",
-        pictures,
-        first,
-    )
+    let meaning = format!("demanded error, {}; it is met on the darker side", demanded(demand));
+    let figure = |pictures| {
+        Pictures::new("How well depth can be measured", pictures)
+            .subtitle(subtitle.clone())
+            .boundary_meaning(meaning.clone())
+            .no_value("sky, not seen by both cameras, or no texture at all")
+    };
+    plot("bounds_map", figure, pictures, [maps.rows.start, maps.columns.start])
+}
+
+/// A demand in words.
+fn demanded(error: Demand) -> String {
+    match error {
+        Demand::Absolute(error_m) => format!("{} m", plot::number(error_m)),
+        Demand::Relative(share) => format!("{} % of the depth", plot::number(100.0 * share)),
+    }
 }
 
 /// Depths that block matching finds in one noisy pair.
@@ -130,8 +190,12 @@ pub fn matched_maps(result: &Ranging) -> Option<Plot> {
         pictures
             .push(("depth_m_truth".to_owned(), Picture::new("True depth", axis(), columns, values.clone())));
     }
-    let subtitle = "Block matching of one noisy pair.".to_owned();
-    plot("matched", "Depth by matching", subtitle, "sky, or no match", pictures, [0, 0])
+    let figure = |pictures| {
+        Pictures::new("Depth by matching", pictures)
+            .subtitle("Block matching of one noisy pair.")
+            .no_value("sky, or no match")
+    };
+    plot("matched", figure, pictures, [0, 0])
 }
 
 /// Bounds along each line, and how matching does beside them.
@@ -141,42 +205,83 @@ pub fn lines(result: &Ranging) -> Vec<Plot> {
     rows.sort_unstable();
     rows.dedup();
     rows.into_iter()
-        .map(|row| line(row, result.lines.iter().filter(|line| line.row == row).collect()))
+        .map(|row| line(row, result.lines.iter().filter(|line| line.row == row).collect(), result))
         .collect()
 }
 
-fn line(row: usize, lines: Vec<&Line>) -> Plot {
+/// Colour of a signal, and style of its bound.
+const fn look(signal: Signal) -> (usize, Style) {
+    match signal {
+        Signal::ThermalImage => (0, Style::Line),
+        // Where nothing but the whole image has texture, these two are one line.
+        Signal::HeatCube => (1, Style::Dashed),
+        Signal::ScatteredAsMeasured => (2, Style::Line),
+        Signal::Reconstructed => (3, Style::Line),
+        Signal::ReconstructedBlind => (4, Style::Line),
+    }
+}
+
+fn line(row: usize, lines: Vec<&Line>, result: &Ranging) -> Plot {
     let depth = lines.iter().any(|line| line.depth_m.iter().any(|z| z.is_finite()));
+    let title =
+        format!("{} error along row {row} of the left view", if depth { "Depth" } else { "Disparity" });
     let axis = Axis::log(if depth { "depth error (m)" } else { "disparity error (pixels)" });
-    let mut figure =
-        LineFigure::new(format!("Depth error along row {row} of the left view"), Axis::linear("column (pixels)"), axis)
-            .subtitle("Lines: least error of an unbiased estimate. Points: root-mean-square error of matches in repeated draws of the noise; where they are guesses, the range that is searched limits it.");
+    let mut figure = LineFigure::new(title, Axis::linear("column (pixels)"), axis);
     let mut bias = Panel::new(Axis::linear(if depth { "bias (m)" } else { "bias (pixels)" }));
-    let colour = |line: &Line| Signal::ALL.iter().position(|signal| *signal == line.signal).unwrap_or(0);
     let x = |line: &Line| line.columns.iter().map(|column| *column as f64).collect::<Vec<_>>();
     for line in &lines {
         let Some(method) = line.method else { continue };
         let label = format!("{method}, {}", line.signal.name());
-        // The second method of a signal has a colour of its own.
-        let shade = if method.starts_with("block") { colour(line) } else { (colour(line) + 5) % 7 };
-        figure = figure.series(Series::points(label, x(line), line.rmse_m.clone()).colour(shade));
-        bias = bias.series(Series::points("", x(line), line.bias_m.clone()).colour(shade));
+        let (colour, _) = look(line.signal);
+        // The second method of a signal has open symbols.
+        let points = |label: String, values: &[f64]| {
+            let points = Series::points(label, x(line), values.to_vec()).colour(colour).pale();
+            if method.starts_with("block") { points } else { points.open() }
+        };
+        figure = figure.series(points(label, &line.rmse_m));
+        bias = bias.series(points(String::new(), &line.bias_m));
     }
+    let witnessed = !bias.series.is_empty();
+    // Errors of far more than any depth say only that there is none.
+    let deepest =
+        lines.iter().flat_map(|line| &line.depth_m).copied().filter(|z| z.is_finite()).fold(0.0, f64::max);
+    let most = if depth { BEYOND * deepest } else { f64::INFINITY };
     // Bounds lie on top of the points that reach them.
-    let mut drawn: Vec<Signal> = Vec::new();
+    let (mut drawn, mut hopeless): (Vec<Signal>, Vec<&str>) = (Vec::new(), Vec::new());
     for line in &lines {
-        if !drawn.contains(&line.signal) {
-            drawn.push(line.signal);
-            let label = format!("bound, {}", line.signal.name());
-            let dark = if line.method.is_some() { 6 } else { colour(line) };
-            let style = if line.signal == Signal::ScatteredAsMeasured { Style::Dashed } else { Style::Line };
-            figure =
-                figure.series(Series::line(label, x(line), line.bound_m.clone()).colour(dark).style(style));
+        if drawn.contains(&line.signal) {
+            continue;
         }
+        drawn.push(line.signal);
+        // Matches are of views without diffraction.
+        let bound = if witnessed { &line.bound_without_diffraction_m } else { &line.bound_m };
+        if bound.iter().all(|bound| bound.is_nan() || *bound > most) {
+            hopeless.push(line.signal.name());
+            continue;
+        }
+        let sharp = if witnessed { " without diffraction" } else { "" };
+        let label = format!("bound{sharp}, {}", line.signal.name());
+        let (colour, style) = look(line.signal);
+        let shown = bound.iter().map(|bound| if *bound > most { f64::NAN } else { *bound }).collect();
+        figure = figure.series(Series::line(label, x(line), shown).colour(colour).style(style));
     }
-    if !bias.series.is_empty() {
+    let longest = lines.iter().max_by_key(|line| line.columns.len());
+    if let Some(line) = longest.filter(|_| depth) {
+        let demand = result.scenario.requirement.error;
+        let allowed = line.depth_m.iter().map(|depth_m| demand.at(*depth_m)).collect();
+        let label = format!("demanded: {}", demanded(demand));
+        figure = figure.series(Series::line(label, x(line), allowed).style(Style::Dotted).colour(6));
+    }
+    let mut said = "Lines: least error of an unbiased estimate.".to_owned();
+    if witnessed {
+        said += " Points: root-mean-square error of matches in repeated draws of the noise; where they are guesses, the range \
+                 that is searched limits it. The views that are matched have no diffraction.";
         figure = figure.lower(bias);
     }
+    if !hopeless.is_empty() {
+        said += &format!(" More than {BEYOND} times the depth, and not drawn: {}.", hopeless.join("; "));
+    }
+    let figure = figure.subtitle(said);
     Plot { name: format!("line_{row}").into(), figure: figure.into(), table: lines_table(lines) }
 }
 
@@ -237,16 +342,13 @@ pub(crate) fn response_measured(scheme: Derivative, omega: f64) -> Result<f64> {
 fn clipped(axis: Axis, values: &[f64]) -> Axis {
     let finite: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
     let (low, high) = (quantile(&finite, TAIL), quantile(&finite, 1.0 - TAIL));
-    // A picture without contrast is shown as such, not as its rounding.
-    if high - low > 1e-9 * high.abs() { axis.range(low, high) } else { axis }
+    if high - low > FLAT * high.abs() { axis.range(low, high) } else { axis }
 }
 
 /// Pictures with a table of some of their pixels; `first` is the pixel at their upper left corner.
 fn plot(
     name: &'static str,
-    title: &str,
-    subtitle: String,
-    no_value: &str,
+    figure: impl Fn(Vec<Picture>) -> Pictures,
     pictures: Vec<(String, Picture)>,
     first: [usize; 2],
 ) -> Option<Plot> {
@@ -268,10 +370,10 @@ fn plot(
             table.push(cells);
         }
     }
-    let subtitle =
-        if step > 1 { format!("{subtitle} The table beside holds every {step}th pixel.") } else { subtitle };
-    let pictures = pictures.into_iter().map(|(_, picture)| picture).collect();
-    let figure = Pictures::new(title, pictures).subtitle(subtitle).no_value(no_value);
+    let mut figure = figure(pictures.into_iter().map(|(_, picture)| picture).collect());
+    if step > 1 {
+        let _ = write!(figure.subtitle, " The table beside holds one in {step} rows and columns.");
+    }
     Some(Plot { name: name.into(), figure: figure.into(), table })
 }
 
@@ -288,5 +390,5 @@ pub fn picture_plot(
     subtitle: String,
     pictures: Vec<(String, Picture)>,
 ) -> Option<Plot> {
-    plot(name, title, subtitle, "no value", pictures, [0, 0])
+    plot(name, |pictures| Pictures::new(title, pictures).subtitle(subtitle.clone()), pictures, [0, 0])
 }

@@ -206,7 +206,7 @@ fn witnesses(result: &Ranging) -> String {
     let mut out = String::new();
     let witnessed: Vec<_> = result.lines.iter().filter(|line| line.method.is_some()).collect();
     if !witnessed.is_empty() {
-        out.push_str("Matching against the bound, median over the windows of a line\n");
+        out.push_str("Matching against the bound without diffraction, median over the windows of a line\n");
         let _ = writeln!(
             out,
             "  {:>4}  {:26} {:18} {:>10} {:>10} {:>10} {:>14} {:>9}",
@@ -221,7 +221,7 @@ fn witnesses(result: &Ranging) -> String {
                 line.row,
                 line.signal.name(),
                 line.method.unwrap_or_default(),
-                length(middle(&line.bound_m)),
+                length(middle(&line.bound_without_diffraction_m)),
                 length(middle(&line.rmse_m)),
                 length(middle(&sizes)),
                 line.scatter_over_bound.map_or("-".into(), |ratio| significant(ratio, 2)),

@@ -1,6 +1,7 @@
 //! The certificate: one page of Markdown that says what was checked, what came out, and what it rests on.
 
 use super::text;
+use crate::manifest::{Provenance, VERSION};
 use crate::text::footing::{gaussian, of_scene};
 use crate::text::significant;
 use hadar_study::scenario::Units;
@@ -9,16 +10,16 @@ use hadar_study::words::reliability;
 use std::fmt::Write as _;
 
 /// The page.
-pub(super) fn markdown(study: &RuleStudy, answer: &RuleAnswer) -> String {
+pub(super) fn markdown(study: &RuleStudy, answer: &RuleAnswer, provenance: &Provenance) -> String {
     let (about, units) = (&answer.rule.about, answer.rule.scenario.units());
-    let title = about.name.clone().or(answer.rule.scenario.title.clone());
-    let mut out = format!("# {}\n\n", title.unwrap_or_else(|| "Which cameras meet the rule".into()));
+    let mut out = format!("# {}\n\n", title(answer));
     for (label, value) in [("Authority", &about.authority), ("Version", &about.version)] {
         if let Some(value) = value {
             let _ = writeln!(out, "{label}: {value}  ");
         }
     }
-    let _ = writeln!(out, "Checked with hadar {}\n", env!("CARGO_PKG_VERSION"));
+    let _ = writeln!(out, "Checked with hadar {VERSION}, commit {}  ", provenance.commit);
+    let _ = writeln!(out, "Command: `{}`, seed {}\n", provenance.command_line(), provenance.seed);
     if let Some(text) = &about.text {
         let _ = writeln!(out, "{text}\n");
     }
@@ -53,11 +54,25 @@ pub(super) fn markdown(study: &RuleStudy, answer: &RuleAnswer) -> String {
         });
         out.push('\n');
     }
-    out.push_str("## Inputs\n\n| input | SHA-256 |\n|---|---|\n");
-    for input in &answer.inputs {
-        let _ = writeln!(out, "| {} | `{}` |", cell(&input.path), input.sha256);
+    out.push_str(
+        "## Inputs\n\nThe answer rests on these, by their content, and on the program above; made again with them it is the same, byte by byte. \
+         `sha256sum` gives the hash of a file; of what is built in the program gives it.\n\n| input | SHA-256 |\n|---|---|\n",
+    );
+    for input in &provenance.inputs {
+        let hash = input
+            .sha256
+            .as_deref()
+            .map_or_else(|| "can be read only once".into(), |hash| format!("`{hash}`"));
+        let _ = writeln!(out, "| {} | {hash} |", cell(&input.path));
     }
     out
+}
+
+/// What it is called.
+pub(super) fn title(answer: &RuleAnswer) -> String {
+    let about = &answer.rule.about;
+    let title = about.name.clone().or(answer.rule.scenario.title.clone());
+    title.unwrap_or_else(|| "Which cameras meet the rule".into())
 }
 
 fn row(camera: &CameraVerdict, units: Units) -> String {

@@ -77,26 +77,30 @@ pub(crate) fn together(answer: &RuleAnswer) -> Vec<Warning> {
 
 /// Yes or no, and why.
 pub(crate) fn meets(camera: &CameraVerdict) -> String {
-    let LimitingScene { target, alternative, .. } = &camera.limiting;
     let said = match (camera.fails_by.as_slice(), &camera.provided) {
         ([], None) => "yes".into(),
         ([], Some(proviso)) => format!("yes, if {proviso}"),
-        (reasons, _) => {
-            let words = reasons.iter().map(|reason| match reason {
-                Shortfall::Distance if camera.bands == 1 => "one band cannot tell materials".into(),
-                Shortfall::Distance => format!("it cannot tell {target} from {alternative}"),
-                other => in_words(&[*other]),
-            });
-            format!("no: {}", words.collect::<Vec<_>>().join("; "))
-        }
+        _ => format!("no: {}", fails_by(camera)),
     };
-    match &camera.without_placeholders {
-        None => said,
-        Some(without) => {
-            let margin = significant(without.margin, 3);
-            format!("{said}; without pairs of placeholders the margin is {margin}")
-        }
-    }
+    said + &without_placeholders(camera)
+}
+
+/// What a camera fails by, in words.
+pub(super) fn fails_by(camera: &CameraVerdict) -> String {
+    let LimitingScene { target, alternative, .. } = &camera.limiting;
+    let words = camera.fails_by.iter().map(|reason| match reason {
+        Shortfall::Distance if camera.bands == 1 => "one band cannot tell materials".into(),
+        Shortfall::Distance => format!("it cannot tell {target} from {alternative}"),
+        other => in_words(&[*other]),
+    });
+    words.collect::<Vec<_>>().join("; ")
+}
+
+/// What is left of the margin without pairs of placeholders, to end a sentence.
+pub(super) fn without_placeholders(camera: &CameraVerdict) -> String {
+    camera.without_placeholders.as_ref().map_or_else(String::new, |without| {
+        format!("; without pairs of placeholders the margin is {}", significant(without.margin, 3))
+    })
 }
 
 /// How many bands a camera reads, and how.

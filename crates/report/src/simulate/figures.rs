@@ -1,8 +1,9 @@
 //! Classifiers against the limit: over photons, or side by side at one number of them.
 
-use crate::figures::Plot;
+use crate::figures::{Plot, information_axis};
 use crate::plot::{Axis, Band, LineFigure, NamedSeries, NamedValues, Panel, Rule, Series, Style};
 use crate::table::{Table, number, optional};
+use crate::text::significant;
 use hadar::identifiability::detection;
 use hadar::simulate::classifier::Method;
 use hadar::simulate::experiment::Performance;
@@ -83,7 +84,7 @@ pub fn classifiers(result: &Simulation, curves: &SimulationCurves<'_>) -> Plot {
     let mut figure = LineFigure::new(
         curves.title.clone(),
         Axis::log("normalised photon number N d₀²"),
-        Axis::linear("information log₂ 2P (bits)").range(0.0, 1.05),
+        information_axis("information log₂ 2P (bits)"),
     );
     let test = (result.spectra_per_class - 2 * (result.spectra_per_class / 4)) as f64;
     if points.len() > 2 {
@@ -218,11 +219,11 @@ pub fn accuracies(result: &Simulation, point: &SimulatedPoint, pair: &str) -> Pl
     )
     .series(NamedSeries::new("balanced accuracy", values).intervals(intervals.0, intervals.1))
     .interval_meaning(format!("{} % interval", 100.0 * result.level));
+    let classes = point.classes.len().max(2);
+    let chance = 1.0 / classes as f64;
+    let figure = figure.line(chance, format!("guessing among {classes}: {}", significant(chance, 3)));
     let figure = match point.limit_accuracy {
-        Some(limit) => {
-            let all = vec![limit; point.performances.len()];
-            figure.series(NamedSeries::new("limit of the likelihood ratio", all).colour(LIMIT_COLOUR + 1))
-        }
+        Some(limit) => figure.line(limit, format!("limit of the likelihood ratio: {limit:.4}")),
         None => figure,
     };
     Plot { name: "accuracies".into(), figure: figure.into(), table: simulation_table(result) }

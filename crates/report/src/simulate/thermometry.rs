@@ -10,7 +10,6 @@ pub use text::text;
 
 use crate::bundle::Bundle;
 use crate::table::{Table, number, optional};
-use crate::tables;
 use hadar::error::Result;
 use hadar::simulate::efficiency::Errors;
 use hadar_study::study::{Reader, Study, Thermometry, ThermometryRow};
@@ -21,10 +20,10 @@ use std::path::Path;
 /// # Errors
 /// A figure that cannot be drawn.
 pub fn bundle(study: &Study, result: &Thermometry, out: &Path) -> Result<Bundle> {
-    let mut bundle = Bundle::default();
-    bundle.add("scenario.toml", study.scenario().to_toml_beside(out));
-    bundle.add("thermometry.csv", table(result).to_csv()?);
-    bundle.add("warnings.csv", tables::warnings(&result.warnings).to_csv()?);
+    let mut bundle = Bundle::about(study.scenario().title.as_deref());
+    bundle.add_asked("scenario.toml", study.scenario().to_toml_beside(out));
+    bundle.add_table("thermometry.csv", table(result))?;
+    bundle.add_warnings(&result.warnings)?;
     bundle.add_plots(&[errors(result), rmse(result)])?;
     Ok(bundle)
 }

@@ -2,41 +2,77 @@
 //!
 //! Every function takes results and gives a figure with the CSV of just what it shows.
 
-use crate::figures::{Plot, wavenumber_axis};
-use crate::plot::{Axis, Band, HeatMap, LineFigure, Marker, Panel, Rule, Series, Style};
+use crate::figures::{Plot, band_axis, information_axis, over_bands, wavenumber_axis};
+use crate::plot::{self, Axis, HeatMap, LineFigure, Marker, Panel, Rule, Series, Style};
 use crate::table::Table;
-use crate::text::significant;
+use hadar::spectrum::Bands;
 use hadar_study::study::{InformationCurves, PhotonMap, Spectra, Surface};
 
-/// Emissivities of a first surface and of others at the nodes.
+/// Curves of a picture: as many as there are colours.
+const CURVES: usize = 7;
+/// Emissivities are drawn over a range no smaller than this: what is flat shall look flat.
+const LEAST_RANGE: f64 = 0.1;
+
+/// Share of the axis by which curves must differ to be seen apart.
+const SEEN: f64 = 4e-3;
+
+/// Emissivities at the nodes: as many pictures as it takes to tell the curves apart.
 #[must_use]
-pub fn emissivities(
-    title: &str,
-    wavenumbers_cm1: &[f64],
-    target: &Surface,
-    alternatives: &[&Surface],
-) -> Plot {
-    let mut header = vec!["wavenumber_cm1".to_owned(), format!("emissivity_{}", target.name)];
-    header.extend(alternatives.iter().map(|surface| format!("emissivity_{}", surface.name)));
-    let mut table = Table::new(header);
-    for (j, &nu) in wavenumbers_cm1.iter().enumerate() {
-        let mut row = vec![nu, target.emissivity[j]];
-        row.extend(alternatives.iter().map(|surface| surface.emissivity[j]));
-        table.push_numbers(&row);
-    }
-    let mut figure =
-        LineFigure::new(title, wavenumber_axis(wavenumbers_cm1), Axis::linear("emissivity").range(0.0, 1.0))
-            .series(Series::line(&target.name, wavenumbers_cm1.to_vec(), target.emissivity.clone()));
-    for surface in alternatives {
-        figure =
-            figure.series(Series::line(&surface.name, wavenumbers_cm1.to_vec(), surface.emissivity.clone()));
-    }
-    Plot { name: "emissivities".into(), figure: figure.into(), table }
+pub fn emissivities(title: &str, wavenumbers_cm1: &[f64], surfaces: &[&Surface]) -> Vec<Plot> {
+    let pictures = surfaces.len().div_ceil(CURVES);
+    let one = |(i, drawn): (usize, &[&Surface])| {
+        let header = drawn.iter().map(|surface| format!("emissivity_{}", surface.name));
+        let mut table = Table::new(std::iter::once("wavenumber_cm1".to_owned()).chain(header));
+        for (j, &nu) in wavenumbers_cm1.iter().enumerate() {
+            let row: Vec<f64> =
+                std::iter::once(nu).chain(drawn.iter().map(|surface| surface.emissivity[j])).collect();
+            table.push_numbers(&row);
+        }
+        let (low, high) = emissivity_range(drawn);
+        let (name, title) = match pictures {
+            1 => ("emissivities".into(), title.to_owned()),
+            _ => (numbered(i).into(), format!("{title}, {} of {pictures}", i + 1)),
+        };
+        let axis = Axis::linear("emissivity").range(low, high);
+        let mut figure = LineFigure::new(title, wavenumber_axis(wavenumbers_cm1), axis);
+        for (i, surface) in drawn.iter().enumerate() {
+            // On top of an equal curve, so that both are seen.
+            let equal = drawn[..i].iter().filter(|other| coincide(surface, other, SEEN * (high - low)));
+            let style = [Style::Line, Style::Dashed, Style::Dotted][equal.count().min(2)];
+            let curve = Series::line(&surface.name, wavenumbers_cm1.to_vec(), surface.emissivity.clone());
+            figure = figure.series(curve.style(style));
+        }
+        Plot { name, figure: figure.into(), table }
+    };
+    surfaces.chunks(CURVES).enumerate().map(one).collect()
 }
 
-/// The two spectra that look alike, and their difference against the noise of one reading.
+/// Whether two curves lie on each other.
+fn coincide(a: &Surface, b: &Surface, within: f64) -> bool {
+    a.emissivity.iter().zip(&b.emissivity).all(|(a, b)| (a - b).abs() <= within)
+}
+
+fn numbered(i: usize) -> String {
+    if i == 0 { "emissivities".into() } else { format!("emissivities_{}", i + 1) }
+}
+
+/// Range of an axis that fits the emissivities, within 0 to 1.
+fn emissivity_range(drawn: &[&Surface]) -> (f64, f64) {
+    let all = || drawn.iter().flat_map(|surface| &surface.emissivity).copied();
+    let (low, high) = (all().fold(f64::INFINITY, f64::min), all().fold(f64::NEG_INFINITY, f64::max));
+    if low > high {
+        return (0.0, 1.0);
+    }
+    let margin = (0.06 * (high - low)).max(0.5 * (LEAST_RANGE - (high - low)));
+    // What the end of the range cuts off is added at the other end.
+    let (low, high) = (low - margin, high + margin);
+    let (low, high) = (low - (high - 1.0).max(0.0), high + (-low).max(0.0));
+    (low.max(0.0), high.min(1.0))
+}
+
+/// The two spectra that look alike, and their difference beside the noise of one reading.
 #[must_use]
-pub fn spectra(spectra: &Spectra, target: &str, alternative: &str) -> Plot {
+pub fn spectra(spectra: &Spectra, bands: &Bands, target: &str, alternative: &str) -> Plot {
     let unit = "photons_per_s_m2_sr_cm1";
     let mut header = vec![
         "wavenumber_cm1".to_owned(),
@@ -50,65 +86,73 @@ pub fn spectra(spectra: &Spectra, target: &str, alternative: &str) -> Plot {
         header.push("relative_sigma_camera".to_owned());
     }
     let mut table = Table::new(header);
-    let relative: Vec<f64> = spectra
-        .nearest
-        .iter()
-        .zip(&spectra.target)
-        .map(|(nearest, own)| 100.0 * (nearest / own - 1.0))
-        .collect();
+    let difference: Vec<f64> =
+        spectra.nearest.iter().zip(&spectra.target).map(|(nearest, own)| nearest / own - 1.0).collect();
     let share = |sigma: &[f64]| -> Vec<f64> {
-        sigma.iter().zip(&spectra.target).map(|(sigma, own)| 100.0 * sigma / own).collect()
+        sigma.iter().zip(&spectra.target).map(|(sigma, own)| sigma / own).collect()
     };
     let (shot, total) = (share(&spectra.sigma_shot), share(&spectra.sigma));
     for j in 0..spectra.wavenumber_cm1.len() {
-        let mut row =
-            vec![spectra.wavenumber_cm1[j], spectra.target[j], spectra.nearest[j], 0.01 * relative[j]];
+        let mut row = vec![spectra.wavenumber_cm1[j], spectra.target[j], spectra.nearest[j], difference[j]];
         if noisy {
-            row.extend([0.01 * shot[j], 0.01 * total[j]]);
+            row.extend([shot[j], total[j]]);
         }
         table.push_numbers(&row);
     }
-    let x = &spectra.wavenumber_cm1;
+    let curve = |label: String, values: &[f64]| {
+        let (x, y) = over_bands(bands, values);
+        Series::line(label, x, y)
+    };
+    let percent = |values: &[f64]| values.iter().map(|value| 100.0 * value.abs()).collect::<Vec<f64>>();
     let celsius = spectra.state.temperature_k - 273.15;
     let lighting: Vec<String> = spectra.state.lighting.iter().map(|v| format!("{v:.3}")).collect();
-    let mut lower = Panel::new(Axis::linear("difference (%)"));
-    if noisy {
-        let limits = |sigma: &[f64]| (sigma.iter().map(|s| -s).collect::<Vec<f64>>(), sigma.to_vec());
-        let (low, high) = limits(&shot);
-        lower = lower.band(Band::new("± shot noise, one reading", x.clone(), low, high));
+    let lit =
+        if lighting.is_empty() { String::new() } else { format!(" with lighting {}", lighting.join(", ")) };
+    // What is left of a difference where there is none is rounding.
+    let equal = difference.iter().all(|share| share.abs() < ROUNDING);
+    let alike = if equal { " The two spectra are equal: no camera tells them apart." } else { "" };
+    let mut lower = Panel::new(Axis::log("share of the signal (%)"));
+    if !equal {
+        lower = lower.series(curve("|nearest − target|".into(), &percent(&difference)).colour(3));
     }
-    lower = lower.series(Series::line("nearest − target", x.clone(), relative).colour(1));
-    let camera_note = match (spectra.sigma.first(), total.is_empty()) {
-        (Some(_), false) => {
-            let mean = total.iter().sum::<f64>() / total.len() as f64;
-            format!(" Noise of one reading of the camera: {} % of the signal.", significant(mean, 2))
+    if noisy {
+        lower = lower.series(
+            curve("shot noise of one reading, σ".into(), &percent(&shot)).style(Style::Dotted).colour(2),
+        );
+        // Of a camera without other noise the two are one.
+        if shot.iter().zip(&total).any(|(shot, total)| *total > shot * (1.0 + ROUNDING)) {
+            let label = "noise of one reading of the camera, σ".into();
+            lower = lower.series(curve(label, &percent(&total)).style(Style::Dashed).colour(6));
         }
-        _ => String::new(),
-    };
+        lower.y.range = share_range(&percent(&difference), &percent(&shot), &percent(&total));
+    }
     let mut figure = LineFigure::new(
         format!("What the camera receives: {target} and the nearest {alternative}"),
-        wavenumber_axis(x),
+        band_axis(bands),
         Axis::linear("photon radiance (photons s⁻¹ m⁻² sr⁻¹ per cm⁻¹)"),
     )
-    .subtitle(format!(
-        "The nearest {alternative} is at {celsius:.2} °C with lighting {}.{camera_note}",
-        lighting.join(", ")
-    ))
-    .series(Series::line(target, x.clone(), spectra.target.clone()).colour(0))
+    .subtitle(format!("The nearest {alternative} is at {celsius:.2} °C{lit}.{alike}"))
+    .series(curve(target.into(), &spectra.target).colour(0))
     .series(
-        Series::line(format!("{alternative} at {celsius:.1} °C"), x.clone(), spectra.nearest.clone())
-            .style(Style::Dashed)
-            .colour(1),
-    )
-    .lower(lower);
-    if noisy {
-        let edge = |sign: f64| -> Vec<f64> {
-            spectra.target.iter().zip(&spectra.sigma).map(|(own, sigma)| own + sign * sigma).collect()
-        };
-        figure =
-            figure.band(Band::new("± camera noise, one reading", x.clone(), edge(-1.0), edge(1.0)).colour(2));
+        curve(format!("{alternative} at {celsius:.1} °C"), &spectra.nearest).style(Style::Dashed).colour(1),
+    );
+    if !lower.series.is_empty() {
+        figure = figure.lower(lower);
     }
     Plot { name: "incident_spectra".into(), figure: figure.into(), table }
+}
+
+/// Relative difference of two spectra that is only rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// Range of a logarithmic axis on which noise and difference are seen, %: a difference that changes its sign goes through
+/// all powers of ten.
+fn share_range(difference: &[f64], shot: &[f64], total: &[f64]) -> Option<(f64, f64)> {
+    let most = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
+    let least = |values: &[f64]| values.iter().copied().fold(f64::INFINITY, f64::min);
+    let (difference, high) = (most(difference), most(difference).max(most(shot)).max(most(total)));
+    let low = if difference > 1e2 * ROUNDING { least(shot).min(0.05 * difference) } else { least(shot) };
+    (low > 0.0 && high.is_finite()).then_some((low / 1.5, high * 1.5))
 }
 
 /// What the identifiability plot marks besides its curves.
@@ -147,7 +191,7 @@ pub fn identifiability(
     let mut figure = LineFigure::new(
         format!("How many photons it takes to tell {target} from {alternative}"),
         Axis::log("photons at the detector"),
-        Axis::linear("information (bits)").range(0.0, 1.05),
+        information_axis("information (bits)"),
     )
     .subtitle("Information log₂ 2P; 1 bit is certainty. The camera's photons grow with its exposure.")
     .series(Series::line("shot-noise limit (nearest distance)", x.clone(), curves.nearest_bits.clone()))
@@ -172,9 +216,28 @@ pub fn identifiability(
     Plot { name: "identifiability".into(), figure: figure.into(), table }
 }
 
-/// Required photons over target temperature and lighting; the equilibrium singularity is marked.
+/// What a camera collects from the scene, and what that is worth.
+#[derive(Debug, Clone)]
+pub struct Collected {
+    /// Name of the camera.
+    pub camera: String,
+    /// Photons in all bands of all frames.
+    pub photons: f64,
+    /// Photons without any other noise that would tell as much.
+    pub worth: f64,
+}
+
+/// Required photons over target temperature and lighting; the equilibrium singularity is marked, and the scene `here`.
+/// Nothing where no number of photons suffices anywhere.
 #[must_use]
-pub fn photon_map(map: &PhotonMap, target: &str, alternative: &str, here: (f64, f64), by: &str) -> Plot {
+pub fn photon_map(
+    map: &PhotonMap,
+    pair: [&str; 2],
+    here: (f64, f64),
+    by: &str,
+    collected: Option<&Collected>,
+) -> Option<Plot> {
+    let [target, alternative] = pair;
     let mut table = Table::new(["temperature_k", "lighting", "photons_required"]);
     for (j, &lighting) in map.lightings.iter().enumerate() {
         for (i, &temperature_k) in map.temperatures_k.iter().enumerate() {
@@ -182,6 +245,9 @@ pub fn photon_map(map: &PhotonMap, target: &str, alternative: &str, here: (f64, 
         }
     }
     let mut finite: Vec<f64> = map.photons.iter().copied().filter(|n| n.is_finite()).collect();
+    if finite.is_empty() {
+        return None;
+    }
     finite.sort_by(f64::total_cmp);
     let quantile = |share: f64| {
         let last = finite.len().saturating_sub(1);
@@ -209,10 +275,50 @@ pub fn photon_map(map: &PhotonMap, target: &str, alternative: &str, here: (f64, 
         format!("By the {by} distance, shot noise only. V is that of the first of the surroundings, the others' held.")
     })
     .no_value("no number of photons suffices")
-    .contours(levels)
-    .marker(Marker::new("this scene", here.0 - 273.15, here.1));
-    if top == 1.0 {
+    .contours(levels);
+    let at_equilibrium = top == 1.0 && here == (map.equilibrium_k, 1.0);
+    let label = if at_equilibrium { "this scene, in equilibrium" } else { "this scene" };
+    figure = figure.marker(Marker::new(label, here.0 - 273.15, here.1));
+    if top == 1.0 && !at_equilibrium {
         figure = figure.marker(Marker::new("equilibrium", map.equilibrium_k - 273.15, 1.0));
     }
-    Plot { name: "required_photons".into(), figure: figure.into(), table }
+    if let Some(Collected { camera, photons, worth }) = collected {
+        let photons_text = plot::number(*photons);
+        figure = figure.mark(*photons, format!("{camera} collects {photons_text} in this scene"));
+        if *worth < 0.99 * photons {
+            figure = figure
+                .mark(*worth, format!("what they are worth with its own noise: {}", plot::number(*worth)));
+        }
+    }
+    Some(Plot { name: "required_photons".into(), figure: figure.into(), table })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn surface(emissivity: &[f64]) -> Surface {
+        Surface { name: "a".into(), emissivity: emissivity.to_vec(), one_number: None }
+    }
+
+    #[test]
+    fn emissivities_are_drawn_where_they_are_and_seven_at_a_time() {
+        let [flat, black, both] = [surface(&[0.5, 0.5]), surface(&[1.0, 0.98]), surface(&[0.0, 1.0])];
+        let range = |drawn: &[&Surface]| emissivity_range(drawn);
+        let close = |(a, b): (f64, f64), (c, d): (f64, f64)| (a - c).abs() < 1e-12 && (b - d).abs() < 1e-12;
+        assert!(close(range(&[&flat]), (0.45, 0.55)), "{:?}", range(&[&flat]));
+        assert!(close(range(&[&black]), (0.9, 1.0)), "{:?}", range(&[&black]));
+        assert!(close(range(&[&both, &flat]), (0.0, 1.0)));
+        let drawn = emissivities("E", &[800.0, 900.0], &[&flat; 15]);
+        let names: Vec<&str> = drawn.iter().map(|plot| plot.name.as_ref()).collect();
+        assert_eq!(names, ["emissivities", "emissivities_2", "emissivities_3"]);
+        assert!(drawn[2].table.to_csv().unwrap().starts_with("wavenumber_cm1,emissivity_a\n"));
+    }
+
+    #[test]
+    fn noise_and_difference_are_both_in_view() {
+        let (low, high) = share_range(&[0.3, 0.0], &[0.04], &[42.0]).unwrap();
+        assert!(low <= 0.015 && high >= 42.0);
+        assert_eq!(share_range(&[0.0], &[0.0], &[1.0]), None);
+    }
 }

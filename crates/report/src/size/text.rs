@@ -58,7 +58,10 @@ pub fn text(result: &Sizing, study: &Study) -> String {
         {
             line(
                 if by_local { "probability by it, no limit" } else { "detection probability at most" },
-                format!("{} (error {})", probability(d, 4), significant(miss, 3)),
+                match miss {
+                    0.0 => format!("{} (error below 1e-300)", probability(d, 4)),
+                    miss => format!("{} (error {})", probability(d, 4), significant(miss, 3)),
+                },
             );
             line("information log2 2P", format!("{} bit", significant(bits, 3)));
         }

@@ -6,6 +6,10 @@ use hadar_study::scenario::{AtmosphereSource, DistanceKind, Nuisance, Scenario};
 use hadar_study::study::{Identification, Study, Warning};
 use std::fmt::Write as _;
 
+/// Headings that end an answer, in this order.
+pub(crate) const ASSUMPTIONS: &str = "Assumptions";
+pub(crate) const WARNINGS: &str = "Warnings";
+
 /// What results rest on, and what the reader must know.
 pub(crate) fn footing(result: &Identification, study: &Study) -> String {
     assumptions(study, gaussian(study)) + &warnings(&result.warnings)
@@ -85,7 +89,7 @@ pub(crate) fn of_scene(study: &Study, counts: &str) -> String {
         (bands.first().map_or(0.0, |b| b.center_cm1), bands.last().map_or(0.0, |b| b.center_cm1));
     // As short as they were written, without the digits of a converted wavelength.
     let (low, high) = ((low * 100.0).round() / 100.0, (high * 100.0).round() / 100.0);
-    let mut out = String::from("Assumptions\n");
+    let mut out = format!("{ASSUMPTIONS}\n");
     let _ = writeln!(out, "  unknown besides the material: {unknown}");
     let _ = match study.bands().len() {
         1 => writeln!(out, "  1 band centred at {low} cm^-1"),
@@ -123,7 +127,7 @@ pub(crate) fn warnings(warnings: &[Warning]) -> String {
     if warnings.is_empty() {
         return String::new();
     }
-    let mut out = String::from("Warnings\n");
+    let mut out = format!("{WARNINGS}\n");
     // One line per code: a whole library would otherwise bury the answer.
     for (i, warning) in warnings.iter().enumerate() {
         if warnings[..i].iter().any(|earlier| earlier.code() == warning.code()) {

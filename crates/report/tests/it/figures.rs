@@ -237,13 +237,14 @@ fn numbers(most: usize) -> impl Strategy<Value = Vec<f64>> {
 }
 
 fn panel() -> impl Strategy<Value = Panel> {
-    let style = prop::sample::select(vec![Style::Line, Style::Dashed, Style::Dotted, Style::Points]);
+    let style =
+        prop::sample::select(vec![Style::Line, Style::Dashed, Style::Dotted, Style::Points, Style::Marked]);
     let series = (words(), numbers(30), numbers(30), style, prop::option::of(0..40usize)).prop_map(
         |(label, mut x, mut y, style, colour)| {
             let count = x.len().min(y.len());
             x.truncate(count);
             y.truncate(count);
-            Series { label, x, y, style, colour }
+            Series { style, colour, ..Series::line(label, x, y) }
         },
     );
     let band =

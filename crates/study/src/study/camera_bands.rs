@@ -16,16 +16,29 @@ const WHEEL: usize = 24;
 const FINEST: f64 = 0.5;
 
 /// What bands are asked for where the scenario may be silent.
-pub(super) fn asked(source: &BandSource, camera: Option<&Camera>) -> BandSource {
+pub(super) fn asked(source: &BandSource, camera: Option<(&Camera, &CameraSpec)>) -> BandSource {
     match (source, camera) {
-        (BandSource::Unsaid, Some(camera))
-            if camera.spectral_bands == Some(1) && camera.readout == Readout::Sequential =>
+        (BandSource::Unsaid, Some((camera, spec)))
+            if camera.spectral_bands == Some(1) && !is_modelled(camera, spec) =>
         {
             BandSource::Ranges(vec![camera.spectral_range_cm1.map(Spectral::Wavenumber)])
         }
         (BandSource::Unsaid, _) => BandSource::papers_grid(),
         (said, _) => said.clone(),
     }
+}
+
+/// What the entry of a known camera says; nothing of a camera of one's own.
+fn documented(spec: &CameraSpec) -> CameraSpec {
+    let entry = spec.preset.as_ref().and_then(|name| presets::find(name).ok());
+    entry.map(|preset| preset.figures).unwrap_or_default()
+}
+
+/// Whether the entry of a camera of one band models it as if it read more of them, and the scenario leaves it so.
+fn is_modelled(camera: &Camera, spec: &CameraSpec) -> bool {
+    let entry = documented(spec);
+    camera.readout != Readout::Sequential
+        && (entry.spectral_bands, entry.readout) == (camera.spectral_bands, Some(camera.readout))
 }
 
 /// Refuses bands that a camera cannot have; a warning where its entry models more than the camera is.
@@ -41,15 +54,12 @@ pub(super) fn check(
 ) -> Result<Option<Warning>> {
     let (Some(own), count) = (camera.spectral_bands, bands.len()) else { return Ok(None) };
     let name = camera::called(camera, spec);
-    let documented = match &spec.preset {
-        Some(preset) => presets::find(preset)?.figures,
-        None => CameraSpec::default(),
-    };
+    let documented = documented(spec);
     let refuse =
         |key: &str, found: String, instead: String| Err(Error::malformed(found, instead).at(place(key)));
     if own == 1 && count > 1 && camera.readout != Readout::Sequential {
         let how = camera.readout.name();
-        if (documented.spectral_bands, documented.readout) == (Some(own), Some(camera.readout)) {
+        if is_modelled(camera, spec) {
             return Ok(Some(Warning::BandsModelled { camera: name, bands: count, readout: camera.readout }));
         }
         let found = format!("{name} has one band, of which readout = \"{how}\" makes no {count}");

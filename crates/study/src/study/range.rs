@@ -131,25 +131,16 @@ impl RangeStudy {
             maps.brightest = self.brightest(pair)?;
         }
         let solve_for = self.solutions(&informed, &ground, &windows, &variances)?;
-        let lines = match plan.trials {
-            0 => self.lines(plan, &informed, &maps, progress)?,
-            // The views that are matched have no diffraction.
-            _ => {
-                let sharp = Ground { var_diffraction_px2: 0.0, ..self.ground(&informed.truth, shape)? };
-                let sharp_variances: Vec<Vec<f64>> = informed
-                    .left
-                    .iter()
-                    .enumerate()
-                    .map(|(i, left)| sharp.variances(left, informed.right.get(i), &windows))
-                    .collect();
-                self.lines(
-                    plan,
-                    &informed,
-                    &sharp.maps(&windows, &informed.left, &sharp_variances),
-                    progress,
-                )?
-            }
-        };
+        // The views that are matched have no diffraction.
+        let sharp = Ground { var_diffraction_px2: 0.0, ..self.ground(&informed.truth, shape)? };
+        let sharp_variances: Vec<Vec<f64>> = informed
+            .left
+            .iter()
+            .enumerate()
+            .map(|(i, left)| sharp.variances(left, informed.right.get(i), &windows))
+            .collect();
+        let sharp = sharp.maps(&windows, &informed.left, &sharp_variances);
+        let lines = self.lines(plan, &informed, [&maps, &sharp], progress)?;
         let ledger = Ledger::open();
         demand::add(&self.looked_up);
         let views = if informed.right.is_empty() { 1 } else { 2 };

@@ -66,7 +66,8 @@ impl Study {
         };
         let camera =
             scenario.camera.as_ref().map(|spec| camera::resolved(spec, &scenario.source)).transpose()?;
-        let asked = camera_bands::asked(&scenario.bands.source, camera.as_ref());
+        let asked =
+            camera_bands::asked(&scenario.bands.source, camera.as_ref().zip(scenario.camera.as_ref()));
         let bands = bands::at_centres(&asked, &scenario.source)?;
         if let (Some(camera), Some(spec)) = (&camera, &scenario.camera) {
             check_detector(&bands, camera, &scenario)?;

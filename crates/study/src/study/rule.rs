@@ -10,15 +10,14 @@
 
 mod envelope;
 mod ideal;
-mod inputs;
 mod results;
 mod search;
 mod wording;
 
 pub use results::{
-    CameraVerdict, Certified, EmissivityError, EnvelopeResult, FileHash, Fixes, IdealCamera, LightTime,
-    LimitingScene, Neighbourhood, NotIdentifiable, Proof, Proviso, Quotable, RuleAnswer, RuleRequirement,
-    WhoMeets, WithoutPlaceholders,
+    CameraVerdict, Certified, EmissivityError, EnvelopeResult, Fixes, IdealCamera, LightTime, LimitingScene,
+    Neighbourhood, NotIdentifiable, Proof, Proviso, Quotable, RuleAnswer, RuleRequirement, WhoMeets,
+    WithoutPlaceholders,
 };
 
 use self::envelope::Sighted;
@@ -203,7 +202,6 @@ impl RuleStudy {
             envelope,
             cameras,
             not_identifiable,
-            inputs: inputs::of(&self.rule)?,
             warnings: self.warnings.clone(),
             stats: ledger.close(),
         })

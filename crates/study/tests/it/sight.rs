@@ -234,9 +234,7 @@ fn a_camera_that_no_document_completes_asks_for_what_is_missing() {
         "line 10: camera.exposure: no document that was read states exposure, pixel, f_number, focal_length of flir-a655sc; \
          write what the camera has in place of the dots:"
     );
-    assert!(
-        made(&format!("{text}{block}\n")).unwrap_err().to_string().contains("does not begin with a number")
-    );
+    assert!(made(&format!("{text}{block}\n")).unwrap_err().to_string().contains("`…` stands for a figure"));
     let whole = format!("{text}{}\n", block.replace('…', "16"));
     let camera: Camera = study(&whole).camera().unwrap().clone();
     assert!(camera.name.contains("as completed") && !camera.assumed.is_empty(), "{camera:?}");

@@ -117,7 +117,7 @@ fn points_of_the_curves_meet_the_demand() {
         ("exposure_s", "speed_m_s"),
     ];
     assert_eq!(pairs, expected);
-    assert!(curves.iter().all(|curve| curve.points.len() == POINTS));
+    assert!(curves.iter().all(|curve| curve.points.len() >= POINTS));
     for i in [3, 14, 20] {
         let point = &curves[0].points[i];
         let (f_number, exposure) = (point.x, point.y.unwrap());
@@ -133,6 +133,55 @@ fn points_of_the_curves_meet_the_demand() {
         let Some(own) = own else { continue };
         assert!((own.y_as_now.unwrap() / curve.camera.1 - 1.0).abs() < 1e-5, "{:?}", curve.y);
     }
+}
+
+/// Both numbers of a curve at which the solver arrives alone are on it, and told as forbidden where they are.
+#[test]
+fn what_the_solver_finds_is_on_the_curves_and_classified() {
+    // More than the camera reaches takes longer than a frame of 80 Hz.
+    let scene = SCENE.replace("netd =", "frame_rate = \"80 Hz\"\nfull_well = 1e12\nnetd =");
+    for (text, allowed) in
+        [(scene.replace("80 Hz", "1 Hz").replace("30 mph", "0.1 m/s"), true), (scene, false)]
+    {
+        let demand = 1.3 * reached(&size(&text));
+        let text = text.replace("distance = 1.0", &format!("distance = {demand:?}"));
+        let study = study(&text);
+        let sizing = study.size().unwrap();
+        let curves = study.trade_offs(&sizing).unwrap();
+        let of = |y: Quantity| curves.iter().find(|curve| curve.y == y).unwrap();
+        let [exposure, speed] =
+            [Quantity::Exposure, Quantity::Speed].map(|q| solution(&sizing, q).value.unwrap());
+        let alone = of(Quantity::Exposure).points.iter().find(|point| point.x == 1.3).unwrap();
+        let start = of(Quantity::Speed).points.iter().find(|point| point.y.is_some()).unwrap();
+        assert!((alone.y.unwrap() / exposure - 1.0).abs() < 1e-9);
+        assert!((start.x / exposure - 1.0).abs() < 1e-9 && (start.y.unwrap() / speed - 1.0).abs() < 1e-9);
+        for point in [alone, start] {
+            assert_eq!(point.within_limits.is_some(), allowed, "{point:?}");
+            let breaks = point.capped.iter().any(|code| *code != CapCode::Diffraction);
+            assert_eq!(breaks, !allowed, "{point:?}");
+        }
+    }
+}
+
+/// A camera whose wells overflow has no distance and no number of frames with which it would do.
+#[test]
+fn what_spoils_every_image_is_within_no_limits() {
+    let scene = SCENE.replace("netd =", "full_well = 1e3\nnetd =");
+    let study = study(&scene);
+    let sizing = study.size().unwrap();
+    let curves = study.trade_offs(&sizing).unwrap();
+    let frames = curves.iter().find(|curve| curve.y == Quantity::Frames).unwrap();
+    let met: Vec<_> = frames.points.iter().filter(|point| point.y.is_some()).collect();
+    assert!(!met.is_empty());
+    for point in met {
+        assert!(point.within_limits.is_none() && point.capped.contains(&CapCode::FullWell), "{point:?}");
+    }
+    // No demand is met where nothing differs, and no curve drawn.
+    let nothing = size(&SCENE.replace("37 degC", "20 degC").replace("lighting = 0.5", "lighting = 1.0"));
+    assert_eq!(nothing.verdict.met, Some(false));
+    let scene = SCENE.replace("37 degC", "20 degC").replace("lighting = 0.5", "lighting = 1.0");
+    let study = self::study(&scene);
+    assert!(study.trade_offs(&study.size().unwrap()).unwrap().is_empty());
 }
 
 /// The more distant, the more frames; one less is not enough.
@@ -249,7 +298,8 @@ fn assumptions_that_fail_are_warned_of() {
         let sizing = size(&text);
         assert!(codes(&sizing).contains(&code), "{code}: {:?}", sizing.warnings);
     }
-    let boson = SCENE.replace("\"flir-a325sc\"", "\"flir-boson-640-14mm\"\nf_number = 1.0");
+    let boson =
+        SCENE.replace("\"flir-a325sc\"", "\"flir-boson-640-14mm\"\nf_number = 1.0\nreadout = \"sequential\"");
     assert!(codes(&size(&boson)).contains(&"camera-figure-assumed"));
     assert!(!codes(&usual).contains(&"camera-figure-assumed"));
     // A pixel as large as the blur, and bunching that is in the noise.

@@ -51,7 +51,7 @@ fn a_scenario_is_written_in_the_units_of_its_author() {
     let mut scenario = Scenario::from_toml(SCENARIO, None).unwrap();
     let texts: Vec<String> = scenario.source.texts.values().cloned().collect();
     let quantities = texts.iter().filter(|text| text.starts_with(|c: char| c.is_ascii_digit() || c == '-'));
-    assert_eq!(quantities.count(), 20);
+    assert_eq!(quantities.count(), 22);
     all_there(texts, &scenario.to_toml());
     assert_eq!(Scenario::from_toml(&scenario.to_toml(), None).unwrap(), scenario);
     // In JSON one unit for each dimension.

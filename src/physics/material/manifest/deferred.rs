@@ -2,6 +2,7 @@
 
 use super::{Around, Entry, Model, entries, made};
 use crate::error::Result;
+use crate::inputs;
 use crate::material::Material;
 use std::borrow::Cow;
 use std::path::Path;
@@ -13,6 +14,7 @@ type File = fn(&str) -> Result<Cow<'static, str>>;
 /// The entries of a manifest, and the materials that were made of them so far.
 #[derive(Debug)]
 pub(in crate::physics::material) struct Deferred {
+    text: &'static str,
     path: &'static Path,
     file: File,
     entries: Vec<Entry>,
@@ -24,10 +26,14 @@ impl Deferred {
     ///
     /// # Errors
     /// TOML or keys that are wrong, or another version.
-    pub(in crate::physics::material) fn parse(text: &str, path: &'static Path, file: File) -> Result<Self> {
+    pub(in crate::physics::material) fn parse(
+        text: &'static str,
+        path: &'static Path,
+        file: File,
+    ) -> Result<Self> {
         let entries = entries(text, path)?;
         let made = entries.iter().map(|_| OnceLock::new()).collect();
-        Ok(Self { path, file, entries, made })
+        Ok(Self { text, path, file, entries, made })
     }
 
     /// Names of the materials, in the order of the entries.
@@ -61,5 +67,32 @@ impl Deferred {
         let material =
             made(entry.clone(), self.path, &Around { earlier: &earlier, file: &self.file, known: &known })?;
         Ok(slot.get_or_init(|| material))
+    }
+
+    /// The material of an entry that someone asked for by name, noted among what is used.
+    ///
+    /// # Errors
+    /// As [`Deferred::material`].
+    pub(in crate::physics::material) fn named(&self, index: usize) -> Result<&Material> {
+        let material = self.material(index)?;
+        inputs::built_in("material", material.name(), || self.definition(index).into_bytes());
+        Ok(material)
+    }
+
+    /// All that a material is made of, as text: its entry, the files that this names, and the same of every material further
+    /// up that it is made of. It changes when one of these does, and not with other entries.
+    fn definition(&self, index: usize) -> String {
+        let entry = self.text.split("[[material]]\n").nth(index + 1).unwrap_or_default();
+        let lines = entry.lines().filter(|line| !line.is_empty() && !line.starts_with('#'));
+        let mut definition: String = lines.flat_map(|line| [line, "\n"]).collect();
+        let quoted: Vec<&str> = entry.split('"').skip(1).step_by(2).collect();
+        for name in quoted.iter().filter(|name| name.ends_with(".csv")) {
+            definition.push_str(&(self.file)(name).unwrap_or_default());
+        }
+        let made_of = |name: &str| entry.contains(&format!("material = \"{name}\""));
+        for (earlier, _) in self.names().take(index).enumerate().filter(|(_, name)| made_of(name)) {
+            definition.push_str(&self.definition(earlier));
+        }
+        definition
     }
 }

@@ -172,6 +172,7 @@ const SAME_BAND: f64 = 1e-9;
 #[serde(deny_unknown_fields)]
 pub struct SavedModel {
     /// Version of this format.
+    #[serde(rename = "schema", alias = "format")]
     format: u32,
     /// Version of the program that trained it.
     hadar: String,

@@ -75,7 +75,7 @@ pub(super) fn make(order: Order, library: &Library, progress: Progress<'_>) -> R
     let mut bundle = Bundle::default();
     bundle.add("state_ranges.csv", ranges_csv(&rows)?);
     if order.effort == Effort::Quick {
-        bundle.add("prior_width.csv", files::widths(&wide).table.to_csv()?);
+        bundle.add_table("prior_width.csv", files::widths(&wide).table)?;
         return Ok((bundle, finding));
     }
     let sweep = |lighting: f64| {
@@ -90,7 +90,7 @@ pub(super) fn make(order: Order, library: &Library, progress: Progress<'_>) -> R
     };
     let simulated = [at_37(&one, 1.0)?, at_37(&half, 0.5)?];
     bundle.add("README.md", text::readme(&one, &half, &wide, &rows, simulated, seed));
-    bundle.add("scenario.toml", SCENARIO);
+    bundle.add_asked("scenario.toml", SCENARIO);
     bundle.add_plots(&[
         files::temperatures("temperature_v1", 1.0, 1e11, &one),
         files::temperatures("temperature_v05", 0.5, 1e8, &half),

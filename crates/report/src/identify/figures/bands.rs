@@ -1,14 +1,14 @@
 //! The bands that matter, drawn.
 
-use crate::figures::{Plot, wavenumber_axis};
+use crate::figures::{Plot, band_axis, over_bands};
 use crate::plot::{Axis, Band, LineFigure, Series, Style};
 use crate::table::Table;
-use hadar_study::study::BandsThatMatter;
+use hadar_study::study::{BandsThatMatter, Study};
 
 /// Share of every band in the distance, with the best bands and filters marked.
 #[must_use]
-pub(crate) fn bands_that_matter(found: &BandsThatMatter, target: &str) -> Plot {
-    let x = &found.center_cm1;
+pub(crate) fn bands_that_matter(found: &BandsThatMatter, study: &Study) -> Plot {
+    let (x, bands, target) = (&found.center_cm1, study.bands(), &study.target().name);
     let mut table = Table::new([
         "center_cm1",
         "share_of_local_distance_squared",
@@ -20,40 +20,44 @@ pub(crate) fn bands_that_matter(found: &BandsThatMatter, target: &str) -> Plot {
     }
     let percent = |values: &[f64]| values.iter().map(|value| 100.0 * value).collect::<Vec<f64>>();
     let (local, nearest) = (percent(&found.share_local), percent(&found.share_nearest));
-    let top = local.iter().chain(&nearest).copied().fold(0.0, f64::max);
+    let most = local.iter().chain(&nearest).copied().fold(0.0, f64::max);
+    let top = 1.08 * if most > 0.0 { most } else { 1.0 };
     let mut figure = LineFigure::new(
         format!("Which bands tell {target} from {}", found.alternative),
-        wavenumber_axis(x),
-        Axis::linear("share of the squared distance (% per band)").range(0.0, 1.05 * top),
+        band_axis(bands),
+        Axis::linear("share of the squared distance (% per band)").range(0.0, top),
     )
     .subtitle("What each band adds to the square of the distance once the unknowns are fitted.");
-    let reach = x.last().copied().unwrap_or(0.0) - x.first().copied().unwrap_or(0.0);
     // A choice that tells nothing is no best one.
-    let filters = found.filters.iter().filter(|choice| choice.distance > 0.0);
-    let filters = filters.flat_map(|choice| &choice.passbands);
-    for (i, filter) in filters.enumerate() {
-        let count = found.filters.as_ref().map_or(0, |choice| choice.passbands.len());
-        let label = if i == 0 { best(count, "filter") } else { String::new() };
-        // Neighbours are told apart by a small gap.
-        let inset = (0.02 * (filter.high_cm1 - filter.low_cm1)).min(0.002 * reach);
-        let span = vec![filter.low_cm1 + inset, filter.high_cm1 - inset];
-        figure = figure.band(Band::new(label, span, vec![0.0; 2], vec![1.05 * top; 2]).colour(2));
+    let choice = found.filters.as_ref().filter(|choice| choice.distance > 0.0);
+    let filters = choice.map_or(&[][..], |choice| &choice.passbands);
+    for (i, filter) in filters.iter().enumerate() {
+        let label = match (i, filters.len()) {
+            (0, 1) => "best filter".into(),
+            (0, count) => format!("best {count} filters: the odd ones"),
+            (1, _) => "the even ones".into(),
+            _ => String::new(),
+        };
+        let span = vec![filter.low_cm1, filter.high_cm1];
+        let band = Band::new(label, span, vec![0.0; 2], vec![top; 2]);
+        // Neighbours are told apart by their shade.
+        figure = figure.band(if i % 2 == 0 { band.colour(2) } else { band.colour(4) });
     }
+    let curve = |label: &str, values: &[f64]| {
+        let (x, y) = over_bands(bands, values);
+        Series::line(label, x, y)
+    };
     figure = figure
-        .series(Series::line("local distance", x.clone(), local.clone()).colour(0))
-        .series(Series::line("nearest state", x.clone(), nearest).style(Style::Dashed).colour(1));
+        .series(curve("local distance", &local).colour(0))
+        .series(curve("nearest state", &nearest).style(Style::Dashed).colour(1));
     if let Some(choice) = found.bands.as_ref().filter(|choice| choice.distance > 0.0) {
         let at: Vec<f64> = choice.passbands.iter().map(|band| band.center_cm1).collect();
         let share = at.iter().map(|at| {
             let here = x.iter().position(|x| (x - at).abs() < 1e-6 * at);
             here.map_or(f64::NAN, |i| local[i])
         });
-        let label = best(at.len(), "band");
+        let label = if at.len() == 1 { "best band".into() } else { format!("best {} bands", at.len()) };
         figure = figure.series(Series::points(label, at.clone(), share.collect()).colour(3));
     }
     Plot { name: "bands_that_matter".into(), figure: figure.into(), table }
-}
-
-fn best(count: usize, what: &str) -> String {
-    if count == 1 { format!("best {what}") } else { format!("best {count} {what}s") }
 }

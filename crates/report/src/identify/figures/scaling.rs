@@ -1,14 +1,18 @@
 //! The scaling laws drawn.
 
 use crate::figures::Plot;
-use crate::plot::{Axis, Band, LineFigure, Series, Style};
+use crate::plot::{Axis, Band, LineFigure, Rule, Series, Style};
 use crate::table::Table;
-use hadar_study::study::Scaling;
+use crate::text::significant;
+use hadar_study::study::{Scaling, Study};
 
-/// Least distance against the size of the library.
+/// Least distance against the size of the library; nothing where there is only one size.
 #[must_use]
-pub(crate) fn library_size(scaling: &Scaling, target: &str) -> Plot {
+pub(crate) fn library_size(scaling: &Scaling, target: &str) -> Option<Plot> {
     let library = &scaling.library;
+    if library.materials.len() < 2 {
+        return None;
+    }
     let mut table = Table::new([
         "materials".to_owned(),
         format!("expected_minimum_{target}_per_sqrt_photon"),
@@ -32,64 +36,73 @@ pub(crate) fn library_size(scaling: &Scaling, target: &str) -> Plot {
         if of(2).iter().all(|d| *d == 0.0) { " All are 0." } else { "" }
     ))
     .band(Band::new("10 % to 90 % of the targets", x.clone(), of(0), of(2)))
-    .series(Series::line("median target", x.clone(), of(1)).colour(0))
-    .series(Series::line(format!("target {target}"), x, library.target.clone()).colour(1));
-    Plot { name: "library_size".into(), figure: figure.into(), table }
+    .series(Series::line("median target", x.clone(), of(1)).style(Style::Marked).colour(0))
+    .series(Series::line(format!("target {target}"), x, library.target.clone()).style(Style::Marked).colour(1));
+    Some(Plot { name: "library_size".into(), figure: figure.into(), table })
 }
 
-/// Least and median distance against the number of bands.
+/// Least and median distance against the number of bands, at the camera's photons where there is one; nothing where there
+/// is only one number.
 #[must_use]
-pub(crate) fn band_number(scaling: &Scaling, target: &str) -> Plot {
+pub(crate) fn band_number(scaling: &Scaling, study: &Study) -> Option<Plot> {
     let bands = &scaling.bands;
-    let with_camera = !bands.camera.is_empty();
+    if bands.bands.len() < 2 {
+        return None;
+    }
+    let target = &study.target().name;
+    let noisy = !bands.camera.is_empty();
     let mut header = vec!["bands", "minimum_per_sqrt_photon", "median_per_sqrt_photon"];
-    if with_camera {
+    if noisy {
         header.extend(["minimum_camera_statistical_distance", "median_camera_statistical_distance"]);
     }
     let mut table = Table::new(header);
     let x: Vec<f64> = bands.bands.iter().map(|&count| count as f64).collect();
     for (i, x) in x.iter().enumerate() {
         let mut row = vec![*x, bands.shot_noise[i], bands.shot_noise_median[i]];
-        if with_camera {
+        if noisy {
             row.extend([bands.camera[i], bands.camera_median[i]]);
         }
         table.push_numbers(&row);
     }
-    // What matters is how they change: each is shown relative to what all bands give.
-    let relative = |values: &[f64]| -> Vec<f64> {
-        let last = values.last().copied().unwrap_or(1.0);
-        values.iter().map(|value| value / last).collect()
-    };
+    // With a camera, what its photons make of them.
+    let photons = study.counting().map(|counting| counting.counts_per_radiance * study.photon_radiance());
+    let at_photons =
+        |values: &[f64]| values.iter().map(|d| d * photons.unwrap_or(1.0).sqrt()).collect::<Vec<f64>>();
     let left_out = match bands.left_out.as_slice() {
         [] => String::new(),
         [one] => format!(" Without {one}, which light alone does not tell as required."),
         more => format!(" Without {} alternatives that light alone does not tell as required.", more.len()),
     };
+    let axis = if photons.is_some() { "statistical distance d" } else { "distance (per √photon)" };
     let mut figure = LineFigure::new(
         format!("How many bands it takes to tell {target} from the library"),
-        Axis::log("bands"),
-        Axis::log("distance, relative to all bands"),
+        Axis::log("number of bands"),
+        Axis::log(axis),
     )
     .subtitle(format!(
         "Neighbouring bands joined. Photons are the same for any number of bands{}.{left_out}{}",
-        if with_camera { "; the camera's noise is added to every reading" } else { "" },
+        if noisy { "; the camera's noise is added to every reading" } else { "" },
         if bands.shot_noise_median.iter().all(|d| *d == 0.0) { " All are 0." } else { "" }
     ));
-    let mut curves = vec![
-        ("least, shot noise alone", &bands.shot_noise, 0),
-        ("median, shot noise alone", &bands.shot_noise_median, 0),
-    ];
-    if with_camera {
+    let shot = (at_photons(&bands.shot_noise), at_photons(&bands.shot_noise_median));
+    let mut curves = vec![("least, shot noise alone", &shot.0, 0), ("median, shot noise alone", &shot.1, 0)];
+    if noisy {
         curves.push(("least, noise of the camera", &bands.camera, 1));
         curves.push(("median, noise of the camera", &bands.camera_median, 1));
     }
+    let mut drawn: Vec<&Vec<f64>> = Vec::new();
     for (label, values, colour) in curves {
-        // An alternative that is the same leaves nothing in any number of bands.
-        if values.iter().any(|value| *value > 0.0) {
-            let style = if label.starts_with("median") { Style::Dashed } else { Style::Line };
-            figure =
-                figure.series(Series::line(label, x.clone(), relative(values)).style(style).colour(colour));
+        // An alternative that is the same leaves nothing in any number of bands; one alone is its own median.
+        if values.iter().any(|value| *value > 0.0) && !drawn.contains(&values) {
+            drawn.push(values);
+            let curve = Series::line(label, x.clone(), values.clone()).style(Style::Marked).colour(colour);
+            figure = figure.series(if label.starts_with("median") { curve.open() } else { curve });
         }
     }
-    Plot { name: "band_number".into(), figure: figure.into(), table }
+    if photons.is_some() {
+        let required = study.required_distance();
+        let label = format!("demanded: d = {}", significant(required, 3));
+        figure = figure.rule(Rule::horizontal(required, label));
+    }
+    Some(Plot { name: "band_number".into(), figure: figure.into(), table })
 }

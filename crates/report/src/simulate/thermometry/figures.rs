@@ -103,7 +103,13 @@ pub fn rmse(result: &Thermometry) -> Plot {
         rows.iter().map(|row| what(row).unwrap_or(f64::NAN)).collect::<Vec<f64>>()
     };
     let label = |unknown: bool| likelihood_label(result, unknown).to_owned();
-    let bound = |unknown: bool| label(unknown).replace("maximum likelihood", "bound");
+    // Where the range of the lighting stops the fits, their error may be below the bound.
+    let applies =
+        rows.iter().all(|row| row.lighting_unknown.as_ref().is_none_or(|reader| reader.bound_applies));
+    let bound = |unknown: bool| {
+        let only = if unknown && !applies { " (of unbiased estimates: not of these)" } else { "" };
+        label(unknown).replace("maximum likelihood", "bound") + only
+    };
     let columns = [
         (bound(false), Style::Line, 0, of(&|row| row.lighting_known.bound_k)),
         (label(false), Style::Points, 0, of(&|row| Some(row.lighting_known.errors.rmse))),
@@ -146,7 +152,8 @@ pub fn rmse(result: &Thermometry) -> Plot {
         result.camera,
         result.trials,
         if rows.iter().any(|row| range_bound(row).is_some()) {
-            " The dotted one stands where the range of the lighting stops the fits; it is for the error averaged over that range."
+            " Estimates that the range of the lighting holds are biased, and can err less than the bound for unknown lighting: \
+             to them the dotted one applies, for the error averaged over that range."
         } else {
             ""
         }

@@ -170,7 +170,7 @@ fn assumptions(result: &Thermometry) -> Vec<String> {
     lines.push(format!(
         "imaging with emissivity {}: black surroundings at {} all around are subtracted",
         result.fixed.emissivity,
-        result.fixed.reflected_k.map_or("no temperature".to_owned(), |t| shown(t))
+        result.fixed.reflected_k.map_or("no temperature".to_owned(), shown)
     ));
     lines.push(format!(
         "imaging with emissivity {} by hand: right at {}, nothing subtracted",

@@ -30,7 +30,7 @@ impl RangeStudy {
         let camera = scenario.camera.as_ref().map(|spec| camera::resolved(spec, source)).transpose()?;
         let mut scenario = scenario.clone();
         if let Some(spec) = &mut scenario.bands {
-            spec.source = camera_bands::asked(&spec.source, camera.as_ref());
+            spec.source = camera_bands::asked(&spec.source, camera.as_ref().zip(scenario.camera.as_ref()));
         }
         let asked = scenario.bands.as_ref().map(|spec| &spec.source);
         let bands = asked.map(|asked| bands::at_centres(asked, source)).transpose()?;

@@ -243,15 +243,17 @@ pub struct Line {
     pub columns: Vec<usize>,
     /// True depth, m.
     pub depth_m: Vec<f64>,
-    /// Least depth error, m.
+    /// Least depth error, m; of the disparity in pixels where depth is not known, as all that follows.
     pub bound_m: Vec<f64>,
+    /// The same of a lens without diffraction, as the views are that are matched.
+    pub bound_without_diffraction_m: Vec<f64>,
     /// Root-mean-square depth error of the matches, m.
     pub rmse_m: Vec<f64>,
     /// Mean depth error, m.
     pub bias_m: Vec<f64>,
     /// Share of matches that fail or miss by more than a pixel.
     pub outliers: Vec<f64>,
-    /// Median over the columns of the scatter of the matches, √(RMSE² − bias²), over the bound.
+    /// Median over the columns of the scatter of the matches, √(RMSE² − bias²), over the bound without diffraction.
     pub scatter_over_bound: Option<f64>,
     /// Trials.
     pub trials: usize,

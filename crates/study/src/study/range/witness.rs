@@ -45,12 +45,13 @@ impl RangeStudy {
         }
     }
 
-    /// Bounds along the lines of the scenario, with matches beside them where trials are asked for.
+    /// Bounds along the lines of the scenario, with matches beside them where trials are asked for. The maps are those with
+    /// diffraction and those without.
     pub(super) fn lines(
         &self,
         plan: &RangePlan,
         informed: &Informed,
-        maps: &BoundMaps,
+        [maps, sharp]: [&BoundMaps; 2],
         progress: Progress<'_>,
     ) -> Result<Vec<Line>> {
         let mut lines = Vec::new();
@@ -70,7 +71,8 @@ impl RangeStudy {
         let jobs = rows.len() * maps.disparity_error_px.len();
         for (i, &row) in rows.iter().enumerate() {
             for (k, (signal, errors)) in maps.disparity_error_px.iter().enumerate() {
-                let bound = self.bound_line(row, *signal, errors, maps)?;
+                let sharp = sharp.disparity_error_px.get(k).map_or(&[][..], |(_, errors)| errors);
+                let bound = self.bound_line(row, *signal, [errors, sharp], maps)?;
                 // In one band the cube is the image, and nothing is reconstructed.
                 if one_band && !MATCHED_IN_ONE_BAND.contains(signal) {
                     continue;
@@ -90,7 +92,13 @@ impl RangeStudy {
         Ok(lines)
     }
 
-    fn bound_line(&self, row: usize, signal: Signal, errors: &[f64], maps: &BoundMaps) -> Result<Line> {
+    fn bound_line(
+        &self,
+        row: usize,
+        signal: Signal,
+        [errors, sharp]: [&[f64]; 2],
+        maps: &BoundMaps,
+    ) -> Result<Line> {
         let width = maps.columns.len();
         let from = (row - maps.rows.start) * width;
         let mut line = Line {
@@ -100,6 +108,7 @@ impl RangeStudy {
             columns: Vec::new(),
             depth_m: Vec::new(),
             bound_m: Vec::new(),
+            bound_without_diffraction_m: Vec::new(),
             rmse_m: Vec::new(),
             bias_m: Vec::new(),
             outliers: Vec::new(),
@@ -115,11 +124,13 @@ impl RangeStudy {
             }
             line.columns.push(column);
             line.depth_m.push(*depth_m);
-            line.bound_m.push(if depth_m.is_nan() {
-                *error
-            } else {
-                self.geometry.depth_error_m(*depth_m, *error)?
-            });
+            let in_depth = |error: f64| match depth_m.is_nan() || error.is_nan() {
+                true => Ok(error),
+                false => self.geometry.depth_error_m(*depth_m, error),
+            };
+            line.bound_m.push(in_depth(*error)?);
+            line.bound_without_diffraction_m
+                .push(in_depth(sharp.get(from + i).copied().unwrap_or(f64::NAN))?);
         }
         Ok(line)
     }
@@ -166,7 +177,7 @@ impl RangeStudy {
             .zip(&line.bias_m)
             .map(|(rmse, bias)| ((rmse - bias) * (rmse + bias)).max(0.0).sqrt());
         let ratios: Vec<f64> = scatter
-            .zip(&line.bound_m)
+            .zip(&line.bound_without_diffraction_m)
             .map(|(scatter, bound)| scatter / bound)
             .filter(|ratio| ratio.is_finite())
             .collect();

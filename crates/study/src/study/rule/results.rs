@@ -25,8 +25,6 @@ pub struct RuleAnswer {
     pub cameras: Vec<CameraVerdict>,
     /// The part of the envelope in which no camera could do it; `None` where only the verdict was asked for.
     pub not_identifiable: Option<NotIdentifiable>,
-    /// Files and embedded entries that the answer rests on.
-    pub inputs: Vec<FileHash>,
     /// What the reader must know; what concerns one camera is with that camera.
     pub warnings: Vec<Warning>,
     /// What it took.
@@ -343,14 +341,4 @@ pub struct Neighbourhood {
     pub temperature_difference_k: f64,
     /// 1 − ΣV at most.
     pub unlit: f64,
-}
-
-/// A file or embedded entry, by its content.
-#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
-#[non_exhaustive]
-pub struct FileHash {
-    /// Where it is.
-    pub path: String,
-    /// SHA-256 of it.
-    pub sha256: String,
 }

@@ -121,8 +121,10 @@ impl Study {
             .into_iter()
             .filter_map(|distance| policy::photons_required(self.required, distance))
             .fold(0.0, f64::max);
-        let low = if least.is_finite() { least } else { own.unwrap_or(1e6) } * 1e-3;
-        let high = most.max(own.unwrap_or(0.0)).max(low * 1e3) * 1e3;
+        // From next to nothing to next to certainty, and the camera.
+        let least = if least.is_finite() { least } else { own.unwrap_or(1e6) };
+        let low = (1e-2 * least).min(own.map_or(f64::INFINITY, |own| 0.3 * own));
+        let high = most.max(least).max(own.map_or(0.0, |own| 0.3 * own)) * 10.0;
         let photons = logarithmic([low, high], CURVE_POINTS);
         let shot = |distance: f64| -> Vec<f64> {
             photons.iter().map(|n| detection::information_bits(n.sqrt() * distance)).collect()

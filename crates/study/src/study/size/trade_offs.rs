@@ -12,7 +12,8 @@ use rayon::prelude::*;
 impl Study {
     /// The trade-off curves of the pairs in [`trade_off::PAIRS`], against the limiting alternative of `result`; none
     /// without a camera. Those of a speed are left out where the scenario does not say enough for one, those of noise
-    /// where the detector has none, those of distance where nothing depends on it (neither size nor air).
+    /// where the detector has none, those of distance where nothing depends on it (neither size nor air), and all that
+    /// have no solution anywhere.
     ///
     /// # Errors
     /// As [`Study::size`].
@@ -29,14 +30,21 @@ impl Study {
             Quantity::Frames => task.size_m.is_some() || self.scenario.atmosphere.is_some(),
             _ => true,
         };
+        let solved = result.solve_for.iter().flat_map(|solutions| &solutions.0);
         let pairs: Vec<_> = PAIRS.iter().filter(known).collect();
         let traced = |pair| {
             let brightest = |trial: &Trial| self.brightest(trial);
             let speed_m_s = self.scenario.requirement.speed_m_s;
             let given = Circumstances { bands: &self.bands, speed_m_s, brightest: &brightest };
             let mut reach = Reach::new(self, alternative);
-            trade_off::trace(&task, pair, as_now, &given, &mut |task, quantity| reach.solve(task, quantity))
+            let alone =
+                |x| solved.clone().find(|(quantity, _)| *quantity == x).and_then(|(_, found)| found.value);
+            trade_off::trace(&task, pair, as_now, alone(pair.0), &given, &mut |task, quantity| {
+                reach.solve(task, quantity)
+            })
         };
-        demand::gathered(pairs.into_par_iter().map(|pair| demand::ledger_of(|| traced(*pair))))
+        let curves: Vec<TradeOff> =
+            demand::gathered(pairs.into_par_iter().map(|pair| demand::ledger_of(|| traced(*pair))))?;
+        Ok(curves.into_iter().filter(TradeOff::has_solution).collect())
     }
 }

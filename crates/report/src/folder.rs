@@ -1,0 +1,362 @@
+//! The folder that a report takes: checked before the work, and then the old report or the new one, never a mix.
+//!
+//! A report owns what the [`Manifest`] in its folder lists, as long as it is as it was written, and replaces nothing else. Files of
+//! others are refused, or left alone where that is asked for ([`Strangers`]), and what the run itself reads is never replaced. Hidden
+//! files, and folders that are reports themselves, are nobody's concern and stay.
+//!
+//! What is promised of a process that is killed at any time: a report of its own, in a folder that holds nothing else, is exchanged
+//! for the new one in one step, where the file system has that step (those of Linux and macOS do). Where the folder itself must stay,
+//! since other files are in it, or it is the current folder, a mount point or another user's, files are moved into it one by one;
+//! `hadar.json` goes first and comes last, so that a folder with it is whole, and one without it is completed by the next run that
+//! names it. Of a computer that loses its power no more is promised than its file system does.
+
+mod staging;
+
+use self::staging::{Staging, clear, is_staging};
+use crate::manifest::{self, Manifest, Provenance};
+use hadar::error::{Error, Result};
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// What to do about files in the folder that are not the report's own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Strangers {
+    /// Refuse the folder.
+    #[default]
+    Refuse,
+    /// Leave them alone, but those whose names the report takes.
+    KeepBesides,
+}
+
+/// A folder to be written to.
+#[derive(Debug, Clone)]
+pub struct Folder {
+    named: PathBuf,
+    strangers: Strangers,
+}
+
+/// What is in a folder.
+struct Content {
+    /// Of the report that is there; empty where there is none.
+    manifest: Option<Manifest>,
+    /// Whether nothing but that report is in it.
+    alone: bool,
+}
+
+impl Folder {
+    /// The folder of this name.
+    #[must_use]
+    pub fn new(named: impl Into<PathBuf>, strangers: Strangers) -> Self {
+        Self { named: named.into(), strangers }
+    }
+
+    /// Its name, as it was given.
+    #[must_use]
+    pub fn named(&self) -> &Path {
+        &self.named
+    }
+
+    /// Whether another name is one of the same folder.
+    #[must_use]
+    pub fn is(&self, other: &Self) -> bool {
+        self.place().ok().zip(other.place().ok()).is_some_and(|(own, other)| own == other)
+    }
+
+    /// Makes sure that a report can be written, before any work is done for it. Finishes what a run that was killed has left.
+    ///
+    /// # Errors
+    /// A path that is a file or a link to nothing, where nothing may be written, or with files of others in it.
+    pub fn check(&self) -> Result<()> {
+        let place = self.place()?;
+        self.recover(&place)?;
+        self.content(&place)?;
+        let home = nearest_folder(&place).unwrap_or_else(|| PathBuf::from("."));
+        Staging::in_folder(&home).map(drop).map_err(|error| self.refused(&error))
+    }
+
+    /// Makes sure that none of the `inputs` is where the report, or what it replaces, has a file of these names.
+    ///
+    /// # Errors
+    /// The first one that is.
+    pub fn check_inputs(&self, inputs: &[PathBuf], names: &[&str]) -> Result<()> {
+        let place = self.place()?;
+        let listed = Manifest::in_folder(&place);
+        let listed = listed.iter().flat_map(|manifest| &manifest.files).map(|file| file.name.as_str());
+        for name in names.iter().copied().chain([manifest::NAME]).chain(listed) {
+            let path = place.join(name);
+            if let Some(input) = inputs.iter().find(|input| is_same(input, &path)) {
+                let reason = format!(
+                    "`{name}` in it is read by this run as {}, and would be replaced; name another folder",
+                    input.display()
+                );
+                return Err(Error::file("write the report", &self.named, reason));
+            }
+        }
+        Ok(())
+    }
+
+    /// The files that a run wrote here, as they were written.
+    ///
+    /// # Errors
+    /// As [`Folder::check`].
+    pub fn own_files(&self) -> Result<Vec<(String, Vec<u8>)>> {
+        let place = self.place()?;
+        let Some(manifest) = Manifest::in_folder(&place) else { return Ok(Vec::new()) };
+        let own = manifest.files.iter().map(|file| &file.name).filter(|name| manifest.owns(&place, name));
+        own.map(|name| Ok((name.clone(), fs::read(place.join(name)).map_err(|error| self.refused(&error))?)))
+            .collect()
+    }
+
+    /// Writes files and the manifest that lists them. None of `inputs` is replaced.
+    ///
+    /// # Errors
+    /// As [`Folder::check`] and [`Folder::check_inputs`]; a disk that is full. Then what was there is there unchanged.
+    pub fn write(
+        &self,
+        files: &[(String, Vec<u8>)],
+        provenance: &Provenance,
+        inputs: &[PathBuf],
+    ) -> Result<()> {
+        let place = self.place()?;
+        self.recover(&place)?;
+        let content = self.content(&place)?;
+        let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
+        self.check_inputs(inputs, &names)?;
+        // A file cannot take the place of a folder: found out before the first one is moved.
+        if let Some((name, _)) = files.iter().find(|(name, _)| place.join(name).is_dir()) {
+            let reason = format!("its `{name}` is a folder, which no file may replace; name another folder");
+            return Err(Error::file("write the report", &self.named, reason));
+        }
+        let manifest =
+            Manifest::of(provenance, files.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice())));
+        let fill = |report: &Path| -> io::Result<()> {
+            files.iter().try_for_each(|(name, bytes)| fs::write(report.join(name), bytes))?;
+            fs::write(report.join(manifest::NAME), manifest.to_json().map_err(io::Error::other)?)
+        };
+        let whole = match place.parent().filter(|_| content.alone) {
+            Some(parent) => exchanged(&place, parent, content.manifest.as_ref(), &fill),
+            None => Ok(false),
+        };
+        let written = match whole {
+            Ok(true) => return Ok(()),
+            Ok(false) => moved(&place, &fill),
+            Err(error) => Err(error),
+        };
+        written.map_err(|error| self.refused(&error))
+    }
+
+    /// The folder without links, so that what is beside it is beside it.
+    fn place(&self) -> Result<PathBuf> {
+        let refuse = |reason: &str| Error::file("write the report", &self.named, reason);
+        if self.named.as_os_str().is_empty() {
+            return Err(refuse("the name is empty; name a folder"));
+        }
+        if self.named.is_file() {
+            return Err(refuse("this is a file; name a folder"));
+        }
+        let home = match nearest_folder(&self.named) {
+            Some(home) if home.is_dir() => home,
+            Some(_) => return Err(self.refused(&io::ErrorKind::NotADirectory.into())),
+            None => PathBuf::from("."),
+        };
+        if self.named.ancestors().take_while(|part| *part != home).any(Path::is_symlink) {
+            return Err(refuse("it is a link to nothing; name a folder, or remove the link"));
+        }
+        let rest = self.named.strip_prefix(&home).unwrap_or(&self.named);
+        let home = home.canonicalize().map_err(|error| self.refused(&error))?;
+        Ok(if rest.as_os_str().is_empty() { home } else { home.join(rest) })
+    }
+
+    /// Clears what dead processes have left here and beside, and finishes what they had complete.
+    fn recover(&self, place: &Path) -> Result<()> {
+        let nothing = |_: &Path| Ok(());
+        let beside = place.parent().map_or(Ok(()), |parent| clear(parent, &nothing));
+        let within = beside.and_then(|()| clear(place, &|ready| publish(ready, place)));
+        within.map_err(|error| self.refused(&error))
+    }
+
+    /// What is in the folder, if it may be written to.
+    fn content(&self, place: &Path) -> Result<Content> {
+        let manifest = Manifest::in_folder(place);
+        let mut content = Content { manifest, alone: true };
+        if !place.exists() {
+            return Ok(content);
+        }
+        let entries = fs::read_dir(place).and_then(Iterator::collect::<io::Result<Vec<_>>>);
+        let mut names: Vec<_> =
+            entries.map_err(|error| self.refused(&error))?.iter().map(fs::DirEntry::file_name).collect();
+        names.sort();
+        for name in names {
+            let (name, path) = (name.to_string_lossy().into_owned(), place.join(&name));
+            let (owned, listed) = content
+                .manifest
+                .as_ref()
+                .map_or((false, false), |manifest| (manifest.owns(place, &name), manifest.lists(&name)));
+            if owned {
+                continue;
+            }
+            content.alone = false;
+            let bystander = !listed
+                && (is_staging(&path)
+                    || is_hidden(&name)
+                    || (!path.is_symlink() && Manifest::in_folder(&path).is_some()));
+            if !bystander && self.strangers == Strangers::Refuse {
+                let found = match (listed, &content.manifest) {
+                    (true, _) => format!("its `{name}` was changed since hadar wrote it"),
+                    (false, Some(_)) => {
+                        format!("`{name}` in it was not written by the run of hadar that wrote the rest")
+                    }
+                    (false, None) => {
+                        format!("it holds `{name}`, and no {} says that hadar wrote it", manifest::NAME)
+                    }
+                };
+                let instead =
+                    "name another folder, or add --force to keep what is not in the way and replace what is";
+                return Err(Error::file("write the report", &self.named, format!("{found}; {instead}")));
+            }
+        }
+        Ok(content)
+    }
+
+    fn refused(&self, error: &io::Error) -> Error {
+        let reason = match error.kind() {
+            io::ErrorKind::PermissionDenied => "no permission; name a folder you may write to".to_owned(),
+            io::ErrorKind::ReadOnlyFilesystem => "read-only; name a folder you may write to".to_owned(),
+            io::ErrorKind::NotADirectory => "part of the path is a file; name a folder".to_owned(),
+            _ => format!("{error}; name a folder you may write to"),
+        };
+        Error::file("write the report", &self.named, reason)
+    }
+}
+
+/// Makes a report beside its folder, which holds nothing but the `old` one, and puts it there in one step. `false` where the folder
+/// itself has to stay.
+fn exchanged(
+    place: &Path,
+    parent: &Path,
+    old: Option<&Manifest>,
+    fill: &dyn Fn(&Path) -> io::Result<()>,
+) -> io::Result<bool> {
+    let there = place.is_dir();
+    if there && std::env::current_dir().is_ok_and(|here| here.starts_with(place)) {
+        return Ok(false);
+    }
+    if !there {
+        fs::create_dir_all(parent)?;
+    }
+    let staging = match Staging::in_folder(parent) {
+        Ok(staging) => staging,
+        Err(_) if there => return Ok(false),
+        Err(error) => return Err(error),
+    };
+    let new = staging.new_report();
+    fill(&new)?;
+    if !there {
+        return fs::rename(new, place).map(|()| true);
+    }
+    if !same_owner(place, &new) || swap(&new, place).is_err() {
+        return Ok(false);
+    }
+    // What came into the old folder at the last moment is not the report's: it goes where it was meant to go.
+    for entry in fs::read_dir(&new).into_iter().flatten().flatten() {
+        let name = entry.file_name();
+        let own = old.is_some_and(|old| old.lists(&name.to_string_lossy()));
+        if !own && !place.join(&name).exists() {
+            let _ = fs::rename(entry.path(), place.join(&name));
+        }
+    }
+    Ok(true)
+}
+
+/// Makes a report within its folder, and moves its files one by one.
+fn moved(place: &Path, fill: &dyn Fn(&Path) -> io::Result<()>) -> io::Result<()> {
+    fs::create_dir_all(place)?;
+    let mut staging = Staging::in_folder(place)?;
+    fill(&staging.new_report())?;
+    let ready = staging.commit()?;
+    publish(&ready, place)?;
+    staging.done();
+    Ok(())
+}
+
+/// Moves a complete report into its folder, from wherever the one who began was stopped.
+fn publish(ready: &Path, place: &Path) -> io::Result<()> {
+    let Some(new) = Manifest::in_folder(ready) else { return Ok(()) };
+    // From here on the folder is no whole report, and says so.
+    let old = ready.with_file_name("old");
+    if Manifest::in_folder(place).is_some() {
+        fs::create_dir_all(&old)?;
+        rename(place.join(manifest::NAME), old.join(manifest::NAME))?;
+    }
+    if let Some(old) = Manifest::in_folder(&old) {
+        let obsolete = old.files.iter().map(|file| &file.name).filter(|name| !new.lists(name));
+        obsolete
+            .filter(|name| old.owns(place, name))
+            .try_for_each(|name| fs::remove_file(place.join(name)))?;
+    }
+    let names = new.files.iter().map(|file| file.name.as_str()).chain([manifest::NAME]);
+    names
+        .filter(|name| ready.join(name).exists())
+        .try_for_each(|name| rename(ready.join(name), place.join(name)))
+}
+
+#[cfg(not(test))]
+use fs::rename;
+
+#[cfg(test)]
+use tests::rename;
+
+/// Exchanges two folders in one step.
+#[cfg(any(target_vendor = "apple", target_os = "linux", target_os = "android"))]
+fn swap(a: &Path, b: &Path) -> io::Result<()> {
+    use rustix::fs::{CWD, RenameFlags, renameat_with};
+    fs::set_permissions(a, b.metadata()?.permissions())?;
+    Ok(renameat_with(CWD, a, CWD, b, RenameFlags::EXCHANGE)?)
+}
+
+#[cfg(not(any(target_vendor = "apple", target_os = "linux", target_os = "android")))]
+fn swap(_: &Path, _: &Path) -> io::Result<()> {
+    Err(io::ErrorKind::Unsupported.into())
+}
+
+/// Whether two paths belong to the same user and group.
+#[cfg(unix)]
+fn same_owner(a: &Path, b: &Path) -> bool {
+    use std::os::unix::fs::MetadataExt as _;
+    let of = |path: &Path| path.metadata().map(|found| (found.uid(), found.gid())).ok();
+    of(a).is_some() && of(a) == of(b)
+}
+
+#[cfg(not(unix))]
+fn same_owner(_: &Path, _: &Path) -> bool {
+    true
+}
+
+/// Whether two paths lead to one file.
+fn is_same(a: &Path, b: &Path) -> bool {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::MetadataExt as _;
+        let of = |path: &Path| path.metadata().map(|found| (found.dev(), found.ino())).ok();
+        of(a).is_some() && of(a) == of(b)
+    }
+    #[cfg(not(unix))]
+    {
+        let of = |path: &Path| path.canonicalize().ok();
+        of(a).is_some() && of(a) == of(b)
+    }
+}
+
+/// What file managers and version control leave behind.
+fn is_hidden(name: &str) -> bool {
+    name.starts_with('.') || ["Thumbs.db", "desktop.ini"].contains(&name)
+}
+
+/// The part of a path that is there already.
+fn nearest_folder(path: &Path) -> Option<PathBuf> {
+    path.ancestors().find(|part| part.exists()).map(Path::to_owned)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,198 @@
+use super::*;
+use std::cell::Cell;
+use std::collections::BTreeMap;
+
+thread_local! {
+    /// Files that may still be moved before the process is taken to be killed.
+    static MOVES_LEFT: Cell<usize> = const { Cell::new(usize::MAX) };
+}
+
+/// Moves a file, unless the process is dead by then.
+pub(super) fn rename(from: impl AsRef<Path>, to: impl AsRef<Path>) -> io::Result<()> {
+    let left = MOVES_LEFT.get();
+    if left == 0 {
+        return Err(io::Error::other("killed"));
+    }
+    MOVES_LEFT.set(left - 1);
+    fs::rename(from, to)
+}
+
+fn files(names: &[&str], content: &str) -> Vec<(String, Vec<u8>)> {
+    names.iter().map(|name| ((*name).to_owned(), format!("{name} {content}").into_bytes())).collect()
+}
+
+fn write(folder: &Folder, names: &[&str], content: &str) -> Result<()> {
+    folder.write(&files(names, content), &Provenance::default(), &[])
+}
+
+/// All files of a folder with their content, but the manifest.
+fn content(folder: &Path) -> BTreeMap<String, String> {
+    let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap());
+    let files = entries.filter(|entry| entry.path().is_file() && entry.file_name() != manifest::NAME);
+    files.map(|e| (e.file_name().into_string().unwrap(), fs::read_to_string(e.path()).unwrap())).collect()
+}
+
+fn of(names: &[&str], text: &str) -> BTreeMap<String, String> {
+    names.iter().map(|name| ((*name).to_owned(), format!("{name} {text}"))).collect()
+}
+
+#[track_caller]
+fn refusal(result: Result<()>, part: &str) {
+    let message = result.unwrap_err().to_string();
+    assert!(message.contains(part), "{part}: {message}");
+}
+
+#[test]
+fn a_report_replaces_its_own_files_and_nothing_stays_beside_it() {
+    let home = tempfile::tempdir().unwrap();
+    let place = home.path().join("a/b");
+    let folder = Folder::new(&place, Strangers::Refuse);
+    folder.check().unwrap();
+    assert!(!home.path().join("a").exists(), "a check makes nothing");
+    write(&folder, &["x.csv", "gone.csv"], "1").unwrap();
+    folder.check().unwrap();
+    write(&folder, &["x.csv", "new.csv"], "2").unwrap();
+    assert_eq!(content(&place), of(&["x.csv", "new.csv"], "2"));
+    assert_eq!(fs::read_dir(place.parent().unwrap()).unwrap().count(), 1);
+    assert_eq!(fs::read_dir(&place).unwrap().count(), 3);
+    let manifest = Manifest::in_folder(&place).unwrap();
+    assert!(manifest.files.iter().all(|file| manifest.owns(&place, &file.name)) && manifest.files.len() == 2);
+}
+
+#[test]
+fn strangers_are_refused_before_the_work_and_stay_where_they_are_kept() {
+    let home = tempfile::tempdir().unwrap();
+    let place = home.path().join("out");
+    let (careful, keeping) =
+        (Folder::new(&place, Strangers::Refuse), Folder::new(&place, Strangers::KeepBesides));
+    fs::create_dir(&place).unwrap();
+    careful.check().unwrap();
+    fs::write(place.join("x.csv"), "mine").unwrap();
+    fs::write(place.join("notes.md"), "mine").unwrap();
+    refusal(careful.check(), "it holds `notes.md`, and no hadar.json says that hadar wrote it");
+    refusal(write(&careful, &["x.csv"], "1"), "--force");
+    assert_eq!(fs::read_to_string(place.join("x.csv")).unwrap(), "mine");
+    keeping.check().unwrap();
+    write(&keeping, &["x.csv", "y.csv"], "1").unwrap();
+    let mut expected = of(&["x.csv", "y.csv"], "1");
+    expected.insert("notes.md".into(), "mine".into());
+    assert_eq!(content(&place), expected);
+    refusal(careful.check(), "`notes.md` in it was not written by the run");
+    fs::remove_file(place.join("notes.md")).unwrap();
+    careful.check().unwrap();
+    // What was changed since is another's.
+    fs::write(place.join("y.csv"), "edited").unwrap();
+    refusal(careful.check(), "its `y.csv` was changed since hadar wrote it");
+    write(&keeping, &["x.csv"], "2").unwrap();
+    assert_eq!(fs::read_to_string(place.join("y.csv")).unwrap(), "edited");
+    // Hidden files and reports of their own are in nobody's way.
+    fs::remove_file(place.join("y.csv")).unwrap();
+    fs::write(place.join(".gitignore"), "*").unwrap();
+    write(&Folder::new(place.join("below"), Strangers::Refuse), &["z.csv"], "1").unwrap();
+    write(&careful, &["x.csv"], "3").unwrap();
+    assert!(place.join(".gitignore").exists() && place.join("below/z.csv").exists());
+    fs::create_dir(place.join("folder.csv")).unwrap();
+    refusal(write(&keeping, &["folder.csv"], "1"), "`folder.csv` is a folder");
+}
+
+#[test]
+fn an_input_is_never_replaced() {
+    let home = tempfile::tempdir().unwrap();
+    let place = home.path().join("out");
+    let folder = Folder::new(&place, Strangers::KeepBesides);
+    write(&folder, &["scenario.toml"], "1").unwrap();
+    let [same, linked] = ["out/./scenario.toml", "linked.toml"].map(|name| home.path().join(name));
+    #[cfg(unix)]
+    std::os::unix::fs::symlink("out/scenario.toml", &linked).unwrap();
+    #[cfg(not(unix))]
+    fs::hard_link(&same, &linked).unwrap();
+    for input in [same, linked] {
+        let inputs = [input];
+        refusal(folder.check_inputs(&inputs, &[]), "`scenario.toml` in it is read by this run");
+        let result = folder.write(&files(&["a.csv"], "2"), &Provenance::default(), &inputs);
+        refusal(result, "name another folder");
+    }
+    assert_eq!(content(&place), of(&["scenario.toml"], "1"));
+    // Beside the report it is in nobody's way.
+    fs::write(place.join("mine.toml"), "mine").unwrap();
+    let inputs = [place.join("mine.toml")];
+    folder.write(&files(&["a.csv"], "2"), &Provenance::default(), &inputs).unwrap();
+    assert_eq!(content(&place).len(), 2);
+    refusal(folder.write(&files(&["mine.toml"], "2"), &Provenance::default(), &inputs), "`mine.toml`");
+}
+
+#[test]
+fn what_is_no_folder_is_refused() {
+    let home = tempfile::tempdir().unwrap();
+    let at = |name: &str| Folder::new(home.path().join(name), Strangers::KeepBesides);
+    fs::write(home.path().join("file"), "").unwrap();
+    refusal(at("file").check(), "this is a file");
+    refusal(at("file/below").check(), "part of the path is a file");
+    refusal(Folder::new("", Strangers::Refuse).check(), "the name is empty");
+    #[cfg(unix)]
+    {
+        std::os::unix::fs::symlink("nowhere", home.path().join("dangling")).unwrap();
+        refusal(at("dangling").check(), "a link to nothing");
+        refusal(at("dangling/below").check(), "a link to nothing");
+        // A link to a folder is that folder.
+        fs::create_dir(home.path().join("real")).unwrap();
+        std::os::unix::fs::symlink("real", home.path().join("link")).unwrap();
+        write(&at("link"), &["a.csv"], "1").unwrap();
+        assert!(home.path().join("link").is_symlink() && home.path().join("real/a.csv").exists());
+    }
+    refusal(write(&at("out"), &["no/such/folder.csv"], "1"), "write the report");
+    assert!(!home.path().join("out").exists());
+}
+
+/// Killed before any of the moves, a report that must be moved file by file is finished by the next run that looks at the folder.
+#[test]
+fn a_report_half_moved_is_finished_by_the_next_run() {
+    let (old, new) = (["a.csv", "b.csv", "c.csv"], ["a.csv", "d.csv"]);
+    for killed_after in 0..5 {
+        let home = tempfile::tempdir().unwrap();
+        let folder = Folder::new(home.path(), Strangers::KeepBesides);
+        fs::write(home.path().join("mine"), "").unwrap();
+        write(&folder, &old, "1").unwrap();
+        MOVES_LEFT.set(killed_after);
+        let result = write(&folder, &new, "2");
+        MOVES_LEFT.set(usize::MAX);
+        assert_eq!(result.is_ok(), killed_after >= 4, "{killed_after}");
+        // Whole, or without a manifest that says so.
+        assert!(killed_after == 0 || killed_after >= 4 || Manifest::in_folder(home.path()).is_none());
+        folder.check().unwrap();
+        let mut expected = of(&new, "2");
+        expected.insert("mine".into(), String::new());
+        assert_eq!(content(home.path()), expected, "{killed_after}");
+        assert_eq!(fs::read_dir(home.path()).unwrap().count(), 4, "{killed_after}");
+    }
+}
+
+#[test]
+fn folders_of_the_dead_are_cleared_and_those_of_the_living_are_not() {
+    let home = tempfile::tempdir().unwrap();
+    let place = home.path().join("out");
+    let alive = Staging::in_folder(home.path()).unwrap();
+    let dead = home.path().join(".hadar-0123456789ab");
+    fs::create_dir_all(dead.join("new")).unwrap();
+    fs::write(dead.join("lock"), "").unwrap();
+    fs::write(dead.join("new/x.csv"), "").unwrap();
+    // Of someone else who likes the name, and of a process that has made no more of it yet.
+    let others = [".hadar-notes", ".hadar-ba9876543210"].map(|name| home.path().join(name));
+    others.iter().for_each(|path| fs::create_dir(path).unwrap());
+    Folder::new(&place, Strangers::Refuse).check().unwrap();
+    assert!(!dead.exists());
+    assert!(alive.new_report().exists() && others.iter().all(|path| path.exists()));
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt as _;
+        let staging = alive.new_report().parent().unwrap().metadata().unwrap();
+        assert_eq!(staging.permissions().mode() & 0o777, 0o700);
+        // The report itself is as open as any other folder that is made here.
+        let mode = |path: &Path| path.metadata().unwrap().permissions().mode() & 0o777;
+        write(&Folder::new(&place, Strangers::Refuse), &["x.csv"], "1").unwrap();
+        assert_eq!(mode(&place), mode(&others[0]));
+        fs::set_permissions(&place, fs::Permissions::from_mode(0o750)).unwrap();
+        write(&Folder::new(&place, Strangers::Refuse), &["x.csv"], "2").unwrap();
+        assert_eq!(mode(&place), 0o750);
+    }
+}

@@ -1,0 +1,170 @@
+//! A report as one page: the answer, pictures, tables, what it rests on, warnings with what to do, the question, who made it of what.
+//!
+//! One file without script, and without anything that is loaded from elsewhere, so that it can be mailed, archived and printed as it
+//! is. Every picture has its title as its name, every table a caption and heads of rows and columns; order and headings are those
+//! of reading. It is set for a telephone, a screen and paper by one style sheet.
+
+mod answer;
+mod element;
+mod table;
+
+use self::element::{escape, wide};
+use crate::manifest::{Provenance, VERSION};
+use crate::table::Table;
+use hadar_study::study::Warning;
+use hadar_study::warning::Code;
+use std::borrow::Cow;
+use std::fmt::Write as _;
+
+const STYLE: &str = include_str!("html/style.css");
+
+/// A figure.
+pub(crate) struct Drawing<'a> {
+    /// Of its files, without ending.
+    pub(crate) name: &'a str,
+    pub(crate) svg: Cow<'a, str>,
+    /// What is said of it beside its title; nothing where empty.
+    pub(crate) said: &'a str,
+}
+
+/// What is on a page.
+pub(crate) struct Page<'a> {
+    pub(crate) title: Option<&'a str>,
+    /// The answer, as it is printed.
+    pub(crate) answer: &'a str,
+    pub(crate) drawings: Vec<Drawing<'a>>,
+    /// Tables with the names of their files.
+    pub(crate) tables: &'a [(String, Table)],
+    pub(crate) warnings: &'a [Warning],
+    /// What was asked: the name of a file that asks it again, and its text.
+    pub(crate) asked: Option<(&'a str, &'a str)>,
+    pub(crate) provenance: &'a Provenance,
+}
+
+/// The page as a file.
+pub(crate) fn page(page: &Page<'_>) -> String {
+    let answer = answer::Answer::of(page.answer);
+    let title = escape(page.title.unwrap_or("What a thermal camera can see"));
+    let mut sections = vec![("answer", "Answer", lines(answer.details))];
+    let pictures: String =
+        page.drawings.iter().enumerate().map(|(i, drawing)| figure(i + 1, drawing)).collect();
+    sections.push(("pictures", "Pictures", pictures));
+    let tables: String = page.tables.iter().map(|(name, rows)| table::html(name, rows)).collect();
+    sections.push(("tables", "Tables", tables));
+    sections.push(("assumptions", "What this rests on", list(&answer.assumptions)));
+    sections.push(("warnings", "Warnings", warnings(page.warnings)));
+    let asked = page.asked.map_or_else(String::new, |(name, text)| {
+        let given = "All of it, with what was left to the program filled in. Given to the program again, it gives this report again.";
+        format!("<p><code>{name}</code>: {given}</p>\n{}", verbatim(name, &escape(text.trim_end())))
+    });
+    sections.push(("question", "The question", asked));
+    sections.push(("provenance", "Provenance", provenance(page.provenance)));
+    sections.retain(|(_, _, content)| !content.is_empty());
+
+    let mut out = format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+         <meta name=\"generator\" content=\"hadar {VERSION}\">\n<title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n\
+         <header>\n<h1>{title}</h1>\n<p class=\"verdict\">{}</p>\n<nav aria-label=\"Contents\">\n<ul>\n",
+        escape(answer.verdict)
+    );
+    for (id, heading, _) in &sections {
+        let _ = writeln!(out, "<li><a href=\"#{id}\">{heading}</a></li>");
+    }
+    out.push_str("</ul>\n</nav>\n</header>\n<main>\n");
+    for (id, heading, content) in &sections {
+        let _ = writeln!(out, "<section id=\"{id}\" aria-labelledby=\"{id}-heading\">");
+        let _ = writeln!(out, "<h2 id=\"{id}-heading\">{heading}</h2>\n{content}</section>");
+    }
+    out.push_str("</main>\n</body>\n</html>\n");
+    out
+}
+
+/// A picture within the page, named by its own title.
+fn figure(number: usize, drawing: &Drawing<'_>) -> String {
+    let (id, name) = (format!("figure-{number}"), drawing.name);
+    let (described, said) = match drawing.said {
+        "" => Default::default(),
+        said => {
+            let described = format!(" aria-describedby=\"{id}-said\"");
+            (described, format!("\n<desc id=\"{id}-said\">{}</desc>", escape(said)))
+        }
+    };
+    // Within a page the names of elements need no address.
+    let svg = drawing.svg.replacen(" xmlns=\"http://www.w3.org/2000/svg\"", "", 1);
+    let svg = svg.replacen("<svg ", &format!("<svg aria-labelledby=\"{id}\"{described} "), 1);
+    let svg = svg.replacen("<title>", &format!("<title id=\"{id}\">"), 1);
+    let svg = svg.replacen("</title>", &format!("</title>{said}"), 1);
+    format!(
+        "<figure>\n{}<figcaption>Figure {number}. Its numbers are in <code>{name}.csv</code>.</figcaption>\n</figure>\n",
+        wide(&format!("Figure {number}"), &svg)
+    )
+}
+
+/// Text as it stands in a file.
+fn verbatim(name: &str, text: &str) -> String {
+    format!("<pre tabindex=\"0\" role=\"group\" aria-label=\"{name}\">{text}</pre>\n")
+}
+
+/// Text as it is printed; a line too long for the page goes on indented.
+fn lines(text: &str) -> String {
+    if text.is_empty() {
+        return String::new();
+    }
+    let lines = text.lines().map(|line| format!("<span class=\"line\">{}</span>", escape(line)));
+    verbatim("Answer", &lines.collect::<String>())
+}
+
+fn list(items: &[String]) -> String {
+    if items.is_empty() {
+        return String::new();
+    }
+    let items: String = items.iter().map(|item| format!("<li>{}</li>\n", escape(item))).collect();
+    format!("<ul>\n{items}</ul>\n")
+}
+
+/// Every kind of warning once: what it means, what to do, and what was said of which.
+fn warnings(warnings: &[Warning]) -> String {
+    let mut codes: Vec<Code> = Vec::new();
+    for warning in warnings {
+        if !codes.contains(&warning.code()) {
+            codes.push(warning.code());
+        }
+    }
+    let of = |code: Code| {
+        let said = warnings.iter().filter(|warning| warning.code() == code).map(ToString::to_string);
+        format!(
+            "<h3><code>{}</code></h3>\n<p>{} {}</p>\n{}",
+            code.name(),
+            escape(code.meaning()),
+            format_args!("<strong>What to do:</strong> {}", escape(code.remedy())),
+            list(&said.collect::<Vec<_>>())
+        )
+    };
+    codes.into_iter().map(of).collect()
+}
+
+fn provenance(made: &Provenance) -> String {
+    let rows = [
+        ("Program", format!("hadar {VERSION}")),
+        ("Commit", made.commit.clone()),
+        ("Command", made.command_line()),
+        ("Seed", made.seed.to_string()),
+    ];
+    let rows = rows.map(|(name, value)| format!("<dt>{name}</dt><dd><code>{}</code></dd>\n", escape(&value)));
+    let mut out = format!("<dl>\n{}</dl>\n", rows.concat());
+    if !made.inputs.is_empty() {
+        let mut table = String::from(
+            "<table class=\"hashes\">\n<caption>All that was read</caption>\n\
+             <thead><tr><th scope=\"col\">input</th><th scope=\"col\">SHA-256</th></tr></thead>\n<tbody>\n",
+        );
+        for input in &made.inputs {
+            let hash = input.sha256.as_deref().unwrap_or("can be read only once");
+            let path = escape(&input.path);
+            let _ = writeln!(table, "<tr><th scope=\"row\">{path}</th><td><code>{hash}</code></td></tr>");
+        }
+        out.push_str(&wide("Inputs", &(table + "</tbody>\n</table>\n")));
+    }
+    out + "<p>The files that were written with this one are listed in <code>hadar.json</code>, with their hashes. It bears no date: the \
+           same program, command and inputs make the same bytes.</p>\n"
+}

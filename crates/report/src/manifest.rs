@@ -1,0 +1,215 @@
+//! `hadar.json`: what a folder of files is, who made it of what, and which files in it are its own.
+//!
+//! Nothing in it depends on when or where it was made: no time, no machine, no folder of the one who ran it. The same program with
+//! the same command and inputs writes the same bytes, so that anyone can check a report by making it again.
+
+use hadar::error::{Error, Result};
+use hadar::inputs::Inputs;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+use std::fs::File;
+use std::io::Read as _;
+use std::path::{Path, PathBuf};
+
+/// The name of the file.
+pub const NAME: &str = "hadar.json";
+
+/// The version of this program.
+pub const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+/// The number of the form of every JSON that is printed or written. It rises when a key goes or changes its meaning; keys may be
+/// added without.
+pub const SCHEMA: u32 = 1;
+
+/// Who made a report of what.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Provenance {
+    /// Commit of the program's source, with `-dirty` if that was changed since; `unknown` where it was built without a repository.
+    pub commit: String,
+    /// The command without what changes no answer, such as the folder it is written to.
+    pub command: Vec<String>,
+    /// Seed of random numbers.
+    pub seed: u64,
+    /// All that was read, in the order of reading; then what is built in.
+    pub inputs: Vec<Input>,
+}
+
+/// A file or something built in, by its content.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Input {
+    /// Where it is, from the scenario's folder; `built-in: material skin` of what comes with the program.
+    pub path: String,
+    /// SHA-256 of it; none of what can be read only once.
+    pub sha256: Option<String>,
+}
+
+/// A file of the folder, by its content.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Written {
+    /// Its name.
+    pub name: String,
+    /// SHA-256 of it.
+    pub sha256: String,
+}
+
+/// The content of `hadar.json`.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Manifest {
+    /// Version of the program.
+    pub hadar: String,
+    /// See [`SCHEMA`].
+    pub schema: u32,
+    /// Who made it of what.
+    #[serde(flatten)]
+    pub provenance: Provenance,
+    /// Every other file that was written.
+    pub files: Vec<Written>,
+}
+
+impl Provenance {
+    /// That of a run which read `inputs`, the scenario first.
+    ///
+    /// # Errors
+    /// A file that can no longer be read.
+    pub fn of(commit: &str, command: Vec<String>, seed: u64, inputs: &Inputs) -> Result<Self> {
+        let home = inputs.files.first().and_then(|file| std::path::absolute(file).ok());
+        let home = home.as_deref().and_then(Path::parent);
+        let mut listed = Vec::with_capacity(inputs.files.len() + inputs.built_in.len());
+        for file in &inputs.files {
+            let absolute = std::path::absolute(file).ok();
+            let beside = absolute.as_deref().zip(home).and_then(|(file, home)| file.strip_prefix(home).ok());
+            let sha256 =
+                sha256_of_file(file).map_err(|error| Error::file("read for its hash", file, error.kind()))?;
+            listed.push(Input { path: slashed(beside.unwrap_or(file)), sha256 });
+        }
+        for ((kind, name), content) in &inputs.built_in {
+            listed.push(Input { path: format!("built-in: {kind} {name}"), sha256: Some(sha256(content)) });
+        }
+        Ok(Self { commit: commit.to_owned(), command, seed, inputs: listed })
+    }
+
+    /// The command as it can be typed again.
+    #[must_use]
+    pub fn command_line(&self) -> String {
+        let plain = |char: char| char.is_alphanumeric() || "-_./=,:+@%".contains(char);
+        let quoted = self.command.iter().map(|word| match word.as_str() {
+            word if !word.is_empty() && word.chars().all(plain) => word.to_owned(),
+            word => format!("'{}'", word.replace('\'', "'\\''")),
+        });
+        quoted.collect::<Vec<_>>().join(" ")
+    }
+}
+
+impl Manifest {
+    /// That of files with their content.
+    pub(crate) fn of<'a>(provenance: &Provenance, files: impl Iterator<Item = (&'a str, &'a [u8])>) -> Self {
+        let files = files.map(|(name, content)| Written { name: name.into(), sha256: sha256(content) });
+        let files = files.collect();
+        Self { hadar: VERSION.into(), schema: SCHEMA, provenance: provenance.clone(), files }
+    }
+
+    /// The manifest in a folder; `None` where there is none, or none of this program.
+    pub(crate) fn in_folder(folder: &Path) -> Option<Self> {
+        let path = folder.join(NAME);
+        // A link could name a file of anyone.
+        if !path.symlink_metadata().ok()?.is_file() {
+            return None;
+        }
+        let manifest: Self = serde_json::from_slice(&std::fs::read(path).ok()?).ok()?;
+        // Names of files in this folder: whoever changed the list reaches no others by it.
+        let inside = |name: &str| {
+            let path = PathBuf::from(name);
+            path.file_name().is_some_and(|last| last == name)
+                && path.components().count() == 1
+                && name != NAME
+        };
+        manifest.files.iter().all(|file| inside(&file.name)).then_some(manifest)
+    }
+
+    /// Whether a file of the folder is listed and as it was written.
+    pub(crate) fn owns(&self, folder: &Path, name: &str) -> bool {
+        let path = folder.join(name);
+        let plain = path.symlink_metadata().is_ok_and(|found| found.is_file());
+        let listed = self.files.iter().find(|file| file.name == name);
+        plain
+            && (name == NAME
+                || listed
+                    .is_some_and(|file| sha256_of_file(&path).ok().flatten().as_ref() == Some(&file.sha256)))
+    }
+
+    /// Whether a file is listed, changed or not.
+    pub(crate) fn lists(&self, name: &str) -> bool {
+        name == NAME || self.files.iter().any(|file| file.name == name)
+    }
+
+    /// As it is written.
+    pub(crate) fn to_json(&self) -> Result<String> {
+        let text = serde_json::to_string_pretty(self)
+            .map_err(|error| Error::malformed(error.to_string(), "report this as a bug"))?;
+        Ok(text + "\n")
+    }
+}
+
+/// A path as it is written on every system.
+fn slashed(path: &Path) -> String {
+    path.to_string_lossy().replace(std::path::MAIN_SEPARATOR, "/")
+}
+
+/// SHA-256 (FIPS 180-4) in hexadecimal digits.
+fn sha256(bytes: &[u8]) -> String {
+    digits(Sha256::new_with_prefix(bytes))
+}
+
+/// That of a file's content; `None` of what is no ordinary file, which may have been read up.
+fn sha256_of_file(path: &Path) -> std::io::Result<Option<String>> {
+    if !path.metadata()?.is_file() {
+        return Ok(None);
+    }
+    let (mut file, mut hash, mut part) = (File::open(path)?, Sha256::new(), vec![0; 1 << 16]);
+    loop {
+        match file.read(&mut part)? {
+            0 => return Ok(Some(digits(hash))),
+            read => hash.update(&part[..read]),
+        }
+    }
+}
+
+fn digits(hash: Sha256) -> String {
+    hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// FIPS 180-4, example of one block.
+    #[test]
+    fn the_hash_is_that_of_the_standard() {
+        let expected = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
+        assert_eq!(sha256(b"abc"), expected);
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("abc"), "abc").unwrap();
+        assert_eq!(sha256_of_file(&folder.path().join("abc")).unwrap().unwrap(), expected);
+        assert_eq!(sha256_of_file(folder.path()).unwrap(), None);
+    }
+
+    #[test]
+    fn a_list_that_reaches_out_of_its_folder_is_none() {
+        let folder = tempfile::tempdir().unwrap();
+        for (name, good) in
+            [("a.csv", true), ("../a.csv", false), ("/etc/a.csv", false), ("..", false), ("", false)]
+        {
+            let mut manifest = Manifest::of(&Provenance::default(), [("x", b"1".as_slice())].into_iter());
+            manifest.files[0].name = name.into();
+            std::fs::write(folder.path().join(NAME), manifest.to_json().unwrap()).unwrap();
+            assert_eq!(Manifest::in_folder(folder.path()).is_some(), good, "{name}");
+        }
+    }
+
+    #[test]
+    fn a_command_can_be_typed_again() {
+        let command = ["hadar", "size", "my scene.toml", "--by", "local", "it's"].map(str::to_owned).to_vec();
+        let provenance = Provenance { command, ..Provenance::default() };
+        assert_eq!(provenance.command_line(), r"hadar size 'my scene.toml' --by local 'it'\''s'");
+    }
+}

@@ -1,0 +1,74 @@
+//! What a job reads, noted where it is read, so that no list of it can forget a file.
+//!
+//! Who asks opens a list on its thread; readers of files note their path, what is built in is noted with its content. Where no
+//! list is open nothing is noted. Readers read on the thread that asks, never in parallel.
+
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::marker::PhantomData;
+use std::path::{Path, PathBuf};
+
+thread_local! {
+    static OPEN: RefCell<Option<Inputs>> = const { RefCell::new(None) };
+}
+
+/// What was read.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Inputs {
+    /// Files, in the order they were first read, as they were named.
+    pub files: Vec<PathBuf>,
+    /// Content of what is built in, by kind and name (`material`, `skin`).
+    pub built_in: BTreeMap<(&'static str, String), Vec<u8>>,
+}
+
+/// A list that is open on this thread until it is dropped.
+#[derive(Debug)]
+#[must_use]
+pub struct Noting(PhantomData<*const ()>);
+
+impl Noting {
+    /// Begins an empty list.
+    pub fn open() -> Self {
+        OPEN.set(Some(Inputs::default()));
+        Self(PhantomData)
+    }
+
+    /// What was read since.
+    #[must_use]
+    pub fn so_far(&self) -> Inputs {
+        so_far()
+    }
+}
+
+impl Drop for Noting {
+    fn drop(&mut self) {
+        OPEN.set(None);
+    }
+}
+
+/// What was read since a list was opened on this thread; nothing where none is open.
+#[must_use]
+pub fn so_far() -> Inputs {
+    OPEN.with_borrow(|open| open.clone().unwrap_or_default())
+}
+
+/// A file was read.
+pub fn file(path: &Path) {
+    OPEN.with_borrow_mut(|open| {
+        if let Some(inputs) = open
+            && !inputs.files.iter().any(|known| known == path)
+        {
+            inputs.files.push(path.to_owned());
+        }
+    });
+}
+
+/// Something built in was used. `content` is what it consists of, and changes when that does and not with its neighbours.
+pub(crate) fn built_in(kind: &'static str, name: &str, content: impl FnOnce() -> Vec<u8>) {
+    OPEN.with_borrow_mut(|open| {
+        if let Some(inputs) = open {
+            inputs.built_in.entry((kind, name.to_owned())).or_insert_with(content);
+        }
+    });
+}
