@@ -75,8 +75,6 @@ pub struct LocalSolver<'a> {
     weights: Aligned,
     /// Weights of whitened columns.
     ones: Vec<f64>,
-    /// Whether the unknowns of the last evaluation are as many as the bands.
-    few_bands: bool,
 }
 
 impl<'a> LocalSolver<'a> {
@@ -93,7 +91,6 @@ impl<'a> LocalSolver<'a> {
             columns: Vec::new(),
             weights: Aligned::zeros(bands.len()),
             ones: Vec::new(),
-            few_bands: false,
         }
     }
 
@@ -156,7 +153,6 @@ impl<'a> LocalSolver<'a> {
     fn evaluate(&mut self, emissivity: &[f64], alternative: &[f64], state: &State) {
         let total_known = self.unknowns.known_lighting_total().is_some();
         self.jacobian.evaluate(emissivity, alternative, state, &self.parameters, total_known);
-        self.few_bands = self.unknowns_fill_the_bands();
     }
 
     /// ΣS, and the projection with the weights u = 1/(S ΣS).
@@ -190,16 +186,6 @@ impl<'a> LocalSolver<'a> {
         Ok((total, self.reduce_scaled(emissivity, alternative, state, root, sqrt_photons)))
     }
 
-    /// Whether the unknowns that change anything are as many as the bands: together they then imitate any change of the
-    /// material, whatever rounding leaves of it.
-    fn unknowns_fill_the_bands(&self) -> bool {
-        let live = |i: usize| self.jacobian.column(i).iter().any(|&value| value != 0.0);
-        let free = (0..self.parameters.len() - 1)
-            .filter(|&i| self.unknowns.sigma_prior(self.parameters[i]).is_none() && live(i))
-            .count();
-        self.jacobian.bands().len() <= free
-    }
-
     fn judge(
         &self,
         found: Reduced,
@@ -230,8 +216,7 @@ impl<'a> LocalSolver<'a> {
             Status::Identical
         } else if found.norm == 0.0 && self.in_equilibrium(state) {
             Status::Equilibrium
-        } else if self.few_bands || found.norm == 0.0 || found.relative_error >= 1.0 || found.residual == 0.0
-        {
+        } else if found.norm == 0.0 || found.relative_error >= 1.0 || found.residual == 0.0 {
             Status::Blind
         } else {
             Status::Ok

@@ -56,7 +56,7 @@ pub(super) fn judge_scene(draw: &mut Draw, found: &mut Findings, scene: &Scene, 
     let fast = match fast {
         Ok(fast) => fast,
         Err(error) => {
-            let declared = excused(&error, scene, total);
+            let declared = excused(&error, total);
             found.require(declared, || format!("an error that is not due: {error}"));
             return Ok(None);
         }
@@ -87,20 +87,8 @@ pub(super) fn faint(exact: &LocalAnswer) -> bool {
 }
 
 /// Whether an error is one of the declared ones.
-fn excused(error: &Error, scene: &Scene, total: f64) -> bool {
-    match error {
-        Error::OutOfRange { .. } => !(total > DARK && total.is_finite()),
-        // Fewer bands than unknowns.
-        Error::Malformed { .. } => scene.bands.len() <= free(scene),
-        _ => false,
-    }
-}
-
-/// Unknowns without a prior.
-fn free(scene: &Scene) -> usize {
-    let unknowns: &Unknowns = &scene.unknowns;
-    let parameters = unknowns.parameters(scene.surroundings.objects().len());
-    parameters.iter().filter(|&&parameter| unknowns.sigma_prior(parameter).is_none()).count()
+fn excused(error: &Error, total: f64) -> bool {
+    matches!(error, Error::OutOfRange { .. }) && !(total > DARK && total.is_finite())
 }
 
 /// No answer may be anything but a finite number, 0 or above.
