@@ -3,6 +3,7 @@
 use hadar::instrument::comparison::compare;
 use hadar::instrument::equivalents::{self, NetdConditions};
 use hadar::instrument::{Camera, NoiseSpec, Readout, presets};
+use hadar::spectrum::Bands;
 use hadar_testing::seeded;
 use proptest::prelude::*;
 use std::f64::consts::PI;
@@ -93,8 +94,10 @@ proptest! {
         let by_hand = eta * figure * t / photon_j;
         same(equivalents::sigma_of_nep(&camera, figure, nu).unwrap(), by_hand);
         let etendue = PI * (camera.pixel_m / (2.0 * camera.f_number)).powi(2);
-        let power = figure * 1e-6 * 1e4 * (1e4 / (nu * nu)) * etendue * camera.optics_efficiency;
-        same(sigma, eta * power * t / photon_j);
+        // ∫ 10⁴/ν² / (hcν) dν over the band, by the antiderivative.
+        let photons = 0.5 * 1e4 * ((nu - 0.5).powi(-2) - (nu + 0.5).powi(-2)) / (photon_j / nu);
+        let power = figure * 1e-6 * 1e4 * etendue * camera.optics_efficiency;
+        prop_assert!((sigma / (eta * power * t * photons) - 1.0).abs() < 1e-10);
         // Elsewhere and back; four times the counts at half the f-number.
         let to = NetdConditions { temperature_k: 350.0, f_number: 0.5 * at.f_number, ..at };
         let there = equivalents::netd_elsewhere(&camera, figure, at, to);
@@ -156,7 +159,31 @@ fn a_microflick_in_kelvin() {
         ..get("nicolet-is50")
     };
     let of_band = camera.equivalents().unwrap().netd_of_a_band_k;
-    assert!((of_band * per_kelvin - 1.0).abs() < 1e-13, "{of_band}");
+    // Its slope is that of the middle of the band, the noise is integrated over it: 2 (0.5/1000)² more.
+    assert!((of_band * per_kelvin - 1.0).abs() < 1e-6, "{of_band}");
+}
+
+/// A wide band has the noise of its narrow parts together, whether it is sampled or one node stands for it: at the centre alone
+/// it would be too small by 5 to 14 %.
+#[test]
+fn spectral_noise_is_integrated_over_wide_bands() {
+    let camera = Camera { noise: NoiseSpec::SpectralRadiance { microflick: 1.0 }, ..get("nicolet-is50") };
+    let sigma = |bands: &Bands| camera.reading_sigma(bands).unwrap().iter().sum::<f64>();
+    for (low, high, too_small) in [(750.0, 990.0, 0.02), (730.0, 1250.0, 0.12), (714.3, 1250.0, 0.13)] {
+        let width: f64 = high - low;
+        let parts = 5000;
+        let narrow = Bands::from_rows((0..parts).map(|i| {
+            let step = width / f64::from(parts);
+            (low + (f64::from(i) + 0.5) * step, step)
+        }));
+        let exact = sigma(&narrow.unwrap());
+        let center = 0.5 * (low + high);
+        for wide in [Bands::from_ranges(&[(low, high)]), Bands::from_rows([(center, width)])] {
+            assert!((sigma(&wide.unwrap()) / exact - 1.0).abs() < 1e-6);
+        }
+        let at_center = sigma(&Bands::from_rows([(center, 1.0)]).unwrap()) * width;
+        assert!(1.0 - at_center / exact > too_small, "{}", 1.0 - at_center / exact);
+    }
 }
 
 /// Table S2 in other words, by hand from its σ; 1e-3 is the last printed digit.

@@ -193,13 +193,6 @@ impl<'a> NearestSolver<'a> {
     ) -> Result<NearestDistance> {
         let target = self.comparison.aim(emissivity, alternative, state, metric)?;
         let own_cost = self.comparison.cost(&target, state);
-        if !own_cost.is_finite() {
-            let found = "a distance beyond all numbers: the target sends next to nothing, and the alternative does not";
-            return Err(Error::malformed(
-                found,
-                "take a warmer scene, more lighting, or bands at lower wavenumbers",
-            ));
-        }
         if own_cost < enough * enough && self.comparison.space.within_range(state) == *state {
             // The target's own state is near enough.
             let at_edge = self.comparison.space.edges(state);
@@ -223,6 +216,11 @@ impl<'a> NearestSolver<'a> {
             }
         }
         match best {
+            Some(best) if !best.distance.is_finite() => {
+                let found = "a distance beyond all numbers: the target sends next to nothing, the alternative does not";
+                let instead = "take a warmer scene, more lighting, or bands at lower wavenumbers";
+                Err(Error::malformed(found, instead))
+            }
             Some(best) => {
                 // What is left of the separation at the target's own state when only rounding is left of it.
                 let nothing = best.distance <= ROUNDING * own_cost.sqrt();

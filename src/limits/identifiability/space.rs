@@ -30,9 +30,12 @@ pub struct StateRange {
 impl Default for StateRange {
     /// All that physics allows: any temperature, 0 ≤ V, ΣV ≤ 1.
     fn default() -> Self {
-        Self { temperature_k: [0.1, 1e6], lighting: [0.0, 1.0], lighting_sum: 1.0 }
+        Self { temperature_k: [0.1, HOTTEST_K], lighting: [0.0, 1.0], lighting_sum: 1.0 }
     }
 }
+
+/// Hotter than anything, K: what is looked at begins and ends with a temperature.
+const HOTTEST_K: f64 = 1e6;
 
 impl StateRange {
     /// Makes sure that there is something within the range.
@@ -43,6 +46,9 @@ impl StateRange {
         let [[cold, hot], [dim, bright]] = [self.temperature_k, self.lighting];
         check::positive("lowest temperature of the range", cold, "K")?;
         check::positive("highest temperature of the range", hot, "K")?;
+        if hot > HOTTEST_K {
+            return Err(Error::out_of_range("highest temperature of the range", hot, "K", "at most 1e6 K"));
+        }
         check::non_negative("least lighting of the range", dim, "")?;
         check::non_negative("most lighting of the range", bright, "")?;
         check::non_negative("sum of the lighting", self.lighting_sum, "")?;

@@ -353,7 +353,10 @@ mod tests {
             assert_eq!(point.capped.contains(&CapCode::Diffraction), blurred, "{point:?}");
         }
         let codes: Vec<_> = curve.limits.iter().map(|line| (line.code, line.upright)).collect();
-        assert_eq!(codes, [(CapCode::Motion, false), (CapCode::Diffraction, true)]);
+        assert_eq!(
+            codes,
+            [(CapCode::Motion, false), (CapCode::Impractical, false), (CapCode::Diffraction, true)]
+        );
         // At 10 m/s the target moves a pixel in this time: longer exposures meet the demand and spoil the image.
         let longest = 30.0 * 0.4 / (320.0 * 0.2f64.sin() * 10.0);
         for point in &curve.points {

@@ -157,7 +157,7 @@ mod tests {
     fn lines_are_wrapped_and_rows_of_tables_are_not() {
         let shown = dressed(TEXT, Some(50), false);
         let expected = "No: the camera cannot tell skin from aluminium\nwith 84.1 % reliability\n\n  reading            distance  photons\n  \
-                        exposure           longer than a frame allows, and\n                     more than the well holds\nWarnings\n  \
+                        exposure           longer than a frame allows,\n                     and more than the well holds\nWarnings\n  \
                         [small-target] the target is small";
         assert_eq!(shown, expected);
         assert!(dressed(TEXT, Some(30), false).contains("  reading            distance  photons\n"));

@@ -161,6 +161,7 @@ depth_error = "10 cm"
 const MATLAB: &str = r#"[cube]
 left = "left.mat"
 variable = "S"
+noise_variance = 5
 depth = "12 m"
 [stereo]
 baseline = "0.2 m"
@@ -196,7 +197,7 @@ fn files() -> &'static [(&'static str, Vec<u8>)] {
             ("matlab.toml", text(MATLAB)),
             ("my.csv", text("wavenumber_cm1,emissivity\n600,0.9\n900,0.95\n1400,0.8\n")),
             ("two.csv", text("wavelength_um,reflectance\n6,0.5\n10,0.25\n20,0.1\n")),
-            ("air.csv", text("wavenumber_cm1,10,100\n600,0.9,0.5\n1400,0.99,0.9\n")),
+            ("air.csv", text("wavenumber_cm1,tau_10m,tau_100m\n600,0.9,0.5\n1400,0.99,0.9\n")),
             ("filters.csv", text("wavelength_um,a,b,c,d\n8,0,0,0,0\n9,1,0,0,0\n10,0,1,0,0\n11,0,0,1,0\n12,0,0,0,1\n13,0,0,0,0\n")),
             ("bands.csv", text("wavenumber_cm1,width_cm1\n760,10\n800,20\n900,20\n1000,20\n1100,20\n1200,10\n")),
             ("efficiency.csv", text("wavenumber_cm1,efficiency\n600,0.5\n1400,0.8\n")),
@@ -206,7 +207,7 @@ fn files() -> &'static [(&'static str, Vec<u8>)] {
             ("noise.csv", text("band,variance_counts2\n1,50\n2,60\n3,70\n")),
             ("left.mat", seed("mat/plain")),
             ("model.json", seed("model/logistic")),
-            ("library.toml", seed("manifest/formulas")),
+            ("library.toml", text("version = 1\n[[material]]\nname = \"a\"\nmodel = { table = \"my.csv\" }\n[[material]]\nname = \"b\"\nmodel = { constant = 0.5 }\n")),
         ]
     })
 }

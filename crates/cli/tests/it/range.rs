@@ -378,3 +378,33 @@ fn derivatives_err_as_their_closed_form_says() {
     }
     assert!(rows > 200);
 }
+
+/// A sample of 0 counts without noise has no quotient (dN)²/N: where a camera counts it is refused, where it is only imagined
+/// the windows that have one have no bound, and how many is said. With noise all of them have one.
+#[test]
+fn samples_of_nothing_have_no_bound_and_that_is_said() {
+    let scene = SCENE.replace("size = [60, 80]", "size = [60, 80]\nground_emissivity = [0.8, 1.0]");
+    let result = Folder::with(&scene).json(&["range", "a.toml"]);
+    let all = &result["objects"][0];
+    let windows = |of: &Value| of["windows"].as_u64().unwrap();
+    let dark = windows(all) - windows(&all["signals"][4]);
+    assert!(dark > 0 && dark < windows(all) / 2, "{dark} of {}", windows(all));
+    for signal in &all["signals"].as_array().unwrap()[..4] {
+        assert_eq!(windows(signal), windows(all), "{signal}");
+    }
+    let said = result["warnings"].as_array().unwrap();
+    let said = said.iter().find(|warning| warning["code"] == "dark-samples").unwrap();
+    let expected = format!("scattered, as if measured: {dark} of {} windows have no bound", windows(all));
+    assert!(said["message"].as_str().unwrap().starts_with(&expected), "{said}");
+
+    let noisy = scene.replace("noise_electrons = 0", "noise_electrons = 10");
+    let result = Folder::with(&noisy).json(&["range", "a.toml"]);
+    assert_eq!(windows(&result["objects"][0]["signals"][4]), windows(&result["objects"][0]));
+    assert!(!result["warnings"].to_string().contains("dark-samples"));
+
+    let folder = Folder::with(CUBE);
+    let mut counts = samples();
+    counts[500] = 0.0;
+    write_npy(&folder.path().join("left.npy"), shape(), &counts).unwrap();
+    assert!(folder.refusal(&["range", "a.toml"]).contains("give a noise variance above 0"));
+}

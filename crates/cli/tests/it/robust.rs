@@ -108,7 +108,7 @@ fn pipes_and_devices_are_refused_wherever_a_file_is_read() {
         folder.file(
             "air.toml",
             &named(
-                &scenario("[bands]", "[atmosphere]\ntable = \"FILE\"\n[bands]")
+                &scenario("[bands]", "[atmosphere]\ntable = \"FILE\"\ntemperature = \"15 degC\"\n[bands]")
                     .replace("37 degC\"", "37 degC\"\ndistance = \"1 m\""),
             ),
         );
@@ -175,6 +175,16 @@ fn cameras_beyond_all_measure_are_refused_before_they_are_drawn() {
         assert_eq!(fault(folder.path(), &["range", "a.toml"].map(str::to_owned)), None);
         let refused = folder.refusal(&["range", "a.toml"]);
         assert!(refused.contains(said), "{to}: {refused}");
+    }
+}
+
+#[test]
+fn temperatures_of_alternatives_are_those_that_a_scene_may_have() {
+    for end in ["1e308 degC", "2e6 K"] {
+        let range = format!("[alternatives]\ntemperature = [\"0 degC\", \"{end}\"]");
+        let said = Folder::with(&SCENARIO.replace("[alternatives]", &range)).refusal(&["size", "a.toml"]);
+        assert!(said.starts_with("a.toml:8: alternatives.temperature: temperature is "), "{said}");
+        assert!(said.ends_with("it must be between 1e-6 and 1e6 K"), "{said}");
     }
 }
 
@@ -248,7 +258,14 @@ fn a_local_distance_is_never_called_a_limit() {
                         folder.run(&[&command[..1], &["a.toml", "--by", by], &command[1..], json].concat());
                     let said = &outcome.stdout;
                     assert!(matches!(outcome.code, 0 | 3), "{}", outcome.stderr);
-                    for never in ["at most", "cannot", "No camera", "no algorithm", "d is a limit"] {
+                    for never in [
+                        "at most",
+                        "cannot tell",
+                        "cannot be told",
+                        "No camera",
+                        "no algorithm",
+                        "d is a limit",
+                    ] {
                         assert!(!said.contains(never), "{command:?} by {by}: `{never}` in\n{said}");
                     }
                     // A matrix in JSON has no sentence.

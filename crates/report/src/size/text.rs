@@ -45,7 +45,7 @@ pub fn text(result: &Sizing, study: &Study) -> String {
         let by_local = no_limit(study.scenario().requirement.by).is_some();
         if let Some(d) = pair.statistical_distance {
             line(
-                if by_local { "statistical distance, local reading" } else { "statistical distance reached" },
+                if by_local { "statistical distance, local" } else { "statistical distance reached" },
                 format!(
                     "{} (required {})",
                     significant(d, 3),
@@ -57,11 +57,7 @@ pub fn text(result: &Sizing, study: &Study) -> String {
             (pair.statistical_distance, pair.miss_probability, pair.information_bits)
         {
             line(
-                if by_local {
-                    "probability by it, which is no limit"
-                } else {
-                    "detection probability at most"
-                },
+                if by_local { "probability by it, no limit" } else { "detection probability at most" },
                 match miss {
                     0.0 => format!("{} (error below 1e-300)", probability(d, 4)),
                     miss => format!("{} (error {})", probability(d, 4), significant(miss, 3)),

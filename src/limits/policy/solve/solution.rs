@@ -1,7 +1,7 @@
 //! What solving for a quantity comes to: its value, or why there is none, and the limits that the value breaks.
 
 /// Why no value suffices where the distance is 0.
-pub(super) const NEVER: &str = "the two cannot be told apart";
+pub(super) const NEVER: &str = "nothing tells the two apart";
 
 /// Which limit it is.
 // In the order of the codes' letters, in which several are listed.

@@ -11,6 +11,8 @@ use crate::material::table::{Fault, Table, ascending};
 use std::collections::BTreeSet;
 use std::path::Path;
 
+/// The longest name of a first column that is named in a message.
+const LONGEST_AXIS: usize = 40;
 const HEADERS: &str =
     "the first column must be wavenumber_cm1 or wavelength_um, the second emissivity or reflectance";
 const FRACTION: &str = "a fraction between 0 and 1 (divide percent by 100)";
@@ -96,6 +98,12 @@ fn wavenumbers(grid: &Grid) -> Result<Vec<f64>> {
     let to_wavenumber: fn(f64) -> f64 = match axis {
         "wavenumber_cm1" => |x| x,
         "wavelength_um" => |x| 1e4 / x,
+        // Nothing of a file is repeated that may be anything; this one is meant for a spectrum.
+        other if other.len() <= LONGEST_AXIS && other.starts_with("wave") => {
+            return Err(Error::malformed(format!("a first column `{other}`"), HEADERS)
+                .for_key(other)
+                .on_line(grid.header_line));
+        }
         _ => {
             return Err(
                 Error::malformed("this is not the header of a spectrum", HEADERS).on_line(grid.header_line)

@@ -40,7 +40,9 @@ pub(crate) fn fault(folder: &Path, arguments: &[String]) -> Option<String> {
         return wrong("a panic, or as good as one");
     }
     let errors = stderr.lines().filter(|line| line.starts_with("error")).count();
-    let others = stderr.lines().filter(|line| !line.starts_with("error: ") && !line.starts_with("warning: "));
+    // Beside the message, warnings, and lines to paste that belong to it.
+    let known = |line: &&str| ["error: ", "warning: ", "  "].iter().any(|start| line.starts_with(start));
+    let others = stderr.lines().filter(|line| !known(line));
     match code {
         0 | 3 if errors > 0 => wrong("an answer and an error"),
         0 | 3 if stdout.trim().is_empty() => wrong("no answer"),

@@ -21,7 +21,9 @@ impl Study {
         let objects =
             objects.map(|(k, object)| (format!("environment[{k}].temperature"), object.temperature_k));
         let target = ("target.temperature".to_owned(), self.scenario.target.temperature_k);
-        for (key, kelvin) in std::iter::once(target).chain(objects) {
+        let ends = self.scenario.alternatives.temperature_range_k.iter().flatten();
+        let ends = ends.map(|kelvin| ("alternatives.temperature".to_owned(), *kelvin));
+        for (key, kelvin) in std::iter::once(target).chain(objects).chain(ends) {
             if !TEMPERATURE_K.contains(&kelvin) {
                 let error = Error::out_of_range("temperature", kelvin, "K", "between 1e-6 and 1e6 K");
                 return Err(error.at(self.scenario.place(&key)));
