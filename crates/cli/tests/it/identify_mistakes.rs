@@ -142,7 +142,7 @@ fn every_mistake_in_a_flag_is_one_line_that_names_it() {
     assert!(said.contains(no_camera), "{said}");
     let folder = Folder::with(SCENARIO);
     let said = folder.refusal(&["identify", "a.toml", "--check", "--out", "report"]);
-    assert!(said.starts_with("--check answers yes or no and has nothing to write"), "{said}");
+    assert!(said.starts_with("--check, which answers yes or no, has nothing to write"), "{said}");
     let dark = SCENARIO.replace("37 degC", "0.1 K").replace("lighting = 0.5", "lighting = 0");
     for flags in [&["--matrix"][..], &["--exact"], &["--scaling"], &["--bands", "3"]] {
         let said = refused(&dark, flags);

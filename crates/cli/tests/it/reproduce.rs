@@ -162,7 +162,7 @@ fn every_mistake_is_one_line() {
         (vec!["library-figures"], "give it with --library FILE"),
         (vec!["priors", "library-figures", "--library", "a.csv"], "ask for it alone"),
         (vec!["all", "fig3b"], "`all` beside other names; write `all` alone"),
-        (vec!["tabs2", "--out", "a.toml"], "this is a file; name a folder"),
+        (vec!["tabs2", "--out", "a.toml"], "part of the path is a file; name a folder"),
     ] {
         let message = folder.refusal(&[&["reproduce"], items.as_slice()].concat());
         assert!(message.contains(said), "{items:?}: {message}");

@@ -125,7 +125,7 @@ fn models_are_saved_and_come_back() {
     folder.file("a.toml", THREE);
     let text = fs::read_to_string(folder.path().join("models/logistic.json")).unwrap();
     for (damaged, said) in [
-        (text.replacen("\"format\":1", "\"format\":9", 1), "a saved model of format 9"),
+        (text.replacen("\"schema\":1", "\"schema\":9", 1), "a saved model of format 9"),
         (text.replacen("\"constants\":[0.0,", "\"constants\":[", 1), "no saved model"),
         (text.replacen("logistic", "oracle", 1), "no saved model"),
         (String::new(), "no saved model"),
