@@ -106,13 +106,16 @@ fn verbatim(name: &str, text: &str) -> String {
     format!("<pre tabindex=\"0\" role=\"group\" aria-label=\"{name}\">{text}</pre>\n")
 }
 
-/// Text as it is printed; a line too long for the page goes on indented.
+/// Text as it is printed; a line too long for the page goes on indented, one of columns only where there is room for them.
 fn lines(text: &str) -> String {
     if text.is_empty() {
         return String::new();
     }
-    let lines = text.lines().map(|line| format!("<span class=\"line\">{}</span>", escape(line)));
-    verbatim("Answer", &lines.collect::<String>())
+    let line = |line: &str| {
+        let class = if line.trim().contains("  ") { "line" } else { "line prose" };
+        format!("<span class=\"{class}\">{}</span>", escape(line))
+    };
+    verbatim("Answer", &text.lines().map(line).collect::<String>())
 }
 
 fn list(items: &[String]) -> String {
