@@ -384,7 +384,11 @@ fn quiet_is_quiet_and_what_was_skipped_is_said_on_stderr_only() {
     let json: Value = serde_json::from_str(&check.stdout).unwrap();
     assert_eq!(json["stats"]["nearest_searches"]["possible"], 4);
     let loud = folder.run(&["identify", "a.toml", "--matrix", "--out", "report"]);
-    assert!(loud.stderr.starts_with("wrote ") && loud.stderr.contains(" files to report/"), "{}", loud.stderr);
+    assert!(
+        loud.stderr.starts_with("wrote ") && loud.stderr.contains(" files to report/"),
+        "{}",
+        loud.stderr
+    );
     let quiet = folder.run(&["identify", "a.toml", "--matrix", "--out", "report", "--stats", "-q"]);
     assert_eq!((quiet.stderr.as_str(), quiet.stdout), ("", loud.stdout));
 }
