@@ -118,6 +118,10 @@ fn the_committed_reports_are_those_of_today() {
         for entry in fs::read_dir(folder.path().join("new").join(item)).unwrap() {
             let path = entry.unwrap().path();
             let file = path.file_name().unwrap().to_str().unwrap().to_owned();
+            // Who made it of what is of the run that made it.
+            if ["hadar.json", "report.html", "answer.txt"].contains(&file.as_str()) {
+                continue;
+            }
             let old = committed.join(item).join(&file);
             assert!(old.exists(), "{item}/{file} is not among the committed reports");
             let name = format!("{item}/{file}");
