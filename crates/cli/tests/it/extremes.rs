@@ -109,7 +109,8 @@ fn every_number_of_an_example_may_be_at_the_end_of_all_numbers() {
         };
         // Of a rule the answer alone: all else of it is that of `size`.
         let flags: &[&str] = if command == "rule" { &["--check", "--json"] } else { &["--json"] };
-        let arguments = [command, "a.toml"].iter().chain(flags).map(|part| (*part).to_owned());
-        fault(folder.path(), &arguments.collect::<Vec<_>>()).map(|fault| format!("{what}: {fault}"))
+        let arguments: Vec<String> =
+            [command, "a.toml"].iter().chain(flags).map(|part| (*part).to_owned()).collect();
+        fault(folder.path(), &arguments).map(|fault| format!("{what}: {fault}"))
     });
 }
