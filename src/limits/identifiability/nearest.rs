@@ -20,6 +20,7 @@
 //!
 //! Source: design of the project; Algorithm 1 of the paper is its exact counterpart on a lattice.
 
+mod proof;
 mod residual;
 mod search;
 
@@ -35,6 +36,8 @@ use crate::spectrum::Bands;
 const ITERATIONS: usize = 100;
 /// Relative step at which a refinement has converged.
 const STEP_TOLERANCE: f64 = 1e-9;
+/// What the last step may still promise, as a share of the cost.
+const GAIN_TOLERANCE: f64 = 1e-9;
 /// Relative separation at which two refinements have come to the same minimum.
 const SAME_MINIMUM: f64 = 1e-5;
 /// Relative separation up to which two states are one as far as a fit that starts from either is concerned.
@@ -76,6 +79,8 @@ pub struct NearestSolver<'a> {
     comparison: Comparison<'a>,
     /// What the searches before have computed that the next one can use.
     table: Option<EmissionTable>,
+    /// To what share of its distance a nearest state is proved, if at all.
+    tolerance: Option<f64>,
 }
 
 impl<'a> NearestSolver<'a> {
@@ -87,14 +92,17 @@ impl<'a> NearestSolver<'a> {
         unknowns: Unknowns,
         range: StateRange,
     ) -> Self {
-        Self { comparison: Comparison::new(bands, surroundings, unknowns, range), table: None }
+        Self {
+            comparison: Comparison::new(bands, surroundings, unknowns, range),
+            table: None,
+            tolerance: None,
+        }
     }
 
     /// The same solver that also proves how near the nearest state can be at most, to this share of the distance.
     #[must_use]
     pub fn proving(self, relative_tolerance: f64) -> Self {
-        let _ = relative_tolerance;
-        self
+        Self { tolerance: Some(relative_tolerance), ..self }
     }
 
     /// Nearest distance per √photon in the limit of shot noise. Priors count as among `photons` photons.
@@ -218,6 +226,7 @@ impl<'a> NearestSolver<'a> {
                 converged: false,
             });
         }
+        let start_is_free = start.is_none();
         let starts = match start {
             Some(start) => vec![self.comparison.space.free_of(start, state)],
             None => self.comparison.starts(&mut self.table, &target, own_cost, 0.0),
@@ -244,7 +253,11 @@ impl<'a> NearestSolver<'a> {
                 // What is left of the separation at the target's own state when only rounding is left of it.
                 let nothing = best.distance <= ROUNDING * own_cost.sqrt();
                 let distance = if nothing { 0.0 } else { best.distance };
-                Ok(NearestDistance { distance, iterations, ..best })
+                let best = NearestDistance { distance, iterations, ..best };
+                Ok(match self.tolerance.filter(|_| start_is_free) {
+                    Some(tolerance) => proof::prove(self, &target, best, tolerance),
+                    None => best,
+                })
             }
             None => Err(Error::malformed("the alternative has no state in its range", "widen the range")),
         }
@@ -299,7 +312,9 @@ impl<'a> NearestSolver<'a> {
             let Some(step) = self.comparison.space.step(&at.quadratic, &state, damping, false) else { break };
             let moved = self.comparison.space.moved(&state, &step);
             let size = self.comparison.space.relative_size(&step, &state);
-            if size < STEP_TOLERANCE {
+            // What the step promises, of half the cost. Nearly identical materials need it however small the step is.
+            let promised = at.quadratic.gradient.dot(&step).abs();
+            if size < STEP_TOLERANCE && promised <= GAIN_TOLERANCE * at.cost {
                 // The last step, whether it is taken or only rounding: the cost tells.
                 let cost = self.comparison.cost(target, &moved);
                 if cost <= at.cost {

@@ -192,6 +192,22 @@ impl<'a> Comparison<'a> {
         bands + self.prior_rows(target, state).map(|(_, _, row)| row * row).sum::<f64>()
     }
 
+    /// r and √(N′ + σ²) of every band at a state.
+    pub(super) fn residual(&mut self, target: &Target<'_>, state: &State) -> (Vec<f64>, Vec<f64>) {
+        self.separate(target, state, false);
+        let mut other = vec![0.0; self.work.root.len()];
+        roots_into(target.counts, self.surface.signal(), &self.work.noise, &mut other);
+        let sums = self.work.root.iter().zip(&other).map(|(a, b)| a + b);
+        let quotient =
+            |(separation, sum): (&f64, f64)| if sum > 0.0 { target.counts * separation / sum } else { 0.0 };
+        (self.work.separation.iter().zip(sums).map(quotient).collect(), other)
+    }
+
+    /// √(N + σ²) of the target.
+    pub(super) fn root(&self) -> &[f64] {
+        &self.work.root
+    }
+
     /// σ²_w of each band.
     pub(super) fn noise(&self) -> &[f64] {
         &self.work.noise

@@ -1,0 +1,329 @@
+//! The box around a minimum in which nothing is nearer, closed at once.
+//!
+//! About the minimum (c*, T*) with residual r and p = −r/s the bound of `metric` is, for c_j(A_j(T) − A_j(T*)) =
+//! y_j(A_j′ + ½t_jA_j″ + ⅙t_j²A_j‴(ξ)), y_j = c_j t_j and t_j = T_j − T_j*, in the changes δc of the amplitudes and y
+//!
+//! d² + g·z + ½Σ y_jt_j p·A_j″(ξ) + ‖W(Σ δc_jA_j + Σ y_jA_j′ + ½Σ y_jt_j(A_j″ + ⅓t_jA_j‴(ξ)))‖²,   z = (δc, y).
+//!
+//! What A_j″ has along the amplitudes' columns, Σ w A, only shifts δc by ½y_jt_jw. With P taking these columns out, and
+//! |a + b|² ≥ (1 − η)|a|² − (1/η − 1)|b|², for |t_j| ≤ h_j and c_j ≥ l_j and multipliers λ ≥ 0 of the limits of z, ĝ = g − Σλa,
+//!
+//! ≥ d² + ĝ·z + (1 − η)‖WZz‖² − Σ K_j y_j² − Σ λ·slack,
+//! K_j = (κ_j + |ĝ·w_j|)/(2l_j) + (1/η − 1)(n/4)h_j²(‖PWA_j″‖ + ⅓h_j‖WA_j‴‖)²,
+//!
+//! −κ_j the least p·A_j″ in the box, n sources of unknown temperature. If that quadratic is convex, (1 − η)RᵀR − K = FᵀF, it
+//! falls below d² by no more than ¼‖F⁻ᵀĝ‖² + Σλ·slack: a lower bound of the whole box, and d² but for what the minimum is off.
+
+use super::amplitudes::{Amplitudes, Pieces};
+use super::hull::{Quadratic, add, inner, reduce};
+use super::sources::{Sources, Spectrum};
+use crate::sum::dot;
+
+/// η.
+const SHARE: f64 = 0.25;
+/// What must be left of a direction of temperature, as a share, once all amplitudes have been fitted to it.
+const LEFT: f64 = 1e-12;
+/// What the losses must leave of its square.
+const KEPT: f64 = 1e-6;
+/// Share of c₀ within which an amplitude is near to a limit.
+const NEAR: f64 = 1e-6;
+
+/// A minimum in the bands.
+pub(super) struct Minimum<'m> {
+    /// Amplitude and spectrum of every source.
+    pub(super) amplitudes: &'m [f64],
+    pub(super) spectra: &'m [Spectrum],
+    /// −r/s, and the weights of the quadratic.
+    pub(super) pull: &'m [f64],
+    pub(super) weight: &'m [f64],
+    /// d².
+    pub(super) cost: f64,
+}
+
+/// The two ends of a box along one source, relative to T*, and the least amplitude in it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Reach {
+    pub(super) down_k: f64,
+    pub(super) up_k: f64,
+    pub(super) least: f64,
+}
+
+/// Columns of the quadratic: amplitudes that may change, then sources of unknown temperature.
+struct Columns<'m> {
+    minimum: &'m Minimum<'m>,
+    lit: Vec<usize>,
+    axes: Vec<(usize, Reach)>,
+    /// p·column, and R of the weighted columns.
+    linear: Vec<f64>,
+    triangle: Vec<Vec<f64>>,
+    lengths: Vec<f64>,
+}
+
+/// What a box around a minimum has come to.
+pub(super) struct Closed {
+    /// No d² in it is below.
+    pub(super) lower: f64,
+    /// Amplitudes and temperatures at which the quadratic is least.
+    pub(super) amplitudes: Vec<f64>,
+    pub(super) temperature_k: Vec<f64>,
+}
+
+/// Closes a box; `None` if the quadratic is not convex in it.
+pub(super) fn close(
+    sources: &Sources<'_>,
+    minimum: &Minimum<'_>,
+    reach: &[Option<Reach>],
+    allowed: &Amplitudes,
+    enough: f64,
+) -> Option<Closed> {
+    let count = minimum.spectra.len();
+    let whitened =
+        |spectrum: &[f64]| -> Vec<f64> { spectrum.iter().zip(minimum.weight).map(|(a, w)| a * w).collect() };
+    let varies = |s: usize| {
+        allowed.gain_free || s.checked_sub(1).is_some_and(|k| allowed.ranges[k][0] < allowed.ranges[k][1])
+    };
+    let lit: Vec<usize> = (0..count).filter(|&s| varies(s)).collect();
+    let axes: Vec<(usize, Reach)> = (0..count).filter_map(|s| Some((s, reach[s]?))).collect();
+    let raw: Vec<&[f64]> = (lit.iter().map(|&s| &minimum.spectra[s].counts[..]))
+        .chain(axes.iter().map(|&(s, _)| &minimum.spectra[s].slope[..]))
+        .collect();
+    let linear: Vec<f64> = raw.iter().map(|column| dot(minimum.pull, column)).collect();
+    let columns: Vec<Vec<f64>> = raw.iter().map(|column| whitened(column)).collect();
+    let lengths: Vec<f64> = columns.iter().map(|column| dot(column, column).sqrt()).collect();
+    let bends: Vec<[Vec<f64>; 2]> = axes
+        .iter()
+        .map(|&(s, Reach { down_k, up_k, .. })| {
+            let t = minimum.spectra[s].temperature_k;
+            sources.bend(s, t, [t - down_k, t + up_k])
+        })
+        .collect();
+    let bent: Vec<Vec<f64>> = bends.iter().map(|[bend, _]| whitened(bend)).collect();
+    let bent: Vec<&[f64]> = bent.iter().map(|bend| &bend[..]).collect();
+    let (triangle, bent) = reduce(columns, &bent);
+    let columns = Columns { minimum, lit, axes, linear, triangle, lengths };
+    let pulled: Vec<[f64; 2]> = bends
+        .iter()
+        .map(|[bend, third]| {
+            let size: f64 = minimum.pull.iter().zip(third).map(|(p, third)| p.abs() * third).sum();
+            [dot(minimum.pull, bend), size]
+        })
+        .collect();
+    let third: Vec<f64> =
+        bends.iter().map(|[_, third]| whitened(third)).map(|third| dot(&third, &third).sqrt()).collect();
+    // |ĝ·w| is known only with the multipliers, which hang on K: what comes out must be within what was put in.
+    let mut shifted = vec![0.0; columns.axes.len()];
+    for _ in 0..3 {
+        let loss = columns.loss(&pulled, &bent, &third, &shifted)?;
+        let factor = columns.factor(&loss)?;
+        let (fall, rest) = columns.fall(&factor, &columns.limits(allowed));
+        let now: Vec<f64> = bent.iter().map(|bent| columns.along_amplitudes(bent, &rest).abs()).collect();
+        if now.iter().zip(&shifted).all(|(now, assumed)| now <= assumed) || columns.axes.is_empty() {
+            let lower = minimum.cost - fall;
+            if lower >= enough || !columns.axes.is_empty() {
+                return Some(columns.moved(lower, &factor, &rest));
+            }
+            break;
+        }
+        shifted = now.iter().map(|now| 2.0 * now).collect();
+    }
+    columns.axes.is_empty().then(|| columns.searched(allowed, enough))
+}
+
+impl Columns<'_> {
+    /// K_j of every source of unknown temperature.
+    fn loss(
+        &self,
+        pulled: &[[f64; 2]],
+        bent: &[Vec<f64>],
+        third: &[f64],
+        shifted: &[f64],
+    ) -> Option<Vec<f64>> {
+        let n = self.axes.len() as f64;
+        let amplitudes = self.lit.len();
+        self.axes
+            .iter()
+            .enumerate()
+            .map(|(j, (_, reach))| {
+                let half = reach.down_k.max(reach.up_k);
+                let sinking = (half * pulled[j][1] - pulled[j][0]).max(0.0) + shifted[j];
+                if sinking > 0.0 && reach.least <= 0.0 {
+                    return None;
+                }
+                let sinking = if sinking > 0.0 { 0.5 * sinking / reach.least } else { 0.0 };
+                let left = inner(&bent[j][amplitudes..], &bent[j][amplitudes..]).sqrt();
+                let turned = half * (left + half * third[j] / 3.0);
+                Some(sinking + (1.0 / SHARE - 1.0) * 0.25 * n * turned * turned)
+            })
+            .collect()
+    }
+
+    /// F of (1 − η)RᵀR − K, column by column, if that is positive semidefinite: K stands at the slopes alone, so that of R only
+    /// the triangle that is left of them once all amplitudes are fitted changes.
+    fn factor(&self, loss: &[f64]) -> Option<Vec<Vec<f64>>> {
+        let amplitudes = self.lit.len();
+        let root = if loss.is_empty() { 1.0 } else { (1.0 - SHARE).sqrt() };
+        let mut factor: Vec<Vec<f64>> =
+            self.triangle.iter().map(|column| column.iter().map(|x| root * x).collect()).collect();
+        let n = loss.len();
+        let entry = |i: usize, j: usize| {
+            let [a, b] = [i, j].map(|i| &factor[amplitudes + i][amplitudes..]);
+            inner(a, b) - if i == j { loss[i] } else { 0.0 }
+        };
+        let mut rest: Vec<f64> = (0..n * n).map(|place| entry(place / n, place % n)).collect();
+        for k in 0..n {
+            let pivot = rest[k * n + k];
+            let own = factor[amplitudes + k][amplitudes + k];
+            if !(pivot > KEPT * own * own && own > LEFT * self.lengths[amplitudes + k]) {
+                return None;
+            }
+            let diagonal = pivot.sqrt();
+            for j in k..n {
+                factor[amplitudes + j][amplitudes + k] = rest[k * n + j] / diagonal;
+            }
+            for i in k + 1..n {
+                for j in k + 1..n {
+                    rest[i * n + j] -= rest[k * n + i] * rest[k * n + j] / pivot;
+                }
+            }
+        }
+        Some(factor)
+    }
+
+    /// The limits of amplitudes and temperatures that the minimum is near to.
+    fn limits(&self, allowed: &Amplitudes) -> Vec<Limit> {
+        let size = self.lit.len() + self.axes.len();
+        let amplitudes = self.minimum.amplitudes;
+        let place = |s: usize| self.lit.iter().position(|&lit| lit == s);
+        let mut limits = Vec::new();
+        // Σ value·c ≥ 0 over sources, with changes of those that may change.
+        let mut put = |terms: &[(usize, f64)], both: bool| {
+            let slack = terms.iter().map(|&(s, value)| value * amplitudes[s]).sum::<f64>().max(0.0);
+            let mut along = vec![0.0; size];
+            for &(s, value) in terms {
+                if let Some(place) = place(s) {
+                    along[place] += value;
+                }
+            }
+            if slack <= NEAR * amplitudes[0] && along.iter().any(|x| *x != 0.0) {
+                limits.push(Limit { along, slack, both });
+            }
+        };
+        for (k, [low, high]) in allowed.ranges.iter().enumerate() {
+            put(&[(k + 1, 1.0), (0, -low)], low == high);
+            if low < high {
+                put(&[(k + 1, -1.0), (0, *high)], false);
+            }
+        }
+        if allowed.sum.is_finite() {
+            let objects = (1..amplitudes.len()).map(|s| (s, -1.0));
+            let terms: Vec<(usize, f64)> = objects.chain([(0, allowed.sum)]).collect();
+            put(&terms, allowed.sum_known);
+        }
+        for (j, (_, Reach { down_k, up_k, .. })) in self.axes.iter().enumerate() {
+            for (value, _) in [(1.0, down_k), (-1.0, up_k)].into_iter().filter(|(_, room)| **room == 0.0) {
+                let mut along = vec![0.0; size];
+                along[self.lit.len() + j] = value;
+                limits.push(Limit { along, slack: 0.0, both: false });
+            }
+        }
+        limits
+    }
+
+    /// What the quadratic falls below d² by at most, and F⁻ᵀĝ.
+    fn fall(&self, factor: &[Vec<f64>], limits: &[Limit]) -> (f64, Vec<f64>) {
+        let solve = |right: &[f64]| -> Vec<f64> {
+            let mut out = vec![0.0; right.len()];
+            for k in 0..right.len() {
+                out[k] = (right[k] - inner(&factor[k][..k], &out[..k])) / factor[k][k];
+            }
+            out
+        };
+        let mut rest = solve(&self.linear);
+        let columns: Vec<Vec<f64>> = limits.iter().map(|limit| solve(&limit.along)).collect();
+        let mut used: Vec<usize> = (0..limits.len()).collect();
+        loop {
+            let (triangle, along) = reduce(used.iter().map(|&i| columns[i].clone()).collect(), &[&rest]);
+            let n = used.len();
+            let mut multipliers = along[0][..n].to_vec();
+            for k in (0..n).rev() {
+                let later: f64 = (k + 1..n).map(|j| triangle[j][k] * multipliers[j]).sum();
+                let pivot = triangle[k][k];
+                multipliers[k] = if pivot > 0.0 { (multipliers[k] - later) / pivot } else { 0.0 };
+            }
+            let negative = (0..n).filter(|&k| !limits[used[k]].both && multipliers[k] < 0.0);
+            if let Some(worst) = negative.min_by(|&a, &b| multipliers[a].total_cmp(&multipliers[b])) {
+                used.remove(worst);
+                continue;
+            }
+            let mut slack = 0.0;
+            for (multiplier, &i) in multipliers.iter().zip(&used) {
+                add(&mut rest, -multiplier, &columns[i]);
+                slack += multiplier.abs() * limits[i].slack;
+            }
+            let fall = 0.25 * inner(&rest, &rest) + slack;
+            return (if fall.is_nan() { f64::INFINITY } else { fall }, rest);
+        }
+    }
+
+    /// ĝ·w: ĝ = Fᵀ`rest`, and R w = `bent` in the columns of the amplitudes.
+    fn along_amplitudes(&self, bent: &[f64], rest: &[f64]) -> f64 {
+        let n = self.lit.len();
+        let mut w = bent[..n].to_vec();
+        for k in (0..n).rev() {
+            let later: f64 = (k + 1..n).map(|j| self.triangle[j][k] * w[j]).sum();
+            let pivot = self.triangle[k][k];
+            w[k] = if pivot > 0.0 { (w[k] - later) / pivot } else { 0.0 };
+        }
+        // The amplitudes' columns of F are those of R but for √(1 − η).
+        let gradient = (0..n).map(|k| inner(&self.triangle[k][..=k], &rest[..=k]));
+        gradient.zip(&w).map(|(g, w)| g * w).sum()
+    }
+
+    /// Where the quadratic is least: Fz = −½F⁻ᵀĝ.
+    fn moved(&self, lower: f64, factor: &[Vec<f64>], rest: &[f64]) -> Closed {
+        let mut z: Vec<f64> = rest.iter().map(|x| -0.5 * x).collect();
+        for k in (0..z.len()).rev() {
+            let later: f64 = (k + 1..z.len()).map(|j| factor[j][k] * z[j]).sum();
+            z[k] = (z[k] - later) / factor[k][k];
+        }
+        let mut amplitudes = self.minimum.amplitudes.to_vec();
+        for (&s, change) in self.lit.iter().zip(&z) {
+            amplitudes[s] += if change.is_finite() { *change } else { 0.0 };
+        }
+        let mut temperature_k: Vec<f64> = self.minimum.spectra.iter().map(|own| own.temperature_k).collect();
+        for ((s, reach), y) in self.axes.iter().zip(&z[self.lit.len()..]) {
+            let t = y / self.minimum.amplitudes[*s];
+            temperature_k[*s] += if t.is_finite() { t.clamp(-reach.down_k, reach.up_k) } else { 0.0 };
+        }
+        Closed { lower, amplitudes, temperature_k }
+    }
+
+    /// The least over all amplitudes, by search: where no temperature is unknown and columns may depend on each other.
+    fn searched(&self, allowed: &Amplitudes, enough: f64) -> Closed {
+        let Minimum { amplitudes, spectra, cost, .. } = *self.minimum;
+        let mut pieces = Pieces::default();
+        let (mut linear, mut factor) =
+            (vec![0.0; spectra.len()], vec![vec![0.0; self.lit.len()]; spectra.len()]);
+        for (s, spectrum) in spectra.iter().enumerate() {
+            pieces.source.push(s);
+            pieces.length.push(spectrum.length);
+            pieces.cap.push(f64::INFINITY);
+            if let Some(place) = self.lit.iter().position(|&lit| lit == s) {
+                linear[s] = self.linear[place];
+                factor[s].clone_from(&self.triangle[place]);
+            }
+        }
+        let shift = vec![0.0; self.lit.len()];
+        let quadratic = Quadratic { constant: cost, linear, factor, shift, origin: amplitudes.to_vec() };
+        let found = quadratic.least(|costs, vertex| allowed.least(&pieces, costs, vertex), enough);
+        let temperature_k = spectra.iter().map(|own| own.temperature_k).collect();
+        Closed { lower: found.lower, amplitudes: found.point, temperature_k }
+    }
+}
+
+/// A limit a·z ≥ −slack that the minimum is near to, or with `both` a·z = 0.
+struct Limit {
+    along: Vec<f64>,
+    slack: f64,
+    both: bool,
+}
