@@ -86,6 +86,7 @@ fn libraries(criterion: &mut Criterion) {
         unknowns: &unknowns,
         range,
         state: &state,
+        tolerance: None,
     };
 
     let mut local = LocalMatrix::new(&bands, &surroundings, unknowns.clone());

@@ -107,7 +107,7 @@ proptest! {
             surroundings: &scene.surroundings,
             unknowns: &unknowns,
             range: StateRange::default(),
-            state: &scene.state,
+            state: &scene.state, tolerance: None
         };
         let signal = scene.counts(&scene.emissivity, &scene.state);
         let mut counting = Counting::shot(10f64.powf(log_photons), &signal);
@@ -208,6 +208,7 @@ fn the_number_of_threads_changes_no_bit() {
                 unknowns: &unknowns,
                 range: StateRange::default(),
                 state: &state,
+                tolerance: None,
             };
             let nearest = scene.nearest_per_photon(&materials[..12]).unwrap();
             (local, nearest)

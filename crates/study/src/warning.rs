@@ -7,7 +7,6 @@ mod message;
 
 pub use catalogue::Code;
 
-use hadar::fisher::Nuisance;
 use hadar::instrument::Readout;
 use hadar::scene::Parameter;
 use hadar::simulate::classifier::Method;
@@ -40,10 +39,8 @@ pub enum Warning {
     Blind,
     /// Parameters of the nearest state at ends of ranges that the scenario set, among so many objects around.
     NearestAtEdge { parameters: Vec<Parameter>, objects: usize },
-    /// The search for the nearest state of a pair.
-    NearestNotConverged,
-    /// How many searches of the matrix did not converge.
-    MatrixNotConverged { searches: usize },
+    /// How many nearest distances of the matrix are not proved.
+    MatrixNotProved { searches: usize },
     /// Distances per √photon.
     LocalDiffers { local: f64, nearest: f64, ratio: f64 },
     /// Of a pair.
@@ -52,8 +49,8 @@ pub enum Warning {
     FragileScene,
     /// Parameters that change nothing, among so many objects around.
     UnknownWithoutEffect { parameters: Vec<Parameter>, objects: usize },
-    /// The unknown that makes the search for the nearest state uncertain.
-    NearestSearch { unknown: Nuisance },
+    /// A nearest distance that was searched, what is proved of it, and whether priors kept it from being proved.
+    NearestSearch { distance: f64, lower: f64, priors: bool },
     /// Photons per mode at the lowest wavenumber, and whether the camera's noise has bunching in it.
     Bunching { occupancy: f64, wavenumber_cm1: f64, included: bool },
     /// An envelope beside the one scene.
@@ -166,7 +163,7 @@ impl Warning {
             Self::Equilibrium => Code::Equilibrium,
             Self::Blind => Code::Blind,
             Self::NearestAtEdge { .. } => Code::NearestAtEdge,
-            Self::NearestNotConverged | Self::MatrixNotConverged { .. } => Code::NearestNotConverged,
+            Self::MatrixNotProved { .. } => Code::NearestSearch,
             Self::LocalDiffers { .. } => Code::LocalDiffers,
             Self::Fragile | Self::FragileScene => Code::Fragile,
             Self::UnknownWithoutEffect { .. } => Code::UnknownWithoutEffect,

@@ -9,14 +9,13 @@
 //! ulp (C contrast, X lighting; see [`crate::scene`]): nothing is lost as the materials become equal.
 //! A prior of deviation σ_p on a parameter adds the row (θ′ − θ)/(2σ_p), whose tangent is the local bound's.
 //!
-//! Search: where T′ is free, a dense grid of it with the other unknowns fitted at each point; between two
-//! points the derivative of the fitted cost along T′ tells of a minimum (`search`). Every minimum is then
-//! refined by damped Newton steps within the bounds (`residual`), and so is the target's own state. The search is
-//! dense, not a proof: two extremes between neighbouring points would be missed together. (Of 3000 random
-//! pairs with temperature, lighting and in a fifth of them gain unknown, one ended above a brute-force lattice of
-//! starts by more than 1e-6 and none by 1e-5; over a wider range of scenes with gain always unknown 1 in 200 did,
-//! by up to 3 %: valleys that run out to endless temperature and no gain. With unknown environment temperatures up to a
-//! quarter do.)
+//! Search: where T′ is free, a grid of it with the other unknowns fitted at each point; between two points the derivative
+//! of the fitted cost along T′ tells of a minimum (`search`). Every minimum is then refined by damped Newton steps within the
+//! bounds (`residual`), and so is the target's own state. The search can miss the nearest valley; the proof cannot.
+//!
+//! Proof ([`NearestSolver::proving`], `proof`): for fixed temperatures the cost is jointly convex in everything else, so
+//! that branch and bound over the unknown temperatures gives a lower bound, and the nearest state where the search missed
+//! it. The range of an unknown gain is 10⁻⁶ to 10⁶ (|ln G′| ≤ 14).
 //!
 //! Source: design of the project; Algorithm 1 of the paper is its exact counterpart on a lattice.
 
@@ -45,6 +44,12 @@ const SAME_STATE: f64 = 1e-4;
 /// Share of the separation at the target's own state below which a distance is rounding noise.
 const ROUNDING: f64 = 1e-14;
 
+/// Boxes in which it is tried to prove that nothing is nearer before a search, and after one.
+const FIRST_BOXES: u64 = 60;
+const MOST_BOXES: u64 = 6_000;
+/// Rounding of the terms that a separation is made of.
+const ROUNDING_OF_TERMS: f64 = 2e-15;
+
 /// The nearest state of the alternative and its distance.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NearestDistance {
@@ -52,7 +57,7 @@ pub struct NearestDistance {
     pub distance: f64,
     /// Proved: no state of the alternative within its range is nearer. 0 where nothing is proved.
     pub lower: f64,
-    /// Estimated relative error of `distance` as the separation of the nearest state, by rounding.
+    /// Estimated relative error of `distance` as the separation of the nearest state, by rounding; 0 where it is 0.
     pub relative_error: f64,
     /// The nearest state.
     pub state: State,
@@ -64,13 +69,23 @@ pub struct NearestDistance {
     pub converged: bool,
 }
 
+impl NearestDistance {
+    /// Whether no state is nearer than the distance less this share of it.
+    #[must_use]
+    pub fn is_proved_to(&self, share: f64) -> bool {
+        self.lower >= (1.0 - share) * self.distance
+    }
+}
+
 /// Whether a state nearer than a limit was found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Nearer {
     /// One is.
     Somewhere,
-    /// The nearest one is not.
+    /// None is, which is proved.
     Nowhere,
+    /// None was found, and it is not proved that there is none.
+    Undecided,
 }
 
 /// Finds nearest states in fixed bands and surroundings.
@@ -149,7 +164,7 @@ impl<'a> NearestSolver<'a> {
     }
 
     /// Whether any state of the alternative is nearer than `limit`, with the camera's own noise: the search
-    /// ends at the first one.
+    /// ends at the first one, and where there is none with a proof.
     ///
     /// # Errors
     /// A scene without photons.
@@ -161,8 +176,23 @@ impl<'a> NearestSolver<'a> {
         counting: &Counting,
         limit: f64,
     ) -> Result<Nearer> {
-        let found = self.search(emissivity, alternative, state, Metric::Counting(counting), None, limit)?;
-        Ok(if found.distance < limit { Nearer::Somewhere } else { Nearer::Nowhere })
+        let metric = Metric::Counting(counting);
+        let target = self.comparison.aim(emissivity, alternative, state, metric)?;
+        let first = proof::nearer_than(self, &target, limit, None, FIRST_BOXES);
+        if first != Nearer::Undecided {
+            return Ok(first);
+        }
+        let tolerance = self.tolerance.take();
+        let found = self.search(emissivity, alternative, state, metric, None, limit);
+        self.tolerance = tolerance;
+        let found = found?;
+        if found.distance < limit {
+            return Ok(Nearer::Somewhere);
+        }
+        let proved = proof::nearer_than(self, &target, limit, Some(&found), MOST_BOXES);
+        // Priors have no part in a proof: with them the search has the last word.
+        let searched = proved == Nearer::Undecided && self.comparison.space.unknowns.has_priors();
+        Ok(if searched { Nearer::Nowhere } else { proved })
     }
 
     /// Whether a descent from the target's own state comes to one of the alternative's that is nearer than `limit`. It
@@ -219,7 +249,7 @@ impl<'a> NearestSolver<'a> {
             return Ok(NearestDistance {
                 distance,
                 lower: 0.0,
-                relative_error: f64::NAN,
+                relative_error: 0.0,
                 state,
                 at_edge,
                 iterations: 0,
@@ -253,11 +283,19 @@ impl<'a> NearestSolver<'a> {
                 // What is left of the separation at the target's own state when only rounding is left of it.
                 let nothing = best.distance <= ROUNDING * own_cost.sqrt();
                 let distance = if nothing { 0.0 } else { best.distance };
-                let best = NearestDistance { distance, iterations, ..best };
-                Ok(match self.tolerance.filter(|_| start_is_free) {
-                    Some(tolerance) => proof::prove(self, &target, best, tolerance),
-                    None => best,
-                })
+                let mut best = NearestDistance { distance, iterations, ..best };
+                if let Some(tolerance) = self.tolerance.filter(|_| start_is_free) {
+                    best = proof::prove(self, &target, best, tolerance);
+                }
+                if best.distance > 0.0 {
+                    let terms = self.comparison.terms(&target, &best.state);
+                    best.relative_error = ROUNDING_OF_TERMS * (1.0 + terms / best.distance);
+                    if best.relative_error >= 1.0 {
+                        // Nothing but rounding is left.
+                        (best.distance, best.lower, best.relative_error) = (0.0, 0.0, 0.0);
+                    }
+                }
+                Ok(best)
             }
             None => Err(Error::malformed("the alternative has no state in its range", "widen the range")),
         }
@@ -346,7 +384,7 @@ impl<'a> NearestSolver<'a> {
         NearestDistance {
             distance: at.cost.sqrt(),
             lower: 0.0,
-            relative_error: f64::NAN,
+            relative_error: 0.0,
             state,
             at_edge,
             iterations,

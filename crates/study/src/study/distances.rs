@@ -7,7 +7,12 @@ use hadar::demand::{self, Reason, Thing};
 use hadar::error::Result;
 use hadar::fisher::{Counting, Nuisance, Unknowns};
 use hadar::identifiability::local::{LocalDistance, LocalSolver};
-use hadar::identifiability::nearest::{NearestDistance, NearestSolver};
+use hadar::identifiability::nearest::{NearestDistance, NearestSolver, StateRange};
+use hadar::scene::State;
+
+/// To what share of itself a nearest distance is proved where nobody asks: with one temperature to search at most, and more.
+const TOLERANCE: f64 = 1e-6;
+const TOLERANCE_OF_MANY: f64 = 1e-3;
 
 impl Study {
     /// Books local distances, of whose columns of derivatives only those of the unknowns and the material are formed.
@@ -57,9 +62,27 @@ impl Study {
         self.bands.len() > free
     }
 
+    /// To what share of a distance the nearest state is proved: as asked for, else what is cheap enough for the unknowns.
+    #[must_use]
+    pub fn tolerance(&self) -> f64 {
+        let surroundings = if self.is_unknown(Nuisance::EnvironmentTemperature) {
+            self.surroundings.objects().len()
+        } else {
+            0
+        };
+        let searched = usize::from(self.is_unknown(Nuisance::Temperature)) + surroundings;
+        self.tolerance.unwrap_or(if searched <= 1 { TOLERANCE } else { TOLERANCE_OF_MANY })
+    }
+
+    /// A solver of nearest states that proves them.
+    pub(super) fn nearest_solver(&self) -> NearestSolver<'_> {
+        NearestSolver::new(&self.bands, &self.surroundings, self.unknowns.clone(), self.range)
+            .proving(self.tolerance())
+    }
+
     pub(super) fn nearest(&self, alternative: &Surface, photons: f64) -> Result<NearestDistance> {
         demand::computed(Thing::NearestSearches, 1);
-        NearestSolver::new(&self.bands, &self.surroundings, self.unknowns.clone(), self.range).per_photon(
+        self.nearest_solver().per_photon(
             &self.target.emissivity,
             &alternative.emissivity,
             &self.state,
@@ -67,19 +90,28 @@ impl Study {
         )
     }
 
-    /// From the nearest state back to the target's own material, within all that physics allows.
+    /// From the nearest state back to the target's own material, within all that physics allows, per √photon of the target.
     pub(super) fn return_distance(
         &self,
         alternative: &Surface,
         nearest: &NearestDistance,
     ) -> Result<NearestDistance> {
         demand::computed(Thing::NearestSearches, 1);
-        NearestSolver::new(&self.bands, &self.surroundings, self.unknowns.clone(), self.range).per_photon(
-            &alternative.emissivity,
-            &self.target.emissivity,
-            &nearest.state,
-            f64::INFINITY,
-        )
+        let back =
+            NearestSolver::new(&self.bands, &self.surroundings, self.unknowns.clone(), StateRange::default())
+                .proving(self.tolerance())
+                .per_photon(
+                    &alternative.emissivity,
+                    &self.target.emissivity,
+                    &nearest.state,
+                    f64::INFINITY,
+                )?;
+        // The search counts per photon of the state that it sets out from.
+        let photons = |surface: &Surface, state: &State| {
+            hadar::sum::sum(&self.bands.weigh(&self.surroundings.signal(&surface.emissivity, state)))
+        };
+        let share = (photons(alternative, &nearest.state) / photons(&self.target, &self.state)).sqrt();
+        Ok(NearestDistance { distance: share * back.distance, lower: share * back.lower, ..back })
     }
 
     /// Statistical distance d of a kind at given counts and noise.
@@ -98,12 +130,21 @@ impl Study {
         };
         match kind {
             DistanceKind::Nearest => {
-                NearestSolver::new(&self.bands, &self.surroundings, self.unknowns.clone(), self.range)
-                    .with_counting(target, other, &self.state, counting)
-                    .map(|nearest| nearest.distance)
+                let found = self.nearest_solver().with_counting(target, other, &self.state, counting)?;
+                Ok(self.sure(&found))
             }
             DistanceKind::Local => local(self.unknowns.clone()),
             DistanceKind::LocalUnknownGain => local(self.unknowns.with(Nuisance::Gain)),
+        }
+    }
+
+    /// What a verdict may rest on: the distance where it is proved, else what is proved of it. Priors have no part in a proof,
+    /// so that with them it is what the search found.
+    pub(super) fn sure(&self, found: &NearestDistance) -> f64 {
+        if self.unknowns.has_priors() || found.is_proved_to(self.tolerance()) {
+            found.distance
+        } else {
+            found.lower
         }
     }
 

@@ -18,6 +18,7 @@ pub use exact::{Exact, ExactLibrary, ExactPair, Law, Trial};
 pub use matrix::{Apart, Check, Matrix, Rows, TargetVerdict};
 pub use priors::PriorAverage;
 pub(super) use results::PhotonsRequired;
+pub(super) use results::Proof;
 pub use results::{Identifiability, Identification, NearestState, PairResult, Prediction};
 pub use samples::SampleSpectra;
 pub(super) use scaling::quantile;
@@ -180,6 +181,9 @@ impl Study {
             distance_local_unknown_gain: unknown_gain,
             distance_no_nuisance: local.distance_no_nuisance,
             distance_nearest: nearest.distance,
+            distance_nearest_lower: nearest.lower,
+            proof: if nearest.is_proved_to(self.tolerance()) { Proof::Proved } else { Proof::Searched },
+            relative_error_nearest: nearest.relative_error,
             nearest_state: NearestState {
                 temperature_k: nearest.state.temperature_k,
                 lighting: nearest.state.lighting.clone(),
@@ -188,6 +192,7 @@ impl Study {
             },
             nearest_at_edge: nearest.at_edge.iter().map(|parameter| parameter_name(*parameter)).collect(),
             distance_return: back.distance,
+            relative_error_return: back.relative_error,
             photons_required: required_by.of(kind),
             photons_required_by: required_by,
             statistical_distance: statistical,
@@ -207,7 +212,8 @@ impl Study {
             status: local.status,
             blind_direction: blind,
         };
-        let mut warnings = warn::of_pair(&result, &local, &nearest, kind, &self.range);
+        let mut warnings =
+            warn::of_pair(&result, &local, &nearest, kind, &self.range, self.unknowns.has_priors());
         warnings.extend(self.placeholders(alternative));
         Ok((result, warnings))
     }

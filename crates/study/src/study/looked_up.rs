@@ -5,6 +5,7 @@ use super::air::{Air, Behind};
 use super::surface::Surface;
 use crate::scenario::{Scenario, Units};
 use hadar::demand::Work;
+use hadar::error::{Error, Result, check};
 use hadar::fisher::{Nuisance, Unknowns};
 use hadar::identifiability::nearest::StateRange;
 use hadar::instrument::Camera;
@@ -33,6 +34,8 @@ pub struct Study {
     pub(super) alternatives: Vec<Surface>,
     pub(super) camera: Option<Camera>,
     pub(super) required: f64,
+    /// To what share of itself a nearest distance is proved, if somebody asks.
+    pub(super) tolerance: Option<f64>,
     /// Skies of the library that are no alternatives.
     pub(super) skies: Vec<String>,
     pub(super) warnings: Vec<Warning>,
@@ -45,6 +48,19 @@ impl Study {
     #[must_use]
     pub fn scenario(&self) -> &Scenario {
         &self.scenario
+    }
+
+    /// The same, with nearest distances proved to this share of themselves.
+    ///
+    /// # Errors
+    /// A share that is not above 0 and below 1.
+    pub fn proving(self, share: f64) -> Result<Self> {
+        check::positive("share to which a distance is proved", share, "")?;
+        if share >= 1.0 {
+            let quantity = "share to which a distance is proved";
+            return Err(Error::out_of_range(quantity, share, "", "above 0 and below 1, e.g. 1e-6"));
+        }
+        Ok(Self { tolerance: Some(share), ..self })
     }
 
     /// The units in which the scenario was written.

@@ -146,6 +146,7 @@ impl Study {
             target,
             alternatives,
             camera,
+            tolerance: None,
             required,
             skies,
             warnings,

@@ -2,10 +2,9 @@
 
 mod camera;
 
-use super::identify::PairResult;
+use super::identify::{PairResult, Proof};
 use super::{Study, Warning};
 use crate::scenario::DistanceKind;
-use hadar::fisher::Nuisance;
 use hadar::identifiability::Status;
 use hadar::identifiability::local::LocalDistance;
 use hadar::identifiability::nearest::{NearestDistance, StateRange};
@@ -31,6 +30,7 @@ pub(super) fn of_pair(
     nearest: &NearestDistance,
     kind: DistanceKind,
     range: &StateRange,
+    priors: bool,
 ) -> Vec<Warning> {
     let mut warnings = Vec::new();
     let mut warn = |warning: Warning| {
@@ -50,8 +50,8 @@ pub(super) fn of_pair(
     if !parameters.is_empty() && pair.status == Status::Ok {
         warn(Warning::NearestAtEdge { parameters, objects });
     }
-    if !nearest.converged {
-        warn(Warning::NearestNotConverged);
+    if pair.proof == Proof::Searched {
+        warn(Warning::NearestSearch { distance: nearest.distance, lower: nearest.lower, priors });
     }
     let (d_local, d_nearest) = (pair.distance_local, pair.distance_nearest);
     let ratio = (d_local / d_nearest).max(d_nearest / d_local);
@@ -94,11 +94,6 @@ impl Study {
         if occupancy > OCCUPANCY {
             let included = self.camera.as_ref().is_some_and(|camera| camera.photon_bunching);
             warnings.push(Warning::Bunching { occupancy, wavenumber_cm1: low, included });
-        }
-        if self.is_unknown(Nuisance::EnvironmentTemperature) {
-            warnings.push(Warning::NearestSearch { unknown: Nuisance::EnvironmentTemperature });
-        } else if self.is_unknown(Nuisance::Gain) {
-            warnings.push(Warning::NearestSearch { unknown: Nuisance::Gain });
         }
         let width_cm1 = self.open_bands.widths_cm1().into_iter().fold(0.0, f64::max);
         if self.open_bands.one_node_per_band() && width_cm1 > SAMPLED_CM1 {

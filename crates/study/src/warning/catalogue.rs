@@ -60,16 +60,14 @@ catalogue! {
     Blind = "blind", "Take more bands, or make an unknown known (fewer nuisances, a prior, lighting_total).";
     /// The state in which the alternative is most similar stands at the end of a range that the scenario set.
     NearestAtEdge = "nearest-at-edge", "Check that the range is what can occur: the answer hangs on it.";
-    /// The search for a nearest state ended before it converged, so that a distance may be too large.
-    NearestNotConverged = "nearest-not-converged", "Take the distance as an estimate from above; narrow the ranges.";
     /// Local and nearest distance differ much: the picture that is linear in the unknowns has failed.
     LocalDiffers = "local-differs", "Use the nearest distance (requirement.by = \"nearest\").";
     /// Spectra are nearly featureless, so that small errors of the emissivities change the distance several times over.
     Fragile = "fragile", "Measure the emissivities better, or take the answer as an order of magnitude.";
     /// An unknown changes nothing in this scene and was left out.
     UnknownWithoutEffect = "unknown-without-effect", "Nothing; or take it out of unknown.nuisances.";
-    /// With this unknown there are many similar states, of which the search may miss the nearest: its distance may be too large.
-    NearestSearch = "nearest-search", "Make the unknown known if you can; else keep a margin.";
+    /// The nearest state was searched and could not be proved to be the nearest: its distance may be too large.
+    NearestSearch = "nearest-search", "Rely on what is proved (distance_nearest_lower), or make an unknown known.";
     /// Photons per mode are so many that bunching raises the noise noticeably.
     Bunching = "bunching", "Set camera.photon_bunching = true to include it.";
     /// The scenario has an envelope, and this answer is for its one scene.

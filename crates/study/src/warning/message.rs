@@ -1,7 +1,6 @@
 //! The message of every warning, made of its data.
 
 use super::Warning;
-use hadar::fisher::Nuisance;
 use hadar::instrument::Readout;
 use hadar::scene::Parameter;
 use hadar::words::{length, quantity, significant};
@@ -31,9 +30,8 @@ impl Display for Warning {
                 "the nearest state stands at the edge of its range ({}); the range decides the answer",
                 listed(parameters, *objects)
             ),
-            Self::NearestNotConverged => f.write_str("the search for the nearest state stopped early"),
-            Self::MatrixNotConverged { searches } => {
-                write!(f, "{searches} searches for the nearest states of the matrix stopped early")
+            Self::MatrixNotProved { searches } => {
+                write!(f, "{searches} nearest distances of the matrix are searched and not proved; verdicts rest on what is proved")
             }
             Self::LocalDiffers { local, nearest, ratio } => write!(
                 f,
@@ -53,13 +51,15 @@ impl Display for Warning {
                 let change = if parameters.len() == 1 { "changes" } else { "change" };
                 write!(f, "{} {change} nothing in this scene", listed(parameters, *objects))
             }
-            Self::NearestSearch { unknown: Nuisance::Gain } => f.write_str(
-                "with the gain unknown the search for the nearest state missed it in one of 200 random scenes, by up to 3 %",
-            ),
-            Self::NearestSearch { .. } => f.write_str(
-                "with the temperatures of the surroundings unknown there are many similar states; the search \
-                 for the nearest one missed it in up to a quarter of random scenes, so the nearest distance may be too large",
-            ),
+            Self::NearestSearch { distance, lower, priors } => {
+                let why = if *priors { ", which leaves priors out" } else { "" };
+                write!(
+                    f,
+                    "the nearest distance, {}, is the best of a search; the proof{why} says no more than that it is at least {}",
+                    significant(*distance, 3),
+                    significant(*lower, 3)
+                )
+            }
             Self::Bunching { occupancy, wavenumber_cm1, included } => {
                 let what = if *included {
                     "bunching raises the noise of the light that is counted, which is included"

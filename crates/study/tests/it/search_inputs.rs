@@ -95,6 +95,7 @@ fn impossible_inputs_are_errors() {
         unknowns: &unknowns,
         range: whole,
         state: &state,
+        tolerance: None,
     };
     for required in [f64::NAN, 0.0, -1.0, f64::INFINITY] {
         for skipping in [Skipping::On, Skipping::Off] {

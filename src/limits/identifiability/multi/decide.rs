@@ -13,7 +13,8 @@
 //! Whether 2 is worth trying the local distance in every n-th band tells (times √n it is about that in all): it proves
 //! nothing, and is only a guess at what will. Before 3 a descent in the few bands shows cheaply where they fail.
 //!
-//! One direction that fails decides the pair. Proofs are as good as the search for the nearest state is.
+//! One direction that fails decides the pair. That no state is nearer is proved by branch and bound (see
+//! [`NearestSolver::nearer_than`]); where the effort does not suffice for a proof the two are not told apart.
 
 use super::LibraryScene;
 use crate::demand::{self, Attempt, Proof, Reason, Skipping, Thing};
@@ -264,6 +265,8 @@ impl<'q> Question<'q> {
             Ok(match solvers.all.nearer_than(own, other, state, counting, required)? {
                 Nearer::Somewhere => (false, Some(Reason::NearerState)),
                 Nearer::Nowhere => (true, None),
+                // On the safe side.
+                Nearer::Undecided => (false, None),
             })
         };
         let own_is_new = in_own_state.is_none().then_some(Thing::OwnStateDistances);

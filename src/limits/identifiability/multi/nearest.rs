@@ -23,12 +23,18 @@ pub struct LibraryScene<'a> {
     pub range: StateRange,
     /// The state of every target.
     pub state: &'a State,
+    /// To what share of a distance it is proved, if at all.
+    pub tolerance: Option<f64>,
 }
 
 impl<'a> LibraryScene<'a> {
     /// A solver of nearest states in this scene.
     pub(super) fn solver(&self) -> NearestSolver<'a> {
-        NearestSolver::new(self.bands, self.surroundings, self.unknowns.clone(), self.range)
+        let solver = NearestSolver::new(self.bands, self.surroundings, self.unknowns.clone(), self.range);
+        match self.tolerance {
+            Some(tolerance) => solver.proving(tolerance),
+            None => solver,
+        }
     }
 
     /// Nearest state of every alternative (column) to every target (row) per √photon, shot noise only; `None`

@@ -24,7 +24,7 @@ use self::hull::{Quadratic, reduce};
 use self::metric::Metric;
 use self::sources::{Chord, Sources, Spectrum, chord};
 use super::residual::Target;
-use super::{NearestDistance, NearestSolver};
+use super::{Nearer, NearestDistance, NearestSolver};
 use crate::fisher::Nuisance;
 use crate::scene::{Parameter, State};
 use crate::sum::dot;
@@ -43,6 +43,17 @@ const RESTARTS: usize = 30;
 const QUADRATICS: usize = 5;
 /// Half widths of the closed box that are tried, as shares of T/max(x, 2) in the middle of the bands.
 const WIDTHS: [f64; 8] = [0.3, 0.1, 0.03, 0.01, 3e-3, 1e-3, 1e-4, 1e-6];
+
+/// What is to be shown.
+#[derive(Debug, Clone, Copy)]
+struct Goal {
+    /// A state of less d² than this ends the proof.
+    limit: f64,
+    /// The bound of d² that is enough.
+    enough: f64,
+    /// Boxes looked at most.
+    boxes: u64,
+}
 
 /// What is known of a search.
 enum Outcome {
@@ -121,6 +132,22 @@ struct Prover<'a> {
     boxes: u64,
 }
 
+/// Whether any state is nearer than `limit`; `known` is the nearest one that a search has found, if there was one.
+pub(super) fn nearer_than(
+    solver: &mut NearestSolver<'_>,
+    target: &Target<'_>,
+    limit: f64,
+    known: Option<&NearestDistance>,
+    boxes: u64,
+) -> Nearer {
+    let goal = Goal { limit: limit * limit, enough: limit * limit, boxes };
+    match Prover::new(solver, target, limit).run(solver, target, known, goal) {
+        Outcome::Nearer(_) => Nearer::Somewhere,
+        Outcome::Bound(lower) if lower * (1.0 - MARGIN) >= limit => Nearer::Nowhere,
+        Outcome::Bound(_) => Nearer::Undecided,
+    }
+}
+
 /// The best state with a bound proved to `tolerance` of its distance, or as far as the effort goes.
 pub(super) fn prove(
     solver: &mut NearestSolver<'_>,
@@ -132,7 +159,13 @@ pub(super) fn prove(
         if best.distance <= 0.0 {
             break;
         }
-        match Prover::new(solver, target, best.distance).run(solver, target, &best, tolerance) {
+        let cost = best.distance * best.distance;
+        // A little more than asked for, so that a bound rounded down does not miss it.
+        let share = 1.0 - 0.9 * tolerance;
+        let prover = Prover::new(solver, target, best.distance);
+        let boxes = BOXES[prover.axes.len().min(BOXES.len() - 1)];
+        let goal = Goal { limit: cost, enough: share * share * cost, boxes };
+        match prover.run(solver, target, Some(&best), goal) {
             Outcome::Bound(lower) => {
                 best.lower = (lower * (1.0 - MARGIN)).clamp(0.0, best.distance);
                 break;
@@ -195,34 +228,26 @@ impl<'a> Prover<'a> {
         mut self,
         solver: &mut NearestSolver<'_>,
         target: &Target<'_>,
-        best: &NearestDistance,
-        tolerance: f64,
+        best: Option<&NearestDistance>,
+        goal: Goal,
     ) -> Outcome {
-        let cost = best.distance * best.distance;
-        // A little more than asked for, so that a bound rounded down does not miss it.
-        let share = 1.0 - 0.9 * tolerance;
-        let enough = share * share * cost;
-        let closed = self.close_about(solver, target, best, enough);
-        let (inside, faces) = match closed {
-            Closed::Nearer(state) => return Outcome::Nearer(state),
-            Closed::Box(lower, faces) => (lower, Some(faces)),
-            Closed::Nothing => (f64::INFINITY, None),
+        let Goal { limit, enough, boxes } = goal;
+        let (mut aside, faces) = match best.map(|best| self.close_about(solver, target, best, goal)) {
+            Some(Closed::Nearer(state)) => return Outcome::Nearer(state),
+            Some(Closed::Box(lower, faces)) => (lower, Some(faces)),
+            Some(Closed::Nothing) | None => (f64::INFINITY, None),
         };
-        if self.axes.is_empty() {
-            return Outcome::Bound(if inside.is_finite() { inside.max(0.0).sqrt() } else { 0.0 });
-        }
-        let mut aside = inside;
         let mut queue = BinaryHeap::new();
-        for region in self.around(faces.as_deref(), best) {
-            queue.push(region);
-        }
-        let most = BOXES[self.axes.len().min(BOXES.len() - 1)];
-        while let Some(region) = queue.pop() {
-            if region.bound >= enough {
-                queue.push(region);
-                break;
+        if self.axes.is_empty() {
+            if faces.is_none() {
+                queue.push(Region { ends: Vec::new(), bound: 0.0, axis: None });
             }
-            if self.boxes >= most {
+        } else {
+            let warmest = best.map_or(target.state, |best| &best.state);
+            queue.extend(self.around(faces.as_deref(), warmest));
+        }
+        while let Some(region) = queue.pop() {
+            if region.bound >= enough || self.boxes >= boxes {
                 queue.push(region);
                 break;
             }
@@ -239,7 +264,7 @@ impl<'a> Prover<'a> {
                 let (bound, axis, mixture) = self.bound(&part.ends, &self.allowed, enough);
                 part.bound = bound.max(part.bound);
                 let nearer =
-                    if part.bound < enough { self.nearer(solver, target, best, &mixture) } else { None };
+                    if part.bound < enough { self.nearer(solver, target, limit, &mixture) } else { None };
                 if let Some(state) = nearer {
                     return Outcome::Nearer(state);
                 }
@@ -248,18 +273,18 @@ impl<'a> Prover<'a> {
             }
         }
         let waiting = queue.peek().map_or(f64::INFINITY, |region| region.bound);
-        Outcome::Bound(aside.min(waiting).min(cost).max(0.0).sqrt())
+        Outcome::Bound(aside.min(waiting).min(limit).max(0.0).sqrt())
     }
 
-    /// The state of a mixture, if it is nearer than the best one.
+    /// The state of a mixture, if its cost is below the limit.
     fn nearer(
         &self,
         solver: &mut NearestSolver<'_>,
         target: &Target<'_>,
-        best: &NearestDistance,
+        limit: f64,
         mixture: &Mixture,
     ) -> Option<State> {
-        let mut state = best.state.clone();
+        let mut state = target.state.clone();
         let space = &solver.comparison.space;
         let surface = mixture.amplitudes[0];
         for parameter in &space.parameters {
@@ -275,7 +300,7 @@ impl<'a> Prover<'a> {
         }
         let state = space.within_range(&state);
         let cost = solver.comparison.cost(target, &state);
-        (cost < best.distance * best.distance * (1.0 - 1e-12)).then_some(state)
+        (cost < limit * (1.0 - 1e-12)).then_some(state)
     }
 
     fn end(&mut self, axis: usize, temperature_k: f64) -> usize {
@@ -316,8 +341,8 @@ impl<'a> Prover<'a> {
     }
 
     /// The whole range but for the closed box, in boxes that share faces with it.
-    fn around(&mut self, faces: Option<&[[f64; 2]]>, best: &NearestDistance) -> Vec<Region> {
-        let ranges: Vec<[f64; 2]> = (0..self.axes.len()).map(|axis| self.range(axis, best)).collect();
+    fn around(&mut self, faces: Option<&[[f64; 2]]>, warm: &State) -> Vec<Region> {
+        let ranges: Vec<[f64; 2]> = (0..self.axes.len()).map(|axis| self.range(axis, warm)).collect();
         let mut rest: Vec<[usize; 2]> = Vec::new();
         for (axis, range) in ranges.iter().enumerate() {
             let ends = [self.end(axis, range[0]), self.end(axis, range[1])];
@@ -344,11 +369,11 @@ impl<'a> Prover<'a> {
     }
 
     /// The range of an unknown temperature, cut off where a known amplitude is too bright in some band.
-    fn range(&mut self, axis: usize, best: &NearestDistance) -> [f64; 2] {
+    fn range(&mut self, axis: usize, warm: &State) -> [f64; 2] {
         let s = self.axes[axis];
         let [low, high] = self.sources.list[s].temperature_k;
         let Some(amplitude) = self.held(s) else { return [low, high] };
-        let mut t = 1.2 * temperature_of(&best.state, s).max(low);
+        let mut t = 1.2 * temperature_of(warm, s).max(low);
         while t < high {
             let end = self.end(axis, t);
             if self.ends[axis][end].most < amplitude {
@@ -480,9 +505,9 @@ impl<'a> Prover<'a> {
         solver: &mut NearestSolver<'_>,
         target: &Target<'_>,
         best: &NearestDistance,
-        enough: f64,
+        goal: Goal,
     ) -> Closed {
-        let state = &best.state;
+        let (state, enough) = (&best.state, goal.enough);
         let (residual, other) = solver.comparison.residual(target, state);
         let count = self.fixed.len();
         let temperature_k: Vec<f64> = (0..count).map(|s| temperature_of(state, s)).collect();
@@ -535,7 +560,7 @@ impl<'a> Prover<'a> {
             if lower >= enough && self.dim_ones_are_farther(&faces, &amplitudes, enough) {
                 return Closed::Box(lower, faces);
             }
-            if let Some(state) = self.nearer(solver, target, best, &mixture) {
+            if let Some(state) = self.nearer(solver, target, goal.limit, &mixture) {
                 return Closed::Nearer(state);
             }
             if self.axes.is_empty() {

@@ -203,6 +203,32 @@ impl<'a> Comparison<'a> {
         (self.work.separation.iter().zip(sums).map(quotient).collect(), other)
     }
 
+    /// The separation from a state with every term of S − S′ taken by its magnitude: what cancels in the distance.
+    pub(super) fn terms(&mut self, target: &Target<'_>, state: &State) -> f64 {
+        self.separate(target, state, false);
+        let pairs = target.emissivity.iter().zip(target.alternative).zip(self.target.contrast());
+        let changes = self.work.difference.iter().zip(self.work.lighting.iter());
+        let magnitude =
+            |(((e, other), contrast), (difference, lighting)): (((&f64, &f64), &f64), (&f64, &f64))| {
+                target.state.gain
+                    * (((e - other) * contrast).abs()
+                        + (other * difference).abs()
+                        + ((1.0 - other) * lighting).abs())
+            };
+        let nodes: Vec<f64> = pairs.zip(changes).map(magnitude).collect();
+        let gain = (state.gain - target.state.gain).abs() / state.gain;
+        let mut total = crate::sum::Compensated::default();
+        for (band, terms) in self.target.bands().weigh(&nodes).into_iter().enumerate() {
+            let other = self.surface.signal()[band];
+            let sum = self.work.root[band] + (target.counts * other + self.work.noise[band]).sqrt();
+            if sum > 0.0 {
+                let term = target.counts * (terms + gain * other) / sum;
+                total.add(term * term);
+            }
+        }
+        total.value().sqrt()
+    }
+
     /// √(N + σ²) of the target.
     pub(super) fn root(&self) -> &[f64] {
         &self.work.root

@@ -61,10 +61,9 @@ impl Study {
             identification.warnings.push(Warning::MatrixPriors);
         }
         let matrix = if_asked(asked.matrix, section, 1, || self.matrix())?;
-        if let Some(searches) =
-            matrix.as_ref().map(|matrix| matrix.unconverged).filter(|&stopped| stopped > 0)
+        if let Some(searches) = matrix.as_ref().map(|matrix| matrix.unproved).filter(|&unproved| unproved > 0)
         {
-            identification.warnings.push(Warning::MatrixNotConverged { searches });
+            identification.warnings.push(Warning::MatrixNotProved { searches });
         }
         let exact = if_asked(asked.exact.is_some(), section, 1, || {
             asked.exact.map(|trial| self.exact(&trial, progress)).transpose()

@@ -46,6 +46,7 @@ impl Study {
             unknowns: &self.unknowns,
             range: self.range,
             state: &self.state,
+            tolerance: Some(self.tolerance()),
         }
     }
 
@@ -65,8 +66,14 @@ impl Study {
             .per_photon(&emissivities, &self.state)
             .map_err(|error| error.at(self.scenario.place("bands")))?;
         let found = self.library_scene().nearest_per_photon(&emissivities)?;
-        let unconverged = found.iter().flatten().filter(|nearest| !nearest.converged).count();
-        let nearest = distances(&found);
+        let lower = found
+            .iter()
+            .map(|nearest| nearest.as_ref().map_or(0.0, |nearest| nearest.lower))
+            .collect::<Vec<_>>();
+        let unproved =
+            found.iter().flatten().filter(|nearest| !nearest.is_proved_to(self.tolerance())).count();
+        let nearest: Vec<f64> =
+            found.iter().map(|nearest| nearest.as_ref().map_or(0.0, |nearest| nearest.distance)).collect();
         let statistical = counting.as_ref().map(|counting| of(kind, Some(counting))).transpose()?;
         let by_kind = match kind {
             DistanceKind::Nearest => nearest.clone(),
@@ -108,6 +115,7 @@ impl Study {
         Ok(Matrix {
             by: kind.name(),
             distance_nearest: rows(&nearest, count),
+            distance_nearest_lower: rows(&lower, count),
             distance_local: rows(&local, count),
             distance_local_unknown_gain: (kind == DistanceKind::LocalUnknownGain)
                 .then(|| rows(&by_kind, count)),
@@ -115,7 +123,7 @@ impl Study {
             required_distance: required,
             targets,
             apart,
-            unconverged,
+            unproved,
             passes: solver.passes(),
             materials: names,
         })
@@ -216,21 +224,21 @@ impl Study {
         let scene = self.library_scene();
         let found = match (kind, counting) {
             (DistanceKind::Nearest, Some(counting)) => {
-                scene.nearest_with_counting(emissivities, counting).map(|found| distances(&found))
+                scene.nearest_with_counting(emissivities, counting).map(|found| self.all_sure(&found))
             }
             (DistanceKind::Nearest, None) => {
-                scene.nearest_per_photon(emissivities).map(|found| distances(&found))
+                scene.nearest_per_photon(emissivities).map(|found| self.all_sure(&found))
             }
             (DistanceKind::Local, _) => local(self.unknowns.clone()),
             (DistanceKind::LocalUnknownGain, _) => local(self.unknowns.with(Nuisance::Gain)),
         };
         found.map_err(|error| error.at(self.scenario.place("bands")))
     }
-}
 
-/// Distances of nearest states, 0 on the diagonal.
-fn distances(found: &[Option<NearestDistance>]) -> Vec<f64> {
-    found.iter().map(|nearest| nearest.as_ref().map_or(0.0, |nearest| nearest.distance)).collect()
+    /// What verdicts may rest on of nearest states, 0 on the diagonal.
+    fn all_sure(&self, found: &[Option<NearestDistance>]) -> Vec<f64> {
+        found.iter().map(|nearest| nearest.as_ref().map_or(0.0, |nearest| self.sure(nearest))).collect()
+    }
 }
 
 fn rows(distances: &[f64], count: usize) -> Rows {

@@ -99,6 +99,16 @@ impl PhotonsRequired {
     }
 }
 
+/// How sure a nearest distance is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Proof {
+    /// No state is nearer by more than the share that is asked for.
+    Proved,
+    /// It is the best of a search; what is proved is farther below it.
+    Searched,
+}
+
 /// One target against one alternative.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
@@ -117,12 +127,20 @@ pub struct PairResult {
     pub distance_no_nuisance: f64,
     /// Nearest distance per √photon.
     pub distance_nearest: f64,
+    /// What is proved of it: no state of the alternative is nearer.
+    pub distance_nearest_lower: f64,
+    /// Whether that is as near to it as is asked for.
+    pub proof: Proof,
+    /// Estimated relative rounding error of the nearest distance.
+    pub relative_error_nearest: f64,
     /// The state it belongs to.
     pub nearest_state: NearestState,
     /// What of that state stands at the edge of its range.
     pub nearest_at_edge: Vec<String>,
-    /// Distance from that state back to the target's material, per √photon.
+    /// Distance from that state back to the target's material, per √photon of the target.
     pub distance_return: f64,
+    /// Estimated relative rounding error of it.
+    pub relative_error_return: f64,
     /// Photons for the requirement by the chosen distance, shot noise only; none suffice where `None`.
     pub photons_required: Option<f64>,
     /// The same by all three readings.

@@ -18,6 +18,8 @@ pub struct Matrix {
     pub by: &'static str,
     /// Nearest distance per √photon.
     pub distance_nearest: Rows,
+    /// What is proved of it: no state of the alternative is nearer.
+    pub distance_nearest_lower: Rows,
     /// Local distance per √photon.
     pub distance_local: Rows,
     /// Local distance with unknown gain per √photon, where that decides.
@@ -31,8 +33,8 @@ pub struct Matrix {
     pub targets: Vec<TargetVerdict>,
     /// What the camera makes of every pair; `None` without one.
     pub apart: Option<Apart>,
-    /// Searches for a nearest state that stopped early.
-    pub unconverged: usize,
+    /// Nearest distances that are searched and not proved.
+    pub unproved: usize,
     /// How the local distances per √photon were computed: what the targets lent to their pairs.
     pub passes: Passes,
 }
