@@ -208,14 +208,13 @@ impl<'a> Comparison<'a> {
         self.separate(target, state, false);
         let pairs = target.emissivity.iter().zip(target.alternative).zip(self.target.contrast());
         let changes = self.work.difference.iter().zip(self.work.lighting.iter());
-        let magnitude =
-            |(((e, other), contrast), (difference, lighting)): (((&f64, &f64), &f64), (&f64, &f64))| {
-                target.state.gain
-                    * (((e - other) * contrast).abs()
-                        + (other * difference).abs()
-                        + ((1.0 - other) * lighting).abs())
-            };
-        let nodes: Vec<f64> = pairs.zip(changes).map(magnitude).collect();
+        let nodes: Vec<f64> = pairs
+            .zip(changes)
+            .map(|(((e, other), contrast), (difference, lighting))| {
+                let terms = [(e - other) * contrast, other * difference, (1.0 - other) * lighting];
+                target.state.gain * terms.iter().map(|term| term.abs()).sum::<f64>()
+            })
+            .collect();
         let gain = (state.gain - target.state.gain).abs() / state.gain;
         let mut total = crate::sum::Compensated::default();
         for (band, terms) in self.target.bands().weigh(&nodes).into_iter().enumerate() {

@@ -9,7 +9,7 @@
 //! |a + b|² ≥ (1 − η)|a|² − (1/η − 1)|b|², for |t_j| ≤ h_j and c_j ≥ l_j and multipliers λ ≥ 0 of the limits of z, ĝ = g − Σλa,
 //!
 //! ≥ d² + ĝ·z + (1 − η)‖WZz‖² − Σ K_j y_j² − Σ λ·slack,
-//! K_j = (κ_j + |ĝ·w_j|)/(2l_j) + (1/η − 1)(n/4)h_j²(‖PWA_j″‖ + ⅓h_j‖WA_j‴‖)²,
+//! K_j = (κ_j + |ĝ·w_j|)/(2l_j) + (1/η − 1) n [½h_j(‖PWA_j″‖ + ⅓h_j‖WA_j‴‖)]²,
 //!
 //! −κ_j the least p·A_j″ in the box, n sources of unknown temperature. If that quadratic is convex, (1 − η)RᵀR − K = FᵀF, it
 //! falls below d² by no more than ¼‖F⁻ᵀĝ‖² + Σλ·slack: a lower bound of the whole box, and d² but for what the minimum is off.
@@ -19,8 +19,12 @@ use super::hull::{Quadratic, add, inner, reduce};
 use super::sources::{Sources, Spectrum};
 use crate::sum::dot;
 
-/// η.
-const SHARE: f64 = 0.25;
+/// η at most.
+const SHARE: f64 = 0.6;
+/// How often the weights are made better.
+const WEIGHTS: usize = 2;
+/// Share of y within which d is too small to matter for the weights.
+const SMALL: f64 = 0.01;
 /// What must be left of a direction of temperature, as a share, once all amplitudes have been fitted to it.
 const LEFT: f64 = 1e-12;
 /// What the losses must leave of its square.
@@ -33,11 +37,28 @@ pub(super) struct Minimum<'m> {
     /// Amplitude and spectrum of every source.
     pub(super) amplitudes: &'m [f64],
     pub(super) spectra: &'m [Spectrum],
-    /// −r/s, and the weights of the quadratic.
+    /// −r/s.
     pub(super) pull: &'m [f64],
-    pub(super) weight: &'m [f64],
+    /// y and s of every band; 0 for both where a band is left out.
+    pub(super) root: &'m [f64],
+    pub(super) other: &'m [f64],
+    /// The distance within which everything is.
+    pub(super) reach: f64,
     /// d².
     pub(super) cost: f64,
+}
+
+impl Minimum<'_> {
+    /// √(y/s)/(s + y + reach) of every band.
+    fn weight(&self) -> Vec<f64> {
+        let bands = self.root.iter().zip(self.other);
+        bands.map(|(y, s)| if *s > 0.0 { (y / s).sqrt() / (s + y + self.reach) } else { 0.0 }).collect()
+    }
+
+    /// The least y.
+    fn least_root(&self) -> f64 {
+        self.root.iter().copied().filter(|y| *y > 0.0).fold(f64::INFINITY, f64::min)
+    }
 }
 
 /// The two ends of a box along one source, relative to T*, and the least amplitude in it.
@@ -57,6 +78,9 @@ struct Columns<'m> {
     linear: Vec<f64>,
     triangle: Vec<Vec<f64>>,
     lengths: Vec<f64>,
+    /// QᵀWA″ with what is left of it, and ‖WA‴‖, of every source of unknown temperature.
+    bent: Vec<Vec<f64>>,
+    third: Vec<f64>,
 }
 
 /// What a box around a minimum has come to.
@@ -77,8 +101,6 @@ pub(super) fn close(
     enough: f64,
 ) -> Option<Closed> {
     let count = minimum.spectra.len();
-    let whitened =
-        |spectrum: &[f64]| -> Vec<f64> { spectrum.iter().zip(minimum.weight).map(|(a, w)| a * w).collect() };
     let varies = |s: usize| {
         allowed.gain_free || s.checked_sub(1).is_some_and(|k| allowed.ranges[k][0] < allowed.ranges[k][1])
     };
@@ -88,8 +110,6 @@ pub(super) fn close(
         .chain(axes.iter().map(|&(s, _)| &minimum.spectra[s].slope[..]))
         .collect();
     let linear: Vec<f64> = raw.iter().map(|column| dot(minimum.pull, column)).collect();
-    let columns: Vec<Vec<f64>> = raw.iter().map(|column| whitened(column)).collect();
-    let lengths: Vec<f64> = columns.iter().map(|column| dot(column, column).sqrt()).collect();
     let bends: Vec<[Vec<f64>; 2]> = axes
         .iter()
         .map(|&(s, Reach { down_k, up_k, .. })| {
@@ -97,10 +117,6 @@ pub(super) fn close(
             sources.bend(s, t, [t - down_k, t + up_k])
         })
         .collect();
-    let bent: Vec<Vec<f64>> = bends.iter().map(|[bend, _]| whitened(bend)).collect();
-    let bent: Vec<&[f64]> = bent.iter().map(|bend| &bend[..]).collect();
-    let (triangle, bent) = reduce(columns, &bent);
-    let columns = Columns { minimum, lit, axes, linear, triangle, lengths };
     let pulled: Vec<[f64; 2]> = bends
         .iter()
         .map(|[bend, third]| {
@@ -108,15 +124,33 @@ pub(super) fn close(
             [dot(minimum.pull, bend), size]
         })
         .collect();
-    let third: Vec<f64> =
-        bends.iter().map(|[_, third]| whitened(third)).map(|third| dot(&third, &third).sqrt()).collect();
+    let mut weight = minimum.weight();
+    let rounds = if minimum.reach > SMALL * minimum.least_root() && !axes.is_empty() { WEIGHTS } else { 0 };
+    let (triangle, lengths, bent, third) = Default::default();
+    let mut columns = Columns { minimum, lit, axes, linear, triangle, lengths, bent, third };
+    for round in 0..=rounds {
+        let whitened =
+            |spectrum: &[f64]| -> Vec<f64> { spectrum.iter().zip(&weight).map(|(a, w)| a * w).collect() };
+        let mut basis: Vec<Vec<f64>> = raw.iter().map(|column| whitened(column)).collect();
+        columns.lengths = basis.iter().map(|column| dot(column, column).sqrt()).collect();
+        let turns: Vec<[Vec<f64>; 2]> =
+            bends.iter().map(|pair| pair.each_ref().map(|x| whitened(x))).collect();
+        let bent: Vec<&[f64]> = turns.iter().map(|[bend, _]| &bend[..]).collect();
+        (columns.triangle, columns.bent) = reduce(&mut basis, &bent);
+        columns.third = turns.iter().map(|[_, third]| dot(third, third).sqrt()).collect();
+        if round < rounds {
+            let Some(better) = columns.weighed(&weight, &basis, &turns) else { break };
+            weight = better;
+        }
+    }
     // |ĝ·w| is known only with the multipliers, which hang on K: what comes out must be within what was put in.
     let mut shifted = vec![0.0; columns.axes.len()];
     for _ in 0..3 {
-        let loss = columns.loss(&pulled, &bent, &third, &shifted)?;
+        let loss = columns.loss(&pulled, &shifted)?;
         let factor = columns.factor(&loss)?;
         let (fall, rest) = columns.fall(&factor, &columns.limits(allowed));
-        let now: Vec<f64> = bent.iter().map(|bent| columns.along_amplitudes(bent, &rest).abs()).collect();
+        let now: Vec<f64> =
+            columns.bent.iter().map(|bent| columns.along_amplitudes(bent, &rest).abs()).collect();
         if now.iter().zip(&shifted).all(|(now, assumed)| now <= assumed) || columns.axes.is_empty() {
             let lower = minimum.cost - fall;
             if lower >= enough || !columns.axes.is_empty() {
@@ -130,38 +164,83 @@ pub(super) fn close(
 }
 
 impl Columns<'_> {
-    /// K_j of every source of unknown temperature.
-    fn loss(
-        &self,
-        pulled: &[[f64; 2]],
-        bent: &[Vec<f64>],
-        third: &[f64],
-        shifted: &[f64],
-    ) -> Option<Vec<f64>> {
+    /// ½h(‖PWA″‖ + ⅓h‖WA‴‖): how far the slope of a source turns in the box.
+    fn turned(&self, j: usize) -> f64 {
+        let (amplitudes, reach) = (self.lit.len(), self.axes[j].1);
+        let half = reach.down_k.max(reach.up_k);
+        let left = inner(&self.bent[j][amplitudes..], &self.bent[j][amplitudes..]).sqrt();
+        0.5 * half * (left + half * self.third[j] / 3.0)
+    }
+
+    /// What is left of a slope once all amplitudes are fitted.
+    fn own(&self, j: usize) -> f64 {
+        let place = self.lit.len() + j;
+        self.triangle[place][place]
+    }
+
+    /// η, and K_j of every source of unknown temperature.
+    fn loss(&self, pulled: &[[f64; 2]], shifted: &[f64]) -> Option<(f64, Vec<f64>)> {
         let n = self.axes.len() as f64;
-        let amplitudes = self.lit.len();
-        self.axes
-            .iter()
-            .enumerate()
-            .map(|(j, (_, reach))| {
-                let half = reach.down_k.max(reach.up_k);
-                let sinking = (half * pulled[j][1] - pulled[j][0]).max(0.0) + shifted[j];
-                if sinking > 0.0 && reach.least <= 0.0 {
-                    return None;
-                }
-                let sinking = if sinking > 0.0 { 0.5 * sinking / reach.least } else { 0.0 };
-                let left = inner(&bent[j][amplitudes..], &bent[j][amplitudes..]).sqrt();
-                let turned = half * (left + half * third[j] / 3.0);
-                Some(sinking + (1.0 / SHARE - 1.0) * 0.25 * n * turned * turned)
-            })
-            .collect()
+        let turn = (0..self.axes.len()).map(|j| self.turned(j) / self.own(j)).fold(0.0, f64::max);
+        let share = (n.sqrt() * turn).clamp(1e-12, SHARE);
+        let loss = self.axes.iter().enumerate().map(|(j, (_, reach))| {
+            let half = reach.down_k.max(reach.up_k);
+            let sinking = (half * pulled[j][1] - pulled[j][0]).max(0.0) + shifted[j];
+            if sinking > 0.0 && reach.least <= 0.0 {
+                return None;
+            }
+            let sinking = if sinking > 0.0 { 0.5 * sinking / reach.least } else { 0.0 };
+            Some(sinking + (1.0 / share - 1.0) * n * self.turned(j).powi(2))
+        });
+        Some((if self.axes.is_empty() { 0.0 } else { share }, loss.collect::<Option<_>>()?))
+    }
+
+    /// Better weights: a state nearer than the reach has ‖WΔN‖ ≤ D = (d + reach)·max√(y/s), and as ΔN is of few columns, no single
+    /// band can have more of that than its share in these.
+    fn weighed(&self, weight: &[f64], basis: &[Vec<f64>], turns: &[[Vec<f64>; 2]]) -> Option<Vec<f64>> {
+        let Minimum { root, other, reach, cost, .. } = *self.minimum;
+        let bands = root.iter().zip(other).filter(|(_, s)| **s > 0.0);
+        let largest = bands.map(|(y, s)| y / s).fold(0.0, f64::max).sqrt();
+        let all = largest * (cost.sqrt() + reach);
+        let (n, amplitudes) = (self.axes.len(), self.lit.len());
+        // Lengths of the rows of R⁻¹ of the slopes: |y_j| is no more than that times what is along all slopes.
+        let mut rows = vec![0.0; n];
+        for k in 0..n {
+            let mut x = vec![0.0; n];
+            for i in (0..=k).rev() {
+                let later: f64 =
+                    (i + 1..=k).map(|j| self.triangle[amplitudes + j][amplitudes + i] * x[j]).sum();
+                x[i] = (f64::from(u8::from(i == k)) - later) / self.own(i);
+                rows[i] += x[i] * x[i];
+            }
+        }
+        let turned: f64 = rows.iter().enumerate().map(|(j, row)| row.sqrt() * self.turned(j)).sum();
+        if turned.is_nan() || turned >= 0.5 {
+            return None;
+        }
+        let along = all / (1.0 - turned);
+        let changes: Vec<f64> = rows.iter().map(|row| row.sqrt() * along).collect();
+        let mut better = weight.to_vec();
+        for (w, better) in better.iter_mut().enumerate().filter(|(_, weight)| **weight > 0.0) {
+            let share = basis.iter().map(|column| column[w] * column[w]).sum::<f64>().sqrt();
+            let mut most = share * (all + turned * along);
+            for (j, (_, Reach { down_k, up_k, .. })) in self.axes.iter().enumerate() {
+                let half = down_k.max(*up_k);
+                let bend = turns[j][0][w].abs() + share * inner(&self.bent[j], &self.bent[j]).sqrt();
+                most += changes[j] * 0.5 * half * (bend + half * turns[j][1][w] / 3.0);
+            }
+            let s = other[w];
+            let bright = (s * s + most / *better).sqrt().min(root[w] + reach);
+            *better = (root[w] / s).sqrt() / (s + bright);
+        }
+        Some(better)
     }
 
     /// F of (1 − η)RᵀR − K, column by column, if that is positive semidefinite: K stands at the slopes alone, so that of R only
     /// the triangle that is left of them once all amplitudes are fitted changes.
-    fn factor(&self, loss: &[f64]) -> Option<Vec<Vec<f64>>> {
+    fn factor(&self, (share, loss): &(f64, Vec<f64>)) -> Option<Vec<Vec<f64>>> {
         let amplitudes = self.lit.len();
-        let root = if loss.is_empty() { 1.0 } else { (1.0 - SHARE).sqrt() };
+        let root = (1.0 - share).sqrt();
         let mut factor: Vec<Vec<f64>> =
             self.triangle.iter().map(|column| column.iter().map(|x| root * x).collect()).collect();
         let n = loss.len();
@@ -242,7 +321,8 @@ impl Columns<'_> {
         let columns: Vec<Vec<f64>> = limits.iter().map(|limit| solve(&limit.along)).collect();
         let mut used: Vec<usize> = (0..limits.len()).collect();
         loop {
-            let (triangle, along) = reduce(used.iter().map(|&i| columns[i].clone()).collect(), &[&rest]);
+            let (triangle, along) =
+                reduce(&mut used.iter().map(|&i| columns[i].clone()).collect::<Vec<_>>(), &[&rest]);
             let n = used.len();
             let mut multipliers = along[0][..n].to_vec();
             for k in (0..n).rev() {
@@ -274,7 +354,7 @@ impl Columns<'_> {
             let pivot = self.triangle[k][k];
             w[k] = if pivot > 0.0 { (w[k] - later) / pivot } else { 0.0 };
         }
-        // The amplitudes' columns of F are those of R but for √(1 − η).
+        // The amplitudes' columns of F are those of R but for √(1 − η) ≤ 1.
         let gradient = (0..n).map(|k| inner(&self.triangle[k][..=k], &rest[..=k]));
         gradient.zip(&w).map(|(g, w)| g * w).sum()
     }

@@ -50,9 +50,9 @@ pub(super) fn add(to: &mut [f64], factor: f64, x: &[f64]) {
     to.iter_mut().zip(x).for_each(|(to, x)| *to += factor * x);
 }
 
-/// Columns that orthonormal ones make up for: the triangle R of columns = QR, column by column (Gram and Schmidt, twice), what
-/// depends on earlier columns left out, and for each of `others` Qᵀother followed by what is left of its length.
-pub(super) fn reduce(mut columns: Vec<Vec<f64>>, others: &[&[f64]]) -> (Vec<Vec<f64>>, Vec<Vec<f64>>) {
+/// Makes columns orthonormal (Gram and Schmidt, twice) and gives the triangle R of columns = QR, column by column, what depends on
+/// earlier columns left out, and for each of `others` Qᵀother followed by what is left of its length.
+pub(super) fn reduce(columns: &mut [Vec<f64>], others: &[&[f64]]) -> (Vec<Vec<f64>>, Vec<Vec<f64>>) {
     let size = columns.len();
     let mut triangle = vec![vec![0.0; size]; size];
     for (k, above) in triangle.iter_mut().enumerate() {
@@ -177,12 +177,15 @@ impl Quadratic {
         let base = &corral[m];
         let sides: Vec<Vec<f64>> =
             corral[..m].iter().map(|v| v.iter().zip(base).map(|(v, b)| v - b).collect()).collect();
-        let images = sides.iter().map(|side| {
-            let mut image = vec![0.0; self.shift.len()];
-            self.factor.iter().zip(side).for_each(|(column, x)| add(&mut image, *x, column));
-            image
-        });
-        let (triangle, others) = reduce(images.collect(), &[&self.image(base)]);
+        let mut images: Vec<Vec<f64>> = sides
+            .iter()
+            .map(|side| {
+                let mut image = vec![0.0; self.shift.len()];
+                self.factor.iter().zip(side).for_each(|(column, x)| add(&mut image, *x, column));
+                image
+            })
+            .collect();
+        let (triangle, others) = reduce(&mut images, &[&self.image(base)]);
         // ‖image + Rw‖² + g·(sides w): R w = −Qᵀimage − ½R⁻ᵀ(g·sides).
         let mut right = vec![0.0; m];
         for k in 0..m {

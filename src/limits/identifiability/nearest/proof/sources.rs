@@ -15,6 +15,7 @@ use crate::planck;
 use crate::simd::dispatched;
 use crate::spectrum::Bands;
 use crate::units::SECOND_RADIATION_CM_K;
+use std::borrow::Cow;
 
 /// One source: what B(T) is multiplied by at the nodes, and where its temperature may be.
 #[derive(Debug)]
@@ -44,7 +45,7 @@ pub(super) struct Spectrum {
 /// All sources of an alternative.
 #[derive(Debug)]
 pub(super) struct Sources<'a> {
-    pub(super) bands: &'a Bands,
+    pub(super) bands: Cow<'a, Bands>,
     pub(super) list: Vec<Source>,
 }
 
@@ -74,7 +75,19 @@ impl<'a> Sources<'a> {
                 temperature_k: span(unknown(Nuisance::EnvironmentTemperature), range, known),
             }
         });
-        Self { bands: comparison.target.bands(), list: std::iter::once(surface).chain(lights).collect() }
+        Self {
+            bands: Cow::Borrowed(comparison.target.bands()),
+            list: std::iter::once(surface).chain(lights).collect(),
+        }
+    }
+
+    /// The same in every `stride`-th band.
+    pub(super) fn every(&self, bands: &Bands, nodes: &[usize]) -> Sources<'static> {
+        let list = self.list.iter().map(|source| Source {
+            strength: nodes.iter().map(|&j| source.strength[j]).collect(),
+            temperature_k: source.temperature_k,
+        });
+        Sources { bands: Cow::Owned(bands.clone()), list: list.collect() }
     }
 
     /// Source `s` at a temperature.
