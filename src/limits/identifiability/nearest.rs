@@ -23,6 +23,7 @@ mod proof;
 mod residual;
 mod search;
 
+use self::proof::Few;
 use self::residual::{Comparison, Metric, Target};
 use self::search::EmissionTable;
 pub use super::space::StateRange;
@@ -30,7 +31,10 @@ use crate::error::{Error, Result};
 use crate::fisher::{Counting, Unknowns};
 use crate::scene::{Parameter, State, Surroundings};
 use crate::spectrum::Bands;
+use std::sync::Arc;
 
+/// Bands that are enough for a first look.
+const FEW_BANDS: usize = 64;
 /// Iterations of a refinement.
 const ITERATIONS: usize = 100;
 /// Relative step at which a refinement has converged.
@@ -94,6 +98,8 @@ pub struct NearestSolver<'a> {
     comparison: Comparison<'a>,
     /// What the searches before have computed that the next one can use.
     table: Option<EmissionTable>,
+    /// Every so many bands, where there are many.
+    few: Option<Arc<Few>>,
     /// To what share of its distance a nearest state is proved, if at all.
     tolerance: Option<f64>,
 }
@@ -110,6 +116,7 @@ impl<'a> NearestSolver<'a> {
         Self {
             comparison: Comparison::new(bands, surroundings, unknowns, range),
             table: None,
+            few: Few::of(bands, FEW_BANDS),
             tolerance: None,
         }
     }

@@ -22,6 +22,7 @@ use self::amplitudes::{Amplitudes, Pieces};
 use self::closing::{Minimum, Reach, close};
 use self::hull::{Quadratic, reduce};
 use self::metric::Metric;
+pub(super) use self::sources::Few;
 use self::sources::{Chord, Sources, Spectrum, chord};
 use super::residual::Target;
 use super::{Nearer, NearestDistance, NearestSolver};
@@ -39,8 +40,6 @@ const MARGIN: f64 = 1e-12;
 const BOXES: [u64; 4] = [1, 2_000, 6_000, 6_000];
 /// Nearer states that are followed at most.
 const RESTARTS: usize = 30;
-/// Bands that are enough for a first look.
-const FEW_BANDS: usize = 64;
 /// Share of the bound wanted beyond which what chords miss makes it useless to try better quadratics.
 const COARSE: f64 = 0.25;
 /// Quadratics that are tried in a box.
@@ -390,11 +389,9 @@ impl<'a> Prover<'a> {
         sum *= 1.0 + 1e-15;
         let gain_free = space.unknowns.contains(Nuisance::Gain);
         let allowed = Amplitudes { gain_free, ranges, sum, sum_known, total: 0.0, gain_cap: None };
-        let stride = solver.comparison.target.bands().len() / FEW_BANDS;
-        let few = (stride > 1).then(|| {
-            let (some, nodes) = comparison.target.bands().every(stride);
-            let kept = bands.each_ref().map(|x| x.iter().copied().step_by(stride).collect());
-            View::new(sources.every(&some, &nodes), allowed.clone(), kept, reach)
+        let few = solver.few.as_ref().map(|few| {
+            let kept = bands.each_ref().map(|x| x.iter().copied().step_by(few.stride).collect());
+            View::new(sources.every(few), allowed.clone(), kept, reach)
         });
         let all = View::new(sources, allowed, bands, reach);
         let temperature_k = all.axes.iter().map(|_| Vec::new()).collect();

@@ -15,7 +15,45 @@ use crate::planck;
 use crate::simd::dispatched;
 use crate::spectrum::Bands;
 use crate::units::SECOND_RADIATION_CM_K;
-use std::borrow::Cow;
+use std::ops::Deref;
+use std::sync::Arc;
+
+/// Every so many bands of a problem, and where their nodes stand among those of the whole.
+#[derive(Debug)]
+pub(crate) struct Few {
+    pub(super) bands: Bands,
+    nodes: Vec<usize>,
+    pub(super) stride: usize,
+}
+
+impl Few {
+    /// About `enough` bands, if there are more than twice as many.
+    pub(crate) fn of(bands: &Bands, enough: usize) -> Option<Arc<Self>> {
+        let stride = bands.len() / enough;
+        (stride > 1).then(|| {
+            let (bands, nodes) = bands.every(stride);
+            Arc::new(Self { bands, nodes, stride })
+        })
+    }
+}
+
+/// Bands that several share.
+#[derive(Debug)]
+pub(super) enum Shared<'a> {
+    All(&'a Bands),
+    Few(Arc<Few>),
+}
+
+impl Deref for Shared<'_> {
+    type Target = Bands;
+
+    fn deref(&self) -> &Bands {
+        match self {
+            Self::All(bands) => bands,
+            Self::Few(few) => &few.bands,
+        }
+    }
+}
 
 /// One source: what B(T) is multiplied by at the nodes, and where its temperature may be.
 #[derive(Debug)]
@@ -45,7 +83,7 @@ pub(super) struct Spectrum {
 /// All sources of an alternative.
 #[derive(Debug)]
 pub(super) struct Sources<'a> {
-    pub(super) bands: Cow<'a, Bands>,
+    pub(super) bands: Shared<'a>,
     pub(super) list: Vec<Source>,
 }
 
@@ -76,18 +114,18 @@ impl<'a> Sources<'a> {
             }
         });
         Self {
-            bands: Cow::Borrowed(comparison.target.bands()),
+            bands: Shared::All(comparison.target.bands()),
             list: std::iter::once(surface).chain(lights).collect(),
         }
     }
 
-    /// The same in every `stride`-th band.
-    pub(super) fn every(&self, bands: &Bands, nodes: &[usize]) -> Sources<'static> {
+    /// The same in few bands.
+    pub(super) fn every(&self, few: &Arc<Few>) -> Sources<'static> {
         let list = self.list.iter().map(|source| Source {
-            strength: nodes.iter().map(|&j| source.strength[j]).collect(),
+            strength: few.nodes.iter().map(|&j| source.strength[j]).collect(),
             temperature_k: source.temperature_k,
         });
-        Sources { bands: Cow::Owned(bands.clone()), list: list.collect() }
+        Sources { bands: Shared::Few(Arc::clone(few)), list: list.collect() }
     }
 
     /// Source `s` at a temperature.
@@ -112,33 +150,42 @@ impl<'a> Sources<'a> {
     /// |w² − 6w + 6| ≤ w² as w ≥ 2; m grows with T, x and w fall.
     pub(super) fn bend(&self, s: usize, temperature_k: f64, [low, high]: [f64; 2]) -> [Vec<f64>; 2] {
         let nodes = self.bands.nodes_cm1();
-        let (mut bend, mut third) = (nodes.to_vec(), nodes.to_vec());
-        let terms = |nu: f64, t: f64| {
-            let x = SECOND_RADIATION_CM_K * nu / t;
-            let n = 1.0 / x.exp_m1();
-            (x, x * n * (1.0 + n), x * (1.0 + 2.0 * n))
-        };
-        for (j, &nu) in nodes.iter().enumerate() {
-            let density = planck::mode_density(nu);
-            let (_, m, w) = terms(nu, temperature_k);
-            let (x_cold, _, w_cold) = terms(nu, low);
-            let (_, m_hot, _) = terms(nu, high);
+        let [mut bend, mut third, mut hot] = [(); 3].map(|()| vec![0.0; nodes.len()]);
+        planck::photon_radiance_into(nodes, temperature_k, &mut bend);
+        planck::photon_radiance_into(nodes, low, &mut third);
+        planck::photon_radiance_into(nodes, high, &mut hot);
+        bends(Bends { nodes, temperature_k, low_k: low, bend: &mut bend, third: &mut third, hot: &hot });
+        [bend, third].map(|mut spectrum| self.counted(s, &mut spectrum))
+    }
+}
+
+/// What [`bends`] reads and writes: B at the temperature itself becomes B″, at the cold end the bound of |B‴|.
+struct Bends<'a> {
+    nodes: &'a [f64],
+    temperature_k: f64,
+    low_k: f64,
+    bend: &'a mut [f64],
+    third: &'a mut [f64],
+    hot: &'a [f64],
+}
+
+dispatched! {
+    fn bends<'a>(bends: Bends<'a>) -> () {
+        let Bends { nodes, temperature_k, low_k, bend, third, hot } = bends;
+        let one = planck::mode_density(1.0);
+        for (((bend, third), hot), nu) in bend.iter_mut().zip(third).zip(hot).zip(nodes) {
+            let density = one * nu * nu;
+            let (x, n) = (SECOND_RADIATION_CM_K * nu / temperature_k, *bend / density);
             // w − 2 = x²/6 − x⁴/360 + … cancels where x is small.
-            let beyond = |w: f64, t: f64| {
-                let x = SECOND_RADIATION_CM_K * nu / t;
-                if x < 0.1 { x * x / 6.0 * (1.0 - x * x / 60.0) } else { w - 2.0 }
-            };
-            bend[j] = density * m * beyond(w, temperature_k) / (temperature_k * temperature_k);
-            third[j] = density * m_hot * (w_cold * w_cold + 2.0 * x_cold * m_hot) / (low * low * low);
+            let small = x * x / 6.0 * (1.0 - x * x / 60.0);
+            let beyond = if x < 0.1 { small } else { x * (1.0 + 2.0 * n) - 2.0 };
+            *bend = density * x * n * (1.0 + n) * beyond / (temperature_k * temperature_k);
+            let (x, n, hot) = (SECOND_RADIATION_CM_K * nu / low_k, *third / density, hot / density);
+            let w = x * (1.0 + 2.0 * n);
+            // At the hot end x is no more than at the cold one.
+            let m = x * hot * (1.0 + hot);
+            *third = density * m * (w * w + 2.0 * x * m) / (low_k * low_k * low_k);
         }
-        [bend, third].map(|mut spectrum| {
-            spectrum.iter_mut().for_each(|value| {
-                if !value.is_finite() {
-                    *value = 0.0;
-                }
-            });
-            self.counted(s, &mut spectrum)
-        })
     }
 }
 

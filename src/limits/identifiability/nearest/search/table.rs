@@ -6,14 +6,18 @@
 use crate::planck;
 use crate::simd::{Aligned, LANES};
 use crate::spectrum::Bands;
+use crate::units::SECOND_RADIATION_CM_K;
 
 /// Bands that are enough to find where minima are.
 const ENOUGH_BANDS: usize = 128;
 /// Lowest temperature of the grid, K, and steps in which it grows by e.
 const LOWEST_K: f64 = 0.1;
 const STEPS_PER_E: f64 = 32.0;
+/// What x changes by at the highest wavenumber from one temperature of a search to the next, where x is large: the fitted cost
+/// is smooth in that.
+const SPACING: f64 = 0.6;
 /// More of them around the temperatures of the scene, as shares of these.
-const AROUND: [f64; 7] = [-0.03, -0.01, -0.003, 0.0, 0.003, 0.01, 0.03];
+const AROUND: [f64; 3] = [-0.01, 0.0, 0.01];
 
 /// Blackbody radiance and its slope along T at the thinned nodes, followed by zeros up to a whole chunk.
 #[derive(Debug, Clone)]
@@ -79,7 +83,14 @@ impl EmissionTable {
         scene_k: &[f64],
         [low_k, high_k]: [f64; 2],
     ) -> (&Thinned, Vec<&Emission>) {
-        for step in steps.clone() {
+        let (_, last_cm1) = self.thinned.bands.range_cm1();
+        let mut chosen = vec![*steps.start()];
+        while let Some(&step) = chosen.last().filter(|step| *step < steps.end()) {
+            let x = SECOND_RADIATION_CM_K * last_cm1 / temperature_at(step);
+            let stride = (STEPS_PER_E * SPACING / (1.0 + x)).max(1.0) as usize;
+            chosen.push((step + stride).min(*steps.end()));
+        }
+        for &step in &chosen {
             self.even(step);
         }
         let reach = temperature_at(*steps.start())..=temperature_at(*steps.end());
@@ -98,7 +109,7 @@ impl EmissionTable {
                 })
                 .collect();
         }
-        let even = self.even.get(steps).unwrap_or_default().iter().flatten();
+        let even = chosen.iter().filter_map(|&step| self.even.get(step)?.as_ref());
         let mut all: Vec<&Emission> = even
             .filter(|emission| (low_k..=high_k).contains(&emission.temperature_k))
             .chain(&self.around)
