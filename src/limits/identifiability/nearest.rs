@@ -41,6 +41,8 @@ const ITERATIONS: usize = 100;
 const STEP_TOLERANCE: f64 = 1e-9;
 /// What the last step may still promise, as a share of the cost.
 const GAIN_TOLERANCE: f64 = 1e-9;
+/// What a step may promise, as a share of the cost, for it to be the last without a look at where it leads.
+const NO_GAIN: f64 = 1e-13;
 /// Relative separation at which two refinements have come to the same minimum.
 const SAME_MINIMUM: f64 = 1e-5;
 /// Relative separation up to which two states are one as far as a fit that starts from either is concerned.
@@ -359,6 +361,10 @@ impl<'a> NearestSolver<'a> {
             let size = self.comparison.space.relative_size(&step, &state);
             // What the step promises, of half the cost. Nearly identical materials need it however small the step is.
             let promised = at.quadratic.gradient.dot(&step).abs();
+            if promised <= NO_GAIN * at.cost {
+                (state, converged) = (moved, true);
+                break;
+            }
             if size < STEP_TOLERANCE && promised <= GAIN_TOLERANCE * at.cost {
                 // The last step, whether it is taken or only rounding: the cost tells.
                 let cost = self.comparison.cost(target, &moved);

@@ -383,7 +383,9 @@ impl<'a> Prover<'a> {
         }
         if sum_known {
             // The last factor is what the others leave, whatever its range.
-            ranges.iter_mut().for_each(|range| *range = [0.0, sum]);
+            if let Some(last) = ranges.last_mut() {
+                *last = [0.0, sum];
+            }
         }
         // By the rounding of the user's own numbers.
         sum *= 1.0 + 1e-15;
