@@ -15,7 +15,7 @@
 //! * a nuisance of which less than 1e-14 is left of what it is made of is dropped, so that the reference leaves out the
 //!   same.
 
-mod draw;
+pub(super) mod draw;
 mod findings;
 mod local;
 mod many;

@@ -1,0 +1,369 @@
+//! The nearest state of an alternative by brute force: a lattice of temperatures, and the least of what is convex at each.
+//!
+//! min over θ′ of f = Σ (√(N+v) − √(N′(θ′)+v))², d = √f (`model`). For fixed temperatures f is jointly convex in gain and
+//! gain × lighting, and what limits these is linear: its least is found there without search (`descent`). So a lattice is
+//! needed of the unknown temperatures alone, dense in the logarithm and denser around the scene's (`lattice`):
+//!
+//! 1. for every point of the first unknown temperature the least over all else: on a lattice of the other temperatures, its
+//!    low places followed down with these free;
+//! 2. the low places of that profile followed down with everything free, in doubles;
+//! 3. the best of them again in numbers of 31 digits ([`double_double`](super::double_double)).
+//!
+//! Whatever comes out is the distance of a state within the range: never below the true one by more than the rounding of
+//! 31 digits, so that a proved lower bound above it is false, however good the search. It shares types with the crate (bands,
+//! surroundings, states, unknowns, noise), no arithmetic. Priors are not known to it.
+//!
+//! Source: convexity, Boyd, Vandenberghe, Convex Optimization, 3.2 (2004): a sum of −√ of affine functions is convex.
+
+mod descent;
+mod lattice;
+mod model;
+
+use self::descent::{Constraint, Descent, Each, MOST};
+use self::lattice::{axis, low_places};
+use self::model::{Layout, Model, Spectrum};
+use super::double_double::{DoubleDouble, Real};
+use super::local::{Noise, Pair};
+use hadar::fisher::Unknowns;
+use hadar::identifiability::nearest::StateRange;
+use hadar::scene::{State, Surroundings};
+use hadar::spectrum::Bands;
+
+/// Longest step of the logarithm of a temperature.
+const LONGEST: f64 = 0.5;
+/// Low places of a lattice of inner temperatures that are followed.
+const FOLLOWED: usize = 3;
+/// Low places of the profile that are followed in doubles, and in 31 digits.
+const CANDIDATES: usize = 40;
+const POLISHED: usize = 12;
+
+/// The least that was found.
+#[derive(Debug, Clone)]
+pub struct Found {
+    /// Half the separation in units of the noise, per √photon or with a camera's counts.
+    pub distance: DoubleDouble,
+    /// Where it is, rounded.
+    pub state: State,
+}
+
+/// Brute force in fixed bands, surroundings, unknowns and range.
+#[derive(Debug, Clone)]
+pub struct BruteForce<'a> {
+    bands: &'a Bands,
+    surroundings: &'a Surroundings,
+    layout: Layout,
+    fineness: f64,
+}
+
+/// A state on the way down: logarithms of all temperatures, then gain and Cₖ.
+#[derive(Debug, Clone)]
+struct Candidate {
+    cost: f64,
+    temperatures: Each<f64>,
+    rest: Each<f64>,
+}
+
+impl<'a> BruteForce<'a> {
+    /// For one set of bands, surroundings, unknowns and range of the alternative's state.
+    #[must_use]
+    pub fn new(
+        bands: &'a Bands,
+        surroundings: &'a Surroundings,
+        unknowns: &Unknowns,
+        range: StateRange,
+    ) -> Self {
+        let layout = Layout::new(unknowns, range, surroundings.objects().len());
+        Self { bands, surroundings, layout, fineness: 1.0 }
+    }
+
+    /// The same with lattices so many times as dense.
+    #[must_use]
+    pub fn as_dense(self, times: f64) -> Self {
+        Self { fineness: times, ..self }
+    }
+
+    /// How far the alternative in the state `other` is from the target in its own, with 31 digits.
+    #[must_use]
+    pub fn separation(&self, pair: Pair<'_>, other: &State, noise: Noise<'_>) -> DoubleDouble {
+        let model = Model::<DoubleDouble>::new(self.bands, self.surroundings, &self.layout, pair, noise);
+        let spectra: Vec<Spectrum<DoubleDouble>> = (0..=self.layout.objects)
+            .map(|s| model.spectrum(s, DoubleDouble::from(temperature_k(other, s)).logarithm(), false))
+            .collect();
+        let spectra: Vec<_> = spectra.iter().collect();
+        let gain = DoubleDouble::from(other.gain);
+        let mut factors = [gain; MOST];
+        for (factor, lighting) in factors[1..].iter_mut().zip(&other.lighting) {
+            *factor = gain * DoubleDouble::from(*lighting);
+        }
+        (model.cost(&factors, &spectra) * model.scale).root()
+    }
+
+    /// The nearest state; nothing where no lighting within the range has the known total.
+    #[must_use]
+    pub fn nearest(&self, pair: Pair<'_>, noise: Noise<'_>) -> Option<Found> {
+        let plain = Search::<f64>::new(self, pair, noise);
+        let start = self.start(pair.state)?;
+        let profile = match self.layout.temperatures.split_first() {
+            None => vec![plain.at(&logarithms(pair.state), &start, &[])],
+            Some((&outer, inner)) => self.profile(&plain, pair.state, outer, inner, &start),
+        };
+        let values: Vec<f64> = profile.iter().map(|candidate| candidate.cost).collect();
+        let free = &self.layout.temperatures;
+        let mut candidates: Vec<Candidate> = low_places(&[values.len()], &values, CANDIDATES)
+            .into_iter()
+            .map(|place| plain.follow(&profile[place], free))
+            .collect();
+        candidates.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+        let fine = Search::<DoubleDouble>::new(self, pair, noise);
+        let polished = candidates.iter().take(POLISHED).map(|candidate| fine.polish(candidate, free));
+        polished.min_by(|a, b| a.distance.to_f64().total_cmp(&b.distance.to_f64()))
+    }
+
+    /// Gain and Cₖ within the range, the middle of it.
+    fn start(&self, own: &State) -> Option<Each<f64>> {
+        let Layout { gain, lighting, total, range, objects, .. } = &self.layout;
+        let mut rest = [0.0; MOST];
+        rest[0] = own.gain;
+        if !lighting {
+            return Some(rest);
+        }
+        let [low, high] = range.lighting;
+        let each = *objects as f64;
+        let sum = total.unwrap_or(range.lighting_sum);
+        let share = match total {
+            Some(total) => total / each,
+            None => low + 0.5 * (high - low).min(sum / each - low),
+        };
+        for factor in rest.iter_mut().skip(usize::from(*gain)).take(*objects) {
+            *factor = own.gain * share;
+        }
+        (share >= low && share <= high && share * each <= sum * (1.0 + 1e-15)).then_some(rest)
+    }
+
+    /// The least at every point of the outer temperature.
+    fn profile(
+        &self,
+        plain: &Search<'_, f64>,
+        own: &State,
+        outer: usize,
+        inner: &[usize],
+        start: &Each<f64>,
+    ) -> Vec<Candidate> {
+        let all: Vec<f64> = (0..=self.layout.objects).map(|s| temperature_k(own, s)).collect();
+        let nodes = self.bands.nodes_cm1();
+        let reach = nodes.iter().fold([f64::INFINITY, 0.0], |[a, b]: [f64; 2], &nu| [a.min(nu), b.max(nu)]);
+        let [outer_coarse, inner_coarse] = match inner.len() {
+            0 => [1.0, 1.0],
+            1 => [2.0, 4.0],
+            _ => [6.0, 20.0],
+        };
+        let points = |spectrum: usize, coarse: f64| {
+            let scene = if coarse > 4.0 { vec![temperature_k(own, spectrum)] } else { all.clone() };
+            axis(self.layout.limits_k(spectrum), &scene, reach, coarse / self.fineness)
+        };
+        let spectra_at = |spectrum: usize, temperatures: &[f64]| -> Vec<Spectrum<f64>> {
+            temperatures.iter().map(|t| plain.model.spectrum(spectrum, t.ln(), false)).collect()
+        };
+        let axes: Vec<Vec<f64>> = inner.iter().map(|&spectrum| thinned(points(spectrum, inner_coarse), inner.len())).collect();
+        let tables: Vec<Vec<Spectrum<f64>>> =
+            inner.iter().zip(&axes).map(|(&spectrum, axis)| spectra_at(spectrum, axis)).collect();
+        let sides: Vec<usize> = axes.iter().map(Vec::len).collect();
+        let known: Vec<Spectrum<f64>> =
+            (0..=self.layout.objects).map(|s| plain.model.spectrum(s, all[s].ln(), false)).collect();
+        let mut warm = *start;
+        let mut last: Option<Candidate> = None;
+        let outer_axis = points(outer, outer_coarse);
+        let profile = outer_axis.into_iter().map(|temperature| {
+            let here = plain.model.spectrum(outer, temperature.ln(), false);
+            let mut spectra: Vec<&Spectrum<f64>> = known.iter().collect();
+            spectra[outer] = &here;
+            let places = sides.iter().product::<usize>();
+            let mut lattice: Vec<(f64, Each<f64>)> = Vec::with_capacity(places);
+            for place in 0..places {
+                for (axis, (&spectrum, at)) in inner.iter().zip(digits(place, &sides)).enumerate() {
+                    spectra[spectrum] = &tables[axis][at];
+                }
+                let (rest, cost) = plain.convex(&warm, &spectra);
+                if cost.is_finite() {
+                    warm = rest;
+                }
+                lattice.push((cost, rest));
+            }
+            let values: Vec<f64> = lattice.iter().map(|(cost, _)| *cost).collect();
+            let mut temperatures = logarithms(own);
+            temperatures[outer] = temperature.ln();
+            let low = low_places(&sides, &values, if inner.is_empty() { 1 } else { FOLLOWED });
+            let starts = low.into_iter().map(|place| {
+                for (axis, (&spectrum, at)) in inner.iter().zip(digits(place, &sides)).enumerate() {
+                    temperatures[spectrum] = axes[axis][at].ln();
+                }
+                Candidate { cost: lattice[place].0, temperatures, rest: lattice[place].1 }
+            });
+            let mut starts: Vec<Candidate> = starts.collect();
+            if let (Some(last), false) = (&last, inner.is_empty()) {
+                // The valley of the point before.
+                let mut temperatures = last.temperatures;
+                temperatures[outer] = temperature.ln();
+                starts.push(Candidate { temperatures, ..last.clone() });
+            }
+            let followed = starts.iter().map(|start| plain.follow(start, inner));
+            let best = followed.min_by(|a, b| a.cost.total_cmp(&b.cost));
+            last = best.clone();
+            best
+        });
+        profile.flatten().collect()
+    }
+}
+
+/// In two dimensions the points that close in on a temperature are left to the descent.
+fn thinned(axis: Vec<f64>, dimensions: usize) -> Vec<f64> {
+    if dimensions < 2 {
+        return axis;
+    }
+    let mut kept: Vec<f64> = Vec::new();
+    for temperature in axis {
+        if kept.last().is_none_or(|last| temperature > last * 1.003) {
+            kept.push(temperature);
+        }
+    }
+    kept
+}
+
+fn temperature_k(state: &State, spectrum: usize) -> f64 {
+    spectrum.checked_sub(1).map_or(state.temperature_k, |k| state.environment_k[k])
+}
+
+/// Logarithms of all temperatures of a state.
+fn logarithms<R: Real>(state: &State) -> Each<R> {
+    let mut all = [R::from(0.0); MOST];
+    for (s, value) in all.iter_mut().enumerate().take(state.environment_k.len() + 1) {
+        *value = R::from(temperature_k(state, s)).logarithm();
+    }
+    all
+}
+
+/// Places along each axis of a place in a lattice.
+fn digits(place: usize, sides: &[usize]) -> Vec<usize> {
+    let mut rest = place;
+    let mut found: Vec<usize> = sides
+        .iter()
+        .rev()
+        .map(|side| {
+            let digit = rest % side;
+            rest /= side;
+            digit
+        })
+        .collect();
+    found.reverse();
+    found
+}
+
+/// A pair on the way down, in numbers of one kind.
+#[derive(Debug)]
+struct Search<'a, R> {
+    model: Model<'a, R>,
+    /// What limits gain and lighting.
+    linear: Vec<Constraint<R>>,
+}
+
+impl Search<'_, f64> {
+    /// The least over gain and lighting where the spectra are these.
+    fn convex(&self, start: &Each<f64>, spectra: &[&Spectrum<f64>]) -> (Each<f64>, f64) {
+        let descent = Descent {
+            unknowns: self.model.layout.unknowns(0),
+            constraints: &self.linear,
+            longest: [f64::INFINITY; MOST],
+            settled: 1e-9,
+            steps: 60,
+        };
+        descent.run(*start, |z| self.model.evaluate(z, &[], spectra))
+    }
+
+    /// The same at these temperatures, their spectra still to be computed.
+    fn at(&self, temperatures: &Each<f64>, start: &Each<f64>, free: &[usize]) -> Candidate {
+        self.follow(&Candidate { cost: f64::INFINITY, temperatures: *temperatures, rest: *start }, free)
+    }
+
+    fn follow(&self, from: &Candidate, free: &[usize]) -> Candidate {
+        let (temperatures, rest, cost) = self.down(&from.temperatures, &from.rest, free, 1e-12, 60);
+        Candidate { cost, temperatures, rest }
+    }
+}
+
+impl Search<'_, DoubleDouble> {
+    /// The end of a way down, with everything free.
+    fn polish(&self, from: &Candidate, free: &[usize]) -> Found {
+        let layout = self.model.layout;
+        let temperatures = from.temperatures.map(DoubleDouble::from);
+        let mut known = logarithms(self.model.own);
+        for &s in free {
+            known[s] = temperatures[s];
+        }
+        let rest = from.rest.map(DoubleDouble::from);
+        let (temperatures, rest, cost) = self.down(&known, &rest, free, 1e-24, 100);
+        let factors = self.model.factors(&rest, 0);
+        let kelvin = |s: usize| {
+            if free.contains(&s) { temperatures[s].exponential().to_f64() } else { temperature_k(self.model.own, s) }
+        };
+        let state = State {
+            temperature_k: kelvin(0),
+            lighting: (1..=layout.objects)
+                .map(|k| if layout.lighting { (factors[k] / factors[0]).to_f64() } else { self.model.own.lighting[k - 1] })
+                .collect(),
+            gain: factors[0].to_f64(),
+            environment_k: (1..=layout.objects).map(kelvin).collect(),
+        };
+        Found { distance: (cost * self.model.scale).root(), state }
+    }
+}
+
+impl<'a, R: Real> Search<'a, R> {
+    fn new(force: &'a BruteForce<'a>, pair: Pair<'a>, noise: Noise<'_>) -> Self {
+        let model = Model::new(force.bands, force.surroundings, &force.layout, pair, noise);
+        let linear = model.constraints(&[]);
+        Self { model, linear }
+    }
+
+    /// Temperatures, gain and Cₖ at the end of the way down from there, the temperatures in `free` and all else free.
+    fn down(
+        &self,
+        temperatures: &Each<R>,
+        rest: &Each<R>,
+        free: &[usize],
+        settled: f64,
+        steps: usize,
+    ) -> (Each<R>, Each<R>, R) {
+        let objects = self.model.layout.objects;
+        let fixed: Vec<Spectrum<R>> =
+            (0..=objects).map(|s| self.model.spectrum(s, temperatures[s], false)).collect();
+        let constraints = self.model.constraints(free);
+        let mut longest = [f64::INFINITY; MOST];
+        longest[..free.len()].fill(LONGEST);
+        let unknowns = self.model.layout.unknowns(free.len());
+        let descent = Descent { unknowns, constraints: &constraints, longest, settled, steps };
+        let mut start = [R::from(0.0); MOST];
+        for (start, &s) in start.iter_mut().zip(free) {
+            *start = temperatures[s];
+        }
+        let others = unknowns - free.len();
+        start[free.len()..unknowns].copy_from_slice(&rest[..others]);
+        let (z, cost) = descent.run(start, |z| {
+            let moved: Vec<Spectrum<R>> =
+                free.iter().zip(z).map(|(&s, &t)| self.model.spectrum(s, t, true)).collect();
+            let mut spectra: Vec<&Spectrum<R>> = fixed.iter().collect();
+            for (&s, spectrum) in free.iter().zip(&moved) {
+                spectra[s] = spectrum;
+            }
+            self.model.evaluate(z, free, &spectra)
+        });
+        let (mut end, mut end_rest) = (*temperatures, *rest);
+        for (&s, z) in free.iter().zip(&z) {
+            end[s] = *z;
+        }
+        end_rest[..others].copy_from_slice(&z[free.len()..unknowns]);
+        (end, end_rest, cost)
+    }
+}
+
+#[cfg(test)]
+mod tests;
