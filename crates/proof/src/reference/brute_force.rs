@@ -37,6 +37,10 @@ const FOLLOWED: usize = 3;
 const CANDIDATES: usize = 40;
 const POLISHED: usize = 12;
 
+/// Share by which two costs are one, where they are above the rounding of doubles.
+const SAME: f64 = 1e-9;
+const NOISE: f64 = 1e-24;
+
 /// The least that was found.
 #[derive(Debug, Clone)]
 pub struct Found {
@@ -104,16 +108,18 @@ impl<'a> BruteForce<'a> {
         let plain = Search::<f64>::new(self, pair, noise);
         let start = self.start(pair.state)?;
         let profile = match self.layout.temperatures.split_first() {
-            None => vec![plain.at(&logarithms(pair.state), &start, &[])],
+            None => vec![vec![plain.at(&logarithms(pair.state), &start, &[])]],
             Some((&outer, inner)) => self.profile(&plain, pair.state, outer, inner, &start),
         };
-        let values: Vec<f64> = profile.iter().map(|candidate| candidate.cost).collect();
+        let values: Vec<f64> = profile.iter().map(|candidates| candidates[0].cost).collect();
         let free = &self.layout.temperatures;
         let mut candidates: Vec<Candidate> = low_places(&[values.len()], &values, CANDIDATES)
             .into_iter()
-            .map(|place| plain.follow(&profile[place], free))
+            .flat_map(|place| &profile[place])
+            .map(|candidate| plain.follow(candidate, free))
             .collect();
         candidates.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+        candidates.dedup_by(|a, b| (a.cost - b.cost).abs() <= SAME * b.cost && b.cost > NOISE);
         let fine = Search::<DoubleDouble>::new(self, pair, noise);
         let polished = candidates.iter().take(POLISHED).map(|candidate| fine.polish(candidate, free));
         polished.min_by(|a, b| a.distance.to_f64().total_cmp(&b.distance.to_f64()))
@@ -140,7 +146,7 @@ impl<'a> BruteForce<'a> {
         (share >= low && share <= high && share * each <= sum * (1.0 + 1e-15)).then_some(rest)
     }
 
-    /// The least at every point of the outer temperature.
+    /// The low places at every point of the outer temperature, lowest first.
     fn profile(
         &self,
         plain: &Search<'_, f64>,
@@ -148,7 +154,7 @@ impl<'a> BruteForce<'a> {
         outer: usize,
         inner: &[usize],
         start: &Each<f64>,
-    ) -> Vec<Candidate> {
+    ) -> Vec<Vec<Candidate>> {
         let all: Vec<f64> = (0..=self.layout.objects).map(|s| temperature_k(own, s)).collect();
         let nodes = self.bands.nodes_cm1();
         let reach = nodes.iter().fold([f64::INFINITY, 0.0], |[a, b]: [f64; 2], &nu| [a.min(nu), b.max(nu)]);
@@ -206,12 +212,12 @@ impl<'a> BruteForce<'a> {
                 temperatures[outer] = temperature.ln();
                 starts.push(Candidate { temperatures, ..last.clone() });
             }
-            let followed = starts.iter().map(|start| plain.follow(start, inner));
-            let best = followed.min_by(|a, b| a.cost.total_cmp(&b.cost));
-            last = best.clone();
-            best
+            let mut followed: Vec<Candidate> = starts.iter().map(|start| plain.follow(start, inner)).collect();
+            followed.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+            last = followed.first().cloned();
+            followed
         });
-        profile.flatten().collect()
+        profile.filter(|candidates| !candidates.is_empty()).collect()
     }
 }
 

@@ -66,12 +66,8 @@ impl<R: Real> Descent<'_, R> {
         let mut damping = 0.0;
         for _ in 0..self.steps {
             let Some(step) = self.downhill(&z, &at, &mut working, &mut damping) else { break };
+            let step = self.within_longest(step, &at.gradient);
             let (mut share, mut meets) = (R::from(1.0), None);
-            for (change, longest) in step.iter().zip(self.longest) {
-                if change.magnitude().to_f64() > longest {
-                    share = share.smaller(R::from(longest) / change.magnitude());
-                }
-            }
             for (i, constraint) in self.constraints.iter().enumerate() {
                 let along = self.dot(constraint, &step);
                 if !working.contains(&i) && along > zero {
@@ -88,7 +84,9 @@ impl<R: Real> Descent<'_, R> {
                     *there = *there + share * *change;
                 }
                 let next = evaluate(&there);
-                if next.cost < at.cost {
+                // A step to a constraint may be too short to tell, and goes on along it.
+                let same = R::from(1.0 + 64.0 * R::ROUNDING) * at.cost;
+                if next.cost < at.cost || (meets.is_some() && next.cost <= same) {
                     moved = Some((there, next));
                     break;
                 }
@@ -105,6 +103,21 @@ impl<R: Real> Descent<'_, R> {
             }
         }
         (z, at.cost)
+    }
+
+    /// The step, no unknown moved farther than its longest: each cut for itself, as one that hardly matters must not hold the
+    /// others, unless that leads up.
+    fn within_longest(&self, step: Each<R>, gradient: &Each<R>) -> Each<R> {
+        let (mut cut, mut share) = (step, R::from(1.0));
+        for (change, longest) in cut.iter_mut().zip(self.longest) {
+            let size = change.magnitude();
+            if size.to_f64() > longest {
+                share = share.smaller(R::from(longest) / size);
+                *change = *change / size * R::from(longest);
+            }
+        }
+        let slope = cut.iter().zip(gradient).fold(R::from(0.0), |sum, (p, g)| sum + *p * *g);
+        if slope < R::from(0.0) { cut } else { step.map(|change| change * share) }
     }
 
     fn dot(&self, constraint: &Constraint<R>, z: &Each<R>) -> R {

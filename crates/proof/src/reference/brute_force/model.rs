@@ -277,7 +277,7 @@ impl<'a, R: Real> Model<'a, R> {
             }
         }
         for i in 0..n {
-            at.scale[i] = at.scale[i].larger(at.hessian[i][i] * R::from(1e-6));
+            at.scale[i] = at.scale[i].larger(at.hessian[i][i].magnitude());
             for j in 0..i {
                 at.hessian[j][i] = at.hessian[i][j];
             }
