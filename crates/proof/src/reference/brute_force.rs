@@ -21,7 +21,7 @@ mod model;
 
 use self::descent::{Constraint, Descent, Each, MOST};
 use self::lattice::{axis, low_places};
-use self::model::{Layout, Model, Spectrum};
+use self::model::{LOG_GAIN, Layout, Model, Spectrum};
 use super::double_double::{DoubleDouble, Real};
 use super::local::{Noise, Pair};
 use hadar::fisher::Unknowns;
@@ -121,8 +121,28 @@ impl<'a> BruteForce<'a> {
         candidates.sort_by(|a, b| a.cost.total_cmp(&b.cost));
         candidates.dedup_by(|a, b| (a.cost - b.cost).abs() <= SAME * b.cost && b.cost > NOISE);
         let fine = Search::<DoubleDouble>::new(self, pair, noise);
-        let polished = candidates.iter().take(POLISHED).map(|candidate| fine.polish(candidate, free));
+        let polished = candidates.iter().take(POLISHED).map(|candidate| {
+            let [temperatures, rest] =
+                [&candidate.temperatures, &candidate.rest].map(|all| all.map(DoubleDouble::from));
+            fine.polish(&fine.within_limits(&temperatures), &fine.lit_within_limits(rest), free)
+        });
         polished.min_by(|a, b| a.distance.to_f64().total_cmp(&b.distance.to_f64()))
+    }
+
+    /// The end of the way down from a state, once it is within the range to 31 digits.
+    #[must_use]
+    pub fn nearest_from(&self, pair: Pair<'_>, start: &State, noise: Noise<'_>) -> Found {
+        let fine = Search::<DoubleDouble>::new(self, pair, noise);
+        let free = &self.layout.temperatures;
+        let temperatures = logarithms(start);
+        let temperatures = fine.within_limits(&temperatures);
+        let gain = DoubleDouble::from(start.gain);
+        let mut rest = [gain; MOST];
+        for (factor, lighting) in rest[usize::from(self.layout.gain)..].iter_mut().zip(&start.lighting) {
+            *factor = gain * DoubleDouble::from(*lighting);
+        }
+        let rest = fine.lit_within_limits(rest);
+        fine.polish(&temperatures, &rest, free)
     }
 
     /// Gain and Cₖ within the range, the middle of it.
@@ -161,16 +181,19 @@ impl<'a> BruteForce<'a> {
         let [outer_coarse, inner_coarse] = match inner.len() {
             0 => [1.0, 1.0],
             1 => [2.0, 4.0],
-            _ => [6.0, 20.0],
+            _ => [5.0, 12.0],
         };
+        let seen = own.lighting.iter().zip(&own.environment_k).filter(|(factor, _)| **factor > 0.0);
+        let hottest_k = seen.map(|(_, k)| *k).fold(own.temperature_k, f64::max);
         let points = |spectrum: usize, coarse: f64| {
             let scene = if coarse > 4.0 { vec![temperature_k(own, spectrum)] } else { all.clone() };
-            axis(self.layout.limits_k(spectrum), &scene, reach, coarse / self.fineness)
+            let axis = axis(self.layout.limits_k(spectrum), &scene, hottest_k, reach, coarse / self.fineness);
+            if inner.len() < 2 { axis } else { thinned(axis) }
         };
         let spectra_at = |spectrum: usize, temperatures: &[f64]| -> Vec<Spectrum<f64>> {
             temperatures.iter().map(|t| plain.model.spectrum(spectrum, t.ln(), false)).collect()
         };
-        let axes: Vec<Vec<f64>> = inner.iter().map(|&spectrum| thinned(points(spectrum, inner_coarse), inner.len())).collect();
+        let axes: Vec<Vec<f64>> = inner.iter().map(|&spectrum| points(spectrum, inner_coarse)).collect();
         let tables: Vec<Vec<Spectrum<f64>>> =
             inner.iter().zip(&axes).map(|(&spectrum, axis)| spectra_at(spectrum, axis)).collect();
         let sides: Vec<usize> = axes.iter().map(Vec::len).collect();
@@ -221,11 +244,8 @@ impl<'a> BruteForce<'a> {
     }
 }
 
-/// In two dimensions the points that close in on a temperature are left to the descent.
-fn thinned(axis: Vec<f64>, dimensions: usize) -> Vec<f64> {
-    if dimensions < 2 {
-        return axis;
-    }
+/// In three dimensions the points that close in on a temperature are left to the way down.
+fn thinned(axis: Vec<f64>) -> Vec<f64> {
     let mut kept: Vec<f64> = Vec::new();
     for temperature in axis {
         if kept.last().is_none_or(|last| temperature > last * 1.003) {
@@ -279,7 +299,8 @@ impl Search<'_, f64> {
             unknowns: self.model.layout.unknowns(0),
             constraints: &self.linear,
             longest: [f64::INFINITY; MOST],
-            settled: 1e-9,
+            settled: 1e-7,
+            nothing: 1e-29,
             steps: 60,
         };
         descent.run(*start, |z| self.model.evaluate(z, &[], spectra))
@@ -291,22 +312,51 @@ impl Search<'_, f64> {
     }
 
     fn follow(&self, from: &Candidate, free: &[usize]) -> Candidate {
-        let (temperatures, rest, cost) = self.down(&from.temperatures, &from.rest, free, 1e-12, 60);
+        let (temperatures, rest, cost) = self.down(&from.temperatures, &from.rest, free, [1e-12, 1e-29], 60);
         Candidate { cost, temperatures, rest }
     }
 }
 
 impl Search<'_, DoubleDouble> {
-    /// The end of a way down, with everything free.
-    fn polish(&self, from: &Candidate, free: &[usize]) -> Found {
-        let layout = self.model.layout;
-        let temperatures = from.temperatures.map(DoubleDouble::from);
-        let mut known = logarithms(self.model.own);
-        for &s in free {
-            known[s] = temperatures[s];
+    /// Logarithms of temperatures, within their limits where they are free and as they are known where not.
+    fn within_limits(&self, temperatures: &Each<DoubleDouble>) -> Each<DoubleDouble> {
+        let mut all = logarithms(self.model.own);
+        for &s in &self.model.layout.temperatures {
+            let [low, high] = self.model.layout.limits_k(s).map(|limit| DoubleDouble::from(limit).logarithm());
+            all[s] = temperatures[s].larger(low).smaller(high);
         }
-        let rest = from.rest.map(DoubleDouble::from);
-        let (temperatures, rest, cost) = self.down(&known, &rest, free, 1e-24, 100);
+        all
+    }
+
+    /// Gain and Cₖ that are within the range but for rounding.
+    fn lit_within_limits(&self, mut rest: Each<DoubleDouble>) -> Each<DoubleDouble> {
+        let layout = self.model.layout;
+        let mut gain = DoubleDouble::from(self.model.own.gain);
+        if layout.gain {
+            let [low, high] = [-LOG_GAIN, LOG_GAIN].map(|limit| DoubleDouble::from(limit).exponential());
+            gain = rest[0].larger(low).smaller(high);
+            rest[0] = gain;
+        }
+        if layout.lighting {
+            let factors = &mut rest[usize::from(layout.gain)..][..layout.objects];
+            let [low, high] = layout.range.lighting.map(|limit| gain * DoubleDouble::from(limit));
+            for factor in factors.iter_mut() {
+                *factor = factor.larger(low).smaller(high);
+            }
+            let limit = gain * DoubleDouble::from(layout.total.unwrap_or(layout.range.lighting_sum));
+            let room = limit - factors.iter().copied().sum::<DoubleDouble>();
+            if layout.total.is_some() || room < DoubleDouble::from(0.0) {
+                let largest = factors.iter_mut().max_by(|a, b| a.to_f64().total_cmp(&b.to_f64()));
+                largest.into_iter().for_each(|factor| *factor = *factor + room);
+            }
+        }
+        rest
+    }
+
+    /// The end of a way down, with everything free.
+    fn polish(&self, temperatures: &Each<DoubleDouble>, rest: &Each<DoubleDouble>, free: &[usize]) -> Found {
+        let layout = self.model.layout;
+        let (temperatures, rest, cost) = self.down(temperatures, rest, free, [1e-24, 1e-59], 200);
         let factors = self.model.factors(&rest, 0);
         let kelvin = |s: usize| {
             if free.contains(&s) { temperatures[s].exponential().to_f64() } else { temperature_k(self.model.own, s) }
@@ -336,7 +386,7 @@ impl<'a, R: Real> Search<'a, R> {
         temperatures: &Each<R>,
         rest: &Each<R>,
         free: &[usize],
-        settled: f64,
+        [settled, nothing]: [f64; 2],
         steps: usize,
     ) -> (Each<R>, Each<R>, R) {
         let objects = self.model.layout.objects;
@@ -346,7 +396,7 @@ impl<'a, R: Real> Search<'a, R> {
         let mut longest = [f64::INFINITY; MOST];
         longest[..free.len()].fill(LONGEST);
         let unknowns = self.model.layout.unknowns(free.len());
-        let descent = Descent { unknowns, constraints: &constraints, longest, settled, steps };
+        let descent = Descent { unknowns, constraints: &constraints, longest, settled, nothing, steps };
         let mut start = [R::from(0.0); MOST];
         for (start, &s) in start.iter_mut().zip(free) {
             *start = temperatures[s];

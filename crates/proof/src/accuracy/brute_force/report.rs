@@ -11,6 +11,8 @@ const LARGE: f64 = 0.01;
 /// What one case finds.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Judged {
+    /// Whether there is no distance at all.
+    pub(super) vanishing: bool,
     /// Share by which the distance is above the brute force's.
     pub(super) excess: f64,
     /// By more than the tolerance and the stated error.
@@ -57,6 +59,8 @@ pub struct SetReport {
     pub first_failures: Vec<Failure>,
     /// Proved lower bounds above a distance that is possible.
     pub lower_above: u64,
+    /// Cases with no distance at all: the alternative can imitate the target. What follows is of the others.
+    pub vanishing: u64,
     /// Distances above a possible one by more than the tolerance of the proof and their stated error, proved or not.
     pub above: u64,
     /// Those by more than 1 %.
@@ -73,7 +77,7 @@ pub struct SetReport {
     pub error_untold: u64,
     /// Stated errors that are too small.
     pub error_wrong: u64,
-    /// Cases in which the brute force ended above the answer's own state: how good a witness it is.
+    /// Cases in which the brute force ended above the way down from the answer's own state: how good a witness it is.
     pub missed: u64,
     /// The last such case.
     pub missed_case: Option<u64>,
@@ -126,10 +130,11 @@ impl Tally {
         set.longest_solver_s = set.longest_solver_s.max(judged.solver_s);
         let counts = [
             (&mut set.lower_above, judged.lower_above),
+            (&mut set.vanishing, judged.vanishing),
             (&mut set.above, judged.above),
             (&mut set.far_above, judged.above && judged.excess > LARGE),
-            (&mut set.proved, judged.proved),
-            (&mut set.unproved, !judged.bounded && !judged.proved),
+            (&mut set.proved, judged.proved && !judged.vanishing),
+            (&mut set.unproved, !judged.bounded && !judged.proved && !judged.vanishing),
             (&mut set.error_untold, !judged.error_told),
             (&mut set.error_wrong, judged.error_wrong),
             (&mut set.missed, judged.missed),

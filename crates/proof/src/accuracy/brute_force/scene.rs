@@ -81,7 +81,11 @@ impl Scene {
         let nodes = bands.nodes_cm1().len();
         let least = usize::from(set.environment || set.lighting) + usize::from(set.total_known);
         let most = if set.environment { 2 } else { 3 };
-        let count = least + draw.below(most - least + 1);
+        let mut count = least + draw.below(most - least + 1);
+        if set.environment && draw.chance(0.2) {
+            // Two dimensions more take the brute force long.
+            count = least;
+        }
         let objects = objects(draw, count, temperature_k, nodes);
         let lighting = lighting(draw, objects.len());
         let mut unknowns = Unknowns::new(set.nuisances())?;

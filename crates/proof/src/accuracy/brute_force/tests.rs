@@ -7,8 +7,8 @@ fn trial() {
     let only = std::env::var("ONLY").ok().map(|o| o.parse().unwrap());
     let report = brute_force(&BruteForcePlan { cases_per_set: n, seed, only }, &|_, _| {}).unwrap();
     for s in &report.sets {
-        println!("{:70} n {} fail {} low> {} above {} far {} worst {:.2e} ({}) proved {} unproved {} untold {} wrong {} missed {} ({:?}) solver {:.2e} (max {:.2e}) brute {:.2e}",
-            s.unknown, s.cases, s.failures, s.lower_above, s.above, s.far_above, s.worst_excess, s.worst_case, s.proved, s.unproved, s.error_untold, s.error_wrong, s.missed, s.missed_case, s.mean_solver_s, s.longest_solver_s, s.mean_brute_force_s);
+        println!("{:70} n {} fail {} low> {} above {} far {} worst {:.2e} ({}) vanish {} proved {} unproved {} untold {} wrong {} missed {} ({:?}) solver {:.2e} (max {:.2e}) brute {:.2e}",
+            s.unknown, s.cases, s.failures, s.lower_above, s.above, s.far_above, s.worst_excess, s.worst_case, s.vanishing, s.proved, s.unproved, s.error_untold, s.error_wrong, s.missed, s.missed_case, s.mean_solver_s, s.longest_solver_s, s.mean_brute_force_s);
         for f in &s.first_failures { println!("    {} {}", f.case, f.what); }
     }
 }

@@ -43,6 +43,8 @@ pub(super) struct Descent<'c, R> {
     pub(super) longest: Each<f64>,
     /// Share of the cost below which no more is to be gained.
     pub(super) settled: f64,
+    /// Cost below which all is rounding.
+    pub(super) nothing: f64,
     pub(super) steps: usize,
 }
 
@@ -65,6 +67,9 @@ impl<R: Real> Descent<'_, R> {
             (0..self.constraints.len()).filter(|&i| self.constraints[i].equal).collect();
         let mut damping = 0.0;
         for _ in 0..self.steps {
+            if at.cost.to_f64() <= self.nothing {
+                break;
+            }
             let Some(step) = self.downhill(&z, &at, &mut working, &mut damping) else { break };
             let step = self.within_longest(step, &at.gradient);
             let (mut share, mut meets) = (R::from(1.0), None);

@@ -16,7 +16,7 @@ use hadar::scene::{State, Surroundings};
 use hadar::spectrum::Bands;
 
 /// Largest |ln G′|.
-const LOG_GAIN: f64 = 14.0;
+pub(super) const LOG_GAIN: f64 = 14.0;
 /// Temperatures of an object, K.
 pub(super) const OBJECT_K: [f64; 2] = [0.1, 1e6];
 /// Least N′ + v that is divided by.
