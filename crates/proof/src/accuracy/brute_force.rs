@@ -14,7 +14,7 @@
 //! Case i is of set i modulo their number, and depends on the seed and i alone.
 
 mod report;
-mod scene;
+pub(super) mod scene;
 #[cfg(test)]
 mod tests;
 
@@ -104,12 +104,12 @@ fn judge(seed: u64, case: u64, set: Set) -> Result<Judged> {
 }
 
 /// How far a distance is to be proved.
-fn tolerance(scene: &Scene, set: Set) -> f64 {
+pub(super) fn tolerance(scene: &Scene, set: Set) -> f64 {
     let others = if set.environment { scene.surroundings.objects().len() } else { 0 };
     PROOF[usize::from(usize::from(set.temperature) + others > 1)]
 }
 
-fn answer(scene: &Scene, set: Set) -> Result<NearestDistance> {
+pub(super) fn answer(scene: &Scene, set: Set) -> Result<NearestDistance> {
     let Scene { bands, surroundings, state, target, alternative, unknowns, range, counting } = scene;
     let solver = NearestSolver::new(bands, surroundings, unknowns.clone(), *range);
     let mut solver = solver.proving(tolerance(scene, set));

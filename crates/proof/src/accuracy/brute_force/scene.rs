@@ -14,17 +14,17 @@ const FAINTEST: f64 = 300.0;
 
 /// What is unknown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Set {
-    pub(super) temperature: bool,
-    pub(super) lighting: bool,
-    pub(super) total_known: bool,
-    pub(super) gain: bool,
-    pub(super) environment: bool,
+pub(in crate::accuracy) struct Set {
+    pub(in crate::accuracy) temperature: bool,
+    pub(in crate::accuracy) lighting: bool,
+    pub(in crate::accuracy) total_known: bool,
+    pub(in crate::accuracy) gain: bool,
+    pub(in crate::accuracy) environment: bool,
 }
 
 impl Set {
     /// Every set out of the four with anything in it, those with lighting once more with its total known.
-    pub(super) fn all() -> Vec<Self> {
+    pub(in crate::accuracy) fn all() -> Vec<Self> {
         let mut sets = Vec::new();
         for bits in 1..16 {
             let [temperature, lighting, gain, environment] = [0, 1, 2, 3].map(|i| bits >> i & 1 == 1);
@@ -37,7 +37,7 @@ impl Set {
         sets
     }
 
-    pub(super) fn name(self) -> String {
+    pub(in crate::accuracy) fn name(self) -> String {
         let lighting = if self.total_known { "lighting (total known)" } else { "lighting" };
         let parts = [
             (self.temperature, "temperature"),
@@ -62,20 +62,20 @@ impl Set {
 
 /// A pair to find the nearest state of.
 #[derive(Debug)]
-pub(super) struct Scene {
-    pub(super) bands: Bands,
-    pub(super) surroundings: Surroundings,
-    pub(super) state: State,
-    pub(super) target: Vec<f64>,
-    pub(super) alternative: Vec<f64>,
-    pub(super) unknowns: Unknowns,
-    pub(super) range: StateRange,
+pub(in crate::accuracy) struct Scene {
+    pub(in crate::accuracy) bands: Bands,
+    pub(in crate::accuracy) surroundings: Surroundings,
+    pub(in crate::accuracy) state: State,
+    pub(in crate::accuracy) target: Vec<f64>,
+    pub(in crate::accuracy) alternative: Vec<f64>,
+    pub(in crate::accuracy) unknowns: Unknowns,
+    pub(in crate::accuracy) range: StateRange,
     /// The camera's noise; per √photon without.
-    pub(super) counting: Option<Counting>,
+    pub(in crate::accuracy) counting: Option<Counting>,
 }
 
 impl Scene {
-    pub(super) fn draw(draw: &mut Draw, set: Set) -> Result<Self> {
+    pub(in crate::accuracy) fn draw(draw: &mut Draw, set: Set) -> Result<Self> {
         let temperature_k = temperature_k(draw);
         let bands = bands(draw, temperature_k)?;
         let nodes = bands.nodes_cm1().len();
