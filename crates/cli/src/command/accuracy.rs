@@ -196,7 +196,10 @@ fn page(output: &Output, quick: bool) -> String {
         page.push_str(&format!("\n## Bands of finite width\n\n{}\n![Error of the nearest distance over the width of bands](continuum.png)\n", report::continuum_text(found)));
     }
     if let Some(found) = &output.brute_force {
-        page.push_str(&format!("\n## Nearest distances against a brute force\n\n{}", report::brute_force_text(found)));
+        page.push_str(&format!(
+            "\n## Nearest distances against a brute force\n\n{}",
+            report::brute_force_text(found)
+        ));
     }
     if !output.skipping.is_empty() {
         page.push_str(&format!(

@@ -60,10 +60,7 @@ pub struct BruteForcePlan {
 ///
 /// # Errors
 /// A plan without cases.
-pub fn brute_force(
-    plan: &BruteForcePlan,
-    progress: &(dyn Fn(u64, u64) + Sync),
-) -> Result<BruteForceReport> {
+pub fn brute_force(plan: &BruteForcePlan, progress: &(dyn Fn(u64, u64) + Sync)) -> Result<BruteForceReport> {
     check::positive("cases of the brute force", plan.cases_per_set as f64, "")?;
     let sets = Set::all();
     let count = sets.len() as u64;
@@ -164,10 +161,14 @@ fn compare(scene: &Scene, set: Set, answer: &NearestDistance) -> Judged {
     }
     let off = if distance == 0.0 { 0.0 } else { (distance - there).abs() / there };
     let nothing = distance == 0.0 && there <= NOTHING * separation(state);
-    if relative_error.is_finite() && !nothing && (off > relative_error + ROUNDING || distance == 0.0 && there > 0.0)
+    if relative_error.is_finite()
+        && !nothing
+        && (off > relative_error + ROUNDING || distance == 0.0 && there > 0.0)
     {
         judged.error_wrong = true;
-        judged.faults.push(format!("{distance:e} where the state named is at {there:e}, error told {relative_error:e}"));
+        judged.faults.push(format!(
+            "{distance:e} where the state named is at {there:e}, error told {relative_error:e}"
+        ));
     }
     judged
 }

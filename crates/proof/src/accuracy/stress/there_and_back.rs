@@ -9,12 +9,12 @@ use super::draw::Draw;
 use super::findings::Findings;
 use crate::accuracy::brute_force::scene::{Scene, Set};
 use crate::accuracy::brute_force::{answer, tolerance};
+use crate::reference::Extended;
 use crate::reference::brute_force::BruteForce;
 use crate::reference::double_double::Real;
 use crate::reference::local::{LocalReference, Noise, Pair};
 use crate::reference::nearest::NearestReference;
 use crate::reference::probability::normal_tail;
-use crate::reference::Extended;
 use hadar::error::Result;
 use hadar::identifiability::detection;
 use hadar::identifiability::nearest::{NearestDistance, NearestSolver};
@@ -51,8 +51,8 @@ pub(super) fn judge(draw: &mut Draw, found: &mut Findings) -> Result<()> {
     if other.iter().any(|signal| *signal < FAINT * most) {
         return Ok(());
     }
-    let mut solver = NearestSolver::new(bands, surroundings, unknowns.clone(), *range)
-        .proving(tolerance(&scene, set));
+    let mut solver =
+        NearestSolver::new(bands, surroundings, unknowns.clone(), *range).proving(tolerance(&scene, set));
     let back = match counting {
         None => solver.per_photon(alternative, target, &there.state, f64::INFINITY)?,
         Some(counting) => solver.with_counting(alternative, target, &there.state, counting)?,
@@ -123,13 +123,22 @@ fn brackets(found: &mut Findings, distance: f64, back: f64) {
     let rho = (d.square() * Extended::from(-0.5)).exp();
     let lower = (Extended::one() - (Extended::one() - rho.square()).sqrt()) * Extended::from(0.5);
     let bracket = detection::error_bracket(distance);
-    found.check("upper end of the bracket", Extended::from(bracket.upper).relative_error_to(&(rho * Extended::from(0.5))), bound);
+    found.check(
+        "upper end of the bracket",
+        Extended::from(bracket.upper).relative_error_to(&(rho * Extended::from(0.5))),
+        bound,
+    );
     if lower.to_f64() > 1e-290 {
-        found.check("lower end of the bracket", Extended::from(bracket.lower).relative_error_to(&lower), 2.0 * bound);
+        found.check(
+            "lower end of the bracket",
+            Extended::from(bracket.lower).relative_error_to(&lower),
+            2.0 * bound,
+        );
     }
     let ratio = (back / distance).min(1.0);
     let width = ((1.0 + ratio) * 0.5).sqrt();
-    let exact = (normal_tail(-distance / width) + normal_tail(-ratio * distance / width)) * Extended::from(0.5);
+    let exact =
+        (normal_tail(-distance / width) + normal_tail(-ratio * distance / width)) * Extended::from(0.5);
     let both = detection::two_sided_probability(distance, ratio);
     found.check("probability over both ends", Extended::from(both).relative_error_to(&exact), bound);
 }

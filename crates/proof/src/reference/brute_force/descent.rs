@@ -56,11 +56,7 @@ struct Eliminated<R> {
 
 impl<R: Real> Descent<'_, R> {
     /// The least reached from a feasible start.
-    pub(super) fn run(
-        &self,
-        start: Each<R>,
-        mut evaluate: impl FnMut(&Each<R>) -> Local<R>,
-    ) -> (Each<R>, R) {
+    pub(super) fn run(&self, start: Each<R>, mut evaluate: impl FnMut(&Each<R>) -> Local<R>) -> (Each<R>, R) {
         let zero = R::from(0.0);
         let (mut z, mut at) = (start, evaluate(&start));
         let mut working: Vec<usize> =
@@ -137,7 +133,8 @@ impl<R: Real> Descent<'_, R> {
     /// What rounding leaves of a constraint that holds with equality.
     fn is_met(&self, constraint: &Constraint<R>, z: &Each<R>) -> bool {
         let terms = constraint.row.iter().zip(z).take(self.unknowns);
-        let size = terms.fold(constraint.bound.magnitude().to_f64(), |sum, (a, z)| sum + (a * z.to_f64()).abs());
+        let size =
+            terms.fold(constraint.bound.magnitude().to_f64(), |sum, (a, z)| sum + (a * z.to_f64()).abs());
         self.slack(constraint, z).to_f64() <= 16.0 * R::ROUNDING * size
     }
 
@@ -190,9 +187,8 @@ impl<R: Real> Descent<'_, R> {
                 }
                 row[pivot] = R::from(0.0);
             }
-            let largest = (0..self.unknowns).max_by(|&a, &b| {
-                row[a].magnitude().to_f64().total_cmp(&row[b].magnitude().to_f64())
-            });
+            let largest = (0..self.unknowns)
+                .max_by(|&a, &b| row[a].magnitude().to_f64().total_cmp(&row[b].magnitude().to_f64()));
             let Some(pivot) = largest else { continue };
             let head = row[pivot];
             row.iter_mut().for_each(|a| *a = *a / head);
@@ -230,18 +226,14 @@ impl<R: Real> Descent<'_, R> {
         let mut reduced = [[zero; MOST]; MOST];
         let mut right = [zero; MOST];
         let mut scale = [zero; MOST];
-        for a in 0..m {
-            let mut image = [zero; MOST];
+        for (a, column) in basis.iter().enumerate() {
             for i in 0..n {
-                right[a] = right[a] - basis[a][i] * at.gradient[i];
-                scale[a] = scale[a] + basis[a][i] * basis[a][i] * at.scale[i];
-                for j in 0..n {
-                    image[i] = image[i] + at.hessian[i][j] * basis[a][j];
-                }
-            }
-            for b in 0..=a {
-                for i in 0..n {
-                    reduced[a][b] = reduced[a][b] + basis[b][i] * image[i];
+                right[a] = right[a] - column[i] * at.gradient[i];
+                scale[a] = scale[a] + column[i] * column[i] * at.scale[i];
+                let terms = at.hessian[i].iter().zip(column).take(n);
+                let image = terms.fold(zero, |sum, (h, z)| sum + *h * *z);
+                for (reduced, other) in reduced[a].iter_mut().zip(&basis[..=a]) {
+                    *reduced = *reduced + other[i] * image;
                 }
             }
         }

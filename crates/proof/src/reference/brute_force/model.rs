@@ -164,7 +164,8 @@ impl<'a, R: Real> Model<'a, R> {
                 Noise::Counting(counting) => R::from(counting.var_added(band)) * per_count,
             })
             .collect();
-        model.level = signal.iter().zip(&model.noise).map(|(signal, noise)| *signal * share + *noise).collect();
+        model.level =
+            signal.iter().zip(&model.noise).map(|(signal, noise)| *signal * share + *noise).collect();
         model.root = model.level.iter().map(|level| level.root()).collect();
         model
     }
@@ -216,12 +217,8 @@ impl<'a, R: Real> Model<'a, R> {
         let layout = self.layout;
         let factors = self.factors(z, free.len());
         let n = layout.unknowns(free.len());
-        let mut at = Local {
-            cost: zero,
-            gradient: [zero; MOST],
-            hessian: [[zero; MOST]; MOST],
-            scale: [zero; MOST],
-        };
+        let mut at =
+            Local { cost: zero, gradient: [zero; MOST], hessian: [[zero; MOST]; MOST], scale: [zero; MOST] };
         let (first, gain) = (free.len(), usize::from(layout.gain));
         for band in 0..self.root.len() {
             let mut other = self.noise[band];
@@ -237,14 +234,14 @@ impl<'a, R: Real> Model<'a, R> {
             if layout.gain {
                 columns[first] = spectra[0].value[band];
                 if !layout.lighting {
-                    for k in 1..=layout.objects {
-                        columns[first] = columns[first] + R::from(self.own.lighting[k - 1]) * spectra[k].value[band];
+                    for (&lit, spectrum) in self.own.lighting.iter().zip(&spectra[1..]) {
+                        columns[first] = columns[first] + R::from(lit) * spectrum.value[band];
                     }
                 }
             }
             if layout.lighting {
-                for k in 1..=layout.objects {
-                    columns[first + gain + k - 1] = spectra[k].value[band];
+                for (column, spectrum) in columns[first + gain..].iter_mut().zip(&spectra[1..]) {
+                    *column = spectrum.value[band];
                 }
             }
             let own = self.root[band];
@@ -257,8 +254,8 @@ impl<'a, R: Real> Model<'a, R> {
                 at.gradient[i] = at.gradient[i] + down * columns[i];
                 at.scale[i] = at.scale[i] + gauss * columns[i] * columns[i];
                 let weighted = curve * columns[i];
-                for j in 0..=i {
-                    at.hessian[i][j] = at.hessian[i][j] + weighted * columns[j];
+                for (hessian, other) in at.hessian[i].iter_mut().zip(&columns[..=i]) {
+                    *hessian = *hessian + weighted * *other;
                 }
             }
             for (i, &s) in free.iter().enumerate() {
@@ -328,8 +325,7 @@ impl<'a, R: Real> Model<'a, R> {
         }
         if layout.lighting {
             let [low, high] = layout.range.lighting;
-            let (sum, equal) =
-                layout.total.map_or((layout.range.lighting_sum, false), |total| (total, true));
+            let (sum, equal) = layout.total.map_or((layout.range.lighting_sum, false), |total| (total, true));
             // a·C ≤ bound·G: with the gain known the right side is a number.
             let factors = first + usize::from(layout.gain);
             let mut against_gain = |mut row: Each<f64>, bound: f64, equal| {
