@@ -20,8 +20,10 @@ use hadar::identifiability::detection;
 use hadar::identifiability::nearest::{NearestDistance, NearestSolver};
 use hadar::scene::{Parameter, State};
 
-/// Rounding of the separation's terms, relative to their sum.
-const ROUNDING: f64 = 2e-15;
+/// Rounding of the separation's terms, relative to their sum, over 10 + x as that of radiances is, x = hcν/kT.
+const ROUNDING: f64 = 2e-16;
+/// hc/k, cm K.
+const SECOND_RADIATION_CM_K: f64 = 1.438_776_877;
 /// Smallest band signal over the largest that separations are judged with.
 const FAINT: f64 = 1e-150;
 
@@ -100,7 +102,9 @@ fn named(found: &mut Findings, way: &str, scene: &Scene, pair: Pair<'_>, answer:
     let mut reference = NearestReference::new(bands, surroundings, unknowns.clone(), *range);
     let exact = reference.separation(pair, &answer.state, noise);
     let separation = exact.distance.to_f64();
-    let rounding = ROUNDING * (exact.terms.to_f64() + separation);
+    let coldest = pair.state.temperature_k.min(answer.state.temperature_k);
+    let x = SECOND_RADIATION_CM_K * bands.nodes_cm1().iter().copied().fold(0.0, f64::max) / coldest;
+    let rounding = ROUNDING * (10.0 + x) * (exact.terms.to_f64() + separation);
     if distance == 0.0 {
         let own = reference.separation(pair, pair.state, noise).distance.to_f64();
         found.require(separation <= 2e-14 * own + rounding, || {
@@ -121,7 +125,9 @@ fn brackets(found: &mut Findings, distance: f64, back: f64) {
     let bound = 1e-15 * (10.0 + distance * distance);
     let d = Extended::from(distance);
     let rho = (d.square() * Extended::from(-0.5)).exp();
-    let lower = (Extended::one() - (Extended::one() - rho.square()).sqrt()) * Extended::from(0.5);
+    // 1 − √(1 − ρ²) would lose what is below the last of 512 bits.
+    let root = (Extended::one() - rho.square()).sqrt();
+    let lower = rho.square() / (Extended::one() + root) * Extended::from(0.5);
     let bracket = detection::error_bracket(distance);
     found.check(
         "upper end of the bracket",
