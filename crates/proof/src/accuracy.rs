@@ -9,6 +9,7 @@
 //! Times are of one thread, the least of many short runs ([`timing`]); errors are relative unless a chart says otherwise.
 
 mod band_integrals;
+pub mod brute_force;
 mod chart;
 mod continuum;
 mod decisions;

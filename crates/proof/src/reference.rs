@@ -16,6 +16,8 @@
 //! * [`nearest`]: separation of two states, and the nearest one from given starts;
 //! * [`probability`]: tail of the normal law, and exact errors of the best test between Poisson laws.
 
+pub mod brute_force;
+pub mod double_double;
 pub mod extended;
 pub mod local;
 pub mod nearest;

@@ -1,9 +1,11 @@
 //! Run time against error: plots, tables and text of [`hadar_proof::accuracy`].
 
+mod brute_force;
 mod continuum;
 mod skipping;
 mod stress;
 
+pub use brute_force::{brute_force_table, brute_force_text};
 pub use continuum::{continuum_plot, continuum_text};
 pub use skipping::{skipping_table, skipping_text};
 pub use stress::{stress_plots, stress_text};

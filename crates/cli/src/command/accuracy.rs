@@ -4,6 +4,7 @@ use super::global::{Global, as_json};
 use clap::Args;
 use hadar::demand::{Reason, Thing, Work};
 use hadar::error::{Error, Result};
+use hadar_proof::accuracy::brute_force::{BruteForcePlan, BruteForceReport, brute_force};
 use hadar_proof::accuracy::skipping::{Skipped, skipping};
 use hadar_proof::accuracy::stress::{StressPlan, StressReport, stress};
 use hadar_proof::accuracy::{Chart, Continuum, Item, Order, continuum};
@@ -19,20 +20,28 @@ const STRESS: &str = "stress";
 /// Stress cases of a quick run.
 const QUICK_CASES: u64 = 2000;
 const CASES: u64 = 100_000;
+const BRUTE_FORCE: &str = "brute-force";
+/// Cases of every set of unknowns; a thousand take some twenty minutes on two cores.
+const CASES_PER_SET: u64 = 100;
+const QUICK_CASES_PER_SET: u64 = 3;
 
 #[derive(Debug, Args)]
 pub(super) struct AccuracyArgs {
     /// Computations: planck, band-integrals, local, local-near-equilibrium, nearest, probability, decisions, windows,
-    /// draws; continuum (what the width of bands costs); skipping (what leaving out the needless is worth); stress (generated extremes, each judged in extended precision); or
-    /// all
+    /// draws; continuum (what the width of bands costs); brute-force (nearest distances and their proofs held against a
+    /// brute force, set of unknowns by set of unknowns); skipping (what leaving out the needless is worth); stress (generated
+    /// extremes, each judged in extended precision); or all
     #[arg(value_name = "NAME", default_value = "all")]
     items: Vec<String>,
     /// Fewer settings and shorter runs
     #[arg(long)]
     quick: bool,
-    /// Stress cases (default: 100000, or 2000 with --quick)
+    /// Stress cases (default: 100000, or 2000 with --quick), or cases of the brute force for every set of unknowns (100, or 3)
     #[arg(long, value_name = "N")]
     cases: Option<u64>,
+    /// One case of the brute force again, by its number
+    #[arg(long, value_name = "NUMBER", conflicts_with = "cases")]
+    case: Option<u64>,
 }
 
 /// What is printed with `--json`.
@@ -41,6 +50,8 @@ struct Output {
     charts: Vec<Chart>,
     #[serde(skip_serializing_if = "Option::is_none")]
     continuum: Option<Continuum>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    brute_force: Option<BruteForceReport>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     skipping: Vec<Skipped>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -52,6 +63,7 @@ struct Output {
 enum Task {
     Chart(Item),
     Continuum,
+    BruteForce,
     Skipping,
     Stress,
 }
@@ -69,6 +81,7 @@ impl Task {
         match self {
             Self::Chart(item) => item.name(),
             Self::Continuum => CONTINUUM,
+            Self::BruteForce => BRUTE_FORCE,
             Self::Skipping => SKIPPING,
             Self::Stress => STRESS,
         }
@@ -94,6 +107,17 @@ pub(super) fn run(args: &AccuracyArgs, global: &Global) -> Result<ExitCode> {
                 text.push_str(&format!("{}\n", report::continuum_text(&found)));
                 bundle.add_plots(&[report::continuum_plot(&found)])?;
                 output.continuum = Some(found);
+            }
+            Task::BruteForce => {
+                let cases_per_set =
+                    args.cases.unwrap_or(if args.quick { QUICK_CASES_PER_SET } else { CASES_PER_SET });
+                let bar = global.progress("cases of the brute force");
+                let plan = BruteForcePlan { cases_per_set, seed: global.seed, only: args.case };
+                let found = brute_force(&plan, &|done, total| bar.set(done as usize, total as usize))?;
+                bar.finish();
+                text.push_str(&format!("{}\n", report::brute_force_text(&found)));
+                bundle.add_table("brute_force.csv", report::brute_force_table(&found))?;
+                output.brute_force = Some(found);
             }
             Task::Skipping => {
                 let found = skipping(order.quick)?;
@@ -124,12 +148,14 @@ pub(super) fn run(args: &AccuracyArgs, global: &Global) -> Result<ExitCode> {
     work.compute(Thing::Sections, tasks.len() as u64);
     work.spare(Thing::Sections, Reason::NotAsked, (all().len() - tasks.len()) as u64);
     global.answer_with(as_json(&output)?, &text, &work)?;
-    let failed = output.stress.is_some_and(|stress| stress.failures > 0);
+    let failed = output.stress.is_some_and(|stress| stress.failures > 0)
+        || output.brute_force.is_some_and(|found| found.failures > 0);
     Ok(if failed { ExitCode::from(3) } else { ExitCode::SUCCESS })
 }
 
 fn all() -> Vec<Task> {
-    Item::ALL.map(Task::Chart).into_iter().chain([Task::Continuum, Task::Skipping, Task::Stress]).collect()
+    let others = [Task::Continuum, Task::BruteForce, Task::Skipping, Task::Stress];
+    Item::ALL.map(Task::Chart).into_iter().chain(others).collect()
 }
 
 fn tasks(names: &[String]) -> Result<Vec<Task>> {
@@ -168,6 +194,12 @@ fn page(output: &Output, quick: bool) -> String {
     }
     if let Some(found) = &output.continuum {
         page.push_str(&format!("\n## Bands of finite width\n\n{}\n![Error of the nearest distance over the width of bands](continuum.png)\n", report::continuum_text(found)));
+    }
+    if let Some(found) = &output.brute_force {
+        page.push_str(&format!(
+            "\n## Nearest distances against a brute force\n\n{}",
+            report::brute_force_text(found)
+        ));
     }
     if !output.skipping.is_empty() {
         page.push_str(&format!(

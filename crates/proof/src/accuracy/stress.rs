@@ -15,7 +15,7 @@
 //! * a nuisance of which less than 1e-14 is left of what it is made of is dropped, so that the reference leaves out the
 //!   same.
 
-mod draw;
+pub(super) mod draw;
 mod findings;
 mod local;
 mod many;
@@ -25,6 +25,7 @@ mod probability;
 mod report;
 mod requirement;
 mod scene;
+mod there_and_back;
 
 pub use findings::{Family, Point};
 pub use report::{Failure, FamilyReport, StressReport};
@@ -95,6 +96,7 @@ fn one(seed: u64, case: u64) -> Findings {
         Family::ManyBands => many::bands(&mut draw, &mut found),
         Family::Matrix => many::materials(&mut draw, &mut found),
         Family::Nearest => nearest::judge(&mut draw, &mut found),
+        Family::ThereAndBack => there_and_back::judge(&mut draw, &mut found),
         Family::Detection => {
             probability::detection(&mut draw, &mut found);
             Ok(())

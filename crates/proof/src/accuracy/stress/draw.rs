@@ -6,39 +6,39 @@ use rand::rngs::ChaCha8Rng;
 
 /// The random numbers of one case.
 #[derive(Debug)]
-pub(super) struct Draw(ChaCha8Rng);
+pub(in crate::accuracy) struct Draw(ChaCha8Rng);
 
 impl Draw {
-    pub(super) fn new(seed: u64, case: u64) -> Self {
+    pub(in crate::accuracy) fn new(seed: u64, case: u64) -> Self {
         Self(generator(seed, case))
     }
 
     /// Evenly in [0, 1).
-    pub(super) fn unit(&mut self) -> f64 {
+    pub(in crate::accuracy) fn unit(&mut self) -> f64 {
         self.0.random_range(0.0..1.0)
     }
 
-    pub(super) fn chance(&mut self, probability: f64) -> bool {
+    pub(in crate::accuracy) fn chance(&mut self, probability: f64) -> bool {
         self.unit() < probability
     }
 
     /// Evenly between two numbers.
-    pub(super) fn between(&mut self, low: f64, high: f64) -> f64 {
+    pub(in crate::accuracy) fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.unit()
     }
 
     /// Evenly in the logarithm.
-    pub(super) fn scale(&mut self, low: f64, high: f64) -> f64 {
+    pub(in crate::accuracy) fn scale(&mut self, low: f64, high: f64) -> f64 {
         (low.ln() + (high.ln() - low.ln()) * self.unit()).exp().clamp(low, high)
     }
 
     /// One of 0 … count − 1.
-    pub(super) fn below(&mut self, count: usize) -> usize {
+    pub(in crate::accuracy) fn below(&mut self, count: usize) -> usize {
         self.0.random_range(0..count.max(1))
     }
 
     /// A value beside another: equal, some last bits away, or a share of 10⁻¹⁶ to 0.3 of it.
-    pub(super) fn beside(&mut self, value: f64) -> f64 {
+    pub(in crate::accuracy) fn beside(&mut self, value: f64) -> f64 {
         match self.below(4) {
             0 => value,
             1 => self.some_bits_from(value),
@@ -50,7 +50,7 @@ impl Draw {
     }
 
     /// One to four last bits up or down of a positive number.
-    pub(super) fn some_bits_from(&mut self, value: f64) -> f64 {
+    pub(in crate::accuracy) fn some_bits_from(&mut self, value: f64) -> f64 {
         let bits = 1 + self.below(4) as u64;
         f64::from_bits(if self.chance(0.5) { value.to_bits() + bits } else { value.to_bits() - bits })
     }

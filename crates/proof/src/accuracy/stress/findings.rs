@@ -37,6 +37,8 @@ pub enum Family {
     Matrix,
     /// Nearest distance.
     Nearest,
+    /// Nearest distance in hard scenes, and back to the target's material.
+    ThereAndBack,
     /// Probabilities from distances, and back.
     Detection,
     /// Exact error of the best test on few counts.
@@ -47,7 +49,7 @@ pub enum Family {
 
 impl Family {
     /// All of them, in the order of reports.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::Planck,
         Self::Local,
         Self::Noise,
@@ -56,6 +58,7 @@ impl Family {
         Self::ManyBands,
         Self::Matrix,
         Self::Nearest,
+        Self::ThereAndBack,
         Self::Detection,
         Self::Exact,
         Self::Requirement,
@@ -79,6 +82,7 @@ impl Family {
             Self::ManyBands => "local distance in 100 to 100 000 bands",
             Self::Matrix => "distances of materials against each other",
             Self::Nearest => "nearest distance against the valley it stands in",
+            Self::ThereAndBack => "nearest distance in hard scenes, its proof and its brackets, and back",
             Self::Detection => "probabilities and information for distances 0 to 38, and back",
             Self::Exact => "exact error of the best test on few counts against the sum over all of them",
             Self::Requirement => "exposure, pixel, lens, noise, frames and photons solved for and put back",
@@ -91,6 +95,9 @@ impl Family {
         // The rare and costly ones are spread evenly.
         if case % 200 == 77 {
             return Self::ManyBands;
+        }
+        if case % 200 == 177 {
+            return Self::ThereAndBack;
         }
         match case % 50 {
             0..=13 => Self::Planck,

@@ -1,0 +1,174 @@
+//! Nearest distances held against a brute force, set of unknowns by set of unknowns, over scenes that searches find hard.
+//!
+//! The brute force ([`crate::reference::brute_force`]) gives the distance of a state within the range, with 31 digits, so
+//! that none of what is counted here as wrong can be a fault of its own:
+//!
+//! * a proved lower bound above it;
+//! * a distance proved to a tolerance that is above it by more than the tolerance;
+//! * a distance that is off, as the separation of the state it names, by more than its stated error.
+//!
+//! Where nothing is proved a distance above it is no false statement; it is counted all the same. That the brute force
+//! itself ends above the answer is counted too: it tells how good a witness it is. The answer's own state is one more start of
+//! the way down, so that the judgement does not rest on the lattice alone.
+//!
+//! Case i is of set i modulo their number, and depends on the seed and i alone.
+
+mod report;
+pub(super) mod scene;
+#[cfg(test)]
+mod tests;
+
+pub use report::{BruteForceReport, Failure, SetReport};
+
+use self::report::{Judged, Tally};
+use self::scene::{Scene, Set};
+use super::stress::draw::Draw;
+use crate::reference::brute_force::BruteForce;
+use crate::reference::double_double::Real;
+use crate::reference::local::{Noise, Pair};
+use hadar::error::{Result, check};
+use hadar::identifiability::nearest::{NearestDistance, NearestSolver};
+use hadar::scene::State;
+use rayon::prelude::*;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Instant;
+
+/// What is to be proved of the distance where no more than one temperature is unknown, and beyond.
+const PROOF: [f64; 2] = [1e-6, 1e-3];
+/// Rounding of the comparison itself.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
+/// Share by which the brute force may end above the way down from the answer.
+const MISSED: f64 = 1e-9;
+/// Share of the separation at the target's own state below which a distance is none: the alternative can imitate the target.
+const VANISHING: f64 = 1e-12;
+/// Share of the separation at the target's own state that a distance of 0 may stand for.
+const NOTHING: f64 = 2e-14;
+
+/// What to run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+pub struct BruteForcePlan {
+    /// How many cases of every set of unknowns.
+    pub cases_per_set: u64,
+    /// Which ones.
+    pub seed: u64,
+    /// One case alone, by its number.
+    pub only: Option<u64>,
+}
+
+/// Holds the crate's nearest distances against the brute force, telling `progress` how many cases of how many are done.
+///
+/// # Errors
+/// A plan without cases.
+pub fn brute_force(plan: &BruteForcePlan, progress: &(dyn Fn(u64, u64) + Sync)) -> Result<BruteForceReport> {
+    check::positive("cases of the brute force", plan.cases_per_set as f64, "")?;
+    let sets = Set::all();
+    let count = sets.len() as u64;
+    let cases = plan.only.map_or(0..plan.cases_per_set * count, |case| case..case + 1);
+    let (done, all) = (AtomicU64::new(0), cases.end - cases.start);
+    let run = |case: u64| {
+        let judged = caught(plan.seed, case, sets[(case % count) as usize]);
+        progress(done.fetch_add(1, Ordering::Relaxed) + 1, all);
+        (case, judged)
+    };
+    let judged: Vec<(u64, Judged)> = cases.into_par_iter().map(run).collect();
+    let mut tallies: Vec<Tally> = sets.iter().map(|set| Tally::new(*set)).collect();
+    for (case, judged) in judged {
+        tallies[(case % count) as usize].add(case, judged);
+    }
+    Ok(BruteForceReport::new(plan, tallies))
+}
+
+/// What a case finds; a panic of it is a fault.
+fn caught(seed: u64, case: u64, set: Set) -> Judged {
+    let judged = catch_unwind(AssertUnwindSafe(|| judge(seed, case, set)));
+    match judged {
+        Ok(Ok(judged)) => judged,
+        Ok(Err(error)) => Judged::fault(format!("an error where the input is in order: {error}")),
+        Err(_) => Judged::fault("panic".into()),
+    }
+}
+
+fn judge(seed: u64, case: u64, set: Set) -> Result<Judged> {
+    let mut draw = Draw::new(seed, case);
+    let scene = Scene::draw(&mut draw, set)?;
+    let start = Instant::now();
+    let answer = answer(&scene, set)?;
+    let seconds = start.elapsed().as_secs_f64();
+    let mut judged = compare(&scene, set, &answer);
+    judged.solver_s = seconds;
+    Ok(judged)
+}
+
+/// How far a distance is to be proved.
+pub(super) fn tolerance(scene: &Scene, set: Set) -> f64 {
+    let others = if set.environment { scene.surroundings.objects().len() } else { 0 };
+    PROOF[usize::from(usize::from(set.temperature) + others > 1)]
+}
+
+pub(super) fn answer(scene: &Scene, set: Set) -> Result<NearestDistance> {
+    let Scene { bands, surroundings, state, target, alternative, unknowns, range, counting } = scene;
+    let solver = NearestSolver::new(bands, surroundings, unknowns.clone(), *range);
+    let mut solver = solver.proving(tolerance(scene, set));
+    match counting {
+        None => solver.per_photon(target, alternative, state, f64::INFINITY),
+        Some(counting) => solver.with_counting(target, alternative, state, counting),
+    }
+}
+
+/// An answer against the brute force.
+fn compare(scene: &Scene, set: Set, answer: &NearestDistance) -> Judged {
+    let Scene { bands, surroundings, state, target, alternative, unknowns, range, counting } = scene;
+    let start = Instant::now();
+    let force = BruteForce::new(bands, surroundings, unknowns, *range);
+    let pair = Pair { emissivity: target, alternative, state };
+    let noise = counting.as_ref().map_or(Noise::PerPhoton { photons: f64::INFINITY }, Noise::Counting);
+    let Some(found) = force.nearest(pair, noise) else {
+        return Judged::fault("no state within the range".into());
+    };
+    let from_answer = force.nearest_from(pair, &answer.state, noise);
+    let missed = from_answer.distance.to_f64() < found.distance.to_f64() * (1.0 - MISSED);
+    let found = if missed { from_answer } else { found };
+    let least = found.distance.to_f64();
+    let separation = |state: &State| force.separation(pair, state, noise).to_f64();
+    let there = separation(&answer.state);
+    let tolerance = tolerance(scene, set);
+    let NearestDistance { distance, lower, relative_error, .. } = *answer;
+    let told = if relative_error.is_finite() { relative_error } else { 0.0 };
+    let vanishing = least <= VANISHING * separation(state);
+    let excess = if distance <= least || vanishing { 0.0 } else { distance / least - 1.0 };
+    let mut judged = Judged {
+        vanishing,
+        excess,
+        above: excess > tolerance + told + ROUNDING,
+        proved: lower >= distance * (1.0 - tolerance) && (lower > 0.0 || distance == 0.0),
+        bounded: lower > 0.0,
+        error_told: relative_error.is_finite(),
+        missed: missed && !vanishing,
+        brute_force_s: start.elapsed().as_secs_f64(),
+        ..Judged::default()
+    };
+    if !(distance >= 0.0 && distance.is_finite() && lower >= 0.0 && lower <= distance * (1.0 + ROUNDING)) {
+        judged.faults.push(format!("distance {distance:e}, lower bound {lower:e}"));
+    }
+    if lower > least * (1.0 + ROUNDING) {
+        judged.lower_above = true;
+        let place = &found.state;
+        judged.faults.push(format!("lower bound {lower:e} where {least:e} is the distance of {place:?}"));
+    }
+    if judged.proved && judged.above {
+        judged.faults.push(format!("{distance:e} proved to {tolerance:e} where {least:e} is possible"));
+    }
+    let off = if distance == 0.0 { 0.0 } else { (distance - there).abs() / there };
+    let nothing = distance == 0.0 && there <= NOTHING * separation(state);
+    if relative_error.is_finite()
+        && !nothing
+        && (off > relative_error + ROUNDING || distance == 0.0 && there > 0.0)
+    {
+        judged.error_wrong = true;
+        judged.faults.push(format!(
+            "{distance:e} where the state named is at {there:e}, error told {relative_error:e}"
+        ));
+    }
+    judged
+}
