@@ -31,6 +31,7 @@ use crate::error::{Error, Result};
 use crate::fisher::{Counting, Unknowns};
 use crate::scene::{Parameter, State, Surroundings};
 use crate::spectrum::Bands;
+use crate::units::SECOND_RADIATION_CM_K;
 use std::sync::Arc;
 
 /// Bands that are enough for a first look.
@@ -53,8 +54,9 @@ const ROUNDING: f64 = 1e-14;
 /// Boxes in which it is tried to prove that nothing is nearer before a search, and after one.
 const FIRST_BOXES: u64 = 60;
 const MOST_BOXES: u64 = 6_000;
-/// Rounding of the terms that a separation is made of.
-const ROUNDING_OF_TERMS: f64 = 2e-15;
+/// Rounding of the terms that a separation is made of, times 10 + x as that of radiances, and the x beyond which there are none.
+const ROUNDING_OF_TERMS: f64 = 4e-16;
+const LARGEST_X: f64 = 708.0;
 
 /// The nearest state of the alternative and its distance.
 #[derive(Debug, Clone, PartialEq)]
@@ -298,7 +300,12 @@ impl<'a> NearestSolver<'a> {
                 }
                 if best.distance > 0.0 {
                     let terms = self.comparison.terms(&target, &best.state);
-                    best.relative_error = ROUNDING_OF_TERMS * (1.0 + terms / best.distance);
+                    let (_, last_cm1) = self.comparison.target.bands().range_cm1();
+                    let coldest =
+                        best.state.environment_k.iter().copied().fold(best.state.temperature_k, f64::min);
+                    let x = SECOND_RADIATION_CM_K * last_cm1 / coldest.min(state.temperature_k);
+                    let rounding = ROUNDING_OF_TERMS * (10.0 + x.min(LARGEST_X));
+                    best.relative_error = NO_GAIN + rounding * (1.0 + terms / best.distance);
                     if best.relative_error >= 1.0 {
                         // Nothing but rounding is left.
                         (best.distance, best.lower, best.relative_error) = (0.0, 0.0, 0.0);

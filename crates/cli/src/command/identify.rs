@@ -26,6 +26,9 @@ pub(super) struct IdentifyArgs {
     /// Only which materials the camera tells apart, each pair by the first proof
     #[arg(long, conflicts_with = "matrix", help_heading = ALL)]
     apart: bool,
+    /// Prove nearest distances to this share of themselves (default: 1e-6, with several unknown temperatures 1e-3)
+    #[arg(long, value_name = "SHARE", allow_negative_numbers = true, value_parser = plain_number)]
+    prove: Option<f64>,
     /// How the least distance changes with the size of the library and the number of bands
     #[arg(long, help_heading = BANDS)]
     scaling: bool,
@@ -56,7 +59,10 @@ pub(super) struct IdentifyArgs {
 }
 
 pub(super) fn run(args: &IdentifyArgs, global: &Global) -> Result<ExitCode> {
-    let study = global.study(&args.scenario, args.by.map(Into::into))?;
+    let mut study = global.study(&args.scenario, args.by.map(Into::into))?;
+    if let Some(share) = args.prove {
+        study = study.proving(share)?;
+    }
     if args.check {
         return only_check(&study, global);
     }

@@ -17,7 +17,10 @@ fn the_command_says_what_is_wrong_and_what_it_did() {
     let (code, _, error) = hadar(&["accuracy", "stress", "--cases", "0"]);
     assert!(code == Some(1) && error.contains("stress cases is 0"), "{error}");
     let (code, text, _) = hadar(&["accuracy", "brute-force", "--case", "1", "--seed", "7", "-q"]);
-    assert!(code == Some(0) && text.contains("1 cases of seed 7") && text.contains("| lighting | 1 |"), "{text}");
+    assert!(
+        code == Some(0) && text.contains("1 cases of seed 7") && text.contains("| lighting | 1 |"),
+        "{text}"
+    );
     let (code, _, error) = hadar(&["accuracy", "all", "planck"]);
     assert!(code == Some(1) && error.contains("`all` alone"), "{error}");
 

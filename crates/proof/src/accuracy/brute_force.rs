@@ -42,8 +42,6 @@ const ROUNDING: f64 = 4.0 * f64::EPSILON;
 const MISSED: f64 = 1e-9;
 /// Share of the separation at the target's own state below which a distance is none: the alternative can imitate the target.
 const VANISHING: f64 = 1e-12;
-/// Share of the separation at the target's own state that a distance of 0 may stand for.
-const NOTHING: f64 = 2e-14;
 
 /// What to run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
@@ -160,7 +158,10 @@ fn compare(scene: &Scene, set: Set, answer: &NearestDistance) -> Judged {
         judged.faults.push(format!("{distance:e} proved to {tolerance:e} where {least:e} is possible"));
     }
     let off = if distance == 0.0 { 0.0 } else { (distance - there).abs() / there };
-    let nothing = distance == 0.0 && there <= NOTHING * separation(state);
+    // A distance of 0 says that only rounding is left of the roots, whose squares are the counts.
+    let dark = State { temperature_k: 0.1, gain: 1e-6, ..state.clone() };
+    let dark = State { lighting: vec![0.0; dark.lighting.len()], ..dark };
+    let nothing = distance == 0.0 && there <= VANISHING * separation(&dark);
     if relative_error.is_finite()
         && !nothing
         && (off > relative_error + ROUNDING || distance == 0.0 && there > 0.0)

@@ -42,6 +42,9 @@ const BOXES: [u64; 4] = [1, 2_000, 6_000, 6_000];
 const RESTARTS: usize = 30;
 /// Share of the bound wanted beyond which what chords miss makes it useless to try better quadratics.
 const COARSE: f64 = 0.25;
+/// Descents into valleys on the way, and boxes after which another one is tried from no lower than before.
+const DESCENTS: usize = 40;
+const SELDOM: u64 = 50;
 /// Quadratics that are tried in a box.
 const QUADRATICS: usize = 5;
 /// Half widths of the closed box that are tried, as shares of T/max(x, 2) in the middle of the bands.
@@ -422,6 +425,7 @@ impl<'a> Prover<'a> {
             let warmest = best.map_or(target.state, |best| &best.state);
             queue.extend(self.around(faces.as_deref(), warmest));
         }
+        let (mut descents, mut descended) = (0, f64::INFINITY);
         while let Some(region) = queue.pop() {
             if region.bound >= enough || self.boxes >= boxes {
                 queue.push(region);
@@ -440,10 +444,22 @@ impl<'a> Prover<'a> {
                 let allowed = self.all.allowed.clone();
                 let (bound, axis, mixture) = self.bound(&part.ends, &allowed, enough);
                 part.bound = bound.max(part.bound);
-                let nearer =
-                    if part.bound < enough { self.nearer(solver, target, limit, &mixture) } else { None };
-                if let Some(state) = nearer {
-                    return Outcome::Nearer(state);
+                if part.bound < enough {
+                    let (state, cost) = self.candidate(solver, target, &mixture);
+                    if cost < limit * (1.0 - 1e-12) {
+                        return Outcome::Nearer(state);
+                    }
+                    if cost < descended && descents < DESCENTS {
+                        // Downhill from here another valley may be found; each time from lower than before, or seldom.
+                        descents += 1;
+                        descended = cost;
+                        let found = solver.refine(target, state, None, 0.0);
+                        if found.distance * found.distance < limit * (1.0 - 1e-12) {
+                            return Outcome::Nearer(found.state);
+                        }
+                    } else if self.boxes.is_multiple_of(SELDOM) {
+                        descended = f64::INFINITY;
+                    }
                 }
                 part.axis = Some(axis);
                 queue.push(part);
@@ -461,6 +477,17 @@ impl<'a> Prover<'a> {
         limit: f64,
         mixture: &Mixture,
     ) -> Option<State> {
+        let (state, cost) = self.candidate(solver, target, mixture);
+        (cost < limit * (1.0 - 1e-12)).then_some(state)
+    }
+
+    /// The state of a mixture, and its cost.
+    fn candidate(
+        &self,
+        solver: &mut NearestSolver<'_>,
+        target: &Target<'_>,
+        mixture: &Mixture,
+    ) -> (State, f64) {
         let mut state = target.state.clone();
         let space = &solver.comparison.space;
         let surface = mixture.amplitudes[0];
@@ -477,7 +504,7 @@ impl<'a> Prover<'a> {
         }
         let state = space.within_range(&state);
         let cost = solver.comparison.cost(target, &state);
-        (cost < limit * (1.0 - 1e-12)).then_some(state)
+        (state, cost)
     }
 
     /// The place of an end of an interval.
@@ -687,3 +714,6 @@ impl<'a> Prover<'a> {
 fn temperature_of(state: &State, s: usize) -> f64 {
     s.checked_sub(1).map_or(state.temperature_k, |k| state.environment_k[k])
 }
+
+#[cfg(test)]
+mod tests;

@@ -207,12 +207,21 @@ impl<'a> Comparison<'a> {
     pub(super) fn terms(&mut self, target: &Target<'_>, state: &State) -> f64 {
         self.separate(target, state, false);
         let pairs = target.emissivity.iter().zip(target.alternative).zip(self.target.contrast());
-        let changes = self.work.difference.iter().zip(self.work.lighting.iter());
+        // What the change of every object's light is made of, by its magnitude.
+        let (own, surroundings) = (target.state, self.target.surroundings());
+        let mut light = vec![0.0; target.emissivity.len()];
+        for (k, (v, other)) in own.lighting.iter().zip(&state.lighting).enumerate() {
+            let [here, there] = [own, state].map(|state| surroundings.object_signal(k, state));
+            for ((light, here), there) in light.iter_mut().zip(here).zip(there) {
+                *light += (v - other).abs() * here + other * (here - there).abs();
+            }
+        }
         let nodes: Vec<f64> = pairs
-            .zip(changes)
-            .map(|(((e, other), contrast), (difference, lighting))| {
-                let terms = [(e - other) * contrast, other * difference, (1.0 - other) * lighting];
-                target.state.gain * terms.iter().map(|term| term.abs()).sum::<f64>()
+            .zip(self.work.difference.iter().zip(&light))
+            .map(|(((e, other), contrast), (difference, light))| {
+                let terms =
+                    ((e - other) * contrast).abs() + (other * difference).abs() + (1.0 - other) * light;
+                target.state.gain * terms
             })
             .collect();
         let gain = (state.gain - target.state.gain).abs() / state.gain;
