@@ -87,7 +87,7 @@ mod physics;
 mod witness;
 
 pub use base::error::{Error, Result};
-pub(crate) use base::simd;
+pub(crate) use base::{simd, wide};
 pub use base::{
     allowed, demand, error, file, grid, inputs, lattice_points, minimum, root, statistics, sum, units, words,
 };
