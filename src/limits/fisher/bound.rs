@@ -60,7 +60,7 @@ pub struct Projection {
 
 impl Projection {
     /// Unit upper triangle, row by row, and the lengths its rows are to be multiplied by.
-    pub(super) fn factor(&self) -> (&[f64], &[f64]) {
+    pub(crate) fn factor(&self) -> (&[f64], &[f64]) {
         (&self.triangle, &self.norms)
     }
 

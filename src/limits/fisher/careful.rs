@@ -21,7 +21,7 @@ use crate::wide::Wide;
 const FEW: usize = 2;
 const MANY: usize = 8;
 /// Share of a column below which what is left of it is nothing.
-const DEPENDENT: f64 = 1e-100;
+const DEPENDENT: f64 = 1e-130;
 /// Rounding of elements and sums, in units of the last place.
 const ROUNDINGS: f64 = 512.0;
 /// Relative error that the first try may leave: none that a double would show.
@@ -192,13 +192,15 @@ impl<const L: usize> Elimination<L> {
         self.columns[column].iter().zip(&self.weights).map(|(value, weight)| *value * *weight).collect()
     }
 
-    /// ‖aᵢ‖ + Σ|cⱼ|‖aⱼ‖, or of their terms, of a column whose parts along those before it are known.
-    fn made_of(&mut self, column: usize) -> f64 {
+    /// ‖aᵢ‖ + Σ|cⱼ|‖aⱼ‖ of a column whose parts along those before it are known, and the same of the terms.
+    fn made_of(&mut self, column: usize) -> [f64; 2] {
         let found = &mut self.found;
         found.coefficients = vec![0.0; column];
         super::bound::back_substitute(&found.triangle, &found.norms, column, &mut found.coefficients);
-        let parts = found.coefficients.iter().zip(&self.terms).map(|(c, length)| (c * length).abs());
-        self.terms[column] + parts.sum::<f64>()
+        [&found.lengths, &self.terms].map(|lengths| {
+            let parts = found.coefficients.iter().zip(lengths).map(|(c, length)| (c * length).abs());
+            lengths[column] + parts.sum::<f64>()
+        })
     }
 
     /// Takes column after column off the later ones; `None` where more digits are needed.
@@ -211,7 +213,7 @@ impl<const L: usize> Elimination<L> {
             self.found.triangle[pivot * count + pivot] = 1.0;
             let weighted = self.weighted(pivot);
             let square = inner(&self.columns[pivot], &weighted);
-            let made_of = self.made_of(pivot);
+            let [made_of, terms] = self.made_of(pivot);
             let left = square.sqrt().to_f64();
             let nothing = if Self::LAST { DEPENDENT } else { 0.0 };
             if length == 0.0 || left <= nothing * made_of {
@@ -221,7 +223,7 @@ impl<const L: usize> Elimination<L> {
                 self.found.dropped.push(pivot);
                 continue;
             }
-            turned += (Self::UNIT * made_of / left).powi(2);
+            turned += (Self::UNIT * terms / left).powi(2);
             if turned > GOOD && !Self::LAST {
                 return None;
             }
@@ -236,10 +238,10 @@ impl<const L: usize> Elimination<L> {
                 }
             }
         }
-        let made_of = self.made_of(last);
+        let [_, terms] = self.made_of(last);
         let norm = self.found.lengths[last];
         let residual = inner(&self.columns[last], &self.weighted(last)).sqrt().to_f64();
-        let noise = Self::UNIT * made_of;
+        let noise = Self::UNIT * terms;
         let found = &mut self.found;
         found.triangle[count * count - 1] = 1.0;
         (found.norm, found.residual) = (norm, residual);

@@ -178,7 +178,10 @@ impl<'a> LocalSolver<'a> {
         noise: Noise<'_>,
     ) -> Reduced {
         let dependent = |i: usize| self.depends_exactly(i, state);
-        if !(self.loses_light(state) || self.projector.in_doubt(found, dependent)) {
+        let nothing = emissivity == alternative || self.in_equilibrium(state);
+        // Of so little, products may have underflowed.
+        let faint = self.loses_light(state) || found.norm < SAFE_RANGE.start;
+        if nothing || !(faint || self.projector.in_doubt(found, dependent)) {
             return found;
         }
         let lighting_total_known = self.unknowns.known_lighting_total().is_some();

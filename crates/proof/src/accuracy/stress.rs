@@ -13,7 +13,7 @@
 //! * B, its slope and differences are good to 2e-16·(10 + x), probabilities to 1e-15·(10 + d²) and photon radiances to 16
 //!   half-ulps;
 //! * a distance below 16 ε of that with no nuisance is nothing, and so is one at equilibrium to the last bit of ΣV;
-//! * a nuisance of which less than 1e-100 is left of what it is made of depends on the others exactly. All others count.
+//! * a nuisance of which less than 1e-130 is left of what it is made of depends on the others exactly. All others count.
 
 mod draw;
 mod findings;

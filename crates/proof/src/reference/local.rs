@@ -22,7 +22,7 @@ use hadar::scene::{Parameter, State, Surroundings};
 use hadar::spectrum::Bands;
 
 /// Share of a column below which what is left of it is the rounding of 512 bits.
-const EXACTLY_DEPENDENT: f64 = 1e-100;
+const EXACTLY_DEPENDENT: f64 = 1e-130;
 
 /// Which noise weighs the bands.
 #[derive(Debug, Clone, Copy)]

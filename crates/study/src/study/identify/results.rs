@@ -151,6 +151,13 @@ pub struct PairResult {
     pub condition_number: Option<f64>,
     /// Estimated bound on the relative rounding error of the local distance.
     pub relative_error: f64,
+    /// Of the local distance with unknown gain.
+    pub relative_error_unknown_gain: f64,
+    /// Of the local distance with nothing unknown but the material.
+    pub relative_error_no_nuisance: f64,
+    /// Of the statistical distance of the camera, where a local distance decides.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub relative_error_statistical: Option<f64>,
     /// What kind of answer the local distance is.
     pub status: Status,
     /// The change of the nuisances that imitates the alternative, where the status is `blind`.
