@@ -16,8 +16,8 @@ mod bound;
 mod careful;
 pub mod precision;
 
-pub use bound::{Projection, Projector};
 pub(crate) use bound::Reduced;
+pub use bound::{Projection, Projector};
 pub(crate) use careful::{BLIND, Careful, CarefulProjector, Noise, project_columns};
 
 pub use crate::instrument::Counting;

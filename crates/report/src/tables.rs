@@ -25,6 +25,7 @@ pub fn pairs(pairs: &[PairResult]) -> Table {
         "information_bits_camera",
         "condition_number",
         "relative_error_local",
+        "relative_error_local_unknown_gain",
     ]);
     for pair in pairs {
         let lighting: Vec<String> = pair.nearest_state.lighting.iter().map(|&v| number(v)).collect();
@@ -47,6 +48,7 @@ pub fn pairs(pairs: &[PairResult]) -> Table {
             optional(pair.information_bits),
             optional(pair.condition_number),
             number(pair.relative_error),
+            number(pair.relative_error_unknown_gain),
         ]);
     }
     table

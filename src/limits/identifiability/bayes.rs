@@ -21,8 +21,9 @@
 //!   arctan(cσ_T)/π.
 //!
 //! Averages: lattices of states within 7σ_p and the physical range (T > 0, 0 ≤ V, ΣV ≤ 1), whose number does not
-//! multiply with the priors, doubled until three deviations of their mean are no more than is asked for (10⁻³ of a
-//! probability where silent). The prior is truncated to that range and renormalised, not reflected. An order asked for is
+//! multiply with the priors, doubled until the error of their mean is no more than is asked for (10⁻³ of a probability
+//! where silent): three deviations by the scatter of the lattices, and for what may stand between n states, which is about
+//! 1/n of the prior and off by ½ at most, 1/(2n). The prior is truncated to that range and renormalised, not reflected. An order asked for is
 //! that of a product rule, and so is the hybrid bound of a single prior: Gauss–Legendre on either side of the mean, so
 //! that a kink there, as at equilibrium, costs nothing.
 //!
@@ -59,8 +60,8 @@ const STEPS: usize = 60;
 const TOGETHER: usize = 64;
 /// Error of an averaged probability where none is asked for.
 const TOLERANCE: f64 = 1e-3;
-/// States of each lattice, powers of two: the first and the last try.
-const LATTICES: std::ops::RangeInclusive<u32> = 3..=11;
+/// States of each lattice, try by try: few to be near the photons that are sought, then as many as an error of 10⁻³ takes.
+const LATTICES: [usize; 7] = [8, 64, 128, 256, 512, 1024, 2048];
 /// States of each lattice, and order of the product rule of a single prior, of the hybrid bound.
 const HYBRID_STATES: usize = 64;
 const HYBRID_ORDER: usize = 32;
@@ -247,7 +248,7 @@ impl<'a> BayesianBound<'a> {
     fn tries(&self) -> Vec<States> {
         match self.order {
             Some(order) => vec![States::Product(order)],
-            None => LATTICES.map(|power| States::Lattices(1 << power)).collect(),
+            None => LATTICES.map(States::Lattices).to_vec(),
         }
     }
 
@@ -305,7 +306,8 @@ impl<'a> BayesianBound<'a> {
             let half = lattices.len() / 2;
             [&lattices[..], &lattices[..half]].map(|lattices| Ok(pooled(lattices)))
         };
-        let stack = |nodes: Vec<Node>| Stack::new(self.bands, self.surroundings, &self.unknowns, pair, total, &nodes);
+        let stack =
+            |nodes: Vec<Node>| Stack::new(self.bands, self.surroundings, &self.unknowns, pair, total, &nodes);
         Ok([stack(fine?)?, stack(coarse?)?])
     }
 }

@@ -159,9 +159,8 @@ impl<'a> LocalSolver<'a> {
         }
         let found = in_doubles.unwrap_or_else(|| {
             self.evaluate(emissivity, alternative, state);
-            let root = |w: usize, signal: f64| {
-                counts.sqrt() / (signal + counting.var_added(w) / counts).sqrt()
-            };
+            let root =
+                |w: usize, signal: f64| counts.sqrt() / (signal + counting.var_added(w) / counts).sqrt();
             self.reduce_scaled(emissivity, alternative, state, root, 1.0)
         });
         let found = self.settled(found, emissivity, alternative, state, Noise::Counting(counting));
@@ -208,7 +207,9 @@ impl<'a> LocalSolver<'a> {
         };
         let last = objects.len().saturating_sub(1);
         match self.parameters[i] {
-            Parameter::Lighting(k) if self.unknowns.known_lighting_total().is_some() && alike(k, last) => true,
+            Parameter::Lighting(k) if self.unknowns.known_lighting_total().is_some() && alike(k, last) => {
+                true
+            }
             _ if self.unknowns.has_priors() => false,
             Parameter::Lighting(_) => earlier(|p| match p {
                 Parameter::Lighting(k) => Some(k),
@@ -274,8 +275,9 @@ impl<'a> LocalSolver<'a> {
         let imitation =
             self.parameters.iter().copied().zip(projection.coefficients.iter().copied()).collect();
         // What was dropped without a second look, as nothing was left of the material anyway, need not be dependent.
-        let surely =
-            |i: &&usize| status == Status::Ok || self.projector.is_zero(**i) || self.depends_exactly(**i, state);
+        let surely = |i: &&usize| {
+            status == Status::Ok || self.projector.is_zero(**i) || self.depends_exactly(**i, state)
+        };
         let dropped = projection.dropped.iter().filter(surely).map(|&i| self.parameters[i]).collect();
         LocalDistance {
             distance: if status == Status::Ok { 0.5 * projection.residual } else { 0.0 },
@@ -330,3 +332,6 @@ fn positive(total: f64) -> Result<f64> {
         "above 0: a warmer scene, or bands at lower wavenumbers",
     ))
 }
+
+#[cfg(test)]
+mod tests;

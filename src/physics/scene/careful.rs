@@ -160,9 +160,8 @@ impl<'a, const L: usize> CarefulScene<'a, L> {
                 let e = Wide::from(e);
                 gain * match *parameter {
                     Parameter::Material => {
-                        let lit = (0..objects.len()).fold(own.value[j].shifted(1), |sum, k| {
-                            sum + lighting[k] * incident(k, j)
-                        });
+                        let lit = (0..objects.len())
+                            .fold(own.value[j].shifted(1), |sum, k| sum + lighting[k] * incident(k, j));
                         (Wide::from(alternative[j]) - e).abs() * lit
                     }
                     Parameter::Lighting(k) => (one - e) * (incident(k, j) + incident(last, j)),

@@ -63,10 +63,7 @@ impl Study {
             scenario: self.scenario.clone(),
             photon_radiance: self.photon_radiance(),
             identifiability: self.identifiability(&pairs),
-            prior_average: match self.alternative(&limiting) {
-                Some(alternative) => self.prior_average(alternative)?,
-                None => None,
-            },
+            prior_average: None,
             pairs,
             limiting,
             warnings,
@@ -147,10 +144,8 @@ impl Study {
             local_unknown_gain: required(unknown_gain.distance),
         });
         let back = self.return_distance(alternative, &nearest)?;
-        let statistical = counting
-            .as_ref()
-            .map(|counting| self.statistical(kind, alternative, counting))
-            .transpose()?;
+        let statistical =
+            counting.as_ref().map(|counting| self.statistical(kind, alternative, counting)).transpose()?;
         let told_apart = statistical.map(|found| found.reaches(self.required));
         let relative_error_statistical = statistical.and_then(|found| found.relative_error);
         let statistical = statistical.map(|found| found.distance);

@@ -110,7 +110,8 @@ impl Average<'_> {
         self.misses(shift).zip(&self.ends).map(|(miss, (_, share))| share * miss).sum()
     }
 
-    /// Three deviations of it by the scatter of the parts, or for a product rule the change from half the order.
+    /// Three deviations of it by the scatter of the parts and what may stand between the states, or for a product rule the
+    /// change from half the order.
     pub(super) fn error(&self, shift: f64) -> f64 {
         if self.nodes.len() < 2 {
             return 0.0;
@@ -120,7 +121,7 @@ impl Average<'_> {
         match self.ends.as_slice() {
             [_] => 1.0,
             [_, (_, 0.0)] => squares.sqrt(),
-            _ => 3.0 * (squares / (parts * (parts - 1.0))).sqrt(),
+            _ => 3.0 * (squares / (parts * (parts - 1.0))).sqrt() + 0.5 / self.nodes.len() as f64,
         }
     }
 
@@ -141,7 +142,11 @@ impl Average<'_> {
             } else {
                 crossing(least, most, |shift| Ok(miss - self.miss(shift)))?
             };
-            if shift > 0.0 { low = log } else { high = log }
+            if shift > 0.0 {
+                low = log
+            } else {
+                high = log
+            }
             let met = (self.miss(0.0) - miss).abs() <= left || high - low <= 1e-12;
             if log >= LOG_PHOTONS && self.miss(0.0) > miss {
                 return Ok(None);

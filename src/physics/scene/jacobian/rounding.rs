@@ -40,7 +40,10 @@ impl Jacobian<'_> {
             return 1.0;
         }
         let parts = self.contrast_terms(state).into_iter().zip(self.contrast.iter());
-        parts.fold(1.0, |most, (terms, contrast)| if terms > 0.0 { most.max(terms / contrast.abs()) } else { most })
+        parts.fold(
+            1.0,
+            |most, (terms, contrast)| if terms > 0.0 { most.max(terms / contrast.abs()) } else { most },
+        )
     }
 
     /// Whether no term of the contrast has another sign than the others.

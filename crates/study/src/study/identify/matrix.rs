@@ -102,9 +102,9 @@ impl Study {
                     distance_minimum: by_kind[target * count + limiting],
                     statistical_distance_minimum: least,
                     identifiable: reached.as_ref().map(|reached| {
-                        (0..count).filter(|&other| other != target).all(|other| {
-                            reached[target * count + other] >= required
-                        })
+                        (0..count)
+                            .filter(|&other| other != target)
+                            .all(|other| reached[target * count + other] >= required)
                     }),
                 }
             })

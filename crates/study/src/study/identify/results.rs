@@ -21,7 +21,7 @@ pub struct Identification {
     pub limiting: String,
     /// The target against the library as a whole (Algorithm 3).
     pub identifiability: Identifiability,
-    /// The hardest alternative on average over the priors; `None` without priors.
+    /// The hardest alternative on average over the priors; `None` without priors, or where it was not asked for.
     pub prior_average: Option<PriorAverage>,
     /// What the reader must know.
     pub warnings: Vec<Warning>,
