@@ -329,7 +329,8 @@ impl Projector {
         let unsettled = |&i: &usize| self.lengths[i] > 0.0 && !dependent(i);
         // Leaving out fewer nuisances would leave even less.
         let nothing = self.full || found.residual == 0.0 && found.norm == 0.0 || found.is_nothing();
-        !nothing && (!(found.relative_error <= IN_DOUBT) || self.dropped.iter().any(unsettled))
+        let rough = found.relative_error.is_nan() || found.relative_error > IN_DOUBT;
+        !nothing && (rough || self.dropped.iter().any(unsettled))
     }
 
     /// Takes what more digits have found for what the last [`Projector::reduce`] did; lengths stay divided by the powers of
