@@ -22,10 +22,10 @@
 //!
 //! Averages: lattices of states within 7σ_p and the physical range (T > 0, 0 ≤ V, ΣV ≤ 1), whose number does not
 //! multiply with the priors, doubled until the error of their mean is no more than is asked for (10⁻³ of a probability
-//! where silent): three deviations by the scatter of the lattices, and for what may stand between n states, which is about
-//! 1/n of the prior and off by ½ at most, 1/(2n). The prior is truncated to that range and renormalised, not reflected. An order asked for is
-//! that of a product rule, and so is the hybrid bound of a single prior: Gauss–Legendre on either side of the mean, so
-//! that a kink there, as at equilibrium, costs nothing.
+//! where silent): three deviations by the scatter of the lattices, and for what may stand between n states, which is
+//! about 1/n of the prior and off by ¼ in the mean, 1/(4n). The prior is truncated to that range and renormalised, not
+//! reflected. An order asked for is that of a product rule, and so is the hybrid bound of a single prior:
+//! Gauss–Legendre on either side of the mean, so that a kink there, as at equilibrium, costs nothing.
 //!
 //! Photons for an average: d(θ, N) of every state is √N times what hardly depends on N, so that the distances found at one
 //! N tell P̄ at all N but for what the priors' weight among the photons changes. Each step finds N from the distances of
@@ -228,9 +228,11 @@ impl<'a> BayesianBound<'a> {
         for states in self.tries() {
             average.take(states)?;
             // What is left to the steps is nothing beside the error of the average.
-            let left = if self.order.is_some() { 1e-13 } else { 0.02 * self.tolerance };
-            let Some((at, shift)) = average.solve(log, 1.0 - probability, left)? else { return Ok(None) };
-            log = at + shift;
+            let enough =
+                if self.order.is_some() { [1e-13; 2] } else { [0.02 * self.tolerance, 3.0 * self.tolerance] };
+            let Some(met) = average.solve(log, 1.0 - probability, enough)? else { return Ok(None) };
+            log = met.log;
+            let shift = met.shift;
             let error = average.error(shift);
             // dP̄/d ln N.
             let slope = (average.miss(shift - 0.01) - average.miss(shift + 0.01)) / 0.02;
@@ -269,6 +271,7 @@ impl<'a> BayesianBound<'a> {
             ends: Vec::new(),
             found: Vec::new(),
             looked: 0,
+            share: None,
         })
     }
 

@@ -36,6 +36,17 @@ pub(super) struct Average<'b> {
     /// d of every state.
     pub(super) found: Vec<f64>,
     pub(super) looked: usize,
+    /// Twice the power of N that the distances grow with, about where the photons are sought.
+    pub(super) share: Option<f64>,
+}
+
+/// Where a share of wrong decisions is met.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Met {
+    /// ln N.
+    pub(super) log: f64,
+    /// The shift that meets it from the photons of the last look, were the distances √N times a constant.
+    pub(super) shift: f64,
 }
 
 impl Average<'_> {
@@ -121,13 +132,13 @@ impl Average<'_> {
         match self.ends.as_slice() {
             [_] => 1.0,
             [_, (_, 0.0)] => squares.sqrt(),
-            _ => 3.0 * (squares / (parts * (parts - 1.0))).sqrt() + 0.5 / self.nodes.len() as f64,
+            _ => 3.0 * (squares / (parts * (parts - 1.0))).sqrt() + 0.25 / self.nodes.len() as f64,
         }
     }
 
-    /// The logarithm of photons that were looked at last, and that of the factor to those at which `miss` is met: no more
-    /// than what changes it by `left`. `None` where no number of photons suffices.
-    pub(super) fn solve(&mut self, start: f64, miss: f64, left: f64) -> Result<Option<(f64, f64)>> {
+    /// Where `miss` is met, searched from `start` on: to `left` of it, or where it is known how much less than √N the distances
+    /// grow, by a step from where it is off by no more than `near`. `None` where no number of photons suffices.
+    pub(super) fn solve(&mut self, start: f64, miss: f64, [left, near]: [f64; 2]) -> Result<Option<Met>> {
         let (mut low, mut high) = (-LOG_PHOTONS, LOG_PHOTONS);
         let mut before: Option<(f64, f64)> = None;
         let mut log = start.clamp(low, high);
@@ -147,17 +158,20 @@ impl Average<'_> {
             } else {
                 high = log
             }
-            let met = (self.miss(0.0) - miss).abs() <= left || high - low <= 1e-12;
+            let off = (self.miss(0.0) - miss).abs();
             if log >= LOG_PHOTONS && self.miss(0.0) > miss {
                 return Ok(None);
             }
-            if met || step >= STEPS || log <= -LOG_PHOTONS {
-                return Ok(Some((log, shift)));
+            // The shifts of this step and the last vanish on a straight line; they fall no faster than by what is taken.
+            if let Some((log_before, before)) = before {
+                self.share = Some(((before - shift) / (log - log_before)).clamp(0.05, 1.0));
             }
-            // Where the shifts of this step and the last would vanish.
-            let secant = before.map(|(log_before, before)| shift * (log - log_before) / (before - shift));
+            let known = self.share.is_some() && off <= near;
+            let next = log + shift / self.share.unwrap_or(1.0);
+            if off <= left || known || high - low <= 1e-12 || step >= STEPS || log <= -LOG_PHOTONS {
+                return Ok(Some(Met { log: next.clamp(-LOG_PHOTONS, LOG_PHOTONS), shift }));
+            }
             before = Some((log, shift));
-            let next = secant.map_or(log + shift, |by| log + by);
             let inside = next > low && next < high;
             log = if inside { next } else { (log + shift).clamp(low, high) };
         }
