@@ -283,7 +283,7 @@ mod tests {
             assert_eq!((x.to_f64(), y.to_f64()), (a, b));
             assert!(units_apart((x + y) * (x - y), x * x - y * y) < 4.0, "{a} {b}");
             assert!(units_apart(x * y * y.inverse(), x) < 8.0, "{a} {b}");
-            assert_eq!(x - x, Wide::ZERO);
+            assert_eq!(x + -x, Wide::ZERO);
             assert!(a < 0.0 || units_apart(x.sqrt() * x.sqrt(), x) * Wide::<L>::UNIT < 1e-15);
         }
         // Exact: (1 + 2⁻⁵²) − 1, and 2⁻¹⁰⁰ beside 1.
