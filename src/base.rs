@@ -13,4 +13,5 @@ pub(crate) mod simd;
 pub mod statistics;
 pub mod sum;
 pub mod units;
+pub(crate) mod wide;
 pub mod words;

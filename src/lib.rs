@@ -87,10 +87,10 @@ mod physics;
 mod witness;
 
 pub use base::error::{Error, Result};
-pub(crate) use base::simd;
 pub use base::{
     allowed, demand, error, file, grid, inputs, lattice_points, minimum, root, statistics, sum, units, words,
 };
+pub(crate) use base::{simd, wide};
 pub use limits::{fisher, identifiability, policy, ranging};
 pub use physics::{atmosphere, material, planck, scene, spectrum};
 pub use witness::{render, simulate};

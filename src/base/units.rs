@@ -367,6 +367,12 @@ quantity!(Kelvin, positive, "temperature", "K", "An absolute temperature above 0
 quantity!(Metres, positive, "length", "m", "A length above 0, in m.");
 quantity!(Seconds, positive, "time", "s", "A duration above 0, in s.");
 
+/// x·2^power in steps that do not overflow before the result does.
+pub(crate) fn times_power_of_two(x: f64, power: i32) -> f64 {
+    let half = power / 2;
+    x * f64::from(half).exp2() * f64::from(power - half).exp2()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

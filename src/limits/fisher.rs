@@ -13,10 +13,12 @@
 //! own dependence on the parameters left out, as in the paper.
 
 mod bound;
+mod careful;
 pub mod precision;
 
+pub(crate) use bound::Reduced;
 pub use bound::{Projection, Projector};
-pub(crate) use bound::{Reduced, times_power_of_two};
+pub(crate) use careful::{BLIND, Careful, CarefulProjector, Noise, project_columns};
 
 pub use crate::instrument::Counting;
 

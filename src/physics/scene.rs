@@ -11,8 +11,10 @@
 //!
 //! Source: paper S2, S3, S18, S30, S48.
 
+mod careful;
 mod jacobian;
 
+pub(crate) use careful::{Asked, CarefulScene, Column};
 pub(crate) use jacobian::Columns;
 pub use jacobian::{Jacobian, Parameter};
 
@@ -180,17 +182,14 @@ impl Surroundings {
     }
 }
 
-/// 1 − ΣVₖ without the rounding error of the sum; 0 where it is no more than the rounding of the factors
-/// themselves, as for 0.3 and 0.7, which are the nearest `f64` of numbers that add up to 1.
+/// 1 − ΣVₖ without the rounding error of the sum.
 pub(crate) fn unlit(lighting: &[f64]) -> f64 {
     let mut rest = Compensated::default();
     rest.add(1.0);
     for factor in lighting {
         rest.add(-factor);
     }
-    let rest = rest.value();
-    // Each factor is off by at most half an ulp, all together by at most 2⁻⁵³ ΣV.
-    if lighting.len() > 1 && rest.abs() <= 0.5 * f64::EPSILON { 0.0 } else { rest }
+    rest.value()
 }
 
 /// Checks that an emissivity has one value in [0, 1] per node.

@@ -24,7 +24,11 @@ pub fn pairs(pairs: &[PairResult]) -> Table {
         "miss_probability_camera",
         "information_bits_camera",
         "condition_number",
+        "distance_nearest_lower_per_sqrt_photon",
+        "relative_error_nearest",
+        "relative_error_return",
         "relative_error_local",
+        "relative_error_local_unknown_gain",
     ]);
     for pair in pairs {
         let lighting: Vec<String> = pair.nearest_state.lighting.iter().map(|&v| number(v)).collect();
@@ -46,7 +50,11 @@ pub fn pairs(pairs: &[PairResult]) -> Table {
             optional(pair.miss_probability),
             optional(pair.information_bits),
             optional(pair.condition_number),
+            number(pair.distance_nearest_lower),
+            number(pair.relative_error_nearest),
+            number(pair.relative_error_return),
             number(pair.relative_error),
+            number(pair.relative_error_unknown_gain),
         ]);
     }
     table

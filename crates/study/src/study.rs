@@ -25,8 +25,8 @@ mod warn;
 pub use crate::warning::Warning;
 pub use identify::{
     Answers, Apart, Asked, BandNumber, BandsThatMatter, Check, Choice, Exact, ExactLibrary, ExactPair,
-    Identifiability, Identification, Law, LibrarySize, Matrix, NearestState, PairResult, Passband,
-    Prediction, PriorAverage, Reached, Rows, SampleSpectra, Scaling, TargetVerdict, Trial,
+    Identifiability, Identification, Law, LibrarySize, Matrix, NearestProof, NearestState, PairResult,
+    Passband, Prediction, PriorAverage, Reached, Rows, SampleSpectra, Scaling, TargetVerdict, Trial,
 };
 pub use looked_up::Study;
 pub use rule::{

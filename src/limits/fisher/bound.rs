@@ -12,7 +12,9 @@
 //! divided by the residual, are the reported relative error.
 //!
 //! A nuisance column that is zero, or of which less than [`DEPENDENT`] of that sum is left after removing the others,
-//! is dropped and reported: what is left of it is rounding noise, which may have any direction.
+//! is dropped and reported: what is left of it is rounding noise, which may have any direction. Unless it depends on the
+//! others exactly, the distance is then too large by any factor: such a projection is [in doubt](Projector::in_doubt), and
+//! is to be done again in more digits ([`careful`](super::careful)).
 //!
 //! Sources: paper S25–S29; Björck, Linear Algebra Appl. 197, 297 (1994), doi:10.1016/0024-3795(94)90493-6;
 //! Giraud, Langou, Rozložník, Numer. Math. 101, 87 (2005), doi:10.1007/s00211-005-0615-4.
@@ -20,7 +22,9 @@
 mod passes;
 
 use self::passes::{Pass, eliminate, reduce_last};
+use super::{BLIND, Careful};
 use crate::scene::Columns;
+use crate::units::times_power_of_two;
 
 /// Share of ‖aᵢ‖ + Σ|cⱼ|‖aⱼ‖ of a nuisance column below which what is left of it is rounding noise.
 const DEPENDENT: f64 = 1e-14;
@@ -33,6 +37,8 @@ const SAFE_LENGTHS: std::ops::RangeInclusive<f64> = 1e-140..=1e140;
 /// Rounding errors of an element and of the sums, in units of u; measured against 30-digit answers.
 const ROUNDINGS: f64 = 6.0;
 const UNIT_ROUNDOFF: f64 = 0.5 * f64::EPSILON;
+/// Relative rounding error beyond which a projection is done again in more digits.
+const IN_DOUBT: f64 = 1e-9;
 
 /// What is left of a column after the span of the others has been removed.
 #[derive(Debug, Clone, PartialEq)]
@@ -54,7 +60,7 @@ pub struct Projection {
 
 impl Projection {
     /// Unit upper triangle, row by row, and the lengths its rows are to be multiplied by.
-    pub(super) fn factor(&self) -> (&[f64], &[f64]) {
+    pub(crate) fn factor(&self) -> (&[f64], &[f64]) {
         (&self.triangle, &self.norms)
     }
 
@@ -87,7 +93,23 @@ impl Projection {
 pub(crate) struct Reduced {
     pub(crate) residual: f64,
     pub(crate) norm: f64,
+    /// Estimated bounds on the relative rounding errors of the two.
     pub(crate) relative_error: f64,
+    pub(crate) relative_error_norm: f64,
+}
+
+impl Reduced {
+    const NOTHING: Self = Self { residual: 0.0, norm: 0.0, relative_error: 0.0, relative_error_norm: 0.0 };
+
+    /// Whether what is left of the column is no more than the rounding of its own elements.
+    pub(crate) fn is_nothing(&self) -> bool {
+        self.residual * (1.0 + self.relative_error) <= BLIND * self.norm
+    }
+
+    /// Both lengths times a factor.
+    pub(crate) fn times(self, factor: f64) -> Self {
+        Self { residual: factor * self.residual, norm: factor * self.norm, ..self }
+    }
 }
 
 /// Workspace that projects columns again and again without allocating much.
@@ -107,6 +129,8 @@ pub struct Projector {
     dropped: Vec<usize>,
     /// Σδᵢ² of the directions that were kept.
     turned: f64,
+    /// Whether there were as many directions as rows that count.
+    full: bool,
 }
 
 impl Projector {
@@ -129,10 +153,10 @@ impl Projector {
         // Once leaves u·condition of the earlier ones in the later, except in the last, which is reduced twice as it
         // is; the second time starts from that.
         let rounds = if last < 2 { 1 } else { 2 };
-        let mut turned = 0.0_f64;
+        let (mut turned, mut dropped) = (0.0_f64, Vec::new());
         for _ in 0..rounds {
-            let Reduced { residual, norm, relative_error } =
-                self.reduce(Columns { values, stride }, weights, 1.0);
+            let found = self.reduce(Columns { values, stride }, weights, 1.0);
+            let Reduced { residual, norm, relative_error, .. } = found;
             // The same share of what it is made of as for those before it.
             let dependent = residual.is_nan()
                 || residual <= DEPENDENT * norm
@@ -140,11 +164,15 @@ impl Projector {
             turned = turned.max(self.turned + if dependent { 0.0 } else { relative_error * relative_error });
             if dependent && let Some(column) = values.get_mut(last * stride..) {
                 column.fill(0.0);
+                self.dropped.push(last);
                 if let Some(norm) = self.norms.last_mut() {
                     *norm = 0.0;
                 }
             }
+            // The second time they are zero.
+            dropped.extend(self.dropped.iter().filter(|&&i| self.lengths.get(i).is_some_and(|l| *l > 0.0)));
         }
+        self.dropped = dropped;
         self.turned = turned;
         &self.norms
     }
@@ -154,9 +182,24 @@ impl Projector {
         self.turned <= NEARLY_DEPENDENT
     }
 
+    /// Whether nuisance i of the last call was zero.
+    pub(crate) fn is_zero(&self, i: usize) -> bool {
+        self.lengths.get(i).is_none_or(|length| *length == 0.0)
+    }
+
+    /// Columns other than zero that the last [`Projector::orthogonalise`] dropped.
+    pub(crate) fn dropped(&self) -> &[usize] {
+        &self.dropped
+    }
+
+    /// By how much rounding may have turned the directions that the last call kept, rad.
+    pub(crate) fn turned(&self) -> f64 {
+        self.turned.sqrt()
+    }
+
     /// All there is to know about the last [`Projector::reduce`].
     pub(crate) fn projection(&self, found: Reduced) -> Projection {
-        let Reduced { residual, norm, relative_error } = found;
+        let Reduced { residual, norm, relative_error, .. } = found;
         Projection {
             residual,
             norm,
@@ -179,7 +222,7 @@ impl Projector {
         let count = columns.len().checked_div(stride).unwrap_or(0);
         self.clear(count);
         let Some(last) = count.checked_sub(1) else {
-            return Reduced { residual: 0.0, norm: 0.0, relative_error: 0.0 };
+            return Reduced::NOTHING;
         };
         let columns = &mut columns[..count * stride];
         // Pythagoras saves a pass, but wants orthogonal directions, which many nuisances may not have.
@@ -190,7 +233,8 @@ impl Projector {
         let norm = square.map_or_else(|| length(&self.triangle, &self.norms, last, once), f64::sqrt);
         self.lengths[last] = norm;
         let twice = if last == 0 { once } else { self.take_nuisances_off_again(columns, stride, weights) };
-        let residual = if self.nothing_is_left(weights) { 0.0 } else { twice.sqrt() };
+        self.full = self.nothing_is_left(weights);
+        let residual = if self.full { 0.0 } else { twice.sqrt() };
         self.triangle[count * count - 1] = 1.0;
         self.norms[last] = residual;
 
@@ -198,7 +242,8 @@ impl Projector {
         self.turned = turned;
         let noise = ROUNDINGS * UNIT_ROUNDOFF * (cancellation * norm + self.carried(last));
         let relative_error = if residual > 0.0 { noise / residual + turned } else { 0.0 };
-        Reduced { residual, norm, relative_error }
+        let relative_error_norm = if norm > 0.0 { ROUNDINGS * UNIT_ROUNDOFF * cancellation } else { 0.0 };
+        Reduced { residual, norm, relative_error, relative_error_norm }
     }
 
     /// Makes the nuisance columns orthogonal to each other, and takes all but the last of them off the last column;
@@ -278,6 +323,37 @@ impl Projector {
             && dropped.chain([found.norm]).all(|length| SAFE_LENGTHS.contains(&length))
     }
 
+    /// Whether the last [`Projector::reduce`] left digits, or a direction, to chance that more digits would settle;
+    /// `dependent` tells whether a nuisance depends exactly on those before it.
+    pub(crate) fn in_doubt(&self, found: Reduced, dependent: impl Fn(usize) -> bool) -> bool {
+        let unsettled = |&i: &usize| self.lengths[i] > 0.0 && !dependent(i);
+        // Leaving out fewer nuisances would leave even less.
+        let nothing = self.full || found.residual == 0.0 && found.norm == 0.0 || found.is_nothing();
+        let rough = found.relative_error.is_nan() || found.relative_error > IN_DOUBT;
+        !nothing && (rough || self.dropped.iter().any(unsettled))
+    }
+
+    /// Takes what more digits have found for what the last [`Projector::reduce`] did; lengths stay divided by the powers of
+    /// two that come with it.
+    pub(crate) fn adopt_scaled(&mut self, careful: Careful) -> Reduced {
+        let Careful { residual, norm, relative_error, .. } = careful;
+        self.lengths = careful.lengths;
+        self.norms = careful.norms;
+        self.triangle = careful.triangle;
+        self.coefficients = careful.coefficients;
+        self.dropped = careful.dropped;
+        (self.turned, self.full) = (0.0, false);
+        let relative_error_norm = if norm > 0.0 { 4.0 * f64::EPSILON } else { 0.0 };
+        Reduced { residual, norm, relative_error, relative_error_norm }
+    }
+
+    /// [`Projector::adopt_scaled`] in the columns' own units.
+    pub(crate) fn adopt(&mut self, careful: Careful) -> Reduced {
+        let powers = careful.powers.clone();
+        let found = self.adopt_scaled(careful);
+        self.unscale(&powers, found)
+    }
+
     /// Takes back that column i was divided by 2 to the power `powers[i]` before it was reduced.
     pub(crate) fn unscale(&mut self, powers: &[i32], found: Reduced) -> Reduced {
         let Some(last) = powers.last() else { return found };
@@ -313,7 +389,7 @@ fn length(triangle: &[f64], norms: &[f64], column: usize, squared: f64) -> f64 {
 }
 
 /// Coefficients of a column on those before it, from the unit upper triangle; 0 on those that were dropped.
-fn back_substitute(triangle: &[f64], norms: &[f64], column: usize, coefficients: &mut [f64]) {
+pub(super) fn back_substitute(triangle: &[f64], norms: &[f64], column: usize, coefficients: &mut [f64]) {
     let count = norms.len();
     for row in (0..column).rev() {
         if norms[row] == 0.0 {
@@ -323,12 +399,6 @@ fn back_substitute(triangle: &[f64], norms: &[f64], column: usize, coefficients:
         let known: f64 = (row + 1..column).map(|i| triangle[row * count + i] * coefficients[i]).sum();
         coefficients[row] = triangle[row * count + column] - known;
     }
-}
-
-/// x·2^power in steps that do not overflow before the result does.
-pub(crate) fn times_power_of_two(x: f64, power: i32) -> f64 {
-    let half = power / 2;
-    x * f64::from(half).exp2() * f64::from(power - half).exp2()
 }
 
 #[cfg(test)]

@@ -25,10 +25,11 @@ mod tests;
 
 pub use joint::JointBound;
 
-use super::{Counting, Projection, Projector, Unknowns};
+use super::{CarefulProjector, Counting, Noise, Projection, Projector, Unknowns};
 use crate::error::{Error, Result};
-use crate::scene::{Jacobian, Parameter, State, Surroundings, check_emissivity};
+use crate::scene::{Asked, Columns, Jacobian, Parameter, State, Surroundings, check_emissivity};
 use crate::spectrum::Bands;
+use crate::units::times_power_of_two;
 
 /// Whether a spectrum tells anything of a parameter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
@@ -97,6 +98,7 @@ pub struct PrecisionSolver<'a> {
     parameters: Vec<Parameter>,
     jacobian: Jacobian<'a>,
     projector: Projector,
+    careful: CarefulProjector<'a>,
     scores: Vec<Score>,
     columns: Vec<f64>,
     ones: Vec<f64>,
@@ -118,6 +120,7 @@ impl<'a> PrecisionSolver<'a> {
             unknowns,
             jacobian: Jacobian::new(bands, surroundings),
             projector: Projector::default(),
+            careful: CarefulProjector::new(bands, surroundings),
             scores: Vec::new(),
             columns: Vec::new(),
             ones: Vec::new(),
@@ -140,7 +143,7 @@ impl<'a> PrecisionSolver<'a> {
             return Err(Error::malformed(found, "add it to the unknowns"));
         };
         self.evaluate(emissivity, state, counting)?;
-        Ok(self.one(own).0)
+        Ok(self.one(own, emissivity, state, counting).0)
     }
 
     /// The bounds of all unknown parameters.
@@ -160,11 +163,10 @@ impl<'a> PrecisionSolver<'a> {
         let mut each = Vec::with_capacity(last + 1);
         let mut joint = None;
         for own in 0..=last {
-            let (precision, projection) = self.one(own);
+            let (precision, projection, scales) = self.one(own, emissivity, state, counting);
             // The last one has all columns in their own order.
             if own == last {
                 let (triangle, norms) = projection.factor();
-                let scales: Vec<f64> = self.scores.iter().map(|score| score.scale).collect();
                 joint = Some(JointBound::from_factor(triangle, norms, &scales));
             }
             each.push(precision);
@@ -210,20 +212,45 @@ impl<'a> PrecisionSolver<'a> {
         Ok(())
     }
 
-    /// What is left of one score when those of all other parameters are taken off it.
-    fn one(&mut self, own: usize) -> (Precision, Projection) {
+    /// What is left of one score when those of all other parameters are taken off it, and what the columns were divided by.
+    fn one(
+        &mut self,
+        own: usize,
+        emissivity: &[f64],
+        state: &State,
+        counting: &Counting,
+    ) -> (Precision, Projection, Vec<f64>) {
         self.columns.clear();
         let others = (0..self.scores.len()).filter(|&i| i != own);
-        for score in others.clone().chain(std::iter::once(own)).filter_map(|i| self.scores.get(i)) {
+        let order: Vec<usize> = others.clone().chain(std::iter::once(own)).collect();
+        let mut scales = Vec::with_capacity(order.len());
+        for score in order.iter().filter_map(|&i| self.scores.get(i)) {
             self.columns.extend_from_slice(&score.values);
+            scales.push(score.scale);
         }
-        let scale = self.scores.get(own).map_or(1.0, |score| score.scale);
         let rows = self.scores.get(own).map_or(0, |score| score.values.len());
         self.ones.resize(rows, 1.0);
-        let projection = self.projector.project(&mut self.columns, &self.ones, 1.0);
+        let columns = Columns { values: &mut self.columns, stride: rows };
+        let mut found = self.projector.reduce(columns, &self.ones, 1.0);
+        if self.careful.loses_light(state) || self.projector.in_doubt(found, |_| false) {
+            let parameters: Vec<Parameter> =
+                order.iter().filter_map(|&i| self.parameters.get(i).copied()).collect();
+            let asked = Asked {
+                emissivity,
+                alternative: emissivity,
+                state,
+                parameters: &parameters,
+                lighting_total_known: self.unknowns.known_lighting_total().is_some(),
+            };
+            let careful = self.careful.project(asked, Noise::Counting(counting), &self.unknowns);
+            scales = careful.powers.iter().map(|&power| times_power_of_two(1.0, power)).collect();
+            found = self.projector.adopt_scaled(careful);
+        }
+        let scale = scales.last().copied().unwrap_or(1.0);
+        let projection = self.projector.projection(found);
         let sight = if projection.norm == 0.0 {
             Sight::Unchanged
-        } else if projection.residual == 0.0 || projection.relative_error >= 1.0 {
+        } else if found.is_nothing() {
             Sight::Imitated
         } else {
             Sight::Seen
@@ -238,6 +265,6 @@ impl<'a> PrecisionSolver<'a> {
             sight,
             dropped: projection.dropped.iter().filter_map(|&i| others.get(i).copied()).collect(),
         };
-        (precision, projection)
+        (precision, projection, scales)
     }
 }

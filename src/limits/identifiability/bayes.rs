@@ -20,36 +20,51 @@
 //!   a user will see: P̄(N) = E[Φ(d(θ))], d the local or nearest statistical distance of each state. Near equilibrium d = c|T − T₀| and P̄ = ½ +
 //!   arctan(cσ_T)/π.
 //!
-//! Averages: Gauss–Legendre on either side of the mean, within 7σ_p and the physical range (T > 0, 0 ≤ V,
-//! ΣV ≤ 1), so that a kink at the mean, as at equilibrium, costs nothing. The prior is truncated to that
-//! range and renormalised, not reflected. Where several lighting factors have a prior, nodes of the product
-//! rule with ΣV > 1 are left out, which converges slowly; every result tells its change from a rule of half
-//! the order.
+//! Averages: lattices of states within 7σ_p and the physical range (T > 0, 0 ≤ V, ΣV ≤ 1), whose number does not
+//! multiply with the priors, doubled until the error of their mean is no more than is asked for (10⁻³ of a probability
+//! where silent): three deviations by the scatter of the lattices, and for what may stand between n states, which is
+//! about 1/n of the prior and off by ¼ in the mean, 1/(4n). The prior is truncated to that range and renormalised, not
+//! reflected. An order asked for is that of a product rule, and so is the hybrid bound of a single prior:
+//! Gauss–Legendre on either side of the mean, so that a kink there, as at equilibrium, costs nothing.
+//!
+//! Photons for an average: d(θ, N) of every state is √N times what hardly depends on N, so that the distances found at one
+//! N tell P̄ at all N but for what the priors' weight among the photons changes. Each step finds N from the distances of
+//! the last.
 //!
 //! Sources: van Trees, 'Detection, Estimation, and Modulation Theory', part I (1968), section 2.4; Rockah
 //! and Schultheiss, IEEE Trans. Acoust. Speech Signal Process. 35, 286 (1987); Messer, 'The hybrid
 //! Cramér–Rao lower bound: from practice to theory', IEEE SAM (2006). Equilibrium singularity: paper, SII
 //! A.
 
+mod average;
 mod prior;
 mod stack;
 
+use self::average::{Average, States};
 use self::prior::Node;
 pub use self::stack::{BayesianDistance, Pair};
 use self::stack::{MAX_STACK, Stack};
 use super::detection;
-use super::local::LocalSolver;
-use super::nearest::{NearestSolver, StateRange};
+use super::nearest::StateRange;
 use crate::error::{Error, Result, check};
-use crate::fisher::{Counting, Unknowns};
+use crate::fisher::Unknowns;
 use crate::root::crossing;
-use crate::scene::{Jacobian, State, Surroundings};
+use crate::scene::{Jacobian, Surroundings};
 use crate::spectrum::Bands;
-use crate::sum::Compensated;
-use rayon::prelude::*;
 
-/// Photon numbers between e^−69 and e^69 are searched, 10⁻³⁰ to 10³⁰.
+/// Photon numbers between e^−69 and e^69 are searched, 10⁻³⁰ to 10³⁰, from 10⁶ on.
 const LOG_PHOTONS: f64 = 69.0;
+const FIRST_LOG_PHOTONS: f64 = 13.8;
+/// Steps of that search, and states that are looked at before progress is told.
+const STEPS: usize = 60;
+const TOGETHER: usize = 64;
+/// Error of an averaged probability where none is asked for.
+const TOLERANCE: f64 = 1e-3;
+/// States of each lattice, try by try: few to be near the photons that are sought, then as many as an error of 10⁻³ takes.
+const LATTICES: [usize; 7] = [8, 64, 128, 256, 512, 1024, 2048];
+/// States of each lattice, and order of the product rule of a single prior, of the hybrid bound.
+const HYBRID_STATES: usize = 64;
+const HYBRID_ORDER: usize = 32;
 
 /// The detection probability averaged over the prior.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -58,10 +73,21 @@ pub struct AverageProbability {
     pub probability: f64,
     /// 1 − P̄, to full relative precision.
     pub miss_probability: f64,
-    /// Nodes of the average.
+    /// States of the average.
     pub nodes: usize,
-    /// Change of P̄ from a rule of half the order.
-    pub quadrature_change: f64,
+    /// Three deviations of P̄, by the scatter of its lattices; for a product rule its change from half the order.
+    pub error: f64,
+}
+
+/// Photons at which an averaged detection probability is reached.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+pub struct AveragePhotons {
+    /// Photons of the nominal state.
+    pub photons: f64,
+    /// What the error of the average makes of them.
+    pub relative_error: f64,
+    /// States of the last average.
+    pub nodes: usize,
 }
 
 /// Which distance of a state its detection probability is taken from. A prior counts in it as one more
@@ -101,17 +127,17 @@ pub struct BayesianBound<'a> {
     surroundings: &'a Surroundings,
     unknowns: Unknowns,
     order: Option<usize>,
+    tolerance: f64,
 }
 
 impl<'a> BayesianBound<'a> {
     /// Bounds for `unknowns`, whose priors are centred at the nominal state of each call.
     #[must_use]
     pub fn new(bands: &'a Bands, surroundings: &'a Surroundings, unknowns: Unknowns) -> Self {
-        Self { bands, surroundings, unknowns, order: None }
+        Self { bands, surroundings, unknowns, order: None, tolerance: TOLERANCE }
     }
 
-    /// The same with `order` nodes on either side of the mean of each prior. Where silent it is 32 for one
-    /// parameter with a prior, 16 for two, 8 for three and 4 for more.
+    /// The same by a product rule with `order` nodes on either side of the mean of each prior, instead of by lattices.
     ///
     /// # Errors
     /// An order below 2 or above 512.
@@ -127,6 +153,14 @@ impl<'a> BayesianBound<'a> {
         Ok(Self { order: Some(order), ..self })
     }
 
+    /// The same with averaged probabilities to this error, if 16 384 states suffice for it.
+    ///
+    /// # Errors
+    /// A tolerance that is not positive.
+    pub fn with_tolerance(self, tolerance: f64) -> Result<Self> {
+        Ok(Self { tolerance: check::positive("error of an averaged probability", tolerance, "")?, ..self })
+    }
+
     /// d_B per √photon when the nominal state sends `photons`; infinitely many leave the prior's own
     /// precision out, but not the average.
     ///
@@ -136,9 +170,7 @@ impl<'a> BayesianBound<'a> {
         if photons.is_nan() || photons <= 0.0 {
             return Err(Error::out_of_range("photons", photons, "counts", "above 0"));
         }
-        let order = self.order(pair.state);
-        let fine = self.stack(pair, order)?.project(photons);
-        let coarse = self.stack(pair, order / 2)?.project(photons);
+        let [fine, coarse] = self.stacks(pair)?.map(|stack| stack.project(photons));
         let change = (fine.distance - coarse.distance).abs();
         let quadrature_change = if change > 0.0 { change / fine.distance } else { 0.0 };
         Ok(BayesianDistance { quadrature_change, ..fine })
@@ -150,7 +182,7 @@ impl<'a> BayesianBound<'a> {
     /// As [`BayesianBound::distance`], or a requirement that is not positive.
     pub fn photons_required(&self, pair: Pair<'_>, required: f64) -> Result<Option<f64>> {
         check::positive("required statistical distance", required, "")?;
-        let stack = self.stack(pair, self.order(pair.state))?;
+        let [stack, _] = self.stacks(pair)?;
         photons_where(|photons| Ok(photons.sqrt() * stack.project(photons).distance - required))
     }
 
@@ -165,18 +197,21 @@ impl<'a> BayesianBound<'a> {
         distances: Distances,
     ) -> Result<AverageProbability> {
         check::positive("photons", photons, "counts")?;
-        let order = self.order(pair.state);
-        let (miss, nodes) = self.average_miss(pair, photons, distances, order)?;
-        let (coarse, _) = self.average_miss(pair, photons, distances, order / 2)?;
-        Ok(AverageProbability {
-            probability: 1.0 - miss,
-            miss_probability: miss,
-            nodes,
-            quadrature_change: (miss - coarse).abs(),
-        })
+        let mut average = self.average(pair, distances, &|_, _| ())?;
+        for states in self.tries() {
+            average.take(states)?;
+            average.look(photons)?;
+            if average.error(0.0) <= self.tolerance {
+                break;
+            }
+        }
+        let (miss, error) = (average.miss(0.0), average.error(0.0));
+        let nodes = average.nodes.len();
+        Ok(AverageProbability { probability: 1.0 - miss, miss_probability: miss, nodes, error })
     }
 
-    /// Photons of the nominal state at which P̄ is `probability`, in (½, 1); `None` if no number suffices.
+    /// Photons of the nominal state at which P̄ is `probability`, in (½, 1); `None` if no number suffices. `progress` is told
+    /// how many states of how many were looked at, as far as is known.
     ///
     /// # Errors
     /// As [`BayesianBound::average_probability`], or a probability outside (½, 1).
@@ -185,59 +220,59 @@ impl<'a> BayesianBound<'a> {
         pair: Pair<'_>,
         probability: f64,
         distances: Distances,
-    ) -> Result<Option<f64>> {
+        progress: &dyn Fn(usize, usize),
+    ) -> Result<Option<AveragePhotons>> {
         detection::distance_for_probability(probability)?;
-        let order = self.order(pair.state);
-        photons_where(|photons| {
-            let (miss, _) = self.average_miss(pair, photons, distances, order)?;
-            Ok((1.0 - probability) - miss)
-        })
-    }
-
-    fn order(&self, state: &State) -> usize {
-        let parameters = self.unknowns.parameters(state.lighting.len());
-        let priors = parameters.iter().filter(|&&p| self.unknowns.sigma_prior(p).is_some()).count();
-        self.order.unwrap_or(match priors {
-            0 | 1 => 32,
-            2 => 16,
-            3 => 8,
-            _ => 4,
-        })
-    }
-
-    fn average_miss(
-        &self,
-        pair: Pair<'_>,
-        photons: f64,
-        distances: Distances,
-        order: usize,
-    ) -> Result<(f64, usize)> {
-        let nodes = prior::nodes(&self.unknowns, pair.state, order, MAX_STACK)?;
-        let total = self.photon_radiance(pair)?;
-        let counting = Counting { counts_per_radiance: photons / total, var_added: Vec::new() };
-        let (own, other) = (pair.emissivity, pair.alternative);
-        let found: Result<Vec<f64>> = match distances {
-            Distances::Local => nodes
-                .par_iter()
-                .map_init(
-                    || LocalSolver::new(self.bands, self.surroundings, self.unknowns.clone()),
-                    |solver, node| Ok(solver.with_counting(own, other, &node.state, &counting)?.distance),
-                )
-                .collect(),
-            Distances::Nearest(range) => nodes
-                .par_iter()
-                .map_init(
-                    || NearestSolver::new(self.bands, self.surroundings, self.unknowns.clone(), range),
-                    |solver, node| Ok(solver.with_counting(own, other, &node.state, &counting)?.distance),
-                )
-                .collect(),
-        };
-        // In the order of the nodes, so that the number of threads changes no bit.
-        let mut sum = Compensated::default();
-        for (Node { weight, .. }, distance) in nodes.iter().zip(found?) {
-            sum.add(weight * detection::miss_probability(distance));
+        let mut average = self.average(pair, distances, progress)?;
+        let (mut log, mut found) = (FIRST_LOG_PHOTONS, None);
+        for states in self.tries() {
+            average.take(states)?;
+            // What is left to the steps is nothing beside the error of the average.
+            let enough =
+                if self.order.is_some() { [1e-13; 2] } else { [0.02 * self.tolerance, 3.0 * self.tolerance] };
+            let Some(met) = average.solve(log, 1.0 - probability, enough)? else { return Ok(None) };
+            log = met.log;
+            let shift = met.shift;
+            let error = average.error(shift);
+            // dP̄/d ln N.
+            let slope = (average.miss(shift - 0.01) - average.miss(shift + 0.01)) / 0.02;
+            let relative_error = if error > 0.0 { error / slope } else { 0.0 };
+            let nodes = average.nodes.len();
+            found = Some(AveragePhotons { photons: log.exp(), relative_error, nodes });
+            if error <= self.tolerance {
+                break;
+            }
         }
-        Ok((sum.value(), nodes.len()))
+        Ok(found)
+    }
+
+    /// The averages that are tried one after the other.
+    fn tries(&self) -> Vec<States> {
+        match self.order {
+            Some(order) => vec![States::Product(order)],
+            None => LATTICES.map(States::Lattices).to_vec(),
+        }
+    }
+
+    fn average<'b>(
+        &'b self,
+        pair: Pair<'b>,
+        distances: Distances,
+        progress: &'b dyn Fn(usize, usize),
+    ) -> Result<Average<'b>> {
+        let total = self.photon_radiance(pair)?;
+        Ok(Average {
+            bound: self,
+            pair,
+            distances,
+            progress,
+            total,
+            nodes: Vec::new(),
+            ends: Vec::new(),
+            found: Vec::new(),
+            looked: 0,
+            share: None,
+        })
     }
 
     /// ΣS of the nominal state.
@@ -257,10 +292,34 @@ impl<'a> BayesianBound<'a> {
         ))
     }
 
-    fn stack(&self, pair: Pair<'_>, order: usize) -> Result<Stack> {
+    /// The stack of all states, and one of half as many.
+    fn stacks(&self, pair: Pair<'_>) -> Result<[Stack; 2]> {
         let total = self.photon_radiance(pair)?;
-        Stack::new(self.bands, self.surroundings, &self.unknowns, pair, total, order)
+        let columns = self.unknowns.parameters(self.surroundings.objects().len()).len() + 1;
+        let most = MAX_STACK / (self.bands.len() * columns).max(1);
+        let order = match self.order {
+            None if prior::count(&self.unknowns, pair.state) > 1 => None,
+            order => Some(order.unwrap_or(HYBRID_ORDER)),
+        };
+        let [fine, coarse] = if let Some(order) = order {
+            [order, order / 2].map(|order| prior::product(&self.unknowns, pair.state, order, most))
+        } else {
+            let states = HYBRID_STATES.min(most / prior::SHIFTS).max(1);
+            let lattices = prior::lattices(&self.unknowns, pair.state, states)?;
+            let half = lattices.len() / 2;
+            [&lattices[..], &lattices[..half]].map(|lattices| Ok(pooled(lattices)))
+        };
+        let stack =
+            |nodes: Vec<Node>| Stack::new(self.bands, self.surroundings, &self.unknowns, pair, total, &nodes);
+        Ok([stack(fine?)?, stack(coarse?)?])
     }
+}
+
+/// All states of some lattices, with weights that add up to 1.
+fn pooled(lattices: &[Vec<Node>]) -> Vec<Node> {
+    let all: Vec<Node> = lattices.iter().flatten().cloned().collect();
+    let weight = 1.0 / all.len().max(1) as f64;
+    all.into_iter().map(|node| Node { weight, ..node }).collect()
 }
 
 /// Where an increasing function of the photons crosses zero; `None` if it does not.

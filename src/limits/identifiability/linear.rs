@@ -19,7 +19,8 @@
 
 use super::detection;
 use crate::error::{Error, Result, check};
-use crate::fisher::Projector;
+use crate::fisher::{Projector, project_columns};
+use crate::scene::Columns;
 
 /// What Theorem 1 says of a pair of parallel surfaces.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -66,8 +67,14 @@ pub fn detection(material: &[f64], nuisances: &[Vec<f64>], sigma: &[f64]) -> Res
             columns.push(check::finite("direction of a surface", value, "counts")? / sigma);
         }
     }
-    let found = Projector::default().project(&mut columns, &vec![1.0; sigma.len()], 1.0);
-    let coincide = found.residual == 0.0 || found.relative_error >= 1.0;
+    let mut projector = Projector::default();
+    let ones = vec![1.0; sigma.len()];
+    let mut found = projector.reduce(Columns { values: &mut columns, stride: sigma.len() }, &ones, 1.0);
+    if projector.in_doubt(found, |_| false) {
+        let all: Vec<&[f64]> = nuisances.iter().map(Vec::as_slice).chain([material]).collect();
+        found = projector.adopt(project_columns(&all, sigma));
+    }
+    let coincide = found.is_nothing();
     let length = if coincide { 0.0 } else { found.residual };
     let distance = 0.5 * length;
     Ok(LinearDetection {
@@ -76,7 +83,7 @@ pub fn detection(material: &[f64], nuisances: &[Vec<f64>], sigma: &[f64]) -> Res
         miss_probability: detection::miss_probability(distance),
         var_material: 1.0 / (length * length),
         relative_error: if coincide { 0.0 } else { found.relative_error },
-        dropped: found.dropped,
+        dropped: projector.projection(found).dropped,
     })
 }
 

@@ -149,6 +149,11 @@ impl Bands {
         self.first_node.windows(2).map(|nodes| values[nodes[0]..nodes[1]].iter().sum()).collect()
     }
 
+    /// How many nodes each band has.
+    pub(crate) fn nodes_per_band(&self) -> impl Iterator<Item = usize> {
+        self.first_node.windows(2).map(|nodes| nodes[1] - nodes[0])
+    }
+
     /// Band integrals Σ_j w_qj f(ν_j) of a spectrum given at the nodes.
     #[must_use]
     pub fn weigh(&self, values: &[f64]) -> Vec<f64> {

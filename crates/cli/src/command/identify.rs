@@ -53,8 +53,11 @@ pub(super) struct IdentifyArgs {
     /// Most trials of a state in the simulation
     #[arg(long, value_name = "N", default_value_t = 1_000_000, requires = "exact", help_heading = EXACT)]
     trials: u64,
+    /// Photons at which the hardest pair is told apart on average over the priors of the scenario
+    #[arg(long)]
+    average: bool,
     /// Answer only whether the camera tells the target from every alternative; exit with code 3 if not
-    #[arg(long, conflicts_with_all = ["matrix", "apart", "scaling", "bands", "filters", "exact"])]
+    #[arg(long, conflicts_with_all = ["matrix", "apart", "scaling", "bands", "filters", "exact", "average"])]
     check: bool,
 }
 
@@ -77,9 +80,12 @@ pub(super) fn run(args: &IdentifyArgs, global: &Global) -> Result<ExitCode> {
         scaling: args.scaling,
         bands: chosen.then_some((args.bands, args.filters)),
         exact: args.exact.then(|| trial(args, global)).transpose()?,
+        average: args.average,
     };
-    let bar = global.progress("pairs simulated");
-    let mut answers = study.answer(&asked, &|done, total| bar.set(done, total))?;
+    let (bar, states) = (global.progress("pairs simulated"), global.progress("states of the priors"));
+    let simulated = |done, total| bar.set(done, total);
+    let mut answers = study.answer(&asked, &simulated, &|done, total| states.set(done, total))?;
+    states.finish();
     bar.finish();
     let text = identify::text(&answers, &study);
     let report = global.report(&text, |out| identify::bundle(&study, &answers, global.seed, out))?;

@@ -24,8 +24,9 @@ pub(super) fn make(order: Order, out: &Path, progress: Progress<'_>) -> Result<M
         scaling: true,
         bands: Some((Some(6), Some(5))),
         exact: Some(Trial { law: None, photons: None, plan: Plan::new(order.seed, HALF_WIDTH, TRIALS)? }),
+        average: false,
     };
-    let answers = study.answer(&asked, &|done, total| progress(done, total))?;
+    let answers = study.answer(&asked, &|done, total| progress(done, total), &|_, _| ())?;
     let answer = identify::text(&answers, &study);
     let mut bundle = identify::bundle(&study, &answers, order.seed, out)?;
     let lines = lines(&answers);

@@ -12,7 +12,7 @@ fn keys(value: &Value, expected: &[&str]) {
     }
 }
 
-const PAIR_KEYS: [&str; 18] = [
+const PAIR_KEYS: [&str; 20] = [
     "target",
     "alternative",
     "distance_local",
@@ -27,6 +27,8 @@ const PAIR_KEYS: [&str; 18] = [
     "information_bits",
     "condition_number",
     "relative_error",
+    "relative_error_unknown_gain",
+    "relative_error_no_nuisance",
     "status",
     "blind_direction",
     "two_sided_probability",

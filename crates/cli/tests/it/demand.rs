@@ -152,10 +152,11 @@ fn the_ledger_counts_what_was_done() {
         scaling: false,
         bands: None,
         exact: None,
+        average: false,
     };
-    let answer = |asked: &Asked| study.answer(asked, &|_, _| ()).unwrap().identification.stats;
+    let answer = |asked: &Asked| study.answer(asked, &|_, _| (), &|_, _| ()).unwrap().identification.stats;
     let work = answer(&asked);
-    assert_eq!((work.possible(Thing::Sections), work.computed(Thing::Sections)), (6, 1));
+    assert_eq!((work.possible(Thing::Sections), work.computed(Thing::Sections)), (7, 1));
     // For each alternative by shot noise, back, and by the camera; local, and local with unknown gain.
     assert_eq!(work.computed(Thing::NearestSearches), 3 * 3);
     assert_eq!(work.computed(Thing::LocalDistances), 2 * 3);

@@ -132,7 +132,7 @@ fn nothing_is_null_but_what_does_not_apply() {
     for scenario in [FIVE, &FIVE.replace("noise_electrons = 0", "noise_electrons = 20")] {
         let mut all = identify(&Folder::with(scenario), &EVERYTHING);
         // The diagonals are empty, and nothing else of these.
-        for key in ["distance_nearest", "distance_local", "statistical_distance"] {
+        for key in ["distance_nearest", "distance_local", "relative_error", "statistical_distance"] {
             let rows = all["matrix"][key].take();
             for (i, row) in rows.as_array().unwrap().iter().enumerate() {
                 let empty: Vec<usize> = (0..5).filter(|&j| row[j].is_null()).collect();
@@ -391,4 +391,25 @@ fn quiet_is_quiet_and_what_was_skipped_is_said_on_stderr_only() {
     );
     let quiet = folder.run(&["identify", "a.toml", "--matrix", "--out", "report", "--stats", "-q"]);
     assert_eq!((quiet.stderr.as_str(), quiet.stdout), ("", loud.stdout));
+}
+
+/// Unknowns that are nearly dependent, of which doubles leave one out: against 60 digits.
+#[test]
+fn nearly_dependent_unknowns_count() {
+    let Some(folder) = hadar_testing::shared("reference/nearest") else { return };
+    for (scene, alternative, key, exact, digits) in [
+        ("gainvariant_2679", "alt2", "distance_local_unknown_gain", 0.027_555, 2e-5),
+        ("local_2807", "alt1", "distance_local", 0.073_248, 1e-5),
+        ("local_2807", "alt1", "distance_local_unknown_gain", 0.073_248, 1e-5),
+    ] {
+        let scenario = folder.join(scene).join("case.toml");
+        let found = Folder::with("").json(&["identify", scenario.to_str().unwrap()]);
+        let pairs = found["pairs"].as_array().unwrap();
+        let pair = pairs.iter().find(|pair| pair["alternative"] == alternative).unwrap();
+        assert!((number(&pair[key]) / exact - 1.0).abs() < digits, "{scene} {pair}");
+        let error = if key == "distance_local" { "relative_error" } else { "relative_error_unknown_gain" };
+        assert!(number(&pair[error]) < 1e-9, "{pair}");
+        let warnings = found["warnings"].as_array().unwrap();
+        assert!(warnings.iter().all(|warning| warning["code"] != "unknown-without-effect"), "{warnings:?}");
+    }
 }

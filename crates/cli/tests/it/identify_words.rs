@@ -78,7 +78,8 @@ fn averages_over_priors_lead_where_the_nominal_state_is_blind() {
         .replace("37 degC", "20 degC")
         .replace("lighting = 0.5", "lighting = 1.0")
         .replace("[camera]", "[unknown]\npriors = { temperature = \"1 K\", lighting = 0.1 }\n[camera]");
-    let text = said(&scenario, &["--by", "local"]);
+    assert!(!said(&scenario, &["--by", "local"]).contains("Averaged"));
+    let text = said(&scenario, &["--by", "local", "--average"]);
     assert!(
         text.starts_with(
             "Averaged over the priors skin is told from aluminium with 84.1 % right answers by "

@@ -10,10 +10,10 @@
 //! * B is exactly 0 where x > 708, and a scene with a band whose signal is above 0 but below 1e-150, or with an
 //!   unknown that changes signals by less than 1e-250 per unit, must only give finite numbers;
 //! * distances below 1e-200 need not keep their digits;
-//! * B, its slope and differences are good to 2e-16·(10 + x), probabilities to 1e-15·(10 + d²), photon radiances to 16
-//!   half-ulps, and distances with no nuisance to as many of the terms of their contrast;
-//! * a nuisance of which less than 1e-14 is left of what it is made of is dropped, so that the reference leaves out the
-//!   same.
+//! * B, its slope and differences are good to 2e-16·(10 + x), probabilities to 1e-15·(10 + d²) and photon radiances to 16
+//!   half-ulps;
+//! * a distance below 16 ε of that with no nuisance is nothing, and so is one at equilibrium to the last bit of ΣV;
+//! * a nuisance of which less than 1e-130 is left of what it is made of depends on the others exactly. All others count.
 
 pub(super) mod draw;
 mod findings;

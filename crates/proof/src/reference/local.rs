@@ -9,10 +9,9 @@
 //! and κ²/(κS + σ²) for counts, with one more row for every prior, the columns are made orthogonal one after the
 //! other, as by Gram and Schmidt; d = ½ of what is left of the last, ∂S/∂g.
 //!
-//! Conventions that belong to the question, not to its arithmetic, are those of the fast path: a band without photons
-//! tells nothing; |1 − ΣV| ≤ 2⁻⁵³ of several objects is rounding of the factors themselves and stands for 0. What
-//! counts as a dependent nuisance is the caller's to say: by default only one that depends on the others exactly (of
-//! which less than 1e-100 is left).
+//! A convention that belongs to the question, not to its arithmetic, is that of the fast path: a band without photons
+//! tells nothing. All doubles count as exact, and only a nuisance that depends on the others exactly (of which less than
+//! 1e-100 is left), or that the caller names, is left out.
 //!
 //! Source: paper S24–S30, S48, Algorithm 2.
 
@@ -23,7 +22,7 @@ use hadar::scene::{Parameter, State, Surroundings};
 use hadar::spectrum::Bands;
 
 /// Share of a column below which what is left of it is the rounding of 512 bits.
-const EXACTLY_DEPENDENT: f64 = 1e-100;
+const EXACTLY_DEPENDENT: f64 = 1e-130;
 
 /// Which noise weighs the bands.
 #[derive(Debug, Clone, Copy)]
@@ -205,7 +204,6 @@ impl<'a> Spectra<'a> {
         }
         let (own, objects) = self.lights(state);
         let lit = if parameter == Parameter::Material { self.lit(state) } else { Vec::new() };
-        let lighted = Extended::one() - rounding_of_the_whole(&state.lighting);
         let last = objects.len().saturating_sub(1);
         let one = Extended::one();
         let at = |(node, e): (usize, &f64)| {
@@ -224,7 +222,7 @@ impl<'a> Spectra<'a> {
                         * self.slope(objects[k], node)
                 }
                 Parameter::Material => {
-                    let contrast = &lighted * self.value(own, node) - &lit[node];
+                    let contrast = self.value(own, node) - &lit[node];
                     (Extended::from(alternative[node]) - e) * contrast
                 }
                 Parameter::Gain => Extended::zero(),
@@ -246,7 +244,7 @@ impl<'a> Spectra<'a> {
         let (own_other, objects_other) = self.lights(other);
         let one = Extended::one();
         let lit: Extended = state.lighting.iter().cloned().sum();
-        let unlit = &one - lit - rounding_of_the_whole(&state.lighting);
+        let unlit = &one - lit;
         let at = |(node, (e, other_e)): (usize, (&f64, &f64))| {
             let (e, other_e) = (Extended::from(*e), Extended::from(*other_e));
             let value = self.value(own, node);
@@ -264,13 +262,6 @@ impl<'a> Spectra<'a> {
         };
         self.banded(emissivity.iter().zip(alternative).enumerate().map(at))
     }
-}
-
-/// 1 − ΣV where it is no more than the rounding of several factors that are meant to add up to 1, else 0.
-fn rounding_of_the_whole(lighting: &[Extended]) -> Extended {
-    let rest = Extended::one() - lighting.iter().cloned().sum::<Extended>();
-    let small = lighting.len() > 1 && rest.abs() <= Extended::from(0.5 * f64::EPSILON);
-    if small { rest } else { Extended::zero() }
 }
 
 /// Local distances in extended precision, in fixed bands and surroundings.

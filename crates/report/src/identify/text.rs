@@ -48,6 +48,9 @@ pub fn text(answers: &Answers, study: &Study) -> String {
 /// Distances to all alternatives.
 fn identification(result: &Identification, study: &Study) -> String {
     let mut out = verdict(result, study);
+    if result.prior_average.is_none() && !study.scenario().unknown.priors.is_empty() {
+        out.push_str("For a target in the state of the scenario; on average over the priors: --average.\n");
+    }
     out.push_str(&pair_table(&result.pairs, study));
     out.push_str(&prediction(result));
     out.push('\n');

@@ -2,7 +2,7 @@
 
 use super::numbers::{numbers, photons, shortened, significant};
 use hadar_study::scenario::DistanceKind;
-use hadar_study::study::{PairResult, Study};
+use hadar_study::study::{NearestProof, PairResult, Study};
 use std::fmt::Write as _;
 
 /// The pairs, that which is hardest to tell apart by the distance that decides first.
@@ -13,7 +13,10 @@ pub(crate) fn pair_table(pairs: &[PairResult], study: &Study) -> String {
     let with_camera = pairs.iter().any(|pair| pair.statistical_distance.is_some());
     let short = shortened(pairs.iter().map(|pair| pair.alternative.as_str()));
     let width = short.width().max(11);
-    let mut out = String::from("  distances per sqrt(photon); photons by shot noise alone");
+    let proved = pairs.iter().all(|pair| pair.proof == NearestProof::Proved);
+    let proved =
+        if proved { format!(", the nearest proved to {:e} of it", study.tolerance()) } else { String::new() };
+    let mut out = format!("  distances per sqrt(photon){proved}; photons by shot noise alone");
     if with_camera {
         let required = significant(study.required_distance(), 4);
         let _ = write!(out, "; camera d: statistical distance, required {required}");

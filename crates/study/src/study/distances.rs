@@ -14,6 +14,21 @@ use hadar::scene::State;
 const TOLERANCE: f64 = 1e-6;
 const TOLERANCE_OF_MANY: f64 = 1e-3;
 
+/// A statistical distance with what rounding may have done to it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Statistical {
+    pub(super) distance: f64,
+    /// Where the solver tells it.
+    pub(super) relative_error: Option<f64>,
+}
+
+impl Statistical {
+    /// Whether the distance is enough whatever rounding did to it.
+    pub(super) fn reaches(self, required: f64) -> bool {
+        self.distance * (1.0 - self.relative_error.unwrap_or(0.0)) >= required
+    }
+}
+
 impl Study {
     /// Books local distances, of whose columns of derivatives only those of the unknowns and the material are formed.
     pub(super) fn book_local(&self, unknowns: &Unknowns, count: usize) {
@@ -51,8 +66,8 @@ impl Study {
     }
 
     /// The same with gain unknown too.
-    pub(super) fn local_unknown_gain(&self, alternative: &Surface, photons: f64) -> Result<f64> {
-        Ok(self.local(self.unknowns.with(Nuisance::Gain), alternative, photons)?.distance)
+    pub(super) fn local_unknown_gain(&self, alternative: &Surface, photons: f64) -> Result<LocalDistance> {
+        self.local(self.unknowns.with(Nuisance::Gain), alternative, photons)
     }
 
     /// Whether there are more bands than unknowns without a prior.
@@ -121,17 +136,27 @@ impl Study {
         alternative: &Surface,
         counting: &Counting,
     ) -> Result<f64> {
+        self.statistical(kind, alternative, counting).map(|found| found.distance)
+    }
+
+    /// The same with its rounding error.
+    pub(super) fn statistical(
+        &self,
+        kind: DistanceKind,
+        alternative: &Surface,
+        counting: &Counting,
+    ) -> Result<Statistical> {
         self.book_distances(kind, 1);
         let (target, other) = (&self.target.emissivity, &alternative.emissivity);
         let local = |unknowns: Unknowns| {
-            LocalSolver::new(&self.bands, &self.surroundings, unknowns)
-                .with_counting(target, other, &self.state, counting)
-                .map(|local| local.distance)
+            let mut solver = LocalSolver::new(&self.bands, &self.surroundings, unknowns);
+            let found = solver.with_counting(target, other, &self.state, counting)?;
+            Ok(Statistical { distance: found.distance, relative_error: Some(found.relative_error) })
         };
         match kind {
             DistanceKind::Nearest => {
                 let found = self.nearest_solver().with_counting(target, other, &self.state, counting)?;
-                Ok(self.sure(&found))
+                Ok(Statistical { distance: self.sure(&found), relative_error: Some(found.relative_error) })
             }
             DistanceKind::Local => local(self.unknowns.clone()),
             DistanceKind::LocalUnknownGain => local(self.unknowns.with(Nuisance::Gain)),
@@ -160,7 +185,9 @@ impl Study {
             DistanceKind::Local => {
                 self.local(self.unknowns.clone(), alternative, photons).map(|local| local.distance)
             }
-            DistanceKind::LocalUnknownGain => self.local_unknown_gain(alternative, photons),
+            DistanceKind::LocalUnknownGain => {
+                self.local_unknown_gain(alternative, photons).map(|local| local.distance)
+            }
         }
     }
 

@@ -18,8 +18,7 @@ pub use exact::{Exact, ExactLibrary, ExactPair, Law, Trial};
 pub use matrix::{Apart, Check, Matrix, Rows, TargetVerdict};
 pub use priors::PriorAverage;
 pub(super) use results::PhotonsRequired;
-pub(super) use results::Proof;
-pub use results::{Identifiability, Identification, NearestState, PairResult, Prediction};
+pub use results::{Identifiability, Identification, NearestProof, NearestState, PairResult, Prediction};
 pub use samples::SampleSpectra;
 pub(super) use scaling::quantile;
 pub use scaling::{BandNumber, LibrarySize, Scaling};
@@ -64,10 +63,7 @@ impl Study {
             scenario: self.scenario.clone(),
             photon_radiance: self.photon_radiance(),
             identifiability: self.identifiability(&pairs),
-            prior_average: match self.alternative(&limiting) {
-                Some(alternative) => self.prior_average(alternative)?,
-                None => None,
-            },
+            prior_average: None,
             pairs,
             limiting,
             warnings,
@@ -91,8 +87,8 @@ impl Study {
             statistical_distance_minimum: minimum,
             detection_probability_minimum: minimum.map(detection::probability),
             identifiability_bits: minimum.map(detection::information_bits),
-            identifiable: minimum.map(|d| d >= self.required),
-            told_from: statistical.map(|d| d.iter().filter(|d| **d >= self.required).count()),
+            identifiable: minimum.map(|_| pairs.iter().all(|pair| pair.told_apart == Some(true))),
+            told_from: minimum.map(|_| pairs.iter().filter(|pair| pair.told_apart == Some(true)).count()),
             prediction_heuristic: prediction,
         }
     }
@@ -145,13 +141,14 @@ impl Study {
         let required_by = with_priors.unwrap_or_else(|| PhotonsRequired {
             nearest: required(nearest.distance),
             local: required(local.distance),
-            local_unknown_gain: required(unknown_gain),
+            local_unknown_gain: required(unknown_gain.distance),
         });
         let back = self.return_distance(alternative, &nearest)?;
-        let statistical = counting
-            .as_ref()
-            .map(|counting| self.statistical_distance(kind, alternative, counting))
-            .transpose()?;
+        let statistical =
+            counting.as_ref().map(|counting| self.statistical(kind, alternative, counting)).transpose()?;
+        let told_apart = statistical.map(|found| found.reaches(self.required));
+        let relative_error_statistical = statistical.and_then(|found| found.relative_error);
+        let statistical = statistical.map(|found| found.distance);
         let limit = match (kind, &counting) {
             (DistanceKind::Nearest, _) | (_, None) => statistical,
             (_, Some(counting)) => {
@@ -163,7 +160,7 @@ impl Study {
             let distance = match kind {
                 DistanceKind::Nearest => nearest.distance,
                 DistanceKind::Local => local.distance,
-                DistanceKind::LocalUnknownGain => unknown_gain,
+                DistanceKind::LocalUnknownGain => unknown_gain.distance,
             };
             (photon_radiance * counting.counts_per_radiance / (1.0 + gamma)).sqrt() * distance
         });
@@ -178,11 +175,15 @@ impl Study {
             alternative: alternative.name.clone(),
             placeholders: self.target.placeholders(alternative).is_some(),
             distance_local: local.distance,
-            distance_local_unknown_gain: unknown_gain,
+            distance_local_unknown_gain: unknown_gain.distance,
             distance_no_nuisance: local.distance_no_nuisance,
             distance_nearest: nearest.distance,
             distance_nearest_lower: nearest.lower,
-            proof: if nearest.is_proved_to(self.tolerance()) { Proof::Proved } else { Proof::Searched },
+            proof: if nearest.is_proved_to(self.tolerance()) {
+                NearestProof::Proved
+            } else {
+                NearestProof::Searched
+            },
             relative_error_nearest: nearest.relative_error,
             nearest_state: NearestState {
                 temperature_k: nearest.state.temperature_k,
@@ -197,7 +198,8 @@ impl Study {
             photons_required_by: required_by,
             statistical_distance: statistical,
             statistical_distance_nearest: limit,
-            told_apart: statistical.map(|d| d >= self.required),
+            told_apart,
+            relative_error_statistical,
             statistical_distance_shortcut: shortcut,
             detection_probability: statistical.map(detection::probability),
             miss_probability: statistical.map(detection::miss_probability),
@@ -209,6 +211,8 @@ impl Study {
                 .map(detection::error_bracket),
             condition_number: condition.is_finite().then_some(condition),
             relative_error: local.relative_error,
+            relative_error_unknown_gain: unknown_gain.relative_error,
+            relative_error_no_nuisance: local.relative_error_no_nuisance,
             status: local.status,
             blind_direction: blind,
         };

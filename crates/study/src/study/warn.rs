@@ -2,7 +2,7 @@
 
 mod camera;
 
-use super::identify::{PairResult, Proof};
+use super::identify::{NearestProof, PairResult};
 use super::{Study, Warning};
 use crate::scenario::DistanceKind;
 use hadar::identifiability::Status;
@@ -50,7 +50,7 @@ pub(super) fn of_pair(
     if !parameters.is_empty() && pair.status == Status::Ok {
         warn(Warning::NearestAtEdge { parameters, objects });
     }
-    if pair.proof == Proof::Searched {
+    if pair.proof == NearestProof::Searched {
         warn(Warning::NearestSearch { distance: nearest.distance, lower: nearest.lower, priors });
     }
     let (d_local, d_nearest) = (pair.distance_local, pair.distance_nearest);

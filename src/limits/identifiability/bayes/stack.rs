@@ -1,6 +1,6 @@
 //! The columns of all states of a prior under each other, and the material's projected off the others.
 
-use super::prior::{self, Node};
+use super::prior::Node;
 use crate::error::Result;
 use crate::fisher::{Projector, Unknowns};
 use crate::scene::{Jacobian, Parameter, State, Surroundings};
@@ -29,17 +29,19 @@ pub struct BayesianDistance {
     pub distance: f64,
     /// Nodes of the average.
     pub nodes: usize,
-    /// Relative change of the distance from a rule of half the order.
+    /// Relative change of the distance from half the states.
     pub quadrature_change: f64,
     /// Estimated bound on the relative rounding error.
     pub relative_error: f64,
 }
 
-/// Columns of all nodes: nuisances in their order, the material last.
+/// Columns of all nodes, nuisances in their order, the material last: as the triangle of their orthogonalisation, whose
+/// columns have the same inner products.
 pub(super) struct Stack {
+    /// Row by row of each column.
     columns: Vec<Vec<f64>>,
-    /// w_k/[S_w(θ_k) ΣS(θ₀)], row by row.
-    weights: Vec<f64>,
+    /// Relative rounding error of what is left of the last column.
+    relative_error: f64,
     /// Factor by which rounding errors of the material's column exceed a few ulp of its length.
     cancellation: f64,
     /// (column, deviation) of each prior.
@@ -55,7 +57,7 @@ impl Stack {
         unknowns: &Unknowns,
         pair: Pair<'_>,
         total: f64,
-        order: usize,
+        nodes: &[Node],
     ) -> Result<Self> {
         let mut parameters = unknowns.parameters(surroundings.objects().len());
         let priors: Vec<(usize, f64)> = parameters
@@ -64,13 +66,12 @@ impl Stack {
             .filter_map(|(i, parameter)| unknowns.sigma_prior(*parameter).map(|sigma| (i, sigma)))
             .collect();
         parameters.push(Parameter::Material);
-        let nodes = prior::nodes(unknowns, pair.state, order, MAX_STACK / (bands.len() * parameters.len()))?;
         let mut jacobian = Jacobian::new(bands, surroundings);
         let mut columns = vec![Vec::with_capacity(nodes.len() * bands.len()); parameters.len()];
         let mut weights = Vec::with_capacity(nodes.len() * bands.len());
         let (mut square, mut error) = (0.0, 0.0);
         let total_known = unknowns.known_lighting_total().is_some();
-        for Node { state, weight } in &nodes {
+        for Node { state, weight } in nodes {
             jacobian.evaluate(pair.emissivity, pair.alternative, state, &parameters, total_known);
             for (i, column) in columns.iter_mut().enumerate() {
                 column.extend_from_slice(jacobian.column(i));
@@ -90,13 +91,19 @@ impl Stack {
             }
         }
         let cancellation = if square > 0.0 { (error / square).sqrt() } else { 1.0 };
-        Ok(Self { columns, weights, cancellation, priors, nodes: nodes.len() })
+        let count = columns.len();
+        let found = Projector::default().project(&mut columns.concat(), &weights, cancellation);
+        let (triangle, norms) = found.factor();
+        let row = |i: usize, row: usize| norms[row] * triangle[row * count + i];
+        let columns = (0..count).map(|i| (0..count).map(|j| row(i, j)).collect()).collect();
+        let relative_error = found.relative_error;
+        Ok(Self { columns, relative_error, cancellation, priors, nodes: nodes.len() })
     }
 
     /// d_B when the nominal state sends `photons`: each prior is one row more, which holds 1/(σ_p √N) in its
     /// own column alone.
     pub(super) fn project(&self, photons: f64) -> BayesianDistance {
-        let rows = self.weights.len() + self.priors.len();
+        let rows = self.columns.len() + self.priors.len();
         let mut columns = Vec::with_capacity(self.columns.len() * rows);
         for (i, column) in self.columns.iter().enumerate() {
             columns.extend_from_slice(column);
@@ -108,15 +115,13 @@ impl Stack {
                 ),
             );
         }
-        let mut weights = self.weights.clone();
-        weights.resize(rows, 1.0);
-        let found = Projector::default().project(&mut columns, &weights, self.cancellation);
+        let found = Projector::default().project(&mut columns, &vec![1.0; rows], self.cancellation);
         let known = found.relative_error < 1.0 && found.residual > 0.0;
         BayesianDistance {
             distance: if known { 0.5 * found.residual } else { 0.0 },
             nodes: self.nodes,
             quadrature_change: 0.0,
-            relative_error: if known { found.relative_error } else { 0.0 },
+            relative_error: if known { found.relative_error.max(self.relative_error) } else { 0.0 },
         }
     }
 }

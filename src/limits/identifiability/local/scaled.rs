@@ -4,8 +4,9 @@
 //! scenes of hardly any light, unknowns of hardly any effect or that are nearly the same, and wherever a prior adds a row.
 
 use super::LocalSolver;
-use crate::fisher::{Reduced, times_power_of_two};
+use crate::fisher::Reduced;
 use crate::scene::{Columns, State};
+use crate::units::times_power_of_two;
 
 impl LocalSolver<'_> {
     /// Projects the columns of the last evaluation, the weight u of a band being the square of `root` of its index and
@@ -59,8 +60,7 @@ impl LocalSolver<'_> {
         let last = self.columns.rchunks(rows.max(1)).next().unwrap_or_default();
         let norm = crate::sum::dot(last, last).sqrt();
         let columns = Columns { values: &mut self.columns, stride: rows };
-        let Reduced { residual, relative_error, .. } =
-            self.projector.reduce(columns, &self.ones, cancellation);
-        self.projector.unscale(&powers, Reduced { residual, norm, relative_error })
+        let found = self.projector.reduce(columns, &self.ones, cancellation);
+        self.projector.unscale(&powers, Reduced { norm, ..found })
     }
 }

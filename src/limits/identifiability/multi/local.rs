@@ -9,7 +9,9 @@
 //! is one pass over the bands with 2 + n multiplications each. The subtraction loses u·(none/d)² of d, none the
 //! distance with no nuisance; where it would lose more than [`ONE_PASS`] allows, the residual is formed
 //! band by band in a second pass, and beyond [`TWO_PASSES`] the pair goes to [`LocalSolver`], which judges rank
-//! and rounding. Results agree with those of [`LocalSolver`] to 1e-14·none/d.
+//! and rounding. So do targets with a nuisance that is dependent, or nearly, and those whose contrast nearly vanishes at
+//! a node. Results agree with those of [`LocalSolver`] to 1e-14·none/d, or by as much as rounding may have turned the
+//! directions of the nuisances: [`LocalMatrix::relative_errors`].
 //!
 //! Assumption: all targets in the same state. Source: paper S27–S30, Algorithm 3.
 
@@ -31,6 +33,9 @@ use rayon::prelude::*;
 const ONE_PASS: f64 = 16.0;
 /// Largest none/d for which a residual once projected is good; beyond it rank and rounding are judged too.
 const TWO_PASSES: f64 = 1e5;
+/// Rounding of the elements of a score whose terms do not cancel, and most that they may cancel for targets to share.
+const ROUNDING: f64 = 1e-15;
+const MOST_CANCELLATION: f64 = 1e3;
 /// Squares of lengths that lose no digits.
 const SAFE_SQUARES: std::ops::RangeInclusive<f64> = 1e-280..=1e280;
 /// Bands × materials² beyond which threads are worth their while.
@@ -72,6 +77,16 @@ pub struct LocalMatrix<'a> {
     pair: LocalSolver<'a>,
     projector: Projector,
     shared: Shared,
+    lost: Lost,
+}
+
+/// What rounding may have done to the distances of the last matrix.
+#[derive(Debug, Clone, Default)]
+struct Lost {
+    /// 4(none)² of the pairs, or where they were judged on their own their relative error, with a minus sign.
+    pairs: Vec<f64>,
+    /// Relative error of every target's distances, times the distance, over √(4 none²).
+    targets: Vec<f64>,
 }
 
 /// How the pairs of a matrix were computed: what was shared, and what that left to do.
@@ -128,6 +143,7 @@ impl<'a> LocalMatrix<'a> {
             jacobian: Jacobian::new(bands, surroundings),
             pair: LocalSolver::new(bands, surroundings, unknowns.clone()),
             projector: Projector::default(),
+            lost: Lost::default(),
             shared: Shared {
                 noise: Aligned::zeros(count),
                 weights: Aligned::zeros(count),
@@ -164,6 +180,19 @@ impl<'a> LocalMatrix<'a> {
         self.matrix(emissivities, state, Weights::Counting(counting))
     }
 
+    /// Estimated bounds on the relative rounding errors of the distances of the last matrix, 0 where they are 0.
+    #[must_use]
+    pub fn relative_errors(&self, distances: &[f64]) -> Vec<f64> {
+        let count = self.lost.targets.len();
+        let target = |i: usize| self.lost.targets.get(i / count.max(1)).copied().unwrap_or(f64::INFINITY);
+        let error = |(i, (distance, lost)): (usize, (&f64, &f64))| match lost.is_sign_negative() {
+            _ if *distance == 0.0 => 0.0,
+            true => -lost,
+            false => target(i) * lost.sqrt() / distance,
+        };
+        distances.iter().zip(&self.lost.pairs).enumerate().map(error).collect()
+    }
+
     /// How the last matrix was computed.
     #[must_use]
     pub fn passes(&self) -> Passes {
@@ -178,6 +207,7 @@ impl<'a> LocalMatrix<'a> {
             return Err(Error::Length { what, found, expected: nodes });
         }
         let mut distances = vec![0.0; count * count];
+        self.lost = Lost { pairs: vec![0.0; count * count], targets: vec![0.0; count] };
         if count < 2 {
             return Ok(distances);
         }
@@ -189,8 +219,10 @@ impl<'a> LocalMatrix<'a> {
             row[..nodes].copy_from_slice(emissivity);
         }
         let aligned: Vec<&[f64]> = library.chunks(stride).map(|row| &row[..nodes]).collect();
-        let found = self.rows(&aligned, state, weights, &mut distances);
+        let mut lost = std::mem::take(&mut self.lost);
+        let found = self.rows(&aligned, state, weights, &mut distances, &mut lost);
         self.library = library;
+        self.lost = lost;
         found.map(|passes| {
             self.passes = passes;
             distances
@@ -204,13 +236,16 @@ impl<'a> LocalMatrix<'a> {
         state: &State,
         weights: Weights<'_>,
         distances: &mut [f64],
+        lost: &mut Lost,
     ) -> Result<Passes> {
         let count = emissivities.len();
-        let rows = distances.chunks_mut(count).enumerate();
+        let lost = lost.pairs.chunks_mut(count).zip(&mut lost.targets);
+        let rows = distances.chunks_mut(count).zip(lost).enumerate();
         let few = count * count * self.jacobian.bands().len() < WORTH_THREADS;
         if few || rayon::current_num_threads() == 1 {
             let mut passes = Passes::default();
-            for (target, row) in rows {
+            for (target, (out, (pairs, own))) in rows {
+                let row = Out { distances: out, lost: pairs, target: own };
                 passes = passes.and(self.row(emissivities, target, state, weights, row)?);
             }
             Ok(passes)
@@ -219,7 +254,10 @@ impl<'a> LocalMatrix<'a> {
                 .into_par_iter()
                 .map_init(
                     || self.clone(),
-                    |own, (target, row)| own.row(emissivities, target, state, weights, row),
+                    |own, (target, (out, (pairs, of_target)))| {
+                        let row = Out { distances: out, lost: pairs, target: of_target };
+                        own.row(emissivities, target, state, weights, row)
+                    },
                 )
                 .try_reduce(Passes::default, |a, b| Ok(a.and(b)))
         }
@@ -232,31 +270,31 @@ impl<'a> LocalMatrix<'a> {
         target: usize,
         state: &State,
         weights: Weights<'_>,
-        out: &mut [f64],
+        out: Out<'_>,
     ) -> Result<Passes> {
         let own = emissivities[target];
-        let others = out.len() - 1;
-        if !self.share(own, state, weights) {
-            for (alternative, out) in out.iter_mut().enumerate() {
-                *out = if alternative == target {
-                    0.0
-                } else {
-                    self.alone(own, emissivities[alternative], state, weights)?
-                };
+        let others = out.distances.len() - 1;
+        let shared = self.share(own, state, weights);
+        *out.target = shared.unwrap_or(0.0);
+        let mut passes = Passes::default();
+        if shared.is_some() {
+            passes.shared_targets = 1;
+            let columns = self.jacobian.columns_mut();
+            let row = Row { shared: &self.shared, own, columns: columns.values, stride: columns.stride };
+            let outs = out.distances.chunks_mut(TOGETHER).zip(out.lost.chunks_mut(TOGETHER));
+            for (group, (out, lost)) in emissivities.chunks(TOGETHER).zip(outs) {
+                passes.two_passes += row.distances(group, out, lost);
             }
-            return Ok(Passes { alone: others, ..Passes::default() });
+        } else {
+            out.distances.fill(f64::NAN);
         }
-        let mut passes = Passes { shared_targets: 1, ..Passes::default() };
-        let columns = self.jacobian.columns_mut();
-        let row = Row { shared: &self.shared, own, columns: columns.values, stride: columns.stride };
-        for (group, out) in emissivities.chunks(TOGETHER).zip(out.chunks_mut(TOGETHER)) {
-            passes.two_passes += row.distances(group, out);
-        }
-        for (alternative, out) in out.iter_mut().enumerate() {
+        for (alternative, (distance, lost)) in out.distances.iter_mut().zip(out.lost).enumerate() {
             if alternative == target {
-                *out = 0.0;
-            } else if out.is_nan() {
-                *out = self.alone(own, emissivities[alternative], state, weights)?;
+                *distance = 0.0;
+            } else if distance.is_nan() {
+                let error;
+                (*distance, error) = self.alone(own, emissivities[alternative], state, weights)?;
+                *lost = -error;
                 passes.alone += 1;
                 passes.two_passes = passes.two_passes.saturating_sub(1);
             }
@@ -265,29 +303,39 @@ impl<'a> LocalMatrix<'a> {
         Ok(passes)
     }
 
-    /// One pair, judged with all care.
-    fn alone(&mut self, own: &[f64], other: &[f64], state: &State, weights: Weights<'_>) -> Result<f64> {
+    /// One pair, judged with all care: its distance and relative error.
+    fn alone(
+        &mut self,
+        own: &[f64],
+        other: &[f64],
+        state: &State,
+        weights: Weights<'_>,
+    ) -> Result<(f64, f64)> {
         match weights {
             Weights::PerPhoton => self.pair.distance(own, other, state),
             Weights::Counting(counting) => {
-                self.pair.with_counting(own, other, state, counting).map(|local| local.distance)
+                let local = self.pair.with_counting(own, other, state, counting)?;
+                Ok((local.distance, local.relative_error))
             }
         }
     }
 
-    /// Forms what the target lends to its pairs; false if they must go pair by pair.
-    fn share(&mut self, own: &[f64], state: &State, weights: Weights<'_>) -> bool {
+    /// Forms what the target lends to its pairs; their relative error × distance ÷ √(4 none²), or `None` if they must go
+    /// pair by pair.
+    fn share(&mut self, own: &[f64], state: &State, weights: Weights<'_>) -> Option<f64> {
         let bands = self.jacobian.bands();
         let priors = matches!(weights, Weights::Counting(_)) && self.unknowns.has_priors();
         let count = self.parameters.len();
-        if priors || count > MOST_NUISANCES || bands.len() <= count || !bands.one_node_per_band() {
-            return false;
+        let few = count <= MOST_NUISANCES && bands.len() > count;
+        if priors || !few || !bands.one_node_per_band() || self.pair.loses_light(state) {
+            return None;
         }
         let total_known = self.unknowns.known_lighting_total().is_some();
         self.jacobian.evaluate(own, own, state, &self.parameters, total_known);
         let total = crate::sum::sum(self.jacobian.signal());
-        if !SAFE_RANGE.contains(&total) {
-            return false;
+        let cancellation = self.jacobian.contrast_cancellation(state);
+        if !SAFE_RANGE.contains(&total) || cancellation > MOST_CANCELLATION {
+            return None;
         }
         let shared = &mut self.shared;
         let counts = match weights {
@@ -324,13 +372,14 @@ impl<'a> LocalMatrix<'a> {
                 SAFE_SQUARES.contains(&square) || column.iter().all(|&value| value == 0.0)
             };
             if !columns.values.chunks(columns.stride).take(count).all(safe) {
-                return false;
+                return None;
             }
             let norms = self.projector.orthogonalise(columns.values, columns.stride, &shared.weights);
             let live = norms.iter().copied().enumerate().filter(|(_, norm)| *norm > 0.0);
             shared.live.extend(live);
-            if !self.projector.well_known() {
-                return false;
+            let exactly = |&i: &usize| self.pair.depends_exactly(i, state);
+            if !self.projector.well_known() || !self.projector.dropped().iter().all(exactly) {
+                return None;
             }
             shared.directions.set_len(shared.stride * shared.live.len());
             let outs = shared.directions.chunks_mut(shared.stride);
@@ -340,8 +389,16 @@ impl<'a> LocalMatrix<'a> {
                 direction_into(column, &shared.weights, &shared.contrast, 1.0 / norm, out);
             }
         }
-        true
+        let turned = if count > 0 { self.projector.turned() } else { 0.0 };
+        Some(shared.half * (ROUNDING * cancellation.max(10.0) + turned))
     }
+}
+
+/// Where the distances of one target go, and what rounding may have done to them.
+struct Out<'o> {
+    distances: &'o mut [f64],
+    lost: &'o mut [f64],
+    target: &'o mut f64,
 }
 
 /// A target against groups of alternatives.
@@ -356,7 +413,7 @@ struct Row<'r> {
 impl Row<'_> {
     /// Distances to up to [`TOGETHER`] alternatives, NaN where the pair must be judged on its own; how many took a
     /// second pass.
-    fn distances(&self, group: &[&[f64]], out: &mut [f64]) -> usize {
+    fn distances(&self, group: &[&[f64]], out: &mut [f64], lost: &mut [f64]) -> usize {
         let mut others = [self.own; TOGETHER];
         for (other, given) in others.iter_mut().zip(group) {
             *other = given;
@@ -365,6 +422,9 @@ impl Row<'_> {
         let k = |i: usize| shared.directions.chunks(shared.stride).nth(i).unwrap_or_default();
         let lent = Lent { own: self.own, square: &shared.square, directions: [k(0), k(1), k(2), k(3)] };
         let (squares, dots) = projections(lent, others, shared.live.len());
+        for (lost, square) in lost.iter_mut().zip(squares) {
+            *lost = square;
+        }
         let mut second = 0;
         for (i, (out, other)) in out.iter_mut().zip(group).enumerate() {
             let dots = dots[i];

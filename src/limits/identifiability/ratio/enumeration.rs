@@ -58,9 +58,10 @@ pub(super) fn enumerate(line: &Line) -> Option<Integrals> {
     }
     let steps = widths.iter().map(|width| width.sqrt()).sum::<f64>();
     let exponent = line.moments.exponent;
-    // Λ at its threshold is a difference of steps and their mean, and its rounding goes into exponentials.
+    // Λ at its threshold is a difference of steps and their mean, and its rounding goes into exponentials; so does that of
+    // the running logarithms, which are as large.
     let reach = size(&last) + size(&combined);
-    let rounding = f64::EPSILON * (10.0 + steps + exponent + 2.0 * reach) * (first + second);
+    let rounding = f64::EPSILON * (10.0 + steps + exponent + 4.0 * reach) * (first + second);
     Some(Integrals { first, second, exponent, numerical: rounding, numerical_class: rounding })
 }
 

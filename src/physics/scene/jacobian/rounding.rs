@@ -17,15 +17,45 @@ impl Jacobian<'_> {
         state: &State,
         root: impl Fn(usize) -> f64,
     ) -> f64 {
-        let rest = unlit(&state.lighting);
-        let warmer = |(base_k, factor): (&f64, &f64)| *base_k > state.temperature_k && *factor > 0.0;
         let Some(last) = self.parameters.len().checked_sub(1) else { return 1.0 };
-        let alike = rest >= 0.0 && !state.environment_k.iter().zip(&state.lighting).any(warmer);
-        if alike && self.bands.one_node_per_band() {
+        if self.terms_are_alike(state) && self.bands.one_node_per_band() {
             return 1.0;
         }
+        let mut terms = self.contrast_terms(state);
+        for (j, terms) in terms.iter_mut().enumerate() {
+            *terms *= state.gain * (alternative[j] - emissivity[j]).abs();
+        }
+        let banded = self.bands.weigh(&terms);
+        let scores = banded.iter().zip(self.column(last)).enumerate();
+        let scores: Vec<(f64, f64)> = scores.map(|(w, (a, b))| (root(w) * a, root(w) * b)).collect();
+        // Brought near 1, so that no square overflows.
+        let size = scores.iter().fold(0.0_f64, |size, (terms, _)| size.max(*terms));
+        let square = |x: f64| (x / size) * (x / size);
+        let sums = scores.iter().fold((0.0, 0.0), |sums, (a, b)| (sums.0 + square(*a), sums.1 + square(*b)));
+        if size > 0.0 { ratio(sums.0.sqrt(), sums.1.sqrt()).max(1.0) } else { 1.0 }
+    }
+    /// The largest Σ|terms| ÷ |C| of a node, of the last evaluation without `Parameter::Material`.
+    pub(crate) fn contrast_cancellation(&self, state: &State) -> f64 {
+        if self.terms_are_alike(state) {
+            return 1.0;
+        }
+        let parts = self.contrast_terms(state).into_iter().zip(self.contrast.iter());
+        parts.fold(
+            1.0,
+            |most, (terms, contrast)| if terms > 0.0 { most.max(terms / contrast.abs()) } else { most },
+        )
+    }
+
+    /// Whether no term of the contrast has another sign than the others.
+    fn terms_are_alike(&self, state: &State) -> bool {
+        let warmer = |(base_k, factor): (&f64, &f64)| *base_k > state.temperature_k && *factor > 0.0;
+        unlit(&state.lighting) >= 0.0 && !state.environment_k.iter().zip(&state.lighting).any(warmer)
+    }
+
+    /// Σ|terms| of the contrast at the nodes.
+    fn contrast_terms(&self, state: &State) -> Vec<f64> {
         let nodes = self.value.len();
-        let mut dark = vec![rest; nodes];
+        let mut dark = vec![unlit(&state.lighting); nodes];
         let mut terms = vec![0.0; nodes];
         for (k, factor) in state.lighting.iter().enumerate() {
             let difference = &self.difference[k * nodes..(k + 1) * nodes];
@@ -36,17 +66,9 @@ impl Jacobian<'_> {
                 *dark += factor * (1.0 - e);
             }
         }
-        for (j, terms) in terms.iter_mut().enumerate() {
-            let all = *terms + dark[j].abs() * self.value[j];
-            *terms = state.gain * (alternative[j] - emissivity[j]).abs() * all;
+        for ((terms, dark), value) in terms.iter_mut().zip(dark).zip(self.value.iter()) {
+            *terms += dark.abs() * value;
         }
-        let banded = self.bands.weigh(&terms);
-        let scores = banded.iter().zip(self.column(last)).enumerate();
-        let scores: Vec<(f64, f64)> = scores.map(|(w, (a, b))| (root(w) * a, root(w) * b)).collect();
-        // Brought near 1, so that no square overflows.
-        let size = scores.iter().fold(0.0_f64, |size, (terms, _)| size.max(*terms));
-        let square = |x: f64| (x / size) * (x / size);
-        let sums = scores.iter().fold((0.0, 0.0), |sums, (a, b)| (sums.0 + square(*a), sums.1 + square(*b)));
-        if size > 0.0 { ratio(sums.0.sqrt(), sums.1.sqrt()).max(1.0) } else { 1.0 }
+        terms
     }
 }

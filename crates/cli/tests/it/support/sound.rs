@@ -69,6 +69,7 @@ fn unsaid(answer: &Value) -> Option<String> {
         "distance_nearest",
         "distance_return",
         "relative_error",
+        "relative_error_unknown_gain",
     ];
     pairs
         .iter()

@@ -19,6 +19,8 @@ pub struct Asked {
     pub bands: Option<(Option<usize>, Option<usize>)>,
     /// What a test that knows no state achieves, by simulation.
     pub exact: Option<Trial>,
+    /// What the priors make of the hardest pair on average.
+    pub average: bool,
 }
 
 /// The distances to every alternative and whatever else was asked for, in one object.
@@ -47,16 +49,27 @@ pub struct Answers {
 
 impl Study {
     /// Answers all that is asked, and computes no more. `progress` is called with the simulated pairs done and
-    /// their number.
+    /// their number, `averaging` with the states looked at for the average over the priors and their number.
     ///
     /// # Errors
     /// As [`Study::identify`], [`Study::matrix`] and [`Study::told_apart`].
-    pub fn answer(&self, asked: &Asked, progress: &dyn Fn(usize, usize)) -> Result<Answers> {
+    pub fn answer(
+        &self,
+        asked: &Asked,
+        progress: &dyn Fn(usize, usize),
+        averaging: &dyn Fn(usize, usize),
+    ) -> Result<Answers> {
         let ledger = Ledger::open();
         let section = Thing::Sections;
         let mut identification = self.identify()?;
         demand::add(&identification.stats);
         demand::computed(section, 1);
+        let limiting = self.alternative(&identification.limiting);
+        let average = if_asked(asked.average, section, 1, || match limiting {
+            Some(alternative) => self.prior_average(alternative, averaging),
+            None => Ok(None),
+        })?;
+        identification.prior_average = average.flatten();
         if asked.matrix && self.unknowns.has_priors() {
             identification.warnings.push(Warning::MatrixPriors);
         }

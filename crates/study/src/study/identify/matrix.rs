@@ -65,6 +65,7 @@ impl Study {
         let local = solver
             .per_photon(&emissivities, &self.state)
             .map_err(|error| error.at(self.scenario.place("bands")))?;
+        let relative_error = solver.relative_errors(&local);
         let found = self.library_scene().nearest_per_photon(&emissivities)?;
         let lower = found
             .iter()
@@ -75,11 +76,14 @@ impl Study {
         let nearest: Vec<f64> =
             found.iter().map(|nearest| nearest.as_ref().map_or(0.0, |nearest| nearest.distance)).collect();
         let statistical = counting.as_ref().map(|counting| of(kind, Some(counting))).transpose()?;
-        let by_kind = match kind {
-            DistanceKind::Nearest => nearest.clone(),
-            DistanceKind::Local => local.clone(),
+        let (by_kind, error_by_kind) = match kind {
+            DistanceKind::Nearest => (nearest.clone(), None),
+            DistanceKind::Local => (local.clone(), Some(relative_error.clone())),
             DistanceKind::LocalUnknownGain => of(kind, None)?,
         };
+        // What the camera reaches whatever rounding did to it.
+        let reached = statistical.as_ref().map(|(d, errors)| surely(d, errors.as_deref()));
+        let statistical = statistical.map(|(d, _)| d);
         let distances_asked = count * (count - 1);
         self.book_passes(solver.passes(), distances_asked);
         demand::computed(Thing::NearestSearches, distances_asked as u64);
@@ -104,11 +108,15 @@ impl Study {
                     limiting: names[limiting].clone(),
                     distance_minimum: by_kind[target * count + limiting],
                     statistical_distance_minimum: least,
-                    identifiable: least.map(|least| least >= required),
+                    identifiable: reached.as_ref().map(|reached| {
+                        (0..count)
+                            .filter(|&other| other != target)
+                            .all(|other| reached[target * count + other] >= required)
+                    }),
                 }
             })
             .collect();
-        let apart = statistical.as_ref().map(|d| {
+        let apart = reached.as_ref().map(|d| {
             let told = |a: usize, b: usize| d[a * count + b] >= required && d[b * count + a] >= required;
             sorted_out(&names, told)
         });
@@ -117,8 +125,12 @@ impl Study {
             distance_nearest: rows(&nearest, count),
             distance_nearest_lower: rows(&lower, count),
             distance_local: rows(&local, count),
+            relative_error: rows(&relative_error, count),
             distance_local_unknown_gain: (kind == DistanceKind::LocalUnknownGain)
                 .then(|| rows(&by_kind, count)),
+            relative_error_unknown_gain: error_by_kind
+                .filter(|_| kind == DistanceKind::LocalUnknownGain)
+                .map(|errors| rows(&errors, count)),
             statistical_distance: statistical.map(|d| rows(&d, count)),
             required_distance: required,
             targets,
@@ -162,7 +174,8 @@ impl Study {
             return Ok(sorted_out(&names, |a, b| found.told_apart(a, b)));
         }
         // All local distances together take less time than bounds on each would.
-        let d = self.all_distances(kind, &emissivities, Some(&counting))?;
+        let (d, errors) = self.all_distances(kind, &emissivities, Some(&counting))?;
+        let d = surely(&d, errors.as_deref());
         let count = names.len();
         let told =
             |a: usize, b: usize| d[a * count + b] >= self.required && d[b * count + a] >= self.required;
@@ -187,8 +200,8 @@ impl Study {
             failed.map(|i| &self.alternatives[i - 1])
         } else {
             skipping.until(&self.alternatives, &[Thing::LocalDistances], |alternative| {
-                let distance = self.statistical_distance(kind, alternative, &counting)?;
-                Ok((distance < self.required).then_some(alternative))
+                let found = self.statistical(kind, alternative, &counting)?;
+                Ok((!found.reaches(self.required)).then_some(alternative))
             })?
         };
         Ok(Check {
@@ -207,27 +220,30 @@ impl Study {
         })
     }
 
-    /// Distances of a kind, row-major: statistical ones of the camera, or without `counting` those per √photon.
+    /// Distances of a kind, row-major: statistical ones of the camera, or without `counting` those per √photon; with their
+    /// relative errors where the solver tells them.
     pub(in crate::study) fn all_distances(
         &self,
         kind: DistanceKind,
         emissivities: &[&[f64]],
         counting: Option<&Counting>,
-    ) -> Result<Vec<f64>> {
+    ) -> Result<(Vec<f64>, Option<Vec<f64>>)> {
         let local = |unknowns: Unknowns| {
             let mut matrix = LocalMatrix::new(&self.bands, &self.surroundings, unknowns);
-            match counting {
+            let found = match counting {
                 Some(counting) => matrix.with_counting(emissivities, &self.state, counting),
                 None => matrix.per_photon(emissivities, &self.state),
-            }
+            }?;
+            let errors = matrix.relative_errors(&found);
+            Ok((found, Some(errors)))
         };
         let scene = self.library_scene();
         let found = match (kind, counting) {
             (DistanceKind::Nearest, Some(counting)) => {
-                scene.nearest_with_counting(emissivities, counting).map(|found| self.all_sure(&found))
+                scene.nearest_with_counting(emissivities, counting).map(|found| (self.all_sure(&found), None))
             }
             (DistanceKind::Nearest, None) => {
-                scene.nearest_per_photon(emissivities).map(|found| self.all_sure(&found))
+                scene.nearest_per_photon(emissivities).map(|found| (self.all_sure(&found), None))
             }
             (DistanceKind::Local, _) => local(self.unknowns.clone()),
             (DistanceKind::LocalUnknownGain, _) => local(self.unknowns.with(Nuisance::Gain)),
@@ -239,6 +255,12 @@ impl Study {
     fn all_sure(&self, found: &[Option<NearestDistance>]) -> Vec<f64> {
         found.iter().map(|nearest| nearest.as_ref().map_or(0.0, |nearest| self.sure(nearest))).collect()
     }
+}
+
+/// What distances are at least, whatever rounding did to them.
+fn surely(distances: &[f64], relative_errors: Option<&[f64]>) -> Vec<f64> {
+    let error = |i: usize| relative_errors.and_then(|errors| errors.get(i)).copied().unwrap_or(0.0);
+    distances.iter().enumerate().map(|(i, d)| d * (1.0 - error(i))).collect()
 }
 
 fn rows(distances: &[f64], count: usize) -> Rows {

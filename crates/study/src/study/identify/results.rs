@@ -21,7 +21,7 @@ pub struct Identification {
     pub limiting: String,
     /// The target against the library as a whole (Algorithm 3).
     pub identifiability: Identifiability,
-    /// The hardest alternative on average over the priors; `None` without priors.
+    /// The hardest alternative on average over the priors; `None` without priors, or where it was not asked for.
     pub prior_average: Option<PriorAverage>,
     /// What the reader must know.
     pub warnings: Vec<Warning>,
@@ -102,7 +102,7 @@ impl PhotonsRequired {
 /// How sure a nearest distance is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Proof {
+pub enum NearestProof {
     /// No state is nearer by more than the share that is asked for.
     Proved,
     /// It is the best of a search; what is proved is farther below it.
@@ -130,7 +130,7 @@ pub struct PairResult {
     /// What is proved of it: no state of the alternative is nearer.
     pub distance_nearest_lower: f64,
     /// Whether that is as near to it as is asked for.
-    pub proof: Proof,
+    pub proof: NearestProof,
     /// Estimated relative rounding error of the nearest distance.
     pub relative_error_nearest: f64,
     /// The state it belongs to.
@@ -169,6 +169,13 @@ pub struct PairResult {
     pub condition_number: Option<f64>,
     /// Estimated bound on the relative rounding error of the local distance.
     pub relative_error: f64,
+    /// Of the local distance with unknown gain.
+    pub relative_error_unknown_gain: f64,
+    /// Of the local distance with nothing unknown but the material.
+    pub relative_error_no_nuisance: f64,
+    /// Of the statistical distance of the camera, where a local distance decides.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub relative_error_statistical: Option<f64>,
     /// What kind of answer the local distance is.
     pub status: Status,
     /// The change of the nuisances that imitates the alternative, where the status is `blind`.

@@ -56,9 +56,14 @@ impl Task {
         // Distances below this are rounding.
         let required = |distance: f64| (distance > 1e-12).then(|| distance.powi(-2));
         let unknowns = scene.unknowns.clone().prior(Nuisance::Temperature, prior_k)?;
-        let bayes = BayesianBound::new(&scene.bands, &scene.surroundings, unknowns);
+        // A single prior, to all digits.
+        let bayes = BayesianBound::new(&scene.bands, &scene.surroundings, unknowns).with_order(32)?;
         let pair = Pair { emissivity: &self.skin, alternative: &self.aluminium, state: &state };
-        let average = |distances| bayes.photons_for_average(pair, detection::probability(1.0), distances);
+        let average = |distances| {
+            let found =
+                bayes.photons_for_average(pair, detection::probability(1.0), distances, &|_, _| ())?;
+            Ok::<_, hadar::Error>(found.map(|found| found.photons))
+        };
         Ok(Photons {
             nearest: required(plain.nearest),
             local: required(plain.local),

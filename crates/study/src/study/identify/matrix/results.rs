@@ -22,9 +22,14 @@ pub struct Matrix {
     pub distance_nearest_lower: Rows,
     /// Local distance per √photon.
     pub distance_local: Rows,
+    /// Estimated bound on its relative rounding error.
+    pub relative_error: Rows,
     /// Local distance with unknown gain per √photon, where that decides.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub distance_local_unknown_gain: Option<Rows>,
+    /// Estimated bound on its relative rounding error.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub relative_error_unknown_gain: Option<Rows>,
     /// Statistical distance of the camera by the distance that decides; `None` without a camera.
     pub statistical_distance: Option<Rows>,
     /// Statistical distance demanded.

@@ -1,0 +1,276 @@
+//! The projection of [`bound`](super::bound) where doubles cannot tell what is left of a column from their rounding.
+//!
+//! A nuisance of which less than 1e-14 is left of what it is made of has, in doubles, no direction; leaving it out makes
+//! the distance too large, by any factor. Here the columns are formed ([`CarefulScene`]) and made orthogonal in 128 bits,
+//! and where these leave a doubt in 512, so that a nuisance is left out only if it is zero or less than [`DEPENDENT`] is
+//! left of it: it then depends on the others exactly.
+//!
+//! Rounding is judged as in [`bound`](super::bound), with u = 2⁻¹¹⁸ and 2⁻⁵⁰², lengths being those of the terms that an
+//! element is made of: these are good to a few hundred units of the last place. The error that is reported is that of the
+//! numbers it ends in, doubles.
+//!
+//! Source: paper S25–S29.
+
+use super::{Counting, Unknowns};
+use crate::scene::{Asked, CarefulScene, Column, Parameter, State, Surroundings};
+use crate::spectrum::Bands;
+use crate::units::SECOND_RADIATION_CM_K;
+use crate::wide::Wide;
+
+/// Limbs of the first try and of the last.
+const FEW: usize = 2;
+const MANY: usize = 8;
+/// Share of a column below which what is left of it is nothing.
+const DEPENDENT: f64 = 1e-130;
+/// Rounding of elements and sums, in units of the last place.
+const ROUNDINGS: f64 = 512.0;
+/// Relative error that the first try may leave: none that a double would show.
+const GOOD: f64 = 1e-18;
+/// What the conversion to doubles adds: two roots, two quotients.
+const CONVERSION: f64 = 4.0 * f64::EPSILON;
+/// Share of the column asked for below which what is left of it is taken for nothing: the rounding of its own elements,
+/// were they formed in doubles.
+pub(crate) const BLIND: f64 = 16.0 * f64::EPSILON;
+
+/// hcν/kT beyond which radiances come near the least number of a double, and then are 0.
+const FAINT: f64 = 690.0;
+
+/// Power of two below which a signal (photons s⁻¹ m⁻² sr⁻¹) is none.
+const DARK: i64 = -1000;
+
+/// Which noise weighs the bands.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Noise<'n> {
+    /// u = 1/(S ΣS); priors count as among so many photons, for nothing where infinite.
+    PerPhoton { photons: f64 },
+    /// u = κ²/(κS + σ²).
+    Counting(&'n Counting),
+}
+
+/// What is left of the last column; lengths are divided by 2 to the power of its column, so that they are near 1.
+#[derive(Debug, Clone)]
+pub(crate) struct Careful {
+    pub(crate) residual: f64,
+    pub(crate) norm: f64,
+    /// Of `residual`.
+    pub(crate) relative_error: f64,
+    /// Per column, the last included.
+    pub(crate) powers: Vec<i32>,
+    /// ‖aᵢ‖ of the columns, and what is left of each; 0 of those that were dropped.
+    pub(crate) lengths: Vec<f64>,
+    pub(crate) norms: Vec<f64>,
+    /// Unit upper triangle, row by row, and the coefficients of the last column on the others.
+    pub(crate) triangle: Vec<f64>,
+    pub(crate) coefficients: Vec<f64>,
+    pub(crate) dropped: Vec<usize>,
+}
+
+/// Spectra in either number of digits.
+#[derive(Debug, Clone)]
+pub(crate) struct CarefulProjector<'a> {
+    few: CarefulScene<'a, FEW>,
+    many: CarefulScene<'a, MANY>,
+    /// Largest hcν/k of a node, K.
+    hottest_k: f64,
+}
+
+impl<'a> CarefulProjector<'a> {
+    pub(crate) fn new(bands: &'a Bands, surroundings: &'a Surroundings) -> Self {
+        let (few, many) = (CarefulScene::new(bands, surroundings), CarefulScene::new(bands, surroundings));
+        let most_cm1 = bands.nodes_cm1().iter().copied().fold(0.0, f64::max);
+        Self { few, many, hottest_k: SECOND_RADIATION_CM_K * most_cm1 }
+    }
+
+    /// Whether a radiance of a state is so small that doubles may lose it.
+    pub(crate) fn loses_light(&self, state: &State) -> bool {
+        let coldest_k = state.environment_k.iter().fold(state.temperature_k, |least, t| least.min(*t));
+        self.hottest_k > FAINT * coldest_k
+    }
+
+    /// The last of the parameters' columns off the others.
+    pub(crate) fn project(&mut self, asked: Asked<'_>, noise: Noise<'_>, unknowns: &Unknowns) -> Careful {
+        let of_few = of_scene(&mut self.few, asked, noise, unknowns);
+        match of_few {
+            Some(found) => found,
+            None => of_scene(&mut self.many, asked, noise, unknowns).unwrap_or_else(Careful::nothing),
+        }
+    }
+}
+
+/// The last of some columns off the others, in units of the deviations `sigma` of their rows: the doubles count as exact.
+pub(crate) fn project_columns(columns: &[&[f64]], sigma: &[f64]) -> Careful {
+    fn of<const L: usize>(columns: &[&[f64]], sigma: &[f64]) -> Option<Careful> {
+        let wide = |values: &[f64]| values.iter().map(|&value| Wide::<L>::from(value)).collect::<Vec<_>>();
+        let weights = wide(sigma).into_iter().map(|sigma| (sigma * sigma).inverse()).collect();
+        let columns = columns.iter().map(|column| Column::exact(wide(column))).collect();
+        Elimination::new(columns, weights).finish()
+    }
+    of::<FEW>(columns, sigma).or_else(|| of::<MANY>(columns, sigma)).unwrap_or_else(Careful::nothing)
+}
+
+fn of_scene<const L: usize>(
+    scene: &mut CarefulScene<'_, L>,
+    asked: Asked<'_>,
+    noise: Noise<'_>,
+    unknowns: &Unknowns,
+) -> Option<Careful> {
+    let (signal, mut columns) = scene.columns(asked);
+    let total = signal.iter().fold(Wide::ZERO, |sum, signal| sum + *signal);
+    let weight = |(band, signal): (usize, &Wide<L>)| {
+        let (square, added, counts) = match noise {
+            Noise::PerPhoton { .. } => (Wide::from(1.0), Wide::ZERO, total),
+            Noise::Counting(counting) => {
+                let counts = Wide::from(counting.counts_per_radiance);
+                (counts * counts, Wide::from(counting.var_added(band)), counts)
+            }
+        };
+        // A band without photons tells nothing.
+        let dark = signal.exponent() < DARK && added.is_zero();
+        let variance = counts * *signal + added;
+        if variance.is_positive() && !dark { square * variance.inverse() } else { Wide::ZERO }
+    };
+    let mut weights: Vec<Wide<L>> = signal.iter().enumerate().map(weight).collect();
+    let photons = match noise {
+        Noise::PerPhoton { photons } => photons,
+        Noise::Counting(_) => 1.0,
+    };
+    let prior = |parameter: &Parameter| unknowns.sigma_prior(*parameter).filter(|_| photons.is_finite());
+    for (owner, parameter) in asked.parameters.iter().enumerate() {
+        let Some(sigma) = prior(parameter) else { continue };
+        let sigma = Wide::from(sigma);
+        weights.push((sigma * sigma * Wide::from(photons)).inverse());
+        for (i, column) in columns.iter_mut().enumerate() {
+            column.push(if i == owner { Wide::from(1.0) } else { Wide::ZERO });
+        }
+    }
+    Elimination::new(columns, weights).finish()
+}
+
+/// Columns on their way to being orthogonal.
+struct Elimination<const L: usize> {
+    columns: Vec<Vec<Wide<L>>>,
+    weights: Vec<Wide<L>>,
+    /// Lengths of the terms that the elements of each column are made of.
+    terms: Vec<f64>,
+    found: Careful,
+}
+
+fn inner<const L: usize>(a: &[Wide<L>], b: &[Wide<L>]) -> Wide<L> {
+    a.iter().zip(b).fold(Wide::ZERO, |sum, (a, b)| sum + *a * *b)
+}
+
+impl<const L: usize> Elimination<L> {
+    const UNIT: f64 = ROUNDINGS * Wide::<L>::UNIT;
+    const LAST: bool = L == MANY;
+
+    fn new(columns: Vec<Column<L>>, weights: Vec<Wide<L>>) -> Self {
+        let count = columns.len();
+        let mut found = Careful::nothing();
+        found.norms = vec![0.0; count];
+        found.triangle = vec![0.0; count * count];
+        let mut elimination = Self { columns: Vec::new(), weights, terms: Vec::new(), found };
+        for Column { mut values, terms } in columns {
+            let length = elimination.length(&values);
+            let terms = terms.map_or(length, |terms| elimination.length(&terms));
+            let power = length.exponent();
+            let found = &mut elimination.found;
+            found.powers.push(power.clamp(i32::MIN.into(), i32::MAX.into()) as i32);
+            found.lengths.push(length.shifted(-power).to_f64());
+            elimination.terms.push(terms.shifted(-power).to_f64());
+            values.iter_mut().for_each(|value| *value = value.shifted(-power));
+            elimination.columns.push(values);
+        }
+        elimination
+    }
+
+    fn length(&self, values: &[Wide<L>]) -> Wide<L> {
+        let squares = values.iter().zip(&self.weights).map(|(value, weight)| *value * *value * *weight);
+        squares.fold(Wide::ZERO, |sum, square| sum + square).sqrt()
+    }
+
+    fn weighted(&self, column: usize) -> Vec<Wide<L>> {
+        self.columns[column].iter().zip(&self.weights).map(|(value, weight)| *value * *weight).collect()
+    }
+
+    /// ‖aᵢ‖ + Σ|cⱼ|‖aⱼ‖ of a column whose parts along those before it are known, and the same of the terms.
+    fn made_of(&mut self, column: usize) -> [f64; 2] {
+        let found = &mut self.found;
+        found.coefficients = vec![0.0; column];
+        super::bound::back_substitute(&found.triangle, &found.norms, column, &mut found.coefficients);
+        [&found.lengths, &self.terms].map(|lengths| {
+            let parts = found.coefficients.iter().zip(lengths).map(|(c, length)| (c * length).abs());
+            lengths[column] + parts.sum::<f64>()
+        })
+    }
+
+    /// Takes column after column off the later ones; `None` where more digits are needed.
+    fn finish(mut self) -> Option<Careful> {
+        let count = self.columns.len();
+        let Some(last) = count.checked_sub(1) else { return Some(self.found) };
+        let mut turned = 0.0;
+        for pivot in 0..last {
+            let length = self.found.lengths[pivot];
+            self.found.triangle[pivot * count + pivot] = 1.0;
+            let weighted = self.weighted(pivot);
+            let square = inner(&self.columns[pivot], &weighted);
+            let [made_of, terms] = self.made_of(pivot);
+            let left = square.sqrt().to_f64();
+            let nothing = if Self::LAST { DEPENDENT } else { 0.0 };
+            if length == 0.0 || left <= nothing * made_of {
+                if length > 0.0 && !Self::LAST {
+                    return None;
+                }
+                self.found.dropped.push(pivot);
+                continue;
+            }
+            turned += (Self::UNIT * terms / left).powi(2);
+            if turned > GOOD && !Self::LAST {
+                return None;
+            }
+            self.found.norms[pivot] = left;
+            let inverse = square.inverse();
+            let (done, later) = self.columns.split_at_mut(pivot + 1);
+            for (i, column) in later.iter_mut().enumerate() {
+                let share = inner(column, &weighted) * inverse;
+                self.found.triangle[pivot * count + pivot + 1 + i] = share.to_f64();
+                for (value, pivot) in column.iter_mut().zip(&done[pivot]) {
+                    *value = *value - share * *pivot;
+                }
+            }
+        }
+        let [_, terms] = self.made_of(last);
+        let norm = self.found.lengths[last];
+        let residual = inner(&self.columns[last], &self.weighted(last)).sqrt().to_f64();
+        let noise = Self::UNIT * terms;
+        let found = &mut self.found;
+        found.triangle[count * count - 1] = 1.0;
+        (found.norm, found.residual) = (norm, residual);
+        if residual + noise <= BLIND * norm {
+            found.residual = 0.0;
+        } else {
+            let relative_error = noise / residual + turned;
+            if relative_error > GOOD && !Self::LAST {
+                return None;
+            }
+            found.relative_error = relative_error + CONVERSION;
+        }
+        found.norms[last] = found.residual;
+        Some(self.found)
+    }
+}
+
+impl Careful {
+    fn nothing() -> Self {
+        Self {
+            residual: 0.0,
+            norm: 0.0,
+            relative_error: 0.0,
+            powers: Vec::new(),
+            lengths: Vec::new(),
+            norms: Vec::new(),
+            triangle: Vec::new(),
+            coefficients: Vec::new(),
+            dropped: Vec::new(),
+        }
+    }
+}
