@@ -14,6 +14,7 @@ mod identify_mistakes;
 mod identify_sections;
 mod identify_words;
 mod messages;
+mod nearest;
 mod range;
 mod reproduce;
 mod robust;
