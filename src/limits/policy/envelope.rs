@@ -25,9 +25,11 @@ mod cell;
 mod joint;
 mod linear;
 mod model;
+mod node;
 mod partition;
 mod prove;
 mod ranges;
+mod relation;
 mod scene;
 mod series;
 
@@ -124,7 +126,7 @@ pub fn worst_case(scene: &EnvelopeScene<'_>, ranges: &Ranges, effort: &Effort) -
     // With priors the bound need not come near, however many boxes.
     let most = if scene.unknowns.has_priors() { BOXES_WITH_PRIORS } else { u64::MAX };
     let effort = Effort { boxes: effort.boxes.min(most), ..*effort };
-    let proof = prove::prove(&joint, ranges, &effort, attained)?;
+    let proof = prove::prove(&joint, ranges, &effort, &best, attained)?;
     let gap = 1.0 - proof.lower_bound / proof.attained.distance;
     let proved = gap <= effort.relative_tolerance;
     let certificate = if proved { Certificate::BranchAndBound } else { Certificate::Bounded { gap } };

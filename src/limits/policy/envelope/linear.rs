@@ -11,7 +11,7 @@ pub(super) type Vector = [f64; RANK];
 /// Columns of A: temperature, v, w of each source.
 pub(super) const COLUMNS: usize = 3 * SOURCES;
 /// Steps of the search for the nearest point.
-const STEPS: usize = 24;
+const STEPS: usize = 40;
 /// Share of the distance that may be lost by slopes that are left.
 const LOSS: f64 = 1e-3;
 
@@ -70,19 +70,22 @@ impl Factor {
     }
 }
 
-/// A sum of factors as a row of the linear model: nothing where it holds anyway.
-#[derive(Default)]
+/// A relation between factors as a row of the linear model: nothing where it holds anyway.
+#[derive(Clone, Copy)]
 pub(super) struct Limit {
+    /// Which of the relations of a box.
+    pub(super) relation: usize,
     pub(super) row: [f64; COLUMNS],
     pub(super) middle: f64,
     pub(super) stiffness: f64,
 }
 
 impl Limit {
-    /// The multiplier of the sum, not negative.
-    pub(super) fn price(&self, x: &[f64; COLUMNS]) -> f64 {
+    /// The multiplier of the relation, without its sign where it is an inequality.
+    pub(super) fn price(&self, x: &[f64; COLUMNS], equal: bool) -> f64 {
         let row: f64 = self.row.iter().zip(x).map(|(row, x)| row * x).sum();
-        (self.stiffness * (self.middle + row)).max(0.0)
+        let price = self.stiffness * (self.middle + row);
+        if equal { price } else { price.max(0.0) }
     }
 }
 
