@@ -25,7 +25,7 @@ const DESCENTS: usize = 6;
 const FIRST_STEP: f64 = 0.125;
 const LAST_STEP: f64 = 2e-5;
 /// Distances that one descent computes at most.
-const PATIENCE: usize = 2000;
+const PATIENCE: usize = 500;
 
 /// Relative difference of two distances that is rounding.
 const SAME: f64 = 1e-9;

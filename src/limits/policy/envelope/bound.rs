@@ -10,6 +10,8 @@
 //! 2. Its point nearest to the origin (`nearest`) gives the direction, u ∝ Δ_c + Ax. A linear model loses nothing by
 //!    that choice (duality of the nearest point of a convex set); so the bound misses the least distance in the box by
 //!    its second derivatives alone. How well the nearest point is solved for matters for tightness alone.
+//!    A source of the alternative's own that may be next to nothing, v f(T) with 0 ≤ v ≤ v_high, is no parallelogram but
+//!    a cone: there the columns are the three spectra whose mixtures make up all that a parabola in T passes through.
 //! 3. For this one u, source by source (`least`): u·Δ is linear in v and w, so that only the four corners of their
 //!    ranges matter, and on each of them a parabola in T minimised on its interval, less the cubic term and the
 //!    remainder.
@@ -27,8 +29,10 @@ use super::relation::Relation;
 
 /// About how fast Planck's function grows with temperature, both relative.
 const GROWTH: f64 = 5.0;
-/// Share of the separation in the middle below which the linear model is taken to reach the origin.
-const REACHED: f64 = 1e-9;
+/// Share of the least distance known below which the linear model is taken to reach the origin.
+const REACHED: f64 = 1e-4;
+/// Share of a square below which what is left of it has lost too many digits.
+const CANCELLED: f64 = 1e-9;
 
 /// How much more a broken relation of factors weighs than what they do.
 const STIFF: f64 = 30.0;
@@ -36,6 +40,10 @@ const STIFF: f64 = 30.0;
 const BROKEN: f64 = 1e-9;
 /// How often broken relations are looked for.
 const ROUNDS: usize = 4;
+/// A source whose factor may be this much smaller than it can be at most is taken for a cone.
+const CONE: f64 = 0.5;
+/// How much less the factor of a cone counts than its temperature, squared.
+const SHARE_OF_FACTOR: f64 = 1e-2;
 
 /// Part of a cell: an interval of each temperature, and ranges of the factors.
 #[derive(Debug, Clone)]
@@ -98,6 +106,8 @@ struct Linear {
     columns: [Vector; COLUMNS],
     /// Columns that count, the first ones.
     count: usize,
+    /// Sources whose columns are three spectra of a cone instead.
+    cones: [bool; SOURCES],
 }
 
 impl Cube {
@@ -120,10 +130,58 @@ impl Linear {
         point
     }
 
+    /// Half the derivatives of the square at x, where the point is, and the square, limits and all.
+    fn slopes(&self, point: &Vector, x: &[f64; COLUMNS], limits: &[Limit]) -> ([f64; COLUMNS], f64) {
+        let (mut slopes, mut square) = ([0.0; COLUMNS], dot(point, point));
+        for (slope, column) in slopes.iter_mut().zip(&self.columns).take(self.count) {
+            *slope = dot(column, point);
+        }
+        for limit in limits {
+            let value = limit.middle + limit.row.iter().zip(x).map(|(row, x)| row * x).sum::<f64>();
+            slopes.iter_mut().zip(&limit.row).for_each(|(slope, row)| *slope += value * row);
+            square += value * value;
+        }
+        (slopes, square)
+    }
+
+    /// How far a range reaches, squared.
+    fn extent(&self, gram: &Gram, i: usize) -> f64 {
+        if !self.cones[i / 3] {
+            return gram.size(i);
+        }
+        let [first, .., last] = [0, 1, 2].map(|j| &self.columns[3 * (i / 3) + j]);
+        match i % 3 {
+            0 => first.iter().zip(last).map(|(a, b)| (a - b) * (a - b)).sum(),
+            _ => SHARE_OF_FACTOR * gram.size(i),
+        }
+    }
+
+    /// A relation as a row: what it is for x = 0, its coefficients, its size, and a stiffness.
+    fn row(&self, relation: &Relation, cube: &Cube) -> ([f64; COLUMNS], f64, f64, f64) {
+        let (mut row, mut middle, mut stiff, mut size) =
+            ([0.0; COLUMNS], relation.constant, 0.0f64, relation.constant.abs());
+        for (i, share) in relation.share.iter().enumerate().filter(|(_, share)| **share != 0.0) {
+            let [low, high] = cube.factors[i];
+            size += share.abs() * high;
+            let (value, half, columns) = if self.cones[i / 3] {
+                (1.5 * high, 0.5 * high, i - 1..i + 2)
+            } else {
+                (0.5 * (low + high), 0.5 * (high - low), i..i + 1)
+            };
+            middle += share * value;
+            if half > 0.0 {
+                let column = &self.columns[i];
+                stiff = stiff.max(STIFF * dot(column, column).sqrt() / (share.abs() * half));
+            }
+            columns.for_each(|i| row[i] = share * half);
+        }
+        (row, middle, size, stiff)
+    }
+
     /// Its normal equations, with a row more for each limit.
     #[inline(always)]
     fn gram(&self, limits: &[Limit]) -> Gram {
-        let Self { middle, columns, count } = self;
+        let Self { middle, columns, count, .. } = self;
         Gram::new(
             *count,
             dot(middle, middle) + limits.iter().map(|l| l.middle * l.middle).sum::<f64>(),
@@ -148,6 +206,10 @@ impl Cell {
     /// Takes off a cube what lies beyond the distance attained and what relations exclude. `false` where that leaves
     /// nothing.
     pub(super) fn clamp(&self, model: &Model<'_>, cube: &mut Cube) -> bool {
+        let t = |s: usize| self.node_of(cube, s).t;
+        if model.twins.iter().any(|&[first, second]| t(first)[0] > t(second)[1]) {
+            return false;
+        }
         for s in 0..self.sources.len() {
             let most = self.node_of(cube, s).most;
             for (which, most) in most.into_iter().enumerate() {
@@ -170,11 +232,16 @@ impl Cell {
         let relations = if model.is_related() { model.relations_on(&cube.factors) } else { Vec::new() };
         let variance = self.variance_of(cube);
         let factor = Factor::new(&variance, self.rank);
-        let linear = self.linear(cube, &factor);
-        let Nearest { gram, x, limits } = nearest(&relations, cube, &linear);
+        let linear = self.linear(model, cube, &factor);
+        let Nearest { gram, mut x, limits } = nearest(&relations, cube, &linear);
         let mut point = linear.at(&x);
-        if dot(&point, &point).sqrt() <= REACHED * dot(&linear.middle, &linear.middle).sqrt() {
-            cube.split = self.best_split(cube, |i| gram.size(i));
+        if dot(&point, &point) < CANCELLED * dot(&linear.middle, &linear.middle) {
+            let (slopes, square) = linear.slopes(&point, &x, &limits);
+            x = gram.nearest_from(x, slopes, square);
+            point = linear.at(&x);
+        }
+        if dot(&point, &point).sqrt() <= REACHED * self.attained {
+            cube.split = self.best_split(cube, |i| linear.extent(&gram, i));
             return;
         }
         factor.solve_transposed(&mut point);
@@ -191,6 +258,13 @@ impl Cell {
         let mut weight = [0.0; COLUMNS];
         for s in 0..self.sources.len() {
             total += self.least(cube, s, &u, &prices, &mut weight);
+        }
+        for limit in &limits {
+            // What a product may be off by in the middle of the cube.
+            if let Some(factors) = model.product_of(limit.relation) {
+                let gap: f64 = factors.iter().map(|&i| centre(cube.factors[i]).1).product();
+                factors.iter().for_each(|&i| weight[i] += limit.price(&x, false) / norm * gap);
+            }
         }
         if total > 0.0 {
             let spread = along(&variance, &u).max(0.0);
@@ -220,12 +294,24 @@ impl Cell {
 
     /// Δ_c and A of a cube, in coordinates in which M is the unit matrix.
     #[inline(always)]
-    fn linear(&self, cube: &Cube, factor: &Factor) -> Linear {
+    fn linear(&self, model: &Model<'_>, cube: &Cube, factor: &Factor) -> Linear {
         let count = 3 * self.sources.len();
         let (mut middle, mut columns) = ([0.0; RANK], [[0.0; RANK]; COLUMNS]);
+        let mut cones = [false; SOURCES];
         for s in 0..self.sources.len() {
             let node = self.node_of(cube, s);
             let ((v, dv), (w, dw)) = (centre(cube.own(s)), centre(cube.other(s)));
+            if model.sources[s].role.is_free() && cube.own(s)[0] < CONE * cube.own(s)[1] {
+                cones[s] = true;
+                // The points that span a + bt + ct² on |t| ≤ 1.
+                let half = 0.5 * cube.own(s)[1];
+                let span = [[1.0, -1.0, 1.0], [1.0, 0.0, -1.0], [1.0, 1.0, 1.0]];
+                for (column, shares) in columns[3 * s..].iter_mut().zip(span) {
+                    shares.iter().zip(&node.own).for_each(|(share, term)| add(column, half * share, term));
+                    add(&mut middle, 1.0, column);
+                }
+                continue;
+            }
             add(&mut middle, v, &node.own[0]);
             add(&mut columns[3 * s], v, &node.own[1]);
             add(&mut columns[3 * s + 1], dv, &node.own[0]);
@@ -238,7 +324,7 @@ impl Cell {
         for column in columns[..count].iter_mut().chain([&mut middle]) {
             factor.solve(column);
         }
-        Linear { middle, columns, count }
+        Linear { middle, columns, count, cones }
     }
 
     /// Adds what the ranges account for by the variance at their upper ends being too large within them.
@@ -371,18 +457,7 @@ fn add_broken(
         if limits[..before].iter().any(|limit| limit.relation == index) {
             continue;
         }
-        let (mut row, mut middle, mut stiff, mut size) =
-            ([0.0; COLUMNS], relation.constant, 0.0f64, relation.constant.abs());
-        for (i, share) in relation.share.iter().enumerate().filter(|(_, share)| **share != 0.0) {
-            let (value, half) = centre(cube.factors[i]);
-            row[i] = share * half;
-            middle += share * value;
-            size += share.abs() * cube.factors[i][1];
-            if half > 0.0 {
-                let column = &linear.columns[i];
-                stiff = stiff.max(STIFF * dot(column, column).sqrt() / row[i].abs());
-            }
-        }
+        let (row, middle, size, stiff) = linear.row(relation, cube);
         let at = middle + row.iter().zip(x).map(|(row, x)| row * x).sum::<f64>();
         let broken = at > BROKEN * size || (relation.equal && at < -BROKEN * size);
         if broken && stiff > 0.0 {

@@ -34,8 +34,9 @@ use super::partition::{FAINT, Part};
 use super::series::TERMS;
 use crate::sum::dot;
 
-/// Largest half width of a temperature, as a share of its middle.
+/// Largest half width of a temperature of the scene, as a share of its middle, and of one of the alternative's own.
 pub(super) const WIDEST: f64 = 0.08;
+pub(super) const WIDEST_FREE: f64 = 0.25;
 /// The basis is complete when nothing is left of a spectrum but this share of the distance attained.
 const LEFT_OVER: f64 = 1e-3;
 /// What is left of a spectrum times the skew of variances is this much less of a loss: the weights of bands need not be

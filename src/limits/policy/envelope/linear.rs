@@ -135,9 +135,21 @@ impl Gram {
     /// Comput. Stat. 10, 129 (1995)). Coefficients that come to a bound are held there; when the others have come to
     /// rest, the one that is pulled back most is let go.
     pub(super) fn nearest(&self) -> [f64; COLUMNS] {
-        let (mut x, mut held) = ([0.0; COLUMNS], [false; COLUMNS]);
-        let mut slope = self.pull;
+        self.nearest_from([0.0; COLUMNS], self.pull, self.middle)
+    }
+
+    /// The same from x on, with half the slopes of the square and the square there: where all but a little of the middle
+    /// cancels, what is left has lost its digits in the normal equations, but not where it is formed anew.
+    pub(super) fn nearest_from(
+        &self,
+        start: [f64; COLUMNS],
+        slopes: [f64; COLUMNS],
+        square_at_start: f64,
+    ) -> [f64; COLUMNS] {
+        let (mut x, mut slope) = (start, slopes);
         let columns = &self.columns[..self.count];
+        let mut held = [false; COLUMNS];
+        columns.iter().for_each(|&i| held[i] = x[i].abs() >= 1.0);
         for _ in 0..STEPS {
             let (mut free, mut count) = ([0; COLUMNS], 0);
             for &i in columns.iter().filter(|&&i| !held[i]) {
@@ -167,7 +179,8 @@ impl Gram {
             }
             // A matrix near singular is not solved in one go, and what is left of the slopes is lost in a bound.
             let loss: f64 = free.iter().map(|&i| slope[i].abs()).sum();
-            let square = self.middle + columns.iter().map(|&i| x[i] * (self.pull[i] + slope[i])).sum::<f64>();
+            let moved = columns.iter().map(|&i| (x[i] - start[i]) * (slopes[i] + slope[i]));
+            let square = square_at_start + moved.sum::<f64>();
             if loss > LOSS * square {
                 continue;
             }

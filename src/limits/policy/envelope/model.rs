@@ -102,6 +102,8 @@ pub(super) struct Model<'a> {
     /// Columns of G and of G·Vₖ′, where there are any.
     pub(super) gain: Option<usize>,
     lights: Vec<Option<usize>>,
+    /// Objects at temperatures of the alternative's own, each with the next that it may change places with.
+    pub(super) twins: Vec<[usize; 2]>,
 }
 
 /// Whether a lower bound can be proved: on the very distance, if there are no priors.
@@ -148,8 +150,7 @@ impl<'a> Model<'a> {
                 built.add(Role::Alternative, [zeros(), other.clone(), zeros()], span(t, gain_range, none));
             gain = Some(3 * s + 1);
         } else if own_gain {
-            let s =
-                built.add(Role::Target, [e.clone(), zeros(), other.clone()], span(t, one, gain_range));
+            let s = built.add(Role::Target, [e.clone(), zeros(), other.clone()], span(t, one, gain_range));
             gain = Some(3 * s + 2);
         } else {
             built.add(Role::Target, [e.clone(), other.clone(), zeros()], span(t, one, none));
@@ -178,14 +179,20 @@ impl<'a> Model<'a> {
         let var: Vec<f64> = (0..scene.bands.len()).map(|band| scene.counting.var_added(band)).collect();
         let shares = [vec![0.5; var.len()], vec![0.5; var.len()]];
         let (relations, products) = (Vec::new(), Vec::new());
-        let mut model = Self { scene: *scene, sources, var, shares, relations, products, gain, lights };
+        let twins = Vec::new();
+        let mut model =
+            Self { scene: *scene, sources, var, shares, relations, products, gain, lights, twins };
         model.relate(&region, own_v);
+        if own_v {
+            model.pair_twins(&region);
+        }
         (model, region)
     }
 
     /// Writes down what ties the factors, as far as their ranges do not see to it.
     fn relate(&mut self, region: &Region, own_v: bool) {
-        let mut all = vec![Relation::new(&self.seen().map(|(_, v)| (v, 1.0)).collect::<Vec<_>>(), -1.0, false)];
+        let mut all =
+            vec![Relation::new(&self.seen().map(|(_, v)| (v, 1.0)).collect::<Vec<_>>(), -1.0, false)];
         // a·c₀, which is a number where the gain is known.
         let with_gain = |mut terms: Vec<(usize, f64)>, a: f64, equal: bool| match self.gain {
             Some(column) => {
@@ -222,6 +229,17 @@ impl<'a> Model<'a> {
         let ranges = factors(region);
         all.retain(|relation| relation.binds(&ranges));
         (self.relations, self.products) = (all, products);
+    }
+
+    /// Finds objects that the alternative may exchange: then the colder one may be taken to come first.
+    fn pair_twins(&mut self, region: &Region) {
+        let free = |s: &usize| matches!(self.sources[*s].role, Role::AlternativeObject(_));
+        let objects: Vec<usize> = (0..self.sources.len()).filter(free).collect();
+        let alike = |a: usize, b: usize| {
+            self.sources[a].alternative == self.sources[b].alternative && region[a] == region[b]
+        };
+        let pairs = objects.windows(2).map(|pair| [pair[0], pair[1]]);
+        self.twins = pairs.filter(|&[a, b]| alike(a, b)).collect();
     }
 
     /// Objects, and the column of the factor by which the target sees each.
@@ -324,6 +342,12 @@ impl<'a> Model<'a> {
     pub(super) fn relations_on(&self, ranges: &[[f64; 2]; COLUMNS]) -> Vec<Relation> {
         let products = self.products.iter().flat_map(|product| product.relations(ranges));
         self.relations.iter().copied().chain(products).collect()
+    }
+
+    /// The factors of the product that a relation on a box is from, if it is.
+    pub(super) fn product_of(&self, relation: usize) -> Option<[usize; 2]> {
+        let own = relation.checked_sub(self.relations.len())?;
+        self.products.get(own / 4).map(|product| product.factors)
     }
 
     /// The relations that hold about a point to first order.

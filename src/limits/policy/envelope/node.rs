@@ -1,6 +1,6 @@
 //! Intervals of the temperature of a source with what is known of it there.
 //!
-//! A narrow interval T ± ΔT, ΔT/T ≤ 0.08, has Qᵀωf and Qᵀωg as cubics in T with remainders (`series`). A wide one, which only
+//! A narrow interval T ± ΔT has Qᵀωf and Qᵀωg as cubics in T with remainders (`series`). A wide one, which only
 //! the alternative's own temperatures have, is there to be halved. One in which a source is next to nothing, whatever its
 //! factor, keeps no more than its norm.
 //!
@@ -8,7 +8,7 @@
 //! alternative is brighter: c·g(T_low) ≤ (√(N + v) + D)² − v bounds its factor, and an interval too hot for the least factor
 //! is empty.
 
-use super::cell::{Cell, Cubic, WIDEST};
+use super::cell::{Cell, Cubic, WIDEST_FREE};
 use super::linear::{PAIRS, RANK};
 use super::model::Model;
 use super::series::{TERMS, planck_series, remainder};
@@ -87,7 +87,14 @@ impl Cell {
         ]
     }
 
-    fn node(&self, model: &Model<'_>, s: usize, t: [f64; 2], top: [Spread; 2], parent: Option<&Node>) -> Node {
+    fn node(
+        &self,
+        model: &Model<'_>,
+        s: usize,
+        t: [f64; 2],
+        top: [Spread; 2],
+        parent: Option<&Node>,
+    ) -> Node {
         let [own_spread, other_spread] = top;
         let (centre, half) = (0.5 * (t[0] + t[1]), 0.5 * (t[1] - t[0]));
         // What holds of the whole of a narrow interval holds of its halves.
@@ -115,7 +122,7 @@ impl Cell {
             return node;
         }
         let source = &model.sources[s];
-        if source.role.is_free() && half > WIDEST * centre {
+        if source.role.is_free() && half > WIDEST_FREE * centre {
             node.detail = Detail::Wide;
             return node;
         }

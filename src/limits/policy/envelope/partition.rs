@@ -63,8 +63,7 @@ struct Ends {
 impl Ends {
     fn of(model: &Model<'_>, region: &Region) -> Self {
         let zeros = || vec![0.0; model.var.len()];
-        let mut ends =
-            Self { target: [zeros(), zeros()], changes: Vec::new(), magnitudes: Vec::new() };
+        let mut ends = Self { target: [zeros(), zeros()], changes: Vec::new(), magnitudes: Vec::new() };
         for (source, span) in model.sources.iter().zip(region) {
             ends.add(model, source, span);
         }
