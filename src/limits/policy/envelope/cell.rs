@@ -81,9 +81,8 @@ pub(super) struct Cell {
 }
 
 impl Cell {
-    /// Prepares a part of the envelope in which `best` is nearest of all that is known.
-    pub(super) fn new(model: &Model<'_>, part: &Part, best: &Residual) -> Self {
-        let attained = best.square.sqrt();
+    /// Prepares a part of an envelope of which `best` is the nearest point known, at the distance `attained`, priors and all.
+    pub(super) fn new(model: &Model<'_>, part: &Part, best: &Residual, attained: f64) -> Self {
         let (region, variance) = (part.region.clone(), &part.variance);
         let usable = |c: &f64| *c > 0.0;
         let per_variance: Vec<f64> = variance.iter().map(|c| if usable(c) { 1.0 / c } else { 0.0 }).collect();

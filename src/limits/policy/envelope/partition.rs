@@ -79,9 +79,9 @@ impl Ends {
         }
         let radiance = span.t.map(|t| model.radiance(t));
         let target = [0, 1].map(|end: usize| model.counts(&source.target, &radiance[end]));
-        for end in [0, 1] {
-            for band in 0..bands {
-                self.target[end][band] += span.own[end] * target[end][band];
+        for (end, counts) in target.iter().enumerate() {
+            for (sum, n) in self.target[end].iter_mut().zip(counts) {
+                *sum += span.own[end] * n;
             }
         }
         let mut changes = [vec![0.0; bands], vec![0.0; bands]];

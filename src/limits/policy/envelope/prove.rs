@@ -35,7 +35,7 @@ pub struct Effort {
 impl Default for Effort {
     /// 1 %, and some seconds on two cores at most.
     fn default() -> Self {
-        Self { relative_tolerance: 0.01, boxes: 3_000_000 }
+        Self { relative_tolerance: 0.01, boxes: 1_000_000 }
     }
 }
 
@@ -95,8 +95,11 @@ pub(super) fn prove(
     let (model, whole) = joint;
     let threshold = share * attained.distance;
     let parts = partition(model, whole.clone(), attained.distance);
-    let cells: Vec<Cell> = parts.into_par_iter().map(|part| Cell::new(model, &part, best)).collect();
-    let aside = f64::INFINITY;
+    let distance = attained.distance;
+    let cells: Vec<Cell> =
+        parts.into_par_iter().map(|part| Cell::new(model, &part, best, distance)).collect();
+    // What cells leave out is not below the distance attained.
+    let aside = distance;
     let mut search = Search { model, cells, queue: BinaryHeap::new(), threshold, aside, boxes: 0 };
     let roots = (0..search.cells.len()).filter_map(|cell| search.root(cell)).collect();
     search.take_in(roots);
@@ -200,10 +203,10 @@ impl Search<'_, '_> {
         let cell = &self.cells[cube.cell as usize];
         let middle = |[low, high]: [f64; 2]| 0.5 * (low + high);
         let mut values = [[0.0; 3]; SOURCES];
-        for s in 0..cell.sources.len() {
+        for (s, value) in values.iter_mut().enumerate().take(cell.sources.len()) {
             let [low, high] = cell.node_of(cube, s).t;
             let (own, other) = (cube.factors[3 * s + 1], cube.factors[3 * s + 2]);
-            values[s] = [(low * high).sqrt(), middle(own), middle(other)];
+            *value = [(low * high).sqrt(), middle(own), middle(other)];
         }
         Some(Point { values })
     }

@@ -145,13 +145,12 @@ fn no_point_of_a_box_is_below_its_bound() {
         let ratio: Vec<f64> = (0..setting.bands.len()).map(|_| random.random_range(0.5..2.0)).collect();
         model.lean([&vec![1.0; ratio.len()], &ratio]);
         let middle = ranges.scene_at(&vec![0.5; 1 + 2 * objects]);
-        let mut best = residual(&model, &model.point(&middle, &middle));
+        let best = residual(&model, &model.point(&middle, &middle));
         let apart = best.square.sqrt();
         for attained in [0.3 * apart, 1e3 * apart] {
-            best.square = attained * attained;
             let parts = partition(&model, whole.clone(), attained);
             for part in parts.iter().step_by(1 + parts.len() / 2) {
-                let mut cell = Cell::new(&model, part, &best);
+                let mut cell = Cell::new(&model, part, &best, attained);
                 for _ in 0..8 {
                     let cube = random_cube(&model, &mut cell, &mut random);
                     positive += usize::from(cube.bound > 0.0);
