@@ -42,6 +42,8 @@ const BROKEN: f64 = 1e-9;
 const ROUNDS: usize = 4;
 /// A source whose factor may be this much smaller than it can be at most is taken for a cone.
 const CONE: f64 = 0.5;
+/// Width of a temperature, as a share of it, below which the three spectra of a cone are one.
+const NARROW: f64 = 2e-3;
 /// How much less the factor of a cone counts than its temperature, squared.
 const SHARE_OF_FACTOR: f64 = 1e-2;
 
@@ -301,7 +303,8 @@ impl Cell {
         for s in 0..self.sources.len() {
             let node = self.node_of(cube, s);
             let ((v, dv), (w, dw)) = (centre(cube.own(s)), centre(cube.other(s)));
-            if model.sources[s].role.is_free() && cube.own(s)[0] < CONE * cube.own(s)[1] {
+            let wide = node.t[1] - node.t[0] > NARROW * node.t[1];
+            if wide && model.sources[s].role.is_free() && cube.own(s)[0] < CONE * cube.own(s)[1] {
                 cones[s] = true;
                 // The points that span a + bt + ct² on |t| ≤ 1.
                 let half = 0.5 * cube.own(s)[1];
