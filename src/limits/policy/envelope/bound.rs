@@ -43,7 +43,7 @@ const ROUNDS: usize = 4;
 /// A source whose factor may be this much smaller than it can be at most is taken for a cone.
 const CONE: f64 = 0.5;
 /// Width of a temperature, as a share of it, below which the three spectra of a cone are one.
-const NARROW: f64 = 2e-3;
+const NARROW: f64 = 1e-2;
 /// How much less the factor of a cone counts than its temperature, squared.
 const SHARE_OF_FACTOR: f64 = 1e-2;
 
