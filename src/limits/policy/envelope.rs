@@ -3,16 +3,18 @@
 //! A requirement holds over ranges: temperature T of the target, lighting Vₖ and temperature Tₖ of every object
 //! around it. The worst case is the least distance of all these scenes,
 //!
-//! d* = min over θ = (T, V, Tₖ) of d(θ),   d(θ) = min over θ′ = (T′, V′) of ‖√(N(θ)+v) − √(N′(θ′, Tₖ)+v)‖,
+//! d* = min over θ = (T, V, Tₖ) of d(θ),   d(θ) = min over θ′ of ‖√(N(θ)+v) − √(N′(θ′)+v)‖,
 //!
-//! N counts of the target, N′ of the alternative amid the same surroundings, v added variance of each band. So
-//! d* is one minimisation over θ and θ′ together.
+//! N counts of the target, N′ of the alternative, v added variance of each band, θ′ whatever of (T′, V′, G′, Tₖ′) is
+//! unknown, and the rest as in θ. So d* is one minimisation over θ and θ′ together.
 //!
 //! * From above (`attain`): a dense set of scenes with [`NearestSolver`](crate::identifiability::nearest::NearestSolver) in each, and descents from the best of
-//!   them. The distance reported is that of [`NearestSolver::with_counting`](crate::identifiability::nearest::NearestSolver::with_counting) at the scene reported.
-//! * From below (`prove`, `bound`): branch and bound over θ and θ′ together, where the alternative's unknowns
-//!   are temperature or lighting or both, without gain. Priors only add to the distance, so what is proved
-//!   without them is true with them, but need not meet the distance attained.
+//!   them. The distance reported is that of [`NearestSolver::with_counting`](crate::identifiability::nearest::NearestSolver::with_counting) at the scene reported,
+//!   or of [`NearestSolver::refine_with_counting`](crate::identifiability::nearest::NearestSolver::refine_with_counting) from a state that the descents came upon, where that is nearer.
+//! * From below (`prove`, `bound`): branch and bound over θ and θ′ together, for every set of unknowns, with and without
+//!   a known total of the lighting: up to four objects around, or two whose temperatures are unknown. Priors
+//!   only add to the distance, so what is proved without them is true with them, but need not meet the distance
+//!   attained. Gain is sought within |ln G′| ≤ 14, Tₖ′ between 0.1 and 10⁶ K.
 //!
 //! A proof accounts for the rounding of its own sums (`cell`), but it is not made of outward-rounded intervals,
 //! and Planck's function is taken to be as exact as [`crate::planck`] states.
@@ -25,9 +27,11 @@ mod cell;
 mod joint;
 mod linear;
 mod model;
+mod node;
 mod partition;
 mod prove;
 mod ranges;
+mod relation;
 mod scene;
 mod series;
 
@@ -40,9 +44,11 @@ use self::model::Model;
 use crate::error::Result;
 use crate::scene::State;
 
-/// Scenes that are tried before the best of them are refined, with a proof to follow and without.
-const SCENES: usize = 256;
-const SCENES_WITHOUT_PROOF: usize = 2048;
+/// Scenes that are tried before the best of them are refined: with descents over scene and state together and a proof to
+/// follow, with a proof of what the priors leave out, and without any.
+const SCENES: usize = 64;
+const SCENES_WITH_PRIORS: usize = 256;
+const SCENES_WITHOUT_PROOF: usize = 1024;
 
 /// Boxes at most where priors are left out of the bound.
 const BOXES_WITH_PRIORS: u64 = 100_000;
@@ -109,7 +115,11 @@ pub fn worst_case(scene: &EnvelopeScene<'_>, ranges: &Ranges, effort: &Effort) -
     }
     let provable = model::provable(scene.unknowns, scene.surroundings.objects().len()) && effort.boxes > 0;
     let joint = provable.then(|| Model::new(scene, ranges));
-    let points = if provable { SCENES } else { SCENES_WITHOUT_PROOF };
+    let points = match (provable, scene.unknowns.has_priors()) {
+        (true, false) => SCENES,
+        (true, true) => SCENES_WITH_PRIORS,
+        (false, _) => SCENES_WITHOUT_PROOF,
+    };
     // A descent over scene and state together knows nothing of priors.
     let descent = joint.as_ref().filter(|_| !scene.unknowns.has_priors());
     let attained = attain::attain(scene, ranges, points, descent)?;
@@ -124,7 +134,7 @@ pub fn worst_case(scene: &EnvelopeScene<'_>, ranges: &Ranges, effort: &Effort) -
     // With priors the bound need not come near, however many boxes.
     let most = if scene.unknowns.has_priors() { BOXES_WITH_PRIORS } else { u64::MAX };
     let effort = Effort { boxes: effort.boxes.min(most), ..*effort };
-    let proof = prove::prove(&joint, ranges, &effort, attained)?;
+    let proof = prove::prove(&joint, ranges, &effort, &best, attained)?;
     let gap = 1.0 - proof.lower_bound / proof.attained.distance;
     let proved = gap <= effort.relative_tolerance;
     let certificate = if proved { Certificate::BranchAndBound } else { Certificate::Bounded { gap } };

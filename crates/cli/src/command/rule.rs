@@ -33,7 +33,7 @@ pub(super) fn run(args: &RuleArgs, global: &Global) -> Result<ExitCode> {
         skipping: global.skipping(),
         seed: global.seed,
     };
-    let bar = global.progress("cameras");
+    let bar = global.progress("pairs");
     let mut answer = study.answer(&asked, &|done, all| bar.set(done, all))?;
     bar.finish();
     let text = if asked.verdict_only { rule::check(&answer) } else { rule::text(&answer, &study) };

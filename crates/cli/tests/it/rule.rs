@@ -330,6 +330,31 @@ fn no_scene_is_below_the_worst_case() {
     assert!(camera.lower_bound.is_none_or(|bound| bound <= camera.statistical_distance));
 }
 
+/// What the alternative does not know is no reason to do without a proof, and brings nothing farther apart.
+#[test]
+fn more_unknowns_are_proved_too() {
+    let rule = |unknown: &str| {
+        let text = RULE.replace("\"flir-a325sc\", ", "").replace("[\"skin\", \"fabric\"]", "[\"fabric\"]");
+        answer(&format!("{}[unknown]\n{unknown}\n", text.replace(", \"pmma\"", ""))).cameras.remove(0)
+    };
+    let known = rule(r#"nuisances = ["temperature", "lighting"]"#);
+    for unknown in [
+        r#"nuisances = ["temperature", "lighting", "gain"]"#,
+        r#"nuisances = ["temperature", "lighting", "environment-temperature"]"#,
+    ] {
+        let camera = rule(unknown);
+        let (bound, distance) = (camera.lower_bound.unwrap(), camera.statistical_distance);
+        let proved = camera.certificate.kind == Proof::BranchAndBound;
+        assert!(proved || !unknown.contains("gain"), "{unknown}: {camera:?}");
+        assert!(bound > 0.0 && bound <= distance, "{unknown}: {bound} {distance}");
+        assert!(!proved || bound >= 0.99 * distance, "{unknown}: {bound} {distance}");
+        assert!(distance <= known.statistical_distance * (1.0 + 1e-9), "{unknown}: {distance}");
+    }
+    let total = rule("nuisances = [\"temperature\", \"lighting\"]\nlighting_total = 0.5");
+    assert_eq!(total.certificate.kind, Proof::BranchAndBound, "{total:?}");
+    assert!(total.statistical_distance >= known.statistical_distance * (1.0 - 1e-9), "{total:?}");
+}
+
 #[test]
 fn a_wider_envelope_is_never_easier() {
     let mut before = f64::INFINITY;

@@ -59,6 +59,13 @@ struct Candidate {
     near: Vec<Study>,
 }
 
+impl Candidate {
+    /// Pairs of materials that are searched, from every distance.
+    fn pairs(&self) -> usize {
+        self.sighted.iter().map(|sighted| sighted.study.alternatives.len()).sum()
+    }
+}
+
 /// A rule with everything it names looked up and checked.
 #[derive(Debug, Clone)]
 pub struct RuleStudy {
@@ -172,7 +179,7 @@ impl RuleStudy {
         self.candidates.first().and_then(|candidate| candidate.near.first())
     }
 
-    /// What the rule says of every camera; `progress` is told how many of them are done.
+    /// What the rule says of every camera; `progress` is told how many pairs of materials before a camera are done.
     ///
     /// # Errors
     /// A scene without photons; a file that can no longer be read.
@@ -181,10 +188,13 @@ impl RuleStudy {
         demand::add(&self.looked_up);
         let alone = asked.verdict_only && asked.skipping == Skipping::On;
         let mut cameras = Vec::with_capacity(self.candidates.len());
-        let all = self.candidates.len();
-        for (index, candidate) in self.candidates.iter().enumerate() {
-            cameras.push(self.judged(candidate, alone)?);
-            progress(index + 1, all);
+        let all = self.candidates.iter().map(Candidate::pairs).sum();
+        let mut before = 0;
+        for candidate in &self.candidates {
+            let pairs = candidate.pairs();
+            cameras.push(self.judged(candidate, alone, &|done| progress(before + done.min(pairs), all))?);
+            before += pairs;
+            progress(before, all);
         }
         let not_identifiable = if alone {
             demand::spared(Thing::Sections, Reason::NotAsked, 1);

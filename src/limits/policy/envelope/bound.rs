@@ -1,41 +1,59 @@
 //! A lower bound of the distance in a box of all sources' temperatures and factors.
 //!
-//! In terms of Δ = Qᵀω(N − N′) and the matrix M of the variances (see `cell`), for any direction u
+//! With Δ = Qᵀω(N − N′) and the matrix M of the variances (see `cell`), for any direction u of length 1, n = min over
+//! the box of u·Δ and A = ½√(uᵀMu),
 //!
-//! d ≥ [min over the box of u·Δ]/√(uᵀMu),   min u·Δ = Σ_s min over (T, v, w) of u·[v f(T) + w g(T)].
+//! d ≥ n/(A + √(A² + hn)) or n/2A,   min u·Δ = Σ_s min over (T, v, w) of u·[v f(T) + w g(T)].
 //!
 //! 1. Linear model (`linear`): Δ ≈ Δ_c + Ax, |x_i| ≤ 1, Δ_c its value at the centre and A its derivatives times the half
 //!    widths, in coordinates in which M is the unit matrix.
 //! 2. Its point nearest to the origin (`nearest`) gives the direction, u ∝ Δ_c + Ax. A linear model loses nothing by
 //!    that choice (duality of the nearest point of a convex set); so the bound misses the least distance in the box by
 //!    its second derivatives alone. How well the nearest point is solved for matters for tightness alone.
+//!    A source of the alternative's own that may be next to nothing, v f(T) with 0 ≤ v ≤ v_high, is no parallelogram but
+//!    a cone: there the columns are the three spectra whose mixtures make up all that a parabola in T passes through.
 //! 3. For this one u, source by source (`least`): u·Δ is linear in v and w, so that only the four corners of their
 //!    ranges matter, and on each of them a parabola in T minimised on its interval, less the cubic term and the
 //!    remainder.
-//! 4. Split is along what bends u·Δ, moves it, or changes the variance most.
+//! 4. Split is along what bends u·Δ, moves it, or changes the variance most. What has a wide interval of temperature is
+//!    halved there first.
 //!
-//! Where a sum of lighting factors is limited, Σv ≤ V, λ(Σv − V) ≤ 0 may be added for any λ ≥ 0 (a price on v); λ is the
-//! multiplier that the linear model has, found with the limit as one more row of great weight.
+//! Where factors are tied by a relation r ≤ 0 (`relation`), λr ≤ 0 may be added for any λ ≥ 0 (prices of v and w), and for r = 0
+//! for any λ at all; λ is the multiplier that the linear model has, found with r as one more row of great weight.
 
-use super::cell::{Cell, Node};
+use super::cell::{Cell, Weighing};
 use super::linear::{COLUMNS, Factor, Gram, Limit, PAIRS, RANK, Vector};
 use super::model::{Model, SOURCES};
+use super::node::{Detail, Node};
+use super::relation::Relation;
 
 /// About how fast Planck's function grows with temperature, both relative.
 const GROWTH: f64 = 5.0;
-/// Share of the separation in the middle below which the linear model is taken to reach the origin.
-const REACHED: f64 = 1e-9;
+/// Share of the least distance known below which the linear model is taken to reach the origin.
+const REACHED: f64 = 1e-4;
+/// Share of a square below which what is left of it has lost too many digits.
+const CANCELLED: f64 = 1e-9;
 
-/// How much more a broken sum of factors weighs than what they do.
+/// How much more a broken relation of factors weighs than what they do.
 const STIFF: f64 = 30.0;
+/// By what share of its terms a relation is broken so that it counts.
+const BROKEN: f64 = 1e-9;
+/// How often broken relations are looked for.
+const ROUNDS: usize = 4;
+/// A source whose factor may be this much smaller than it can be at most is taken for a cone.
+const CONE: f64 = 0.5;
+/// Width of a temperature, as a share of it, below which the three spectra of a cone are one.
+const NARROW: f64 = 1e-2;
+/// How much less the factor of a cone counts than its temperature, squared.
+const SHARE_OF_FACTOR: f64 = 1e-2;
 
 /// Part of a cell: an interval of each temperature, and ranges of the factors.
 #[derive(Debug, Clone)]
 pub(super) struct Cube {
     pub(super) cell: u32,
     pub(super) nodes: [u32; SOURCES],
-    pub(super) own: [[f64; 2]; SOURCES],
-    pub(super) other: [[f64; 2]; SOURCES],
+    /// Ranges of v and w, each in its column: 3s + 1 and 3s + 2.
+    pub(super) factors: [[f64; 2]; COLUMNS],
     /// Proved: no distance in it is below.
     pub(super) bound: f64,
     /// Along what it is best split: 3s for temperature s, 3s + 1 for v, 3s + 2 for w; `None` if it cannot be.
@@ -90,22 +108,82 @@ struct Linear {
     columns: [Vector; COLUMNS],
     /// Columns that count, the first ones.
     count: usize,
+    /// Sources whose columns are three spectra of a cone instead.
+    cones: [bool; SOURCES],
+}
+
+impl Cube {
+    fn own(&self, s: usize) -> [f64; 2] {
+        self.factors[3 * s + 1]
+    }
+
+    fn other(&self, s: usize) -> [f64; 2] {
+        self.factors[3 * s + 2]
+    }
 }
 
 impl Linear {
     #[inline(always)]
     fn at(&self, x: &[f64; COLUMNS]) -> Vector {
         let mut point = self.middle;
-        for (x, column) in x.iter().zip(&self.columns) {
+        for (x, column) in x.iter().zip(&self.columns).take(self.count) {
             add(&mut point, *x, column);
         }
         point
     }
 
+    /// Half the derivatives of the square at x, where the point is, and the square, limits and all.
+    fn slopes(&self, point: &Vector, x: &[f64; COLUMNS], limits: &[Limit]) -> ([f64; COLUMNS], f64) {
+        let (mut slopes, mut square) = ([0.0; COLUMNS], dot(point, point));
+        for (slope, column) in slopes.iter_mut().zip(&self.columns).take(self.count) {
+            *slope = dot(column, point);
+        }
+        for limit in limits {
+            let value = limit.middle + limit.row.iter().zip(x).map(|(row, x)| row * x).sum::<f64>();
+            slopes.iter_mut().zip(&limit.row).for_each(|(slope, row)| *slope += value * row);
+            square += value * value;
+        }
+        (slopes, square)
+    }
+
+    /// How far a range reaches, squared.
+    fn extent(&self, gram: &Gram, i: usize) -> f64 {
+        if !self.cones[i / 3] {
+            return gram.size(i);
+        }
+        let [first, .., last] = [0, 1, 2].map(|j| &self.columns[3 * (i / 3) + j]);
+        match i % 3 {
+            0 => first.iter().zip(last).map(|(a, b)| (a - b) * (a - b)).sum(),
+            _ => SHARE_OF_FACTOR * gram.size(i),
+        }
+    }
+
+    /// A relation as a row: what it is for x = 0, its coefficients, its size, and a stiffness.
+    fn row(&self, relation: &Relation, cube: &Cube) -> ([f64; COLUMNS], f64, f64, f64) {
+        let (mut row, mut middle, mut stiff, mut size) =
+            ([0.0; COLUMNS], relation.constant, 0.0f64, relation.constant.abs());
+        for (i, share) in relation.share.iter().enumerate().filter(|(_, share)| **share != 0.0) {
+            let [low, high] = cube.factors[i];
+            size += share.abs() * high;
+            let (value, half, columns) = if self.cones[i / 3] {
+                (1.5 * high, 0.5 * high, i - 1..i + 2)
+            } else {
+                (0.5 * (low + high), 0.5 * (high - low), i..i + 1)
+            };
+            middle += share * value;
+            if half > 0.0 {
+                let column = &self.columns[i];
+                stiff = stiff.max(STIFF * dot(column, column).sqrt() / (share.abs() * half));
+            }
+            columns.for_each(|i| row[i] = share * half);
+        }
+        (row, middle, size, stiff)
+    }
+
     /// Its normal equations, with a row more for each limit.
     #[inline(always)]
-    fn gram(&self, limits: &[Limit; 2]) -> Gram {
-        let Self { middle, columns, count } = self;
+    fn gram(&self, limits: &[Limit]) -> Gram {
+        let Self { middle, columns, count, .. } = self;
         Gram::new(
             *count,
             dot(middle, middle) + limits.iter().map(|l| l.middle * l.middle).sum::<f64>(),
@@ -119,52 +197,128 @@ impl Linear {
 struct Nearest {
     gram: Gram,
     x: [f64; COLUMNS],
-    limits: [Limit; 2],
+    limits: Vec<Limit>,
 }
 
 impl Cell {
-    fn node_of(&self, cube: &Cube, s: usize) -> &Node {
-        &self.sources[s].nodes[cube.nodes[s] as usize]
+    pub(super) fn node_of(&self, cube: &Cube, s: usize) -> &Node {
+        &self.sources[s][cube.nodes[s] as usize]
+    }
+
+    /// Takes off a cube what lies beyond the distance attained and what relations exclude. `false` where that leaves
+    /// nothing.
+    pub(super) fn clamp(&self, model: &Model<'_>, cube: &mut Cube) -> bool {
+        let t = |s: usize| self.node_of(cube, s).t;
+        if model.twins.iter().any(|&[first, second]| t(first)[0] > t(second)[1]) {
+            return false;
+        }
+        for s in 0..self.sources.len() {
+            let most = self.node_of(cube, s).most;
+            for (which, most) in most.into_iter().enumerate() {
+                let range = &mut cube.factors[3 * s + 1 + which];
+                range[1] = range[1].min(most);
+                if range[1] < range[0] {
+                    return false;
+                }
+            }
+        }
+        model.tighten(&mut cube.factors)
     }
 
     /// Sets bound and split of a cube; the bound never falls below what it was.
     pub(super) fn bound(&self, model: &Model<'_>, cube: &mut Cube) {
+        cube.split = self.widest(cube);
+        if cube.split.is_some() {
+            return;
+        }
+        let relations = if model.is_related() { model.relations_on(&cube.factors) } else { Vec::new() };
         let variance = self.variance_of(cube);
         let factor = Factor::new(&variance, self.rank);
-        let linear = self.linear(cube, &factor);
-        let Nearest { gram, x, limits } = self.nearest(model, cube, &linear);
+        let linear = self.linear(model, cube, &factor);
+        let Nearest { gram, mut x, limits } = nearest(&relations, cube, &linear);
         let mut point = linear.at(&x);
-        if dot(&point, &point).sqrt() <= REACHED * dot(&linear.middle, &linear.middle).sqrt() {
-            cube.split = self.best_split(cube, |i| gram.size(i));
+        if dot(&point, &point) < CANCELLED * dot(&linear.middle, &linear.middle) {
+            let (slopes, square) = linear.slopes(&point, &x, &limits);
+            x = gram.nearest_from(x, slopes, square);
+            point = linear.at(&x);
+        }
+        if dot(&point, &point).sqrt() <= REACHED * self.attained {
+            cube.split = self.best_split(cube, |i| linear.extent(&gram, i));
             return;
         }
         factor.solve_transposed(&mut point);
         let norm = dot(&point, &point).sqrt();
         let u = point.map(|x| x / norm);
-        let prices = [0, 1].map(|which: usize| limits[which].price(&x) / norm);
+        let mut prices = [0.0; COLUMNS];
+        let mut total = 0.0;
+        for limit in &limits {
+            let relation = &relations[limit.relation];
+            let price = limit.price(&x, relation.equal) / norm;
+            prices.iter_mut().zip(&relation.share).for_each(|(to, share)| *to += price * share);
+            total += price * relation.constant - price.abs() * relation.tolerance(&cube.factors);
+        }
         let mut weight = [0.0; COLUMNS];
-        let total = self.least_of_all(model, cube, &u, prices, &mut weight);
+        for s in 0..self.sources.len() {
+            total += self.least(cube, s, &u, &prices, &mut weight);
+        }
+        for limit in &limits {
+            // What a product may be off by in the middle of the cube.
+            if let Some(factors) = model.product_of(limit.relation) {
+                let gap: f64 = factors.iter().map(|&i| centre(cube.factors[i]).1).product();
+                factors.iter().for_each(|&i| weight[i] += limit.price(&x, false) / norm * gap);
+            }
+        }
         if total > 0.0 {
-            let spread = along(&variance, &u);
+            let spread = along(&variance, &u).max(0.0);
             self.weigh_variance(cube, &u, 0.5 * total / spread, &mut weight);
             // A denominator some hundred roundings too large, never too small.
-            cube.bound = cube.bound.max(total / (spread.sqrt() * (1.0 + 1e-13)));
+            let bound = match self.weighing {
+                Weighing::Both => total / (spread.sqrt() * (1.0 + 1e-13)),
+                Weighing::Target { highest } => {
+                    let a = 0.5 * spread.sqrt();
+                    total / ((a + (a * a + highest * total).sqrt()) * (1.0 + 1e-13))
+                }
+            };
+            // Factors were cut off for what lies beyond the distance attained.
+            cube.bound = cube.bound.max(bound.min(self.attained));
         }
         cube.split = self.best_split(cube, |i| weight[i]);
     }
 
+    /// The widest interval of temperature, if one is too wide for a bound.
+    fn widest(&self, cube: &Cube) -> Option<usize> {
+        let wide = (0..self.sources.len()).filter_map(|s| {
+            let node = self.node_of(cube, s);
+            (node.detail == Detail::Wide).then(|| (node.t[1] / node.t[0], 3 * s))
+        });
+        wide.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, split)| split)
+    }
+
     /// Δ_c and A of a cube, in coordinates in which M is the unit matrix.
     #[inline(always)]
-    fn linear(&self, cube: &Cube, factor: &Factor) -> Linear {
+    fn linear(&self, model: &Model<'_>, cube: &Cube, factor: &Factor) -> Linear {
         let count = 3 * self.sources.len();
         let (mut middle, mut columns) = ([0.0; RANK], [[0.0; RANK]; COLUMNS]);
+        let mut cones = [false; SOURCES];
         for s in 0..self.sources.len() {
             let node = self.node_of(cube, s);
-            let ((v, dv), (w, dw)) = (centre(cube.own[s]), centre(cube.other[s]));
+            let ((v, dv), (w, dw)) = (centre(cube.own(s)), centre(cube.other(s)));
+            let wide = node.t[1] - node.t[0] > NARROW * node.t[1];
+            if wide && model.sources[s].role.is_free() && cube.own(s)[0] < CONE * cube.own(s)[1] {
+                cones[s] = true;
+                // The points that span a + bt + ct² on |t| ≤ 1.
+                let half = 0.5 * cube.own(s)[1];
+                let span = [[1.0, -1.0, 1.0], [1.0, 0.0, -1.0], [1.0, 1.0, 1.0]];
+                for (column, shares) in columns[3 * s..].iter_mut().zip(span) {
+                    shares.iter().zip(&node.own).for_each(|(share, term)| add(column, half * share, term));
+                    add(&mut middle, 1.0, column);
+                }
+                continue;
+            }
             add(&mut middle, v, &node.own[0]);
             add(&mut columns[3 * s], v, &node.own[1]);
             add(&mut columns[3 * s + 1], dv, &node.own[0]);
-            if cube.other[s][1] > 0.0 {
+            if cube.other(s)[1] > 0.0 {
                 add(&mut middle, w, &node.other[0]);
                 add(&mut columns[3 * s], w, &node.other[1]);
                 add(&mut columns[3 * s + 2], dw, &node.other[0]);
@@ -173,73 +327,7 @@ impl Cell {
         for column in columns[..count].iter_mut().chain([&mut middle]) {
             factor.solve(column);
         }
-        Linear { middle, columns, count }
-    }
-
-    /// The x that brings the linear model nearest to the origin, within the sums that lighting factors may have.
-    #[inline(always)]
-    fn nearest(&self, model: &Model<'_>, cube: &Cube, linear: &Linear) -> Nearest {
-        let mut limits = [Limit::default(), Limit::default()];
-        loop {
-            let gram = linear.gram(&limits);
-            let x = gram.nearest();
-            // At most once for each sum: a row that is there is not put there again.
-            if !(model.limited && self.exceeded(model, cube, &x, &linear.columns, &mut limits)) {
-                return Nearest { gram, x, limits };
-            }
-        }
-    }
-
-    /// min over the cube of u·Δ with the prices of v and w, less rounding; adds to `weight` what each range accounts for.
-    #[inline(always)]
-    fn least_of_all(
-        &self,
-        model: &Model<'_>,
-        cube: &Cube,
-        u: &Vector,
-        prices: [f64; 2],
-        weight: &mut [f64; COLUMNS],
-    ) -> f64 {
-        let mut total = -self.slack;
-        for (price, sum) in prices.iter().zip(model.sums) {
-            // A sum of factors may be this much larger, by the rounding of the user's own numbers.
-            total -= price * (sum + 1e-12);
-        }
-        for s in 0..self.sources.len() {
-            let prices = if model.sources[s].object { prices } else { [0.0; 2] };
-            total += self.least(cube, s, u, prices, weight);
-        }
-        total
-    }
-
-    /// Adds a row for every sum of factors that the point x breaks; whether any is new.
-    fn exceeded(
-        &self,
-        model: &Model<'_>,
-        cube: &Cube,
-        x: &[f64; COLUMNS],
-        columns: &[Vector; COLUMNS],
-        limits: &mut [Limit; 2],
-    ) -> bool {
-        let mut new = false;
-        for (which, (limit, sum)) in limits.iter_mut().zip(model.sums).enumerate() {
-            let (mut row, mut middle, mut at, mut stiff) = ([0.0; COLUMNS], -sum, -sum, 0.0f64);
-            for s in (0..self.sources.len()).filter(|&s| model.sources[s].object) {
-                let i = 3 * s + 1 + which;
-                let (value, half) = centre([cube.own[s], cube.other[s]][which]);
-                row[i] = half;
-                middle += value;
-                at += value + half * x[i];
-                if half > 0.0 {
-                    stiff = stiff.max(STIFF * dot(&columns[i], &columns[i]).sqrt() / half);
-                }
-            }
-            if limit.stiffness == 0.0 && at > 1e-9 && stiff > 0.0 {
-                *limit = Limit { row: row.map(|x| stiff * x), middle: stiff * middle, stiffness: stiff };
-                new = true;
-            }
-        }
-        new
+        Linear { middle, columns, count, cones }
     }
 
     /// Adds what the ranges account for by the variance at their upper ends being too large within them.
@@ -247,14 +335,16 @@ impl Cell {
     fn weigh_variance(&self, cube: &Cube, u: &Vector, scale: f64, weight: &mut [f64; COLUMNS]) {
         for s in 0..self.sources.len() {
             let node = self.node_of(cube, s);
-            let (own, other) = (cube.own[s], cube.other[s]);
-            let share = scale * along(&node.own_spread, u);
-            weight[3 * s + 1] += share * (own[1] - own[0]);
-            let mut seen = share * own[1];
-            if other[1] > 0.0 {
-                let share = scale * along(&node.other_spread, u);
-                weight[3 * s + 2] += share * (other[1] - other[0]);
-                seen += share * other[1];
+            let mut seen = 0.0;
+            for (which, spread) in [&node.own_spread, &node.other_spread].into_iter().enumerate() {
+                let Some(spread) = spread else { continue };
+                let column = 3 * s + 1 + which;
+                let [low, high] = cube.factors[column];
+                if high > 0.0 {
+                    let share = scale * along(spread, u);
+                    weight[column] += share * (high - low);
+                    seen += share * high;
+                }
             }
             weight[3 * s] += seen * GROWTH * (node.t[1] - node.t[0]) / node.t[1];
         }
@@ -271,22 +361,33 @@ impl Cell {
         };
         for s in 0..self.sources.len() {
             let node = self.node_of(cube, s);
-            add(cube.own[s][1], &node.own_spread);
-            if cube.other[s][1] > 0.0 {
-                add(cube.other[s][1], &node.other_spread);
+            if let Some(spread) = &node.own_spread {
+                add(cube.own(s)[1], spread);
+            }
+            if let Some(spread) = node.other_spread.as_ref().filter(|_| cube.other(s)[1] > 0.0) {
+                add(cube.other(s)[1], spread);
             }
         }
         total
     }
 
-    /// Least u·(v f + w g) with the prices of v and w of one source, and how much of it each of its ranges accounts for.
+    /// Least u·(v f + w g) with the prices of v and w of one source, less rounding, and how much of it each of its ranges
+    /// accounts for.
     #[inline(always)]
-    fn least(&self, cube: &Cube, s: usize, u: &Vector, prices: [f64; 2], weight: &mut [f64; COLUMNS]) -> f64 {
+    fn least(
+        &self,
+        cube: &Cube,
+        s: usize,
+        u: &Vector,
+        prices: &[f64; COLUMNS],
+        weight: &mut [f64; COLUMNS],
+    ) -> f64 {
         let node = self.node_of(cube, s);
         let mut f = [0, 1, 2, 3].map(|term| dot(u, &node.own[term]));
-        f[0] += prices[0];
-        let own = cube.own[s];
-        let other = cube.other[s];
+        f[0] += prices[3 * s + 1];
+        let (own, other) = (cube.own(s), cube.other(s));
+        let size = node.reach.size;
+        let slack = self.rounding * (own[1] * size[0] + other[1] * size[1]);
         if other[1] <= 0.0 {
             let least =
                 own.map(|v| least_parabola(v * f[0], v * f[1], v * f[2]) - v * (f[3].abs() + node.own_rest));
@@ -294,10 +395,10 @@ impl Cell {
             weight[3 * s] =
                 v * (f[1].abs() + f[2].abs() + f[3].abs() + node.own_rest) + 0.5 * dv * f[1].abs();
             weight[3 * s + 1] = dv * (f[0].abs() + 0.5 * f[1].abs());
-            return least[0].min(least[1]);
+            return least[0].min(least[1]) - slack;
         }
         let mut g = [0, 1, 2, 3].map(|term| dot(u, &node.other[term]));
-        g[0] += prices[1];
+        g[0] += prices[3 * s + 2];
         let mut least = f64::INFINITY;
         for v in own {
             for w in other {
@@ -312,17 +413,16 @@ impl Cell {
         weight[3 * s] = mix(1) + mix(2) + mix(3) + v * node.own_rest + w * node.other_rest + cross;
         weight[3 * s + 1] = dv * (f[0].abs() + 0.5 * f[1].abs());
         weight[3 * s + 2] = dw * (g[0].abs() + 0.5 * g[1].abs());
-        least
+        least - slack
     }
 
     /// The range of most weight among those that can be halved.
     fn best_split(&self, cube: &Cube, weight: impl Fn(usize) -> f64) -> Option<usize> {
         let mut best: Option<(f64, usize)> = None;
         for i in 0..3 * self.sources.len() {
-            let s = i / 3;
-            let [low, high] = [[0.0, 1.0], cube.own[s], cube.other[s]][i % 3];
+            let [low, high] = cube.factors[i];
             let divisible =
-                if i % 3 == 0 { self.divisible(s, cube.nodes[s]) } else { high - low > 1e-12 * high };
+                if i % 3 == 0 { self.node_of(cube, i / 3).divisible() } else { high - low > 1e-12 * high };
             let weight = weight(i);
             if divisible && weight > 0.0 && best.is_none_or(|(most, _)| weight > most) {
                 best = Some((weight, i));
@@ -330,4 +430,43 @@ impl Cell {
         }
         best.map(|(_, i)| i)
     }
+}
+
+/// The x that brings the linear model nearest to the origin, within what relates the factors.
+#[inline(always)]
+fn nearest(relations: &[Relation], cube: &Cube, linear: &Linear) -> Nearest {
+    let mut limits = Vec::new();
+    for _ in 0..ROUNDS {
+        let gram = linear.gram(&limits);
+        let x = gram.nearest();
+        if !add_broken(relations, cube, &x, linear, &mut limits) {
+            return Nearest { gram, x, limits };
+        }
+    }
+    let gram = linear.gram(&limits);
+    Nearest { x: gram.nearest(), gram, limits }
+}
+
+/// Adds a row for every relation that the point x breaks; whether any is new.
+fn add_broken(
+    relations: &[Relation],
+    cube: &Cube,
+    x: &[f64; COLUMNS],
+    linear: &Linear,
+    limits: &mut Vec<Limit>,
+) -> bool {
+    let before = limits.len();
+    for (index, relation) in relations.iter().enumerate() {
+        if limits[..before].iter().any(|limit| limit.relation == index) {
+            continue;
+        }
+        let (row, middle, size, stiff) = linear.row(relation, cube);
+        let at = middle + row.iter().zip(x).map(|(row, x)| row * x).sum::<f64>();
+        let broken = at > BROKEN * size || (relation.equal && at < -BROKEN * size);
+        if broken && stiff > 0.0 {
+            let row = row.map(|x| stiff * x);
+            limits.push(Limit { relation: index, row, middle: stiff * middle, stiffness: stiff });
+        }
+    }
+    limits.len() > before
 }

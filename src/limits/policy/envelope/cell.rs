@@ -1,68 +1,61 @@
-//! A part of the envelope with its own whitening and basis, and intervals of temperature with what is known of them.
+//! A part of the scenes with its own whitening and basis.
 //!
-//! In a cell counts are divided by 2√c, c a variance of each band in the middle of what target and alternative can both
-//! be there: ω = 1/(2√c). Spectra are then kept as their components along an orthonormal basis Q of whitened spectra of the
-//! cell. For *any* weights z of the bands,
+//! In a cell counts are divided by 2√c, c a variance of each band in the middle of what the target can have there:
+//! ω = 1/(2√c). Spectra are then kept as their components along an orthonormal basis Q of whitened spectra of the
+//! cell. With r = √(N+v) − √(N′+v) and *any* weights y of the bands there are two bounds from below:
 //!
-//! d(θ, θ′) ≥ Σ z_w ω_w(N − N′)_w / √(Σ z_w² ĉ_w/c_w),   ĉ = ¼(1 + s)(N + v) + ¼(1 + 1/s)(N′ + v) at the upper ends of a box,
+//! 1. N − N′ = 2r√(N+v) − r², so that Σ y(N − N′) ≤ 2d‖y√(N+v)‖ + d² max|y|, of which the target alone says all:
 //!
-//! because √(N+v) − √(N′+v) = (N − N′)/(√(N+v) + √(N′+v)), (√a + √b)² ≤ 4ĉ for any s > 0 (2√(ab) ≤ sa + b/s; best where
-//! s² = b/a, which is taken from the best scene known), N and N′ grow with every temperature and lighting factor, and by
-//! Cauchy and Schwarz. With z = Qu:
+//!    d ≥ n/(A + √(A² + hn)),   n = Σ y(N − N′) ≥ 0,   A = ‖y√(N+v)‖,   h = max|y|.
+//!
+//!    It loses about dh/2A, next to nothing where counts are many ([`Weighing::Target`]).
+//! 2. N − N′ = r(√(N+v) + √(N′+v)), (√a + √b)² ≤ 4ĉ, ĉ = ¼(1 + s)a + ¼(1 + 1/s)b, for any s > 0 (2√(ab) ≤ sa + b/s; best
+//!    where s² = b/a, which is taken from the best scene known), so that d ≥ n/(2√(Σ y²ĉ)) ([`Weighing::Both`]).
+//!
+//! N and N′ grow with every temperature and factor: variances are those at the upper ends of a box. With y = ωQu:
 //!
 //! | | | kept here as |
 //! |---|---|---|
-//! | numerator | u·Qᵀω(N − N′) = Σ_s u·Qᵀω[v f(T) + w g(T)] | Qᵀωf, Qᵀωg as cubics in T with remainders (`series`) |
-//! | denominator | √(uᵀMu), M = Σ_w q_w q_wᵀ ĉ_w/c_w | shares of v and w in M at the upper end of T |
+//! | n | u·Qᵀω(N − N′) = Σ_s u·Qᵀω[v f(T) + w g(T)] | Qᵀωf, Qᵀωg (`node`) |
+//! | 2A | √(uᵀMu), M = Σ_b q_b q_bᵀ (N+v)_b/c_b, or ĉ in place of N + v | shares of v and w in M |
+//! | h | ≤ max ω_b‖q_b‖ for ‖u‖ = 1 | |
 //!
 //! Neither c nor Q is an approximation in a bound: a basis or weights that are not the best lose only in the second
-//! order of what they miss.
+//! order of what they miss. That they are good where it counts is seen to by the best point known, whose r is in Q.
 //!
 //! Rounding: components are sums over W bands and R basis vectors; 2√R W ulp of the largest whitened signals, and some
 //! hundred more for Planck's function and the short sums, are taken off every bound.
 
+use super::joint::Residual;
 use super::linear::{PAIRS, RANK, Vector};
-use super::model::{Model, Region, SOURCES, Span};
+use super::model::{Model, Region};
+use super::node::{Node, Spread};
 use super::partition::{FAINT, Part};
-use super::series::{TERMS, planck_series, remainder};
+use super::series::TERMS;
 use crate::sum::dot;
 
-/// Radii of the discs of Cauchy's estimate, as shares of the lowest temperature.
-const RADII: [f64; 5] = [0.2, 0.4, 0.6, 0.8, 0.95];
+/// Largest half width of a temperature of the scene, as a share of its middle, and of one of the alternative's own.
+pub(super) const WIDEST: f64 = 0.08;
+pub(super) const WIDEST_FREE: f64 = 0.25;
 /// The basis is complete when nothing is left of a spectrum but this share of the distance attained.
 const LEFT_OVER: f64 = 1e-3;
 /// What is left of a spectrum times the skew of variances is this much less of a loss: the weights of bands need not be
 /// known as well as their differences.
 const WEIGHT_OF_SKEW: f64 = 0.03;
-/// Intervals are not halved below this share of their temperature.
-const NARROWEST: f64 = 1e-9;
+/// Steps between the temperatures of the alternative that the basis is chosen for, as a ratio.
+const STEP: f64 = 1.35;
+/// What weighing by the target alone may lose of a distance.
+const LOSS: f64 = 5e-4;
 
 pub(super) type Cubic = [Vector; TERMS];
 
-/// An interval of the temperature of a source.
-#[derive(Debug, Clone)]
-pub(super) struct Node {
-    pub(super) t: [f64; 2],
-    /// Qᵀω f and Qᵀω g as cubics, and the norms of what these leave.
-    pub(super) own: Cubic,
-    pub(super) other: Cubic,
-    pub(super) own_rest: f64,
-    pub(super) other_rest: f64,
-    /// Shares of v and w in M at the upper end.
-    pub(super) own_spread: Box<[f64; PAIRS]>,
-    pub(super) other_spread: Box<[f64; PAIRS]>,
-    /// Place of the first of two halves.
-    pub(super) halves: Option<u32>,
-}
-
-/// Intervals of one source, and the norms of f and g at the reach of each disc.
-#[derive(Debug)]
-pub(super) struct Intervals {
-    pub(super) nodes: Vec<Node>,
-    lowest_k: f64,
-    own_reach: [f64; RADII.len()],
-    other_reach: [f64; RADII.len()],
-    faint: bool,
+/// Whose counts the variances of a cell are.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Weighing {
+    /// The target's alone, with what h is at most.
+    Target { highest: f64 },
+    /// Those of target and alternative.
+    Both,
 }
 
 #[derive(Debug)]
@@ -71,92 +64,109 @@ pub(super) struct Cell {
     /// ω, and 1/c.
     whitening: Vec<f64>,
     per_variance: Vec<f64>,
+    /// The most counts of the alternative with which it may be nearer than the distance attained.
+    pub(super) brightest: Vec<f64>,
     /// The components of each band along the basis, and how many there are.
     basis: Vec<Vector>,
     pub(super) rank: usize,
-    pub(super) sources: Vec<Intervals>,
+    pub(super) weighing: Weighing,
+    /// The intervals of every source, whole ranges first.
+    pub(super) sources: Vec<Vec<Node>>,
     pub(super) var_spread: Box<[f64; PAIRS]>,
-    pub(super) slack: f64,
+    /// What is negligible, and the least distance known.
+    pub(super) faint: f64,
+    pub(super) attained: f64,
+    /// Rounding of a component as a share of its size.
+    pub(super) rounding: f64,
 }
 
 impl Cell {
-    /// Prepares a part of the envelope, with a distance for what is negligible.
-    pub(super) fn new(model: &Model<'_>, part: &Part, attained: f64) -> Self {
+    /// Prepares a part of an envelope of which `best` is the nearest point known, at the distance `attained`, priors and all.
+    pub(super) fn new(model: &Model<'_>, part: &Part, best: &Residual, attained: f64) -> Self {
         let (region, variance) = (part.region.clone(), &part.variance);
         let usable = |c: &f64| *c > 0.0;
         let per_variance: Vec<f64> = variance.iter().map(|c| if usable(c) { 1.0 / c } else { 0.0 }).collect();
         let whitening: Vec<f64> = per_variance.iter().map(|inverse| 0.5 * inverse.sqrt()).collect();
+        let most = part.most.iter().zip(&model.var);
+        let ulps = 2.0 * (RANK as f64).sqrt() * variance.len() as f64 + 400.0;
         let mut cell = Self {
             region,
             whitening,
             per_variance,
+            brightest: most.map(|(a, v)| (a.sqrt() + attained).powi(2) - v).collect(),
             basis: vec![[0.0; RANK]; variance.len()],
             rank: 0,
+            weighing: Weighing::Both,
             sources: Vec::new(),
             var_spread: Box::new([0.0; PAIRS]),
-            slack: 0.0,
+            faint: FAINT * attained,
+            attained,
+            rounding: ulps * f64::EPSILON,
         };
         let samples = cell.samples(model, &part.skew);
-        cell.set_basis(&orthonormal(samples, LEFT_OVER * attained));
-        let shares = model.shares[0].iter().zip(&model.shares[1]);
-        let var: Vec<f64> = model.var.iter().zip(shares).map(|(v, (a, b))| v * (a + b)).collect();
-        cell.var_spread = cell.spread(&var);
-        let mut size = 0.0;
-        for s in 0..cell.region.len().min(SOURCES) {
-            let (intervals, largest) = cell.unhalved(model, s, FAINT * attained);
-            size += largest;
-            cell.sources.push(intervals);
-            let t = cell.region[s].t;
-            let root = cell.node(model, s, t, cell.spreads(model, s, t[1]));
-            cell.sources[s].nodes.push(root);
+        cell.set_basis(&orthonormal(cell.directions(model, best), samples, LEFT_OVER * attained));
+        let rows = cell.basis.iter().zip(&cell.whitening);
+        let highest = rows.map(|(row, w)| w * dot(row, row).sqrt()).fold(0.0, f64::max) * (1.0 + 1e-12);
+        // A is ½ about where variances are those of the cell.
+        if attained * highest <= LOSS {
+            cell.weighing = Weighing::Target { highest };
         }
-        let ulps = 2.0 * (RANK as f64).sqrt() * variance.len() as f64 + 400.0;
-        cell.slack = ulps * f64::EPSILON * size;
+        let [own, other] = cell.shares(model);
+        let var: Vec<f64> = (0..model.var.len()).map(|b| model.var[b] * (own(b) + other(b))).collect();
+        cell.var_spread = cell.spread(&var);
+        for s in 0..cell.region.len() {
+            let root = cell.root(model, s);
+            cell.sources.push(vec![root]);
+        }
         cell
     }
 
-    /// A source without intervals yet, and the norm of the most that it can give.
-    fn unhalved(&self, model: &Model<'_>, s: usize, faint: f64) -> (Intervals, f64) {
-        let Span { t, own, other } = self.region[s];
-        let (own_top, other_top) = self.norms(model, s, t[1]);
-        let largest = own[1] * own_top + other[1] * other_top;
-        let reach = RADII.map(|share| self.norms(model, s, t[1] + share * t[0]));
-        let intervals = Intervals {
-            nodes: Vec::new(),
-            lowest_k: t[0],
-            own_reach: reach.map(|norms| norms.0),
-            other_reach: reach.map(|norms| norms.1),
-            faint: largest <= faint,
-        };
-        (intervals, largest)
+    /// Shares of N + v and N′ + v in the variance of a band.
+    fn shares<'m>(&self, model: &'m Model<'_>) -> [Box<dyn Fn(usize) -> f64 + 'm>; 2] {
+        match self.weighing {
+            Weighing::Target { .. } => [Box::new(|_| 1.0), Box::new(|_| 0.0)],
+            Weighing::Both => [Box::new(|b| model.shares[0][b]), Box::new(|b| model.shares[1][b])],
+        }
     }
 
-    /// Norms of the whitened magnitudes of f and g at a temperature.
-    fn norms(&self, model: &Model<'_>, s: usize, temperature_k: f64) -> (f64, f64) {
-        let radiance = model.radiance(temperature_k);
-        let norm = |strength: &[f64]| {
-            let magnitude: Vec<f64> = strength.iter().map(|x| x.abs()).collect();
-            let counts = self.whitened(model.counts(&magnitude, &radiance));
-            dot(&counts, &counts).sqrt()
-        };
-        (norm(&model.sources[s].own), norm(&model.sources[s].other))
-    }
-
-    fn whitened(&self, mut counts: Vec<f64>) -> Vec<f64> {
+    pub(super) fn whitened(&self, mut counts: Vec<f64>) -> Vec<f64> {
         counts.iter_mut().zip(&self.whitening).for_each(|(count, w)| *count *= w);
         counts
     }
 
-    /// What the basis has to span: whitened spectra at Chebyshev points of every temperature, and what they become if the
-    /// variances change.
+    /// The weights of bands that are best at the best point known.
+    fn directions(&self, model: &Model<'_>, best: &Residual) -> Vec<Vec<f64>> {
+        let safe = |x: f64| if x > 0.0 { 1.0 / x.sqrt() } else { 0.0 };
+        let bands = best.rows.iter().enumerate().map(|(b, r)| {
+            let [own, other] = [&best.target, &best.alternative].map(|counts| counts[b] + model.var[b]);
+            let mean = 0.25 * (own.max(0.0).sqrt() + other.max(0.0).sqrt()).powi(2);
+            r * safe(mean) * safe(self.per_variance[b])
+        });
+        vec![bands.collect()]
+    }
+
+    /// What the basis has to span: whitened spectra at Chebyshev points of every temperature of the scene, at
+    /// steps of those of the alternative, and what they become if the variances change.
     fn samples(&self, model: &Model<'_>, skew: &[f64]) -> Vec<Vec<f64>> {
         let mut samples = Vec::new();
-        for (source, span) in model.sources.iter().zip(&self.region) {
-            for point in 0..5 {
-                let place = (f64::from(2 * point + 1) * std::f64::consts::PI / 10.0).cos();
-                let t = 0.5 * (span.t[0] + span.t[1]) + 0.5 * (span.t[1] - span.t[0]) * place;
-                let radiance = model.radiance(t);
-                for (strength, factor) in [(&source.own, span.own[1]), (&source.other, span.other[1])] {
+        for (s, (source, span)) in model.sources.iter().zip(&self.region).enumerate() {
+            let [low, high] = span.t;
+            let temperatures: Vec<f64> = if source.role.is_free() && high > low * (1.0 + 2.0 * WIDEST) {
+                let steps = ((high / low).ln() / STEP.ln()).ceil();
+                (0..=steps as u32).map(|step| low * (high / low).powf(f64::from(step) / steps)).collect()
+            } else {
+                let place = |point: u32| (f64::from(2 * point + 1) * std::f64::consts::PI / 10.0).cos();
+                (0..5).map(|point| 0.5 * (low + high) + 0.5 * (high - low) * place(point)).collect()
+            };
+            for t in temperatures {
+                let (radiance, most) = (model.radiance(t), self.most(model, s, t));
+                for (strength, range, most) in
+                    [(&source.own, span.own, most[0]), (&source.other, span.other, most[1])]
+                {
+                    let factor = range[1].min(most);
+                    if factor < range[0] || factor <= 0.0 {
+                        continue;
+                    }
                     let mut counts = self.whitened(model.counts(strength, &radiance));
                     counts.iter_mut().for_each(|count| *count *= factor);
                     samples.push(
@@ -180,7 +190,7 @@ impl Cell {
     }
 
     /// Qᵀω of counts.
-    fn components(&self, counts: &[f64]) -> Vector {
+    pub(super) fn components(&self, counts: &[f64]) -> Vector {
         let mut out = [0.0; RANK];
         for ((row, count), w) in self.basis.iter().zip(counts).zip(&self.whitening) {
             let value = count * w;
@@ -211,90 +221,51 @@ impl Cell {
         packed
     }
 
-    fn spreads(&self, model: &Model<'_>, s: usize, temperature_k: f64) -> [Box<[f64; PAIRS]>; 2] {
+    /// Shares of v and w of a source in M.
+    pub(super) fn spreads(&self, model: &Model<'_>, s: usize, temperature_k: f64) -> [Spread; 2] {
         let (source, radiance) = (&model.sources[s], model.radiance(temperature_k));
-        let [target, alternative, alone] = [&source.target, &source.alternative, &source.alone]
-            .map(|strength| model.counts(strength, &radiance));
-        let [share, other_share] = &model.shares;
-        let sum = |a: &[f64], b: &[f64]| -> Vec<f64> {
-            let terms = a.iter().zip(share).zip(b.iter().zip(other_share));
-            terms.map(|((a, share), (b, other))| a * share + b * other).collect()
-        };
-        let nothing = vec![0.0; alone.len()];
-        [self.spread(&sum(&target, &alternative)), self.spread(&sum(&nothing, &alone))]
-    }
-
-    fn node(&self, model: &Model<'_>, s: usize, t: [f64; 2], top: [Box<[f64; PAIRS]>; 2]) -> Node {
-        let [own_spread, other_spread] = top;
-        let intervals = &self.sources[s];
-        let (centre, half) = (0.5 * (t[0] + t[1]), 0.5 * (t[1] - t[0]));
-        let mut node = Node {
-            t,
-            own: [[0.0; RANK]; TERMS],
-            other: [[0.0; RANK]; TERMS],
-            own_rest: 0.0,
-            other_rest: 0.0,
-            own_spread,
-            other_spread,
-            halves: None,
-        };
-        if intervals.faint {
-            (node.own_rest, node.other_rest) = self.norms(model, s, t[1]);
-            return node;
-        }
-        let source = &model.sources[s];
-        let series = planck_series(model.scene.bands.nodes_cm1(), centre, half);
-        for (term, radiance) in series.iter().enumerate() {
-            node.own[term] = self.components(&model.counts(&source.own, radiance));
-            if source.object {
-                node.other[term] = self.components(&model.counts(&source.other, radiance));
+        let [own, other] = self.shares(model);
+        let sum = |strengths: [&[f64]; 2]| -> Spread {
+            let mut var = vec![0.0; model.var.len()];
+            let mut any = false;
+            for (strength, share) in strengths.into_iter().zip([&own, &other]) {
+                if strength.iter().any(|x| *x > 0.0) {
+                    let counts = model.counts(strength, &radiance);
+                    var.iter_mut().zip(counts).enumerate().for_each(|(b, (var, n))| *var += n * share(b));
+                    any = true;
+                }
             }
-        }
-        let least = |norms: &[f64; RADII.len()]| {
-            let radii = RADII.iter().zip(norms);
-            radii
-                .map(|(share, norm)| norm * remainder(half, share * intervals.lowest_k))
-                .fold(f64::INFINITY, f64::min)
+            any.then(|| self.spread(&var))
         };
-        (node.own_rest, node.other_rest) = (least(&intervals.own_reach), least(&intervals.other_reach));
-        node
-    }
-
-    /// Whether an interval can be halved further.
-    pub(super) fn divisible(&self, s: usize, node: u32) -> bool {
-        let intervals = &self.sources[s];
-        let [low, high] = intervals.nodes[node as usize].t;
-        !intervals.faint && high - low > NARROWEST * high
-    }
-
-    /// The two halves of an interval.
-    pub(super) fn halve(&self, model: &Model<'_>, s: usize, node: u32) -> [Node; 2] {
-        let whole = &self.sources[s].nodes[node as usize];
-        let [low, high] = whole.t;
-        let middle = 0.5 * (low + high);
-        let top = [whole.own_spread.clone(), whole.other_spread.clone()];
-        [
-            self.node(model, s, [low, middle], self.spreads(model, s, middle)),
-            self.node(model, s, [middle, high], top),
-        ]
+        match self.weighing {
+            Weighing::Target { .. } => [sum([&source.target, &[]]), None],
+            Weighing::Both => [sum([&source.target, &source.alternative]), sum([&[], &source.alone])],
+        }
     }
 }
 
-/// An orthonormal basis of samples but for what is negligible, the largest remainder first (Gram and Schmidt, twice).
-fn orthonormal(mut samples: Vec<Vec<f64>>, negligible: f64) -> Vec<Vec<f64>> {
+/// An orthonormal basis of samples but for what is negligible, those to be had first, then the largest remainder
+/// (Gram and Schmidt, twice).
+fn orthonormal(first: Vec<Vec<f64>>, mut samples: Vec<Vec<f64>>, negligible: f64) -> Vec<Vec<f64>> {
     let mut basis: Vec<Vec<f64>> = Vec::new();
+    let mut first = first.into_iter();
     while basis.len() < RANK {
-        let norms: Vec<f64> = samples.iter().map(|sample| dot(sample, sample)).collect();
-        let Some(largest) = (0..norms.len()).max_by(|&a, &b| norms[a].total_cmp(&norms[b])) else {
-            break;
+        let mut next = match first.next() {
+            Some(first) => first,
+            None => {
+                let norms: Vec<f64> = samples.iter().map(|sample| dot(sample, sample)).collect();
+                let Some(largest) = (0..norms.len()).max_by(|&a, &b| norms[a].total_cmp(&norms[b])) else {
+                    break;
+                };
+                if norms[largest].sqrt() <= negligible {
+                    break;
+                }
+                samples.swap_remove(largest)
+            }
         };
-        let mut next = samples.swap_remove(largest);
-        if norms[largest].sqrt() <= negligible {
-            break;
-        }
         basis.iter().for_each(|known| remove(&mut next, known));
         let norm = dot(&next, &next).sqrt();
-        if norm <= 0.0 {
+        if !(norm > 0.0 && norm.is_finite()) {
             continue;
         }
         next.iter_mut().for_each(|x| *x /= norm);

@@ -11,19 +11,21 @@
 
 use super::linear::{COLUMNS, Gram};
 use super::model::{Model, Point, Region, SOURCES};
+use super::relation::Relation;
 use super::series::planck_series;
 use crate::sum::dot;
 
 /// Steps at most.
 const STEPS: usize = 80;
-/// First size of the box: share of a range, and in K at most.
+/// First size of the box: share of a range, and in K and of the temperature at most.
 const FIRST: f64 = 0.25;
 const FIRST_K: f64 = 10.0;
+const FIRST_SHARE: f64 = 0.03;
 /// Size of the box relative to the first at which a descent ends, and the relative gain that is none.
 const LAST: f64 = 1e-7;
 const NO_GAIN: f64 = 1e-9;
 
-/// How much more a broken sum of factors weighs than what they do.
+/// How much more a broken relation of factors weighs than what they do.
 const STIFF: f64 = 30.0;
 
 /// Counts and residual of a point, and its derivatives.
@@ -31,7 +33,7 @@ pub(super) struct Residual {
     pub(super) target: Vec<f64>,
     pub(super) alternative: Vec<f64>,
     pub(super) square: f64,
-    rows: Vec<f64>,
+    pub(super) rows: Vec<f64>,
     columns: Vec<Vec<f64>>,
 }
 
@@ -42,7 +44,7 @@ pub(super) fn descend(model: &Model<'_>, whole: &Region, mut point: Point) -> (P
     for (value, [low, high]) in point.values.as_flattened_mut().iter_mut().zip(&ranges) {
         *value = value.clamp(*low, *high);
     }
-    model.scale(&mut point);
+    model.project(&mut point);
     let mut at = residual(model, &point);
     let mut size = 1.0;
     for _ in 0..STEPS {
@@ -67,20 +69,19 @@ pub(super) fn descend(model: &Model<'_>, whole: &Region, mut point: Point) -> (P
 
 /// The best point of the linear model in a box of `size` times the first.
 fn step(model: &Model<'_>, ranges: &[[f64; 2]], point: &Point, at: &Residual, size: f64) -> Point {
-    let mut linear = Linear::new(ranges, point, at, size);
+    let gain = model.gain.map_or(1.0, |column| point.values.as_flattened()[column]);
+    let mut linear = Linear::new(ranges, point, at, size, gain);
     let next = linear.best(ranges, point);
-    if !model.limited {
+    if !model.is_related() {
         return next;
     }
-    let excesses = model.excesses(&next);
-    if excesses == [false; 2] {
-        return next;
-    }
-    for which in (0..2).filter(|&which| excesses[which]) {
-        linear.limit(model, point, which);
+    let relations = model.relations_at(point);
+    let broken = relations.iter().filter(|relation| relation.is_broken(&next.factors()));
+    for relation in broken {
+        linear.limit(point, relation);
     }
     let mut next = linear.best(ranges, point);
-    model.scale(&mut next);
+    model.project(&mut next);
     next
 }
 
@@ -94,11 +95,12 @@ struct Linear {
 }
 
 impl Linear {
-    fn new(ranges: &[[f64; 2]], point: &Point, at: &Residual, size: f64) -> Self {
+    fn new(ranges: &[[f64; 2]], point: &Point, at: &Residual, size: f64, gain: f64) -> Self {
         let (mut middle, mut half) = ([0.0; COLUMNS], [0.0; COLUMNS]);
         for (i, (now, [low, high])) in point.values.as_flattened().iter().zip(ranges).enumerate() {
             let share = FIRST * (high - low);
-            let width = if i % 3 == 0 { share.min(FIRST_K) } else { share };
+            let most = if i % 3 == 0 { FIRST_K.max(FIRST_SHARE * now) } else { FIRST * gain.max(1.0) };
+            let width = share.min(most);
             let [from, to] = [(now - size * width).max(*low), (now + size * width).min(*high)];
             (middle[i], half[i]) = (0.5 * (from + to) - now, 0.5 * (to - from));
         }
@@ -112,18 +114,20 @@ impl Linear {
         Self { middle, half, rows, columns }
     }
 
-    /// Adds a row of great weight for the sum of V (`which` = 0) or V′ (1), which is not to exceed what it may be.
-    fn limit(&mut self, model: &Model<'_>, point: &Point, which: usize) {
-        let lit = |i: usize| i % 3 == which + 1 && model.sources[i / 3].object;
-        let factors = || (0..self.columns.len()).filter(|&i| lit(i));
-        let stiff = factors()
-            .filter(|&i| self.half[i] > 0.0)
-            .map(|i| STIFF * dot(&self.columns[i], &self.columns[i]).sqrt() / self.half[i])
+    /// Adds a row of great weight for a relation that is not to be broken.
+    fn limit(&mut self, point: &Point, relation: &Relation) {
+        let tied = || relation.share.iter().copied().enumerate().take(self.columns.len());
+        let stiff = tied()
+            .filter(|&(i, share)| share != 0.0 && self.half[i] > 0.0)
+            .map(|(i, share)| {
+                STIFF * dot(&self.columns[i], &self.columns[i]).sqrt() / (share.abs() * self.half[i])
+            })
             .fold(0.0, f64::max);
-        let sum: f64 = factors().map(|i| point.values[i / 3][i % 3] + self.middle[i]).sum();
-        self.rows.push(stiff * (sum - model.sums[which]));
-        for (i, column) in self.columns.iter_mut().enumerate() {
-            column.push(if lit(i) { stiff * self.half[i] } else { 0.0 });
+        let mut middle = point.factors();
+        middle.iter_mut().zip(&self.middle).for_each(|(value, m)| *value += m);
+        self.rows.push(stiff * relation.at(&middle));
+        for (column, (i, share)) in self.columns.iter_mut().zip(relation.share.iter().enumerate()) {
+            column.push(stiff * share * self.half[i]);
         }
     }
 

@@ -11,7 +11,7 @@ pub(super) type Vector = [f64; RANK];
 /// Columns of A: temperature, v, w of each source.
 pub(super) const COLUMNS: usize = 3 * SOURCES;
 /// Steps of the search for the nearest point.
-const STEPS: usize = 24;
+const STEPS: usize = 40;
 /// Share of the distance that may be lost by slopes that are left.
 const LOSS: f64 = 1e-3;
 
@@ -70,19 +70,22 @@ impl Factor {
     }
 }
 
-/// A sum of factors as a row of the linear model: nothing where it holds anyway.
-#[derive(Default)]
+/// A relation between factors as a row of the linear model: nothing where it holds anyway.
+#[derive(Clone, Copy)]
 pub(super) struct Limit {
+    /// Which of the relations of a box.
+    pub(super) relation: usize,
     pub(super) row: [f64; COLUMNS],
     pub(super) middle: f64,
     pub(super) stiffness: f64,
 }
 
 impl Limit {
-    /// The multiplier of the sum, not negative.
-    pub(super) fn price(&self, x: &[f64; COLUMNS]) -> f64 {
+    /// The multiplier of the relation, without its sign where it is an inequality.
+    pub(super) fn price(&self, x: &[f64; COLUMNS], equal: bool) -> f64 {
         let row: f64 = self.row.iter().zip(x).map(|(row, x)| row * x).sum();
-        (self.stiffness * (self.middle + row)).max(0.0)
+        let price = self.stiffness * (self.middle + row);
+        if equal { price } else { price.max(0.0) }
     }
 }
 
@@ -132,9 +135,21 @@ impl Gram {
     /// Comput. Stat. 10, 129 (1995)). Coefficients that come to a bound are held there; when the others have come to
     /// rest, the one that is pulled back most is let go.
     pub(super) fn nearest(&self) -> [f64; COLUMNS] {
-        let (mut x, mut held) = ([0.0; COLUMNS], [false; COLUMNS]);
-        let mut slope = self.pull;
+        self.nearest_from([0.0; COLUMNS], self.pull, self.middle)
+    }
+
+    /// The same from x on, with half the slopes of the square and the square there: where all but a little of the middle
+    /// cancels, what is left has lost its digits in the normal equations, but not where it is formed anew.
+    pub(super) fn nearest_from(
+        &self,
+        start: [f64; COLUMNS],
+        slopes: [f64; COLUMNS],
+        square_at_start: f64,
+    ) -> [f64; COLUMNS] {
+        let (mut x, mut slope) = (start, slopes);
         let columns = &self.columns[..self.count];
+        let mut held = [false; COLUMNS];
+        columns.iter().for_each(|&i| held[i] = x[i].abs() >= 1.0);
         for _ in 0..STEPS {
             let (mut free, mut count) = ([0; COLUMNS], 0);
             for &i in columns.iter().filter(|&&i| !held[i]) {
@@ -164,7 +179,8 @@ impl Gram {
             }
             // A matrix near singular is not solved in one go, and what is left of the slopes is lost in a bound.
             let loss: f64 = free.iter().map(|&i| slope[i].abs()).sum();
-            let square = self.middle + columns.iter().map(|&i| x[i] * (self.pull[i] + slope[i])).sum::<f64>();
+            let moved = columns.iter().map(|&i| (x[i] - start[i]) * (slopes[i] + slope[i]));
+            let square = square_at_start + moved.sum::<f64>();
             if loss > LOSS * square {
                 continue;
             }

@@ -2,27 +2,57 @@
 //!
 //! N − N′ = κΣ_s [v_s f_s(T_s) + w_s g_s(T_s)]: f and g are band integrals of a fixed spectrum times B(T_s), v what the
 //! source gives the target (and the alternative, where it does not know better), w what it gives the alternative alone.
+//! With c₀ = G the alternative's gain and cₖ = G·Vₖ′ all is linear in the factors; what ties them is in `relation`.
 //!
 //! | source | v | f | w | g |
 //! |---|---|---|---|---|
 //! | the target's surface | 1 | e | | |
-//! | the alternative's, temperature unknown | 1 | −e′ | | |
-//! | both, temperature known | 1 | e − e′ | | |
-//! | object k, lighting unknown | Vₖ | (1 − e)εₖ | Vₖ′ | −(1 − e′)εₖ |
-//! | object k, lighting known | Vₖ | (e′ − e)εₖ | | |
+//! | the alternative's, temperature unknown | c₀ | −e′ | | |
+//! | both, temperature known, gain unknown | 1 | e | c₀ | −e′ |
+//! | both, temperature and gain known | 1 | e − e′ | | |
+//! | object k, lighting or gain unknown | Vₖ | (1 − e)εₖ | cₖ | −(1 − e′)εₖ |
+//! | object k, lighting and gain known | Vₖ | (e′ − e)εₖ | | |
+//! | object k with a temperature of the alternative's own | Vₖ | (1 − e)εₖ | | |
+//! | the alternative's object k | cₖ | −(1 − e′)εₖ | | |
 
+use super::linear::COLUMNS;
 use super::ranges::Ranges;
+use super::relation::{Product, Relation};
 use super::scene::EnvelopeScene;
 use crate::fisher::{Nuisance, Unknowns};
 use crate::planck;
 use crate::scene::State;
 
-/// Sources that a proof can deal with: two surfaces and two objects.
-pub(super) const SOURCES: usize = 4;
+/// Sources that a proof can deal with: two surfaces, and four objects or twice two.
+pub(super) const SOURCES: usize = 6;
+/// Largest |ln G′|, and the range of Tₖ′ (K): those of the search for the nearest state.
+const LOG_GAIN: f64 = 14.0;
+const ENVIRONMENT_K: [f64; 2] = [0.1, 1e6];
+
+/// What a source is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Role {
+    /// The target's surface, with the alternative's where that is at the same temperature.
+    Target,
+    /// The alternative's surface at a temperature of its own.
+    Alternative,
+    /// Object k of the surroundings.
+    Object(usize),
+    /// Object k at the temperature that the alternative has it.
+    AlternativeObject(usize),
+}
+
+impl Role {
+    /// Whether its temperature is the alternative's to choose.
+    pub(super) fn is_free(self) -> bool {
+        matches!(self, Self::Alternative | Self::AlternativeObject(_))
+    }
+}
 
 /// A body of one temperature, with the spectra at the nodes that it is seen by.
 #[derive(Debug, Clone)]
 pub(super) struct Source {
+    pub(super) role: Role,
     /// f and g without B.
     pub(super) own: Vec<f64>,
     pub(super) other: Vec<f64>,
@@ -30,8 +60,6 @@ pub(super) struct Source {
     pub(super) target: Vec<f64>,
     pub(super) alternative: Vec<f64>,
     pub(super) alone: Vec<f64>,
-    /// Whether v and w are lighting factors.
-    pub(super) object: bool,
 }
 
 /// Ranges of one source: temperature (K), v and w.
@@ -51,91 +79,175 @@ pub(super) struct Point {
     pub(super) values: [[f64; 3]; SOURCES],
 }
 
+impl Point {
+    /// The factors, each in its column.
+    pub(super) fn factors(&self) -> [f64; COLUMNS] {
+        let mut factors = [0.0; COLUMNS];
+        factors.copy_from_slice(self.values.as_flattened());
+        factors
+    }
+}
+
 /// Everything about a pair that does not depend on the ranges.
 #[derive(Debug)]
 pub(super) struct Model<'a> {
     pub(super) scene: EnvelopeScene<'a>,
     pub(super) sources: Vec<Source>,
     pub(super) var: Vec<f64>,
-    lighting_unknown: bool,
     /// Shares of N and N′ in the bound of a variance, band by band: ¼(1 + s) and ¼(1 + 1/s).
     pub(super) shares: [Vec<f64>; 2],
-    /// Largest sum of V and of V′.
-    pub(super) sums: [f64; 2],
-    /// Whether the ranges of the factors reach beyond these.
-    pub(super) limited: bool,
+    /// Relations of the factors that may be broken, and products.
+    pub(super) relations: Vec<Relation>,
+    pub(super) products: Vec<Product>,
+    /// Columns of G and of G·Vₖ′, where there are any.
+    pub(super) gain: Option<usize>,
+    lights: Vec<Option<usize>>,
+    /// Objects at temperatures of the alternative's own, each with the next that it may change places with.
+    pub(super) twins: Vec<[usize; 2]>,
 }
 
-/// Whether a lower bound can be proved, and whether it is one on the very distance and not without its priors.
+/// Whether a lower bound can be proved: on the very distance, if there are no priors.
 pub(super) fn provable(unknowns: &Unknowns, objects: usize) -> bool {
-    !unknowns.contains(Nuisance::Gain)
-        && !unknowns.contains(Nuisance::EnvironmentTemperature)
-        && unknowns.known_lighting_total().is_none()
-        && objects + 2 <= SOURCES
+    let each = if unknowns.contains(Nuisance::EnvironmentTemperature) { 2 } else { 1 };
+    objects * each + 2 <= SOURCES
+}
+
+/// Sources as they are put together.
+struct Built {
+    sources: Vec<Source>,
+    region: Region,
+}
+
+impl Built {
+    /// Adds a source that is seen by `target`, `alternative` (with v) and `alone` (with w).
+    fn add(&mut self, role: Role, [target, alternative, alone]: [Vec<f64>; 3], span: Span) -> usize {
+        let own = target.iter().zip(&alternative).map(|(a, b)| a - b).collect();
+        let other = alone.iter().map(|x| -x).collect();
+        self.sources.push(Source { role, own, other, target, alternative, alone });
+        self.region.push(span);
+        self.sources.len() - 1
+    }
 }
 
 impl<'a> Model<'a> {
     /// The sources of a pair, and the ranges of the whole envelope.
     pub(super) fn new(scene: &EnvelopeScene<'a>, ranges: &Ranges) -> (Self, Region) {
-        let [own_t, own_v] = [Nuisance::Temperature, Nuisance::Lighting].map(|n| scene.unknowns.contains(n));
-        let (e, other) = (scene.emissivity, scene.alternative);
+        use Nuisance::{EnvironmentTemperature, Gain, Lighting, Temperature};
+        let [own_t, own_v, own_gain, own_k] = [Temperature, Lighting, Gain, EnvironmentTemperature]
+            .map(|nuisance| scene.unknowns.contains(nuisance));
+        let (e, other) = (scene.emissivity.to_vec(), scene.alternative.to_vec());
         let zeros = || vec![0.0; e.len()];
-        let negative = |x: &[f64]| x.iter().map(|x| -x).collect::<Vec<f64>>();
-        let one = [1.0, 1.0];
+        let (one, none) = ([1.0, 1.0], [0.0, 0.0]);
+        let gain_range = if own_gain { [(-LOG_GAIN).exp(), LOG_GAIN.exp()] } else { one };
+        let mut built = Built { sources: Vec::new(), region: Vec::new() };
+        let t = ranges.temperature_k();
         let span = |t, own, other| Span { t, own, other };
-        let (mut sources, mut region) = (Vec::new(), Vec::new());
-        let seen = |own: Vec<f64>, target: Vec<f64>, alternative: Vec<f64>| Source {
-            own,
-            other: zeros(),
-            target,
-            alternative,
-            alone: zeros(),
-            object: false,
-        };
-        region.push(span(ranges.temperature_k(), one, [0.0; 2]));
+        let mut gain = None;
         if own_t {
-            sources.push(seen(e.to_vec(), e.to_vec(), zeros()));
-            sources.push(seen(negative(other), zeros(), other.to_vec()));
-            region.push(span(scene.range.temperature_k, one, [0.0; 2]));
+            built.add(Role::Target, [e.clone(), zeros(), zeros()], span(t, one, none));
+            let t = scene.range.temperature_k;
+            let s =
+                built.add(Role::Alternative, [zeros(), other.clone(), zeros()], span(t, gain_range, none));
+            gain = Some(3 * s + 1);
+        } else if own_gain {
+            let s = built.add(Role::Target, [e.clone(), zeros(), other.clone()], span(t, one, gain_range));
+            gain = Some(3 * s + 2);
         } else {
-            let apart = e.iter().zip(other).map(|(e, other)| e - other).collect();
-            sources.push(seen(apart, e.to_vec(), other.to_vec()));
+            built.add(Role::Target, [e.clone(), other.clone(), zeros()], span(t, one, none));
         }
-        let most = scene.range.lighting[1].min(scene.range.lighting_sum).max(scene.range.lighting[0]);
-        for (k, object) in scene.surroundings.objects().iter().enumerate() {
+        let gain = gain.filter(|_| own_gain);
+        let objects = scene.surroundings.objects();
+        let mut lights = Vec::new();
+        for (k, object) in objects.iter().enumerate() {
             let own = |j: usize| object.emissivity.as_ref().map_or(1.0, |own| own[j]);
-            let spectrum =
-                |f: &dyn Fn(usize) -> f64| (0..e.len()).map(|j| f(j) * own(j)).collect::<Vec<f64>>();
-            let target = spectrum(&|j| 1.0 - e[j]);
-            let alternative = spectrum(&|j| 1.0 - other[j]);
+            let lit = |by: &[f64]| (0..by.len()).map(|j| (1.0 - by[j]) * own(j)).collect::<Vec<f64>>();
             let (t, v) = (ranges.environment_k()[k], ranges.lighting()[k]);
-            if own_v {
-                let (own, other) = (target.clone(), negative(&alternative));
-                sources.push(Source {
-                    own,
-                    other,
-                    target,
-                    alternative: zeros(),
-                    alone: alternative,
-                    object: true,
-                });
-                region.push(span(t, v, [scene.range.lighting[0], most]));
+            let within = if own_v { lighting_range(scene, k, objects.len()) } else { v };
+            let w = [within[0] * gain_range[0], within[1] * gain_range[1]];
+            lights.push(if own_k {
+                built.add(Role::Object(k), [lit(&e), zeros(), zeros()], span(t, v, none));
+                let unseen = [zeros(), lit(&other), zeros()];
+                Some(3 * built.add(Role::AlternativeObject(k), unseen, span(ENVIRONMENT_K, w, none)) + 1)
+            } else if own_v || own_gain {
+                Some(3 * built.add(Role::Object(k), [lit(&e), zeros(), lit(&other)], span(t, v, w)) + 2)
             } else {
-                let apart = spectrum(&|j| other[j] - e[j]);
-                let (other, alone) = (zeros(), zeros());
-                sources.push(Source { own: apart, other, target, alternative, alone, object: true });
-                region.push(span(t, v, [0.0; 2]));
-            }
+                built.add(Role::Object(k), [lit(&e), lit(&other), zeros()], span(t, v, none));
+                None
+            });
         }
+        let Built { sources, region } = built;
         let var: Vec<f64> = (0..scene.bands.len()).map(|band| scene.counting.var_added(band)).collect();
         let shares = [vec![0.5; var.len()], vec![0.5; var.len()]];
-        let sums = [1.0, scene.range.lighting_sum];
-        let most = |range: fn(&Span) -> f64| -> f64 {
-            let lit = region.iter().zip(&sources).filter(|(_, source)| source.object);
-            lit.map(|(span, _)| range(span)).sum()
+        let (relations, products) = (Vec::new(), Vec::new());
+        let twins = Vec::new();
+        let mut model =
+            Self { scene: *scene, sources, var, shares, relations, products, gain, lights, twins };
+        model.relate(&region, own_v);
+        if own_v {
+            model.pair_twins(&region);
+        }
+        (model, region)
+    }
+
+    /// Writes down what ties the factors, as far as their ranges do not see to it.
+    fn relate(&mut self, region: &Region, own_v: bool) {
+        let mut all =
+            vec![Relation::new(&self.seen().map(|(_, v)| (v, 1.0)).collect::<Vec<_>>(), -1.0, false)];
+        // a·c₀, which is a number where the gain is known.
+        let with_gain = |mut terms: Vec<(usize, f64)>, a: f64, equal: bool| match self.gain {
+            Some(column) => {
+                terms.push((column, a));
+                Relation::new(&terms, 0.0, equal)
+            }
+            None => Relation::new(&terms, a, equal),
         };
-        let limited = most(|span| span.own[1]) > sums[0] || most(|span| span.other[1]) > sums[1];
-        (Self { scene: *scene, sources, var, lighting_unknown: own_v, shares, sums, limited }, region)
+        let lit: Vec<usize> = self.lights.iter().flatten().copied().collect();
+        if own_v && !lit.is_empty() {
+            let total = self.scene.unknowns.known_lighting_total();
+            let sum = total.unwrap_or(self.scene.range.lighting_sum);
+            let terms = lit.iter().map(|&w| (w, 1.0)).collect();
+            all.push(with_gain(terms, -sum, total.is_some()));
+            for (k, &w) in lit.iter().enumerate() {
+                let [low, high] = lighting_range(&self.scene, k, lit.len());
+                if high < sum {
+                    all.push(with_gain(vec![(w, 1.0)], -high, false));
+                }
+                if low > 0.0 {
+                    all.push(with_gain(vec![(w, -1.0)], low, false));
+                }
+            }
+        }
+        let mut products = Vec::new();
+        if !own_v {
+            for ((_, v), w) in self.seen().zip(&self.lights).filter_map(|(seen, w)| Some((seen, (*w)?))) {
+                match self.gain {
+                    Some(gain) => products.push(Product { value: w, factors: [v, gain] }),
+                    None => all.push(Relation::new(&[(w, 1.0), (v, -1.0)], 0.0, true)),
+                }
+            }
+        }
+        let ranges = factors(region);
+        all.retain(|relation| relation.binds(&ranges));
+        (self.relations, self.products) = (all, products);
+    }
+
+    /// Finds objects that the alternative may exchange: then the colder one may be taken to come first.
+    fn pair_twins(&mut self, region: &Region) {
+        let free = |s: &usize| matches!(self.sources[*s].role, Role::AlternativeObject(_));
+        let objects: Vec<usize> = (0..self.sources.len()).filter(free).collect();
+        let alike = |a: usize, b: usize| {
+            self.sources[a].alternative == self.sources[b].alternative && region[a] == region[b]
+        };
+        let pairs = objects.windows(2).map(|pair| [pair[0], pair[1]]);
+        self.twins = pairs.filter(|&[a, b]| alike(a, b)).collect();
+    }
+
+    /// Objects, and the column of the factor by which the target sees each.
+    fn seen(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+        self.sources.iter().enumerate().filter_map(|(s, source)| match source.role {
+            Role::Object(k) => Some((k, 3 * s + 1)),
+            _ => None,
+        })
     }
 
     /// Counts of every band for a spectrum that is `strength` times `radiance` at the nodes.
@@ -166,28 +278,53 @@ impl<'a> Model<'a> {
     /// Scene and alternative's state as values of the sources.
     pub(super) fn point(&self, state: &State, nearest: &State) -> Point {
         let mut values = [[0.0; 3]; SOURCES];
-        let mut object = 0;
+        let gain = if self.gain.is_some() { nearest.gain } else { 1.0 };
         for (s, (source, value)) in self.sources.iter().zip(&mut values).enumerate() {
-            *value = if source.object {
-                let (t, v, w) =
-                    (state.environment_k[object], state.lighting[object], nearest.lighting[object]);
-                object += 1;
-                [t, v, if self.lighting_unknown { w } else { 0.0 }]
-            } else {
-                [if s == 0 { state.temperature_k } else { nearest.temperature_k }, 1.0, 0.0]
+            let lit = |k: usize| gain * nearest.lighting[k];
+            *value = match source.role {
+                Role::Target if self.gain == Some(3 * s + 2) => [state.temperature_k, 1.0, gain],
+                Role::Target => [state.temperature_k, 1.0, 0.0],
+                Role::Alternative => [nearest.temperature_k, gain, 0.0],
+                Role::Object(k) => {
+                    let w = if self.lights[k] == Some(3 * s + 2) { lit(k) } else { 0.0 };
+                    [state.environment_k[k], state.lighting[k], w]
+                }
+                Role::AlternativeObject(k) => [nearest.environment_k[k], lit(k), 0.0],
             };
         }
         Point { values }
     }
 
+    /// The alternative's state at a point, what it does not know better as in the scene there.
+    pub(super) fn nearest_at(&self, point: &Point, scene: &State) -> State {
+        let mut nearest = scene.clone();
+        let value = |column: usize| point.values.as_flattened()[column];
+        if let Some(column) = self.gain {
+            nearest.gain = value(column);
+        }
+        for (source, [t, ..]) in self.sources.iter().zip(point.values) {
+            match source.role {
+                Role::Alternative => nearest.temperature_k = t,
+                Role::AlternativeObject(k) => nearest.environment_k[k] = t,
+                Role::Target | Role::Object(_) => {}
+            }
+        }
+        for (lighting, column) in nearest.lighting.iter_mut().zip(&self.lights) {
+            if let Some(column) = column {
+                *lighting = value(*column) / nearest.gain;
+            }
+        }
+        nearest
+    }
+
     /// The scene of a point, as a place in the unit cube of the ranges.
     pub(super) fn place(&self, point: &Point, ranges: &Ranges) -> Vec<f64> {
         let mut values = Vec::new();
-        for (s, (source, value)) in self.sources.iter().zip(point.values).enumerate() {
-            if source.object {
-                values.extend([value[0], value[1]]);
-            } else if s == 0 {
-                values.push(value[0]);
+        for (source, value) in self.sources.iter().zip(point.values) {
+            match source.role {
+                Role::Object(_) => values.extend([value[0], value[1]]),
+                Role::Target => values.push(value[0]),
+                Role::Alternative | Role::AlternativeObject(_) => {}
             }
         }
         let share = |(value, [low, high]): (f64, [f64; 2])| {
@@ -196,37 +333,63 @@ impl<'a> Model<'a> {
         values.into_iter().zip(ranges.all()).map(share).collect()
     }
 
-    fn sums_of(&self, point: &Point) -> [f64; 2] {
-        [1, 2].map(|which: usize| {
-            let values = self.sources.iter().zip(point.values).filter(|(source, _)| source.object);
-            values.map(|(_, value)| value[which]).sum()
-        })
+    /// Whether factors are tied by more than their ranges.
+    pub(super) fn is_related(&self) -> bool {
+        !(self.relations.is_empty() && self.products.is_empty())
     }
 
-    /// Which sums of lighting factors, V and V′, are larger than they may be.
-    pub(super) fn excesses(&self, point: &Point) -> [bool; 2] {
-        let sums = self.sums_of(point);
-        [0, 1].map(|which: usize| sums[which] > self.sums[which] + 1e-12)
+    /// The relations that hold on a box.
+    pub(super) fn relations_on(&self, ranges: &[[f64; 2]; COLUMNS]) -> Vec<Relation> {
+        let products = self.products.iter().flat_map(|product| product.relations(ranges));
+        self.relations.iter().copied().chain(products).collect()
     }
 
-    /// Scales lighting factors down to the sums they may have.
-    pub(super) fn scale(&self, point: &mut Point) {
-        let (sums, excesses) = (self.sums_of(point), self.excesses(point));
-        for (source, value) in self.sources.iter().zip(&mut point.values) {
-            for which in (0..2).filter(|&which| source.object && excesses[which]) {
-                value[which + 1] *= self.sums[which] / sums[which];
-            }
+    /// The factors of the product that a relation on a box is from, if it is.
+    pub(super) fn product_of(&self, relation: usize) -> Option<[usize; 2]> {
+        let own = relation.checked_sub(self.relations.len())?;
+        self.products.get(own / 4).map(|product| product.factors)
+    }
+
+    /// The relations that hold about a point to first order.
+    pub(super) fn relations_at(&self, point: &Point) -> Vec<Relation> {
+        let factors = point.factors();
+        let products = self.products.iter().map(|product| product.tangent(&factors));
+        self.relations.iter().copied().chain(products).collect()
+    }
+
+    /// Moves factors to where their relations hold, as far as scaling them does it.
+    pub(super) fn project(&self, point: &mut Point) {
+        let values = point.values.as_flattened_mut();
+        for relation in &self.relations {
+            relation.project(values);
+        }
+        for product in &self.products {
+            values[product.value] = product.factors.iter().map(|&i| values[i]).product();
         }
     }
 
-    /// Keeps lighting factors within what their sum may be. `false` where that leaves nothing.
-    pub(super) fn tighten(&self, own: &mut [[f64; 2]], other: &mut [[f64; 2]]) -> bool {
-        [own, other].into_iter().zip(self.sums).all(|(factors, sum)| {
-            let lit = || self.sources.iter().enumerate().filter(|(_, source)| source.object).map(|(s, _)| s);
-            let least: f64 = lit().map(|s| factors[s][0]).sum();
-            let rest = sum - least + 1e-12;
-            lit().for_each(|s| factors[s][1] = factors[s][1].min(factors[s][0] + rest.max(0.0)));
-            rest >= 0.0
-        })
+    /// Takes off a box of factors what their relations exclude. `false` where that leaves nothing.
+    pub(super) fn tighten(&self, ranges: &mut [[f64; 2]; COLUMNS]) -> bool {
+        self.relations.iter().all(|relation| relation.tighten(ranges))
+            && self.products.iter().all(|product| product.tighten(ranges))
+    }
+}
+
+/// Ranges of v and w, each in its column.
+pub(super) fn factors(region: &Region) -> [[f64; 2]; COLUMNS] {
+    let mut ranges = [[0.0; 2]; COLUMNS];
+    for (s, span) in region.iter().enumerate().take(SOURCES) {
+        (ranges[3 * s + 1], ranges[3 * s + 2]) = (span.own, span.other);
+    }
+    ranges
+}
+
+/// Vₖ′ at least and at most. Where the total is known the last factor is what the others leave of it.
+fn lighting_range(scene: &EnvelopeScene<'_>, k: usize, objects: usize) -> [f64; 2] {
+    let [low, high] = scene.range.lighting;
+    match scene.unknowns.known_lighting_total() {
+        Some(total) if k + 1 == objects => [0.0, total],
+        Some(total) => [low.min(total), high.min(total)],
+        None => [low, high.min(scene.range.lighting_sum).max(low)],
     }
 }

@@ -7,8 +7,10 @@
 
 use super::attain::{self, Attained};
 use super::bound::Cube;
-use super::cell::{Cell, Node};
-use super::model::{Model, Point, Region, SOURCES};
+use super::cell::Cell;
+use super::joint::Residual;
+use super::model::{self, Model, Point, Region, SOURCES};
+use super::node::Node;
 use super::partition::partition;
 use super::ranges::Ranges;
 use crate::error::Result;
@@ -33,7 +35,7 @@ pub struct Effort {
 impl Default for Effort {
     /// 1 %, and some seconds on two cores at most.
     fn default() -> Self {
-        Self { relative_tolerance: 0.01, boxes: 3_000_000 }
+        Self { relative_tolerance: 0.01, boxes: 1_000_000 }
     }
 }
 
@@ -85,27 +87,21 @@ pub(super) fn prove(
     joint: &(Model<'_>, Region),
     ranges: &Ranges,
     effort: &Effort,
+    best: &Residual,
     mut attained: Attained,
 ) -> Result<Proof> {
     // A little more than asked for, so that a bound rounded down does not miss it.
     let share = 1.0 - 0.999 * effort.relative_tolerance;
     let (model, whole) = joint;
     let threshold = share * attained.distance;
-    let (parts, aside) = partition(model, whole.clone(), threshold, attained.distance);
-    let mut bounds = Vec::with_capacity(parts.len());
+    let parts = partition(model, whole.clone(), attained.distance);
     let distance = attained.distance;
-    let cells: Vec<Cell> = parts
-        .into_par_iter()
-        .map(|part| (part.bound, Cell::new(model, &part, distance)))
-        .collect::<Vec<_>>()
-        .into_iter()
-        .map(|(bound, cell)| {
-            bounds.push(bound);
-            cell
-        })
-        .collect();
+    let cells: Vec<Cell> =
+        parts.into_par_iter().map(|part| Cell::new(model, &part, best, distance)).collect();
+    // What cells leave out is not below the distance attained.
+    let aside = distance;
     let mut search = Search { model, cells, queue: BinaryHeap::new(), threshold, aside, boxes: 0 };
-    let roots = (0..search.cells.len()).map(|cell| search.root(cell, bounds[cell])).collect();
+    let roots = (0..search.cells.len()).filter_map(|cell| search.root(cell)).collect();
     search.take_in(roots);
     let mut round = 0;
     while search.boxes < effort.boxes && !search.queue.is_empty() {
@@ -128,13 +124,11 @@ pub(super) fn prove(
 }
 
 impl Search<'_, '_> {
-    fn root(&self, cell: usize, bound: f64) -> Cube {
-        let region = &self.cells[cell].region;
-        let (mut own, mut other) = ([[0.0; 2]; SOURCES], [[0.0; 2]; SOURCES]);
-        for (s, span) in region.iter().enumerate().take(SOURCES) {
-            (own[s], other[s]) = (span.own, span.other);
-        }
-        Cube { cell: cell as u32, nodes: [0; SOURCES], own, other, bound, split: None }
+    fn root(&self, index: usize) -> Option<Cube> {
+        let cell = &self.cells[index];
+        let factors = model::factors(&cell.region);
+        let mut cube = Cube { cell: index as u32, nodes: [0; SOURCES], factors, bound: 0.0, split: None };
+        cell.clamp(self.model, &mut cube).then_some(cube)
     }
 
     /// Bounds new boxes, and queues those that are not beyond the threshold.
@@ -170,7 +164,7 @@ impl Search<'_, '_> {
             .filter_map(|cube| {
                 let split = cube.split.filter(|split| split % 3 == 0)?;
                 let (s, node) = (split / 3, cube.nodes[split / 3]);
-                let known = self.cells[cube.cell as usize].sources[s].nodes[node as usize].halves;
+                let known = self.cells[cube.cell as usize].sources[s][node as usize].halves;
                 known.is_none().then_some((cube.cell, s, node))
             })
             .collect();
@@ -180,29 +174,26 @@ impl Search<'_, '_> {
         let made: Vec<[Node; 2]> =
             wanted.par_iter().map(|&(cell, s, node)| cells[cell as usize].halve(model, s, node)).collect();
         for ((cell, s, node), halves) in wanted.into_iter().zip(made) {
-            let nodes = &mut self.cells[cell as usize].sources[s].nodes;
+            let nodes = &mut self.cells[cell as usize].sources[s];
             nodes[node as usize].halves = Some(nodes.len() as u32);
             nodes.extend(halves);
         }
     }
 
-    /// The two halves of a box, without what the sums of the lighting exclude.
+    /// The two halves of a box, without what lies beyond the distance attained and what relations exclude.
     fn halves(&self, cube: &Cube) -> [Option<Cube>; 2] {
         let Some(split) = cube.split else { return [None, None] };
-        let s = split / 3;
+        let cell = &self.cells[cube.cell as usize];
         [0, 1].map(|half: usize| {
             let mut part = cube.clone();
-            match split % 3 {
-                0 => {
-                    let nodes = &self.cells[cube.cell as usize].sources[s].nodes;
-                    part.nodes[s] = nodes[cube.nodes[s] as usize].halves? + half as u32;
-                }
-                which => {
-                    let range = if which == 1 { &mut part.own[s] } else { &mut part.other[s] };
-                    range[1 - half] = 0.5 * (range[0] + range[1]);
-                }
+            if split % 3 == 0 {
+                let s = split / 3;
+                part.nodes[s] = cell.sources[s][cube.nodes[s] as usize].halves? + half as u32;
+            } else {
+                let range = &mut part.factors[split];
+                range[1 - half] = 0.5 * (range[0] + range[1]);
             }
-            self.model.tighten(&mut part.own, &mut part.other).then_some(part)
+            cell.clamp(self.model, &mut part).then_some(part)
         })
     }
 
@@ -210,11 +201,12 @@ impl Search<'_, '_> {
     fn lowest(&self) -> Option<Point> {
         let cube = &self.queue.peek()?.cube;
         let cell = &self.cells[cube.cell as usize];
-        let middle = |range: [f64; 2]| 0.5 * (range[0] + range[1]);
+        let middle = |[low, high]: [f64; 2]| 0.5 * (low + high);
         let mut values = [[0.0; 3]; SOURCES];
-        for (s, intervals) in cell.sources.iter().enumerate() {
-            let t = intervals.nodes[cube.nodes[s] as usize].t;
-            values[s] = [t, cube.own[s], cube.other[s]].map(middle);
+        for (s, value) in values.iter_mut().enumerate().take(cell.sources.len()) {
+            let [low, high] = cell.node_of(cube, s).t;
+            let (own, other) = (cube.factors[3 * s + 1], cube.factors[3 * s + 2]);
+            *value = [(low * high).sqrt(), middle(own), middle(other)];
         }
         Some(Point { values })
     }

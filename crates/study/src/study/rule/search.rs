@@ -55,9 +55,14 @@ impl Searched {
 }
 
 impl RuleStudy {
-    /// The verdict on one camera; `alone` asks for no more than it.
-    pub(super) fn judged(&self, candidate: &Candidate, alone: bool) -> Result<CameraVerdict> {
-        let worst = self.worst(candidate, alone, &|_, _| true)?.ok_or_else(|| {
+    /// The verdict on one camera; `alone` asks for no more than it. `progress` is told how many pairs are done.
+    pub(super) fn judged(
+        &self,
+        candidate: &Candidate,
+        alone: bool,
+        progress: &dyn Fn(usize),
+    ) -> Result<CameraVerdict> {
+        let worst = self.worst(candidate, alone, &|_, _| true, progress)?.ok_or_else(|| {
             Error::malformed("there is no pair of materials", "name one in alternatives.materials")
         })?;
         let sighted = worst.between.as_deref().unwrap_or(&candidate.sighted[worst.pair.sighted]);
@@ -227,6 +232,7 @@ impl RuleStudy {
         candidate: &Candidate,
         alone: bool,
         counts: &dyn Fn(&Surface, &Surface) -> bool,
+        progress: &dyn Fn(usize),
     ) -> Result<Option<Searched>> {
         let mut pairs: Vec<Estimate> = Vec::new();
         for (index, sighted) in candidate.sighted.iter().enumerate() {
@@ -267,6 +273,7 @@ impl RuleStudy {
                 best = best.min(searched.pair.distance);
             }
             found.push(searched);
+            progress(done + 1);
         }
         let lower: Option<Vec<f64>> = found.iter().map(|searched| searched.lower_bound).collect();
         let lower = lower.map(|bounds| bounds.into_iter().fold(f64::INFINITY, f64::min));
@@ -294,7 +301,7 @@ impl RuleStudy {
     /// The worst of the pairs that are more than two numbers, where one of numbers alone is the worst of all.
     fn without_placeholders(&self, candidate: &Candidate) -> Result<Option<WithoutPlaceholders>> {
         let known = |target: &Surface, other: &Surface| target.placeholders(other).is_none();
-        Ok(self.worst(candidate, false, &known)?.map(|worst| {
+        Ok(self.worst(candidate, false, &known, &|_| ())?.map(|worst| {
             let Study { target, alternatives, .. } = &candidate.sighted[worst.pair.sighted].study;
             WithoutPlaceholders {
                 margin: worst.pair.distance / self.required,
