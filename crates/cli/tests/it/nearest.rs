@@ -19,7 +19,8 @@ fn wide_ranges_lose_no_state_that_narrow_ones_find() {
             let scenario = folder.join(scene).join(range);
             let found = Folder::with("").json(&["identify", scenario.to_str().unwrap()]);
             let pair = &found["pairs"][0];
-            let (distance, lower) = (number(&pair["distance_nearest"]), number(&pair["distance_nearest_lower"]));
+            let (distance, lower) =
+                (number(&pair["distance_nearest"]), number(&pair["distance_nearest_lower"]));
             assert!((distance / least - 1.0).abs() < 1e-5, "{scene} {range}: {distance:e}");
             assert!(lower <= distance && lower >= distance * (1.0 - 1e-6), "{scene} {range}: {lower:e}");
             assert_eq!(pair["proof"], "proved", "{scene} {range}");
