@@ -343,7 +343,7 @@ impl Projector {
         self.coefficients = careful.coefficients;
         self.dropped = careful.dropped;
         (self.turned, self.full) = (0.0, false);
-        let relative_error_norm = if norm > 0.0 { 4.0 * f64::EPSILON } else { 0.0 };
+        let relative_error_norm = if norm > 0.0 { 8.0 * f64::EPSILON } else { 0.0 };
         Reduced { residual, norm, relative_error, relative_error_norm }
     }
 

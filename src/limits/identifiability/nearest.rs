@@ -20,32 +20,26 @@
 //! Source: design of the project; Algorithm 1 of the paper is its exact counterpart on a lattice.
 
 mod proof;
+mod refine;
 mod residual;
 mod search;
 
 use self::proof::Few;
+pub use self::proof::Nearer;
+pub use self::refine::NearestDistance;
+use self::refine::{NO_GAIN, refine};
 use self::residual::{Comparison, Metric, Target};
 use self::search::EmissionTable;
 pub use super::space::StateRange;
 use crate::error::{Error, Result};
 use crate::fisher::{Counting, Unknowns};
-use crate::scene::{Parameter, State, Surroundings};
+use crate::scene::{State, Surroundings};
 use crate::spectrum::Bands;
 use crate::units::SECOND_RADIATION_CM_K;
 use std::sync::Arc;
 
 /// Bands that are enough for a first look.
 const FEW_BANDS: usize = 64;
-/// Iterations of a refinement.
-const ITERATIONS: usize = 100;
-/// Relative step at which a refinement has converged.
-const STEP_TOLERANCE: f64 = 1e-9;
-/// What the last step may still promise, as a share of the cost.
-const GAIN_TOLERANCE: f64 = 1e-9;
-/// What a step may promise, as a share of the cost, for it to be the last without a look at where it leads.
-const NO_GAIN: f64 = 1e-13;
-/// Relative separation at which two refinements have come to the same minimum.
-const SAME_MINIMUM: f64 = 1e-5;
 /// Relative separation up to which two states are one as far as a fit that starts from either is concerned.
 const SAME_STATE: f64 = 1e-4;
 /// Share of the separation at the target's own state below which a distance is rounding noise.
@@ -57,44 +51,10 @@ const MOST_BOXES: u64 = 6_000;
 /// Rounding of the terms that a separation is made of, times 10 + x as that of radiances, and the x beyond which there are none.
 const ROUNDING_OF_TERMS: f64 = 4e-16;
 const LARGEST_X: f64 = 708.0;
-
-/// The nearest state of the alternative and its distance.
-#[derive(Debug, Clone, PartialEq)]
-pub struct NearestDistance {
-    /// Half the separation in units of the noise: d₀ per √photon, or d, as asked for.
-    pub distance: f64,
-    /// Proved: no state of the alternative within its range is nearer. 0 where nothing is proved.
-    pub lower: f64,
-    /// Estimated relative error of `distance` as the separation of the nearest state, by rounding; 0 where it is 0.
-    pub relative_error: f64,
-    /// The nearest state.
-    pub state: State,
-    /// Parameters that stand at the edge of their range.
-    pub at_edge: Vec<Parameter>,
-    /// Iterations of all refinements together.
-    pub iterations: usize,
-    /// Whether the refinement of the nearest state converged.
-    pub converged: bool,
-}
-
-impl NearestDistance {
-    /// Whether no state is nearer than the distance less this share of it.
-    #[must_use]
-    pub fn is_proved_to(&self, share: f64) -> bool {
-        self.lower >= (1.0 - share) * self.distance
-    }
-}
-
-/// Whether a state nearer than a limit was found.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Nearer {
-    /// One is.
-    Somewhere,
-    /// None is, which is proved.
-    Nowhere,
-    /// None was found, and it is not proved that there is none.
-    Undecided,
-}
+/// The x from which differences of radiances lose more than these themselves, by the stress suite.
+const DEEP_IN_WIEN: f64 = 20.0;
+/// Share of √ΣN below which a distance is the rounding of numbers entered, such as lighting factors that should sum to 1.
+const INPUTS: f64 = 2e-18;
 
 /// Finds nearest states in fixed bands and surroundings.
 #[derive(Debug, Clone)]
@@ -189,7 +149,7 @@ impl<'a> NearestSolver<'a> {
     ) -> Result<Nearer> {
         let metric = Metric::Counting(counting);
         let target = self.comparison.aim(emissivity, alternative, state, metric)?;
-        let first = proof::nearer_than(self, &target, limit, None, FIRST_BOXES);
+        let first = self.proved_nearer(&target, limit, None, FIRST_BOXES);
         if first != Nearer::Undecided {
             return Ok(first);
         }
@@ -200,10 +160,20 @@ impl<'a> NearestSolver<'a> {
         if found.distance < limit {
             return Ok(Nearer::Somewhere);
         }
-        let proved = proof::nearer_than(self, &target, limit, Some(&found), MOST_BOXES);
+        let proved = self.proved_nearer(&target, limit, Some(&found), MOST_BOXES);
         // Priors have no part in a proof: with them the search has the last word.
         let searched = proved == Nearer::Undecided && self.comparison.space.unknowns.has_priors();
         Ok(if searched { Nearer::Nowhere } else { proved })
+    }
+
+    fn proved_nearer(
+        &mut self,
+        target: &Target<'_>,
+        limit: f64,
+        known: Option<&NearestDistance>,
+        boxes: u64,
+    ) -> Nearer {
+        proof::nearer_than(&mut self.comparison, self.few.as_ref(), target, limit, known, boxes)
     }
 
     /// Whether a descent from the target's own state comes to one of the alternative's that is nearer than `limit`. It
@@ -275,7 +245,7 @@ impl<'a> NearestSolver<'a> {
         let mut best: Option<NearestDistance> = None;
         let mut iterations = 0;
         for start in starts {
-            let candidate = self.refine(&target, start, best.as_ref(), enough);
+            let candidate = refine(&mut self.comparison, &target, start, best.as_ref(), enough);
             iterations += candidate.iterations;
             if candidate.distance < enough {
                 return Ok(candidate);
@@ -296,7 +266,7 @@ impl<'a> NearestSolver<'a> {
                 let distance = if nothing { 0.0 } else { best.distance };
                 let mut best = NearestDistance { distance, iterations, ..best };
                 if let Some(tolerance) = self.tolerance.filter(|_| start_is_free) {
-                    best = proof::prove(self, &target, best, tolerance);
+                    best = proof::prove(&mut self.comparison, self.few.as_ref(), &target, best, tolerance);
                 }
                 if best.distance > 0.0 {
                     let terms = self.comparison.terms(&target, &best.state);
@@ -304,10 +274,12 @@ impl<'a> NearestSolver<'a> {
                     let coldest =
                         best.state.environment_k.iter().copied().fold(best.state.temperature_k, f64::min);
                     let x = SECOND_RADIATION_CM_K * last_cm1 / coldest.min(state.temperature_k);
-                    let rounding = ROUNDING_OF_TERMS * (10.0 + x.min(LARGEST_X));
+                    let x = x.min(LARGEST_X);
+                    let rounding = ROUNDING_OF_TERMS * (10.0 + x) * (1.0 + x / DEEP_IN_WIEN);
                     best.relative_error = NO_GAIN + rounding * (1.0 + terms / best.distance);
-                    if best.relative_error >= 1.0 {
-                        // Nothing but rounding is left.
+                    let size = self.comparison.root_size();
+                    if (1.0..f64::INFINITY).contains(&best.relative_error) || best.distance <= INPUTS * size {
+                        // Nothing but rounding is left, of the separation or of what was entered.
                         (best.distance, best.lower, best.relative_error) = (0.0, 0.0, 0.0);
                     }
                 }
@@ -333,7 +305,7 @@ impl<'a> NearestSolver<'a> {
         let own_cost = self.comparison.cost(&target, state);
         let starts = self.comparison.starts(&mut self.table, &target, own_cost, reach);
         let mut minima: Vec<NearestDistance> =
-            starts.into_iter().map(|start| self.refine(&target, start, None, 0.0)).collect();
+            starts.into_iter().map(|start| refine(&mut self.comparison, &target, start, None, 0.0)).collect();
         minima.sort_by(|a, b| a.distance.total_cmp(&b.distance));
         let farthest = minima.first().map_or(0.0, |least| least.distance + reach);
         let mut distinct: Vec<NearestDistance> = Vec::new();
@@ -346,69 +318,5 @@ impl<'a> NearestSolver<'a> {
             }
         }
         Ok(distinct)
-    }
-
-    /// Newton's method within the bounds, damped as by Levenberg and Marquardt. It ends early where it has come
-    /// to a minimum that is `known`, or nearer than `enough`.
-    fn refine(
-        &mut self,
-        target: &Target<'_>,
-        start: State,
-        known: Option<&NearestDistance>,
-        enough: f64,
-    ) -> NearestDistance {
-        let mut state = self.comparison.space.within_range(&start);
-        let mut at = self.comparison.linearise(target, &state);
-        let (mut damping, mut converged, mut iterations) =
-            (1e-7, self.comparison.space.parameters.is_empty(), 0);
-        while !converged && iterations < ITERATIONS && at.cost >= enough * enough {
-            iterations += 1;
-            let Some(step) = self.comparison.space.step(&at.quadratic, &state, damping, false) else { break };
-            let moved = self.comparison.space.moved(&state, &step);
-            let size = self.comparison.space.relative_size(&step, &state);
-            // What the step promises, of half the cost. Nearly identical materials need it however small the step is.
-            let promised = at.quadratic.gradient.dot(&step).abs();
-            if promised <= NO_GAIN * at.cost {
-                (state, converged) = (moved, true);
-                break;
-            }
-            if size < STEP_TOLERANCE && promised <= GAIN_TOLERANCE * at.cost {
-                // The last step, whether it is taken or only rounding: the cost tells.
-                let cost = self.comparison.cost(target, &moved);
-                if cost <= at.cost {
-                    (state, at.cost) = (moved, cost);
-                }
-                converged = true;
-                break;
-            }
-            if known.is_some_and(|known| {
-                known.distance * known.distance <= at.cost
-                    && self.comparison.space.separation(&moved, &known.state) < SAME_MINIMUM
-            }) {
-                break;
-            }
-            let next = self.comparison.linearise(target, &moved);
-            if next.cost <= at.cost {
-                (state, at) = (moved, next);
-                damping = (damping * 0.05).max(1e-15);
-            } else {
-                // Below this the cost changes only by rounding.
-                converged = size < 10.0 * STEP_TOLERANCE;
-                damping = (damping * 20.0).max(1e-9);
-                if damping > 1e12 {
-                    break;
-                }
-            }
-        }
-        let at_edge = self.comparison.space.edges(&state);
-        NearestDistance {
-            distance: at.cost.sqrt(),
-            lower: 0.0,
-            relative_error: 0.0,
-            state,
-            at_edge,
-            iterations,
-            converged,
-        }
     }
 }

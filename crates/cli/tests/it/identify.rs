@@ -132,7 +132,13 @@ fn nothing_is_null_but_what_does_not_apply() {
     for scenario in [FIVE, &FIVE.replace("noise_electrons = 0", "noise_electrons = 20")] {
         let mut all = identify(&Folder::with(scenario), &EVERYTHING);
         // The diagonals are empty, and nothing else of these.
-        for key in ["distance_nearest", "distance_local", "relative_error", "statistical_distance"] {
+        for key in [
+            "distance_nearest",
+            "distance_nearest_lower",
+            "distance_local",
+            "relative_error",
+            "statistical_distance",
+        ] {
             let rows = all["matrix"][key].take();
             for (i, row) in rows.as_array().unwrap().iter().enumerate() {
                 let empty: Vec<usize> = (0..5).filter(|&j| row[j].is_null()).collect();

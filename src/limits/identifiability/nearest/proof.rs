@@ -24,13 +24,14 @@ use self::hull::{Quadratic, reduce};
 use self::metric::Metric;
 pub(super) use self::sources::Few;
 use self::sources::{Chord, Sources, Spectrum, chord};
-use super::residual::Target;
-use super::{Nearer, NearestDistance, NearestSolver};
+use super::refine::{NearestDistance, refine};
+use super::residual::{Comparison, Target};
 use crate::fisher::Nuisance;
 use crate::scene::{Parameter, State};
 use crate::sum::dot;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
+use std::sync::Arc;
 
 /// Rounding of a length, as a share of its terms, with that of Planck's function.
 const ROUNDING: f64 = 1e-14;
@@ -49,6 +50,17 @@ const SELDOM: u64 = 50;
 const QUADRATICS: usize = 5;
 /// Half widths of the closed box that are tried, as shares of T/max(x, 2) in the middle of the bands.
 const WIDTHS: [f64; 8] = [0.3, 0.1, 0.03, 0.01, 3e-3, 1e-3, 1e-4, 1e-6];
+
+/// Whether a state nearer than a limit was found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Nearer {
+    /// One is.
+    Somewhere,
+    /// None is, which is proved.
+    Nowhere,
+    /// None was found, and it is not proved that there is none.
+    Undecided,
+}
 
 /// What is to be shown.
 #[derive(Debug, Clone, Copy)]
@@ -148,14 +160,15 @@ struct Prover<'a> {
 
 /// Whether any state is nearer than `limit`; `known` is the nearest one that a search has found, if there was one.
 pub(super) fn nearer_than(
-    solver: &mut NearestSolver<'_>,
+    comparison: &mut Comparison<'_>,
+    few: Option<&Arc<Few>>,
     target: &Target<'_>,
     limit: f64,
     known: Option<&NearestDistance>,
     boxes: u64,
 ) -> Nearer {
-    let goal = Goal { limit: limit * limit, enough: limit * limit, boxes };
-    match Prover::new(solver, target, limit).run(solver, target, known, goal) {
+    let goal = Goal { limit: limit * limit, enough: limit * limit * (1.0 + 4.0 * MARGIN), boxes };
+    match Prover::new(comparison, few, target, limit).run(comparison, target, known, goal) {
         Outcome::Nearer(_) => Nearer::Somewhere,
         Outcome::Bound(lower) if lower * (1.0 - MARGIN) >= limit => Nearer::Nowhere,
         Outcome::Bound(_) => Nearer::Undecided,
@@ -164,7 +177,8 @@ pub(super) fn nearer_than(
 
 /// The best state with a bound proved to `tolerance` of its distance, or as far as the effort goes.
 pub(super) fn prove(
-    solver: &mut NearestSolver<'_>,
+    comparison: &mut Comparison<'_>,
+    few: Option<&Arc<Few>>,
     target: &Target<'_>,
     mut best: NearestDistance,
     tolerance: f64,
@@ -176,16 +190,16 @@ pub(super) fn prove(
         let cost = best.distance * best.distance;
         // A little more than asked for, so that a bound rounded down does not miss it.
         let share = 1.0 - 0.9 * tolerance;
-        let prover = Prover::new(solver, target, best.distance);
+        let prover = Prover::new(comparison, few, target, best.distance);
         let boxes = BOXES[prover.all.axes.len().min(BOXES.len() - 1)];
         let goal = Goal { limit: cost, enough: share * share * cost, boxes };
-        match prover.run(solver, target, Some(&best), goal) {
+        match prover.run(comparison, target, Some(&best), goal) {
             Outcome::Bound(lower) => {
                 best.lower = (lower * (1.0 - MARGIN)).clamp(0.0, best.distance);
                 break;
             }
             Outcome::Nearer(state) => {
-                let found = solver.refine(target, state, None, 0.0);
+                let found = refine(comparison, target, state, None, 0.0);
                 let iterations = best.iterations + found.iterations;
                 if found.distance >= best.distance {
                     break;
@@ -363,8 +377,7 @@ impl<'a> View<'a> {
 }
 
 impl<'a> Prover<'a> {
-    fn new(solver: &NearestSolver<'a>, target: &Target<'_>, reach: f64) -> Self {
-        let comparison = &solver.comparison;
+    fn new(comparison: &Comparison<'a>, few: Option<&Arc<Few>>, target: &Target<'_>, reach: f64) -> Self {
         let space = &comparison.space;
         let sources = Sources::new(comparison, target);
         let counts: Vec<f64> = comparison.target.signal().iter().map(|s| target.counts * s).collect();
@@ -394,7 +407,7 @@ impl<'a> Prover<'a> {
         sum *= 1.0 + 1e-15;
         let gain_free = space.unknowns.contains(Nuisance::Gain);
         let allowed = Amplitudes { gain_free, ranges, sum, sum_known, total: 0.0, gain_cap: None };
-        let few = solver.few.as_ref().map(|few| {
+        let few = few.map(|few| {
             let kept = bands.each_ref().map(|x| x.iter().copied().step_by(few.stride).collect());
             View::new(sources.every(few), allowed.clone(), kept, reach)
         });
@@ -405,13 +418,13 @@ impl<'a> Prover<'a> {
 
     fn run(
         mut self,
-        solver: &mut NearestSolver<'_>,
+        comparison: &mut Comparison<'_>,
         target: &Target<'_>,
         best: Option<&NearestDistance>,
         goal: Goal,
     ) -> Outcome {
         let Goal { limit, enough, boxes } = goal;
-        let (mut aside, faces) = match best.map(|best| self.close_about(solver, target, best, goal)) {
+        let (mut aside, faces) = match best.map(|best| self.close_about(comparison, target, best, goal)) {
             Some(Closed::Nearer(state)) => return Outcome::Nearer(state),
             Some(Closed::Box(lower, faces)) => (lower, Some(faces)),
             Some(Closed::Nothing) | None => (f64::INFINITY, None),
@@ -445,7 +458,7 @@ impl<'a> Prover<'a> {
                 let (bound, axis, mixture) = self.bound(&part.ends, &allowed, enough);
                 part.bound = bound.max(part.bound);
                 if part.bound < enough {
-                    let (state, cost) = self.candidate(solver, target, &mixture);
+                    let (state, cost) = self.candidate(comparison, target, &mixture);
                     if cost < limit * (1.0 - 1e-12) {
                         return Outcome::Nearer(state);
                     }
@@ -453,7 +466,7 @@ impl<'a> Prover<'a> {
                         // Downhill from here another valley may be found; each time from lower than before, or seldom.
                         descents += 1;
                         descended = cost;
-                        let found = solver.refine(target, state, None, 0.0);
+                        let found = refine(comparison, target, state, None, 0.0);
                         if found.distance * found.distance < limit * (1.0 - 1e-12) {
                             return Outcome::Nearer(found.state);
                         }
@@ -466,30 +479,30 @@ impl<'a> Prover<'a> {
             }
         }
         let waiting = queue.peek().map_or(f64::INFINITY, |region| region.bound);
-        Outcome::Bound(aside.min(waiting).min(limit).max(0.0).sqrt())
+        Outcome::Bound(aside.min(waiting).min(limit.max(enough)).max(0.0).sqrt())
     }
 
     /// The state of a mixture, if its cost is below the limit.
     fn nearer(
         &self,
-        solver: &mut NearestSolver<'_>,
+        comparison: &mut Comparison<'_>,
         target: &Target<'_>,
         limit: f64,
         mixture: &Mixture,
     ) -> Option<State> {
-        let (state, cost) = self.candidate(solver, target, mixture);
+        let (state, cost) = self.candidate(comparison, target, mixture);
         (cost < limit * (1.0 - 1e-12)).then_some(state)
     }
 
     /// The state of a mixture, and its cost.
     fn candidate(
         &self,
-        solver: &mut NearestSolver<'_>,
+        comparison: &mut Comparison<'_>,
         target: &Target<'_>,
         mixture: &Mixture,
     ) -> (State, f64) {
         let mut state = target.state.clone();
-        let space = &solver.comparison.space;
+        let space = &comparison.space;
         let surface = mixture.amplitudes[0];
         for parameter in &space.parameters {
             match *parameter {
@@ -503,7 +516,7 @@ impl<'a> Prover<'a> {
             }
         }
         let state = space.within_range(&state);
-        let cost = solver.comparison.cost(target, &state);
+        let cost = comparison.cost(target, &state);
         (state, cost)
     }
 
@@ -608,13 +621,13 @@ impl<'a> Prover<'a> {
     /// Closes the widest box about the best state that can be: its bound, where it is least, and its faces.
     fn close_about(
         &mut self,
-        solver: &mut NearestSolver<'_>,
+        comparison: &mut Comparison<'_>,
         target: &Target<'_>,
         best: &NearestDistance,
         goal: Goal,
     ) -> Closed {
         let (state, enough) = (&best.state, goal.enough);
-        let (residual, other) = solver.comparison.residual(target, state);
+        let (residual, other) = comparison.residual(target, state);
         let count = self.all.fixed.len();
         let temperature_k: Vec<f64> = (0..count).map(|s| temperature_of(state, s)).collect();
         let gain = if self.all.allowed.gain_free { state.gain } else { 1.0 };
@@ -674,7 +687,7 @@ impl<'a> Prover<'a> {
             if lower >= enough && self.dim_ones_are_farther(&faces, &amplitudes, enough) {
                 return Closed::Box(lower, faces);
             }
-            if let Some(state) = self.nearer(solver, target, goal.limit, &mixture) {
+            if let Some(state) = self.nearer(comparison, target, goal.limit, &mixture) {
                 return Closed::Nearer(state);
             }
             if self.all.axes.is_empty() {

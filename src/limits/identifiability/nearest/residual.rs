@@ -207,6 +207,7 @@ impl<'a> Comparison<'a> {
     pub(super) fn terms(&mut self, target: &Target<'_>, state: &State) -> f64 {
         self.separate(target, state, false);
         let pairs = target.emissivity.iter().zip(target.alternative).zip(self.target.contrast());
+        let cancellation = self.target.cancellation();
         // What the change of every object's light is made of, by its magnitude.
         let (own, surroundings) = (target.state, self.target.surroundings());
         let mut light = vec![0.0; target.emissivity.len()];
@@ -219,9 +220,8 @@ impl<'a> Comparison<'a> {
         let nodes: Vec<f64> = pairs
             .zip(self.work.difference.iter().zip(&light))
             .map(|(((e, other), contrast), (difference, light))| {
-                let terms =
-                    ((e - other) * contrast).abs() + (other * difference).abs() + (1.0 - other) * light;
-                target.state.gain * terms
+                let mixed = cancellation * ((e - other) * contrast).abs();
+                target.state.gain * (mixed + (other * difference).abs() + (1.0 - other) * light)
             })
             .collect();
         let gain = (state.gain - target.state.gain).abs() / state.gain;
@@ -235,6 +235,11 @@ impl<'a> Comparison<'a> {
             }
         }
         total.value().sqrt()
+    }
+
+    /// √Σ(N + σ²) of the target.
+    pub(super) fn root_size(&self) -> f64 {
+        crate::sum::dot(&self.work.root, &self.work.root).sqrt()
     }
 
     /// √(N + σ²) of the target.

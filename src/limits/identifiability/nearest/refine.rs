@@ -1,0 +1,105 @@
+//! Downhill from a start to the minimum of the valley that it lies in.
+
+use super::residual::{Comparison, Target};
+use crate::scene::{Parameter, State};
+
+/// Iterations of a refinement.
+const ITERATIONS: usize = 100;
+/// Relative step at which a refinement has converged.
+const STEP_TOLERANCE: f64 = 1e-9;
+/// What the last step may still promise, as a share of the cost.
+const GAIN_TOLERANCE: f64 = 1e-9;
+/// What a step may promise, as a share of the cost, for it to be the last without a look at where it leads.
+pub(super) const NO_GAIN: f64 = 2e-15;
+/// Relative separation at which two refinements have come to the same minimum.
+const SAME_MINIMUM: f64 = 1e-5;
+
+/// The nearest state of the alternative and its distance.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NearestDistance {
+    /// Half the separation in units of the noise: d₀ per √photon, or d, as asked for.
+    pub distance: f64,
+    /// Proved: no state of the alternative within its range is nearer. 0 where nothing is proved.
+    pub lower: f64,
+    /// Estimated relative error of `distance` as the separation of the nearest state, by rounding; 0 where it is 0.
+    pub relative_error: f64,
+    /// The nearest state.
+    pub state: State,
+    /// Parameters that stand at the edge of their range.
+    pub at_edge: Vec<Parameter>,
+    /// Iterations of all refinements together.
+    pub iterations: usize,
+    /// Whether the refinement of the nearest state converged.
+    pub converged: bool,
+}
+
+impl NearestDistance {
+    /// Whether no state is nearer than the distance less this share of it.
+    #[must_use]
+    pub fn is_proved_to(&self, share: f64) -> bool {
+        self.lower >= (1.0 - share) * self.distance
+    }
+}
+
+/// Newton's method within the bounds, damped as by Levenberg and Marquardt. It ends early where it has come
+/// to a minimum that is `known`, or nearer than `enough`.
+pub(super) fn refine(
+    comparison: &mut Comparison<'_>,
+    target: &Target<'_>,
+    start: State,
+    known: Option<&NearestDistance>,
+    enough: f64,
+) -> NearestDistance {
+    let mut state = comparison.space.within_range(&start);
+    let mut at = comparison.linearise(target, &state);
+    let (mut damping, mut converged, mut iterations) = (1e-7, comparison.space.parameters.is_empty(), 0);
+    while !converged && iterations < ITERATIONS && at.cost >= enough * enough {
+        iterations += 1;
+        let Some(step) = comparison.space.step(&at.quadratic, &state, damping, false) else { break };
+        let moved = comparison.space.moved(&state, &step);
+        let size = comparison.space.relative_size(&step, &state);
+        // What the step promises, of half the cost. Nearly identical materials need it however small the step is.
+        let promised = at.quadratic.gradient.dot(&step).abs();
+        if promised <= NO_GAIN * at.cost {
+            (state, converged) = (moved, true);
+            break;
+        }
+        if size < STEP_TOLERANCE && promised <= GAIN_TOLERANCE * at.cost {
+            // The last step, whether it is taken or only rounding: the cost tells.
+            let cost = comparison.cost(target, &moved);
+            if cost <= at.cost {
+                (state, at.cost) = (moved, cost);
+            }
+            converged = true;
+            break;
+        }
+        if known.is_some_and(|known| {
+            known.distance * known.distance <= at.cost
+                && comparison.space.separation(&moved, &known.state) < SAME_MINIMUM
+        }) {
+            break;
+        }
+        let next = comparison.linearise(target, &moved);
+        if next.cost <= at.cost {
+            (state, at) = (moved, next);
+            damping = (damping * 0.05).max(1e-15);
+        } else {
+            // Below this the cost changes only by rounding.
+            converged = size < 10.0 * STEP_TOLERANCE;
+            damping = (damping * 20.0).max(1e-9);
+            if damping > 1e12 {
+                break;
+            }
+        }
+    }
+    let at_edge = comparison.space.edges(&state);
+    NearestDistance {
+        distance: at.cost.sqrt(),
+        lower: 0.0,
+        relative_error: 0.0,
+        state,
+        at_edge,
+        iterations,
+        converged,
+    }
+}
