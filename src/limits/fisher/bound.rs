@@ -242,7 +242,9 @@ impl Projector {
         self.turned = turned;
         let noise = ROUNDINGS * UNIT_ROUNDOFF * (cancellation * norm + self.carried(last));
         let relative_error = if residual > 0.0 { noise / residual + turned } else { 0.0 };
-        let relative_error_norm = if norm > 0.0 { ROUNDINGS * UNIT_ROUNDOFF * cancellation } else { 0.0 };
+        // Twice as much as of a column that is one of many: nothing is averaged out here.
+        let relative_error_norm =
+            if norm > 0.0 { 2.0 * ROUNDINGS * UNIT_ROUNDOFF * cancellation } else { 0.0 };
         Reduced { residual, norm, relative_error, relative_error_norm }
     }
 

@@ -49,7 +49,9 @@ const ROUNDING: f64 = 1e-14;
 const FIRST_BOXES: u64 = 60;
 const MOST_BOXES: u64 = 6_000;
 /// Rounding of the terms that a separation is made of, times 10 + x as that of radiances, and the x beyond which there are none.
-const ROUNDING_OF_TERMS: f64 = 4e-16;
+const ROUNDING_OF_TERMS: f64 = 1e-15;
+/// Share of them below which a distance is nothing but rounding.
+const NOTHING_OF_TERMS: f64 = 1e-15;
 const LARGEST_X: f64 = 708.0;
 /// The x from which differences of radiances lose more than these themselves, by the stress suite.
 const DEEP_IN_WIEN: f64 = 20.0;
@@ -278,7 +280,8 @@ impl<'a> NearestSolver<'a> {
                     let rounding = ROUNDING_OF_TERMS * (10.0 + x) * (1.0 + x / DEEP_IN_WIEN);
                     best.relative_error = NO_GAIN + rounding * (1.0 + terms / best.distance);
                     let size = self.comparison.root_size();
-                    if (1.0..f64::INFINITY).contains(&best.relative_error) || best.distance <= INPUTS * size {
+                    let nothing = (NOTHING_OF_TERMS * terms).max(INPUTS * size);
+                    if terms.is_finite() && best.distance <= nothing {
                         // Nothing but rounding is left, of the separation or of what was entered.
                         (best.distance, best.lower, best.relative_error) = (0.0, 0.0, 0.0);
                     }
