@@ -18,7 +18,7 @@ pub mod precision;
 
 pub(crate) use bound::Reduced;
 pub use bound::{Projection, Projector};
-pub(crate) use careful::{BLIND, Careful, CarefulProjector, Noise, project_columns};
+pub(crate) use careful::{CarefulProjector, Noise, project_columns};
 
 pub use crate::instrument::Counting;
 

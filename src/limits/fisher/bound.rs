@@ -22,7 +22,7 @@
 mod passes;
 
 use self::passes::{Pass, eliminate, reduce_last};
-use super::{BLIND, Careful};
+use super::careful::{BLIND, Careful, back_substitute};
 use crate::scene::Columns;
 use crate::units::times_power_of_two;
 
@@ -388,19 +388,6 @@ fn length(triangle: &[f64], norms: &[f64], column: usize, squared: f64) -> f64 {
         part * part
     });
     (squared + parts.sum::<f64>()).sqrt()
-}
-
-/// Coefficients of a column on those before it, from the unit upper triangle; 0 on those that were dropped.
-pub(super) fn back_substitute(triangle: &[f64], norms: &[f64], column: usize, coefficients: &mut [f64]) {
-    let count = norms.len();
-    for row in (0..column).rev() {
-        if norms[row] == 0.0 {
-            coefficients[row] = 0.0;
-            continue;
-        }
-        let known: f64 = (row + 1..column).map(|i| triangle[row * count + i] * coefficients[i]).sum();
-        coefficients[row] = triangle[row * count + column] - known;
-    }
 }
 
 #[cfg(test)]

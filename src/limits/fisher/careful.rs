@@ -196,7 +196,7 @@ impl<const L: usize> Elimination<L> {
     fn made_of(&mut self, column: usize) -> [f64; 2] {
         let found = &mut self.found;
         found.coefficients = vec![0.0; column];
-        super::bound::back_substitute(&found.triangle, &found.norms, column, &mut found.coefficients);
+        back_substitute(&found.triangle, &found.norms, column, &mut found.coefficients);
         [&found.lengths, &self.terms].map(|lengths| {
             let parts = found.coefficients.iter().zip(lengths).map(|(c, length)| (c * length).abs());
             lengths[column] + parts.sum::<f64>()
@@ -256,6 +256,19 @@ impl<const L: usize> Elimination<L> {
         }
         found.norms[last] = found.residual;
         Some(self.found)
+    }
+}
+
+/// Coefficients of a column on those before it, from the unit upper triangle; 0 on those that were dropped.
+pub(super) fn back_substitute(triangle: &[f64], norms: &[f64], column: usize, coefficients: &mut [f64]) {
+    let count = norms.len();
+    for row in (0..column).rev() {
+        if norms[row] == 0.0 {
+            coefficients[row] = 0.0;
+            continue;
+        }
+        let known: f64 = (row + 1..column).map(|i| triangle[row * count + i] * coefficients[i]).sum();
+        coefficients[row] = triangle[row * count + column] - known;
     }
 }
 

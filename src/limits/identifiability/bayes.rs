@@ -40,24 +40,20 @@ mod average;
 mod prior;
 mod stack;
 
-use self::average::{Average, States};
+pub use self::average::Distances;
+use self::average::{Average, LOG_PHOTONS, States};
 use self::prior::Node;
 pub use self::stack::{BayesianDistance, Pair};
 use self::stack::{MAX_STACK, Stack};
 use super::detection;
-use super::nearest::StateRange;
 use crate::error::{Error, Result, check};
 use crate::fisher::Unknowns;
 use crate::root::crossing;
 use crate::scene::{Jacobian, Surroundings};
 use crate::spectrum::Bands;
 
-/// Photon numbers between e^−69 and e^69 are searched, 10⁻³⁰ to 10³⁰, from 10⁶ on.
-const LOG_PHOTONS: f64 = 69.0;
+/// Where the search for photons begins: 10⁶.
 const FIRST_LOG_PHOTONS: f64 = 13.8;
-/// Steps of that search, and states that are looked at before progress is told.
-const STEPS: usize = 60;
-const TOGETHER: usize = 64;
 /// Error of an averaged probability where none is asked for.
 const TOLERANCE: f64 = 1e-3;
 /// States of each lattice, try by try: few to be near the photons that are sought, then as many as an error of 10⁻³ takes.
@@ -88,16 +84,6 @@ pub struct AveragePhotons {
     pub relative_error: f64,
     /// States of the last average.
     pub nodes: usize,
-}
-
-/// Which distance of a state its detection probability is taken from. A prior counts in it as one more
-/// reading, centred at that state.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Distances {
-    /// The paper's local distance.
-    Local,
-    /// The nearest distance, over this range of the alternative's state.
-    Nearest(StateRange),
 }
 
 /// Bounds with priors in fixed bands, surroundings and unknowns.
@@ -262,7 +248,9 @@ impl<'a> BayesianBound<'a> {
     ) -> Result<Average<'b>> {
         let total = self.photon_radiance(pair)?;
         Ok(Average {
-            bound: self,
+            bands: self.bands,
+            surroundings: self.surroundings,
+            unknowns: &self.unknowns,
             pair,
             distances,
             progress,

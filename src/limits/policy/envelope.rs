@@ -24,6 +24,7 @@
 mod attain;
 mod bound;
 mod cell;
+mod halving;
 mod joint;
 mod linear;
 mod model;

@@ -18,7 +18,7 @@ pub(super) mod scene;
 #[cfg(test)]
 mod tests;
 
-pub use report::{BruteForceReport, Failure, SetReport};
+pub use report::{BruteForcePlan, BruteForceReport, Failure, SetReport};
 
 use self::report::{Judged, Tally};
 use self::scene::{Scene, Set};
@@ -42,17 +42,6 @@ const ROUNDING: f64 = 4.0 * f64::EPSILON;
 const MISSED: f64 = 1e-9;
 /// Share of the separation at the target's own state below which a distance is none: the alternative can imitate the target.
 const VANISHING: f64 = 1e-12;
-
-/// What to run.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
-pub struct BruteForcePlan {
-    /// How many cases of every set of unknowns.
-    pub cases_per_set: u64,
-    /// Which ones.
-    pub seed: u64,
-    /// One case alone, by its number.
-    pub only: Option<u64>,
-}
 
 /// Holds the crate's nearest distances against the brute force, telling `progress` how many cases of how many are done.
 ///

@@ -23,6 +23,7 @@ mod search;
 use self::descent::{Each, MOST};
 use self::lattice::{axis, low_places};
 use self::model::{Layout, Model, Spectrum};
+pub use self::search::Found;
 use self::search::{Candidate, Search, logarithms, temperature_k};
 use super::double_double::{DoubleDouble, Real};
 use super::local::{Noise, Pair};
@@ -40,15 +41,6 @@ const POLISHED: usize = 12;
 /// Share by which two costs are one, where they are above the rounding of doubles.
 const SAME: f64 = 1e-9;
 const NOISE: f64 = 1e-24;
-
-/// The least that was found.
-#[derive(Debug, Clone)]
-pub struct Found {
-    /// Half the separation in units of the noise, per √photon or with a camera's counts.
-    pub distance: DoubleDouble,
-    /// Where it is, rounded.
-    pub state: State,
-}
 
 /// Brute force in fixed bands, surroundings, unknowns and range.
 #[derive(Debug, Clone)]
@@ -81,7 +73,7 @@ impl<'a> BruteForce<'a> {
     /// How far the alternative in the state `other` is from the target in its own, with 31 digits.
     #[must_use]
     pub fn separation(&self, pair: Pair<'_>, other: &State, noise: Noise<'_>) -> DoubleDouble {
-        let model = Model::<DoubleDouble>::new(self.bands, self.surroundings, &self.layout, pair, noise);
+        let model = self.model::<DoubleDouble>(pair, noise);
         let spectra: Vec<Spectrum<DoubleDouble>> = (0..=self.layout.objects)
             .map(|s| model.spectrum(s, DoubleDouble::from(temperature_k(other, s)).logarithm(), false))
             .collect();
@@ -97,7 +89,7 @@ impl<'a> BruteForce<'a> {
     /// The nearest state; nothing where no lighting within the range has the known total.
     #[must_use]
     pub fn nearest(&self, pair: Pair<'_>, noise: Noise<'_>) -> Option<Found> {
-        let plain = Search::<f64>::new(self, pair, noise);
+        let plain = Search::<f64>::new(self.model(pair, noise));
         let start = self.start(pair.state)?;
         let profile = match self.layout.temperatures.split_first() {
             None => vec![vec![plain.at(&logarithms(pair.state), &start, &[])]],
@@ -112,7 +104,7 @@ impl<'a> BruteForce<'a> {
             .collect();
         candidates.sort_by(|a, b| a.cost.total_cmp(&b.cost));
         candidates.dedup_by(|a, b| (a.cost - b.cost).abs() <= SAME * b.cost && b.cost > NOISE);
-        let fine = Search::<DoubleDouble>::new(self, pair, noise);
+        let fine = Search::<DoubleDouble>::new(self.model(pair, noise));
         let polished = candidates.iter().take(POLISHED).map(|candidate| {
             let [temperatures, rest] =
                 [&candidate.temperatures, &candidate.rest].map(|all| all.map(DoubleDouble::from));
@@ -124,7 +116,7 @@ impl<'a> BruteForce<'a> {
     /// The end of the way down from a state, once it is within the range to 31 digits.
     #[must_use]
     pub fn nearest_from(&self, pair: Pair<'_>, start: &State, noise: Noise<'_>) -> Found {
-        let fine = Search::<DoubleDouble>::new(self, pair, noise);
+        let fine = Search::<DoubleDouble>::new(self.model(pair, noise));
         let free = &self.layout.temperatures;
         let temperatures = logarithms(start);
         let temperatures = fine.within_limits(&temperatures);
@@ -135,6 +127,10 @@ impl<'a> BruteForce<'a> {
         }
         let rest = fine.lit_within_limits(rest);
         fine.polish(&temperatures, &rest, free)
+    }
+
+    fn model<'s, R: Real>(&'s self, pair: Pair<'s>, noise: Noise<'_>) -> Model<'s, R> {
+        Model::new(self.bands, self.surroundings, &self.layout, pair, noise)
     }
 
     /// Gain and Cₖ within the range, the middle of it.

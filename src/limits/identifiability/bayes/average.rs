@@ -2,15 +2,32 @@
 
 use super::prior::{self, Node};
 use super::stack::{MAX_STACK, Pair};
-use super::{BayesianBound, Distances, LOG_PHOTONS, STEPS, TOGETHER};
 use crate::error::Result;
-use crate::fisher::Counting;
+use crate::fisher::{Counting, Unknowns};
 use crate::identifiability::detection;
 use crate::identifiability::local::LocalSolver;
-use crate::identifiability::nearest::NearestSolver;
+use crate::identifiability::nearest::{NearestSolver, StateRange};
 use crate::root::crossing;
+use crate::scene::Surroundings;
+use crate::spectrum::Bands;
 use crate::sum::Compensated;
 use rayon::prelude::*;
+
+/// Photon numbers between e^−69 and e^69 are searched, 10⁻³⁰ to 10³⁰.
+pub(super) const LOG_PHOTONS: f64 = 69.0;
+/// Steps of that search, and states that are looked at before progress is told.
+const STEPS: usize = 60;
+const TOGETHER: usize = 64;
+
+/// Which distance of a state its detection probability is taken from. A prior counts in it as one more
+/// reading, centred at that state.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Distances {
+    /// The paper's local distance.
+    Local,
+    /// The nearest distance, over this range of the alternative's state.
+    Nearest(StateRange),
+}
 
 /// Which states stand for the priors.
 #[derive(Debug, Clone, Copy)]
@@ -23,7 +40,9 @@ pub(super) enum States {
 
 /// An average over states, and what was last found of them.
 pub(super) struct Average<'b> {
-    pub(super) bound: &'b BayesianBound<'b>,
+    pub(super) bands: &'b Bands,
+    pub(super) surroundings: &'b Surroundings,
+    pub(super) unknowns: &'b Unknowns,
     pub(super) pair: Pair<'b>,
     pub(super) distances: Distances,
     pub(super) progress: &'b dyn Fn(usize, usize),
@@ -52,7 +71,7 @@ pub(super) struct Met {
 impl Average<'_> {
     /// Takes other states.
     pub(super) fn take(&mut self, states: States) -> Result<()> {
-        let (unknowns, state) = (&self.bound.unknowns, self.pair.state);
+        let (unknowns, state) = (self.unknowns, self.pair.state);
         let (parts, rule) = match states {
             States::Lattices(points) => (prior::lattices(unknowns, state, points)?, false),
             States::Product(order) => {
@@ -73,7 +92,7 @@ impl Average<'_> {
 
     /// Finds the distance of every state when the nominal one sends `photons`.
     pub(super) fn look(&mut self, photons: f64) -> Result<()> {
-        let BayesianBound { bands, surroundings, unknowns, .. } = self.bound;
+        let Self { bands, surroundings, unknowns, .. } = *self;
         let (own, other) = (self.pair.emissivity, self.pair.alternative);
         let counting = Counting { counts_per_radiance: photons / self.total, var_added: Vec::new() };
         self.found.clear();

@@ -22,8 +22,8 @@
 //! for any λ at all; λ is the multiplier that the linear model has, found with r as one more row of great weight.
 
 use super::cell::{Cell, Weighing};
-use super::linear::{COLUMNS, Factor, Gram, Limit, PAIRS, RANK, Vector};
-use super::model::{Model, SOURCES};
+use super::linear::{COLUMNS, Factor, Gram, Limit, PAIRS, RANK, SOURCES, Vector};
+use super::model::Model;
 use super::node::{Detail, Node};
 use super::relation::Relation;
 

@@ -30,13 +30,9 @@ use super::joint::Residual;
 use super::linear::{PAIRS, RANK, Vector};
 use super::model::{Model, Region};
 use super::node::{Node, Spread};
-use super::partition::{FAINT, Part};
-use super::series::TERMS;
+use super::partition::{FAINT, Part, WIDEST};
 use crate::sum::dot;
 
-/// Largest half width of a temperature of the scene, as a share of its middle, and of one of the alternative's own.
-pub(super) const WIDEST: f64 = 0.08;
-pub(super) const WIDEST_FREE: f64 = 0.25;
 /// The basis is complete when nothing is left of a spectrum but this share of the distance attained.
 const LEFT_OVER: f64 = 1e-3;
 /// What is left of a spectrum times the skew of variances is this much less of a loss: the weights of bands need not be
@@ -46,8 +42,6 @@ const WEIGHT_OF_SKEW: f64 = 0.03;
 const STEP: f64 = 1.35;
 /// What weighing by the target alone may lose of a distance.
 const LOSS: f64 = 5e-4;
-
-pub(super) type Cubic = [Vector; TERMS];
 
 /// Whose counts the variances of a cell are.
 #[derive(Debug, Clone, Copy, PartialEq)]

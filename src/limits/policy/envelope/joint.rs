@@ -9,8 +9,8 @@
 //! box doubles where the step gains and shrinks to a quarter where it does not (a trust region that the ranges cut
 //! off). Unlike a descent over scenes alone it follows narrow valleys that run across scene and state.
 
-use super::linear::{COLUMNS, Gram};
-use super::model::{Model, Point, Region, SOURCES};
+use super::linear::{COLUMNS, Gram, SOURCES};
+use super::model::{Model, Point, Region};
 use super::relation::Relation;
 use super::series::planck_series;
 use crate::sum::dot;

@@ -1,13 +1,13 @@
 //! The nearest point of a box's linear model, and changes to coordinates in which a variance is 1.
 
-use super::model::SOURCES;
-
 /// Components that are kept of a spectrum.
 pub(super) const RANK: usize = 16;
 /// Entries of a symmetric matrix.
 pub(super) const PAIRS: usize = RANK * (RANK + 1) / 2;
 /// A spectrum by its components.
 pub(super) type Vector = [f64; RANK];
+/// Sources that a proof can deal with: two surfaces, and four objects or twice two.
+pub(super) const SOURCES: usize = 6;
 /// Columns of A: temperature, v, w of each source.
 pub(super) const COLUMNS: usize = 3 * SOURCES;
 /// Steps of the search for the nearest point.

@@ -15,7 +15,7 @@
 //! | object k with a temperature of the alternative's own | Vₖ | (1 − e)εₖ | | |
 //! | the alternative's object k | cₖ | −(1 − e′)εₖ | | |
 
-use super::linear::COLUMNS;
+use super::linear::{COLUMNS, SOURCES};
 use super::ranges::Ranges;
 use super::relation::{Product, Relation};
 use super::scene::EnvelopeScene;
@@ -23,8 +23,6 @@ use crate::fisher::{Nuisance, Unknowns};
 use crate::planck;
 use crate::scene::State;
 
-/// Sources that a proof can deal with: two surfaces, and four objects or twice two.
-pub(super) const SOURCES: usize = 6;
 /// Largest |ln G′|, and the range of Tₖ′ (K): those of the search for the nearest state.
 const LOG_GAIN: f64 = 14.0;
 const ENVIRONMENT_K: [f64; 2] = [0.1, 1e6];

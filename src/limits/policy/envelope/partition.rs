@@ -4,10 +4,11 @@
 //! target keep their proportions: ln of the ratio of the highest to the lowest N + v may differ from band to band by 1.6
 //! ([`SKEWED`]). What the alternative may be is the same in every part.
 
-use super::cell::WIDEST;
 use super::model::{Model, Region, Source, Span};
 use rayon::prelude::*;
 
+/// Largest half width of a temperature of the scene, as a share of its middle.
+pub(super) const WIDEST: f64 = 0.08;
 /// A source that is weaker than this share of the distance attained is not resolved in temperature.
 pub(super) const FAINT: f64 = 3e-4;
 /// How far the variances of bands may change differently: ln of the ratio of ratios. Bounds do without; only the

@@ -1,12 +1,22 @@
-//! What a run of the brute force tells, set of unknowns by set of unknowns.
+//! What a run of the brute force is asked and tells, set of unknowns by set of unknowns.
 
-use super::BruteForcePlan;
 use super::scene::Set;
 
 /// Failures of a set that are told in full.
 const TOLD: usize = 8;
 /// Excess of a distance that is told as large.
 const LARGE: f64 = 0.01;
+
+/// What to run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+pub struct BruteForcePlan {
+    /// How many cases of every set of unknowns.
+    pub cases_per_set: u64,
+    /// Which ones.
+    pub seed: u64,
+    /// One case alone, by its number.
+    pub only: Option<u64>,
+}
 
 /// What one case finds.
 #[derive(Debug, Clone, Default)]

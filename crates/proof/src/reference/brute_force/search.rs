@@ -2,13 +2,20 @@
 
 use super::descent::{Constraint, Descent, Each, MOST};
 use super::model::{LOG_GAIN, Model, Spectrum};
-use super::{BruteForce, Found};
 use crate::reference::double_double::{DoubleDouble, Real};
-use crate::reference::local::{Noise, Pair};
 use hadar::scene::State;
 
 /// Longest step of the logarithm of a temperature.
 const LONGEST: f64 = 0.5;
+
+/// The least that was found.
+#[derive(Debug, Clone)]
+pub struct Found {
+    /// Half the separation in units of the noise, per √photon or with a camera's counts.
+    pub distance: DoubleDouble,
+    /// Where it is, rounded.
+    pub state: State,
+}
 
 /// A state on the way down: logarithms of all temperatures, then gain and Cₖ.
 #[derive(Debug, Clone)]
@@ -124,8 +131,7 @@ impl Search<'_, DoubleDouble> {
 }
 
 impl<'a, R: Real> Search<'a, R> {
-    pub(super) fn new(force: &'a BruteForce<'a>, pair: Pair<'a>, noise: Noise<'_>) -> Self {
-        let model = Model::new(force.bands, force.surroundings, &force.layout, pair, noise);
+    pub(super) fn new(model: Model<'a, R>) -> Self {
         let linear = model.constraints(&[]);
         Self { model, linear }
     }
