@@ -2,6 +2,7 @@ use super::*;
 use crate::fisher::Counting;
 use crate::fisher::Nuisance::{self, Gain, Lighting, Temperature};
 use crate::identifiability::local::LocalSolver;
+use crate::identifiability::nearest::StateRange;
 use crate::planck;
 use crate::scene::{EnvironmentObject, State};
 use std::f64::consts::PI;
