@@ -370,7 +370,8 @@ proptest! {
         for unknowns in ever_more_unknowns(recipe.count, recipe.objects.len()) {
             let local = scene.local(&unknowns, f64::INFINITY);
             prop_assert_eq!((local.distance, local.status), (0.0, Status::Equilibrium));
-            prop_assert_eq!(scene.nearest(&unknowns, f64::INFINITY).distance, 0.0);
+            // Factors that add up to 1 but for their last bit leave as much.
+            prop_assert!(scene.nearest(&unknowns, f64::INFINITY).distance < 1e-17);
         }
     }
 }

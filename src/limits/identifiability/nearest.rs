@@ -54,9 +54,7 @@ const ROUNDING_OF_TERMS: f64 = 1e-15;
 const NOTHING_OF_TERMS: f64 = 1e-15;
 const LARGEST_X: f64 = 708.0;
 /// The x from which differences of radiances lose more than these themselves, by the stress suite.
-const DEEP_IN_WIEN: f64 = 20.0;
-/// Share of √ΣN below which a distance is the rounding of numbers entered, such as lighting factors that should sum to 1.
-const INPUTS: f64 = 2e-18;
+const DEEP_IN_WIEN: f64 = 1.5;
 
 /// Finds nearest states in fixed bands and surroundings.
 #[derive(Debug, Clone)]
@@ -279,10 +277,8 @@ impl<'a> NearestSolver<'a> {
                     let x = x.min(LARGEST_X);
                     let rounding = ROUNDING_OF_TERMS * (10.0 + x) * (1.0 + x / DEEP_IN_WIEN);
                     best.relative_error = NO_GAIN + rounding * (1.0 + terms / best.distance);
-                    let size = self.comparison.root_size();
-                    let nothing = (NOTHING_OF_TERMS * terms).max(INPUTS * size);
-                    if terms.is_finite() && best.distance <= nothing {
-                        // Nothing but rounding is left, of the separation or of what was entered.
+                    if terms.is_finite() && best.distance <= NOTHING_OF_TERMS * terms {
+                        // Nothing but rounding is left.
                         (best.distance, best.lower, best.relative_error) = (0.0, 0.0, 0.0);
                     }
                 }

@@ -237,11 +237,6 @@ impl<'a> Comparison<'a> {
         total.value().sqrt()
     }
 
-    /// √Σ(N + σ²) of the target.
-    pub(super) fn root_size(&self) -> f64 {
-        crate::sum::dot(&self.work.root, &self.work.root).sqrt()
-    }
-
     /// √(N + σ²) of the target.
     pub(super) fn root(&self) -> &[f64] {
         &self.work.root
