@@ -15,7 +15,7 @@ fn what_was_asked_for_comes_first() {
     let lead = "The camera tells 7 of 10 pairs apart with 84.1 % reliability, either of them the target\n";
     let (apart, matrix) = (said(FIVE, &["--apart"]), said(FIVE, &["--matrix"]));
     assert!(apart.starts_with(lead) && matrix.starts_with(lead), "{apart}\n{matrix}");
-    let table = "  distances per sqrt(photon); photons by shot noise alone; camera d: statistical distance, required 1.000\n";
+    let table = "  distances per sqrt(photon), the nearest proved to 1e-6 of it; photons by shot noise alone; camera d: statistical distance, required 1.000\n";
     assert!(!apart.contains(table) && matrix.contains(table), "{apart}\n{matrix}");
     let chains = "Chains: groups held together by pairs that are not told apart\n  1   (4) skin, aluminium, pmma, concrete\n";
     let clusters =

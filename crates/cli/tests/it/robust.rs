@@ -222,7 +222,12 @@ fn the_last_bit_of_the_photons_changes_no_draw() {
             "likelihood-ratio,discriminant",
         ];
         let result = folder.json(&[&arguments[..], &["--photons", &photons]].concat());
-        result["points"][0]["performances"].clone()
+        let mut found = result["points"][0]["performances"].clone();
+        // The share of photons is of the limit, which follows the photons to the last bit.
+        for performance in found.as_array_mut().into_iter().flatten() {
+            performance.as_object_mut().map(|performance| performance.remove("photon_share"));
+        }
+        found
     };
     let photons = 2.345_678_912_345_678e5;
     assert!(drawn(photons).is_array());
@@ -298,9 +303,9 @@ fn a_distance_beyond_all_numbers_is_refused() {
         let said = folder.refusal(&["identify", "a.toml"]);
         assert!(said.contains("a distance beyond all numbers: the target sends next to nothing"), "{said}");
     }
-    // As little light as still has a distance.
+    // As little light as still has a distance: an alternative that is dark and cold is as dim.
     let folder = Folder::with(&dark.replace("lighting = 0.5", "lighting = 1e-130"));
     folder.file("mirror.csv", "wavenumber_cm1,emissivity\n600,0\n1400,0\n");
     let pair = &folder.json(&["identify", "a.toml"])["pairs"][0];
-    assert!(pair["distance_nearest"].as_f64().is_some_and(|distance| distance > 1.0), "{pair}");
+    assert!(pair["distance_nearest"].as_f64().is_some_and(|distance| distance < 1.0), "{pair}");
 }

@@ -15,9 +15,9 @@ const LOWEST_K: f64 = 0.1;
 const STEPS_PER_E: f64 = 32.0;
 /// What x changes by at the highest wavenumber from one temperature of a search to the next, where x is large: the fitted cost
 /// is smooth in that.
-const SPACING: f64 = 0.6;
+const SPACING: f64 = 0.2;
 /// More of them around the temperatures of the scene, as shares of these.
-const AROUND: [f64; 3] = [-0.01, 0.0, 0.01];
+const AROUND: [f64; 7] = [-0.03, -0.01, -0.003, 0.0, 0.003, 0.01, 0.03];
 
 /// Blackbody radiance and its slope along T at the thinned nodes, followed by zeros up to a whole chunk.
 #[derive(Debug, Clone)]
