@@ -5,7 +5,7 @@
 //! the target: for finite separations it can err either way, see [`super::nearest`].
 //!
 //! Doubles do most of it. Where they leave fewer than nine digits, or find a nuisance dependent that need not be, or a
-//! radiance underflows, the same is done in 128 or 512 bits ([`CarefulProjector`]), so that the error reported is one of the
+//! radiance underflows, the same is done in 128 or 512 bits (`fisher::careful`), so that the error reported is one of the
 //! answer to the numbers given. A residual below 16 ε of the material's own column is nothing: its elements, formed in
 //! doubles, would have no digit more.
 //!
