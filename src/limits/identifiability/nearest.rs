@@ -277,6 +277,8 @@ impl<'a> NearestSolver<'a> {
                     let x = x.min(LARGEST_X);
                     let rounding = ROUNDING_OF_TERMS * (10.0 + x) * (1.0 + x / DEEP_IN_WIEN);
                     best.relative_error = NO_GAIN + rounding * (1.0 + terms / best.distance);
+                    // What rounding may have added to the distance it may have added to its bound.
+                    best.lower = best.lower.min(best.distance * (1.0 - best.relative_error)).max(0.0);
                     if terms.is_finite() && best.distance <= NOTHING_OF_TERMS * terms {
                         // Nothing but rounding is left.
                         (best.distance, best.lower, best.relative_error) = (0.0, 0.0, 0.0);
