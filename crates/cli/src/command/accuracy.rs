@@ -21,9 +21,9 @@ const STRESS: &str = "stress";
 const QUICK_CASES: u64 = 2000;
 const CASES: u64 = 100_000;
 const BRUTE_FORCE: &str = "brute-force";
-/// Cases of every set of unknowns; a thousand take some twenty minutes on two cores.
-const CASES_PER_SET: u64 = 100;
-const QUICK_CASES_PER_SET: u64 = 3;
+/// Scenes of every set of unknowns; a thousand take some twenty minutes on two cores.
+const SCENES: u64 = 100;
+const QUICK_SCENES: u64 = 3;
 
 #[derive(Debug, Args)]
 pub(super) struct AccuracyArgs {
@@ -36,12 +36,15 @@ pub(super) struct AccuracyArgs {
     /// Fewer settings and shorter runs
     #[arg(long)]
     quick: bool,
-    /// Stress cases (default: 100000, or 2000 with --quick), or cases of the brute force for every set of unknowns (100, or 3)
+    /// Stress cases (default: 100000, or 2000 with --quick)
     #[arg(long, value_name = "N")]
     cases: Option<u64>,
-    /// One case of the brute force again, by its number
-    #[arg(long, value_name = "NUMBER", conflicts_with = "cases")]
-    case: Option<u64>,
+    /// Scenes of the brute force for every set of unknowns (default: 100, or 3 with --quick)
+    #[arg(long, value_name = "N")]
+    scenes: Option<u64>,
+    /// One scene of the brute force again, by its number
+    #[arg(long, value_name = "NUMBER", conflicts_with = "scenes")]
+    scene: Option<u64>,
 }
 
 /// What is printed with `--json`.
@@ -90,6 +93,9 @@ impl Task {
 
 pub(super) fn run(args: &AccuracyArgs, global: &Global) -> Result<ExitCode> {
     let tasks = tasks(&args.items)?;
+    given_to(&tasks, Task::Stress, "--cases", args.cases)?;
+    given_to(&tasks, Task::BruteForce, "--scenes", args.scenes)?;
+    given_to(&tasks, Task::BruteForce, "--scene", args.scene)?;
     let order = Order { quick: args.quick, seed: global.seed };
     let (mut output, mut bundle, mut text) =
         (Output::default(), Bundle::about(Some("Run time against error")), String::new());
@@ -109,10 +115,9 @@ pub(super) fn run(args: &AccuracyArgs, global: &Global) -> Result<ExitCode> {
                 output.continuum = Some(found);
             }
             Task::BruteForce => {
-                let cases_per_set =
-                    args.cases.unwrap_or(if args.quick { QUICK_CASES_PER_SET } else { CASES_PER_SET });
-                let bar = global.progress("cases of the brute force");
-                let plan = BruteForcePlan { cases_per_set, seed: global.seed, only: args.case };
+                let scenes_per_set = args.scenes.unwrap_or(if args.quick { QUICK_SCENES } else { SCENES });
+                let bar = global.progress("scenes of the brute force");
+                let plan = BruteForcePlan { scenes_per_set, seed: global.seed, only: args.scene };
                 let found = brute_force(&plan, &|done, total| bar.set(done as usize, total as usize))?;
                 bar.finish();
                 text.push_str(&format!("{}\n", report::brute_force_text(&found)));
@@ -151,6 +156,18 @@ pub(super) fn run(args: &AccuracyArgs, global: &Global) -> Result<ExitCode> {
     let failed = output.stress.is_some_and(|stress| stress.failures > 0)
         || output.brute_force.is_some_and(|found| found.failures > 0);
     Ok(if failed { ExitCode::from(3) } else { ExitCode::SUCCESS })
+}
+
+/// Refuses a number for a computation that is not asked for.
+fn given_to(tasks: &[Task], of: Task, option: &str, given: Option<u64>) -> Result<()> {
+    match given {
+        Some(number) if !tasks.contains(&of) => {
+            let found =
+                format!("`{option} {number}`, which is for `{}`, and that is not asked for", of.name());
+            Err(Error::malformed(found, format!("add `{}` to the names, or leave {option} out", of.name())))
+        }
+        _ => Ok(()),
+    }
 }
 
 fn all() -> Vec<Task> {

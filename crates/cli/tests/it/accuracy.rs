@@ -16,11 +16,16 @@ fn the_command_says_what_is_wrong_and_what_it_did() {
     );
     let (code, _, error) = hadar(&["accuracy", "stress", "--cases", "0"]);
     assert!(code == Some(1) && error.contains("stress cases is 0"), "{error}");
-    let (code, text, _) = hadar(&["accuracy", "brute-force", "--case", "1", "--seed", "7", "-q"]);
+    let (code, text, _) = hadar(&["accuracy", "brute-force", "--scene", "1", "--seed", "7", "-q"]);
     assert!(
-        code == Some(0) && text.contains("1 cases of seed 7") && text.contains("| lighting | 1 |"),
+        code == Some(0) && text.contains("1 scenes of seed 7") && text.contains("| lighting | 1 |"),
         "{text}"
     );
+    // Each number to its own computation: in a list of them none is multiplied by mistake.
+    let (code, _, error) = hadar(&["accuracy", "brute-force", "--cases", "9"]);
+    assert!(code == Some(1) && error.contains("`--cases 9`, which is for `stress`"), "{error}");
+    let (code, _, error) = hadar(&["accuracy", "stress", "--scene", "9"]);
+    assert!(code == Some(1) && error.contains("`--scene 9`, which is for `brute-force`"), "{error}");
     let (code, _, error) = hadar(&["accuracy", "all", "planck"]);
     assert!(code == Some(1) && error.contains("`all` alone"), "{error}");
 

@@ -43,15 +43,15 @@ const MISSED: f64 = 1e-9;
 /// Share of the separation at the target's own state below which a distance is none: the alternative can imitate the target.
 const VANISHING: f64 = 1e-12;
 
-/// Holds the crate's nearest distances against the brute force, telling `progress` how many cases of how many are done.
+/// Holds the crate's nearest distances against the brute force, telling `progress` how many of how many are done.
 ///
 /// # Errors
-/// A plan without cases.
+/// A plan without scenes.
 pub fn brute_force(plan: &BruteForcePlan, progress: &(dyn Fn(u64, u64) + Sync)) -> Result<BruteForceReport> {
-    check::positive("cases of the brute force", plan.cases_per_set as f64, "")?;
+    check::positive("scenes of the brute force", plan.scenes_per_set as f64, "")?;
     let sets = Set::all();
     let count = sets.len() as u64;
-    let cases = plan.only.map_or(0..plan.cases_per_set * count, |case| case..case + 1);
+    let cases = plan.only.map_or(0..plan.scenes_per_set * count, |case| case..case + 1);
     let (done, all) = (AtomicU64::new(0), cases.end - cases.start);
     let run = |case: u64| {
         let judged = caught(plan.seed, case, sets[(case % count) as usize]);

@@ -8,10 +8,10 @@ use hadar_proof::accuracy::brute_force::{BruteForceReport, SetReport};
 #[must_use]
 pub fn brute_force_text(report: &BruteForceReport) -> String {
     let sum = |of: fn(&SetReport) -> u64| -> u64 { report.sets.iter().map(of).sum() };
-    let cases = sum(|set| set.cases);
+    let scenes = sum(|set| set.cases);
     let mut text = match report.failures {
-        0 => format!("No false statement in {cases} cases of seed {}", report.seed),
-        failures => format!("{failures} of {cases} cases of seed {} say what is false", report.seed),
+        0 => format!("No false statement in {scenes} scenes of seed {}", report.seed),
+        failures => format!("{failures} of {scenes} scenes of seed {} say what is false", report.seed),
     };
     text.push_str(&format!(
         ": {} lower bounds above the brute force, {} distances above it by more than is to be proved ({} by more than 1 %); \
@@ -20,12 +20,12 @@ pub fn brute_force_text(report: &BruteForceReport) -> String {
         sum(|set| set.above),
         sum(|set| set.far_above),
         sum(|set| set.proved),
-        cases - sum(|set| set.vanishing),
+        scenes - sum(|set| set.vanishing),
         sum(|set| set.unproved),
         sum(|set| set.missed),
     ));
     text.push_str(
-        "| unknown | cases | no distance at all | bounds above | distances above | by over 1 % | largest excess (case) | proved | no bound | error too small | no error told | time (longest) | brute force | brute force above (case) |\n\
+        "| unknown | scenes | no distance at all | bounds above | distances above | by over 1 % | largest excess (scene) | proved | no bound | error too small | no error told | time (longest) | brute force | brute force above (scene) |\n\
          |---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
     );
     for set in &report.sets {
@@ -49,11 +49,11 @@ pub fn brute_force_text(report: &BruteForceReport) -> String {
         ));
     }
     for failure in report.sets.iter().flat_map(|set| &set.first_failures) {
-        text.push_str(&format!("\ncase {} of seed {}: {}", failure.case, report.seed, failure.what));
+        text.push_str(&format!("\nscene {} of seed {}: {}", failure.case, report.seed, failure.what));
     }
     if report.failures > 0 {
         text.push_str(&format!(
-            "\n\none case again: hadar accuracy brute-force --seed {} --case <number>\n",
+            "\n\none scene again: hadar accuracy brute-force --seed {} --scene <number>\n",
             report.seed
         ));
     }
@@ -69,14 +69,14 @@ fn of_case(value: String, case: Option<u64>) -> String {
 pub fn brute_force_table(report: &BruteForceReport) -> Table {
     let mut table = Table::new([
         "unknown",
-        "cases",
+        "scenes",
         "failures",
         "no_distance",
         "lower_above",
         "above",
         "above_1_percent",
         "worst_excess",
-        "worst_case",
+        "worst_scene",
         "proved",
         "unproved",
         "error_wrong",

@@ -10,8 +10,8 @@ const LARGE: f64 = 0.01;
 /// What to run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 pub struct BruteForcePlan {
-    /// How many cases of every set of unknowns.
-    pub cases_per_set: u64,
+    /// How many scenes of every set of unknowns.
+    pub scenes_per_set: u64,
     /// Which ones.
     pub seed: u64,
     /// One case alone, by its number.
@@ -103,7 +103,7 @@ pub struct SetReport {
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct BruteForceReport {
     /// Cases of every set.
-    pub cases_per_set: u64,
+    pub scenes_per_set: u64,
     /// Seed.
     pub seed: u64,
     /// Cases with a false statement.
@@ -117,7 +117,7 @@ impl BruteForceReport {
         let sets: Vec<SetReport> =
             tallies.into_iter().map(|tally| tally.0).filter(|set| set.cases > 0).collect();
         let failures = sets.iter().map(|set| set.failures).sum();
-        Self { cases_per_set: plan.cases_per_set, seed: plan.seed, failures, sets }
+        Self { scenes_per_set: plan.scenes_per_set, seed: plan.seed, failures, sets }
     }
 }
 

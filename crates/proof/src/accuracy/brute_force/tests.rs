@@ -1,7 +1,7 @@
 use super::*;
 
-fn run(cases_per_set: u64, seed: u64, only: Option<u64>) -> BruteForceReport {
-    brute_force(&BruteForcePlan { cases_per_set, seed, only }, &|_, _| {}).unwrap()
+fn run(scenes_per_set: u64, seed: u64, only: Option<u64>) -> BruteForceReport {
+    brute_force(&BruteForcePlan { scenes_per_set, seed, only }, &|_, _| {}).unwrap()
 }
 
 /// Every set of unknowns once: no false statement, and every set in the report.
@@ -27,7 +27,7 @@ fn a_case_is_repeated_by_its_number() {
     assert_eq!(one.sets.len(), 1);
     assert_eq!(one.sets[0].unknown, sets[3].name());
     assert_eq!(one.sets[0].worst_excess, three.sets[0].worst_excess);
-    assert!(brute_force(&BruteForcePlan { cases_per_set: 0, seed: 1, only: None }, &|_, _| {}).is_err());
+    assert!(brute_force(&BruteForcePlan { scenes_per_set: 0, seed: 1, only: None }, &|_, _| {}).is_err());
 }
 
 /// What it is for: a lower bound that is too high, a distance proved that is not the least, an error too small.
