@@ -12,23 +12,25 @@
 //! [`crate::planck`] states, and the bound given is lowered by [`MARGIN`]. Priors only add to a distance; the bound leaves
 //! them out.
 
+mod about;
 mod amplitudes;
 mod closing;
 mod hull;
 mod metric;
+mod orthogonal;
 mod sources;
+mod vectors;
+mod view;
 
-use self::amplitudes::{Amplitudes, Pieces};
-use self::closing::{Minimum, Reach, close};
-use self::hull::{Quadratic, reduce};
-use self::metric::Metric;
+use self::about::Closed;
+use self::amplitudes::Amplitudes;
 pub(super) use self::sources::Few;
-use self::sources::{Chord, Sources, Spectrum, chord};
+use self::sources::Sources;
+use self::view::{Mixture, View};
 use super::refine::{NearestDistance, refine};
 use super::residual::{Comparison, Target};
 use crate::fisher::Nuisance;
 use crate::scene::{Parameter, State};
-use crate::sum::dot;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use std::sync::Arc;
@@ -41,16 +43,13 @@ const MARGIN: f64 = 1e-12;
 const BOXES: [u64; 4] = [1, 2_000, 6_000, 6_000];
 /// Nearer states that are followed at most.
 const RESTARTS: usize = 30;
-/// Share of the bound wanted beyond which what chords miss makes it useless to try better quadratics.
-const COARSE: f64 = 0.25;
-/// Descents into valleys on the way, and boxes after which another one is tried from no lower than before.
+/// Descents into valleys on the way, boxes before the first one (most proofs need no more), and boxes after which another one
+/// is tried from no lower than before.
 const DESCENTS: usize = 40;
+const FIRST_DESCENT: u64 = 40;
 const SELDOM: u64 = 50;
 /// Quadratics that are tried in a box.
 const QUADRATICS: usize = 5;
-/// Half widths of the closed box that are tried, as shares of T/max(x, 2) in the middle of the bands.
-const WIDTHS: [f64; 8] = [0.3, 0.1, 0.03, 0.01, 3e-3, 1e-3, 1e-4, 1e-6];
-
 /// Whether a state nearer than a limit was found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Nearer {
@@ -81,16 +80,6 @@ enum Outcome {
     Nearer(State),
 }
 
-/// What has come of closing a box about the best state.
-enum Closed {
-    /// A lower bound of d² in it, and its faces.
-    Box(f64, Vec<[f64; 2]>),
-    /// A nearer state.
-    Nearer(State),
-    /// No box can be closed.
-    Nothing,
-}
-
 /// Intervals of the unknown temperatures: places of their ends among the spectra known.
 #[derive(Debug, Clone)]
 struct Region {
@@ -118,37 +107,6 @@ impl PartialEq for Region {
 }
 
 impl Eq for Region {}
-
-/// A spectrum of a source at one end of an interval.
-struct End {
-    spectrum: Spectrum,
-    /// The largest amplitude with which no band alone is beyond reach.
-    most: f64,
-}
-
-/// Amplitudes and temperatures of all sources.
-struct Mixture {
-    amplitudes: Vec<f64>,
-    temperature_k: Vec<f64>,
-}
-
-/// A pair in some of its bands: fewer bands never carry more information, and where they prove enough they are quicker.
-struct View<'a> {
-    sources: Sources<'a>,
-    allowed: Amplitudes,
-    /// √(N + v), N and v of every band.
-    root: Vec<f64>,
-    counts: Vec<f64>,
-    noise: Vec<f64>,
-    /// The distance within which everything is.
-    reach: f64,
-    about_target: Metric,
-    /// Sources of unknown temperature, and their spectra at the temperatures known, as far as they were needed.
-    axes: Vec<usize>,
-    ends: Vec<Vec<Option<End>>>,
-    /// Spectra of the others.
-    fixed: Vec<Option<Spectrum>>,
-}
 
 struct Prover<'a> {
     few: Option<View<'static>>,
@@ -209,171 +167,6 @@ pub(super) fn prove(
         }
     }
     best
-}
-
-impl<'a> View<'a> {
-    fn new(
-        sources: Sources<'a>,
-        allowed: Amplitudes,
-        [root, counts, noise]: [Vec<f64>; 3],
-        reach: f64,
-    ) -> Self {
-        let size = dot(&root, &root).sqrt() + reach;
-        let total = (size * size - crate::sum::sum(&noise)) * (1.0 + 1e-12);
-        let allowed = Amplitudes { total, ..allowed };
-        let axes: Vec<usize> = (0..sources.list.len()).filter(|&s| sources.list[s].free()).collect();
-        let fixed = (0..sources.list.len())
-            .map(|s| (!sources.list[s].free()).then(|| sources.spectrum(s, sources.list[s].temperature_k[0])))
-            .collect();
-        let about_target = Metric::about_target(&root, &counts, reach);
-        let ends = axes.iter().map(|_| Vec::new()).collect();
-        Self { sources, allowed, root, counts, noise, reach, about_target, axes, ends, fixed }
-    }
-
-    /// Makes sure of the spectrum at an end of an interval.
-    fn know(&mut self, axis: usize, place: usize, temperature_k: f64) {
-        if self.ends[axis].len() <= place {
-            self.ends[axis].resize_with(place + 1, || None);
-        }
-        if self.ends[axis][place].is_some() {
-            return;
-        }
-        let spectrum = self.sources.spectrum(self.axes[axis], temperature_k);
-        let mut most = f64::INFINITY;
-        for ((counts, root), noise) in spectrum.counts.iter().zip(&self.root).zip(&self.noise) {
-            let bright = root + self.reach;
-            most = most.min((bright * bright * (1.0 + 1e-9) - noise) / counts);
-        }
-        self.ends[axis][place] = Some(End { spectrum, most });
-    }
-
-    /// The amplitude of a source, where it is known.
-    fn held(&self, s: usize) -> Option<f64> {
-        if self.allowed.gain_free {
-            return None;
-        }
-        match s.checked_sub(1) {
-            None => Some(1.0),
-            Some(k) => {
-                (self.allowed.ranges[k][0] == self.allowed.ranges[k][1]).then(|| self.allowed.ranges[k][0])
-            }
-        }
-    }
-
-    /// The largest amplitude that a source can have in a box that begins with this spectrum.
-    fn most(&self, s: usize, cold: &End) -> f64 {
-        let gain = if self.allowed.gain_free { f64::exp(14.0) } else { 1.0 };
-        let own = match s.checked_sub(1) {
-            None => gain,
-            Some(k) => gain * self.allowed.ranges[k][1].min(self.allowed.sum),
-        };
-        own.min(cold.most).max(0.0)
-    }
-
-    /// A lower bound of d² in a box, the axis along which it is best halved, where it is least, and whether what the
-    /// chords miss is in the way of more.
-    fn bound(
-        &self,
-        ends: &[[usize; 2]],
-        allowed: &Amplitudes,
-        enough: f64,
-        quadratics: usize,
-    ) -> (f64, usize, Mixture, bool) {
-        let bands = self.root.len();
-        let (mut pieces, mut columns, mut sags) = (Pieces::default(), Vec::new(), Vec::new());
-        let mut temperature_k = Vec::new();
-        for s in 0..self.sources.list.len() {
-            let mut put = |spectrum: &Spectrum, column: Vec<f64>, cap: f64| {
-                pieces.source.push(s);
-                pieces.length.push(spectrum.length);
-                pieces.cap.push(cap);
-                temperature_k.push(spectrum.temperature_k);
-                columns.push(column);
-            };
-            if let Some(spectrum) = &self.fixed[s] {
-                put(spectrum, spectrum.counts.clone(), f64::INFINITY);
-                continue;
-            }
-            let axis = self.axes.iter().position(|&axis| axis == s).unwrap_or(0);
-            let [Some(cold), Some(hot)] = ends[axis].map(|end| self.ends[axis][end].as_ref()) else {
-                continue;
-            };
-            let (mut low, mut high, mut half) = (vec![0.0; bands], vec![0.0; bands], vec![0.0; bands]);
-            chord(Chord {
-                width_k: hot.spectrum.temperature_k - cold.spectrum.temperature_k,
-                cold: [&cold.spectrum.counts, &cold.spectrum.slope],
-                hot: [&hot.spectrum.counts, &hot.spectrum.slope],
-                low: &mut low,
-                high: &mut high,
-                half: &mut half,
-            });
-            let most = self.most(s, cold);
-            put(&cold.spectrum, low, most);
-            put(&hot.spectrum, high, hot.most.max(0.0));
-            sags.push((axis, most, half));
-        }
-        let mut whitened: Vec<Vec<f64>> = columns.iter().map(|column| vec![0.0; column.len()]).collect();
-        let mut metric = self.about_target.clone();
-        let (mut best, mut axis, mut point, mut coarse) = (0.0_f64, 0, vec![0.0; columns.len()], false);
-        for attempt in 0..quadratics {
-            for (out, column) in whitened.iter_mut().zip(&columns) {
-                for ((out, value), w) in out.iter_mut().zip(column).zip(&metric.weight) {
-                    *out = value * w;
-                }
-            }
-            let size = dot(&metric.shift, &metric.shift).sqrt();
-            let (factor, mut shift) = reduce(&mut whitened, &[&metric.shift]);
-            let mut shift = shift.pop().unwrap_or_default();
-            let left = shift.pop().unwrap_or(0.0);
-            let (mut missed, mut largest) = (0.0, -1.0);
-            for (which, most, half) in &sags {
-                let size: f64 = half.iter().zip(&metric.weight).map(|(h, w)| (h * w) * (h * w)).sum();
-                let part = if size > 0.0 { most * size.sqrt() } else { 0.0 };
-                missed += part;
-                if part > largest {
-                    (largest, axis) = (part, *which);
-                }
-            }
-            let m = columns.len();
-            let quadratic = Quadratic {
-                constant: left * left,
-                linear: vec![0.0; m],
-                factor,
-                shift,
-                origin: vec![0.0; m],
-            };
-            missed += ROUNDING * size;
-            let wanted = ((enough - metric.constant).max(0.0).sqrt() + missed).powi(2);
-            let found = quadratic.least(|costs, vertex| allowed.least(&pieces, costs, vertex), wanted);
-            let rest = (found.lower.max(0.0).sqrt() - missed).max(0.0);
-            let lower = metric.constant + rest * rest;
-            coarse = missed * missed > COARSE * enough;
-            let gained = lower - best;
-            best = best.max(lower);
-            point = found.point;
-            if best >= enough || (attempt > 0 && gained < 0.03 * (enough - best)) || coarse {
-                break;
-            }
-            let mut counts = vec![0.0; bands];
-            for (column, amount) in columns.iter().zip(&point) {
-                counts.iter_mut().zip(column).for_each(|(sum, value)| *sum += amount * value);
-            }
-            counts.iter_mut().for_each(|value| *value = value.max(0.0));
-            metric = Metric::about(&self.root, &counts, &self.noise, &self.counts, self.reach);
-        }
-        let mut mixture =
-            Mixture { amplitudes: vec![0.0; self.fixed.len()], temperature_k: vec![0.0; self.fixed.len()] };
-        for (i, amount) in point.iter().enumerate() {
-            let s = pieces.source[i];
-            mixture.amplitudes[s] += amount;
-            mixture.temperature_k[s] += amount * temperature_k[i];
-        }
-        for (s, t) in mixture.temperature_k.iter_mut().enumerate() {
-            let own = pieces.source.iter().position(|&source| source == s).unwrap_or(0);
-            *t = if mixture.amplitudes[s] > 0.0 { *t / mixture.amplitudes[s] } else { temperature_k[own] };
-        }
-        (best, axis, mixture, coarse)
-    }
 }
 
 impl<'a> Prover<'a> {
@@ -454,15 +247,14 @@ impl<'a> Prover<'a> {
             }
             for mut part in parts {
                 self.boxes += 1;
-                let allowed = self.all.allowed.clone();
-                let (bound, axis, mixture) = self.bound(&part.ends, &allowed, enough);
+                let (bound, axis, in_all) = self.bound(&part.ends, None, enough);
                 part.bound = bound.max(part.bound);
-                if part.bound < enough {
-                    let (state, cost) = self.candidate(comparison, target, &mixture);
+                if part.bound < enough && in_all {
+                    let (state, cost) = self.candidate(comparison, target, &self.all.mixture());
                     if cost < limit * (1.0 - 1e-12) {
                         return Outcome::Nearer(state);
                     }
-                    if cost < descended && descents < DESCENTS {
+                    if self.boxes >= FIRST_DESCENT && cost < descended && descents < DESCENTS {
                         // Downhill from here another valley may be found; each time from lower than before, or seldom.
                         descents += 1;
                         descended = cost;
@@ -529,31 +321,35 @@ impl<'a> Prover<'a> {
         })
     }
 
-    /// A lower bound of d² in a box, the axis along which it is best halved, and where it is least: in few bands, and in all
-    /// where these do not prove enough.
-    fn bound(&mut self, ends: &[[usize; 2]], allowed: &Amplitudes, enough: f64) -> (f64, usize, Mixture) {
-        let mut least = 0.0_f64;
+    /// A lower bound of d² in a box, the axis along which it is best halved, and whether it was found in all bands: few of them
+    /// are looked at first.
+    fn bound(
+        &mut self,
+        ends: &[[usize; 2]],
+        narrower: Option<&Amplitudes>,
+        enough: f64,
+    ) -> (f64, usize, bool) {
         let known = &self.temperature_k;
-        let mut ask = |view: &mut View<'_>, quadratics: usize| {
+        let know = |view: &mut View<'_>| {
             for (axis, ends) in ends.iter().enumerate() {
                 ends.iter().for_each(|&end| view.know(axis, end, known[axis][end]));
             }
-            let allowed = Amplitudes { total: view.allowed.total, ..allowed.clone() };
-            let mut found = view.bound(ends, &allowed, enough, quadratics);
-            least = least.max(found.0);
-            found.0 = least;
-            found
         };
+        let mut least = 0.0;
         if let Some(few) = &mut self.few {
-            let found = ask(few, 1);
+            know(few);
+            let found = few.bound(ends, narrower, enough, None, 1);
             let share = self.all.root.len() as f64 / few.root.len() as f64;
             // Where they are far from it all bands would hardly do either.
-            if found.0 >= enough || (found.3 && share * found.0 < enough) {
-                return (found.0, found.1, found.2);
+            if found.lower >= enough || (found.coarse && share * found.lower < enough) {
+                return (found.lower, found.axis, false);
             }
+            least = found.lower;
         }
-        let found = ask(&mut self.all, QUADRATICS);
-        (found.0, found.1, found.2)
+        know(&mut self.all);
+        let start = self.few.as_ref().map(|few| few.point());
+        let found = self.all.bound(ends, narrower, enough, start, QUADRATICS);
+        (found.lower.max(least), found.axis, true)
     }
 
     /// The whole range but for the closed box, in boxes that share faces with it.
@@ -592,8 +388,12 @@ impl<'a> Prover<'a> {
         let mut t = 1.2 * temperature_of(warm, s).max(low);
         while t < high {
             let end = self.end(axis, t);
-            self.all.know(axis, end, t);
-            if self.all.ends[axis][end].as_ref().is_some_and(|end| end.most < amplitude) {
+            // What is too bright in few bands is so in all of them.
+            let too_bright = match &mut self.few {
+                Some(few) => few.too_bright(axis, end, t, amplitude),
+                None => self.all.too_bright(axis, end, t, amplitude),
+            };
+            if too_bright {
                 return [low, t];
             }
             t *= 1.3;
@@ -616,111 +416,6 @@ impl<'a> Prover<'a> {
                 half
             })
             .into()
-    }
-
-    /// Closes the widest box about the best state that can be: its bound, where it is least, and its faces.
-    fn close_about(
-        &mut self,
-        comparison: &mut Comparison<'_>,
-        target: &Target<'_>,
-        best: &NearestDistance,
-        goal: Goal,
-    ) -> Closed {
-        let (state, enough) = (&best.state, goal.enough);
-        let (residual, other) = comparison.residual(target, state);
-        let count = self.all.fixed.len();
-        let temperature_k: Vec<f64> = (0..count).map(|s| temperature_of(state, s)).collect();
-        let gain = if self.all.allowed.gain_free { state.gain } else { 1.0 };
-        let amplitudes: Vec<f64> =
-            (0..count).map(|s| if s == 0 { gain } else { gain * state.lighting[s - 1] }).collect();
-        let spectra: Vec<Spectrum> = (0..count)
-            .map(|s| match &self.all.fixed[s] {
-                Some(spectrum) => spectrum.clone(),
-                None => self.all.sources.spectrum(s, temperature_k[s]),
-            })
-            .collect();
-        let bands = self.all.root.len();
-        let (mut pull, mut seen, mut cost) = (vec![0.0; bands], vec![0.0; bands], 0.0);
-        for w in 0..bands {
-            if other[w] > 1e-150 && self.all.root[w] > 0.0 {
-                (pull[w], seen[w]) = (-residual[w] / other[w], other[w]);
-                cost += residual[w] * residual[w];
-            }
-        }
-        let root = self.all.root.clone();
-        let minimum = Minimum {
-            amplitudes: &amplitudes,
-            spectra: &spectra,
-            pull: &pull,
-            root: &root,
-            other: &seen,
-            reach: self.all.reach,
-            cost,
-        };
-        let nu = self.all.sources.bands.range_cm1();
-        for width in WIDTHS {
-            let reach: Vec<Option<Reach>> = (0..count)
-                .map(|s| {
-                    let [low, high] = self.all.sources.list[s].temperature_k;
-                    let t = temperature_k[s];
-                    let x = crate::units::SECOND_RADIATION_CM_K * 0.5 * (nu.0 + nu.1) / t;
-                    let half = width * t / x.max(2.0);
-                    let least = if self.all.held(s).is_some() { amplitudes[s] } else { 0.25 * amplitudes[s] };
-                    let (down_k, up_k) = (half.min(t - low).max(0.0), half.min(high - t).max(0.0));
-                    self.all.sources.list[s].free().then_some(Reach { down_k, up_k, least })
-                })
-                .collect();
-            let Some(closed) = close(&self.all.sources, &minimum, &reach, &self.all.allowed, enough) else {
-                continue;
-            };
-            let lower = closed.lower.min(cost);
-            let mixture = Mixture { amplitudes: closed.amplitudes, temperature_k: closed.temperature_k };
-            let faces: Vec<[f64; 2]> = self
-                .all
-                .axes
-                .iter()
-                .filter_map(|&s| {
-                    let Reach { down_k, up_k, .. } = reach[s]?;
-                    Some([temperature_k[s] - down_k, temperature_k[s] + up_k])
-                })
-                .collect();
-            if lower >= enough && self.dim_ones_are_farther(&faces, &amplitudes, enough) {
-                return Closed::Box(lower, faces);
-            }
-            if let Some(state) = self.nearer(comparison, target, goal.limit, &mixture) {
-                return Closed::Nearer(state);
-            }
-            if self.all.axes.is_empty() {
-                return Closed::Box(lower, faces);
-            }
-        }
-        Closed::Nothing
-    }
-
-    /// Whether no state in a box is nearer in which a source of unknown temperature and amplitude has less than half its share:
-    /// what the closed box leaves out.
-    fn dim_ones_are_farther(&mut self, faces: &[[f64; 2]], amplitudes: &[f64], enough: f64) -> bool {
-        let free: Vec<usize> =
-            self.all.axes.iter().copied().filter(|&s| self.all.held(s).is_none()).collect();
-        if free.is_empty() {
-            return true;
-        }
-        let ends: Vec<[usize; 2]> = faces
-            .iter()
-            .enumerate()
-            .map(|(axis, face)| [self.end(axis, face[0]), self.end(axis, face[1])])
-            .collect();
-        free.into_iter().chain(self.all.allowed.gain_free.then_some(0)).all(|s| {
-            let mut allowed = self.all.allowed.clone();
-            match s.checked_sub(1) {
-                None => allowed.gain_cap = Some(0.5 * amplitudes[0]),
-                Some(k) => {
-                    let share = 0.5 * amplitudes[s] / amplitudes[0];
-                    allowed.ranges[k][1] = share.max(allowed.ranges[k][0]);
-                }
-            }
-            self.bound(&ends, &allowed, enough).0 >= enough
-        })
     }
 }
 

@@ -11,6 +11,8 @@ const STEP_TOLERANCE: f64 = 1e-9;
 const GAIN_TOLERANCE: f64 = 1e-9;
 /// What a step may promise, as a share of the cost, for it to be the last without a look at where it leads.
 pub(super) const NO_GAIN: f64 = 2e-15;
+/// Relative step that is taken without a look at where it leads.
+const UNSEEN_STEP: f64 = 1e-6;
 /// Relative separation at which two refinements have come to the same minimum.
 const SAME_MINIMUM: f64 = 1e-5;
 
@@ -61,7 +63,11 @@ pub(super) fn refine(
         // What the step promises, of half the cost. Nearly identical materials need it however small the step is.
         let promised = at.quadratic.gradient.dot(&step).abs();
         if promised <= NO_GAIN * at.cost {
-            (state, converged) = (moved, true);
+            // A long step may promise nothing and yet lead elsewhere: along a source that sends next to nothing, say.
+            if size < UNSEEN_STEP {
+                state = moved;
+            }
+            converged = true;
             break;
         }
         if size < STEP_TOLERANCE && promised <= GAIN_TOLERANCE * at.cost {

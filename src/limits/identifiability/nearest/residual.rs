@@ -206,29 +206,27 @@ impl<'a> Comparison<'a> {
     /// The separation from a state with every term of S − S′ taken by its magnitude: what cancels in the distance.
     pub(super) fn terms(&mut self, target: &Target<'_>, state: &State) -> f64 {
         self.separate(target, state, false);
-        let pairs = target.emissivity.iter().zip(target.alternative).zip(self.target.contrast());
-        let cancellation = self.target.cancellation();
-        // What the change of every object's light is made of, by its magnitude.
-        let (own, surroundings) = (target.state, self.target.surroundings());
-        let mut light = vec![0.0; target.emissivity.len()];
-        for (k, (v, other)) in own.lighting.iter().zip(&state.lighting).enumerate() {
-            let [here, there] = [own, state].map(|state| surroundings.object_signal(k, state));
-            for ((light, here), there) in light.iter_mut().zip(here).zip(there) {
-                *light += (v - other).abs() * here + other * (here - there).abs();
-            }
-        }
-        let nodes: Vec<f64> = pairs
-            .zip(self.work.difference.iter().zip(&light))
-            .map(|(((e, other), contrast), (difference, light))| {
-                let mixed = cancellation * ((e - other) * contrast).abs();
-                target.state.gain * (mixed + (other * difference).abs() + (1.0 - other) * light)
-            })
-            .collect();
-        let gain = (state.gain - target.state.gain).abs() / state.gain;
+        let (own, work, surface) = (target.state, &mut self.work, &self.surface);
+        self.target.lighting_terms_into(own, surface, state, &mut work.lighting);
+        self.target.sampling().sample(self.target.bands(), &mut work.node, &mut work.separation, |out| {
+            terms_into(
+                Separation {
+                    gain: own.gain,
+                    emissivity: target.emissivity,
+                    alternative: target.alternative,
+                    contrast: self.target.contrast(),
+                    difference: &work.difference,
+                    lighting: &work.lighting,
+                    out,
+                },
+                self.target.cancellation(),
+            );
+        });
+        let gain = (state.gain - own.gain).abs() / state.gain;
         let mut total = crate::sum::Compensated::default();
-        for (band, terms) in self.target.bands().weigh(&nodes).into_iter().enumerate() {
-            let other = self.surface.signal()[band];
-            let sum = self.work.root[band] + (target.counts * other + self.work.noise[band]).sqrt();
+        let bands = work.separation.iter().zip(surface.signal()).zip(work.root.iter().zip(work.noise.iter()));
+        for ((terms, other), (root, noise)) in bands {
+            let sum = root + (target.counts * other + noise).sqrt();
             if sum > 0.0 {
                 let term = target.counts * (terms + gain * other) / sum;
                 total.add(term * term);
@@ -317,6 +315,19 @@ struct Separation<'a> {
     difference: &'a [f64],
     lighting: &'a [f64],
     out: &'a mut [f64],
+}
+
+dispatched! {
+    /// [`separation_into`] with every term by its magnitude, that of the contrast as many times as it is itself made of more.
+    fn terms_into<'a>(spectra: Separation<'a>, cancellation: f64) {
+        let Separation { gain, emissivity, alternative, contrast, difference, lighting, out } = spectra;
+        let own = emissivity.iter().zip(alternative);
+        let terms = contrast.iter().zip(difference).zip(lighting);
+        for ((out, (e, other)), ((contrast, difference), lighting)) in out.iter_mut().zip(own).zip(terms) {
+            let mixed = (cancellation * (e - other) * contrast).abs() + (other * difference).abs();
+            *out = gain * (1.0 - other).mul_add(*lighting, mixed);
+        }
+    }
 }
 
 dispatched! {

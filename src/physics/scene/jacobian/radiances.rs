@@ -89,12 +89,35 @@ impl Jacobian<'_> {
         other_state: &State,
         out: &mut [f64],
     ) {
+        self.lighting_apart_into(state, other, other_state, false, out);
+    }
+
+    /// The same with every term taken by its magnitude: what cancels in it.
+    pub(crate) fn lighting_terms_into(
+        &self,
+        state: &State,
+        other: &Self,
+        other_state: &State,
+        out: &mut [f64],
+    ) {
+        self.lighting_apart_into(state, other, other_state, true, out);
+    }
+
+    fn lighting_apart_into(
+        &self,
+        state: &State,
+        other: &Self,
+        other_state: &State,
+        magnitudes: bool,
+        out: &mut [f64],
+    ) {
         let nodes = out.len();
         out.fill(0.0);
         for (k, object) in self.surroundings.objects.iter().enumerate() {
             let span = k * nodes..(k + 1) * nodes;
             let emissivity = object.emissivity.as_deref();
             let change = state.lighting[k] - other_state.lighting[k];
+            let change = if magnitudes { change.abs() } else { change };
             add_scaled(change, emissivity, &self.base[span.clone()], out);
             let (t, other_k) = (state.environment_k[k], other_state.environment_k[k]);
             if t == other_k {
@@ -103,6 +126,9 @@ impl Jacobian<'_> {
             let nu = &self.surroundings.nodes_cm1;
             let mut warmer = vec![0.0; nodes];
             planck::photon_radiance_apart_into(nu, (other_k, &other.base[span]), t, &mut warmer);
+            if magnitudes {
+                warmer.iter_mut().for_each(|warmer| *warmer = warmer.abs());
+            }
             add_scaled(other_state.lighting[k], emissivity, &warmer, out);
         }
     }

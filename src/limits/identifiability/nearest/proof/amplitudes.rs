@@ -15,12 +15,29 @@
 /// Steps of Dinkelbach's method; each one strictly betters the ray, and there are few.
 const STEPS: usize = 50;
 
-/// The pieces of a box: whose they are, how long, and how far each may go (without the gain).
+/// The pieces of a box: whose they are, how long, how far each may go (without the gain), and at what temperature they are.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Pieces {
     pub(super) source: Vec<usize>,
     pub(super) length: Vec<f64>,
     pub(super) cap: Vec<f64>,
+    pub(super) temperature_k: Vec<f64>,
+}
+
+impl Pieces {
+    pub(super) fn put(&mut self, source: usize, length: f64, cap: f64, temperature_k: f64) {
+        self.source.push(source);
+        self.length.push(length);
+        self.cap.push(cap);
+        self.temperature_k.push(temperature_k);
+    }
+
+    pub(super) fn clear(&mut self) {
+        self.source.clear();
+        self.length.clear();
+        self.cap.clear();
+        self.temperature_k.clear();
+    }
 }
 
 /// The set of amplitudes.
@@ -39,15 +56,20 @@ pub(super) struct Amplitudes {
     pub(super) gain_cap: Option<f64>,
 }
 
+/// Memory of [`Amplitudes::least`].
+#[derive(Debug, Clone, Default)]
+pub(super) struct Ray {
+    cost: Vec<f64>,
+    vertex: Vec<f64>,
+}
+
 impl Amplitudes {
     /// Least Σ cost · amplitude, and where it is.
-    pub(super) fn least(&self, pieces: &Pieces, cost: &[f64], vertex: &mut [f64]) -> f64 {
+    pub(super) fn least(&self, pieces: &Pieces, cost: &[f64], vertex: &mut [f64], ray: &mut Ray) -> f64 {
         if !self.gain_free {
-            return self.ray(pieces, cost, &pieces.cap, vertex);
+            return self.ray(pieces, cost, vertex);
         }
-        let mut adjusted = cost.to_vec();
-        let endless = vec![f64::INFINITY; cost.len()];
-        let mut value = self.ray(pieces, cost, &endless, vertex);
+        let mut value = self.ray(pieces, cost, vertex);
         if let Some(cap) = self.gain_cap {
             let scale = if value < 0.0 { cap } else { 0.0 };
             vertex.iter_mut().for_each(|v| *v *= scale);
@@ -59,19 +81,20 @@ impl Amplitudes {
         }
         let along = |vertex: &[f64], x: &[f64]| -> f64 { vertex.iter().zip(x).map(|(v, x)| v * x).sum() };
         let mut length = along(vertex, &pieces.length);
+        ray.cost.resize(cost.len(), 0.0);
+        ray.vertex.resize(cost.len(), 0.0);
         for _ in 0..STEPS {
             if length <= 0.0 {
                 break;
             }
             let rate = value / length;
-            for ((adjusted, cost), length) in adjusted.iter_mut().zip(cost).zip(&pieces.length) {
+            for ((adjusted, cost), length) in ray.cost.iter_mut().zip(cost).zip(&pieces.length) {
                 *adjusted = cost - rate * length;
             }
-            let mut better = vec![0.0; cost.len()];
-            if self.ray(pieces, &adjusted, &endless, &mut better) >= -1e-15 * value.abs() {
+            if self.ray(pieces, &ray.cost, &mut ray.vertex) >= -1e-15 * value.abs() {
                 break;
             }
-            vertex.copy_from_slice(&better);
+            vertex.copy_from_slice(&ray.vertex);
             (value, length) = (along(vertex, cost), along(vertex, &pieces.length));
         }
         let scale = if length > 0.0 { self.total / length } else { 0.0 };
@@ -79,12 +102,13 @@ impl Amplitudes {
         scale * value
     }
 
-    /// With c₀ = 1.
-    fn ray(&self, pieces: &Pieces, cost: &[f64], caps: &[f64], vertex: &mut [f64]) -> f64 {
+    /// With c₀ = 1; caps hold where that is the gain.
+    fn ray(&self, pieces: &Pieces, cost: &[f64], vertex: &mut [f64]) -> f64 {
         vertex.fill(0.0);
+        let order = |&i: &usize, &j: &usize| cost[i].total_cmp(&cost[j]).then(i.cmp(&j));
         let cheapest = |source: usize| {
             let own = (0..cost.len()).filter(|&i| pieces.source[i] == source);
-            own.min_by(|&i, &j| cost[i].total_cmp(&cost[j]))
+            own.min_by(order)
         };
         let mut value = 0.0;
         let mut put = |vertex: &mut [f64], i: usize, amount: f64| {
@@ -95,24 +119,25 @@ impl Amplitudes {
             put(vertex, i, 1.0);
         }
         let mut left = self.sum;
-        let mut room: Vec<f64> = self.ranges.iter().map(|[low, high]| high - low).collect();
         for (k, [low, _]) in self.ranges.iter().enumerate() {
             left -= low;
             if let (true, Some(i)) = (*low > 0.0, cheapest(k + 1)) {
                 put(vertex, i, *low);
             }
         }
-        let mut order: Vec<usize> = (0..cost.len()).filter(|&i| pieces.source[i] > 0).collect();
-        order.sort_unstable_by(|&i, &j| cost[i].total_cmp(&cost[j]));
-        for i in order {
-            if (cost[i] >= 0.0 && !self.sum_known) || left <= 0.0 {
-                break;
-            }
-            let room = &mut room[pieces.source[i] - 1];
-            let amount = room.min(left).min(caps[i] - vertex[i]);
+        let mut last = None;
+        loop {
+            // One after the other in the order of their costs.
+            let later = |i: &usize| last.as_ref().is_none_or(|last| order(last, i).is_lt());
+            let next = (0..cost.len()).filter(|&i| pieces.source[i] > 0).filter(later).min_by(order);
+            let Some(i) = next.filter(|&i| left > 0.0 && (cost[i] < 0.0 || self.sum_known)) else { break };
+            last = Some(i);
+            let source = pieces.source[i];
+            let had: f64 = (0..cost.len()).filter(|&j| pieces.source[j] == source).map(|j| vertex[j]).sum();
+            let cap = if self.gain_free { f64::INFINITY } else { pieces.cap[i] - vertex[i] };
+            let amount = (self.ranges[source - 1][1] - had).min(left).min(cap);
             if amount > 0.0 {
                 put(vertex, i, amount);
-                *room -= amount;
                 left -= amount;
             }
         }

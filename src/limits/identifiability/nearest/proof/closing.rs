@@ -14,9 +14,11 @@
 //! −κ_j the least p·A_j″ in the box, n sources of unknown temperature. If that quadratic is convex, (1 − η)RᵀR − K = FᵀF, it
 //! falls below d² by no more than ¼‖F⁻ᵀĝ‖² + Σλ·slack: a lower bound of the whole box, and d² but for what the minimum is off.
 
-use super::amplitudes::{Amplitudes, Pieces};
-use super::hull::{Quadratic, add, inner, reduce};
+use super::amplitudes::{Amplitudes, Pieces, Ray};
+use super::hull::{Hull, Quadratic};
+use super::orthogonal::{add, inner, reduce};
 use super::sources::{Sources, Spectrum};
+use super::vectors::{Weights, add_root_into, add_size_into, add_square_into, product_into, weights_into};
 use crate::sum::dot;
 
 /// η at most.
@@ -51,8 +53,15 @@ pub(super) struct Minimum<'m> {
 impl Minimum<'_> {
     /// √(y/s)/(s + y + reach) of every band.
     fn weight(&self) -> Vec<f64> {
-        let bands = self.root.iter().zip(self.other);
-        bands.map(|(y, s)| if *s > 0.0 { (y / s).sqrt() / (s + y + self.reach) } else { 0.0 }).collect()
+        let mut weight = vec![0.0; self.root.len()];
+        weights_into(Weights {
+            root: self.root,
+            other: self.other,
+            reach: self.reach,
+            most: None,
+            weight: &mut weight,
+        });
+        weight
     }
 
     /// The least y.
@@ -74,8 +83,9 @@ struct Columns<'m> {
     minimum: &'m Minimum<'m>,
     lit: Vec<usize>,
     axes: Vec<(usize, Reach)>,
-    /// p·column, and R of the weighted columns.
+    /// p·column, with ½‖W⁻¹p‖, and R of the weighted columns.
     linear: Vec<f64>,
+    length: f64,
     triangle: Vec<Vec<f64>>,
     lengths: Vec<f64>,
     /// QᵀWA″ with what is left of it, and ‖WA‴‖, of every source of unknown temperature.
@@ -109,6 +119,7 @@ pub(super) fn close(
     let raw: Vec<&[f64]> = (lit.iter().map(|&s| &minimum.spectra[s].counts[..]))
         .chain(axes.iter().map(|&(s, _)| &minimum.spectra[s].slope[..]))
         .collect();
+    let pull_sizes: Vec<f64> = minimum.pull.iter().map(|p| p.abs()).collect();
     let linear: Vec<f64> = raw.iter().map(|column| dot(minimum.pull, column)).collect();
     let bends: Vec<[Vec<f64>; 2]> = axes
         .iter()
@@ -117,53 +128,58 @@ pub(super) fn close(
             sources.bend(s, t, [t - down_k, t + up_k])
         })
         .collect();
-    let pulled: Vec<[f64; 2]> = bends
-        .iter()
-        .map(|[bend, third]| {
-            let size: f64 = minimum.pull.iter().zip(third).map(|(p, third)| p.abs() * third).sum();
-            [dot(minimum.pull, bend), size]
-        })
-        .collect();
+    let pulled: Vec<[f64; 2]> =
+        bends.iter().map(|[bend, third]| [dot(minimum.pull, bend), dot(&pull_sizes, third)]).collect();
     let mut weight = minimum.weight();
     let rounds = if minimum.reach > SMALL * minimum.least_root() && !axes.is_empty() { WEIGHTS } else { 0 };
+    let parts = minimum.pull.iter().zip(&weight).filter(|(_, w)| **w > 0.0);
+    let length = 0.5 * parts.map(|(p, w)| (p / w) * (p / w)).sum::<f64>().sqrt();
     let (triangle, lengths, bent, third) = Default::default();
-    let mut columns = Columns { minimum, lit, axes, linear, triangle, lengths, bent, third };
+    let mut columns = Columns { minimum, lit, axes, linear, length, triangle, lengths, bent, third };
+    let bands = weight.len();
+    let mut basis = vec![vec![0.0; bands]; raw.len()];
+    let mut turns: Vec<[Vec<f64>; 2]> = bends.iter().map(|_| [(); 2].map(|()| vec![0.0; bands])).collect();
+    let mut closed = None;
     for round in 0..=rounds {
-        let whitened =
-            |spectrum: &[f64]| -> Vec<f64> { spectrum.iter().zip(&weight).map(|(a, w)| a * w).collect() };
-        let mut basis: Vec<Vec<f64>> = raw.iter().map(|column| whitened(column)).collect();
+        raw.iter().zip(&mut basis).for_each(|(column, out)| product_into(column, &weight, out));
+        let pairs = bends.iter().flatten().zip(turns.iter_mut().flatten());
+        pairs.for_each(|(spectrum, out)| product_into(spectrum, &weight, out));
         columns.lengths = basis.iter().map(|column| dot(column, column).sqrt()).collect();
-        let turns: Vec<[Vec<f64>; 2]> =
-            bends.iter().map(|pair| pair.each_ref().map(|x| whitened(x))).collect();
         let bent: Vec<&[f64]> = turns.iter().map(|[bend, _]| &bend[..]).collect();
         (columns.triangle, columns.bent) = reduce(&mut basis, &bent);
         columns.third = turns.iter().map(|[_, third]| dot(third, third).sqrt()).collect();
-        if round < rounds {
-            let Some(better) = columns.weighed(&weight, &basis, &turns) else { break };
-            weight = better;
-        }
-    }
-    // |ĝ·w| is known only with the multipliers, which hang on K: what comes out must be within what was put in.
-    let mut shifted = vec![0.0; columns.axes.len()];
-    for _ in 0..3 {
-        let loss = columns.loss(&pulled, &shifted)?;
-        let factor = columns.factor(&loss)?;
-        let (fall, rest) = columns.fall(&factor, &columns.limits(allowed));
-        let now: Vec<f64> =
-            columns.bent.iter().map(|bent| columns.along_amplitudes(bent, &rest).abs()).collect();
-        if now.iter().zip(&shifted).all(|(now, assumed)| now <= assumed) || columns.axes.is_empty() {
-            let lower = minimum.cost - fall;
-            if lower >= enough || !columns.axes.is_empty() {
-                return Some(columns.moved(lower, &factor, &rest));
-            }
+        closed = columns.closed(&pulled, allowed, enough).or(closed);
+        if round == rounds || closed.as_ref().is_some_and(|closed| closed.lower >= enough) {
             break;
         }
-        shifted = now.iter().map(|now| 2.0 * now).collect();
+        let Some(better) = columns.weighed(&weight, &basis, &turns) else { break };
+        weight = better;
     }
-    columns.axes.is_empty().then(|| columns.searched(allowed, enough))
+    closed
 }
 
 impl Columns<'_> {
+    /// The bound by these columns; `None` if the quadratic is not convex in the box.
+    fn closed(&self, pulled: &[[f64; 2]], allowed: &Amplitudes, enough: f64) -> Option<Closed> {
+        // |ĝ·w| is known only with the multipliers, which hang on K: what comes out must be within what was put in.
+        let mut shifted = vec![0.0; self.axes.len()];
+        for _ in 0..3 {
+            let factor = self.factor(&self.loss(pulled, &shifted)?)?;
+            let (fall, rest) = self.fall(&factor, &self.limits(allowed));
+            let now: Vec<f64> =
+                self.bent.iter().map(|bent| self.along_amplitudes(bent, &rest).abs()).collect();
+            if now.iter().zip(&shifted).all(|(now, assumed)| now <= assumed) || self.axes.is_empty() {
+                let lower = self.minimum.cost - fall;
+                if lower >= enough || !self.axes.is_empty() {
+                    return Some(self.moved(lower, &factor, &rest));
+                }
+                break;
+            }
+            shifted = now.iter().map(|now| 2.0 * now).collect();
+        }
+        self.axes.is_empty().then(|| self.searched(allowed, enough))
+    }
+
     /// ½h(‖PWA″‖ + ⅓h‖WA‴‖): how far the slope of a source turns in the box.
     fn turned(&self, j: usize) -> f64 {
         let (amplitudes, reach) = (self.lit.len(), self.axes[j].1);
@@ -220,19 +236,19 @@ impl Columns<'_> {
         }
         let along = all / (1.0 - turned);
         let changes: Vec<f64> = rows.iter().map(|row| row.sqrt() * along).collect();
-        let mut better = weight.to_vec();
-        for (w, better) in better.iter_mut().enumerate().filter(|(_, weight)| **weight > 0.0) {
-            let share = basis.iter().map(|column| column[w] * column[w]).sum::<f64>().sqrt();
-            let mut most = share * (all + turned * along);
-            for (j, (_, Reach { down_k, up_k, .. })) in self.axes.iter().enumerate() {
-                let half = down_k.max(*up_k);
-                let bend = turns[j][0][w].abs() + share * inner(&self.bent[j], &self.bent[j]).sqrt();
-                most += changes[j] * 0.5 * half * (bend + half * turns[j][1][w] / 3.0);
-            }
-            let s = other[w];
-            let bright = (s * s + most / *better).sqrt().min(root[w] + reach);
-            *better = (root[w] / s).sqrt() / (s + bright);
+        let mut steady = all + turned * along;
+        let (mut shares, mut most) = (vec![0.0; weight.len()], vec![0.0; weight.len()]);
+        basis.iter().for_each(|column| add_square_into(column, &mut shares));
+        for (j, (_, Reach { down_k, up_k, .. })) in self.axes.iter().enumerate() {
+            let half = down_k.max(*up_k);
+            let factor = changes[j] * 0.5 * half;
+            steady += factor * inner(&self.bent[j], &self.bent[j]).sqrt();
+            add_size_into(factor, &turns[j][0], &mut most);
+            add_size_into(factor * half / 3.0, &turns[j][1], &mut most);
         }
+        add_root_into(steady, &shares, &mut most);
+        let mut better = weight.to_vec();
+        weights_into(Weights { root, other, reach, most: Some(&most), weight: &mut better });
         Some(better)
     }
 
@@ -382,22 +398,27 @@ impl Columns<'_> {
     fn searched(&self, allowed: &Amplitudes, enough: f64) -> Closed {
         let Minimum { amplitudes, spectra, cost, .. } = *self.minimum;
         let mut pieces = Pieces::default();
-        let (mut linear, mut factor) =
-            (vec![0.0; spectra.len()], vec![vec![0.0; self.lit.len()]; spectra.len()]);
+        let (n, lit) = (spectra.len(), self.lit.len());
+        let mut linear = vec![0.0; n];
+        let mut square = vec![0.0; n * n];
         for (s, spectrum) in spectra.iter().enumerate() {
-            pieces.source.push(s);
-            pieces.length.push(spectrum.length);
-            pieces.cap.push(f64::INFINITY);
-            if let Some(place) = self.lit.iter().position(|&lit| lit == s) {
-                linear[s] = self.linear[place];
-                factor[s].clone_from(&self.triangle[place]);
+            pieces.put(s, spectrum.length, f64::INFINITY, spectrum.temperature_k);
+        }
+        for (i, &s) in self.lit.iter().enumerate() {
+            linear[s] = self.linear[i];
+            for (j, &other) in self.lit.iter().enumerate() {
+                square[s * n + other] = inner(&self.triangle[i][..lit], &self.triangle[j][..lit]);
             }
         }
-        let shift = vec![0.0; self.lit.len()];
-        let quadratic = Quadratic { constant: cost, linear, factor, shift, origin: amplitudes.to_vec() };
-        let found = quadratic.least(|costs, vertex| allowed.least(&pieces, costs, vertex), enough);
+        let quadratic = Quadratic { linear, square, origin: amplitudes.to_vec(), length: self.length };
+        let mut hull = Hull::default();
+        let mut ray = Ray::default();
+        let cheapest = |costs: &[f64], vertex: &mut [f64]| {
+            allowed.least(&pieces, costs, vertex, &mut ray);
+        };
+        let lower = cost + hull.least(&quadratic, cheapest, enough - cost);
         let temperature_k = spectra.iter().map(|own| own.temperature_k).collect();
-        Closed { lower: found.lower, amplitudes: found.point, temperature_k }
+        Closed { lower, amplitudes: hull.point, temperature_k }
     }
 }
 

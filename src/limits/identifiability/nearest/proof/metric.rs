@@ -11,35 +11,39 @@
 //! whose value and slope at N₀ are exact. With N₀ = N it is the weighted least-squares sum Σ (N′ − N)²/(2y + d)².
 //! A band in which s₀ is 0 is left out: each adds a square.
 
-use crate::simd::{LANES, dispatched, fold};
+use crate::simd::{Chunk, LANES, added, dispatched, fold};
+use crate::sum::dot;
 
-/// constant + ‖weight · N′ + shift‖².
+/// cost + ‖weight · (N′ − N₀) + shift‖² − length², length = ‖shift‖.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Metric {
     pub(super) weight: Vec<f64>,
     pub(super) shift: Vec<f64>,
-    pub(super) constant: f64,
+    pub(super) cost: f64,
+    pub(super) length: f64,
 }
 
 impl Metric {
-    /// About the target itself.
+    /// About the target itself, written with N₀ = 0.
     pub(super) fn about_target(root: &[f64], counts: &[f64], reach: f64) -> Self {
-        let weight: Vec<f64> =
-            root.iter().map(|y| 2.0 * y + reach).map(|sum| if sum > 0.0 { 1.0 / sum } else { 0.0 }).collect();
-        let shift = weight.iter().zip(counts).map(|(w, n)| -w * n).collect();
-        Self { weight, shift, constant: 0.0 }
+        let sums = root.iter().map(|y| 2.0 * y + reach);
+        let weight: Vec<f64> = sums.map(|sum| if sum > 0.0 { 1.0 / sum } else { 0.0 }).collect();
+        let shift: Vec<f64> = weight.iter().zip(counts).map(|(w, n)| -w * n).collect();
+        let cost = dot(&shift, &shift);
+        Self { weight, shift, cost, length: cost.sqrt() }
     }
 
     /// About other counts.
-    pub(super) fn about(root: &[f64], counts: &[f64], noise: &[f64], own: &[f64], reach: f64) -> Self {
-        let (mut weight, mut shift) = (vec![0.0; root.len()], vec![0.0; root.len()]);
-        let out = [&mut weight[..], &mut shift[..]];
-        let constant = about(Bands { root, counts, noise, own, reach, out });
-        Self { weight, shift, constant }
+    pub(super) fn put_about(&mut self, counts: &[f64], [root, own, noise]: [&[f64]; 3], reach: f64) {
+        self.weight.resize(root.len(), 0.0);
+        self.shift.resize(root.len(), 0.0);
+        let out = [&mut self.weight[..], &mut self.shift[..]];
+        let [cost, square] = about(Bands { root, counts, noise, own, reach, out });
+        (self.cost, self.length) = (cost, square.sqrt());
     }
 }
 
-/// What [`about`] reads and writes.
+/// What [`about`] reads and writes, in whole chunks.
 struct Bands<'a> {
     root: &'a [f64],
     counts: &'a [f64],
@@ -50,24 +54,42 @@ struct Bands<'a> {
 }
 
 dispatched! {
-    /// Weights and shifts of every band; returned is the constant.
-    fn about<'a>(bands: Bands<'a>) -> f64 {
+    /// Weights and shifts of every band; returned are the cost and the square of the shift.
+    fn about<'a>(bands: Bands<'a>) -> [f64; 2] {
         let Bands { root, counts, noise, own, reach, out: [weights, shifts] } = bands;
-        let seen = counts.iter().zip(noise).zip(root.iter().zip(own));
-        let mut lanes = [0.0; LANES];
-        for (place, (((counts, noise), (y, own)), (weight, shift))) in
-            seen.zip(weights.iter_mut().zip(shifts)).enumerate()
-        {
-            let s = (counts + noise).max(0.0).sqrt();
-            let usable = s > 1e-150 && *y > 0.0;
-            let (residual, inverse) = ((own - counts) / (y + s), 1.0 / s);
-            let w = (y * inverse).sqrt() / (s + y + reach);
-            // Half of p/weight, p = −r/s.
-            let half = -0.5 * residual * inverse / w;
-            *weight = if usable { w } else { 0.0 };
-            *shift = if usable { half - w * counts } else { 0.0 };
-            lanes[place % LANES] += if usable { residual.mul_add(residual, -half * half) } else { 0.0 };
+        let lines = [root, counts, noise, own].map(|line| line.as_chunks().0);
+        let (weights, _) = weights.as_chunks_mut();
+        let (shifts, _) = shifts.as_chunks_mut();
+        let [root, counts, noise, own] = lines.map(|line| &line[..weights.len()]);
+        let shifts = &mut shifts[..weights.len()];
+        let (mut cost, mut square) = ([0.0; LANES], [0.0; LANES]);
+        for c in 0..weights.len() {
+            let (residual, weight, half) = one(root[c], counts[c], noise[c], own[c], reach);
+            cost = added(residual, residual, cost);
+            square = added(half, half, square);
+            weights[c] = weight;
+            shifts[c] = half;
         }
-        fold(&lanes)
+        [fold(&cost), fold(&square)]
     }
+}
+
+/// r₀, weight and shift of a chunk of bands, 0 where s₀ or y is.
+#[inline(always)]
+fn one(y: Chunk, counts: Chunk, noise: Chunk, own: Chunk, reach: f64) -> (Chunk, Chunk, Chunk) {
+    let seen: Chunk = std::array::from_fn(|i| counts[i] + noise[i]);
+    let s: Chunk = std::array::from_fn(|i| if seen[i] > 0.0 { seen[i].sqrt() } else { 0.0 });
+    let residual: Chunk = std::array::from_fn(|i| (own[i] - counts[i]) / (y[i] + s[i]));
+    let inverse: Chunk = std::array::from_fn(|i| 1.0 / s[i]);
+    let size: Chunk = std::array::from_fn(|i| (y[i] * inverse[i]).sqrt());
+    let sum: Chunk = std::array::from_fn(|i| s[i] + y[i] + reach);
+    let weight: Chunk = std::array::from_fn(|i| size[i] / sum[i]);
+    // Half of p/weight, p = −r/s.
+    let half: Chunk = std::array::from_fn(|i| -0.5 * residual[i] * inverse[i] * sum[i] / size[i]);
+    let usable = |i: usize, value: f64| if s[i] > 1e-150 && y[i] > 0.0 { value } else { 0.0 };
+    (
+        std::array::from_fn(|i| usable(i, residual[i])),
+        std::array::from_fn(|i| usable(i, weight[i])),
+        std::array::from_fn(|i| usable(i, half[i])),
+    )
 }

@@ -9,10 +9,11 @@
 //!
 //! where the two tangents meet.
 
+use super::vectors::{multiply, product_into};
 use crate::fisher::Nuisance;
 use crate::identifiability::nearest::residual::{Comparison, Target};
 use crate::planck;
-use crate::simd::dispatched;
+use crate::simd::{Chunk, LANES, dispatched, padded};
 use crate::spectrum::Bands;
 use crate::units::SECOND_RADIATION_CM_K;
 use std::ops::Deref;
@@ -55,7 +56,8 @@ impl Deref for Shared<'_> {
     }
 }
 
-/// One source: what B(T) is multiplied by at the nodes, and where its temperature may be.
+/// One source: what B(T) is multiplied by at the nodes (with the weight of the band where that is its only node), and where its
+/// temperature may be.
 #[derive(Debug)]
 pub(super) struct Source {
     strength: Vec<f64>,
@@ -69,15 +71,16 @@ impl Source {
     }
 }
 
-/// A source at one temperature, in counts of the bands per unit of its amplitude.
+/// A source at one temperature, in counts of the bands per unit of its amplitude, in whole chunks.
 #[derive(Debug, Clone)]
 pub(super) struct Spectrum {
     pub(super) temperature_k: f64,
     pub(super) counts: Vec<f64>,
     /// ∂/∂T.
     pub(super) slope: Vec<f64>,
-    /// Sum of the counts.
+    /// Sum of the counts, and of their slopes.
     pub(super) length: f64,
+    pub(super) slope_length: f64,
 }
 
 /// All sources of an alternative.
@@ -94,10 +97,16 @@ impl<'a> Sources<'a> {
         let unknown = |nuisance| space.unknowns.contains(nuisance);
         let gain = if unknown(Nuisance::Gain) { 1.0 } else { target.state.gain };
         let scale = target.counts * gain;
+        let bands = comparison.target.bands();
+        let weights = bands.one_node_per_band().then(|| bands.weights_cm1());
+        let strength = |at: &dyn Fn(usize) -> f64| -> Vec<f64> {
+            let nodes = 0..target.alternative.len();
+            nodes.map(|j| scale * weights.map_or(1.0, |weights| weights[j]) * at(j)).collect()
+        };
         let span = |unknown: bool, range: [f64; 2], known: f64| if unknown { range } else { [known, known] };
         let other = target.alternative;
         let surface = Source {
-            strength: other.iter().map(|e| scale * e).collect(),
+            strength: strength(&|j| other[j]),
             temperature_k: span(
                 unknown(Nuisance::Temperature),
                 space.range.temperature_k,
@@ -109,14 +118,11 @@ impl<'a> Sources<'a> {
             let own = |j: usize| object.emissivity.as_ref().map_or(1.0, |own| own[j]);
             let range = space.bounds(crate::scene::Parameter::EnvironmentTemperature(k));
             Source {
-                strength: other.iter().enumerate().map(|(j, e)| scale * (1.0 - e) * own(j)).collect(),
+                strength: strength(&|j| (1.0 - other[j]) * own(j)),
                 temperature_k: span(unknown(Nuisance::EnvironmentTemperature), range, known),
             }
         });
-        Self {
-            bands: Shared::All(comparison.target.bands()),
-            list: std::iter::once(surface).chain(lights).collect(),
-        }
+        Self { bands: Shared::All(bands), list: std::iter::once(surface).chain(lights).collect() }
     }
 
     /// The same in few bands.
@@ -135,13 +141,20 @@ impl<'a> Sources<'a> {
         planck::photon_radiance_and_slope_into(nodes, temperature_k, &mut value, &mut slope);
         let counts = self.counted(s, &mut value);
         let slope = self.counted(s, &mut slope);
-        let length = crate::sum::sum(&counts);
-        Spectrum { temperature_k, counts, slope, length }
+        let (length, slope_length) = (crate::sum::sum(&counts), crate::sum::sum(&slope));
+        Spectrum { temperature_k, counts, slope, length, slope_length }
     }
 
     fn counted(&self, s: usize, radiance: &mut [f64]) -> Vec<f64> {
-        radiance.iter_mut().zip(&self.list[s].strength).for_each(|(value, strength)| *value *= strength);
-        self.bands.weigh(radiance)
+        let (bands, strength) = (self.bands.len(), &self.list[s].strength);
+        let mut counts = vec![0.0; whole(bands)];
+        if self.bands.one_node_per_band() {
+            product_into(radiance, strength, &mut counts);
+        } else {
+            multiply(radiance, strength);
+            self.bands.weigh_into(radiance, &mut counts[..bands]);
+        }
+        counts
     }
 
     /// A″ at a temperature, and a bound of |A‴| between two others around it.
@@ -172,21 +185,43 @@ struct Bends<'a> {
 dispatched! {
     fn bends<'a>(bends: Bends<'a>) -> () {
         let Bends { nodes, temperature_k, low_k, bend, third, hot } = bends;
-        let one = planck::mode_density(1.0);
-        for (((bend, third), hot), nu) in bend.iter_mut().zip(third).zip(hot).zip(nodes) {
-            let density = one * nu * nu;
-            let (x, n) = (SECOND_RADIATION_CM_K * nu / temperature_k, *bend / density);
-            // w − 2 = x²/6 − x⁴/360 + … cancels where x is small.
-            let small = x * x / 6.0 * (1.0 - x * x / 60.0);
-            let beyond = if x < 0.1 { small } else { x * (1.0 + 2.0 * n) - 2.0 };
-            *bend = density * x * n * (1.0 + n) * beyond / (temperature_k * temperature_k);
-            let (x, n, hot) = (SECOND_RADIATION_CM_K * nu / low_k, *third / density, hot / density);
-            let w = x * (1.0 + 2.0 * n);
-            // At the hot end x is no more than at the cold one.
-            let m = x * hot * (1.0 + hot);
-            *third = density * m * (w * w + 2.0 * x * m) / (low_k * low_k * low_k);
+        let len = nodes.len();
+        let (whole, rest) = (len / LANES, len % LANES);
+        let ([nu, n_hot], [bend, third]) = ([nodes, hot].map(|x| &x[..len]), [bend, third].map(|x| &mut x[..len]));
+        for c in (0..whole).map(|c| c * LANES) {
+            let chunk = |x: &[f64]| -> Chunk { std::array::from_fn(|i| x[c + i]) };
+            let (second, most) = bent(chunk(nu), [chunk(bend), chunk(third), chunk(n_hot)], temperature_k, low_k);
+            bend[c..c + LANES].copy_from_slice(&second);
+            third[c..c + LANES].copy_from_slice(&most);
         }
+        let [x, a, b, h] = [nu, bend, third, n_hot].map(|x| padded(&x[len - rest..]));
+        let (second, most) = bent(x, [a, b, h], temperature_k, low_k);
+        bend[len - rest..].copy_from_slice(&second[..rest]);
+        third[len - rest..].copy_from_slice(&most[..rest]);
     }
+}
+
+/// B″ and the bound of |B‴| of a chunk of nodes, from B at the temperature itself, at the cold end and at the hot one.
+#[inline(always)]
+fn bent(nu: Chunk, [own, cold, hot]: [Chunk; 3], temperature_k: f64, low_k: f64) -> (Chunk, Chunk) {
+    let one = planck::mode_density(1.0);
+    let density: Chunk = std::array::from_fn(|i| one * nu[i] * nu[i]);
+    let second = std::array::from_fn(|i| {
+        let (x, n) = (SECOND_RADIATION_CM_K * nu[i] / temperature_k, own[i] / density[i]);
+        // w − 2 = x²/6 − x⁴/360 + … cancels where x is small.
+        let small = x * x / 6.0 * (1.0 - x * x / 60.0);
+        let large = x * (1.0 + 2.0 * n) - 2.0;
+        let beyond = if x < 0.1 { small } else { large };
+        own[i] * x * (1.0 + n) * beyond / (temperature_k * temperature_k)
+    });
+    let third = std::array::from_fn(|i| {
+        let (x, n, hot) = (SECOND_RADIATION_CM_K * nu[i] / low_k, cold[i] / density[i], hot[i] / density[i]);
+        let w = x * (1.0 + 2.0 * n);
+        // At the hot end x is no more than at the cold one.
+        let m = x * hot * (1.0 + hot);
+        density[i] * m * (w * w + 2.0 * x * m) / (low_k * low_k * low_k)
+    });
+    (second, third)
 }
 
 /// What [`chord`] reads and writes.
@@ -217,4 +252,9 @@ dispatched! {
             *high = b - *half;
         }
     }
+}
+
+/// How many values whole chunks take for so many bands: those beyond are 0 everywhere.
+pub(super) fn whole(bands: usize) -> usize {
+    bands.next_multiple_of(LANES)
 }

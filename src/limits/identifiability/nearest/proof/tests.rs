@@ -1,11 +1,15 @@
 //! What the proof rests on, piece by piece, against points drawn at random; whole proofs are held against a brute force that
 //! shares no code with them in `hadar accuracy brute-force`.
 
+use super::Prover;
+use super::amplitudes::Ray;
 use super::amplitudes::{Amplitudes, Pieces};
-use super::hull::{Quadratic, inner};
+use super::hull::{Hull, Quadratic};
 use super::metric::Metric;
+use super::orthogonal::inner;
 use super::sources::{Chord, chord};
 use crate::fisher::{Nuisance, Unknowns};
+use crate::identifiability::nearest::residual::{self, Comparison};
 use crate::identifiability::nearest::{NearestSolver, StateRange};
 use crate::planck;
 use crate::scene::{EnvironmentObject, Surroundings};
@@ -25,6 +29,7 @@ fn pieces() -> Pieces {
         source: vec![0, 0, 1, 1, 2],
         length: vec![1.0, 1.7, 0.4, 0.9, 0.6],
         cap: vec![f64::INFINITY, f64::INFINITY, 0.3, f64::INFINITY, f64::INFINITY],
+        temperature_k: vec![0.0; 5],
     }
 }
 
@@ -62,7 +67,7 @@ fn no_amplitudes_cost_less_than_the_cheapest() {
         for _ in 0..200 {
             let cost: Vec<f64> = (0..5).map(|_| draw() - 0.6).collect();
             let mut vertex = vec![0.0; 5];
-            let least = of.least(&pieces(), &cost, &mut vertex);
+            let least = of.least(&pieces(), &cost, &mut vertex, &mut Ray::default());
             assert!((inner(&cost, &vertex) - least).abs() < 1e-12 * (1.0 + least.abs()));
             let mut lowest = f64::INFINITY;
             for _ in 0..300 {
@@ -88,35 +93,40 @@ fn the_least_of_a_quadratic_is_bounded_tightly() {
         total: 0.0,
         gain_cap: None,
     };
-    let pieces = Pieces { source: vec![0, 1], length: vec![1.0, 1.0], cap: vec![f64::INFINITY; 2] };
+    let (mut pieces, mut ray) = (Pieces::default(), Ray::default());
+    (0..2).for_each(|s| pieces.put(s, 1.0, f64::INFINITY, 0.0));
     let mut draw = draws(5);
     for _ in 0..300 {
         let mut vector = || (0..3).map(|_| draw() - 0.5).collect::<Vec<f64>>();
+        // φ = ‖F(z − z₀) + h‖² − ‖h‖².
+        let (columns, shift) = ([vector(), vector()], vector());
+        let product = |i: usize, j: usize| inner(&columns[i], &columns[j]);
         let quadratic = Quadratic {
-            constant: 0.2,
-            linear: vector()[..2].to_vec(),
-            factor: vec![vector(), vector()],
-            shift: vector(),
+            linear: columns.iter().map(|column| 2.0 * inner(column, &shift)).collect(),
+            square: vec![product(0, 0), product(0, 1), product(1, 0), product(1, 1)],
             origin: vec![0.3, 0.1],
+            length: inner(&shift, &shift).sqrt(),
         };
         let value = |v: f64| {
-            let d = [1.0 - 0.3, v - 0.1];
-            let image: Vec<f64> = (0..3)
-                .map(|i| quadratic.shift[i] + d[0] * quadratic.factor[0][i] + d[1] * quadratic.factor[1][i])
-                .collect();
-            quadratic.constant + inner(&quadratic.linear, &d) + inner(&image, &image)
+            let change = [1.0 - 0.3, v - 0.1];
+            let image: Vec<f64> =
+                (0..3).map(|i| shift[i] + change[0] * columns[0][i] + change[1] * columns[1][i]).collect();
+            inner(&image, &image) - inner(&shift, &shift)
         };
-        let found = quadratic.least(|cost, vertex| of.least(&pieces, cost, vertex), f64::INFINITY);
+        let cheapest = |cost: &[f64], vertex: &mut [f64]| {
+            of.least(&pieces, cost, vertex, &mut ray);
+        };
+        let lower = Hull::default().least(&quadratic, cheapest, f64::INFINITY);
         let lowest = (0..=2000).map(|i| value(f64::from(i) / 2000.0)).fold(f64::INFINITY, f64::min);
-        assert!(found.lower <= lowest + 1e-13, "{} {lowest}", found.lower);
-        assert!(lowest - found.lower < 1e-6, "{} {lowest}", found.lower);
+        assert!(lower <= lowest + 1e-13, "{lower} {lowest}");
+        assert!(lowest - lower < 1e-6, "{lower} {lowest}");
     }
 }
 
 #[test]
 fn curves_lie_within_half_a_sag_of_the_lowered_chord() {
     for (a, b) in [(290.0, 310.0), (30.0, 300.0), (300.0, 1e6), (300.0, 300.1)] {
-        let nodes: Vec<f64> = (1..60).map(|i| 40.0 * f64::from(i)).collect();
+        let nodes: Vec<f64> = (1..=64).map(|i| 40.0 * f64::from(i)).collect();
         let spectrum = |t: f64| {
             let (mut value, mut slope) = (vec![0.0; nodes.len()], vec![0.0; nodes.len()]);
             planck::photon_radiance_and_slope_into(&nodes, t, &mut value, &mut slope);
@@ -151,8 +161,8 @@ fn curves_lie_within_half_a_sag_of_the_lowered_chord() {
 fn no_state_within_reach_is_below_a_quadratic() {
     let mut draw = draws(7);
     for _ in 0..2000 {
-        let counts: Vec<f64> = (0..4).map(|_| 10.0 * draw()).collect();
-        let noise: Vec<f64> = (0..4).map(|_| draw()).collect();
+        let counts: Vec<f64> = (0..8).map(|_| 10.0 * draw()).collect();
+        let noise: Vec<f64> = (0..8).map(|_| draw()).collect();
         let root: Vec<f64> = counts.iter().zip(&noise).map(|(n, v)| (n + v).sqrt()).collect();
         let scale = 10f64.powf(-4.0 * draw());
         let mut near =
@@ -164,18 +174,21 @@ fn no_state_within_reach_is_below_a_quadratic() {
         };
         let cost = separation(&other);
         let reach = cost.sqrt() * (1.0 + draw());
-        let value = |metric: &Metric| {
-            let bands = other.iter().zip(&metric.weight).zip(&metric.shift);
-            metric.constant + bands.map(|((n, w), b)| (n * w + b).powi(2)).sum::<f64>()
+        let value = |metric: &Metric, about: &[f64]| {
+            let bands = other.iter().zip(about).zip(metric.weight.iter().zip(&metric.shift));
+            let square: f64 = bands.map(|((n, from), (w, b))| ((n - from) * w + b).powi(2)).sum();
+            metric.cost + square - metric.length.powi(2)
         };
-        for metric in [
-            Metric::about_target(&root, &counts, reach),
-            Metric::about(&root, &centre, &noise, &counts, reach),
-        ] {
-            assert!(value(&metric) <= cost * (1.0 + 1e-9) + 1e-13, "{} {cost}", value(&metric));
+        let about = |centre: &[f64]| {
+            let mut metric = Metric::default();
+            metric.put_about(centre, [&root, &counts, &noise], reach);
+            value(&metric, centre)
+        };
+        for below in [value(&Metric::about_target(&root, &counts, reach), &[0.0; 8]), about(&centre)] {
+            assert!(below <= cost * (1.0 + 1e-9) + 1e-13, "{below} {cost}");
         }
         // About the state itself it is exact.
-        let exact = value(&Metric::about(&root, &other, &noise, &counts, reach));
+        let exact = about(&other);
         assert!((exact - cost).abs() < 1e-9 * cost + 1e-14, "{exact} {cost}");
     }
 }
@@ -230,4 +243,65 @@ fn proofs_are_below_every_state_and_near_the_nearest() {
             assert!(cost.sqrt() >= found.lower * (1.0 - 1e-9), "{set}: {} {found:?}", cost.sqrt());
         }
     }
+}
+
+/// A state within reach, written as amplitudes of the pieces of any box that it lies in, is among those allowed: no piece above
+/// its cap, all together no longer than the total.
+#[test]
+fn states_within_reach_are_among_the_amplitudes_of_their_box() {
+    let mut draw = draws(13);
+    let bands = Bands::uniform(200.0, 1800.0, 100.0).unwrap();
+    let nodes = bands.nodes_cm1().to_vec();
+    let (mut fullest, mut capped) = (0.0_f64, 0.0_f64);
+    for trial in 0..2000 {
+        let gain_free = trial % 2 == 0;
+        let mut unknown = vec![Nuisance::Temperature, Nuisance::Lighting, Nuisance::EnvironmentTemperature];
+        unknown.extend(gain_free.then_some(Nuisance::Gain));
+        let object = EnvironmentObject { temperature_k: 290.0, emissivity: None };
+        let surroundings = Surroundings::new(&nodes, vec![object]).unwrap();
+        let mut spectrum = || nodes.iter().map(|_| 0.02 + 0.96 * draw()).collect::<Vec<f64>>();
+        let (own, other) = (spectrum(), spectrum());
+        let mut state = || {
+            let mut state = surroundings.state(30.0 * 20f64.powf(draw()), &[draw()]).unwrap();
+            state.environment_k[0] = 30.0 * 20f64.powf(draw());
+            state
+        };
+        let (state, mut known) = (state(), state());
+        known.gain = if gain_free { 3f64.powf(2.0 * draw() - 1.0) } else { 1.0 };
+        let unknowns = Unknowns::new(unknown).unwrap();
+        let mut comparison = Comparison::new(&bands, &surroundings, unknowns, StateRange::default());
+        let metric = residual::Metric::PerPhoton { photons: f64::INFINITY };
+        let target = comparison.aim(&own, &other, &state, metric).unwrap();
+        let reach = comparison.cost(&target, &known).sqrt();
+        let mut prover = Prover::new(&comparison, None, &target, reach);
+        let mut ends = Vec::new();
+        for (axis, t) in [known.temperature_k, known.environment_k[0]].into_iter().enumerate() {
+            let faces = [t / (1.0 + 2.0 * draw() * draw()), t * (1.0 + 2.0 * draw() * draw())];
+            ends.push(faces.map(|face| {
+                let end = prover.end(axis, face);
+                prover.all.know(axis, end, face);
+                end
+            }));
+        }
+        let pieces = prover.all.laid(&ends);
+        let mut length = 0.0;
+        for (s, t) in [known.temperature_k, known.environment_k[0]].into_iter().enumerate() {
+            let amplitude = if s == 0 { known.gain } else { known.gain * known.lighting[0] };
+            let [cold, hot] = [2 * s, 2 * s + 1];
+            let [a, b] = [cold, hot].map(|i| pieces.temperature_k[i]);
+            let share = (t - a) / (b - a);
+            for (i, amount) in [(cold, amplitude * (1.0 - share)), (hot, amplitude * share)] {
+                length += amount * pieces.length[i];
+                if !gain_free && s > 0 {
+                    assert!(amount <= pieces.cap[i], "{trial}: {amount} {}", pieces.cap[i]);
+                    capped = capped.max(amount / pieces.cap[i]);
+                }
+            }
+        }
+        let total = prover.all.allowed.total;
+        assert!(length <= total, "{trial}: {length} {total}");
+        fullest = fullest.max(length / total);
+    }
+    // Both limits are nearly reached somewhere, so that a looser one would not have passed unseen.
+    assert!(fullest > 0.8 && capped > 0.8, "{fullest} {capped}");
 }

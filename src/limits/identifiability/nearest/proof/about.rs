@@ -1,0 +1,134 @@
+//! Closes the widest box about the best state that can be ([`super::closing`]).
+
+use super::closing::{Minimum, Reach, close};
+use super::sources::Spectrum;
+use super::view::Mixture;
+use super::{Goal, Prover, temperature_of};
+use crate::identifiability::nearest::refine::NearestDistance;
+use crate::identifiability::nearest::residual::{Comparison, Target};
+use crate::scene::State;
+use crate::sum::dot;
+
+/// Half widths of the closed box that are tried, as shares of T/max(x, 2) in the middle of the bands.
+const WIDTHS: [f64; 8] = [0.3, 0.1, 0.03, 0.01, 3e-3, 1e-3, 1e-4, 1e-6];
+
+/// What has come of closing a box about the best state.
+pub(super) enum Closed {
+    /// A lower bound of d² in it, and its faces.
+    Box(f64, Vec<[f64; 2]>),
+    /// A nearer state.
+    Nearer(State),
+    /// No box can be closed.
+    Nothing,
+}
+
+impl Prover<'_> {
+    /// Closes the widest box about the best state that can be: its bound, where it is least, and its faces.
+    pub(super) fn close_about(
+        &mut self,
+        comparison: &mut Comparison<'_>,
+        target: &Target<'_>,
+        best: &NearestDistance,
+        goal: Goal,
+    ) -> Closed {
+        let (state, enough) = (&best.state, goal.enough);
+        let (residual, other) = comparison.residual(target, state);
+        let count = self.all.fixed.len();
+        let temperature_k: Vec<f64> = (0..count).map(|s| temperature_of(state, s)).collect();
+        let gain = if self.all.allowed.gain_free { state.gain } else { 1.0 };
+        let amplitudes: Vec<f64> =
+            (0..count).map(|s| if s == 0 { gain } else { gain * state.lighting[s - 1] }).collect();
+        let spectra: Vec<Spectrum> = (0..count)
+            .map(|s| match &self.all.fixed[s] {
+                Some(spectrum) => spectrum.clone(),
+                None => self.all.sources.spectrum(s, temperature_k[s]),
+            })
+            .collect();
+        let bands = self.all.root.len();
+        let (mut pull, mut seen, mut kept) = (vec![0.0; bands], vec![0.0; bands], vec![0.0; bands]);
+        for (w, (residual, other)) in residual.into_iter().zip(other).enumerate() {
+            if other > 1e-150 && self.all.root[w] > 0.0 {
+                (pull[w], seen[w], kept[w]) = (-residual / other, other, residual);
+            }
+        }
+        let cost = dot(&kept, &kept);
+        let root = self.all.root.clone();
+        let minimum = Minimum {
+            amplitudes: &amplitudes,
+            spectra: &spectra,
+            pull: &pull,
+            root: &root,
+            other: &seen,
+            reach: self.all.reach,
+            cost,
+        };
+        let nu = self.all.sources.bands.range_cm1();
+        for width in WIDTHS {
+            let reach: Vec<Option<Reach>> = (0..count)
+                .map(|s| {
+                    let [low, high] = self.all.sources.list[s].temperature_k;
+                    let t = temperature_k[s];
+                    let x = crate::units::SECOND_RADIATION_CM_K * 0.5 * (nu.0 + nu.1) / t;
+                    let half = width * t / x.max(2.0);
+                    let least = if self.all.held(s).is_some() { amplitudes[s] } else { 0.25 * amplitudes[s] };
+                    let (down_k, up_k) = (half.min(t - low).max(0.0), half.min(high - t).max(0.0));
+                    self.all.sources.list[s].free().then_some(Reach { down_k, up_k, least })
+                })
+                .collect();
+            let Some(closed) = close(&self.all.sources, &minimum, &reach, &self.all.allowed, enough) else {
+                continue;
+            };
+            let lower = closed.lower.min(cost);
+            let mixture = Mixture { amplitudes: closed.amplitudes, temperature_k: closed.temperature_k };
+            let faces: Vec<[f64; 2]> = self
+                .all
+                .axes
+                .iter()
+                .filter_map(|&s| {
+                    let Reach { down_k, up_k, .. } = reach[s]?;
+                    Some([temperature_k[s] - down_k, temperature_k[s] + up_k])
+                })
+                .collect();
+            if lower >= enough && self.dim_ones_are_farther(&faces, &amplitudes, enough) {
+                return Closed::Box(lower, faces);
+            }
+            if let Some(state) = self.nearer(comparison, target, goal.limit, &mixture) {
+                return Closed::Nearer(state);
+            }
+            if self.all.axes.is_empty() {
+                return Closed::Box(lower, faces);
+            }
+        }
+        Closed::Nothing
+    }
+
+    /// Whether no state in a box is nearer in which a source of unknown temperature and amplitude has less than half its share:
+    /// what the closed box leaves out.
+    fn dim_ones_are_farther(&mut self, faces: &[[f64; 2]], amplitudes: &[f64], enough: f64) -> bool {
+        let free: Vec<usize> =
+            self.all.axes.iter().copied().filter(|&s| self.all.held(s).is_none()).collect();
+        if free.is_empty() {
+            return true;
+        }
+        let ends: Vec<[usize; 2]> = faces
+            .iter()
+            .enumerate()
+            .map(|(axis, face)| [self.end(axis, face[0]), self.end(axis, face[1])])
+            .collect();
+        free.into_iter().chain(self.all.allowed.gain_free.then_some(0)).all(|s| {
+            let mut allowed = self.all.allowed.clone();
+            match s.checked_sub(1) {
+                None => allowed.gain_cap = Some(0.5 * amplitudes[0]),
+                Some(k) => {
+                    let share = 0.5 * amplitudes[s] / amplitudes[0];
+                    if share <= allowed.ranges[k][0] {
+                        // None is so dim.
+                        return true;
+                    }
+                    allowed.ranges[k][1] = share;
+                }
+            }
+            self.bound(&ends, Some(&allowed), enough).0 >= enough
+        })
+    }
+}

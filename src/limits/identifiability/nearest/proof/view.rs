@@ -1,0 +1,347 @@
+//! A pair in all its bands or in some of them, and the bound of d² in a box of temperatures.
+//!
+//! In a box every source of unknown temperature is a mixture of two spectra, the ends of its chord (`sources`), but for what
+//! the chord misses: ‖W(N′ − ΣzA)‖ ≤ m. With the quadratic of `metric` about some N₀, h its shift, and
+//! φ(δ) = ‖W(ΣzA − N₀) + h‖² − ‖h‖² (`hull`),
+//!
+//! d² ≥ cost − ‖h‖² + (√(‖h‖² + φ) − m)²,
+//!
+//! 0 in place of the bracket where that is negative. Where it comes out least is where the next quadratic is written about.
+//! Fewer bands never carry more information, and where they prove enough they are quicker.
+//!
+//! What the amplitudes may be: a curve lies above its cold end and above its tangent there, so that c(1 − λ) of the one and cλ
+//! of the other never are more than a band can have within reach, nor all bands together.
+
+use super::ROUNDING;
+use super::amplitudes::{Amplitudes, Pieces, Ray};
+use super::hull::{Hull, Quadratic};
+use super::metric::Metric;
+use super::sources::{Chord, Sources, Spectrum, chord, whole};
+use super::vectors::{add_into, largest_share, product_into, square_of_product};
+use crate::sum::dot;
+
+/// Share of the bound wanted beyond which what chords miss makes it useless to try better quadratics.
+const COARSE: f64 = 0.25;
+/// Share of what is wanting that a better quadratic must have brought for another one to be tried.
+const WORTH: f64 = 0.03;
+
+/// A spectrum of a source at one end of an interval.
+struct End {
+    spectrum: Spectrum,
+    /// The largest amplitude with which no band alone is beyond reach.
+    most: f64,
+}
+
+/// Amplitudes and temperatures of all sources.
+pub(super) struct Mixture {
+    pub(super) amplitudes: Vec<f64>,
+    pub(super) temperature_k: Vec<f64>,
+}
+
+/// What is known of a box.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Bound {
+    /// No d² in it is below.
+    pub(super) lower: f64,
+    /// The axis along which it is best halved.
+    pub(super) axis: usize,
+    /// Whether what the chords miss is in the way of more.
+    pub(super) coarse: bool,
+}
+
+/// A pair in some of its bands.
+pub(super) struct View<'a> {
+    pub(super) sources: Sources<'a>,
+    pub(super) allowed: Amplitudes,
+    /// √(N + v), N and v of every band, in whole chunks.
+    pub(super) root: Vec<f64>,
+    counts: Vec<f64>,
+    noise: Vec<f64>,
+    /// The distance within which everything is, and the counts that a band can have then.
+    pub(super) reach: f64,
+    brightest: Vec<f64>,
+    about_target: Metric,
+    /// Sources of unknown temperature, and their spectra at the temperatures known, as far as they were needed.
+    pub(super) axes: Vec<usize>,
+    ends: Vec<Vec<Option<End>>>,
+    /// Spectra of the others.
+    pub(super) fixed: Vec<Option<Spectrum>>,
+    work: Work,
+}
+
+/// Memory of [`View::bound`], for one box after the other.
+#[derive(Default)]
+struct Work {
+    pieces: Pieces,
+    places: Vec<Place>,
+    /// Of every axis: both ends of the chord, what it misses, and the largest amplitude.
+    low: Vec<Vec<f64>>,
+    high: Vec<Vec<f64>>,
+    half: Vec<Vec<f64>>,
+    most: Vec<f64>,
+    /// Columns times the weights.
+    whitened: Vec<Vec<f64>>,
+    counts: Vec<f64>,
+    metric: Metric,
+    quadratic: Quadratic,
+    hull: Hull,
+    ray: Ray,
+}
+
+/// Where the spectrum of a piece is.
+#[derive(Clone, Copy)]
+enum Place {
+    /// Of a source of known temperature.
+    Fixed(usize),
+    /// Of an axis.
+    Low(usize),
+    High(usize),
+}
+
+impl<'a> View<'a> {
+    pub(super) fn new(sources: Sources<'a>, allowed: Amplitudes, bands: [Vec<f64>; 3], reach: f64) -> Self {
+        let [root, counts, noise] = bands.map(|mut x| {
+            x.resize(whole(x.len()), 0.0);
+            x
+        });
+        let size = dot(&root, &root).sqrt() + reach;
+        let total = (size * size - crate::sum::sum(&noise)) * (1.0 + 1e-12);
+        let allowed = Amplitudes { total, ..allowed };
+        let axes: Vec<usize> = (0..sources.list.len()).filter(|&s| sources.list[s].free()).collect();
+        let fixed = (0..sources.list.len())
+            .map(|s| (!sources.list[s].free()).then(|| sources.spectrum(s, sources.list[s].temperature_k[0])))
+            .collect();
+        let brightest = root.iter().zip(&noise).map(|(y, v)| (y + reach) * (y + reach) * (1.0 + 1e-9) - v);
+        let brightest = brightest.collect();
+        let about_target = Metric::about_target(&root, &counts, reach);
+        let ends = axes.iter().map(|_| Vec::new()).collect();
+        let empty = || vec![vec![0.0; root.len()]; axes.len()];
+        let work = Work {
+            low: empty(),
+            high: empty(),
+            half: empty(),
+            most: vec![0.0; axes.len()],
+            whitened: vec![vec![0.0; root.len()]; sources.list.len() + axes.len()],
+            ..Work::default()
+        };
+        Self {
+            sources,
+            allowed,
+            root,
+            counts,
+            noise,
+            reach,
+            brightest,
+            about_target,
+            axes,
+            ends,
+            fixed,
+            work,
+        }
+    }
+
+    /// Makes sure of the spectrum at an end of an interval.
+    pub(super) fn know(&mut self, axis: usize, place: usize, temperature_k: f64) {
+        if self.ends[axis].len() <= place {
+            self.ends[axis].resize_with(place + 1, || None);
+        }
+        if self.ends[axis][place].is_some() {
+            return;
+        }
+        let spectrum = self.sources.spectrum(self.axes[axis], temperature_k);
+        let most = largest_share(&self.brightest, &spectrum.counts, &spectrum.slope, 0.0);
+        self.ends[axis][place] = Some(End { spectrum, most });
+    }
+
+    /// Whether even `amplitude` of a source is beyond reach in some band at an end.
+    pub(super) fn too_bright(
+        &mut self,
+        axis: usize,
+        place: usize,
+        temperature_k: f64,
+        amplitude: f64,
+    ) -> bool {
+        self.know(axis, place, temperature_k);
+        self.ends[axis][place].as_ref().is_some_and(|end| end.most < amplitude)
+    }
+
+    /// The amplitude of a source, where it is known.
+    pub(super) fn held(&self, s: usize) -> Option<f64> {
+        if self.allowed.gain_free {
+            return None;
+        }
+        match s.checked_sub(1) {
+            None => Some(1.0),
+            Some(k) => {
+                (self.allowed.ranges[k][0] == self.allowed.ranges[k][1]).then(|| self.allowed.ranges[k][0])
+            }
+        }
+    }
+
+    /// The largest amplitude that a source can have in a box that begins with this spectrum.
+    fn most(&self, s: usize, cold: &End) -> f64 {
+        let gain = if self.allowed.gain_free { f64::exp(14.0) } else { 1.0 };
+        let own = match s.checked_sub(1) {
+            None => gain,
+            Some(k) => gain * self.allowed.ranges[k][1].min(self.allowed.sum),
+        };
+        own.min(cold.most).max(0.0)
+    }
+
+    /// Lays out the pieces of a box.
+    fn lay(&self, ends: &[[usize; 2]], work: &mut Work) {
+        work.pieces.clear();
+        work.places.clear();
+        for s in 0..self.sources.list.len() {
+            if let Some(spectrum) = &self.fixed[s] {
+                work.pieces.put(s, spectrum.length, f64::INFINITY, spectrum.temperature_k);
+                work.places.push(Place::Fixed(s));
+                continue;
+            }
+            let axis = self.axes.iter().position(|&axis| axis == s).unwrap_or(0);
+            let [Some(cold), Some(hot)] = ends[axis].map(|end| self.ends[axis][end].as_ref()) else {
+                continue;
+            };
+            let (most, cold, hot) = (self.most(s, cold), &cold.spectrum, &hot.spectrum);
+            let width_k = hot.temperature_k - cold.temperature_k;
+            chord(Chord {
+                width_k,
+                cold: [&cold.counts, &cold.slope],
+                hot: [&hot.counts, &hot.slope],
+                low: &mut work.low[axis],
+                high: &mut work.high[axis],
+                half: &mut work.half[axis],
+            });
+            work.most[axis] = most;
+            let limited = s > 0 && !self.allowed.gain_free;
+            let cap = if limited {
+                largest_share(&self.brightest, &cold.counts, &cold.slope, width_k)
+            } else {
+                f64::INFINITY
+            };
+            work.pieces.put(s, cold.length, most, cold.temperature_k);
+            work.pieces.put(s, cold.length + width_k * cold.slope_length, cap, hot.temperature_k);
+            work.places.extend([Place::Low(axis), Place::High(axis)]);
+        }
+    }
+
+    /// The spectrum of a piece.
+    fn column<'w>(&'w self, [low, high]: [&'w [Vec<f64>]; 2], place: Place) -> &'w [f64] {
+        match place {
+            Place::Fixed(s) => self.fixed[s].as_ref().map_or(&[], |spectrum| &spectrum.counts),
+            Place::Low(axis) => &low[axis],
+            Place::High(axis) => &high[axis],
+        }
+    }
+
+    /// A bound of d² in a box, over `narrower` amplitudes where these are given, from so many quadratics at most; the first of
+    /// them about `start`, amplitudes of the pieces.
+    pub(super) fn bound(
+        &mut self,
+        ends: &[[usize; 2]],
+        narrower: Option<&Amplitudes>,
+        enough: f64,
+        start: Option<&[f64]>,
+        quadratics: usize,
+    ) -> Bound {
+        let mut work = std::mem::take(&mut self.work);
+        self.lay(ends, &mut work);
+        let Work { pieces, places, low, high, half, most, whitened, counts, metric, quadratic, hull, ray } =
+            &mut work;
+        let m = places.len();
+        let narrower = narrower.map(|allowed| Amplitudes { total: self.allowed.total, ..allowed.clone() });
+        let allowed = narrower.as_ref().unwrap_or(&self.allowed);
+        let mut cheapest = |costs: &[f64], vertex: &mut [f64]| {
+            allowed.least(pieces, costs, vertex, ray);
+        };
+        hull.point.clear();
+        hull.point.extend_from_slice(start.unwrap_or_default());
+        let mut found = Bound { lower: 0.0, axis: 0, coarse: false };
+        for attempt in 0..quadratics {
+            quadratic.origin.clear();
+            let metric = if hull.point.len() == m {
+                counts.clear();
+                counts.resize(self.root.len(), 0.0);
+                for (place, amount) in places.iter().zip(&hull.point).filter(|(_, amount)| **amount > 0.0) {
+                    add_into(*amount, self.column([low, high], *place), counts);
+                }
+                quadratic.origin.extend_from_slice(&hull.point);
+                metric.put_about(counts, [&self.root, &self.counts, &self.noise], self.reach);
+                &*metric
+            } else {
+                quadratic.origin.resize(m, 0.0);
+                &self.about_target
+            };
+            for (out, place) in whitened.iter_mut().zip(&*places) {
+                product_into(self.column([low, high], *place), &metric.weight, out);
+            }
+            quadratic.length = metric.length;
+            quadratic.linear.clear();
+            quadratic.square.resize(m * m, 0.0);
+            for i in 0..m {
+                quadratic.linear.push(2.0 * dot(&whitened[i], &metric.shift));
+                for j in 0..=i {
+                    let product = dot(&whitened[i], &whitened[j]);
+                    (quadratic.square[i * m + j], quadratic.square[j * m + i]) = (product, product);
+                }
+            }
+            let (mut missed, mut largest) = (ROUNDING * self.about_target.length, -1.0);
+            for (axis, (half, most)) in half.iter().zip(&*most).enumerate() {
+                let part = most * square_of_product(half, &metric.weight).sqrt();
+                missed += part;
+                if part > largest {
+                    (largest, found.axis) = (part, axis);
+                }
+            }
+            let square = metric.length * metric.length;
+            let rest = metric.cost - square;
+            let wanted = ((enough - rest).max(0.0).sqrt() + missed).powi(2) - square;
+            let fall = hull.least(quadratic, &mut cheapest, wanted);
+            let left = (square + fall).max(0.0).sqrt();
+            // (left − missed)² without the difference of squares that may be nearly equal.
+            let lower =
+                if left > missed { metric.cost + fall + missed * (missed - 2.0 * left) } else { rest };
+            found.coarse = missed * missed > COARSE * enough;
+            let gained = lower - found.lower;
+            found.lower = found.lower.max(lower);
+            if found.lower >= enough || found.coarse {
+                break;
+            }
+            if attempt > 0 && gained < WORTH * (enough - found.lower) {
+                break;
+            }
+        }
+        self.work = work;
+        found
+    }
+
+    /// Where the last bound was least: an amplitude for every piece.
+    pub(super) fn point(&self) -> &[f64] {
+        &self.work.hull.point
+    }
+
+    /// The same, source by source.
+    pub(super) fn mixture(&self) -> Mixture {
+        let Work { pieces, hull, .. } = &self.work;
+        let sources = self.fixed.len();
+        let (mut amplitudes, mut temperature_k) = (vec![0.0; sources], vec![0.0; sources]);
+        for ((amount, s), t) in hull.point.iter().zip(&pieces.source).zip(&pieces.temperature_k) {
+            amplitudes[*s] += amount;
+            temperature_k[*s] += amount * t;
+        }
+        for (s, (t, amplitude)) in temperature_k.iter_mut().zip(&amplitudes).enumerate() {
+            let own = pieces.source.iter().position(|&source| source == s).unwrap_or(0);
+            *t = if *amplitude > 0.0 { *t / amplitude } else { pieces.temperature_k[own] };
+        }
+        Mixture { amplitudes, temperature_k }
+    }
+
+    /// The pieces of a box, for tests.
+    #[cfg(test)]
+    pub(super) fn laid(&mut self, ends: &[[usize; 2]]) -> Pieces {
+        let mut work = std::mem::take(&mut self.work);
+        self.lay(ends, &mut work);
+        self.work = work;
+        self.work.pieces.clone()
+    }
+}
