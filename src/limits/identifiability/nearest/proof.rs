@@ -200,11 +200,12 @@ impl<'a> Prover<'a> {
         sum *= 1.0 + 1e-15;
         let gain_free = space.unknowns.contains(Nuisance::Gain);
         let allowed = Amplitudes { gain_free, ranges, sum, sum_known, total: 0.0, gain_cap: None };
+        let known_k: Vec<f64> = (0..sources.list.len()).map(|s| temperature_of(target.state, s)).collect();
         let few = few.map(|few| {
             let kept = bands.each_ref().map(|x| x.iter().copied().step_by(few.stride).collect());
-            View::new(sources.every(few), allowed.clone(), kept, reach)
+            View::new(sources.every(few), allowed.clone(), kept, reach, &known_k)
         });
-        let all = View::new(sources, allowed, bands, reach);
+        let all = View::new(sources, allowed, bands, reach, &known_k);
         let temperature_k = all.axes.iter().map(|_| Vec::new()).collect();
         Self { few, all, temperature_k, boxes: 0 }
     }
@@ -384,6 +385,7 @@ impl<'a> Prover<'a> {
     fn range(&mut self, axis: usize, warm: &State) -> [f64; 2] {
         let s = self.all.axes[axis];
         let [low, high] = self.all.sources.list[s].temperature_k;
+        let low = low.max(self.all.coldest_k(axis)).min(high);
         let Some(amplitude) = self.all.held(s) else { return [low, high] };
         let mut t = 1.2 * temperature_of(warm, s).max(low);
         while t < high {

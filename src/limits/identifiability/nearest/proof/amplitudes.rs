@@ -5,12 +5,15 @@
 //!
 //! lₖ ≤ Vₖ ≤ uₖ,  ΣVₖ ≤ s (or = s),  c₀ = 1, or where the gain is free Σ amplitude · length ≤ total,
 //!
-//! the length of a piece being the sum of its counts. Every set here contains what is allowed, and may be somewhat larger
+//! the length of a piece being the sum of its counts. A piece may be a shape, A/β: then its amplitude is c·β, and c is known of it
+//! to lie between two multiples, g and h. Every set here contains what is allowed, and may be somewhat larger
 //! where that is simpler: a least value over it is a lower bound.
 //!
 //! With c₀ = 1 the least value comes of filling the cheapest pieces first (the constraints are laminar). With a free gain
 //! the extreme points are rays cut off at the total, and the cheapest per length is found as Dinkelbach does.
 //! Source: W. Dinkelbach, Management Science 13, 492 (1967), doi:10.1287/mnsc.13.7.492.
+
+use super::sources::Spectrum;
 
 /// Steps of Dinkelbach's method; each one strictly betters the ray, and there are few.
 const STEPS: usize = 50;
@@ -22,14 +25,33 @@ pub(super) struct Pieces {
     pub(super) length: Vec<f64>,
     pub(super) cap: Vec<f64>,
     pub(super) temperature_k: Vec<f64>,
+    /// The least and the largest c of a unit of the piece, where that is a shape.
+    pub(super) unit: Vec<[f64; 2]>,
+}
+
+/// A piece to be put.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Piece {
+    pub(super) source: usize,
+    pub(super) length: f64,
+    pub(super) cap: f64,
+    pub(super) temperature_k: f64,
+    pub(super) unit: [f64; 2],
 }
 
 impl Pieces {
-    pub(super) fn put(&mut self, source: usize, length: f64, cap: f64, temperature_k: f64) {
-        self.source.push(source);
-        self.length.push(length);
-        self.cap.push(cap);
-        self.temperature_k.push(temperature_k);
+    pub(super) fn put(&mut self, piece: Piece) {
+        self.source.push(piece.source);
+        self.length.push(piece.length);
+        self.cap.push(piece.cap);
+        self.temperature_k.push(piece.temperature_k);
+        self.unit.push(piece.unit);
+    }
+
+    /// The spectrum of a source as it is.
+    pub(super) fn put_known(&mut self, source: usize, spectrum: &Spectrum) {
+        let &Spectrum { length, temperature_k, .. } = spectrum;
+        self.put(Piece { source, length, cap: f64::INFINITY, temperature_k, unit: [1.0; 2] });
     }
 
     pub(super) fn clear(&mut self) {
@@ -37,6 +59,13 @@ impl Pieces {
         self.length.clear();
         self.cap.clear();
         self.temperature_k.clear();
+        self.unit.clear();
+    }
+
+    /// The least and the largest c of a unit of a source's pieces.
+    fn unit_of(&self, source: usize) -> [f64; 2] {
+        let place = self.source.iter().position(|&own| own == source);
+        place.map_or([1.0; 2], |place| self.unit[place])
     }
 }
 
@@ -71,7 +100,7 @@ impl Amplitudes {
         }
         let mut value = self.ray(pieces, cost, vertex);
         if let Some(cap) = self.gain_cap {
-            let scale = if value < 0.0 { cap } else { 0.0 };
+            let scale = if value < 0.0 { cap / pieces.unit_of(0)[0] } else { 0.0 };
             vertex.iter_mut().for_each(|v| *v *= scale);
             return scale * value;
         }
@@ -102,14 +131,12 @@ impl Amplitudes {
         scale * value
     }
 
-    /// With c₀ = 1; caps hold where that is the gain.
+    /// With the surface's pieces at 1 together; caps hold where the gain is not free.
     fn ray(&self, pieces: &Pieces, cost: &[f64], vertex: &mut [f64]) -> f64 {
         vertex.fill(0.0);
-        let order = |&i: &usize, &j: &usize| cost[i].total_cmp(&cost[j]).then(i.cmp(&j));
-        let cheapest = |source: usize| {
-            let own = (0..cost.len()).filter(|&i| pieces.source[i] == source);
-            own.min_by(order)
-        };
+        let pieces_of = |source: usize| (0..cost.len()).filter(move |&i| pieces.source[i] == source);
+        let cheapest = |source: usize| pieces_of(source).min_by(|&i, &j| cost[i].total_cmp(&cost[j]));
+        let [gain_least, gain_most] = pieces.unit_of(0);
         let mut value = 0.0;
         let mut put = |vertex: &mut [f64], i: usize, amount: f64| {
             vertex[i] += amount;
@@ -118,27 +145,41 @@ impl Amplitudes {
         if let Some(i) = cheapest(0) {
             put(vertex, i, 1.0);
         }
-        let mut left = self.sum;
+        // What may yet be lit at most, and must be at least where the sum is known.
+        let (mut left, mut due) =
+            (self.sum * gain_most, if self.sum_known { self.sum * gain_least } else { 0.0 });
         for (k, [low, _]) in self.ranges.iter().enumerate() {
-            left -= low;
-            if let (true, Some(i)) = (*low > 0.0, cheapest(k + 1)) {
-                put(vertex, i, *low);
+            let [least, most] = pieces.unit_of(k + 1);
+            let amount = low * gain_least / most;
+            left -= amount * least;
+            due -= amount * most;
+            if let (true, Some(i)) = (amount > 0.0, cheapest(k + 1)) {
+                put(vertex, i, amount);
             }
         }
-        let mut last = None;
-        loop {
-            // One after the other in the order of their costs.
-            let later = |i: &usize| last.as_ref().is_none_or(|last| order(last, i).is_lt());
-            let next = (0..cost.len()).filter(|&i| pieces.source[i] > 0).filter(later).min_by(order);
-            let Some(i) = next.filter(|&i| left > 0.0 && (cost[i] < 0.0 || self.sum_known)) else { break };
-            last = Some(i);
-            let source = pieces.source[i];
-            let had: f64 = (0..cost.len()).filter(|&j| pieces.source[j] == source).map(|j| vertex[j]).sum();
-            let cap = if self.gain_free { f64::INFINITY } else { pieces.cap[i] - vertex[i] };
-            let amount = (self.ranges[source - 1][1] - had).min(left).min(cap);
-            if amount > 0.0 {
-                put(vertex, i, amount);
-                left -= amount;
+        // First what lowers the cost, the most per light it takes; then what must be, the cheapest per light it may give.
+        for must in [false, true] {
+            let rate = |i: usize| cost[i] / pieces.unit[i][usize::from(must)];
+            let order = |i: usize, j: usize| rate(i).total_cmp(&rate(j)).then(i.cmp(&j));
+            let mut last: Option<usize> = None;
+            loop {
+                let rest = if must { due } else { left };
+                let next = (0..cost.len())
+                    .filter(|&i| pieces.source[i] > 0 && (cost[i] >= 0.0) == must)
+                    .filter(|&i| last.is_none_or(|last| order(last, i).is_lt()))
+                    .min_by(|&i, &j| order(i, j));
+                let Some(i) = next.filter(|_| rest > 0.0) else { break };
+                last = Some(i);
+                let (source, [least, most]) = (pieces.source[i], pieces.unit[i]);
+                let had: f64 = pieces_of(source).map(|j| vertex[j]).sum();
+                let room = self.ranges[source - 1][1] * gain_most / least - had;
+                let cap = if self.gain_free { f64::INFINITY } else { pieces.cap[i] - vertex[i] };
+                let amount = room.min(rest / if must { most } else { least }).min(cap);
+                if amount > 0.0 {
+                    put(vertex, i, amount);
+                    left -= amount * least;
+                    due -= amount * most;
+                }
             }
         }
         value

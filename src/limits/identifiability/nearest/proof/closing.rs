@@ -402,7 +402,7 @@ impl Columns<'_> {
         let mut linear = vec![0.0; n];
         let mut square = vec![0.0; n * n];
         for (s, spectrum) in spectra.iter().enumerate() {
-            pieces.put(s, spectrum.length, f64::INFINITY, spectrum.temperature_k);
+            pieces.put_known(s, spectrum);
         }
         for (i, &s) in self.lit.iter().enumerate() {
             linear[s] = self.linear[i];

@@ -8,6 +8,11 @@
 //! ρ = (b − a)(s − A′(a))(A′(b) − s)/(A′(b) − A′(a)),  s the slope of the chord,
 //!
 //! where the two tangents meet.
+//!
+//! Where the amplitude is free as well only the *shape* of a source matters, U = A/β with β = B(ν₀, T) at the lowest wavenumber,
+//! which changes far less with T. Along s = 1/T each band is a sum of f = (e^{as} − 1)/(e^{bs} − 1) with b ≥ a > 0, which falls with
+//! s and is all but convex: with ψ(y) = y/(1 − e⁻ʸ), p = ψ(as) and q = ψ(bs), s²f″/f = q(2q − 2p − bs) + p·as, which is
+//! never below −(as)²e^{−as}/24 (as → 0, b = 1.5a). So with that much more, over a box, the same holds of U along −1/T.
 
 use super::vectors::{multiply, product_into};
 use crate::fisher::Nuisance;
@@ -75,8 +80,10 @@ impl Source {
 #[derive(Debug, Clone)]
 pub(super) struct Spectrum {
     pub(super) temperature_k: f64,
+    /// What it is taken to be a function of: T, or −1/T for a shape.
+    pub(super) along: f64,
     pub(super) counts: Vec<f64>,
-    /// ∂/∂T.
+    /// ∂/∂along.
     pub(super) slope: Vec<f64>,
     /// Sum of the counts, and of their slopes.
     pub(super) length: f64,
@@ -88,6 +95,15 @@ pub(super) struct Spectrum {
 pub(super) struct Sources<'a> {
     pub(super) bands: Shared<'a>,
     pub(super) list: Vec<Source>,
+    /// ν₀.
+    lowest_cm1: f64,
+}
+
+/// hcν₀/kT from which on there is next to nothing, even times the largest gain.
+const DARK: f64 = 690.0;
+
+fn lowest(nodes_cm1: &[f64]) -> f64 {
+    nodes_cm1.iter().copied().fold(f64::INFINITY, f64::min)
 }
 
 impl<'a> Sources<'a> {
@@ -122,7 +138,8 @@ impl<'a> Sources<'a> {
                 temperature_k: span(unknown(Nuisance::EnvironmentTemperature), range, known),
             }
         });
-        Self { bands: Shared::All(bands), list: std::iter::once(surface).chain(lights).collect() }
+        let list = std::iter::once(surface).chain(lights).collect();
+        Self { bands: Shared::All(bands), list, lowest_cm1: lowest(bands.nodes_cm1()) }
     }
 
     /// The same in few bands.
@@ -131,7 +148,8 @@ impl<'a> Sources<'a> {
             strength: few.nodes.iter().map(|&j| source.strength[j]).collect(),
             temperature_k: source.temperature_k,
         });
-        Sources { bands: Shared::Few(Arc::clone(few)), list: list.collect() }
+        let lowest_cm1 = lowest(few.bands.nodes_cm1());
+        Sources { bands: Shared::Few(Arc::clone(few)), list: list.collect(), lowest_cm1 }
     }
 
     /// Source `s` at a temperature.
@@ -142,7 +160,44 @@ impl<'a> Sources<'a> {
         let counts = self.counted(s, &mut value);
         let slope = self.counted(s, &mut slope);
         let (length, slope_length) = (crate::sum::sum(&counts), crate::sum::sum(&slope));
-        Spectrum { temperature_k, counts, slope, length, slope_length }
+        Spectrum { temperature_k, along: temperature_k, counts, slope, length, slope_length }
+    }
+
+    /// The shape of a spectrum, and β; `None` where there is next to nothing.
+    pub(super) fn shape(&self, spectrum: &Spectrum) -> Option<(Spectrum, f64)> {
+        let t = spectrum.temperature_k;
+        let scale = self.scale(t);
+        if scale.is_nan() || scale < f64::MIN_POSITIVE {
+            return None;
+        }
+        let bend = planck::log_derivative(self.lowest_cm1, t);
+        let counts: Vec<f64> = spectrum.counts.iter().map(|counts| counts / scale).collect();
+        let slopes = spectrum.slope.iter().zip(&spectrum.counts);
+        let slope: Vec<f64> =
+            slopes.map(|(slope, counts)| t * t * ((slope - counts * bend) / scale)).collect();
+        let (length, slope_length) = (crate::sum::sum(&counts), crate::sum::sum(&slope));
+        Some((Spectrum { temperature_k: t, along: -1.0 / t, counts, slope, length, slope_length }, scale))
+    }
+
+    /// β at a temperature.
+    pub(super) fn scale(&self, temperature_k: f64) -> f64 {
+        planck::photon_radiance(self.lowest_cm1, temperature_k)
+    }
+
+    /// The temperature below which a source sends next to nothing, whatever its amplitude.
+    pub(super) fn dark_k(&self) -> f64 {
+        SECOND_RADIATION_CM_K * self.lowest_cm1 / DARK
+    }
+
+    /// hcν/kT at the lowest wavenumber.
+    pub(super) fn lowest_x(&self, temperature_k: f64) -> f64 {
+        SECOND_RADIATION_CM_K * self.lowest_cm1 / temperature_k
+    }
+
+    /// Rounding of spectra from this temperature on, as a share of them ([`crate::planck`]).
+    pub(super) fn rounding(&self, temperature_k: f64) -> f64 {
+        let (_, last) = self.bands.range_cm1();
+        4e-16 * (10.0 + (SECOND_RADIATION_CM_K * last / temperature_k).min(2.0 * DARK))
     }
 
     fn counted(&self, s: usize, radiance: &mut [f64]) -> Vec<f64> {
@@ -226,7 +281,10 @@ fn bent(nu: Chunk, [own, cold, hot]: [Chunk; 3], temperature_k: f64, low_k: f64)
 
 /// What [`chord`] reads and writes.
 pub(super) struct Chord<'a> {
-    pub(super) width_k: f64,
+    /// Between the ends, in what the slopes are along.
+    pub(super) width: f64,
+    /// Rounding of the counts and what they may bend the other way, as a share of the hot end.
+    pub(super) more: f64,
     /// Counts and slopes at the cold and the hot end.
     pub(super) cold: [&'a [f64]; 2],
     pub(super) hot: [&'a [f64]; 2],
@@ -236,20 +294,20 @@ pub(super) struct Chord<'a> {
 }
 
 dispatched! {
-    /// Both ends of the chord lowered by ρ/2, and ρ/2: the curve is within that of them.
+    /// Both ends of the chord lowered by ρ/2, and ρ/2 with `more`: the curve is within that of them.
     pub(super) fn chord<'a>(chord: Chord<'a>) -> () {
-        let Chord { width_k, cold, hot, low, high, half } = chord;
-        let per_kelvin = 1.0 / width_k;
+        let Chord { width, more, cold, hot, low, high, half } = chord;
+        let per_unit = 1.0 / width;
         let ends = cold[0].iter().zip(cold[1]).zip(hot[0].iter().zip(hot[1]));
         let out = low.iter_mut().zip(high).zip(half);
         for (((a, slope_a), (b, slope_b)), ((low, high), half)) in ends.zip(out) {
-            let chord = (b - a) * per_kelvin;
+            let chord = (b - a) * per_unit;
             let (rise, rest, turn) = ((chord - slope_a).max(0.0), (slope_b - chord).max(0.0), slope_b - slope_a);
-            let sag = if turn > 0.0 { width_k * rise * rest / turn } else { 0.0 };
-            // With some roundings of the counts.
-            *half = 0.5 * sag.min(b - a).max(0.0) + 2e-15 * b;
-            *low = a - *half;
-            *high = b - *half;
+            let sag = if turn > 0.0 { width * rise * rest / turn } else { 0.0 };
+            let missed = 0.5 * sag.min(b - a).max(0.0);
+            *half = missed + more * b;
+            *low = a - missed;
+            *high = b - missed;
         }
     }
 }

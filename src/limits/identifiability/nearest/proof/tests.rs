@@ -2,8 +2,8 @@
 //! shares no code with them in `hadar accuracy brute-force`.
 
 use super::Prover;
-use super::amplitudes::Ray;
 use super::amplitudes::{Amplitudes, Pieces};
+use super::amplitudes::{Piece, Ray};
 use super::hull::{Hull, Quadratic};
 use super::metric::Metric;
 use super::orthogonal::inner;
@@ -30,6 +30,7 @@ fn pieces() -> Pieces {
         length: vec![1.0, 1.7, 0.4, 0.9, 0.6],
         cap: vec![f64::INFINITY, f64::INFINITY, 0.3, f64::INFINITY, f64::INFINITY],
         temperature_k: vec![0.0; 5],
+        unit: vec![[1.0; 2]; 5],
     }
 }
 
@@ -94,7 +95,10 @@ fn the_least_of_a_quadratic_is_bounded_tightly() {
         gain_cap: None,
     };
     let (mut pieces, mut ray) = (Pieces::default(), Ray::default());
-    (0..2).for_each(|s| pieces.put(s, 1.0, f64::INFINITY, 0.0));
+    (0..2).for_each(|source| {
+        let (cap, unit) = (f64::INFINITY, [1.0; 2]);
+        pieces.put(Piece { source, length: 1.0, cap, temperature_k: 0.0, unit });
+    });
     let mut draw = draws(5);
     for _ in 0..300 {
         let mut vector = || (0..3).map(|_| draw() - 0.5).collect::<Vec<f64>>();
@@ -135,7 +139,8 @@ fn curves_lie_within_half_a_sag_of_the_lowered_chord() {
         let ([cold, cold_slope], [hot, hot_slope]) = (spectrum(a), spectrum(b));
         let [mut low, mut high, mut half] = [(); 3].map(|()| vec![0.0; nodes.len()]);
         chord(Chord {
-            width_k: b - a,
+            width: b - a,
+            more: 2e-15,
             cold: [&cold, &cold_slope],
             hot: [&hot, &hot_slope],
             low: &mut low,
@@ -245,63 +250,106 @@ fn proofs_are_below_every_state_and_near_the_nearest() {
     }
 }
 
-/// A state within reach, written as amplitudes of the pieces of any box that it lies in, is among those allowed: no piece above
-/// its cap, all together no longer than the total.
+/// A state within reach, written as amplitudes of the pieces of any box that it lies in, costs no less than the cheapest, whatever
+/// the costs; and the pieces are its spectrum but for what the chords may miss.
 #[test]
 fn states_within_reach_are_among_the_amplitudes_of_their_box() {
     let mut draw = draws(13);
     let bands = Bands::uniform(200.0, 1800.0, 100.0).unwrap();
     let nodes = bands.nodes_cm1().to_vec();
-    let (mut fullest, mut capped) = (0.0_f64, 0.0_f64);
-    for trial in 0..2000 {
-        let gain_free = trial % 2 == 0;
-        let mut unknown = vec![Nuisance::Temperature, Nuisance::Lighting, Nuisance::EnvironmentTemperature];
+    let (mut cheapest, mut farthest, mut shapes) = (0.0_f64, 0.0_f64, 0);
+    for trial in 0..3000 {
+        let [gain_free, light_free, total] = [1, 2, 4].map(|bit| trial & bit > 0);
+        let mut unknown = vec![Nuisance::Temperature, Nuisance::EnvironmentTemperature];
+        unknown.extend(light_free.then_some(Nuisance::Lighting));
         unknown.extend(gain_free.then_some(Nuisance::Gain));
-        let object = EnvironmentObject { temperature_k: 290.0, emissivity: None };
-        let surroundings = Surroundings::new(&nodes, vec![object]).unwrap();
+        let objects =
+            [290.0, 250.0].map(|temperature_k| EnvironmentObject { temperature_k, emissivity: None });
+        let surroundings = Surroundings::new(&nodes, objects.to_vec()).unwrap();
         let mut spectrum = || nodes.iter().map(|_| 0.02 + 0.96 * draw()).collect::<Vec<f64>>();
         let (own, other) = (spectrum(), spectrum());
-        let mut state = || {
-            let mut state = surroundings.state(30.0 * 20f64.powf(draw()), &[draw()]).unwrap();
-            state.environment_k[0] = 30.0 * 20f64.powf(draw());
+        let mut any = |lit: [f64; 2]| {
+            let mut state = surroundings.state(30.0 * 20f64.powf(draw()), &lit).unwrap();
+            state.environment_k.iter_mut().for_each(|t| *t = 30.0 * 20f64.powf(draw()));
             state
         };
-        let (state, mut known) = (state(), state());
+        let (state, mut known) = (any([0.4, 0.3]), any([0.4, 0.3]));
+        if light_free {
+            let first = 0.7 * draw();
+            known.lighting = vec![first, if total { 0.7 - first } else { (1.0 - first) * draw() }];
+        }
         known.gain = if gain_free { 3f64.powf(2.0 * draw() - 1.0) } else { 1.0 };
-        let unknowns = Unknowns::new(unknown).unwrap();
+        let known_total = (light_free && total).then_some(0.7);
+        let unknowns = Unknowns::new(unknown).unwrap().lighting_total(known_total).unwrap();
         let mut comparison = Comparison::new(&bands, &surroundings, unknowns, StateRange::default());
         let metric = residual::Metric::PerPhoton { photons: f64::INFINITY };
         let target = comparison.aim(&own, &other, &state, metric).unwrap();
         let reach = comparison.cost(&target, &known).sqrt();
         let mut prover = Prover::new(&comparison, None, &target, reach);
+        let temperatures = [known.temperature_k, known.environment_k[0], known.environment_k[1]];
         let mut ends = Vec::new();
-        for (axis, t) in [known.temperature_k, known.environment_k[0]].into_iter().enumerate() {
-            let faces = [t / (1.0 + 2.0 * draw() * draw()), t * (1.0 + 2.0 * draw() * draw())];
+        let width = if trial % 3 == 0 { 2.0 } else { 0.2 };
+        for (axis, t) in temperatures.into_iter().enumerate() {
+            let faces = [t / (1.0 + width * draw().powi(2)), t * (1.0 + width * draw().powi(2))];
             ends.push(faces.map(|face| {
                 let end = prover.end(axis, face);
                 prover.all.know(axis, end, face);
                 end
             }));
         }
-        let pieces = prover.all.laid(&ends);
-        let mut length = 0.0;
-        for (s, t) in [known.temperature_k, known.environment_k[0]].into_iter().enumerate() {
-            let amplitude = if s == 0 { known.gain } else { known.gain * known.lighting[0] };
+        let (pieces, columns, halves) = prover.all.laid(&ends);
+        let (mut point, mut off, mut missed) = (vec![0.0; 6], vec![0.0; bands.len()], vec![0.0; bands.len()]);
+        for (s, t) in temperatures.into_iter().enumerate() {
+            let amplitude = known.gain * if s == 0 { 1.0 } else { known.lighting[s - 1] };
             let [cold, hot] = [2 * s, 2 * s + 1];
-            let [a, b] = [cold, hot].map(|i| pieces.temperature_k[i]);
-            let share = (t - a) / (b - a);
-            for (i, amount) in [(cold, amplitude * (1.0 - share)), (hot, amplitude * share)] {
-                length += amount * pieces.length[i];
-                if !gain_free && s > 0 {
-                    assert!(amount <= pieces.cap[i], "{trial}: {amount} {}", pieces.cap[i]);
-                    capped = capped.max(amount / pieces.cap[i]);
-                }
+            let shaped = pieces.unit[cold][0] < pieces.unit[cold][1];
+            let along = |t: f64| if shaped { -1.0 / t } else { t };
+            let [a, b] = [cold, hot].map(|i| along(pieces.temperature_k[i]));
+            let share = (along(t) - a) / (b - a);
+            let unit = if shaped { prover.all.sources.scale(t) } else { 1.0 };
+            shapes += usize::from(shaped);
+            (point[cold], point[hot]) = (amplitude * unit * (1.0 - share), amplitude * unit * share);
+            let exact = prover.all.sources.spectrum(s, t);
+            for w in 0..bands.len() {
+                off[w] += point[cold] * columns[cold][w] + point[hot] * columns[hot][w]
+                    - amplitude * exact.counts[w];
+                missed[w] += amplitude * unit * halves[s][w] + 1e-14 * amplitude * exact.counts[w];
             }
         }
-        let total = prover.all.allowed.total;
-        assert!(length <= total, "{trial}: {length} {total}");
-        fullest = fullest.max(length / total);
+        for (off, missed) in off.iter().zip(&missed) {
+            assert!(off.abs() <= *missed, "{trial}: {off} {missed}");
+            farthest = farthest.max(off.abs() / missed);
+        }
+        let allowed = &prover.all.allowed;
+        let mut vertex = vec![0.0; 6];
+        for _ in 0..20 {
+            let cost: Vec<f64> = point.iter().map(|z| (2.0 * draw() - 1.2) / z.max(1e-300)).collect();
+            let least = allowed.least(&pieces, &cost, &mut vertex, &mut Ray::default());
+            let own = inner(&cost, &point);
+            let size: f64 = cost.iter().zip(&point).map(|(c, z)| (c * z).abs()).sum();
+            assert!(least <= own + 1e-12 * size, "{trial}: {least} {own} {pieces:?} {point:?}");
+            cheapest = cheapest.max(if least < 0.0 && own < 0.0 { own / least } else { 0.0 });
+        }
     }
-    // Both limits are nearly reached somewhere, so that a looser one would not have passed unseen.
-    assert!(fullest > 0.8 && capped > 0.8, "{fullest} {capped}");
+    // The limits are nearly reached somewhere, so that looser ones would not have passed unseen.
+    assert!(cheapest > 0.7 && farthest > 0.9 && shapes > 1000, "{cheapest} {farthest} {shapes}");
+}
+
+/// −s²f″/f never exceeds (as)²e^{−as}/24 (`sources`).
+#[test]
+fn shapes_are_all_but_convex() {
+    let psi = |y: f64| y / -(-y).exp_m1();
+    let mut largest = 0.0_f64;
+    for i in 0..400 {
+        let a = 0.05 * 1000f64.powf(f64::from(i) / 400.0);
+        for j in 0..400 {
+            let b = a * (1.0 + 1e-3 * 1e5f64.powf(f64::from(j) / 400.0));
+            let (p, q) = (psi(a), psi(b));
+            let bend = -(q * (2.0 * q - 2.0 * p - b) + p * a);
+            let most = a * a * (-a).exp() / 24.0;
+            assert!(bend <= most + 1e-14 * q * q, "{a} {b}: {bend} {most}");
+            largest = largest.max(bend / most);
+        }
+    }
+    assert!(largest > 0.9, "{largest}");
 }

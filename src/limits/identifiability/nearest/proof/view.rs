@@ -13,7 +13,7 @@
 //! of the other never are more than a band can have within reach, nor all bands together.
 
 use super::ROUNDING;
-use super::amplitudes::{Amplitudes, Pieces, Ray};
+use super::amplitudes::{Amplitudes, Piece, Pieces, Ray};
 use super::hull::{Hull, Quadratic};
 use super::metric::Metric;
 use super::sources::{Chord, Sources, Spectrum, chord, whole};
@@ -25,9 +25,14 @@ const COARSE: f64 = 0.25;
 /// Share of what is wanting that a better quadratic must have brought for another one to be tried.
 const WORTH: f64 = 0.03;
 
+/// From how much more radiance at the hot end on a box is wide.
+const WIDE: f64 = 2.0;
+
 /// A spectrum of a source at one end of an interval.
 struct End {
     spectrum: Spectrum,
+    /// Its shape, and β.
+    shape: Option<(Spectrum, f64)>,
     /// The largest amplitude with which no band alone is beyond reach.
     most: f64,
 }
@@ -64,9 +69,21 @@ pub(super) struct View<'a> {
     /// Sources of unknown temperature, and their spectra at the temperatures known, as far as they were needed.
     pub(super) axes: Vec<usize>,
     ends: Vec<Vec<Option<End>>>,
+    shaped: Vec<Shaped>,
     /// Spectra of the others.
     pub(super) fixed: Vec<Option<Spectrum>>,
     work: Work,
+}
+
+/// Whether the shape of a source is taken instead of itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Shaped {
+    /// Its amplitude is free.
+    Always,
+    /// Its amplitude hangs on another one's, which a wide box hardly tells of.
+    Wide,
+    /// Its amplitude is known.
+    Never,
 }
 
 /// Memory of [`View::bound`], for one box after the other.
@@ -99,7 +116,13 @@ enum Place {
 }
 
 impl<'a> View<'a> {
-    pub(super) fn new(sources: Sources<'a>, allowed: Amplitudes, bands: [Vec<f64>; 3], reach: f64) -> Self {
+    pub(super) fn new(
+        sources: Sources<'a>,
+        allowed: Amplitudes,
+        bands: [Vec<f64>; 3],
+        reach: f64,
+        known_k: &[f64],
+    ) -> Self {
         let [root, counts, noise] = bands.map(|mut x| {
             x.resize(whole(x.len()), 0.0);
             x
@@ -116,6 +139,16 @@ impl<'a> View<'a> {
         let about_target = Metric::about_target(&root, &counts, reach);
         let ends = axes.iter().map(|_| Vec::new()).collect();
         let empty = || vec![vec![0.0; root.len()]; axes.len()];
+        let open = |range: &[f64; 2]| range[0] < range[1];
+        let shaped = axes.iter().map(|&s| match s.checked_sub(1) {
+            _ if sources.dark_k() > 0.5 * known_k[s] => Shaped::Never,
+            None if !allowed.gain_free => Shaped::Never,
+            None if allowed.ranges.iter().all(open) => Shaped::Always,
+            Some(k) if open(&allowed.ranges[k]) => Shaped::Always,
+            Some(_) if !allowed.gain_free => Shaped::Never,
+            _ => Shaped::Wide,
+        });
+        let shaped = shaped.collect();
         let work = Work {
             low: empty(),
             high: empty(),
@@ -135,6 +168,7 @@ impl<'a> View<'a> {
             about_target,
             axes,
             ends,
+            shaped,
             fixed,
             work,
         }
@@ -150,7 +184,13 @@ impl<'a> View<'a> {
         }
         let spectrum = self.sources.spectrum(self.axes[axis], temperature_k);
         let most = largest_share(&self.brightest, &spectrum.counts, &spectrum.slope, 0.0);
-        self.ends[axis][place] = Some(End { spectrum, most });
+        let shape = if self.shaped[axis] == Shaped::Never { None } else { self.sources.shape(&spectrum) };
+        self.ends[axis][place] = Some(End { spectrum, shape, most });
+    }
+
+    /// The temperature below which a source of free amplitude need not be looked at.
+    pub(super) fn coldest_k(&self, axis: usize) -> f64 {
+        if self.shaped[axis] == Shaped::Never { 0.0 } else { self.sources.dark_k() }
     }
 
     /// Whether even `amplitude` of a source is beyond reach in some band at an end.
@@ -178,14 +218,13 @@ impl<'a> View<'a> {
         }
     }
 
-    /// The largest amplitude that a source can have in a box that begins with this spectrum.
-    fn most(&self, s: usize, cold: &End) -> f64 {
+    /// The largest amplitude that a source can have by its range.
+    fn most(&self, s: usize) -> f64 {
         let gain = if self.allowed.gain_free { f64::exp(14.0) } else { 1.0 };
-        let own = match s.checked_sub(1) {
+        match s.checked_sub(1) {
             None => gain,
             Some(k) => gain * self.allowed.ranges[k][1].min(self.allowed.sum),
-        };
-        own.min(cold.most).max(0.0)
+        }
     }
 
     /// Lays out the pieces of a box.
@@ -194,7 +233,7 @@ impl<'a> View<'a> {
         work.places.clear();
         for s in 0..self.sources.list.len() {
             if let Some(spectrum) = &self.fixed[s] {
-                work.pieces.put(s, spectrum.length, f64::INFINITY, spectrum.temperature_k);
+                work.pieces.put_known(s, spectrum);
                 work.places.push(Place::Fixed(s));
                 continue;
             }
@@ -202,26 +241,50 @@ impl<'a> View<'a> {
             let [Some(cold), Some(hot)] = ends[axis].map(|end| self.ends[axis][end].as_ref()) else {
                 continue;
             };
-            let (most, cold, hot) = (self.most(s, cold), &cold.spectrum, &hot.spectrum);
-            let width_k = hot.temperature_k - cold.temperature_k;
-            chord(Chord {
-                width_k,
-                cold: [&cold.counts, &cold.slope],
-                hot: [&hot.counts, &hot.slope],
-                low: &mut work.low[axis],
-                high: &mut work.high[axis],
-                half: &mut work.half[axis],
-            });
-            work.most[axis] = most;
-            let limited = s > 0 && !self.allowed.gain_free;
-            let cap = if limited {
-                largest_share(&self.brightest, &cold.counts, &cold.slope, width_k)
-            } else {
-                f64::INFINITY
+            let temperature_k = [cold, hot].map(|end| end.spectrum.temperature_k);
+            let rounding = self.sources.rounding(temperature_k[0]);
+            let mut lay = |[cold, hot]: [&Spectrum; 2], more: f64| {
+                chord(Chord {
+                    width: hot.along - cold.along,
+                    more,
+                    cold: [&cold.counts, &cold.slope],
+                    hot: [&hot.counts, &hot.slope],
+                    low: &mut work.low[axis],
+                    high: &mut work.high[axis],
+                    half: &mut work.half[axis],
+                });
             };
-            work.pieces.put(s, cold.length, most, cold.temperature_k);
-            work.pieces.put(s, cold.length + width_k * cold.slope_length, cap, hot.temperature_k);
-            work.places.extend([Place::Low(axis), Place::High(axis)]);
+            let (lengths, caps, unit);
+            match (&cold.shape, &hot.shape) {
+                (Some((dim, cold_scale)), Some((bright, hot_scale)))
+                    if self.shaped[axis] == Shaped::Always || *hot_scale > WIDE * cold_scale =>
+                {
+                    let [x, least_x] = temperature_k.map(|t| self.sources.lowest_x(t));
+                    let bent = (x - least_x) * (x - least_x) * (-least_x).exp() / 24.0;
+                    lay([dim, bright], rounding + 2.0 * bent);
+                    let most = (cold.most * cold_scale).min(self.most(s) * hot_scale);
+                    (lengths, caps, unit) = ([dim.length; 2], [most; 2], [1.0 / hot_scale, 1.0 / cold_scale]);
+                }
+                _ => {
+                    let (dim, bright) = (&cold.spectrum, &hot.spectrum);
+                    lay([dim, bright], rounding);
+                    let width_k = bright.along - dim.along;
+                    let limited = s > 0 && !self.allowed.gain_free;
+                    let cap = if limited {
+                        largest_share(&self.brightest, &dim.counts, &dim.slope, width_k)
+                    } else {
+                        f64::INFINITY
+                    };
+                    lengths = [dim.length, dim.length + width_k * dim.slope_length];
+                    (caps, unit) = ([cold.most.min(self.most(s)), cap], [1.0; 2]);
+                }
+            }
+            work.most[axis] = caps[0].max(0.0);
+            for (i, place) in [Place::Low(axis), Place::High(axis)].into_iter().enumerate() {
+                let (length, cap, temperature_k) = (lengths[i], caps[i], temperature_k[i]);
+                work.pieces.put(Piece { source: s, length, cap, temperature_k, unit });
+                work.places.push(place);
+            }
         }
     }
 
@@ -329,19 +392,24 @@ impl<'a> View<'a> {
             amplitudes[*s] += amount;
             temperature_k[*s] += amount * t;
         }
-        for (s, (t, amplitude)) in temperature_k.iter_mut().zip(&amplitudes).enumerate() {
+        for (s, (t, amplitude)) in temperature_k.iter_mut().zip(&mut amplitudes).enumerate() {
             let own = pieces.source.iter().position(|&source| source == s).unwrap_or(0);
-            *t = if *amplitude > 0.0 { *t / amplitude } else { pieces.temperature_k[own] };
+            *t = if *amplitude > 0.0 { *t / *amplitude } else { pieces.temperature_k[own] };
+            if pieces.unit[own][0] < pieces.unit[own][1] {
+                *amplitude /= self.sources.scale(*t);
+            }
         }
         Mixture { amplitudes, temperature_k }
     }
 
-    /// The pieces of a box, for tests.
+    /// The pieces of a box, for tests, with their spectra and what the chords miss.
     #[cfg(test)]
-    pub(super) fn laid(&mut self, ends: &[[usize; 2]]) -> Pieces {
+    pub(super) fn laid(&mut self, ends: &[[usize; 2]]) -> (Pieces, Vec<Vec<f64>>, Vec<Vec<f64>>) {
         let mut work = std::mem::take(&mut self.work);
         self.lay(ends, &mut work);
+        let columns = work.places.iter().map(|place| self.column([&work.low, &work.high], *place).to_vec());
+        let laid = (work.pieces.clone(), columns.collect(), work.half.clone());
         self.work = work;
-        self.work.pieces.clone()
+        laid
     }
 }
