@@ -200,12 +200,11 @@ impl<'a> Prover<'a> {
         sum *= 1.0 + 1e-15;
         let gain_free = space.unknowns.contains(Nuisance::Gain);
         let allowed = Amplitudes { gain_free, ranges, sum, sum_known, total: 0.0, gain_cap: None };
-        let known_k: Vec<f64> = (0..sources.list.len()).map(|s| temperature_of(target.state, s)).collect();
         let few = few.map(|few| {
             let kept = bands.each_ref().map(|x| x.iter().copied().step_by(few.stride).collect());
-            View::new(sources.every(few), allowed.clone(), kept, reach, &known_k)
+            View::new(sources.every(few), allowed.clone(), kept, reach)
         });
-        let all = View::new(sources, allowed, bands, reach, &known_k);
+        let all = View::new(sources, allowed, bands, reach);
         let temperature_k = all.axes.iter().map(|_| Vec::new()).collect();
         Self { few, all, temperature_k, boxes: 0 }
     }

@@ -100,7 +100,8 @@ impl Amplitudes {
         }
         let mut value = self.ray(pieces, cost, vertex);
         if let Some(cap) = self.gain_cap {
-            let scale = if value < 0.0 { cap / pieces.unit_of(0)[0] } else { 0.0 };
+            let [least, most] = pieces.unit_of(0);
+            let scale = if value < 0.0 { cap * (most / least) } else { 0.0 };
             vertex.iter_mut().for_each(|v| *v *= scale);
             return scale * value;
         }
@@ -128,26 +129,31 @@ impl Amplitudes {
         }
         let scale = if length > 0.0 { self.total / length } else { 0.0 };
         vertex.iter_mut().for_each(|v| *v *= scale);
-        scale * value
+        let least = scale * value;
+        if !least.is_finite() {
+            // Beyond what numbers hold: nothing is proved of such a box.
+            vertex.fill(f64::NAN);
+        }
+        least
     }
 
-    /// With the surface's pieces at 1 together; caps hold where the gain is not free.
+    /// With c₀ = 1 at most; caps hold where the gain is not free.
     fn ray(&self, pieces: &Pieces, cost: &[f64], vertex: &mut [f64]) -> f64 {
         vertex.fill(0.0);
         let pieces_of = |source: usize| (0..cost.len()).filter(move |&i| pieces.source[i] == source);
         let cheapest = |source: usize| pieces_of(source).min_by(|&i, &j| cost[i].total_cmp(&cost[j]));
-        let [gain_least, gain_most] = pieces.unit_of(0);
+        let [least_unit, most_unit] = pieces.unit_of(0);
+        let gain_least = least_unit / most_unit;
         let mut value = 0.0;
         let mut put = |vertex: &mut [f64], i: usize, amount: f64| {
             vertex[i] += amount;
             value += amount * cost[i];
         };
         if let Some(i) = cheapest(0) {
-            put(vertex, i, 1.0);
+            put(vertex, i, 1.0 / most_unit);
         }
         // What may yet be lit at most, and must be at least where the sum is known.
-        let (mut left, mut due) =
-            (self.sum * gain_most, if self.sum_known { self.sum * gain_least } else { 0.0 });
+        let (mut left, mut due) = (self.sum, if self.sum_known { self.sum * gain_least } else { 0.0 });
         for (k, [low, _]) in self.ranges.iter().enumerate() {
             let [least, most] = pieces.unit_of(k + 1);
             let amount = low * gain_least / most;
@@ -172,7 +178,7 @@ impl Amplitudes {
                 last = Some(i);
                 let (source, [least, most]) = (pieces.source[i], pieces.unit[i]);
                 let had: f64 = pieces_of(source).map(|j| vertex[j]).sum();
-                let room = self.ranges[source - 1][1] * gain_most / least - had;
+                let room = self.ranges[source - 1][1] / least - had;
                 let cap = if self.gain_free { f64::INFINITY } else { pieces.cap[i] - vertex[i] };
                 let amount = room.min(rest / if must { most } else { least }).min(cap);
                 if amount > 0.0 {

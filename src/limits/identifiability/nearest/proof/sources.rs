@@ -99,8 +99,12 @@ pub(super) struct Sources<'a> {
     lowest_cm1: f64,
 }
 
-/// hcν₀/kT from which on there is next to nothing, even times the largest gain.
+/// hcν₀/kT beyond which radiances underflow.
 const DARK: f64 = 690.0;
+/// Share of the target's counts that is next to nothing: its root is far below rounding.
+const NOTHING: f64 = 1e-32;
+/// |ln G| at most.
+pub(super) const LARGEST_LN_GAIN: f64 = 14.0;
 
 fn lowest(nodes_cm1: &[f64]) -> f64 {
     nodes_cm1.iter().copied().fold(f64::INFINITY, f64::min)
@@ -184,9 +188,16 @@ impl<'a> Sources<'a> {
         planck::photon_radiance(self.lowest_cm1, temperature_k)
     }
 
-    /// The temperature below which a source sends next to nothing, whatever its amplitude.
-    pub(super) fn dark_k(&self) -> f64 {
-        SECOND_RADIATION_CM_K * self.lowest_cm1 / DARK
+    /// The temperature below which a source sends next to nothing of so many counts, whatever the gain: e^x − 1 ≥ e^{x}/2 from
+    /// x = ln 2 on. `None` if its radiance underflows before that.
+    pub(super) fn dark_k(&self, s: usize, counts: f64) -> Option<f64> {
+        let nodes = self.bands.nodes_cm1().iter().zip(&self.list[s].strength);
+        let weights = self.bands.weights_cm1();
+        let weight = |j: usize| if self.bands.one_node_per_band() { 1.0 } else { weights[j] };
+        let most: f64 =
+            nodes.enumerate().map(|(j, (nu, e))| 2.0 * weight(j) * e * planck::mode_density(*nu)).sum();
+        let x = (most / counts).ln() - NOTHING.ln() + LARGEST_LN_GAIN;
+        (x.is_finite() && x < DARK).then(|| SECOND_RADIATION_CM_K * self.lowest_cm1 / x.max(1.0))
     }
 
     /// hcν/kT at the lowest wavenumber.

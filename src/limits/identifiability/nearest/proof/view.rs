@@ -16,7 +16,7 @@ use super::ROUNDING;
 use super::amplitudes::{Amplitudes, Piece, Pieces, Ray};
 use super::hull::{Hull, Quadratic};
 use super::metric::Metric;
-use super::sources::{Chord, Sources, Spectrum, chord, whole};
+use super::sources::{Chord, LARGEST_LN_GAIN, Sources, Spectrum, chord, whole};
 use super::vectors::{add_into, largest_share, product_into, square_of_product};
 use crate::sum::dot;
 
@@ -70,6 +70,8 @@ pub(super) struct View<'a> {
     pub(super) axes: Vec<usize>,
     ends: Vec<Vec<Option<End>>>,
     shaped: Vec<Shaped>,
+    /// Below which every source sends next to nothing.
+    dark_k: Vec<Option<f64>>,
     /// Spectra of the others.
     pub(super) fixed: Vec<Option<Spectrum>>,
     work: Work,
@@ -116,13 +118,7 @@ enum Place {
 }
 
 impl<'a> View<'a> {
-    pub(super) fn new(
-        sources: Sources<'a>,
-        allowed: Amplitudes,
-        bands: [Vec<f64>; 3],
-        reach: f64,
-        known_k: &[f64],
-    ) -> Self {
+    pub(super) fn new(sources: Sources<'a>, allowed: Amplitudes, bands: [Vec<f64>; 3], reach: f64) -> Self {
         let [root, counts, noise] = bands.map(|mut x| {
             x.resize(whole(x.len()), 0.0);
             x
@@ -139,9 +135,11 @@ impl<'a> View<'a> {
         let about_target = Metric::about_target(&root, &counts, reach);
         let ends = axes.iter().map(|_| Vec::new()).collect();
         let empty = || vec![vec![0.0; root.len()]; axes.len()];
+        let sent = crate::sum::sum(&counts);
+        let dark_k: Vec<Option<f64>> = (0..sources.list.len()).map(|s| sources.dark_k(s, sent)).collect();
         let open = |range: &[f64; 2]| range[0] < range[1];
         let shaped = axes.iter().map(|&s| match s.checked_sub(1) {
-            _ if sources.dark_k() > 0.5 * known_k[s] => Shaped::Never,
+            _ if dark_k[s].is_none() => Shaped::Never,
             None if !allowed.gain_free => Shaped::Never,
             None if allowed.ranges.iter().all(open) => Shaped::Always,
             Some(k) if open(&allowed.ranges[k]) => Shaped::Always,
@@ -169,6 +167,7 @@ impl<'a> View<'a> {
             axes,
             ends,
             shaped,
+            dark_k,
             fixed,
             work,
         }
@@ -190,7 +189,7 @@ impl<'a> View<'a> {
 
     /// The temperature below which a source of free amplitude need not be looked at.
     pub(super) fn coldest_k(&self, axis: usize) -> f64 {
-        if self.shaped[axis] == Shaped::Never { 0.0 } else { self.sources.dark_k() }
+        if self.shaped[axis] == Shaped::Never { 0.0 } else { self.dark_k[self.axes[axis]].unwrap_or(0.0) }
     }
 
     /// Whether even `amplitude` of a source is beyond reach in some band at an end.
@@ -220,7 +219,7 @@ impl<'a> View<'a> {
 
     /// The largest amplitude that a source can have by its range.
     fn most(&self, s: usize) -> f64 {
-        let gain = if self.allowed.gain_free { f64::exp(14.0) } else { 1.0 };
+        let gain = if self.allowed.gain_free { LARGEST_LN_GAIN.exp() } else { 1.0 };
         match s.checked_sub(1) {
             None => gain,
             Some(k) => gain * self.allowed.ranges[k][1].min(self.allowed.sum),
@@ -357,13 +356,18 @@ impl<'a> View<'a> {
                 }
             }
             let square = metric.length * metric.length;
-            let rest = metric.cost - square;
+            // What is subtracted from each other here, and how much of it rounding may be.
+            let rounding = 1e-15 * (metric.cost + square);
+            let rest = metric.cost - square - rounding;
             let wanted = ((enough - rest).max(0.0).sqrt() + missed).powi(2) - square;
             let fall = hull.least(quadratic, &mut cheapest, wanted);
             let left = (square + fall).max(0.0).sqrt();
             // (left − missed)² without the difference of squares that may be nearly equal.
-            let lower =
-                if left > missed { metric.cost + fall + missed * (missed - 2.0 * left) } else { rest };
+            let lower = if left > missed {
+                metric.cost - rounding + fall + missed * (missed - 2.0 * left)
+            } else {
+                rest
+            };
             found.coarse = missed * missed > COARSE * enough;
             let gained = lower - found.lower;
             found.lower = found.lower.max(lower);
