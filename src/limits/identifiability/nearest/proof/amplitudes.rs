@@ -18,6 +18,9 @@ use super::sources::Spectrum;
 /// Steps of Dinkelbach's method; each one strictly betters the ray, and there are few.
 const STEPS: usize = 50;
 
+/// Share of a cost within which two of them are the same.
+const ROUNDING: f64 = 1e-15;
+
 /// The pieces of a box: whose they are, how long, how far each may go (without the gain), and at what temperature they are.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Pieces {
@@ -120,18 +123,23 @@ impl Amplitudes {
             let rate = value / length;
             for ((adjusted, cost), length) in ray.cost.iter_mut().zip(cost).zip(&pieces.length) {
                 *adjusted = cost - rate * length;
+                // Units of pieces may differ by any factor: what is rounding of the one is more than all of another.
+                if adjusted.abs() <= ROUNDING * cost.abs() {
+                    *adjusted = 0.0;
+                }
             }
-            if self.ray(pieces, &ray.cost, &mut ray.vertex) >= -1e-15 * value.abs() {
+            let better = self.ray(pieces, &ray.cost, &mut ray.vertex);
+            if better >= ROUNDING * rate * along(&ray.vertex, &pieces.length) {
                 break;
             }
             vertex.copy_from_slice(&ray.vertex);
             (value, length) = (along(vertex, cost), along(vertex, &pieces.length));
         }
-        let scale = if length > 0.0 { self.total / length } else { 0.0 };
+        let scale = self.total / length;
         vertex.iter_mut().for_each(|v| *v *= scale);
         let least = scale * value;
         if !least.is_finite() {
-            // Beyond what numbers hold: nothing is proved of such a box.
+            // Without limit, or beyond what numbers hold: nothing is proved of such a box.
             vertex.fill(f64::NAN);
         }
         least
