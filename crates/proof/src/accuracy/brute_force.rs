@@ -36,6 +36,8 @@ use std::time::Instant;
 
 /// What is to be proved of the distance where no more than one temperature is unknown, and beyond.
 const PROOF: [f64; 2] = [1e-6, 1e-3];
+/// Rounding of 31 digits, over a few operations.
+const LAST_DIGITS: f64 = 1e-29;
 /// Rounding of the comparison itself.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 /// Share by which the brute force may end above the way down from the answer.
@@ -146,7 +148,14 @@ fn compare(scene: &Scene, set: Set, answer: &NearestDistance) -> Judged {
     if judged.proved && judged.above {
         judged.faults.push(format!("{distance:e} proved to {tolerance:e} where {least:e} is possible"));
     }
-    let off = if distance == 0.0 { 0.0 } else { (distance - there).abs() / there };
+    // The brute force's own rounding is a share of the roots of signal and noise that it subtracts.
+    let seen = bands.weigh(&surroundings.signal(target, state)).into_iter().enumerate();
+    let roots: f64 = match counting {
+        None => 1.0,
+        Some(c) => seen.map(|(band, s)| c.counts_per_radiance * s + c.var_added(band)).sum::<f64>().sqrt(),
+    };
+    let apart = ((distance - there).abs() - LAST_DIGITS * roots).max(0.0);
+    let off = if distance == 0.0 { 0.0 } else { apart / there };
     // A distance of 0 says that only rounding is left of the roots, whose squares are the counts.
     let dark = State { temperature_k: 0.1, gain: 1e-6, ..state.clone() };
     let dark = State { lighting: vec![0.0; dark.lighting.len()], ..dark };

@@ -9,10 +9,8 @@ const ITERATIONS: usize = 100;
 const STEP_TOLERANCE: f64 = 1e-9;
 /// What the last step may still promise, as a share of the cost.
 const GAIN_TOLERANCE: f64 = 1e-9;
-/// What a step may promise, as a share of the cost, for it to be the last without a look at where it leads.
+/// What a step may promise, as a share of the cost, for the search to end before it.
 pub(super) const NO_GAIN: f64 = 2e-15;
-/// Relative step that is taken without a look at where it leads.
-const UNSEEN_STEP: f64 = 1e-6;
 /// Relative separation at which two refinements have come to the same minimum.
 const SAME_MINIMUM: f64 = 1e-5;
 
@@ -63,10 +61,8 @@ pub(super) fn refine(
         // What the step promises, of half the cost. Nearly identical materials need it however small the step is.
         let promised = at.quadratic.gradient.dot(&step).abs();
         if promised <= NO_GAIN * at.cost {
-            // A long step may promise nothing and yet lead elsewhere: along a source that sends next to nothing, say.
-            if size < UNSEEN_STEP {
-                state = moved;
-            }
+            // It is not taken: the cost is that of this state to the last bit, and a step that promises nothing may yet lead
+            // elsewhere, along a source that sends next to nothing, say.
             converged = true;
             break;
         }
