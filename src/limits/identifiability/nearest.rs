@@ -42,8 +42,6 @@ use std::sync::Arc;
 const FEW_BANDS: usize = 64;
 /// Relative separation up to which two states are one as far as a fit that starts from either is concerned.
 const SAME_STATE: f64 = 1e-4;
-/// Share of the separation at the target's own state below which a distance is rounding noise.
-const ROUNDING: f64 = 1e-14;
 
 /// Boxes in which it is tried to prove that nothing is nearer before a search, and after one.
 const FIRST_BOXES: u64 = 60;
@@ -261,10 +259,7 @@ impl<'a> NearestSolver<'a> {
                 Err(Error::malformed(found, instead))
             }
             Some(best) => {
-                // What is left of the separation at the target's own state when only rounding is left of it.
-                let nothing = best.distance <= ROUNDING * own_cost.sqrt();
-                let distance = if nothing { 0.0 } else { best.distance };
-                let mut best = NearestDistance { distance, iterations, ..best };
+                let mut best = NearestDistance { iterations, ..best };
                 if let Some(tolerance) = self.tolerance.filter(|_| start_is_free) {
                     best = proof::prove(&mut self.comparison, self.few.as_ref(), &target, best, tolerance);
                 }

@@ -206,6 +206,9 @@ impl<'a> Comparison<'a> {
     /// The separation from a state with every term of S − S′ taken by its magnitude: what cancels in the distance.
     pub(super) fn terms(&mut self, target: &Target<'_>, state: &State) -> f64 {
         self.separate(target, state, false);
+        if is_other_scale(target.state.gain, state.gain) {
+            return self.size_of_terms(target, |own, other| own + other);
+        }
         let (own, work, surface) = (target.state, &mut self.work, &self.surface);
         self.target.lighting_terms_into(own, surface, state, &mut work.lighting);
         self.target.sampling().sample(self.target.bands(), &mut work.node, &mut work.separation, |out| {
@@ -223,12 +226,21 @@ impl<'a> Comparison<'a> {
             );
         });
         let gain = (state.gain - own.gain).abs() / state.gain;
+        let terms = std::mem::take(&mut self.work.separation);
+        let mut band = terms.iter();
+        let size = self.size_of_terms(target, |_, other| band.next().unwrap_or(&0.0) + gain * other);
+        self.work.separation = terms;
+        size
+    }
+
+    /// The separation by terms in the signals of target and candidate, band by band.
+    fn size_of_terms(&self, target: &Target<'_>, mut terms: impl FnMut(f64, f64) -> f64) -> f64 {
         let mut total = crate::sum::Compensated::default();
-        let bands = work.separation.iter().zip(surface.signal()).zip(work.root.iter().zip(work.noise.iter()));
-        for ((terms, other), (root, noise)) in bands {
-            let sum = root + (target.counts * other + noise).sqrt();
+        let signals = self.target.signal().iter().zip(self.surface.signal());
+        for ((own, other), (root, noise)) in signals.zip(self.work.root.iter().zip(self.work.noise.iter())) {
+            let (sum, terms) = (root + (target.counts * other + noise).sqrt(), terms(*own, *other));
             if sum > 0.0 {
-                let term = target.counts * (terms + gain * other) / sum;
+                let term = target.counts * terms / sum;
                 total.add(term * term);
             }
         }
@@ -276,6 +288,11 @@ impl<'a> Comparison<'a> {
         let parameters = if columns { &self.space.parameters[..] } else { &[] };
         let (alternative, difference) = (target.alternative, &mut work.difference);
         self.surface.evaluate_beside(&self.target, alternative, state, parameters, total_known, difference);
+        if is_other_scale(own.gain, state.gain) {
+            let signals = self.target.signal().iter().zip(self.surface.signal());
+            work.separation.iter_mut().zip(signals).for_each(|(out, (own, other))| *out = own - other);
+            return;
+        }
         self.target.lighting_difference_into(own, &self.surface, state, &mut work.lighting);
         self.target.sampling().sample(self.target.bands(), &mut work.node, &mut work.separation, |out| {
             separation_into(Separation {
@@ -296,6 +313,12 @@ impl<'a> Comparison<'a> {
             }
         }
     }
+}
+
+/// Whether the gains differ so much that signals are best subtracted as they are: what nearly cancels then is not that of one
+/// gain, which may be any number of times as bright.
+fn is_other_scale(own: f64, other: f64) -> bool {
+    !(0.5..=2.0).contains(&(other / own))
 }
 
 dispatched! {

@@ -327,7 +327,10 @@ fn states_within_reach_are_among_the_amplitudes_of_their_box() {
             let least = allowed.least(&pieces, &cost, &mut vertex, &mut Ray::default());
             let own = inner(&cost, &point);
             let size: f64 = cost.iter().zip(&point).map(|(c, z)| (c * z).abs()).sum();
-            assert!(least.is_nan() || least <= own + 1e-12 * size, "{trial}: {least} {own} {pieces:?} {point:?}");
+            assert!(
+                least.is_nan() || least <= own + 1e-12 * size,
+                "{trial}: {least} {own} {pieces:?} {point:?}"
+            );
             cheapest = cheapest.max(if least < 0.0 && own < 0.0 { own / least } else { 0.0 });
         }
     }
