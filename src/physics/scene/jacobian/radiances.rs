@@ -81,7 +81,7 @@ impl Jacobian<'_> {
     }
 
     /// X − X′ at the nodes: the lighting of this one's last `state` less that of `other` in `other_state`,
-    /// as Σ (Vₖ − Vₖ′)εₖB(Tₖ) + Vₖ′εₖ[B(Tₖ) − B(Tₖ′)], which keeps its digits as the two become equal.
+    /// as Σ (Vₖ − Vₖ′)εₖB(Tₖ) + Vₖ′εₖ[B(Tₖ) − B(Tₖ′)] where the radiances are alike, which keeps its digits as the two become equal.
     pub(crate) fn lighting_difference_into(
         &self,
         state: &State,
@@ -116,20 +116,29 @@ impl Jacobian<'_> {
         for (k, object) in self.surroundings.objects.iter().enumerate() {
             let span = k * nodes..(k + 1) * nodes;
             let emissivity = object.emissivity.as_deref();
-            let change = state.lighting[k] - other_state.lighting[k];
-            let change = if magnitudes { change.abs() } else { change };
-            add_scaled(change, emissivity, &self.base[span.clone()], out);
+            let (factor, other_factor) = (state.lighting[k], other_state.lighting[k]);
+            let change = factor - other_factor;
             let (t, other_k) = (state.environment_k[k], other_state.environment_k[k]);
+            let base = &self.base[span.clone()];
             if t == other_k {
+                add_scaled(if magnitudes { change.abs() } else { change }, emissivity, base, out);
                 continue;
             }
             let nu = &self.surroundings.nodes_cm1;
-            let mut warmer = vec![0.0; nodes];
-            planck::photon_radiance_apart_into(nu, (other_k, &other.base[span]), t, &mut warmer);
-            if magnitudes {
-                warmer.iter_mut().for_each(|warmer| *warmer = warmer.abs());
+            let other_base = &other.base[span];
+            let mut apart = vec![0.0; nodes];
+            planck::photon_radiance_apart_into(nu, (other_k, other_base), t, &mut apart);
+            for (apart, (base, other)) in apart.iter_mut().zip(base.iter().zip(other_base)) {
+                // Radiances of other orders are subtracted as they are: in the terms of their difference one would cancel.
+                let near = (base - other).abs() <= 0.5 * base.max(*other);
+                let [a, b] = if near {
+                    [change * base, other_factor * *apart]
+                } else {
+                    [factor * base, -other_factor * other]
+                };
+                *apart = if magnitudes { a.abs() + b.abs() } else { a + b };
             }
-            add_scaled(other_state.lighting[k], emissivity, &warmer, out);
+            add_scaled(1.0, emissivity, &apart, out);
         }
     }
 }
