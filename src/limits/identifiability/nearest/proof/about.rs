@@ -10,7 +10,7 @@ use crate::scene::State;
 use crate::sum::dot;
 
 /// Half widths of the closed box that are tried, as shares of T/max(x, 2) in the middle of the bands.
-const WIDTHS: [f64; 8] = [0.3, 0.1, 0.03, 0.01, 3e-3, 1e-3, 1e-4, 1e-6];
+const WIDTHS: [f64; 9] = [0.3, 0.1, 0.03, 0.01, 3e-3, 1e-3, 1e-4, 1e-5, 1e-6];
 
 /// What has come of closing a box about the best state.
 pub(super) enum Closed {
@@ -33,17 +33,12 @@ impl Prover<'_> {
     ) -> Closed {
         let (state, enough) = (&best.state, goal.enough);
         let (residual, other) = comparison.residual(target, state);
-        let count = self.all.fixed.len();
+        let count = self.all.sources.list.len();
         let temperature_k: Vec<f64> = (0..count).map(|s| temperature_of(state, s)).collect();
         let gain = if self.all.allowed.gain_free { state.gain } else { 1.0 };
         let amplitudes: Vec<f64> =
             (0..count).map(|s| if s == 0 { gain } else { gain * state.lighting[s - 1] }).collect();
-        let spectra: Vec<Spectrum> = (0..count)
-            .map(|s| match &self.all.fixed[s] {
-                Some(spectrum) => spectrum.clone(),
-                None => self.all.sources.spectrum(s, temperature_k[s]),
-            })
-            .collect();
+        let spectra: Vec<Spectrum> = (0..count).map(|s| self.all.spectrum(s, temperature_k[s])).collect();
         let bands = self.all.root.len();
         let (mut pull, mut seen, mut kept) = (vec![0.0; bands], vec![0.0; bands], vec![0.0; bands]);
         for (w, (residual, other)) in residual.into_iter().zip(other).enumerate() {

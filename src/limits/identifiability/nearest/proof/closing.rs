@@ -400,17 +400,15 @@ impl Columns<'_> {
         let mut pieces = Pieces::default();
         let (n, lit) = (spectra.len(), self.lit.len());
         let mut linear = vec![0.0; n];
-        let mut square = vec![0.0; n * n];
+        let mut factor = vec![0.0; n * n];
         for (s, spectrum) in spectra.iter().enumerate() {
             pieces.put_known(s, spectrum);
         }
         for (i, &s) in self.lit.iter().enumerate() {
             linear[s] = self.linear[i];
-            for (j, &other) in self.lit.iter().enumerate() {
-                square[s * n + other] = inner(&self.triangle[i][..lit], &self.triangle[j][..lit]);
-            }
+            factor[s * n..s * n + lit].copy_from_slice(&self.triangle[i][..lit]);
         }
-        let quadratic = Quadratic { linear, square, origin: amplitudes.to_vec(), length: self.length };
+        let quadratic = Quadratic { linear, factor, origin: amplitudes.to_vec(), length: self.length };
         let mut hull = Hull::default();
         let mut ray = Ray::default();
         let cheapest = |costs: &[f64], vertex: &mut [f64]| {

@@ -1,10 +1,12 @@
 //! The least of a convex quadratic over the amplitudes, with a lower bound that does not rest on the search for it.
 //!
-//! φ(δ) = g·δ + δᵀHδ, δ = z − z₀, over a polytope of z known by its least linear costs alone. Wolfe's method: the minimum over
+//! φ(δ) = g·δ + ‖Fδ‖², δ = z − z₀, over a polytope of z known by its least linear costs alone. Wolfe's method: the minimum over
 //! the affine hull of a few vertices; those with a negative share leave, the cheapest vertex along the gradient joins.
 //! Whatever is reached, no point is below φ(δ) − ∇φ·(δ − v), v the cheapest vertex: φ is convex.
 //!
-//! Rounding: with lengths ℓᵢ = √Hᵢᵢ and |gᵢ| ≤ 2ℓ₀ℓᵢ the terms of φ and ∇φ are no larger than products of these, so that an
+//! F is kept, not FᵀF, so that nearly dependent columns keep what digits they came with.
+//!
+//! Rounding: with ℓᵢ the length of column i and |gᵢ| ≤ 2ℓ₀ℓᵢ the terms of φ and ∇φ are no larger than products of these, so that an
 //! origin near the minimum makes it small.
 //!
 //! Source: P. Wolfe, Mathematical Programming 11, 128 (1976), doi:10.1007/BF01580381.
@@ -15,17 +17,20 @@ use super::orthogonal::{add, inner};
 const JOINS: usize = 60;
 /// Share of a vertex that is none.
 const NOTHING: f64 = 1e-15;
-/// What is left of a side's square, as a share of the largest, below which it depends on those before.
-const DEPENDENT: f64 = 1e-15;
+/// What is left of a side, as a share, below which it depends on those before.
+const DEPENDENT: f64 = 1e-14;
 /// Rounding of a product of two columns, and more of it for each of them, as a share of their lengths ([`crate::sum`]).
-const ROUNDING: f64 = 2.5e-15;
+const ROUNDING: f64 = 6e-15;
 const ROUNDING_EACH: f64 = 2.5e-16;
 
-/// g, H row by row, z₀ and ℓ₀.
+/// The least that is left of the square of a column.
+const LEAST: f64 = 1e-15;
+
+/// g, F column by column, z₀ and ℓ₀.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Quadratic {
     pub(super) linear: Vec<f64>,
-    pub(super) square: Vec<f64>,
+    pub(super) factor: Vec<f64>,
     pub(super) origin: Vec<f64>,
     pub(super) length: f64,
 }
@@ -35,18 +40,21 @@ pub(super) struct Quadratic {
 pub(super) struct Hull {
     /// The lowest point found, z.
     pub(super) point: Vec<f64>,
-    /// Vertices less z₀ and H times these, one after the other, and their shares.
+    /// What the bound is lowered by for rounding: less of it the nearer the origin is to the minimum.
+    pub(super) rounding: f64,
+    /// Vertices less z₀ and F times these, one after the other, and their shares.
     vertices: Vec<f64>,
     images: Vec<f64>,
     shares: Vec<f64>,
-    /// δ, Hδ and ∇φ.
+    /// δ, Fδ and ∇φ.
     change: Vec<f64>,
     image: Vec<f64>,
     gradient: Vec<f64>,
     vertex: Vec<f64>,
-    /// Of the minimum over the affine hull.
+    /// Of the minimum over the affine hull: its shares, sides made orthonormal, and the triangle that they leave.
     goal: Vec<f64>,
-    matrix: Vec<f64>,
+    sides: Vec<f64>,
+    triangle: Vec<f64>,
 }
 
 /// Resizes to zeros.
@@ -64,7 +72,7 @@ impl Hull {
         mut cheapest: impl FnMut(&[f64], &mut [f64]),
         enough: f64,
     ) -> f64 {
-        let Quadratic { linear, square, origin, length } = quadratic;
+        let Quadratic { linear, factor, origin, length } = quadratic;
         let n = linear.len();
         for list in [&mut self.vertex, &mut self.image, &mut self.point, &mut self.change] {
             clear(list, n);
@@ -85,28 +93,34 @@ impl Hull {
                 add(&mut self.change, *share, &self.vertices[i * n..(i + 1) * n]);
                 add(&mut self.image, *share, &self.images[i * n..(i + 1) * n]);
             }
-            let value = inner(linear, &self.change) + inner(&self.image, &self.change);
-            for ((gradient, g), image) in self.gradient.iter_mut().zip(linear).zip(&self.image) {
-                *gradient = g + 2.0 * image;
+            let value = inner(linear, &self.change) + inner(&self.image, &self.image);
+            for (i, (gradient, g)) in self.gradient.iter_mut().zip(linear).enumerate() {
+                *gradient = g + 2.0 * inner(&factor[i * n..(i + 1) * n], &self.image);
             }
             cheapest(&self.gradient, &mut self.vertex);
             let (mut gap, mut near, mut far) = (0.0, 0.0, 0.0);
             for i in 0..n {
                 let side = self.change[i] - (self.vertex[i] - origin[i]);
                 gap += self.gradient[i] * side;
-                let size = square[i * n + i].max(0.0).sqrt();
+                let column = &factor[i * n..(i + 1) * n];
+                let size = inner(column, column).sqrt();
                 near += self.change[i].abs() * size;
                 far += side.abs() * size;
             }
             let rounding = unit * (near * (2.0 * length + near) + 2.0 * far * (length + near));
             let bound = value - gap.max(0.0) - rounding;
             if bound > lower {
-                (lower, stale) = (bound, 0);
+                (lower, stale, self.rounding) = (bound, 0, rounding);
                 self.point.iter_mut().zip(&self.change).zip(origin).for_each(|((p, d), o)| *p = d + o);
             } else {
                 stale += 1;
             }
-            if lower >= enough || gap <= rounding || stale > 4 || !self.join(quadratic) || !self.settle(n) {
+            if lower >= enough
+                || gap <= rounding
+                || stale > 4
+                || !self.join(quadratic)
+                || !self.settle(linear)
+            {
                 break;
             }
         }
@@ -123,43 +137,43 @@ impl Hull {
             self.vertices.truncate(start);
             return false;
         }
-        self.images.extend((0..n).map(|i| inner(&quadratic.square[i * n..(i + 1) * n], new)));
+        self.images.resize(start + n, 0.0);
+        let image = &mut self.images[start..];
+        for (i, amount) in self.vertices[start..].iter().enumerate() {
+            add(image, *amount, &quadratic.factor[i * n..(i + 1) * n]);
+        }
         self.shares.push(0.0);
-        // ∇φ at the vertex is formed anew in `affine`.
-        self.goal.clone_from(&quadratic.linear);
         true
     }
 
     /// The minimum over the hull of the vertices, which shrink to those that carry it.
-    fn settle(&mut self, n: usize) -> bool {
-        let linear = std::mem::take(&mut self.goal);
-        let mut goal = Vec::new();
-        let mut settled = true;
+    fn settle(&mut self, linear: &[f64]) -> bool {
         while self.shares.len() > 1 {
-            self.affine(&linear, &mut goal);
+            self.affine(linear);
             let mut reach = 1.0_f64;
-            for (share, goal) in self.shares.iter().zip(&goal) {
+            for (share, goal) in self.shares.iter().zip(&self.goal) {
                 if *goal < NOTHING && share > goal {
                     reach = reach.min(share / (share - goal));
                 }
             }
-            self.shares.iter_mut().zip(&goal).for_each(|(share, goal)| *share += reach * (goal - *share));
+            let shares = self.shares.iter_mut().zip(&self.goal);
+            shares.for_each(|(share, goal)| *share += reach * (goal - *share));
             let before = self.shares.len();
-            for i in (0..before).rev().filter(|&i| self.shares[i] <= NOTHING).collect::<Vec<_>>() {
-                self.leave(i, n);
+            for i in (0..before).rev() {
+                if self.shares[i] <= NOTHING {
+                    self.leave(i, linear.len());
+                }
             }
             let sum: f64 = self.shares.iter().sum();
             if !(sum > 0.0 && sum.is_finite()) {
-                settled = false;
-                break;
+                return false;
             }
             self.shares.iter_mut().for_each(|share| *share /= sum);
             if reach >= 1.0 || self.shares.len() == before {
                 break;
             }
         }
-        self.goal = linear;
-        settled
+        true
     }
 
     fn leave(&mut self, i: usize, n: usize) {
@@ -171,47 +185,70 @@ impl Hull {
         }
     }
 
-    /// Shares of the vertices at the least of φ over their affine hull: with sides s from the last of them, b,
-    /// Σⱼ sᵢᵀHsⱼ wⱼ = −½ sᵢ·∇φ(b), by Cholesky's method.
-    fn affine(&mut self, linear: &[f64], shares: &mut Vec<f64>) {
+    /// Shares of the vertices at the least of φ over their affine hull: with sides s = QR in F from the last of them, b,
+    /// R w = −Qᵀ(Fb) − ½R⁻ᵀ(g·s).
+    fn affine(&mut self, linear: &[f64]) {
         let n = linear.len();
         let m = self.shares.len() - 1;
         let vertex = |i: usize| &self.vertices[i * n..(i + 1) * n];
         let image = |i: usize| &self.images[i * n..(i + 1) * n];
-        clear(shares, m + 1);
-        clear(&mut self.matrix, m * m);
-        for i in 0..m {
-            for k in 0..n {
-                let side = vertex(i)[k] - vertex(m)[k];
-                shares[i] -= side * (0.5 * linear[k] + image(m)[k]);
-                for j in 0..=i {
-                    self.matrix[i * m + j] += side * (image(j)[k] - image(m)[k]);
+        clear(&mut self.goal, m + 1);
+        clear(&mut self.sides, m * n);
+        clear(&mut self.triangle, m * m);
+        for k in 0..m {
+            let (done, rest) = self.sides.split_at_mut(k * n);
+            let side = &mut rest[..n];
+            side.iter_mut().zip(image(k).iter().zip(image(m))).for_each(|(side, (a, b))| *side = a - b);
+            let before = inner(side, side).sqrt();
+            for _ in 0..2 {
+                for (i, known) in done.chunks(n).enumerate() {
+                    let along = inner(known, side);
+                    self.triangle[k * m + i] += along;
+                    add(side, -along, known);
                 }
             }
-        }
-        let largest = (0..m).map(|i| self.matrix[i * m + i]).fold(0.0, f64::max);
-        let matrix = &mut self.matrix;
-        for i in 0..m {
-            for j in 0..=i {
-                let known: f64 = (0..j).map(|k| matrix[i * m + k] * matrix[j * m + k]).sum();
-                let left = matrix[i * m + j] - known;
-                matrix[i * m + j] = if i == j {
-                    if left > DEPENDENT * largest { left.sqrt() } else { 0.0 }
-                } else if matrix[j * m + j] > 0.0 {
-                    left / matrix[j * m + j]
-                } else {
-                    0.0
-                };
+            let left = inner(side, side).sqrt();
+            if left > DEPENDENT * before {
+                self.triangle[k * m + k] = left;
+                side.iter_mut().for_each(|x| *x /= left);
+                let slope: f64 =
+                    linear.iter().zip(vertex(k).iter().zip(vertex(m))).map(|(g, (a, b))| g * (a - b)).sum();
+                let known: f64 = (0..k).map(|i| self.triangle[k * m + i] * self.goal[i]).sum();
+                // R⁻ᵀ of half the slopes, row by row.
+                self.goal[k] = (0.5 * slope - known) / left;
+            } else {
+                side.fill(0.0);
             }
-            let known: f64 = (0..i).map(|k| matrix[i * m + k] * shares[k]).sum();
-            let pivot = matrix[i * m + i];
-            shares[i] = if pivot > 0.0 { (shares[i] - known) / pivot } else { 0.0 };
         }
-        for i in (0..m).rev() {
-            let later: f64 = (i + 1..m).map(|k| matrix[k * m + i] * shares[k]).sum();
-            let pivot = matrix[i * m + i];
-            shares[i] = if pivot > 0.0 { (shares[i] - later) / pivot } else { 0.0 };
+        for (goal, side) in self.goal.iter_mut().zip(self.sides.chunks(n.max(1))) {
+            *goal = -*goal - inner(side, image(m));
         }
-        shares[m] = 1.0 - shares[..m].iter().sum::<f64>();
+        for k in (0..m).rev() {
+            let later: f64 = (k + 1..m).map(|j| self.triangle[j * m + k] * self.goal[j]).sum();
+            let pivot = self.triangle[k * m + k];
+            self.goal[k] = if pivot > 0.0 { (self.goal[k] - later) / pivot } else { 0.0 };
+        }
+        self.goal[m] = 1.0 - self.goal[..m].iter().sum::<f64>();
+    }
+}
+
+/// F of FᵀF row by row, column by column. What is left of a column is no less than rounding: then F is that of products within
+/// rounding of these, however dependent the columns.
+pub(super) fn factor_of(square: &[f64], factor: &mut Vec<f64>) {
+    let n = square.len().isqrt();
+    clear(factor, n * n);
+    for k in 0..n {
+        for i in 0..=k {
+            let known: f64 = (0..i).map(|j| factor[k * n + j] * factor[i * n + j]).sum();
+            let left = square[k * n + i] - known;
+            let pivot = factor[i * n + i];
+            factor[k * n + i] = if i == k {
+                left.max(LEAST * square[k * n + k]).sqrt()
+            } else if pivot > 0.0 {
+                left / pivot
+            } else {
+                0.0
+            };
+        }
     }
 }

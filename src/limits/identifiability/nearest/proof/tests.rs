@@ -4,7 +4,7 @@
 use super::Prover;
 use super::amplitudes::{Amplitudes, Pieces};
 use super::amplitudes::{Piece, Ray};
-use super::hull::{Hull, Quadratic};
+use super::hull::{Hull, Quadratic, factor_of};
 use super::metric::Metric;
 use super::orthogonal::inner;
 use super::sources::{Chord, chord};
@@ -105,9 +105,11 @@ fn the_least_of_a_quadratic_is_bounded_tightly() {
         // φ = ‖F(z − z₀) + h‖² − ‖h‖².
         let (columns, shift) = ([vector(), vector()], vector());
         let product = |i: usize, j: usize| inner(&columns[i], &columns[j]);
+        let mut factor = Vec::new();
+        factor_of(&[product(0, 0), product(0, 1), product(1, 0), product(1, 1)], &mut factor);
         let quadratic = Quadratic {
             linear: columns.iter().map(|column| 2.0 * inner(column, &shift)).collect(),
-            square: vec![product(0, 0), product(0, 1), product(1, 0), product(1, 1)],
+            factor,
             origin: vec![0.3, 0.1],
             length: inner(&shift, &shift).sqrt(),
         };

@@ -14,19 +14,23 @@
 
 use super::ROUNDING;
 use super::amplitudes::{Amplitudes, Piece, Pieces, Ray};
-use super::hull::{Hull, Quadratic};
+use super::hull::{Hull, Quadratic, factor_of};
 use super::metric::Metric;
+use super::orthogonal::reduce;
 use super::sources::{Chord, LARGEST_LN_GAIN, Sources, Spectrum, chord, whole};
 use super::vectors::{add_into, largest_share, product_into, square_of_product};
 use crate::sum::dot;
 
-/// Share of the bound wanted beyond which what chords miss makes it useless to try better quadratics.
+/// Share of the bound wanted, or of the quadratic's least, beyond which what chords miss makes better quadratics useless.
 const COARSE: f64 = 0.25;
 /// Share of what is wanting that a better quadratic must have brought for another one to be tried.
 const WORTH: f64 = 0.03;
 
 /// From how much more radiance at the hot end on a box is wide.
 const WIDE: f64 = 2.0;
+
+/// Attempts with products of columns; after that their digits are all kept.
+const PLAIN: usize = 2;
 
 /// A spectrum of a source at one end of an interval.
 struct End {
@@ -62,18 +66,25 @@ pub(super) struct View<'a> {
     pub(super) root: Vec<f64>,
     counts: Vec<f64>,
     noise: Vec<f64>,
-    /// The distance within which everything is, and the counts that a band can have then.
+    /// The distance within which everything is.
     pub(super) reach: f64,
-    brightest: Vec<f64>,
-    about_target: Metric,
     /// Sources of unknown temperature, and their spectra at the temperatures known, as far as they were needed.
     pub(super) axes: Vec<usize>,
     ends: Vec<Vec<Option<End>>>,
     shaped: Vec<Shaped>,
-    /// Below which every source sends next to nothing.
-    dark_k: Vec<Option<f64>>,
-    /// Spectra of the others.
-    pub(super) fixed: Vec<Option<Spectrum>>,
+    /// Temperatures below which the axes send next to nothing.
+    dark_k: Vec<f64>,
+    later: Later,
+}
+
+/// What only a look at these bands needs: where few bands suffice, all of them are never looked at.
+#[derive(Default)]
+struct Later {
+    /// Spectra of the sources of known temperature.
+    fixed: Vec<Option<Spectrum>>,
+    /// The counts that each band can have within reach.
+    brightest: Vec<f64>,
+    about_target: Metric,
     work: Work,
 }
 
@@ -102,6 +113,7 @@ struct Work {
     whitened: Vec<Vec<f64>>,
     counts: Vec<f64>,
     metric: Metric,
+    square: Vec<f64>,
     quadratic: Quadratic,
     hull: Hull,
     ray: Ray,
@@ -127,54 +139,62 @@ impl<'a> View<'a> {
         let total = (size * size - crate::sum::sum(&noise)) * (1.0 + 1e-12);
         let allowed = Amplitudes { total, ..allowed };
         let axes: Vec<usize> = (0..sources.list.len()).filter(|&s| sources.list[s].free()).collect();
-        let fixed = (0..sources.list.len())
-            .map(|s| (!sources.list[s].free()).then(|| sources.spectrum(s, sources.list[s].temperature_k[0])))
-            .collect();
-        let brightest = root.iter().zip(&noise).map(|(y, v)| (y + reach) * (y + reach) * (1.0 + 1e-9) - v);
-        let brightest = brightest.collect();
-        let about_target = Metric::about_target(&root, &counts, reach);
         let ends = axes.iter().map(|_| Vec::new()).collect();
-        let empty = || vec![vec![0.0; root.len()]; axes.len()];
         let sent = crate::sum::sum(&counts);
-        let dark_k: Vec<Option<f64>> = (0..sources.list.len()).map(|s| sources.dark_k(s, sent)).collect();
+        let mut dark_k = vec![0.0; axes.len()];
         let open = |range: &[f64; 2]| range[0] < range[1];
-        let shaped = axes.iter().map(|&s| match s.checked_sub(1) {
-            _ if dark_k[s].is_none() => Shaped::Never,
-            None if !allowed.gain_free => Shaped::Never,
-            None if allowed.ranges.iter().all(open) => Shaped::Always,
-            Some(k) if open(&allowed.ranges[k]) => Shaped::Always,
-            Some(_) if !allowed.gain_free => Shaped::Never,
-            _ => Shaped::Wide,
+        let shaped = axes.iter().zip(&mut dark_k).map(|(&s, dark_k)| {
+            let shaped = match s.checked_sub(1) {
+                None if !allowed.gain_free => Shaped::Never,
+                None if allowed.ranges.iter().all(open) => Shaped::Always,
+                Some(k) if open(&allowed.ranges[k]) => Shaped::Always,
+                Some(_) if !allowed.gain_free => Shaped::Never,
+                _ => Shaped::Wide,
+            };
+            match (shaped, sources.dark_k(s, sent)) {
+                (Shaped::Never, _) | (_, None) => Shaped::Never,
+                (shaped, Some(k)) => {
+                    *dark_k = k;
+                    shaped
+                }
+            }
         });
         let shaped = shaped.collect();
-        let work = Work {
-            low: empty(),
-            high: empty(),
-            half: empty(),
-            most: vec![0.0; axes.len()],
-            whitened: vec![vec![0.0; root.len()]; sources.list.len() + axes.len()],
-            ..Work::default()
-        };
-        Self {
-            sources,
-            allowed,
-            root,
-            counts,
-            noise,
-            reach,
-            brightest,
-            about_target,
-            axes,
-            ends,
-            shaped,
-            dark_k,
-            fixed,
-            work,
+        let later = Later::default();
+        Self { sources, allowed, root, counts, noise, reach, axes, ends, shaped, dark_k, later }
+    }
+
+    /// Makes sure of what only a look at these bands needs.
+    pub(super) fn look(&mut self) {
+        if !self.later.fixed.is_empty() {
+            return;
         }
+        let (reach, bands, axes) = (self.reach, self.root.len(), self.axes.len());
+        let fixed =
+            self.sources.list.iter().enumerate().map(|(s, source)| {
+                (!source.free()).then(|| self.sources.spectrum(s, source.temperature_k[0]))
+            });
+        let brightest = self.root.iter().zip(&self.noise);
+        let brightest = brightest.map(|(y, v)| (y + reach) * (y + reach) * (1.0 + 1e-9) - v);
+        let empty = || vec![vec![0.0; bands]; axes];
+        self.later = Later {
+            fixed: fixed.collect(),
+            brightest: brightest.collect(),
+            about_target: Metric::about_target(&self.root, &self.counts, reach),
+            work: Work {
+                low: empty(),
+                high: empty(),
+                half: empty(),
+                most: vec![0.0; axes],
+                whitened: vec![vec![0.0; bands]; self.sources.list.len() + axes],
+                ..Work::default()
+            },
+        };
     }
 
     /// Makes sure of the spectrum at an end of an interval.
     pub(super) fn know(&mut self, axis: usize, place: usize, temperature_k: f64) {
+        self.look();
         if self.ends[axis].len() <= place {
             self.ends[axis].resize_with(place + 1, || None);
         }
@@ -182,14 +202,14 @@ impl<'a> View<'a> {
             return;
         }
         let spectrum = self.sources.spectrum(self.axes[axis], temperature_k);
-        let most = largest_share(&self.brightest, &spectrum.counts, &spectrum.slope, 0.0);
+        let most = largest_share(&self.later.brightest, &spectrum.counts, &spectrum.slope, 0.0);
         let shape = if self.shaped[axis] == Shaped::Never { None } else { self.sources.shape(&spectrum) };
         self.ends[axis][place] = Some(End { spectrum, shape, most });
     }
 
     /// The temperature below which a source of free amplitude need not be looked at.
     pub(super) fn coldest_k(&self, axis: usize) -> f64 {
-        if self.shaped[axis] == Shaped::Never { 0.0 } else { self.dark_k[self.axes[axis]].unwrap_or(0.0) }
+        self.dark_k[axis]
     }
 
     /// Whether even `amplitude` of a source is beyond reach in some band at an end.
@@ -202,6 +222,14 @@ impl<'a> View<'a> {
     ) -> bool {
         self.know(axis, place, temperature_k);
         self.ends[axis][place].as_ref().is_some_and(|end| end.most < amplitude)
+    }
+
+    /// The spectrum of a source at a temperature.
+    pub(super) fn spectrum(&self, s: usize, temperature_k: f64) -> Spectrum {
+        match self.later.fixed.get(s) {
+            Some(Some(spectrum)) => spectrum.clone(),
+            _ => self.sources.spectrum(s, temperature_k),
+        }
     }
 
     /// The amplitude of a source, where it is known.
@@ -231,7 +259,7 @@ impl<'a> View<'a> {
         work.pieces.clear();
         work.places.clear();
         for s in 0..self.sources.list.len() {
-            if let Some(spectrum) = &self.fixed[s] {
+            if let Some(spectrum) = &self.later.fixed[s] {
                 work.pieces.put_known(s, spectrum);
                 work.places.push(Place::Fixed(s));
                 continue;
@@ -270,7 +298,7 @@ impl<'a> View<'a> {
                     let width_k = bright.along - dim.along;
                     let limited = s > 0 && !self.allowed.gain_free;
                     let cap = if limited {
-                        largest_share(&self.brightest, &dim.counts, &dim.slope, width_k)
+                        largest_share(&self.later.brightest, &dim.counts, &dim.slope, width_k)
                     } else {
                         f64::INFINITY
                     };
@@ -290,7 +318,7 @@ impl<'a> View<'a> {
     /// The spectrum of a piece.
     fn column<'w>(&'w self, [low, high]: [&'w [Vec<f64>]; 2], place: Place) -> &'w [f64] {
         match place {
-            Place::Fixed(s) => self.fixed[s].as_ref().map_or(&[], |spectrum| &spectrum.counts),
+            Place::Fixed(s) => self.later.fixed[s].as_ref().map_or(&[], |spectrum| &spectrum.counts),
             Place::Low(axis) => &low[axis],
             Place::High(axis) => &high[axis],
         }
@@ -306,10 +334,24 @@ impl<'a> View<'a> {
         start: Option<&[f64]>,
         quadratics: usize,
     ) -> Bound {
-        let mut work = std::mem::take(&mut self.work);
+        self.look();
+        let mut work = std::mem::take(&mut self.later.work);
         self.lay(ends, &mut work);
-        let Work { pieces, places, low, high, half, most, whitened, counts, metric, quadratic, hull, ray } =
-            &mut work;
+        let Work {
+            pieces,
+            places,
+            low,
+            high,
+            half,
+            most,
+            whitened,
+            counts,
+            metric,
+            square,
+            quadratic,
+            hull,
+            ray,
+        } = &mut work;
         let m = places.len();
         let narrower = narrower.map(|allowed| Amplitudes { total: self.allowed.total, ..allowed.clone() });
         let allowed = narrower.as_ref().unwrap_or(&self.allowed);
@@ -332,22 +374,30 @@ impl<'a> View<'a> {
                 &*metric
             } else {
                 quadratic.origin.resize(m, 0.0);
-                &self.about_target
+                &self.later.about_target
             };
             for (out, place) in whitened.iter_mut().zip(&*places) {
                 product_into(self.column([low, high], *place), &metric.weight, out);
             }
             quadratic.length = metric.length;
             quadratic.linear.clear();
-            quadratic.square.resize(m * m, 0.0);
-            for i in 0..m {
-                quadratic.linear.push(2.0 * dot(&whitened[i], &metric.shift));
-                for j in 0..=i {
-                    let product = dot(&whitened[i], &whitened[j]);
-                    (quadratic.square[i * m + j], quadratic.square[j * m + i]) = (product, product);
+            quadratic.linear.extend(whitened[..m].iter().map(|column| 2.0 * dot(column, &metric.shift)));
+            if attempt < PLAIN {
+                square.resize(m * m, 0.0);
+                for i in 0..m {
+                    for j in 0..=i {
+                        let product = dot(&whitened[i], &whitened[j]);
+                        (square[i * m + j], square[j * m + i]) = (product, product);
+                    }
                 }
+                factor_of(square, &mut quadratic.factor);
+            } else {
+                // Columns that products cannot tell apart.
+                let (triangle, _) = reduce(&mut whitened[..m], &[]);
+                quadratic.factor.clear();
+                triangle.iter().for_each(|column| quadratic.factor.extend(column));
             }
-            let (mut missed, mut largest) = (ROUNDING * self.about_target.length, -1.0);
+            let (mut missed, mut largest) = (ROUNDING * self.later.about_target.length, -1.0);
             for (axis, (half, most)) in half.iter().zip(&*most).enumerate() {
                 let part = most * square_of_product(half, &metric.weight).sqrt();
                 missed += part;
@@ -355,42 +405,45 @@ impl<'a> View<'a> {
                     (largest, found.axis) = (part, axis);
                 }
             }
-            let square = metric.length * metric.length;
+            let shift = metric.length * metric.length;
             // What is subtracted from each other here, and how much of it rounding may be.
-            let rounding = 1e-15 * (metric.cost + square);
-            let rest = metric.cost - square - rounding;
-            let wanted = ((enough - rest).max(0.0).sqrt() + missed).powi(2) - square;
+            let rounding = 1e-15 * (metric.cost + shift);
+            let rest = metric.cost - shift - rounding;
+            let wanted = ((enough - rest).max(0.0).sqrt() + missed).powi(2) - shift;
             let fall = hull.least(quadratic, &mut cheapest, wanted);
-            let left = (square + fall).max(0.0).sqrt();
+            let left = (shift + fall).max(0.0).sqrt();
             // (left − missed)² without the difference of squares that may be nearly equal.
             let lower = if left > missed {
                 metric.cost - rounding + fall + missed * (missed - 2.0 * left)
             } else {
                 rest
             };
-            found.coarse = missed * missed > COARSE * enough;
+            // Without its rounding, which another origin makes small.
+            let there = shift + fall + hull.rounding;
+            found.coarse = missed * missed > COARSE * enough.max(there);
             let gained = lower - found.lower;
             found.lower = found.lower.max(lower);
             if found.lower >= enough || found.coarse {
                 break;
             }
-            if attempt > 0 && gained < WORTH * (enough - found.lower) {
+            let wanting = enough - found.lower;
+            if attempt > 0 && gained < WORTH * wanting && hull.rounding < WORTH * wanting {
                 break;
             }
         }
-        self.work = work;
+        self.later.work = work;
         found
     }
 
     /// Where the last bound was least: an amplitude for every piece.
     pub(super) fn point(&self) -> &[f64] {
-        &self.work.hull.point
+        &self.later.work.hull.point
     }
 
     /// The same, source by source.
     pub(super) fn mixture(&self) -> Mixture {
-        let Work { pieces, hull, .. } = &self.work;
-        let sources = self.fixed.len();
+        let Work { pieces, hull, .. } = &self.later.work;
+        let sources = self.sources.list.len();
         let (mut amplitudes, mut temperature_k) = (vec![0.0; sources], vec![0.0; sources]);
         for ((amount, s), t) in hull.point.iter().zip(&pieces.source).zip(&pieces.temperature_k) {
             amplitudes[*s] += amount;
@@ -409,11 +462,11 @@ impl<'a> View<'a> {
     /// The pieces of a box, for tests, with their spectra and what the chords miss.
     #[cfg(test)]
     pub(super) fn laid(&mut self, ends: &[[usize; 2]]) -> (Pieces, Vec<Vec<f64>>, Vec<Vec<f64>>) {
-        let mut work = std::mem::take(&mut self.work);
+        let mut work = std::mem::take(&mut self.later.work);
         self.lay(ends, &mut work);
         let columns = work.places.iter().map(|place| self.column([&work.low, &work.high], *place).to_vec());
         let laid = (work.pieces.clone(), columns.collect(), work.half.clone());
-        self.work = work;
+        self.later.work = work;
         laid
     }
 }
