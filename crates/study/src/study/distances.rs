@@ -90,7 +90,7 @@ impl Study {
     }
 
     /// A solver of nearest states that proves them.
-    pub(super) fn nearest_solver(&self) -> NearestSolver<'_> {
+    pub(in crate::study) fn nearest_solver(&self) -> NearestSolver<'_> {
         NearestSolver::new(&self.bands, &self.surroundings, self.unknowns.clone(), self.range)
             .proving(self.tolerance())
     }

@@ -74,7 +74,10 @@ impl Study {
             var_added: runs.iter().map(noise).collect(),
         };
         let own = kept(&self.target.emissivity);
-        let solver = || NearestSolver::new(&bands, &surroundings, self.unknowns.clone(), self.range);
+        let solver = || {
+            NearestSolver::new(&bands, &surroundings, self.unknowns.clone(), self.range)
+                .proving(self.tolerance())
+        };
         let found: Vec<f64> = alternatives
             .par_iter()
             .map_init(solver, |solver, other| {

@@ -17,7 +17,7 @@ use hadar::identifiability::bracket::KnownStates;
 use hadar::identifiability::detection;
 use hadar::identifiability::lattice::{LatticeDetection, LatticeDetector, LatticeMesh};
 use hadar::identifiability::local::LocalSolver;
-use hadar::identifiability::nearest::{NearestSolver, StateRange};
+use hadar::identifiability::nearest::StateRange;
 use hadar::policy;
 use hadar::simulate::decision::{Balanced, DecisionScene};
 use hadar::simulate::draws::{GENERATOR, LARGEST_MEAN};
@@ -184,8 +184,7 @@ impl Study {
             signal.iter().map(|s| s * scene.counts_per_radiance).collect()
         };
         let states = [means(own, &self.state), means(other, &alternative_state)];
-        let mut solver =
-            NearestSolver::new(&self.bands, &self.surroundings, self.unknowns.clone(), self.range);
+        let mut solver = self.nearest_solver();
         let back = solver.with_counting(other, own, &alternative_state, &counting(&states[1]))?;
         let ratio = if distance > 0.0 { (back.distance / distance).min(1.0) } else { 1.0 };
         let local = LocalSolver::new(&self.bands, &self.surroundings, self.unknowns.clone()).with_counting(

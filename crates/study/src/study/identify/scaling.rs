@@ -10,7 +10,6 @@ use hadar::error::Result;
 use hadar::fisher::Counting;
 use hadar::identifiability::local::LocalSolver;
 use hadar::identifiability::multi::expected_minimum;
-use hadar::identifiability::nearest::NearestSolver;
 use rayon::prelude::*;
 
 /// Expected least distance against the size of the library.
@@ -140,8 +139,7 @@ impl Study {
     fn least_and_median(&self, kind: DistanceKind, counting: Option<&Counting>) -> Result<(f64, f64)> {
         let (own, state, photons) = (&self.target.emissivity, &self.state, f64::INFINITY);
         let local = || LocalSolver::new(&self.bands, &self.surroundings, self.decisive_unknowns());
-        let nearest =
-            || NearestSolver::new(&self.bands, &self.surroundings, self.unknowns.clone(), self.range);
+        let nearest = || self.nearest_solver();
         let all = self.alternatives.par_iter();
         let found: Result<Vec<f64>> = match kind {
             DistanceKind::Nearest => all

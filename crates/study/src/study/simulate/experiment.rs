@@ -126,7 +126,7 @@ impl Study {
     }
 
     fn solver(&self) -> NearestSolver<'_> {
-        NearestSolver::new(&self.bands, &self.surroundings, self.unknowns.clone(), self.range)
+        self.nearest_solver()
     }
 
     /// The target in its state and each rival in its nearest, with their mean counts.

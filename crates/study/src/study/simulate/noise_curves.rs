@@ -8,7 +8,6 @@ use crate::study::size::logarithmic;
 use crate::study::{Study, Surface};
 use hadar::error::Result;
 use hadar::identifiability::detection;
-use hadar::identifiability::nearest::NearestSolver;
 use hadar::instrument::{Camera, gamma_per_band};
 
 /// Statistical distances to one alternative, at photon numbers in rising order.
@@ -49,8 +48,7 @@ impl Study {
     /// As [`Study::identify`].
     pub fn noise_curves(&self, alternative: &Surface, range: [f64; 2], points: usize) -> Result<NoiseCurves> {
         let normalised_photons = logarithmic(range, points);
-        let mut solver =
-            NearestSolver::new(&self.bands, &self.surroundings, self.unknowns.clone(), self.range);
+        let mut solver = self.nearest_solver();
         let (own, other) = (&self.target.emissivity, &alternative.emissivity);
         let distance = solver.per_photon(own, other, &self.state, f64::INFINITY)?.distance;
         let roots: Vec<f64> = normalised_photons.iter().map(|n| n.sqrt()).collect();

@@ -6,7 +6,6 @@ use hadar::error::Result;
 use hadar::fisher::Nuisance;
 use hadar::identifiability::detection;
 use hadar::identifiability::local::LocalSolver;
-use hadar::identifiability::nearest::NearestSolver;
 use hadar::instrument::Camera;
 use hadar::policy;
 use hadar::scene::State;
@@ -76,8 +75,12 @@ impl Study {
     /// # Errors
     /// A scene without photons.
     pub fn spectra(&self, alternative: &Surface) -> Result<Spectra> {
-        let nearest = NearestSolver::new(&self.bands, &self.surroundings, self.unknowns.clone(), self.range)
-            .per_photon(&self.target.emissivity, &alternative.emissivity, &self.state, f64::INFINITY)?;
+        let nearest = self.nearest_solver().per_photon(
+            &self.target.emissivity,
+            &alternative.emissivity,
+            &self.state,
+            f64::INFINITY,
+        )?;
         let widths = self.bands.widths_cm1();
         let per_cm1 = |signal: &[f64]| signal.iter().zip(&widths).map(|(s, w)| s / w).collect::<Vec<f64>>();
         let target = self.target_signal();
@@ -194,8 +197,7 @@ impl Study {
                 state
             })
         };
-        let solver =
-            || NearestSolver::new(&self.bands, &self.surroundings, self.unknowns.clone(), self.range);
+        let solver = || self.nearest_solver();
         let tangent = || {
             let unknowns = match kind {
                 DistanceKind::LocalUnknownGain => self.unknowns.with(Nuisance::Gain),

@@ -29,7 +29,8 @@ impl<'a> Solvers<'a> {
     pub(in crate::study) fn new(study: &'a Study, bands: &'a Bands) -> Self {
         let unknowns = study.decisive_unknowns();
         Self {
-            nearest: NearestSolver::new(bands, &study.surroundings, study.unknowns.clone(), study.range),
+            nearest: NearestSolver::new(bands, &study.surroundings, study.unknowns.clone(), study.range)
+                .proving(study.tolerance()),
             local: LocalSolver::new(bands, &study.surroundings, unknowns),
         }
     }

@@ -1,9 +1,10 @@
 //! Closes the widest box about the best state that can be ([`super::closing`]).
 
 use super::closing::{Minimum, Reach, close};
+use super::prover::{Goal, Prover, temperature_of};
 use super::sources::Spectrum;
 use super::view::Mixture;
-use super::{Goal, Prover, temperature_of};
+
 use crate::identifiability::nearest::refine::NearestDistance;
 use crate::identifiability::nearest::residual::{Comparison, Target};
 use crate::scene::State;

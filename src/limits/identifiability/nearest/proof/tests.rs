@@ -1,12 +1,12 @@
 //! What the proof rests on, piece by piece, against points drawn at random; whole proofs are held against a brute force that
 //! shares no code with them in `hadar accuracy brute-force`.
 
-use super::Prover;
 use super::amplitudes::{Amplitudes, Pieces};
 use super::amplitudes::{Piece, Ray};
 use super::hull::{Hull, Quadratic, factor_of};
 use super::metric::Metric;
 use super::orthogonal::inner;
+use super::prover::Prover;
 use super::sources::{Chord, chord};
 use crate::fisher::{Nuisance, Unknowns};
 use crate::identifiability::nearest::residual::{self, Comparison};

@@ -12,7 +12,6 @@
 //! What the amplitudes may be: a curve lies above its cold end and above its tangent there, so that c(1 − λ) of the one and cλ
 //! of the other never are more than a band can have within reach, nor all bands together.
 
-use super::ROUNDING;
 use super::amplitudes::{Amplitudes, Piece, Pieces, Ray};
 use super::hull::{Hull, Quadratic, factor_of};
 use super::metric::Metric;
@@ -21,6 +20,8 @@ use super::sources::{Chord, LARGEST_LN_GAIN, Sources, Spectrum, chord, whole};
 use super::vectors::{add_into, largest_share, product_into, square_of_product};
 use crate::sum::dot;
 
+/// Rounding of a length, as a share of its terms, with that of Planck's function.
+const ROUNDING: f64 = 1e-14;
 /// Share of the bound wanted, or of the quadratic's least, beyond which what chords miss makes better quadratics useless.
 const COARSE: f64 = 0.25;
 /// Share of what is wanting that a better quadratic must have brought for another one to be tried.

@@ -1,0 +1,182 @@
+//! A pair as a proof sees it: in few bands and in all, with the ends of intervals that both know.
+
+use super::amplitudes::Amplitudes;
+use super::sources::{Few, Sources};
+use super::view::{Mixture, View};
+use crate::fisher::Nuisance;
+use crate::identifiability::nearest::residual::{Comparison, Target};
+use crate::scene::{Parameter, State};
+use std::sync::Arc;
+
+/// Quadratics that are tried in a box.
+const QUADRATICS: usize = 5;
+
+/// What is to be shown.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Goal {
+    /// A state of less d² than this ends the proof.
+    pub(super) limit: f64,
+    /// The bound of d² that is enough.
+    pub(super) enough: f64,
+    /// Boxes looked at most.
+    pub(super) boxes: u64,
+}
+
+/// What a proof works with.
+pub(super) struct Prover<'a> {
+    few: Option<View<'static>>,
+    pub(super) all: View<'a>,
+    /// Ends of intervals, by axis.
+    pub(super) temperature_k: Vec<Vec<f64>>,
+    pub(super) boxes: u64,
+}
+
+impl<'a> Prover<'a> {
+    pub(super) fn new(
+        comparison: &Comparison<'a>,
+        few: Option<&Arc<Few>>,
+        target: &Target<'_>,
+        reach: f64,
+    ) -> Self {
+        let space = &comparison.space;
+        let sources = Sources::new(comparison, target);
+        let counts: Vec<f64> = comparison.target.signal().iter().map(|s| target.counts * s).collect();
+        let bands = [comparison.root().to_vec(), counts, comparison.noise().to_vec()];
+        let reach = reach * (1.0 + 1e-9);
+        let unknown_lighting = space.unknowns.contains(Nuisance::Lighting);
+        let known_total = space.unknowns.known_lighting_total();
+        let mut ranges: Vec<[f64; 2]> = target
+            .state
+            .lighting
+            .iter()
+            .map(|&v| if unknown_lighting { space.range.lighting } else { [v, v] })
+            .collect();
+        let mut sum = if unknown_lighting { space.lighting_sum() } else { f64::INFINITY };
+        let sum_known = unknown_lighting && known_total.is_some();
+        if unknown_lighting && ranges.iter().map(|range| range[0]).sum::<f64>() > sum {
+            // States are then scaled down to the sum, below their range.
+            ranges.iter_mut().for_each(|range| range[0] = 0.0);
+        }
+        if sum_known {
+            // The last factor is what the others leave, whatever its range.
+            if let Some(last) = ranges.last_mut() {
+                *last = [0.0, sum];
+            }
+        }
+        // By the rounding of the user's own numbers.
+        sum *= 1.0 + 1e-15;
+        let gain_free = space.unknowns.contains(Nuisance::Gain);
+        let allowed = Amplitudes { gain_free, ranges, sum, sum_known, total: 0.0, gain_cap: None };
+        let few = few.map(|few| {
+            let kept = bands.each_ref().map(|x| x.iter().copied().step_by(few.stride).collect());
+            View::new(sources.every(few), allowed.clone(), kept, reach)
+        });
+        let all = View::new(sources, allowed, bands, reach);
+        let temperature_k = all.axes.iter().map(|_| Vec::new()).collect();
+        Self { few, all, temperature_k, boxes: 0 }
+    }
+
+    /// The state of a mixture, if its cost is below the limit.
+    pub(super) fn nearer(
+        &self,
+        comparison: &mut Comparison<'_>,
+        target: &Target<'_>,
+        limit: f64,
+        mixture: &Mixture,
+    ) -> Option<State> {
+        let (state, cost) = self.candidate(comparison, target, mixture);
+        (cost < limit * (1.0 - 1e-12)).then_some(state)
+    }
+
+    /// The state of a mixture, and its cost.
+    pub(super) fn candidate(
+        &self,
+        comparison: &mut Comparison<'_>,
+        target: &Target<'_>,
+        mixture: &Mixture,
+    ) -> (State, f64) {
+        let mut state = target.state.clone();
+        let space = &comparison.space;
+        let surface = mixture.amplitudes[0];
+        for parameter in &space.parameters {
+            match *parameter {
+                Parameter::Temperature => state.temperature_k = mixture.temperature_k[0],
+                Parameter::Lighting(k) => {
+                    state.lighting[k] = if surface > 0.0 { mixture.amplitudes[k + 1] / surface } else { 0.0 };
+                }
+                Parameter::Gain => state.gain = surface.max(f64::MIN_POSITIVE),
+                Parameter::EnvironmentTemperature(k) => state.environment_k[k] = mixture.temperature_k[k + 1],
+                Parameter::Material => {}
+            }
+        }
+        let state = space.within_range(&state);
+        let cost = comparison.cost(target, &state);
+        (state, cost)
+    }
+
+    /// The place of an end of an interval.
+    pub(super) fn end(&mut self, axis: usize, temperature_k: f64) -> usize {
+        let known = self.temperature_k[axis].iter().position(|t| *t == temperature_k);
+        known.unwrap_or_else(|| {
+            self.temperature_k[axis].push(temperature_k);
+            self.temperature_k[axis].len() - 1
+        })
+    }
+
+    /// A lower bound of d² in a box, the axis along which it is best halved, and whether it was found in all bands: few of them
+    /// are looked at first.
+    pub(super) fn bound(
+        &mut self,
+        ends: &[[usize; 2]],
+        narrower: Option<&Amplitudes>,
+        enough: f64,
+    ) -> (f64, usize, bool) {
+        let known = &self.temperature_k;
+        let know = |view: &mut View<'_>| {
+            for (axis, ends) in ends.iter().enumerate() {
+                ends.iter().for_each(|&end| view.know(axis, end, known[axis][end]));
+            }
+        };
+        let mut least = 0.0;
+        if let Some(few) = &mut self.few {
+            know(few);
+            let found = few.bound(ends, narrower, enough, None, 1);
+            let share = self.all.root.len() as f64 / few.root.len() as f64;
+            // Where they are far from it all bands would hardly do either.
+            if found.lower >= enough || (found.coarse && share * found.lower < enough) {
+                return (found.lower, found.axis, false);
+            }
+            least = found.lower;
+        }
+        know(&mut self.all);
+        let start = self.few.as_ref().map(|few| few.point());
+        let found = self.all.bound(ends, narrower, enough, start, QUADRATICS);
+        (found.lower.max(least), found.axis, true)
+    }
+
+    /// The range of an unknown temperature, cut off where a known amplitude is too bright in some band.
+    pub(super) fn range(&mut self, axis: usize, warm: &State) -> [f64; 2] {
+        let s = self.all.axes[axis];
+        let [low, high] = self.all.sources.list[s].temperature_k;
+        let low = low.max(self.all.coldest_k(axis)).min(high);
+        let Some(amplitude) = self.all.held(s) else { return [low, high] };
+        let mut t = 1.2 * temperature_of(warm, s).max(low);
+        while t < high {
+            let end = self.end(axis, t);
+            // What is too bright in few bands is so in all of them.
+            let too_bright = match &mut self.few {
+                Some(few) => few.too_bright(axis, end, t, amplitude),
+                None => self.all.too_bright(axis, end, t, amplitude),
+            };
+            if too_bright {
+                return [low, t];
+            }
+            t *= 1.3;
+        }
+        [low, high]
+    }
+}
+
+pub(super) fn temperature_of(state: &State, s: usize) -> f64 {
+    s.checked_sub(1).map_or(state.temperature_k, |k| state.environment_k[k])
+}
