@@ -408,7 +408,13 @@ impl Columns<'_> {
             linear[s] = self.linear[i];
             factor[s * n..s * n + lit].copy_from_slice(&self.triangle[i][..lit]);
         }
-        let quadratic = Quadratic { linear, factor, origin: amplitudes.to_vec(), length: self.length };
+        let quadratic = Quadratic {
+            linear,
+            factor,
+            excess: vec![0.0; n],
+            origin: amplitudes.to_vec(),
+            length: self.length,
+        };
         let mut hull = Hull::default();
         let mut ray = Ray::default();
         let cheapest = |costs: &[f64], vertex: &mut [f64]| {

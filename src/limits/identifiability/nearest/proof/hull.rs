@@ -31,6 +31,8 @@ const LEAST: f64 = 1e-15;
 pub(super) struct Quadratic {
     pub(super) linear: Vec<f64>,
     pub(super) factor: Vec<f64>,
+    /// What F holds more of each column's square than there is.
+    pub(super) excess: Vec<f64>,
     pub(super) origin: Vec<f64>,
     pub(super) length: f64,
 }
@@ -72,7 +74,7 @@ impl Hull {
         mut cheapest: impl FnMut(&[f64], &mut [f64]),
         enough: f64,
     ) -> f64 {
-        let Quadratic { linear, factor, origin, length } = quadratic;
+        let Quadratic { linear, factor, excess, origin, length } = quadratic;
         let n = linear.len();
         for list in [&mut self.vertex, &mut self.image, &mut self.point, &mut self.change] {
             clear(list, n);
@@ -98,7 +100,7 @@ impl Hull {
                 *gradient = g + 2.0 * inner(&factor[i * n..(i + 1) * n], &self.image);
             }
             cheapest(&self.gradient, &mut self.vertex);
-            let (mut gap, mut near, mut far) = (0.0, 0.0, 0.0);
+            let (mut gap, mut near, mut far, mut more) = (0.0, 0.0, 0.0, 0.0);
             for i in 0..n {
                 let side = self.change[i] - (self.vertex[i] - origin[i]);
                 gap += self.gradient[i] * side;
@@ -106,8 +108,10 @@ impl Hull {
                 let size = inner(column, column).sqrt();
                 near += self.change[i].abs() * size;
                 far += side.abs() * size;
+                let change = self.change[i].abs();
+                more += excess[i] * change * (change + 2.0 * side.abs());
             }
-            let rounding = unit * (near * (2.0 * length + near) + 2.0 * far * (length + near));
+            let rounding = more + unit * (near * (2.0 * length + near) + 2.0 * far * (length + near));
             let bound = value - gap.max(0.0) - rounding;
             if bound > lower {
                 (lower, stale, self.rounding) = (bound, 0, rounding);
@@ -232,23 +236,22 @@ impl Hull {
     }
 }
 
-/// F of FᵀF row by row, column by column. What is left of a column is no less than rounding: then F is that of products within
-/// rounding of these, however dependent the columns.
-pub(super) fn factor_of(square: &[f64], factor: &mut Vec<f64>) {
+/// F of FᵀF row by row, column by column. What is left of a column is no less than rounding; where less would be, the
+/// difference is given as `excess`: however dependent the columns, no product is below what it was.
+pub(super) fn factor_of(square: &[f64], factor: &mut Vec<f64>, excess: &mut Vec<f64>) {
     let n = square.len().isqrt();
     clear(factor, n * n);
+    clear(excess, n);
     for k in 0..n {
-        for i in 0..=k {
+        for i in 0..k {
             let known: f64 = (0..i).map(|j| factor[k * n + j] * factor[i * n + j]).sum();
-            let left = square[k * n + i] - known;
             let pivot = factor[i * n + i];
-            factor[k * n + i] = if i == k {
-                left.max(LEAST * square[k * n + k]).sqrt()
-            } else if pivot > 0.0 {
-                left / pivot
-            } else {
-                0.0
-            };
+            let left = square[k * n + i] - known;
+            factor[k * n + i] = if pivot > 0.0 { left / pivot } else { 0.0 };
         }
+        let known: f64 = factor[k * n..k * n + k].iter().map(|x| x * x).sum();
+        let (left, least) = (square[k * n + k] - known, LEAST * square[k * n + k]);
+        factor[k * n + k] = left.max(least).sqrt();
+        excess[k] = (least - left).max(0.0);
     }
 }

@@ -4,7 +4,7 @@ use super::vectors::add_into;
 use crate::sum::dot;
 
 /// What is left of a column, as a share, below which it depends on those before.
-const DEPENDENT: f64 = 1e-14;
+const DEPENDENT: f64 = 1e-15;
 /// Share of a column that must be left after one pass for it to be orthogonal to rounding without another one.
 const ENOUGH: f64 = 0.5;
 

@@ -67,6 +67,8 @@ impl Deref for Shared<'_> {
 pub(super) struct Source {
     strength: Vec<f64>,
     pub(super) temperature_k: [f64; 2],
+    /// The temperature in the target's state.
+    pub(super) known_k: f64,
 }
 
 impl Source {
@@ -132,6 +134,7 @@ impl<'a> Sources<'a> {
                 space.range.temperature_k,
                 target.state.temperature_k,
             ),
+            known_k: target.state.temperature_k,
         };
         let objects = surroundings.objects().iter().zip(&target.state.environment_k).enumerate();
         let lights = objects.map(|(k, (object, &known))| {
@@ -140,6 +143,7 @@ impl<'a> Sources<'a> {
             Source {
                 strength: strength(&|j| (1.0 - other[j]) * own(j)),
                 temperature_k: span(unknown(Nuisance::EnvironmentTemperature), range, known),
+                known_k: known,
             }
         });
         let list = std::iter::once(surface).chain(lights).collect();
@@ -151,6 +155,7 @@ impl<'a> Sources<'a> {
         let list = self.list.iter().map(|source| Source {
             strength: few.nodes.iter().map(|&j| source.strength[j]).collect(),
             temperature_k: source.temperature_k,
+            known_k: source.known_k,
         });
         let lowest_cm1 = lowest(few.bands.nodes_cm1());
         Sources { bands: Shared::Few(Arc::clone(few)), list: list.collect(), lowest_cm1 }

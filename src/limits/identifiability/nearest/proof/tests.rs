@@ -105,11 +105,12 @@ fn the_least_of_a_quadratic_is_bounded_tightly() {
         // φ = ‖F(z − z₀) + h‖² − ‖h‖².
         let (columns, shift) = ([vector(), vector()], vector());
         let product = |i: usize, j: usize| inner(&columns[i], &columns[j]);
-        let mut factor = Vec::new();
-        factor_of(&[product(0, 0), product(0, 1), product(1, 0), product(1, 1)], &mut factor);
+        let (mut factor, mut excess) = (Vec::new(), Vec::new());
+        factor_of(&[product(0, 0), product(0, 1), product(1, 0), product(1, 1)], &mut factor, &mut excess);
         let quadratic = Quadratic {
             linear: columns.iter().map(|column| 2.0 * inner(column, &shift)).collect(),
             factor,
+            excess,
             origin: vec![0.3, 0.1],
             length: inner(&shift, &shift).sqrt(),
         };

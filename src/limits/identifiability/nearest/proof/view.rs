@@ -20,8 +20,8 @@ use super::sources::{Chord, LARGEST_LN_GAIN, Sources, Spectrum, chord, whole};
 use super::vectors::{add_into, largest_share, product_into, square_of_product};
 use crate::sum::dot;
 
-/// Rounding of a length, as a share of its terms, with that of Planck's function.
-const ROUNDING: f64 = 1e-14;
+/// Rounding of a length, as a share of its terms, besides that of Planck's function.
+const ROUNDING: f64 = 1e-15;
 /// Share of the bound wanted, or of the quadratic's least, beyond which what chords miss makes better quadratics useless.
 const COARSE: f64 = 0.25;
 /// Share of what is wanting that a better quadratic must have brought for another one to be tried.
@@ -72,6 +72,8 @@ pub(super) struct View<'a> {
     /// Sources of unknown temperature, and their spectra at the temperatures known, as far as they were needed.
     pub(super) axes: Vec<usize>,
     ends: Vec<Vec<Option<End>>>,
+    /// Rounding of the counts that are compared, as a share of them.
+    rounding: f64,
     shaped: Vec<Shaped>,
     /// Temperatures below which the axes send next to nothing.
     dark_k: Vec<f64>,
@@ -161,8 +163,10 @@ impl<'a> View<'a> {
             }
         });
         let shaped = shaped.collect();
+        // What is colder than the target sends less of its counts than it is less exact.
+        let rounding = ROUNDING + 2.0 * sources.list.first().map_or(0.0, |own| sources.rounding(own.known_k));
         let later = Later::default();
-        Self { sources, allowed, root, counts, noise, reach, axes, ends, shaped, dark_k, later }
+        Self { sources, allowed, root, counts, noise, reach, axes, ends, rounding, shaped, dark_k, later }
     }
 
     /// Makes sure of what only a look at these bands needs.
@@ -391,14 +395,15 @@ impl<'a> View<'a> {
                         (square[i * m + j], square[j * m + i]) = (product, product);
                     }
                 }
-                factor_of(square, &mut quadratic.factor);
+                factor_of(square, &mut quadratic.factor, &mut quadratic.excess);
             } else {
                 // Columns that products cannot tell apart.
                 let (triangle, _) = reduce(&mut whitened[..m], &[]);
                 quadratic.factor.clear();
+                quadratic.excess.fill(0.0);
                 triangle.iter().for_each(|column| quadratic.factor.extend(column));
             }
-            let (mut missed, mut largest) = (ROUNDING * self.later.about_target.length, -1.0);
+            let (mut missed, mut largest) = (self.rounding * self.later.about_target.length, -1.0);
             for (axis, (half, most)) in half.iter().zip(&*most).enumerate() {
                 let part = most * square_of_product(half, &metric.weight).sqrt();
                 missed += part;
