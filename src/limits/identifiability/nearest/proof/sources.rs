@@ -305,25 +305,25 @@ pub(super) struct Chord<'a> {
     pub(super) cold: [&'a [f64]; 2],
     pub(super) hot: [&'a [f64]; 2],
     pub(super) low: &'a mut [f64],
-    pub(super) high: &'a mut [f64],
+    pub(super) rise: &'a mut [f64],
     pub(super) half: &'a mut [f64],
 }
 
 dispatched! {
-    /// Both ends of the chord lowered by ρ/2, and ρ/2 with `more`: the curve is within that of them.
+    /// The cold end of the chord lowered by ρ/2, what it rises by, and ρ/2 with `more`: the curve is within that of them.
     pub(super) fn chord<'a>(chord: Chord<'a>) -> () {
-        let Chord { width, more, cold, hot, low, high, half } = chord;
+        let Chord { width, more, cold, hot, low, rise, half } = chord;
         let per_unit = 1.0 / width;
         let ends = cold[0].iter().zip(cold[1]).zip(hot[0].iter().zip(hot[1]));
-        let out = low.iter_mut().zip(high).zip(half);
-        for (((a, slope_a), (b, slope_b)), ((low, high), half)) in ends.zip(out) {
+        let out = low.iter_mut().zip(rise).zip(half);
+        for (((a, slope_a), (b, slope_b)), ((low, rise), half)) in ends.zip(out) {
             let chord = (b - a) * per_unit;
-            let (rise, rest, turn) = ((chord - slope_a).max(0.0), (slope_b - chord).max(0.0), slope_b - slope_a);
-            let sag = if turn > 0.0 { width * rise * rest / turn } else { 0.0 };
+            let (above, rest, turn) = ((chord - slope_a).max(0.0), (slope_b - chord).max(0.0), slope_b - slope_a);
+            let sag = if turn > 0.0 { width * above * rest / turn } else { 0.0 };
             let missed = 0.5 * sag.min(b - a).max(0.0);
             *half = missed + more * b;
             *low = a - missed;
-            *high = b - missed;
+            *rise = b - a;
         }
     }
 }

@@ -140,14 +140,14 @@ fn curves_lie_within_half_a_sag_of_the_lowered_chord() {
             [value, slope]
         };
         let ([cold, cold_slope], [hot, hot_slope]) = (spectrum(a), spectrum(b));
-        let [mut low, mut high, mut half] = [(); 3].map(|()| vec![0.0; nodes.len()]);
+        let [mut low, mut rise, mut half] = [(); 3].map(|()| vec![0.0; nodes.len()]);
         chord(Chord {
             width: b - a,
             more: 2e-15,
             cold: [&cold, &cold_slope],
             hot: [&hot, &hot_slope],
             low: &mut low,
-            high: &mut high,
+            rise: &mut rise,
             half: &mut half,
         });
         let mut largest = 0.0_f64;
@@ -155,7 +155,7 @@ fn curves_lie_within_half_a_sag_of_the_lowered_chord() {
             let share = f64::from(step) / 50.0;
             let [value, _] = spectrum(a + share * (b - a));
             for (j, value) in value.iter().enumerate() {
-                let middle = low[j] + share * (high[j] - low[j]);
+                let middle = low[j] + share * rise[j];
                 let off = (value - middle).abs();
                 assert!(off <= half[j] * (1.0 + 1e-9) + 1e-14 * value, "{a} {b} {j}: {off} {}", half[j]);
                 largest = largest.max(off / half[j]);
@@ -314,7 +314,7 @@ fn states_within_reach_are_among_the_amplitudes_of_their_box() {
             (point[cold], point[hot]) = (amplitude * unit * (1.0 - share), amplitude * unit * share);
             let exact = prover.all.sources.spectrum(s, t);
             for w in 0..bands.len() {
-                off[w] += point[cold] * columns[cold][w] + point[hot] * columns[hot][w]
+                off[w] += (point[cold] + point[hot]) * columns[cold][w] + point[hot] * columns[hot][w]
                     - amplitude * exact.counts[w];
                 missed[w] += amplitude * unit * halves[s][w] + 1e-14 * amplitude * exact.counts[w];
             }

@@ -30,6 +30,8 @@ const WORTH: f64 = 0.03;
 /// From how much more radiance at the hot end on a box is wide.
 const WIDE: f64 = 2.0;
 
+/// How many times the rounding of counts a distance must be to be seen in them.
+const CLEAR: f64 = 4.0;
 /// Attempts with products of columns; after that their digits are all kept.
 const PLAIN: usize = 2;
 
@@ -107,9 +109,9 @@ enum Shaped {
 struct Work {
     pieces: Pieces,
     places: Vec<Place>,
-    /// Of every axis: both ends of the chord, what it misses, and the largest amplitude.
+    /// Of every axis: the cold end of the chord, what it rises by to the hot one, what it misses, and the largest amplitude.
     low: Vec<Vec<f64>>,
-    high: Vec<Vec<f64>>,
+    rise: Vec<Vec<f64>>,
     half: Vec<Vec<f64>>,
     most: Vec<f64>,
     /// Columns times the weights.
@@ -129,7 +131,13 @@ enum Place {
     Fixed(usize),
     /// Of an axis.
     Low(usize),
-    High(usize),
+    Rise(usize),
+}
+
+/// Where rises stand; each comes after the cold end it begins at. A source stands in the quadratic by its amplitude and by that
+/// share of it which is hot: both ends may be nearly the same, what is between them keeps its digits.
+fn rises(places: &[Place]) -> impl Iterator<Item = usize> {
+    places.iter().enumerate().filter(|(_, place)| matches!(place, Place::Rise(_))).map(|(i, _)| i)
 }
 
 impl<'a> View<'a> {
@@ -188,7 +196,7 @@ impl<'a> View<'a> {
             about_target: Metric::about_target(&self.root, &self.counts, reach),
             work: Work {
                 low: empty(),
-                high: empty(),
+                rise: empty(),
                 half: empty(),
                 most: vec![0.0; axes],
                 whitened: vec![vec![0.0; bands]; self.sources.list.len() + axes],
@@ -282,7 +290,7 @@ impl<'a> View<'a> {
                     cold: [&cold.counts, &cold.slope],
                     hot: [&hot.counts, &hot.slope],
                     low: &mut work.low[axis],
-                    high: &mut work.high[axis],
+                    rise: &mut work.rise[axis],
                     half: &mut work.half[axis],
                 });
             };
@@ -312,7 +320,7 @@ impl<'a> View<'a> {
                 }
             }
             work.most[axis] = caps[0].max(0.0);
-            for (i, place) in [Place::Low(axis), Place::High(axis)].into_iter().enumerate() {
+            for (i, place) in [Place::Low(axis), Place::Rise(axis)].into_iter().enumerate() {
                 let (length, cap, temperature_k) = (lengths[i], caps[i], temperature_k[i]);
                 work.pieces.put(Piece { source: s, length, cap, temperature_k, unit });
                 work.places.push(place);
@@ -321,11 +329,11 @@ impl<'a> View<'a> {
     }
 
     /// The spectrum of a piece.
-    fn column<'w>(&'w self, [low, high]: [&'w [Vec<f64>]; 2], place: Place) -> &'w [f64] {
+    fn column<'w>(&'w self, [low, rise]: [&'w [Vec<f64>]; 2], place: Place) -> &'w [f64] {
         match place {
             Place::Fixed(s) => self.later.fixed[s].as_ref().map_or(&[], |spectrum| &spectrum.counts),
             Place::Low(axis) => &low[axis],
-            Place::High(axis) => &high[axis],
+            Place::Rise(axis) => &rise[axis],
         }
     }
 
@@ -346,7 +354,7 @@ impl<'a> View<'a> {
             pieces,
             places,
             low,
-            high,
+            rise,
             half,
             most,
             whitened,
@@ -360,8 +368,12 @@ impl<'a> View<'a> {
         let m = places.len();
         let narrower = narrower.map(|allowed| Amplitudes { total: self.allowed.total, ..allowed.clone() });
         let allowed = narrower.as_ref().unwrap_or(&self.allowed);
+        let mut both = vec![0.0; m];
         let mut cheapest = |costs: &[f64], vertex: &mut [f64]| {
-            allowed.least(pieces, costs, vertex, ray);
+            both.copy_from_slice(costs);
+            rises(places).for_each(|i| both[i] += costs[i - 1]);
+            allowed.least(pieces, &both, vertex, ray);
+            rises(places).for_each(|i| vertex[i - 1] += vertex[i]);
         };
         hull.point.clear();
         hull.point.extend_from_slice(start.unwrap_or_default());
@@ -372,7 +384,7 @@ impl<'a> View<'a> {
                 counts.clear();
                 counts.resize(self.root.len(), 0.0);
                 for (place, amount) in places.iter().zip(&hull.point).filter(|(_, amount)| **amount > 0.0) {
-                    add_into(*amount, self.column([low, high], *place), counts);
+                    add_into(*amount, self.column([low, rise], *place), counts);
                 }
                 quadratic.origin.extend_from_slice(&hull.point);
                 metric.put_about(counts, [&self.root, &self.counts, &self.noise], self.reach);
@@ -382,7 +394,7 @@ impl<'a> View<'a> {
                 &self.later.about_target
             };
             for (out, place) in whitened.iter_mut().zip(&*places) {
-                product_into(self.column([low, high], *place), &metric.weight, out);
+                product_into(self.column([low, rise], *place), &metric.weight, out);
             }
             quadratic.length = metric.length;
             quadratic.linear.clear();
@@ -403,7 +415,8 @@ impl<'a> View<'a> {
                 quadratic.excess.fill(0.0);
                 triangle.iter().for_each(|column| quadratic.factor.extend(column));
             }
-            let (mut missed, mut largest) = (self.rounding * self.later.about_target.length, -1.0);
+            let grain = self.rounding * self.later.about_target.length;
+            let (mut missed, mut largest) = (grain, -1.0);
             for (axis, (half, most)) in half.iter().zip(&*most).enumerate() {
                 let part = most * square_of_product(half, &metric.weight).sqrt();
                 missed += part;
@@ -418,12 +431,11 @@ impl<'a> View<'a> {
             let wanted = ((enough - rest).max(0.0).sqrt() + missed).powi(2) - shift;
             let fall = hull.least(quadratic, &mut cheapest, wanted);
             let left = (shift + fall).max(0.0).sqrt();
-            // (left − missed)² without the difference of squares that may be nearly equal.
-            let lower = if left > missed {
-                metric.cost - rounding + fall + missed * (missed - 2.0 * left)
-            } else {
-                rest
-            };
+            // (left − missed)² without the difference of squares that may be nearly equal; nothing of what is hardly more than
+            // the rounding of the counts that are compared.
+            let seen = left > missed && left > CLEAR * grain;
+            let apart = metric.cost - rounding + fall + missed * (missed - 2.0 * left);
+            let lower = if seen { apart } else { rest.min(0.0) };
             // Without its rounding, which another origin makes small.
             let there = shift + fall + hull.rounding;
             found.coarse = missed * missed > COARSE * enough.max(there);
@@ -448,10 +460,12 @@ impl<'a> View<'a> {
 
     /// The same, source by source.
     pub(super) fn mixture(&self) -> Mixture {
-        let Work { pieces, hull, .. } = &self.later.work;
+        let Work { pieces, places, hull, .. } = &self.later.work;
         let sources = self.sources.list.len();
         let (mut amplitudes, mut temperature_k) = (vec![0.0; sources], vec![0.0; sources]);
-        for ((amount, s), t) in hull.point.iter().zip(&pieces.source).zip(&pieces.temperature_k) {
+        let mut point = hull.point.clone();
+        rises(places).for_each(|i| point[i - 1] -= point[i]);
+        for ((amount, s), t) in point.iter().zip(&pieces.source).zip(&pieces.temperature_k) {
             amplitudes[*s] += amount;
             temperature_k[*s] += amount * t;
         }
@@ -470,7 +484,7 @@ impl<'a> View<'a> {
     pub(super) fn laid(&mut self, ends: &[[usize; 2]]) -> (Pieces, Vec<Vec<f64>>, Vec<Vec<f64>>) {
         let mut work = std::mem::take(&mut self.later.work);
         self.lay(ends, &mut work);
-        let columns = work.places.iter().map(|place| self.column([&work.low, &work.high], *place).to_vec());
+        let columns = work.places.iter().map(|place| self.column([&work.low, &work.rise], *place).to_vec());
         let laid = (work.pieces.clone(), columns.collect(), work.half.clone());
         self.later.work = work;
         laid
