@@ -4,7 +4,6 @@ use super::closing::{Minimum, Reach, close};
 use super::prover::{Goal, Prover, temperature_of};
 use super::sources::Spectrum;
 use super::view::Mixture;
-
 use crate::identifiability::nearest::refine::NearestDistance;
 use crate::identifiability::nearest::residual::{Comparison, Target};
 use crate::scene::State;
