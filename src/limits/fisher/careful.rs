@@ -5,9 +5,11 @@
 //! and where these leave a doubt in 512, so that a nuisance is left out only if it is zero or less than [`DEPENDENT`] is
 //! left of it: it then depends on the others exactly.
 //!
-//! Rounding is judged as in [`bound`](super::bound), with u = 2⁻¹¹⁸ and 2⁻⁵⁰², lengths being those of the terms that an
-//! element is made of: these are good to a few hundred units of the last place. The error that is reported is that of the
-//! numbers it ends in, doubles.
+//! Rounding: with u = 2⁻¹¹⁸ and 2⁻⁵⁰², what is left of column k is off by no more than ηₖ = u(terms of column k) + Σᵢ ρₖᵢ ηᵢ/ρᵢ, ρₖᵢ
+//! being what was left of it before direction i was taken off and ρᵢ what was left of that; elements are good to a few hundred
+//! units of the last place of the terms they are made of. A direction turns by ηᵢ/ρᵢ, and the residual by the square of that.
+//! Where even 512 bits do not tell whether a nuisance depends on the others, nothing is known of the distance, and the error
+//! says so. Otherwise it is that of the numbers it ends in, doubles.
 //!
 //! Source: paper S25–S29.
 
@@ -22,6 +24,8 @@ const FEW: usize = 2;
 const MANY: usize = 8;
 /// Share of a column below which what is left of it is nothing.
 const DEPENDENT: f64 = 1e-130;
+/// Relative error of which nothing is known.
+const UNKNOWN: f64 = 1e300;
 /// Rounding of elements and sums, in units of the last place.
 const ROUNDINGS: f64 = 512.0;
 /// Relative error that the first try may leave: none that a double would show.
@@ -150,8 +154,11 @@ fn of_scene<const L: usize>(
 struct Elimination<const L: usize> {
     columns: Vec<Vec<Wide<L>>>,
     weights: Vec<Wide<L>>,
-    /// Lengths of the terms that the elements of each column are made of.
-    terms: Vec<f64>,
+    /// Lengths of the columns, and of the terms that their elements are made of.
+    lengths: Vec<Wide<L>>,
+    terms: Vec<Wide<L>>,
+    /// Unit upper triangle, row by row.
+    triangle: Vec<Wide<L>>,
     found: Careful,
 }
 
@@ -168,7 +175,10 @@ impl<const L: usize> Elimination<L> {
         let mut found = Careful::nothing();
         found.norms = vec![0.0; count];
         found.triangle = vec![0.0; count * count];
-        let mut elimination = Self { columns: Vec::new(), weights, terms: Vec::new(), found };
+        let (columns_done, triangle) = (Vec::with_capacity(count), vec![Wide::ZERO; count * count]);
+        let (lengths, terms_done) = (Vec::with_capacity(count), Vec::with_capacity(count));
+        let mut elimination =
+            Self { columns: columns_done, weights, lengths, terms: terms_done, triangle, found };
         for Column { mut values, terms } in columns {
             let length = elimination.length(&values);
             let terms = terms.map_or(length, |terms| elimination.length(&terms));
@@ -176,7 +186,8 @@ impl<const L: usize> Elimination<L> {
             let found = &mut elimination.found;
             found.powers.push(power.clamp(i32::MIN.into(), i32::MAX.into()) as i32);
             found.lengths.push(length.shifted(-power).to_f64());
-            elimination.terms.push(terms.shifted(-power).to_f64());
+            elimination.lengths.push(length.shifted(-power));
+            elimination.terms.push(terms.shifted(-power));
             values.iter_mut().for_each(|value| *value = value.shifted(-power));
             elimination.columns.push(values);
         }
@@ -193,13 +204,19 @@ impl<const L: usize> Elimination<L> {
     }
 
     /// ‖aᵢ‖ + Σ|cⱼ|‖aⱼ‖ of a column whose parts along those before it are known, and the same of the terms.
-    fn made_of(&mut self, column: usize) -> [f64; 2] {
-        let found = &mut self.found;
-        found.coefficients = vec![0.0; column];
-        back_substitute(&found.triangle, &found.norms, column, &mut found.coefficients);
-        [&found.lengths, &self.terms].map(|lengths| {
-            let parts = found.coefficients.iter().zip(lengths).map(|(c, length)| (c * length).abs());
-            lengths[column] + parts.sum::<f64>()
+    fn made_of(&mut self, column: usize) -> [Wide<L>; 2] {
+        let (count, found) = (self.columns.len(), &mut self.found);
+        // In all digits: coefficients on columns that nearly depend on each other cancel to any degree.
+        let mut coefficients = vec![Wide::ZERO; column];
+        for row in (0..column).rev().filter(|&row| found.norms[row] > 0.0) {
+            let known = (row + 1..column).map(|i| self.triangle[row * count + i] * coefficients[i]);
+            coefficients[row] =
+                self.triangle[row * count + column] - known.fold(Wide::ZERO, |sum, part| sum + part);
+        }
+        found.coefficients = coefficients.iter().map(|c| c.to_f64()).collect();
+        [&self.lengths, &self.terms].map(|lengths| {
+            let parts = coefficients.iter().zip(lengths).map(|(c, length)| c.abs() * *length);
+            parts.fold(lengths[column], |sum, part| sum + part)
         })
     }
 
@@ -207,6 +224,8 @@ impl<const L: usize> Elimination<L> {
     fn finish(mut self) -> Option<Careful> {
         let count = self.columns.len();
         let Some(last) = count.checked_sub(1) else { return Some(self.found) };
+        // How far what is left of a column may be off: by its own rounding, and by that of every direction that was taken off it.
+        let mut noise: Vec<f64> = self.terms.iter().map(|terms| Self::UNIT * terms.to_f64()).collect();
         let mut turned = 0.0;
         for pivot in 0..last {
             let length = self.found.lengths[pivot];
@@ -216,32 +235,38 @@ impl<const L: usize> Elimination<L> {
             let [made_of, terms] = self.made_of(pivot);
             let left = square.sqrt().to_f64();
             let nothing = if Self::LAST { DEPENDENT } else { 0.0 };
-            if length == 0.0 || left <= nothing * made_of {
+            if length == 0.0 || left <= (Wide::from(nothing) * made_of).to_f64() {
                 if length > 0.0 && !Self::LAST {
                     return None;
                 }
+                // Neither plain rounding, which it is if it depends on the others, nor surely more than all rounding.
+                let plain = Self::UNIT * terms.to_f64();
+                turned += if left > plain && left <= noise[pivot] { UNKNOWN } else { 0.0 };
                 self.found.dropped.push(pivot);
                 continue;
             }
-            turned += (Self::UNIT * terms / left).powi(2);
+            turned += (noise[pivot] / left).powi(2);
             if turned > GOOD && !Self::LAST {
                 return None;
             }
             self.found.norms[pivot] = left;
             let inverse = square.inverse();
-            let (done, later) = self.columns.split_at_mut(pivot + 1);
-            for (i, column) in later.iter_mut().enumerate() {
-                let share = inner(column, &weighted) * inverse;
-                self.found.triangle[pivot * count + pivot + 1 + i] = share.to_f64();
-                for (value, pivot) in column.iter_mut().zip(&done[pivot]) {
+            for column in pivot + 1..count {
+                let before = inner(&self.columns[column], &self.weighted(column)).sqrt().to_f64();
+                noise[column] += before * (noise[pivot] / left + Self::UNIT);
+                let share = inner(&self.columns[column], &weighted) * inverse;
+                self.found.triangle[pivot * count + column] = share.to_f64();
+                self.triangle[pivot * count + column] = share;
+                let (done, later) = self.columns.split_at_mut(column);
+                for (value, pivot) in later[0].iter_mut().zip(&done[pivot]) {
                     *value = *value - share * *pivot;
                 }
             }
         }
-        let [_, terms] = self.made_of(last);
+        self.made_of(last);
         let norm = self.found.lengths[last];
         let residual = inner(&self.columns[last], &self.weighted(last)).sqrt().to_f64();
-        let noise = Self::UNIT * terms;
+        let noise = noise[last];
         let found = &mut self.found;
         found.triangle[count * count - 1] = 1.0;
         (found.norm, found.residual) = (norm, residual);
@@ -252,7 +277,7 @@ impl<const L: usize> Elimination<L> {
             if relative_error > GOOD && !Self::LAST {
                 return None;
             }
-            found.relative_error = relative_error + CONVERSION;
+            found.relative_error = relative_error.min(UNKNOWN) + CONVERSION;
         }
         found.norms[last] = found.residual;
         Some(self.found)

@@ -306,7 +306,7 @@ impl<'a> LocalSolver<'a> {
 
     /// Every object at the target's temperature, black, and together all around, to the last bit of their shares: 0.3 and
     /// 0.7 are not quite 1.
-    fn in_equilibrium(&self, state: &State) -> bool {
+    pub(super) fn in_equilibrium(&self, state: &State) -> bool {
         let rounding = if state.lighting.len() > 1 { 0.5 * f64::EPSILON } else { 0.0 };
         if crate::scene::unlit(&state.lighting).abs() > rounding {
             return false;

@@ -327,7 +327,8 @@ impl<'a> LocalMatrix<'a> {
         let priors = matches!(weights, Weights::Counting(_)) && self.unknowns.has_priors();
         let count = self.parameters.len();
         let few = count <= MOST_NUISANCES && bands.len() > count;
-        if priors || !few || !bands.one_node_per_band() || self.pair.loses_light(state) {
+        let each_alone = self.pair.loses_light(state) || self.pair.in_equilibrium(state);
+        if priors || !few || !bands.one_node_per_band() || each_alone {
             return None;
         }
         let total_known = self.unknowns.known_lighting_total().is_some();

@@ -8,6 +8,7 @@ use crate::reference::Extended;
 use crate::reference::local::{LocalReference, Noise, Pair};
 use hadar::error::Result;
 use hadar::fisher::Counting;
+use hadar::identifiability::Status;
 use hadar::identifiability::multi::LocalMatrix;
 
 /// Fewest bands here, and how many times as many there are at most.
@@ -32,7 +33,7 @@ pub(super) fn materials(draw: &mut Draw, found: &mut Findings) -> Result<()> {
     let Scene { bands, surroundings, state, unknowns, .. } = &scene;
     let mut reference = LocalReference::new(bands, surroundings, unknowns.clone());
     let signal: Vec<f64> = reference.signal(all[0], state).iter().map(Extended::to_f64).collect();
-    if all.iter().any(|target| in_the_dark(&mut reference, target, state)) {
+    if all.iter().any(|target| in_the_dark(&reference.signal(target, state))) {
         return Ok(());
     }
     let counting: Counting;
@@ -60,6 +61,11 @@ pub(super) fn materials(draw: &mut Draw, found: &mut Findings) -> Result<()> {
             };
             let value = fast[3 * i + j];
             found.require(value.is_finite() && value >= 0.0, || format!("distance {value}"));
+            if alone.status == Status::Equilibrium {
+                // To the last bit of the lighting factors.
+                found.require(value == 0.0, || format!("distance {value:e} in equilibrium"));
+                continue;
+            }
             let exact = reference.answer(Pair { emissivity: target, alternative, state }, noise, &[]);
             if faint(&exact) {
                 continue;
