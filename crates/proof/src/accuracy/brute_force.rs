@@ -26,7 +26,7 @@ use super::stress::draw::Draw;
 use crate::reference::brute_force::BruteForce;
 use crate::reference::double_double::Real;
 use crate::reference::local::{Noise, Pair};
-use hadar::error::{Result, check};
+use hadar::error::{Error, Result};
 use hadar::identifiability::nearest::{NearestDistance, NearestSolver};
 use hadar::scene::State;
 use rayon::prelude::*;
@@ -45,15 +45,30 @@ const MISSED: f64 = 1e-9;
 /// Share of the separation at the target's own state below which a distance is none: the alternative can imitate the target.
 const VANISHING: f64 = 1e-12;
 
+/// Scenes of a set at most: a month of two cores.
+const MOST_SCENES: u64 = 1_000_000;
+
 /// Holds the crate's nearest distances against the brute force, telling `progress` how many of how many are done.
 ///
 /// # Errors
-/// A plan without scenes.
+/// A plan without scenes, with more than a million of a set, or of a scene beyond those.
 pub fn brute_force(plan: &BruteForcePlan, progress: &(dyn Fn(u64, u64) + Sync)) -> Result<BruteForceReport> {
-    check::positive("scenes of the brute force", plan.scenes_per_set as f64, "")?;
     let sets = Set::all();
     let count = sets.len() as u64;
-    let cases = plan.only.map_or(0..plan.scenes_per_set * count, |case| case..case + 1);
+    let among = |quantity: &str, value: u64, least: u64, most: u64| {
+        let expected = || format!("from {least} to {most}");
+        let fits = (least..=most).contains(&value);
+        fits.then_some(value).ok_or_else(|| Error::out_of_range(quantity, value as f64, "", expected()))
+    };
+    let cases = match plan.only {
+        Some(case) => {
+            let case = among("number of the scene", case, 0, MOST_SCENES * count - 1)?;
+            case..case + 1
+        }
+        None => {
+            0..count * among("scenes of the brute force of every set", plan.scenes_per_set, 1, MOST_SCENES)?
+        }
+    };
     let (done, all) = (AtomicU64::new(0), cases.end - cases.start);
     let run = |case: u64| {
         let judged = caught(plan.seed, case, sets[(case % count) as usize]);

@@ -59,9 +59,9 @@ pub fn stress(plan: &StressPlan, progress: &(dyn Fn(u64, u64) + Sync)) -> Result
     let done = AtomicU64::new(0);
     let run = |block: u64| {
         let mut tallies = Tallies::default();
-        let cases = block * TOGETHER..((block + 1) * TOGETHER).min(plan.cases);
-        let count = cases.end - cases.start;
-        for case in cases {
+        let first = block * TOGETHER;
+        let count = TOGETHER.min(plan.cases - first);
+        for case in (0..count).map(|case| first + case) {
             tallies.add(case, Family::of(case), caught(|| one(plan.seed, case)));
         }
         progress(done.fetch_add(count, Ordering::Relaxed) + count, plan.cases);
