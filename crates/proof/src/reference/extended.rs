@@ -1,8 +1,8 @@
 //! Numbers of [`PRECISION`] bits with the usual operators.
 //!
 //! Sum, difference, product, quotient and square root are those of `astro-float-num`, rounded to nearest. The
-//! exponential is e^x = 2^k (e^{r/2^m})^{2^m} with x = k ln2 + r, |r| ≤ ½ ln2, m = 20, by Taylor's series, with
-//! 128 more bits, as squaring m times loses m of them; the logarithm is found by Halley's method on it. Constants
+//! exponential is e^x = 2^k Π e^{jᵢ/256^i} e^r with x = k ln2 + Σ jᵢ/256^i + r, 0 ≤ r < 2⁻³², the factors from tables and e^r by
+//! Taylor's series, with 128 more bits; the logarithm is found by Halley's method on it. Constants
 //! come from series: ln2 = Σ 2^{-k}/k, and π by Machin's formula. All are good to the last bits.
 //!
 //! Assumption: arguments of [`Extended::exp`] within ±10⁹.
@@ -18,10 +18,11 @@ pub const PRECISION: usize = 512;
 const GUARD: usize = 128;
 const WORKING: usize = PRECISION + GUARD;
 const NEAREST: RoundingMode = RoundingMode::ToEven;
-/// How often the argument of the exponential is halved before its series.
-const HALVINGS: i32 = 20;
-/// Terms of that series: (½ ln2/2²⁰)ⁿ/n! is below 2⁻⁶⁰⁰ at n = 24.
-const TERMS: usize = 25;
+/// Terms of the exponential's series: rⁿ/n! is below 2⁻⁶⁴⁰ at n = 19.
+const TERMS: usize = 20;
+/// Tables of the exponential: of how many bits of its argument each, and how many.
+const BITS: u32 = 8;
+const TABLES: u32 = 4;
 
 /// A number of 512 bits, 154 digits.
 ///
@@ -38,6 +39,8 @@ struct Constants {
     ln2: BigFloat,
     pi: BigFloat,
     inverse_factorials: Vec<BigFloat>,
+    /// e^{j/256^i} for j below 256, one table for every i from 1 on.
+    exponentials: Vec<Vec<BigFloat>>,
 }
 
 static CONSTANTS: LazyLock<Constants> = LazyLock::new(|| {
@@ -58,7 +61,23 @@ static CONSTANTS: LazyLock<Constants> = LazyLock::new(|| {
         WORKING,
         NEAREST,
     );
-    Constants { ln2, pi: machin, inverse_factorials }
+    let exponentials = (1..=TABLES).map(|table| {
+        let step = working(0.5f64.powi((BITS * table) as i32));
+        let mut first = working(0.0);
+        for n in (1..=WORKING).rev() {
+            // Horner: 1 + s/1 (1 + s/2 (1 + s/3 …)).
+            let inner = first.add(&working(1.0), WORKING, NEAREST).mul(&step, WORKING, NEAREST);
+            first = inner.div(&working(n as f64), WORKING, NEAREST);
+        }
+        let first = first.add(&working(1.0), WORKING, NEAREST);
+        let mut powers = vec![working(1.0)];
+        while powers.len() < 1 << BITS {
+            powers.push(powers[powers.len() - 1].mul(&first, WORKING, NEAREST));
+        }
+        powers
+    });
+    let exponentials = exponentials.collect();
+    Constants { ln2, pi: machin, inverse_factorials, exponentials }
 });
 
 fn working(value: f64) -> BigFloat {
@@ -218,15 +237,20 @@ impl Extended {
             return Self::one();
         }
         let constants = &*CONSTANTS;
-        let power = (self.to_f64() * std::f64::consts::LOG2_E).round();
+        let power = (self.to_f64() * std::f64::consts::LOG2_E).floor();
         let whole = constants.ln2.mul(&working(power), WORKING, NEAREST);
-        let rest = Self(self.0.sub(&whole, WORKING, NEAREST)).times_power_of_two(-HALVINGS).0;
+        let rest = self.0.sub(&whole, WORKING, NEAREST);
+        let scale = f64::from(BITS * TABLES).exp2();
+        // At a whole multiple of ln2 the rest may be rounding below 0.
+        let digits = (nearest_double(&rest) * scale).floor().clamp(0.0, scale - 1.0);
+        let rest = rest.sub(&working(digits / scale), WORKING, NEAREST);
         let mut value = working(0.0);
         for coefficient in constants.inverse_factorials.iter().rev() {
             value = value.mul(&rest, WORKING, NEAREST).add(coefficient, WORKING, NEAREST);
         }
-        for _ in 0..HALVINGS {
-            value = value.mul(&value, WORKING, NEAREST);
+        for (table, powers) in (1..).zip(&constants.exponentials) {
+            let digit = (digits as usize >> (BITS * (TABLES - table))) % (1 << BITS);
+            value = value.mul(&powers[digit], WORKING, NEAREST);
         }
         Self(value).times_power_of_two(power as i32).rounded()
     }

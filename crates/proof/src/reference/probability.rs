@@ -1,7 +1,8 @@
 //! Tail of the normal law, and the exact error of the best test between two Poisson laws, in extended precision.
 //!
 //! * Φ(−d) = ½ − (2π)^{-½} e^{−d²/2} Σ d^{2n+1}/(2n+1)!! below d = 6 (what the subtraction loses, 26 bits, is there to
-//!   lose), and above it (2π)^{-½} e^{−d²/2}/(d + 1/(d + 2/(d + 3/(d + …)))), of which 800 partial fractions give all digits;
+//!   lose), and above it (2π)^{-½} e^{−d²/2}/(d + 1/(d + 2/(d + 3/(d + …)))), of which 800 partial fractions give all digits at
+//!   d = 6, and fewer beyond;
 //! * error = ½Σₙ min(p(n), q(n)) over the counts of up to three bands, p and q products of Poisson laws: in the last
 //!   band the smaller of the two is one law below a count and the other above it, where cumulative sums serve.
 //!
@@ -9,8 +10,10 @@
 
 use super::Extended;
 
-/// Partial fractions: the relative error after n of them is about e^{−2d√(2n)}, below 1e-150 for d ≥ 6.
-const FRACTIONS: u32 = 800;
+/// Partial fractions at d = [`FAR`], and at least: the relative error after n of them is about e^{−2d√(2n)}, below 1e-150 for as many
+/// as 1/d² of these.
+const FRACTIONS: f64 = 800.0;
+const FEWEST_FRACTIONS: f64 = 30.0;
 /// Distance from which the continued fraction is used.
 const FAR: f64 = 6.0;
 /// Share of a law that counts left out may have.
@@ -29,7 +32,8 @@ pub fn normal_tail(distance: f64) -> Extended {
     } else {
         let d = Extended::from(distance.abs());
         let mut below = d.clone();
-        for n in (1..FRACTIONS).rev() {
+        let fractions = FRACTIONS * (FAR / distance).powi(2) + FEWEST_FRACTIONS;
+        for n in (1..fractions as u32).rev() {
             below = &d + Extended::from(f64::from(n)) / below;
         }
         density(&d) / below
