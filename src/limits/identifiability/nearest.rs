@@ -24,8 +24,8 @@ mod refine;
 mod residual;
 mod search;
 
-use self::proof::Few;
 pub use self::proof::Nearer;
+use self::proof::{Few, Memory};
 pub use self::refine::NearestDistance;
 use self::refine::{NO_GAIN, refine};
 use self::residual::{Comparison, Metric, Target};
@@ -62,6 +62,7 @@ pub struct NearestSolver<'a> {
     table: Option<EmissionTable>,
     /// Every so many bands, where there are many.
     few: Option<Arc<Few>>,
+    memory: Memory,
     /// To what share of its distance a nearest state is proved, if at all.
     tolerance: Option<f64>,
 }
@@ -79,6 +80,7 @@ impl<'a> NearestSolver<'a> {
             comparison: Comparison::new(bands, surroundings, unknowns, range),
             table: None,
             few: Few::of(bands, FEW_BANDS),
+            memory: Memory::default(),
             tolerance: None,
         }
     }
@@ -133,7 +135,8 @@ impl<'a> NearestSolver<'a> {
     }
 
     /// Whether any state of the alternative is nearer than `limit`, with the camera's own noise: the search
-    /// ends at the first one, and where there is none with a proof.
+    /// ends at the first one, and where there is none with a proof, which a minimum that is `known` makes quicker where it is
+    /// hardly farther.
     ///
     /// # Errors
     /// A scene without photons.
@@ -144,10 +147,11 @@ impl<'a> NearestSolver<'a> {
         state: &State,
         counting: &Counting,
         limit: f64,
+        known: Option<&NearestDistance>,
     ) -> Result<Nearer> {
         let metric = Metric::Counting(counting);
         let target = self.comparison.aim(emissivity, alternative, state, metric)?;
-        let first = self.proved_nearer(&target, limit, None, FIRST_BOXES);
+        let first = self.proved_nearer(&target, limit, known, FIRST_BOXES);
         if first != Nearer::Undecided {
             return Ok(first);
         }
@@ -171,25 +175,24 @@ impl<'a> NearestSolver<'a> {
         known: Option<&NearestDistance>,
         boxes: u64,
     ) -> Nearer {
-        proof::nearer_than(&mut self.comparison, self.few.as_ref(), target, limit, known, boxes)
+        let with = (self.few.as_ref(), &mut self.memory);
+        proof::nearer_than(&mut self.comparison, with, target, limit, known, boxes)
     }
 
-    /// Whether a descent from the target's own state comes to one of the alternative's that is nearer than `limit`. It
-    /// ends there, and sees nothing of other minima: that it finds none proves nothing.
+    /// Downhill from the target's own state to a minimum, or to the first state that is nearer than `limit`. Other minima are not
+    /// seen: that it finds none nearer proves nothing.
     ///
     /// # Errors
     /// A scene without photons.
-    pub fn descends_below(
+    pub fn descend(
         &mut self,
         emissivity: &[f64],
         alternative: &[f64],
         state: &State,
         counting: &Counting,
         limit: f64,
-    ) -> Result<bool> {
-        let metric = Metric::Counting(counting);
-        let found = self.search(emissivity, alternative, state, metric, Some(state), limit)?;
-        Ok(found.distance < limit)
+    ) -> Result<NearestDistance> {
+        self.search(emissivity, alternative, state, Metric::Counting(counting), Some(state), limit)
     }
 
     /// Statistical distance to the alternative in the target's own state (as far as that is within the
@@ -235,21 +238,27 @@ impl<'a> NearestSolver<'a> {
                 converged: false,
             });
         }
-        let start_is_free = start.is_none();
-        let starts = match start {
-            Some(start) => vec![self.comparison.space.free_of(start, state)],
-            None => self.comparison.starts(&mut self.table, &target, own_cost, 0.0),
-        };
         let mut best: Option<NearestDistance> = None;
-        let mut iterations = 0;
-        for start in starts {
-            let candidate = refine(&mut self.comparison, &target, start, best.as_ref(), enough);
-            iterations += candidate.iterations;
-            if candidate.distance < enough {
-                return Ok(candidate);
-            }
-            if best.as_ref().is_none_or(|best| candidate.distance < best.distance) {
-                best = Some(candidate);
+        let tolerance = self.tolerance.filter(|_| start.is_none());
+        let starts = match (start, tolerance) {
+            (Some(start), _) => vec![self.comparison.space.free_of(start, state)],
+            // A proof finds other valleys by itself.
+            (None, Some(_)) => vec![state.clone()],
+            (None, None) => self.comparison.starts(&mut self.table, &target, own_cost, 0.0),
+        };
+        if self.descend_from(&target, starts, &mut best, enough) {
+            return best.ok_or_else(nothing_in_range);
+        }
+        if let Some(tolerance) = tolerance {
+            self.prove(&target, &mut best, tolerance);
+            if best.as_ref().is_none_or(|best| !best.is_proved_to(tolerance)) {
+                // Where it does not end, the search may know of one.
+                let before = best.as_ref().map_or(f64::INFINITY, |best| best.distance);
+                let starts = self.comparison.starts(&mut self.table, &target, own_cost, 0.0);
+                self.descend_from(&target, starts, &mut best, enough);
+                if best.as_ref().is_some_and(|best| best.distance < before) {
+                    self.prove(&target, &mut best, tolerance);
+                }
             }
         }
         match best {
@@ -258,11 +267,7 @@ impl<'a> NearestSolver<'a> {
                 let instead = "take a warmer scene, more lighting, or bands at lower wavenumbers";
                 Err(Error::malformed(found, instead))
             }
-            Some(best) => {
-                let mut best = NearestDistance { iterations, ..best };
-                if let Some(tolerance) = self.tolerance.filter(|_| start_is_free) {
-                    best = proof::prove(&mut self.comparison, self.few.as_ref(), &target, best, tolerance);
-                }
+            Some(mut best) => {
                 if best.distance > 0.0 {
                     let terms = self.comparison.terms(&target, &best.state);
                     let (_, last_cm1) = self.comparison.target.bands().range_cm1();
@@ -281,7 +286,41 @@ impl<'a> NearestSolver<'a> {
                 }
                 Ok(best)
             }
-            None => Err(Error::malformed("the alternative has no state in its range", "widen the range")),
+            None => Err(nothing_in_range()),
+        }
+    }
+
+    /// Downhill from every start to the best of all, with the iterations of all; whether that ended early, nearer than `enough`.
+    fn descend_from(
+        &mut self,
+        target: &Target<'_>,
+        starts: Vec<State>,
+        best: &mut Option<NearestDistance>,
+        enough: f64,
+    ) -> bool {
+        let mut iterations = best.as_ref().map_or(0, |best| best.iterations);
+        for start in starts {
+            let candidate = refine(&mut self.comparison, target, start, best.as_ref(), enough);
+            iterations += candidate.iterations;
+            let found = candidate.distance < enough;
+            if best.as_ref().is_none_or(|best| candidate.distance < best.distance) {
+                *best = Some(candidate);
+            }
+            if let Some(best) = best {
+                best.iterations = iterations;
+            }
+            if found {
+                return true;
+            }
+        }
+        false
+    }
+
+    /// Proves the best state, or finds a better one.
+    fn prove(&mut self, target: &Target<'_>, best: &mut Option<NearestDistance>, tolerance: f64) {
+        if let Some(known) = best.take_if(|best| best.distance.is_finite()) {
+            let with = (self.few.as_ref(), &mut self.memory);
+            *best = Some(proof::prove(&mut self.comparison, with, target, known, tolerance));
         }
     }
 
@@ -315,4 +354,8 @@ impl<'a> NearestSolver<'a> {
         }
         Ok(distinct)
     }
+}
+
+fn nothing_in_range() -> Error {
+    Error::malformed("the alternative has no state in its range", "widen the range")
 }

@@ -21,7 +21,7 @@ use crate::demand::{self, Attempt, Proof, Reason, Skipping, Thing};
 use crate::error::{Error, Result, check};
 use crate::fisher::Counting;
 use crate::identifiability::local::LocalSolver;
-use crate::identifiability::nearest::{Nearer, NearestSolver};
+use crate::identifiability::nearest::{Nearer, NearestDistance, NearestSolver};
 use crate::scene::{EnvironmentObject, Surroundings, check_emissivity};
 use crate::spectrum::Bands;
 use rayon::prelude::*;
@@ -64,6 +64,8 @@ struct Solvers<'s> {
     few: Option<(LocalSolver<'s>, NearestSolver<'s>)>,
     /// The local distance in few bands of the pair at hand.
     estimate: f64,
+    /// Where a descent in all bands ended.
+    minimum: Option<NearestDistance>,
 }
 
 /// The scene in every n-th band.
@@ -201,7 +203,7 @@ impl<'q> Question<'q> {
             let local = LocalSolver::new(bands, surroundings, (*unknowns).clone());
             (local, NearestSolver::new(bands, surroundings, (*unknowns).clone(), *range))
         });
-        Solvers { all: self.scene.solver(), few, estimate: f64::NAN }
+        Solvers { all: self.scene.solver(), few, estimate: f64::NAN, minimum: None }
     }
 
     /// What one distance takes at most.
@@ -237,11 +239,14 @@ impl<'q> Question<'q> {
             Ok(Attempt::Open)
         };
         let descent = |solvers: &mut Solvers<'_>| {
+            solvers.minimum = None;
             let in_all = solvers.estimate * self.few.map_or(1.0, |few| few.stride as f64).sqrt();
-            if in_all >= required {
+            if in_all >= CLOSE * required {
                 return Ok(Attempt::NotTried);
             }
-            let nearer = solvers.all.descends_below(own, other, state, counting, required)?;
+            let found = solvers.all.descend(own, other, state, counting, required)?;
+            let nearer = found.distance < required;
+            solvers.minimum = Some(found);
             Ok(nearer.then_some(false).into())
         };
         let few_bands = |solvers: &mut Solvers<'_>| {
@@ -251,10 +256,10 @@ impl<'q> Question<'q> {
             };
             let (own, other) = (&few.emissivities[a], &few.emissivities[b]);
             // One state that is nearer in the few bands, and they prove nothing.
-            if close && solver.descends_below(own, other, state, &few.counting, required)? {
+            if close && solver.descend(own, other, state, &few.counting, required)?.distance < required {
                 return Ok(Attempt::NotTried);
             }
-            let found = solver.nearer_than(own, other, state, &few.counting, required)?;
+            let found = solver.nearer_than(own, other, state, &few.counting, required, None)?;
             Ok((found == Nearer::Nowhere).then_some(true).into())
         };
         let in_full = |solvers: &mut Solvers<'_>| {
@@ -262,7 +267,8 @@ impl<'q> Question<'q> {
                 let found = solvers.all.with_counting(own, other, state, counting)?;
                 return Ok((found.distance >= required, None));
             }
-            Ok(match solvers.all.nearer_than(own, other, state, counting, required)? {
+            let known = solvers.minimum.take();
+            Ok(match solvers.all.nearer_than(own, other, state, counting, required, known.as_ref())? {
                 Nearer::Somewhere => (false, Some(Reason::NearerState)),
                 Nearer::Nowhere => (true, None),
                 // On the safe side.

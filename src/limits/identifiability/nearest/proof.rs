@@ -14,6 +14,7 @@
 
 mod about;
 mod amplitudes;
+mod bound;
 mod closing;
 mod hull;
 mod metric;
@@ -24,6 +25,7 @@ mod vectors;
 mod view;
 
 use self::about::Closed;
+pub(super) use self::prover::Memory;
 use self::prover::{Goal, Prover};
 pub(super) use self::sources::Few;
 use super::refine::{NearestDistance, refine};
@@ -95,14 +97,14 @@ impl Eq for Region {}
 /// Whether any state is nearer than `limit`; `known` is the nearest one that a search has found, if there was one.
 pub(super) fn nearer_than(
     comparison: &mut Comparison<'_>,
-    few: Option<&Arc<Few>>,
+    (few, memory): (Option<&Arc<Few>>, &mut Memory),
     target: &Target<'_>,
     limit: f64,
     known: Option<&NearestDistance>,
     boxes: u64,
 ) -> Nearer {
     let goal = Goal { limit: limit * limit, enough: limit * limit * (1.0 + 4.0 * MARGIN), boxes };
-    match Prover::new(comparison, few, target, limit).run(comparison, target, known, goal) {
+    match Prover::new(comparison, few, memory, target, limit).run(comparison, target, known, goal) {
         Outcome::Nearer(_) => Nearer::Somewhere,
         Outcome::Bound(lower) if lower * (1.0 - MARGIN) >= limit => Nearer::Nowhere,
         Outcome::Bound(_) => Nearer::Undecided,
@@ -112,7 +114,7 @@ pub(super) fn nearer_than(
 /// The best state with a bound proved to `tolerance` of its distance, or as far as the effort goes.
 pub(super) fn prove(
     comparison: &mut Comparison<'_>,
-    few: Option<&Arc<Few>>,
+    (few, memory): (Option<&Arc<Few>>, &mut Memory),
     target: &Target<'_>,
     mut best: NearestDistance,
     tolerance: f64,
@@ -124,7 +126,7 @@ pub(super) fn prove(
         let cost = best.distance * best.distance;
         // A little more than asked for, so that a bound rounded down does not miss it.
         let share = 1.0 - 0.9 * tolerance;
-        let prover = Prover::new(comparison, few, target, best.distance);
+        let prover = Prover::new(comparison, few, memory, target, best.distance);
         let boxes = BOXES[prover.all.axes.len().min(BOXES.len() - 1)];
         let goal = Goal { limit: cost, enough: share * share * cost, boxes };
         match prover.run(comparison, target, Some(&best), goal) {
@@ -145,7 +147,7 @@ pub(super) fn prove(
     best
 }
 
-impl Prover<'_> {
+impl Prover<'_, '_> {
     fn run(
         mut self,
         comparison: &mut Comparison<'_>,
@@ -187,7 +189,7 @@ impl Prover<'_> {
                 let (bound, axis, in_all) = self.bound(&part.ends, None, enough);
                 part.bound = bound.max(part.bound);
                 if part.bound < enough && in_all {
-                    let (state, cost) = self.candidate(comparison, target, &self.all.mixture());
+                    let (state, cost) = self.candidate(comparison, target, &self.bounder.mixture(&self.all));
                     if cost < limit * (1.0 - 1e-12) {
                         return Outcome::Nearer(state);
                     }
@@ -242,7 +244,7 @@ impl Prover<'_> {
     fn halves(&mut self, region: &Region, axis: usize) -> Vec<Region> {
         let ends = region.ends[axis];
         let [a, b] = ends.map(|end| self.temperature_k[axis][end]);
-        let middle = if b > 1.2 * a { (a * b).sqrt() } else { 0.5 * (a + b) };
+        let middle = self.all.middle(axis, [a, b]);
         if !(middle > a && middle < b) || b - a <= 1e-13 * b {
             return Vec::new();
         }

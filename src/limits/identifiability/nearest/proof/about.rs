@@ -1,9 +1,9 @@
 //! Closes the widest box about the best state that can be ([`super::closing`]).
 
+use super::bound::Mixture;
 use super::closing::{Minimum, Reach, close};
 use super::prover::{Goal, Prover, temperature_of};
 use super::sources::Spectrum;
-use super::view::Mixture;
 use crate::identifiability::nearest::refine::NearestDistance;
 use crate::identifiability::nearest::residual::{Comparison, Target};
 use crate::scene::State;
@@ -22,7 +22,7 @@ pub(super) enum Closed {
     Nothing,
 }
 
-impl Prover<'_> {
+impl Prover<'_, '_> {
     /// Closes the widest box about the best state that can be: its bound, where it is least, and its faces.
     pub(super) fn close_about(
         &mut self,

@@ -20,6 +20,8 @@ const STEPS: usize = 50;
 
 /// Share of a cost within which two of them are the same.
 const ROUNDING: f64 = 1e-15;
+/// Rounding of a cost, of amplitudes and of what is chosen by them, as a share of the cost.
+const LAST_DIGITS: f64 = 4e-15;
 
 /// The pieces of a box: whose they are, how long, how far each may go (without the gain), and at what temperature they are.
 #[derive(Debug, Clone, Default)]
@@ -143,6 +145,21 @@ impl Amplitudes {
             vertex.fill(f64::NAN);
         }
         least
+    }
+
+    /// How far above the least of all states within reach [`Amplitudes::least`] may come out: it is exact for costs that are off by
+    /// their last digits, Σ |cost| · amplitude of the one found and of any other.
+    pub(super) fn rounding(&self, pieces: &Pieces, cost: &[f64], vertex: &[f64]) -> f64 {
+        let at = |i: usize| {
+            let range = match pieces.source[i].checked_sub(1) {
+                _ if self.gain_free => f64::INFINITY,
+                None => 1.0,
+                Some(k) => self.ranges[k][1],
+            };
+            let most = (self.total / pieces.length[i]).min(range / pieces.unit[i][0]);
+            if cost[i] == 0.0 { 0.0 } else { cost[i].abs() * (most + vertex[i].abs()) }
+        };
+        LAST_DIGITS * (0..cost.len()).map(at).sum::<f64>()
     }
 
     /// With c₀ = 1 at most; caps hold where the gain is not free.

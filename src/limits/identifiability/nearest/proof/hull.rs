@@ -66,12 +66,12 @@ fn clear(list: &mut Vec<f64>, len: usize) {
 }
 
 impl Hull {
-    /// A lower bound of φ; searches until it is `enough` or cannot be raised. `cheapest` gives the vertex of least linear
-    /// cost.
+    /// A lower bound of φ; searches until it is `enough` or cannot be raised. `cheapest` puts the vertex of least linear
+    /// cost and returns what rounding may lift that by.
     pub(super) fn least(
         &mut self,
         quadratic: &Quadratic,
-        mut cheapest: impl FnMut(&[f64], &mut [f64]),
+        mut cheapest: impl FnMut(&[f64], &mut [f64]) -> f64,
         enough: f64,
     ) -> f64 {
         let Quadratic { linear, factor, excess, origin, length } = quadratic;
@@ -91,16 +91,19 @@ impl Hull {
         for _ in 0..JOINS {
             self.change.fill(0.0);
             self.image.fill(0.0);
-            for (i, share) in self.shares.iter().enumerate() {
-                add(&mut self.change, *share, &self.vertices[i * n..(i + 1) * n]);
-                add(&mut self.image, *share, &self.images[i * n..(i + 1) * n]);
+            for (share, vertex) in self.shares.iter().zip(self.vertices.chunks(n)) {
+                add(&mut self.change, *share, vertex);
+            }
+            // Not of the images of vertices, whose rounding is by how far these are.
+            for (change, column) in self.change.iter().zip(factor.chunks(n)) {
+                add(&mut self.image, *change, column);
             }
             let value = inner(linear, &self.change) + inner(&self.image, &self.image);
             for (i, (gradient, g)) in self.gradient.iter_mut().zip(linear).enumerate() {
                 *gradient = g + 2.0 * inner(&factor[i * n..(i + 1) * n], &self.image);
             }
-            cheapest(&self.gradient, &mut self.vertex);
-            let (mut gap, mut near, mut far, mut more) = (0.0, 0.0, 0.0, 0.0);
+            let mut more = cheapest(&self.gradient, &mut self.vertex);
+            let (mut gap, mut near, mut far) = (0.0, 0.0, 0.0);
             for i in 0..n {
                 let side = self.change[i] - (self.vertex[i] - origin[i]);
                 gap += self.gradient[i] * side;

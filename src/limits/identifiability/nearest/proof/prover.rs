@@ -1,8 +1,9 @@
 //! A pair as a proof sees it: in few bands and in all, with the ends of intervals that both know.
 
 use super::amplitudes::Amplitudes;
+use super::bound::{Bounder, Mixture};
 use super::sources::{Few, Sources};
-use super::view::{Mixture, View};
+use super::view::View;
 use crate::fisher::Nuisance;
 use crate::identifiability::nearest::residual::{Comparison, Target};
 use crate::scene::{Parameter, State};
@@ -10,6 +11,11 @@ use std::sync::Arc;
 
 /// Quadratics that are tried in a box.
 const QUADRATICS: usize = 5;
+
+/// Share of what is enough that few bands must promise of all of them, for these to be looked at in a wide box, and from how many
+/// times as warm at its hot end on it is wide.
+const HOPE: f64 = 0.7;
+const WIDE: f64 = 1.05;
 
 /// What is to be shown.
 #[derive(Debug, Clone, Copy)]
@@ -22,19 +28,28 @@ pub(super) struct Goal {
     pub(super) boxes: u64,
 }
 
+/// Memory that one proof leaves to the next, of few bands and of all.
+#[derive(Debug, Clone, Default)]
+pub(in super::super) struct Memory {
+    few: Bounder,
+    all: Bounder,
+}
+
 /// What a proof works with.
-pub(super) struct Prover<'a> {
-    few: Option<View<'static>>,
+pub(super) struct Prover<'a, 'm> {
+    few: Option<(View<'static>, &'m mut Bounder)>,
     pub(super) all: View<'a>,
+    pub(super) bounder: &'m mut Bounder,
     /// Ends of intervals, by axis.
     pub(super) temperature_k: Vec<Vec<f64>>,
     pub(super) boxes: u64,
 }
 
-impl<'a> Prover<'a> {
+impl<'a, 'm> Prover<'a, 'm> {
     pub(super) fn new(
         comparison: &Comparison<'a>,
         few: Option<&Arc<Few>>,
+        memory: &'m mut Memory,
         target: &Target<'_>,
         reach: f64,
     ) -> Self {
@@ -69,11 +84,11 @@ impl<'a> Prover<'a> {
         let allowed = Amplitudes { gain_free, ranges, sum, sum_known, total: 0.0, gain_cap: None };
         let few = few.map(|few| {
             let kept = bands.each_ref().map(|x| x.iter().copied().step_by(few.stride).collect());
-            View::new(sources.every(few), allowed.clone(), kept, reach)
+            (View::new(sources.every(few), allowed.clone(), kept, reach), &mut memory.few)
         });
         let all = View::new(sources, allowed, bands, reach);
         let temperature_k = all.axes.iter().map(|_| Vec::new()).collect();
-        Self { few, all, temperature_k, boxes: 0 }
+        Self { few, all, bounder: &mut memory.all, temperature_k, boxes: 0 }
     }
 
     /// The state of a mixture, if its cost is below the limit.
@@ -138,19 +153,21 @@ impl<'a> Prover<'a> {
             }
         };
         let mut least = 0.0;
-        if let Some(few) = &mut self.few {
+        if let Some((few, bounder)) = &mut self.few {
             know(few);
-            let found = few.bound(ends, narrower, enough, None, 1);
+            let found = bounder.bound(few, ends, narrower, enough, None, 1);
             let share = self.all.root.len() as f64 / few.root.len() as f64;
             // Where they are far from it all bands would hardly do either.
-            if found.lower >= enough || (found.coarse && share * found.lower < enough) {
+            let wide = || ends.iter().zip(known).any(|([a, b], known)| known[*b] > WIDE * known[*a]);
+            let hopeless = share * found.lower < if found.coarse { enough } else { HOPE * enough };
+            if found.lower >= enough || (hopeless && (found.coarse || wide())) {
                 return (found.lower, found.axis, false);
             }
             least = found.lower;
         }
         know(&mut self.all);
-        let start = self.few.as_ref().map(|few| few.point());
-        let found = self.all.bound(ends, narrower, enough, start, QUADRATICS);
+        let start = self.few.as_ref().map(|(_, bounder)| bounder.point());
+        let found = self.bounder.bound(&mut self.all, ends, narrower, enough, start, QUADRATICS);
         (found.lower.max(least), found.axis, true)
     }
 
@@ -165,7 +182,7 @@ impl<'a> Prover<'a> {
             let end = self.end(axis, t);
             // What is too bright in few bands is so in all of them.
             let too_bright = match &mut self.few {
-                Some(few) => few.too_bright(axis, end, t, amplitude),
+                Some((few, _)) => few.too_bright(axis, end, t, amplitude),
                 None => self.all.too_bright(axis, end, t, amplitude),
             };
             if too_bright {

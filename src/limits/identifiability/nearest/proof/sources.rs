@@ -210,6 +210,12 @@ impl<'a> Sources<'a> {
         SECOND_RADIATION_CM_K * self.lowest_cm1 / temperature_k
     }
 
+    /// The same in the middle of the bands.
+    pub(super) fn middle_x(&self, temperature_k: f64) -> f64 {
+        let (first, last) = self.bands.range_cm1();
+        SECOND_RADIATION_CM_K * 0.5 * (first + last) / temperature_k
+    }
+
     /// Rounding of spectra from this temperature on, as a share of them ([`crate::planck`]).
     pub(super) fn rounding(&self, temperature_k: f64) -> f64 {
         let (_, last) = self.bands.range_cm1();

@@ -6,7 +6,7 @@ use super::amplitudes::{Piece, Ray};
 use super::hull::{Hull, Quadratic, factor_of};
 use super::metric::Metric;
 use super::orthogonal::inner;
-use super::prover::Prover;
+use super::prover::{Memory, Prover};
 use super::sources::{Chord, chord};
 use crate::fisher::{Nuisance, Unknowns};
 use crate::identifiability::nearest::residual::{self, Comparison};
@@ -122,6 +122,7 @@ fn the_least_of_a_quadratic_is_bounded_tightly() {
         };
         let cheapest = |cost: &[f64], vertex: &mut [f64]| {
             of.least(&pieces, cost, vertex, &mut ray);
+            0.0
         };
         let lower = Hull::default().least(&quadratic, cheapest, f64::INFINITY);
         let lowest = (0..=2000).map(|i| value(f64::from(i) / 2000.0)).fold(f64::INFINITY, f64::min);
@@ -288,7 +289,8 @@ fn states_within_reach_are_among_the_amplitudes_of_their_box() {
         let metric = residual::Metric::PerPhoton { photons: f64::INFINITY };
         let target = comparison.aim(&own, &other, &state, metric).unwrap();
         let reach = comparison.cost(&target, &known).sqrt();
-        let mut prover = Prover::new(&comparison, None, &target, reach);
+        let mut memory = Memory::default();
+        let mut prover = Prover::new(&comparison, None, &mut memory, &target, reach);
         let temperatures = [known.temperature_k, known.environment_k[0], known.environment_k[1]];
         let mut ends = Vec::new();
         let width = [0.2, 2.0, 300.0][trial % 3];
@@ -300,7 +302,7 @@ fn states_within_reach_are_among_the_amplitudes_of_their_box() {
                 end
             }));
         }
-        let (pieces, columns, halves) = prover.all.laid(&ends);
+        let (pieces, columns, halves) = prover.bounder.laid(&mut prover.all, &ends);
         let (mut point, mut off, mut missed) = (vec![0.0; 6], vec![0.0; bands.len()], vec![0.0; bands.len()]);
         for (s, t) in temperatures.into_iter().enumerate() {
             let amplitude = known.gain * if s == 0 { 1.0 } else { known.lighting[s - 1] };
