@@ -92,11 +92,11 @@ fn libraries(criterion: &mut Criterion) {
     let mut local = LocalMatrix::new(&bands, &surroundings, unknowns.clone());
     let sum: f64 = local.per_photon(&materials, &state).expect("a valid scene").iter().sum();
     println!("sum of the local matrix: {sum:.12}");
-    let nearest = scene.nearest_per_photon(&materials).expect("a valid scene");
-    let sum: f64 = nearest.iter().flatten().map(|nearest| nearest.distance).sum();
+    let nearest = scene.nearest_per_photon(&materials, &|_, _| ()).expect("a valid scene");
+    let sum: f64 = nearest.distance.iter().sum();
     println!("sum of the nearest matrix: {sum:.12}");
     for required in [1.0, 40.0] {
-        let told = || scene.told_apart(&materials, &counting, required, Skipping::On);
+        let told = || scene.told_apart(&materials, &counting, required, Skipping::On, &|_, _| ());
         let (told, work) = ledger_of(told).expect("a valid scene");
         let apart = |a: usize| (a + 1..30).filter(|&b| told.told_apart(a, b)).count();
         println!("told apart at d = {required}: {}, {:?}", (0..30).map(apart).sum::<usize>(), work);
@@ -114,14 +114,15 @@ fn libraries(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("libraries");
     group.sample_size(20);
     group.bench_function("30 x 30 nearest matrix, 536 bands", |bencher| {
-        bencher.iter(|| scene.nearest_per_photon(black_box(&materials)));
+        bencher.iter(|| scene.nearest_per_photon(black_box(&materials), &|_, _| ()));
     });
     for (required, skipping) in
         [(1.0, Skipping::On), (1.0, Skipping::Off), (40.0, Skipping::On), (40.0, Skipping::Off)]
     {
         let name = format!("which of 30 can be told apart at d = {required}, skipping {skipping:?}");
         group.bench_function(name, |bencher| {
-            bencher.iter(|| scene.told_apart(black_box(&materials), &counting, required, skipping));
+            bencher
+                .iter(|| scene.told_apart(black_box(&materials), &counting, required, skipping, &|_, _| ()));
         });
     }
     group.finish();

@@ -26,7 +26,7 @@ pub use crate::warning::Warning;
 pub use identify::{
     Answers, Apart, Asked, BandNumber, BandsThatMatter, Check, Choice, Exact, ExactLibrary, ExactPair,
     Identifiability, Identification, Law, LibrarySize, Matrix, NearestProof, NearestState, PairResult,
-    Passband, Prediction, PriorAverage, Reached, Rows, SampleSpectra, Scaling, TargetVerdict, Trial,
+    Passband, Prediction, PriorAverage, Reached, Rows, SampleSpectra, Scaling, TargetVerdict, Trial, Watch,
 };
 pub use looked_up::Study;
 pub use rule::{

@@ -16,6 +16,6 @@ mod scaling;
 pub use crate::demand::Skipping;
 pub use decide::Decisions;
 pub use local::{LocalMatrix, Passes};
-pub use nearest::LibraryScene;
+pub use nearest::{LibraryScene, NearestMatrix, Progress};
 pub use predict::{chains, clusters, prediction};
 pub use scaling::expected_minimum;

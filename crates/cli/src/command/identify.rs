@@ -1,11 +1,12 @@
 //! `hadar identify`: distances from the target to every alternative, all against all, bands, simulated decisions.
 
 use super::global::{By, Global, plain_number};
+use super::progress::Bar;
 use clap::Args;
 use hadar::error::{Error, Place, Result, check};
 use hadar::simulate::sequential::Plan;
 use hadar_report::identify;
-use hadar_study::study::{Asked, Law, Study, Trial};
+use hadar_study::study::{Asked, Law, Study, Trial, Watch};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -82,11 +83,12 @@ pub(super) fn run(args: &IdentifyArgs, global: &Global) -> Result<ExitCode> {
         exact: args.exact.then(|| trial(args, global)).transpose()?,
         average: args.average,
     };
-    let (bar, states) = (global.progress("pairs simulated"), global.progress("states of the priors"));
-    let simulated = |done, total| bar.set(done, total);
-    let mut answers = study.answer(&asked, &simulated, &|done, total| states.set(done, total))?;
-    states.finish();
-    bar.finish();
+    let bars = ["targets searched", "pairs decided", "pairs simulated", "states of the priors"];
+    let bars = bars.map(|what| global.progress(what));
+    let [searched, decided, simulated, averaged] = bars.each_ref().map(|bar| |done, all| bar.set(done, all));
+    let watch = Watch { searched: &searched, decided: &decided, simulated: &simulated, averaged: &averaged };
+    let mut answers = study.answer(&asked, &watch)?;
+    bars.iter().for_each(Bar::finish);
     let text = identify::text(&answers, &study);
     let report = global.report(&text, |out| identify::bundle(&study, &answers, global.seed, out))?;
     answers.identification.stats.add(&report);

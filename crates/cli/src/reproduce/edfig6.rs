@@ -8,7 +8,7 @@ use hadar::error::Result;
 use hadar::simulate::sequential::Plan;
 use hadar_report::identify;
 use hadar_study::scenario::examples;
-use hadar_study::study::{Answers, Asked, Trial};
+use hadar_study::study::{Answers, Asked, Trial, Watch};
 use std::path::Path;
 
 /// Half width of the simulated decisions' intervals, and most trials.
@@ -26,7 +26,7 @@ pub(super) fn make(order: Order, out: &Path, progress: Progress<'_>) -> Result<M
         exact: Some(Trial { law: None, photons: None, plan: Plan::new(order.seed, HALF_WIDTH, TRIALS)? }),
         average: false,
     };
-    let answers = study.answer(&asked, &|done, total| progress(done, total), &|_, _| ())?;
+    let answers = study.answer(&asked, &Watch { simulated: progress, ..Watch::NONE })?;
     let answer = identify::text(&answers, &study);
     let mut bundle = identify::bundle(&study, &answers, order.seed, out)?;
     let lines = lines(&answers);

@@ -7,7 +7,7 @@ use hadar::material::Library;
 use hadar_proof::accuracy::skipping::skipping;
 use hadar_report::accuracy::skipping_text as text;
 use hadar_study::scenario::Scenario;
-use hadar_study::study::{Asked, Study};
+use hadar_study::study::{Asked, Study, Watch};
 use serde_json::Value;
 
 /// Four materials, a camera that tells some of them.
@@ -154,7 +154,7 @@ fn the_ledger_counts_what_was_done() {
         exact: None,
         average: false,
     };
-    let answer = |asked: &Asked| study.answer(asked, &|_, _| (), &|_, _| ()).unwrap().identification.stats;
+    let answer = |asked: &Asked| study.answer(asked, &Watch::NONE).unwrap().identification.stats;
     let work = answer(&asked);
     assert_eq!((work.possible(Thing::Sections), work.computed(Thing::Sections)), (7, 1));
     // For each alternative by shot noise, back, and by the camera; local, and local with unknown gain.

@@ -77,7 +77,7 @@ pub fn skipping(quick: bool) -> Result<Vec<Skipped>> {
     let street = RangeStudy::new(&RangeScenario::from_toml(&street, None)?, &library)?;
     let apart = "which pairs the camera tells apart";
     let told = |study: &'static str, at: &Study| {
-        bench.compared((study, apart), |skipping| at.told_apart(skipping), same_pairs)
+        bench.compared((study, apart), |skipping| at.told_apart(skipping, &|_, _| ()), same_pairs)
     };
     Ok(vec![
         told("five materials", &five)?,

@@ -32,6 +32,8 @@ const NUMBER: f64 = 10.0;
 const MOST_HATCHED: usize = 500;
 /// Edges of cells stand at whole pixels of the PNG, so that the cells are all alike.
 const PIXELS: f64 = 3.0;
+/// Size below which cells are pixels of one image: nothing separates or marks them.
+const FINE: f64 = 12.0 / PIXELS;
 /// Fraction of the colour scale above which colours are light.
 const LIGHT: f64 = 0.55;
 
@@ -136,7 +138,11 @@ impl Grid {
         let bar_height = height.clamp(BAR_HEIGHT.start, BAR_HEIGHT.end);
         let bar = Vertical::new(&matrix.colour, colours, bar_height);
         let left = snapped(EDGE + title + rows.room + NAME_GAP + 2.0, f64::ceil);
-        let gap = if cell.0.min(cell.1) < 16.0 { 1.0 } else { 2.0 } / PIXELS;
+        let gap = match cell.0.min(cell.1) {
+            ..FINE => 0.0,
+            ..16.0 => 1.0,
+            _ => 2.0,
+        } / PIXELS;
         Self { rows, columns, bar, bar_height, left, cell, gap }
     }
 
@@ -172,6 +178,22 @@ impl Grid {
     fn draw_cells(&self, scene: &mut Scene, matrix: &Matrix, area: &Rect) -> Vec<Entry> {
         let ruler = &self.bar.ruler;
         let missing = matrix.cells().filter(|cell| !cell.2.is_finite()).count();
+        if self.gap == 0.0 {
+            let mut pixels = vec![WHITE.rgb; matrix.values.len()];
+            for (row, column, value) in matrix.cells() {
+                let known = || heat::shade(fraction(ruler, value));
+                let colour = if value.is_finite() { known() } else { NO_VALUE };
+                pixels[row * matrix.columns.len() + column] = colour.rgb;
+            }
+            scene.marks.push(Mark::Image { area: *area, columns: matrix.columns.len(), pixels });
+            let entry = |colour, label| Entry { key: Key::Area { colour }, label };
+            let below = matrix.threshold.as_ref().map(|threshold| {
+                let label = format!("{}, below the line on the scale", threshold.meaning);
+                entry(heat::shade(0.5 * fraction(ruler, threshold.value)), label)
+            });
+            let unknown = (missing > 0).then(|| entry(NO_VALUE, matrix.no_value.clone()));
+            return below.into_iter().chain(unknown).collect();
+        }
         let numbers = self.has_numbers(matrix);
         let mut marked = None;
         for (row, column, value) in matrix.cells() {
@@ -237,5 +259,31 @@ fn draw_groups(scene: &mut Scene, matrix: &Matrix, grid: &Grid, area: &Rect) {
         for &x in &columns {
             scene.line((x, area.top - beyond), (x, area.bottom), width, colour);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plot::axis::Axis;
+
+    /// Where lines between cells would leave nothing of them, they are one image, whose pixels are the cells.
+    #[test]
+    fn very_many_cells_are_pixels_of_an_image() {
+        let names: Vec<String> = (0..1000).map(|i| format!("m{i}")).collect();
+        let values = (0..1_000_000).map(|i| f64::from(i % 1000)).collect();
+        let colour = Axis::linear("d").range(0.0, 999.0);
+        let matrix = Matrix::new("many", ("target", names.clone()), ("alternative", names), (colour, values));
+        let drawn = scene(&matrix.threshold(10.0, "too near")).unwrap();
+        let images = drawn.marks.iter().filter_map(|mark| match mark {
+            Mark::Image { columns, pixels, .. } => Some((*columns, pixels)),
+            _ => None,
+        });
+        let (columns, pixels) = images.last().unwrap();
+        assert_eq!((columns, pixels.len()), (1000, 1_000_000));
+        assert_eq!(pixels[5], heat::shade(5.0 / 999.0).rgb);
+        assert_eq!(pixels[999_005], heat::shade(5.0 / 999.0).rgb);
+        assert_eq!(pixels[1001], WHITE.rgb, "a name beside itself");
+        assert!(drawn.marks.len() < 5000, "{}", drawn.marks.len());
     }
 }

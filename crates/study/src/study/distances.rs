@@ -156,7 +156,10 @@ impl Study {
         match kind {
             DistanceKind::Nearest => {
                 let found = self.nearest_solver().with_counting(target, other, &self.state, counting)?;
-                Ok(Statistical { distance: self.sure(&found), relative_error: Some(found.relative_error) })
+                Ok(Statistical {
+                    distance: self.sure(found.distance, found.lower),
+                    relative_error: Some(found.relative_error),
+                })
             }
             DistanceKind::Local => local(self.unknowns.clone()),
             DistanceKind::LocalUnknownGain => local(self.unknowns.with(Nuisance::Gain)),
@@ -165,12 +168,9 @@ impl Study {
 
     /// What a verdict may rest on: the distance where it is proved, else what is proved of it. Priors have no part in a proof,
     /// so that with them it is what the search found.
-    pub(super) fn sure(&self, found: &NearestDistance) -> f64 {
-        if self.unknowns.has_priors() || found.is_proved_to(self.tolerance()) {
-            found.distance
-        } else {
-            found.lower
-        }
+    pub(super) fn sure(&self, distance: f64, lower: f64) -> f64 {
+        let proved = lower >= (1.0 - self.tolerance()) * distance;
+        if self.unknowns.has_priors() || proved { distance } else { lower }
     }
 
     /// Distance per √photon of a kind, priors counting as among `photons` photons.

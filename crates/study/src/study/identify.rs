@@ -11,7 +11,7 @@ mod samples;
 mod scaling;
 mod within_reach;
 
-pub use answers::{Answers, Asked};
+pub use answers::{Answers, Asked, Watch};
 pub use bands_that_matter::{BandsThatMatter, Choice, Passband};
 pub use chosen_bands::Reached;
 pub use exact::{Exact, ExactLibrary, ExactPair, Law, Trial};

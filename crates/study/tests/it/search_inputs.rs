@@ -99,11 +99,14 @@ fn impossible_inputs_are_errors() {
     };
     for required in [f64::NAN, 0.0, -1.0, f64::INFINITY] {
         for skipping in [Skipping::On, Skipping::Off] {
-            assert!(library.told_apart(&[&own, &other], &shot, required, skipping).is_err(), "{required}");
+            assert!(
+                library.told_apart(&[&own, &other], &shot, required, skipping, &|_, _| ()).is_err(),
+                "{required}"
+            );
         }
     }
     assert!(library.first_not_told_from(2, &[&own, &other], &shot, 1.0, Skipping::On).is_err());
-    let decided = library.told_apart(&[&own, &other], &shot, 1.0, Skipping::On).unwrap();
+    let decided = library.told_apart(&[&own, &other], &shot, 1.0, Skipping::On, &|_, _| ()).unwrap();
     assert!(!decided.told_apart(0, 2) && !decided.told_apart(2, 2));
 }
 

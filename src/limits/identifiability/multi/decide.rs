@@ -16,7 +16,7 @@
 //! One direction that fails decides the pair. That no state is nearer is proved by branch and bound (see
 //! [`NearestSolver::nearer_than`]); where the effort does not suffice for a proof the two are not told apart.
 
-use super::LibraryScene;
+use super::{LibraryScene, Progress};
 use crate::demand::{self, Attempt, Proof, Reason, Skipping, Thing};
 use crate::error::{Error, Result, check};
 use crate::fisher::Counting;
@@ -25,7 +25,10 @@ use crate::identifiability::nearest::{Nearer, NearestDistance, NearestSolver};
 use crate::scene::{EnvironmentObject, Surroundings, check_emissivity};
 use crate::spectrum::Bands;
 use rayon::prelude::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
+/// Pairs after which it is told how many are decided.
+const OFTEN: usize = 100;
 /// Bands that are enough for a first look.
 const FEW_BANDS: usize = 64;
 
@@ -104,7 +107,7 @@ impl Few {
 
 impl LibraryScene<'_> {
     /// Which of these materials a camera tells apart: whether the nearest statistical distance reaches
-    /// `required` both ways.
+    /// `required` both ways. `progress` is told the pairs decided.
     ///
     /// # Errors
     /// As [`NearestSolver::with_counting`], for the first pair that fails.
@@ -114,6 +117,7 @@ impl LibraryScene<'_> {
         counting: &Counting,
         required: f64,
         skipping: Skipping,
+        progress: Progress<'_>,
     ) -> Result<Decisions> {
         check::positive("required distance", required, "")?;
         let count = emissivities.len();
@@ -124,11 +128,16 @@ impl LibraryScene<'_> {
         let question = Question { scene: self, emissivities, counting, required, few: few.as_ref() };
         let pairs: Vec<(usize, usize)> =
             (0..count).flat_map(|a| (a + 1..count).map(move |b| (a, b))).collect();
+        let done = AtomicUsize::new(0);
         let is_told = |solvers: &mut Solvers<'_>, (a, b)| {
             let nearer = skipping.until([(a, b), (b, a)], question.things(), |(a, b)| {
                 let reached = question.reaches(solvers, skipping, a, b, None)?;
                 Ok((!reached).then_some(()))
             })?;
+            let decided = done.fetch_add(1, Ordering::Relaxed) + 1;
+            if decided.is_multiple_of(OFTEN) {
+                progress(decided, pairs.len());
+            }
             Ok(nearer.is_none())
         };
         let answers =

@@ -3,6 +3,7 @@
 use crate::study::{Apart, BandsThatMatter, Exact, Identification, Matrix, Scaling, Study, Trial, Warning};
 use hadar::demand::{self, Ledger, Skipping, Thing, if_asked};
 use hadar::error::Result;
+use hadar::identifiability::multi::Progress;
 
 /// What is asked besides the distances to every alternative: nothing else is computed.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,18 +48,31 @@ pub struct Answers {
     pub exact: Option<Exact>,
 }
 
+/// Is told how many of how many are done, part by part.
+#[derive(Clone, Copy)]
+pub struct Watch<'w> {
+    /// Targets of a matrix, or of the subsets of a library, whose nearest distances are searched.
+    pub searched: Progress<'w>,
+    /// Pairs that are or are not told apart.
+    pub decided: Progress<'w>,
+    /// Pairs whose decisions are simulated.
+    pub simulated: Progress<'w>,
+    /// States of the average over the priors.
+    pub averaged: Progress<'w>,
+}
+
+impl Watch<'_> {
+    /// Nobody looks.
+    pub const NONE: Self =
+        Self { searched: &|_, _| (), decided: &|_, _| (), simulated: &|_, _| (), averaged: &|_, _| () };
+}
+
 impl Study {
-    /// Answers all that is asked, and computes no more. `progress` is called with the simulated pairs done and
-    /// their number, `averaging` with the states looked at for the average over the priors and their number.
+    /// Answers all that is asked, and computes no more.
     ///
     /// # Errors
     /// As [`Study::identify`], [`Study::matrix`] and [`Study::told_apart`].
-    pub fn answer(
-        &self,
-        asked: &Asked,
-        progress: &dyn Fn(usize, usize),
-        averaging: &dyn Fn(usize, usize),
-    ) -> Result<Answers> {
+    pub fn answer(&self, asked: &Asked, watch: &Watch<'_>) -> Result<Answers> {
         let ledger = Ledger::open();
         let section = Thing::Sections;
         let mut identification = self.identify()?;
@@ -66,27 +80,27 @@ impl Study {
         demand::computed(section, 1);
         let limiting = self.alternative(&identification.limiting);
         let average = if_asked(asked.average, section, 1, || match limiting {
-            Some(alternative) => self.prior_average(alternative, averaging),
+            Some(alternative) => self.prior_average(alternative, watch.averaged),
             None => Ok(None),
         })?;
         identification.prior_average = average.flatten();
         if asked.matrix && self.unknowns.has_priors() {
             identification.warnings.push(Warning::MatrixPriors);
         }
-        let matrix = if_asked(asked.matrix, section, 1, || self.matrix())?;
+        let matrix = if_asked(asked.matrix, section, 1, || self.matrix(watch.searched))?;
         if let Some(searches) = matrix.as_ref().map(|matrix| matrix.unproved).filter(|&unproved| unproved > 0)
         {
             identification.warnings.push(Warning::MatrixNotProved { searches });
         }
         let exact = if_asked(asked.exact.is_some(), section, 1, || {
-            asked.exact.map(|trial| self.exact(&trial, progress)).transpose()
+            asked.exact.map(|trial| self.exact(&trial, watch.simulated)).transpose()
         })?;
         let exact = exact.flatten();
         if let (Some(exact), Some(trial)) = (&exact, asked.exact) {
             identification.warnings.extend(exact.ended_early(&trial.plan));
         }
-        let apart = if_asked(asked.apart, section, 1, || self.told_apart(asked.skipping))?;
-        let scaling = if_asked(asked.scaling, section, 1, || self.scaling())?;
+        let apart = if_asked(asked.apart, section, 1, || self.told_apart(asked.skipping, watch.decided))?;
+        let scaling = if_asked(asked.scaling, section, 1, || self.scaling(watch.searched))?;
         let (bands, filters) = asked.bands.unwrap_or_default();
         let bands_that_matter =
             if_asked(asked.bands.is_some(), section, 1, || self.bands_that_matter(bands, filters))?;

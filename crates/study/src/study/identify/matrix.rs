@@ -9,8 +9,7 @@ use crate::study::{Study, Surface};
 use hadar::demand::{self, Ledger, Reason, Skipping, Thing};
 use hadar::error::{Error, Result};
 use hadar::fisher::{Counting, Nuisance, Unknowns};
-use hadar::identifiability::multi::{self, LibraryScene, LocalMatrix, Passes};
-use hadar::identifiability::nearest::NearestDistance;
+use hadar::identifiability::multi::{self, LibraryScene, LocalMatrix, NearestMatrix, Passes, Progress};
 
 impl Study {
     /// Target and alternatives, each once.
@@ -50,31 +49,30 @@ impl Study {
         }
     }
 
-    /// Distances of all materials against all, and with a camera who can be told from whom.
+    /// Distances of all materials against all, and with a camera who can be told from whom. `progress` is told the targets
+    /// whose nearest distances are searched.
     ///
     /// # Errors
     /// As [`Study::materials`] and [`Study::identify`].
-    pub fn matrix(&self) -> Result<Matrix> {
+    pub fn matrix(&self, progress: Progress<'_>) -> Result<Matrix> {
         let materials = self.materials()?;
         let emissivities: Vec<&[f64]> = materials.iter().map(|m| m.emissivity.as_slice()).collect();
         let names: Vec<String> = materials.iter().map(|m| m.name.clone()).collect();
         let (count, kind) = (names.len(), self.scenario.requirement.by);
         let counting = self.counting();
-        let of = |kind, counting: Option<&Counting>| self.all_distances(kind, &emissivities, counting);
+        let again = counting.is_some() && kind == DistanceKind::Nearest;
+        let all = count * (1 + usize::from(again));
+        let second = |done, _| progress(count + done, all);
+        let of =
+            |kind, counting: Option<&Counting>| self.all_distances(kind, &emissivities, counting, &second);
         let mut solver = LocalMatrix::new(&self.bands, &self.surroundings, self.unknowns.clone());
         let local = solver
             .per_photon(&emissivities, &self.state)
             .map_err(|error| error.at(self.scenario.place("bands")))?;
         let relative_error = solver.relative_errors(&local);
-        let found = self.library_scene().nearest_per_photon(&emissivities)?;
-        let lower = found
-            .iter()
-            .map(|nearest| nearest.as_ref().map_or(0.0, |nearest| nearest.lower))
-            .collect::<Vec<_>>();
-        let unproved =
-            found.iter().flatten().filter(|nearest| !nearest.is_proved_to(self.tolerance())).count();
-        let nearest: Vec<f64> =
-            found.iter().map(|nearest| nearest.as_ref().map_or(0.0, |nearest| nearest.distance)).collect();
+        let found = self.library_scene().nearest_per_photon(&emissivities, &|done, _| progress(done, all))?;
+        let unproved = (0..count * count).filter(|&i| !found.is_proved_to(i, self.tolerance())).count();
+        let NearestMatrix { distance: nearest, lower, relative_error: relative_error_nearest } = found;
         let statistical = counting.as_ref().map(|counting| of(kind, Some(counting))).transpose()?;
         let (by_kind, error_by_kind) = match kind {
             DistanceKind::Nearest => (nearest.clone(), None),
@@ -124,6 +122,7 @@ impl Study {
             by: kind.name(),
             distance_nearest: rows(&nearest, count),
             distance_nearest_lower: rows(&lower, count),
+            relative_error_nearest: rows(&relative_error_nearest, count),
             distance_local: rows(&local, count),
             relative_error: rows(&relative_error, count),
             distance_local_unknown_gain: (kind == DistanceKind::LocalUnknownGain)
@@ -159,22 +158,23 @@ impl Study {
         demand::spared(Thing::DerivativeColumns, Reason::NotAsked, (shared * (all - asked)) as u64);
     }
 
-    /// Which materials the camera tells apart, stopping at the first proof of each pair.
+    /// Which materials the camera tells apart, stopping at the first proof of each pair. `progress` is told the pairs decided.
     ///
     /// # Errors
     /// As [`Study::matrix`]; a scenario without a camera.
-    pub fn told_apart(&self, skipping: Skipping) -> Result<Apart> {
+    pub fn told_apart(&self, skipping: Skipping, progress: Progress<'_>) -> Result<Apart> {
         let materials = self.materials()?;
         let emissivities: Vec<&[f64]> = materials.iter().map(|m| m.emissivity.as_slice()).collect();
         let names: Vec<String> = materials.iter().map(|m| m.name.clone()).collect();
         let counting = self.needed_counting()?;
         let kind = self.scenario.requirement.by;
         if kind == DistanceKind::Nearest {
-            let found = self.library_scene().told_apart(&emissivities, &counting, self.required, skipping)?;
+            let scene = self.library_scene();
+            let found = scene.told_apart(&emissivities, &counting, self.required, skipping, progress)?;
             return Ok(sorted_out(&names, |a, b| found.told_apart(a, b)));
         }
         // All local distances together take less time than bounds on each would.
-        let (d, errors) = self.all_distances(kind, &emissivities, Some(&counting))?;
+        let (d, errors) = self.all_distances(kind, &emissivities, Some(&counting), progress)?;
         let d = surely(&d, errors.as_deref());
         let count = names.len();
         let told =
@@ -227,6 +227,7 @@ impl Study {
         kind: DistanceKind,
         emissivities: &[&[f64]],
         counting: Option<&Counting>,
+        progress: Progress<'_>,
     ) -> Result<(Vec<f64>, Option<Vec<f64>>)> {
         let local = |unknowns: Unknowns| {
             let mut matrix = LocalMatrix::new(&self.bands, &self.surroundings, unknowns);
@@ -240,10 +241,12 @@ impl Study {
         let scene = self.library_scene();
         let found = match (kind, counting) {
             (DistanceKind::Nearest, Some(counting)) => {
-                scene.nearest_with_counting(emissivities, counting).map(|found| (self.all_sure(&found), None))
+                let found = scene.nearest_with_counting(emissivities, counting, progress);
+                found.map(|found| (self.all_sure(&found), None))
             }
             (DistanceKind::Nearest, None) => {
-                scene.nearest_per_photon(emissivities).map(|found| (self.all_sure(&found), None))
+                let found = scene.nearest_per_photon(emissivities, progress);
+                found.map(|found| (self.all_sure(&found), None))
             }
             (DistanceKind::Local, _) => local(self.unknowns.clone()),
             (DistanceKind::LocalUnknownGain, _) => local(self.unknowns.with(Nuisance::Gain)),
@@ -252,8 +255,9 @@ impl Study {
     }
 
     /// What verdicts may rest on of nearest states, 0 on the diagonal.
-    fn all_sure(&self, found: &[Option<NearestDistance>]) -> Vec<f64> {
-        found.iter().map(|nearest| nearest.as_ref().map_or(0.0, |nearest| self.sure(nearest))).collect()
+    fn all_sure(&self, found: &NearestMatrix) -> Vec<f64> {
+        let sure = |i| self.sure(found.distance[i], found.lower[i]);
+        (0..found.distance.len()).map(sure).collect()
     }
 }
 

@@ -9,7 +9,7 @@ use crate::study::{Study, Surface};
 use hadar::error::Result;
 use hadar::fisher::Counting;
 use hadar::identifiability::local::LocalSolver;
-use hadar::identifiability::multi::expected_minimum;
+use hadar::identifiability::multi::{Progress, expected_minimum};
 use rayon::prelude::*;
 
 /// Expected least distance against the size of the library.
@@ -59,20 +59,24 @@ pub struct Scaling {
 }
 
 impl Study {
-    /// The scaling laws of the least distance, by the distance that decides.
+    /// The scaling laws of the least distance, by the distance that decides. `progress` is told the targets that are searched.
     ///
     /// # Errors
     /// As [`Study::matrix`].
-    pub fn scaling(&self) -> Result<Scaling> {
+    pub fn scaling(&self, progress: Progress<'_>) -> Result<Scaling> {
         let kind = self.scenario.requirement.by;
-        Ok(Scaling { by: kind.name(), library: self.library_size(kind)?, bands: self.band_number(kind)? })
+        Ok(Scaling {
+            by: kind.name(),
+            library: self.library_size(kind, progress)?,
+            bands: self.band_number(kind)?,
+        })
     }
 
-    fn library_size(&self, kind: DistanceKind) -> Result<LibrarySize> {
+    fn library_size(&self, kind: DistanceKind, progress: Progress<'_>) -> Result<LibrarySize> {
         let materials = self.materials()?;
         let emissivities: Vec<&[f64]> = materials.iter().map(|m| m.emissivity.as_slice()).collect();
         let count = materials.len();
-        let (distances, _) = self.all_distances(kind, &emissivities, None)?;
+        let (distances, _) = self.all_distances(kind, &emissivities, None, progress)?;
         self.book_distances(kind, count * (count - 1));
         let curves: Vec<Vec<f64>> = (0..count)
             .map(|target| {

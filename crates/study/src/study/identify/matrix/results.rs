@@ -20,6 +20,8 @@ pub struct Matrix {
     pub distance_nearest: Rows,
     /// What is proved of it: no state of the alternative is nearer.
     pub distance_nearest_lower: Rows,
+    /// Its estimated relative error by rounding.
+    pub relative_error_nearest: Rows,
     /// Local distance per √photon.
     pub distance_local: Rows,
     /// Estimated bound on its relative rounding error.
