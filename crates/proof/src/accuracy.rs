@@ -14,6 +14,7 @@ mod chart;
 mod continuum;
 mod decisions;
 mod draws;
+mod hard_scenes;
 mod item;
 mod local;
 mod nearest;
@@ -44,6 +45,7 @@ impl Item {
             Self::Local => local::aluminium(order)?,
             Self::LocalNearEquilibrium => local::near_equilibrium(order)?,
             Self::Nearest => nearest::measure(order)?,
+            Self::NearestHard => hard_scenes::measure(order)?,
             Self::Probability => probability::measure(order)?,
             Self::Decisions => decisions::measure(order)?,
             Self::Windows => windows::measure(order)?,

@@ -27,7 +27,7 @@ const QUICK_SCENES: u64 = 3;
 
 #[derive(Debug, Args)]
 pub(super) struct AccuracyArgs {
-    /// Computations: planck, band-integrals, local, local-near-equilibrium, nearest, probability, decisions, windows,
+    /// Computations: planck, band-integrals, local, local-near-equilibrium, nearest, nearest-hard, probability, decisions, windows,
     /// draws; continuum (what the width of bands costs); brute-force (nearest distances and their proofs held against a
     /// brute force, set of unknowns by set of unknowns); skipping (what leaving out the needless is worth); stress (generated
     /// extremes, each judged in extended precision); or all

@@ -97,7 +97,7 @@ fn judge(seed: u64, case: u64, set: Set) -> Result<Judged> {
     let mut draw = Draw::new(seed, case);
     let scene = Scene::draw(&mut draw, set)?;
     let start = Instant::now();
-    let answer = answer(&scene, set)?;
+    let answer = answer(&scene, Some(tolerance(&scene, set)))?;
     let seconds = start.elapsed().as_secs_f64();
     let mut judged = compare(&scene, set, &answer);
     judged.solver_s = seconds;
@@ -110,10 +110,14 @@ pub(super) fn tolerance(scene: &Scene, set: Set) -> f64 {
     PROOF[usize::from(usize::from(set.temperature) + others > 1)]
 }
 
-pub(super) fn answer(scene: &Scene, set: Set) -> Result<NearestDistance> {
+/// The distance, proved to a share of it or only searched.
+pub(super) fn answer(scene: &Scene, tolerance: Option<f64>) -> Result<NearestDistance> {
     let Scene { bands, surroundings, state, target, alternative, unknowns, range, counting } = scene;
     let solver = NearestSolver::new(bands, surroundings, unknowns.clone(), *range);
-    let mut solver = solver.proving(tolerance(scene, set));
+    let mut solver = match tolerance {
+        Some(tolerance) => solver.proving(tolerance),
+        None => solver,
+    };
     match counting {
         None => solver.per_photon(target, alternative, state, f64::INFINITY),
         Some(counting) => solver.with_counting(target, alternative, state, counting),

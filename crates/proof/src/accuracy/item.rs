@@ -16,6 +16,8 @@ pub enum Item {
     LocalNearEquilibrium,
     /// Nearest distance of a pair.
     Nearest,
+    /// Nearest distances in scenes that searches find hard.
+    NearestHard,
     /// Error of the best test between two known states.
     Probability,
     /// Detection probability of the best fits, states unknown.
@@ -28,12 +30,13 @@ pub enum Item {
 
 impl Item {
     /// All of them.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Planck,
         Self::BandIntegrals,
         Self::Local,
         Self::LocalNearEquilibrium,
         Self::Nearest,
+        Self::NearestHard,
         Self::Probability,
         Self::Decisions,
         Self::Windows,
@@ -49,6 +52,7 @@ impl Item {
             Self::Local => "local",
             Self::LocalNearEquilibrium => "local-near-equilibrium",
             Self::Nearest => "nearest",
+            Self::NearestHard => "nearest-hard",
             Self::Probability => "probability",
             Self::Decisions => "decisions",
             Self::Windows => "windows",

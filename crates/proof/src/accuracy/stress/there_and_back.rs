@@ -35,7 +35,7 @@ pub(super) fn judge(draw: &mut Draw, found: &mut Findings) -> Result<()> {
     let Scene { bands, surroundings, state, target, alternative, unknowns, range, counting } = &scene;
     let noise = counting.as_ref().map_or(Noise::PerPhoton { photons: f64::INFINITY }, Noise::Counting);
     let pair = Pair { emissivity: target, alternative, state };
-    let there = answer(&scene, set)?;
+    let there = answer(&scene, Some(tolerance(&scene, set)))?;
     named(found, "there", &scene, pair, &there);
     let force = BruteForce::new(bands, surroundings, unknowns, *range);
     if let Some(least) = force.nearest(pair, noise) {
