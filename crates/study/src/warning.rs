@@ -51,6 +51,8 @@ pub enum Warning {
     UnknownWithoutEffect { parameters: Vec<Parameter>, objects: usize },
     /// A nearest distance that was searched, what is proved of it, and whether priors kept it from being proved.
     NearestSearch { distance: f64, lower: f64, priors: bool },
+    /// A distance that rounding has left few digits of, and its relative error.
+    FewDigits { distance: &'static str, relative_error: f64 },
     /// Photons per mode at the lowest wavenumber, and whether the camera's noise has bunching in it.
     Bunching { occupancy: f64, wavenumber_cm1: f64, included: bool },
     /// An envelope beside the one scene.
@@ -168,6 +170,7 @@ impl Warning {
             Self::Fragile | Self::FragileScene => Code::Fragile,
             Self::UnknownWithoutEffect { .. } => Code::UnknownWithoutEffect,
             Self::NearestSearch { .. } => Code::NearestSearch,
+            Self::FewDigits { .. } => Code::FewDigits,
             Self::Bunching { .. } => Code::Bunching,
             Self::EnvelopeNotSearched => Code::EnvelopeNotSearched,
             Self::BandsModelled { .. } => Code::BandsModelled,

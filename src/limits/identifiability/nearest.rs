@@ -9,13 +9,13 @@
 //! ulp (C contrast, X lighting; see [`crate::scene`]): nothing is lost as the materials become equal.
 //! A prior of deviation σ_p on a parameter adds the row (θ′ − θ)/(2σ_p), whose tangent is the local bound's.
 //!
-//! Search: where T′ is free, a grid of it with the other unknowns fitted at each point; between two points the derivative
-//! of the fitted cost along T′ tells of a minimum (`search`). Every minimum is then refined by damped Newton steps within the
-//! bounds (`residual`), and so is the target's own state. The search can miss the nearest valley; the proof cannot.
-//!
 //! Proof ([`NearestSolver::proving`], `proof`): for fixed temperatures the cost is jointly convex in everything else, so
-//! that branch and bound over the unknown temperatures gives a lower bound, and the nearest state where the search missed
-//! it. The range of an unknown gain is 10⁻⁶ to 10⁶ (|ln G′| ≤ 14).
+//! that branch and bound over the unknown temperatures gives a lower bound, and the nearest state where the descent from the
+//! target's own has ended in another valley. The range of an unknown gain is 10⁻⁶ to 10⁶ (|ln G′| ≤ 14).
+//!
+//! Search, where no proof is asked for or where it does not end: with T′ free a grid of it with the other unknowns fitted at each
+//! point; between two points the derivative of the fitted cost along T′ tells of a minimum (`search`). Every minimum is then
+//! refined by damped Newton steps within the bounds (`residual`), and so is the target's own state. It can miss the nearest valley.
 //!
 //! Source: design of the project; Algorithm 1 of the paper is its exact counterpart on a lattice.
 

@@ -16,6 +16,8 @@ use hadar::scene::{Parameter, State};
 const LINEAR_FACTOR: f64 = 2.0;
 /// Share of a distance that emissivity errors of 0.1 % can make up before a word of caution is due.
 pub(super) const FRAGILE_RATIO: f64 = 50.0;
+/// Relative error that three printed digits stand for.
+const PRINTED: f64 = 1e-3;
 /// The widest band that may be taken at its centre without a word, cm⁻¹: features of solids are wider.
 const SAMPLED_CM1: f64 = 10.0;
 /// How wide a person is, m.
@@ -53,6 +55,13 @@ pub(super) fn of_pair(
     if pair.proof == NearestProof::Searched {
         warn(Warning::NearestSearch { distance: nearest.distance, lower: nearest.lower, priors });
     }
+    let errors = [
+        ("nearest distance", pair.relative_error_nearest),
+        ("return distance", pair.relative_error_return),
+        ("local distance", pair.relative_error),
+        ("local distance with unknown gain", pair.relative_error_unknown_gain),
+    ];
+    errors.into_iter().filter_map(few_digits).for_each(&mut warn);
     let (d_local, d_nearest) = (pair.distance_local, pair.distance_nearest);
     let ratio = (d_local / d_nearest).max(d_nearest / d_local);
     if pair.status == Status::Ok && ratio > LINEAR_FACTOR {
@@ -65,6 +74,13 @@ pub(super) fn of_pair(
         warn(Warning::UnknownWithoutEffect { parameters: local.dropped.clone(), objects });
     }
     warnings
+}
+
+/// Where more of a distance is printed than rounding has left.
+fn few_digits((distance, relative_error): (&'static str, f64)) -> Option<Warning> {
+    // Or not a number.
+    let known = relative_error <= PRINTED;
+    (!known).then_some(Warning::FewDigits { distance, relative_error })
 }
 
 /// Whether a parameter at the edge of its range stands at an end that the scenario set, not physics.
@@ -119,4 +135,19 @@ impl Study {
 fn sequential(camera: &Camera, bands: usize) -> Option<Warning> {
     (camera.readout == Readout::Sequential && bands > 1)
         .then(|| Warning::SequentialReadout { acquisition_s: camera.acquisition_s(bands), bands })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn digits_that_are_printed_and_not_known_are_told() {
+        assert_eq!(few_digits(("local distance", 0.0)), None);
+        assert_eq!(few_digits(("local distance", 9e-4)), None);
+        let said = |error| few_digits(("local distance", error)).unwrap().to_string();
+        assert!(said(2e-2).ends_with("known to a share of 2e-2"), "{}", said(2e-2));
+        assert!(said(1e300).ends_with("it may have any value"));
+        assert!(said(f64::NAN).ends_with("it may have any value"));
+    }
 }

@@ -68,6 +68,8 @@ catalogue! {
     UnknownWithoutEffect = "unknown-without-effect", "Nothing; or take it out of unknown.nuisances.";
     /// The nearest state was searched and could not be proved to be the nearest: its distance may be too large.
     NearestSearch = "nearest-search", "Rely on what is proved (distance_nearest_lower), or make an unknown known.";
+    /// Rounding has left less of a distance than is printed of it, or nothing.
+    FewDigits = "few-digits", "Do not rely on that distance; take away unknowns that hardly differ from others, or light that nearly cancels.";
     /// Photons per mode are so many that bunching raises the noise noticeably.
     Bunching = "bunching", "Set camera.photon_bunching = true to include it.";
     /// The scenario has an envelope, and this answer is for its one scene.

@@ -51,6 +51,10 @@ impl Display for Warning {
                 let change = if parameters.len() == 1 { "changes" } else { "change" };
                 write!(f, "{} {change} nothing in this scene", listed(parameters, *objects))
             }
+            Self::FewDigits { distance, relative_error } if *relative_error < 1.0 => {
+                write!(f, "of the {distance} rounding leaves no more than its first digits: it is known to a share of {relative_error:.0e}")
+            }
+            Self::FewDigits { distance, .. } => write!(f, "of the {distance} rounding leaves nothing: it may have any value"),
             Self::NearestSearch { distance, lower, priors } => {
                 let why = if *priors { ", which leaves priors out" } else { "" };
                 write!(
