@@ -45,6 +45,11 @@ fn distances(criterion: &mut Criterion) {
         bencher.iter(|| nearest.per_photon(black_box(&skin), black_box(&robot), &state, f64::INFINITY));
     });
 
+    let mut proved = nearest.clone().proving(PROOF);
+    criterion.bench_function("nearest distance with its proof, one pair, 536 bands", |bencher| {
+        bencher.iter(|| proved.per_photon(black_box(&skin), black_box(&robot), &state, f64::INFINITY));
+    });
+
     let result =
         |name: &str, value: hadar::Result<f64>| println!("{name}: {:.12}", value.expect("a valid scene"));
     let mut once = LocalSolver::new(&bands, &surroundings, unknowns.clone());
@@ -54,6 +59,9 @@ fn distances(criterion: &mut Criterion) {
         nearest.per_photon(&skin, &robot, &state, f64::INFINITY).map(|nearest| nearest.distance),
     );
 }
+
+/// To what share of itself a nearest distance is proved.
+const PROOF: f64 = 1e-6;
 
 /// Thirty made-up materials.
 fn library(bands: &Bands) -> Vec<Vec<f64>> {
@@ -115,6 +123,10 @@ fn libraries(criterion: &mut Criterion) {
     group.sample_size(20);
     group.bench_function("30 x 30 nearest matrix, 536 bands", |bencher| {
         bencher.iter(|| scene.nearest_per_photon(black_box(&materials), &|_, _| ()));
+    });
+    let proving = LibraryScene { tolerance: Some(PROOF), ..scene };
+    group.bench_function("30 x 30 nearest matrix with proofs, 536 bands", |bencher| {
+        bencher.iter(|| proving.nearest_per_photon(black_box(&materials), &|_, _| ()));
     });
     for (required, skipping) in
         [(1.0, Skipping::On), (1.0, Skipping::Off), (40.0, Skipping::On), (40.0, Skipping::Off)]

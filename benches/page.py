@@ -18,8 +18,14 @@ RUNS = 4
 CASES = [
     ("local distance, one pair, 536 bands", "local, one pair", "local distance, one pair"),
     ("nearest distance, one pair, 536 bands", "nearest, one pair", "nearest distance, one pair"),
+    ("nearest distance with its proof, one pair, 536 bands", "", "the same with its proof, to 1e-6"),
     ("30 x 30 local matrix, 536 bands", "local, 30 x 30", "30 × 30 local matrix"),
     ("libraries/30 x 30 nearest matrix, 536 bands", "nearest, 30 x 30", "30 × 30 nearest matrix"),
+    ("libraries/30 x 30 nearest matrix with proofs, 536 bands", "", "the same with proofs, to 1e-6"),
+    ("libraries/which of 30 can be told apart at d = 1, skipping On", "", "told apart at d = 1, proved"),
+    ("libraries/which of 30 can be told apart at d = 1, skipping Off", "", "every distance in full, not proved"),
+    ("libraries/which of 30 can be told apart at d = 40, skipping On", "", "told apart at d = 40, proved"),
+    ("libraries/which of 30 can be told apart at d = 40, skipping Off", "", "every distance in full, not proved"),
 ]
 SECONDS = {"ns": 1e-9, "µs": 1e-6, "us": 1e-6, "ms": 1e-3, "s": 1.0}
 

@@ -147,17 +147,21 @@ impl Amplitudes {
         least
     }
 
+    /// How large the amplitude of a piece can be of a state within reach.
+    pub(super) fn most(&self, pieces: &Pieces, i: usize) -> f64 {
+        let range = match pieces.source[i].checked_sub(1) {
+            _ if self.gain_free => f64::INFINITY,
+            None => 1.0,
+            Some(k) => self.ranges[k][1],
+        };
+        (self.total / pieces.length[i]).min(range / pieces.unit[i][0])
+    }
+
     /// How far above the least of all states within reach [`Amplitudes::least`] may come out: it is exact for costs that are off by
     /// their last digits, Σ |cost| · amplitude of the one found and of any other.
     pub(super) fn rounding(&self, pieces: &Pieces, cost: &[f64], vertex: &[f64]) -> f64 {
         let at = |i: usize| {
-            let range = match pieces.source[i].checked_sub(1) {
-                _ if self.gain_free => f64::INFINITY,
-                None => 1.0,
-                Some(k) => self.ranges[k][1],
-            };
-            let most = (self.total / pieces.length[i]).min(range / pieces.unit[i][0]);
-            if cost[i] == 0.0 { 0.0 } else { cost[i].abs() * (most + vertex[i].abs()) }
+            if cost[i] == 0.0 { 0.0 } else { cost[i].abs() * (self.most(pieces, i) + vertex[i].abs()) }
         };
         LAST_DIGITS * (0..cost.len()).map(at).sum::<f64>()
     }

@@ -125,6 +125,8 @@ impl Bounder {
             let rest = cost - shift - rounding;
             let wanted = ((enough - rest).max(0.0).sqrt() + missed).powi(2) - shift;
             let Self { hull, quadratic, places, pieces, ray, .. } = self;
+            quadratic.most.clear();
+            quadratic.most.extend((0..places.len()).map(|i| allowed.most(pieces, i)));
             let cheapest = |costs: &[f64], vertex: &mut [f64]| {
                 both.copy_from_slice(costs);
                 rises(places).for_each(|i| both[i] += costs[i - 1]);

@@ -413,6 +413,7 @@ impl Columns<'_> {
             factor,
             excess: vec![0.0; n],
             origin: amplitudes.to_vec(),
+            most: (0..n).map(|i| allowed.most(&pieces, i)).collect(),
             length: self.length,
         };
         let mut hull = Hull::default();

@@ -7,7 +7,7 @@
 //! F is kept, not FᵀF, so that nearly dependent columns keep what digits they came with.
 //!
 //! Rounding: with ℓᵢ the length of column i and |gᵢ| ≤ 2ℓ₀ℓᵢ the terms of φ and ∇φ are no larger than products of these, so that an
-//! origin near the minimum makes it small.
+//! origin near the minimum makes it small. The tangent is off by that wherever the least may be, not only at the vertex found.
 //!
 //! Source: P. Wolfe, Mathematical Programming 11, 128 (1976), doi:10.1007/BF01580381.
 
@@ -34,6 +34,8 @@ pub(super) struct Quadratic {
     /// What F holds more of each column's square than there is.
     pub(super) excess: Vec<f64>,
     pub(super) origin: Vec<f64>,
+    /// How large each of z can be.
+    pub(super) most: Vec<f64>,
     pub(super) length: f64,
 }
 
@@ -74,7 +76,7 @@ impl Hull {
         mut cheapest: impl FnMut(&[f64], &mut [f64]) -> f64,
         enough: f64,
     ) -> f64 {
-        let Quadratic { linear, factor, excess, origin, length } = quadratic;
+        let Quadratic { linear, factor, excess, origin, most, length } = quadratic;
         let n = linear.len();
         for list in [&mut self.vertex, &mut self.image, &mut self.point, &mut self.change] {
             clear(list, n);
@@ -98,11 +100,14 @@ impl Hull {
             for (change, column) in self.change.iter().zip(factor.chunks(n)) {
                 add(&mut self.image, *change, column);
             }
-            let value = inner(linear, &self.change) + inner(&self.image, &self.image);
+            let mut value = inner(linear, &self.change) + inner(&self.image, &self.image);
             for (i, (gradient, g)) in self.gradient.iter_mut().zip(linear).enumerate() {
-                *gradient = g + 2.0 * inner(&factor[i * n..(i + 1) * n], &self.image);
+                // Without what F holds more: the tangent is that of φ itself, wherever its cheapest vertex is.
+                let more = excess[i] * self.change[i];
+                *gradient = g + 2.0 * (inner(&factor[i * n..(i + 1) * n], &self.image) - more);
+                value -= more * self.change[i];
             }
-            let mut more = cheapest(&self.gradient, &mut self.vertex);
+            let lifted = cheapest(&self.gradient, &mut self.vertex);
             let (mut gap, mut near, mut far) = (0.0, 0.0, 0.0);
             for i in 0..n {
                 let side = self.change[i] - (self.vertex[i] - origin[i]);
@@ -110,11 +115,13 @@ impl Hull {
                 let column = &factor[i * n..(i + 1) * n];
                 let size = inner(column, column).sqrt();
                 near += self.change[i].abs() * size;
-                far += side.abs() * size;
-                let change = self.change[i].abs();
-                more += excess[i] * change * (change + 2.0 * side.abs());
+                if size == 0.0 {
+                    continue;
+                }
+                // Wherever the least may be, not only where rounding has put it.
+                far += side.abs().max(most[i] + (origin[i] + self.change[i]).abs()) * size;
             }
-            let rounding = more + unit * (near * (2.0 * length + near) + 2.0 * far * (length + near));
+            let rounding = lifted + unit * (near * (2.0 * length + near) + 2.0 * far * (length + near));
             let bound = value - gap.max(0.0) - rounding;
             if bound > lower {
                 (lower, stale, self.rounding) = (bound, 0, rounding);

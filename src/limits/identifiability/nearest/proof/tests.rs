@@ -112,6 +112,7 @@ fn the_least_of_a_quadratic_is_bounded_tightly() {
             factor,
             excess,
             origin: vec![0.3, 0.1],
+            most: vec![1.0, 1.0],
             length: inner(&shift, &shift).sqrt(),
         };
         let value = |v: f64| {
