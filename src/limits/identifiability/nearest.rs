@@ -43,6 +43,9 @@ const FEW_BANDS: usize = 64;
 /// Relative separation up to which two states are one as far as a fit that starts from either is concerned.
 const SAME_STATE: f64 = 1e-4;
 
+/// Distances that no scene has: what is compared sends less than numbers hold.
+const BEYOND: f64 = 1e100;
+
 /// Boxes in which it is tried to prove that nothing is nearer before a search, and after one.
 const FIRST_BOXES: u64 = 60;
 const MOST_BOXES: u64 = 6_000;
@@ -262,7 +265,7 @@ impl<'a> NearestSolver<'a> {
             }
         }
         match best {
-            Some(best) if !best.distance.is_finite() => {
+            Some(best) if best.distance.is_nan() || best.distance > BEYOND => {
                 let found = "a distance beyond all numbers: the target sends next to nothing, the alternative does not";
                 let instead = "take a warmer scene, more lighting, or bands at lower wavenumbers";
                 Err(Error::malformed(found, instead))

@@ -35,5 +35,5 @@ fn the_command_says_what_is_wrong_and_what_it_did() {
     let (_, json, _) = hadar(&["accuracy", "nearest", "--quick", "-q", "--json"]);
     let json: serde_json::Value = serde_json::from_str(&json).unwrap();
     assert_eq!(json["stats"]["sections"]["computed"], 1);
-    assert_eq!(json["charts"][0]["measured"][0]["method"], "search");
+    assert_eq!(json["charts"][0]["measured"][0]["method"], "search alone");
 }

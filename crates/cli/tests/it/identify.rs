@@ -135,6 +135,7 @@ fn nothing_is_null_but_what_does_not_apply() {
         for key in [
             "distance_nearest",
             "distance_nearest_lower",
+            "relative_error_nearest",
             "distance_local",
             "relative_error",
             "statistical_distance",

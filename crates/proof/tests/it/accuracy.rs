@@ -56,7 +56,9 @@ fn orthogonalisation_keeps_what_normal_equations_lose() {
 #[test]
 fn the_nearest_state_is_found_to_rounding() {
     let chart = chart(Item::Nearest);
-    assert!(of(&chart, "search")[0].error < 1e-12);
+    assert!(of(&chart, "search alone")[0].error < 1e-12);
+    let proved = of(&chart, "proved")[0];
+    assert!(proved.error < 1e-12 && proved.reported.is_some_and(|share| share < 1e-6), "{proved:?}");
     assert!(of(&chart, "lattice of states (points a side)").iter().all(|one| one.error > 1e-6));
 }
 

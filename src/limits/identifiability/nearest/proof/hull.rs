@@ -44,7 +44,8 @@ pub(super) struct Quadratic {
 pub(super) struct Hull {
     /// The lowest point found, z.
     pub(super) point: Vec<f64>,
-    /// What the bound is lowered by for rounding: less of it the nearer the origin is to the minimum.
+    /// What the bound may be lowered by for rounding, and for what F holds more: less of it the nearer the origin is to the
+    /// minimum, and with all digits.
     pub(super) rounding: f64,
     /// Vertices less z₀ and F times these, one after the other, and their shares.
     vertices: Vec<f64>,
@@ -108,10 +109,11 @@ impl Hull {
                 value -= more * self.change[i];
             }
             let lifted = cheapest(&self.gradient, &mut self.vertex);
-            let (mut gap, mut near, mut far) = (0.0, 0.0, 0.0);
+            let (mut gap, mut near, mut far, mut repair) = (0.0, 0.0, 0.0, 0.0);
             for i in 0..n {
                 let side = self.change[i] - (self.vertex[i] - origin[i]);
                 gap += self.gradient[i] * side;
+                repair += excess[i] * self.change[i].abs() * (self.change[i].abs() + 2.0 * side.abs());
                 let column = &factor[i * n..(i + 1) * n];
                 let size = inner(column, column).sqrt();
                 near += self.change[i].abs() * size;
@@ -124,7 +126,7 @@ impl Hull {
             let rounding = lifted + unit * (near * (2.0 * length + near) + 2.0 * far * (length + near));
             let bound = value - gap.max(0.0) - rounding;
             if bound > lower {
-                (lower, stale, self.rounding) = (bound, 0, rounding);
+                (lower, stale, self.rounding) = (bound, 0, rounding + repair);
                 self.point.iter_mut().zip(&self.change).zip(origin).for_each(|((p, d), o)| *p = d + o);
             } else {
                 stale += 1;

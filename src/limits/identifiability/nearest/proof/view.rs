@@ -152,7 +152,9 @@ impl<'a> View<'a> {
         if self.shaped[axis] != Shaped::Never {
             return mean;
         }
-        mean.max(hot_k / (1.0 + DIM / self.sources.middle_x(hot_k)))
+        // Far below its peak a source sends next to nothing all along: there is nothing to be cut off.
+        let dim = hot_k / (1.0 + DIM / self.sources.middle_x(hot_k));
+        if dim * WIDE > hot_k { mean } else { mean.max(dim) }
     }
 
     /// Whether even `amplitude` of a source is beyond reach in some band at an end.
