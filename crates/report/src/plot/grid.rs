@@ -275,11 +275,11 @@ mod tests {
         let colour = Axis::linear("d").range(0.0, 999.0);
         let matrix = Matrix::new("many", ("target", names.clone()), ("alternative", names), (colour, values));
         let drawn = scene(&matrix.threshold(10.0, "too near")).unwrap();
-        let images = drawn.marks.iter().filter_map(|mark| match mark {
+        let mut images = drawn.marks.iter().filter_map(|mark| match mark {
             Mark::Image { columns, pixels, .. } => Some((*columns, pixels)),
             _ => None,
         });
-        let (columns, pixels) = images.last().unwrap();
+        let (columns, pixels) = images.next_back().unwrap();
         assert_eq!((columns, pixels.len()), (1000, 1_000_000));
         assert_eq!(pixels[5], heat::shade(5.0 / 999.0).rgb);
         assert_eq!(pixels[999_005], heat::shade(5.0 / 999.0).rgb);
