@@ -18,11 +18,14 @@ fn nothing_false_is_said() {
     assert_eq!(report.sets.len(), 23);
 }
 
-/// What one of 23 000 scenes once got wrong: nearly dependent columns next to equilibrium, a bound 0.07 % above a state.
+/// What two of 46 000 scenes once got wrong, bounds 0.07 % above a state: nearly dependent columns next to equilibrium, and a
+/// surface beside an object 1e30 times as long, whose rounding hid it.
 #[test]
-fn a_bound_that_was_too_high_is_not() {
-    let report = run(1000, 1, Some(12_849));
-    assert_eq!((report.sets[0].failures, report.sets[0].lower_above), (0, 0), "{report:?}");
+fn bounds_that_were_too_high_are_not() {
+    for (seed, scene) in [(1, 12_849), (2, 11_865)] {
+        let report = run(1000, seed, Some(scene));
+        assert_eq!((report.sets[0].failures, report.sets[0].lower_above), (0, 0), "{report:?}");
+    }
 }
 
 /// One case by its number is the one of the whole run, on any number of threads, but for times.

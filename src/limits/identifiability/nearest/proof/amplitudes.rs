@@ -18,9 +18,7 @@ use super::sources::Spectrum;
 /// Steps of Dinkelbach's method; each one strictly betters the ray, and there are few.
 const STEPS: usize = 50;
 
-/// Share of a cost within which two of them are the same.
-const ROUNDING: f64 = 1e-15;
-/// Rounding of a cost, of amplitudes and of what is chosen by them, as a share of the cost.
+/// Rounding of a cost, of amplitudes and of what is chosen by them, as a share of the cost: two costs within it are the same.
 const LAST_DIGITS: f64 = 4e-15;
 
 /// The pieces of a box: whose they are, how long, how far each may go (without the gain), and at what temperature they are.
@@ -90,61 +88,72 @@ pub(super) struct Amplitudes {
     pub(super) gain_cap: Option<f64>,
 }
 
-/// Memory of [`Amplitudes::least`].
+/// Memory of [`Amplitudes::least`], and by how much rounding may have lifted what it found.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Ray {
     cost: Vec<f64>,
     vertex: Vec<f64>,
+    lifted: f64,
 }
 
 impl Amplitudes {
     /// Least Σ cost · amplitude, and where it is.
     pub(super) fn least(&self, pieces: &Pieces, cost: &[f64], vertex: &mut [f64], ray: &mut Ray) -> f64 {
+        ray.lifted = 0.0;
         if !self.gain_free {
             return self.ray(pieces, cost, vertex);
         }
-        let mut value = self.ray(pieces, cost, vertex);
         if let Some(cap) = self.gain_cap {
+            let value = self.ray(pieces, cost, vertex);
             let [least, most] = pieces.unit_of(0);
             let scale = if value < 0.0 { cap * (most / least) } else { 0.0 };
             vertex.iter_mut().for_each(|v| *v *= scale);
             return scale * value;
         }
-        if value >= 0.0 {
-            vertex.fill(0.0);
-            return 0.0;
-        }
         let along = |vertex: &[f64], x: &[f64]| -> f64 { vertex.iter().zip(x).map(|(v, x)| v * x).sum() };
-        let mut length = along(vertex, &pieces.length);
+        vertex.fill(0.0);
         ray.cost.resize(cost.len(), 0.0);
         ray.vertex.resize(cost.len(), 0.0);
-        for _ in 0..STEPS {
-            if length <= 0.0 {
-                break;
-            }
-            let rate = value / length;
+        let (mut rate, mut scale) = (0.0, 0.0);
+        for step in 0..=STEPS {
             for ((adjusted, cost), length) in ray.cost.iter_mut().zip(cost).zip(&pieces.length) {
                 *adjusted = cost - rate * length;
-                // Units of pieces may differ by any factor: what is rounding of the one is more than all of another.
-                if adjusted.abs() <= ROUNDING * cost.abs() {
+                if adjusted.abs() <= LAST_DIGITS * cost.abs() {
                     *adjusted = 0.0;
                 }
             }
             let better = self.ray(pieces, &ray.cost, &mut ray.vertex);
-            if better >= ROUNDING * rate * along(&ray.vertex, &pieces.length) {
+            // What the terms of that sum are, and what they came from.
+            let (mut size, mut from) = (0.0, 0.0);
+            for (i, (v, adjusted)) in ray.vertex.iter().zip(&ray.cost).enumerate() {
+                size += v * adjusted.abs();
+                from += if *adjusted == 0.0 {
+                    0.0
+                } else {
+                    v * (cost[i].abs() + (rate * pieces.length[i]).abs())
+                };
+            }
+            if better >= -LAST_DIGITS * from || step == STEPS {
+                ray.lifted = self.hidden((-better).max(0.0) + LAST_DIGITS * size, pieces, &mut ray.vertex);
                 break;
             }
             vertex.copy_from_slice(&ray.vertex);
-            (value, length) = (along(vertex, cost), along(vertex, &pieces.length));
+            let length = along(vertex, &pieces.length);
+            (rate, scale) = (along(vertex, cost) / length, self.total / length);
+            if !(rate.is_finite() && scale.is_finite()) {
+                // Without limit, or beyond what numbers hold: nothing is proved of such a box.
+                vertex.fill(f64::NAN);
+                return f64::NAN;
+            }
         }
-        let scale = self.total / length;
         vertex.iter_mut().for_each(|v| *v *= scale);
-        let least = scale * value;
-        if !least.is_finite() {
-            // Without limit, or beyond what numbers hold: nothing is proved of such a box.
-            vertex.fill(f64::NAN);
-        }
-        least
+        self.total * rate
+    }
+
+    /// How far below what was found a ray may be that is cheaper by `less`: rays may be longer than others by any factor, so that
+    /// what is rounding of a long one is much of a short one.
+    fn hidden(&self, less: f64, pieces: &Pieces, vertex: &mut [f64]) -> f64 {
+        if less > 0.0 { self.total * less / self.ray(pieces, &pieces.length, vertex) } else { 0.0 }
     }
 
     /// How large the amplitude of a piece can be of a state within reach.
@@ -158,12 +167,12 @@ impl Amplitudes {
     }
 
     /// How far above the least of all states within reach [`Amplitudes::least`] may come out: it is exact for costs that are off by
-    /// their last digits, Σ |cost| · amplitude of the one found and of any other.
-    pub(super) fn rounding(&self, pieces: &Pieces, cost: &[f64], vertex: &[f64]) -> f64 {
+    /// their last digits, Σ |cost| · amplitude of the one found and of any other, and for what these hide.
+    pub(super) fn rounding(&self, pieces: &Pieces, cost: &[f64], vertex: &[f64], ray: &Ray) -> f64 {
         let at = |i: usize| {
             if cost[i] == 0.0 { 0.0 } else { cost[i].abs() * (self.most(pieces, i) + vertex[i].abs()) }
         };
-        LAST_DIGITS * (0..cost.len()).map(at).sum::<f64>()
+        ray.lifted + LAST_DIGITS * (0..cost.len()).map(at).sum::<f64>()
     }
 
     /// With c₀ = 1 at most; caps hold where the gain is not free.

@@ -131,7 +131,7 @@ impl Bounder {
                 both.copy_from_slice(costs);
                 rises(places).for_each(|i| both[i] += costs[i - 1]);
                 allowed.least(pieces, &both, vertex, ray);
-                let rounding = allowed.rounding(pieces, &both, vertex);
+                let rounding = allowed.rounding(pieces, &both, vertex, ray);
                 rises(places).for_each(|i| vertex[i - 1] += vertex[i]);
                 rounding
             };

@@ -420,7 +420,7 @@ impl Columns<'_> {
         let mut ray = Ray::default();
         let cheapest = |costs: &[f64], vertex: &mut [f64]| {
             allowed.least(&pieces, costs, vertex, &mut ray);
-            allowed.rounding(&pieces, costs, vertex)
+            allowed.rounding(&pieces, costs, vertex, &ray)
         };
         let lower = cost + hull.least(&quadratic, cheapest, enough - cost);
         let temperature_k = spectra.iter().map(|own| own.temperature_k).collect();

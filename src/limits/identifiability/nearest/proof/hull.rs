@@ -123,6 +123,10 @@ impl Hull {
                 // Wherever the least may be, not only where rounding has put it.
                 far += side.abs().max(most[i] + (origin[i] + self.change[i]).abs()) * size;
             }
+            if gap.is_nan() {
+                // No cheapest vertex is known.
+                break;
+            }
             let rounding = lifted + unit * (near * (2.0 * length + near) + 2.0 * far * (length + near));
             let bound = value - gap.max(0.0) - rounding;
             if bound > lower {

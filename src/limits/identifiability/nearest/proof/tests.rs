@@ -83,6 +83,64 @@ fn no_amplitudes_cost_less_than_the_cheapest() {
     }
 }
 
+/// Units of the sources may differ by any factor, and so the lengths of rays: a short one that is cheaper for its length is found
+/// beside a long one whose rounding is more than all of it.
+#[test]
+fn a_cheaper_ray_is_found_however_short() {
+    let mut draw = draws(17);
+    let of = Amplitudes { gain_free: true, ..amplitudes(true, false) };
+    let (mut short, mut known) = (0, 0);
+    for trial in 0..4000 {
+        let sum_known = trial % 2 == 1;
+        let of = Amplitudes { sum_known, ranges: vec![[0.0, 0.8], [0.0, 0.7]], ..of.clone() };
+        let scale = [0, 1, 2].map(|_| 10f64.powf(40.0 * draw() - 20.0));
+        let mut own = pieces();
+        let units = [0, 1, 2].map(|_| {
+            let least = 10f64.powf(40.0 * draw() - 20.0);
+            [least, least * 10f64.powf(25.0 * draw().powi(3))]
+        });
+        for (i, &source) in own.source.iter().enumerate() {
+            own.length[i] *= scale[source];
+            own.unit[i] = units[source];
+        }
+        let rate = 2.0 * draw() - 1.5;
+        // Costs of the objects for their length nearly alike, so that what joins hangs on their last digits.
+        let near = 10f64.powf(-18.0 * draw());
+        let cost: Vec<f64> = (0..5)
+            .map(|i| own.length[i] * (rate + if own.source[i] == 0 { 1.0 } else { near } * (draw() - 0.5)))
+            .collect();
+        let mut vertex = vec![0.0; 5];
+        let mut ray = Ray::default();
+        let least = of.least(&own, &cost, &mut vertex, &mut ray);
+        if least.is_nan() {
+            continue;
+        }
+        known += 1;
+        let rounding = of.rounding(&own, &cost, &vertex, &ray);
+        let longest = inner(&vertex, &own.length);
+        assert!(longest <= of.total * (1.0 + 1e-14), "{trial}: {longest}");
+        for end in 0..40 {
+            // Surface at either end, and the objects dark, full, or anyhow: with one of them dark as far as that is allowed.
+            let mut v = [0.8, 0.7].map(|most| most * [0.0, 1.0, draw()][end % 3]);
+            if sum_known {
+                v[0] = [0.2, 0.8, 0.2 + 0.6 * draw()][end % 3];
+                v[1] = 0.9 - v[0];
+            } else if v[0] + v[1] > 0.9 {
+                v[end / 3 % 2] = 0.0;
+            }
+            let [a, b] = [end / 6 % 2, end / 12 % 2].map(|side| side as f64);
+            let [at, first, second] = [0, 1, 2]
+                .map(|k| units[k][0] * (units[k][1] / units[k][0]).powf([0.0, 1.0, draw()][(end + k) % 3]));
+            let z = [a / at, (1.0 - a) / at, v[0] * b / first, v[0] * (1.0 - b) / first, v[1] / second];
+            let share = of.total / inner(&z, &own.length);
+            let value = share * inner(&cost, &z);
+            assert!(least - rounding <= value, "{trial}: {least:e} {rounding:e} {value:e}");
+            short += usize::from(value < 0.9 * least.min(0.0) && v[0] + v[1] == 0.0);
+        }
+    }
+    assert!(known > 3900 && short > 1000, "{known} {short}");
+}
+
 /// The bound of the hull against the same problem on a fine lattice of one amplitude.
 #[test]
 fn the_least_of_a_quadratic_is_bounded_tightly() {
