@@ -303,6 +303,21 @@ pub mod check {
         within((0.0..=1.0).contains(&value), quantity, value, "", "between 0 and 1")
     }
 
+    /// Every one of many, with the error of the first that is not: first without a branch for each, which is several times as fast.
+    ///
+    /// # Errors
+    /// That of `one`.
+    pub(crate) fn each(
+        values: &[f64],
+        good: impl Fn(f64) -> bool,
+        one: impl Fn(f64) -> Result<f64>,
+    ) -> Result<()> {
+        if values.iter().fold(true, |all, value| all & good(*value)) {
+            return Ok(());
+        }
+        values.iter().try_for_each(|value| one(*value).map(drop))
+    }
+
     fn within(ok: bool, quantity: &str, value: f64, unit: &'static str, expected: &str) -> Result<f64> {
         if ok { Ok(value) } else { Err(Error::out_of_range(quantity, value, unit, expected)) }
     }

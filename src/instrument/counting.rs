@@ -32,10 +32,8 @@ impl Counting {
             let what = "variances of added noise".into();
             return Err(Error::Length { what, found, expected: bands });
         }
-        for &var in &self.var_added {
-            check::non_negative("variance of added noise", var, "counts^2")?;
-        }
-        Ok(())
+        let one = |var| check::non_negative("variance of added noise", var, "counts^2");
+        check::each(&self.var_added, |var| (0.0..f64::INFINITY).contains(&var), one)
     }
 
     /// σ²_w of band w.

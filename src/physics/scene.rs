@@ -200,8 +200,9 @@ pub fn check_emissivity(emissivity: &[f64], nodes: usize) -> Result<()> {
     if emissivity.len() != nodes {
         return Err(Error::Length { what: "emissivity".into(), found: emissivity.len(), expected: nodes });
     }
-    for &value in emissivity {
-        check::unit_interval("emissivity", value)?;
-    }
-    Ok(())
+    check::each(
+        emissivity,
+        |value| (0.0..=1.0).contains(&value),
+        |value| check::unit_interval("emissivity", value),
+    )
 }

@@ -10,7 +10,7 @@
 //!    square to the separation at every state of the alternative, hence to the least of them;
 //! 4. the search in all bands, which ends at the first state that is nearer than required.
 //!
-//! Whether 2 is worth trying the local distance in every n-th band tells (times √n it is about that in all): it proves
+//! Whether 1 and 2 are worth trying the local distance in every n-th band tells (times √n it is about that in all): it proves
 //! nothing, and is only a guess at what will. Before 3 a descent in the few bands shows cheaply where they fail.
 //!
 //! One direction that fails decides the pair. That no state is nearer is proved by branch and bound (see
@@ -37,8 +37,8 @@ const CLOSE: f64 = 2.0;
 
 /// What deciding a distance takes at most, with skipping, and what it takes where bands are few already.
 const THINGS: [Thing; 5] = [
-    Thing::OwnStateDistances,
     Thing::FewBandEstimates,
+    Thing::OwnStateDistances,
     Thing::Descents,
     Thing::FewBandSearches,
     Thing::NearestSearches,
@@ -186,9 +186,10 @@ impl LibraryScene<'_> {
             ranked.push((distance, other));
         }
         ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
-        // The first of the things stands in the ranking already.
-        let things = &question.things()[1..];
-        skipping.until(ranked, things, |(distance, other)| {
+        // These stand in the ranking already.
+        let mut things = question.things().to_vec();
+        things.retain(|thing| *thing != Thing::OwnStateDistances);
+        skipping.until(ranked, &things, |(distance, other)| {
             let reached = question.reaches(&mut solvers, skipping, target, other, Some(distance))?;
             Ok((!reached).then_some(other))
         })
@@ -231,9 +232,12 @@ impl<'q> Question<'q> {
     ) -> Result<bool> {
         let (own, other) = (self.emissivities[a], self.emissivities[b]);
         let (state, counting, required) = (self.scene.state, self.counting, self.required);
+        let stride = self.few.map_or(1.0, |few| few.stride as f64);
+        let hopeless = |solvers: &Solvers<'_>| solvers.estimate * stride.sqrt() >= CLOSE * required;
         let own_state = |solvers: &mut Solvers<'_>| {
             let distance = match in_own_state {
                 Some(distance) => distance,
+                None if hopeless(solvers) => return Ok(Attempt::NotTried),
                 None => solvers.all.own_state_distance(own, other, state, counting)?,
             };
             Ok((distance < required).then_some(false).into())
@@ -249,8 +253,7 @@ impl<'q> Question<'q> {
         };
         let descent = |solvers: &mut Solvers<'_>| {
             solvers.minimum = None;
-            let in_all = solvers.estimate * self.few.map_or(1.0, |few| few.stride as f64).sqrt();
-            if in_all >= CLOSE * required {
+            if hopeless(solvers) {
                 return Ok(Attempt::NotTried);
             }
             let found = solvers.all.descend(own, other, state, counting, required)?;
@@ -286,12 +289,12 @@ impl<'q> Question<'q> {
         };
         let own_is_new = in_own_state.is_none().then_some(Thing::OwnStateDistances);
         let proofs = [
-            Proof { of: own_is_new, spares: Reason::OwnState, find: &own_state },
             Proof { of: Some(Thing::FewBandEstimates), spares: Reason::Decided, find: &estimate },
+            Proof { of: own_is_new, spares: Reason::OwnState, find: &own_state },
             Proof { of: Some(Thing::Descents), spares: Reason::Descent, find: &descent },
             Proof { of: Some(Thing::FewBandSearches), spares: Reason::FewBands, find: &few_bands },
         ];
-        let proofs = if self.few.is_some() { &proofs[..] } else { &proofs[..1] };
+        let proofs = if self.few.is_some() { &proofs[..] } else { &proofs[1..2] };
         skipping.first_proof(solvers, proofs, Thing::NearestSearches, &in_full)
     }
 }
