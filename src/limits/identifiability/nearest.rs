@@ -24,8 +24,8 @@ mod refine;
 mod residual;
 mod search;
 
+use self::proof::Memory;
 pub use self::proof::Nearer;
-use self::proof::{Few, Memory};
 pub use self::refine::NearestDistance;
 use self::refine::{NO_GAIN, refine};
 use self::residual::{Comparison, Metric, Target};
@@ -36,7 +36,6 @@ use crate::fisher::{Counting, Unknowns};
 use crate::scene::{State, Surroundings};
 use crate::spectrum::Bands;
 use crate::units::SECOND_RADIATION_CM_K;
-use std::sync::Arc;
 
 /// Bands that are enough for a first look.
 const FEW_BANDS: usize = 64;
@@ -63,8 +62,8 @@ pub struct NearestSolver<'a> {
     comparison: Comparison<'a>,
     /// What the searches before have computed that the next one can use.
     table: Option<EmissionTable>,
-    /// Every so many bands, where there are many.
-    few: Option<Arc<Few>>,
+    /// How many neighbouring bands a proof counts as one for a first look, where there are many.
+    merging: Option<usize>,
     memory: Memory,
     /// To what share of its distance a nearest state is proved, if at all.
     tolerance: Option<f64>,
@@ -82,7 +81,7 @@ impl<'a> NearestSolver<'a> {
         Self {
             comparison: Comparison::new(bands, surroundings, unknowns, range),
             table: None,
-            few: Few::of(bands, FEW_BANDS),
+            merging: Some(bands.len() / FEW_BANDS).filter(|count| *count > 1),
             memory: Memory::default(),
             tolerance: None,
         }
@@ -178,7 +177,7 @@ impl<'a> NearestSolver<'a> {
         known: Option<&NearestDistance>,
         boxes: u64,
     ) -> Nearer {
-        let with = (self.few.as_ref(), &mut self.memory);
+        let with = (self.merging, &mut self.memory);
         proof::nearer_than(&mut self.comparison, with, target, limit, known, boxes)
     }
 
@@ -322,7 +321,7 @@ impl<'a> NearestSolver<'a> {
     /// Proves the best state, or finds a better one.
     fn prove(&mut self, target: &Target<'_>, best: &mut Option<NearestDistance>, tolerance: f64) {
         if let Some(known) = best.take_if(|best| best.distance.is_finite()) {
-            let with = (self.few.as_ref(), &mut self.memory);
+            let with = (self.merging, &mut self.memory);
             *best = Some(proof::prove(&mut self.comparison, with, target, known, tolerance));
         }
     }

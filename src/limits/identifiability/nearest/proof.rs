@@ -27,13 +27,11 @@ mod view;
 use self::about::Closed;
 pub(super) use self::prover::Memory;
 use self::prover::{Goal, Prover};
-pub(super) use self::sources::Few;
 use super::refine::{NearestDistance, refine};
 use super::residual::{Comparison, Target};
 use crate::scene::State;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
-use std::sync::Arc;
 
 /// What a bound is lowered by in the end.
 const MARGIN: f64 = 1e-12;
@@ -97,14 +95,14 @@ impl Eq for Region {}
 /// Whether any state is nearer than `limit`; `known` is the nearest one that a search has found, if there was one.
 pub(super) fn nearer_than(
     comparison: &mut Comparison<'_>,
-    (few, memory): (Option<&Arc<Few>>, &mut Memory),
+    (merging, memory): (Option<usize>, &mut Memory),
     target: &Target<'_>,
     limit: f64,
     known: Option<&NearestDistance>,
     boxes: u64,
 ) -> Nearer {
     let goal = Goal { limit: limit * limit, enough: limit * limit * (1.0 + 4.0 * MARGIN), boxes };
-    match Prover::new(comparison, few, memory, target, limit).run(comparison, target, known, goal) {
+    match Prover::new(comparison, merging, memory, target, limit).run(comparison, target, known, goal) {
         Outcome::Nearer(_) => Nearer::Somewhere,
         Outcome::Bound(lower) if lower * (1.0 - MARGIN) >= limit => Nearer::Nowhere,
         Outcome::Bound(_) => Nearer::Undecided,
@@ -114,7 +112,7 @@ pub(super) fn nearer_than(
 /// The best state with a bound proved to `tolerance` of its distance, or as far as the effort goes.
 pub(super) fn prove(
     comparison: &mut Comparison<'_>,
-    (few, memory): (Option<&Arc<Few>>, &mut Memory),
+    (merging, memory): (Option<usize>, &mut Memory),
     target: &Target<'_>,
     mut best: NearestDistance,
     tolerance: f64,
@@ -126,7 +124,7 @@ pub(super) fn prove(
         let cost = best.distance * best.distance;
         // A little more than asked for, so that a bound rounded down does not miss it.
         let share = 1.0 - 0.9 * tolerance;
-        let prover = Prover::new(comparison, few, memory, target, best.distance);
+        let prover = Prover::new(comparison, merging, memory, target, best.distance);
         let boxes = BOXES[prover.all.axes.len().min(BOXES.len() - 1)];
         let goal = Goal { limit: cost, enough: share * share * cost, boxes };
         match prover.run(comparison, target, Some(&best), goal) {

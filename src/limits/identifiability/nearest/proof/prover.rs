@@ -2,12 +2,11 @@
 
 use super::amplitudes::Amplitudes;
 use super::bound::{Bounder, Mixture};
-use super::sources::{Few, Sources};
+use super::sources::{Sources, merged};
 use super::view::View;
 use crate::fisher::Nuisance;
 use crate::identifiability::nearest::residual::{Comparison, Target};
 use crate::scene::{Parameter, State};
-use std::sync::Arc;
 
 /// Quadratics that are tried in a box.
 const QUADRATICS: usize = 5;
@@ -37,7 +36,7 @@ pub(in super::super) struct Memory {
 
 /// What a proof works with.
 pub(super) struct Prover<'a, 'm> {
-    few: Option<(View<'static>, &'m mut Bounder)>,
+    few: Option<(View<'a>, &'m mut Bounder)>,
     pub(super) all: View<'a>,
     pub(super) bounder: &'m mut Bounder,
     /// Ends of intervals, by axis.
@@ -48,7 +47,7 @@ pub(super) struct Prover<'a, 'm> {
 impl<'a, 'm> Prover<'a, 'm> {
     pub(super) fn new(
         comparison: &Comparison<'a>,
-        few: Option<&Arc<Few>>,
+        merging: Option<usize>,
         memory: &'m mut Memory,
         target: &Target<'_>,
         reach: f64,
@@ -82,9 +81,10 @@ impl<'a, 'm> Prover<'a, 'm> {
         sum *= 1.0 + 1e-15;
         let gain_free = space.unknowns.contains(Nuisance::Gain);
         let allowed = Amplitudes { gain_free, ranges, sum, sum_known, total: 0.0, gain_cap: None };
-        let few = few.map(|few| {
-            let kept = bands.each_ref().map(|x| x.iter().copied().step_by(few.stride).collect());
-            (View::new(sources.every(few), allowed.clone(), kept, reach), &mut memory.few)
+        let few = merging.map(|count| {
+            let [counts, noise] = [&bands[1], &bands[2]].map(|x| merged(x, count));
+            let root = counts.iter().zip(&noise).map(|(n, v)| (n + v).sqrt()).collect();
+            (View::new(sources.merged(count), allowed.clone(), [root, counts, noise], reach), &mut memory.few)
         });
         let all = View::new(sources, allowed, bands, reach);
         let temperature_k = all.axes.iter().map(|_| Vec::new()).collect();
@@ -155,11 +155,10 @@ impl<'a, 'm> Prover<'a, 'm> {
         let mut least = 0.0;
         if let Some((few, bounder)) = &mut self.few {
             know(few);
-            let found = bounder.bound(few, ends, narrower, enough, None, 1);
-            let share = self.all.root.len() as f64 / few.root.len() as f64;
+            let found = bounder.bound(few, ends, narrower, enough, None, QUADRATICS);
             // Where they are far from it all bands would hardly do either.
             let wide = || ends.iter().zip(known).any(|([a, b], known)| known[*b] > WIDE * known[*a]);
-            let hopeless = share * found.lower < if found.coarse { enough } else { HOPE * enough };
+            let hopeless = found.lower < if found.coarse { enough } else { HOPE * enough };
             if found.lower >= enough || (hopeless && (found.coarse || wide())) {
                 return (found.lower, found.axis, false);
             }

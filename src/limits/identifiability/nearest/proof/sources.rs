@@ -18,48 +18,10 @@ use super::vectors::{multiply, product_into};
 use crate::fisher::Nuisance;
 use crate::identifiability::nearest::residual::{Comparison, Target};
 use crate::planck;
-use crate::simd::{Chunk, LANES, dispatched, padded};
+use crate::simd::{Chunk, LANES, dispatched, fold, padded};
 use crate::spectrum::Bands;
 use crate::units::SECOND_RADIATION_CM_K;
-use std::ops::Deref;
 use std::sync::Arc;
-
-/// Every so many bands of a problem, and where their nodes stand among those of the whole.
-#[derive(Debug)]
-pub(crate) struct Few {
-    pub(super) bands: Bands,
-    nodes: Vec<usize>,
-    pub(super) stride: usize,
-}
-
-impl Few {
-    /// About `enough` bands, if there are more than twice as many.
-    pub(crate) fn of(bands: &Bands, enough: usize) -> Option<Arc<Self>> {
-        let stride = bands.len() / enough;
-        (stride > 1).then(|| {
-            let (bands, nodes) = bands.every(stride);
-            Arc::new(Self { bands, nodes, stride })
-        })
-    }
-}
-
-/// Bands that several share.
-#[derive(Debug)]
-pub(super) enum Shared<'a> {
-    All(&'a Bands),
-    Few(Arc<Few>),
-}
-
-impl Deref for Shared<'_> {
-    type Target = Bands;
-
-    fn deref(&self) -> &Bands {
-        match self {
-            Self::All(bands) => bands,
-            Self::Few(few) => &few.bands,
-        }
-    }
-}
 
 /// One source: what B(T) is multiplied by at the nodes (with the weight of the band where that is its only node), and where its
 /// temperature may be.
@@ -93,10 +55,12 @@ pub(super) struct Spectrum {
 }
 
 /// All sources of an alternative.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Sources<'a> {
-    pub(super) bands: Shared<'a>,
-    pub(super) list: Vec<Source>,
+    pub(super) bands: &'a Bands,
+    pub(super) list: Arc<[Source]>,
+    /// Every so many neighbouring bands are counted as one.
+    merged: usize,
     /// ν₀.
     lowest_cm1: f64,
 }
@@ -121,14 +85,18 @@ impl<'a> Sources<'a> {
         let scale = target.counts * gain;
         let bands = comparison.target.bands();
         let weights = bands.one_node_per_band().then(|| bands.weights_cm1());
-        let strength = |at: &dyn Fn(usize) -> f64| -> Vec<f64> {
-            let nodes = 0..target.alternative.len();
-            nodes.map(|j| scale * weights.map_or(1.0, |weights| weights[j]) * at(j)).collect()
+        let strength = |share: Vec<f64>| -> Vec<f64> {
+            let mut strength = share;
+            if let Some(weights) = weights {
+                multiply(&mut strength, weights);
+            }
+            strength.iter_mut().for_each(|strength| *strength *= scale);
+            strength
         };
         let span = |unknown: bool, range: [f64; 2], known: f64| if unknown { range } else { [known, known] };
         let other = target.alternative;
         let surface = Source {
-            strength: strength(&|j| other[j]),
+            strength: strength(other.to_vec()),
             temperature_k: span(
                 unknown(Nuisance::Temperature),
                 space.range.temperature_k,
@@ -138,27 +106,24 @@ impl<'a> Sources<'a> {
         };
         let objects = surroundings.objects().iter().zip(&target.state.environment_k).enumerate();
         let lights = objects.map(|(k, (object, &known))| {
-            let own = |j: usize| object.emissivity.as_ref().map_or(1.0, |own| own[j]);
+            let mut lit: Vec<f64> = other.iter().map(|e| 1.0 - e).collect();
+            if let Some(own) = &object.emissivity {
+                multiply(&mut lit, own);
+            }
             let range = space.bounds(crate::scene::Parameter::EnvironmentTemperature(k));
             Source {
-                strength: strength(&|j| (1.0 - other[j]) * own(j)),
+                strength: strength(lit),
                 temperature_k: span(unknown(Nuisance::EnvironmentTemperature), range, known),
                 known_k: known,
             }
         });
         let list = std::iter::once(surface).chain(lights).collect();
-        Self { bands: Shared::All(bands), list, lowest_cm1: lowest(bands.nodes_cm1()) }
+        Self { bands, list, merged: 1, lowest_cm1: lowest(bands.nodes_cm1()) }
     }
 
-    /// The same in few bands.
-    pub(super) fn every(&self, few: &Arc<Few>) -> Sources<'static> {
-        let list = self.list.iter().map(|source| Source {
-            strength: few.nodes.iter().map(|&j| source.strength[j]).collect(),
-            temperature_k: source.temperature_k,
-            known_k: source.known_k,
-        });
-        let lowest_cm1 = lowest(few.bands.nodes_cm1());
-        Sources { bands: Shared::Few(Arc::clone(few)), list: list.collect(), lowest_cm1 }
+    /// The same with neighbouring bands counted as one.
+    pub(super) fn merged(&self, merged: usize) -> Self {
+        Self { list: Arc::clone(&self.list), merged, ..*self }
     }
 
     /// Source `s` at a temperature.
@@ -219,7 +184,8 @@ impl<'a> Sources<'a> {
     /// Rounding of spectra from this temperature on, as a share of them ([`crate::planck`]).
     pub(super) fn rounding(&self, temperature_k: f64) -> f64 {
         let (_, last) = self.bands.range_cm1();
-        4e-16 * (10.0 + (SECOND_RADIATION_CM_K * last / temperature_k).min(2.0 * DARK))
+        let merging = if self.merged > 1 { f64::EPSILON * self.merged as f64 } else { 0.0 };
+        merging + 4e-16 * (10.0 + (SECOND_RADIATION_CM_K * last / temperature_k).min(2.0 * DARK))
     }
 
     fn counted(&self, s: usize, radiance: &mut [f64]) -> Vec<f64> {
@@ -231,7 +197,7 @@ impl<'a> Sources<'a> {
             multiply(radiance, strength);
             self.bands.weigh_into(radiance, &mut counts[..bands]);
         }
-        counts
+        if self.merged > 1 { merged(&counts[..bands], self.merged) } else { counts }
     }
 
     /// A″ at a temperature, and a bound of |A‴| between two others around it.
@@ -337,4 +303,24 @@ dispatched! {
 /// How many values whole chunks take for so many bands: those beyond are 0 everywhere.
 pub(super) fn whole(bands: usize) -> usize {
     bands.next_multiple_of(LANES)
+}
+
+/// Neighbours summed, in whole chunks.
+pub(super) fn merged(bands: &[f64], count: usize) -> Vec<f64> {
+    let mut sums = vec![0.0; whole(bands.len().div_ceil(count))];
+    sums_into(bands, count, &mut sums);
+    sums
+}
+
+dispatched! {
+    fn sums_into<'a>(bands: &'a [f64], count: usize, sums: &'a mut [f64]) -> () {
+        for (sum, bands) in sums.iter_mut().zip(bands.chunks(count)) {
+            let (chunks, rest) = bands.as_chunks::<LANES>();
+            let mut lanes: Chunk = padded(rest);
+            for chunk in chunks {
+                lanes = std::array::from_fn(|i| lanes[i] + chunk[i]);
+            }
+            *sum = fold(&lanes);
+        }
+    }
 }
