@@ -117,9 +117,13 @@ fn temperature_k(draw: &mut Draw) -> f64 {
     }
 }
 
-/// 3 to 60 bands, mostly few, in a narrow or a wide range about the target's peak or far from it.
+/// Share of the scenes with so many bands that a proof counts neighbours as one.
+const MANY: f64 = 0.04;
+
+/// 3 to 60 bands, mostly few, or 128 to 227, in a narrow or a wide range about the target's peak or far from it.
 fn bands(draw: &mut Draw, temperature_k: f64) -> Result<Bands> {
-    let count = draw.scale(3.0, 61.0) as usize;
+    let drawn = draw.scale(3.0, 61.0);
+    let count = if drawn.fract() < MANY { 128.0 + 100.0 * drawn.fract() / MANY } else { drawn } as usize;
     let x = match draw.below(20) {
         0..=12 => draw.between(1.5, 10.0),
         13..=15 => draw.scale(0.01, 1.5),

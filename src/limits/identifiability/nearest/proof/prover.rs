@@ -1,4 +1,4 @@
-//! A pair as a proof sees it: in few bands and in all, with the ends of intervals that both know.
+//! A pair as a proof sees it: in bands counted together and in all, with the ends of intervals that both know.
 
 use super::amplitudes::Amplitudes;
 use super::bound::{Bounder, Mixture};
@@ -11,7 +11,7 @@ use crate::scene::{Parameter, State};
 /// Quadratics that are tried in a box.
 const QUADRATICS: usize = 5;
 
-/// Share of what is enough that few bands must promise of all of them, for these to be looked at in a wide box, and from how many
+/// Share of what is enough that few bands must bound for all of them to be looked at in a wide box, and from how many
 /// times as warm at its hot end on it is wide.
 const HOPE: f64 = 0.7;
 const WIDE: f64 = 1.05;

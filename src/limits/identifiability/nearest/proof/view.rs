@@ -1,6 +1,7 @@
-//! A pair in all its bands or in some of them: what a proof knows of it, as far as it was needed.
+//! A pair in all its bands, or with neighbours counted as one: what a proof knows of it, as far as it was needed.
 //!
-//! Fewer bands never carry more information, and where they prove enough they are quicker.
+//! Counting bands together never brings them farther apart, (√Σa − √Σb)² ≤ Σ(√a − √b)² by Cauchy and Schwarz: whatever is beyond
+//! reach then is so in all bands. It loses what differs between neighbours alone, of smooth spectra next to nothing.
 
 use super::amplitudes::Amplitudes;
 use super::metric::Metric;
@@ -24,7 +25,7 @@ pub(super) struct End {
     pub(super) most: f64,
 }
 
-/// A pair in some of its bands.
+/// A pair in such bands.
 pub(super) struct View<'a> {
     pub(super) sources: Sources<'a>,
     pub(super) allowed: Amplitudes,
