@@ -57,12 +57,12 @@ impl Display for Warning {
             Self::FewDigits { distance, .. } => write!(f, "of the {distance} rounding leaves nothing: it may have any value"),
             Self::NearestSearch { distance, lower, priors } => {
                 let why = if *priors { ", which leaves priors out" } else { "" };
-                write!(
-                    f,
-                    "the nearest distance, {}, is the best of a search; the proof{why} says no more than that it is at least {}",
-                    significant(*distance, 3),
-                    significant(*lower, 3)
-                )
+                write!(f, "the nearest distance, {}, is the best of a search; the proof{why} ", significant(*distance, 3))?;
+                match 1.0 - lower / distance {
+                    // Three digits would show the same number twice.
+                    gap if gap < 0.01 => write!(f, "comes within {gap:.0e} of it"),
+                    _ => write!(f, "says no more than that it is at least {}", significant(*lower, 3)),
+                }
             }
             Self::Bunching { occupancy, wavenumber_cm1, included } => {
                 let what = if *included {
