@@ -9,6 +9,7 @@ mod inputs;
 mod likelihood;
 mod many_materials;
 mod materials;
+mod nearest_extremes;
 mod nearest_minimum;
 mod nearest_search;
 mod noise_budget;

@@ -177,8 +177,25 @@ impl<'a> NearestSolver<'a> {
         known: Option<&NearestDistance>,
         boxes: u64,
     ) -> Nearer {
+        let own = self.comparison.space.within_range(target.state);
+        let best = known.map_or(&own, |known| &known.state);
+        let (relative_error, _) = self.rounding_at(target, best, limit);
         let with = (self.merging, &mut self.memory);
-        proof::nearer_than(&mut self.comparison, with, target, limit, known, boxes)
+        // That none is nearer must be so whatever rounding has added to the distance about which it is proved.
+        let reach = limit / (1.0 - relative_error.min(0.5));
+        let found = proof::nearer_than(&mut self.comparison, with, target, [limit, reach], known, boxes);
+        if found == Nearer::Nowhere && relative_error > 0.5 { Nearer::Undecided } else { found }
+    }
+
+    /// Relative error of a distance at a state by rounding, and what it is made of.
+    fn rounding_at(&mut self, target: &Target<'_>, state: &State, distance: f64) -> (f64, f64) {
+        let terms = self.comparison.terms(target, state);
+        let (_, last_cm1) = self.comparison.target.bands().range_cm1();
+        let coldest = state.environment_k.iter().copied().fold(state.temperature_k, f64::min);
+        let x = SECOND_RADIATION_CM_K * last_cm1 / coldest.min(target.state.temperature_k);
+        let x = x.min(LARGEST_X);
+        let rounding = ROUNDING_OF_TERMS * (10.0 + x) * (1.0 + x / DEEP_IN_WIEN);
+        (NO_GAIN + rounding * (1.0 + terms / distance), terms)
     }
 
     /// Downhill from the target's own state to a minimum, or to the first state that is nearer than `limit`. Other minima are not
@@ -271,16 +288,12 @@ impl<'a> NearestSolver<'a> {
             }
             Some(mut best) => {
                 if best.distance > 0.0 {
-                    let terms = self.comparison.terms(&target, &best.state);
-                    let (_, last_cm1) = self.comparison.target.bands().range_cm1();
-                    let coldest =
-                        best.state.environment_k.iter().copied().fold(best.state.temperature_k, f64::min);
-                    let x = SECOND_RADIATION_CM_K * last_cm1 / coldest.min(state.temperature_k);
-                    let x = x.min(LARGEST_X);
-                    let rounding = ROUNDING_OF_TERMS * (10.0 + x) * (1.0 + x / DEEP_IN_WIEN);
-                    best.relative_error = NO_GAIN + rounding * (1.0 + terms / best.distance);
+                    let (relative_error, terms) = self.rounding_at(&target, &best.state, best.distance);
+                    best.relative_error = relative_error;
                     // What rounding may have added to the distance it may have added to its bound.
-                    best.lower = best.lower.min(best.distance * (1.0 - best.relative_error)).max(0.0);
+                    let most = best.distance * (1.0 - relative_error);
+                    let known = best.lower <= most || best.lower > most;
+                    best.lower = if known { best.lower.min(most).max(0.0) } else { 0.0 };
                     if terms.is_finite() && best.distance <= NOTHING_OF_TERMS * terms {
                         // Nothing but rounding is left.
                         (best.distance, best.lower, best.relative_error) = (0.0, 0.0, 0.0);

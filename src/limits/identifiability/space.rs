@@ -74,12 +74,17 @@ pub(super) struct StateSpace {
     pub(super) unknowns: Unknowns,
     pub(super) range: StateRange,
     pub(super) parameters: Vec<Parameter>,
+    /// The range of a lighting factor, its lower end where all at once can have it.
+    lighting: [f64; 2],
 }
 
 impl StateSpace {
     pub(super) fn new(unknowns: Unknowns, range: StateRange, objects: usize) -> Self {
         let parameters = unknowns.parameters(objects);
-        Self { unknowns, range, parameters }
+        let sum = unknowns.known_lighting_total().unwrap_or(range.lighting_sum);
+        let [low, high] = range.lighting;
+        let lighting = [low.min(sum / objects.max(1) as f64), high];
+        Self { unknowns, range, parameters, lighting }
     }
 
     /// Newton's step within the bounds, or where the second derivatives are not positive definite, Gauss's.
@@ -163,7 +168,7 @@ impl StateSpace {
     pub(super) fn bounds(&self, parameter: Parameter) -> [f64; 2] {
         match parameter {
             Parameter::Temperature => self.range.temperature_k,
-            Parameter::Lighting(_) => self.range.lighting,
+            Parameter::Lighting(_) => self.lighting,
             Parameter::Gain => [-LOG_GAIN, LOG_GAIN],
             Parameter::EnvironmentTemperature(_) => [0.1, 1e6],
             Parameter::Material => [0.0, 0.0],
@@ -202,10 +207,21 @@ impl StateSpace {
             let [low, high] = self.bounds(*parameter);
             set(&mut inside, *parameter, value(state, *parameter).clamp(low, high));
         }
-        if self.unknowns.contains(Nuisance::Lighting) {
-            let sum: f64 = inside.lighting.iter().sum();
-            if sum > self.lighting_sum() {
-                inside.lighting.iter_mut().for_each(|factor| *factor *= self.lighting_sum() / sum);
+        // What is above the lower ends is scaled down to what the sum leaves for it.
+        let least = self.lighting[0];
+        let (mut above, mut room) = (0.0, self.lighting_sum());
+        for parameter in &self.parameters {
+            if matches!(parameter, Parameter::Lighting(_)) {
+                above += value(&inside, *parameter) - least;
+                room -= least;
+            }
+        }
+        if above > room {
+            for parameter in &self.parameters {
+                if matches!(parameter, Parameter::Lighting(_)) {
+                    let own = value(&inside, *parameter) - least;
+                    set(&mut inside, *parameter, least + own * (room.max(0.0) / above));
+                }
             }
         }
         self.close_total(&mut inside);

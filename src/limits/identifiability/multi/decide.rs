@@ -14,7 +14,8 @@
 //! nothing, and is only a guess at what will. Before 3 a descent in the few bands shows cheaply where they fail.
 //!
 //! One direction that fails decides the pair. That no state is nearer is proved by branch and bound (see
-//! [`NearestSolver::nearer_than`]); where the effort does not suffice for a proof the two are not told apart.
+//! [`NearestSolver::nearer_than`]); where the effort does not suffice for a proof the two are not told apart. Priors have no part in
+//! a proof: with them the search has the last word.
 
 use super::{LibraryScene, Progress};
 use crate::demand::{self, Attempt, Proof, Reason, Skipping, Thing};
@@ -275,13 +276,18 @@ impl<'q> Question<'q> {
             Ok((found == Nearer::Nowhere).then_some(true).into())
         };
         let in_full = |solvers: &mut Solvers<'_>| {
-            if !skipping.skips() {
-                let found = solvers.all.with_counting(own, other, state, counting)?;
-                return Ok((found.distance >= required, None));
-            }
-            let known = solvers.minimum.take();
+            let known = match solvers.minimum.take() {
+                None if !skipping.skips() => {
+                    let found = solvers.all.with_counting(own, other, state, counting)?;
+                    if found.distance < required {
+                        return Ok((false, None));
+                    }
+                    Some(found)
+                }
+                known => known,
+            };
             Ok(match solvers.all.nearer_than(own, other, state, counting, required, known.as_ref())? {
-                Nearer::Somewhere => (false, Some(Reason::NearerState)),
+                Nearer::Somewhere => (false, skipping.skips().then_some(Reason::NearerState)),
                 Nearer::Nowhere => (true, None),
                 // On the safe side.
                 Nearer::Undecided => (false, None),

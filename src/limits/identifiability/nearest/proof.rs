@@ -92,19 +92,20 @@ impl PartialEq for Region {
 
 impl Eq for Region {}
 
-/// Whether any state is nearer than `limit`; `known` is the nearest one that a search has found, if there was one.
+/// Whether any state is nearer than `limit`: none is where that can be proved of `reach`, a little more. `known` is the nearest
+/// one that a search has found, if there was one.
 pub(super) fn nearer_than(
     comparison: &mut Comparison<'_>,
     (merging, memory): (Option<usize>, &mut Memory),
     target: &Target<'_>,
-    limit: f64,
+    [limit, reach]: [f64; 2],
     known: Option<&NearestDistance>,
     boxes: u64,
 ) -> Nearer {
-    let goal = Goal { limit: limit * limit, enough: limit * limit * (1.0 + 4.0 * MARGIN), boxes };
-    match Prover::new(comparison, merging, memory, target, limit).run(comparison, target, known, goal) {
+    let goal = Goal { limit: limit * limit, enough: reach * reach * (1.0 + 4.0 * MARGIN), boxes };
+    match Prover::new(comparison, merging, memory, target, reach).run(comparison, target, known, goal) {
         Outcome::Nearer(_) => Nearer::Somewhere,
-        Outcome::Bound(lower) if lower * (1.0 - MARGIN) >= limit => Nearer::Nowhere,
+        Outcome::Bound(lower) if lower * (1.0 - MARGIN) >= reach => Nearer::Nowhere,
         Outcome::Bound(_) => Nearer::Undecided,
     }
 }
@@ -202,6 +203,11 @@ impl Prover<'_, '_> {
                     } else if self.boxes.is_multiple_of(SELDOM) {
                         descended = f64::INFINITY;
                     }
+                }
+                if self.all.axes.is_empty() {
+                    // There is nothing to halve.
+                    aside = aside.min(part.bound);
+                    continue;
                 }
                 part.axis = Some(axis);
                 queue.push(part);

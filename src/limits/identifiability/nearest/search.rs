@@ -144,7 +144,7 @@ impl Comparison<'_> {
             free,
             lit,
             known,
-            range: self.space.range.lighting,
+            range: self.space.bounds(Parameter::Lighting(0)),
             sum_limit: self.space.lighting_sum() - known_sum,
             gain: self.space.unknowns.contains(Nuisance::Gain),
         };

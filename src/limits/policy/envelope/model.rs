@@ -385,6 +385,8 @@ pub(super) fn factors(region: &Region) -> [[f64; 2]; COLUMNS] {
 /// Vₖ′ at least and at most. Where the total is known the last factor is what the others leave of it.
 fn lighting_range(scene: &EnvelopeScene<'_>, k: usize, objects: usize) -> [f64; 2] {
     let [low, high] = scene.range.lighting;
+    let sum = scene.unknowns.known_lighting_total().unwrap_or(scene.range.lighting_sum);
+    let low = low.min(sum / objects as f64);
     match scene.unknowns.known_lighting_total() {
         Some(total) if k + 1 == objects => [0.0, total],
         Some(total) => [low.min(total), high.min(total)],

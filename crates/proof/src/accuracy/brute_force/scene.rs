@@ -117,6 +117,8 @@ fn temperature_k(draw: &mut Draw) -> f64 {
     }
 }
 
+/// Share of what is drawn seldom.
+const ODD: f64 = 0.05;
 /// Share of the scenes with so many bands that a proof counts neighbours as one.
 const MANY: f64 = 0.04;
 
@@ -203,7 +205,11 @@ fn range(draw: &mut Draw, temperature_k: f64, lighting: &[f64], set: Set) -> Sta
     }
     if !set.total_known && !lighting.is_empty() && draw.chance(0.7) {
         let each = lighting.len() as f64;
-        let low = draw.unit() * lighting.iter().copied().fold(0.9 / each, f64::min);
+        let share = draw.unit();
+        // Seldom above what the target's own state has.
+        let most =
+            if is_odd(share) { 0.9 / each } else { lighting.iter().copied().fold(0.9 / each, f64::min) };
+        let low = share * most;
         range.lighting = [low, draw.between(low, 1.0)];
         if draw.chance(0.3) {
             range.lighting_sum = draw.between(low * each, 1.0);
@@ -246,11 +252,18 @@ fn alternative(draw: &mut Draw, target: &[f64]) -> Vec<f64> {
     }
 }
 
-/// 1 to 10³⁰ photons, electronic noise from none to a thousand times theirs, even or rough.
+/// Whether a number drawn is one of a few, by its last digits: without another draw, by which all later ones would change.
+fn is_odd(drawn: f64) -> bool {
+    (1e9 * drawn).fract() < ODD
+}
+
+/// 1 to 10³⁰ photons, electronic noise from none to a thousand times theirs, seldom to 10¹⁵ times, even or rough.
 fn counting(draw: &mut Draw, signal: &[f64]) -> Counting {
     let total: f64 = signal.iter().sum();
     let photons = draw.scale(1.0, 1e30);
-    let each = if draw.chance(0.3) { 0.0 } else { draw.scale(1e-6, 1e3) * photons / signal.len() as f64 };
+    let level = if draw.chance(0.3) { 0.0 } else { draw.scale(1e-6, 1e3) };
+    let level = if is_odd(level) { 1e12 * level } else { level };
+    let each = level * photons / signal.len() as f64;
     let rough = draw.chance(0.3);
     let var_added = if each > 0.0 {
         signal.iter().map(|_| if rough { each * draw.scale(1e-6, 1.0) } else { each }).collect()

@@ -73,6 +73,9 @@ impl Prover<'_, '_> {
             let Some(closed) = close(&self.all.sources, &minimum, &reach, &self.all.allowed, enough) else {
                 continue;
             };
+            if closed.lower.is_nan() {
+                continue;
+            }
             let lower = closed.lower.min(cost);
             let mixture = Mixture { amplitudes: closed.amplitudes, temperature_k: closed.temperature_k };
             let faces: Vec<[f64; 2]> = self

@@ -292,7 +292,8 @@ impl Columns<'_> {
         let mut limits = Vec::new();
         // Σ value·c ≥ 0 over sources, with changes of those that may change.
         let mut put = |terms: &[(usize, f64)], both: bool| {
-            let slack = terms.iter().map(|&(s, value)| value * amplitudes[s]).sum::<f64>().max(0.0);
+            let slack = terms.iter().map(|&(s, value)| value * amplitudes[s]).sum::<f64>();
+            let slack = if both { slack.abs() } else { slack.max(0.0) };
             let mut along = vec![0.0; size];
             for &(s, value) in terms {
                 if let Some(place) = place(s) {

@@ -30,7 +30,10 @@ pub(super) fn reduce(columns: &mut [Vec<f64>], others: &[&[f64]]) -> (Vec<Vec<f6
         let column = &mut rest[0];
         let before = dot(column, column).sqrt();
         let left = take_out(done, column, before, above);
-        if left > DEPENDENT * before {
+        if !before.is_finite() {
+            // Beyond what numbers hold: nothing may be said of it.
+            above[k] = f64::NAN;
+        } else if left > DEPENDENT * before {
             above[k] = left;
             column.iter_mut().for_each(|x| *x /= left);
         } else {

@@ -59,16 +59,14 @@ impl<'a, 'm> Prover<'a, 'm> {
         let reach = reach * (1.0 + 1e-9);
         let unknown_lighting = space.unknowns.contains(Nuisance::Lighting);
         let known_total = space.unknowns.known_lighting_total();
-        let mut ranges: Vec<[f64; 2]> = target
-            .state
-            .lighting
-            .iter()
-            .map(|&v| if unknown_lighting { space.range.lighting } else { [v, v] })
+        let lit = target.state.lighting.iter().enumerate();
+        let mut ranges: Vec<[f64; 2]> = lit
+            .map(|(k, &v)| if unknown_lighting { space.bounds(Parameter::Lighting(k)) } else { [v, v] })
             .collect();
         let mut sum = if unknown_lighting { space.lighting_sum() } else { f64::INFINITY };
         let sum_known = unknown_lighting && known_total.is_some();
         if unknown_lighting && ranges.iter().map(|range| range[0]).sum::<f64>() > sum {
-            // States are then scaled down to the sum, below their range.
+            // By rounding.
             ranges.iter_mut().for_each(|range| range[0] = 0.0);
         }
         if sum_known {

@@ -29,8 +29,6 @@ use std::sync::Arc;
 pub(super) struct Source {
     strength: Vec<f64>,
     pub(super) temperature_k: [f64; 2],
-    /// The temperature in the target's state.
-    pub(super) known_k: f64,
 }
 
 impl Source {
@@ -61,6 +59,8 @@ pub(super) struct Sources<'a> {
     pub(super) list: Arc<[Source]>,
     /// Every so many neighbouring bands are counted as one.
     merged: usize,
+    /// Rounding of the target's own counts, as a share of them.
+    own_rounding: f64,
     /// ν₀.
     lowest_cm1: f64,
 }
@@ -69,6 +69,8 @@ pub(super) struct Sources<'a> {
 const DARK: f64 = 690.0;
 /// Share of the target's counts that is next to nothing: its root is far below rounding.
 const NOTHING: f64 = 1e-32;
+/// By how much of itself the rounding of what is colder may be larger before it is asked how much of the light that is.
+const SAME_ROUNDING: f64 = 0.5;
 /// |ln G| at most.
 pub(super) const LARGEST_LN_GAIN: f64 = 14.0;
 
@@ -102,7 +104,6 @@ impl<'a> Sources<'a> {
                 space.range.temperature_k,
                 target.state.temperature_k,
             ),
-            known_k: target.state.temperature_k,
         };
         let objects = surroundings.objects().iter().zip(&target.state.environment_k).enumerate();
         let lights = objects.map(|(k, (object, &known))| {
@@ -114,11 +115,42 @@ impl<'a> Sources<'a> {
             Source {
                 strength: strength(lit),
                 temperature_k: span(unknown(Nuisance::EnvironmentTemperature), range, known),
-                known_k: known,
             }
         });
         let list = std::iter::once(surface).chain(lights).collect();
-        Self { bands, list, merged: 1, lowest_cm1: lowest(bands.nodes_cm1()) }
+        let mut sources =
+            Self { bands, list, merged: 1, own_rounding: 0.0, lowest_cm1: lowest(bands.nodes_cm1()) };
+        sources.own_rounding = sources.rounding_of(comparison, target);
+        sources
+    }
+
+    /// Rounding of the target's counts: that of its own emission, and of what it scatters of surroundings so much colder that these
+    /// are less exact, in the band where they have the largest share.
+    fn rounding_of(&self, comparison: &Comparison<'_>, target: &Target<'_>) -> f64 {
+        let state = target.state;
+        let own = self.rounding(state.temperature_k);
+        let (surroundings, signal) = (comparison.target.surroundings(), comparison.target.signal());
+        let colder = state.environment_k.iter().zip(&state.lighting).enumerate().map(|(k, (&t, lit))| {
+            let less = self.rounding(t) - own;
+            if less <= own * SAME_ROUNDING || *lit == 0.0 {
+                return less.max(0.0);
+            }
+            let mut light = surroundings.object_signal(k, state);
+            light
+                .iter_mut()
+                .zip(target.emissivity)
+                .for_each(|(light, e)| *light *= (1.0 - e) * lit * state.gain);
+            let shares = self.bands.weigh(&light).into_iter().zip(signal);
+            less * shares
+                .map(|(light, all)| if light > 0.0 { (light / all).min(1.0) } else { 0.0 })
+                .fold(0.0, f64::max)
+        });
+        own + colder.sum::<f64>()
+    }
+
+    /// Rounding of the target's counts, as a share of them.
+    pub(super) fn rounding_of_target(&self) -> f64 {
+        self.own_rounding + self.rounding_of_merging()
     }
 
     /// The same with neighbouring bands counted as one.
@@ -158,15 +190,15 @@ impl<'a> Sources<'a> {
         planck::photon_radiance(self.lowest_cm1, temperature_k)
     }
 
-    /// The temperature below which a source sends next to nothing of so many counts, whatever the gain: e^x − 1 ≥ e^{x}/2 from
-    /// x = ln 2 on. `None` if its radiance underflows before that.
-    pub(super) fn dark_k(&self, s: usize, counts: f64) -> Option<f64> {
+    /// The temperature below which a source sends next to nothing of so many counts, whatever the gain and with the `brightest`
+    /// factor that it can have: e^x − 1 ≥ e^{x}/2 from x = ln 2 on. `None` if its radiance underflows before that.
+    pub(super) fn dark_k(&self, s: usize, counts: f64, brightest: f64) -> Option<f64> {
         let nodes = self.bands.nodes_cm1().iter().zip(&self.list[s].strength);
         let weights = self.bands.weights_cm1();
         let weight = |j: usize| if self.bands.one_node_per_band() { 1.0 } else { weights[j] };
         let most: f64 =
             nodes.enumerate().map(|(j, (nu, e))| 2.0 * weight(j) * e * planck::mode_density(*nu)).sum();
-        let x = (most / counts).ln() - NOTHING.ln() + LARGEST_LN_GAIN;
+        let x = (most / counts).ln() - NOTHING.ln() + LARGEST_LN_GAIN + brightest.max(1.0).ln();
         (x.is_finite() && x < DARK).then(|| SECOND_RADIATION_CM_K * self.lowest_cm1 / x.max(1.0))
     }
 
@@ -184,8 +216,12 @@ impl<'a> Sources<'a> {
     /// Rounding of spectra from this temperature on, as a share of them ([`crate::planck`]).
     pub(super) fn rounding(&self, temperature_k: f64) -> f64 {
         let (_, last) = self.bands.range_cm1();
-        let merging = if self.merged > 1 { f64::EPSILON * self.merged as f64 } else { 0.0 };
-        merging + 4e-16 * (10.0 + (SECOND_RADIATION_CM_K * last / temperature_k).min(2.0 * DARK))
+        self.rounding_of_merging()
+            + 4e-16 * (10.0 + (SECOND_RADIATION_CM_K * last / temperature_k).min(2.0 * DARK))
+    }
+
+    fn rounding_of_merging(&self) -> f64 {
+        if self.merged > 1 { f64::EPSILON * self.merged as f64 } else { 0.0 }
     }
 
     fn counted(&self, s: usize, radiance: &mut [f64]) -> Vec<f64> {

@@ -73,12 +73,12 @@ impl<'a> View<'a> {
             x.resize(whole(x.len()), 0.0);
             x
         });
-        let size = dot(&root, &root).sqrt() + reach;
-        let total = (size * size - crate::sum::sum(&noise)) * (1.0 + 1e-12);
+        let sent = crate::sum::sum(&counts);
+        // (‖y‖ + d)² − Σv without the difference, of which much noise would leave nothing.
+        let total = (sent + reach * (2.0 * dot(&root, &root).sqrt() + reach)) * (1.0 + 1e-12);
         let allowed = Amplitudes { total, ..allowed };
         let axes: Vec<usize> = (0..sources.list.len()).filter(|&s| sources.list[s].free()).collect();
         let ends = axes.iter().map(|_| Vec::new()).collect();
-        let sent = crate::sum::sum(&counts);
         let mut dark_k = vec![0.0; axes.len()];
         let open = |range: &[f64; 2]| range[0] < range[1];
         let shaped = axes.iter().zip(&mut dark_k).map(|(&s, dark_k)| {
@@ -89,7 +89,8 @@ impl<'a> View<'a> {
                 Some(_) if !allowed.gain_free => Shaped::Never,
                 _ => Shaped::Wide,
             };
-            match (shaped, sources.dark_k(s, sent)) {
+            let brightest = s.checked_sub(1).map_or(1.0, |k| allowed.ranges[k][1].min(allowed.sum));
+            match (shaped, sources.dark_k(s, sent, brightest)) {
                 (Shaped::Never, _) | (_, None) => Shaped::Never,
                 (shaped, Some(k)) => {
                     *dark_k = k;
@@ -98,8 +99,7 @@ impl<'a> View<'a> {
             }
         });
         let shaped = shaped.collect();
-        // What is colder than the target sends less of its counts than it is less exact.
-        let rounding = ROUNDING + 2.0 * sources.list.first().map_or(0.0, |own| sources.rounding(own.known_k));
+        let rounding = ROUNDING + 2.0 * sources.rounding_of_target();
         let later = Later::default();
         Self { sources, allowed, root, counts, noise, reach, axes, ends, rounding, shaped, dark_k, later }
     }
