@@ -91,7 +91,7 @@ pub(super) fn readme(
          fewer photons, and fewer still who may exclude odd lighting. The glass that looks like skin has its \
          temperature: only the lighting helps.\n\n\
          ## How it was made\n\n\
-         `hadar reproduce priors --out reports`. `hadar identify reports/priors/scenario.toml` \
+         `hadar reproduce priors --out reports`. `hadar identify --average reports/priors/scenario.toml` \
          gives the two figures with a prior at 20 °C and V = 1. The prior is a Gaussian centred at the nominal \
          temperature; seed {seed}. All numbers are in the CSV files beside the plots and in `state_ranges.csv`; three digits \
          are given.\n",
