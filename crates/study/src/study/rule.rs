@@ -336,11 +336,15 @@ fn complete(camera: &RuleCamera) -> Result<()> {
 
 /// Which cameras meet the rule.
 fn who_meets(cameras: &[CameraVerdict]) -> WhoMeets {
-    let mut who = WhoMeets { meet: Vec::new(), fail: Vec::new(), placeholders: Vec::new() };
+    let mut who =
+        WhoMeets { meet: Vec::new(), unproved: Vec::new(), fail: Vec::new(), placeholders: Vec::new() };
     for camera in cameras {
         match camera.passes {
             true => who.meet.push((camera.name.clone(), camera.provided)),
             false => who.fail.push(camera.name.clone()),
+        }
+        if camera.warnings.contains(&Warning::NotProved) {
+            who.unproved.push(camera.name.clone());
         }
         let LimitingScene { target, alternative, placeholders, .. } = &camera.limiting;
         if let Some(numbers) = placeholders {

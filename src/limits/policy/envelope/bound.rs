@@ -40,6 +40,8 @@ const STIFF: f64 = 30.0;
 const BROKEN: f64 = 1e-9;
 /// How often broken relations are looked for.
 const ROUNDS: usize = 4;
+/// Rounding of uᵀMu, as a share of the trace of M.
+const SPREAD_ROUNDING: f64 = 64.0 * RANK as f64 * f64::EPSILON;
 /// A source whose factor may be this much smaller than it can be at most is taken for a cone.
 const CONE: f64 = 0.5;
 /// Width of a temperature, as a share of it, below which the three spectra of a cone are one.
@@ -82,6 +84,16 @@ fn add(to: &mut Vector, factor: f64, column: &Vector) {
 #[inline(always)]
 fn least_parabola(a: f64, b: f64, c: f64) -> f64 {
     if 2.0 * c > b.abs() { a - 0.25 * b * b / c } else { a + c - b.abs() }
+}
+
+/// The sum of a matrix's diagonal, of so many components.
+fn trace(matrix: &[f64; PAIRS], rank: usize) -> f64 {
+    let (mut total, mut place) = (0.0, 0);
+    for i in 0..rank {
+        total += matrix[place];
+        place += RANK - i;
+    }
+    total
 }
 
 /// uᵀMu.
@@ -268,8 +280,8 @@ impl Cell {
                 factors.iter().for_each(|&i| weight[i] += limit.price(&x, false) / norm * gap);
             }
         }
-        if total > 0.0 {
-            let spread = along(&variance, &u).max(0.0);
+        if total > 0.0 && total.is_finite() {
+            let spread = along(&variance, &u) + SPREAD_ROUNDING * trace(&variance, self.rank);
             self.weigh_variance(cube, &u, 0.5 * total / spread, &mut weight);
             // A denominator some hundred roundings too large, never too small.
             let bound = match self.weighing {
@@ -280,7 +292,9 @@ impl Cell {
                 }
             };
             // Factors were cut off for what lies beyond the distance attained.
-            cube.bound = cube.bound.max(bound.min(self.attained));
+            if spread > 0.0 && !bound.is_nan() {
+                cube.bound = cube.bound.max(bound.min(self.attained));
+            }
         }
         cube.split = self.best_split(cube, |i| weight[i]);
     }

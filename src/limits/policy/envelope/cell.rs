@@ -24,7 +24,7 @@
 //! order of what they miss. That they are good where it counts is seen to by the best point known, whose r is in Q.
 //!
 //! Rounding: components are sums over W bands and R basis vectors; 2√R W ulp of the largest whitened signals, and some
-//! hundred more for Planck's function and the short sums, are taken off every bound.
+//! thousand more for Planck's function and the short sums, are taken off every bound.
 
 use super::joint::Residual;
 use super::linear::{PAIRS, RANK, Vector};
@@ -40,6 +40,8 @@ const LEFT_OVER: f64 = 1e-3;
 const WEIGHT_OF_SKEW: f64 = 0.03;
 /// Steps between the temperatures of the alternative that the basis is chosen for, as a ratio.
 const STEP: f64 = 1.35;
+/// Rounding of Planck's function far in its Wien tail and of short sums, ulp.
+const PLANCK_ULPS: f64 = 2000.0;
 /// What weighing by the target alone may lose of a distance.
 const LOSS: f64 = 5e-4;
 
@@ -81,13 +83,15 @@ impl Cell {
         let usable = |c: &f64| *c > 0.0;
         let per_variance: Vec<f64> = variance.iter().map(|c| if usable(c) { 1.0 / c } else { 0.0 }).collect();
         let whitening: Vec<f64> = per_variance.iter().map(|inverse| 0.5 * inverse.sqrt()).collect();
-        let most = part.most.iter().zip(&model.var);
-        let ulps = 2.0 * (RANK as f64).sqrt() * variance.len() as f64 + 400.0;
+        // (√(N + v) + D)² − v without the difference, of which much noise would leave nothing.
+        let brightest = part.most.iter().zip(&part.seen);
+        let brightest = brightest.map(|(var, n)| n + attained * (2.0 * var.sqrt() + attained));
+        let ulps = 2.0 * (RANK as f64).sqrt() * variance.len() as f64 + PLANCK_ULPS;
         let mut cell = Self {
             region,
             whitening,
             per_variance,
-            brightest: most.map(|(a, v)| (a.sqrt() + attained).powi(2) - v).collect(),
+            brightest: brightest.collect(),
             basis: vec![[0.0; RANK]; variance.len()],
             rank: 0,
             weighing: Weighing::Both,

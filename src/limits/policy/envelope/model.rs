@@ -169,7 +169,10 @@ impl<'a> Model<'a> {
             } else if own_v || own_gain {
                 Some(3 * built.add(Role::Object(k), [lit(&e), zeros(), lit(&other)], span(t, v, w)) + 2)
             } else {
-                built.add(Role::Object(k), [lit(&e), lit(&other), zeros()], span(t, v, none));
+                let s = built.add(Role::Object(k), [lit(&e), lit(&other), zeros()], span(t, v, none));
+                // (1 − e)εₖ − (1 − e′)εₖ without the difference of what is nearly 1.
+                let apart = (0..e.len()).map(|j| (other[j] - e[j]) * own(j));
+                built.sources[s].own = apart.collect();
                 None
             });
         }

@@ -23,6 +23,8 @@ pub(super) struct Part {
     /// Variance of each band in the middle of what the target can have, and the most that it can.
     pub(super) variance: Vec<f64>,
     pub(super) most: Vec<f64>,
+    /// The most counts of the target alone.
+    pub(super) seen: Vec<f64>,
     /// By what share of itself that of each band may differ, beyond what all bands have in common.
     pub(super) skew: Vec<f64>,
 }
@@ -127,7 +129,8 @@ fn assess(model: &Model<'_>, region: Region, attained: f64, many: bool) -> Verdi
         0.5 * (ratio - common)
     });
     let skew = skew.collect();
-    Verdict::Keep(Part { region, variance, most: high, skew })
+    let [_, seen] = ends.target;
+    Verdict::Keep(Part { region, variance, seen, most: high, skew })
 }
 
 /// The source of the scene whose temperature is too wide for a cubic, the widest, among those that can be seen at all.

@@ -1,4 +1,5 @@
 mod brute;
+mod hidden;
 
 use super::bound::Cube;
 use super::cell::Cell;

@@ -37,6 +37,8 @@ pub struct RuleAnswer {
 pub struct WhoMeets {
     /// Those that do, each with what it hangs on.
     pub meet: Vec<(String, Option<Proviso>)>,
+    /// Those of them of which it is not proved.
+    pub unproved: Vec<String>,
     /// Those that do not.
     pub fail: Vec<String>,
     /// Pairs that limit a camera though each of the two is entered as one number, with the numbers.

@@ -351,6 +351,7 @@ fn search(sighted: &Sighted, pair: Estimate, tolerance: f64) -> Result<Searched>
     demand::computed(Thing::NearestSearches, evaluations);
     demand::computed(Thing::Boxes, boxes);
     let pair = if distance <= pair.distance { Estimate { distance, state, nearest, ..pair } } else { pair };
+    let lower_bound = lower_bound.map(|bound| bound.min(pair.distance));
     Ok(Searched { pair, between: None, certificate: Some(certificate), lower_bound })
 }
 

@@ -28,6 +28,13 @@ impl Display for WhoMeets {
             ([one], _) => write!(f, "1 of {all} cameras meets the rule: {one}."),
             (some, _) => write!(f, "{} of {all} cameras meet the rule: {}.", some.len(), some.join(", ")),
         }?;
+        if !self.unproved.is_empty() {
+            write!(
+                f,
+                " Not proved of {}: no scene below the requirement was found.",
+                self.unproved.join(", ")
+            )?;
+        }
         self.placeholders.iter().try_for_each(|(target, alternative, [one, other])| {
             write!(
                 f,
