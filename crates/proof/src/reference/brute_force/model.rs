@@ -82,8 +82,8 @@ pub(super) struct Model<'a, R> {
     nodes_per_band: Vec<usize>,
     /// Weight × 2cν² × e′ of every node, and (1 − e′)εₖ in its place.
     factors: Vec<Vec<R>>,
-    /// N + v and its root.
-    level: Vec<R>,
+    /// N, and the root of N + v.
+    counts: Vec<R>,
     root: Vec<R>,
     noise: Vec<R>,
     /// d² over f.
@@ -127,7 +127,7 @@ impl<'a, R: Real> Model<'a, R> {
             nodes_cm1,
             nodes_per_band,
             factors: all(pair.emissivity),
-            level: Vec::new(),
+            counts: Vec::new(),
             root: Vec::new(),
             noise: Vec::new(),
             scale: one,
@@ -164,9 +164,9 @@ impl<'a, R: Real> Model<'a, R> {
                 Noise::Counting(counting) => R::from(counting.var_added(band)) * per_count,
             })
             .collect();
-        model.level =
-            signal.iter().zip(&model.noise).map(|(signal, noise)| *signal * share + *noise).collect();
-        model.root = model.level.iter().map(|level| level.root()).collect();
+        model.counts = signal.iter().map(|signal| *signal * share).collect();
+        let levels = model.counts.iter().zip(&model.noise);
+        model.root = levels.map(|(counts, noise)| (*counts + *noise).root()).collect();
         model
     }
 
@@ -221,7 +221,7 @@ impl<'a, R: Real> Model<'a, R> {
             Local { cost: zero, gradient: [zero; MOST], hessian: [[zero; MOST]; MOST], scale: [zero; MOST] };
         let (first, gain) = (free.len(), usize::from(layout.gain));
         for band in 0..self.root.len() {
-            let mut other = self.noise[band];
+            let mut other = zero;
             for (factor, spectrum) in factors.iter().zip(spectra) {
                 other = other + *factor * spectrum.value[band];
             }
@@ -285,21 +285,22 @@ impl<'a, R: Real> Model<'a, R> {
     /// The cost of these G′ and Cₖ alone.
     pub(super) fn cost(&self, factors: &Each<R>, spectra: &[&Spectrum<R>]) -> R {
         let mut cost = R::from(0.0);
-        for (band, &noise) in self.noise.iter().enumerate() {
+        for band in 0..self.noise.len() {
             let terms = factors.iter().zip(spectra);
-            let other = terms.fold(noise, |sum, (factor, spectrum)| sum + *factor * spectrum.value[band]);
+            let other =
+                terms.fold(R::from(0.0), |sum, (factor, spectrum)| sum + *factor * spectrum.value[band]);
             let (_, apart) = self.apart(band, other);
             cost = cost + apart * apart;
         }
         cost
     }
 
-    /// √(N′ + v) and √(N′ + v) − √(N + v) in a band.
+    /// √(N′ + v) and √(N′ + v) − √(N + v) in a band: of much noise in both nothing is left in N′ − N.
     fn apart(&self, band: usize, other: R) -> (R, R) {
         let other = other.larger(R::from(0.0));
-        let root = other.root();
+        let root = (other + self.noise[band]).root();
         let sum = root + self.root[band];
-        (root, if sum > R::from(0.0) { (other - self.level[band]) / sum } else { sum })
+        (root, if sum > R::from(0.0) { (other - self.counts[band]) / sum } else { sum })
     }
 
     /// What limits the unknowns with these free temperatures.
