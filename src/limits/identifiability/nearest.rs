@@ -291,9 +291,8 @@ impl<'a> NearestSolver<'a> {
                     let (relative_error, terms) = self.rounding_at(&target, &best.state, best.distance);
                     best.relative_error = relative_error;
                     // What rounding may have added to the distance it may have added to its bound.
-                    let most = best.distance * (1.0 - relative_error);
-                    let known = best.lower <= most || best.lower > most;
-                    best.lower = if known { best.lower.min(most).max(0.0) } else { 0.0 };
+                    let surely = best.lower * (1.0 - relative_error);
+                    best.lower = if surely > 0.0 { surely } else { 0.0 };
                     if terms.is_finite() && best.distance <= NOTHING_OF_TERMS * terms {
                         // Nothing but rounding is left.
                         (best.distance, best.lower, best.relative_error) = (0.0, 0.0, 0.0);

@@ -208,3 +208,24 @@ impl Serialize for EmissivityError {
         serializer.collect_str(self)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A yes that rests on a search alone is not read as one that is proved.
+    #[test]
+    fn a_yes_that_is_not_proved_says_so() {
+        let proved = WhoMeets {
+            meet: vec![("a".into(), None), ("b".into(), None)],
+            unproved: Vec::new(),
+            fail: Vec::new(),
+            placeholders: Vec::new(),
+        };
+        assert_eq!(proved.to_string(), "All 2 cameras meet the rule: a, b.");
+        let searched = WhoMeets { unproved: vec!["b".into()], ..proved };
+        let said =
+            "All 2 cameras meet the rule: a, b. Not proved of b: no scene below the requirement was found.";
+        assert_eq!(searched.to_string(), said);
+    }
+}

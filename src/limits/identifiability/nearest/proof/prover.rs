@@ -2,7 +2,7 @@
 
 use super::amplitudes::Amplitudes;
 use super::bound::{Bounder, Mixture};
-use super::sources::{Sources, merged};
+use super::sources::{Sources, neighbours_summed};
 use super::view::View;
 use crate::fisher::Nuisance;
 use crate::identifiability::nearest::residual::{Comparison, Target};
@@ -11,7 +11,7 @@ use crate::scene::{Parameter, State};
 /// Quadratics that are tried in a box.
 const QUADRATICS: usize = 5;
 
-/// Share of what is enough that few bands must bound for all of them to be looked at in a wide box, and from how many
+/// Share of what is enough that bands counted together must bound for all to be looked at in a wide box, and from how many
 /// times as warm at its hot end on it is wide.
 const HOPE: f64 = 0.7;
 const WIDE: f64 = 1.05;
@@ -27,16 +27,16 @@ pub(super) struct Goal {
     pub(super) boxes: u64,
 }
 
-/// Memory that one proof leaves to the next, of few bands and of all.
+/// Memory that one proof leaves to the next, of bands counted together and of all.
 #[derive(Debug, Clone, Default)]
 pub(in super::super) struct Memory {
-    few: Bounder,
+    merged: Bounder,
     all: Bounder,
 }
 
 /// What a proof works with.
 pub(super) struct Prover<'a, 'm> {
-    few: Option<(View<'a>, &'m mut Bounder)>,
+    merged: Option<(View<'a>, &'m mut Bounder)>,
     pub(super) all: View<'a>,
     pub(super) bounder: &'m mut Bounder,
     /// Ends of intervals, by axis.
@@ -79,14 +79,17 @@ impl<'a, 'm> Prover<'a, 'm> {
         sum *= 1.0 + 1e-15;
         let gain_free = space.unknowns.contains(Nuisance::Gain);
         let allowed = Amplitudes { gain_free, ranges, sum, sum_known, total: 0.0, gain_cap: None };
-        let few = merging.map(|count| {
-            let [counts, noise] = [&bands[1], &bands[2]].map(|x| merged(x, count));
+        let merged = merging.map(|count| {
+            let [counts, noise] = [&bands[1], &bands[2]].map(|x| neighbours_summed(x, count));
             let root = counts.iter().zip(&noise).map(|(n, v)| (n + v).sqrt()).collect();
-            (View::new(sources.merged(count), allowed.clone(), [root, counts, noise], reach), &mut memory.few)
+            (
+                View::new(sources.merged(count), allowed.clone(), [root, counts, noise], reach),
+                &mut memory.merged,
+            )
         });
         let all = View::new(sources, allowed, bands, reach);
         let temperature_k = all.axes.iter().map(|_| Vec::new()).collect();
-        Self { few, all, bounder: &mut memory.all, temperature_k, boxes: 0 }
+        Self { merged, all, bounder: &mut memory.all, temperature_k, boxes: 0 }
     }
 
     /// The state of a mixture, if its cost is below the limit.
@@ -136,8 +139,8 @@ impl<'a, 'm> Prover<'a, 'm> {
         })
     }
 
-    /// A lower bound of d² in a box, the axis along which it is best halved, and whether it was found in all bands: few of them
-    /// are looked at first.
+    /// A lower bound of d² in a box, the axis along which it is best halved, and whether it was found in all bands: these
+    /// are looked at together first.
     pub(super) fn bound(
         &mut self,
         ends: &[[usize; 2]],
@@ -151,9 +154,9 @@ impl<'a, 'm> Prover<'a, 'm> {
             }
         };
         let mut least = 0.0;
-        if let Some((few, bounder)) = &mut self.few {
-            know(few);
-            let found = bounder.bound(few, ends, narrower, enough, None, QUADRATICS);
+        if let Some((merged, bounder)) = &mut self.merged {
+            know(merged);
+            let found = bounder.bound(merged, ends, narrower, enough, None, QUADRATICS);
             // Where they are far from it all bands would hardly do either.
             let wide = || ends.iter().zip(known).any(|([a, b], known)| known[*b] > WIDE * known[*a]);
             let hopeless = found.lower < if found.coarse { enough } else { HOPE * enough };
@@ -163,7 +166,7 @@ impl<'a, 'm> Prover<'a, 'm> {
             least = found.lower;
         }
         know(&mut self.all);
-        let start = self.few.as_ref().map(|(_, bounder)| bounder.point());
+        let start = self.merged.as_ref().map(|(_, bounder)| bounder.point());
         let found = self.bounder.bound(&mut self.all, ends, narrower, enough, start, QUADRATICS);
         (found.lower.max(least), found.axis, true)
     }
@@ -177,9 +180,9 @@ impl<'a, 'm> Prover<'a, 'm> {
         let mut t = 1.2 * temperature_of(warm, s).max(low);
         while t < high {
             let end = self.end(axis, t);
-            // What is too bright in few bands is so in all of them.
-            let too_bright = match &mut self.few {
-                Some((few, _)) => few.too_bright(axis, end, t, amplitude),
+            // What is too bright in bands counted together is so in all of them.
+            let too_bright = match &mut self.merged {
+                Some((merged, _)) => merged.too_bright(axis, end, t, amplitude),
                 None => self.all.too_bright(axis, end, t, amplitude),
             };
             if too_bright {

@@ -233,7 +233,7 @@ impl<'a> Sources<'a> {
             multiply(radiance, strength);
             self.bands.weigh_into(radiance, &mut counts[..bands]);
         }
-        if self.merged > 1 { merged(&counts[..bands], self.merged) } else { counts }
+        if self.merged > 1 { neighbours_summed(&counts[..bands], self.merged) } else { counts }
     }
 
     /// A″ at a temperature, and a bound of |A‴| between two others around it.
@@ -342,7 +342,7 @@ pub(super) fn whole(bands: usize) -> usize {
 }
 
 /// Neighbours summed, in whole chunks.
-pub(super) fn merged(bands: &[f64], count: usize) -> Vec<f64> {
+pub(super) fn neighbours_summed(bands: &[f64], count: usize) -> Vec<f64> {
     let mut sums = vec![0.0; whole(bands.len().div_ceil(count))];
     sums_into(bands, count, &mut sums);
     sums
