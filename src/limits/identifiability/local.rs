@@ -153,9 +153,9 @@ impl<'a> LocalSolver<'a> {
         let mut in_doubles = None;
         if !self.unknowns.has_priors() {
             let root = |w: usize| self.weights[w].sqrt();
-            let cancellation = self.jacobian.material_cancellation(emissivity, alternative, state, root);
+            let [cancellation, nuisances] = self.cancellations(emissivity, alternative, state, root);
             let found = self.projector.reduce(self.jacobian.columns_mut(), &self.weights, cancellation);
-            in_doubles = Some(found).filter(|found| self.projector.in_range(*found));
+            in_doubles = Some(found.blurred(nuisances)).filter(|found| self.projector.in_range(*found));
         }
         let found = in_doubles.unwrap_or_else(|| {
             self.evaluate(emissivity, alternative, state);
@@ -232,6 +232,22 @@ impl<'a> LocalSolver<'a> {
         self.jacobian.evaluate(emissivity, alternative, state, &self.parameters, total_known);
     }
 
+    /// How far the terms of the material's column cancel, and those of a nuisance at most.
+    fn cancellations(
+        &self,
+        emissivity: &[f64],
+        alternative: &[f64],
+        state: &State,
+        root: impl Fn(usize) -> f64 + Copy,
+    ) -> [f64; 2] {
+        let material = self.jacobian.material_cancellation(emissivity, alternative, state, root);
+        let nuisances = match self.unknowns.known_lighting_total() {
+            Some(_) => self.jacobian.lighting_cancellation(emissivity, state, root),
+            None => 1.0,
+        };
+        [material, nuisances]
+    }
+
     /// ΣS, and the projection with the weights u = 1/(S ΣS).
     fn reduce_per_photon(
         &mut self,
@@ -247,9 +263,9 @@ impl<'a> LocalSolver<'a> {
         if SAFE_RANGE.contains(&total) && !priors {
             let signal = self.jacobian.signal();
             let root = |w: usize| if signal[w] > 0.0 { 1.0 / signal[w].sqrt() } else { 0.0 };
-            let cancellation = self.jacobian.material_cancellation(emissivity, alternative, state, root);
+            let [cancellation, nuisances] = self.cancellations(emissivity, alternative, state, root);
             let (columns, inverse) = self.jacobian.columns_and_inverse();
-            let found = self.projector.reduce(columns, inverse, cancellation);
+            let found = self.projector.reduce(columns, inverse, cancellation).blurred(nuisances);
             // ΣS comes in at the end, since it scales all the same.
             in_doubles = self.projector.in_range(found).then(|| found.times(1.0 / total.sqrt()));
         }

@@ -51,12 +51,20 @@ fn differences_into(
     let delta_per_cm1 = inverse.times(difference.over(base_k));
     if delta_per_cm1.high.abs() * largest(wavenumbers_cm1) <= ALIKE {
         near_differences(wavenumbers_cm1, inverse, delta_per_cm1, base, out);
+        if base.contains(&0.0) {
+            let spectra = out.iter_mut().zip(base).zip(wavenumbers_cm1);
+            for ((out, _), &wavenumber) in spectra.filter(|((_, base), _)| **base == 0.0) {
+                *out = from_dark(wavenumber, inverse, delta_per_cm1);
+            }
+        }
         return;
     }
     // e^δ may overflow at the highest wavenumbers, where the two radiances have no digit in common to cancel; at the
     // lowest they may have all.
     for ((out, base), &wavenumber) in out.iter_mut().zip(base).zip(wavenumbers_cm1) {
-        *out = if (wavenumber * delta_per_cm1.high).abs() <= ALIKE {
+        *out = if *base == 0.0 {
+            from_dark(wavenumber, inverse, delta_per_cm1)
+        } else if (wavenumber * delta_per_cm1.high).abs() <= ALIKE {
             base * growth(wavenumber, inverse, delta_per_cm1)
         } else {
             let Radiance { value, .. } = radiance(wavenumber, inverse, 0.0);
@@ -208,6 +216,12 @@ dispatched! {
             *out = base * growth(wavenumber, inverse, delta_per_cm1);
         }
     }
+}
+
+/// B(T) − B(T₀) where B(T₀) is dark, which B(T) need not be: B(T)(1 − e⁻ᵟ), as far in the Wien tail as both are.
+fn from_dark(wavenumber_cm1: f64, inverse: Double, delta_per_cm1: Double) -> f64 {
+    let value = radiance(wavenumber_cm1, inverse, 0.0).value;
+    if value > 0.0 { -value * (-wavenumber_cm1 * delta_per_cm1.high).exp_m1() } else { 0.0 }
 }
 
 /// E/(1 − e⁻ˣ).

@@ -337,10 +337,16 @@ impl<'a> LocalReference<'a> {
         let terms = self.spectra.terms(emissivity, alternative, &state, &state);
         let terms = inner(&terms, &terms, &weights).sqrt();
         self.spectra.forget();
-        let largest: Vec<f64> = columns
-            .iter()
-            .map(|column| column.iter().map(|value| value.abs().to_f64()).fold(0.0, f64::max))
-            .collect();
+        // Of bands that count; never 0 where it is not, so that what no double holds is known to be there.
+        let size = |value: &Extended| match value.abs().to_f64() {
+            0.0 if !value.is_zero() => f64::MIN_POSITIVE,
+            size => size,
+        };
+        let counts = |column: &[Extended]| -> f64 {
+            let known = column.iter().zip(&weights).filter(|(_, weight)| weight.is_positive());
+            known.map(|(value, _)| size(value)).fold(0.0, f64::max)
+        };
+        let largest: Vec<f64> = columns.iter().map(|column| counts(column)).collect();
         let projected = project(columns, &weights, |i| left_out.contains(&parameters[i]));
         let half = Extended::from(0.5);
         let of = |indices: Vec<usize>| indices.into_iter().map(|i| parameters[i]).collect();

@@ -56,11 +56,11 @@ impl LocalSolver<'_> {
         self.ones.clear();
         self.ones.resize(rows, 1.0);
         let root = |w: usize| roots[w];
-        let cancellation = self.jacobian.material_cancellation(emissivity, alternative, state, root);
+        let [cancellation, nuisances] = self.cancellations(emissivity, alternative, state, root);
         let last = self.columns.rchunks(rows.max(1)).next().unwrap_or_default();
         let norm = crate::sum::dot(last, last).sqrt();
         let columns = Columns { values: &mut self.columns, stride: rows };
-        let found = self.projector.reduce(columns, &self.ones, cancellation);
+        let found = self.projector.reduce(columns, &self.ones, cancellation).blurred(nuisances);
         self.projector.unscale(&powers, Reduced { norm, ..found })
     }
 }

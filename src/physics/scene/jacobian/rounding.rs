@@ -4,7 +4,7 @@
 //! ulp of G|e′ − e|Σ|terms|. No term has another sign than the others unless an object is warmer than the target, or a band
 //! has several nodes, over which e′ − e may change its sign.
 
-use super::{Jacobian, ratio};
+use super::{Jacobian, Parameter, ratio};
 use crate::scene::{State, unlit};
 
 impl Jacobian<'_> {
@@ -25,8 +25,49 @@ impl Jacobian<'_> {
         for (j, terms) in terms.iter_mut().enumerate() {
             *terms *= state.gain * (alternative[j] - emissivity[j]).abs();
         }
-        let banded = self.bands.weigh(&terms);
-        let scores = banded.iter().zip(self.column(last)).enumerate();
+        self.cancelled(&terms, last, &root)
+    }
+
+    /// The most that ‖G(1 − e)Σ|terms|‖ is of ‖∂S/∂Vₖ‖, by object, of the last evaluation with the total of the lighting
+    /// known: εₖB(Tₖ) − ε_K B(T_K) may cancel.
+    pub(crate) fn lighting_cancellation(
+        &self,
+        emissivity: &[f64],
+        state: &State,
+        root: impl Fn(usize) -> f64,
+    ) -> f64 {
+        let (nodes, objects) = (self.value.len(), &self.surroundings.objects);
+        let Some(last) = objects.len().checked_sub(1) else { return 1.0 };
+        let of = |k: usize| {
+            let own = objects[k].emissivity.as_deref();
+            move |j: usize| (own.map_or(1.0, |own| own[j]), self.base[k * nodes + j])
+        };
+        let mut most = 1.0_f64;
+        for (column, parameter) in self.parameters.iter().enumerate() {
+            let Parameter::Lighting(k) = *parameter else { continue };
+            if k == last {
+                continue;
+            }
+            let (one, other) = (of(k), of(last));
+            let terms = (0..nodes).map(|j| {
+                let ((own, own_base), (other, base)) = (one(j), other(j));
+                let difference = (own_base - base).abs();
+                let terms = if difference <= 0.5 * base {
+                    own * difference + (own - other).abs() * base
+                } else {
+                    own * own_base + other * base
+                };
+                state.gain * (1.0 - emissivity[j]) * terms
+            });
+            most = most.max(self.cancelled(&terms.collect::<Vec<_>>(), column, &root));
+        }
+        most
+    }
+
+    /// ‖terms‖ ÷ ‖column‖, both weighted.
+    fn cancelled(&self, terms: &[f64], column: usize, root: &impl Fn(usize) -> f64) -> f64 {
+        let banded = self.bands.weigh(terms);
+        let scores = banded.iter().zip(self.column(column)).enumerate();
         let scores: Vec<(f64, f64)> = scores.map(|(w, (a, b))| (root(w) * a, root(w) * b)).collect();
         // Brought near 1, so that no square overflows.
         let size = scores.iter().fold(0.0_f64, |size, (terms, _)| size.max(*terms));
@@ -34,6 +75,7 @@ impl Jacobian<'_> {
         let sums = scores.iter().fold((0.0, 0.0), |sums, (a, b)| (sums.0 + square(*a), sums.1 + square(*b)));
         if size > 0.0 { ratio(sums.0.sqrt(), sums.1.sqrt()).max(1.0) } else { 1.0 }
     }
+
     /// The largest Σ|terms| ÷ |C| of a node, of the last evaluation without `Parameter::Material`.
     pub(crate) fn contrast_cancellation(&self, state: &State) -> f64 {
         if self.terms_are_alike(state) {

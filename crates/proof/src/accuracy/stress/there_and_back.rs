@@ -15,7 +15,7 @@ use crate::reference::double_double::Real;
 use crate::reference::local::{LocalReference, Noise, Pair};
 use crate::reference::nearest::NearestReference;
 use crate::reference::probability::normal_tail;
-use hadar::error::Result;
+use hadar::error::{Error, Result};
 use hadar::identifiability::detection;
 use hadar::identifiability::nearest::{NearestDistance, NearestSolver};
 use hadar::scene::{Parameter, State};
@@ -35,7 +35,16 @@ pub(super) fn judge(draw: &mut Draw, found: &mut Findings) -> Result<()> {
     let Scene { bands, surroundings, state, target, alternative, unknowns, range, counting } = &scene;
     let noise = counting.as_ref().map_or(Noise::PerPhoton { photons: f64::INFINITY }, Noise::Counting);
     let pair = Pair { emissivity: target, alternative, state };
-    let there = answer(&scene, Some(tolerance(&scene, set)))?;
+    let mut signal = LocalReference::new(bands, surroundings, unknowns.clone());
+    let mut photons = |material: &[f64], state: &State| -> Vec<f64> {
+        signal.signal(material, state).iter().map(Extended::to_f64).collect()
+    };
+    let own = photons(target, state);
+    let there = match answer(&scene, Some(tolerance(&scene, set))) {
+        // A target without light is refused.
+        Err(Error::OutOfRange { .. }) if own.iter().all(|signal| *signal < FAINT) => return Ok(()),
+        answered => answered?,
+    };
     named(found, "there", &scene, pair, &there);
     let force = BruteForce::new(bands, surroundings, unknowns, *range);
     if let Some(least) = force.nearest(pair, noise) {
@@ -44,11 +53,7 @@ pub(super) fn judge(draw: &mut Draw, found: &mut Findings) -> Result<()> {
             format!("lower bound {:e} where {least:e} is possible", there.lower)
         });
     }
-    let mut signal = LocalReference::new(bands, surroundings, unknowns.clone());
-    let mut photons = |material: &[f64], state: &State| -> Vec<f64> {
-        signal.signal(material, state).iter().map(Extended::to_f64).collect()
-    };
-    let (own, other) = (photons(target, state), photons(alternative, &there.state));
+    let other = photons(alternative, &there.state);
     let most = other.iter().copied().fold(0.0, f64::max);
     if other.iter().any(|signal| *signal < FAINT * most) {
         return Ok(());
