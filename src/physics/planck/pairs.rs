@@ -49,9 +49,11 @@ fn differences_into(
 ) {
     let inverse = inverse_thermal_of(temperature);
     let delta_per_cm1 = inverse.times(difference.over(base_k));
-    if delta_per_cm1.high.abs() * largest(wavenumbers_cm1) <= ALIKE {
+    let highest = largest(wavenumbers_cm1);
+    if delta_per_cm1.high.abs() * highest <= ALIKE {
         near_differences(wavenumbers_cm1, inverse, delta_per_cm1, base, out);
-        if base.contains(&0.0) {
+        // None is dark before x = 700.
+        if SECOND_RADIATION_CM_K * highest > 700.0 * base_k {
             let spectra = out.iter_mut().zip(base).zip(wavenumbers_cm1);
             for ((out, _), &wavenumber) in spectra.filter(|((_, base), _)| **base == 0.0) {
                 *out = from_dark(wavenumber, inverse, delta_per_cm1);

@@ -4,7 +4,7 @@ use super::findings::{Family, Findings, Point};
 use std::collections::BTreeMap;
 
 /// Failures that are told in full.
-const TOLD: usize = 8;
+const TOLD: usize = 50;
 /// Points of a picture that are kept.
 const POINTS: usize = 4000;
 /// Digits that a double holds.
