@@ -27,7 +27,7 @@ mod search;
 use self::proof::Memory;
 pub use self::proof::Nearer;
 pub use self::refine::NearestDistance;
-use self::refine::{NO_GAIN, refine};
+use self::refine::refine;
 use self::residual::{Comparison, Metric, Target};
 use self::search::EmissionTable;
 pub use super::space::StateRange;
@@ -35,7 +35,6 @@ use crate::error::{Error, Result};
 use crate::fisher::{Counting, Unknowns};
 use crate::scene::{State, Surroundings};
 use crate::spectrum::Bands;
-use crate::units::SECOND_RADIATION_CM_K;
 
 /// Bands that are enough for a first look.
 const FEW_BANDS: usize = 64;
@@ -48,13 +47,8 @@ const BEYOND: f64 = 1e100;
 /// Boxes in which it is tried to prove that nothing is nearer before a search, and after one.
 const FIRST_BOXES: u64 = 60;
 const MOST_BOXES: u64 = 6_000;
-/// Rounding of the terms that a separation is made of, times 10 + x as that of radiances, and the x beyond which there are none.
-const ROUNDING_OF_TERMS: f64 = 1e-15;
-/// Share of them below which a distance is nothing but rounding.
+/// Share of the terms that a separation is made of below which a distance is nothing but rounding.
 const NOTHING_OF_TERMS: f64 = 1e-15;
-const LARGEST_X: f64 = 708.0;
-/// The x from which differences of radiances lose more than these themselves, by the stress suite.
-const DEEP_IN_WIEN: f64 = 1.5;
 
 /// Finds nearest states in fixed bands and surroundings.
 #[derive(Debug, Clone)]
@@ -179,23 +173,12 @@ impl<'a> NearestSolver<'a> {
     ) -> Nearer {
         let own = self.comparison.space.within_range(target.state);
         let best = known.map_or(&own, |known| &known.state);
-        let (relative_error, _) = self.rounding_at(target, best, limit);
+        let (relative_error, _) = self.comparison.rounding_at(target, best, limit);
         let with = (self.merging, &mut self.memory);
         // That none is nearer must be so whatever rounding has added to the distance about which it is proved.
         let reach = limit / (1.0 - relative_error.min(0.5));
         let found = proof::nearer_than(&mut self.comparison, with, target, [limit, reach], known, boxes);
         if found == Nearer::Nowhere && relative_error > 0.5 { Nearer::Undecided } else { found }
-    }
-
-    /// Relative error of a distance at a state by rounding, and what it is made of.
-    fn rounding_at(&mut self, target: &Target<'_>, state: &State, distance: f64) -> (f64, f64) {
-        let terms = self.comparison.terms(target, state);
-        let (_, last_cm1) = self.comparison.target.bands().range_cm1();
-        let coldest = state.environment_k.iter().copied().fold(state.temperature_k, f64::min);
-        let x = SECOND_RADIATION_CM_K * last_cm1 / coldest.min(target.state.temperature_k);
-        let x = x.min(LARGEST_X);
-        let rounding = ROUNDING_OF_TERMS * (10.0 + x) * (1.0 + x / DEEP_IN_WIEN);
-        (NO_GAIN + rounding * (1.0 + terms / distance), terms)
     }
 
     /// Downhill from the target's own state to a minimum, or to the first state that is nearer than `limit`. Other minima are not
@@ -288,10 +271,11 @@ impl<'a> NearestSolver<'a> {
             }
             Some(mut best) => {
                 if best.distance > 0.0 {
-                    let (relative_error, terms) = self.rounding_at(&target, &best.state, best.distance);
+                    let (relative_error, terms) =
+                        self.comparison.rounding_at(&target, &best.state, best.distance);
                     best.relative_error = relative_error;
-                    // What rounding may have added to the distance it may have added to its bound.
-                    let surely = best.lower * (1.0 - relative_error);
+                    // No bound is nearer to the distance than this is known.
+                    let surely = best.lower.min(best.distance * (1.0 - relative_error));
                     best.lower = if surely > 0.0 { surely } else { 0.0 };
                     if terms.is_finite() && best.distance <= NOTHING_OF_TERMS * terms {
                         // Nothing but rounding is left.

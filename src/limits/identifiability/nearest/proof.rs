@@ -102,7 +102,9 @@ pub(super) fn nearer_than(
     known: Option<&NearestDistance>,
     boxes: u64,
 ) -> Nearer {
-    let goal = Goal { limit: limit * limit, enough: reach * reach * (1.0 + 4.0 * MARGIN), boxes };
+    // The rounding of a distance is in the reach.
+    let goal =
+        Goal { limit: limit * limit, enough: reach * reach * (1.0 + 4.0 * MARGIN), rounding: 0.0, boxes };
     match Prover::new(comparison, merging, memory, target, reach).run(comparison, target, known, goal) {
         Outcome::Nearer(_) => Nearer::Somewhere,
         Outcome::Bound(lower) if lower * (1.0 - MARGIN) >= reach => Nearer::Nowhere,
@@ -124,10 +126,11 @@ pub(super) fn prove(
         }
         let cost = best.distance * best.distance;
         // A little more than asked for, so that a bound rounded down does not miss it.
-        let share = 1.0 - 0.9 * tolerance;
+        let (rounding, _) = comparison.rounding_at(target, &best.state, best.distance);
+        let share = 1.0 - 0.9 * (tolerance - rounding).max(0.1 * tolerance);
         let prover = Prover::new(comparison, merging, memory, target, best.distance);
         let boxes = BOXES[prover.all.axes.len().min(BOXES.len() - 1)];
-        let goal = Goal { limit: cost, enough: share * share * cost, boxes };
+        let goal = Goal { limit: cost, enough: share * share * cost, rounding, boxes };
         match prover.run(comparison, target, Some(&best), goal) {
             Outcome::Bound(lower) => {
                 best.lower = (lower * (1.0 - MARGIN)).clamp(0.0, best.distance);
@@ -154,10 +157,14 @@ impl Prover<'_, '_> {
         best: Option<&NearestDistance>,
         goal: Goal,
     ) -> Outcome {
-        let Goal { limit, enough, boxes } = goal;
+        let Goal { limit, enough, rounding, boxes } = goal;
         let (mut aside, faces) = match best.map(|best| self.close_about(comparison, target, best, goal)) {
             Some(Closed::Nearer(state)) => return Outcome::Nearer(state),
-            Some(Closed::Box(lower, faces)) => (lower, Some(faces)),
+            // Its bound is that distance, and errs as that does; what bounds the others counts its own rounding.
+            Some(Closed::Box(lower, faces)) => {
+                let surely = (1.0 - rounding).max(0.0);
+                (surely * surely * lower, Some(faces))
+            }
             Some(Closed::Nothing) | None => (f64::INFINITY, None),
         };
         let mut queue = BinaryHeap::new();

@@ -1,6 +1,6 @@
 //! Downhill from a start to the minimum of the valley that it lies in.
 
-use super::residual::{Comparison, Target};
+use super::residual::{Comparison, NO_GAIN, Target};
 use crate::scene::{Parameter, State};
 
 /// Iterations of a refinement.
@@ -9,8 +9,6 @@ const ITERATIONS: usize = 100;
 const STEP_TOLERANCE: f64 = 1e-9;
 /// What the last step may still promise, as a share of the cost.
 const GAIN_TOLERANCE: f64 = 1e-9;
-/// What a step may promise, as a share of the cost, for the search to end before it.
-pub(super) const NO_GAIN: f64 = 2e-15;
 /// Relative separation at which two refinements have come to the same minimum.
 const SAME_MINIMUM: f64 = 1e-5;
 

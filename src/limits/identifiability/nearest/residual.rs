@@ -6,6 +6,7 @@
 //! S′_TT = G e′ B″ (`curvature`), and S′_gj = S′ⱼ for the logarithm g of the gain.
 //! (Second derivatives along environment temperatures are left out.)
 
+mod rounding;
 mod sums;
 
 use self::sums::{Lines, Sums};
@@ -16,6 +17,9 @@ use crate::identifiability::space::{Quadratic, StateRange, StateSpace, value};
 use crate::scene::{Jacobian, Parameter, State, Surroundings, check_emissivity};
 use crate::simd::{Aligned, dispatched};
 use crate::spectrum::Bands;
+
+/// What a step may promise, as a share of the cost, for the search to end before it.
+pub(super) const NO_GAIN: f64 = 2e-15;
 
 /// What the counts are compared in.
 #[derive(Debug, Clone, Copy)]
@@ -203,50 +207,6 @@ impl<'a> Comparison<'a> {
         (self.work.separation.iter().zip(sums).map(quotient).collect(), other)
     }
 
-    /// The separation from a state with every term of S − S′ taken by its magnitude: what cancels in the distance.
-    pub(super) fn terms(&mut self, target: &Target<'_>, state: &State) -> f64 {
-        self.separate(target, state, false);
-        if is_other_scale(target.state.gain, state.gain) {
-            return self.size_of_terms(target, |own, other| own + other);
-        }
-        let (own, work, surface) = (target.state, &mut self.work, &self.surface);
-        self.target.lighting_terms_into(own, surface, state, &mut work.lighting);
-        self.target.sampling().sample(self.target.bands(), &mut work.node, &mut work.separation, |out| {
-            terms_into(
-                Separation {
-                    gain: own.gain,
-                    emissivity: target.emissivity,
-                    alternative: target.alternative,
-                    contrast: self.target.contrast(),
-                    difference: &work.difference,
-                    lighting: &work.lighting,
-                    out,
-                },
-                self.target.cancellation(),
-            );
-        });
-        let gain = (state.gain - own.gain).abs() / state.gain;
-        let terms = std::mem::take(&mut self.work.separation);
-        let mut band = terms.iter();
-        let size = self.size_of_terms(target, |_, other| band.next().unwrap_or(&0.0) + gain * other);
-        self.work.separation = terms;
-        size
-    }
-
-    /// The separation by terms in the signals of target and candidate, band by band.
-    fn size_of_terms(&self, target: &Target<'_>, mut terms: impl FnMut(f64, f64) -> f64) -> f64 {
-        let mut total = crate::sum::Compensated::default();
-        let signals = self.target.signal().iter().zip(self.surface.signal());
-        for ((own, other), (root, noise)) in signals.zip(self.work.root.iter().zip(self.work.noise.iter())) {
-            let (sum, terms) = (root + (target.counts * other + noise).sqrt(), terms(*own, *other));
-            if sum > 0.0 {
-                let term = target.counts * terms / sum;
-                total.add(term * term);
-            }
-        }
-        total.value().sqrt()
-    }
-
     /// √(N + σ²) of the target.
     pub(super) fn root(&self) -> &[f64] {
         &self.work.root
@@ -338,19 +298,6 @@ struct Separation<'a> {
     difference: &'a [f64],
     lighting: &'a [f64],
     out: &'a mut [f64],
-}
-
-dispatched! {
-    /// [`separation_into`] with every term by its magnitude, that of the contrast as many times as it is itself made of more.
-    fn terms_into<'a>(spectra: Separation<'a>, cancellation: f64) {
-        let Separation { gain, emissivity, alternative, contrast, difference, lighting, out } = spectra;
-        let own = emissivity.iter().zip(alternative);
-        let terms = contrast.iter().zip(difference).zip(lighting);
-        for ((out, (e, other)), ((contrast, difference), lighting)) in out.iter_mut().zip(own).zip(terms) {
-            let mixed = (cancellation * (e - other) * contrast).abs() + (other * difference).abs();
-            *out = gain * (1.0 - other).mul_add(*lighting, mixed);
-        }
-    }
 }
 
 dispatched! {

@@ -23,6 +23,8 @@ pub(super) struct Goal {
     pub(super) limit: f64,
     /// The bound of d² that is enough.
     pub(super) enough: f64,
+    /// By what share rounding may have lifted the distance at the best state, and the bound of the box closed about it.
+    pub(super) rounding: f64,
     /// Boxes looked at most.
     pub(super) boxes: u64,
 }

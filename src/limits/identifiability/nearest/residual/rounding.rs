@@ -1,0 +1,90 @@
+//! What rounding may be of a distance: so many ulp of the separation with every term of S − S′ taken by its magnitude.
+//!
+//! Radiances are known to (10 + x)·10⁻¹⁵ ([`crate::planck`]), x = hcν/kT, which differences of them lose more of the deeper
+//! they are in the Wien tail; measured by the stress suite.
+
+use super::{Comparison, NO_GAIN, Separation, Target, is_other_scale};
+use crate::scene::State;
+use crate::simd::dispatched;
+use crate::units::SECOND_RADIATION_CM_K;
+
+/// Rounding of the terms that a separation is made of, times 10 + x as that of radiances, and the x beyond which there are none.
+const ROUNDING_OF_TERMS: f64 = 1e-15;
+const LARGEST_X: f64 = 708.0;
+/// The x from which differences of radiances lose more than these themselves, by the stress suite.
+const DEEP_IN_WIEN: f64 = 1.5;
+
+impl Comparison<'_> {
+    /// Relative error of a distance at a state by rounding, and what it is made of.
+    pub(in super::super) fn rounding_at(
+        &mut self,
+        target: &Target<'_>,
+        state: &State,
+        distance: f64,
+    ) -> (f64, f64) {
+        let terms = self.terms(target, state);
+        let (_, last_cm1) = self.target.bands().range_cm1();
+        let coldest = state.environment_k.iter().copied().fold(state.temperature_k, f64::min);
+        let x = SECOND_RADIATION_CM_K * last_cm1 / coldest.min(target.state.temperature_k);
+        let x = x.min(LARGEST_X);
+        let rounding = ROUNDING_OF_TERMS * (10.0 + x) * (1.0 + x / DEEP_IN_WIEN);
+        (NO_GAIN + rounding * (1.0 + terms / distance), terms)
+    }
+
+    /// The separation from a state with every term of S − S′ taken by its magnitude: what cancels in the distance.
+    fn terms(&mut self, target: &Target<'_>, state: &State) -> f64 {
+        self.separate(target, state, false);
+        if is_other_scale(target.state.gain, state.gain) {
+            return self.size_of_terms(target, |own, other| own + other);
+        }
+        let (own, work, surface) = (target.state, &mut self.work, &self.surface);
+        self.target.lighting_terms_into(own, surface, state, &mut work.lighting);
+        self.target.sampling().sample(self.target.bands(), &mut work.node, &mut work.separation, |out| {
+            terms_into(
+                Separation {
+                    gain: own.gain,
+                    emissivity: target.emissivity,
+                    alternative: target.alternative,
+                    contrast: self.target.contrast(),
+                    difference: &work.difference,
+                    lighting: &work.lighting,
+                    out,
+                },
+                self.target.cancellation(),
+            );
+        });
+        let gain = (state.gain - own.gain).abs() / state.gain;
+        let terms = std::mem::take(&mut self.work.separation);
+        let mut band = terms.iter();
+        let size = self.size_of_terms(target, |_, other| band.next().unwrap_or(&0.0) + gain * other);
+        self.work.separation = terms;
+        size
+    }
+
+    /// The separation by terms in the signals of target and candidate, band by band.
+    fn size_of_terms(&self, target: &Target<'_>, mut terms: impl FnMut(f64, f64) -> f64) -> f64 {
+        let mut total = crate::sum::Compensated::default();
+        let signals = self.target.signal().iter().zip(self.surface.signal());
+        for ((own, other), (root, noise)) in signals.zip(self.work.root.iter().zip(self.work.noise.iter())) {
+            let (sum, terms) = (root + (target.counts * other + noise).sqrt(), terms(*own, *other));
+            if sum > 0.0 {
+                let term = target.counts * terms / sum;
+                total.add(term * term);
+            }
+        }
+        total.value().sqrt()
+    }
+}
+
+dispatched! {
+    /// [`separation_into`] with every term by its magnitude, that of the contrast as many times as it is itself made of more.
+    fn terms_into<'a>(spectra: Separation<'a>, cancellation: f64) {
+        let Separation { gain, emissivity, alternative, contrast, difference, lighting, out } = spectra;
+        let own = emissivity.iter().zip(alternative);
+        let terms = contrast.iter().zip(difference).zip(lighting);
+        for ((out, (e, other)), ((contrast, difference), lighting)) in out.iter_mut().zip(own).zip(terms) {
+            let mixed = (cancellation * (e - other) * contrast).abs() + (other * difference).abs();
+            *out = gain * (1.0 - other).mul_add(*lighting, mixed);
+        }
+    }
+}
