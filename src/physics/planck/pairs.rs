@@ -12,6 +12,8 @@ use crate::units::SECOND_RADIATION_CM_K;
 
 /// |δ| beyond which two radiances have no digit in common.
 const ALIKE: f64 = 30.0;
+/// hcν/kT up to which no radiance is 0 for want of smaller numbers.
+const DARK: f64 = 700.0;
 
 /// B(T₀ + ΔT) − B(T₀) of a whole spectrum, given B(T₀) as `base`; exact to a few ulp however small ΔT is.
 ///
@@ -52,8 +54,7 @@ fn differences_into(
     let highest = largest(wavenumbers_cm1);
     if delta_per_cm1.high.abs() * highest <= ALIKE {
         near_differences(wavenumbers_cm1, inverse, delta_per_cm1, base, out);
-        // None is dark before x = 700.
-        if SECOND_RADIATION_CM_K * highest > 700.0 * base_k {
+        if SECOND_RADIATION_CM_K * highest > DARK * base_k {
             let spectra = out.iter_mut().zip(base).zip(wavenumbers_cm1);
             for ((out, _), &wavenumber) in spectra.filter(|((_, base), _)| **base == 0.0) {
                 *out = from_dark(wavenumber, inverse, delta_per_cm1);
@@ -91,7 +92,8 @@ pub(crate) struct NearPair<'a> {
 /// T < T₀, so that this stays below 2 at the highest wavenumber.
 pub(crate) fn is_near_pair(wavenumbers_cm1: &[f64], base_k: f64, temperature_k: f64) -> bool {
     let apart = (temperature_k - base_k).abs() / temperature_k;
-    near(base_k, temperature_k) && SECOND_RADIATION_CM_K / base_k * apart * largest(wavenumbers_cm1) <= 2.0
+    let x = SECOND_RADIATION_CM_K / base_k * largest(wavenumbers_cm1);
+    near(base_k, temperature_k) && x * apart <= 2.0 && x <= DARK
 }
 
 /// Whether the difference of two radiances needs a form of its own.
@@ -147,15 +149,16 @@ pub(crate) fn beside_into(
     }
     let delta_per_cm1 =
         inverse_thermal(base_k).times(Double::sum(temperature_k, -base_k).over(temperature_k));
-    if delta_per_cm1.high.abs() * largest(wavenumbers_cm1) <= ALIKE {
+    let highest = largest(wavenumbers_cm1);
+    if delta_per_cm1.high.abs() * highest <= ALIKE && SECOND_RADIATION_CM_K * highest <= DARK * base_k {
         near_beside(wavenumbers_cm1, delta_per_cm1, base, temperature_k, out);
         return;
     }
-    // The highest wavenumbers have no digit in common, the lowest may have all.
+    // The highest wavenumbers have no digit in common, or B(T₀) is dark; the lowest may have all.
     let inverse = inverse_thermal(temperature_k);
     let Beside { value, slope, difference } = out;
     for (i, (&wavenumber, &base)) in wavenumbers_cm1.iter().zip(base).enumerate() {
-        if (wavenumber * delta_per_cm1.high).abs() <= ALIKE {
+        if base > 0.0 && (wavenumber * delta_per_cm1.high).abs() <= ALIKE {
             let one = i..i + 1;
             let out = Beside {
                 value: &mut value[one.clone()],
@@ -166,7 +169,9 @@ pub(crate) fn beside_into(
             continue;
         }
         let at = radiance(wavenumber, inverse, 1.0 / temperature_k);
-        (value[i], slope[i], difference[i]) = (at.value, at.slope, base - at.value);
+        (value[i], slope[i]) = (at.value, at.slope);
+        difference[i] =
+            if base > 0.0 { base - at.value } else { -of_dark(at.value, wavenumber, delta_per_cm1) };
     }
 }
 
@@ -220,9 +225,13 @@ dispatched! {
     }
 }
 
-/// B(T) − B(T₀) where B(T₀) is dark, which B(T) need not be: B(T)(1 − e⁻ᵟ), as far in the Wien tail as both are.
+/// [`of_dark`], of a radiance that is not known yet.
 fn from_dark(wavenumber_cm1: f64, inverse: Double, delta_per_cm1: Double) -> f64 {
-    let value = radiance(wavenumber_cm1, inverse, 0.0).value;
+    of_dark(radiance(wavenumber_cm1, inverse, 0.0).value, wavenumber_cm1, delta_per_cm1)
+}
+
+/// B(T) − B(T₀) where B(T₀) is dark, which B(T) need not be: B(T)(1 − e⁻ᵟ), as far in the Wien tail as both are.
+fn of_dark(value: f64, wavenumber_cm1: f64, delta_per_cm1: Double) -> f64 {
     if value > 0.0 { -value * (-wavenumber_cm1 * delta_per_cm1.high).exp_m1() } else { 0.0 }
 }
 
@@ -290,6 +299,35 @@ mod tests {
                     difference[i],
                     colder[i]
                 );
+            }
+        }
+    }
+
+    /// The colder radiance may be below all numbers where the warmer is not: 2cν²e⁻ˣ of the one, and the difference by the
+    /// logarithms of both.
+    #[test]
+    fn what_is_warmer_than_dark_is_not_dark() {
+        let (nu, t0) = ([1000.0, 1999.0], 4.02);
+        for t in [4.08, 4.1, 4.5, 4.9] {
+            let (mut base, mut apart) = ([0.0; 2], [[0.0; 2]; 3]);
+            photon_radiance_into(&nu, t0, &mut base);
+            assert!(base[0] > 0.0 && base[1] == 0.0, "{base:?}");
+            let [direct, value, difference] = &mut apart;
+            photon_radiance_apart_into(&nu, (t0, &base), t, direct);
+            let mut slope = [0.0; 2];
+            beside_into(&nu, (t0, &base), t, Beside { value, slope: &mut slope, difference });
+            assert!(!is_near_pair(&nu, t0, t));
+            for (i, &nu) in nu.iter().enumerate() {
+                let x = |t: f64| SECOND_RADIATION_CM_K * nu / t;
+                let warm = (PREFACTOR * nu * nu).ln() - x(t);
+                let delta = x(t0) - x(t);
+                let expected = (warm + (-(-delta).exp_m1()).ln()).exp();
+                // ln of 1e-300 has an ulp of 1e-13, and a temperature's last digit shifts x by as much.
+                let close = |a: f64, b: f64| (a - b).abs() <= 1e-11 * b;
+                assert!(expected > 1e-308, "{nu} {t}");
+                assert!(close(apart[0][i], expected), "{nu} {t}: {:e} {expected:e}", apart[0][i]);
+                assert!(close(apart[1][i], warm.exp()), "{nu} {t}: {:e}", apart[1][i]);
+                assert!(close(-apart[2][i], expected), "{nu} {t}: {:e} {expected:e}", apart[2][i]);
             }
         }
     }

@@ -365,6 +365,11 @@ impl<'a> LocalMatrix<'a> {
             m: &mut shared.square,
         });
         shared.live.clear();
+        let root = |w: usize| shared.weights[w].sqrt();
+        let blurred = if total_known { self.jacobian.lighting_cancellation(own, state, root) } else { 1.0 };
+        if blurred > MOST_CANCELLATION {
+            return None;
+        }
         if count > 0 {
             let columns = self.jacobian.columns_mut();
             let safe = |column: &[f64]| {
@@ -391,7 +396,7 @@ impl<'a> LocalMatrix<'a> {
             }
         }
         let turned = if count > 0 { self.projector.turned() } else { 0.0 };
-        Some(shared.half * (ROUNDING * cancellation.max(10.0) + turned))
+        Some(blurred * shared.half * (ROUNDING * cancellation.max(10.0) + turned))
     }
 }
 
