@@ -23,12 +23,15 @@ mod embedded;
 mod growth;
 mod read;
 
-use self::growth::same;
+use self::growth::{Bend, same};
 use self::read::Table;
 use crate::error::{Error, Result, check};
 use crate::inputs;
 use crate::planck;
 use std::path::Path;
+
+/// Share by which a bound of a second derivative is raised for its rounding.
+const ROUNDING: f64 = 1e-9;
 
 /// Transmittances of the air by wavenumber and length of the path.
 ///
@@ -115,6 +118,51 @@ impl Atmosphere {
     #[must_use]
     pub fn longest_m(&self) -> f64 {
         self.table.lengths.longest_m()
+    }
+
+    /// The lengths of the table's columns, m, ascending: between two of them ln D is one cubic of ln z.
+    #[must_use]
+    pub fn lengths_m(&self) -> &[f64] {
+        self.table.lengths.metres()
+    }
+
+    /// How far τ may be, at each wavenumber (cm⁻¹, in any order), from the straight line of ln z between its values at the two
+    /// ends of a stretch of the path (m).
+    ///
+    /// With x = ln z that is at most ⅛Δx² max|d²τ/dx²|, τ″ = τ(D′² − D″), and, since τ does not rise, what it falls by.
+    /// Where a column of the table lies within the stretch no more is said than that.
+    ///
+    /// # Errors
+    /// As [`Atmosphere::optical_depth`].
+    ///
+    /// ```
+    /// use hadar::atmosphere::Atmosphere;
+    /// let air = Atmosphere::embedded("us-standard")?;
+    /// let at = |z: f64| air.transmittance(&[1000.0], z).map(|tau| tau[0]);
+    /// let (ends, middle) = (0.5 * (at(40.0)? + at(44.0)?), at((40.0_f64 * 44.0).sqrt())?);
+    /// let sag = air.sag(&[1000.0], [40.0, 44.0])?[0];
+    /// assert!((middle - ends).abs() <= sag && sag < 1e-4);
+    /// # Ok::<(), hadar::Error>(())
+    /// ```
+    pub fn sag(&self, nodes_cm1: &[f64], [near_m, far_m]: [f64; 2]) -> Result<Vec<f64>> {
+        let [near, far] = [self.transmittance(nodes_cm1, near_m)?, self.transmittance(nodes_cm1, far_m)?];
+        let lengths = &self.table.lengths;
+        let places = lengths.locate(near_m).zip(lengths.locate(far_m));
+        let piece = places.and_then(|(near, far)| lengths.piece(near, far));
+        let fall = |j: usize| (near[j] - far[j]).max(0.0);
+        let Some(piece) = piece else { return Ok((0..near.len()).map(fall).collect()) };
+        let bends: Vec<Bend> = self.table.rows.iter().map(|row| row.bend(piece)).collect();
+        let along = |of: fn(&Bend) -> f64| -> Result<Vec<f64>> {
+            let values: Vec<f64> = bends.iter().map(of).collect();
+            nodes_cm1.iter().map(|&node| self.between(node, &values)).collect()
+        };
+        let (slope, least, most) = (along(|b| b.slope)?, along(|b| b.second[0])?, along(|b| b.second[1])?);
+        let eighth = 0.125 * (far_m / near_m).ln().powi(2);
+        let sag = |j: usize| {
+            let second = near[j] * (slope[j] * slope[j] - least[j]).max(most[j]);
+            (eighth * second * (1.0 + ROUNDING)).min(fall(j)) + f64::EPSILON
+        };
+        Ok((0..near.len()).map(sag).collect())
     }
 
     /// Transmittance τ at each wavenumber (cm⁻¹, in any order) of a path of `distance_m`; 1 where that is 0. It never

@@ -32,6 +32,22 @@ pub(super) struct Lengths {
     ln: Vec<f64>,
 }
 
+/// What of the columns a stretch of lengths lies in.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Piece {
+    /// Below the first one or up to it; its longest length by this much of ln L.
+    Below(f64),
+    /// Between `low` and the next, either of them included: shares of the way in ln L, and the whole of it.
+    Between { low: usize, shares: [f64; 2], width: f64 },
+}
+
+/// How a quantity may change with x = ln L on a stretch: its slope at most, and its second derivative at least and at most.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Bend {
+    pub(super) slope: f64,
+    pub(super) second: [f64; 2],
+}
+
 /// Where a length lies among the columns.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Position {
@@ -54,6 +70,29 @@ impl Lengths {
 
     pub(super) fn longest_m(&self) -> f64 {
         self.metres.last().copied().unwrap_or(0.0)
+    }
+
+    pub(super) fn metres(&self) -> &[f64] {
+        &self.metres
+    }
+
+    /// Where a stretch lies; `None` if a column is within it.
+    pub(super) fn piece(&self, near: Position, far: Position) -> Option<Piece> {
+        let place = |position: Position| match position {
+            Position::Column(column) => Some((column, 0.0)),
+            Position::Between { low, share, .. } => Some((low, share)),
+            Position::Below(_) | Position::Nowhere => None,
+        };
+        match (near, far) {
+            (Position::Below(_), Position::Below(by)) => Some(Piece::Below(by)),
+            (Position::Below(_), Position::Column(0)) => Some(Piece::Below(0.0)),
+            _ => {
+                let ((low, from), (end, to)) = (place(near)?, place(far)?);
+                let to = if end == low { to } else { (end == low + 1 && to == 0.0).then_some(1.0)? };
+                let width = self.ln.get(low + 1)? - self.ln.get(low)?;
+                Some(Piece::Between { low, shares: [from, to], width })
+            }
+        }
     }
 
     /// The place of a length, 0 or above; `None` beyond the longest column.
@@ -117,6 +156,41 @@ impl Growth {
             }),
         };
         depth.unwrap_or(0.0)
+    }
+}
+
+impl Growth {
+    /// How D bends on a piece: D′ = Dy′ and D″ = D(y′² + y″), where D is largest at the far end and, on a cubic, y″ is a straight
+    /// line of x.
+    pub(super) fn bend(&self, piece: Piece) -> Bend {
+        let knot = |index: usize| self.knots.get(index);
+        let bend = match piece {
+            Piece::Below(by) => knot(0).map(|first| {
+                let (depth, slope) = (self.depth(Position::Below(by)), first.slope.clamp(0.5, 1.0));
+                Bend { slope: depth * slope, second: [0.0, depth * slope * slope] }
+            }),
+            Piece::Between { low, shares: [start, end], width } => {
+                knot(low).zip(knot(low + 1)).map(|(from, to)| {
+                    let depth = self.depth(Position::Between { low, share: end, width });
+                    let (secant, a, b) = ((to.ln_depth - from.ln_depth) / width, from.slope, to.slope);
+                    let slope = |t: f64| {
+                        let left = 1.0 - t;
+                        6.0 * secant * t * left + a * left * (1.0 - 3.0 * t) + b * t * (3.0 * t - 2.0)
+                    };
+                    let second = |t: f64| {
+                        (6.0 * secant * (1.0 - 2.0 * t) - a * (4.0 - 6.0 * t) - b * (2.0 - 6.0 * t)) / width
+                    };
+                    let [first, last] = [second(start), second(end)];
+                    // y′ is largest at an end or where y″ is 0.
+                    let turn = start + (end - start) * first / (first - last);
+                    let turn = if start < turn && turn < end { slope(turn) } else { 0.0 };
+                    let steepest = slope(start).max(slope(end)).max(turn).max(0.0);
+                    let (least, most) = (first.min(last), steepest * steepest + first.max(last));
+                    Bend { slope: depth * steepest, second: [depth * least.min(0.0), depth * most.max(0.0)] }
+                })
+            }
+        };
+        bend.unwrap_or(Bend { slope: 0.0, second: [0.0; 2] })
     }
 }
 

@@ -57,6 +57,43 @@ fn columns_are_hit_and_names_and_heads_agree() {
     near(&[772.5], 1000.0, (0.746_70f64 * 0.764_86).sqrt());
 }
 
+/// The straight line of ln z between two near distances misses τ by no more than is said, and by a good part of that somewhere.
+#[test]
+fn the_sag_between_two_distances_bounds_what_a_straight_line_misses() {
+    let nodes: Vec<f64> = (0..261).map(|i| 700.0 + 2.5 * f64::from(i)).collect();
+    for name in Atmosphere::names() {
+        let air = Atmosphere::embedded(name).unwrap();
+        let mut stretches =
+            vec![[1.0, 1.3], [8.0, 10.0], [10.0, 30.0], [30.0, 33.0], [250.0, 300.0], [2e3, 2.01e3]];
+        stretches.push([9e3, 1e4]);
+        for [near, far] in stretches {
+            let sag = air.sag(&nodes, [near, far]).unwrap();
+            let [from, to] = [near, far].map(|z| air.transmittance(&nodes, z).unwrap());
+            let mut most = vec![0.0f64; nodes.len()];
+            for step in 1..40 {
+                let share = f64::from(step) / 40.0;
+                let tau = air.transmittance(&nodes, near * (far / near).powf(share)).unwrap();
+                for (j, most) in most.iter_mut().enumerate() {
+                    *most = most.max((tau[j] - from[j] * (1.0 - share) - to[j] * share).abs());
+                }
+            }
+            for (j, (most, sag)) in most.iter().zip(&sag).enumerate() {
+                assert!(most <= sag, "{name} {near}..{far} {}: {most:e} {sag:e}", nodes[j]);
+            }
+            // Of a short stretch the second derivative is nearly one number.
+            let total = |x: &[f64]| x.iter().sum::<f64>();
+            let (found, said) = (total(&most), total(&sag));
+            let share = if far < 1.2 * near { 0.3 } else { 0.15 };
+            assert!(found > share * said, "{name} {near}..{far}: {found:e} {said:e}");
+        }
+        // Beyond a column slopes may break: what τ falls by.
+        let [sag, from, to] =
+            [air.sag(&nodes, [9.0, 12.0]), air.transmittance(&nodes, 9.0), air.transmittance(&nodes, 12.0)]
+                .map(Result::unwrap);
+        assert!((0..nodes.len()).all(|j| sag[j] == from[j] - to[j]));
+    }
+}
+
 /// What the head of the module states: every column from the others.
 #[test]
 fn a_column_left_out_is_found_again_within_the_stated_error() {
@@ -222,6 +259,14 @@ proptest! {
             // D keeps 1e-15 of itself, and x e^-x is at most 1/e.
             prop_assert!((0.0..=1.0).contains(&tau) && tau <= last + 1e-14, "{z}: {tau} after {last}");
             last = tau;
+        }
+        for pair in lengths.windows(2) {
+            let [near, far] = [0.25, 0.75].map(|x: f64| pair[0] * (pair[1] / pair[0]).powf(x * share));
+            let node = [700.0 + 10.0 * share];
+            let tau = |z: f64| air.transmittance(&node, z).unwrap()[0];
+            let sag = air.sag(&node, [near, far]).unwrap()[0];
+            let off = tau((near * far).sqrt()) - 0.5 * (tau(near) + tau(far));
+            prop_assert!(off.abs() <= sag + 1e-14, "{near} to {far}: {off:e} {sag:e}");
         }
     }
 
