@@ -19,7 +19,8 @@
 //! A proof accounts for the rounding of its own sums (`cell`), but it is not made of outward-rounded intervals,
 //! and Planck's function is taken to be as exact as [`crate::planck`] states.
 //!
-//! Distance to the target is no dimension here: d falls with it. Materials are enumerated by the caller.
+//! Distance to the target is no dimension of a worst case. What air does to it along a stretch of distances is bounded by
+//! [`lower_bound_along`] (`stretch`). Materials are enumerated by the caller.
 
 mod attain;
 mod bound;
@@ -35,10 +36,12 @@ mod ranges;
 mod relation;
 mod scene;
 mod series;
+mod stretch;
 
 pub use self::prove::Effort;
 pub use self::ranges::Ranges;
 pub use self::scene::EnvelopeScene;
+pub use self::stretch::{Stretch, lower_bound_along};
 
 use self::attain::Attained;
 use self::model::Model;

@@ -270,9 +270,13 @@ impl Cell {
             total += price * relation.constant - price.abs() * relation.tolerance(&cube.factors);
         }
         let mut weight = [0.0; COLUMNS];
-        for s in 0..self.sources.len() {
-            total += self.least(cube, s, &u, &prices, &mut weight);
-        }
+        // Along a stretch of distances the least is at one of its ends.
+        let ends: &[f64] = if model.along.is_some() { &[-1.0, 1.0] } else { &[0.0] };
+        let least = |end: &f64| -> f64 {
+            (0..self.sources.len()).map(|s| self.least(cube, s, &u, &prices, *end, &mut weight)).sum()
+        };
+        let lower = |a: f64, b: f64| if b.is_nan() || b < a { b } else { a };
+        total += ends.iter().map(least).fold(f64::INFINITY, lower);
         for limit in &limits {
             // What a product may be off by in the middle of the cube.
             if let Some(factors) = model.product_of(limit.relation) {
@@ -311,7 +315,7 @@ impl Cell {
     /// Δ_c and A of a cube, in coordinates in which M is the unit matrix.
     #[inline(always)]
     fn linear(&self, model: &Model<'_>, cube: &Cube, factor: &Factor) -> Linear {
-        let count = 3 * self.sources.len();
+        let mut count = 3 * self.sources.len();
         let (mut middle, mut columns) = ([0.0; RANK], [[0.0; RANK]; COLUMNS]);
         let mut cones = [false; SOURCES];
         for s in 0..self.sources.len() {
@@ -337,6 +341,16 @@ impl Cell {
                 add(&mut columns[3 * s], w, &node.other[1]);
                 add(&mut columns[3 * s + 2], dw, &node.other[0]);
             }
+        }
+        // Along a stretch of distances, if there is room: without it the direction is not the best one.
+        if model.along.is_some() && count < COLUMNS {
+            for s in 0..self.sources.len() {
+                let node = self.node_of(cube, s);
+                let Some(tilt) = &node.tilt else { continue };
+                add(&mut columns[count], centre(cube.own(s)).0, &tilt[0][0]);
+                add(&mut columns[count], centre(cube.other(s)).0, &tilt[1][0]);
+            }
+            count += 1;
         }
         for column in columns[..count].iter_mut().chain([&mut middle]) {
             factor.solve(column);
@@ -385,7 +399,7 @@ impl Cell {
         total
     }
 
-    /// Least u·(v f + w g) with the prices of v and w of one source, less rounding, and how much of it each of its ranges
+    /// Least u·(v f + w g) at one end of a stretch (−1 the near one, 1 the far one, 0 where there is none) with the prices of v and w of one source, less rounding, and how much of it each of its ranges
     /// accounts for.
     #[inline(always)]
     fn least(
@@ -394,11 +408,15 @@ impl Cell {
         s: usize,
         u: &Vector,
         prices: &[f64; COLUMNS],
+        end: f64,
         weight: &mut [f64; COLUMNS],
     ) -> f64 {
         let node = self.node_of(cube, s);
         let mut f = [0, 1, 2, 3].map(|term| dot(u, &node.own[term]));
         f[0] += prices[3 * s + 1];
+        if let Some(tilt) = &node.tilt {
+            f.iter_mut().zip(&tilt[0]).for_each(|(f, tilt)| *f += end * dot(u, tilt));
+        }
         let (own, other) = (cube.own(s), cube.other(s));
         let size = node.reach.size;
         let slack = self.rounding * (own[1] * size[0] + other[1] * size[1]);
@@ -413,6 +431,9 @@ impl Cell {
         }
         let mut g = [0, 1, 2, 3].map(|term| dot(u, &node.other[term]));
         g[0] += prices[3 * s + 2];
+        if let Some(tilt) = &node.tilt {
+            g.iter_mut().zip(&tilt[1]).for_each(|(g, tilt)| *g += end * dot(u, tilt));
+        }
         let mut least = f64::INFINITY;
         for v in own {
             for w in other {

@@ -165,6 +165,11 @@ impl Cell {
                     if factor < range[0] || factor <= 0.0 {
                         continue;
                     }
+                    if model.along.is_some() {
+                        let mut far = self.whitened(model.counts_of_far(strength, &radiance));
+                        far.iter_mut().for_each(|count| *count *= factor);
+                        samples.push(far);
+                    }
                     let mut counts = self.whitened(model.counts(strength, &radiance));
                     counts.iter_mut().for_each(|count| *count *= factor);
                     samples.push(

@@ -5,10 +5,11 @@
 //! is empty.
 
 use super::cell::Cell;
-use super::linear::RANK;
+use super::linear::{RANK, Vector};
 use super::model::Model;
 use super::node::{Detail, Node, RADII, Reach, Spread};
 use super::series::{TERMS, planck_series, remainder};
+use crate::spectrum::Bands;
 use crate::sum::dot;
 
 /// Largest half width of a temperature of the alternative's own, as a share of its middle.
@@ -56,6 +57,7 @@ impl Cell {
             detail: Detail::Cubic,
             own: [[0.0; RANK]; TERMS],
             other: [[0.0; RANK]; TERMS],
+            tilt: None,
             own_rest: 0.0,
             other_rest: 0.0,
             own_spread,
@@ -84,27 +86,43 @@ impl Cell {
                 node.other[term] = self.components(&model.counts(&source.other, radiance));
             }
         }
+        if model.along.is_some() {
+            let mut tilt = Box::new([[[0.0; RANK]; TERMS]; 2]);
+            for (term, radiance) in series.iter().enumerate() {
+                let far = self.components(&model.counts_of_far(&source.own, radiance));
+                tilt[0][term] = half_apart(&mut node.own[term], &far);
+                if second {
+                    let far = self.components(&model.counts_of_far(&source.other, radiance));
+                    tilt[1][term] = half_apart(&mut node.other[term], &far);
+                }
+            }
+            node.tilt = Some(tilt);
+        }
         let least = |which: usize| {
             let radii = RADII.iter().zip(&reach.discs);
             radii
                 .map(|(share, norms)| norms[which] * remainder(half, share * reach.lowest_k))
                 .fold(f64::INFINITY, f64::min)
         };
-        (node.own_rest, node.other_rest) = (least(0), if second { least(1) } else { 0.0 });
+        let [own_sag, other_sag] = node.reach.sag;
+        (node.own_rest, node.other_rest) =
+            (least(0) + own_sag, if second { least(1) + other_sag } else { 0.0 });
         node
     }
 
     fn reach(&self, model: &Model<'_>, s: usize, t: [f64; 2]) -> Reach {
-        let discs = RADII.map(|share| self.norms(model, s, t[1] + share * t[0]));
-        Reach { lowest_k: t[0], size: self.norms(model, s, t[1]), discs }
+        let bands = model.scene.bands;
+        let discs = RADII.map(|share| self.norms(model, bands, s, t[1] + share * t[0]));
+        let sag = model.along.map_or([0.0; 2], |along| self.norms(model, along.sag, s, t[1]));
+        Reach { lowest_k: t[0], size: self.norms(model, bands, s, t[1]), sag, discs }
     }
 
-    /// Norms of the whitened magnitudes of f and g at a temperature.
-    fn norms(&self, model: &Model<'_>, s: usize, temperature_k: f64) -> [f64; 2] {
+    /// Norms of the whitened magnitudes of f and g at a temperature, in bands of some weights.
+    fn norms(&self, model: &Model<'_>, bands: &Bands, s: usize, temperature_k: f64) -> [f64; 2] {
         let radiance = model.radiance(temperature_k);
         let norm = |strength: &[f64]| {
             let magnitude: Vec<f64> = strength.iter().map(|x| x.abs()).collect();
-            let counts = self.whitened(model.counts(&magnitude, &radiance));
+            let counts = self.whitened(model.counts_in(bands, &magnitude, &radiance));
             dot(&counts, &counts).sqrt()
         };
         let second = self.region[s].other[1] > 0.0;
@@ -115,7 +133,7 @@ impl Cell {
     pub(super) fn most(&self, model: &Model<'_>, s: usize, temperature_k: f64) -> [f64; 2] {
         let (source, span) = (&model.sources[s], self.region[s]);
         let least = |strength: &[f64]| {
-            let counts = model.counts(strength, &model.radiance(temperature_k));
+            let counts = model.counts_of_far(strength, &model.radiance(temperature_k));
             let shares = counts.iter().zip(&self.brightest).filter(|(count, _)| **count > 0.0);
             shares.map(|(count, most)| most / count).fold(f64::INFINITY, f64::min) * (1.0 + ROUNDING)
         };
@@ -126,4 +144,14 @@ impl Cell {
             (false, false) => [f64::INFINITY; 2],
         }
     }
+}
+
+/// Half of far − near; near becomes the mean of both.
+fn half_apart(near: &mut Vector, far: &Vector) -> Vector {
+    let mut half = [0.0; RANK];
+    for ((near, far), half) in near.iter_mut().zip(far).zip(&mut half) {
+        *half = 0.5 * (far - *near);
+        *near += *half;
+    }
+    half
 }

@@ -19,9 +19,11 @@ use super::linear::{COLUMNS, SOURCES};
 use super::ranges::Ranges;
 use super::relation::{Product, Relation};
 use super::scene::EnvelopeScene;
+use super::stretch::Stretch;
 use crate::fisher::{Nuisance, Unknowns};
 use crate::planck;
 use crate::scene::State;
+use crate::spectrum::Bands;
 
 /// Largest |ln G′|, and the range of Tₖ′ (K): those of the search for the nearest state.
 const LOG_GAIN: f64 = 14.0;
@@ -90,6 +92,8 @@ impl Point {
 #[derive(Debug)]
 pub(super) struct Model<'a> {
     pub(super) scene: EnvelopeScene<'a>,
+    /// Along what distances, if not from one alone.
+    pub(super) along: Option<Stretch<'a>>,
     pub(super) sources: Vec<Source>,
     pub(super) var: Vec<f64>,
     /// Shares of N and N′ in the bound of a variance, band by band: ¼(1 + s) and ¼(1 + 1/s).
@@ -181,8 +185,18 @@ impl<'a> Model<'a> {
         let shares = [vec![0.5; var.len()], vec![0.5; var.len()]];
         let (relations, products) = (Vec::new(), Vec::new());
         let twins = Vec::new();
-        let mut model =
-            Self { scene: *scene, sources, var, shares, relations, products, gain, lights, twins };
+        let mut model = Self {
+            scene: *scene,
+            along: None,
+            sources,
+            var,
+            shares,
+            relations,
+            products,
+            gain,
+            lights,
+            twins,
+        };
         model.relate(&region, own_v);
         if own_v {
             model.pair_twins(&region);
@@ -251,10 +265,20 @@ impl<'a> Model<'a> {
         })
     }
 
-    /// Counts of every band for a spectrum that is `strength` times `radiance` at the nodes.
+    /// Counts of every band for a spectrum that is `strength` times `radiance` at the nodes; those of the near end of a stretch.
     pub(super) fn counts(&self, strength: &[f64], radiance: &[f64]) -> Vec<f64> {
+        self.counts_in(self.scene.bands, strength, radiance)
+    }
+
+    /// The same at the far end.
+    pub(super) fn counts_of_far(&self, strength: &[f64], radiance: &[f64]) -> Vec<f64> {
+        self.counts_in(self.along.map_or(self.scene.bands, |along| along.far), strength, radiance)
+    }
+
+    /// The same in bands of other weights.
+    pub(super) fn counts_in(&self, bands: &Bands, strength: &[f64], radiance: &[f64]) -> Vec<f64> {
         let product: Vec<f64> = strength.iter().zip(radiance).map(|(a, b)| a * b).collect();
-        let mut counts = self.scene.bands.weigh(&product);
+        let mut counts = bands.weigh(&product);
         counts.iter_mut().for_each(|count| *count *= self.scene.counting.counts_per_radiance);
         counts
     }

@@ -106,7 +106,9 @@ pub(super) fn prove(
     search.take_in(roots);
     let mut round = 0;
     while search.boxes < effort.boxes && !search.queue.is_empty() {
-        let promising = if round < EVERY || round % EVERY == 0 { search.lowest() } else { None };
+        // Along a stretch of distances there is nothing to attain.
+        let tried = model.along.is_none() && (round < EVERY || round % EVERY == 0);
+        let promising = if tried { search.lowest() } else { None };
         if let Some(start) = promising {
             let below = attained.distance * (1.0 - 1e-6);
             let (better, evaluations) = attain::attain_from(joint, ranges, start, below)?;

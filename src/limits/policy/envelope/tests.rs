@@ -1,5 +1,6 @@
 mod brute;
 mod hidden;
+mod stretch;
 
 use super::bound::Cube;
 use super::cell::Cell;

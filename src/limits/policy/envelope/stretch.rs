@@ -1,0 +1,96 @@
+//! A lower bound of the distance for every scene of an envelope, from wherever along a stretch of distances.
+//!
+//! Air lets through the share τ_j(z) of node j at distance z. With x = ln z between the near end and the far one,
+//! s = (x − x_near)/(x_far − x_near),
+//!
+//! τ_j(z) = (1 − s) τ_j(near) + s τ_j(far) + δ_j,   |δ_j| ≤ the sag of node j,   τ_j(far) ≤ τ_j(z) ≤ τ_j(near),
+//!
+//! with the same s for all nodes: counts lie on a straight line between those of the two ends, but for the sags. So a bound of
+//! u·Δ (`bound`) for all z is the least of those at the two ends, less ‖sag‖; spectra are kept as the mean of both ends and half
+//! their difference (`node`). Variances, norms and what is faint are those of the near end, where all is brightest; how bright
+//! an alternative may be is asked of the far one.
+//!
+//! κ and the added variance depend on the distance too: d grows with κ and falls with v in every band, so that the least
+//! κ and the most variance along the stretch, each by itself, bound it.
+//!
+//! Nothing is attained along a stretch; that no scene along it is below a distance known from elsewhere is proved, or not.
+
+use super::model::{self, Model};
+use super::prove::{self, Effort};
+use super::ranges::Ranges;
+use super::scene::EnvelopeScene;
+use super::{Attained, WorstCase, joint};
+use crate::error::{Error, Result, check};
+use crate::spectrum::Bands;
+
+/// What the bands let through along a stretch of distances.
+#[derive(Debug, Clone, Copy)]
+pub struct Stretch<'a> {
+    /// The bands as they are at the far end, nowhere more than those of the scene.
+    pub far: &'a Bands,
+    /// The same bands with the share that transmittances may be off a straight line of ln z at each node.
+    pub sag: &'a Bands,
+}
+
+impl Stretch<'_> {
+    fn check(&self, near: &Bands) -> Result<()> {
+        for bands in [self.far, self.sag] {
+            if bands.nodes_cm1() != near.nodes_cm1() {
+                let what = "nodes of the bands at the far end".into();
+                let (found, expected) = (bands.nodes_cm1().len(), near.nodes_cm1().len());
+                return Err(Error::Length { what, found, expected });
+            }
+            bands.weights_cm1().iter().try_for_each(|&weight| {
+                check::non_negative("weight of a band along a stretch of distances", weight, "cm^-1")
+                    .map(drop)
+            })?;
+        }
+        let rises = near.weights_cm1().iter().zip(self.far.weights_cm1()).find(|(near, far)| far > near);
+        match rises {
+            Some((_, &far)) => {
+                let expected = "at most its weight at the near end";
+                Err(Error::out_of_range("weight of a band at the far end", far, "cm^-1", expected))
+            }
+            None => Ok(()),
+        }
+    }
+}
+
+/// A distance below which no scene of the envelope is, along the whole stretch, and the boxes that it took: no more than that of
+/// `known`, at which the proof ends. `None` where nothing can be proved of these unknowns.
+///
+/// `scene` has the bands as they are at the near end, and the least counts per radiance and the most added variance along
+/// the stretch. `known` is the least distance found from wherever, at whatever distance.
+///
+/// # Errors
+/// As [`worst_case`](super::worst_case); bands that let through more at the far end than at the near one.
+pub fn lower_bound_along(
+    scene: &EnvelopeScene<'_>,
+    stretch: &Stretch<'_>,
+    ranges: &Ranges,
+    known: &WorstCase,
+    effort: &Effort,
+) -> Result<Option<(f64, u64)>> {
+    scene.check()?;
+    stretch.check(scene.bands)?;
+    let objects = scene.surroundings.objects().len();
+    ranges.check_objects(objects)?;
+    if !model::provable(scene.unknowns, objects) || effort.boxes == 0 {
+        return Ok(None);
+    }
+    if !(known.distance > 0.0) {
+        return Ok(Some((0.0, 0)));
+    }
+    let mut joint = Model::new(scene, ranges);
+    joint.0.along = Some(*stretch);
+    let best = joint::residual(&joint.0, &joint.0.point(&known.state, &known.nearest));
+    joint.0.lean([&best.target, &best.alternative]);
+    let known = Attained {
+        distance: known.distance,
+        state: known.state.clone(),
+        nearest: known.nearest.clone(),
+        evaluations: 0,
+    };
+    let proof = prove::prove(&joint, ranges, effort, &best, known)?;
+    Ok(Some((proof.lower_bound, proof.boxes)))
+}
