@@ -23,14 +23,14 @@ mod embedded;
 mod growth;
 mod read;
 
-use self::growth::{Bend, same};
+use self::growth::same;
 use self::read::Table;
 use crate::error::{Error, Result, check};
 use crate::inputs;
 use crate::planck;
 use std::path::Path;
 
-/// Share by which a bound of a second derivative is raised for its rounding.
+/// Share by which a bound of a derivative is raised for its rounding.
 const ROUNDING: f64 = 1e-9;
 
 /// Transmittances of the air by wavenumber and length of the path.
@@ -126,11 +126,11 @@ impl Atmosphere {
         self.table.lengths.metres()
     }
 
-    /// How far τ may be, at each wavenumber (cm⁻¹, in any order), from the straight line of ln z between its values at the two
-    /// ends of a stretch of the path (m).
+    /// How far τ may be, at each wavenumber (cm⁻¹, in any order), from the parabola of ln z through its values at the two ends of
+    /// a stretch of the path (m) and at their geometric mean.
     ///
-    /// With x = ln z that is at most ⅛Δx² max|d²τ/dx²|, τ″ = τ(D′² − D″), and, since τ does not rise, what it falls by.
-    /// Where a column of the table lies within the stretch no more is said than that.
+    /// With x = ln z that is at most Δx³/(72√3) max|τ‴|, τ‴ = τ(3D′D″ − D′³ − D‴), and, since τ does not rise, 3/2 of what it
+    /// falls by. Where a column of the table lies within the stretch no more is said than that.
     ///
     /// # Errors
     /// As [`Atmosphere::optical_depth`].
@@ -138,10 +138,11 @@ impl Atmosphere {
     /// ```
     /// use hadar::atmosphere::Atmosphere;
     /// let air = Atmosphere::embedded("us-standard")?;
-    /// let at = |z: f64| air.transmittance(&[1000.0], z).map(|tau| tau[0]);
-    /// let (ends, middle) = (0.5 * (at(40.0)? + at(44.0)?), at((40.0_f64 * 44.0).sqrt())?);
+    /// let at = |share: f64| air.transmittance(&[1000.0], 40.0 * 1.1_f64.powf(share)).map(|tau| tau[0]);
+    /// // A quarter of the way the parabola is at 3/8, 3/4 and -1/8 of the three.
+    /// let parabola = 0.375 * at(0.0)? + 0.75 * at(0.5)? - 0.125 * at(1.0)?;
     /// let sag = air.sag(&[1000.0], [40.0, 44.0])?[0];
-    /// assert!((middle - ends).abs() <= sag && sag < 1e-4);
+    /// assert!((at(0.25)? - parabola).abs() <= sag && sag < 1e-7);
     /// # Ok::<(), hadar::Error>(())
     /// ```
     pub fn sag(&self, nodes_cm1: &[f64], [near_m, far_m]: [f64; 2]) -> Result<Vec<f64>> {
@@ -149,18 +150,19 @@ impl Atmosphere {
         let lengths = &self.table.lengths;
         let places = lengths.locate(near_m).zip(lengths.locate(far_m));
         let piece = places.and_then(|(near, far)| lengths.piece(near, far));
-        let fall = |j: usize| (near[j] - far[j]).max(0.0);
+        let fall = |j: usize| 1.5 * (near[j] - far[j]).max(0.0);
         let Some(piece) = piece else { return Ok((0..near.len()).map(fall).collect()) };
-        let bends: Vec<Bend> = self.table.rows.iter().map(|row| row.bend(piece)).collect();
-        let along = |of: fn(&Bend) -> f64| -> Result<Vec<f64>> {
-            let values: Vec<f64> = bends.iter().map(of).collect();
+        let bends: Vec<[f64; 3]> = self.table.rows.iter().map(|row| row.bend(piece)).collect();
+        let along = |order: usize| -> Result<Vec<f64>> {
+            let values: Vec<f64> = bends.iter().map(|bend| bend[order]).collect();
             nodes_cm1.iter().map(|&node| self.between(node, &values)).collect()
         };
-        let (slope, least, most) = (along(|b| b.slope)?, along(|b| b.second[0])?, along(|b| b.second[1])?);
-        let eighth = 0.125 * (far_m / near_m).ln().powi(2);
+        let (first, second, third) = (along(0)?, along(1)?, along(2)?);
+        let cube = (far_m / near_m).ln().powi(3) / (72.0 * 3f64.sqrt());
         let sag = |j: usize| {
-            let second = near[j] * (slope[j] * slope[j] - least[j]).max(most[j]);
-            (eighth * second * (1.0 + ROUNDING)).min(fall(j)) + f64::EPSILON
+            let slope = first[j];
+            let bend = near[j] * (slope.powi(3) + 3.0 * slope * second[j] + third[j]);
+            (cube * bend * (1.0 + ROUNDING)).min(fall(j)) + 4.0 * f64::EPSILON
         };
         Ok((0..near.len()).map(sag).collect())
     }

@@ -106,8 +106,6 @@ pub enum Warning {
     NotProved,
     /// Noise of the brightest scene.
     BrightestNoise,
-    /// Ends of the range of distances.
-    DistanceEnds,
     /// Time of all frames, and the way that is driven in it.
     FramesInMotion { frames: u32, time_s: f64, way_m: f64 },
 
@@ -193,7 +191,6 @@ impl Warning {
             Self::TrialsEnded { .. } => Code::TrialsEnded,
             Self::NotProved => Code::NotProved,
             Self::BrightestNoise => Code::BrightestNoise,
-            Self::DistanceEnds => Code::DistanceEnds,
             Self::FramesInMotion { .. } => Code::FramesInMotion,
             Self::SamplesNotChecked { .. } => Code::SamplesNotChecked,
             Self::NoiseOfDemanded { .. } | Self::NoiseOfFound { .. } => Code::NoiseInCounts,

@@ -41,13 +41,6 @@ pub(super) enum Piece {
     Between { low: usize, shares: [f64; 2], width: f64 },
 }
 
-/// How a quantity may change with x = ln L on a stretch: its slope at most, and its second derivative at least and at most.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Bend {
-    pub(super) slope: f64,
-    pub(super) second: [f64; 2],
-}
-
 /// Where a length lies among the columns.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Position {
@@ -160,15 +153,17 @@ impl Growth {
 }
 
 impl Growth {
-    /// How D bends on a piece: D′ = Dy′ and D″ = D(y′² + y″), where D is largest at the far end and, on a cubic, y″ is a straight
-    /// line of x.
-    pub(super) fn bend(&self, piece: Piece) -> Bend {
+    /// The most that |D′|, |D″| and |D‴| are on a piece, along x = ln L: D′ = Dy′, D″ = D(y′² + y″) and
+    /// D‴ = D(y′³ + 3y′y″ + y‴) with D largest at the far end and, on a cubic, y″ a straight line.
+    pub(super) fn bend(&self, piece: Piece) -> [f64; 3] {
         let knot = |index: usize| self.knots.get(index);
+        let of = |depth: f64, slope: f64, second: f64, third: f64| {
+            let square = slope * slope;
+            [slope, square + second, slope * square + 3.0 * slope * second + third].map(|x| depth * x)
+        };
         let bend = match piece {
-            Piece::Below(by) => knot(0).map(|first| {
-                let (depth, slope) = (self.depth(Position::Below(by)), first.slope.clamp(0.5, 1.0));
-                Bend { slope: depth * slope, second: [0.0, depth * slope * slope] }
-            }),
+            Piece::Below(by) => knot(0)
+                .map(|first| of(self.depth(Position::Below(by)), first.slope.clamp(0.5, 1.0), 0.0, 0.0)),
             Piece::Between { low, shares: [start, end], width } => {
                 knot(low).zip(knot(low + 1)).map(|(from, to)| {
                     let depth = self.depth(Position::Between { low, share: end, width });
@@ -185,12 +180,12 @@ impl Growth {
                     let turn = start + (end - start) * first / (first - last);
                     let turn = if start < turn && turn < end { slope(turn) } else { 0.0 };
                     let steepest = slope(start).max(slope(end)).max(turn).max(0.0);
-                    let (least, most) = (first.min(last), steepest * steepest + first.max(last));
-                    Bend { slope: depth * steepest, second: [depth * least.min(0.0), depth * most.max(0.0)] }
+                    let third = (6.0 * (a + b) - 12.0 * secant).abs() / (width * width);
+                    of(depth, steepest, first.abs().max(last.abs()), third)
                 })
             }
         };
-        bend.unwrap_or(Bend { slope: 0.0, second: [0.0; 2] })
+        bend.unwrap_or([0.0; 3])
     }
 }
 

@@ -8,6 +8,7 @@
 //! Distances are nearest distances with the camera's own noise ([`envelope`]); gray areas are said: what was only
 //! searched is called so.
 
+mod between;
 mod envelope;
 mod ideal;
 mod results;
@@ -32,8 +33,8 @@ use hadar::material::Library;
 
 /// Relative difference of counts or variance from which on a distance matters.
 const NOTICEABLE: f64 = 1e-3;
-/// Distances that are searched where air changes spectra within bands, both ends among them.
-const DISTANCES: usize = 25;
+/// Distances that are searched where one between the ends may be the worst, both ends among them.
+const DISTANCES: usize = 9;
 
 /// What is asked of a rule.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -53,8 +54,10 @@ struct Candidate {
     sighted: Vec<Sighted>,
     /// Whether what is counted depends on the distance.
     distance_matters: bool,
-    /// Whether distances between the ends are searched too, which is no proof.
-    distance_searched: bool,
+    /// Every material that distances between the ends may be worse for, from the least distance.
+    between: Vec<Sighted>,
+    /// Of the others, the least share of the farthest counts per radiance that are left from anywhere nearer.
+    share: f64,
     /// From the least distance, every material in turn.
     near: Vec<Study>,
 }
@@ -284,7 +287,7 @@ fn candidate(rule: &Rule, index: usize, envelope: &Envelope, library: &Library) 
     let camera = camera.transpose()?;
     let mut scenario = rule.with_camera(index);
     let (mut sighted, mut near, mut distance_matters) = (Vec::new(), Vec::new(), false);
-    let mut distance_searched = false;
+    let (mut between, mut share) = (Vec::new(), 1.0_f64);
     for material in envelope.materials.iter().flatten() {
         scenario.target.material = material.clone();
         let mut at = |distance_m: Option<f64>| {
@@ -303,14 +306,20 @@ fn candidate(rule: &Rule, index: usize, envelope: &Envelope, library: &Library) 
         }
         let far = at(most)?;
         distance_matters |= far.differs_from(&close, NOTICEABLE);
-        if let (true, [Some(least), Some(most)]) = (close.study.air_reshapes_bands(), [least, most]) {
-            distance_searched = true;
-            let steps = (1..DISTANCES - 1).map(|i| i as f64 / (DISTANCES - 1) as f64);
-            let between = steps.map(|share| least * (most / least).powf(share));
-            let seen = between.map(|z| Sighted::new(close.study.at_distance(z)?, envelope));
-            sighted.extend(seen.collect::<Result<Vec<_>>>()?);
-            sighted.extend([close, far]);
-            continue;
+        let ends_m = [least, most].into_iter().flatten().collect::<Vec<f64>>();
+        if let (Some(_), &[least, most]) = (&close.study.atmosphere, &ends_m[..]) {
+            match close.share_of_far(&far, [least, most])? {
+                Some(one) => share = share.min(one),
+                None => {
+                    let steps = (1..DISTANCES - 1).map(|i| i as f64 / (DISTANCES - 1) as f64);
+                    let inner = steps.map(|share| least * (most / least).powf(share));
+                    let seen = inner.map(|z| Sighted::new(close.study.at_distance(z)?, envelope));
+                    sighted.extend(seen.collect::<Result<Vec<_>>>()?);
+                    between.push(close.clone());
+                    sighted.extend([close, far]);
+                    continue;
+                }
+            }
         }
         match (far.is_worse_than(&close), close.is_worse_than(&far)) {
             (true, _) => sighted.push(far),
@@ -321,7 +330,7 @@ fn candidate(rule: &Rule, index: usize, envelope: &Envelope, library: &Library) 
     let given = rule.cameras.get(index).and_then(|camera| camera.name.clone());
     let own = camera.map(|camera| camera.name).filter(|_| spec.is_some_and(|spec| spec.preset.is_some()));
     let name = given.or(own).unwrap_or_else(|| format!("camera {}", index + 1));
-    Ok(Candidate { name, sighted, distance_matters, distance_searched, near })
+    Ok(Candidate { name, sighted, distance_matters, between, share, near })
 }
 
 /// Refuses a known camera, named alone, of which no document states all that is needed.

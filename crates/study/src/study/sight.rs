@@ -12,6 +12,7 @@
 
 use super::Study;
 use hadar::error::{Error, Result};
+use hadar::fisher::Counting;
 use hadar::instrument::view::fill;
 use hadar::instrument::{Camera, Light, NoiseSpec, View};
 use hadar::planck;
@@ -27,11 +28,32 @@ pub struct Sight {
     pub view: View,
 }
 
+/// What a camera sees from anywhere along a stretch of distances.
+#[derive(Debug, Clone)]
+pub(super) struct Along {
+    /// Bands as they reach it from the near end, the middle and the far end, and how far they may be off a parabola of ln z.
+    pub(super) near: Bands,
+    pub(super) middle: Bands,
+    pub(super) far: Bands,
+    pub(super) sag: Bands,
+    /// The least counts per radiance, and the most added variance.
+    pub(super) counting: Counting,
+}
+
+/// Bands as they reach a camera from a distance, and what the path emits at their nodes.
+#[derive(Debug, Clone, Copy)]
+struct Seen<'s> {
+    bands: &'s Bands,
+    distance_m: Option<f64>,
+    air: &'s [f64],
+}
+
 impl Study {
     /// What a pixel of `camera` sees from the scenario's distance.
     #[must_use]
     pub fn view_of(&self, camera: &Camera) -> View {
-        self.view(camera, &self.bands, self.scenario.target.distance_m, &self.air)
+        let seen = Seen { bands: &self.bands, distance_m: self.scenario.target.distance_m, air: &self.air };
+        self.view(camera, [seen; 2])
     }
 
     /// Whether air changes spectra within bands, so that a distance may be worse than those on either side of it.
@@ -56,8 +78,37 @@ impl Study {
     /// A distance of which the air's table says nothing.
     pub fn sight_at(&self, camera: &Camera, distance_m: Option<f64>) -> Result<Sight> {
         let (bands, air) = self.received(Some(camera), distance_m)?;
-        let view = self.view(camera, &bands, distance_m, &air);
+        let view = self.view(camera, [Seen { bands: &bands, distance_m, air: &air }; 2]);
         Ok(Sight { bands, view })
+    }
+
+    /// What `camera` sees from anywhere along a stretch of distances, m.
+    ///
+    /// # Errors
+    /// Distances of which the air's table says nothing.
+    pub(super) fn along(&self, camera: &Camera, ends_m: [f64; 2]) -> Result<Along> {
+        let [(near, near_air), (far, air)] = {
+            let [near, far] = ends_m.map(|z| self.received(Some(camera), Some(z)));
+            [near?, far?]
+        };
+        let open = camera.received(&self.open_bands);
+        let sag = match &self.atmosphere {
+            Some(air) => air.table.sag(open.nodes_cm1(), ends_m)?,
+            None => vec![0.0; open.nodes_cm1().len()],
+        };
+        let seen = [(&near, &near_air), (&far, &air)];
+        let [first, last] = [0, 1].map(|end: usize| {
+            let (bands, air) = seen[end];
+            Seen { bands, distance_m: Some(ends_m[end]), air }
+        });
+        let mut counting = camera.counting(&near, &self.view(camera, [first, last]));
+        // Étendue × fill rises, then falls.
+        let fill = |z: f64| View { fill: self.fill(camera, Some(z)), ..View::at(Some(z)) };
+        let kappa = ends_m.map(|z| camera.counts_per_radiance(&near, &fill(z)));
+        counting.counts_per_radiance = kappa[0].min(kappa[1]);
+        let sag = open.transmitted_at_nodes(&sag);
+        let (middle, _) = self.received(Some(camera), Some((ends_m[0] * ends_m[1]).sqrt()))?;
+        Ok(Along { near, middle, far, sag, counting })
     }
 
     /// The bands behind path, optics and detector, and the emission of the path at their nodes (empty for none).
@@ -137,31 +188,46 @@ impl Study {
         Ok(())
     }
 
-    fn view(&self, camera: &Camera, bands: &Bands, distance_m: Option<f64>, air: &[f64]) -> View {
-        let mut view = View::at(distance_m);
-        if let (Some(size), Some(distance)) = (self.scenario.target.size_m, distance_m) {
-            view.fill = fill(size, camera.pixel_m, camera.focal_length_m, distance);
-        }
-        if !air.is_empty() {
+    /// What a pixel sees from one distance, given twice; of two, a view with no less noise than from any distance between: étendue
+    /// and light of the path grow with distance, what target and background send and the share that the target fills fall.
+    fn view(&self, camera: &Camera, [near, far]: [Seen<'_>; 2]) -> View {
+        let mut view = View::at(far.distance_m);
+        view.fill = self.fill(camera, near.distance_m);
+        if !far.air.is_empty() {
             let open = camera.received(&self.open_bands);
             view.open_widths_cm1 = open.widths_cm1();
+            if near.distance_m != far.distance_m {
+                // Of noise stated as radiance it is the quotient of these and the bands' own, at most that of the far ones.
+                let widths = near.bands.widths_cm1().into_iter().zip(far.bands.widths_cm1());
+                view.open_widths_cm1
+                    .iter_mut()
+                    .zip(widths)
+                    .for_each(|(open, (near, far))| *open *= near / far);
+            }
             // Its own transmittance is in what it sends, so only the camera's weights apply.
-            view.light.push(Light { label: "light from the path", radiance: open.weigh(air) });
+            view.light.push(Light { label: "light from the path", radiance: open.weigh(far.air) });
         }
-        if let Some(behind) = self.behind.as_ref().filter(|_| view.fill < 1.0) {
+        let beside = 1.0 - self.fill(camera, far.distance_m);
+        if let Some(behind) = self.behind.as_ref().filter(|_| beside > 0.0) {
             let state = State { temperature_k: behind.temperature_k, ..self.state.clone() };
-            let signal = bands.weigh(&self.surroundings.signal(&behind.surface.emissivity, &state));
-            let radiance = signal.iter().map(|s| s * (1.0 - view.fill)).collect();
+            let signal = near.bands.weigh(&self.surroundings.signal(&behind.surface.emissivity, &state));
+            let radiance = signal.iter().map(|s| s * beside).collect();
             view.light.push(Light { label: "light from behind the target", radiance });
         }
-        for (label, radiance) in filter_light(camera, bands) {
+        for (label, radiance) in filter_light(camera, near.bands) {
             view.light.push(Light { label, radiance });
         }
-        view.signal = bands.weigh(&self.surroundings.signal(&self.target.emissivity, &self.state));
+        view.signal = near.bands.weigh(&self.surroundings.signal(&self.target.emissivity, &self.state));
         if camera.photon_bunching {
             view.occupancy = camera.counts_per_mode(&self.open_bands, &view);
         }
         view
+    }
+
+    /// Share of the pixel that the target fills.
+    fn fill(&self, camera: &Camera, distance_m: Option<f64>) -> f64 {
+        let size = self.scenario.target.size_m.zip(distance_m);
+        size.map_or(1.0, |(size, distance)| fill(size, camera.pixel_m, camera.focal_length_m, distance))
     }
 }
 

@@ -116,7 +116,6 @@ catalogue! {
     /// Noise that depends on the scene is taken where it is largest, so that the distance is a lower bound.
     BrightestNoise = "brightest-noise", "Nothing; the verdict is on the safe side.";
     /// With air on the path the worst distance is assumed to be at an end of its range.
-    DistanceEnds = "distance-ends", "Ask for distances between in rules of their own.";
     /// The frames of a camera take so long that the vehicle moves meanwhile.
     FramesInMotion = "frames-in-motion", "Lay the frames over each other, or take fewer.";
 

@@ -188,10 +188,6 @@ impl Display for Warning {
                 "noise that depends on the scene is taken in the brightest scene, so the distance is a lower bound; \
                  what would fix the camera is computed in the limiting scene itself",
             ),
-            Self::DistanceEnds => f.write_str(
-                "with air on the path it is assumed, not proved, that no distance between the ends of its range is \
-                 worse than both",
-            ),
             Self::FramesInMotion { frames, time_s, way_m } => write!(
                 f,
                 "its {frames} frames take {} s, in which the vehicle drives {} m: they must be laid over each other, and the \

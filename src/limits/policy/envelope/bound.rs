@@ -49,6 +49,10 @@ const NARROW: f64 = 1e-2;
 /// How much less the factor of a cone counts than its temperature, squared.
 const SHARE_OF_FACTOR: f64 = 1e-2;
 
+/// Corners of what counts may be along a stretch of distances, as shares of h and β: those of both ends and of the middle. The
+/// corner of a single distance comes first: h and β are 0.
+const CORNERS: [[f64; 2]; 3] = [[-1.0, -1.0], [1.0, -1.0], [0.0, 1.0]];
+
 /// Part of a cell: an interval of each temperature, and ranges of the factors.
 #[derive(Debug, Clone)]
 pub(super) struct Cube {
@@ -270,13 +274,13 @@ impl Cell {
             total += price * relation.constant - price.abs() * relation.tolerance(&cube.factors);
         }
         let mut weight = [0.0; COLUMNS];
-        // Along a stretch of distances the least is at one of its ends.
-        let ends: &[f64] = if model.along.is_some() { &[-1.0, 1.0] } else { &[0.0] };
-        let least = |end: &f64| -> f64 {
-            (0..self.sources.len()).map(|s| self.least(cube, s, &u, &prices, *end, &mut weight)).sum()
+        // Along a stretch of distances the least is at one of its corners.
+        let corners = if model.along.is_some() { &CORNERS[..] } else { &CORNERS[..1] };
+        let least = |corner: &[f64; 2]| -> f64 {
+            (0..self.sources.len()).map(|s| self.least(cube, s, &u, &prices, *corner, &mut weight)).sum()
         };
         let lower = |a: f64, b: f64| if b.is_nan() || b < a { b } else { a };
-        total += ends.iter().map(least).fold(f64::INFINITY, lower);
+        total += corners.iter().map(least).fold(f64::INFINITY, lower);
         for limit in &limits {
             // What a product may be off by in the middle of the cube.
             if let Some(factors) = model.product_of(limit.relation) {
@@ -346,9 +350,9 @@ impl Cell {
         if model.along.is_some() && count < COLUMNS {
             for s in 0..self.sources.len() {
                 let node = self.node_of(cube, s);
-                let Some(tilt) = &node.tilt else { continue };
-                add(&mut columns[count], centre(cube.own(s)).0, &tilt[0][0]);
-                add(&mut columns[count], centre(cube.other(s)).0, &tilt[1][0]);
+                let Some(along) = &node.along else { continue };
+                add(&mut columns[count], centre(cube.own(s)).0, &along[0][0][0]);
+                add(&mut columns[count], centre(cube.other(s)).0, &along[0][1][0]);
             }
             count += 1;
         }
@@ -399,8 +403,8 @@ impl Cell {
         total
     }
 
-    /// Least u·(v f + w g) at one end of a stretch (−1 the near one, 1 the far one, 0 where there is none) with the prices of v and w of one source, less rounding, and how much of it each of its ranges
-    /// accounts for.
+    /// Least u·(v f + w g) with the prices of v and w of one source at a corner of a stretch, less rounding, and how much of it
+    /// each of its ranges accounts for.
     #[inline(always)]
     fn least(
         &self,
@@ -408,14 +412,16 @@ impl Cell {
         s: usize,
         u: &Vector,
         prices: &[f64; COLUMNS],
-        end: f64,
+        corner: [f64; 2],
         weight: &mut [f64; COLUMNS],
     ) -> f64 {
         let node = self.node_of(cube, s);
         let mut f = [0, 1, 2, 3].map(|term| dot(u, &node.own[term]));
         f[0] += prices[3 * s + 1];
-        if let Some(tilt) = &node.tilt {
-            f.iter_mut().zip(&tilt[0]).for_each(|(f, tilt)| *f += end * dot(u, tilt));
+        if let Some(along) = &node.along {
+            for (share, along) in corner.into_iter().zip(&**along) {
+                f.iter_mut().zip(&along[0]).for_each(|(f, along)| *f += share * dot(u, along));
+            }
         }
         let (own, other) = (cube.own(s), cube.other(s));
         let size = node.reach.size;
@@ -431,8 +437,10 @@ impl Cell {
         }
         let mut g = [0, 1, 2, 3].map(|term| dot(u, &node.other[term]));
         g[0] += prices[3 * s + 2];
-        if let Some(tilt) = &node.tilt {
-            g.iter_mut().zip(&tilt[1]).for_each(|(g, tilt)| *g += end * dot(u, tilt));
+        if let Some(along) = &node.along {
+            for (share, along) in corner.into_iter().zip(&**along) {
+                g.iter_mut().zip(&along[1]).for_each(|(g, along)| *g += share * dot(u, along));
+            }
         }
         let mut least = f64::INFINITY;
         for v in own {

@@ -57,7 +57,7 @@ impl Cell {
             detail: Detail::Cubic,
             own: [[0.0; RANK]; TERMS],
             other: [[0.0; RANK]; TERMS],
-            tilt: None,
+            along: None,
             own_rest: 0.0,
             other_rest: 0.0,
             own_spread,
@@ -86,23 +86,28 @@ impl Cell {
                 node.other[term] = self.components(&model.counts(&source.other, radiance));
             }
         }
-        if model.along.is_some() {
-            let mut tilt = Box::new([[[0.0; RANK]; TERMS]; 2]);
+        if let Some(stretch) = &model.along {
+            let mut along = Box::new([[[[0.0; RANK]; TERMS]; 2]; 2]);
             for (term, radiance) in series.iter().enumerate() {
-                let far = self.components(&model.counts_of_far(&source.own, radiance));
-                tilt[0][term] = half_apart(&mut node.own[term], &far);
+                let of = |bands: &Bands, strength: &[f64]| {
+                    self.components(&model.counts_in(bands, strength, radiance))
+                };
+                let corners = |near: &mut Vector, strength: &[f64]| {
+                    corners_of(near, &of(stretch.middle, strength), &of(stretch.far, strength))
+                };
+                [along[0][0][term], along[1][0][term]] = corners(&mut node.own[term], &source.own);
                 if second {
-                    let far = self.components(&model.counts_of_far(&source.other, radiance));
-                    tilt[1][term] = half_apart(&mut node.other[term], &far);
+                    [along[0][1][term], along[1][1][term]] = corners(&mut node.other[term], &source.other);
                 }
             }
-            node.tilt = Some(tilt);
+            node.along = Some(along);
         }
         let least = |which: usize| {
             let radii = RADII.iter().zip(&reach.discs);
             radii
                 .map(|(share, norms)| norms[which] * remainder(half, share * reach.lowest_k))
                 .fold(f64::INFINITY, f64::min)
+                * if node.along.is_some() { 1.5 } else { 1.0 }
         };
         let [own_sag, other_sag] = node.reach.sag;
         (node.own_rest, node.other_rest) =
@@ -146,12 +151,13 @@ impl Cell {
     }
 }
 
-/// Half of far − near; near becomes the mean of both.
-fn half_apart(near: &mut Vector, far: &Vector) -> Vector {
-    let mut half = [0.0; RANK];
-    for ((near, far), half) in near.iter_mut().zip(far).zip(&mut half) {
-        *half = 0.5 * (far - *near);
-        *near += *half;
+/// h and β of a stretch (`stretch`); near becomes the middle.
+fn corners_of(near: &mut Vector, middle: &Vector, far: &Vector) -> [Vector; 2] {
+    let (mut half, mut bend) = ([0.0; RANK], [0.0; RANK]);
+    for (i, near) in near.iter_mut().enumerate() {
+        half[i] = 0.5 * (far[i] - *near);
+        bend[i] = middle[i] - 0.5 * (*near + far[i]);
+        *near = middle[i];
     }
-    half
+    [half, bend]
 }

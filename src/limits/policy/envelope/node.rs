@@ -28,7 +28,7 @@ pub(super) enum Detail {
 pub(super) struct Reach {
     pub(super) lowest_k: f64,
     pub(super) size: [f64; 2],
-    /// Norms of what f and g may be off the straight line along a stretch of distances, at the upper end.
+    /// Norms of what f and g may be off the parabola along a stretch of distances, at the upper end.
     pub(super) sag: [f64; 2],
     pub(super) discs: [[f64; 2]; RADII.len()],
 }
@@ -38,11 +38,11 @@ pub(super) struct Reach {
 pub(super) struct Node {
     pub(super) t: [f64; 2],
     pub(super) detail: Detail,
-    /// Qᵀω f and Qᵀω g as cubics, the means of both ends of a stretch of distances, and the norms of what these leave.
+    /// Qᵀω f and Qᵀω g as cubics, of the middle of a stretch of distances, and the norms of what these leave.
     pub(super) own: Cubic,
     pub(super) other: Cubic,
-    /// Half of what the far end of a stretch has more than the near one.
-    pub(super) tilt: Option<Box<[Cubic; 2]>>,
+    /// h and β of a stretch, of f and g.
+    pub(super) along: Option<Box<[[Cubic; 2]; 2]>>,
     pub(super) own_rest: f64,
     pub(super) other_rest: f64,
     /// Shares of v and w in M at the upper end, where they have any.

@@ -1,14 +1,16 @@
 //! A lower bound of the distance for every scene of an envelope, from wherever along a stretch of distances.
 //!
 //! Air lets through the share τ_j(z) of node j at distance z. With x = ln z between the near end and the far one,
-//! s = (x − x_near)/(x_far − x_near),
+//! s = (x − x_near)/(x_far − x_near), and the parabola through the ends and the middle of them,
 //!
-//! τ_j(z) = (1 − s) τ_j(near) + s τ_j(far) + δ_j,   |δ_j| ≤ the sag of node j,   τ_j(far) ≤ τ_j(z) ≤ τ_j(near),
+//! τ_j(z) = (1 − s)² τ_j(near) + 2s(1 − s) c_j + s² τ_j(far) + δ_j,   c_j = 2τ_j(middle) − ½[τ_j(near) + τ_j(far)],
 //!
-//! with the same s for all nodes: counts lie on a straight line between those of the two ends, but for the sags. So a bound of
-//! u·Δ (`bound`) for all z is the least of those at the two ends, less ‖sag‖; spectra are kept as the mean of both ends and half
-//! their difference (`node`). Variances, norms and what is faint are those of the near end, where all is brightest; how bright
-//! an alternative may be is asked of the far one.
+//! |δ_j| ≤ the sag of node j, with the same s for all nodes. The three weights are not negative and sum to 1: but for the sags
+//! counts lie within the triangle of those with the shares τ(near), c and τ(far), and a bound of u·Δ (`bound`) for all z is
+//! the least of those at its three corners, less ‖sag‖. Spectra are kept as that of the middle, h = ½(far − near) and
+//! β = middle − ½(near + far), of which the corners are middle − β ± h and middle + β (`node`). |c_j| ≤ 3/2 τ_j(near).
+//! Variances, norms and what is faint are those of the near end, where all is brightest; how bright an alternative may be is
+//! asked of the far one.
 //!
 //! κ and the added variance depend on the distance too: d grows with κ and falls with v in every band, so that the least
 //! κ and the most variance along the stretch, each by itself, bound it.
@@ -28,13 +30,15 @@ use crate::spectrum::Bands;
 pub struct Stretch<'a> {
     /// The bands as they are at the far end, nowhere more than those of the scene.
     pub far: &'a Bands,
-    /// The same bands with the share that transmittances may be off a straight line of ln z at each node.
+    /// The same at the geometric mean of the two distances.
+    pub middle: &'a Bands,
+    /// The same bands with the share that transmittances may be off a parabola of ln z at each node.
     pub sag: &'a Bands,
 }
 
 impl Stretch<'_> {
     fn check(&self, near: &Bands) -> Result<()> {
-        for bands in [self.far, self.sag] {
+        for bands in [self.far, self.middle, self.sag] {
             if bands.nodes_cm1() != near.nodes_cm1() {
                 let what = "nodes of the bands at the far end".into();
                 let (found, expected) = (bands.nodes_cm1().len(), near.nodes_cm1().len());
@@ -45,14 +49,14 @@ impl Stretch<'_> {
                     .map(drop)
             })?;
         }
-        let rises = near.weights_cm1().iter().zip(self.far.weights_cm1()).find(|(near, far)| far > near);
-        match rises {
-            Some((_, &far)) => {
-                let expected = "at most its weight at the near end";
-                Err(Error::out_of_range("weight of a band at the far end", far, "cm^-1", expected))
+        for (near, far) in [(near, self.middle), (self.middle, self.far)] {
+            let rises = near.weights_cm1().iter().zip(far.weights_cm1()).find(|(near, far)| far > near);
+            if let Some((_, &far)) = rises {
+                let expected = "at most its weight from nearer";
+                return Err(Error::out_of_range("weight of a band from afar", far, "cm^-1", expected));
             }
-            None => Ok(()),
         }
+        Ok(())
     }
 }
 
@@ -78,7 +82,7 @@ pub fn lower_bound_along(
     if !model::provable(scene.unknowns, objects) || effort.boxes == 0 {
         return Ok(None);
     }
-    if !(known.distance > 0.0) {
+    if known.distance.is_nan() || known.distance <= 0.0 {
         return Ok(Some((0.0, 0)));
     }
     let mut joint = Model::new(scene, ranges);

@@ -10,19 +10,21 @@
 //!
 //! * Distance z: étendue πA/(4F² + (f/z)²) grows with z, by the share (f/2Fz)² in all; the share of the pixel that
 //!   the target fills and the transmittance of the path fall, the light of the path and from behind the
-//!   target grow. Étendue × fill rises, then falls: it is least at one of the ends. Where one end has the smaller
-//!   κ and the larger v in all bands, the worst scene is there; else both ends are searched. Air that changes a
-//!   spectrum within a band (bands of several nodes) changes S − S′ too, and any distance may be the worst: distances
-//!   between are then searched, which is no proof. With air and bands of one node it is assumed that between the
-//!   ends no distance is worse than both.
+//!   target grow. Étendue × fill rises, then falls: it is least at one of the ends. Without air the one end has the smaller κ
+//!   and the larger v in all bands, or both ends are searched. With air, bands of one node count no less from anywhere than
+//!   with the far transmittances and the least κ; where the added variance is largest from afar too, the far end stands for all
+//!   ([`Sighted::share_of_far`]). Elsewhere distances between are searched, and stretch by stretch it is proved that none is
+//!   worse ([`lower_bound_along`](hadar::policy::envelope::lower_bound_along), `between`): air that changes a spectrum within
+//!   a band (bands of several nodes) changes S − S′ too, and any distance may be the worst.
 //! * Added variance that depends on the scene (bunched photons, an interferometer, light from behind the target) is
 //!   taken in the brightest scene of the envelope, where it is largest.
 //!
 //! A worst case so found is attained where the added variance does not depend on the scene, and else a lower bound.
 
 use crate::scenario::Envelope;
+use crate::study::sight::Along;
 use crate::study::{Study, Surface};
-use hadar::error::Result;
+use hadar::error::{Error, Result};
 use hadar::fisher::Counting;
 use hadar::identifiability::nearest::NearestSolver;
 use hadar::lattice_points::GoldenLattice;
@@ -32,6 +34,8 @@ use rayon::prelude::*;
 
 /// Relative difference of counts that is rounding.
 const SAME: f64 = 1e-12;
+/// Share of a distance that may be lost by taking the least counts per radiance for those of the far end.
+const LOST: f64 = 1e-4;
 /// Dimensions up to which the corners are among the scenes of an estimate, and scenes beside them.
 const CORNERS: usize = 6;
 const SCENES: usize = 32;
@@ -86,6 +90,25 @@ impl Sighted {
             here <= there * (1.0 + SAME)
                 && self.counting.var_added(w) >= other.counting.var_added(w) * (1.0 - SAME)
         })
+    }
+
+    /// What is left of the counts per radiance of `far` from anywhere between the ends, if all else is worst from afar: no distance
+    /// between has less than this share of the far one's statistical distance. `None` where that is not so, or too little.
+    pub(in crate::study) fn share_of_far(&self, far: &Self, ends_m: [f64; 2]) -> Result<Option<f64>> {
+        let along = self.along(ends_m)?;
+        let no_more = |w: usize| along.counting.var_added(w) <= far.counting.var_added(w) * (1.0 + SAME);
+        let share = along.counting.counts_per_radiance / far.counting.counts_per_radiance;
+        let stands = !self.study.air_reshapes_bands() && (0..far.study.bands.len()).all(no_more);
+        Ok(Some(share.min(1.0)).filter(|share| stands && *share >= 1.0 - LOST))
+    }
+
+    /// What the camera sees along a stretch of distances, in the brightest scene.
+    pub(in crate::study) fn along(&self, ends_m: [f64; 2]) -> Result<Along> {
+        let study = Study { state: brightest(&self.ranges), ..self.study.clone() };
+        let camera = study.camera.clone().ok_or_else(|| {
+            Error::malformed("a rule without a camera", "name one, as in cameras = [\"ideal-pnrd\"]")
+        })?;
+        study.along(&camera, ends_m)
     }
 
     /// Whether counts or added variance of any band differ by more than `share`.

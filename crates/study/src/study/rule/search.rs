@@ -13,26 +13,25 @@ use hadar::error::{Error, Result};
 use hadar::fisher::Nuisance;
 use hadar::identifiability::detection;
 use hadar::instrument::{Camera, Readout};
-use hadar::minimum::golden_section;
 use hadar::policy::envelope::{Certificate, Effort, WorstCase, worst_case};
 use hadar::policy::{self, CapCode, Quantity};
 use hadar::scene::State;
 use std::collections::BTreeMap;
 
 /// How far below the distance attained a bound may be, as a share of it.
-const TOLERANCE: f64 = 0.01;
-/// Golden sections of the distance, each to 0.62 of what it was.
-const GOLDEN_STEPS: usize = 8;
+pub(super) const TOLERANCE: f64 = 0.01;
 /// Boxes of the branch and bound for each pair at most: a second or so.
 const BOXES: u64 = 200_000;
 
 /// A pair's scene with what is known of it.
-struct Searched {
-    pair: Estimate,
+pub(super) struct Searched {
+    pub(super) pair: Estimate,
     /// Where it was found, if between the distances of the candidate.
-    between: Option<Box<Sighted>>,
-    certificate: Option<Certificate>,
-    lower_bound: Option<f64>,
+    pub(super) between: Option<Box<Sighted>>,
+    pub(super) certificate: Option<Certificate>,
+    pub(super) lower_bound: Option<f64>,
+    /// Boxes that its proof took.
+    pub(super) boxes: u64,
 }
 
 /// What a camera's image of the brightest scene is like.
@@ -50,7 +49,7 @@ struct Image {
 impl Searched {
     /// What the estimate says alone.
     fn estimated(pair: Estimate) -> Self {
-        Self { pair, between: None, certificate: None, lower_bound: None }
+        Self { pair, between: None, certificate: None, lower_bound: None, boxes: 0 }
     }
 }
 
@@ -90,9 +89,6 @@ impl RuleStudy {
         }
         if at.counting().is_some_and(|own| own.var_added != sighted.counting.var_added) {
             warnings.push(Warning::BrightestNoise);
-        }
-        if at.atmosphere.is_some() && candidate.distance_matters && !candidate.distance_searched {
-            warnings.push(Warning::DistanceEnds);
         }
         let mut limiting = limiting(
             candidate.distance_matters,
@@ -283,14 +279,21 @@ impl RuleStudy {
             // A scene below the requirement, and other pairs not looked at.
             return Ok(Some(Searched::estimated(worst.pair)));
         }
-        if candidate.distance_searched {
-            let worst = self.between(candidate, worst)?;
-            let certificate = Some(Certificate::DenseSearch { points: candidate.sighted.len() });
-            return Ok(Some(Searched { lower_bound: None, certificate, ..worst }));
+        let (worst, lower) = match (candidate.between.is_empty(), worst.pair.distance > 0.0) {
+            (false, true) => {
+                let (worst, along) = self.between(candidate, worst, alone, counts)?;
+                (worst, lower.zip(along).map(|(lower, along)| lower.min(along)))
+            }
+            _ => (worst, lower),
+        };
+        let lower = lower.map(|bound| bound * candidate.share);
+        if alone && worst.pair.distance < self.required {
+            return Ok(Some(Searched { lower_bound: None, certificate: None, ..worst }));
         }
         let distance = worst.pair.distance;
         let certificate = match (worst.certificate, lower) {
             (Some(Certificate::Equilibrium), _) => Some(Certificate::Equilibrium),
+            _ if distance == 0.0 => Some(Certificate::Equilibrium),
             (_, None) => Some(Certificate::DenseSearch { points: 0 }),
             (_, Some(bound)) if bound >= distance * (1.0 - TOLERANCE) => Some(Certificate::BranchAndBound),
             (_, Some(bound)) => Some(Certificate::Bounded { gap: 1.0 - bound / distance }),
@@ -313,36 +316,8 @@ impl RuleStudy {
     }
 }
 
-impl RuleStudy {
-    /// The worst distance next to that of the worst pair found, by golden sections of its logarithm.
-    fn between(&self, candidate: &Candidate, worst: Searched) -> Result<Searched> {
-        let own = &candidate.sighted[worst.pair.sighted].study;
-        let at = |study: &Study| study.scenario.target.distance_m.unwrap_or(f64::INFINITY);
-        let middle = at(own);
-        let of_target =
-            candidate.sighted.iter().filter(|sighted| sighted.study.target.name == own.target.name);
-        let distances: Vec<f64> = of_target.map(|sighted| at(&sighted.study)).collect();
-        let low = distances.iter().copied().filter(|z| *z < middle).fold(0.0, f64::max);
-        let high = distances.iter().copied().filter(|z| *z > middle).fold(f64::INFINITY, f64::min);
-        let low = if low > 0.0 { low } else { middle };
-        let high = if high.is_finite() { high } else { middle };
-        let mut best = worst;
-        golden_section([low.ln(), high.ln()], GOLDEN_STEPS, |log_z| -> Result<f64> {
-            let sighted = Sighted::new(own.at_distance(log_z.exp())?, &self.envelope)?;
-            let anew = Estimate { distance: f64::INFINITY, ..best.pair.clone() };
-            let searched = search(&sighted, anew, TOLERANCE)?;
-            let distance = searched.pair.distance;
-            if distance < best.pair.distance {
-                best = Searched { between: Some(Box::new(sighted)), ..searched };
-            }
-            Ok(distance)
-        })?;
-        Ok(best)
-    }
-}
-
 /// The worst case of one pair, no worse than its estimate.
-fn search(sighted: &Sighted, pair: Estimate, tolerance: f64) -> Result<Searched> {
+pub(super) fn search(sighted: &Sighted, pair: Estimate, tolerance: f64) -> Result<Searched> {
     let surface = &sighted.study.alternatives[pair.alternative];
     let effort = Effort { relative_tolerance: tolerance, boxes: BOXES };
     let WorstCase { distance, lower_bound, state, nearest, certificate, evaluations, boxes } =
@@ -352,7 +327,7 @@ fn search(sighted: &Sighted, pair: Estimate, tolerance: f64) -> Result<Searched>
     demand::computed(Thing::Boxes, boxes);
     let pair = if distance <= pair.distance { Estimate { distance, state, nearest, ..pair } } else { pair };
     let lower_bound = lower_bound.map(|bound| bound.min(pair.distance));
-    Ok(Searched { pair, between: None, certificate: Some(certificate), lower_bound })
+    Ok(Searched { pair, between: None, certificate: Some(certificate), lower_bound, boxes })
 }
 
 fn limiting(

@@ -40,10 +40,11 @@ impl Path {
     }
 
     fn proved(&self, stretch: [f64; 2], ranges: &Ranges, known: &WorstCase) -> f64 {
-        let [near, far] = stretch.map(|z| self.bands_at(z));
+        let [a, b] = stretch;
+        let [near, middle, far] = [a, (a * b).sqrt(), b].map(|z| self.bands_at(z));
         let sag = self.open.transmitted_at_nodes(&self.air.sag(self.open.nodes_cm1(), stretch).unwrap());
         let scene = EnvelopeScene { bands: &near, ..self.setting.scene() };
-        let stretch = Stretch { far: &far, sag: &sag };
+        let stretch = Stretch { far: &far, middle: &middle, sag: &sag };
         let effort = Effort { boxes: 10_000, ..Effort::default() };
         lower_bound_along(&scene, &stretch, ranges, known, &effort).unwrap().unwrap().0
     }
@@ -104,10 +105,10 @@ fn bands_that_let_more_through_from_afar_are_refused() {
     let [near, far] = [100.0, 90.0].map(|z| path.bands_at(z));
     let scene = EnvelopeScene { bands: &near, ..path.setting.scene() };
     let known = path.worst_at(100.0, &evening());
-    let stretch = Stretch { far: &far, sag: &far };
+    let stretch = Stretch { far: &far, middle: &far, sag: &far };
     let refused = lower_bound_along(&scene, &stretch, &evening(), &known, &Effort::default());
     assert!(matches!(refused, Err(crate::Error::OutOfRange { .. })), "{refused:?}");
-    let stretch = Stretch { far: &near, sag: &Bands::uniform(700.0, 800.0, 10.0).unwrap() };
+    let stretch = Stretch { far: &near, middle: &near, sag: &Bands::uniform(700.0, 800.0, 10.0).unwrap() };
     let refused = lower_bound_along(&scene, &stretch, &evening(), &known, &Effort::default());
     assert!(matches!(refused, Err(crate::Error::Length { .. })), "{refused:?}");
 }

@@ -1,0 +1,196 @@
+//! Distances between those that were searched: a worse one among them is looked for, and that there is none is proved.
+//!
+//! The range is cut into stretches, at the columns of the air's table too, since transmittances may bend there. Of every pair each
+//! stretch is to have a lower bound that is no more than the tolerance below the least distance known
+//! ([`lower_bound_along`]). Those that have not are halved, all of them, level by level; in the middle of the one of the lowest
+//! bound a worse scene is looked for, from which all later proofs start.
+
+use super::super::{Study, Surface};
+use super::envelope::{Estimate, Sighted};
+use super::search::{Searched, TOLERANCE, search};
+use super::{Candidate, DISTANCES, RuleStudy};
+use hadar::demand::{self, Thing};
+use hadar::error::Result;
+use hadar::minimum::golden_section;
+use hadar::policy::envelope::{Certificate, Effort, EnvelopeScene, Stretch, WorstCase, lower_bound_along};
+use rayon::prelude::*;
+
+/// Golden sections of the distance, each to 0.62 of what it was.
+const GOLDEN_STEPS: usize = 12;
+/// Levels of halving; stretches that are bounded, and boxes that may be looked at, at most.
+const LEVELS: u32 = 14;
+/// Share of the requirement below which no more than so many levels are looked at: how far below matters little.
+const FAR_BELOW: f64 = 0.1;
+const FEW_LEVELS: u32 = 4;
+const STRETCHES: u64 = 6_000;
+const ALL_BOXES: u64 = 2_000_000;
+/// Boxes for a stretch at most, besides twice those of a distance; twice as many at each level.
+const FIRST_BOXES: u64 = 64;
+const MOST_BOXES: u64 = 20_000;
+
+/// A stretch of distances before a pair, with what is proved of it.
+#[derive(Debug, Clone)]
+struct Piece<'c> {
+    sighted: &'c Sighted,
+    alternative: usize,
+    ends_m: [f64; 2],
+    bound: f64,
+}
+
+impl Piece<'_> {
+    fn middle_m(&self) -> f64 {
+        (self.ends_m[0] * self.ends_m[1]).sqrt()
+    }
+
+    fn halves(&self) -> [Self; 2] {
+        let ([near, far], middle) = (self.ends_m, self.middle_m());
+        [[near, middle], [middle, far]].map(|ends_m| Self { ends_m, ..self.clone() })
+    }
+
+    /// A distance below which no scene is from here, and the boxes that took; `None` if nothing can be proved.
+    fn bounded(&self, known: &WorstCase, boxes: u64) -> Result<Option<(f64, u64)>> {
+        let along = self.sighted.along(self.ends_m)?;
+        let surface = &self.sighted.study.alternatives[self.alternative];
+        let scene =
+            EnvelopeScene { bands: &along.near, counting: &along.counting, ..self.sighted.scene(surface) };
+        let stretch = Stretch { far: &along.far, middle: &along.middle, sag: &along.sag };
+        let effort = Effort { relative_tolerance: TOLERANCE, boxes };
+        let found = lower_bound_along(&scene, &stretch, &self.sighted.ranges, known, &effort)?;
+        Ok(found.map(|(bound, boxes)| (bound.max(self.bound), boxes)))
+    }
+}
+
+impl RuleStudy {
+    /// The worst of the distances between those of the candidate, and below what no scene is from any of them, if that is proved;
+    /// `alone` asks for no more than whether one is below the requirement.
+    pub(super) fn between(
+        &self,
+        candidate: &Candidate,
+        worst: Searched,
+        alone: bool,
+        counts: &dyn Fn(&Surface, &Surface) -> bool,
+    ) -> Result<(Searched, Option<f64>)> {
+        // A stretch is no easier than a distance.
+        let first = FIRST_BOXES + 2 * worst.boxes;
+        let mut best = self.polished(candidate, worst)?;
+        let mut waiting = self.pieces(candidate, counts);
+        let (mut proved, mut looked_at, mut spent) = (f64::INFINITY, 0, 0);
+        for level in 0..LEVELS {
+            looked_at += waiting.len() as u64;
+            let enough = looked_at > STRETCHES || spent > ALL_BOXES;
+            let distance = best.pair.distance;
+            let no = alone && distance < self.required;
+            if waiting.is_empty()
+                || enough
+                || no
+                || (distance < FAR_BELOW * self.required && level >= FEW_LEVELS)
+                || distance <= 0.0
+            {
+                break;
+            }
+            // What is enough for the verdict is enough.
+            let enough = if alone { self.required / (1.0 - TOLERANCE) } else { f64::INFINITY };
+            let known = WorstCase {
+                distance: best.pair.distance.min(enough),
+                lower_bound: None,
+                state: best.pair.state.clone(),
+                nearest: best.pair.nearest.clone(),
+                certificate: Certificate::DenseSearch { points: 0 },
+                evaluations: 0,
+                boxes: 0,
+            };
+            let boxes = (first << level).min(MOST_BOXES);
+            let bounds: Vec<Option<(f64, u64)>> =
+                waiting.par_iter().map(|piece| piece.bounded(&known, boxes)).collect::<Result<_>>()?;
+            let mut failed = Vec::new();
+            for (piece, bound) in waiting.into_iter().zip(bounds) {
+                let Some((bound, boxes)) = bound else { return Ok((best, None)) };
+                spent += boxes;
+                demand::computed(Thing::Boxes, boxes);
+                if bound >= known.distance * (1.0 - TOLERANCE) {
+                    proved = proved.min(bound);
+                } else {
+                    failed.push(Piece { bound, ..piece });
+                }
+            }
+            if let Some(weakest) = failed.iter().min_by(|a, b| a.bound.total_cmp(&b.bound)) {
+                best = self.or_worse(candidate, best, weakest)?;
+            }
+            waiting = failed.iter().flat_map(Piece::halves).collect();
+        }
+        let left = waiting.iter().map(|piece| piece.bound).fold(f64::INFINITY, f64::min);
+        let bound = proved.min(left).min(best.pair.distance);
+        Ok((best, Some(bound).filter(|bound| *bound > 0.0)))
+    }
+
+    /// All that is to be proved, in stretches no wider than the steps of the search.
+    fn pieces<'c>(
+        &self,
+        candidate: &'c Candidate,
+        counts: &dyn Fn(&Surface, &Surface) -> bool,
+    ) -> Vec<Piece<'c>> {
+        let Some([least, most]) = self.envelope.distance_m else { return Vec::new() };
+        let mut pieces = Vec::new();
+        for sighted in &candidate.between {
+            let steps = (0..DISTANCES).map(|i| i as f64 / (DISTANCES - 1) as f64);
+            let mut ends: Vec<f64> = steps.map(|share| least * (most / least).powf(share)).collect();
+            (ends[0], ends[DISTANCES - 1]) = (least, most);
+            let air = sighted.study.atmosphere.iter();
+            ends.extend(air.flat_map(|air| air.table.lengths_m()).filter(|z| (least..most).contains(*z)));
+            ends.sort_by(f64::total_cmp);
+            ends.dedup();
+            for (alternative, surface) in sighted.study.alternatives.iter().enumerate() {
+                if counts(&sighted.study.target, surface) {
+                    let piece =
+                        |ends: &[f64]| Piece { sighted, alternative, ends_m: [ends[0], ends[1]], bound: 0.0 };
+                    pieces.extend(ends.windows(2).map(piece));
+                }
+            }
+        }
+        pieces
+    }
+
+    /// The best known, or a worse one in the middle of a piece.
+    fn or_worse(&self, candidate: &Candidate, best: Searched, piece: &Piece<'_>) -> Result<Searched> {
+        let own = &piece.sighted.study;
+        let seen = Sighted::new(own.at_distance(piece.middle_m())?, &self.envelope)?;
+        let of_target = |sighted: &Sighted| sighted.study.target.name == own.target.name;
+        let anew = Estimate {
+            sighted: candidate.sighted.iter().position(of_target).unwrap_or(best.pair.sighted),
+            alternative: piece.alternative,
+            distance: f64::INFINITY,
+            ..best.pair.clone()
+        };
+        let found = search(&seen, anew, TOLERANCE)?;
+        if found.pair.distance < best.pair.distance {
+            return Ok(Searched { between: Some(Box::new(seen)), ..found });
+        }
+        Ok(best)
+    }
+
+    /// The worst distance next to that of the worst pair found, by golden sections of its logarithm.
+    fn polished(&self, candidate: &Candidate, worst: Searched) -> Result<Searched> {
+        let own = &candidate.sighted[worst.pair.sighted].study;
+        let at = |study: &Study| study.scenario.target.distance_m.unwrap_or(f64::INFINITY);
+        let middle = at(own);
+        let of_target =
+            candidate.sighted.iter().filter(|sighted| sighted.study.target.name == own.target.name);
+        let distances: Vec<f64> = of_target.map(|sighted| at(&sighted.study)).collect();
+        let low = distances.iter().copied().filter(|z| *z < middle).fold(0.0, f64::max);
+        let high = distances.iter().copied().filter(|z| *z > middle).fold(f64::INFINITY, f64::min);
+        let low = if low > 0.0 { low } else { middle };
+        let high = if high.is_finite() { high } else { middle };
+        let mut best = worst;
+        golden_section([low.ln(), high.ln()], GOLDEN_STEPS, |log_z| -> Result<f64> {
+            let sighted = Sighted::new(own.at_distance(log_z.exp())?, &self.envelope)?;
+            let anew = Estimate { distance: f64::INFINITY, ..best.pair.clone() };
+            let searched = search(&sighted, anew, TOLERANCE)?;
+            let distance = searched.pair.distance;
+            if distance < best.pair.distance {
+                best = Searched { between: Some(Box::new(sighted)), ..searched };
+            }
+            Ok(distance)
+        })?;
+        Ok(best)
+    }
+}
