@@ -23,7 +23,7 @@ const LEVELS: u32 = 14;
 const FAR_BELOW: f64 = 0.1;
 const FEW_LEVELS: u32 = 4;
 const STRETCHES: u64 = 6_000;
-const ALL_BOXES: u64 = 2_000_000;
+const ALL_BOXES: u64 = 500_000;
 /// Boxes for a stretch at most, besides twice those of a distance; twice as many at each level.
 const FIRST_BOXES: u64 = 64;
 const MOST_BOXES: u64 = 20_000;
@@ -70,9 +70,13 @@ impl RuleStudy {
         alone: bool,
         counts: &dyn Fn(&Surface, &Surface) -> bool,
     ) -> Result<(Searched, Option<f64>)> {
-        // A stretch is no easier than a distance.
+        // A stretch is no easier than a distance: what could not be proved there is not tried here.
         let first = FIRST_BOXES + 2 * worst.boxes;
+        let hard = worst.certificate != Some(Certificate::BranchAndBound);
         let mut best = self.polished(candidate, worst)?;
+        if hard {
+            return Ok((best, None));
+        }
         let mut waiting = self.pieces(candidate, counts);
         let (mut proved, mut looked_at, mut spent) = (f64::INFINITY, 0, 0);
         for level in 0..LEVELS {

@@ -99,7 +99,7 @@ impl Sighted {
         let no_more = |w: usize| along.counting.var_added(w) <= far.counting.var_added(w) * (1.0 + SAME);
         let share = along.counting.counts_per_radiance / far.counting.counts_per_radiance;
         let stands = !self.study.air_reshapes_bands() && (0..far.study.bands.len()).all(no_more);
-        Ok(Some(share.min(1.0)).filter(|share| stands && *share >= 1.0 - LOST))
+        Ok((stands && share >= 1.0 - LOST).then_some(share.min(1.0)))
     }
 
     /// What the camera sees along a stretch of distances, in the brightest scene.

@@ -286,7 +286,6 @@ impl RuleStudy {
             }
             _ => (worst, lower),
         };
-        let lower = lower.map(|bound| bound * candidate.share);
         if alone && worst.pair.distance < self.required {
             return Ok(Some(Searched { lower_bound: None, certificate: None, ..worst }));
         }
@@ -298,7 +297,8 @@ impl RuleStudy {
             (_, Some(bound)) if bound >= distance * (1.0 - TOLERANCE) => Some(Certificate::BranchAndBound),
             (_, Some(bound)) => Some(Certificate::Bounded { gap: 1.0 - bound / distance }),
         };
-        Ok(Some(Searched { lower_bound: lower, certificate, ..worst }))
+        let lower_bound = lower.map(|bound| bound * candidate.share);
+        Ok(Some(Searched { lower_bound, certificate, ..worst }))
     }
 
     /// The worst of the pairs that are more than two numbers, where one of numbers alone is the worst of all.
