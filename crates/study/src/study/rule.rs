@@ -304,6 +304,10 @@ fn candidate(rule: &Rule, index: usize, envelope: &Envelope, library: &Library) 
             sighted.push(close);
             continue;
         }
+        if let (Some(air), Some(most)) = (&close.study.atmosphere, most) {
+            let place = |error: Error| error.at(rule.scenario.place("envelope.distance"));
+            air.table.optical_depth(&[], most).map_err(place)?;
+        }
         let far = at(most)?;
         distance_matters |= far.differs_from(&close, NOTICEABLE);
         let ends_m = [least, most].into_iter().flatten().collect::<Vec<f64>>();

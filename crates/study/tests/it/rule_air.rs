@@ -92,3 +92,11 @@ fn no_distance_of_the_range_is_below_the_bound() {
         }
     }
 }
+
+#[test]
+fn a_distance_beyond_the_air_s_table_is_refused_by_its_key() {
+    let text = rule("skin", "\"pmma\"", ["10 m", "20 km"], 0.3, "");
+    let rule = Rule::from_toml(&text, None).unwrap();
+    let error = RuleStudy::new(&rule, &Library::embedded().unwrap()).unwrap_err().to_string();
+    assert!(error.contains("envelope.distance: distance is 20000 m; it must be at most 10000 m"), "{error}");
+}
