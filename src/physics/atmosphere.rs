@@ -30,6 +30,8 @@ use crate::inputs;
 use crate::planck;
 use std::path::Path;
 
+/// How far ln z may be off by its rounding and by columns that are hit.
+const SNAP: f64 = 3e-12;
 /// Share by which a bound of a derivative is raised for its rounding.
 const ROUNDING: f64 = 1e-9;
 
@@ -150,7 +152,7 @@ impl Atmosphere {
         let lengths = &self.table.lengths;
         let places = lengths.locate(near_m).zip(lengths.locate(far_m));
         let piece = places.and_then(|(near, far)| lengths.piece(near, far));
-        let fall = |j: usize| 1.5 * (near[j] - far[j]).max(0.0);
+        let fall = |j: usize| 1.5 * (near[j] - far[j]).max(0.0) + 4.0 * f64::EPSILON;
         let Some(piece) = piece else { return Ok((0..near.len()).map(fall).collect()) };
         let bends: Vec<[f64; 3]> = self.table.rows.iter().map(|row| row.bend(piece)).collect();
         let along = |order: usize| -> Result<Vec<f64>> {
@@ -162,7 +164,7 @@ impl Atmosphere {
         let sag = |j: usize| {
             let slope = first[j];
             let bend = near[j] * (slope.powi(3) + 3.0 * slope * second[j] + third[j]);
-            (cube * bend * (1.0 + ROUNDING)).min(fall(j)) + 4.0 * f64::EPSILON
+            (cube * bend * (1.0 + ROUNDING)).min(fall(j)) + near[j] * slope * SNAP + 4.0 * f64::EPSILON
         };
         Ok((0..near.len()).map(sag).collect())
     }

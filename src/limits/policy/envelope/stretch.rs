@@ -25,6 +25,9 @@ use super::{Attained, WorstCase, joint};
 use crate::error::{Error, Result, check};
 use crate::spectrum::Bands;
 
+/// By how much of itself a weight may rise for rounding, where transmittances stay what they are: a part of what bounds allow for it.
+const ROUNDING: f64 = 1e-13;
+
 /// What the bands let through along a stretch of distances.
 #[derive(Debug, Clone, Copy)]
 pub struct Stretch<'a> {
@@ -50,7 +53,8 @@ impl Stretch<'_> {
             })?;
         }
         for (near, far) in [(near, self.middle), (self.middle, self.far)] {
-            let rises = near.weights_cm1().iter().zip(far.weights_cm1()).find(|(near, far)| far > near);
+            let rises = |(near, far): &(&f64, &f64)| **far > **near * (1.0 + ROUNDING);
+            let rises = near.weights_cm1().iter().zip(far.weights_cm1()).find(rises);
             if let Some((_, &far)) = rises {
                 let expected = "at most its weight from nearer";
                 return Err(Error::out_of_range("weight of a band from afar", far, "cm^-1", expected));

@@ -15,15 +15,21 @@ use hadar::minimum::golden_section;
 use hadar::policy::envelope::{Certificate, Effort, EnvelopeScene, Stretch, WorstCase, lower_bound_along};
 use rayon::prelude::*;
 
+/// Tolerance of worst cases of which only the scene is wanted: what is proved is proved of stretches.
+const LOOSE: f64 = 0.5;
 /// Golden sections of the distance, each to 0.62 of what it was.
 const GOLDEN_STEPS: usize = 12;
 /// Levels of halving; stretches that are bounded, and boxes that may be looked at, at most.
 const LEVELS: u32 = 14;
-/// Share of the requirement below which no more than so many levels are looked at: how far below matters little.
-const FAR_BELOW: f64 = 0.1;
-const FEW_LEVELS: u32 = 4;
+/// Shares of the requirement below which nothing more is proved, and nothing looked for: how far below matters little.
+const FAR_BELOW: f64 = 0.01;
+const NOTHING: f64 = 1e-6;
+/// Relative difference up to which a distance is a column of the air's table, whichever stands first.
+const SAME: f64 = 9e-13;
+/// Stretches after which it is looked whether the effort is spent.
+const TOGETHER: usize = 64;
 const STRETCHES: u64 = 6_000;
-const ALL_BOXES: u64 = 500_000;
+const ALL_BOXES: u64 = 300_000;
 /// Boxes for a stretch at most, besides twice those of a distance; twice as many at each level.
 const FIRST_BOXES: u64 = 64;
 const MOST_BOXES: u64 = 20_000;
@@ -73,6 +79,9 @@ impl RuleStudy {
         // A stretch is no easier than a distance: what could not be proved there is not tried here.
         let first = FIRST_BOXES + 2 * worst.boxes;
         let hard = worst.certificate != Some(Certificate::BranchAndBound);
+        if worst.pair.distance < NOTHING * self.required {
+            return Ok((worst, None));
+        }
         let mut best = self.polished(candidate, worst)?;
         if hard {
             return Ok((best, None));
@@ -80,20 +89,9 @@ impl RuleStudy {
         let mut waiting = self.pieces(candidate, counts);
         let (mut proved, mut looked_at, mut spent) = (f64::INFINITY, 0, 0);
         for level in 0..LEVELS {
-            looked_at += waiting.len() as u64;
-            let enough = looked_at > STRETCHES || spent > ALL_BOXES;
-            let distance = best.pair.distance;
-            let no = alone && distance < self.required;
-            if waiting.is_empty()
-                || enough
-                || no
-                || (distance < FAR_BELOW * self.required && level >= FEW_LEVELS)
-                || distance <= 0.0
-            {
-                break;
-            }
             // What is enough for the verdict is enough.
             let enough = if alone { self.required / (1.0 - TOLERANCE) } else { f64::INFINITY };
+            let least = if alone { self.required } else { FAR_BELOW * self.required };
             let known = WorstCase {
                 distance: best.pair.distance.min(enough),
                 lower_bound: None,
@@ -103,19 +101,33 @@ impl RuleStudy {
                 evaluations: 0,
                 boxes: 0,
             };
+            if waiting.is_empty() || known.distance < least {
+                break;
+            }
             let boxes = (first << level).min(MOST_BOXES);
-            let bounds: Vec<Option<(f64, u64)>> =
-                waiting.par_iter().map(|piece| piece.bounded(&known, boxes)).collect::<Result<_>>()?;
             let mut failed = Vec::new();
-            for (piece, bound) in waiting.into_iter().zip(bounds) {
-                let Some((bound, boxes)) = bound else { return Ok((best, None)) };
-                spent += boxes;
-                demand::computed(Thing::Boxes, boxes);
-                if bound >= known.distance * (1.0 - TOLERANCE) {
-                    proved = proved.min(bound);
-                } else {
-                    failed.push(Piece { bound, ..piece });
+            for pieces in waiting.chunks(TOGETHER) {
+                if looked_at > STRETCHES || spent > ALL_BOXES {
+                    failed.extend_from_slice(pieces);
+                    continue;
                 }
+                looked_at += pieces.len() as u64;
+                let bounds: Vec<Option<(f64, u64)>> =
+                    pieces.par_iter().map(|piece| piece.bounded(&known, boxes)).collect::<Result<_>>()?;
+                for (piece, bound) in pieces.iter().zip(bounds) {
+                    let Some((bound, boxes)) = bound else { return Ok((best, None)) };
+                    spent += boxes;
+                    demand::computed(Thing::Boxes, boxes);
+                    if bound >= known.distance * (1.0 - TOLERANCE) {
+                        proved = proved.min(bound);
+                    } else {
+                        failed.push(Piece { bound, ..piece.clone() });
+                    }
+                }
+            }
+            if looked_at > STRETCHES || spent > ALL_BOXES {
+                waiting = failed;
+                break;
             }
             if let Some(weakest) = failed.iter().min_by(|a, b| a.bound.total_cmp(&b.bound)) {
                 best = self.or_worse(candidate, best, weakest)?;
@@ -142,7 +154,11 @@ impl RuleStudy {
             let air = sighted.study.atmosphere.iter();
             ends.extend(air.flat_map(|air| air.table.lengths_m()).filter(|z| (least..most).contains(*z)));
             ends.sort_by(f64::total_cmp);
-            ends.dedup();
+            ends.dedup_by(|b, a| *b <= *a * (1.0 + SAME));
+            match ends.last_mut().filter(|last| **last > least) {
+                Some(last) => *last = most,
+                None => ends = vec![least, most],
+            }
             for (alternative, surface) in sighted.study.alternatives.iter().enumerate() {
                 if counts(&sighted.study.target, surface) {
                     let piece =
@@ -165,7 +181,7 @@ impl RuleStudy {
             distance: f64::INFINITY,
             ..best.pair.clone()
         };
-        let found = search(&seen, anew, TOLERANCE)?;
+        let found = search(&seen, anew, LOOSE)?;
         if found.pair.distance < best.pair.distance {
             return Ok(Searched { between: Some(Box::new(seen)), ..found });
         }
@@ -184,11 +200,14 @@ impl RuleStudy {
         let high = distances.iter().copied().filter(|z| *z > middle).fold(f64::INFINITY, f64::min);
         let low = if low > 0.0 { low } else { middle };
         let high = if high.is_finite() { high } else { middle };
+        if low >= high {
+            return Ok(worst);
+        }
         let mut best = worst;
         golden_section([low.ln(), high.ln()], GOLDEN_STEPS, |log_z| -> Result<f64> {
             let sighted = Sighted::new(own.at_distance(log_z.exp())?, &self.envelope)?;
             let anew = Estimate { distance: f64::INFINITY, ..best.pair.clone() };
-            let searched = search(&sighted, anew, TOLERANCE)?;
+            let searched = search(&sighted, anew, LOOSE)?;
             let distance = searched.pair.distance;
             if distance < best.pair.distance {
                 best = Searched { between: Some(Box::new(sighted)), ..searched };

@@ -35,7 +35,7 @@ use rayon::prelude::*;
 /// Relative difference of counts that is rounding.
 const SAME: f64 = 1e-12;
 /// Share of a distance that may be lost by taking the least counts per radiance for those of the far end.
-const LOST: f64 = 1e-4;
+const LOST: f64 = 5e-6;
 /// Dimensions up to which the corners are among the scenes of an estimate, and scenes beside them.
 const CORNERS: usize = 6;
 const SCENES: usize = 32;
