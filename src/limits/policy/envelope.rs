@@ -40,8 +40,8 @@ mod stretch;
 
 pub use self::prove::Effort;
 pub use self::ranges::Ranges;
-pub use self::scene::EnvelopeScene;
-pub use self::stretch::{Stretch, lower_bound_along};
+pub use self::scene::{EnvelopeScene, Stretch};
+pub use self::stretch::{LeastKnown, lower_bound_along};
 
 use self::attain::Attained;
 use self::model::Model;

@@ -18,8 +18,7 @@
 use super::linear::{COLUMNS, SOURCES};
 use super::ranges::Ranges;
 use super::relation::{Product, Relation};
-use super::scene::EnvelopeScene;
-use super::stretch::Stretch;
+use super::scene::{EnvelopeScene, Stretch};
 use crate::fisher::{Nuisance, Unknowns};
 use crate::planck;
 use crate::scene::State;

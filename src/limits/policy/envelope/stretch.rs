@@ -17,66 +17,77 @@
 //!
 //! Nothing is attained along a stretch; that no scene along it is below a distance known from elsewhere is proved, or not.
 
+use super::attain::Attained;
+use super::joint;
 use super::model::{self, Model};
 use super::prove::{self, Effort};
 use super::ranges::Ranges;
-use super::scene::EnvelopeScene;
-use super::{Attained, WorstCase, joint};
-use crate::error::{Error, Result, check};
-use crate::spectrum::Bands;
+use super::scene::{EnvelopeScene, Stretch};
+use crate::error::Result;
+use crate::scene::State;
 
-/// By how much of itself a weight may rise for rounding, where transmittances stay what they are: a part of what bounds allow for it.
-const ROUNDING: f64 = 1e-13;
-
-/// What the bands let through along a stretch of distances.
+/// The least distance found from wherever, at whatever distance.
 #[derive(Debug, Clone, Copy)]
-pub struct Stretch<'a> {
-    /// The bands as they are at the far end, nowhere more than those of the scene.
-    pub far: &'a Bands,
-    /// The same at the geometric mean of the two distances.
-    pub middle: &'a Bands,
-    /// The same bands with the share that transmittances may be off a parabola of ln z at each node.
-    pub sag: &'a Bands,
-}
-
-impl Stretch<'_> {
-    fn check(&self, near: &Bands) -> Result<()> {
-        for bands in [self.far, self.middle, self.sag] {
-            if bands.nodes_cm1() != near.nodes_cm1() {
-                let what = "nodes of the bands at the far end".into();
-                let (found, expected) = (bands.nodes_cm1().len(), near.nodes_cm1().len());
-                return Err(Error::Length { what, found, expected });
-            }
-            bands.weights_cm1().iter().try_for_each(|&weight| {
-                check::non_negative("weight of a band along a stretch of distances", weight, "cm^-1")
-                    .map(drop)
-            })?;
-        }
-        for (near, far) in [(near, self.middle), (self.middle, self.far)] {
-            let rises = |(near, far): &(&f64, &f64)| **far > **near * (1.0 + ROUNDING);
-            let rises = near.weights_cm1().iter().zip(far.weights_cm1()).find(rises);
-            if let Some((_, &far)) = rises {
-                let expected = "at most its weight from nearer";
-                return Err(Error::out_of_range("weight of a band from afar", far, "cm^-1", expected));
-            }
-        }
-        Ok(())
-    }
+pub struct LeastKnown<'a> {
+    /// The statistical distance.
+    pub distance: f64,
+    /// The scene.
+    pub state: &'a State,
+    /// The alternative's state that is nearest to it.
+    pub nearest: &'a State,
 }
 
 /// A distance below which no scene of the envelope is, along the whole stretch, and the boxes that it took: no more than that of
 /// `known`, at which the proof ends. `None` where nothing can be proved of these unknowns.
 ///
 /// `scene` has the bands as they are at the near end, and the least counts per radiance and the most added variance along
-/// the stretch. `known` is the least distance found from wherever, at whatever distance.
+/// the stretch.
 ///
 /// # Errors
 /// As [`worst_case`](super::worst_case); bands that let through more at the far end than at the near one.
+///
+/// ```
+/// use hadar::atmosphere::Atmosphere;
+/// use hadar::fisher::{Counting, Nuisance, Unknowns};
+/// use hadar::identifiability::nearest::StateRange;
+/// use hadar::policy::envelope::{
+///     Effort, EnvelopeScene, LeastKnown, Ranges, Stretch, lower_bound_along, worst_case,
+/// };
+/// use hadar::scene::{EnvironmentObject, Surroundings};
+/// use hadar::spectrum::Bands;
+///
+/// let (air, open) = (Atmosphere::embedded("us-standard")?, Bands::uniform(800.0, 1200.0, 50.0)?);
+/// let nodes = open.nodes_cm1();
+/// let at = |z: f64| air.transmittance(nodes, z).map(|tau| open.transmitted_at_nodes(&tau));
+/// let (near, middle, far) = (at(100.0)?, at((100.0_f64 * 110.0).sqrt())?, at(110.0)?);
+/// let sag = open.transmitted_at_nodes(&air.sag(nodes, [100.0, 110.0])?);
+/// let around = EnvironmentObject { temperature_k: 283.0, emissivity: None };
+/// let surroundings = Surroundings::new(nodes, vec![around])?;
+/// let other: Vec<f64> = (0..nodes.len()).map(|j| 0.7 + 0.02 * j as f64).collect();
+/// let counting = Counting { counts_per_radiance: 1e-13, var_added: vec![1e3; nodes.len()] };
+/// let unknowns = Unknowns::new([Nuisance::Temperature])?;
+/// let from_near = EnvelopeScene {
+///     bands: &near,
+///     surroundings: &surroundings,
+///     emissivity: &vec![0.95; nodes.len()],
+///     alternative: &other,
+///     counting: &counting,
+///     unknowns: &unknowns,
+///     range: StateRange::default(),
+/// };
+/// let ranges = Ranges::new([300.0, 310.0], vec![[0.1, 0.8]], vec![[283.0; 2]])?;
+/// let worst = worst_case(&EnvelopeScene { bands: &far, ..from_near }, &ranges, &Effort::default())?;
+/// let stretch = Stretch { far: &far, middle: &middle, sag: &sag };
+/// let known = LeastKnown { distance: worst.distance, state: &worst.state, nearest: &worst.nearest };
+/// let (lower, _) = lower_bound_along(&from_near, &stretch, &ranges, &known, &Effort::default())?.unwrap();
+/// assert!(lower <= worst.distance && lower > 0.98 * worst.distance);
+/// # Ok::<(), hadar::Error>(())
+/// ```
 pub fn lower_bound_along(
     scene: &EnvelopeScene<'_>,
     stretch: &Stretch<'_>,
     ranges: &Ranges,
-    known: &WorstCase,
+    known: &LeastKnown<'_>,
     effort: &Effort,
 ) -> Result<Option<(f64, u64)>> {
     scene.check()?;
@@ -91,7 +102,7 @@ pub fn lower_bound_along(
     }
     let mut joint = Model::new(scene, ranges);
     joint.0.along = Some(*stretch);
-    let best = joint::residual(&joint.0, &joint.0.point(&known.state, &known.nearest));
+    let best = joint::residual(&joint.0, &joint.0.point(known.state, known.nearest));
     joint.0.lean([&best.target, &best.alternative]);
     let known = Attained {
         distance: known.distance,

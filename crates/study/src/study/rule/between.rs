@@ -12,7 +12,7 @@ use super::{Candidate, DISTANCES, RuleStudy};
 use hadar::demand::{self, Thing};
 use hadar::error::Result;
 use hadar::minimum::golden_section;
-use hadar::policy::envelope::{Certificate, Effort, EnvelopeScene, Stretch, WorstCase, lower_bound_along};
+use hadar::policy::envelope::{Certificate, Effort, EnvelopeScene, LeastKnown, Stretch, lower_bound_along};
 use rayon::prelude::*;
 
 /// Tolerance of worst cases of which only the scene is wanted: what is proved is proved of stretches.
@@ -54,7 +54,7 @@ impl Piece<'_> {
     }
 
     /// A distance below which no scene is from here, and the boxes that took; `None` if nothing can be proved.
-    fn bounded(&self, known: &WorstCase, boxes: u64) -> Result<Option<(f64, u64)>> {
+    fn bounded(&self, known: &LeastKnown<'_>, boxes: u64) -> Result<Option<(f64, u64)>> {
         let along = self.sighted.along(self.ends_m)?;
         let surface = &self.sighted.study.alternatives[self.alternative];
         let scene =
@@ -92,15 +92,8 @@ impl RuleStudy {
             // What is enough for the verdict is enough.
             let enough = if alone { self.required / (1.0 - TOLERANCE) } else { f64::INFINITY };
             let least = if alone { self.required } else { FAR_BELOW * self.required };
-            let known = WorstCase {
-                distance: best.pair.distance.min(enough),
-                lower_bound: None,
-                state: best.pair.state.clone(),
-                nearest: best.pair.nearest.clone(),
-                certificate: Certificate::DenseSearch { points: 0 },
-                evaluations: 0,
-                boxes: 0,
-            };
+            let Estimate { distance, state, nearest, .. } = &best.pair;
+            let known = LeastKnown { distance: distance.min(enough), state, nearest };
             if waiting.is_empty() || known.distance < least {
                 break;
             }

@@ -39,15 +39,19 @@ impl Path {
         worst_case(&scene, ranges, &Effort { boxes: 10_000, ..Effort::default() }).unwrap()
     }
 
-    fn proved(&self, stretch: [f64; 2], ranges: &Ranges, known: &WorstCase) -> f64 {
+    fn proved(&self, stretch: [f64; 2], ranges: &Ranges, distance: f64, worst: &WorstCase) -> f64 {
         let [a, b] = stretch;
         let [near, middle, far] = [a, (a * b).sqrt(), b].map(|z| self.bands_at(z));
         let sag = self.open.transmitted_at_nodes(&self.air.sag(self.open.nodes_cm1(), stretch).unwrap());
         let scene = EnvelopeScene { bands: &near, ..self.setting.scene() };
         let stretch = Stretch { far: &far, middle: &middle, sag: &sag };
         let effort = Effort { boxes: 10_000, ..Effort::default() };
-        lower_bound_along(&scene, &stretch, ranges, known, &effort).unwrap().unwrap().0
+        lower_bound_along(&scene, &stretch, ranges, &known(distance, worst), &effort).unwrap().unwrap().0
     }
+}
+
+fn known(distance: f64, worst: &WorstCase) -> LeastKnown<'_> {
+    LeastKnown { distance, state: &worst.state, nearest: &worst.nearest }
 }
 
 /// For every set of unknowns: no distance along a stretch is below what is proved, whatever it was told is attained; and
@@ -78,8 +82,7 @@ fn no_distance_along_a_stretch_is_below_its_bound() {
                 .collect();
             let least = along.iter().min_by(|a, b| a.distance.total_cmp(&b.distance)).unwrap();
             for times in [1.0, 1.4, 5.0] {
-                let told = WorstCase { distance: times * least.distance, ..least.clone() };
-                let lower = path.proved([near, far], &ranges, &told);
+                let lower = path.proved([near, far], &ranges, times * least.distance, least);
                 assert!(
                     lower <= least.distance * (1.0 + 1e-7),
                     "case {case}, {near} to {far} m, {times}: {lower:e} {:e}",
@@ -104,7 +107,8 @@ fn bands_that_let_more_through_from_afar_are_refused() {
     let path = Path::new(["0.95", "aluminium"], 1, "ideal-pnrd", "us-standard");
     let [near, far] = [100.0, 90.0].map(|z| path.bands_at(z));
     let scene = EnvelopeScene { bands: &near, ..path.setting.scene() };
-    let known = path.worst_at(100.0, &evening());
+    let worst = path.worst_at(100.0, &evening());
+    let known = known(worst.distance, &worst);
     let stretch = Stretch { far: &far, middle: &far, sag: &far };
     let refused = lower_bound_along(&scene, &stretch, &evening(), &known, &Effort::default());
     assert!(matches!(refused, Err(crate::Error::OutOfRange { .. })), "{refused:?}");
