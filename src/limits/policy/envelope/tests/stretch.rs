@@ -36,7 +36,7 @@ impl Path {
     fn worst_at(&self, distance_m: f64, ranges: &Ranges) -> WorstCase {
         let bands = self.bands_at(distance_m);
         let scene = EnvelopeScene { bands: &bands, ..self.setting.scene() };
-        worst_case(&scene, ranges, &Effort { boxes: 10_000, ..Effort::default() }).unwrap()
+        worst_case(&scene, ranges, &Effort { boxes: 3_000, ..Effort::default() }).unwrap()
     }
 
     fn proved(&self, stretch: [f64; 2], ranges: &Ranges, distance: f64, worst: &WorstCase) -> f64 {
@@ -45,7 +45,7 @@ impl Path {
         let sag = self.open.transmitted_at_nodes(&self.air.sag(self.open.nodes_cm1(), stretch).unwrap());
         let scene = EnvelopeScene { bands: &near, ..self.setting.scene() };
         let stretch = Stretch { far: &far, middle: &middle, sag: &sag };
-        let effort = Effort { boxes: 10_000, ..Effort::default() };
+        let effort = Effort { boxes: 3_000, ..Effort::default() };
         lower_bound_along(&scene, &stretch, ranges, &known(distance, worst), &effort).unwrap().unwrap().0
     }
 }
@@ -77,11 +77,9 @@ fn no_distance_along_a_stretch_is_below_its_bound() {
             let column = path.air.lengths_m()[random.random_range(0..5)];
             let near = column * random.random_range(1.0..2.5);
             let far = near * width;
-            let along: Vec<WorstCase> = (0..4)
-                .map(|i| path.worst_at(near * (far / near).powf(f64::from(i) / 3.0), &ranges))
-                .collect();
+            let along = [0.0, 0.4, 1.0].map(|share| path.worst_at(near * (far / near).powf(share), &ranges));
             let least = along.iter().min_by(|a, b| a.distance.total_cmp(&b.distance)).unwrap();
-            for times in [1.0, 1.4, 5.0] {
+            for times in [1.0, 5.0] {
                 let lower = path.proved([near, far], &ranges, times * least.distance, least);
                 assert!(
                     lower <= least.distance * (1.0 + 1e-7),
