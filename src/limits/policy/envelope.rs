@@ -25,6 +25,7 @@
 mod attain;
 mod bound;
 mod cell;
+mod cube;
 mod halving;
 mod joint;
 mod linear;

@@ -54,9 +54,9 @@ struct Candidate {
     sighted: Vec<Sighted>,
     /// Whether what is counted depends on the distance.
     distance_matters: bool,
-    /// Every material that distances between the ends may be worse for, from the least distance.
+    /// The materials for which a distance between the ends may be the worst, from the least distance.
     between: Vec<Sighted>,
-    /// Of the others, the least share of the farthest counts per radiance that are left from anywhere nearer.
+    /// Of the others: no distance between has less than this share of the statistical distance from the farthest.
     share: f64,
     /// From the least distance, every material in turn.
     near: Vec<Study>,
@@ -304,19 +304,18 @@ fn candidate(rule: &Rule, index: usize, envelope: &Envelope, library: &Library) 
             sighted.push(close);
             continue;
         }
-        if let (Some(air), Some(most)) = (&close.study.atmosphere, most) {
+        let air = close.study.atmosphere.as_ref().zip(least.zip(most));
+        if let Some((air, (_, most))) = air {
             let place = |error: Error| error.at(rule.scenario.place("envelope.distance"));
             air.table.optical_depth(&[], most).map_err(place)?;
         }
         let far = at(most)?;
         distance_matters |= far.differs_from(&close, NOTICEABLE);
-        let ends_m = [least, most].into_iter().flatten().collect::<Vec<f64>>();
-        if let (Some(_), &[least, most]) = (&close.study.atmosphere, &ends_m[..]) {
+        if let Some((_, (least, most))) = air {
             match close.share_of_far(&far, [least, most])? {
                 Some(one) => share = share.min(one),
                 None => {
-                    let steps = (1..DISTANCES - 1).map(|i| i as f64 / (DISTANCES - 1) as f64);
-                    let inner = steps.map(|share| least * (most / least).powf(share));
+                    let inner = steps([least, most]).skip(1).take(DISTANCES - 2);
                     let seen = inner.map(|z| Sighted::new(close.study.at_distance(z)?, envelope));
                     sighted.extend(seen.collect::<Result<Vec<_>>>()?);
                     between.push(close.clone());
@@ -335,6 +334,12 @@ fn candidate(rule: &Rule, index: usize, envelope: &Envelope, library: &Library) 
     let own = camera.map(|camera| camera.name).filter(|_| spec.is_some_and(|spec| spec.preset.is_some()));
     let name = given.or(own).unwrap_or_else(|| format!("camera {}", index + 1));
     Ok(Candidate { name, sighted, distance_matters, between, share, near })
+}
+
+/// Distances of a range that are searched, equal steps of ln z apart.
+fn steps([least, most]: [f64; 2]) -> impl Iterator<Item = f64> {
+    let share = |i: usize| i as f64 / (DISTANCES - 1) as f64;
+    (0..DISTANCES).map(move |i| least * (most / least).powf(share(i)))
 }
 
 /// Refuses a known camera, named alone, of which no document states all that is needed.

@@ -86,28 +86,25 @@ impl Study {
     ///
     /// # Errors
     /// Distances of which the air's table says nothing.
-    pub(super) fn along(&self, camera: &Camera, ends_m: [f64; 2]) -> Result<Along> {
-        let [(near, near_air), (far, air)] = {
-            let [near, far] = ends_m.map(|z| self.received(Some(camera), Some(z)));
-            [near?, far?]
-        };
+    pub(super) fn along(&self, camera: &Camera, [near_m, far_m]: [f64; 2]) -> Result<Along> {
+        let from = |z: f64| self.received(Some(camera), Some(z));
+        let ((near, near_air), (middle, _), (far, far_air)) =
+            (from(near_m)?, from((near_m * far_m).sqrt())?, from(far_m)?);
         let open = camera.received(&self.open_bands);
         let sag = match &self.atmosphere {
-            Some(air) => air.table.sag(open.nodes_cm1(), ends_m)?,
+            Some(air) => air.table.sag(open.nodes_cm1(), [near_m, far_m])?,
             None => vec![0.0; open.nodes_cm1().len()],
         };
-        let seen = [(&near, &near_air), (&far, &air)];
-        let [first, last] = [0, 1].map(|end: usize| {
-            let (bands, air) = seen[end];
-            Seen { bands, distance_m: Some(ends_m[end]), air }
-        });
-        let mut counting = camera.counting(&near, &self.view(camera, [first, last]));
+        let ends = [
+            Seen { bands: &near, distance_m: Some(near_m), air: &near_air },
+            Seen { bands: &far, distance_m: Some(far_m), air: &far_air },
+        ];
+        let mut counting = camera.counting(&near, &self.view(camera, ends));
         // Étendue × fill rises, then falls.
         let fill = |z: f64| View { fill: self.fill(camera, Some(z)), ..View::at(Some(z)) };
-        let kappa = ends_m.map(|z| camera.counts_per_radiance(&near, &fill(z)));
-        counting.counts_per_radiance = kappa[0].min(kappa[1]);
+        let kappa = |z: f64| camera.counts_per_radiance(&near, &fill(z));
+        counting.counts_per_radiance = kappa(near_m).min(kappa(far_m));
         let sag = open.transmitted_at_nodes(&sag);
-        let (middle, _) = self.received(Some(camera), Some((ends_m[0] * ends_m[1]).sqrt()))?;
         Ok(Along { near, middle, far, sag, counting })
     }
 

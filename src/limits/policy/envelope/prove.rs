@@ -6,8 +6,8 @@
 //! threads. Where the lowest box promises a scene below the best one known, a descent from it is tried.
 
 use super::attain::{self, Attained};
-use super::bound::Cube;
 use super::cell::Cell;
+use super::cube::Cube;
 use super::joint::Residual;
 use super::linear::SOURCES;
 use super::model::{self, Model, Point, Region};

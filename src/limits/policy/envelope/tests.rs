@@ -2,8 +2,8 @@ mod brute;
 mod hidden;
 mod stretch;
 
-use super::bound::Cube;
 use super::cell::Cell;
+use super::cube::Cube;
 use super::joint::residual;
 use super::linear::SOURCES;
 use super::model::Point;

@@ -8,7 +8,7 @@
 use super::super::{Study, Surface};
 use super::envelope::{Estimate, Sighted};
 use super::search::{Searched, TOLERANCE, search};
-use super::{Candidate, DISTANCES, RuleStudy};
+use super::{Candidate, DISTANCES, RuleStudy, steps};
 use hadar::demand::{self, Thing};
 use hadar::error::Result;
 use hadar::minimum::golden_section;
@@ -19,20 +19,20 @@ use rayon::prelude::*;
 const LOOSE: f64 = 0.5;
 /// Golden sections of the distance, each to 0.62 of what it was.
 const GOLDEN_STEPS: usize = 12;
-/// Levels of halving; stretches that are bounded, and boxes that may be looked at, at most.
+/// Levels of halving; stretches that are bounded, and boxes that are looked at, at most; and after how many stretches it is
+/// looked whether that is reached.
 const LEVELS: u32 = 14;
+const STRETCHES: u64 = 6_000;
+const ALL_BOXES: u64 = 300_000;
+const TOGETHER: usize = 64;
+/// Boxes for one stretch at first, besides twice those of a distance, twice as many at each level; and at most.
+const FIRST_BOXES: u64 = 64;
+const MOST_BOXES: u64 = 20_000;
 /// Shares of the requirement below which nothing more is proved, and nothing looked for: how far below matters little.
 const FAR_BELOW: f64 = 0.01;
 const NOTHING: f64 = 1e-6;
 /// Relative difference up to which a distance is a column of the air's table, whichever stands first.
 const SAME: f64 = 9e-13;
-/// Stretches after which it is looked whether the effort is spent.
-const TOGETHER: usize = 64;
-const STRETCHES: u64 = 6_000;
-const ALL_BOXES: u64 = 300_000;
-/// Boxes for a stretch at most, besides twice those of a distance; twice as many at each level.
-const FIRST_BOXES: u64 = 64;
-const MOST_BOXES: u64 = 20_000;
 
 /// A stretch of distances before a pair, with what is proved of it.
 #[derive(Debug, Clone)]
@@ -87,7 +87,7 @@ impl RuleStudy {
             return Ok((best, None));
         }
         let mut waiting = self.pieces(candidate, counts);
-        let (mut proved, mut looked_at, mut spent) = (f64::INFINITY, 0, 0);
+        let (mut proved, mut left, mut looked_at, mut spent) = (f64::INFINITY, f64::INFINITY, 0, 0);
         for level in 0..LEVELS {
             // What is enough for the verdict is enough.
             let enough = if alone { self.required / (1.0 - TOLERANCE) } else { f64::INFINITY };
@@ -101,7 +101,8 @@ impl RuleStudy {
             let mut failed = Vec::new();
             for pieces in waiting.chunks(TOGETHER) {
                 if looked_at > STRETCHES || spent > ALL_BOXES {
-                    failed.extend_from_slice(pieces);
+                    // As far as they are known from the stretch that they are halves of.
+                    left = pieces.iter().fold(left, |left, piece| left.min(piece.bound));
                     continue;
                 }
                 looked_at += pieces.len() as u64;
@@ -118,16 +119,12 @@ impl RuleStudy {
                     }
                 }
             }
-            if looked_at > STRETCHES || spent > ALL_BOXES {
-                waiting = failed;
-                break;
-            }
             if let Some(weakest) = failed.iter().min_by(|a, b| a.bound.total_cmp(&b.bound)) {
                 best = self.or_worse(candidate, best, weakest)?;
             }
             waiting = failed.iter().flat_map(Piece::halves).collect();
         }
-        let left = waiting.iter().map(|piece| piece.bound).fold(f64::INFINITY, f64::min);
+        let left = waiting.iter().fold(left, |left, piece| left.min(piece.bound));
         let bound = proved.min(left).min(best.pair.distance);
         Ok((best, Some(bound).filter(|bound| *bound > 0.0)))
     }
@@ -141,8 +138,7 @@ impl RuleStudy {
         let Some([least, most]) = self.envelope.distance_m else { return Vec::new() };
         let mut pieces = Vec::new();
         for sighted in &candidate.between {
-            let steps = (0..DISTANCES).map(|i| i as f64 / (DISTANCES - 1) as f64);
-            let mut ends: Vec<f64> = steps.map(|share| least * (most / least).powf(share)).collect();
+            let mut ends: Vec<f64> = steps([least, most]).collect();
             (ends[0], ends[DISTANCES - 1]) = (least, most);
             let air = sighted.study.atmosphere.iter();
             ends.extend(air.flat_map(|air| air.table.lengths_m()).filter(|z| (least..most).contains(*z)));
