@@ -32,6 +32,8 @@ pub enum Dimension {
     Time,
     /// Speed, inside in m s⁻¹.
     Speed,
+    /// Acceleration, inside in m s⁻².
+    Acceleration,
     /// Plane angle, inside in rad.
     Angle,
     /// Specific detectivity D*, inside in cm √Hz W⁻¹.
@@ -93,6 +95,8 @@ const TIME: &[Unit] = &[
 ];
 const SPEED: &[Unit] =
     &[unit("m/s", 1.0), unit("km/h", 1.0 / 3.6), unit("mph", 0.44704), unit("kn", 1852.0 / 3600.0)];
+/// 1 g is the standard acceleration of free fall, 9.80665 m s⁻² exactly.
+const ACCELERATION: &[Unit] = &[unit("m/s^2", 1.0), unit("m/s2", 1.0), unit("m/s²", 1.0), unit("g", 9.80665)];
 const ANGLE: &[Unit] = &[unit("rad", 1.0), unit("mrad", 1e-3), unit("deg", std::f64::consts::PI / 180.0)];
 const DETECTIVITY: &[Unit] = &[unit("cm Hz^0.5/W", 1.0), unit("Jones", 1.0), unit("m Hz^0.5/W", 1e2)];
 const FREQUENCY: &[Unit] = &[unit("Hz", 1.0), unit("kHz", 1e3), unit("MHz", 1e6), unit("GHz", 1e9)];
@@ -118,6 +122,7 @@ impl Dimension {
             Self::Length => LENGTH,
             Self::Time => TIME,
             Self::Speed => SPEED,
+            Self::Acceleration => ACCELERATION,
             Self::Angle => ANGLE,
             Self::Detectivity => DETECTIVITY,
             Self::Frequency => FREQUENCY,
@@ -142,6 +147,7 @@ impl Dimension {
             Self::Length => "\"30 m\" or \"12 um\"",
             Self::Time => "\"12 ms\"",
             Self::Speed => "\"30 mph\" or \"13.4 m/s\"",
+            Self::Acceleration => "\"5 m/s^2\" or \"0.5 g\"",
             Self::Angle => "\"25 deg\"",
             Self::Detectivity => "\"4.7e10 cm Hz^0.5/W\"",
             Self::Frequency => "\"60 Hz\" or \"175 kHz\"",
@@ -225,6 +231,7 @@ impl Dimension {
             Self::Length => "length",
             Self::Time => "time",
             Self::Speed => "speed",
+            Self::Acceleration => "acceleration",
             Self::Angle => "angle",
             Self::Detectivity => "detectivity",
             Self::Frequency => "frequency",
@@ -391,6 +398,8 @@ mod tests {
             (Dimension::TemperatureDifference, "47.8mK", 0.0478),
             (Dimension::Length, "12 um", 12e-6),
             (Dimension::Speed, "30 mph", 13.4112),
+            (Dimension::Acceleration, "0.5 g", 4.903325),
+            (Dimension::Acceleration, "5 m/s²", 5.0),
             (Dimension::Time, "1.2e-2 s", 0.012),
             (Dimension::Wavenumber, "715 cm^-1", 715.0),
         ] {

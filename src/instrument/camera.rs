@@ -12,6 +12,9 @@ use crate::error::Result;
 use crate::planck;
 use crate::spectrum::Bands;
 
+/// Share of a time that is rounding.
+const SAME_TIME: f64 = 1e-12;
+
 /// A spectral thermal camera.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Camera {
@@ -125,6 +128,24 @@ impl Camera {
     #[must_use]
     pub fn sweep_s(&self, bands: usize) -> f64 {
         self.series_s(self.readout.exposures(bands) as f64)
+    }
+
+    /// Frames of all bands that are read within `time_s`, 0 if not one is.
+    ///
+    /// ```
+    /// let camera = hadar::instrument::presets::get("flir-a325sc")?;
+    /// // 60 Hz: 110 frames begin within 1.83 s, and the last of them ends within it.
+    /// assert_eq!(camera.frames_within(11.0 / 6.0, 1), 110);
+    /// assert_eq!(camera.frames_within(11.0 / 6.0, 5), 22);
+    /// assert_eq!(camera.frames_within(1e-3, 1), 0);
+    /// # Ok::<(), hadar::Error>(())
+    /// ```
+    #[must_use]
+    pub fn frames_within(&self, time_s: f64, bands: usize) -> u32 {
+        let (first_s, next_s) = (self.exposure_s, self.series_s(2.0) - self.exposure_s);
+        // A time of so many frames to the last bit holds them all.
+        let exposures = 1.0 + (time_s * (1.0 + SAME_TIME) - first_s) / next_s;
+        if exposures >= 1.0 { (exposures / self.readout.exposures(bands) as f64) as u32 } else { 0 }
     }
 
     /// From the begin of the first to the end of the last of so many exposures, s.

@@ -4,9 +4,12 @@
 
 mod certificate;
 mod check;
+mod sources;
+mod stop;
 mod text;
 
 pub use check::check;
+pub use sources::{sources, tests};
 pub use text::text;
 
 use super::bundle::Bundle;
@@ -18,7 +21,8 @@ use super::text::shortfalls::no;
 use super::text::significant;
 use hadar::error::Result;
 use hadar::policy::Quantity;
-use hadar_study::study::{CameraVerdict, RuleAnswer, RuleStudy, Warning};
+use hadar_study::scenario::rule::Verdict;
+use hadar_study::study::{CameraAnswer, CameraVerdict, Found, RuleAnswer, RuleStudy, Warning};
 use std::path::Path;
 
 /// What can be changed of a camera.
@@ -44,13 +48,18 @@ pub fn bundle(study: &RuleStudy, answer: &RuleAnswer, provenance: &Provenance, o
 
 /// All warnings, those of a camera with its name.
 fn warnings(answer: &RuleAnswer) -> Vec<Warning> {
-    let of_cameras = answer
-        .cameras
-        .iter()
-        .flat_map(|camera| camera.warnings.iter().map(|warning| warning.clone().of_cameras(&camera.name)));
-    answer.warnings.iter().cloned().chain(of_cameras).collect()
+    let mut all = answer.warnings.clone();
+    for clause in &answer.clauses {
+        for line in clause.lines() {
+            let own = line.warnings.iter().map(|warning| warning.clone().of_cameras(line.camera));
+            let new: Vec<Warning> = own.filter(|warning| !all.contains(warning)).collect();
+            all.extend(new);
+        }
+    }
+    all
 }
 
+/// Every camera before every clause.
 fn cameras(answer: &RuleAnswer) -> Table {
     let fixes = HARDWARE.map(|quantity| format!("would_do_{}", quantity.key()));
     let head = [
@@ -68,25 +77,49 @@ fn cameras(answer: &RuleAnswer) -> Table {
         "certificate",
         "motion_blur_pixels",
     ];
-    let mut table = Table::new(head.map(str::to_owned).into_iter().chain(fixes));
-    for camera in &answer.cameras {
-        let mut row = vec![
-            camera.name.clone(),
-            if camera.passes { "yes" } else { "no" }.into(),
-            text::codes(&camera.fails_by, " "),
-            camera.provided.map(|proviso| proviso.to_string()).unwrap_or_default(),
-            camera.bands.to_string(),
-            camera.readout.name().into(),
-            number(camera.sweep_s),
-            number(camera.margin),
-            number(camera.statistical_distance),
-            number(camera.detection_probability),
-            optional(camera.lower_bound),
-            camera.certificate.kind.code().into(),
-            optional(camera.motion_blur_pixels),
-        ];
-        row.extend(HARDWARE.map(|quantity| optional(value(camera, quantity))));
-        table.push(row);
+    let last = ["clause", "kind", "evidence", "quantity", "demanded", "reached"];
+    let names = head.into_iter().map(str::to_owned).chain(fixes).chain(last.map(str::to_owned));
+    let mut table = Table::new(names);
+    for clause in &answer.clauses {
+        let apart: &[CameraVerdict] = clause.apart().map_or(&[], |apart| &apart.cameras);
+        for (index, line) in clause.lines().into_iter().enumerate() {
+            let own = apart.get(index);
+            let of = |value: &dyn Fn(&CameraVerdict) -> String| own.map(value).unwrap_or_default();
+            let mut row = vec![
+                line.camera.to_owned(),
+                if line.verdict == Verdict::Meets { "yes" } else { "no" }.into(),
+                text::codes(line.fails_by, " "),
+                line.provided.map(|proviso| proviso.to_string()).unwrap_or_default(),
+                of(&|camera| camera.bands.to_string()),
+                of(&|camera| camera.readout.name().into()),
+                of(&|camera| number(camera.sweep_s)),
+                number(line.margin),
+                of(&|camera| number(camera.statistical_distance)),
+                of(&|camera| number(camera.detection_probability)),
+                of(&|camera| optional(camera.lower_bound)),
+                of(&|camera| camera.certificate.kind.code().into()),
+                of(&|camera| optional(camera.motion_blur_pixels)),
+            ];
+            row.extend(HARDWARE.map(|quantity| of(&|camera| optional(value(camera, quantity)))));
+            let name = clause.name.clone().unwrap_or_default();
+            row.extend([name, clause.kind.to_owned(), line.grade.name().to_owned()]);
+            row.extend(match &clause.found {
+                Found::Apart(apart) => {
+                    let (required, reached) =
+                        (apart.requirement.distance, own.map(|own| own.statistical_distance));
+                    ["statistical distance".to_owned(), number(required), optional(reached)]
+                }
+                Found::Measured(measured) => {
+                    let reached = measured.cameras.get(index).and_then(|camera| camera.value);
+                    [
+                        text::measure(measured.quantity).to_owned(),
+                        number(measured.demanded),
+                        optional(reached),
+                    ]
+                }
+            });
+            table.push(row);
+        }
     }
     table
 }
@@ -99,6 +132,7 @@ fn value(camera: &CameraVerdict, wanted: Quantity) -> Option<f64> {
 fn worst_cases(answer: &RuleAnswer) -> Table {
     let joined = |values: &[f64]| values.iter().map(|&value| number(value)).collect::<Vec<_>>().join(" ");
     let mut table = Table::new([
+        "clause",
         "camera",
         "target",
         "alternative",
@@ -111,21 +145,44 @@ fn worst_cases(answer: &RuleAnswer) -> Table {
         "statistical_distance",
         "hardware_required_m2_s",
     ]);
-    for camera in &answer.cameras {
-        let scene = &camera.limiting;
-        table.push(vec![
-            camera.name.clone(),
-            scene.target.clone(),
-            scene.alternative.clone(),
-            number(scene.temperature_k),
-            joined(&scene.lighting),
-            joined(&scene.surroundings_k),
-            optional(scene.distance_m),
-            number(scene.nearest_state.temperature_k),
-            joined(&scene.nearest_state.lighting),
-            number(camera.statistical_distance),
-            optional(scene.hardware_m2_s),
-        ]);
+    for clause in &answer.clauses {
+        let name = clause.name.clone().unwrap_or_default();
+        for camera in clause.apart().iter().flat_map(|apart| &apart.cameras) {
+            let scene = &camera.limiting;
+            table.push(vec![
+                name.clone(),
+                camera.name.clone(),
+                scene.target.clone(),
+                scene.alternative.clone(),
+                number(scene.temperature_k),
+                joined(&scene.lighting),
+                joined(&scene.surroundings_k),
+                optional(scene.distance_m),
+                number(scene.nearest_state.temperature_k),
+                joined(&scene.nearest_state.lighting),
+                number(camera.statistical_distance),
+                optional(scene.hardware_m2_s),
+            ]);
+        }
+        let Found::Measured(measured) = &clause.found else { continue };
+        for camera in &measured.cameras {
+            let scene = &camera.limiting;
+            let nothing = String::new;
+            table.push(vec![
+                name.clone(),
+                camera.name.clone(),
+                scene.target.clone().unwrap_or_default(),
+                nothing(),
+                optional(scene.temperature_k),
+                joined(&scene.lighting),
+                joined(&scene.surroundings_k),
+                optional(scene.distance_m),
+                nothing(),
+                nothing(),
+                nothing(),
+                nothing(),
+            ]);
+        }
     }
     table
 }
@@ -139,36 +196,53 @@ fn inputs(provenance: &Provenance) -> Table {
 
 /// The margin of every camera: those that meet the rule first, then the others, each with what it fails by.
 fn margins(answer: &RuleAnswer) -> Plot {
-    let mut ranked: Vec<&CameraVerdict> = answer.cameras.iter().collect();
+    let mut ranked: Vec<&CameraAnswer> = answer.cameras.iter().collect();
     ranked.sort_by(|a, b| b.passes.cmp(&a.passes).then(b.margin.total_cmp(&a.margin)));
+    let only = answer.only();
+    let verdict = |camera: &CameraAnswer| {
+        only.and_then(|only| only.cameras.iter().find(|verdict| verdict.name == camera.name))
+    };
     let mut table = Table::new(["camera", "meets_the_rule", "fails_by", "margin", "margin_proved"]);
-    let required = answer.requirement.distance;
     for camera in &ranked {
-        let proved = camera.lower_bound.map(|bound| bound / required);
+        let own = verdict(camera);
+        let fails = own.map_or_else(|| camera.fails.join(", "), |own| text::codes(&own.fails_by, " "));
+        let proved = own.and_then(|own| Some(own.lower_bound? / only?.requirement.distance));
         table.push(vec![
             camera.name.clone(),
             if camera.passes { "yes" } else { "no" }.into(),
-            text::codes(&camera.fails_by, " "),
+            fails,
             number(camera.margin),
             optional(proved),
         ]);
     }
     // The margin does not show what else a camera fails by.
-    let named = |camera: &&CameraVerdict| match camera.passes {
-        true => camera.name.clone(),
-        false => format!("{}\n{}", camera.name, no(&camera.fails_by)),
+    let named = |camera: &&CameraAnswer| match (camera.passes, verdict(camera)) {
+        (true, _) => camera.name.clone(),
+        (false, Some(own)) => format!("{}\n{}", camera.name, no(&own.fails_by)),
+        (false, None) => format!("{}\n{}", camera.name, camera.fails.join(", ")),
     };
     let names = ranked.iter().map(named).collect();
     let values =
         NamedSeries::new("least over the envelope", ranked.iter().map(|camera| camera.margin).collect());
     let title = answer.rule.about.name.clone().or(answer.rule.scenario.title.clone());
     let title = title.unwrap_or_else(|| "Which cameras meet the rule".into());
-    let required = significant(required, 3);
-    let figure = NamedValues::new(title, names, Axis::log("margin: statistical distance over that demanded"))
-        .subtitle(format!(
-            "Least over the envelope; demanded is d = {required}. Full symbols meet the rule; a camera may have signal enough and \
-             still fail by its image."
-        ))
+    let (axis, subtitle) = match only {
+        Some(only) => (
+            "margin: statistical distance over that demanded",
+            format!(
+                "Least over the envelope; demanded is d = {}. Full symbols meet the rule; a camera may have signal enough and \
+                 still fail by its image.",
+                significant(only.requirement.distance, 3)
+            ),
+        ),
+        None => (
+            "margin: what is there over what is demanded",
+            "Least over all clauses. Full symbols meet the rule; below a name the clauses that it fails."
+                .into(),
+        ),
+    };
+    let figure = NamedValues::new(title, names, Axis::log(axis))
+        .subtitle(subtitle)
         .series(values)
         .threshold(1.0, "demanded")
         .failing(ranked.iter().map(|camera| !camera.passes).collect())

@@ -38,6 +38,7 @@ pub use bands::{BandSource, BandsSpec};
 pub use envelope::Envelope;
 pub use range::RangeScenario;
 pub use rule::Rule;
+pub use section::{Date, day};
 pub use sensitivity::SensitivitySpec;
 pub use source::Source;
 pub use units::Units;
@@ -199,6 +200,13 @@ pub enum Reliability {
     DetectionProbability(f64),
     /// Statistical distance d; above 0. d = 1 is P = 0.8413.
     Distance(f64),
+    /// Detection probability as above, and the probability that an alternative is taken for the target, between 0 and 0.5.
+    Rates {
+        /// Of finding what is there.
+        detection: f64,
+        /// Of finding what is not there.
+        false_alarm: f64,
+    },
 }
 
 /// Which distance a requirement is about; what they are is said with the distances themselves.

@@ -30,9 +30,11 @@ pub use identify::{
 };
 pub use looked_up::Study;
 pub use rule::{
-    CameraVerdict, Certified, EmissivityError, EnvelopeResult, Fixes, IdealCamera, LightTime, LimitingScene,
-    Neighbourhood, NotIdentifiable, Proof, Proviso, Quotable, RuleAnswer, RuleAsked, RuleRequirement,
-    RuleStudy, WhoMeets, WithoutPlaceholders,
+    ApartAnswer, ApproachResult, CameraAnswer, CameraVerdict, Certified, ClauseAnswer, EmissivityError,
+    EnvelopeResult, Fixes, Found, Grade, IdealCamera, LightTime, LimitingScene, Line, Measure,
+    MeasuredAnswer, MeasuredScene, MeasuredVerdict, Neighbourhood, NotIdentifiable, Proof, Proviso, Quotable,
+    RuleAnswer, RuleAsked, RuleRequirement, RuleStudy, StopResult, TestCheck, TestResult, Told, WhoMeets,
+    WithoutPlaceholders,
 };
 pub use shortfall::Shortfall;
 pub use sight::Sight;

@@ -11,6 +11,7 @@ use hadar::instrument::Readout;
 use hadar::scene::Parameter;
 use hadar::simulate::classifier::Method;
 use serde::ser::{Serialize, SerializeStruct, Serializer};
+use toml::value::Date;
 
 /// Something the reader of a result must know. Its `Display` is the message, one sentence.
 #[derive(Debug, Clone, PartialEq)]
@@ -70,6 +71,8 @@ pub enum Warning {
     MotionBlurUnknown,
     /// A rule with a speed and no distance.
     RuleMotionBlurUnknown,
+    /// A rule on a day on which it does not hold.
+    NotInForce { day: Date, from: Option<Date>, until: Option<Date> },
     /// Filters and no temperature of the sensor.
     FilterLightLeftOut,
     /// A temperature of the sensor and no filters.
@@ -176,6 +179,7 @@ impl Warning {
             Self::SequentialReadout { .. } => Code::SequentialReadout,
             Self::MotionBlur { .. } => Code::MotionBlur,
             Self::MotionBlurUnknown | Self::RuleMotionBlurUnknown => Code::MotionBlurUnknown,
+            Self::NotInForce { .. } => Code::NotInForce,
             Self::FilterLightLeftOut | Self::SensorTemperatureIdle => Code::FilterLight,
             Self::Placeholders { .. } => Code::Placeholders,
             Self::NoSurroundings => Code::NoSurroundings,

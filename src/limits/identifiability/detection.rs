@@ -61,7 +61,35 @@ pub fn distance_for_probability(probability: f64) -> Result<f64> {
     if !(probability > 0.5 && probability < 1.0) {
         return Err(Error::out_of_range("detection probability", probability, "", "above 0.5 and below 1"));
     }
-    Ok(SQRT_2 * statrs::function::erf::erfc_inv(2.0 * (1.0 - probability)))
+    distance_for_miss(1.0 - probability)
+}
+
+/// The statistical distance at which the miss probability is `probability`, in (0, ½).
+///
+/// # Errors
+/// A probability outside (0, ½).
+pub fn distance_for_miss(probability: f64) -> Result<f64> {
+    if !(probability > 0.0 && probability < 0.5) {
+        return Err(Error::out_of_range("miss probability", probability, "", "above 0 and below 0.5"));
+    }
+    Ok(SQRT_2 * statrs::function::erf::erfc_inv(2.0 * probability))
+}
+
+/// The statistical distance at which the best test can find what is there with the probability `detection` and take the other
+/// for it with no more than `false_alarm`: half of Φ⁻¹(P) + Φ⁻¹(1 − α), since the two states are 2d apart (Neyman and Pearson).
+/// With α = 1 − P it is [`distance_for_probability`].
+///
+/// # Errors
+/// Probabilities outside (½, 1) and (0, ½).
+///
+/// ```
+/// // 90 % found, one false alarm in a thousand: (1.2816 + 3.0902)/2.
+/// let d = hadar::identifiability::detection::distance_for_rates(0.9, 1e-3)?;
+/// assert!((d / 2.185_9 - 1.0).abs() < 1e-4);
+/// # Ok::<(), hadar::Error>(())
+/// ```
+pub fn distance_for_rates(detection: f64, false_alarm: f64) -> Result<f64> {
+    Ok(0.5 * (distance_for_probability(detection)? + distance_for_miss(false_alarm)?))
 }
 
 /// Rigorous bounds on the error of the best test between the two nearest states, at statistical distance d.
@@ -116,6 +144,12 @@ mod tests {
         assert!(distance_for_probability(0.5).is_err());
         assert!(distance_for_probability(1.0).is_err());
         assert!(distance_for_probability(f64::NAN).is_err());
+        assert!([0.0, 0.5, f64::NAN].iter().all(|miss| distance_for_miss(*miss).is_err()));
+        // Rare false alarms keep their digits: Φ⁻¹(1 − 1e-20) = 9.262340089798408.
+        let rare = distance_for_rates(0.9, 1e-20).unwrap() - 0.5 * distance_for_probability(0.9).unwrap();
+        assert!((2.0 * rare / 9.262_340_089_798_408 - 1.0).abs() < 1e-12, "{rare}");
+        let even = distance_for_rates(0.95, 0.05).unwrap();
+        assert!((even / distance_for_probability(0.95).unwrap() - 1.0).abs() < 1e-12);
     }
 
     #[test]

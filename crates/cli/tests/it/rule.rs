@@ -3,7 +3,7 @@
 use crate::support::folder::Folder;
 use hadar::material::Library;
 use hadar_study::scenario::{Rule, Scenario};
-use hadar_study::study::{Proof, RuleAnswer, RuleAsked, RuleStudy, Shortfall, Study};
+use hadar_study::study::{ApartAnswer, Proof, RuleAnswer, RuleAsked, RuleStudy, Shortfall, Study};
 use serde_json::Value;
 use std::fs;
 use std::sync::OnceLock;
@@ -62,14 +62,20 @@ fn library() -> &'static Library {
 }
 
 #[track_caller]
-fn answer_as(text: &str, asked: &RuleAsked) -> RuleAnswer {
+fn whole(text: &str, asked: &RuleAsked) -> RuleAnswer {
     let rule = Rule::from_toml(text, None).unwrap_or_else(|error| panic!("{error}\n{text}"));
     let study = RuleStudy::new(&rule, library()).unwrap_or_else(|error| panic!("{error}\n{text}"));
     study.answer(asked, &|_, _| ()).unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
 
+/// The one clause of a rule without `[[clause]]`.
 #[track_caller]
-fn answer(text: &str) -> RuleAnswer {
+fn answer_as(text: &str, asked: &RuleAsked) -> ApartAnswer {
+    whole(text, asked).only().unwrap().clone()
+}
+
+#[track_caller]
+fn answer(text: &str) -> ApartAnswer {
     answer_as(text, &RuleAsked { seed: 1, ..RuleAsked::default() })
 }
 
@@ -384,7 +390,8 @@ fn where_nothing_differs_no_camera_does() {
         assert!(!camera.fixes.as_ref().unwrap().any);
     }
     assert_eq!(answer.requirement.hardware_m2_s, None);
-    assert_eq!(answer.sentence.to_string(), "None of 2 cameras meets the rule: flir-a325sc, ideal-pnrd.");
+    let sentence = whole(&text, &RuleAsked::default()).sentence.to_string();
+    assert_eq!(sentence, "None of 2 cameras meets the rule: flir-a325sc, ideal-pnrd.");
 }
 
 #[test]

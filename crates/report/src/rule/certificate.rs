@@ -1,11 +1,13 @@
 //! The certificate: one page of Markdown that says what was checked, what came out, and what it rests on.
 
+use super::sources::dates;
+use super::stop::decisions;
 use super::text;
 use crate::manifest::{Provenance, VERSION};
 use crate::text::footing::{gaussian, of_scene};
 use crate::text::significant;
 use hadar_study::scenario::Units;
-use hadar_study::study::{CameraVerdict, RuleAnswer, RuleStudy};
+use hadar_study::study::{ApartAnswer, CameraVerdict, Found, MeasuredAnswer, RuleAnswer, RuleStudy};
 use hadar_study::words::reliability;
 use std::fmt::Write as _;
 
@@ -18,19 +20,30 @@ pub(super) fn markdown(study: &RuleStudy, answer: &RuleAnswer, provenance: &Prov
             let _ = writeln!(out, "{label}: {value}  ");
         }
     }
+    dates(&answer.rule).iter().for_each(|line| {
+        let _ = writeln!(out, "{line}  ");
+    });
     let _ = writeln!(out, "Checked with hadar {VERSION}, commit {}  ", provenance.commit);
     let _ = writeln!(out, "Command: `{}`, seed {}\n", provenance.command_line(), provenance.seed);
     if let Some(text) = &about.text {
         let _ = writeln!(out, "{text}\n");
     }
-    let _ = writeln!(out, "> {}\n", answer.requirement.quotable);
     let _ = writeln!(out, "**{}**\n", answer.sentence);
-    out.push_str("| camera | meets | margin | d at worst | right at most | bands | certificate | limiting scene | would do |\n");
-    out.push_str("|---|---|---|---|---|---|---|---|---|\n");
-    answer.cameras.iter().for_each(|camera| out.push_str(&row(camera, units)));
-    out.push('\n');
-    if let Some(part) = &answer.not_identifiable {
-        let _ = writeln!(out, "{}.\n", text::no_camera(part).join("; "));
+    for clause in &answer.clauses {
+        if let Some(name) = &clause.name {
+            let _ = writeln!(out, "## {name}\n");
+            if let Some(text) = &clause.text {
+                let _ = writeln!(out, "{text}\n");
+            }
+            let _ = writeln!(out, "{}\n", clause.sentence);
+        }
+        if let Some(stop) = &clause.stop {
+            let _ = writeln!(out, "Stop: {}.\n", decisions(stop, units));
+        }
+        match &clause.found {
+            Found::Apart(apart) => of_apart(apart, units, &mut out),
+            Found::Measured(measured) => of_measured(measured, units, &mut out),
+        }
     }
     out.push_str("## What this rests on\n\n");
     if let Some(study) = study.study() {
@@ -73,6 +86,41 @@ pub(super) fn title(answer: &RuleAnswer) -> String {
     let about = &answer.rule.about;
     let title = about.name.clone().or(answer.rule.scenario.title.clone());
     title.unwrap_or_else(|| "Which cameras meet the rule".into())
+}
+
+/// A clause that tells materials apart.
+fn of_apart(apart: &ApartAnswer, units: Units, out: &mut String) {
+    let _ = writeln!(out, "> {}\n", apart.requirement.quotable);
+    out.push_str("| camera | meets | margin | d at worst | right at most | bands | certificate | limiting scene | would do |\n");
+    out.push_str("|---|---|---|---|---|---|---|---|---|\n");
+    apart.cameras.iter().for_each(|camera| out.push_str(&row(camera, units)));
+    out.push('\n');
+    if let Some(part) = &apart.not_identifiable {
+        let _ = writeln!(out, "{}.\n", text::no_camera(part).join("; "));
+    }
+}
+
+/// A clause that demands a quantity.
+fn of_measured(measured: &MeasuredAnswer, units: Units, out: &mut String) {
+    let _ = writeln!(out, "> Demanded: {}.\n", measured.definition);
+    let head = ["camera", "meets", "margin", text::measure(measured.quantity), "evidence", "limiting scene"];
+    let _ = writeln!(out, "| {} |\n|---|---|---|---|---|---|", head.join(" | "));
+    for camera in &measured.cameras {
+        let met = match camera.passes {
+            true => "yes".to_owned(),
+            false => format!("no: {}", text::in_words(&camera.fails_by)),
+        };
+        let cells = [
+            camera.name.clone(),
+            met,
+            significant(camera.margin, 3),
+            camera.value.map_or_else(|| "no bound".into(), |value| significant(value, 3)),
+            camera.grade.name().to_owned(),
+            text::measured_scene(&camera.limiting, units),
+        ];
+        let _ = writeln!(out, "| {} |", cells.map(|text| cell(&text)).join(" | "));
+    }
+    out.push('\n');
 }
 
 fn row(camera: &CameraVerdict, units: Units) -> String {

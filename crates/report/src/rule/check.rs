@@ -1,14 +1,51 @@
 //! `--check`: a line a camera, what is known of it and how.
 
-use super::text::{fails_by, without_placeholders};
+use super::text::{fails_by, in_words, measure, measured_scene, without_placeholders};
 use crate::text::significant;
-use hadar_study::study::{CameraVerdict, RuleAnswer, Shortfall};
+use hadar_study::scenario::Units;
+use hadar_study::study::{CameraVerdict, Found, Measure, MeasuredVerdict, RuleAnswer, Shortfall};
+use std::fmt::Write as _;
 
-/// A line for every camera.
+/// A line for every camera; of a rule with clauses, a line for each of them below it.
 #[must_use]
 pub fn check(answer: &RuleAnswer) -> String {
-    let required = answer.requirement.distance;
-    answer.cameras.iter().map(|camera| format!("{}: {}\n", camera.name, line(camera, required))).collect()
+    if let Some(only) = answer.only() {
+        let required = only.requirement.distance;
+        return only
+            .cameras
+            .iter()
+            .map(|camera| format!("{}: {}\n", camera.name, line(camera, required)))
+            .collect();
+    }
+    let units = answer.rule.scenario.units();
+    let mut out = String::new();
+    for (index, camera) in answer.cameras.iter().enumerate() {
+        let met = if camera.passes { "met" } else { "not met" };
+        let _ = writeln!(out, "{}: {met} ({})", camera.name, camera.grade.name());
+        for clause in &answer.clauses {
+            let said = match &clause.found {
+                Found::Apart(apart) => {
+                    apart.cameras.get(index).map(|camera| line(camera, apart.requirement.distance))
+                }
+                Found::Measured(measured) => {
+                    measured.cameras.get(index).map(|camera| measured_line(camera, measured.quantity, units))
+                }
+            };
+            let name = clause.name.as_deref().unwrap_or("the rule");
+            let _ = writeln!(out, "  {name}: {}", said.unwrap_or_default());
+        }
+    }
+    out
+}
+
+fn measured_line(camera: &MeasuredVerdict, quantity: Measure, units: Units) -> String {
+    let value = camera.value.map_or_else(|| "no bound".into(), |value| significant(value, 3));
+    let reached = format!("{} times the demand ({} {value})", at_least(camera.margin), measure(quantity));
+    let at = measured_scene(&camera.limiting, units);
+    match camera.passes {
+        true => format!("{}: {reached}, {at}", camera.grade.name()),
+        false => format!("not met: {}: {reached}, {at}", in_words(&camera.fails_by)),
+    }
 }
 
 fn line(camera: &CameraVerdict, required: f64) -> String {

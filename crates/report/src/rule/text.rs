@@ -1,5 +1,6 @@
 //! Which cameras meet a rule, as text: the sentence, a table, then what limits each camera and what would help it.
 
+use super::stop::{approach, decisions, metres};
 use crate::size::text::in_unit;
 use crate::text::footing::{gaussian, of_scene, warnings};
 use crate::text::numbers::{numbers, quantity, significant};
@@ -8,7 +9,8 @@ use hadar::policy::{Quantity, Solution};
 use hadar::words::share;
 use hadar_study::scenario::Units;
 use hadar_study::study::{
-    CameraVerdict, Fixes, LimitingScene, NotIdentifiable, RuleAnswer, RuleStudy, Shortfall, Warning,
+    ApartAnswer, CameraVerdict, Fixes, Found, LimitingScene, Measure, MeasuredAnswer, MeasuredScene,
+    NotIdentifiable, RuleAnswer, RuleStudy, Shortfall, Warning,
 };
 use hadar_study::words::{demanded, reliability};
 use std::fmt::Write as _;
@@ -18,37 +20,36 @@ use std::fmt::Write as _;
 pub fn text(answer: &RuleAnswer, study: &RuleStudy) -> String {
     let units = answer.rule.scenario.units();
     let mut out = format!("{}\n\n", answer.sentence);
-    let width = answer.cameras.iter().map(|camera| camera.name.chars().count()).max().unwrap_or(0).max(6);
-    let right: Vec<String> =
-        answer.cameras.iter().map(|camera| reliability(camera.statistical_distance)).collect();
-    let most = "right at most";
-    let wide = right.iter().map(String::len).max().unwrap_or(0).max(most.len());
-    let _ = writeln!(
-        out,
-        "{:<width$}  {:>8}  {:>10}  {most:>wide$}  meets the rule",
-        "camera", "margin", "d at worst"
-    );
-    for (camera, right) in answer.cameras.iter().zip(right) {
-        let _ = writeln!(
-            out,
-            "{:<width$}  {:>8}  {:>10}  {right:>wide$}  {}",
-            camera.name,
-            significant(camera.margin, 3),
-            significant(camera.statistical_distance, 3),
-            meets(camera),
-        );
+    if answer.only().is_none() {
+        out.push_str(&overview(answer));
     }
-    let _ = writeln!(
-        out,
-        "  margin: least d over the envelope / {} demanded ({})\n",
-        significant(answer.requirement.distance, 4),
-        demanded(answer.requirement.distance)
-    );
-    answer.cameras.iter().for_each(|camera| out.push_str(&details(camera, units)));
-    if let Some(part) = &answer.not_identifiable {
-        let _ = writeln!(out, "{}\n", no_camera(part).join("\n  "));
+    for clause in &answer.clauses {
+        if let Some(name) = &clause.name {
+            let _ = writeln!(out, "{name} ({})", in_words_of_kind(clause.kind));
+            if let Some(text) = &clause.text {
+                let _ = writeln!(out, "  {text}");
+            }
+            let _ = writeln!(out, "  {}\n", clause.sentence);
+        }
+        if let Some(stop) = &clause.stop {
+            let _ = writeln!(out, "Stop\n  {}\n", decisions(stop, units));
+        }
+        match &clause.found {
+            Found::Apart(apart) => out.push_str(&of_apart(apart, units)),
+            Found::Measured(measured) => out.push_str(&of_measured(measured, units)),
+        }
     }
-    let _ = writeln!(out, "The rule in a sentence\n  {}\n", answer.requirement.quotable);
+    let quotables: Vec<String> = answer
+        .clauses
+        .iter()
+        .filter_map(|clause| {
+            let name = clause.name.as_ref().map_or_else(String::new, |name| format!("{name}: "));
+            Some(format!("  {name}{}", clause.apart()?.requirement.quotable))
+        })
+        .collect();
+    if !quotables.is_empty() {
+        let _ = writeln!(out, "The rule in a sentence\n{}\n", quotables.join("\n"));
+    }
     if let Some(study) = study.study() {
         out.push_str(&of_scene(study, gaussian(study)));
     }
@@ -56,14 +57,141 @@ pub fn text(answer: &RuleAnswer, study: &RuleStudy) -> String {
     out
 }
 
+/// Every camera with the clause that limits it.
+fn overview(answer: &RuleAnswer) -> String {
+    let mut rows = vec![["camera", "margin", "limited by", "evidence", "meets the rule"].map(str::to_owned)];
+    rows.extend(answer.cameras.iter().map(|camera| {
+        let verdict = match (camera.passes, &camera.provided) {
+            (true, None) => "yes".to_owned(),
+            (true, Some(proviso)) => format!("yes, if {proviso}"),
+            (false, _) => format!("no: {}", camera.fails.join(", ")),
+        };
+        [
+            camera.name.clone(),
+            significant(camera.margin, 3),
+            camera.limiting_clause.clone().unwrap_or_default(),
+            camera.grade.name().to_owned(),
+            verdict,
+        ]
+    }));
+    columns(&rows, &[1]) + "\n"
+}
+
+/// Rows with their columns below each other, those of numbers to the right; the last one as it is.
+fn columns<const N: usize>(rows: &[[String; N]], numbers: &[usize]) -> String {
+    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..N).map(width).collect();
+    let mut out = String::new();
+    for row in rows {
+        let cells = row.iter().zip(&widths).enumerate().map(|(column, (cell, width))| {
+            if numbers.contains(&column) { format!("{cell:>width$}") } else { format!("{cell:<width$}") }
+        });
+        out.push_str(cells.collect::<Vec<_>>().join("  ").trim_end());
+        out.push('\n');
+    }
+    out
+}
+
+/// A clause that tells materials apart: a table, then each camera.
+fn of_apart(apart: &ApartAnswer, units: Units) -> String {
+    let right = |camera: &CameraVerdict| reliability(camera.statistical_distance);
+    let mut rows =
+        vec![["camera", "margin", "d at worst", "right at most", "meets the rule"].map(str::to_owned)];
+    rows.extend(apart.cameras.iter().map(|camera| {
+        [
+            camera.name.clone(),
+            significant(camera.margin, 3),
+            significant(camera.statistical_distance, 3),
+            right(camera),
+            meets(camera),
+        ]
+    }));
+    let mut out = columns(&rows, &[1, 2, 3]);
+    let _ = writeln!(
+        out,
+        "  margin: least d over the envelope / {} demanded ({})\n",
+        significant(apart.requirement.distance, 4),
+        demanded(apart.requirement.distance)
+    );
+    apart.cameras.iter().for_each(|camera| out.push_str(&details(camera, units)));
+    if let Some(part) = &apart.not_identifiable {
+        let _ = writeln!(out, "{}\n", no_camera(part).join("\n  "));
+    }
+    out
+}
+
+/// A clause that demands a quantity: a table, then what each camera sees until its decision.
+fn of_measured(measured: &MeasuredAnswer, units: Units) -> String {
+    let head = ["camera", "margin", measure(measured.quantity), "limited by", "evidence", "meets the clause"];
+    let mut rows = vec![head.map(str::to_owned)];
+    rows.extend(measured.cameras.iter().map(|camera| {
+        [
+            camera.name.clone(),
+            significant(camera.margin, 3),
+            camera.value.map_or_else(|| "no bound".into(), |value| significant(value, 3)),
+            measured_scene(&camera.limiting, units),
+            camera.grade.name().to_owned(),
+            if camera.passes { "yes".into() } else { format!("no: {}", in_words(&camera.fails_by)) },
+        ]
+    }));
+    let mut out = columns(&rows, &[1, 2]);
+    let _ = writeln!(out, "  demanded: {}\n", measured.definition);
+    for camera in &measured.cameras {
+        if let Some(seen) = &camera.approach {
+            let _ = writeln!(out, "{}\n  {:<12} {}\n", camera.name, "until then", approach(seen, units));
+        }
+    }
+    out
+}
+
+/// A quantity with its unit, as a head of a column.
+pub(super) const fn measure(quantity: Measure) -> &'static str {
+    match quantity {
+        Measure::Pixels => "pixels",
+        Measure::TemperatureErrorK => "error, K",
+        Measure::DepthErrorM => "error, m",
+        Measure::RelativeDepthError => "error / depth",
+    }
+}
+
+/// What a kind of clause demands, in words.
+pub(super) fn in_words_of_kind(kind: &str) -> &str {
+    match kind {
+        "tell-apart" => "tells materials apart",
+        "false-alarm" => "no false alarm",
+        "resolution" => "pixels on the target",
+        "temperature-error" => "knows a temperature",
+        "depth-error" => "knows a distance",
+        other => other,
+    }
+}
+
+/// Where a quantity is least known, in one line.
+pub(super) fn measured_scene(scene: &MeasuredScene, units: Units) -> String {
+    let mut parts = Vec::new();
+    if let Some(target) = &scene.target {
+        let warm = scene.temperature_k.map(|kelvin| format!(" at {}", units.temperature(kelvin)));
+        parts.push(target.clone() + &warm.unwrap_or_default());
+    }
+    if !scene.lighting.is_empty() {
+        let kelvin: Vec<String> =
+            scene.surroundings_k.iter().map(|kelvin| units.temperature(*kelvin)).collect();
+        parts.push(format!("{}, surroundings {}", numbers("V ", &scene.lighting, 3), kelvin.join(" ")));
+    }
+    parts.extend(scene.distance_m.map(|z| format!("{} away", metres(z, units))));
+    parts.join(", ")
+}
+
 /// All warnings; what is said of several cameras is said once, with their names.
 pub(crate) fn together(answer: &RuleAnswer) -> Vec<Warning> {
     let mut said: Vec<(&Warning, Vec<&str>)> = Vec::new();
-    for camera in &answer.cameras {
-        for warning in &camera.warnings {
+    let lines: Vec<_> = answer.clauses.iter().flat_map(|clause| clause.lines()).collect();
+    for camera in &lines {
+        for warning in camera.warnings {
             match said.iter_mut().find(|(known, _)| known.says_as(warning)) {
-                Some((_, names)) => names.push(&camera.name),
-                None => said.push((warning, vec![&camera.name])),
+                Some((_, names)) if names.contains(&camera.camera) => {}
+                Some((_, names)) => names.push(camera.camera),
+                None => said.push((warning, vec![camera.camera])),
             }
         }
     }
@@ -122,6 +250,9 @@ fn details(camera: &CameraVerdict, units: Units) -> String {
         let _ = writeln!(out, "  {label:<12} {text}");
     };
     line("bands", reading(camera));
+    if let Some(seen) = &camera.approach {
+        line("until then", approach(seen, units));
+    }
     line("limited by", scene(&camera.limiting, units));
     line("certificate", camera.certificate.to_string());
     let spoiled: Vec<Shortfall> =
@@ -187,7 +318,7 @@ pub(crate) fn codes(shortfalls: &[Shortfall], between: &str) -> String {
 }
 
 /// What is wrong with an image.
-fn in_words(spoiled: &[Shortfall]) -> String {
+pub(super) fn in_words(spoiled: &[Shortfall]) -> String {
     let words = spoiled.iter().map(|reason| match reason {
         Shortfall::MotionBlur => "motion blur of a pixel or more",
         Shortfall::MotionUnknown => "motion that is not known without a distance",
@@ -196,6 +327,10 @@ fn in_words(spoiled: &[Shortfall]) -> String {
         Shortfall::Impractical => "not a practical camera",
         Shortfall::Diffraction => "diffraction blurs over more than a pixel",
         Shortfall::LowestNoise => "below what read noise and converter leave",
+        Shortfall::Pixels => "too few pixels",
+        Shortfall::TemperatureError => "the temperature is not known well enough",
+        Shortfall::DepthError => "the distance is not known well enough",
+        Shortfall::DecisionTime => "its frames are read after the decision must stand",
         other => other.code(),
     });
     words.collect::<Vec<_>>().join(", ")

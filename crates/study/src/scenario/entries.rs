@@ -8,20 +8,24 @@ use super::source::{Source, dotted};
 use hadar::units::Dimension;
 
 /// One entry of the document.
+#[derive(PartialEq)]
 pub(super) enum Part {
     Value(Value),
     Table(Entries),
     Tables(Vec<Entries>),
+    /// Tables with tables of their own.
+    Documents(Vec<(Entries, Document)>),
 }
 
 /// Keys in the order in which they are written; a silent one is not there.
-#[derive(Default)]
+#[derive(Default, PartialEq)]
 pub(super) struct Entries {
     entries: Vec<Entry>,
     /// Where the table was read from, if that is not where it is written.
     read_from: Option<String>,
 }
 
+#[derive(PartialEq)]
 struct Entry {
     key: &'static str,
     value: Value,
@@ -35,18 +39,31 @@ pub(super) type Document = Vec<(&'static str, Part)>;
 /// A document as TOML, quantities as their author wrote them in `source`.
 pub(super) fn text(document: Document, source: &Source) -> String {
     let mut text = String::new();
+    lay(&mut text, document, ["", ""], source);
+    text
+}
+
+/// A document below the table of a header, read from the table of a name.
+fn lay(text: &mut String, document: Document, [header, read]: [&str; 2], source: &Source) {
     for (name, part) in document {
+        let (header, read) = (dotted(header, name), dotted(read, name));
         match part {
             Part::Value(value) => text.push_str(&format!("{name} = {value}\n")),
-            Part::Table(entries) => entries.write(&mut text, &format!("[{name}]"), name, source),
+            Part::Table(entries) => entries.write(text, &format!("[{header}]"), &read, source),
             Part::Tables(tables) => {
                 for (index, entries) in tables.iter().enumerate() {
-                    entries.write(&mut text, &format!("[[{name}]]"), &format!("{name}[{index}]"), source);
+                    entries.write(text, &format!("[[{header}]]"), &format!("{read}[{index}]"), source);
+                }
+            }
+            Part::Documents(documents) => {
+                for (index, (entries, inner)) in documents.into_iter().enumerate() {
+                    let read = format!("{read}[{index}]");
+                    entries.write(text, &format!("[[{header}]]"), &read, source);
+                    lay(text, inner, [&header, &read], source);
                 }
             }
         }
     }
-    text
 }
 
 /// A value in the unit in which it was written under that key, if it is still the same to the last bit.
@@ -79,15 +96,31 @@ fn as_written(value: &Value, key: &str, dimension: Dimension, source: &Source) -
 
 /// A document as a map.
 pub(super) fn entries<S: Serializer>(document: Document, serializer: S) -> Result<S::Ok, S::Error> {
-    let mut map = serializer.serialize_map(None)?;
-    for (name, part) in document {
-        match part {
-            Part::Value(value) => map.serialize_entry(name, &value)?,
-            Part::Table(entries) => map.serialize_entry(name, &entries)?,
-            Part::Tables(tables) => map.serialize_entry(name, &tables)?,
+    Map(&[], &document).serialize(serializer)
+}
+
+/// Entries, then a document.
+struct Map<'a>(&'a [Entry], &'a Document);
+
+impl Serialize for Map<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        for entry in self.0 {
+            map.serialize_entry(entry.key, &entry.value)?;
         }
+        for (name, part) in self.1 {
+            match part {
+                Part::Value(value) => map.serialize_entry(name, value)?,
+                Part::Table(entries) => map.serialize_entry(name, entries)?,
+                Part::Tables(tables) => map.serialize_entry(name, tables)?,
+                Part::Documents(documents) => {
+                    let each = documents.iter().map(|(own, inner)| Map(&own.entries, inner));
+                    map.serialize_entry(name, &each.collect::<Vec<_>>())?;
+                }
+            }
+        }
+        map.end()
     }
-    map.end()
 }
 
 impl Serialize for Entries {

@@ -39,7 +39,13 @@ const TABLE: &[Row] = &[
     },
     Row {
         kind: Kind::Rule,
-        told_by: &[("cameras", Form::Any), ("rule", Form::Any), ("camera", Form::Tables)],
+        told_by: &[
+            ("cameras", Form::Any),
+            ("rule", Form::Any),
+            ("clause", Form::Any),
+            ("stop", Form::Any),
+            ("camera", Form::Tables),
+        ],
         name: "a rule",
     },
     Row {

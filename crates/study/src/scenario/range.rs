@@ -3,8 +3,8 @@
 //! It shares `[bands]` and `[camera]` with a [`super::Scenario`], and their habits: quantities are strings with their unit, every value
 //! is checked when it is read, an error names file, line and key.
 
-mod read;
-mod write;
+pub(super) mod read;
+pub(super) mod write;
 
 use super::{BandsSpec, CameraSpec, MaterialRef, Source};
 use hadar::error::Place;

@@ -100,7 +100,7 @@ fn scenario(text: &str, path: Option<&Path>) -> Result<Scenario> {
     let mut source = Source { path: path.map(Path::to_owned), ..Source::default() };
     let document = document(text, (Kind::Scenario, MINIMUM), &mut source)?;
     let root = Section::open(&document, "", &source, &TABLES)?;
-    let mut scenario = of_root(&root)?;
+    let mut scenario = of_root(&root, requirement)?;
     scenario.camera = root.read("camera", camera::read)?;
     scenario.source = source;
     Ok(scenario)
@@ -121,8 +121,11 @@ pub(super) fn document<'t>(
     Ok(document)
 }
 
-/// All of a scenario but its camera and its source.
-pub(super) fn of_root(root: &Section<'_>) -> Result<Scenario> {
+/// All of a scenario but its camera and its source, what is demanded as `requirement` reads it.
+pub(super) fn of_root(
+    root: &Section<'_>,
+    requirement: impl FnOnce(&Entry<'_>) -> Result<Requirement>,
+) -> Result<Scenario> {
     let target = match root.get("target") {
         Some(entry) => target(&entry)?,
         None => return Err(root.fail("target", Error::malformed("the table is missing", MINIMUM))),
@@ -323,21 +326,30 @@ fn priors(entry: &Entry<'_>, nuisances: &[Nuisance]) -> Result<BTreeMap<Nuisance
     Ok(priors)
 }
 
-fn requirement(entry: &Entry<'_>) -> Result<Requirement> {
-    let section = entry.section(&["detection_probability", "distance", "by", "speed"])?;
+pub(super) fn requirement(entry: &Entry<'_>) -> Result<Requirement> {
+    let section =
+        entry.section(&["detection_probability", "false_alarm_probability", "distance", "by", "speed"])?;
     let probability = Allowed {
         holds: |value| value > 0.5 && value < 1.0,
         expected: "above 0.5 (tossing a coin) and below 1 (never wrong)",
     };
     section.at_most_one(&["detection_probability", "distance"])?;
     let detection = section.number("detection_probability", "0.8413", probability)?;
+    let below_half = Allowed { holds: |value| value > 0.0 && value < 0.5, expected: "above 0 and below 0.5" };
+    let false_alarm = section.number("false_alarm_probability", "0.001", below_half)?;
     let distance = section.number("distance", "1.0", ABOVE_ZERO)?;
     let default = Requirement::default();
     Ok(Requirement {
-        reliability: match (detection, distance) {
-            (Some(probability), _) => Reliability::DetectionProbability(probability),
-            (None, Some(distance)) => Reliability::Distance(distance),
-            (None, None) => default.reliability,
+        reliability: match (detection, false_alarm, distance) {
+            (Some(detection), Some(false_alarm), _) => Reliability::Rates { detection, false_alarm },
+            (Some(probability), None, _) => Reliability::DetectionProbability(probability),
+            (None, Some(_), _) => {
+                let found = "false alarms without a detection_probability: whoever finds nothing has none";
+                let instead = "write detection_probability = 0.9 beside it";
+                return Err(section.fail("false_alarm_probability", Error::malformed(found, instead)));
+            }
+            (None, None, Some(distance)) => Reliability::Distance(distance),
+            (None, None, None) => default.reliability,
         },
         by: section.choice("by", &DistanceKind::ALL.map(|kind| (kind.name(), kind)))?.unwrap_or(default.by),
         speed_m_s: section.quantity("speed", Dimension::Speed, ABOVE_ZERO)?,

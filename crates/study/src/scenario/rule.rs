@@ -2,17 +2,30 @@
 //!
 //! A rule file is a scenario without `[camera]`, with `cameras = ["flir-a325sc"]` for known cameras as they are,
 //! `[[camera]]` tables with the keys of `[camera]` and an optional `name` for others, and `[rule]` for what a reader of
-//! the certificate must know: `name`, `text` (its wording), `authority` (whose it is), `version`.
+//! the certificate must know: `name`, `text` (its wording), `authority` (whose it is), `version`, `status`, and `from` and
+//! `until` which dates it holds. `[stop]` says how fast the vehicle is and how it brakes, so that distances follow; `[[clause]]`
+//! are demands with scenes of their own; `[[source]]` say where the figures are from; `[[test]]` what known cameras do.
+
+mod citation;
+mod clause;
+mod stop;
+mod test;
+
+pub use citation::{Citation, Figure, Ground, Mark};
+pub use clause::{Clause, Demand, DepthDemand, DepthObject};
+pub use stop::StopSpec;
+pub use test::{RuleTest, Verdict};
 
 use super::entries::{self, Document, Entries, Part};
 use super::kind::Kind;
 use super::paths::Paths;
-use super::read::{MINIMUM, TABLES, document, of_root, text_of};
+use super::read::{MINIMUM, TABLES, document, text_of};
 use super::section::{Entry, Section};
-use super::{CameraSpec, Envelope, Scenario, Source, camera};
+use super::{CameraSpec, Scenario, Source, camera};
 use hadar::error::{Error, Place, Result};
 use serde::{Serialize, Serializer};
 use std::path::Path;
+use toml::value::Date;
 
 const NO_CAMERA: &str = "write cameras = [\"flir-a325sc\"] above the first [table], or a [[camera]] table";
 /// A list at the top of a file stands before its tables.
@@ -29,6 +42,20 @@ pub struct About {
     pub authority: Option<String>,
     /// Its version.
     pub version: Option<String>,
+    /// Whether it is law, a draft, postponed.
+    pub status: Option<String>,
+    /// The first day on which it holds.
+    pub from: Option<Date>,
+    /// The last one.
+    pub until: Option<Date>,
+}
+
+impl About {
+    /// Whether it holds on a day.
+    #[must_use]
+    pub fn holds_on(&self, day: Date) -> bool {
+        self.from.is_none_or(|from| from <= day) && self.until.is_none_or(|until| day <= until)
+    }
 }
 
 /// A camera that is held against a rule.
@@ -43,6 +70,12 @@ pub struct RuleCamera {
 }
 
 impl RuleCamera {
+    /// What it is called in a rule: the name it is given, or that of a known camera.
+    #[must_use]
+    pub fn called(&self) -> &str {
+        self.name.as_deref().or(self.spec.preset.as_deref()).unwrap_or(&self.key)
+    }
+
     /// Whether it is a known camera named in `cameras`, without keys of its own.
     #[must_use]
     pub fn is_listed(&self) -> bool {
@@ -55,10 +88,16 @@ impl RuleCamera {
 pub struct Rule {
     /// What it says of itself.
     pub about: About,
-    /// Task, surroundings, bands, unknowns, requirement and envelope; without a camera.
+    /// Task, surroundings, bands, unknowns, requirement and envelope that clauses share; without a camera.
     pub scenario: Scenario,
+    /// What it demands, at least one thing.
+    pub clauses: Vec<Clause>,
     /// The cameras, those of `cameras` first.
     pub cameras: Vec<RuleCamera>,
+    /// Where its figures are from; nothing of a rule that does not say.
+    pub sources: Vec<Citation>,
+    /// What is expected of its cameras.
+    pub tests: Vec<RuleTest>,
     /// The file as it was read.
     pub text: String,
 }
@@ -96,7 +135,7 @@ impl Rule {
     pub fn from_toml(text: &str, path: Option<&Path>) -> Result<Self> {
         let mut source = Source { path: path.map(Path::to_owned), ..Source::default() };
         let document = document(text, (Kind::Rule, MINIMUM), &mut source)?;
-        let known = [&TABLES[..], &["rule", "cameras"]].concat();
+        let known = [&TABLES[..], &["rule", "cameras", "stop", "clause", "source", "test"]].concat();
         let root = Section::open(&document, "", &source, &known)?;
         let about = root.read("rule", about)?.unwrap_or_default();
         let mut cameras = root.read("cameras", presets)?.unwrap_or_default();
@@ -105,15 +144,22 @@ impl Rule {
             let key = if root.get("cameras").is_some() { "cameras" } else { "" };
             return Err(root.fail(key, Error::malformed("the rule has no camera to check", NO_CAMERA)));
         }
-        let scenario = of_root(&root)?;
-        let scenario = Scenario { source, ..scenario };
-        Ok(Self { about, scenario, cameras, text: text.to_owned() })
+        let (scenario, clauses) = clause::read(&root, &source)?;
+        let tests = test::read(&root, &cameras, &clauses)?;
+        let sources = citation::read(&root, &document, &source)?;
+        Ok(Self { about, scenario, clauses, cameras, sources, tests, text: text.to_owned() })
     }
 
-    /// The envelope, with the scenario's own values where it is silent.
+    /// Its figures as its file has them.
     #[must_use]
-    pub fn envelope(&self) -> Envelope {
-        self.scenario.envelope.clone().unwrap_or_default().filled(&self.scenario)
+    pub fn figures(&self) -> Vec<Figure> {
+        citation::of_text(&self.text, &self.scenario.source)
+    }
+
+    /// Whether its demands are those of `[[clause]]` tables.
+    #[must_use]
+    pub fn has_clauses(&self) -> bool {
+        self.clauses.iter().any(|clause| clause.name.is_some())
     }
 
     /// Where `key` of the camera at an index stands.
@@ -127,10 +173,10 @@ impl Rule {
         self.scenario.place(&key)
     }
 
-    /// The scenario with the camera at an index as its `[camera]`, which then stands where the rule has it.
+    /// The scenario of a clause with the camera at an index as its `[camera]`, which then stands where the rule has it.
     #[must_use]
-    pub fn with_camera(&self, index: usize) -> Scenario {
-        let mut scenario = self.scenario.clone();
+    pub fn with_camera(&self, clause: &Clause, index: usize) -> Scenario {
+        let mut scenario = clause.scenario.clone();
         let Some(camera) = self.cameras.get(index) else { return scenario };
         scenario.camera = Some(camera.spec.clone());
         let lines = &mut scenario.source.lines;
@@ -169,9 +215,23 @@ impl Rule {
             .put_if("name", self.about.name.as_deref())
             .put_if("text", self.about.text.as_deref())
             .put_if("authority", self.about.authority.as_deref())
-            .put_if("version", self.about.version.as_deref());
+            .put_if("version", self.about.version.as_deref())
+            .put_if("status", self.about.status.as_deref())
+            .put_if("from", self.about.from.map(|day| day.to_string()))
+            .put_if("until", self.about.until.map(|day| day.to_string()));
         document.push(("rule", Part::Table(about)));
+        if self.has_clauses() {
+            let clause = |clause: &Clause| clause.document(&self.scenario, paths);
+            document.push(("clause", Part::Documents(self.clauses.iter().map(clause).collect())));
+        } else if let Some(stop) = self.clauses.iter().find_map(|clause| clause.stop) {
+            document.push(("stop", Part::Table(stop.entries())));
+        }
         document.push(("camera", Part::Tables(self.cameras.iter().map(camera).collect())));
+        let tests: Vec<_> =
+            self.tests.iter().map(|test| test.entries(&self.cameras, &self.clauses)).collect();
+        if !tests.is_empty() {
+            document.push(("test", Part::Tables(tests)));
+        }
         document
     }
 }
@@ -180,8 +240,15 @@ impl Rule {
 impl PartialEq for Rule {
     fn eq(&self, other: &Self) -> bool {
         let same = |(a, b): (&RuleCamera, &RuleCamera)| a.name == b.name && a.spec == b.spec;
+        let same_clause = |(a, b): (&Clause, &Clause)| {
+            (&a.name, &a.text, &a.demand, &a.stop) == (&b.name, &b.text, &b.demand, &b.stop)
+                && a.scenario == b.scenario
+        };
         self.about == other.about
             && self.scenario == other.scenario
+            && self.clauses.len() == other.clauses.len()
+            && self.clauses.iter().zip(&other.clauses).all(same_clause)
+            && self.tests == other.tests
             && self.cameras.len() == other.cameras.len()
             && self.cameras.iter().zip(&other.cameras).all(same)
     }
@@ -195,13 +262,22 @@ impl Serialize for Rule {
 }
 
 fn about(entry: &Entry<'_>) -> Result<About> {
-    let section = entry.section(&["name", "text", "authority", "version"])?;
+    let section = entry.section(&["name", "text", "authority", "version", "status", "from", "until"])?;
     let text = |key, example: &str| section.read(key, |entry| Ok(entry.text(example)?.trim().to_owned()));
+    let from = section.read("from", Entry::date)?;
+    let until = section.read("until", Entry::date)?;
+    if let Some((from, until)) = from.zip(until).filter(|(from, until)| until < from) {
+        let found = format!("the rule ends on {until}, before it begins on {from}");
+        return Err(section.fail("until", Error::malformed(found, "correct one of the two dates")));
+    }
     Ok(About {
         name: text("name", "\"Robots that see people at night\"")?,
         text: text("text", "\"A camera must tell a person from a robot.\"")?,
         authority: text("authority", "\"City of Lafayette\"")?,
         version: text("version", "\"1\"")?,
+        status: text("status", "\"in force\"")?,
+        from,
+        until,
     })
 }
 

@@ -3,17 +3,30 @@
 use std::collections::BTreeSet;
 
 use toml::de::{DeTable, DeValue};
+pub use toml::value::Date;
+use toml::value::Datetime;
 
 use super::source::{Source, dotted};
 use hadar::allowed::Allowed;
 use hadar::error::{Error, Place, Result};
 use hadar::units::{Dimension, decimal_comma};
 
+const DATE: &str = "\"2029-09-01\"";
+
+/// A day as `2029-09-01`.
+#[must_use]
+pub fn day(text: &str) -> Option<Date> {
+    text.parse::<Datetime>().ok().filter(|read| read.time.is_none())?.date
+}
+
 /// One table: its entries, its name, and the file they stand in.
+#[derive(Clone)]
 pub(super) struct Section<'a> {
     table: &'a DeTable<'a>,
     name: String,
     source: &'a Source,
+    /// Where a key that is silent here is looked for.
+    beneath: Option<Box<Section<'a>>>,
 }
 
 /// One value, with the full key it was written under.
@@ -33,7 +46,7 @@ impl<'a> Section<'a> {
     ) -> Result<Self> {
         let unknown = table.keys().filter(|key| !known.contains(&key.get_ref().as_ref()));
         match unknown.min_by_key(|key| key.span().start) {
-            None => Ok(Self { table, name: name.to_owned(), source }),
+            None => Ok(Self { table, name: name.to_owned(), source, beneath: None }),
             Some(key) => {
                 let line = source.place(&dotted(name, key.get_ref())).line;
                 let place = Place { line, ..source.place(name) };
@@ -42,9 +55,23 @@ impl<'a> Section<'a> {
         }
     }
 
+    /// The same, laid over another one whose entries hold where this one is silent.
+    pub(super) fn over(self, beneath: &Self) -> Self {
+        Self { beneath: Some(Box::new(beneath.clone())), ..self }
+    }
+
     pub(super) fn get(&self, key: &str) -> Option<Entry<'a>> {
-        let value = self.table.get(key)?;
-        Some(Entry { value: value.get_ref(), key: dotted(&self.name, key), source: self.source })
+        match self.table.get(key) {
+            Some(value) => {
+                Some(Entry { value: value.get_ref(), key: dotted(&self.name, key), source: self.source })
+            }
+            None => self.beneath.as_ref()?.get(key),
+        }
+    }
+
+    /// Whether the key stands in the table itself.
+    pub(super) fn has_own(&self, key: &str) -> bool {
+        self.table.contains_key(key)
     }
 
     /// A key that must be there; `example` is a value to write.
@@ -118,14 +145,16 @@ impl<'a> Entry<'a> {
 
     /// A table with these keys, under its header `[name]`.
     pub(super) fn section(&self, known: &[&str]) -> Result<Section<'a>> {
-        let Section { table, name, source } = self.table()?;
+        let Section { table, name, source, .. } = self.table()?;
         Section::open(table, &name, source, known)
     }
 
     /// A table whose keys were checked before.
     pub(super) fn table(&self) -> Result<Section<'a>> {
         match self.value {
-            DeValue::Table(table) => Ok(Section { table, name: self.key.clone(), source: self.source }),
+            DeValue::Table(table) => {
+                Ok(Section { table, name: self.key.clone(), source: self.source, beneath: None })
+            }
             _ => Err(self.wrong_type(format!("write the table as [{}], once", self.key))),
         }
     }
@@ -276,6 +305,20 @@ impl<'a> Entry<'a> {
             let instead =
                 format!("write a whole number from 1 to {}, e.g. {} = {example}", u32::MAX, self.leaf());
             self.wrong_type(instead)
+        })
+    }
+
+    /// A date, as text or as TOML has it.
+    pub(super) fn date(&self) -> Result<Date> {
+        let text = match self.value {
+            DeValue::String(text) => text.trim().to_owned(),
+            DeValue::Datetime(date) => date.to_string(),
+            _ => return Err(self.wrong_type(format!("write {}", self.written(DATE)))),
+        };
+        self.one_line(&text)?;
+        day(&text).ok_or_else(|| {
+            let instead = format!("write year, month and day, as in {}", self.written(DATE));
+            self.fail(Error::malformed(format!("`{}` is no date", text.escape_debug()), instead))
         })
     }
 

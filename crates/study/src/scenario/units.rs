@@ -39,7 +39,8 @@ impl Units {
         Self {
             temperature: first(Dimension::Temperature, &temperatures).unwrap_or(default.temperature),
             length: first(Dimension::Length, &lengths).unwrap_or(default.length),
-            speed: first(Dimension::Speed, &["requirement.speed"]).unwrap_or(default.speed),
+            speed: first(Dimension::Speed, &["requirement.speed", "stop.speed", "stop.speed[0]"])
+                .unwrap_or(default.speed),
         }
     }
 

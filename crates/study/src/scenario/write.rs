@@ -138,10 +138,13 @@ fn unknown(unknown: &Unknown) -> Entries {
         .put_if("lighting_total", unknown.lighting_total)
 }
 
-fn requirement(requirement: &Requirement) -> Entries {
+pub(super) fn requirement(requirement: &Requirement) -> Entries {
     let entries = match requirement.reliability {
         Reliability::DetectionProbability(value) => Entries::default().put("detection_probability", value),
         Reliability::Distance(value) => Entries::default().put("distance", value),
+        Reliability::Rates { detection, false_alarm } => Entries::default()
+            .put("detection_probability", detection)
+            .put("false_alarm_probability", false_alarm),
     };
     entries.put("by", requirement.by.name()).put_quantity("speed", Dimension::Speed, requirement.speed_m_s)
 }

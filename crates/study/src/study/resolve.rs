@@ -125,6 +125,10 @@ impl Study {
                 detection::distance_for_probability(probability)
                     .map_err(|error| error.at(scenario.place("requirement.detection_probability")))?
             }
+            Reliability::Rates { detection, false_alarm } => {
+                detection::distance_for_rates(detection, false_alarm)
+                    .map_err(|error| error.at(scenario.place("requirement.false_alarm_probability")))?
+            }
         };
         let atmosphere = Air::of(&scenario)?;
         scenario.bands.source = asked;

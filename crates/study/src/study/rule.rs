@@ -1,40 +1,45 @@
-//! A rule answered: every camera against a requirement that must hold in all scenes of an envelope.
+//! A rule answered: every camera against every clause, in all scenes that the clause is demanded in.
 //!
-//! A camera meets a rule if its least statistical distance over the envelope, over all materials of the target and all
-//! alternatives, is at least that demanded, if nothing moves by a pixel during an exposure at the rule's speed
-//! and the least distance (Δ < 1), and if the brightest scene does not fill its well. It fails as soon as one scene below
-//! the requirement is known; that it meets the rule is proved where the lower bound of the search is above.
-//!
-//! Distances are nearest distances with the camera's own noise ([`envelope`]); gray areas are said: what was only
-//! searched is called so.
+//! A camera meets a rule if it meets all of its clauses; what a clause demands is with its kind (`apart`, `resolution`,
+//! `temperature`, `depth`).
 
+mod apart;
+mod approach;
 mod between;
+mod cameras;
+mod clauses;
+mod depth;
 mod envelope;
+mod expected;
 mod ideal;
+mod resolution;
 mod results;
 mod search;
+mod temperature;
 mod wording;
 
+pub use clauses::{
+    ApartAnswer, CameraAnswer, ClauseAnswer, Found, Grade, Line, Measure, MeasuredAnswer, MeasuredScene,
+    MeasuredVerdict, RuleAnswer,
+};
+pub use expected::{TestCheck, TestResult, Told};
 pub use results::{
-    CameraVerdict, Certified, EmissivityError, EnvelopeResult, Fixes, IdealCamera, LightTime, LimitingScene,
-    Neighbourhood, NotIdentifiable, Proof, Proviso, Quotable, RuleAnswer, RuleRequirement, WhoMeets,
-    WithoutPlaceholders,
+    ApproachResult, CameraVerdict, Certified, EmissivityError, EnvelopeResult, Fixes, IdealCamera, LightTime,
+    LimitingScene, Neighbourhood, NotIdentifiable, Proof, Proviso, Quotable, RuleRequirement, StopResult,
+    WhoMeets, WithoutPlaceholders,
 };
 
-use self::envelope::Sighted;
+use self::apart::TellApart;
+use self::depth::DepthClause;
+use self::resolution::Resolution;
+use self::temperature::TemperatureClause;
 use super::{Study, Warning};
-use crate::scenario::rule::RuleCamera;
-use crate::scenario::{DistanceKind, Envelope, MaterialRef, Rule};
-use hadar::demand::{self, Ledger, Reason, Skipping, Thing, Work};
-use hadar::error::{Error, Result};
-use hadar::identifiability::detection;
-use hadar::instrument::presets;
+use crate::scenario::Rule;
+use crate::scenario::rule::{Clause, Demand, StopSpec, Verdict};
+use hadar::demand::{self, Ledger, Skipping, Work};
+use hadar::error::Result;
 use hadar::material::Library;
-
-/// Relative difference of counts or variance from which on a distance matters.
-const NOTICEABLE: f64 = 1e-3;
-/// Distances that are searched where one between the ends may be the worst, both ends among them.
-const DISTANCES: usize = 9;
+use toml::value::Date;
 
 /// What is asked of a rule.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -45,39 +50,26 @@ pub struct RuleAsked {
     pub skipping: Skipping,
     /// Seed of the scenes that are drawn for the share no camera can do.
     pub seed: u64,
-}
-
-/// A camera of a rule, before every material and from the distances that may be the worst.
-#[derive(Debug, Clone)]
-struct Candidate {
-    name: String,
-    sighted: Vec<Sighted>,
-    /// Whether what is counted depends on the distance.
-    distance_matters: bool,
-    /// The materials for which a distance between the ends may be the worst, from the least distance.
-    between: Vec<Sighted>,
-    /// Of the others: no distance between has less than this share of the statistical distance from the farthest.
-    share: f64,
-    /// From the least distance, every material in turn.
-    near: Vec<Study>,
-}
-
-impl Candidate {
-    /// Pairs of materials that are searched, from every distance.
-    fn pairs(&self) -> usize {
-        self.sighted.iter().map(|sighted| sighted.study.alternatives.len()).sum()
-    }
+    /// The day that is asked about.
+    pub on: Option<Date>,
 }
 
 /// A rule with everything it names looked up and checked.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub struct RuleStudy {
     rule: Rule,
-    envelope: Envelope,
-    candidates: Vec<Candidate>,
-    required: f64,
+    clauses: Vec<Kind>,
     warnings: Vec<Warning>,
     looked_up: Work,
+}
+
+/// A clause with everything it names looked up, by what it demands.
+#[derive(Debug)]
+enum Kind {
+    Apart(Box<TellApart>),
+    Resolution(Resolution),
+    Temperature(TemperatureClause),
+    Depth(DepthClause),
 }
 
 impl RuleStudy {
@@ -109,65 +101,52 @@ impl RuleStudy {
     /// let study = RuleStudy::new(&Rule::from_toml(text, None)?, &Library::embedded()?)?;
     /// let answer = study.answer(&RuleAsked::default(), &|_, _| ())?;
     /// assert!(answer.cameras[0].passes);
-    /// assert!(answer.cameras[0].limiting.temperature_k < 304.0);
+    /// let least = &answer.clauses[0].apart().unwrap().cameras[0];
+    /// assert!(least.limiting.temperature_k < 304.0);
     /// # Ok::<(), hadar::Error>(())
     /// ```
     pub fn new(rule: &Rule, library: &Library) -> Result<Self> {
-        let place = |key: &str| rule.scenario.place(key);
-        if rule.scenario.requirement.by != DistanceKind::Nearest {
-            let found = "an envelope is searched by the nearest distance only";
-            let error = Error::malformed(found, "write by = \"nearest\", or leave the key out");
-            return Err(error.at(place("requirement.by")));
-        }
-        let envelope = rule.envelope();
-        let materials = envelope.materials.clone().unwrap_or_default();
-        for (index, material) in materials.iter().enumerate() {
-            if let MaterialRef::Name(name) = material {
-                let key = format!("envelope.materials[{index}]");
-                library.get(name).map_err(|error| error.at(place(&key)))?;
-            }
-        }
+        let cameras = cameras::of(rule)?;
         let mut filled = rule.clone();
-        filled.scenario.envelope = Some(envelope.clone());
-        let mut candidates: Vec<Candidate> = Vec::with_capacity(rule.cameras.len());
+        let mut clauses = Vec::with_capacity(rule.clauses.len());
         let mut warnings: Vec<Warning> = Vec::new();
-        let mut alternatives: Vec<MaterialRef> = Vec::new();
-        for index in 0..rule.cameras.len() {
-            let candidate = candidate(rule, index, &envelope, library)?;
-            if candidates.iter().any(|other| other.name == candidate.name) {
-                let found = format!("another camera is called {} too", candidate.name);
-                let error = Error::malformed(found, "give it a name of its own, as in name = \"ours\"");
-                return Err(error.at(rule.camera_place(index, "name")));
-            }
-            for study in &candidate.near {
-                let new = study.warnings.iter().filter(|warning| !warnings.contains(warning));
-                let new: Vec<Warning> = new.cloned().collect();
-                warnings.extend(new);
-                for material in study.scenario.alternatives.materials.iter().flatten() {
-                    if !alternatives.contains(material) {
-                        alternatives.push(material.clone());
+        for (index, clause) in rule.clauses.iter().enumerate() {
+            let kind = match &clause.demand {
+                Demand::TellApart | Demand::FalseAlarm => {
+                    let apart = TellApart::new(rule, clause, &cameras, library)?;
+                    warnings.extend(
+                        apart
+                            .warnings
+                            .iter()
+                            .filter(|one| !warnings.contains(one))
+                            .cloned()
+                            .collect::<Vec<_>>(),
+                    );
+                    filled
+                        .cameras
+                        .iter_mut()
+                        .zip(apart.specs())
+                        .for_each(|(camera, spec)| camera.spec = spec);
+                    if clause.name.is_none() {
+                        filled.scenario = apart.scenario.clone();
                     }
+                    filled.clauses[index].scenario = apart.scenario.clone();
+                    Kind::Apart(Box::new(apart))
                 }
-            }
-            if let Some(study) = candidate.near.first() {
-                // Every default of the camera, and what the scenario left silent.
-                filled.cameras[index].spec = study.scenario.camera.clone().unwrap_or_default();
-                let Study { scenario, .. } = study;
-                filled.scenario.alternatives = scenario.alternatives.clone();
-            }
-            candidates.push(candidate);
+                Demand::Resolution { pixels } => {
+                    Kind::Resolution(Resolution::new(clause, *pixels, &cameras)?)
+                }
+                Demand::TemperatureError { error_k, coverage_factor } => {
+                    let wanted = (*error_k, *coverage_factor);
+                    Kind::Temperature(TemperatureClause::new(rule, clause, wanted, &cameras, library)?)
+                }
+                Demand::DepthError(demand) => {
+                    Kind::Depth(DepthClause::new(rule, clause, demand, &cameras, library)?)
+                }
+            };
+            clauses.push(kind);
         }
-        filled.scenario.alternatives.materials = Some(alternatives);
-        // Where nothing is said of them, cameras may have bands of their own.
-        let near = || candidates.iter().flat_map(|candidate| &candidate.near);
-        let source = near().next().map(|study| study.scenario.bands.source.clone());
-        if let Some(source) = source.filter(|one| near().all(|study| study.scenario.bands.source == *one)) {
-            filled.scenario.bands.source = source;
-        }
-        let first = candidates.first().and_then(|candidate| candidate.near.first());
-        let required = first.map_or(1.0, |study| study.required);
-        let looked_up = library.work();
-        Ok(Self { rule: filled, envelope, candidates, required, warnings, looked_up })
+        Ok(Self { rule: filled, clauses, warnings, looked_up: library.work() })
     }
 
     /// The rule with its defaults filled in.
@@ -176,10 +155,14 @@ impl RuleStudy {
         &self.rule
     }
 
-    /// The first camera before the first material, from the least distance: what all of them share.
+    /// Of the first clause that tells materials apart, the first camera before the first material, from the least distance.
     #[must_use]
     pub fn study(&self) -> Option<&Study> {
-        self.candidates.first().and_then(|candidate| candidate.near.first())
+        self.clauses.iter().find_map(|clause| match clause {
+            Kind::Apart(apart) => apart.study(),
+            Kind::Temperature(clause) => clause.study(),
+            Kind::Resolution(_) | Kind::Depth(_) => None,
+        })
     }
 
     /// What the rule says of every camera; `progress` is told how many pairs of materials before a camera are done.
@@ -189,182 +172,105 @@ impl RuleStudy {
     pub fn answer(&self, asked: &RuleAsked, progress: &dyn Fn(usize, usize)) -> Result<RuleAnswer> {
         let ledger = Ledger::open();
         demand::add(&self.looked_up);
-        let alone = asked.verdict_only && asked.skipping == Skipping::On;
-        let mut cameras = Vec::with_capacity(self.candidates.len());
-        let all = self.candidates.iter().map(Candidate::pairs).sum();
+        let steps = |kind: &Kind| match kind {
+            Kind::Apart(apart) => apart.pairs(),
+            _ => self.rule.cameras.len(),
+        };
+        let all = self.clauses.iter().map(steps).sum();
         let mut before = 0;
-        for candidate in &self.candidates {
-            let pairs = candidate.pairs();
-            cameras.push(self.judged(candidate, alone, &|done| progress(before + done.min(pairs), all))?);
-            before += pairs;
-            progress(before, all);
-        }
-        let not_identifiable = if alone {
-            demand::spared(Thing::Sections, Reason::NotAsked, 1);
-            None
-        } else {
-            demand::computed(Thing::Sections, 1);
-            Some(self.not_identifiable(asked.seed)?)
-        };
-        let envelope = self.envelope_result();
-        let requirement = self.requirement(&cameras, &envelope, alone);
-        Ok(RuleAnswer {
-            rule: self.rule.clone(),
-            sentence: who_meets(&cameras),
-            requirement,
-            envelope,
-            cameras,
-            not_identifiable,
-            warnings: self.warnings.clone(),
-            stats: ledger.close(),
-        })
-    }
-
-    fn envelope_result(&self) -> EnvelopeResult {
-        let point = |value: f64| [value; 2];
-        let scenario = &self.rule.scenario;
-        let objects = &scenario.environment;
-        let studies = self.candidates.iter().flat_map(|candidate| &candidate.near);
-        let (mut materials, mut alternatives): (Vec<String>, Vec<String>) = (Vec::new(), Vec::new());
-        for study in studies {
-            let add = |names: &mut Vec<String>, name: &str| {
-                if !names.iter().any(|known| known == name) {
-                    names.push(name.to_owned());
-                }
+        let mut clauses = Vec::with_capacity(self.clauses.len());
+        for (kind, clause) in self.clauses.iter().zip(&self.rule.clauses) {
+            let within = |done: usize| progress(before + done, all);
+            let found = match kind {
+                Kind::Apart(apart) => Found::Apart(Box::new(apart.answer(asked, &within)?)),
+                Kind::Resolution(clause) => Found::Measured(clause.answer()),
+                Kind::Temperature(clause) => Found::Measured(clause.answer(&within)?),
+                Kind::Depth(clause) => Found::Measured(clause.answer(&within)?),
             };
-            add(&mut materials, &study.target.name);
-            study.alternatives.iter().for_each(|surface| add(&mut alternatives, &surface.name));
+            before += steps(kind);
+            clauses.push(answered(clause, found));
         }
-        let Envelope { temperature_k, lighting, surroundings_k, distance_m, .. } = self.envelope.clone();
-        EnvelopeResult {
-            temperature_k: temperature_k.unwrap_or(point(scenario.target.temperature_k)),
-            lighting: lighting.unwrap_or_else(|| objects.iter().map(|o| point(o.lighting)).collect()),
-            surroundings_k: surroundings_k
-                .unwrap_or_else(|| objects.iter().map(|o| point(o.temperature_k)).collect()),
-            distance_m,
-            materials,
-            alternatives,
-        }
-    }
-
-    fn requirement(
-        &self,
-        cameras: &[CameraVerdict],
-        envelope: &EnvelopeResult,
-        alone: bool,
-    ) -> RuleRequirement {
-        let hardware: Option<Vec<f64>> = cameras.iter().map(|camera| camera.limiting.hardware_m2_s).collect();
-        let hardware = hardware.filter(|_| !alone);
-        let hardware_m2_s = hardware.map(|each| each.into_iter().fold(0.0, f64::max));
-        let speed_m_s = self.rule.scenario.requirement.speed_m_s;
-        // A target smaller than its pixel, or air, takes light away that the figure of the hardware does not know of.
-        let plain = self.rule.scenario.target.size_m.is_none() && self.rule.scenario.atmosphere.is_none();
-        let quotable = Quotable {
-            envelope: envelope.clone(),
-            required: self.required,
-            speed_m_s,
-            hardware_m2_s: hardware_m2_s.filter(|_| plain),
-            units: self.rule.scenario.units(),
-        };
-        RuleRequirement {
-            distance: self.required,
-            detection_probability: detection::probability(self.required),
-            speed_m_s,
-            hardware_m2_s,
-            quotable,
-        }
+        let cameras = together(&clauses);
+        let sentence = who_meets(&clauses, &cameras);
+        let rule = self.rule.clone();
+        let about = &rule.about;
+        let idle = asked.on.filter(|day| !about.holds_on(*day));
+        let idle = idle.map(|day| Warning::NotInForce { day, from: about.from, until: about.until });
+        let warnings = idle.into_iter().chain(self.warnings.iter().cloned()).collect();
+        Ok(RuleAnswer { rule, sentence, cameras, clauses, warnings, stats: ledger.close() })
     }
 }
 
-/// A camera before every material of the envelope.
-fn candidate(rule: &Rule, index: usize, envelope: &Envelope, library: &Library) -> Result<Candidate> {
-    // Mistakes of the camera are told by the key that it has in the rule.
-    let spec = rule.cameras.get(index).map(|camera| &camera.spec);
-    if let Some(camera) = rule.cameras.get(index).filter(|camera| camera.is_listed()) {
-        complete(camera).map_err(|error| error.at(rule.camera_place(index, "preset")))?;
-    }
-    let camera = spec.map(|spec| super::camera::resolved_at(spec, &|key| rule.camera_place(index, key)));
-    let camera = camera.transpose()?;
-    let mut scenario = rule.with_camera(index);
-    let (mut sighted, mut near, mut distance_matters) = (Vec::new(), Vec::new(), false);
-    let (mut between, mut share) = (Vec::new(), 1.0_f64);
-    for material in envelope.materials.iter().flatten() {
-        scenario.target.material = material.clone();
-        let mut at = |distance_m: Option<f64>| {
-            scenario.target.distance_m = distance_m;
-            Study::new(&scenario, library).and_then(|study| Sighted::new(study, envelope))
-        };
-        let [least, most] = match envelope.distance_m {
-            Some([least, most]) => [Some(least), Some(most)],
-            None => [None; 2],
-        };
-        let close = at(least)?;
-        near.push(close.study.clone());
-        if least == most {
-            sighted.push(close);
-            continue;
-        }
-        let air = close.study.atmosphere.as_ref().zip(least.zip(most));
-        if let Some((air, (_, most))) = air {
-            let place = |error: Error| error.at(rule.scenario.place("envelope.distance"));
-            air.table.optical_depth(&[], most).map_err(place)?;
-        }
-        let far = at(most)?;
-        distance_matters |= far.differs_from(&close, NOTICEABLE);
-        if let Some((_, (least, most))) = air {
-            match close.share_of_far(&far, [least, most])? {
-                Some(one) => share = share.min(one),
-                None => {
-                    let inner = steps([least, most]).skip(1).take(DISTANCES - 2);
-                    let seen = inner.map(|z| Sighted::new(close.study.at_distance(z)?, envelope));
-                    sighted.extend(seen.collect::<Result<Vec<_>>>()?);
-                    between.push(close.clone());
-                    sighted.extend([close, far]);
-                    continue;
-                }
+fn answered(clause: &Clause, found: Found) -> ClauseAnswer {
+    let mut answer = ClauseAnswer {
+        name: clause.name.clone(),
+        kind: clause.demand.kind(),
+        text: clause.text.clone(),
+        stop: clause.stop.as_ref().map(|spec: &StopSpec| StopResult::of(spec.stop())),
+        sentence: WhoMeets::default(),
+        found,
+    };
+    let alone = std::slice::from_ref(&answer);
+    answer.sentence = who_meets(alone, &together(alone));
+    answer
+}
+
+/// What all clauses say of each camera.
+fn together(clauses: &[ClauseAnswer]) -> Vec<CameraAnswer> {
+    let mut cameras: Vec<CameraAnswer> = Vec::new();
+    for clause in clauses {
+        for line in clause.lines() {
+            let fails = line.verdict == Verdict::Fails;
+            let name = || clause.name.clone();
+            let Some(camera) = cameras.iter_mut().find(|camera| camera.name == line.camera) else {
+                cameras.push(CameraAnswer {
+                    name: line.camera.to_owned(),
+                    verdict: line.verdict,
+                    passes: line.verdict == Verdict::Meets,
+                    margin: line.margin,
+                    limiting_clause: name(),
+                    fails: name().into_iter().filter(|_| fails).collect(),
+                    grade: line.grade,
+                    provided: line.provided,
+                });
+                continue;
+            };
+            if line.margin < camera.margin {
+                (camera.margin, camera.limiting_clause) = (line.margin, name());
             }
-        }
-        match (far.is_worse_than(&close), close.is_worse_than(&far)) {
-            (true, _) => sighted.push(far),
-            (false, true) => sighted.push(close),
-            (false, false) => sighted.extend([far, close]),
+            camera.provided = camera.provided.or(line.provided);
+            camera.grade = match (camera.verdict, fails) {
+                // One clause that is surely not met is enough; of several the surest counts.
+                (Verdict::Fails, true) => camera.grade.min(line.grade),
+                (Verdict::Fails, false) => camera.grade,
+                (Verdict::Meets, true) => line.grade,
+                (Verdict::Meets, false) => camera.grade.max(line.grade),
+            };
+            if fails {
+                camera.verdict = Verdict::Fails;
+                camera.fails.extend(name());
+            }
+            camera.passes = camera.verdict == Verdict::Meets;
         }
     }
-    let given = rule.cameras.get(index).and_then(|camera| camera.name.clone());
-    let own = camera.map(|camera| camera.name).filter(|_| spec.is_some_and(|spec| spec.preset.is_some()));
-    let name = given.or(own).unwrap_or_else(|| format!("camera {}", index + 1));
-    Ok(Candidate { name, sighted, distance_matters, between, share, near })
+    cameras.iter_mut().filter(|camera| !camera.passes).for_each(|camera| camera.provided = None);
+    cameras
 }
 
-/// Distances of a range that are searched, equal steps of ln z apart.
-fn steps([least, most]: [f64; 2]) -> impl Iterator<Item = f64> {
-    let share = |i: usize| i as f64 / (DISTANCES - 1) as f64;
-    (0..DISTANCES).map(move |i| least * (most / least).powf(share(i)))
-}
-
-/// Refuses a known camera, named alone, of which no document states all that is needed.
-fn complete(camera: &RuleCamera) -> Result<()> {
-    let Some(name) = &camera.spec.preset else { return Ok(()) };
-    let Err(missing) = presets::find(name)?.camera() else { return Ok(()) };
-    let found = format!("no document that was read states {} of {name}", missing.0.join(", "));
-    let instead = "write it as a table of its own, with what the camera has in place of the dots:".into();
-    let head = [String::from("[[camera]]"), format!("preset = {name:?}")];
-    Err(Error::Incomplete { found, instead, lines: head.into_iter().chain(missing.lines()).collect() })
-}
-
-/// Which cameras meet the rule.
-fn who_meets(cameras: &[CameraVerdict]) -> WhoMeets {
-    let mut who =
-        WhoMeets { meet: Vec::new(), unproved: Vec::new(), fail: Vec::new(), placeholders: Vec::new() };
+/// Which cameras meet all clauses.
+fn who_meets(clauses: &[ClauseAnswer], cameras: &[CameraAnswer]) -> WhoMeets {
+    let mut who = WhoMeets::default();
     for camera in cameras {
         match camera.passes {
             true => who.meet.push((camera.name.clone(), camera.provided)),
             false => who.fail.push(camera.name.clone()),
         }
-        if camera.warnings.contains(&Warning::NotProved) {
+        if camera.passes && camera.grade > Grade::Proved {
             who.unproved.push(camera.name.clone());
         }
-        let LimitingScene { target, alternative, placeholders, .. } = &camera.limiting;
+    }
+    let scenes = clauses.iter().filter_map(ClauseAnswer::apart).flat_map(|apart| &apart.cameras);
+    for LimitingScene { target, alternative, placeholders, .. } in scenes.map(|camera| &camera.limiting) {
         if let Some(numbers) = placeholders {
             let pair = (target.clone(), alternative.clone(), *numbers);
             if !who.placeholders.contains(&pair) {

@@ -9,6 +9,14 @@ use std::fmt::{self, Display, Formatter};
 pub enum Shortfall {
     /// The statistical distance is below that demanded.
     Distance,
+    /// Too few pixels lie across the target.
+    Pixels,
+    /// The temperature cannot be known as well as demanded.
+    TemperatureError,
+    /// The distance cannot be known as well as demanded.
+    DepthError,
+    /// Its frames are read later than the decision must stand.
+    DecisionTime,
     /// Something moves by a pixel or more while all bands are exposed.
     MotionBlur,
     /// A speed is demanded, and without a distance nothing can be said of the blur: what cannot be said is not met.
@@ -31,6 +39,10 @@ impl Shortfall {
     pub const fn code(self) -> &'static str {
         match self {
             Self::Distance => "distance",
+            Self::Pixels => "pixels",
+            Self::TemperatureError => "temperature-error",
+            Self::DepthError => "depth-error",
+            Self::DecisionTime => "decision-time",
             Self::MotionBlur => "motion-blur",
             Self::MotionUnknown => "motion-unknown",
             Self::FullWell => "full-well",

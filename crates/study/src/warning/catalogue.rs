@@ -85,6 +85,8 @@ catalogue! {
     MotionBlur = "motion-blur", "Shorten the exposure, or allow less speed.";
     /// A speed is demanded, but without a distance its blur cannot be known.
     MotionBlurUnknown = "motion-blur-unknown", "Write target.distance, or distance in [envelope].";
+    /// The rule does not hold on the day that was asked about: nothing is demanded.
+    NotInForce = "not-in-force", "Nothing; or ask about another day with --on.";
     /// Light of filters and of the sensor is left out, or the sensor's temperature is given where it does nothing.
     FilterLight = "filter-light", "Write camera.sensor_temperature where there are filters, and only there.";
     /// There are no surroundings: the target is in empty space, where nothing but its own emission is seen.

@@ -103,6 +103,14 @@ impl Display for Warning {
                 "a speed is given, but for the motion blur the scenario must say target.distance",
             ),
             Self::RuleMotionBlurUnknown => f.write_str("a speed is given, but motion blur needs a distance"),
+            Self::NotInForce { day, from, until } => {
+                write!(f, "the rule does not hold on {day}")?;
+                match (from, until) {
+                    (Some(from), _) if day < from => write!(f, ", it holds from {from}"),
+                    (_, Some(until)) => write!(f, ", it held until {until}"),
+                    _ => Ok(()),
+                }
+            }
             Self::FilterLightLeftOut => f.write_str(
                 "the light that filters throw back onto the sensor, and their own, is left out: sensor_temperature is not \
                  given",

@@ -173,7 +173,7 @@ fn placeholders_are_told_from_real_pairs() {
         study.answer(&RuleAsked::default(), &|_, _| ()).unwrap()
     };
     let answer = answered(rule);
-    let camera = &answer.cameras[0];
+    let camera = &answer.only().unwrap().cameras[0];
     assert!(!camera.passes && camera.limiting.placeholders == Some([0.95, 0.95]));
     assert!(
         answer.sentence.to_string().contains("entered as one number each (0.95 and 0.95)"),
@@ -184,8 +184,11 @@ fn placeholders_are_told_from_real_pairs() {
     let without = camera.without_placeholders.as_ref().unwrap();
     assert_eq!(without.alternative, "aluminium");
     // Both are searched to a hundredth.
-    assert!((without.margin / real.cameras[0].margin - 1.0).abs() < 0.02, "{without:?}");
-    assert!(real.cameras[0].passes && real.cameras[0].without_placeholders.is_none());
+    assert!((without.margin / real.only().unwrap().cameras[0].margin - 1.0).abs() < 0.02, "{without:?}");
+    assert!(
+        real.only().unwrap().cameras[0].passes
+            && real.only().unwrap().cameras[0].without_placeholders.is_none()
+    );
 }
 
 /// The farthest distance is looked for up to the end of the air's table: where it is found, the demand is just met.

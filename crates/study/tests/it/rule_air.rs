@@ -28,7 +28,7 @@ fn answered(text: &str) -> CameraVerdict {
     let rule = Rule::from_toml(text, None).unwrap();
     let study = RuleStudy::new(&rule, &Library::embedded().unwrap()).unwrap();
     let answer = study.answer(&RuleAsked::default(), &|_, _| ()).unwrap();
-    answer.cameras.into_iter().next().unwrap()
+    answer.only().unwrap().cameras[0].clone()
 }
 
 fn judged(target: &str, other: &str, farthest: &str, demanded: f64) -> CameraVerdict {

@@ -81,7 +81,7 @@ fn scenario(text: &str, path: Option<&Path>) -> Result<RangeScenario> {
         return Err(root.fail("camera", found));
     }
     let stereo = match root.get("stereo") {
-        Some(entry) => stereo(&entry, camera.is_some(), &subject)?,
+        Some(entry) => stereo(&entry, camera.is_some(), matches!(subject, Subject::Scene(_)))?,
         None => {
             let found = Error::malformed("the table is missing", "write [stereo] with baseline = \"0.2 m\"");
             return Err(root.fail("stereo", found));
@@ -109,7 +109,7 @@ impl Default for DepthRequirement {
     }
 }
 
-fn scene(entry: &Entry<'_>) -> Result<SceneSpec> {
+pub(in crate::scenario) fn scene(entry: &Entry<'_>) -> Result<SceneSpec> {
     let section = entry.section(&[
         "ground_temperature",
         "sky_temperature",
@@ -178,7 +178,12 @@ fn cube(entry: &Entry<'_>) -> Result<CubeSpec> {
     })
 }
 
-fn stereo(entry: &Entry<'_>, camera: bool, subject: &Subject) -> Result<Stereo> {
+/// The pair of cameras before a rendered scene, whose camera is known.
+pub(in crate::scenario) fn stereo_of_scene(entry: &Entry<'_>) -> Result<Stereo> {
+    stereo(entry, true, true)
+}
+
+fn stereo(entry: &Entry<'_>, camera: bool, rendered: bool) -> Result<Stereo> {
     let section = entry.section(&[
         "baseline",
         "focal_length",
@@ -206,10 +211,7 @@ fn stereo(entry: &Entry<'_>, camera: bool, subject: &Subject) -> Result<Stereo> 
     }
     let sigma = length("psf_sigma")?;
     let kinds = [("none", Kind::None), ("airy", Kind::Airy), ("gaussian", Kind::Gaussian)];
-    let silent = match subject {
-        Subject::Scene(_) => Kind::Airy,
-        Subject::Cube(_) => Kind::None,
-    };
+    let silent = if rendered { Kind::Airy } else { Kind::None };
     let diffraction = match (section.choice("diffraction", &kinds)?.unwrap_or(silent), sigma) {
         (Kind::Gaussian, Some(sigma)) => Diffraction::Gaussian(sigma),
         (Kind::Gaussian, None) => {
@@ -238,9 +240,9 @@ fn stereo(entry: &Entry<'_>, camera: bool, subject: &Subject) -> Result<Stereo> 
         window: section.read("window", window)?.map_or_else(|| Window::new(5, 5), Ok)?,
         // Central differences see too little of fine texture, and their bound comes out too large; splines see more, of noise too, which
         // only the counts of a file have.
-        derivative: section.choice("derivative", &schemes)?.unwrap_or(match subject {
-            Subject::Scene(_) => Derivative::CubicSpline,
-            Subject::Cube(_) => Derivative::Central,
+        derivative: section.choice("derivative", &schemes)?.unwrap_or(match rendered {
+            true => Derivative::CubicSpline,
+            false => Derivative::Central,
         }),
         joined: section.choice("joined", &joined)?.unwrap_or_default(),
         lines: section
@@ -272,7 +274,12 @@ fn window(entry: &Entry<'_>) -> Result<Window> {
 }
 
 fn requirement(entry: &Entry<'_>) -> Result<DepthRequirement> {
-    let section = entry.section(&["depth_error", "relative_depth_error", "share"])?;
+    requirement_beside(entry, &[])
+}
+
+/// The same in a table that may hold `other` keys too.
+pub(in crate::scenario) fn requirement_beside(entry: &Entry<'_>, other: &[&str]) -> Result<DepthRequirement> {
+    let section = entry.section(&[other, &["depth_error", "relative_depth_error", "share"]].concat())?;
     section.at_most_one(&["depth_error", "relative_depth_error"])?;
     let share = Allowed { holds: |value| value > 0.0 && value <= 1.0, expected: "above 0, at most 1" };
     let default = DepthRequirement::default();

@@ -62,7 +62,7 @@ impl Serialize for RangeScenario {
     }
 }
 
-fn scene(spec: &SceneSpec, paths: Paths<'_>) -> Entries {
+pub(in crate::scenario) fn scene(spec: &SceneSpec, paths: Paths<'_>) -> Entries {
     let material = |material: &Option<_>| material.as_ref().map(|material| paths.material(material));
     Entries::default()
         .put_quantity("ground_temperature", Dimension::Temperature, spec.ground_temperature_k)
@@ -98,7 +98,7 @@ fn cube(spec: &CubeSpec, paths: Paths<'_>) -> Entries {
     }
 }
 
-fn stereo(stereo: &Stereo) -> Entries {
+pub(in crate::scenario) fn stereo(stereo: &Stereo) -> Entries {
     let entries = Entries::default()
         .put_quantity("baseline", Dimension::Length, Some(stereo.baseline_m))
         .put_quantity("focal_length", Dimension::Length, stereo.focal_length_m)
@@ -125,7 +125,7 @@ fn whole(number: usize) -> i64 {
     i64::try_from(number).unwrap_or(i64::MAX)
 }
 
-fn requirement(requirement: DepthRequirement) -> Entries {
+pub(in crate::scenario) fn requirement(requirement: DepthRequirement) -> Entries {
     let entries = match requirement.error {
         Demand::Absolute(error_m) => {
             Entries::default().put_quantity("depth_error", Dimension::Length, Some(error_m))

@@ -6,9 +6,9 @@
 //! bound a worse scene is looked for, from which all later proofs start.
 
 use super::super::{Study, Surface};
+use super::apart::{Candidate, DISTANCES, TellApart, steps};
 use super::envelope::{Estimate, Sighted};
 use super::search::{Searched, TOLERANCE, search};
-use super::{Candidate, DISTANCES, RuleStudy, steps};
 use hadar::demand::{self, Thing};
 use hadar::error::Result;
 use hadar::minimum::golden_section;
@@ -66,7 +66,7 @@ impl Piece<'_> {
     }
 }
 
-impl RuleStudy {
+impl TellApart {
     /// The worst of the distances between those of the candidate, and below what no scene is from any of them, if that is proved;
     /// `alone` asks for no more than whether one is below the requirement.
     pub(super) fn between(
@@ -135,7 +135,7 @@ impl RuleStudy {
         candidate: &'c Candidate,
         counts: &dyn Fn(&Surface, &Surface) -> bool,
     ) -> Vec<Piece<'c>> {
-        let Some([least, most]) = self.envelope.distance_m else { return Vec::new() };
+        let Some([least, most]) = candidate.distance_m else { return Vec::new() };
         let mut pieces = Vec::new();
         for sighted in &candidate.between {
             let mut ends: Vec<f64> = steps([least, most]).collect();

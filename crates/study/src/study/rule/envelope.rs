@@ -205,6 +205,11 @@ pub(in crate::study) fn scene_at(ranges: &Ranges, place: &[f64]) -> Option<State
 
 /// Corners and a few scenes between them.
 fn scattered(ranges: &Ranges) -> Vec<State> {
+    scattered_places(ranges).iter().filter_map(|place| scene_at(ranges, place)).collect()
+}
+
+/// Their places in the unit cube, in the order of [`all`].
+pub(in crate::study) fn scattered_places(ranges: &Ranges) -> Vec<Vec<f64>> {
     let ranges_all = all(ranges);
     let free: Vec<usize> = (0..ranges_all.len()).filter(|&i| ranges_all[i][0] < ranges_all[i][1]).collect();
     let lay = |value: &dyn Fn(usize) -> f64| {
@@ -219,10 +224,12 @@ fn scattered(ranges: &Ranges) -> Vec<State> {
         let point = lattice.point(index);
         lay(&|i| point[i])
     }));
-    let mut states: Vec<State> = places.filter_map(|place| scene_at(ranges, &place)).collect();
+    let mut places: Vec<Vec<f64>> = places.filter(|place| scene_at(ranges, place).is_some()).collect();
     // Where hardly any lighting fits beneath 1, the least of it does.
-    states.extend(scene_at(ranges, &lay(&|_| 0.0)).filter(|_| states.is_empty()));
-    states
+    if places.is_empty() {
+        places.push(lay(&|_| 0.0));
+    }
+    places
 }
 
 #[cfg(test)]

@@ -14,7 +14,8 @@
 //! steps with random shifts (Cranley and Patterson, SIAM J. Numer. Anal. 13, 904 (1976)), whose spread is the error.
 
 use super::super::Study;
-use super::RuleStudy;
+use super::apart::TellApart;
+use super::approach::Moving;
 use super::envelope::{all, scene_at};
 use super::results::{EmissivityError, IdealCamera, LightTime, Neighbourhood, NotIdentifiable};
 use hadar::demand::{self, Thing};
@@ -48,7 +49,7 @@ struct Drawn {
     state: State,
 }
 
-impl RuleStudy {
+impl TellApart {
     /// The share of the envelope in which an ideal camera does not tell the materials apart.
     pub(super) fn not_identifiable(&self, seed: u64) -> Result<NotIdentifiable> {
         let cameras: Vec<&Camera> = self.cameras().collect();
@@ -103,7 +104,7 @@ impl RuleStudy {
             why,
             distance_m: near.first().and_then(|study| study.scenario.target.distance_m),
             required: self.required,
-            units: self.rule.scenario.units(),
+            units: self.scenario.units(),
         };
         Ok(NotIdentifiable {
             fraction,
@@ -126,13 +127,15 @@ impl RuleStudy {
     /// The longest that the rule allows to collect light, s, and why.
     fn longest(&self, cameras: &[&Camera]) -> (f64, LightTime) {
         let frames = cameras.iter().map(|camera| camera.frames).max().unwrap_or(1);
-        let speed = self.rule.scenario.requirement.speed_m_s;
-        let least = self.envelope.distance_m.map(|[least, _]| least);
-        let sharp = cameras.iter().filter_map(|camera| Some(Motion::of(camera, least)?.longest_s(speed?)));
-        match (sharp.reduce(f64::max), speed, self.envelope.distance_m) {
-            (Some(exposure), Some(speed_m_s), Some([distance_m, _])) => (
+        let moving = self.moving();
+        let sharp = cameras.iter().filter_map(|camera| {
+            let Moving { speed_m_s, distance_m } = moving?;
+            Some(Motion::of(camera, distance_m)?.longest_s(speed_m_s))
+        });
+        match (sharp.reduce(f64::max), moving) {
+            (Some(exposure), Some(Moving { speed_m_s, distance_m: Some(distance_m) })) => (
                 exposure * f64::from(frames),
-                LightTime::Sharp { frames, speed_m_s, distance_m, units: self.rule.scenario.units() },
+                LightTime::Sharp { frames, speed_m_s, distance_m, units: self.scenario.units() },
             ),
             _ => {
                 let longest = cameras.iter().map(|camera| camera.integration_s()).fold(0.0, f64::max);

@@ -1,39 +1,19 @@
 //! What comes of a rule, as data.
 
-use crate::scenario::{Rule, Units};
+use super::clauses::Grade;
+use crate::scenario::Units;
+use crate::scenario::rule::Verdict;
 use crate::study::size::Solutions;
 use crate::study::{NearestState, Shortfall, Warning};
-use hadar::demand::Work;
 use hadar::instrument::Readout;
 use hadar::policy::envelope::Certificate;
+use hadar::policy::stop::Decision;
 use hadar::policy::{Quantity, Solution};
 use std::collections::BTreeMap;
 
-/// Which cameras meet a rule.
-#[derive(Debug, Clone, serde::Serialize)]
-#[non_exhaustive]
-pub struct RuleAnswer {
-    /// The rule with its defaults filled in.
-    pub rule: Rule,
-    /// Which cameras do, in JSON a sentence.
-    pub sentence: WhoMeets,
-    /// What is demanded.
-    pub requirement: RuleRequirement,
-    /// Where it is demanded.
-    pub envelope: EnvelopeResult,
-    /// Every camera, in the order of the rule.
-    pub cameras: Vec<CameraVerdict>,
-    /// The part of the envelope in which no camera could do it; `None` where only the verdict was asked for.
-    pub not_identifiable: Option<NotIdentifiable>,
-    /// What the reader must know; what concerns one camera is with that camera.
-    pub warnings: Vec<Warning>,
-    /// What it took.
-    pub stats: Work,
-}
-
 /// Names of the cameras that meet a rule, and of the others. Its `Display` is a sentence, and another one where
 /// placeholders decide.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct WhoMeets {
     /// Those that do, each with what it hangs on.
     pub meet: Vec<(String, Option<Proviso>)>,
@@ -126,6 +106,10 @@ pub struct EnvelopeResult {
 pub struct CameraVerdict {
     /// Its name.
     pub name: String,
+    /// What comes of it.
+    pub verdict: Verdict,
+    /// How that is known.
+    pub grade: Grade,
     /// Whether it meets the rule.
     pub passes: bool,
     /// What it does not meet.
@@ -161,6 +145,8 @@ pub struct CameraVerdict {
     /// The longest exposure without a pixel of blur and without a full well, s; 0 where the frames alone take too long, `None`
     /// where neither can be known.
     pub longest_exposure_s: Option<f64>,
+    /// How the vehicle comes nearer, if that is said.
+    pub approach: Option<ApproachResult>,
     /// What the reader must know.
     pub warnings: Vec<Warning>,
 }
@@ -343,4 +329,36 @@ pub struct Neighbourhood {
     pub temperature_difference_k: f64,
     /// 1 − ΣV at most.
     pub unlit: f64,
+}
+
+/// How a vehicle comes to a stop before the target.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[non_exhaustive]
+pub struct StopResult {
+    /// At the lowest speed: the least distance of a decision.
+    pub slowest: Decision,
+    /// At the highest speed: the greatest distance.
+    pub fastest: Decision,
+    /// At the speed that leaves the least time; `None` where nothing is said of the start.
+    pub hastiest: Option<Decision>,
+    /// At the speed at which the picture moves fastest.
+    pub swiftest: Decision,
+}
+
+/// A camera while its vehicle comes nearer.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[non_exhaustive]
+pub struct ApproachResult {
+    /// Distance at the highest speed when the first of its frames begins, m.
+    pub seen_from_m: f64,
+    /// Time until all bands of all its frames are read, s.
+    pub needed_s: f64,
+    /// Frames that it lays over each other.
+    pub frames_needed: u32,
+    /// Least time until the decision must stand, s; `None` where nothing is said of the start.
+    pub time_s: Option<f64>,
+    /// Frames of all bands that fit into it.
+    pub frames_within: Option<u32>,
+    /// Side of what a pixel sees at the greatest distance of a decision, m.
+    pub footprint_m: f64,
 }

@@ -5,9 +5,12 @@
 //! that is above that, not its own worst case to 1 %.
 
 use super::super::{NearestState, Shortfall, Study, Surface, Warning, warn};
+use super::apart::{Candidate, TellApart};
+use super::approach::Approach;
+use super::clauses::Grade;
 use super::envelope::{Estimate, Sighted, brightest};
 use super::results::{CameraVerdict, Certified, Fixes, LimitingScene, Proviso, WithoutPlaceholders};
-use super::{Candidate, RuleStudy};
+use crate::scenario::rule::Verdict;
 use hadar::demand::{self, Reason, Thing};
 use hadar::error::{Error, Result};
 use hadar::fisher::Nuisance;
@@ -53,7 +56,7 @@ impl Searched {
     }
 }
 
-impl RuleStudy {
+impl TellApart {
     /// The verdict on one camera; `alone` asks for no more than it. `progress` is told how many pairs are done.
     pub(super) fn judged(
         &self,
@@ -76,7 +79,7 @@ impl RuleStudy {
             fails_by.push(Shortfall::Distance);
         }
         fails_by.extend(&image.spoiled);
-        if self.rule.scenario.requirement.speed_m_s.is_some() && image.blur.is_none() {
+        if self.moving().is_some() && image.blur.is_none() {
             // What cannot be said is not met.
             fails_by.push(Shortfall::MotionUnknown);
         }
@@ -84,11 +87,17 @@ impl RuleStudy {
         let gap = worst.lower_bound.filter(|_| distance > 0.0).map(|bound| 1.0 - bound / distance);
         let certificate =
             worst.certificate.map_or_else(Certified::counterexample, |found| Certified::of(found, gap));
+        let mut grade = Grade::Proved;
         if passes && worst.lower_bound.is_none_or(|bound| bound < self.required) {
             warnings.push(Warning::NotProved);
+            grade = Grade::Searched;
         }
         if at.counting().is_some_and(|own| own.var_added != sighted.counting.var_added) {
             warnings.push(Warning::BrightestNoise);
+            // A scene that fails with more noise than it has itself may do with its own.
+            if fails_by.as_slice() == [Shortfall::Distance] {
+                grade = Grade::Searched;
+            }
         }
         let mut limiting = limiting(
             candidate.distance_matters,
@@ -161,12 +170,15 @@ impl RuleStudy {
             motion_blur_pixels: image.blur,
             brightest_reading: image.reading,
             longest_exposure_s: image.longest_exposure_s,
+            approach: candidate.approach.as_ref().map(|approach| approach.result),
+            verdict: if passes { Verdict::Meets } else { Verdict::Fails },
+            grade,
             warnings,
         })
     }
 
     fn is_unknown(&self, nuisance: Nuisance) -> bool {
-        self.rule.scenario.unknown.nuisances.contains(&nuisance)
+        self.scenario.unknown.nuisances.contains(&nuisance)
     }
 
     /// The image that a camera makes of the brightest scene, from the least distance.
@@ -177,10 +189,10 @@ impl RuleStudy {
             let (state, camera) = (brightest(&ranges), Some(camera.clone()));
             let bright = Study { state, camera, ..near.clone() };
             let Some(seen) = bright.camera_result(bright.photon_radiance()) else { continue };
-            image.blur = seen.motion_blur_pixels;
             image.reading = image.reading.max(seen.brightest_reading);
         }
         let bands = candidate.near.first().map_or(1, |near| near.bands.len());
+        image.blur = self.moving().and_then(|moving| moving.blur_pixels(camera, bands));
         let blurred =
             image.blur.map(|blur| camera.exposure_of_sweep_s(bands, camera.sweep_s(bands) / blur).max(0.0));
         let full = camera.full_well.map(|full| camera.exposure_s * full / image.reading);
@@ -196,6 +208,8 @@ impl RuleStudy {
         {
             image.spoiled.push(Shortfall::FrameRate);
         }
+        let approach = self.stop.map(|spec| Approach::of(spec.stop(), camera, bands));
+        image.spoiled.extend(approach.and_then(|approach| approach.shortfall()));
         image
     }
 
@@ -206,17 +220,16 @@ impl RuleStudy {
         let state =
             near.ranges(&self.envelope).map_or_else(|_| near.state.clone(), |ranges| brightest(&ranges));
         let mut warnings = Study { state, ..near.clone() }.camera_warnings();
-        if let (Some(speed), 2..) = (self.rule.scenario.requirement.speed_m_s, camera.frames) {
+        if let (Some(speed), 2..) = (self.speed_m_s(), camera.frames) {
             let time_s = camera.acquisition_s(near.bands.len());
             let (frames, way_m) = (camera.frames, time_s * speed);
             warnings.push(Warning::FramesInMotion { frames, time_s, way_m });
         }
-        let farthest_m = self.envelope.distance_m.map(|[_, most]| most);
+        let farthest_m = candidate.distance_m.map(|[_, most]| most);
         warnings.extend(near.size_unknown(camera, farthest_m));
         let assumed = camera.assumed.iter().cloned();
         warnings.extend(assumed.map(|figure| Warning::CameraFigureAssumed { figure }));
-        if self.rule.scenario.requirement.speed_m_s.is_some() && self.image(candidate, camera).blur.is_none()
-        {
+        if self.moving().is_some() && self.image(candidate, camera).blur.is_none() {
             warnings.push(Warning::RuleMotionBlurUnknown);
         }
         warnings

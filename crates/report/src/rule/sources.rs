@@ -1,0 +1,87 @@
+//! Where the figures of a rule are from, and what its tests say, as text.
+
+use crate::text::significant;
+use hadar_study::scenario::Rule;
+use hadar_study::scenario::rule::{Citation, Figure, Ground};
+use hadar_study::study::{TestResult, Told};
+use std::fmt::Write as _;
+
+/// Every figure below what stands behind it.
+#[must_use]
+pub fn sources(rule: &Rule) -> String {
+    let figures = rule.figures();
+    let name = rule.about.name.as_deref().unwrap_or("This rule");
+    let of = |citation: &Citation| figures.iter().filter(|figure| citation.covers(&figure.key)).count();
+    let (documents, choices): (Vec<&Citation>, Vec<&Citation>) =
+        rule.sources.iter().partition(|citation| matches!(citation.ground, Ground::Document { .. }));
+    let count = |citations: &[&Citation]| citations.iter().map(|one| of(one)).sum::<usize>();
+    let mut out = format!(
+        "{name}: {} figures, {} of them of documents, {} choices of its author.\n",
+        figures.len(),
+        count(&documents),
+        count(&choices)
+    );
+    for line in dates(rule) {
+        let _ = writeln!(out, "{line}");
+    }
+    for citation in &rule.sources {
+        out.push('\n');
+        match &citation.ground {
+            Ground::Document { document, clause, quote, date, mark } => {
+                let _ = writeln!(out, "{document}, {clause} ({date}, {})\n  \"{quote}\"", mark.name());
+            }
+            Ground::Choice(reason) => {
+                let _ = writeln!(out, "Choice: {reason}");
+            }
+        }
+        for Figure { key, value, line, .. } in figures.iter().filter(|figure| citation.covers(&figure.key)) {
+            let _ = writeln!(out, "  line {line}: {key} = {value}");
+        }
+    }
+    out
+}
+
+/// Whose the rule is and when it holds, a line each.
+pub(super) fn dates(rule: &Rule) -> Vec<String> {
+    let about = &rule.about;
+    let mut lines = Vec::new();
+    lines.extend(about.status.as_ref().map(|status| format!("Status: {status}")));
+    match (about.from, about.until) {
+        (Some(from), Some(until)) => lines.push(format!("Holds: from {from} until {until}")),
+        (Some(from), None) => lines.push(format!("Holds: from {from}")),
+        (None, Some(until)) => lines.push(format!("Holds: until {until}")),
+        (None, None) => {}
+    }
+    lines
+}
+
+/// A line a test, and what was found instead.
+#[must_use]
+pub fn tests(results: &[TestResult]) -> String {
+    let failed = results.iter().filter(|result| !result.passes).count();
+    let mut out = match failed {
+        0 => format!("All {} tests of the rule hold.\n", results.len()),
+        failed => format!("{failed} of {} tests of the rule do not hold.\n", results.len()),
+    };
+    for result in results {
+        let clause = result.clause.as_ref().map_or_else(String::new, |name| format!(", {name}"));
+        let holds = if result.passes { "holds" } else { "does not hold" };
+        let checks: Vec<String> = result
+            .checks
+            .iter()
+            .map(|check| {
+                let told = |told: Told| match told {
+                    Told::Verdict(verdict) => verdict.name().to_owned(),
+                    Told::Number(number) => significant(number, 4),
+                };
+                let found = check.found.map_or_else(|| "nothing".into(), told);
+                match check.passes {
+                    true => format!("{} {found}", check.what),
+                    false => format!("{} is {found}, not {}", check.what, told(check.expected)),
+                }
+            })
+            .collect();
+        let _ = writeln!(out, "  {}{clause}: {holds}: {}", result.camera, checks.join(", "));
+    }
+    out
+}

@@ -1,0 +1,425 @@
+//! Clauses: what a rule demands, each in scenes of its own.
+//!
+//! A clause (`[[clause]]`) has a `name`, a `kind`, a `text`, and any table of a scenario, which then stands in the place of the
+//! rule's own: `[clause.envelope]`, `[[clause.environment]]`, `[clause.requirement]`, `[clause.stop]`. A rule without clauses is
+//! one: to tell its target apart. What a clause demands, by its kind:
+//!
+//! * `tell-apart`: the target from its alternatives, as reliably as `[requirement]` says;
+//! * `false-alarm`: `things` that are not the rule's target must not be taken for it: they are the target of this clause, and the
+//!   materials of the rule's target are its alternatives;
+//! * `resolution`: `pixels` on the target of `target.size`;
+//! * `temperature-error`: the temperature of the target within `temperature_error`, at `coverage_factor` deviations;
+//! * `depth-error`: the distance of an `object` of `[clause.scene]` within `depth_error`, seen by `[clause.stereo]`.
+
+use super::stop::StopSpec;
+use crate::scenario::entries::{Document, Entries, Part};
+use crate::scenario::paths::{Paths, material};
+use crate::scenario::range::{DepthRequirement, SceneSpec, Stereo, read as depth, write as depth_written};
+use crate::scenario::read::{of_root, requirement};
+use crate::scenario::section::{Entry, Section, without_repetition};
+use crate::scenario::{Envelope, MaterialRef, Reliability, Requirement, Scenario, Source, write};
+use hadar::allowed::ABOVE_ZERO;
+use hadar::error::{Error, Result};
+use hadar::units::Dimension;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Tables of a scenario that a clause may have.
+const TABLES: &[&str] = &[
+    "target",
+    "background",
+    "environment",
+    "alternatives",
+    "atmosphere",
+    "bands",
+    "unknown",
+    "requirement",
+    "envelope",
+    "stop",
+];
+/// Deviations within which a temperature must lie, where nothing is said: 95 %.
+const COVERAGE_FACTOR: f64 = 2.0;
+
+/// One demand, with the scenes in which it must hold.
+#[derive(Debug, Clone)]
+pub struct Clause {
+    /// Its name; none of a rule without clauses.
+    pub name: Option<String>,
+    /// Its wording.
+    pub text: Option<String>,
+    /// What is demanded.
+    pub demand: Demand,
+    /// Task, surroundings, bands, unknowns, requirement and envelope; without a camera.
+    pub scenario: Scenario,
+    /// How the vehicle comes to a stop, if distances follow from that.
+    pub stop: Option<StopSpec>,
+    /// Where it stands, e.g. `clause[0]`; empty for the whole rule.
+    pub key: String,
+}
+
+/// What a clause demands.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Demand {
+    /// The target is told from its alternatives.
+    TellApart,
+    /// Things are not taken for the rule's target.
+    FalseAlarm,
+    /// So many pixels across the target.
+    Resolution {
+        /// Pixels, not whole ones alone.
+        pixels: f64,
+    },
+    /// The temperature of the target is known.
+    TemperatureError {
+        /// How well, K.
+        error_k: f64,
+        /// Standard deviations that must lie within.
+        coverage_factor: f64,
+    },
+    /// The distance of something is known.
+    DepthError(Box<DepthDemand>),
+}
+
+/// A distance that must be known.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DepthDemand {
+    /// The street.
+    pub scene: SceneSpec,
+    /// The pair of cameras.
+    pub stereo: Stereo,
+    /// How well, and in what share of the windows.
+    pub requirement: DepthRequirement,
+    /// Of what.
+    pub object: DepthObject,
+}
+
+/// An object of the street whose distance is that of the clause.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum DepthObject {
+    /// The person.
+    Person,
+    /// The car.
+    Car,
+}
+
+impl DepthObject {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Person, Self::Car];
+
+    /// The name in a rule, which is that of the rendered surface.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Person => "person",
+            Self::Car => "car",
+        }
+    }
+}
+
+impl Demand {
+    /// The name of its kind, e.g. `tell-apart`.
+    #[must_use]
+    pub const fn kind(&self) -> &'static str {
+        match self {
+            Self::TellApart => "tell-apart",
+            Self::FalseAlarm => "false-alarm",
+            Self::Resolution { .. } => "resolution",
+            Self::TemperatureError { .. } => "temperature-error",
+            Self::DepthError(_) => "depth-error",
+        }
+    }
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    TellApart,
+    FalseAlarm,
+    Resolution,
+    TemperatureError,
+    DepthError,
+}
+
+const KINDS: [(&str, Kind); 5] = [
+    ("tell-apart", Kind::TellApart),
+    ("false-alarm", Kind::FalseAlarm),
+    ("resolution", Kind::Resolution),
+    ("temperature-error", Kind::TemperatureError),
+    ("depth-error", Kind::DepthError),
+];
+
+/// The clauses of a rule, at least one, and the scenario that they share.
+pub(super) fn read(root: &Section<'_>, source: &Source) -> Result<(Scenario, Vec<Clause>)> {
+    let scenario = Scenario { source: source.clone(), ..of_root(root, requirement)? };
+    let Some(entry) = root.get("clause") else {
+        let stop = root.read("stop", StopSpec::read)?;
+        let (name, text) = (None, None);
+        let clause = Clause {
+            name,
+            text,
+            demand: Demand::TellApart,
+            scenario: scenario.clone(),
+            stop,
+            key: String::new(),
+        };
+        clause.check()?;
+        return Ok((scenario, vec![clause]));
+    };
+    let items = entry.items("each clause as [[clause]], in double brackets")?;
+    if items.is_empty() {
+        let instead = "write [[clause]] with name and kind = \"tell-apart\", or leave it out";
+        return Err(entry.fail(Error::malformed("the list is empty", instead)));
+    }
+    let mut clauses: Vec<Clause> = Vec::with_capacity(items.len());
+    for (index, item) in items.iter().enumerate() {
+        let clause = one(item, root, &scenario, format!("clause[{index}]"))?;
+        if clauses.iter().any(|other| other.name == clause.name) {
+            let error = Error::malformed("another clause is called like this", "give it a name of its own");
+            return Err(error.at(source.place(&format!("clause[{index}].name"))));
+        }
+        clauses.push(clause);
+    }
+    Ok((scenario, clauses))
+}
+
+fn one(item: &Entry<'_>, root: &Section<'_>, rule: &Scenario, key: String) -> Result<Clause> {
+    // What is of one kind alone is not known in the others.
+    let kind = item.table()?.choice("kind", &KINDS)?.unwrap_or(Kind::TellApart);
+    let own: &[&str] = match kind {
+        Kind::FalseAlarm => &["name", "kind", "text", "things"],
+        Kind::DepthError => &["name", "kind", "text", "scene", "stereo"],
+        _ => &["name", "kind", "text"],
+    };
+    let plain = item.section(&[own, TABLES].concat())?;
+    let text = |key, example: &str| plain.read(key, |entry| Ok(entry.text(example)?.trim().to_owned()));
+    let name = match text("name", "\"crossing at night\"")? {
+        Some(name) => name,
+        None => {
+            return Err(plain.fail(
+                "name",
+                Error::malformed("the clause has no name", "write name = \"crossing at night\""),
+            ));
+        }
+    };
+    let said = text("text", "\"a pedestrian crosses\"")?;
+    let section = plain.clone().over(root);
+    let stop = section.read("stop", StopSpec::read)?;
+    let silent = |_: &Entry<'_>| Ok(Requirement::default());
+    let (demand, mut scenario) = match kind {
+        Kind::TellApart => (Demand::TellApart, of_root(&section, requirement)?),
+        Kind::FalseAlarm => (Demand::FalseAlarm, false_alarm(&section, &plain, rule)?),
+        Kind::Resolution => (resolution(&section, &plain)?, of_root(&section, silent)?),
+        Kind::TemperatureError => (temperature_error(&plain)?, of_root(&section, silent)?),
+        Kind::DepthError => (depth_error(&plain, stop.is_some())?, of_root(&section, silent)?),
+    };
+    scenario.title.clone_from(&rule.title);
+    scenario.source = relaid(&rule.source, &key);
+    let clause = Clause { name: Some(name), text: said, demand, scenario, stop, key };
+    clause.check()?;
+    Ok(clause)
+}
+
+/// The source of a clause's scenario: its own tables stand where those of the rule stood.
+fn relaid(source: &Source, key: &str) -> Source {
+    fn lay<T: Clone>(of: &BTreeMap<String, T>, key: &str) -> BTreeMap<String, T> {
+        let own: Vec<(String, T)> = of
+            .iter()
+            .filter_map(|(full, value)| {
+                Some((full.strip_prefix(key)?.strip_prefix('.')?.to_owned(), value.clone()))
+            })
+            .collect();
+        let head = |full: &str| full.split(['.', '[']).next().unwrap_or_default().to_owned();
+        let replaced: BTreeSet<String> = own.iter().map(|(full, _)| head(full)).collect();
+        let kept = of.iter().filter(|(full, _)| !replaced.contains(&head(full)));
+        kept.map(|(full, value)| (full.clone(), value.clone())).chain(own).collect()
+    }
+    Source { path: source.path.clone(), lines: lay(&source.lines, key), texts: lay(&source.texts, key) }
+}
+
+/// The scenario of things that must not be taken for the rule's target.
+fn false_alarm(section: &Section<'_>, plain: &Section<'_>, rule: &Scenario) -> Result<Scenario> {
+    let example = "[\"steel-rough\"]";
+    let things = plain.require("things", example)?;
+    let items = things.items(&format!("things = {example}"))?;
+    let things: Vec<MaterialRef> = match items.is_empty() {
+        true => {
+            return Err(
+                things.fail(Error::malformed("the list is empty", format!("write things = {example}")))
+            );
+        }
+        false => without_repetition(&items, material)?,
+    };
+    let mut scenario = of_root(section, requirement)?;
+    if !matches!(scenario.requirement.reliability, Reliability::Rates { .. }) {
+        let found = "nothing says how rare false alarms must be";
+        let instead =
+            "write false_alarm_probability = 0.001 beside detection_probability in [clause.requirement]";
+        return Err(plain.fail("requirement", Error::malformed(found, instead)));
+    }
+    let own_temperature = plain.has_own("target")
+        || plain
+            .get("envelope")
+            .is_some_and(|entry| entry.table().is_ok_and(|own| own.has_own("temperature")));
+    if !own_temperature {
+        let found = "nothing says how warm the things are";
+        let instead = "write temperature = [\"0 degC\", \"60 degC\"] in [clause.envelope]";
+        return Err(plain.fail("envelope.temperature", Error::malformed(found, instead)));
+    }
+    let people = rule.envelope.as_ref().and_then(|envelope| envelope.materials.clone());
+    let people = people.unwrap_or_else(|| vec![rule.target.material.clone()]);
+    if let Some(own) = scenario.envelope.as_ref().filter(|_| plain.has_own("envelope"))
+        && own.materials.is_some()
+    {
+        let instead = "leave them to `things`";
+        return Err(plain.fail("envelope.materials", Error::malformed("materials beside `things`", instead)));
+    }
+    let own_alternatives = plain
+        .get("alternatives")
+        .is_some_and(|entry| entry.table().is_ok_and(|own| own.has_own("materials")));
+    if !own_alternatives {
+        scenario.alternatives.materials = Some(people);
+    }
+    if let Some(first) = things.first() {
+        scenario.target.material = first.clone();
+    }
+    scenario.envelope.get_or_insert_default().materials = Some(things);
+    Ok(scenario)
+}
+
+fn resolution(section: &Section<'_>, plain: &Section<'_>) -> Result<Demand> {
+    let requirement = plain.require("requirement", "{ pixels = 6 }")?.section(&["pixels"])?;
+    let size =
+        section.get("target").and_then(|entry| entry.table().ok()).is_some_and(|own| own.has_own("size"));
+    if !size {
+        let found = "nothing says how large the target is";
+        return Err(plain.fail("target.size", Error::malformed(found, "write size = \"0.5 m\" in [target]")));
+    }
+    let pixels = requirement.require("pixels", "6")?.number("6", ABOVE_ZERO)?;
+    Ok(Demand::Resolution { pixels })
+}
+
+fn temperature_error(plain: &Section<'_>) -> Result<Demand> {
+    let requirement = plain.require("requirement", "{ temperature_error = \"0.5 K\" }")?;
+    let requirement = requirement.section(&["temperature_error", "coverage_factor"])?;
+    let error = requirement.require("temperature_error", "\"0.5 K\"")?;
+    Ok(Demand::TemperatureError {
+        error_k: error.quantity(Dimension::TemperatureDifference, ABOVE_ZERO)?,
+        coverage_factor: requirement.number("coverage_factor", "2", ABOVE_ZERO)?.unwrap_or(COVERAGE_FACTOR),
+    })
+}
+
+fn depth_error(plain: &Section<'_>, stops: bool) -> Result<Demand> {
+    let objects = DepthObject::ALL.map(|object| (object.name(), object));
+    let entry = plain.require("requirement", "{ depth_error = \"1 m\" }")?;
+    let object = entry.table()?.choice("object", &objects)?.unwrap_or(DepthObject::Person);
+    let requirement = depth::requirement_beside(&entry, &["object"])?;
+    let scene = match plain.get("scene") {
+        Some(entry) => depth::scene(&entry)?,
+        None => SceneSpec::default(),
+    };
+    let own = match object {
+        DepthObject::Person => ("scene.person_distance", scene.person_distance_m),
+        DepthObject::Car => ("scene.car_distance", scene.car_distance_m),
+    };
+    if stops && own.1.is_some() {
+        let found = "a distance beside [stop], from which it follows";
+        return Err(plain.fail(own.0, Error::malformed(found, "leave it out")));
+    }
+    let stereo = depth::stereo_of_scene(&plain.require("stereo", "{ baseline = \"0.2 m\" }")?)?;
+    Ok(Demand::DepthError(Box::new(DepthDemand { scene, stereo, requirement, object })))
+}
+
+impl Clause {
+    /// The envelope, with the scenario's own values where it is silent.
+    #[must_use]
+    pub fn envelope(&self) -> Envelope {
+        self.scenario.envelope.clone().unwrap_or_default().filled(&self.scenario)
+    }
+
+    /// Refuses what says again what follows from `[stop]`.
+    fn check(&self) -> Result<()> {
+        if self.stop.is_none() {
+            return Ok(());
+        }
+        let scenario = &self.scenario;
+        let twice = [
+            (
+                "requirement.speed",
+                scenario.requirement.speed_m_s.is_some(),
+                "a speed beside [stop], which has one",
+            ),
+            (
+                "target.distance",
+                scenario.target.distance_m.is_some(),
+                "a distance beside [stop], from which it follows",
+            ),
+            (
+                "envelope.distance",
+                scenario.envelope.as_ref().is_some_and(|envelope| envelope.distance_m.is_some()),
+                "distances beside [stop], from which they follow",
+            ),
+        ];
+        match twice.into_iter().find(|(_, given, _)| *given) {
+            Some((key, _, found)) => Err(Error::malformed(found, "leave it out").at(scenario.place(key))),
+            None => Ok(()),
+        }
+    }
+
+    /// What it says itself, then the tables in which it differs from the rule.
+    pub(super) fn document(&self, rule: &Scenario, paths: Paths<'_>) -> (Entries, Document) {
+        let mut own = Entries::default()
+            .put_if("name", self.name.as_deref())
+            .put("kind", self.demand.kind())
+            .put_if("text", self.text.as_deref());
+        let mut scenario = self.scenario.clone();
+        if self.demand == Demand::FalseAlarm
+            && let Some(envelope) = &mut scenario.envelope
+            && let Some(things) = envelope.materials.take()
+        {
+            let things: Vec<String> = things.iter().map(|material| paths.material(material)).collect();
+            own = own.put("things", things);
+            scenario.target.material = rule.target.material.clone();
+        }
+        let shared = rule.document(paths);
+        let written =
+            |name: &str, part: &Part| shared.iter().any(|(other, same)| *other == name && same == part);
+        let mut document: Document = scenario
+            .document(paths)
+            .into_iter()
+            .filter(|(name, part)| {
+                let needed = *name == "alternatives" && self.demand == Demand::FalseAlarm;
+                TABLES.contains(name) && *name != "requirement" && (needed || !written(name, part))
+            })
+            .collect();
+        match &self.demand {
+            Demand::TellApart | Demand::FalseAlarm => {
+                let part = Part::Table(write::requirement(&scenario.requirement));
+                if !written("requirement", &part) {
+                    document.push(("requirement", part));
+                }
+            }
+            Demand::Resolution { pixels } => {
+                document.push(("requirement", Part::Table(Entries::default().put("pixels", *pixels))));
+            }
+            Demand::TemperatureError { error_k, coverage_factor } => {
+                let entries = Entries::default()
+                    .put_quantity("temperature_error", Dimension::TemperatureDifference, Some(*error_k))
+                    .put("coverage_factor", *coverage_factor);
+                document.push(("requirement", Part::Table(entries)));
+            }
+            Demand::DepthError(demand) => {
+                let requirement =
+                    depth_written::requirement(demand.requirement).put("object", demand.object.name());
+                document.push(("requirement", Part::Table(requirement)));
+                document.push(("scene", Part::Table(depth_written::scene(&demand.scene, paths))));
+                document.push(("stereo", Part::Table(depth_written::stereo(&demand.stereo))));
+            }
+        }
+        if let Some(stop) = self.stop {
+            document.push(("stop", Part::Table(stop.entries())));
+        }
+        let placed = |(name, part)| match part {
+            Part::Table(entries) => (name, Part::Table(entries.read_from(&format!("{}.{name}", self.key)))),
+            other => (name, other),
+        };
+        (own, document.into_iter().map(placed).collect())
+    }
+}

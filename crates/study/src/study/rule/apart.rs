@@ -1,0 +1,302 @@
+//! A clause that tells materials apart: every camera against a distance that must hold in all scenes of an envelope.
+//!
+//! A camera meets it if its least statistical distance over the envelope, over all materials of the target and all
+//! alternatives, is at least that demanded, if nothing moves by a pixel while all bands are exposed, if the brightest scene
+//! does not fill its well, and if it has read its frames before the decision must stand (`approach`). It fails as soon
+//! as one scene below the requirement is known; that it meets it is proved where the lower bound of the search is above.
+//!
+//! Distances are nearest distances with the camera's own noise (`envelope`); gray areas are said: what was only
+//! searched is called so.
+
+use super::RuleAsked;
+use super::approach::{Approach, Moving};
+use super::cameras::Named;
+use super::clauses::ApartAnswer;
+use super::envelope::Sighted;
+use super::results::{CameraVerdict, EnvelopeResult, Quotable, RuleRequirement};
+use crate::scenario::rule::{Clause, StopSpec};
+use crate::scenario::{CameraSpec, DistanceKind, Envelope, MaterialRef, Rule, Scenario};
+use crate::study::{Study, Warning};
+use hadar::demand::{self, Reason, Skipping, Thing};
+use hadar::error::{Error, Result};
+use hadar::identifiability::detection;
+use hadar::material::Library;
+
+/// Relative difference of counts or variance from which on a distance matters.
+const NOTICEABLE: f64 = 1e-3;
+/// Distances that are searched where one between the ends may be the worst, both ends among them.
+pub(super) const DISTANCES: usize = 9;
+
+/// A camera of a rule, before every material and from the distances that may be the worst.
+#[derive(Debug, Clone)]
+pub(super) struct Candidate {
+    pub(super) name: String,
+    /// From where it looks, the least distance first, m.
+    pub(super) distance_m: Option<[f64; 2]>,
+    /// How the vehicle comes nearer, if that is said.
+    pub(super) approach: Option<Approach>,
+    pub(super) sighted: Vec<Sighted>,
+    /// Whether what is counted depends on the distance.
+    pub(super) distance_matters: bool,
+    /// The materials for which a distance between the ends may be the worst, from the least distance.
+    pub(super) between: Vec<Sighted>,
+    /// Of the others: no distance between has less than this share of the statistical distance from the farthest.
+    pub(super) share: f64,
+    /// From the least distance, every material in turn.
+    pub(super) near: Vec<Study>,
+}
+
+impl Candidate {
+    /// Pairs of materials that are searched, from every distance.
+    fn pairs(&self) -> usize {
+        self.sighted.iter().map(|sighted| sighted.study.alternatives.len()).sum()
+    }
+}
+
+/// A clause of a rule with everything it names looked up and checked.
+#[derive(Debug, Clone)]
+pub(super) struct TellApart {
+    /// With the defaults filled in that all cameras share.
+    pub(super) scenario: Scenario,
+    pub(super) stop: Option<StopSpec>,
+    pub(super) envelope: Envelope,
+    pub(super) candidates: Vec<Candidate>,
+    pub(super) required: f64,
+    pub(super) warnings: Vec<Warning>,
+}
+
+impl TellApart {
+    /// Looks up everything that a clause of a rule with these cameras names.
+    pub(super) fn new(rule: &Rule, clause: &Clause, cameras: &[Named], library: &Library) -> Result<Self> {
+        let mut scenario = clause.scenario.clone();
+        if scenario.requirement.by != DistanceKind::Nearest {
+            let found = "an envelope is searched by the nearest distance only";
+            let error = Error::malformed(found, "write by = \"nearest\", or leave the key out");
+            return Err(error.at(scenario.place("requirement.by")));
+        }
+        let envelope = clause.envelope();
+        let materials = envelope.materials.clone().unwrap_or_default();
+        for (index, material) in materials.iter().enumerate() {
+            if let MaterialRef::Name(name) = material {
+                let key = format!("envelope.materials[{index}]");
+                library.get(name).map_err(|error| error.at(scenario.place(&key)))?;
+            }
+        }
+        scenario.envelope = Some(envelope.clone());
+        let mut candidates: Vec<Candidate> = Vec::with_capacity(cameras.len());
+        let mut warnings: Vec<Warning> = Vec::new();
+        let mut alternatives: Vec<MaterialRef> = Vec::new();
+        for named in cameras.iter().enumerate() {
+            let candidate = candidate(rule, clause, named, &envelope, library)?;
+            for study in &candidate.near {
+                let new = study.warnings.iter().filter(|warning| !warnings.contains(warning));
+                let new: Vec<Warning> = new.cloned().collect();
+                warnings.extend(new);
+                for material in study.scenario.alternatives.materials.iter().flatten() {
+                    if !alternatives.contains(material) {
+                        alternatives.push(material.clone());
+                    }
+                }
+            }
+            if let Some(study) = candidate.near.first() {
+                // What the scenario left silent.
+                scenario.alternatives = study.scenario.alternatives.clone();
+            }
+            candidates.push(candidate);
+        }
+        scenario.alternatives.materials = Some(alternatives);
+        // Where nothing is said of them, cameras may have bands of their own.
+        let near = || candidates.iter().flat_map(|candidate| &candidate.near);
+        let source = near().next().map(|study| study.scenario.bands.source.clone());
+        if let Some(source) = source.filter(|one| near().all(|study| study.scenario.bands.source == *one)) {
+            scenario.bands.source = source;
+        }
+        let first = candidates.first().and_then(|candidate| candidate.near.first());
+        let required = first.map_or(1.0, |study| study.required);
+        Ok(Self { scenario, stop: clause.stop, envelope, candidates, required, warnings })
+    }
+
+    /// The first camera before the first material, from the least distance: what all of them share.
+    pub(super) fn study(&self) -> Option<&Study> {
+        self.candidates.first().and_then(|candidate| candidate.near.first())
+    }
+
+    /// Every camera with its defaults.
+    pub(super) fn specs(&self) -> impl Iterator<Item = CameraSpec> {
+        let near = self.candidates.iter().map(|candidate| candidate.near.first());
+        near.map(|near| near.and_then(|study| study.scenario.camera.clone()).unwrap_or_default())
+    }
+
+    /// Pairs of materials before all cameras.
+    pub(super) fn pairs(&self) -> usize {
+        self.candidates.iter().map(Candidate::pairs).sum()
+    }
+
+    /// What it says of every camera; `progress` is told how many pairs of materials before a camera are done.
+    pub(super) fn answer(&self, asked: &RuleAsked, progress: &dyn Fn(usize)) -> Result<ApartAnswer> {
+        let alone = asked.verdict_only && asked.skipping == Skipping::On;
+        let mut cameras = Vec::with_capacity(self.candidates.len());
+        let mut before = 0;
+        for candidate in &self.candidates {
+            let pairs = candidate.pairs();
+            cameras.push(self.judged(candidate, alone, &|done| progress(before + done.min(pairs)))?);
+            before += pairs;
+            progress(before);
+        }
+        let not_identifiable = if alone {
+            demand::spared(Thing::Sections, Reason::NotAsked, 1);
+            None
+        } else {
+            demand::computed(Thing::Sections, 1);
+            Some(self.not_identifiable(asked.seed)?)
+        };
+        let envelope = self.envelope_result();
+        let requirement = self.requirement(&cameras, &envelope, alone);
+        Ok(ApartAnswer { requirement, envelope, cameras, not_identifiable })
+    }
+
+    /// How fast the vehicle drives at most, m s⁻¹.
+    pub(super) fn speed_m_s(&self) -> Option<f64> {
+        let stop = self.stop.map(|spec| spec.stop().decisions()[1].speed_m_s);
+        stop.or(self.scenario.requirement.speed_m_s)
+    }
+
+    /// Speed and distance at which the picture moves fastest; `None` where no speed is demanded.
+    pub(super) fn moving(&self) -> Option<Moving> {
+        match &self.stop {
+            Some(spec) => Some(Moving::before(spec.stop())),
+            None => self.scenario.requirement.speed_m_s.map(|speed_m_s| Moving {
+                speed_m_s,
+                distance_m: self.envelope.distance_m.map(|[least, _]| least),
+            }),
+        }
+    }
+
+    fn envelope_result(&self) -> EnvelopeResult {
+        let point = |value: f64| [value; 2];
+        let scenario = &self.scenario;
+        let objects = &scenario.environment;
+        let studies = self.candidates.iter().flat_map(|candidate| &candidate.near);
+        let (mut materials, mut alternatives): (Vec<String>, Vec<String>) = (Vec::new(), Vec::new());
+        for study in studies {
+            let add = |names: &mut Vec<String>, name: &str| {
+                if !names.iter().any(|known| known == name) {
+                    names.push(name.to_owned());
+                }
+            };
+            add(&mut materials, &study.target.name);
+            study.alternatives.iter().for_each(|surface| add(&mut alternatives, &surface.name));
+        }
+        let Envelope { temperature_k, lighting, surroundings_k, distance_m, .. } = self.envelope.clone();
+        EnvelopeResult {
+            temperature_k: temperature_k.unwrap_or(point(scenario.target.temperature_k)),
+            lighting: lighting.unwrap_or_else(|| objects.iter().map(|o| point(o.lighting)).collect()),
+            surroundings_k: surroundings_k
+                .unwrap_or_else(|| objects.iter().map(|o| point(o.temperature_k)).collect()),
+            distance_m: self
+                .stop
+                .map(|spec| spec.stop().decisions().map(|one| one.distance_m))
+                .or(distance_m),
+            materials,
+            alternatives,
+        }
+    }
+
+    fn requirement(
+        &self,
+        cameras: &[CameraVerdict],
+        envelope: &EnvelopeResult,
+        alone: bool,
+    ) -> RuleRequirement {
+        let hardware: Option<Vec<f64>> = cameras.iter().map(|camera| camera.limiting.hardware_m2_s).collect();
+        let hardware = hardware.filter(|_| !alone);
+        let hardware_m2_s = hardware.map(|each| each.into_iter().fold(0.0, f64::max));
+        let speed_m_s = self.speed_m_s();
+        // A target smaller than its pixel, or air, takes light away that the figure of the hardware does not know of.
+        let plain = self.scenario.target.size_m.is_none() && self.scenario.atmosphere.is_none();
+        let quotable = Quotable {
+            envelope: envelope.clone(),
+            required: self.required,
+            speed_m_s,
+            hardware_m2_s: hardware_m2_s.filter(|_| plain),
+            units: self.scenario.units(),
+        };
+        RuleRequirement {
+            distance: self.required,
+            detection_probability: detection::probability(self.required),
+            speed_m_s,
+            hardware_m2_s,
+            quotable,
+        }
+    }
+}
+
+/// A camera before every material of the envelope.
+fn candidate(
+    rule: &Rule,
+    clause: &Clause,
+    (index, named): (usize, &Named),
+    envelope: &Envelope,
+    library: &Library,
+) -> Result<Candidate> {
+    let mut scenario = rule.with_camera(clause, index);
+    let mut approach = None;
+    let (mut sighted, mut near, mut distance_matters) = (Vec::new(), Vec::new(), false);
+    let (mut between, mut share) = (Vec::new(), 1.0_f64);
+    for material in envelope.materials.iter().flatten() {
+        scenario.target.material = material.clone();
+        let mut at = |distance_m: Option<f64>| {
+            scenario.target.distance_m = distance_m;
+            Study::new(&scenario, library).and_then(|study| Sighted::new(study, envelope))
+        };
+        let stop = clause.stop.as_ref().map(StopSpec::stop);
+        let least = match stop {
+            Some(stop) => Some(stop.decisions()[0].distance_m),
+            None => envelope.distance_m.map(|[least, _]| least),
+        };
+        let close = at(least)?;
+        near.push(close.study.clone());
+        let own = stop.map(|stop| Approach::of(stop, &named.camera, close.study.bands.len()));
+        let most = own.as_ref().map(|own| own.distance_m[1]).or(envelope.distance_m.map(|[_, most]| most));
+        approach = own.or(approach);
+        if least == most {
+            sighted.push(close);
+            continue;
+        }
+        let air = close.study.atmosphere.as_ref().zip(least.zip(most));
+        if let Some((air, (_, most))) = air {
+            let key = if stop.is_some() { "stop" } else { "envelope.distance" };
+            let place = |error: Error| error.at(clause.scenario.place(key));
+            air.table.optical_depth(&[], most).map_err(place)?;
+        }
+        let far = at(most)?;
+        distance_matters |= far.differs_from(&close, NOTICEABLE);
+        if let Some((_, (least, most))) = air {
+            match close.share_of_far(&far, [least, most])? {
+                Some(one) => share = share.min(one),
+                None => {
+                    let inner = steps([least, most]).skip(1).take(DISTANCES - 2);
+                    let seen = inner.map(|z| Sighted::new(close.study.at_distance(z)?, envelope));
+                    sighted.extend(seen.collect::<Result<Vec<_>>>()?);
+                    between.push(close.clone());
+                    sighted.extend([close, far]);
+                    continue;
+                }
+            }
+        }
+        match (far.is_worse_than(&close), close.is_worse_than(&far)) {
+            (true, _) => sighted.push(far),
+            (false, true) => sighted.push(close),
+            (false, false) => sighted.extend([far, close]),
+        }
+    }
+    let distance_m = approach.as_ref().map(|own: &Approach| own.distance_m).or(envelope.distance_m);
+    let name = named.name.clone();
+    Ok(Candidate { name, distance_m, approach, sighted, distance_matters, between, share, near })
+}
+
+/// Distances of a range that are searched, equal steps of ln z apart.
+pub(super) fn steps([least, most]: [f64; 2]) -> impl Iterator<Item = f64> {
+    let share = |i: usize| i as f64 / (DISTANCES - 1) as f64;
+    (0..DISTANCES).map(move |i| least * (most / least).powf(share(i)))
+}
