@@ -31,7 +31,7 @@ pub use identify::{
 pub use looked_up::Study;
 pub use rule::{
     ApartAnswer, ApproachResult, CameraAnswer, CameraVerdict, Certified, ClauseAnswer, EmissivityError,
-    EnvelopeResult, Fixes, Found, Grade, IdealCamera, LightTime, LimitingScene, Line, Measure,
+    EnvelopeResult, Extent, Fixes, Found, Grade, IdealCamera, LightTime, LimitingScene, Line, Measure,
     MeasuredAnswer, MeasuredScene, MeasuredVerdict, Neighbourhood, NotIdentifiable, Proof, Proviso, Quotable,
     RuleAnswer, RuleAsked, RuleRequirement, RuleStudy, StopResult, TestCheck, TestResult, Told, WhoMeets,
     WithoutPlaceholders,

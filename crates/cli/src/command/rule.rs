@@ -8,7 +8,7 @@ use hadar_report::manifest::Input;
 use hadar_report::rule;
 use hadar_study::scenario::rule::{Citation, Figure};
 use hadar_study::scenario::{Date, Rule, day};
-use hadar_study::study::{RuleAnswer, RuleAsked, RuleStudy, TestResult};
+use hadar_study::study::{Extent, RuleAnswer, RuleAsked, RuleStudy, TestResult};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -54,19 +54,19 @@ pub(super) fn run(args: &RuleArgs, global: &Global) -> Result<ExitCode> {
     }
     let study = RuleStudy::new(&rule_read, &global.library()?)?;
     global.inputs_are_safe()?;
-    let asked = RuleAsked {
-        verdict_only: args.check && global.out.is_none(),
-        skipping: global.skipping(),
-        seed: global.seed,
-        on: args.on,
+    let extent = match args.test {
+        true => Extent::Margins,
+        false if args.check && global.out.is_none() => Extent::Verdicts,
+        false => Extent::Everything,
     };
+    let asked = RuleAsked { extent, skipping: global.skipping(), seed: global.seed, on: args.on };
     let bar = global.progress("pairs");
     let mut answer = study.answer(&asked, &|done, all| bar.set(done, all))?;
     bar.finish();
     if args.test {
         return tested(&answer, global);
     }
-    let text = if asked.verdict_only { rule::check(&answer) } else { rule::text(&answer, &study) };
+    let text = if extent == Extent::Verdicts { rule::check(&answer) } else { rule::text(&answer, &study) };
     let provenance = global.provenance()?;
     answer.stats.add(&global.report(&text, |out| rule::bundle(&study, &answer, &provenance, out))?);
     global.answer(&Output { answer: &answer, inputs: &provenance.inputs }, &text, &answer.stats)?;

@@ -15,6 +15,7 @@ mod identify_sections;
 mod identify_words;
 mod messages;
 mod nearest;
+mod packs;
 mod range;
 mod reproduce;
 mod robust;

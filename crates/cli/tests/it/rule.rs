@@ -3,7 +3,7 @@
 use crate::support::folder::Folder;
 use hadar::material::Library;
 use hadar_study::scenario::{Rule, Scenario};
-use hadar_study::study::{ApartAnswer, Proof, RuleAnswer, RuleAsked, RuleStudy, Shortfall, Study};
+use hadar_study::study::{ApartAnswer, Extent, Proof, RuleAnswer, RuleAsked, RuleStudy, Shortfall, Study};
 use serde_json::Value;
 use std::fs;
 use std::sync::OnceLock;
@@ -211,7 +211,7 @@ fn the_verdict_alone_is_the_same_and_takes_less() {
     for required in [0.01, 0.3, 1.0, 3.0, 30.0, 300.0] {
         let text = RULE.replace("distance = 1.0", &format!("distance = {required}"));
         let whole = answer(&text);
-        let alone = answer_as(&text, &RuleAsked { verdict_only: true, ..RuleAsked::default() });
+        let alone = answer_as(&text, &RuleAsked { extent: Extent::Verdicts, ..RuleAsked::default() });
         for (whole, alone) in whole.cameras.iter().zip(&alone.cameras) {
             assert_eq!((whole.passes, &whole.fails_by), (alone.passes, &alone.fails_by), "{required}");
             // A scene that shows a failure is below the requirement, if not the worst.

@@ -2,7 +2,7 @@
 
 use crate::text::significant;
 use hadar_study::scenario::Rule;
-use hadar_study::scenario::rule::{Citation, Figure, Ground};
+use hadar_study::scenario::rule::{Figure, Ground};
 use hadar_study::study::{TestResult, Told};
 use std::fmt::Write as _;
 
@@ -11,15 +11,15 @@ use std::fmt::Write as _;
 pub fn sources(rule: &Rule) -> String {
     let figures = rule.figures();
     let name = rule.about.name.as_deref().unwrap_or("This rule");
-    let of = |citation: &Citation| figures.iter().filter(|figure| citation.covers(&figure.key)).count();
-    let (documents, choices): (Vec<&Citation>, Vec<&Citation>) =
-        rule.sources.iter().partition(|citation| matches!(citation.ground, Ground::Document { .. }));
-    let count = |citations: &[&Citation]| citations.iter().map(|one| of(one)).sum::<usize>();
+    let stated = |figure: &&Figure| {
+        let behind = rule.sources.iter().filter(|citation| citation.covers(&figure.key));
+        behind.into_iter().any(|citation| matches!(citation.ground, Ground::Document { .. }))
+    };
+    let documented = figures.iter().filter(stated).count();
     let mut out = format!(
-        "{name}: {} figures, {} of them of documents, {} choices of its author.\n",
+        "{name}: {} figures, {documented} of documents, {} choices of its author alone.\n",
         figures.len(),
-        count(&documents),
-        count(&choices)
+        figures.len() - documented
     );
     for line in dates(rule) {
         let _ = writeln!(out, "{line}");
@@ -72,6 +72,7 @@ pub fn tests(results: &[TestResult]) -> String {
             .map(|check| {
                 let told = |told: Told| match told {
                     Told::Verdict(verdict) => verdict.name().to_owned(),
+                    Told::Number(number) if check.what == "frames" => number.to_string(),
                     Told::Number(number) => significant(number, 4),
                 };
                 let found = check.found.map_or_else(|| "nothing".into(), told);

@@ -44,14 +44,26 @@ use toml::value::Date;
 /// What is asked of a rule.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct RuleAsked {
-    /// Only which cameras meet it: a camera that fails is left at the first scene that shows it.
-    pub verdict_only: bool,
+    /// How much of an answer.
+    pub extent: Extent,
     /// Whether proofs may spare work.
     pub skipping: Skipping,
     /// Seed of the scenes that are drawn for the share no camera can do.
     pub seed: u64,
     /// The day that is asked about.
     pub on: Option<Date>,
+}
+
+/// How much of an answer is asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Extent {
+    /// All of it.
+    #[default]
+    Everything,
+    /// Verdicts and margins, without the share that no camera can do.
+    Margins,
+    /// Only which cameras meet it: a camera that fails is left at the first scene that shows it.
+    Verdicts,
 }
 
 /// A rule with everything it names looked up and checked.
@@ -133,8 +145,8 @@ impl RuleStudy {
                     filled.clauses[index].scenario = apart.scenario.clone();
                     Kind::Apart(Box::new(apart))
                 }
-                Demand::Resolution { pixels } => {
-                    Kind::Resolution(Resolution::new(clause, *pixels, &cameras)?)
+                Demand::Resolution { pixels, size_m } => {
+                    Kind::Resolution(Resolution::new(clause, [*pixels, *size_m], &cameras)?)
                 }
                 Demand::TemperatureError { error_k, coverage_factor } => {
                     let wanted = (*error_k, *coverage_factor);
@@ -211,7 +223,8 @@ fn answered(clause: &Clause, found: Found) -> ClauseAnswer {
         found,
     };
     let alone = std::slice::from_ref(&answer);
-    answer.sentence = who_meets(alone, &together(alone));
+    let clause = answer.name.is_some();
+    answer.sentence = WhoMeets { clause, ..who_meets(alone, &together(alone)) };
     answer
 }
 

@@ -54,7 +54,7 @@ pub enum Mark {
     Seen,
     /// In an excerpt or abstract.
     Excerpt,
-    /// In somebody's copy or summary, not the issuer's.
+    /// In somebody's copy or summary, not the issuer's; a summary's words are quoted then.
     Copy,
     /// From memory.
     Recalled,

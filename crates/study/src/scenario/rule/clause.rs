@@ -7,7 +7,7 @@
 //! * `tell-apart`: the target from its alternatives, as reliably as `[requirement]` says;
 //! * `false-alarm`: `things` that are not the rule's target must not be taken for it: they are the target of this clause, and the
 //!   materials of the rule's target are its alternatives;
-//! * `resolution`: `pixels` on the target of `target.size`;
+//! * `resolution`: `pixels` across a target of `size`;
 //! * `temperature-error`: the temperature of the target within `temperature_error`, at `coverage_factor` deviations;
 //! * `depth-error`: the distance of an `object` of `[clause.scene]` within `depth_error`, seen by `[clause.stereo]`.
 
@@ -67,6 +67,8 @@ pub enum Demand {
     Resolution {
         /// Pixels, not whole ones alone.
         pixels: f64,
+        /// The critical dimension of the target, m.
+        size_m: f64,
     },
     /// The temperature of the target is known.
     TemperatureError {
@@ -206,7 +208,7 @@ fn one(item: &Entry<'_>, root: &Section<'_>, rule: &Scenario, key: String) -> Re
     let (demand, mut scenario) = match kind {
         Kind::TellApart => (Demand::TellApart, of_root(&section, requirement)?),
         Kind::FalseAlarm => (Demand::FalseAlarm, false_alarm(&section, &plain, rule)?),
-        Kind::Resolution => (resolution(&section, &plain)?, of_root(&section, silent)?),
+        Kind::Resolution => (resolution(&plain)?, of_root(&section, silent)?),
         Kind::TemperatureError => (temperature_error(&plain)?, of_root(&section, silent)?),
         Kind::DepthError => (depth_error(&plain, stop.is_some())?, of_root(&section, silent)?),
     };
@@ -284,16 +286,13 @@ fn false_alarm(section: &Section<'_>, plain: &Section<'_>, rule: &Scenario) -> R
     Ok(scenario)
 }
 
-fn resolution(section: &Section<'_>, plain: &Section<'_>) -> Result<Demand> {
-    let requirement = plain.require("requirement", "{ pixels = 6 }")?.section(&["pixels"])?;
-    let size =
-        section.get("target").and_then(|entry| entry.table().ok()).is_some_and(|own| own.has_own("size"));
-    if !size {
-        let found = "nothing says how large the target is";
-        return Err(plain.fail("target.size", Error::malformed(found, "write size = \"0.5 m\" in [target]")));
-    }
-    let pixels = requirement.require("pixels", "6")?.number("6", ABOVE_ZERO)?;
-    Ok(Demand::Resolution { pixels })
+fn resolution(plain: &Section<'_>) -> Result<Demand> {
+    let requirement = plain.require("requirement", "{ pixels = 6, size = \"0.5 m\" }")?;
+    let requirement = requirement.section(&["pixels", "size"])?;
+    Ok(Demand::Resolution {
+        pixels: requirement.require("pixels", "6")?.number("6", ABOVE_ZERO)?,
+        size_m: requirement.require("size", "\"0.5 m\"")?.quantity(Dimension::Length, ABOVE_ZERO)?,
+    })
 }
 
 fn temperature_error(plain: &Section<'_>) -> Result<Demand> {
@@ -396,8 +395,13 @@ impl Clause {
                     document.push(("requirement", part));
                 }
             }
-            Demand::Resolution { pixels } => {
-                document.push(("requirement", Part::Table(Entries::default().put("pixels", *pixels))));
+            Demand::Resolution { pixels, size_m } => {
+                let entries = Entries::default().put("pixels", *pixels).put_quantity(
+                    "size",
+                    Dimension::Length,
+                    Some(*size_m),
+                );
+                document.push(("requirement", Part::Table(entries)));
             }
             Demand::TemperatureError { error_k, coverage_factor } => {
                 let entries = Entries::default()

@@ -7,7 +7,7 @@ use hadar::allowed::{ABOVE_ZERO, Allowed, FROM_ZERO};
 use hadar::error::{Error, Result};
 use hadar::units::Dimension;
 
-/// Share of itself by which a number may miss what is expected, where nothing is said.
+/// Share of itself by which a margin may miss what is expected, where nothing is said.
 const TOLERANCE: f64 = 0.01;
 
 const KEYS: &[&str] =
@@ -30,7 +30,7 @@ pub struct RuleTest {
     pub decision_time_s: Option<f64>,
     /// Frames of all bands that fit into it.
     pub frames: Option<u32>,
-    /// Share of themselves by which the numbers may miss; frames must be the same.
+    /// Share of itself by which the margin may miss.
     pub tolerance: f64,
 }
 

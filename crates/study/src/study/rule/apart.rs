@@ -8,12 +8,12 @@
 //! Distances are nearest distances with the camera's own noise (`envelope`); gray areas are said: what was only
 //! searched is called so.
 
-use super::RuleAsked;
 use super::approach::{Approach, Moving};
 use super::cameras::Named;
 use super::clauses::ApartAnswer;
 use super::envelope::Sighted;
-use super::results::{CameraVerdict, EnvelopeResult, Quotable, RuleRequirement};
+use super::results::{CameraVerdict, EnvelopeResult, Quotable, RuleRequirement, StopResult};
+use super::{Extent, RuleAsked};
 use crate::scenario::rule::{Clause, StopSpec};
 use crate::scenario::{CameraSpec, DistanceKind, Envelope, MaterialRef, Rule, Scenario};
 use crate::study::{Study, Warning};
@@ -134,7 +134,7 @@ impl TellApart {
 
     /// What it says of every camera; `progress` is told how many pairs of materials before a camera are done.
     pub(super) fn answer(&self, asked: &RuleAsked, progress: &dyn Fn(usize)) -> Result<ApartAnswer> {
-        let alone = asked.verdict_only && asked.skipping == Skipping::On;
+        let alone = asked.extent == Extent::Verdicts && asked.skipping == Skipping::On;
         let mut cameras = Vec::with_capacity(self.candidates.len());
         let mut before = 0;
         for candidate in &self.candidates {
@@ -143,7 +143,7 @@ impl TellApart {
             before += pairs;
             progress(before);
         }
-        let not_identifiable = if alone {
+        let not_identifiable = if alone || asked.extent == Extent::Margins {
             demand::spared(Thing::Sections, Reason::NotAsked, 1);
             None
         } else {
@@ -218,6 +218,7 @@ impl TellApart {
             envelope: envelope.clone(),
             required: self.required,
             speed_m_s,
+            stop: self.stop.map(|spec| StopResult::of(spec.stop())),
             hardware_m2_s: hardware_m2_s.filter(|_| plain),
             units: self.scenario.units(),
         };

@@ -3,6 +3,9 @@
 use super::clauses::{ClauseAnswer, RuleAnswer};
 use crate::scenario::rule::{RuleTest, Verdict};
 
+/// Share by which what follows from figures of the rule alone may miss: the digits that it is written with.
+const SAME: f64 = 1e-3;
+
 /// A test with what was found.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 #[non_exhaustive]
@@ -27,7 +30,7 @@ pub struct TestCheck {
     pub expected: Told,
     /// What was found; `None` where nothing is said of it.
     pub found: Option<Told>,
-    /// Whether that is the same, numbers within the tolerance of the test.
+    /// Whether that is the same: a margin within the tolerance of the test, distance and time of a decision within a thousandth.
     pub passes: bool,
 }
 
@@ -70,18 +73,8 @@ impl RuleAnswer {
         }
         let numbers = [
             ("margin", test.margin, line.map(|line| line.margin), test.tolerance),
-            (
-                "decision_distance_m",
-                test.decision_distance_m,
-                stop.map(|stop| stop.fastest.distance_m),
-                test.tolerance,
-            ),
-            (
-                "decision_time_s",
-                test.decision_time_s,
-                stop.and_then(|stop| stop.hastiest?.time_s),
-                test.tolerance,
-            ),
+            ("decision_distance_m", test.decision_distance_m, stop.map(|stop| stop.fastest.distance_m), SAME),
+            ("decision_time_s", test.decision_time_s, stop.and_then(|stop| stop.hastiest?.time_s), SAME),
             (
                 "frames",
                 test.frames.map(f64::from),

@@ -23,21 +23,13 @@ pub(super) struct Resolution {
 }
 
 impl Resolution {
-    pub(super) fn new(clause: &Clause, pixels: f64, cameras: &[Named]) -> Result<Self> {
+    pub(super) fn new(clause: &Clause, [pixels, size_m]: [f64; 2], cameras: &[Named]) -> Result<Self> {
         let scenario = &clause.scenario;
-        let missing =
-            |key: &str, found: &str, instead: &str| Error::malformed(found, instead).at(scenario.place(key));
-        let size_m = scenario.target.size_m.ok_or_else(|| {
-            missing(
-                "target.size",
-                "nothing says how large the target is",
-                "write size = \"0.5 m\" in [target]",
-            )
-        })?;
         let by_stop = clause.stop.map(|spec| spec.stop().decisions()[1].distance_m);
         let farthest_m = by_stop.or(clause.envelope().distance_m.map(|[_, most]| most)).ok_or_else(|| {
+            let found = "nothing says how far the target is";
             let instead = "write distance = [\"5 m\", \"30 m\"] in [envelope], or [stop]";
-            missing("envelope.distance", "nothing says how far the target is", instead)
+            Error::malformed(found, instead).at(scenario.place("envelope.distance"))
         })?;
         let counted = |named: &Named| Ok((named.clone(), named.bands(scenario)?));
         let cameras = cameras.iter().map(counted).collect::<Result<_>>()?;

@@ -21,6 +21,8 @@ pub struct WhoMeets {
     pub unproved: Vec<String>,
     /// Those that do not.
     pub fail: Vec<String>,
+    /// Whether it is one clause of several that they meet.
+    pub clause: bool,
     /// Pairs that limit a camera though each of the two is entered as one number, with the numbers.
     pub placeholders: Vec<(String, String, [f64; 2])>,
 }
@@ -76,6 +78,8 @@ pub struct Quotable {
     pub required: f64,
     /// Speed of a vehicle that drives forward, m s⁻¹.
     pub speed_m_s: Option<f64>,
+    /// How it comes to a stop, if that is said.
+    pub stop: Option<StopResult>,
     /// H_req, m² s; `None` where that figure of the hardware does not tell all.
     pub hardware_m2_s: Option<f64>,
     /// Units of the sentence.

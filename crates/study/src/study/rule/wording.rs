@@ -1,7 +1,8 @@
 //! What comes of a rule in sentences.
 
 use super::results::{
-    Certified, EmissivityError, EnvelopeResult, IdealCamera, LightTime, Proof, Proviso, Quotable, WhoMeets,
+    Certified, EmissivityError, EnvelopeResult, IdealCamera, LightTime, Proof, Proviso, Quotable, StopResult,
+    WhoMeets,
 };
 use crate::scenario::{Units, interval};
 use crate::words::demanded;
@@ -12,6 +13,7 @@ use std::fmt::{self, Display, Formatter};
 impl Display for WhoMeets {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let all = self.meet.len() + self.fail.len();
+        let what = if self.clause { "clause" } else { "rule" };
         let meet: Vec<String> = self
             .meet
             .iter()
@@ -21,12 +23,12 @@ impl Display for WhoMeets {
             })
             .collect();
         match (meet.as_slice(), self.fail.as_slice()) {
-            ([one], []) => write!(f, "{one} meets the rule."),
-            ([], [one]) => write!(f, "{one} does not meet the rule."),
-            (names, []) => write!(f, "All {all} cameras meet the rule: {}.", names.join(", ")),
-            ([], names) => write!(f, "None of {all} cameras meets the rule: {}.", names.join(", ")),
-            ([one], _) => write!(f, "1 of {all} cameras meets the rule: {one}."),
-            (some, _) => write!(f, "{} of {all} cameras meet the rule: {}.", some.len(), some.join(", ")),
+            ([one], []) => write!(f, "{one} meets the {what}."),
+            ([], [one]) => write!(f, "{one} does not meet the {what}."),
+            (names, []) => write!(f, "All {all} cameras meet the {what}: {}.", names.join(", ")),
+            ([], names) => write!(f, "None of {all} cameras meets the {what}: {}.", names.join(", ")),
+            ([one], _) => write!(f, "1 of {all} cameras meets the {what}: {one}."),
+            (some, _) => write!(f, "{} of {all} cameras meet the {what}: {}.", some.len(), some.join(", ")),
         }?;
         if !self.unproved.is_empty() {
             write!(
@@ -69,12 +71,22 @@ impl Display for Quotable {
             f,
             "A camera meets this rule if, in every scene of the envelope ({}), it tells {} from {} with {} reliability \
              (statistical distance d of at least {})",
-            in_words(&self.envelope, self.units),
+            in_words(&self.envelope, self.stop.as_ref(), self.units),
             either(&self.envelope.materials),
             either(&self.envelope.alternatives),
             demanded(self.required),
             significant(self.required, 4),
         )?;
+        if let Some((start_m, time_s)) =
+            self.stop.and_then(|stop| stop.hastiest).and_then(|one| one.start_m.zip(one.time_s))
+        {
+            write!(
+                f,
+                ", it has read its frames {} s after the target comes into view at {}",
+                significant(time_s, 3),
+                self.units.lengths([significant(start_m, 3).parse().unwrap_or(start_m); 2])
+            )?;
+        }
         if let Some(speed) = self.speed_m_s {
             let speed = self.units.speed(speed);
             write!(
@@ -165,13 +177,18 @@ fn either(names: &[String]) -> String {
 }
 
 /// The ranges of an envelope in a few words.
-fn in_words(envelope: &EnvelopeResult, units: Units) -> String {
+fn in_words(envelope: &EnvelopeResult, stop: Option<&StopResult>, units: Units) -> String {
     let mut parts = vec![format!("target {}", units.temperatures(envelope.temperature_k))];
     let objects = envelope.surroundings_k.iter().zip(&envelope.lighting);
     parts.extend(objects.map(|(kelvin, lighting)| {
         format!("surroundings {} lighting it by {}", units.temperatures(*kelvin), interval(*lighting, ""))
     }));
-    parts.extend(envelope.distance_m.map(|range| format!("distance {}", units.lengths(range))));
+    // What follows from a stop has not the digits of what was written.
+    let distance = |range: [f64; 2]| match stop {
+        None => units.lengths(range),
+        Some(_) => units.lengths(range.map(|z| significant(z, 3).parse().unwrap_or(z))),
+    };
+    parts.extend(envelope.distance_m.map(|range| format!("distance {}", distance(range))));
     parts.join(", ")
 }
 
@@ -216,12 +233,7 @@ mod tests {
     /// A yes that rests on a search alone is not read as one that is proved.
     #[test]
     fn a_yes_that_is_not_proved_says_so() {
-        let proved = WhoMeets {
-            meet: vec![("a".into(), None), ("b".into(), None)],
-            unproved: Vec::new(),
-            fail: Vec::new(),
-            placeholders: Vec::new(),
-        };
+        let proved = WhoMeets { meet: vec![("a".into(), None), ("b".into(), None)], ..WhoMeets::default() };
         assert_eq!(proved.to_string(), "All 2 cameras meet the rule: a, b.");
         let searched = WhoMeets { unproved: vec!["b".into()], ..proved };
         let said =
