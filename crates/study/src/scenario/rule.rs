@@ -6,30 +6,31 @@
 //! `until` which dates it holds. `[stop]` says how fast the vehicle is and how it brakes, so that distances follow; `[[clause]]`
 //! are demands with scenes of their own; `[[source]]` say where the figures are from; `[[test]]` what known cameras do.
 
+mod camera;
 mod citation;
 mod clause;
 mod stop;
 mod test;
 
+pub use camera::RuleCamera;
 pub use citation::{Citation, Figure, Ground, Mark};
 pub use clause::{Clause, Demand, DepthDemand, DepthObject};
 pub use stop::StopSpec;
 pub use test::{RuleTest, Verdict};
 
+use super::camera::written;
 use super::entries::{self, Document, Entries, Part};
 use super::kind::Kind;
 use super::paths::Paths;
 use super::read::{MINIMUM, TABLES, document, text_of};
 use super::section::{Entry, Section};
-use super::{CameraSpec, Scenario, Source, camera};
+use super::{Scenario, Source};
 use hadar::error::{Error, Place, Result};
 use serde::{Serialize, Serializer};
 use std::path::Path;
 use toml::value::Date;
 
 const NO_CAMERA: &str = "write cameras = [\"flir-a325sc\"] above the first [table], or a [[camera]] table";
-/// A list at the top of a file stands before its tables.
-const CAMERAS: &str = "cameras = [\"flir-a325sc\", \"ideal-pnrd\"]";
 
 /// What a rule says of itself (`[rule]`).
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -55,31 +56,6 @@ impl About {
     #[must_use]
     pub fn holds_on(&self, day: Date) -> bool {
         self.from.is_none_or(|from| from <= day) && self.until.is_none_or(|until| day <= until)
-    }
-}
-
-/// A camera that is held against a rule.
-#[derive(Debug, Clone, PartialEq)]
-pub struct RuleCamera {
-    /// The name it is given, if any.
-    pub name: Option<String>,
-    /// What it is.
-    pub spec: CameraSpec,
-    /// Where it stands, e.g. `cameras[1]` or `camera[0]`.
-    pub key: String,
-}
-
-impl RuleCamera {
-    /// What it is called in a rule: the name it is given, or that of a known camera.
-    #[must_use]
-    pub fn called(&self) -> &str {
-        self.name.as_deref().or(self.spec.preset.as_deref()).unwrap_or(&self.key)
-    }
-
-    /// Whether it is a known camera named in `cameras`, without keys of its own.
-    #[must_use]
-    pub fn is_listed(&self) -> bool {
-        self.key.starts_with("cameras[")
     }
 }
 
@@ -138,8 +114,8 @@ impl Rule {
         let known = [&TABLES[..], &["rule", "cameras", "stop", "clause", "source", "test"]].concat();
         let root = Section::open(&document, "", &source, &known)?;
         let about = root.read("rule", about)?.unwrap_or_default();
-        let mut cameras = root.read("cameras", presets)?.unwrap_or_default();
-        cameras.extend(root.read("camera", tables)?.unwrap_or_default());
+        let mut cameras = root.read("cameras", camera::presets)?.unwrap_or_default();
+        cameras.extend(root.read("camera", camera::tables)?.unwrap_or_default());
         if cameras.is_empty() {
             let key = if root.get("cameras").is_some() { "cameras" } else { "" };
             return Err(root.fail(key, Error::malformed("the rule has no camera to check", NO_CAMERA)));
@@ -208,7 +184,7 @@ impl Rule {
         let camera = |camera: &RuleCamera| {
             Entries::default()
                 .put_if("name", camera.name.as_deref())
-                .and(camera::written(&camera.spec, paths))
+                .and(written(&camera.spec, paths))
                 .read_from(&camera.key)
         };
         let about = Entries::default()
@@ -279,34 +255,4 @@ fn about(entry: &Entry<'_>) -> Result<About> {
         from,
         until,
     })
-}
-
-/// Known cameras as they are.
-fn presets(entry: &Entry<'_>) -> Result<Vec<RuleCamera>> {
-    let items = entry.items(CAMERAS)?;
-    let mut cameras: Vec<RuleCamera> = Vec::with_capacity(items.len());
-    for (index, item) in items.iter().enumerate() {
-        let name = item.text("\"flir-a325sc\"")?.trim().to_owned();
-        let spec = CameraSpec { preset: Some(name), ..CameraSpec::default() };
-        if cameras.iter().any(|camera| camera.spec == spec) {
-            return Err(item.fail(Error::malformed("the same is already in the list", "name it once")));
-        }
-        cameras.push(RuleCamera { name: None, spec, key: format!("cameras[{index}]") });
-    }
-    Ok(cameras)
-}
-
-/// Cameras of the rule's own.
-fn tables(entry: &Entry<'_>) -> Result<Vec<RuleCamera>> {
-    let items = entry.items("each camera as [[camera]], in double brackets")?;
-    items
-        .iter()
-        .enumerate()
-        .map(|(index, item)| {
-            let spec = camera::read_beside(item, &["name"])?;
-            let section = item.table()?;
-            let name = section.read("name", |entry| Ok(entry.text("\"ours\"")?.trim().to_owned()))?;
-            Ok(RuleCamera { name, spec, key: format!("camera[{index}]") })
-        })
-        .collect()
 }

@@ -5,6 +5,7 @@
 
 mod apart;
 mod approach;
+mod asked;
 mod between;
 mod cameras;
 mod clauses;
@@ -18,15 +19,16 @@ mod search;
 mod temperature;
 mod wording;
 
+pub use asked::{Extent, RuleAsked};
 pub use clauses::{
-    ApartAnswer, CameraAnswer, ClauseAnswer, Found, Grade, Line, Measure, MeasuredAnswer, MeasuredScene,
+    ApartAnswer, CameraAnswer, ClauseAnswer, Found, Line, Measure, MeasuredAnswer, MeasuredScene,
     MeasuredVerdict, RuleAnswer,
 };
 pub use expected::{TestCheck, TestResult, Told};
 pub use results::{
-    ApproachResult, CameraVerdict, Certified, EmissivityError, EnvelopeResult, Fixes, IdealCamera, LightTime,
-    LimitingScene, Neighbourhood, NotIdentifiable, Proof, Proviso, Quotable, RuleRequirement, StopResult,
-    WhoMeets, WithoutPlaceholders,
+    ApproachResult, CameraVerdict, Certified, EmissivityError, EnvelopeResult, Fixes, Grade, IdealCamera,
+    LightTime, LimitingScene, Neighbourhood, NotIdentifiable, Proof, Proviso, Quotable, RuleRequirement,
+    StopResult, WhoMeets, WithoutPlaceholders,
 };
 
 use self::apart::TellApart;
@@ -36,35 +38,9 @@ use self::temperature::TemperatureClause;
 use super::{Study, Warning};
 use crate::scenario::Rule;
 use crate::scenario::rule::{Clause, Demand, StopSpec, Verdict};
-use hadar::demand::{self, Ledger, Skipping, Work};
+use hadar::demand::{self, Ledger, Work};
 use hadar::error::Result;
 use hadar::material::Library;
-use toml::value::Date;
-
-/// What is asked of a rule.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct RuleAsked {
-    /// How much of an answer.
-    pub extent: Extent,
-    /// Whether proofs may spare work.
-    pub skipping: Skipping,
-    /// Seed of the scenes that are drawn for the share no camera can do.
-    pub seed: u64,
-    /// The day that is asked about.
-    pub on: Option<Date>,
-}
-
-/// How much of an answer is asked for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Extent {
-    /// All of it.
-    #[default]
-    Everything,
-    /// Verdicts and margins, without the share that no camera can do.
-    Margins,
-    /// Only which cameras meet it: a camera that fails is left at the first scene that shows it.
-    Verdicts,
-}
 
 /// A rule with everything it names looked up and checked.
 #[derive(Debug)]

@@ -1,6 +1,7 @@
 //! What a rule says of known cameras (`[[test]]`), for `hadar rule --test`: whoever changes a figure of the rule is told.
 
-use super::{Clause, RuleCamera};
+use super::camera::RuleCamera;
+use super::clause::Clause;
 use crate::scenario::entries::Entries;
 use crate::scenario::section::{Entry, Section};
 use hadar::allowed::{ABOVE_ZERO, Allowed, FROM_ZERO};

@@ -9,11 +9,11 @@
 //! searched is called so.
 
 use super::approach::{Approach, Moving};
+use super::asked::{Extent, RuleAsked};
 use super::cameras::Named;
 use super::clauses::ApartAnswer;
 use super::envelope::Sighted;
 use super::results::{CameraVerdict, EnvelopeResult, Quotable, RuleRequirement, StopResult};
-use super::{Extent, RuleAsked};
 use crate::scenario::rule::{Clause, StopSpec};
 use crate::scenario::{CameraSpec, DistanceKind, Envelope, MaterialRef, Rule, Scenario};
 use crate::study::{Study, Warning};

@@ -1,8 +1,8 @@
 //! What comes of the clauses of a rule, as data.
 
 use super::results::{
-    ApproachResult, CameraVerdict, EnvelopeResult, NotIdentifiable, Proviso, RuleRequirement, StopResult,
-    WhoMeets,
+    ApproachResult, CameraVerdict, EnvelopeResult, Grade, NotIdentifiable, Proviso, RuleRequirement,
+    StopResult, WhoMeets,
 };
 use crate::scenario::Rule;
 use crate::scenario::rule::Verdict;
@@ -164,36 +164,6 @@ pub struct MeasuredScene {
     pub lighting: Vec<f64>,
     /// Temperature of every object, K.
     pub surroundings_k: Vec<f64>,
-}
-
-/// How strong the evidence of a line is, the strongest first.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Grade {
-    /// It holds for all scenes, or one scene shows that it does not.
-    Proved,
-    /// The worst scene was searched, and no worse one is excluded.
-    Searched,
-    /// Found by draws.
-    Simulated,
-    /// It rests on something that nobody states.
-    Assumed,
-    /// Nothing can be said.
-    NotStated,
-}
-
-impl Grade {
-    /// Its name, e.g. `proved`.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Proved => "proved",
-            Self::Searched => "searched",
-            Self::Simulated => "simulated",
-            Self::Assumed => "assumed",
-            Self::NotStated => "not stated",
-        }
-    }
 }
 
 /// What is the same of every line: one camera before one clause.

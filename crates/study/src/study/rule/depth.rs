@@ -6,7 +6,8 @@
 
 use super::approach::Approach;
 use super::cameras::Named;
-use super::clauses::{Grade, Measure, MeasuredAnswer, MeasuredScene, MeasuredVerdict};
+use super::clauses::{Measure, MeasuredAnswer, MeasuredScene, MeasuredVerdict};
+use super::results::Grade;
 use crate::scenario::range::{Demand, RangeScenario, Subject};
 use crate::scenario::rule::{Clause, DepthDemand, DepthObject, StopSpec, Verdict};
 use crate::scenario::{BandsSpec, Rule};

@@ -6,7 +6,8 @@
 
 use super::approach::Approach;
 use super::cameras::Named;
-use super::clauses::{Grade, Measure, MeasuredAnswer, MeasuredScene, MeasuredVerdict};
+use super::clauses::{Measure, MeasuredAnswer, MeasuredScene, MeasuredVerdict};
+use super::results::Grade;
 use crate::scenario::rule::{Clause, StopSpec, Verdict};
 use crate::study::Shortfall;
 use hadar::error::{Error, Result};

@@ -1,6 +1,5 @@
 //! What comes of a rule, as data.
 
-use super::clauses::Grade;
 use crate::scenario::Units;
 use crate::scenario::rule::Verdict;
 use crate::study::size::Solutions;
@@ -365,4 +364,34 @@ pub struct ApproachResult {
     pub frames_within: Option<u32>,
     /// Side of what a pixel sees at the greatest distance of a decision, m.
     pub footprint_m: f64,
+}
+
+/// How strong the evidence of a line is, the strongest first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Grade {
+    /// It holds for all scenes, or one scene shows that it does not.
+    Proved,
+    /// The worst scene was searched, and no worse one is excluded.
+    Searched,
+    /// Found by draws.
+    Simulated,
+    /// It rests on something that nobody states.
+    Assumed,
+    /// Nothing can be said.
+    NotStated,
+}
+
+impl Grade {
+    /// Its name, e.g. `proved`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Proved => "proved",
+            Self::Searched => "searched",
+            Self::Simulated => "simulated",
+            Self::Assumed => "assumed",
+            Self::NotStated => "not stated",
+        }
+    }
 }

@@ -7,9 +7,8 @@
 use super::super::{NearestState, Shortfall, Study, Surface, Warning, warn};
 use super::apart::{Candidate, TellApart};
 use super::approach::Approach;
-use super::clauses::Grade;
 use super::envelope::{Estimate, Sighted, brightest};
-use super::results::{CameraVerdict, Certified, Fixes, LimitingScene, Proviso, WithoutPlaceholders};
+use super::results::{CameraVerdict, Certified, Fixes, Grade, LimitingScene, Proviso, WithoutPlaceholders};
 use crate::scenario::rule::Verdict;
 use hadar::demand::{self, Reason, Thing};
 use hadar::error::{Error, Result};

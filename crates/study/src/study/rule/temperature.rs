@@ -7,8 +7,9 @@
 
 use super::approach::Approach;
 use super::cameras::Named;
-use super::clauses::{Grade, Measure, MeasuredAnswer, MeasuredScene, MeasuredVerdict};
+use super::clauses::{Measure, MeasuredAnswer, MeasuredScene, MeasuredVerdict};
 use super::envelope::{Sighted, all, scattered_places, scene_at};
+use super::results::Grade;
 use super::{apart, cameras};
 use crate::scenario::rule::{Clause, StopSpec, Verdict};
 use crate::scenario::{Envelope, Rule};

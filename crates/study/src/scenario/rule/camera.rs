@@ -1,0 +1,64 @@
+//! The cameras of a rule: known ones by name (`cameras`), others as tables (`[[camera]]`).
+
+use crate::scenario::CameraSpec;
+use crate::scenario::camera::read_beside;
+use crate::scenario::section::Entry;
+use hadar::error::{Error, Result};
+
+/// A list at the top of a file stands before its tables.
+const CAMERAS: &str = "cameras = [\"flir-a325sc\", \"ideal-pnrd\"]";
+
+/// A camera that is held against a rule.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RuleCamera {
+    /// The name it is given, if any.
+    pub name: Option<String>,
+    /// What it is.
+    pub spec: CameraSpec,
+    /// Where it stands, e.g. `cameras[1]` or `camera[0]`.
+    pub key: String,
+}
+
+impl RuleCamera {
+    /// What it is called in a rule: the name it is given, or that of a known camera.
+    #[must_use]
+    pub fn called(&self) -> &str {
+        self.name.as_deref().or(self.spec.preset.as_deref()).unwrap_or(&self.key)
+    }
+
+    /// Whether it is a known camera named in `cameras`, without keys of its own.
+    #[must_use]
+    pub fn is_listed(&self) -> bool {
+        self.key.starts_with("cameras[")
+    }
+}
+
+/// Known cameras as they are.
+pub(super) fn presets(entry: &Entry<'_>) -> Result<Vec<RuleCamera>> {
+    let items = entry.items(CAMERAS)?;
+    let mut cameras: Vec<RuleCamera> = Vec::with_capacity(items.len());
+    for (index, item) in items.iter().enumerate() {
+        let name = item.text("\"flir-a325sc\"")?.trim().to_owned();
+        let spec = CameraSpec { preset: Some(name), ..CameraSpec::default() };
+        if cameras.iter().any(|camera| camera.spec == spec) {
+            return Err(item.fail(Error::malformed("the same is already in the list", "name it once")));
+        }
+        cameras.push(RuleCamera { name: None, spec, key: format!("cameras[{index}]") });
+    }
+    Ok(cameras)
+}
+
+/// Cameras of the rule's own.
+pub(super) fn tables(entry: &Entry<'_>) -> Result<Vec<RuleCamera>> {
+    let items = entry.items("each camera as [[camera]], in double brackets")?;
+    items
+        .iter()
+        .enumerate()
+        .map(|(index, item)| {
+            let spec = read_beside(item, &["name"])?;
+            let section = item.table()?;
+            let name = section.read("name", |entry| Ok(entry.text("\"ours\"")?.trim().to_owned()))?;
+            Ok(RuleCamera { name, spec, key: format!("camera[{index}]") })
+        })
+        .collect()
+}
