@@ -22,7 +22,9 @@ use super::text::significant;
 use hadar::error::Result;
 use hadar::policy::Quantity;
 use hadar_study::scenario::rule::Verdict;
-use hadar_study::study::{CameraAnswer, CameraVerdict, Found, RuleAnswer, RuleStudy, Warning};
+use hadar_study::study::{
+    CameraAnswer, CameraVerdict, Found, MarginUncertainty, RuleAnswer, RuleStudy, Warning,
+};
 use std::path::Path;
 
 /// What can be changed of a camera.
@@ -77,7 +79,17 @@ fn cameras(answer: &RuleAnswer) -> Table {
         "certificate",
         "motion_blur_pixels",
     ];
-    let last = ["clause", "kind", "evidence", "quantity", "demanded", "reached"];
+    let last = [
+        "clause",
+        "kind",
+        "evidence",
+        "quantity",
+        "demanded",
+        "reached",
+        "verdict",
+        "margin_low",
+        "margin_high",
+    ];
     let names = head.into_iter().map(str::to_owned).chain(fixes).chain(last.map(str::to_owned));
     let mut table = Table::new(names);
     for clause in &answer.clauses {
@@ -118,6 +130,8 @@ fn cameras(answer: &RuleAnswer) -> Table {
                     ]
                 }
             });
+            let end = |of: &dyn Fn(&MarginUncertainty) -> f64| optional(line.uncertainty.map(of));
+            row.extend([line.verdict.name().to_owned(), end(&|found| found.low), end(&|found| found.high)]);
             table.push(row);
         }
     }

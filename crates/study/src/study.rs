@@ -30,11 +30,11 @@ pub use identify::{
 };
 pub use looked_up::Study;
 pub use rule::{
-    ApartAnswer, ApproachResult, CameraAnswer, CameraVerdict, Certified, ClauseAnswer, EmissivityError,
-    EnvelopeResult, Extent, Fixes, Found, Grade, IdealCamera, LightTime, LimitingScene, Line, Measure,
-    MeasuredAnswer, MeasuredScene, MeasuredVerdict, Neighbourhood, NotIdentifiable, Proof, Proviso, Quotable,
-    RuleAnswer, RuleAsked, RuleRequirement, RuleStudy, StopResult, TestCheck, TestResult, Told, WhoMeets,
-    WithoutPlaceholders,
+    ApartAnswer, ApproachResult, BudgetLine, CameraAnswer, CameraVerdict, Certified, ClauseAnswer, Drawn,
+    EmissivityError, EnvelopeResult, Extent, Fixes, Found, Grade, IdealCamera, LightTime, LimitingScene,
+    Line, MarginUncertainty, Measure, MeasuredAnswer, MeasuredScene, MeasuredVerdict, Neighbourhood,
+    NotIdentifiable, Proof, Proviso, Quotable, RuleAnswer, RuleAsked, RuleRequirement, RuleStudy, StopResult,
+    TestCheck, TestResult, Told, WhoMeets, WithoutPlaceholders,
 };
 pub use shortfall::Shortfall;
 pub use sight::Sight;

@@ -7,7 +7,9 @@ use crate::manifest::{Provenance, VERSION};
 use crate::text::footing::{gaussian, of_scene};
 use crate::text::significant;
 use hadar_study::scenario::Units;
-use hadar_study::study::{ApartAnswer, CameraVerdict, Found, MeasuredAnswer, RuleAnswer, RuleStudy};
+use hadar_study::study::{
+    ApartAnswer, CameraVerdict, ClauseAnswer, Found, MeasuredAnswer, RuleAnswer, RuleStudy,
+};
 use hadar_study::words::reliability;
 use std::fmt::Write as _;
 
@@ -44,6 +46,7 @@ pub(super) fn markdown(study: &RuleStudy, answer: &RuleAnswer, provenance: &Prov
             Found::Apart(apart) => of_apart(apart, units, &mut out),
             Found::Measured(measured) => of_measured(measured, units, &mut out),
         }
+        budgets(clause, &mut out);
     }
     out.push_str("## What this rests on\n\n");
     if let Some(study) = study.study() {
@@ -88,6 +91,18 @@ pub(super) fn title(answer: &RuleAnswer) -> String {
     title.unwrap_or_else(|| "Which cameras meet the rule".into())
 }
 
+/// Budgets of all margins whose figures are uncertain.
+fn budgets(clause: &ClauseAnswer, out: &mut String) {
+    for line in clause.lines() {
+        let Some(found) = line.uncertainty else { continue };
+        let _ = writeln!(out, "Margin of {}:\n", line.camera);
+        text::uncertainty(line.margin, found).iter().for_each(|line| {
+            let _ = writeln!(out, "- {line}");
+        });
+        out.push('\n');
+    }
+}
+
 /// A clause that tells materials apart.
 fn of_apart(apart: &ApartAnswer, units: Units, out: &mut String) {
     let _ = writeln!(out, "> {}\n", apart.requirement.quotable);
@@ -106,10 +121,7 @@ fn of_measured(measured: &MeasuredAnswer, units: Units, out: &mut String) {
     let head = ["camera", "meets", "margin", text::measure(measured.quantity), "evidence", "limiting scene"];
     let _ = writeln!(out, "| {} |\n|---|---|---|---|---|---|", head.join(" | "));
     for camera in &measured.cameras {
-        let met = match camera.passes {
-            true => "yes".to_owned(),
-            false => format!("no: {}", text::in_words(&camera.fails_by)),
-        };
+        let met = text::measured_meets(camera);
         let cells = [
             camera.name.clone(),
             met,

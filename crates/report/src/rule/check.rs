@@ -1,8 +1,9 @@
 //! `--check`: a line a camera, what is known of it and how.
 
-use super::text::{fails_by, in_words, measure, measured_scene, without_placeholders};
+use super::text::{fails_by, in_words, measure, measured_scene, undecided, without_placeholders};
 use crate::text::significant;
 use hadar_study::scenario::Units;
+use hadar_study::scenario::rule::Verdict;
 use hadar_study::study::{CameraVerdict, Found, Measure, MeasuredVerdict, RuleAnswer, Shortfall};
 use std::fmt::Write as _;
 
@@ -20,7 +21,11 @@ pub fn check(answer: &RuleAnswer) -> String {
     let units = answer.rule.scenario.units();
     let mut out = String::new();
     for (index, camera) in answer.cameras.iter().enumerate() {
-        let met = if camera.passes { "met" } else { "not met" };
+        let met = match camera.verdict {
+            Verdict::Meets => "met",
+            Verdict::Undecided => "undecided",
+            Verdict::Fails => "not met",
+        };
         let _ = writeln!(out, "{}: {met} ({})", camera.name, camera.grade.name());
         for clause in &answer.clauses {
             let said = match &clause.found {
@@ -44,13 +49,18 @@ fn measured_line(camera: &MeasuredVerdict, quantity: Measure, units: Units) -> S
     let at = measured_scene(&camera.limiting, units);
     match camera.passes {
         true => format!("{}: {reached}, {at}", camera.grade.name()),
+        false if camera.verdict == Verdict::Undecided => {
+            format!("{}: {reached}, {at}", undecided(&camera.undecided_by, camera.uncertainty.as_ref()))
+        }
         false => format!("not met: {}: {reached}, {at}", in_words(&camera.fails_by)),
     }
 }
 
 fn line(camera: &CameraVerdict, required: f64) -> String {
     let times = |distance: f64| format!("{} times the demand", at_least(distance / required));
-    let said = if camera.passes {
+    let said = if camera.verdict == Verdict::Undecided {
+        undecided(&camera.undecided_by, camera.uncertainty.as_ref())
+    } else if camera.passes {
         let known = match camera.lower_bound {
             Some(bound) if bound >= required => format!("proved: at least {} everywhere", times(bound)),
             _ => {

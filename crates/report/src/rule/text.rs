@@ -8,9 +8,10 @@ use hadar::instrument::Readout;
 use hadar::policy::{Quantity, Solution};
 use hadar::words::share;
 use hadar_study::scenario::Units;
+use hadar_study::scenario::rule::Verdict;
 use hadar_study::study::{
-    ApartAnswer, CameraVerdict, Fixes, Found, LimitingScene, Measure, MeasuredAnswer, MeasuredScene,
-    NotIdentifiable, RuleAnswer, RuleStudy, Shortfall, Warning,
+    ApartAnswer, CameraVerdict, Fixes, Found, LimitingScene, MarginUncertainty, Measure, MeasuredAnswer,
+    MeasuredScene, MeasuredVerdict, NotIdentifiable, RuleAnswer, RuleStudy, Shortfall, Warning,
 };
 use hadar_study::words::{demanded, reliability};
 use std::fmt::Write as _;
@@ -61,10 +62,11 @@ pub fn text(answer: &RuleAnswer, study: &RuleStudy) -> String {
 fn overview(answer: &RuleAnswer) -> String {
     let mut rows = vec![["camera", "margin", "limited by", "evidence", "meets the rule"].map(str::to_owned)];
     rows.extend(answer.cameras.iter().map(|camera| {
-        let verdict = match (camera.passes, &camera.provided) {
-            (true, None) => "yes".to_owned(),
-            (true, Some(proviso)) => format!("yes, if {proviso}"),
-            (false, _) => format!("no: {}", camera.fails.join(", ")),
+        let verdict = match (camera.verdict, &camera.provided) {
+            (Verdict::Meets, None) => "yes".to_owned(),
+            (Verdict::Meets, Some(proviso)) => format!("yes, if {proviso}"),
+            (Verdict::Undecided, _) => format!("undecided: {}", camera.undecided.join(", ")),
+            (Verdict::Fails, _) => format!("no: {}", camera.fails.join(", ")),
         };
         [
             camera.name.clone(),
@@ -131,17 +133,38 @@ fn of_measured(measured: &MeasuredAnswer, units: Units) -> String {
             camera.value.map_or_else(|| "no bound".into(), |value| significant(value, 3)),
             measured_scene(&camera.limiting, units),
             camera.grade.name().to_owned(),
-            if camera.passes { "yes".into() } else { format!("no: {}", in_words(&camera.fails_by)) },
+            measured_meets(camera),
         ]
     }));
     let mut out = columns(&rows, &[1, 2]);
     let _ = writeln!(out, "  demanded: {}\n", measured.definition);
     for camera in &measured.cameras {
-        if let Some(seen) = &camera.approach {
-            let _ = writeln!(out, "{}\n  {:<12} {}\n", camera.name, "until then", approach(seen, units));
+        let mut lines = Vec::new();
+        lines.extend(camera.approach.as_ref().map(|seen| ("until then", approach(seen, units))));
+        lines.extend(
+            camera
+                .uncertainty
+                .as_ref()
+                .map(|found| ("margin", uncertainty(camera.margin, found).join("\n               "))),
+        );
+        if !lines.is_empty() {
+            let _ = writeln!(out, "{}", camera.name);
+            lines.iter().for_each(|(label, text)| {
+                let _ = writeln!(out, "  {label:<12} {text}");
+            });
+            out.push('\n');
         }
     }
     out
+}
+
+/// Yes, no or undecided, and why.
+pub(super) fn measured_meets(camera: &MeasuredVerdict) -> String {
+    match camera.verdict {
+        Verdict::Meets => "yes".into(),
+        Verdict::Undecided => undecided(&camera.undecided_by, camera.uncertainty.as_ref()),
+        Verdict::Fails => format!("no: {}", in_words(&camera.fails_by)),
+    }
 }
 
 /// A quantity with its unit, as a head of a column.
@@ -203,14 +226,59 @@ pub(crate) fn together(answer: &RuleAnswer) -> Vec<Warning> {
     answer.warnings.iter().cloned().chain(of_cameras).collect()
 }
 
-/// Yes or no, and why.
+/// Yes, no or undecided, and why.
 pub(crate) fn meets(camera: &CameraVerdict) -> String {
-    let said = match (camera.fails_by.as_slice(), &camera.provided) {
-        ([], None) => "yes".into(),
-        ([], Some(proviso)) => format!("yes, if {proviso}"),
-        _ => format!("no: {}", fails_by(camera)),
+    let said = match (camera.verdict, &camera.provided) {
+        (Verdict::Meets, None) => "yes".into(),
+        (Verdict::Meets, Some(proviso)) => format!("yes, if {proviso}"),
+        (Verdict::Undecided, _) => undecided(&camera.undecided_by, camera.uncertainty.as_ref()),
+        (Verdict::Fails, _) => format!("no: {}", fails_by(camera)),
     };
     said + &without_placeholders(camera)
+}
+
+/// What is undecided, and between which ends the margin lies.
+pub(super) fn undecided(by: &[Shortfall], uncertainty: Option<&MarginUncertainty>) -> String {
+    let words = by.iter().map(|reason| match (reason, uncertainty) {
+        (Shortfall::Distance | Shortfall::Pixels | Shortfall::TemperatureError, Some(found)) => {
+            format!(
+                "the margin lies between {} and {}",
+                significant(found.low, 3),
+                significant(found.high, 3)
+            )
+        }
+        (other, _) => format!("perhaps {}", in_words(&[*other])),
+    });
+    format!("undecided: {}", words.collect::<Vec<_>>().join("; "))
+}
+
+/// How well a margin is known: its interval by both ways, then the budget, a line each.
+pub(super) fn uncertainty(margin: f64, found: &MarginUncertainty) -> Vec<String> {
+    let k = significant(found.coverage_factor, 2);
+    let mut lines = vec![format!(
+        "{} +- {} by first order (k = {k})",
+        significant(margin, 3),
+        significant(found.coverage_factor * found.first_order, 2)
+    )];
+    if let Some(drawn) = &found.draws {
+        let [low, high] = drawn.interval.map(|end| significant(end, 3));
+        lines.push(format!("{low} to {high} by {} draws", drawn.count));
+    }
+    lines.extend(found.budget.iter().map(|line| {
+        let told = |value: f64| match line.unit {
+            "" => significant(value, 3),
+            unit => quantity(value, unit),
+        };
+        let value = line.value.map_or_else(String::new, |value| format!("{} ", told(value)));
+        format!(
+            "{} {value}u {}: {} of the margin, {} of its variance",
+            line.figure,
+            told(line.uncertainty),
+            significant(line.contribution, 2),
+            share(line.share)
+        )
+    }));
+    lines
 }
 
 /// What a camera fails by, in words.
@@ -255,6 +323,9 @@ fn details(camera: &CameraVerdict, units: Units) -> String {
     }
     line("limited by", scene(&camera.limiting, units));
     line("certificate", camera.certificate.to_string());
+    if let Some(found) = &camera.uncertainty {
+        line("margin", uncertainty(camera.margin, found).join("\n               "));
+    }
     let spoiled: Vec<Shortfall> =
         camera.fails_by.iter().copied().filter(|reason| *reason != Shortfall::Distance).collect();
     if !spoiled.is_empty() {

@@ -5,15 +5,19 @@ use super::paths::{Paths, file};
 use super::section::Entry;
 use hadar::error::Result;
 use hadar::instrument::Readout;
-use hadar::instrument::figures::{CameraSpec, Efficiency, Kind, NOISES, TABLE};
+use hadar::instrument::figures::{CameraSpec, Efficiency, Kind, NOISES, Row, TABLE};
 use toml::Value;
 
 pub(super) fn read(entry: &Entry<'_>) -> Result<CameraSpec> {
-    read_beside(entry, &[])
+    read_beside(entry, &[], &mut |_, _| Ok(false))
 }
 
-/// The same in a table that may hold `other` keys too.
-pub(super) fn read_beside(entry: &Entry<'_>, other: &[&str]) -> Result<CameraSpec> {
+/// The same in a table that may hold `other` keys too. What `uncertain` takes, a figure with its uncertainty, is not read.
+pub(super) fn read_beside(
+    entry: &Entry<'_>,
+    other: &[&str],
+    uncertain: &mut dyn FnMut(&'static Row, &Entry<'_>) -> Result<bool>,
+) -> Result<CameraSpec> {
     let keys: Vec<&str> = other.iter().copied().chain(TABLE.iter().map(|row| row.key)).collect();
     let section = entry.section(&keys)?;
     section.at_most_one(&NOISES)?;
@@ -21,6 +25,22 @@ pub(super) fn read_beside(entry: &Entry<'_>, other: &[&str]) -> Result<CameraSpe
     let spec = &mut stated;
     for row in TABLE {
         let (key, example) = (row.key, row.example);
+        if let Some(entry) = section.get(key)
+            && uncertain(row, &entry)?
+        {
+            // Its value alone, if it has one of its own.
+            if let Some(value) = entry.table()?.get("value") {
+                let number = match row.kind {
+                    Kind::Quantity(dimension, allowed, _) => value.quantity(dimension, allowed)?,
+                    Kind::Number(allowed, _) | Kind::Efficiency(allowed, _) => {
+                        value.number(example, allowed)?
+                    }
+                    _ => continue,
+                };
+                row.put_number(spec, number);
+            }
+            continue;
+        }
         match row.kind {
             Kind::Quantity(dimension, allowed, slot) => {
                 *(slot.at)(spec) = section.quantity(key, dimension, allowed)?;

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 use serde::ser::{SerializeMap, Serializer};
+use std::collections::BTreeMap;
 use toml::Value;
 
 use super::source::{Source, dotted};
@@ -166,6 +167,23 @@ impl Entries {
             Some(range) => self.put_written(key, dimension, range.map(|end| dimension.format(end)).to_vec()),
             None => self,
         }
+    }
+
+    /// The same, each of these keys with the standard uncertainty of its value beside it.
+    pub(super) fn with_uncertainty(mut self, uncertainty: &BTreeMap<&'static str, f64>) -> Self {
+        for entry in &mut self.entries {
+            let Some(u) = uncertainty.get(entry.key) else { continue };
+            let mut both = toml::Table::new();
+            both.insert("value".to_owned(), entry.value.clone());
+            let difference = match entry.dimension {
+                Some(Dimension::Temperature) => Some(Dimension::TemperatureDifference),
+                other => other,
+            };
+            let u = difference.map_or_else(|| Value::from(*u), |dimension| dimension.format(*u).into());
+            both.insert("u".to_owned(), u);
+            entry.value = Value::Table(both);
+        }
+        self
     }
 
     /// The same, read from a table of that name.

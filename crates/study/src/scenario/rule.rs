@@ -4,7 +4,8 @@
 //! `[[camera]]` tables with the keys of `[camera]` and an optional `name` for others, and `[rule]` for what a reader of
 //! the certificate must know: `name`, `text` (its wording), `authority` (whose it is), `version`, `status`, and `from` and
 //! `until` which dates it holds. `[stop]` says how fast the vehicle is and how it brakes, so that distances follow; `[[clause]]`
-//! are demands with scenes of their own; `[[source]]` say where the figures are from; `[[test]]` what known cameras do.
+//! are demands with scenes of their own; a figure of a `[[camera]]` may have a standard uncertainty,
+//! `netd = { value = "50 mK", u = "5 mK" }`, of which `[uncertainty]` guards so many; `[[source]]` say where the figures are from; `[[test]]` what known cameras do.
 
 mod camera;
 mod citation;
@@ -25,11 +26,14 @@ use super::paths::Paths;
 use super::read::{MINIMUM, TABLES, document, text_of};
 use super::section::{Entry, Section};
 use super::{Scenario, Source};
+use hadar::allowed::ABOVE_ZERO;
 use hadar::error::{Error, Place, Result};
 use serde::{Serialize, Serializer};
 use std::path::Path;
 use toml::value::Date;
 
+/// 95 % of a Gaussian.
+const COVERAGE_FACTOR: f64 = 2.0;
 const NO_CAMERA: &str = "write cameras = [\"flir-a325sc\"] above the first [table], or a [[camera]] table";
 
 /// What a rule says of itself (`[rule]`).
@@ -64,6 +68,8 @@ impl About {
 pub struct Rule {
     /// What it says of itself.
     pub about: About,
+    /// Deviations to both sides of a margin that must be above or below 1; see `[uncertainty]`.
+    pub coverage_factor: f64,
     /// Task, surroundings, bands, unknowns, requirement and envelope that clauses share; without a camera.
     pub scenario: Scenario,
     /// What it demands, at least one thing.
@@ -111,9 +117,14 @@ impl Rule {
     pub fn from_toml(text: &str, path: Option<&Path>) -> Result<Self> {
         let mut source = Source { path: path.map(Path::to_owned), ..Source::default() };
         let document = document(text, (Kind::Rule, MINIMUM), &mut source)?;
-        let known = [&TABLES[..], &["rule", "cameras", "stop", "clause", "source", "test"]].concat();
+        let known =
+            [&TABLES[..], &["rule", "cameras", "stop", "clause", "source", "test", "uncertainty"]].concat();
         let root = Section::open(&document, "", &source, &known)?;
         let about = root.read("rule", about)?.unwrap_or_default();
+        let coverage_factor = root.read("uncertainty", |entry| {
+            entry.section(&["coverage_factor"])?.number("coverage_factor", "2", ABOVE_ZERO)
+        })?;
+        let coverage_factor = coverage_factor.flatten().unwrap_or(COVERAGE_FACTOR);
         let mut cameras = root.read("cameras", camera::presets)?.unwrap_or_default();
         cameras.extend(root.read("camera", camera::tables)?.unwrap_or_default());
         if cameras.is_empty() {
@@ -123,7 +134,7 @@ impl Rule {
         let (scenario, clauses) = clause::read(&root, &source)?;
         let tests = test::read(&root, &cameras, &clauses)?;
         let sources = citation::read(&root, &document, &source)?;
-        Ok(Self { about, scenario, clauses, cameras, sources, tests, text: text.to_owned() })
+        Ok(Self { about, coverage_factor, scenario, clauses, cameras, sources, tests, text: text.to_owned() })
     }
 
     /// Its figures as its file has them.
@@ -184,7 +195,7 @@ impl Rule {
         let camera = |camera: &RuleCamera| {
             Entries::default()
                 .put_if("name", camera.name.as_deref())
-                .and(written(&camera.spec, paths))
+                .and(written(&camera.spec, paths).with_uncertainty(&camera.uncertainty))
                 .read_from(&camera.key)
         };
         let about = Entries::default()
@@ -196,6 +207,10 @@ impl Rule {
             .put_if("from", self.about.from.map(|day| day.to_string()))
             .put_if("until", self.about.until.map(|day| day.to_string()));
         document.push(("rule", Part::Table(about)));
+        if self.cameras.iter().any(|camera| !camera.uncertainty.is_empty()) {
+            let entries = Entries::default().put("coverage_factor", self.coverage_factor);
+            document.push(("uncertainty", Part::Table(entries)));
+        }
         if self.has_clauses() {
             let clause = |clause: &Clause| clause.document(&self.scenario, paths);
             document.push(("clause", Part::Documents(self.clauses.iter().map(clause).collect())));
@@ -215,7 +230,9 @@ impl Rule {
 /// Two rules are equal when they ask the same question of the same cameras: where they stand does not count.
 impl PartialEq for Rule {
     fn eq(&self, other: &Self) -> bool {
-        let same = |(a, b): (&RuleCamera, &RuleCamera)| a.name == b.name && a.spec == b.spec;
+        let same = |(a, b): (&RuleCamera, &RuleCamera)| {
+            a.name == b.name && a.spec == b.spec && a.uncertainty == b.uncertainty
+        };
         let same_clause = |(a, b): (&Clause, &Clause)| {
             (&a.name, &a.text, &a.demand, &a.stop) == (&b.name, &b.text, &b.demand, &b.stop)
                 && a.scenario == b.scenario

@@ -17,6 +17,7 @@ mod resolution;
 mod results;
 mod search;
 mod temperature;
+mod uncertainty;
 mod wording;
 
 pub use asked::{Extent, RuleAsked};
@@ -30,6 +31,7 @@ pub use results::{
     LightTime, LimitingScene, Neighbourhood, NotIdentifiable, Proof, Proviso, Quotable, RuleRequirement,
     StopResult, WhoMeets, WithoutPlaceholders,
 };
+pub use uncertainty::{BudgetLine, Drawn, MarginUncertainty};
 
 use self::apart::TellApart;
 use self::depth::DepthClause;
@@ -122,7 +124,7 @@ impl RuleStudy {
                     Kind::Apart(Box::new(apart))
                 }
                 Demand::Resolution { pixels, size_m } => {
-                    Kind::Resolution(Resolution::new(clause, [*pixels, *size_m], &cameras)?)
+                    Kind::Resolution(Resolution::new(rule, clause, [*pixels, *size_m], &cameras)?)
                 }
                 Demand::TemperatureError { error_k, coverage_factor } => {
                     let wanted = (*error_k, *coverage_factor);
@@ -171,7 +173,7 @@ impl RuleStudy {
             let within = |done: usize| progress(before + done, all);
             let found = match kind {
                 Kind::Apart(apart) => Found::Apart(Box::new(apart.answer(asked, &within)?)),
-                Kind::Resolution(clause) => Found::Measured(clause.answer()),
+                Kind::Resolution(clause) => Found::Measured(clause.answer()?),
                 Kind::Temperature(clause) => Found::Measured(clause.answer(&within)?),
                 Kind::Depth(clause) => Found::Measured(clause.answer(&within)?),
             };
@@ -209,35 +211,47 @@ fn together(clauses: &[ClauseAnswer]) -> Vec<CameraAnswer> {
     let mut cameras: Vec<CameraAnswer> = Vec::new();
     for clause in clauses {
         for line in clause.lines() {
-            let fails = line.verdict == Verdict::Fails;
             let name = || clause.name.clone();
-            let Some(camera) = cameras.iter_mut().find(|camera| camera.name == line.camera) else {
-                cameras.push(CameraAnswer {
-                    name: line.camera.to_owned(),
-                    verdict: line.verdict,
-                    passes: line.verdict == Verdict::Meets,
-                    margin: line.margin,
-                    limiting_clause: name(),
-                    fails: name().into_iter().filter(|_| fails).collect(),
-                    grade: line.grade,
-                    provided: line.provided,
-                });
-                continue;
+            let interval = line.uncertainty.map(|found| [found.low, found.high]);
+            let camera = match cameras.iter_mut().position(|camera| camera.name == line.camera) {
+                Some(index) => &mut cameras[index],
+                None => {
+                    cameras.push(CameraAnswer {
+                        name: line.camera.to_owned(),
+                        verdict: Verdict::Meets,
+                        passes: true,
+                        margin: f64::INFINITY,
+                        limiting_clause: None,
+                        interval: None,
+                        fails: Vec::new(),
+                        undecided: Vec::new(),
+                        grade: Grade::Proved,
+                        provided: None,
+                    });
+                    let last = cameras.len() - 1;
+                    &mut cameras[last]
+                }
             };
             if line.margin < camera.margin {
-                (camera.margin, camera.limiting_clause) = (line.margin, name());
+                (camera.margin, camera.limiting_clause, camera.interval) = (line.margin, name(), interval);
             }
             camera.provided = camera.provided.or(line.provided);
-            camera.grade = match (camera.verdict, fails) {
+            camera.grade = match (camera.verdict, line.verdict) {
                 // One clause that is surely not met is enough; of several the surest counts.
-                (Verdict::Fails, true) => camera.grade.min(line.grade),
-                (Verdict::Fails, false) => camera.grade,
-                (Verdict::Meets, true) => line.grade,
-                (Verdict::Meets, false) => camera.grade.max(line.grade),
+                (Verdict::Fails, Verdict::Fails) => camera.grade.min(line.grade),
+                (Verdict::Fails, _) => camera.grade,
+                (_, Verdict::Fails) => line.grade,
+                _ => camera.grade.max(line.grade),
             };
-            if fails {
-                camera.verdict = Verdict::Fails;
-                camera.fails.extend(name());
+            camera.verdict = match (camera.verdict, line.verdict) {
+                (Verdict::Fails, _) | (_, Verdict::Fails) => Verdict::Fails,
+                (Verdict::Undecided, _) | (_, Verdict::Undecided) => Verdict::Undecided,
+                (Verdict::Meets, Verdict::Meets) => Verdict::Meets,
+            };
+            match line.verdict {
+                Verdict::Fails => camera.fails.extend(name()),
+                Verdict::Undecided => camera.undecided.extend(name()),
+                Verdict::Meets => {}
             }
             camera.passes = camera.verdict == Verdict::Meets;
         }
@@ -250,9 +264,10 @@ fn together(clauses: &[ClauseAnswer]) -> Vec<CameraAnswer> {
 fn who_meets(clauses: &[ClauseAnswer], cameras: &[CameraAnswer]) -> WhoMeets {
     let mut who = WhoMeets::default();
     for camera in cameras {
-        match camera.passes {
-            true => who.meet.push((camera.name.clone(), camera.provided)),
-            false => who.fail.push(camera.name.clone()),
+        match camera.verdict {
+            Verdict::Meets => who.meet.push((camera.name.clone(), camera.provided)),
+            Verdict::Undecided => who.undecided.push((camera.name.clone(), camera.interval)),
+            Verdict::Fails => who.fail.push(camera.name.clone()),
         }
         if camera.passes && camera.grade > Grade::Proved {
             who.unproved.push(camera.name.clone());

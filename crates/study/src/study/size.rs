@@ -14,7 +14,7 @@ use serde::ser::{SerializeMap, Serializer};
 
 mod curves;
 mod reach;
-mod sensitivity;
+pub(in crate::study) mod sensitivity;
 mod trade_offs;
 mod wording;
 

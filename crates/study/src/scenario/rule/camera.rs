@@ -3,7 +3,11 @@
 use crate::scenario::CameraSpec;
 use crate::scenario::camera::read_beside;
 use crate::scenario::section::Entry;
+use hadar::allowed::FROM_ZERO;
 use hadar::error::{Error, Result};
+use hadar::instrument::figures::{Kind, Row};
+use hadar::units::Dimension;
+use std::collections::BTreeMap;
 
 /// A list at the top of a file stands before its tables.
 const CAMERAS: &str = "cameras = [\"flir-a325sc\", \"ideal-pnrd\"]";
@@ -15,6 +19,8 @@ pub struct RuleCamera {
     pub name: Option<String>,
     /// What it is.
     pub spec: CameraSpec,
+    /// Standard uncertainties of figures, by their keys, in the units used inside; not negative.
+    pub uncertainty: BTreeMap<&'static str, f64>,
     /// Where it stands, e.g. `cameras[1]` or `camera[0]`.
     pub key: String,
 }
@@ -43,7 +49,8 @@ pub(super) fn presets(entry: &Entry<'_>) -> Result<Vec<RuleCamera>> {
         if cameras.iter().any(|camera| camera.spec == spec) {
             return Err(item.fail(Error::malformed("the same is already in the list", "name it once")));
         }
-        cameras.push(RuleCamera { name: None, spec, key: format!("cameras[{index}]") });
+        let (uncertainty, key) = (BTreeMap::new(), format!("cameras[{index}]"));
+        cameras.push(RuleCamera { name: None, spec, uncertainty, key });
     }
     Ok(cameras)
 }
@@ -55,10 +62,35 @@ pub(super) fn tables(entry: &Entry<'_>) -> Result<Vec<RuleCamera>> {
         .iter()
         .enumerate()
         .map(|(index, item)| {
-            let spec = read_beside(item, &["name"])?;
+            let mut uncertainty = BTreeMap::new();
+            let spec =
+                read_beside(item, &["name"], &mut |row, entry| uncertain(row, entry, &mut uncertainty))?;
             let section = item.table()?;
             let name = section.read("name", |entry| Ok(entry.text("\"ours\"")?.trim().to_owned()))?;
-            Ok(RuleCamera { name, spec, key: format!("camera[{index}]") })
+            Ok(RuleCamera { name, spec, uncertainty, key: format!("camera[{index}]") })
         })
         .collect()
+}
+
+/// A figure as a table of its value and its standard uncertainty, which is noted; whether it is one.
+fn uncertain(row: &'static Row, entry: &Entry<'_>, noted: &mut BTreeMap<&'static str, f64>) -> Result<bool> {
+    if !entry.is_table() {
+        return Ok(false);
+    }
+    let section = entry.section(&["value", "u"])?;
+    let u = section.require("u", "\"5 mK\"")?;
+    let sigma = match row.kind {
+        // Of a difference of temperatures, not of a temperature.
+        Kind::Quantity(Dimension::Temperature, ..) => {
+            u.quantity(Dimension::TemperatureDifference, FROM_ZERO)?
+        }
+        Kind::Quantity(dimension, ..) => u.quantity(dimension, FROM_ZERO)?,
+        Kind::Number(..) | Kind::Efficiency(..) => u.number("0.01", FROM_ZERO)?,
+        _ => {
+            let found = format!("an uncertainty of {}, which is no measured number", row.key);
+            return Err(entry.fail(Error::malformed(found, format!("write {} = {}", row.key, row.example))));
+        }
+    };
+    noted.insert(row.key, sigma);
+    Ok(true)
 }

@@ -43,11 +43,13 @@ pub enum Verdict {
     Meets,
     /// It does not.
     Fails,
+    /// It may or may not: the interval of its margin contains the demand.
+    Undecided,
 }
 
 impl Verdict {
     /// All of them.
-    pub const ALL: [Self; 2] = [Self::Meets, Self::Fails];
+    pub const ALL: [Self; 3] = [Self::Meets, Self::Fails, Self::Undecided];
 
     /// The name in a rule, e.g. `meets`.
     #[must_use]
@@ -55,6 +57,7 @@ impl Verdict {
         match self {
             Self::Meets => "meets",
             Self::Fails => "fails",
+            Self::Undecided => "undecided",
         }
     }
 }

@@ -30,7 +30,7 @@ pub(super) const DISTANCES: usize = 9;
 /// A camera of a rule, before every material and from the distances that may be the worst.
 #[derive(Debug, Clone)]
 pub(super) struct Candidate {
-    pub(super) name: String,
+    pub(super) named: Named,
     /// From where it looks, the least distance first, m.
     pub(super) distance_m: Option<[f64; 2]>,
     /// How the vehicle comes nearer, if that is said.
@@ -56,6 +56,8 @@ impl Candidate {
 /// A clause of a rule with everything it names looked up and checked.
 #[derive(Debug, Clone)]
 pub(super) struct TellApart {
+    /// The rule, which knows where its cameras stand.
+    pub(super) rule: Rule,
     /// With the defaults filled in that all cameras share.
     pub(super) scenario: Scenario,
     pub(super) stop: Option<StopSpec>,
@@ -113,7 +115,8 @@ impl TellApart {
         }
         let first = candidates.first().and_then(|candidate| candidate.near.first());
         let required = first.map_or(1.0, |study| study.required);
-        Ok(Self { scenario, stop: clause.stop, envelope, candidates, required, warnings })
+        let rule = rule.clone();
+        Ok(Self { rule, scenario, stop: clause.stop, envelope, candidates, required, warnings })
     }
 
     /// The first camera before the first material, from the least distance: what all of them share.
@@ -292,8 +295,8 @@ fn candidate(
         }
     }
     let distance_m = approach.as_ref().map(|own: &Approach| own.distance_m).or(envelope.distance_m);
-    let name = named.name.clone();
-    Ok(Candidate { name, distance_m, approach, sighted, distance_matters, between, share, near })
+    let named = named.clone();
+    Ok(Candidate { named, distance_m, approach, sighted, distance_matters, between, share, near })
 }
 
 /// Distances of a range that are searched, equal steps of ln z apart.

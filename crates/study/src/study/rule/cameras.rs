@@ -5,6 +5,7 @@ use crate::scenario::{CameraSpec, Rule, Scenario};
 use crate::study::{bands, camera, camera_bands};
 use hadar::error::{Error, Result};
 use hadar::instrument::{Camera, presets};
+use std::collections::BTreeMap;
 
 /// A camera with the name that the rule's answer has for it.
 #[derive(Debug, Clone)]
@@ -12,6 +13,9 @@ pub(super) struct Named {
     pub(super) name: String,
     pub(super) camera: Camera,
     pub(super) spec: CameraSpec,
+    /// Where it stands among the cameras of the rule.
+    pub(super) index: usize,
+    pub(super) uncertainty: BTreeMap<&'static str, f64>,
 }
 
 impl Named {
@@ -39,7 +43,8 @@ pub(super) fn of(rule: &Rule) -> Result<Vec<Named>> {
             );
             return Err(error.at(rule.camera_place(index, "name")));
         }
-        found.push(Named { name, camera, spec: own.spec.clone() });
+        let (spec, uncertainty) = (own.spec.clone(), own.uncertainty.clone());
+        found.push(Named { name, camera, spec, index, uncertainty });
     }
     Ok(found)
 }

@@ -4,6 +4,7 @@ use super::results::{
     ApproachResult, CameraVerdict, EnvelopeResult, Grade, NotIdentifiable, Proviso, RuleRequirement,
     StopResult, WhoMeets,
 };
+use super::uncertainty::MarginUncertainty;
 use crate::scenario::Rule;
 use crate::scenario::rule::Verdict;
 use crate::study::{Shortfall, Warning};
@@ -45,8 +46,12 @@ pub struct CameraAnswer {
     pub margin: f64,
     /// The clause of that margin; none of a rule without clauses.
     pub limiting_clause: Option<String>,
+    /// The interval of the margin of that clause; `None` where no uncertainty is stated.
+    pub interval: Option<[f64; 2]>,
     /// Clauses that it does not meet.
     pub fails: Vec<String>,
+    /// Clauses that it may or may not meet.
+    pub undecided: Vec<String>,
     /// The weakest evidence that its verdict rests on.
     pub grade: Grade,
     /// What meeting the rule hangs on.
@@ -136,6 +141,10 @@ pub struct MeasuredVerdict {
     pub passes: bool,
     /// What it does not meet.
     pub fails_by: Vec<Shortfall>,
+    /// What it may or may not meet, its figures being uncertain.
+    pub undecided_by: Vec<Shortfall>,
+    /// How well its margin is known; `None` where no uncertainty is stated.
+    pub uncertainty: Option<MarginUncertainty>,
     /// What it reaches where that is the least; `None` where there is no bound on an error.
     pub value: Option<f64>,
     /// How much better than demanded: the value over the demand of what must be large, the demand over the value of an error.
@@ -179,6 +188,10 @@ pub struct Line<'a> {
     pub grade: Grade,
     /// What it does not meet.
     pub fails_by: &'a [Shortfall],
+    /// What it may or may not meet.
+    pub undecided_by: &'a [Shortfall],
+    /// How well the margin is known.
+    pub uncertainty: Option<&'a MarginUncertainty>,
     /// What meeting it hangs on.
     pub provided: Option<Proviso>,
     /// How the vehicle comes nearer.
@@ -217,6 +230,8 @@ impl CameraVerdict {
             margin: self.margin,
             grade: self.grade,
             fails_by: &self.fails_by,
+            undecided_by: &self.undecided_by,
+            uncertainty: self.uncertainty.as_ref(),
             provided: self.provided,
             approach: self.approach.as_ref(),
             warnings: &self.warnings,
@@ -234,6 +249,8 @@ impl MeasuredVerdict {
             margin: self.margin,
             grade: self.grade,
             fails_by: &self.fails_by,
+            undecided_by: &self.undecided_by,
+            uncertainty: self.uncertainty.as_ref(),
             provided: None,
             approach: self.approach.as_ref(),
             warnings: &self.warnings,

@@ -25,7 +25,7 @@ pub(super) struct DepthClause {
 
 #[derive(Debug)]
 struct Before {
-    name: String,
+    named: Named,
     study: RangeStudy,
     approach: Option<Approach>,
 }
@@ -61,7 +61,7 @@ impl DepthClause {
                 requirement: demand.requirement,
                 source: scenario.source,
             };
-            Ok(Before { name: named.name.clone(), study: RangeStudy::new(&range, library)?, approach })
+            Ok(Before { named: named.clone(), study: RangeStudy::new(&range, library)?, approach })
         };
         let cameras = cameras.iter().enumerate().map(before).collect::<Result<_>>()?;
         Ok(Self { demand: demand.clone(), cameras })
@@ -78,11 +78,14 @@ impl DepthClause {
             Demand::Absolute(error_m) => (Measure::DepthErrorM, error_m, hadar::words::length(error_m)),
             Demand::Relative(part) => (Measure::RelativeDepthError, part, hadar::words::share(part)),
         };
-        let definition = format!(
+        let mut definition = format!(
             "least depth error of the {} within {error} in {} of its windows",
             self.demand.object.name(),
             hadar::words::share(share)
         );
+        if self.cameras.iter().any(|camera| !camera.named.uncertainty.is_empty()) {
+            definition += " (uncertainties of the cameras' figures are not carried into it)";
+        }
         Ok(MeasuredAnswer { quantity, demanded, definition, cameras: verdicts })
     }
 
@@ -114,10 +117,13 @@ impl DepthClause {
         fails_by.extend(before.approach.as_ref().and_then(Approach::shortfall));
         let passes = fails_by.is_empty();
         Ok(MeasuredVerdict {
-            name: before.name.clone(),
+            name: before.named.name.clone(),
             verdict: if passes { Verdict::Meets } else { Verdict::Fails },
             passes,
             fails_by,
+            // A street is rendered for each camera: what its figures' uncertainties do is not asked.
+            undecided_by: Vec::new(),
+            uncertainty: None,
             value: (margin > 0.0).then(|| demanded / margin),
             margin,
             // The street is one scene, and nobody's: a picture with other texture has another bound.

@@ -27,6 +27,7 @@ use crate::study::{Study, Surface};
 use hadar::error::{Error, Result};
 use hadar::fisher::Counting;
 use hadar::identifiability::nearest::NearestSolver;
+use hadar::instrument::Camera;
 use hadar::lattice_points::GoldenLattice;
 use hadar::policy::envelope::{EnvelopeScene, Ranges};
 use hadar::scene::State;
@@ -68,6 +69,14 @@ impl Sighted {
         let counting =
             brightest.counting().unwrap_or(Counting { counts_per_radiance: 0.0, var_added: vec![] });
         Ok(Self { study, counting, ranges })
+    }
+
+    /// The same before another camera.
+    pub(in crate::study) fn before(&self, camera: &Camera, envelope: &Envelope) -> Result<Self> {
+        let mut study = self.study.clone();
+        (study.bands, study.air) = study.received(Some(camera), study.scenario.target.distance_m)?;
+        study.camera = Some(camera.clone());
+        Self::new(study, envelope)
     }
 
     /// The pair with an alternative, for a search.

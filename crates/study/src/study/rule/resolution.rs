@@ -8,9 +8,12 @@ use super::approach::Approach;
 use super::cameras::Named;
 use super::clauses::{Measure, MeasuredAnswer, MeasuredScene, MeasuredVerdict};
 use super::results::Grade;
+use super::uncertainty::{Judged, Uncertain};
+use crate::scenario::Rule;
 use crate::scenario::rule::{Clause, StopSpec, Verdict};
 use crate::study::Shortfall;
 use hadar::error::{Error, Result};
+use hadar::instrument::Camera;
 
 /// A clause with its cameras.
 #[derive(Debug)]
@@ -19,12 +22,18 @@ pub(super) struct Resolution {
     size_m: f64,
     farthest_m: f64,
     stop: Option<StopSpec>,
+    rule: Rule,
     /// With the number of its bands.
     cameras: Vec<(Named, usize)>,
 }
 
 impl Resolution {
-    pub(super) fn new(clause: &Clause, [pixels, size_m]: [f64; 2], cameras: &[Named]) -> Result<Self> {
+    pub(super) fn new(
+        rule: &Rule,
+        clause: &Clause,
+        [pixels, size_m]: [f64; 2],
+        cameras: &[Named],
+    ) -> Result<Self> {
         let scenario = &clause.scenario;
         let by_stop = clause.stop.map(|spec| spec.stop().decisions()[1].distance_m);
         let farthest_m = by_stop.or(clause.envelope().distance_m.map(|[_, most]| most)).ok_or_else(|| {
@@ -34,40 +43,58 @@ impl Resolution {
         })?;
         let counted = |named: &Named| Ok((named.clone(), named.bands(scenario)?));
         let cameras = cameras.iter().map(counted).collect::<Result<_>>()?;
-        Ok(Self { pixels, size_m, farthest_m, stop: clause.stop, cameras })
+        let rule = rule.clone();
+        Ok(Self { pixels, size_m, farthest_m, stop: clause.stop, rule, cameras })
     }
 
-    pub(super) fn answer(&self) -> MeasuredAnswer {
-        let cameras = self.cameras.iter().map(|(named, bands)| self.judged(named, *bands)).collect();
+    pub(super) fn answer(&self) -> Result<MeasuredAnswer> {
+        let judged = |(named, bands): &(Named, usize)| self.judged(named, *bands);
+        let cameras = self.cameras.iter().map(judged).collect::<Result<_>>()?;
         let definition = format!(
             "{} pixels across {} at the greatest distance, by geometry alone",
             self.pixels,
             hadar::words::length(self.size_m)
         );
-        MeasuredAnswer { quantity: Measure::Pixels, demanded: self.pixels, definition, cameras }
+        Ok(MeasuredAnswer { quantity: Measure::Pixels, demanded: self.pixels, definition, cameras })
     }
 
-    fn judged(&self, Named { name, camera, .. }: &Named, bands: usize) -> MeasuredVerdict {
-        let approach = self.stop.map(|spec| Approach::of(spec.stop(), camera, bands));
-        let distance_m = approach.as_ref().map_or(self.farthest_m, |approach| approach.distance_m[1]);
-        let value = self.size_m * camera.focal_length_m / (distance_m * camera.pixel_m);
-        let mut fails_by = Vec::new();
-        if value < self.pixels {
-            fails_by.push(Shortfall::Pixels);
-        }
-        fails_by.extend(approach.as_ref().and_then(Approach::shortfall));
-        let passes = fails_by.is_empty();
-        MeasuredVerdict {
-            name: name.clone(),
-            verdict: if passes { Verdict::Meets } else { Verdict::Fails },
-            passes,
+    fn approach(&self, camera: &Camera, bands: usize) -> Option<Approach> {
+        self.stop.map(|spec| Approach::of(spec.stop(), camera, bands))
+    }
+
+    /// The greatest distance from which a frame is taken, m, and the pixels across the target from there.
+    fn reached(&self, camera: &Camera, bands: usize) -> (f64, f64) {
+        let approach = self.approach(camera, bands);
+        let distance_m = approach.map_or(self.farthest_m, |approach| approach.distance_m[1]);
+        (distance_m, self.size_m * camera.focal_length_m / (distance_m * camera.pixel_m))
+    }
+
+    fn judged(&self, named: &Named, bands: usize) -> Result<MeasuredVerdict> {
+        let (distance_m, value) = self.reached(&named.camera, bands);
+        let place = |key: &str| self.rule.camera_place(named.index, key);
+        let uncertain = Uncertain::of(named, (self.rule.coverage_factor, false), &place)?;
+        let (judged, uncertainty) = Uncertain::verdict(
+            uncertain,
+            value / self.pixels,
+            (Shortfall::Pixels, true),
+            &named.camera,
+            &|camera| self.approach(camera, bands).and_then(|approach| approach.shortfall()),
+            &|camera| Ok(self.reached(camera, bands).1 / self.pixels),
+        )?;
+        let Judged { verdict, fails_by, undecided_by } = judged;
+        Ok(MeasuredVerdict {
+            name: named.name.clone(),
+            verdict,
+            passes: verdict == Verdict::Meets,
             fails_by,
+            undecided_by,
+            uncertainty,
             value: Some(value),
             margin: value / self.pixels,
             grade: Grade::Proved,
             limiting: MeasuredScene { distance_m: Some(distance_m), ..MeasuredScene::default() },
-            approach: approach.map(|approach| approach.result),
+            approach: self.approach(&named.camera, bands).map(|approach| approach.result),
             warnings: Vec::new(),
-        }
+        })
     }
 }

@@ -1,5 +1,6 @@
 //! What comes of a rule, as data.
 
+use super::uncertainty::MarginUncertainty;
 use crate::scenario::Units;
 use crate::scenario::rule::Verdict;
 use crate::study::size::Solutions;
@@ -18,6 +19,8 @@ pub struct WhoMeets {
     pub meet: Vec<(String, Option<Proviso>)>,
     /// Those of them of which it is not proved.
     pub unproved: Vec<String>,
+    /// Those of which it cannot be said, their figures being uncertain, with the interval of their least margin.
+    pub undecided: Vec<(String, Option<[f64; 2]>)>,
     /// Those that do not.
     pub fail: Vec<String>,
     /// Whether it is one clause of several that they meet.
@@ -117,6 +120,10 @@ pub struct CameraVerdict {
     pub passes: bool,
     /// What it does not meet.
     pub fails_by: Vec<Shortfall>,
+    /// What it may or may not meet, its figures being uncertain.
+    pub undecided_by: Vec<Shortfall>,
+    /// How well its margin is known; `None` where no uncertainty is stated.
+    pub uncertainty: Option<MarginUncertainty>,
     /// What meeting it hangs on; in JSON what completes 'yes, if '.
     pub provided: Option<Proviso>,
     /// Number of bands.

@@ -9,21 +9,36 @@ use super::apart::{Candidate, TellApart};
 use super::approach::Approach;
 use super::envelope::{Estimate, Sighted, brightest};
 use super::results::{CameraVerdict, Certified, Fixes, Grade, LimitingScene, Proviso, WithoutPlaceholders};
+use super::uncertainty::{self, Errors, Judged, Uncertain};
 use crate::scenario::rule::Verdict;
+use crate::study::size::sensitivity::{linear, ripple::Ripple};
 use hadar::demand::{self, Reason, Thing};
-use hadar::error::{Error, Result};
+use hadar::error::{Error, Place, Result};
 use hadar::fisher::Nuisance;
 use hadar::identifiability::detection;
 use hadar::instrument::{Camera, Readout};
 use hadar::policy::envelope::{Certificate, Effort, WorstCase, worst_case};
 use hadar::policy::{self, CapCode, Quantity};
 use hadar::scene::State;
+use rand::SeedableRng;
+use rand::rngs::ChaCha8Rng;
 use std::collections::BTreeMap;
 
 /// How far below the distance attained a bound may be, as a share of it.
 pub(super) const TOLERANCE: f64 = 0.01;
 /// Boxes of the branch and bound for each pair at most: a second or so.
 const BOXES: u64 = 200_000;
+
+/// Share of the worst distance up to which the scenes of other pairs count where figures are uncertain.
+const NEAR: f64 = 1.5;
+const SEED: u64 = 1;
+
+/// A scene in which a margin is taken anew.
+struct Scene {
+    sighted: Sighted,
+    alternative: usize,
+    state: State,
+}
 
 /// A pair's scene with what is known of it.
 pub(super) struct Searched {
@@ -63,7 +78,10 @@ impl TellApart {
         alone: bool,
         progress: &dyn Fn(usize),
     ) -> Result<CameraVerdict> {
-        let worst = self.worst(candidate, alone, &|_, _| true, progress)?.ok_or_else(|| {
+        let place = |key: &str| self.rule.camera_place(candidate.named.index, key);
+        let uncertain = self.uncertain(candidate, &place)?;
+        let alone = alone && uncertain.is_none();
+        let (worst, near) = self.worst(candidate, alone, &|_, _| true, progress)?.ok_or_else(|| {
             Error::malformed("there is no pair of materials", "name one in alternatives.materials")
         })?;
         let sighted = worst.between.as_deref().unwrap_or(&candidate.sighted[worst.pair.sighted]);
@@ -73,21 +91,40 @@ impl TellApart {
         let mut warnings = self.warnings_of(candidate);
         let image = at.camera.as_ref().map(|camera| self.image(candidate, camera));
         let image = image.unwrap_or_default();
-        let mut fails_by = Vec::new();
-        if distance < self.required {
-            fails_by.push(Shortfall::Distance);
-        }
-        fails_by.extend(&image.spoiled);
+        let mut others = vec![image.spoiled.clone()];
         if self.moving().is_some() && image.blur.is_none() {
             // What cannot be said is not met.
-            fails_by.push(Shortfall::MotionUnknown);
+            others[0].push(Shortfall::MotionUnknown);
         }
-        let passes = fails_by.is_empty();
+        let mut uncertainty = None;
+        if let Some(uncertain) = uncertain.filter(|_| distance > 0.0) {
+            for camera in uncertain.sides() {
+                others.push(self.image(candidate, &camera?).spoiled);
+            }
+            let scenes: Vec<Scene> = self.scenes(candidate, &worst, near);
+            let ripple = self.scenario.sensitivity.map(|spec| {
+                let nodes = sighted.study.bands.nodes_cm1();
+                Ripple::new(nodes, spec.emissivity_error, spec.correlation_cm1)
+            });
+            let emissivities = self.scenario.sensitivity.zip(ripple.as_ref()).map(|(spec, ripple)| {
+                let per_unit =
+                    linear::sigma(&at, surface, &worst.pair.nearest, &sighted.counting, distance, ripple);
+                (spec.emissivity_error, per_unit * spec.emissivity_error / self.required)
+            });
+            let of =
+                |camera: &Camera, errors: Errors| self.least_margin(&scenes, ripple.as_ref(), camera, errors);
+            uncertainty = Some(uncertain.of_margin(distance / self.required, emissivities, true, &of)?);
+        }
+        let Judged { verdict, fails_by, undecided_by } =
+            uncertainty::judged(distance / self.required, uncertainty.as_ref(), Shortfall::Distance, &others);
+        let passes = verdict == Verdict::Meets;
         let gap = worst.lower_bound.filter(|_| distance > 0.0).map(|bound| 1.0 - bound / distance);
         let certificate =
             worst.certificate.map_or_else(Certified::counterexample, |found| Certified::of(found, gap));
         let mut grade = Grade::Proved;
-        if passes && worst.lower_bound.is_none_or(|bound| bound < self.required) {
+        // What is proved of the worst scene is guarded as its margin is.
+        let guard = uncertainty.as_ref().map_or(0.0, |found| distance / self.required - found.low);
+        if passes && worst.lower_bound.is_none_or(|bound| bound / self.required - guard < 1.0) {
             warnings.push(Warning::NotProved);
             grade = Grade::Searched;
         }
@@ -151,7 +188,7 @@ impl TellApart {
         });
         let bands = at.bands.len();
         Ok(CameraVerdict {
-            name: candidate.name.clone(),
+            name: candidate.named.name.clone(),
             passes,
             fails_by,
             provided: frames.filter(|_| passes),
@@ -170,10 +207,67 @@ impl TellApart {
             brightest_reading: image.reading,
             longest_exposure_s: image.longest_exposure_s,
             approach: candidate.approach.as_ref().map(|approach| approach.result),
-            verdict: if passes { Verdict::Meets } else { Verdict::Fails },
+            verdict,
+            undecided_by,
+            uncertainty,
             grade,
             warnings,
         })
+    }
+
+    /// What is uncertain of a camera, if anything is.
+    fn uncertain<'a>(
+        &self,
+        candidate: &Candidate,
+        place: &'a (dyn Fn(&str) -> Place + Sync),
+    ) -> Result<Option<Uncertain<'a>>> {
+        let emissivities = self.scenario.sensitivity.is_some();
+        Uncertain::of(&candidate.named, (self.rule.coverage_factor, emissivities), place)
+    }
+
+    /// The scenes in which a margin is taken anew: the worst one, and those of other pairs that come near it.
+    fn scenes(&self, candidate: &Candidate, worst: &Searched, near: Vec<Estimate>) -> Vec<Scene> {
+        let own = worst.between.as_deref().unwrap_or(&candidate.sighted[worst.pair.sighted]);
+        let mut scenes = vec![Scene {
+            sighted: own.clone(),
+            alternative: worst.pair.alternative,
+            state: worst.pair.state.clone(),
+        }];
+        let others = near
+            .into_iter()
+            .filter(|pair| (pair.sighted, pair.alternative) != (worst.pair.sighted, worst.pair.alternative));
+        scenes.extend(others.map(|pair| Scene {
+            sighted: candidate.sighted[pair.sighted].clone(),
+            alternative: pair.alternative,
+            state: pair.state,
+        }));
+        scenes
+    }
+
+    /// The least margin of a camera in some scenes.
+    fn least_margin(
+        &self,
+        scenes: &[Scene],
+        ripple: Option<&Ripple>,
+        camera: &Camera,
+        errors: Errors,
+    ) -> Result<f64> {
+        let mut least = f64::INFINITY;
+        for Scene { sighted, alternative, state } in scenes {
+            let sighted = sighted.before(camera, &self.envelope)?;
+            let pair = [&sighted.study.target, &sighted.study.alternatives[*alternative]];
+            let pair: [Vec<f64>; 2] = match (errors, ripple) {
+                (Errors::Stream(stream), Some(ripple)) => {
+                    let mut random = ChaCha8Rng::seed_from_u64(SEED);
+                    random.set_stream(stream);
+                    pair.map(|surface| ripple.applied(&surface.emissivity, &mut random))
+                }
+                _ => pair.map(|surface| surface.emissivity.clone()),
+            };
+            let found = sighted.solver().with_counting(&pair[0], &pair[1], state, &sighted.counting)?;
+            least = least.min(found.distance);
+        }
+        Ok(least / self.required)
     }
 
     fn is_unknown(&self, nuisance: Nuisance) -> bool {
@@ -241,7 +335,7 @@ impl TellApart {
         alone: bool,
         counts: &dyn Fn(&Surface, &Surface) -> bool,
         progress: &dyn Fn(usize),
-    ) -> Result<Option<Searched>> {
+    ) -> Result<Option<(Searched, Vec<Estimate>)>> {
         let mut pairs: Vec<Estimate> = Vec::new();
         for (index, sighted) in candidate.sighted.iter().enumerate() {
             let (estimates, searched) = sighted.estimates(index)?;
@@ -259,7 +353,7 @@ impl TellApart {
             if alone && (pair.distance < self.required || best < self.required) {
                 demand::spared(Thing::WorstCases, Reason::AnotherOne, (count - done) as u64);
                 if best >= self.required {
-                    return Ok(Some(Searched::estimated(pair)));
+                    return Ok(Some((Searched::estimated(pair), Vec::new())));
                 }
                 all = false;
                 break;
@@ -285,11 +379,17 @@ impl TellApart {
         }
         let lower: Option<Vec<f64>> = found.iter().map(|searched| searched.lower_bound).collect();
         let lower = lower.map(|bounds| bounds.into_iter().fold(f64::INFINITY, f64::min));
+        let near: Vec<Estimate> = found
+            .iter()
+            .map(|searched| &searched.pair)
+            .filter(|pair| pair.distance <= NEAR * best)
+            .cloned()
+            .collect();
         let worst = found.into_iter().min_by(|a, b| a.pair.distance.total_cmp(&b.pair.distance));
         let Some(worst) = worst else { return Ok(None) };
         if !all {
             // A scene below the requirement, and other pairs not looked at.
-            return Ok(Some(Searched::estimated(worst.pair)));
+            return Ok(Some((Searched::estimated(worst.pair), near)));
         }
         let (worst, lower) = match (candidate.between.is_empty(), worst.pair.distance > 0.0) {
             (false, true) => {
@@ -299,7 +399,7 @@ impl TellApart {
             _ => (worst, lower),
         };
         if alone && worst.pair.distance < self.required {
-            return Ok(Some(Searched { lower_bound: None, certificate: None, ..worst }));
+            return Ok(Some((Searched { lower_bound: None, certificate: None, ..worst }, near)));
         }
         let distance = worst.pair.distance;
         let certificate = match (worst.certificate, lower) {
@@ -310,13 +410,13 @@ impl TellApart {
             (_, Some(bound)) => Some(Certificate::Bounded { gap: 1.0 - bound / distance }),
         };
         let lower_bound = lower.map(|bound| bound * candidate.share);
-        Ok(Some(Searched { lower_bound, certificate, ..worst }))
+        Ok(Some((Searched { lower_bound, certificate, ..worst }, near)))
     }
 
     /// The worst of the pairs that are more than two numbers, where one of numbers alone is the worst of all.
     fn without_placeholders(&self, candidate: &Candidate) -> Result<Option<WithoutPlaceholders>> {
         let known = |target: &Surface, other: &Surface| target.placeholders(other).is_none();
-        Ok(self.worst(candidate, false, &known, &|_| ())?.map(|worst| {
+        Ok(self.worst(candidate, false, &known, &|_| ())?.map(|(worst, _)| {
             let Study { target, alternatives, .. } = &candidate.sighted[worst.pair.sighted].study;
             WithoutPlaceholders {
                 margin: worst.pair.distance / self.required,

@@ -10,6 +10,7 @@ use super::cameras::Named;
 use super::clauses::{Measure, MeasuredAnswer, MeasuredScene, MeasuredVerdict};
 use super::envelope::{Sighted, all, scattered_places, scene_at};
 use super::results::Grade;
+use super::uncertainty::{Judged, Uncertain};
 use super::{apart, cameras};
 use crate::scenario::rule::{Clause, StopSpec, Verdict};
 use crate::scenario::{Envelope, Rule};
@@ -17,6 +18,7 @@ use crate::study::{Shortfall, Study};
 use hadar::error::Result;
 use hadar::fisher::Nuisance;
 use hadar::fisher::precision::PrecisionSolver;
+use hadar::instrument::Camera;
 use hadar::material::Library;
 use hadar::scene::{Parameter, State};
 
@@ -29,13 +31,16 @@ const LAST_STEP: f64 = 1e-4;
 pub(super) struct TemperatureClause {
     error_k: f64,
     coverage_factor: f64,
+    rule: Rule,
+    stop: Option<StopSpec>,
+    envelope: Envelope,
     cameras: Vec<Before>,
 }
 
 /// A camera before every material, from every distance that is looked at.
 #[derive(Debug)]
 struct Before {
-    name: String,
+    named: Named,
     sighted: Vec<Sighted>,
     approach: Option<Approach>,
 }
@@ -58,7 +63,8 @@ impl TemperatureClause {
         let envelope = clause.envelope();
         let before = |(index, named): (usize, &Named)| before(rule, clause, index, named, &envelope, library);
         let cameras = cameras.iter().enumerate().map(before).collect::<Result<_>>()?;
-        Ok(Self { error_k, coverage_factor, cameras })
+        let (rule, stop) = (rule.clone(), clause.stop);
+        Ok(Self { error_k, coverage_factor, rule, stop, envelope, cameras })
     }
 
     pub(super) fn study(&self) -> Option<&Study> {
@@ -90,12 +96,26 @@ impl TemperatureClause {
         let sigma_k = worst.as_ref().map_or(f64::INFINITY, |(found, _)| found.sigma_k);
         let value = Some(self.coverage_factor * sigma_k).filter(|value| value.is_finite());
         let margin = value.map_or(0.0, |value| self.error_k / value);
-        let mut fails_by = Vec::new();
-        if margin < 1.0 {
-            fails_by.push(Shortfall::TemperatureError);
-        }
-        fails_by.extend(before.approach.as_ref().and_then(Approach::shortfall));
-        let passes = fails_by.is_empty();
+        let (rule, named) = (&self.rule, &before.named);
+        let place = |key: &str| rule.camera_place(named.index, key);
+        let uncertain = Uncertain::of(named, (rule.coverage_factor, false), &place)?;
+        let bands = before.sighted.first().map_or(1, |sighted| sighted.study.bands.len());
+        let late = |camera: &Camera| Approach::of(self.stop?.stop(), camera, bands).shortfall();
+        let of = |camera: &Camera| {
+            let Some((found, sighted)) = &worst else { return Ok(0.0) };
+            let sighted = sighted.before(camera, &self.envelope)?;
+            let sigma_k = solver(&sighted).bound(
+                &sighted.study.target.emissivity,
+                &found.state,
+                &sighted.counting,
+                Parameter::Temperature,
+            )?;
+            Ok(self.error_k / (self.coverage_factor * sigma_k.sigma))
+        };
+        let by = (Shortfall::TemperatureError, true);
+        let (judged, uncertainty) = Uncertain::verdict(uncertain, margin, by, &named.camera, &late, &of)?;
+        let Judged { verdict, fails_by, undecided_by } = judged;
+        let passes = verdict == Verdict::Meets;
         // With more noise than the scene has itself, it may be in the scene's own.
         let own_noise = worst.as_ref().is_none_or(|(found, sighted)| {
             let at = Study { state: found.state.clone(), ..sighted.study.clone() };
@@ -111,14 +131,16 @@ impl TemperatureClause {
         let warnings =
             before.sighted.first().map(|sighted| sighted.study.camera_warnings()).unwrap_or_default();
         Ok(MeasuredVerdict {
-            name: before.name.clone(),
-            verdict: if passes { Verdict::Meets } else { Verdict::Fails },
+            name: named.name.clone(),
+            verdict,
             passes,
             fails_by,
+            undecided_by,
+            uncertainty,
             value,
             margin,
             // One scene in which it cannot be shows that it fails.
-            grade: if passes || !own_noise { Grade::Searched } else { Grade::Proved },
+            grade: if verdict != Verdict::Fails || !own_noise { Grade::Searched } else { Grade::Proved },
             limiting,
             approach: before.approach.as_ref().map(|approach| approach.result),
             warnings,
@@ -155,13 +177,18 @@ fn before(
             sighted.push(Sighted::new(Study::new(&scenario, library)?, envelope)?);
         }
     }
-    Ok(Before { name: named.name.clone(), sighted, approach })
+    Ok(Before { named: named.clone(), sighted, approach })
+}
+
+fn solver(sighted: &Sighted) -> PrecisionSolver<'_> {
+    let Study { bands, surroundings, unknowns, .. } = &sighted.study;
+    PrecisionSolver::new(bands, surroundings, unknowns.with(Nuisance::Temperature))
 }
 
 /// The largest bound that is found over the ranges.
 fn largest(sighted: &Sighted) -> Result<Found> {
-    let Study { bands, surroundings, unknowns, target, .. } = &sighted.study;
-    let mut solver = PrecisionSolver::new(bands, surroundings, unknowns.with(Nuisance::Temperature));
+    let target = &sighted.study.target;
+    let mut solver = solver(sighted);
     let mut at = |place: &[f64]| -> Result<Option<Found>> {
         let Some(state) = scene_at(&sighted.ranges, place) else { return Ok(None) };
         let bound = solver.bound(&target.emissivity, &state, &sighted.counting, Parameter::Temperature)?;

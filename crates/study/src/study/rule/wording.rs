@@ -12,7 +12,7 @@ use std::fmt::{self, Display, Formatter};
 
 impl Display for WhoMeets {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let all = self.meet.len() + self.fail.len();
+        let all = self.meet.len() + self.undecided.len() + self.fail.len();
         let what = if self.clause { "clause" } else { "rule" };
         let meet: Vec<String> = self
             .meet
@@ -22,7 +22,13 @@ impl Display for WhoMeets {
                 Some(Proviso { frames, .. }) => format!("{name} (if its {frames} frames can be registered)"),
             })
             .collect();
-        match (meet.as_slice(), self.fail.as_slice()) {
+        let others: Vec<String> =
+            self.undecided.iter().map(|(name, _)| name.clone()).chain(self.fail.iter().cloned()).collect();
+        match (meet.as_slice(), others.as_slice()) {
+            ([], [one]) if self.fail.is_empty() => write!(f, "Whether {one} meets the {what} is undecided."),
+            ([], _) if !self.undecided.is_empty() => {
+                write!(f, "None of {all} cameras surely meets the {what}.")
+            }
             ([one], []) => write!(f, "{one} meets the {what}."),
             ([], [one]) => write!(f, "{one} does not meet the {what}."),
             (names, []) => write!(f, "All {all} cameras meet the {what}: {}.", names.join(", ")),
@@ -30,6 +36,20 @@ impl Display for WhoMeets {
             ([one], _) => write!(f, "1 of {all} cameras meets the {what}: {one}."),
             (some, _) => write!(f, "{} of {all} cameras meet the {what}: {}.", some.len(), some.join(", ")),
         }?;
+        let named = all > 1;
+        for (name, interval) in &self.undecided {
+            let of = if named { format!(" of {name}") } else { String::new() };
+            match interval {
+                Some([low, high]) if *low < 1.0 && *high >= 1.0 => {
+                    let ends = [low, high].map(|end| significant(*end, 3));
+                    let said = if named { "Undecided" } else { "It" };
+                    let verb = if named { ":" } else { " is so because" };
+                    write!(f, " {said}{of}{verb} the margin lies between {} and {}.", ends[0], ends[1])?;
+                }
+                _ if named => write!(f, " Undecided{of}.")?,
+                _ => {}
+            }
+        }
         if !self.unproved.is_empty() {
             write!(
                 f,

@@ -2,8 +2,8 @@
 //! emissivities do to it.
 
 mod emissivity;
-mod linear;
-mod ripple;
+pub(in crate::study) mod linear;
+pub(in crate::study) mod ripple;
 
 pub use emissivity::EmissivityErrors;
 

@@ -13,7 +13,7 @@ use hadar::fisher::Counting;
 use hadar::scene::State;
 
 /// Deviation of d per unit of deviation of the emissivities.
-pub(super) fn sigma(
+pub(in crate::study) fn sigma(
     study: &Study,
     alternative: &Surface,
     nearest: &State,
@@ -26,7 +26,7 @@ pub(super) fn sigma(
 }
 
 /// ∂d/∂e of target and alternative at every node.
-pub(super) fn gradients(
+pub(in crate::study) fn gradients(
     study: &Study,
     alternative: &Surface,
     nearest: &State,

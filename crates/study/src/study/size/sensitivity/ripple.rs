@@ -5,15 +5,15 @@ use rand::rngs::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
 /// Correlated errors at the nodes of the bands.
-pub(super) struct Ripple {
+pub(in crate::study) struct Ripple {
     /// Nodes in ascending wavenumber, with the correlation to the one before.
-    pub(super) chain: Vec<(usize, f64)>,
+    pub(in crate::study) chain: Vec<(usize, f64)>,
     sigma: f64,
 }
 
 impl Ripple {
     /// Of deviation `sigma` and that correlation length.
-    pub(super) fn new(nodes_cm1: &[f64], sigma: f64, correlation_cm1: f64) -> Self {
+    pub(in crate::study) fn new(nodes_cm1: &[f64], sigma: f64, correlation_cm1: f64) -> Self {
         let mut order: Vec<usize> = (0..nodes_cm1.len()).collect();
         order.sort_by(|a, b| nodes_cm1[*a].total_cmp(&nodes_cm1[*b]));
         let mut before = f64::NEG_INFINITY;
@@ -26,7 +26,7 @@ impl Ripple {
     }
 
     /// An emissivity with errors.
-    pub(super) fn applied(&self, emissivity: &[f64], random: &mut ChaCha8Rng) -> Vec<f64> {
+    pub(in crate::study) fn applied(&self, emissivity: &[f64], random: &mut ChaCha8Rng) -> Vec<f64> {
         let mut shaken = emissivity.to_vec();
         let mut error = 0.0;
         for (node, correlation) in &self.chain {
