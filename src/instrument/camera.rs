@@ -133,11 +133,14 @@ impl Camera {
     /// Frames of all bands that are read within `time_s`, 0 if not one is.
     ///
     /// ```
-    /// let camera = hadar::instrument::presets::get("flir-a325sc")?;
-    /// // 60 Hz: 110 frames begin within 1.83 s, and the last of them ends within it.
+    /// let mut camera = hadar::instrument::presets::get("flir-a325sc")?;
+    /// camera.frame_rate_hz = Some(60.0);
+    /// // 110 frames begin within 1.83 s, and the last of them ends within it.
     /// assert_eq!(camera.frames_within(11.0 / 6.0, 1), 110);
-    /// assert_eq!(camera.frames_within(11.0 / 6.0, 5), 22);
     /// assert_eq!(camera.frames_within(1e-3, 1), 0);
+    /// // Five bands one after the other.
+    /// camera.readout = hadar::instrument::Readout::Sequential;
+    /// assert_eq!(camera.frames_within(11.0 / 6.0, 5), 22);
     /// # Ok::<(), hadar::Error>(())
     /// ```
     #[must_use]

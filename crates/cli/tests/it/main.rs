@@ -20,6 +20,7 @@ mod range;
 mod reproduce;
 mod robust;
 mod rule;
+mod rule_clauses;
 mod rule_mistakes;
 mod simulate;
 mod written;

@@ -87,14 +87,8 @@ fn check_conditions(spec: &CameraSpec, preset: Option<&Preset>, place: &dyn Fn(&
     }
 }
 
-/// The preset with the scenario's figures laid over it.
-fn overridden(spec: &CameraSpec, preset: Preset) -> Result<Preset> {
-    let mut stated = preset;
-    let figures = &mut stated.figures;
-    let own_noise_exposure = figures.noise_exposure_s.or(figures.exposure_s);
-    let conditions = figures.noise.is_of_bandwidth();
-    let own_bandwidth = figures.noise.bandwidth_hz;
-    // Noise that comes with the preset is stated under the preset's conditions.
+/// Noise that comes with a preset is stated under the preset's conditions.
+fn under_own_conditions(figures: &mut CameraSpec) {
     if figures.noise.netd_k.is_some() {
         let noise = &mut figures.noise;
         noise.netd_f_number = noise.netd_f_number.or(figures.f_number);
@@ -102,6 +96,29 @@ fn overridden(spec: &CameraSpec, preset: Preset) -> Result<Preset> {
             noise.netd_optics_efficiency.or(figures.optics_efficiency.as_ref().and_then(Efficiency::number));
         noise.netd_pixel_m = noise.netd_pixel_m.or(figures.pixel_m);
     }
+}
+
+/// The same camera with its preset's noise as one of its own, under the preset's conditions, so that it can be changed alone.
+pub(super) fn with_own_noise(spec: &CameraSpec) -> CameraSpec {
+    let preset = spec.preset.as_ref().and_then(|name| presets::find(name).ok());
+    match preset {
+        Some(Preset { mut figures, .. }) if !spec.states_noise() => {
+            under_own_conditions(&mut figures);
+            let noise_exposure_s = figures.noise_exposure_s.or(figures.exposure_s);
+            CameraSpec { noise: figures.noise, noise_exposure_s, ..spec.clone() }
+        }
+        _ => spec.clone(),
+    }
+}
+
+/// The preset with the scenario's figures laid over it.
+fn overridden(spec: &CameraSpec, preset: Preset) -> Result<Preset> {
+    let mut stated = preset;
+    let figures = &mut stated.figures;
+    let own_noise_exposure = figures.noise_exposure_s.or(figures.exposure_s);
+    let conditions = figures.noise.is_of_bandwidth();
+    let own_bandwidth = figures.noise.bandwidth_hz;
+    under_own_conditions(figures);
     if spec.preset.is_none() {
         // There is no key for it; a camera of one's own is taken to see what it is asked to.
         figures.spectral_range_cm1 = Some(PAPER_RANGE_CM1);

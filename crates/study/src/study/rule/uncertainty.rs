@@ -3,6 +3,9 @@
 //! Figures q_i have standard uncertainties u_i, independent of each other; emissivities have the errors of `[sensitivity]`, where the
 //! rule has that table. Two ways to the uncertainty u of the margin m, side by side:
 //!
+//! (a figure that is moved takes with it what is stated by it, as if the rule had the other value: a NETD through the camera's own
+//! optics stays what it is, whatever they pass)
+//!
 //! * first order: u² = Σ c_i², c_i = ½[m(q_i + u_i) − m(q_i − u_i)], line by line the budget;
 //! * draws: all figures at once, Gaussian, at the points of a lattice; their deviation, and the interval that holds as much as
 //!   ±k deviations of a Gaussian do.
@@ -19,8 +22,8 @@ use crate::scenario::rule::Verdict;
 use crate::study::{Shortfall, camera};
 use hadar::error::{Error, Place, Result};
 use hadar::identifiability::detection;
-use hadar::instrument::Camera;
-use hadar::instrument::figures::{self, Kind};
+use hadar::instrument::figures::{self, Kind, Part};
+use hadar::instrument::{Camera, presets};
 use hadar::lattice_points::GoldenLattice;
 use rayon::prelude::*;
 
@@ -82,7 +85,7 @@ pub struct BudgetLine {
 
 /// The uncertain figures of one camera.
 pub(super) struct Uncertain<'a> {
-    /// All that it states, defaults filled in.
+    /// What the rule says of it.
     spec: CameraSpec,
     figures: Vec<(&'static figures::Row, f64, f64)>,
     coverage_factor: f64,
@@ -107,13 +110,18 @@ impl<'a> Uncertain<'a> {
         (coverage_factor, emissivities): (f64, bool),
         place: &'a (dyn Fn(&str) -> Place + Sync),
     ) -> Result<Option<Self>> {
-        // Its noise with the conditions under which that is stated, so that it stays what it is when the rest is changed.
-        let spec = CameraSpec { preset: named.spec.preset.clone(), ..CameraSpec::of(&named.camera) };
+        let is_noise = |key: &&&str| figures::row(key).is_some_and(|row| row.part == Part::Noise);
+        let spec = match named.uncertainty.keys().find(is_noise) {
+            Some(_) => camera::with_own_noise(&named.spec),
+            None => named.spec.clone(),
+        };
+        let preset = spec.preset.as_ref().and_then(|name| presets::find(name).ok());
+        let stated = |row: &figures::Row| row.number(&spec).or_else(|| row.number(&preset.as_ref()?.figures));
         let mut known = Vec::with_capacity(named.uncertainty.len());
         for (key, u) in &named.uncertainty {
-            let Some((row, value)) = figures::row(key).and_then(|row| Some((row, row.number(&spec)?))) else {
+            let Some((row, value)) = figures::row(key).and_then(|row| Some((row, stated(row)?))) else {
                 let found = format!("the uncertainty of a {key} that is not stated");
-                let instead = format!("write {key} = {{ value = …, u = … }}");
+                let instead = format!("write its value beside it, as in {key} = {{ value = ..., u = ... }}");
                 return Err(Error::malformed(found, instead).at(place(key)));
             };
             known.push((row, value, *u));
