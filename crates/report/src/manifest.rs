@@ -156,12 +156,15 @@ fn slashed(path: &Path) -> String {
 }
 
 /// SHA-256 (FIPS 180-4) in hexadecimal digits.
-fn sha256(bytes: &[u8]) -> String {
+pub(crate) fn sha256(bytes: &[u8]) -> String {
     digits(Sha256::new_with_prefix(bytes))
 }
 
 /// That of a file's content; `None` of what is no ordinary file, which may have been read up.
-fn sha256_of_file(path: &Path) -> std::io::Result<Option<String>> {
+///
+/// # Errors
+/// A file that cannot be read.
+pub fn sha256_of_file(path: &Path) -> std::io::Result<Option<String>> {
     if !path.metadata()?.is_file() {
         return Ok(None);
     }

@@ -4,11 +4,13 @@
 
 mod certificate;
 mod check;
+mod record;
 mod sources;
 mod stop;
 mod text;
 
 pub use check::check;
+pub use record::{agreement, record};
 pub use sources::{sources, tests};
 pub use text::text;
 
@@ -39,6 +41,10 @@ pub fn bundle(study: &RuleStudy, answer: &RuleAnswer, provenance: &Provenance, o
     let title = certificate::title(answer);
     let mut bundle = Bundle::about(Some(&title));
     bundle.add("certificate.md", certificate::markdown(study, answer, provenance));
+    let data = record::text(&record::record(study, answer, provenance)?)?;
+    let statement = record::statement(answer, provenance, &data);
+    bundle.add(record::NAME, data);
+    bundle.add("certificate.intoto.json", record::text(&statement)?);
     bundle.add_asked("rule.toml", study.rule().to_toml_beside(out));
     bundle.add_table("cameras.csv", cameras(answer))?;
     bundle.add_table("worst_cases.csv", worst_cases(answer))?;

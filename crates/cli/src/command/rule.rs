@@ -4,18 +4,25 @@ use super::global::Global;
 use clap::Args;
 use hadar::demand::Work;
 use hadar::error::{Error, Result};
-use hadar_report::manifest::Input;
+use hadar_report::manifest::{Input, Provenance, sha256_of_file};
 use hadar_report::rule;
 use hadar_study::scenario::rule::{Citation, Figure};
 use hadar_study::scenario::{Date, Rule, day};
 use hadar_study::study::{Extent, RuleAnswer, RuleAsked, RuleStudy, TestResult};
-use std::path::PathBuf;
+use serde_json::Value;
+use std::fs::File;
+use std::io::Read as _;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+
+/// What is read of a certificate at most, bytes.
+const LONGEST_CERTIFICATE: u64 = 1 << 26;
 
 #[derive(Debug, Args)]
 pub(super) struct RuleArgs {
     /// The rule file (TOML): a scenario with [envelope], cameras = [...] or [[camera]] tables, and [rule]
-    rule: PathBuf,
+    #[arg(required_unless_present = "verify")]
+    rule: Option<PathBuf>,
     /// Exit with code 3 unless every camera meets the rule; without --out a line a camera, each decided by the first scene that
     /// does
     #[arg(long)]
@@ -29,6 +36,9 @@ pub(super) struct RuleArgs {
     /// Say where every figure of the rule is from, [[source]]
     #[arg(long, conflicts_with = "check")]
     sources: bool,
+    /// Compute a certificate again, certificate.json of a report, and say whether all that it rests on and all that it says is the same
+    #[arg(long, value_name = "CERTIFICATE", conflicts_with_all = ["rule", "check", "test", "sources", "on"])]
+    verify: Option<PathBuf>,
     /// Ask about a day: a rule that does not hold on it says so
     #[arg(long, value_name = "YYYY-MM-DD", value_parser = on)]
     on: Option<Date>,
@@ -39,8 +49,14 @@ fn on(text: &str) -> std::result::Result<Date, String> {
 }
 
 pub(super) fn run(args: &RuleArgs, global: &Global) -> Result<ExitCode> {
-    let mut rule_read = Rule::from_file(&args.rule)?;
-    rule_read.scenario.alternatives.skip_uncovered |= global.skip_uncovered;
+    let file = match (&args.rule, &args.verify) {
+        (_, Some(certificate)) => return verify(certificate, global),
+        (Some(file), None) => file,
+        // The parser asks for one of the two.
+        (None, None) => Path::new(""),
+    };
+    let mut rule_read = Rule::from_file(file)?;
+    rule_read.skip_uncovered(global.skip_uncovered);
     if args.sources {
         return sources(&rule_read, global);
     }
@@ -80,6 +96,70 @@ struct Output<'a> {
     answer: &'a RuleAnswer,
     /// All that the answer rests on, by its content.
     inputs: &'a [Input],
+}
+
+/// Whether a certificate says what is found now.
+fn verify(certificate: &Path, global: &Global) -> Result<ExitCode> {
+    global.writes_nothing("--verify")?;
+    let action = "read the certificate";
+    let told = |found: String| {
+        let instead = "name the certificate.json of a report by hadar rule";
+        Error::malformed(found, instead).in_file(certificate)
+    };
+    // Not an input of the rule, as what is read by the library is.
+    let mut bytes = Vec::new();
+    let read =
+        File::open(certificate).and_then(|file| file.take(LONGEST_CERTIFICATE).read_to_end(&mut bytes));
+    read.map_err(|error| Error::file(action, certificate, error.kind()))?;
+    let before: Value =
+        serde_json::from_slice(&bytes).map_err(|error| told(format!("this is not JSON: {error}")))?;
+    let of = |value: &Value, key: &str| value.get(key).cloned().unwrap_or_default();
+    let Some(path) = of(&of(&before, "rule"), "path").as_str().map(PathBuf::from) else {
+        return Err(told("this is no certificate of a rule".into()));
+    };
+    let seed = of(&before, "seed").as_u64().unwrap_or(global.seed);
+    // As the one who made it named it, or beside the certificate.
+    let beside = certificate.parent().map(|folder| folder.join(&path)).filter(|beside| beside.exists());
+    let path = if path.exists() { path } else { beside.unwrap_or(path) };
+    let inputs: Vec<Input> = serde_json::from_value(of(&before, "inputs"))
+        .map_err(|error| told(format!("its inputs are none: {error}")))?;
+    let home = path.parent().unwrap_or(Path::new(""));
+    for input in inputs.iter().filter(|input| !input.path.starts_with("built-in: ")) {
+        let file = home.join(&input.path);
+        let now =
+            sha256_of_file(&file).map_err(|error| Error::file("read for its hash", &file, error.kind()))?;
+        if now != input.sha256 {
+            let hash = |hash: &Option<String>| hash.clone().unwrap_or_else(|| "none".into());
+            let found = format!(
+                "the file was changed: its SHA-256 was {} and is {}",
+                hash(&input.sha256),
+                hash(&now)
+            );
+            return Err(Error::malformed(found, "check the rule again: hadar rule").in_file(&file));
+        }
+    }
+    let mut rule_read = Rule::from_file(&path)?;
+    rule_read.skip_uncovered(global.skip_uncovered);
+    let study = RuleStudy::new(&rule_read, &global.library()?)?;
+    let bar = global.progress("pairs");
+    let answer =
+        study.answer(&RuleAsked { seed, ..RuleAsked::default() }, &|done, all| bar.set(done, all))?;
+    bar.finish();
+    let now = rule::record(&study, &answer, &Provenance { seed, ..global.provenance()? })?;
+    let off = rule::agreement(&before, &now).map_err(|error| error.in_file(certificate))?;
+    #[derive(serde::Serialize)]
+    struct Output {
+        verified: bool,
+        largest_difference: f64,
+    }
+    let digits = if off == 0.0 { "to the last digit".to_owned() } else { format!("to {off:.1e}") };
+    let text = format!(
+        "Verified: {} inputs are as they were, and all that {} says was found again, {digits}.\n",
+        inputs.len(),
+        certificate.display()
+    );
+    global.answer(&Output { verified: true, largest_difference: off }, &text, &answer.stats)?;
+    Ok(ExitCode::SUCCESS)
 }
 
 /// The tests of a rule.

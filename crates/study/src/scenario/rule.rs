@@ -137,6 +137,12 @@ impl Rule {
         Ok(Self { about, coverage_factor, scenario, clauses, cameras, sources, tests, text: text.to_owned() })
     }
 
+    /// Leaves out, in all clauses, alternatives whose spectra do not cover the bands, if that is asked for.
+    pub fn skip_uncovered(&mut self, skip: bool) {
+        self.scenario.alternatives.skip_uncovered |= skip;
+        self.clauses.iter_mut().for_each(|clause| clause.scenario.alternatives.skip_uncovered |= skip);
+    }
+
     /// Its figures as its file has them.
     #[must_use]
     pub fn figures(&self) -> Vec<Figure> {

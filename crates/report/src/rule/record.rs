@@ -1,0 +1,237 @@
+//! The certificate as data: what was checked, line by line, with the evidence and the hashes of all that it rests on; the same as
+//! an in-toto statement, for the tools with which people sign; and whether one that was made before says what is found now.
+//!
+//! `certificate.json` has the form of `schemas/certificate.schema.json`. `certificate.intoto.json` is an unsigned Statement (v1) about it
+//! with the predicate `test-result/v0.1`: a line that meets its clause with proof is a passed test, one that fails a failed one, and
+//! what is undecided or met without proof is a warned one.
+//!
+//! Source: in-toto attestation framework, Statement v1 and predicate `test-result` v0.1 (github.com/in-toto/attestation).
+
+use crate::manifest::{Input, Provenance, SCHEMA, VERSION, sha256};
+use hadar::error::{Error, Result};
+use hadar_study::scenario::rule::Verdict;
+use hadar_study::study::{ClauseAnswer, Found, Grade, Line, RuleAnswer, RuleStudy};
+use serde_json::{Value, json};
+
+/// Its name in a report.
+pub(super) const NAME: &str = "certificate.json";
+/// Share by which numbers of two runs may differ: worst cases are searched to a hundredth.
+const SAME: f64 = 0.01;
+
+/// The certificate.
+///
+/// # Errors
+/// Data that is no JSON, which is a bug.
+pub fn record(study: &RuleStudy, answer: &RuleAnswer, provenance: &Provenance) -> Result<Value> {
+    let about = &answer.rule.about;
+    let day = |day: Option<hadar_study::scenario::Date>| day.map(|day| day.to_string());
+    let file = provenance.inputs.first().map(|input| input.path.clone());
+    let path = study.rule().scenario.source.path.as_deref().map(|path| path.to_string_lossy().into_owned());
+    let clauses = answer.clauses.iter().map(of_clause).collect::<Result<Vec<_>>>()?;
+    let cameras = answer.cameras.iter().map(|camera| {
+        json!({
+            "name": camera.name,
+            "verdict": camera.verdict.name(),
+            "margin": camera.margin,
+            "interval": camera.interval,
+            "limiting_clause": camera.limiting_clause,
+            "evidence": camera.grade.name(),
+            "provided": camera.provided.map(|proviso| proviso.to_string()),
+        })
+    });
+    Ok(json!({
+        "hadar": VERSION,
+        "schema": SCHEMA,
+        "command": provenance.command,
+        "seed": provenance.seed,
+        "rule": {
+            "file": file,
+            "path": path,
+            "name": about.name,
+            "text": about.text,
+            "authority": about.authority,
+            "version": about.version,
+            "status": about.status,
+            "from": day(about.from),
+            "until": day(about.until),
+        },
+        "sources": as_value(&answer.rule.sources)?,
+        "sentence": answer.sentence.to_string(),
+        "cameras": cameras.collect::<Vec<_>>(),
+        "clauses": clauses,
+        "warnings": as_value(&super::warnings(answer))?,
+        "inputs": as_value(&provenance.inputs)?,
+    }))
+}
+
+fn of_clause(clause: &ClauseAnswer) -> Result<Value> {
+    let (quantity, demanded) = match &clause.found {
+        Found::Apart(apart) => ("statistical_distance", apart.requirement.distance),
+        Found::Measured(measured) => (super::text::measure(measured.quantity), measured.demanded),
+    };
+    let lines = clause.lines().into_iter().enumerate().map(|(index, line)| of_line(clause, index, &line));
+    Ok(json!({
+        "name": clause.name,
+        "kind": clause.kind,
+        "text": clause.text,
+        "stop": as_value(&clause.stop)?,
+        "quantity": quantity,
+        "demanded": demanded,
+        "lines": lines.collect::<Result<Vec<_>>>()?,
+    }))
+}
+
+fn of_line(clause: &ClauseAnswer, index: usize, line: &Line<'_>) -> Result<Value> {
+    // The scene in which it is nearest to failing is the one to drive.
+    let (reached, proved, scene) = match &clause.found {
+        Found::Apart(apart) => {
+            let own = apart.cameras.get(index);
+            (
+                own.map(|own| own.statistical_distance),
+                own.and_then(|own| own.lower_bound).map(|bound| bound / apart.requirement.distance),
+                own.map_or(Ok(Value::Null), |own| as_value(&own.limiting))?,
+            )
+        }
+        Found::Measured(measured) => {
+            let own = measured.cameras.get(index);
+            (own.and_then(|own| own.value), None, own.map_or(Ok(Value::Null), |own| as_value(&own.limiting))?)
+        }
+    };
+    Ok(json!({
+        "camera": line.camera,
+        "verdict": line.verdict.name(),
+        "fails_by": as_value(&line.fails_by)?,
+        "undecided_by": as_value(&line.undecided_by)?,
+        "reached": reached,
+        "margin": line.margin,
+        "margin_proved": proved,
+        "uncertainty": as_value(&line.uncertainty)?,
+        "evidence": line.grade.name(),
+        "provided": line.provided.map(|proviso| proviso.to_string()),
+        "limiting_scene": scene,
+    }))
+}
+
+fn as_value(value: &impl serde::Serialize) -> Result<Value> {
+    serde_json::to_value(value).map_err(|error| Error::malformed(error.to_string(), "report this as a bug"))
+}
+
+/// A record as it is written.
+pub(super) fn text(record: &Value) -> Result<String> {
+    let text = serde_json::to_string_pretty(record)
+        .map_err(|error| Error::malformed(error.to_string(), "report this as a bug"))?;
+    Ok(text + "\n")
+}
+
+/// The statement about a certificate of such a text.
+pub(super) fn statement(answer: &RuleAnswer, provenance: &Provenance, certificate: &str) -> Value {
+    let of = |wanted: &dyn Fn(&Line<'_>) -> bool| -> Vec<String> {
+        let name = |clause: &ClauseAnswer, line: &Line<'_>| match &clause.name {
+            Some(clause) => format!("{}: {clause}", line.camera),
+            None => line.camera.to_owned(),
+        };
+        let clauses = answer.clauses.iter();
+        clauses
+            .flat_map(|clause| {
+                let lines = clause.lines();
+                lines.iter().filter(|line| wanted(line)).map(|line| name(clause, line)).collect::<Vec<_>>()
+            })
+            .collect()
+    };
+    let passed = of(&|line| line.verdict == Verdict::Meets && line.grade == Grade::Proved);
+    let failed = of(&|line| line.verdict == Verdict::Fails);
+    let warned = of(&|line| match line.verdict {
+        Verdict::Undecided => true,
+        Verdict::Meets => line.grade != Grade::Proved,
+        Verdict::Fails => false,
+    });
+    let result = match (failed.is_empty(), warned.is_empty()) {
+        (false, _) => "FAILED",
+        (true, false) => "WARNED",
+        (true, true) => "PASSED",
+    };
+    let resource = |input: &Input| match &input.sha256 {
+        Some(hash) => json!({ "name": input.path, "digest": { "sha256": hash } }),
+        None => json!({ "name": input.path }),
+    };
+    json!({
+        "_type": "https://in-toto.io/Statement/v1",
+        "subject": [{ "name": NAME, "digest": { "sha256": sha256(certificate.as_bytes()) } }],
+        "predicateType": "https://in-toto.io/attestation/test-result/v0.1",
+        "predicate": {
+            "result": result,
+            "configuration": provenance.inputs.iter().map(resource).collect::<Vec<_>>(),
+            "passedTests": passed,
+            "warnedTests": warned,
+            "failedTests": failed,
+        },
+    })
+}
+
+/// Whether a certificate says what is found now; the largest difference of two numbers, as a share of them.
+///
+/// # Errors
+/// The first thing that is another one, with its place: an input, a verdict, a number by more than a hundredth.
+pub fn agreement(certificate: &Value, now: &Value) -> Result<f64> {
+    let inputs = |record: &Value| -> Vec<Input> {
+        record
+            .get("inputs")
+            .and_then(|inputs| serde_json::from_value(inputs.clone()).ok())
+            .unwrap_or_default()
+    };
+    let (before, read) = (inputs(certificate), inputs(now));
+    if let Some(input) = before.iter().find(|input| !read.contains(input)) {
+        let found = match read.iter().find(|other| other.path == input.path) {
+            Some(_) => format!("{} is another one than the certificate's", input.path),
+            None => format!("{}, which the certificate rests on, is not read now", input.path),
+        };
+        return Err(Error::malformed(found, "take what it was made with, by the command that it names"));
+    }
+    let mut largest = 0.0;
+    let skipped = ["hadar", "command", "path", "inputs"];
+    compare(certificate, now, "", &skipped, &mut largest)?;
+    Ok(largest)
+}
+
+fn compare(a: &Value, b: &Value, place: &str, skipped: &[&str], largest: &mut f64) -> Result<()> {
+    let differs = || {
+        let place = if place.is_empty() { "the certificate" } else { place };
+        let found = format!("{place}: the certificate says {}, found now is {}", short(a), short(b));
+        Err(Error::malformed(found, "the certificate was changed, or made by another program"))
+    };
+    match (a, b) {
+        (Value::Object(a), Value::Object(b)) => {
+            let keys = a.keys().chain(b.keys()).filter(|key| !skipped.contains(&key.as_str()));
+            for key in keys {
+                let place = if place.is_empty() { key.clone() } else { format!("{place}.{key}") };
+                let of =
+                    |object: &serde_json::Map<String, Value>| object.get(key).cloned().unwrap_or_default();
+                compare(&of(a), &of(b), &place, skipped, largest)?;
+            }
+            Ok(())
+        }
+        (Value::Array(x), Value::Array(y)) if x.len() == y.len() => {
+            let pairs = x.iter().zip(y).enumerate();
+            pairs
+                .into_iter()
+                .try_for_each(|(index, (a, b))| compare(a, b, &format!("{place}[{index}]"), skipped, largest))
+        }
+        (Value::Number(x), Value::Number(y)) => {
+            let (x, y) = (x.as_f64().unwrap_or(f64::NAN), y.as_f64().unwrap_or(f64::NAN));
+            let off = if x == y { 0.0 } else { (x - y).abs() / x.abs().max(y.abs()) };
+            if off <= SAME {
+                *largest = largest.max(off);
+                return Ok(());
+            }
+            differs()
+        }
+        _ if a == b => Ok(()),
+        _ => differs(),
+    }
+}
+
+/// A value as a message has it.
+fn short(value: &Value) -> String {
+    let text = value.to_string();
+    if text.chars().count() > 60 { text.chars().take(57).chain("...".chars()).collect() } else { text }
+}
