@@ -17,6 +17,7 @@ pub mod elasticity;
 pub mod envelope;
 pub mod motion;
 pub mod solve;
+pub mod stand_in;
 pub mod stop;
 pub mod trade_off;
 

@@ -187,6 +187,10 @@ pub fn agreement(certificate: &Value, now: &Value) -> Result<f64> {
         };
         return Err(Error::malformed(found, "take what it was made with, by the command that it names"));
     }
+    if let Some(input) = read.iter().find(|input| !before.contains(input)) {
+        let found = format!("{} is read now, of which the certificate says nothing", input.path);
+        return Err(Error::malformed(found, "take what it was made with, by the command that it names"));
+    }
     let mut largest = 0.0;
     let skipped = ["hadar", "command", "path", "inputs"];
     compare(certificate, now, "", &skipped, &mut largest)?;

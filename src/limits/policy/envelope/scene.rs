@@ -37,7 +37,7 @@ impl<'a> EnvelopeScene<'a> {
         check_emissivity(self.alternative, self.bands.nodes_cm1().len())
     }
 
-    pub(super) fn solver(&self) -> NearestSolver<'a> {
+    pub(crate) fn solver(&self) -> NearestSolver<'a> {
         NearestSolver::new(self.bands, self.surroundings, self.unknowns.clone(), self.range)
     }
 }
