@@ -33,8 +33,8 @@ pub use rule::{
     ApartAnswer, ApproachResult, BudgetLine, CameraAnswer, CameraVerdict, Certified, ClauseAnswer, Drawn,
     EmissivityError, EnvelopeResult, Extent, Fixes, Found, Grade, IdealCamera, LightTime, LimitingScene,
     Line, MarginUncertainty, Measure, MeasuredAnswer, MeasuredScene, MeasuredVerdict, Neighbourhood,
-    NotIdentifiable, Proof, Proviso, Quotable, RuleAnswer, RuleAsked, RuleRequirement, RuleStudy, StopResult,
-    TestCheck, TestResult, Told, WhoMeets, WithoutPlaceholders,
+    NotIdentifiable, Proof, Proviso, Quotable, RuleAnswer, RuleAsked, RuleRequirement, RuleStudy, StandIn,
+    StandInAnswer, StandInScene, StopResult, TestCheck, TestResult, Told, WhoMeets, WithoutPlaceholders,
 };
 pub use shortfall::Shortfall;
 pub use sight::Sight;

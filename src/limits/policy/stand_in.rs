@@ -237,7 +237,8 @@ impl Search<'_, '_> {
         let person_lighting: Vec<[f64; 2]> = (0..self.objects)
             .map(|k| spread(&|corner| corner.person.lighting.get(k).copied().unwrap_or(0.0)))
             .collect();
-        let bound = attained + self.bent(&low, &high, &corners, person_k, &person_lighting);
+        let [own, person] = self.bent(&low, &high, &corners, person_k, &person_lighting);
+        let bound = attained + own + person;
         let bound = bound * (1.0 + ROUNDING);
         // In kelvins: how far the person moves along a coordinate, and how far the coordinate itself goes.
         let along = |bit: usize| {
@@ -256,7 +257,7 @@ impl Search<'_, '_> {
         Ok(Piece { low, high, bound, split })
     }
 
-    /// What the curvature of Planck's law puts on the bound of a box.
+    /// What the curvature of Planck's law puts on the bound of a box: how far stand-in and person are from the means of corners.
     fn bent(
         &self,
         low: &[f64],
@@ -264,7 +265,7 @@ impl Search<'_, '_> {
         corners: &[Corner],
         person_k: [f64; 2],
         person_lighting: &[[f64; 2]],
-    ) -> f64 {
+    ) -> [f64; 2] {
         let EnvelopeScene { bands, surroundings, emissivity, alternative, counting, .. } = self.scene;
         let nodes = bands.nodes_cm1();
         let own = sag(nodes, [low[1], high[1]]);
@@ -302,7 +303,7 @@ impl Search<'_, '_> {
             });
             squares.sum::<f64>().sqrt()
         };
-        norm(&of_own, &|corner| &corner.counts) + norm(&of_person, &|corner| &corner.person_counts)
+        [norm(&of_own, &|corner| &corner.counts), norm(&of_person, &|corner| &corner.person_counts)]
     }
 }
 
@@ -413,6 +414,75 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// Stand-in and person of any mean are no farther from the means of the corners' counts than is said, and for boxes that are not
+    /// small it is a good part of that: no slack hides a wrong term.
+    #[test]
+    fn means_of_corners_are_as_near_as_is_said() {
+        let own = Scene::of(1e-13, &[Nuisance::Temperature, Nuisance::Lighting]);
+        let scene = own.scene();
+        let roots = |emissivity: &[f64], state: &State| -> Vec<f64> {
+            let counts = own.bands.weigh(&own.surroundings.signal(emissivity, state));
+            counts.into_iter().map(|count| (1e-13 * count).sqrt()).collect()
+        };
+        let apart =
+            |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt();
+        let mut closest = [0.0f64; 2];
+        let lattice = GoldenLattice::new(vec![0.1; 4]);
+        // The person that is nearest may have any temperature and lighting.
+        let persons = [[302.0, 309.0], [0.2, 0.9]];
+        for (low, high) in [
+            (vec![-0.02, 303.0, 0.3, 278.0], vec![0.02, 307.0, 0.7, 284.0]),
+            (vec![0.0, 290.0, 0.1, 260.0], vec![0.01, 320.0, 0.2, 300.0]),
+            (vec![0.0, 303.0, 0.3, 278.0], vec![0.0, 303.0, 0.3, 308.0]),
+        ] {
+            let solver = scene.solver();
+            let mut search = Search { scene: &scene, solver, objects: 1, corners: HashMap::new() };
+            let places = (0..16)
+                .map(|n: usize| (0..4).map(|i| if n >> i & 1 == 1 { high[i] } else { low[i] }).collect());
+            let places: Vec<Vec<f64>> = places.collect();
+            let mut corners = Vec::new();
+            for (n, place) in places.iter().enumerate() {
+                let mut corner = search.corner(place).unwrap().clone();
+                // Any persons will do for the means: these are at the ends of their ranges.
+                corner.person.temperature_k = persons[0][n / 2 % 2];
+                corner.person.lighting = vec![persons[1][(n + n / 8) % 2]];
+                corner.person.environment_k = vec![place[3]];
+                let signal = own.surroundings.signal(&own.person, &corner.person);
+                corner.person_counts = own.bands.weigh(&signal).into_iter().map(|s| 1e-13 * s).collect();
+                corners.push(corner);
+            }
+            let said = search.bent(&low, &high, &corners, persons[0], &[persons[1]]);
+            for index in 0..200 {
+                let x = lattice.point(index);
+                let weights: Vec<f64> = (0..16usize)
+                    .map(|n| (0..4).map(|i| if n >> i & 1 == 1 { x[i] } else { 1.0 - x[i] }).product())
+                    .collect();
+                let mean = |of: &dyn Fn(usize) -> f64| (0..16).map(|n| weights[n] * of(n)).sum::<f64>();
+                let place: Vec<f64> = (0..4).map(|i| low[i] + (high[i] - low[i]) * x[i]).collect();
+                let state = search.state(&place);
+                let e: Vec<f64> = own.mannequin.iter().map(|e| e + place[0]).collect();
+                let mixed = |of: &dyn Fn(usize, usize) -> f64| {
+                    (0..own.bands.len()).map(|w| mean(&|n| of(n, w)).sqrt()).collect::<Vec<f64>>()
+                };
+                let found = apart(&roots(&e, &state), &mixed(&|n, w| corners[n].counts[w]));
+                let person = State {
+                    temperature_k: mean(&|n| corners[n].person.temperature_k),
+                    lighting: vec![mean(&|n| corners[n].person.lighting[0])],
+                    ..state
+                };
+                let of_person =
+                    apart(&roots(&own.person, &person), &mixed(&|n, w| corners[n].person_counts[w]));
+                assert!(
+                    found <= said[0] * (1.0 + 1e-9) && of_person <= said[1] * (1.0 + 1e-9),
+                    "{low:?} {said:?}"
+                );
+                closest = [closest[0].max(found / said[0].max(1e-300)), closest[1].max(of_person / said[1])];
+            }
+        }
+        // The bound of a chord is twice its sag.
+        assert!(closest.iter().all(|share| *share > 0.35), "{closest:?}");
     }
 
     /// By hand: one coordinate varies, everything is known but the temperature, of which the person may have any: the same material at

@@ -10,12 +10,14 @@
 mod camera;
 mod citation;
 mod clause;
+mod stand_in;
 mod stop;
 mod test;
 
 pub use camera::RuleCamera;
 pub use citation::{Citation, Figure, Ground, Mark};
 pub use clause::{Clause, Demand, DepthDemand, DepthObject};
+pub use stand_in::StandInSpec;
 pub use stop::StopSpec;
 pub use test::{RuleTest, Verdict};
 
@@ -76,6 +78,8 @@ pub struct Rule {
     pub clauses: Vec<Clause>,
     /// The cameras, those of `cameras` first.
     pub cameras: Vec<RuleCamera>,
+    /// What is to pass for a person in tests, if the rule says so.
+    pub stand_in: Option<StandInSpec>,
     /// Where its figures are from; nothing of a rule that does not say.
     pub sources: Vec<Citation>,
     /// What is expected of its cameras.
@@ -117,8 +121,11 @@ impl Rule {
     pub fn from_toml(text: &str, path: Option<&Path>) -> Result<Self> {
         let mut source = Source { path: path.map(Path::to_owned), ..Source::default() };
         let document = document(text, (Kind::Rule, MINIMUM), &mut source)?;
-        let known =
-            [&TABLES[..], &["rule", "cameras", "stop", "clause", "source", "test", "uncertainty"]].concat();
+        let known = [
+            &TABLES[..],
+            &["rule", "cameras", "stop", "clause", "source", "test", "uncertainty", "stand_in"],
+        ]
+        .concat();
         let root = Section::open(&document, "", &source, &known)?;
         let about = root.read("rule", about)?.unwrap_or_default();
         let coverage_factor = root.read("uncertainty", |entry| {
@@ -134,7 +141,18 @@ impl Rule {
         let (scenario, clauses) = clause::read(&root, &source)?;
         let tests = test::read(&root, &cameras, &clauses)?;
         let sources = citation::read(&root, &document, &source)?;
-        Ok(Self { about, coverage_factor, scenario, clauses, cameras, sources, tests, text: text.to_owned() })
+        let stand_in = root.read("stand_in", StandInSpec::read)?;
+        Ok(Self {
+            about,
+            coverage_factor,
+            scenario,
+            stand_in,
+            clauses,
+            cameras,
+            sources,
+            tests,
+            text: text.to_owned(),
+        })
     }
 
     /// Leaves out, in all clauses, alternatives whose spectra do not cover the bands, if that is asked for.
@@ -223,6 +241,9 @@ impl Rule {
         } else if let Some(stop) = self.clauses.iter().find_map(|clause| clause.stop) {
             document.push(("stop", Part::Table(stop.entries())));
         }
+        if let Some(spec) = &self.stand_in {
+            document.push(("stand_in", Part::Table(spec.written(paths))));
+        }
         document.push(("camera", Part::Tables(self.cameras.iter().map(camera).collect())));
         let tests: Vec<_> =
             self.tests.iter().map(|test| test.entries(&self.cameras, &self.clauses)).collect();
@@ -248,6 +269,7 @@ impl PartialEq for Rule {
             && self.clauses.len() == other.clauses.len()
             && self.clauses.iter().zip(&other.clauses).all(same_clause)
             && self.tests == other.tests
+            && self.stand_in == other.stand_in
             && self.cameras.len() == other.cameras.len()
             && self.cameras.iter().zip(&other.cameras).all(same)
     }

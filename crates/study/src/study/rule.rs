@@ -16,6 +16,7 @@ mod ideal;
 mod resolution;
 mod results;
 mod search;
+mod stand_in;
 mod temperature;
 mod uncertainty;
 mod wording;
@@ -31,6 +32,7 @@ pub use results::{
     LightTime, LimitingScene, Neighbourhood, NotIdentifiable, Proof, Proviso, Quotable, RuleRequirement,
     StopResult, WhoMeets, WithoutPlaceholders,
 };
+pub use stand_in::{StandIn, StandInAnswer, StandInScene};
 pub use uncertainty::{BudgetLine, Drawn, MarginUncertainty};
 
 use self::apart::TellApart;
