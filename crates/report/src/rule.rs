@@ -6,12 +6,14 @@ mod certificate;
 mod check;
 mod record;
 mod sources;
+mod stand_in;
 mod stop;
 mod text;
 
 pub use check::check;
 pub use record::{agreement, record};
 pub use sources::{sources, tests};
+pub use stand_in::{stand_in, stand_in_bundle};
 pub use text::text;
 
 use super::bundle::Bundle;
@@ -239,11 +241,20 @@ fn margins(answer: &RuleAnswer) -> Plot {
     let named = |camera: &&CameraAnswer| match (camera.passes, verdict(camera)) {
         (true, _) => camera.name.clone(),
         (false, Some(own)) => format!("{}\n{}", camera.name, no(&own.fails_by)),
-        (false, None) => format!("{}\n{}", camera.name, camera.fails.join(", ")),
+        (false, None) => {
+            let clauses = camera.fails.iter().chain(&camera.undecided);
+            format!("{}\n{}", camera.name, clauses.cloned().collect::<Vec<_>>().join(", "))
+        }
     };
     let names = ranked.iter().map(named).collect();
-    let values =
+    let mut values =
         NamedSeries::new("least over the envelope", ranked.iter().map(|camera| camera.margin).collect());
+    if ranked.iter().any(|camera| camera.interval.is_some()) {
+        let end = |of: usize| {
+            ranked.iter().map(|camera| camera.interval.map_or(camera.margin, |ends| ends[of])).collect()
+        };
+        values = values.intervals(end(0), end(1));
+    }
     let title = answer.rule.about.name.clone().or(answer.rule.scenario.title.clone());
     let title = title.unwrap_or_else(|| "Which cameras meet the rule".into());
     let (axis, subtitle) = match only {

@@ -4,6 +4,7 @@ use super::global::Global;
 use clap::Args;
 use hadar::demand::Work;
 use hadar::error::{Error, Result};
+use hadar::material::Library;
 use hadar_report::manifest::{Input, Provenance, sha256_of_file};
 use hadar_report::rule;
 use hadar_study::scenario::rule::{Citation, Figure};
@@ -36,8 +37,11 @@ pub(super) struct RuleArgs {
     /// Say where every figure of the rule is from, [[source]]
     #[arg(long, conflicts_with = "check")]
     sources: bool,
+    /// Say how exact a heated stand-in must be so that no camera tells it from a person as reliably as the rule demands, [stand_in]
+    #[arg(long, conflicts_with_all = ["check", "test", "sources"])]
+    stand_in: bool,
     /// Compute a certificate again, certificate.json of a report, and say whether all that it rests on and all that it says is the same
-    #[arg(long, value_name = "CERTIFICATE", conflicts_with_all = ["rule", "check", "test", "sources", "on"])]
+    #[arg(long, value_name = "CERTIFICATE", conflicts_with_all = ["rule", "check", "test", "sources", "stand_in", "on"])]
     verify: Option<PathBuf>,
     /// Ask about a day: a rule that does not hold on it says so
     #[arg(long, value_name = "YYYY-MM-DD", value_parser = on)]
@@ -68,8 +72,12 @@ pub(super) fn run(args: &RuleArgs, global: &Global) -> Result<ExitCode> {
         let error = Error::malformed("the rule has no tests", instead);
         return Err(error.at(rule_read.scenario.place("")));
     }
-    let study = RuleStudy::new(&rule_read, &global.library()?)?;
+    let library = global.library()?;
+    let study = RuleStudy::new(&rule_read, &library)?;
     global.inputs_are_safe()?;
+    if args.stand_in {
+        return stand_in(&study, &library, global);
+    }
     let extent = match args.test {
         true => Extent::Margins,
         false if args.check && global.out.is_none() => Extent::Verdicts,
@@ -159,6 +167,17 @@ fn verify(certificate: &Path, global: &Global) -> Result<ExitCode> {
         certificate.display()
     );
     global.answer(&Output { verified: true, largest_difference: off }, &text, &answer.stats)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// How exact a stand-in must be.
+fn stand_in(study: &RuleStudy, library: &Library, global: &Global) -> Result<ExitCode> {
+    let bar = global.progress("stand-ins");
+    let answer = study.stand_in(library, &|done, all| bar.set(done, all))?;
+    bar.finish();
+    let text = rule::stand_in(&answer);
+    let work = global.report(&text, |_| rule::stand_in_bundle(&answer))?;
+    global.answer(&answer, &text, &work)?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -23,6 +23,7 @@ mod rule;
 mod rule_clauses;
 mod rule_mistakes;
 mod simulate;
+mod stand_in;
 mod written;
 
 mod support {

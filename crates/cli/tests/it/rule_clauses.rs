@@ -376,12 +376,19 @@ fn mistakes_in_rules_as_people_write_them() {
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
     // What only the cameras know.
-    let text = uncertain("netd = { value = \"50 mK\", u = \"30 mK\" }\nf_number = 1.0", 1.0, "");
+    let text = uncertain(
+        "exposure = \"10 ms\"\nnetd = { value = \"50 mK\", u = \"30 mK\" }\nf_number = 1.0",
+        1.0,
+        "",
+    );
     let error = RuleStudy::new(&Rule::from_toml(&text, None).unwrap(), library())
         .and_then(|study| study.answer(&RuleAsked::default(), &|_, _| ()))
         .unwrap_err()
         .to_string();
-    assert!(error.contains("camera[0].netd: its uncertainty leads to -0.01"), "{error}");
+    assert!(
+        error.contains("camera[0].netd: its uncertainty leads to -0.0100 K, which no netd can be"),
+        "{error}"
+    );
 }
 
 /// What a rule is filled in with is a rule that says the same.

@@ -59,7 +59,7 @@ pub fn record(study: &RuleStudy, answer: &RuleAnswer, provenance: &Provenance) -
         "sentence": answer.sentence.to_string(),
         "cameras": cameras.collect::<Vec<_>>(),
         "clauses": clauses,
-        "warnings": as_value(&super::warnings(answer))?,
+        "warnings": as_value(&super::text::together(answer))?,
         "inputs": as_value(&provenance.inputs)?,
     }))
 }

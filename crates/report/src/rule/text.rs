@@ -80,7 +80,7 @@ fn overview(answer: &RuleAnswer) -> String {
 }
 
 /// Rows with their columns below each other, those of numbers to the right; the last one as it is.
-fn columns<const N: usize>(rows: &[[String; N]], numbers: &[usize]) -> String {
+pub(super) fn columns<const N: usize>(rows: &[[String; N]], numbers: &[usize]) -> String {
     let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
     let widths: Vec<usize> = (0..N).map(width).collect();
     let mut out = String::new();

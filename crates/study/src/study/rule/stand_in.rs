@@ -220,7 +220,7 @@ impl<'a> Before<'a> {
         let ranges = study.ranges(&apart.envelope)?;
         let cold = |ranges: &[[f64; 2]]| ranges.iter().map(|range| range[0]).collect::<Vec<_>>();
         let darkest = State {
-            temperature_k: ranges.temperature_k()[0],
+            temperature_k: ranges.temperature_k()[0].min(temperature_k - widest_k(temperature_k)),
             lighting: cold(ranges.lighting()),
             gain: 1.0,
             environment_k: cold(ranges.environment_k()),
@@ -254,6 +254,11 @@ impl<'a> Before<'a> {
         };
         farthest(&scene, offsets, &ranges, effort)
     }
+}
+
+/// How wide a tolerance may be, K.
+fn widest_k(temperature_k: f64) -> f64 {
+    WIDEST_K.min(0.5 * temperature_k)
 }
 
 fn row(

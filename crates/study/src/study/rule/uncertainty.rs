@@ -153,7 +153,11 @@ impl<'a> Uncertain<'a> {
                 _ => false,
             };
             if !allowed {
-                let found = format!("its uncertainty leads to {moved}, which no {} can be", row.key);
+                let unit = unit(row);
+                let space = if unit.is_empty() { "" } else { " " };
+                let moved = hadar::words::significant(moved, 3);
+                let found =
+                    format!("its uncertainty leads to {moved}{space}{unit}, which no {} can be", row.key);
                 let error = Error::malformed(found, "write a smaller u");
                 return Err(error.at((self.place)(row.key)));
             }
@@ -199,10 +203,7 @@ impl<'a> Uncertain<'a> {
         let mut budget = Vec::with_capacity(self.figures.len() + 1);
         for (index, (row, value, u)) in self.figures.iter().enumerate() {
             let side = |deviations| of(&self.moved(index, deviations)?, Errors::None);
-            let unit = match row.kind {
-                Kind::Quantity(dimension, ..) => dimension.unit(),
-                _ => "",
-            };
+            let unit = unit(row);
             let contribution = 0.5 * (side(1.0)? - side(-1.0)?);
             let (figure, value, uncertainty) = (row.key.to_owned(), Some(*value), *u);
             budget.push(BudgetLine { figure, value, uncertainty, unit, contribution, share: 0.0 });
@@ -245,6 +246,14 @@ impl<'a> Uncertain<'a> {
         let outside = detection::miss_probability(self.coverage_factor);
         let at = |share: f64| crate::study::identify::quantile(&margins, share);
         Ok(Drawn { count, mean, deviation, interval: [at(outside), at(1.0 - outside)] })
+    }
+}
+
+/// The unit of a figure inside.
+fn unit(row: &figures::Row) -> &'static str {
+    match row.kind {
+        Kind::Quantity(dimension, ..) => dimension.unit(),
+        _ => "",
     }
 }
 

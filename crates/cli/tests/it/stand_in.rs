@@ -1,0 +1,123 @@
+//! Stand-ins that pass for people: what is known by hand, what other ways to the same distance say, and what no classifier exceeds.
+
+use crate::support::folder::Folder;
+use serde_json::Value;
+
+const RULE: &str = r#"cameras = ["flir-a325sc"]
+[target]
+material = "skin"
+temperature = "33 degC"
+[[environment]]
+temperature = "0 degC"
+lighting = 0.5
+[alternatives]
+materials = ["aluminium"]
+[bands]
+ranges = [["8 um", "9 um"], ["9 um", "10 um"], ["10 um", "11 um"], ["11 um", "12 um"], ["12 um", "13 um"]]
+[requirement]
+detection_probability = 0.9
+[envelope]
+temperature = ["30 degC", "36 degC"]
+lighting = [0.1, 0.8]
+surroundings = ["0 degC", "15 degC"]
+distance = ["5 m", "5 m"]
+[stand_in]
+materials = ["skin", "pmma", "aluminium"]
+emissivity = [0.0, 0.02]
+"#;
+
+const DEMANDED: f64 = 1.281_551_565_544_600_5;
+
+fn rows(folder: &Folder, file: &str) -> Vec<Value> {
+    folder.json(&["rule", file, "--stand-in"])["rows"].as_array().unwrap().clone()
+}
+
+fn number(row: &Value, key: &str) -> f64 {
+    row[key].as_f64().unwrap_or_else(|| panic!("{key}: {row}"))
+}
+
+/// At the edge the distance is that demanded, the proof reaches nearly there, and exactness can only be asked for more of.
+#[test]
+fn the_edge_of_a_tolerance_is_the_demand() {
+    let folder = Folder::with(RULE);
+    let found = rows(&folder, "a.toml");
+    assert_eq!(found.len(), 6);
+    for row in &found {
+        if row["material"] == "aluminium" {
+            // A robot of bare metal is no person, however warm.
+            assert!(row["temperature_tolerance_k"].is_null() && number(row, "distance") > DEMANDED, "{row}");
+            continue;
+        }
+        assert!((number(row, "distance") / DEMANDED - 1.0).abs() < 1e-6, "{row}");
+        let (edge, proved) =
+            (number(row, "temperature_tolerance_k"), number(row, "temperature_tolerance_proved_k"));
+        assert!(proved < edge && proved > 0.98 * edge, "{row}");
+    }
+    for pair in found.chunks(2).take(2) {
+        let [exact, loose] = [&pair[0], &pair[1]].map(|row| number(row, "temperature_tolerance_k"));
+        assert!(loose < exact, "{pair:?}");
+    }
+    // Before people of more temperatures more passes, and a stricter demand of cameras is a looser one of stand-ins.
+    folder.file("more.toml", &RULE.replace("\"30 degC\", \"36 degC\"", "\"28 degC\", \"38 degC\""));
+    folder.file("surer.toml", &RULE.replace("0.9\n", "0.99\n"));
+    for file in ["more.toml", "surer.toml"] {
+        for (less, more) in found.iter().zip(rows(&folder, file)).take(4) {
+            let [less, more] = [less, &more].map(|row| number(row, "temperature_tolerance_k"));
+            assert!(less < more, "{file}: {less} {more}");
+        }
+    }
+}
+
+/// The farthest stand-in as a scenario of its own: `identify` finds the same distance, `simulate` no classifier above the limit.
+#[test]
+fn no_classifier_tells_the_farthest_from_a_person_more_often() {
+    let folder = Folder::with(RULE);
+    let found = rows(&folder, "a.toml");
+    for row in
+        found.iter().filter(|row| row["material"] == "pmma" && number(row, "emissivity_tolerance") == 0.0)
+    {
+        let there = &row["farthest"];
+        let scenario = format!(
+            "[target]\nmaterial = \"pmma\"\ntemperature = \"{:e} K\"\ndistance = \"5 m\"\n[[environment]]\ntemperature = \"{:e} K\"\n\
+             lighting = {:e}\n[alternatives]\nmaterials = [\"skin\"]\ntemperature = [\"30 degC\", \"36 degC\"]\n[bands]\n\
+             ranges = [[\"8 um\", \"9 um\"], [\"9 um\", \"10 um\"], [\"10 um\", \"11 um\"], [\"11 um\", \"12 um\"], [\"12 um\", \"13 um\"]]\n\
+             [camera]\npreset = \"flir-a325sc\"\n",
+            number(there, "temperature_k"),
+            there["surroundings_k"][0].as_f64().unwrap(),
+            there["lighting"][0].as_f64().unwrap()
+        );
+        folder.file("edge.toml", &scenario);
+        let identified = folder.json(&["identify", "edge.toml"]);
+        let distance = identified["pairs"][0]["statistical_distance"].as_f64().unwrap();
+        assert!((distance / DEMANDED - 1.0).abs() < 1e-6, "{distance}");
+        let outcome = folder.run(&["simulate", "edge.toml", "--check"]);
+        assert_eq!(outcome.code, 0, "{}{}", outcome.stdout, outcome.stderr);
+    }
+}
+
+#[test]
+fn mistakes_in_stand_ins() {
+    let folder = Folder::with("");
+    for (text, message) in [
+        (
+            RULE.replace("[0.0, 0.02]", "[0.0, 1.0]"),
+            "stand_in.emissivity[1]: emissivity is 1; it must be from 0 to below 1",
+        ),
+        (RULE.replace("[0.0, 0.02]", "[]"), "a list of 0 tolerances"),
+        (RULE.replace("\"pmma\", ", "\"pmna\", "), "`pmna`"),
+        (
+            RULE.replace("emissivity =", "temperature = \"33\"\nemissivity ="),
+            "stand_in.temperature: `33` is a number without a unit",
+        ),
+        (RULE.replace("[stand_in]", "[standin]"), "there is no key `standin`"),
+    ] {
+        folder.file("b.toml", &text);
+        let outcome = folder.run(&["rule", "b.toml", "--stand-in"]);
+        assert_eq!(outcome.code, 1, "{}", outcome.stdout);
+        assert!(
+            outcome.stderr.contains(message) && outcome.stderr.lines().count() == 1,
+            "{}",
+            outcome.stderr
+        );
+    }
+}
