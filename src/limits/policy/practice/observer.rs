@@ -42,7 +42,7 @@ impl Law {
     /// use hadar::policy::practice::observer::Law;
     /// assert_eq!(Law::Ttpf.probability(1.0), 0.5);
     /// // Twice the cycles: 2^4.1/(1 + 2^4.1).
-    /// assert!((Law::Ttpf.probability(2.0) - 0.944_898_8).abs() < 1e-7);
+    /// assert!((Law::Ttpf.probability(2.0) - 0.944_898_6).abs() < 1e-7);
     /// ```
     #[must_use]
     pub fn probability(self, ratio: f64) -> f64 {
