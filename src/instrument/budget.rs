@@ -58,6 +58,8 @@ pub struct BandLine {
 
 /// The line of the target's own photons, which is the one that depends on what the target is.
 pub const SHOT: &str = "shot noise";
+/// That of photon bunching, the other one that photons make.
+pub const BUNCHING: &str = "photon bunching";
 
 impl Camera {
     /// Counts per unit of band signal of the target: étendue × efficiencies × time × the share of the pixel it fills, m² sr s.
@@ -124,7 +126,7 @@ impl Camera {
                 .iter()
                 .enumerate()
                 .map(|(w, signal)| bunching::added_variance(counts(w, *signal), view.occupancy[w]));
-            push("photon bunching", photons(added.collect()), "t", "counted photons per mode (S11, S12)");
+            push(BUNCHING, photons(added.collect()), "t", "counted photons per mode (S11, S12)");
         }
         let frames = f64::from(self.frames);
         push("dark counts", every(self.dark_rate_per_s * self.integration_s()), "t", "dark_rate");

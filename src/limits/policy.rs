@@ -16,6 +16,7 @@ pub mod caps;
 pub mod elasticity;
 pub mod envelope;
 pub mod motion;
+pub mod practice;
 pub mod solve;
 pub mod stand_in;
 pub mod stop;

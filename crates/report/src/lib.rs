@@ -7,6 +7,7 @@
 pub mod accuracy;
 pub mod bundle;
 pub mod cameras;
+pub mod companion;
 pub mod figures;
 pub mod folder;
 mod html;

@@ -8,6 +8,7 @@ pub use text::text;
 
 use self::figures::{Collected, InformationMarks};
 use crate::bundle::Bundle;
+use crate::companion;
 use crate::figures::Plot;
 use crate::table::{Table, number, optional};
 use crate::tables;
@@ -38,6 +39,9 @@ pub fn bundle(study: &Study, result: &Sizing, out: &Path) -> Result<Bundle> {
     }
     if let Some(found) = &result.sensitivity {
         bundle.add_table("sensitivity.csv", sensitivity(found))?;
+    }
+    if let Some(found) = &result.companion {
+        bundle.add_table("companion.csv", companion::table([found]))?;
     }
     bundle.add_warnings(&result.warnings)?;
     bundle.add_plots(&drawn(study, result)?)?;

@@ -9,6 +9,7 @@ mod air;
 mod bands;
 mod camera;
 mod camera_bands;
+pub mod companion;
 mod distances;
 mod identify;
 mod looked_up;
@@ -23,6 +24,7 @@ mod surface;
 mod warn;
 
 pub use crate::warning::Warning;
+pub use companion::Companion;
 pub use identify::{
     Answers, Apart, Asked, BandNumber, BandsThatMatter, Check, Choice, Exact, ExactLibrary, ExactPair,
     Identifiability, Identification, Law, LibrarySize, Matrix, NearestProof, NearestState, PairResult,

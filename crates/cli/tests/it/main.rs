@@ -5,6 +5,7 @@ mod arrows;
 mod cameras;
 mod cli;
 mod cli_mistakes;
+mod companion;
 mod demand;
 mod extremes;
 mod fuzz;

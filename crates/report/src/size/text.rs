@@ -1,5 +1,6 @@
 //! The main job as text: the verdict first, then the numbers, what would do, and what it hangs on.
 
+use crate::companion;
 use crate::text::footing::{assumptions, gaussian, warnings};
 use crate::text::numbers::{numbers, photons, quantity, significant};
 use crate::text::pairs::pair_table;
@@ -89,6 +90,9 @@ pub fn text(result: &Sizing, study: &Study) -> String {
         out.push_str("All alternatives, hardest first\n");
         out.push_str(&pair_table(&result.pairs, study));
         out.push('\n');
+    }
+    if let Some(found) = &result.companion {
+        out.push_str(&companion::text(found, study.units()));
     }
     out.push_str(&assumptions(study, gaussian(study)));
     out.push_str(&warnings(&result.warnings));

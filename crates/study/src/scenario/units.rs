@@ -2,7 +2,7 @@
 
 use super::Source;
 use hadar::units::Dimension;
-use hadar::words::{quantity, significant};
+use hadar::words::{length, quantity, significant};
 
 /// Below it a length is told in inches by whoever writes feet.
 const FOOT_M: f64 = 0.3048;
@@ -71,6 +71,17 @@ impl Units {
         let unit = if metres < FOOT_M { "in" } else { self.length };
         let number = Dimension::Length.in_unit(metres, unit).unwrap_or(metres);
         format!("{} {unit}", significant(number, 3))
+    }
+
+    /// A length in m of which two digits are known.
+    #[must_use]
+    pub fn rough_length(self, metres: f64) -> String {
+        match Dimension::Length.in_unit(metres, self.length) {
+            Some(number) if matches!(self.length, "ft" | "in") => {
+                format!("{} {}", significant(number, 2), self.length)
+            }
+            _ => length(metres),
+        }
     }
 
     /// A speed in m s⁻¹.

@@ -1,7 +1,7 @@
 //! The main job: does the camera meet the requirement, and what would it have to be.
 
 use super::identify::{PairResult, PhotonsRequired};
-use super::{Check, Shortfall, Study, Surface, Warning};
+use super::{Check, Companion, Shortfall, Study, Surface, Warning};
 use crate::scenario::{DistanceKind, Scenario};
 use hadar::demand::{self, Ledger, Skipping, Work};
 use hadar::error::Result;
@@ -49,6 +49,9 @@ pub struct Sizing {
     pub pairs: Vec<PairResult>,
     /// The alternative that is hardest to tell apart.
     pub limiting: String,
+    /// What sizing practice says of the camera; `None` without a camera or without target.size.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub companion: Option<Companion>,
     /// What the reader must know.
     pub warnings: Vec<Warning>,
     /// What it took.
@@ -241,6 +244,10 @@ impl Study {
         if let Some(camera) = &camera {
             warnings.extend(self.camera_result_warnings(camera, pair));
         }
+        let companion = match (&self.camera, self.scenario.target.size_m) {
+            (Some(_), Some(_)) => Some(self.companion(pair, None)?),
+            _ => None,
+        };
         let mut scenario = identification.scenario;
         if sensitivity.is_some() {
             scenario.sensitivity.get_or_insert_default();
@@ -257,6 +264,7 @@ impl Study {
             photon_radiance: identification.photon_radiance,
             pairs: identification.pairs,
             limiting: identification.limiting,
+            companion,
             warnings,
             stats: ledger.close(),
         })

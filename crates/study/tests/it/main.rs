@@ -1,6 +1,7 @@
 //! Tests of scenarios and studies.
 
 mod camera_bands;
+mod companion;
 mod fuzz_readers;
 mod published;
 mod rule_air;
