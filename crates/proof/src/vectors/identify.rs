@@ -36,6 +36,7 @@ pub(super) fn topic() -> Result<Topic> {
             target: COAT,
             alternatives: vec![METAL, GLASS],
             scene: both.clone(),
+            celsius: true,
             distance_m: Some(30.0),
             camera: Some(bolometer),
             demand: Demand::Distance(1.0),
@@ -54,6 +55,7 @@ pub(super) fn topic() -> Result<Topic> {
                 lighting_total: Some(1.0),
                 ..both.clone()
             },
+            celsius: false,
             distance_m: None,
             camera: None,
             demand: Demand::Probability(0.99),
@@ -64,6 +66,7 @@ pub(super) fn topic() -> Result<Topic> {
             target: COAT,
             alternatives: vec![SAND],
             scene: Scene { temperature_k: 293.151, objects: vec![black(293.15, 0.999)], ..both.clone() },
+            celsius: false,
             distance_m: Some(5.0),
             camera: Some(Camera {
                 noise: NoiseSpec::Counts { sigma_counts: 5000.0 },
@@ -79,6 +82,7 @@ pub(super) fn topic() -> Result<Topic> {
             target: COAT,
             alternatives: vec![SAND],
             scene: Scene { temperature_k: 293.15, objects: vec![black(293.15, 1.0)], ..both },
+            celsius: false,
             distance_m: None,
             camera: None,
             demand: Demand::Distance(1.0),

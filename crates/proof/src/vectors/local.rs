@@ -62,10 +62,11 @@ fn unknowns(base: &Scene) -> Result<Vec<Asked>> {
         ),
         (
             "priors",
-            "priors compete with 1e5 photons",
+            "priors compete with 1e5 photons; that of gain is one of its logarithm",
             Scene {
                 priors: vec![(Temperature, 0.5), (Lighting, 0.02), (Gain, 0.01)],
                 photons: Some(1e5),
+                gain: 0.8,
                 ..base.clone().not_knowing([Temperature, Lighting, Gain])
             },
         ),

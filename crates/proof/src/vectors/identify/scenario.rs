@@ -32,6 +32,8 @@ pub(super) struct Asked {
     pub(super) alternatives: Vec<Named>,
     /// The scene, whose materials do not count.
     pub(super) scene: Scene,
+    /// Whether temperatures are written in °C, to a hundredth.
+    pub(super) celsius: bool,
     pub(super) distance_m: Option<f64>,
     pub(super) camera: Option<Camera>,
     pub(super) demand: Demand,
@@ -56,6 +58,13 @@ impl Asked {
         format!("identify_{}.toml", self.id.replace('-', "_"))
     }
 
+    fn temperature(&self, kelvin: f64) -> String {
+        match self.celsius {
+            true => format!("{} degC", ((kelvin - 273.15) * 100.0).round() / 100.0),
+            false => format!("{kelvin:?} K"),
+        }
+    }
+
     /// The scenario, every number with all its digits.
     pub(super) fn toml(&self) -> String {
         let scene = &self.scene;
@@ -65,18 +74,19 @@ impl Asked {
             scene.unknown.iter().map(|nuisance| format!("\"{}\"", nuisance.name())).collect();
         let [start, stop, step] = BANDS_CM1;
         let mut text = format!(
-            "title = \"{}\"\n\n[target]\nmaterial = \"{}\"\ntemperature = \"{:?} K\"\n",
+            "title = \"{}\"\n\n[target]\nmaterial = \"{}\"\ntemperature = \"{}\"\n",
             self.about,
             file_of(self.target.0),
-            scene.temperature_k
+            self.temperature(scene.temperature_k)
         );
         if let Some(distance_m) = self.distance_m {
             text.push_str(&format!("distance = \"{distance_m:?} m\"\n"));
         }
         for object in &scene.objects {
             text.push_str(&format!(
-                "\n[[environment]]\ntemperature = \"{:?} K\"\nlighting = {:?}\n",
-                object.temperature_k, object.lighting
+                "\n[[environment]]\ntemperature = \"{}\"\nlighting = {:?}\n",
+                self.temperature(object.temperature_k),
+                object.lighting
             ));
             if object.material.is_some() {
                 text.push_str(&format!("material = \"{}\"\n", file_of(SKY.0)));
@@ -105,25 +115,27 @@ impl Asked {
 }
 
 fn camera_toml(camera: &Camera) -> String {
+    // To a thousandth of the unit, without what a factor of ten leaves of a double.
+    let thousandths = |value: f64| (value * 1e3).round() / 1e3;
+    let [exposure_ms, noise_ms] = [camera.exposure_s, camera.noise_exposure_s].map(|s| thousandths(s * 1e3));
     let noise = match camera.noise {
         NoiseSpec::Netd { netd_k, temperature_k, .. } => {
-            format!("netd = \"{netd_k:?} K\"\nnetd_temperature = \"{temperature_k:?} K\"\n")
+            let netd_mk = thousandths(netd_k * 1e3);
+            format!("netd = \"{netd_mk} mK\"\nnetd_temperature = \"{temperature_k:?} K\"\n")
         }
         NoiseSpec::Counts { sigma_counts } => format!("noise_electrons = {sigma_counts:?}\n"),
         _ => String::new(),
     };
     format!(
-        "\n[camera]\nexposure = \"{:?} s\"\npixel = \"{:?} m\"\nf_number = {:?}\nfocal_length = \"{:?} m\"\n\
-         optics_efficiency = {:?}\nquantum_efficiency = {:?}\nframes = {}\n{noise}noise_exposure = \"{:?} s\"\n\
+        "\n[camera]\nexposure = \"{exposure_ms} ms\"\npixel = \"{} um\"\nf_number = {:?}\nfocal_length = \"{} mm\"\n\
+         optics_efficiency = {:?}\nquantum_efficiency = {:?}\nframes = {}\n{noise}noise_exposure = \"{noise_ms} ms\"\n\
          flicker_fraction = {:?}\n",
-        camera.exposure_s,
-        camera.pixel_m,
+        thousandths(camera.pixel_m * 1e6),
         camera.f_number,
-        camera.focal_length_m,
+        thousandths(camera.focal_length_m * 1e3),
         camera.optics_efficiency,
         camera.quantum_efficiency,
         camera.frames,
-        camera.noise_exposure_s,
         camera.flicker_fraction
     )
 }
