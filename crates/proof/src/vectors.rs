@@ -6,8 +6,9 @@
 //! terms' magnitudes over their sum), rounded up. It is far below a per cent, so that a wrong formula fails, and below what
 //! the known short cuts lose where a vector is there for one of them.
 //!
-//! Nothing is drawn, no result depends on threads or on the library functions of a machine (spectra are rational functions,
-//! rounded to four decimals): the same program makes the same bytes.
+//! Nothing is drawn and nothing depends on threads: the same program makes the same bytes. Library functions of a machine have no
+//! part in it but to lead Newton's method in 512 bits to where it starts (spectra are rational functions, rounded to four
+//! decimals).
 //!
 //! * `scene`: what is seen, as numbers; `json`: how it is written; `answer`: digits and tolerances;
 //! * one module a topic: `planck`, `signal`, `counts`, `local`, `nearest`, `probability`, `requirement`, and `identify`, whole
