@@ -12,11 +12,13 @@
 //!
 //! * [`extended`]: the numbers;
 //! * [`planck`]: photon radiance, its slope and differences;
+//! * [`camera`]: counts and noise;
 //! * [`local`]: local distances;
 //! * [`nearest`]: separation of two states, and the nearest one from given starts;
 //! * [`probability`]: tail of the normal law, and exact errors of the best test between Poisson laws.
 
 pub mod brute_force;
+pub mod camera;
 pub mod double_double;
 pub mod extended;
 pub mod local;

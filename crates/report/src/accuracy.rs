@@ -4,11 +4,13 @@ mod brute_force;
 mod continuum;
 mod skipping;
 mod stress;
+mod vectors;
 
 pub use brute_force::{brute_force_table, brute_force_text};
 pub use continuum::{continuum_plot, continuum_text};
 pub use skipping::{skipping_table, skipping_text};
 pub use stress::{stress_plots, stress_text};
+pub use vectors::{vectors_bundle, vectors_text};
 
 use super::figures::Plot;
 use super::plot::{self, Axis, LineFigure, Marker, Series, Style};

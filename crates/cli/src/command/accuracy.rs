@@ -8,6 +8,7 @@ use hadar_proof::accuracy::brute_force::{BruteForcePlan, BruteForceReport, brute
 use hadar_proof::accuracy::skipping::{Skipped, skipping};
 use hadar_proof::accuracy::stress::{StressPlan, StressReport, stress};
 use hadar_proof::accuracy::{Chart, Continuum, Item, Order, continuum};
+use hadar_proof::vectors::{Topic, VERSION, topics};
 use hadar_report::accuracy as report;
 use hadar_report::bundle::Bundle;
 use std::process::ExitCode;
@@ -24,13 +25,16 @@ const BRUTE_FORCE: &str = "brute-force";
 /// Scenes of every set of unknowns; a thousand take some twenty minutes on two cores.
 const SCENES: u64 = 100;
 const QUICK_SCENES: u64 = 3;
+/// No measurement, and no part of `all`.
+const VECTORS: &str = "vectors";
 
 #[derive(Debug, Args)]
 pub(super) struct AccuracyArgs {
     /// Computations: planck, band-integrals, local, local-near-equilibrium, nearest, nearest-hard, probability, decisions, windows,
     /// draws; continuum (what the width of bands costs); brute-force (nearest distances and their proofs held against a
     /// brute force, set of unknowns by set of unknowns); skipping (what leaving out the needless is worth); stress (generated
-    /// extremes, each judged in extended precision); or all
+    /// extremes, each judged in extended precision); or all. Alone: vectors (questions with answers, for any other program to
+    /// be checked by)
     #[arg(value_name = "NAME", default_value = "all")]
     items: Vec<String>,
     /// Fewer settings and shorter runs
@@ -75,7 +79,7 @@ impl Task {
     fn from_name(name: &str) -> Result<Self> {
         all().into_iter().find(|task| task.name() == name).ok_or_else(|| {
             let names: Vec<&str> = all().into_iter().map(Self::name).collect();
-            let instead = format!("choose among {}, all", names.join(", "));
+            let instead = format!("choose among {}, all, {VECTORS}", names.join(", "));
             Error::malformed(format!("unknown computation `{name}`"), instead)
         })
     }
@@ -92,6 +96,9 @@ impl Task {
 }
 
 pub(super) fn run(args: &AccuracyArgs, global: &Global) -> Result<ExitCode> {
+    if args.items == [VECTORS] {
+        return vectors(args, global);
+    }
     let tasks = tasks(&args.items)?;
     given_to(&tasks, Task::Stress, "--cases", args.cases)?;
     given_to(&tasks, Task::BruteForce, "--scenes", args.scenes)?;
@@ -158,6 +165,46 @@ pub(super) fn run(args: &AccuracyArgs, global: &Global) -> Result<ExitCode> {
     Ok(if failed { ExitCode::from(3) } else { ExitCode::SUCCESS })
 }
 
+/// What is printed of the vectors with `--json`.
+#[derive(serde::Serialize)]
+struct Vectors {
+    vectors_version: u32,
+    topics: Vec<Counted>,
+}
+
+/// How many vectors there are about a topic.
+#[derive(serde::Serialize)]
+struct Counted {
+    topic: &'static str,
+    title: &'static str,
+    vectors: usize,
+    answers: usize,
+}
+
+/// Makes the test vectors, and with `--out` their files.
+fn vectors(args: &AccuracyArgs, global: &Global) -> Result<ExitCode> {
+    given_to(&[], Task::Stress, "--cases", args.cases)?;
+    given_to(&[], Task::BruteForce, "--scenes", args.scenes)?;
+    given_to(&[], Task::BruteForce, "--scene", args.scene)?;
+    if args.quick {
+        return Err(Error::malformed("`--quick` with `vectors`, of which all are made", "leave out --quick"));
+    }
+    let topics = topics()?;
+    if let Some(out) = &global.out {
+        global.write(&report::vectors_bundle(&topics), out, None)?;
+    }
+    let counted = |topic: &Topic| {
+        let Topic { name, title, vectors, .. } = topic;
+        Counted { topic: name, title, vectors: vectors.len(), answers: topic.answers() }
+    };
+    let output = Vectors { vectors_version: VERSION, topics: topics.iter().map(counted).collect() };
+    let mut work = Work::default();
+    work.compute(Thing::Sections, 1);
+    work.spare(Thing::Sections, Reason::NotAsked, all().len() as u64);
+    global.answer_with(as_json(&output)?, &report::vectors_text(&topics), &work)?;
+    Ok(ExitCode::SUCCESS)
+}
+
 /// Refuses a number for a computation that is not asked for.
 fn given_to(tasks: &[Task], of: Task, option: &str, given: Option<u64>) -> Result<()> {
     match given {
@@ -181,6 +228,9 @@ fn tasks(names: &[String]) -> Result<Vec<Task>> {
             return Err(Error::malformed("`all` beside other names", "write `all` alone, or the names"));
         }
         return Ok(all());
+    }
+    if names.iter().any(|name| name == VECTORS) {
+        return Err(Error::malformed("`vectors` beside other names", "write `vectors` alone, or the names"));
     }
     let mut tasks = Vec::new();
     for name in names {

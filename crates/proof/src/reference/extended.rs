@@ -7,6 +7,8 @@
 //!
 //! Assumption: arguments of [`Extended::exp`] within ±10⁹.
 
+mod decimal;
+
 use astro_float_num::{BigFloat, RoundingMode, Sign};
 use std::cmp::Ordering;
 use std::ops::{Add, Div, Mul, Neg, Sub};

@@ -303,6 +303,23 @@ impl<'a> LocalReference<'a> {
         self.spectra.signal(emissivity, &state.into())
     }
 
+    /// ∂S/∂θ of each band for one parameter, photons s⁻¹ m⁻² sr⁻¹ per unit of it; for the material, towards the alternative.
+    #[must_use]
+    pub fn derivative(&mut self, parameter: Parameter, pair: Pair<'_>) -> Vec<Extended> {
+        let Pair { emissivity, alternative, state } = pair;
+        let total_known = self.unknowns.known_lighting_total().is_some();
+        self.spectra.column(parameter, emissivity, alternative, &state.into(), total_known)
+    }
+
+    /// The derivative along the material with every term of the contrast taken by its magnitude
+    /// (as in [`LocalAnswer::terms`]).
+    #[must_use]
+    pub fn material_terms(&mut self, pair: Pair<'_>) -> Vec<Extended> {
+        let Pair { emissivity, alternative, state } = pair;
+        let state = ExtendedState::from(state);
+        self.spectra.terms(emissivity, alternative, &state, &state)
+    }
+
     /// The distance of a pair with the nuisances but those `left_out`; unlike the fast path it takes any pair, without
     /// errors.
     #[must_use]

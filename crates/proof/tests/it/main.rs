@@ -1,3 +1,4 @@
 //! Tests of what holds the crate against references.
 
 mod accuracy;
+mod vectors;

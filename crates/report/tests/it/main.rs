@@ -2,6 +2,7 @@
 
 mod figures;
 mod named_values;
+mod vectors;
 
 mod support {
     pub(crate) mod figures;
