@@ -17,6 +17,7 @@ pub use stand_in::{stand_in, stand_in_bundle};
 pub use text::text;
 
 use super::bundle::Bundle;
+use super::companion;
 use super::figures::Plot;
 use super::manifest::{Input, Provenance};
 use super::plot::{Axis, Figure, NamedSeries, NamedValues};
@@ -26,6 +27,7 @@ use super::text::significant;
 use hadar::error::Result;
 use hadar::policy::Quantity;
 use hadar_study::scenario::rule::Verdict;
+use hadar_study::study::companion::Companion;
 use hadar_study::study::{
     CameraAnswer, CameraVerdict, Found, MarginUncertainty, RuleAnswer, RuleStudy, Warning,
 };
@@ -50,6 +52,15 @@ pub fn bundle(study: &RuleStudy, answer: &RuleAnswer, provenance: &Provenance, o
     bundle.add_asked("rule.toml", study.rule().to_toml_beside(out));
     bundle.add_table("cameras.csv", cameras(answer))?;
     bundle.add_table("worst_cases.csv", worst_cases(answer))?;
+    let companions: Vec<&Companion> = answer
+        .clauses
+        .iter()
+        .filter_map(|clause| clause.apart())
+        .flat_map(|apart| &apart.companions)
+        .collect();
+    if !companions.is_empty() {
+        bundle.add_table("companion.csv", companion::table(companions))?;
+    }
     bundle.add("inputs.csv", inputs(provenance).to_csv()?);
     bundle.add_warnings(&warnings(answer))?;
     bundle.add_plots(&[margins(answer)])?;

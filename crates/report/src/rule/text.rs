@@ -1,6 +1,7 @@
 //! Which cameras meet a rule, as text: the sentence, a table, then what limits each camera and what would help it.
 
 use super::stop::{approach, decisions, metres};
+use crate::companion;
 use crate::size::text::in_unit;
 use crate::text::footing::{gaussian, of_scene, warnings};
 use crate::text::numbers::{numbers, quantity, significant};
@@ -50,6 +51,12 @@ pub fn text(answer: &RuleAnswer, study: &RuleStudy) -> String {
         .collect();
     if !quotables.is_empty() {
         let _ = writeln!(out, "The rule in a sentence\n{}\n", quotables.join("\n"));
+    }
+    // Once, though several clauses have them: a camera sees alike whatever the clause.
+    let companions = answer.clauses.iter().filter_map(|clause| clause.apart()).map(|apart| &apart.companions);
+    for found in companions.take(1).flatten() {
+        let name = found.camera.as_deref().unwrap_or_default();
+        let _ = write!(out, "{name}: {}", companion::text(found, units));
     }
     if let Some(study) = study.study() {
         out.push_str(&of_scene(study, gaussian(study)));

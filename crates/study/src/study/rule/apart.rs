@@ -13,9 +13,10 @@ use super::asked::{Extent, RuleAsked};
 use super::cameras::Named;
 use super::clauses::ApartAnswer;
 use super::envelope::Sighted;
-use super::results::{CameraVerdict, EnvelopeResult, Quotable, RuleRequirement, StopResult};
-use crate::scenario::rule::{Clause, StopSpec};
+use super::results::{CameraVerdict, EnvelopeResult, LimitingScene, Quotable, RuleRequirement, StopResult};
+use crate::scenario::rule::{Clause, Demand, StopSpec};
 use crate::scenario::{CameraSpec, DistanceKind, Envelope, MaterialRef, Rule, Scenario};
+use crate::study::companion::{Companion, Given, Told};
 use crate::study::{Study, Warning};
 use hadar::demand::{self, Reason, Skipping, Thing};
 use hadar::error::{Error, Result};
@@ -155,7 +156,34 @@ impl TellApart {
         };
         let envelope = self.envelope_result();
         let requirement = self.requirement(&cameras, &envelope, alone);
-        Ok(ApartAnswer { requirement, envelope, cameras, not_identifiable })
+        let companions =
+            if asked.extent == Extent::Everything { self.companions(&cameras)? } else { Vec::new() };
+        Ok(ApartAnswer { requirement, envelope, cameras, not_identifiable, companions })
+    }
+
+    /// What sizing practice says of the cameras, each at the distance of its limiting scene, if the rule says how large a target is.
+    fn companions(&self, cameras: &[CameraVerdict]) -> Result<Vec<Companion>> {
+        let of_clause = self.rule.clauses.iter().find_map(|clause| match clause.demand {
+            Demand::Resolution { size_m, .. } => Some(size_m),
+            _ => None,
+        });
+        let Some(size_m) = self.scenario.target.size_m.or(of_clause) else { return Ok(Vec::new()) };
+        let companion = |(candidate, verdict): (&Candidate, &CameraVerdict)| {
+            let study = candidate.near.first()?;
+            let LimitingScene { target, alternative, distance_m, .. } = &verdict.limiting;
+            // Where the distance does not matter to the limit it does to a picture: the farthest is the hardest.
+            let farthest_m = candidate.distance_m.map(|[_, most]| most);
+            let told = Told { target, alternative, statistical_distance: verdict.statistical_distance };
+            let companion = Companion::of(&Given {
+                camera: study.camera.as_ref(),
+                bands: &study.bands,
+                size_m: Some(size_m),
+                distance_m: farthest_m.or(*distance_m),
+                told: Some(told),
+            });
+            Some(companion.map(|found| Companion { camera: Some(verdict.name.clone()), ..found }))
+        };
+        self.candidates.iter().zip(cameras).filter_map(companion).collect()
     }
 
     /// How fast the vehicle drives at most, m s⁻¹.

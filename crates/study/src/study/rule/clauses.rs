@@ -7,6 +7,7 @@ use super::results::{
 use super::uncertainty::MarginUncertainty;
 use crate::scenario::Rule;
 use crate::scenario::rule::Verdict;
+use crate::study::companion::Companion;
 use crate::study::{Shortfall, Warning};
 use hadar::demand::Work;
 use serde::ser::{Serialize, SerializeMap, Serializer};
@@ -99,6 +100,8 @@ pub struct ApartAnswer {
     pub cameras: Vec<CameraVerdict>,
     /// The part of the envelope in which no camera could do it; `None` where only the verdict was asked for.
     pub not_identifiable: Option<NotIdentifiable>,
+    /// What sizing practice says of every camera at its worst distance, where the rule says how large the target is.
+    pub companions: Vec<Companion>,
 }
 
 /// A clause that demands a quantity.
@@ -281,6 +284,7 @@ impl Serialize for RuleAnswer {
                 map.serialize_entry("envelope", &only.envelope)?;
                 map.serialize_entry("cameras", &only.cameras)?;
                 map.serialize_entry("not_identifiable", &only.not_identifiable)?;
+                map.serialize_entry("companions", &only.companions)?;
             }
             _ => {
                 map.serialize_entry("cameras", &self.cameras)?;
