@@ -112,12 +112,9 @@ impl RuleStudy {
     /// # Errors
     /// No such clause; a material that is not known; surroundings that leave no room for the largest lighting.
     pub fn stand_in(&self, library: &Library, progress: &dyn Fn(usize, usize)) -> Result<StandInAnswer> {
-        let tells = |(kind, clause): (&'_ Kind, &crate::scenario::rule::Clause)| match (kind, &clause.demand)
-        {
-            (Kind::Apart(_), Demand::TellApart) => true,
-            _ => false,
-        };
-        let found = self.clauses.iter().zip(&self.rule.clauses).find(|(kind, clause)| tells((kind, clause)));
+        let mut clauses = self.clauses.iter().zip(&self.rule.clauses);
+        let found = clauses
+            .find(|(kind, clause)| matches!((kind, &clause.demand), (Kind::Apart(_), Demand::TellApart)));
         let Some((Kind::Apart(apart), clause)) = found else {
             let error = Error::malformed(
                 "no clause of the rule tells people apart",

@@ -275,9 +275,9 @@ pub(super) fn judged(
     let [low, high] = uncertainty.map_or([margin; 2], |interval| [interval.low, interval.high]);
     let (mut fails_by, mut undecided_by) = (Vec::new(), Vec::new());
     // What is no number is not met.
-    if !(high >= 1.0) {
+    if high < 1.0 || high.is_nan() {
         fails_by.push(by);
-    } else if !(low >= 1.0) {
+    } else if low < 1.0 || low.is_nan() {
         undecided_by.push(by);
     }
     for shortfall in others.iter().flatten() {
