@@ -42,7 +42,8 @@ pub fn stand_in(answer: &StandInAnswer) -> String {
     out.push_str(&super::text::columns(&rows, &[3, 4, 5]));
     out.push_str(
         "\n  emissivity: the same difference at all wavenumbers; temperature: at the edge the farthest stand-in is as far from every person\n  \
-         as the rule demands of cameras; proved: for all that is within, in all scenes of the envelope\n",
+         as the rule demands of cameras; proved: for all that is within, in all scenes of the envelope\n  \
+         by what one pixel counts in all bands and frames: shape, motion and many pixels alike are other questions, and tell more\n",
     );
     out
 }
@@ -126,7 +127,7 @@ fn picture(answer: &StandInAnswer) -> Plot {
         Axis::linear("tolerance of its temperature (K), ±"),
     )
     .subtitle(format!(
-        "Below a line no test tells it from a person more often than {}; open symbols are proved for all that is within.",
+        "Below a line no test of one pixel tells it from a person more often than {}; open symbols: proved for all within.",
         reliability(answer.distance)
     ));
     let mut groups: Vec<[&str; 3]> = Vec::new();

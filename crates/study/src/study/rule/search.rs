@@ -92,10 +92,6 @@ impl TellApart {
         let image = at.camera.as_ref().map(|camera| self.image(candidate, camera));
         let image = image.unwrap_or_default();
         let mut others = vec![image.spoiled.clone()];
-        if self.moving().is_some() && image.blur.is_none() {
-            // What cannot be said is not met.
-            others[0].push(Shortfall::MotionUnknown);
-        }
         let mut uncertainty = None;
         if let Some(uncertain) = uncertain.filter(|_| distance > 0.0) {
             for camera in uncertain.sides() {
@@ -167,6 +163,8 @@ impl TellApart {
                 for (quantity, solution) in &quantities.0 {
                     let Some(value) = solution.value else { continue };
                     let mut spoiled = self.image(candidate, &task.forward(*quantity, value).camera).spoiled;
+                    // That is not the quantity's doing.
+                    spoiled.retain(|by| *by != Shortfall::MotionUnknown);
                     // Those of the limiting scene that the brightest one does not know of.
                     spoiled.extend(solution.caps.iter().filter_map(|cap| match cap.code {
                         CapCode::Diffraction => Some(Shortfall::Diffraction),
@@ -300,6 +298,10 @@ impl TellApart {
             && camera.frame_s().is_some_and(|frame| camera.exposure_s > frame)
         {
             image.spoiled.push(Shortfall::FrameRate);
+        }
+        if self.moving().is_some() && image.blur.is_none() {
+            // What cannot be said is not met.
+            image.spoiled.push(Shortfall::MotionUnknown);
         }
         let approach = self.stop.map(|spec| Approach::of(spec.stop(), camera, bands));
         image.spoiled.extend(approach.and_then(|approach| approach.shortfall()));

@@ -5,6 +5,8 @@
 //! far from the nearest person as the rule demands of cameras. Below it none is told from a person as reliably as the rule demands. The
 //! person may have any temperature of the envelope, and what else the scenario leaves unknown.
 //!
+//! As all verdicts of a rule it is about what one pixel counts, in all bands and frames: shape, motion and many pixels tell more.
+//!
 //! Proved is a ΔT a little smaller, at which the bound from above is no more than the demand. Cameras are taken at the distance from
 //! which they count most, with the least noise of the envelope: what helps them to tell. With air on the path both ends of the distance
 //! are looked at, and what is between is searched, not proved.
