@@ -4,11 +4,13 @@
 
 mod certificate;
 mod check;
+mod measured;
 mod record;
 mod sources;
 mod stand_in;
 mod stop;
 mod text;
+mod words;
 
 pub use check::check;
 pub use record::{agreement, record};
@@ -119,7 +121,7 @@ fn cameras(answer: &RuleAnswer) -> Table {
             let mut row = vec![
                 line.camera.to_owned(),
                 if line.verdict == Verdict::Meets { "yes" } else { "no" }.into(),
-                text::codes(line.fails_by, " "),
+                words::codes(line.fails_by, " "),
                 line.provided.map(|proviso| proviso.to_string()).unwrap_or_default(),
                 of(&|camera| camera.bands.to_string()),
                 of(&|camera| camera.readout.name().into()),
@@ -143,7 +145,7 @@ fn cameras(answer: &RuleAnswer) -> Table {
                 Found::Measured(measured) => {
                     let reached = measured.cameras.get(index).and_then(|camera| camera.value);
                     [
-                        text::measure(measured.quantity).to_owned(),
+                        measured::measure(measured.quantity).to_owned(),
                         number(measured.demanded),
                         optional(reached),
                     ]
@@ -238,7 +240,7 @@ fn margins(answer: &RuleAnswer) -> Plot {
     let mut table = Table::new(["camera", "meets_the_rule", "fails_by", "margin", "margin_proved"]);
     for camera in &ranked {
         let own = verdict(camera);
-        let fails = own.map_or_else(|| camera.fails.join(", "), |own| text::codes(&own.fails_by, " "));
+        let fails = own.map_or_else(|| camera.fails.join(", "), |own| words::codes(&own.fails_by, " "));
         let proved = own.and_then(|own| Some(own.lower_bound? / only?.requirement.distance));
         table.push(vec![
             camera.name.clone(),

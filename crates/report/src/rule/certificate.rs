@@ -2,7 +2,7 @@
 
 use super::sources::dates;
 use super::stop::decisions;
-use super::text;
+use super::{measured, text};
 use crate::manifest::{Provenance, VERSION};
 use crate::text::footing::{gaussian, of_scene};
 use crate::text::significant;
@@ -96,7 +96,7 @@ fn budgets(clause: &ClauseAnswer, out: &mut String) {
     for line in clause.lines() {
         let Some(found) = line.uncertainty else { continue };
         let _ = writeln!(out, "Margin of {}:\n", line.camera);
-        text::uncertainty(line.margin, found).iter().for_each(|line| {
+        measured::uncertainty(line.margin, found).iter().for_each(|line| {
             let _ = writeln!(out, "- {line}");
         });
         out.push('\n');
@@ -118,17 +118,18 @@ fn of_apart(apart: &ApartAnswer, units: Units, out: &mut String) {
 /// A clause that demands a quantity.
 fn of_measured(measured: &MeasuredAnswer, units: Units, out: &mut String) {
     let _ = writeln!(out, "> Demanded: {}.\n", measured.definition);
-    let head = ["camera", "meets", "margin", text::measure(measured.quantity), "evidence", "limiting scene"];
+    let head =
+        ["camera", "meets", "margin", measured::measure(measured.quantity), "evidence", "limiting scene"];
     let _ = writeln!(out, "| {} |\n|---|---|---|---|---|---|", head.join(" | "));
     for camera in &measured.cameras {
-        let met = text::measured_meets(camera);
+        let met = measured::measured_meets(camera);
         let cells = [
             camera.name.clone(),
             met,
             significant(camera.margin, 3),
             camera.value.map_or_else(|| "no bound".into(), |value| significant(value, 3)),
             camera.grade.name().to_owned(),
-            text::measured_scene(&camera.limiting, units),
+            measured::measured_scene(&camera.limiting, units),
         ];
         let _ = writeln!(out, "| {} |", cells.map(|text| cell(&text)).join(" | "));
     }

@@ -1,6 +1,8 @@
 //! `--check`: a line a camera, what is known of it and how.
 
-use super::text::{fails_by, in_words, measure, measured_scene, undecided, without_placeholders};
+use super::measured::{measure, measured_scene, undecided};
+use super::text::{fails_by, without_placeholders};
+use super::words::in_words;
 use crate::text::significant;
 use hadar_study::scenario::Units;
 use hadar_study::scenario::rule::Verdict;

@@ -67,7 +67,7 @@ pub fn record(study: &RuleStudy, answer: &RuleAnswer, provenance: &Provenance) -
 fn of_clause(clause: &ClauseAnswer) -> Result<Value> {
     let (quantity, demanded) = match &clause.found {
         Found::Apart(apart) => ("statistical_distance", apart.requirement.distance),
-        Found::Measured(measured) => (super::text::measure(measured.quantity), measured.demanded),
+        Found::Measured(measured) => (super::measured::measure(measured.quantity), measured.demanded),
     };
     let lines = clause.lines().into_iter().enumerate().map(|(index, line)| of_line(clause, index, &line));
     Ok(json!({

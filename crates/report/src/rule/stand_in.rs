@@ -39,7 +39,7 @@ pub fn stand_in(answer: &StandInAnswer) -> String {
             },
         ]
     }));
-    out.push_str(&super::text::columns(&rows, &[3, 4, 5]));
+    out.push_str(&super::words::columns(&rows, &[3, 4, 5]));
     out.push_str(
         "\n  emissivity: the same difference at all wavenumbers; temperature: at the edge the farthest stand-in is as far from every person\n  \
          as the rule demands of cameras; proved: for all that is within, in all scenes of the envelope\n  \

@@ -1,6 +1,8 @@
 //! Which cameras meet a rule, as text: the sentence, a table, then what limits each camera and what would help it.
 
-use super::stop::{approach, decisions, metres};
+use super::measured::{of_measured, uncertainty, undecided};
+use super::stop::{approach, decisions};
+use super::words::{columns, in_words, in_words_of_kind};
 use crate::companion;
 use crate::size::text::in_unit;
 use crate::text::footing::{gaussian, of_scene, warnings};
@@ -11,8 +13,8 @@ use hadar::words::share;
 use hadar_study::scenario::Units;
 use hadar_study::scenario::rule::Verdict;
 use hadar_study::study::{
-    ApartAnswer, CameraVerdict, Fixes, Found, LimitingScene, MarginUncertainty, Measure, MeasuredAnswer,
-    MeasuredScene, MeasuredVerdict, NotIdentifiable, RuleAnswer, RuleStudy, Shortfall, Warning,
+    ApartAnswer, CameraVerdict, Fixes, Found, LimitingScene, NotIdentifiable, RuleAnswer, RuleStudy,
+    Shortfall, Warning,
 };
 use hadar_study::words::{demanded, reliability};
 use std::fmt::Write as _;
@@ -86,21 +88,6 @@ fn overview(answer: &RuleAnswer) -> String {
     columns(&rows, &[1]) + "\n"
 }
 
-/// Rows with their columns below each other, those of numbers to the right; the last one as it is.
-pub(super) fn columns<const N: usize>(rows: &[[String; N]], numbers: &[usize]) -> String {
-    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
-    let widths: Vec<usize> = (0..N).map(width).collect();
-    let mut out = String::new();
-    for row in rows {
-        let cells = row.iter().zip(&widths).enumerate().map(|(column, (cell, width))| {
-            if numbers.contains(&column) { format!("{cell:>width$}") } else { format!("{cell:<width$}") }
-        });
-        out.push_str(cells.collect::<Vec<_>>().join("  ").trim_end());
-        out.push('\n');
-    }
-    out
-}
-
 /// A clause that tells materials apart: a table, then each camera.
 fn of_apart(apart: &ApartAnswer, units: Units) -> String {
     let right = |camera: &CameraVerdict| reliability(camera.statistical_distance);
@@ -127,89 +114,6 @@ fn of_apart(apart: &ApartAnswer, units: Units) -> String {
         let _ = writeln!(out, "{}\n", no_camera(part).join("\n  "));
     }
     out
-}
-
-/// A clause that demands a quantity: a table, then what each camera sees until its decision.
-fn of_measured(measured: &MeasuredAnswer, units: Units) -> String {
-    let head = ["camera", "margin", measure(measured.quantity), "limited by", "evidence", "meets the clause"];
-    let mut rows = vec![head.map(str::to_owned)];
-    rows.extend(measured.cameras.iter().map(|camera| {
-        [
-            camera.name.clone(),
-            significant(camera.margin, 3),
-            camera.value.map_or_else(|| "no bound".into(), |value| significant(value, 3)),
-            measured_scene(&camera.limiting, units),
-            camera.grade.name().to_owned(),
-            measured_meets(camera),
-        ]
-    }));
-    let mut out = columns(&rows, &[1, 2]);
-    let _ = writeln!(out, "  demanded: {}\n", measured.definition);
-    for camera in &measured.cameras {
-        let mut lines = Vec::new();
-        lines.extend(camera.approach.as_ref().map(|seen| ("until then", approach(seen, units))));
-        lines.extend(
-            camera
-                .uncertainty
-                .as_ref()
-                .map(|found| ("margin", uncertainty(camera.margin, found).join("\n               "))),
-        );
-        if !lines.is_empty() {
-            let _ = writeln!(out, "{}", camera.name);
-            lines.iter().for_each(|(label, text)| {
-                let _ = writeln!(out, "  {label:<12} {text}");
-            });
-            out.push('\n');
-        }
-    }
-    out
-}
-
-/// Yes, no or undecided, and why.
-pub(super) fn measured_meets(camera: &MeasuredVerdict) -> String {
-    match camera.verdict {
-        Verdict::Meets => "yes".into(),
-        Verdict::Undecided => undecided(&camera.undecided_by, camera.uncertainty.as_ref()),
-        Verdict::Fails => format!("no: {}", in_words(&camera.fails_by)),
-    }
-}
-
-/// A quantity with its unit, as a head of a column.
-pub(super) const fn measure(quantity: Measure) -> &'static str {
-    match quantity {
-        Measure::Pixels => "pixels",
-        Measure::TemperatureErrorK => "error, K",
-        Measure::DepthErrorM => "error, m",
-        Measure::RelativeDepthError => "error / depth",
-    }
-}
-
-/// What a kind of clause demands, in words.
-pub(super) fn in_words_of_kind(kind: &str) -> &str {
-    match kind {
-        "tell-apart" => "tells materials apart",
-        "false-alarm" => "no false alarm",
-        "resolution" => "pixels on the target",
-        "temperature-error" => "knows a temperature",
-        "depth-error" => "knows a distance",
-        other => other,
-    }
-}
-
-/// Where a quantity is least known, in one line.
-pub(super) fn measured_scene(scene: &MeasuredScene, units: Units) -> String {
-    let mut parts = Vec::new();
-    if let Some(target) = &scene.target {
-        let warm = scene.temperature_k.map(|kelvin| format!(" at {}", units.temperature(kelvin)));
-        parts.push(target.clone() + &warm.unwrap_or_default());
-    }
-    if !scene.lighting.is_empty() {
-        let kelvin: Vec<String> =
-            scene.surroundings_k.iter().map(|kelvin| units.temperature(*kelvin)).collect();
-        parts.push(format!("{}, surroundings {}", numbers("V ", &scene.lighting, 3), kelvin.join(" ")));
-    }
-    parts.extend(scene.distance_m.map(|z| format!("{} away", metres(z, units))));
-    parts.join(", ")
 }
 
 /// All warnings; what is said of several cameras is said once, with their names.
@@ -242,50 +146,6 @@ pub(crate) fn meets(camera: &CameraVerdict) -> String {
         (Verdict::Fails, _) => format!("no: {}", fails_by(camera)),
     };
     said + &without_placeholders(camera)
-}
-
-/// What is undecided, and between which ends the margin lies.
-pub(super) fn undecided(by: &[Shortfall], uncertainty: Option<&MarginUncertainty>) -> String {
-    let words = by.iter().map(|reason| match (reason, uncertainty) {
-        (Shortfall::Distance | Shortfall::Pixels | Shortfall::TemperatureError, Some(found)) => {
-            format!(
-                "the margin lies between {} and {}",
-                significant(found.low, 3),
-                significant(found.high, 3)
-            )
-        }
-        (other, _) => format!("perhaps {}", in_words(&[*other])),
-    });
-    format!("undecided: {}", words.collect::<Vec<_>>().join("; "))
-}
-
-/// How well a margin is known: its interval by both ways, then the budget, a line each.
-pub(super) fn uncertainty(margin: f64, found: &MarginUncertainty) -> Vec<String> {
-    let k = significant(found.coverage_factor, 2);
-    let mut lines = vec![format!(
-        "{} +- {} by first order (k = {k})",
-        significant(margin, 3),
-        significant(found.coverage_factor * found.first_order, 2)
-    )];
-    if let Some(drawn) = &found.draws {
-        let [low, high] = drawn.interval.map(|end| significant(end, 3));
-        lines.push(format!("{low} to {high} by {} draws", drawn.count));
-    }
-    lines.extend(found.budget.iter().map(|line| {
-        let told = |value: f64| match line.unit {
-            "" => significant(value, 3),
-            unit => quantity(value, unit),
-        };
-        let value = line.value.map_or_else(String::new, |value| format!("{} ", told(value)));
-        format!(
-            "{} {value}u {}: {} of the margin, {} of its variance",
-            line.figure,
-            told(line.uncertainty),
-            significant(line.contribution, 2),
-            share(line.share)
-        )
-    }));
-    lines
 }
 
 /// What a camera fails by, in words.
@@ -388,30 +248,6 @@ pub(crate) fn would_do(fixes: &Fixes, units: Units) -> String {
         return format!("nothing alone: {}", reasons.next_back().unwrap_or("no value suffices"));
     }
     format!("alone: {}", texts.join("; or "))
-}
-
-/// Codes, one after the other.
-pub(crate) fn codes(shortfalls: &[Shortfall], between: &str) -> String {
-    shortfalls.iter().map(|by| by.code()).collect::<Vec<_>>().join(between)
-}
-
-/// What is wrong with an image.
-pub(super) fn in_words(spoiled: &[Shortfall]) -> String {
-    let words = spoiled.iter().map(|reason| match reason {
-        Shortfall::MotionBlur => "motion blur of a pixel or more",
-        Shortfall::MotionUnknown => "motion that is not known without a distance",
-        Shortfall::FullWell => "the brightest scene fills the well",
-        Shortfall::FrameRate => "longer than a frame",
-        Shortfall::Impractical => "not a practical camera",
-        Shortfall::Diffraction => "diffraction blurs over more than a pixel",
-        Shortfall::LowestNoise => "below what read noise and converter leave",
-        Shortfall::Pixels => "too few pixels",
-        Shortfall::TemperatureError => "the temperature is not known well enough",
-        Shortfall::DepthError => "the distance is not known well enough",
-        Shortfall::DecisionTime => "its frames are read after the decision must stand",
-        other => other.code(),
-    });
-    words.collect::<Vec<_>>().join(", ")
 }
 
 fn one(solved: Quantity, solution: &Solution, units: Units) -> String {

@@ -10,13 +10,15 @@
 mod camera;
 mod citation;
 mod clause;
+mod demand;
 mod stand_in;
 mod stop;
 mod test;
 
 pub use camera::RuleCamera;
 pub use citation::{Citation, Figure, Ground, Mark};
-pub use clause::{Clause, Demand, DepthDemand, DepthObject};
+pub use clause::Clause;
+pub use demand::{Demand, DepthDemand, DepthObject};
 pub use stand_in::StandInSpec;
 pub use stop::StopSpec;
 pub use test::{RuleTest, Verdict};

@@ -12,6 +12,7 @@ mod clauses;
 mod depth;
 mod envelope;
 mod expected;
+mod guard;
 mod ideal;
 mod resolution;
 mod results;

@@ -11,16 +11,14 @@
 //! * `temperature-error`: the temperature of the target within `temperature_error`, at `coverage_factor` deviations;
 //! * `depth-error`: the distance of an `object` of `[clause.scene]` within `depth_error`, seen by `[clause.stereo]`.
 
+use super::demand::{Demand, depth_error, resolution, temperature_error};
 use super::stop::StopSpec;
 use crate::scenario::entries::{Document, Entries, Part};
 use crate::scenario::paths::{Paths, material};
-use crate::scenario::range::{DepthRequirement, SceneSpec, Stereo, read as depth, write as depth_written};
 use crate::scenario::read::{of_root, requirement};
 use crate::scenario::section::{Entry, Section, without_repetition};
 use crate::scenario::{Envelope, MaterialRef, Reliability, Requirement, Scenario, Source, write};
-use hadar::allowed::ABOVE_ZERO;
 use hadar::error::{Error, Result};
-use hadar::units::Dimension;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Tables of a scenario that a clause may have.
@@ -36,8 +34,6 @@ const TABLES: &[&str] = &[
     "envelope",
     "stop",
 ];
-/// Deviations within which a temperature must lie, where nothing is said: 95 %.
-const COVERAGE_FACTOR: f64 = 2.0;
 
 /// One demand, with the scenes in which it must hold.
 #[derive(Debug, Clone)]
@@ -54,81 +50,6 @@ pub struct Clause {
     pub stop: Option<StopSpec>,
     /// Where it stands, e.g. `clause[0]`; empty for the whole rule.
     pub key: String,
-}
-
-/// What a clause demands.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Demand {
-    /// The target is told from its alternatives.
-    TellApart,
-    /// Things are not taken for the rule's target.
-    FalseAlarm,
-    /// So many pixels across the target.
-    Resolution {
-        /// Pixels, not whole ones alone.
-        pixels: f64,
-        /// The critical dimension of the target, m.
-        size_m: f64,
-    },
-    /// The temperature of the target is known.
-    TemperatureError {
-        /// How well, K.
-        error_k: f64,
-        /// Standard deviations that must lie within.
-        coverage_factor: f64,
-    },
-    /// The distance of something is known.
-    DepthError(Box<DepthDemand>),
-}
-
-/// A distance that must be known.
-#[derive(Debug, Clone, PartialEq)]
-pub struct DepthDemand {
-    /// The street.
-    pub scene: SceneSpec,
-    /// The pair of cameras.
-    pub stereo: Stereo,
-    /// How well, and in what share of the windows.
-    pub requirement: DepthRequirement,
-    /// Of what.
-    pub object: DepthObject,
-}
-
-/// An object of the street whose distance is that of the clause.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum DepthObject {
-    /// The person.
-    Person,
-    /// The car.
-    Car,
-}
-
-impl DepthObject {
-    /// Both.
-    pub const ALL: [Self; 2] = [Self::Person, Self::Car];
-
-    /// The name in a rule, which is that of the rendered surface.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Person => "person",
-            Self::Car => "car",
-        }
-    }
-}
-
-impl Demand {
-    /// The name of its kind, e.g. `tell-apart`.
-    #[must_use]
-    pub const fn kind(&self) -> &'static str {
-        match self {
-            Self::TellApart => "tell-apart",
-            Self::FalseAlarm => "false-alarm",
-            Self::Resolution { .. } => "resolution",
-            Self::TemperatureError { .. } => "temperature-error",
-            Self::DepthError(_) => "depth-error",
-        }
-    }
 }
 
 #[derive(Clone, Copy, PartialEq)]
@@ -286,46 +207,6 @@ fn false_alarm(section: &Section<'_>, plain: &Section<'_>, rule: &Scenario) -> R
     Ok(scenario)
 }
 
-fn resolution(plain: &Section<'_>) -> Result<Demand> {
-    let requirement = plain.require("requirement", "{ pixels = 6, size = \"0.5 m\" }")?;
-    let requirement = requirement.section(&["pixels", "size"])?;
-    Ok(Demand::Resolution {
-        pixels: requirement.require("pixels", "6")?.number("6", ABOVE_ZERO)?,
-        size_m: requirement.require("size", "\"0.5 m\"")?.quantity(Dimension::Length, ABOVE_ZERO)?,
-    })
-}
-
-fn temperature_error(plain: &Section<'_>) -> Result<Demand> {
-    let requirement = plain.require("requirement", "{ temperature_error = \"0.5 K\" }")?;
-    let requirement = requirement.section(&["temperature_error", "coverage_factor"])?;
-    let error = requirement.require("temperature_error", "\"0.5 K\"")?;
-    Ok(Demand::TemperatureError {
-        error_k: error.quantity(Dimension::TemperatureDifference, ABOVE_ZERO)?,
-        coverage_factor: requirement.number("coverage_factor", "2", ABOVE_ZERO)?.unwrap_or(COVERAGE_FACTOR),
-    })
-}
-
-fn depth_error(plain: &Section<'_>, stops: bool) -> Result<Demand> {
-    let objects = DepthObject::ALL.map(|object| (object.name(), object));
-    let entry = plain.require("requirement", "{ depth_error = \"1 m\" }")?;
-    let object = entry.table()?.choice("object", &objects)?.unwrap_or(DepthObject::Person);
-    let requirement = depth::requirement_beside(&entry, &["object"])?;
-    let scene = match plain.get("scene") {
-        Some(entry) => depth::scene(&entry)?,
-        None => SceneSpec::default(),
-    };
-    let own = match object {
-        DepthObject::Person => ("scene.person_distance", scene.person_distance_m),
-        DepthObject::Car => ("scene.car_distance", scene.car_distance_m),
-    };
-    if stops && own.1.is_some() {
-        let found = "a distance beside [stop], from which it follows";
-        return Err(plain.fail(own.0, Error::malformed(found, "leave it out")));
-    }
-    let stereo = depth::stereo_of_scene(&plain.require("stereo", "{ baseline = \"0.2 m\" }")?)?;
-    Ok(Demand::DepthError(Box::new(DepthDemand { scene, stereo, requirement, object })))
-}
-
 impl Clause {
     /// The envelope, with the scenario's own values where it is silent.
     #[must_use]
@@ -388,33 +269,13 @@ impl Clause {
                 TABLES.contains(name) && *name != "requirement" && (needed || !written(name, part))
             })
             .collect();
-        match &self.demand {
-            Demand::TellApart | Demand::FalseAlarm => {
+        match self.demand.written(paths) {
+            Some(parts) => document.extend(parts),
+            None => {
                 let part = Part::Table(write::requirement(&scenario.requirement));
                 if !written("requirement", &part) {
                     document.push(("requirement", part));
                 }
-            }
-            Demand::Resolution { pixels, size_m } => {
-                let entries = Entries::default().put("pixels", *pixels).put_quantity(
-                    "size",
-                    Dimension::Length,
-                    Some(*size_m),
-                );
-                document.push(("requirement", Part::Table(entries)));
-            }
-            Demand::TemperatureError { error_k, coverage_factor } => {
-                let entries = Entries::default()
-                    .put_quantity("temperature_error", Dimension::TemperatureDifference, Some(*error_k))
-                    .put("coverage_factor", *coverage_factor);
-                document.push(("requirement", Part::Table(entries)));
-            }
-            Demand::DepthError(demand) => {
-                let requirement =
-                    depth_written::requirement(demand.requirement).put("object", demand.object.name());
-                document.push(("requirement", Part::Table(requirement)));
-                document.push(("scene", Part::Table(depth_written::scene(&demand.scene, paths))));
-                document.push(("stereo", Part::Table(depth_written::stereo(&demand.stereo))));
             }
         }
         if let Some(stop) = self.stop {

@@ -9,19 +9,16 @@ use super::apart::{Candidate, TellApart};
 use super::approach::Approach;
 use super::envelope::{Estimate, Sighted, brightest};
 use super::results::{CameraVerdict, Certified, Fixes, Grade, LimitingScene, Proviso, WithoutPlaceholders};
-use super::uncertainty::{self, Errors, Judged, Uncertain};
+use super::uncertainty::{self, Judged};
 use crate::scenario::rule::Verdict;
-use crate::study::size::sensitivity::{linear, ripple::Ripple};
 use hadar::demand::{self, Reason, Thing};
-use hadar::error::{Error, Place, Result};
+use hadar::error::{Error, Result};
 use hadar::fisher::Nuisance;
 use hadar::identifiability::detection;
 use hadar::instrument::{Camera, Readout};
 use hadar::policy::envelope::{Certificate, Effort, WorstCase, worst_case};
 use hadar::policy::{self, CapCode, Quantity};
 use hadar::scene::State;
-use rand::SeedableRng;
-use rand::rngs::ChaCha8Rng;
 use std::collections::BTreeMap;
 
 /// How far below the distance attained a bound may be, as a share of it.
@@ -31,14 +28,6 @@ const BOXES: u64 = 200_000;
 
 /// Share of the worst distance up to which the scenes of other pairs count where figures are uncertain.
 const NEAR: f64 = 1.5;
-const SEED: u64 = 1;
-
-/// A scene in which a margin is taken anew.
-struct Scene {
-    sighted: Sighted,
-    alternative: usize,
-    state: State,
-}
 
 /// A pair's scene with what is known of it.
 pub(super) struct Searched {
@@ -92,25 +81,15 @@ impl TellApart {
         let image = at.camera.as_ref().map(|camera| self.image(candidate, camera));
         let image = image.unwrap_or_default();
         let mut others = vec![image.spoiled.clone()];
-        let mut uncertainty = None;
-        if let Some(uncertain) = uncertain.filter(|_| distance > 0.0) {
-            for camera in uncertain.sides() {
-                others.push(self.image(candidate, &camera?).spoiled);
+        let uncertainty = match uncertain.filter(|_| distance > 0.0) {
+            Some(uncertain) => {
+                for camera in uncertain.sides() {
+                    others.push(self.image(candidate, &camera?).spoiled);
+                }
+                Some(self.guarded(&uncertain, candidate, &worst, near, &at)?)
             }
-            let scenes: Vec<Scene> = self.scenes(candidate, &worst, near);
-            let ripple = self.scenario.sensitivity.map(|spec| {
-                let nodes = sighted.study.bands.nodes_cm1();
-                Ripple::new(nodes, spec.emissivity_error, spec.correlation_cm1)
-            });
-            let emissivities = self.scenario.sensitivity.zip(ripple.as_ref()).map(|(spec, ripple)| {
-                let per_unit =
-                    linear::sigma(&at, surface, &worst.pair.nearest, &sighted.counting, distance, ripple);
-                (spec.emissivity_error, per_unit * spec.emissivity_error / self.required)
-            });
-            let of =
-                |camera: &Camera, errors: Errors| self.least_margin(&scenes, ripple.as_ref(), camera, errors);
-            uncertainty = Some(uncertain.of_margin(distance / self.required, emissivities, true, &of)?);
-        }
+            None => None,
+        };
         let Judged { verdict, fails_by, undecided_by } =
             uncertainty::judged(distance / self.required, uncertainty.as_ref(), Shortfall::Distance, &others);
         let passes = verdict == Verdict::Meets;
@@ -211,61 +190,6 @@ impl TellApart {
             grade,
             warnings,
         })
-    }
-
-    /// What is uncertain of a camera, if anything is.
-    fn uncertain<'a>(
-        &self,
-        candidate: &Candidate,
-        place: &'a (dyn Fn(&str) -> Place + Sync),
-    ) -> Result<Option<Uncertain<'a>>> {
-        let emissivities = self.scenario.sensitivity.is_some();
-        Uncertain::of(&candidate.named, (self.rule.coverage_factor, emissivities), place)
-    }
-
-    /// The scenes in which a margin is taken anew: the worst one, and those of other pairs that come near it.
-    fn scenes(&self, candidate: &Candidate, worst: &Searched, near: Vec<Estimate>) -> Vec<Scene> {
-        let own = worst.between.as_deref().unwrap_or(&candidate.sighted[worst.pair.sighted]);
-        let mut scenes = vec![Scene {
-            sighted: own.clone(),
-            alternative: worst.pair.alternative,
-            state: worst.pair.state.clone(),
-        }];
-        let others = near
-            .into_iter()
-            .filter(|pair| (pair.sighted, pair.alternative) != (worst.pair.sighted, worst.pair.alternative));
-        scenes.extend(others.map(|pair| Scene {
-            sighted: candidate.sighted[pair.sighted].clone(),
-            alternative: pair.alternative,
-            state: pair.state,
-        }));
-        scenes
-    }
-
-    /// The least margin of a camera in some scenes.
-    fn least_margin(
-        &self,
-        scenes: &[Scene],
-        ripple: Option<&Ripple>,
-        camera: &Camera,
-        errors: Errors,
-    ) -> Result<f64> {
-        let mut least = f64::INFINITY;
-        for Scene { sighted, alternative, state } in scenes {
-            let sighted = sighted.before(camera, &self.envelope)?;
-            let pair = [&sighted.study.target, &sighted.study.alternatives[*alternative]];
-            let pair: [Vec<f64>; 2] = match (errors, ripple) {
-                (Errors::Stream(stream), Some(ripple)) => {
-                    let mut random = ChaCha8Rng::seed_from_u64(SEED);
-                    random.set_stream(stream);
-                    pair.map(|surface| ripple.applied(&surface.emissivity, &mut random))
-                }
-                _ => pair.map(|surface| surface.emissivity.clone()),
-            };
-            let found = sighted.solver().with_counting(&pair[0], &pair[1], state, &sighted.counting)?;
-            least = least.min(found.distance);
-        }
-        Ok(least / self.required)
     }
 
     fn is_unknown(&self, nuisance: Nuisance) -> bool {
