@@ -11,7 +11,7 @@
 //! decimals).
 //!
 //! * `scene`: what is seen, as numbers; `json`: how it is written; `answer`: digits and tolerances;
-//! * one module a topic: `planck`, `signal`, `counts`, `local`, `nearest`, `probability`, `requirement`, and `identify`, whole
+//! * one module a topic: `planck`, `signal`, `counts`, `local`, `nearest`, `probability`, `requirement`, `stop`, and `identify`, whole
 //!   scenarios as files.
 
 mod answer;
@@ -26,6 +26,7 @@ mod requirement;
 mod scene;
 mod signal;
 mod solve;
+mod stop;
 mod topic;
 
 pub use answer::{Answer, Vector};
@@ -52,6 +53,7 @@ pub fn topics() -> Result<Vec<Topic>> {
         nearest::topic()?,
         probability::topic(),
         requirement::topic()?,
+        stop::topic(),
         identify::topic()?,
     ])
 }

@@ -10,8 +10,8 @@ use judge::{Found, Verdict, share};
 use read::vectors;
 use serde_json::Value;
 
-const TOPICS: [&str; 8] =
-    ["planck", "signal", "counts", "local", "nearest", "probability", "requirement", "identify"];
+const TOPICS: [&str; 9] =
+    ["planck", "signal", "counts", "local", "nearest", "probability", "requirement", "stop", "identify"];
 
 /// The fast path is within every tolerance, and by far: in a fifth of it, as the README says.
 #[test]

@@ -10,6 +10,7 @@ use hadar::instrument::{View, gamma_per_band, view};
 use hadar::material::Library;
 use hadar::planck;
 use hadar::policy::solve::{CameraTask, Quantity, Trial};
+use hadar::policy::stop::{Start, Stop, StopFigures};
 use hadar::policy::{hardware_required_m2_s, photons_required};
 use hadar::scene::{Jacobian, Parameter};
 use hadar::spectrum::Bands;
@@ -31,6 +32,7 @@ pub(super) fn answers(topic: &str, vector: &Value) -> Answers {
         "nearest" => nearest(inputs),
         "probability" => probability(inputs),
         "requirement" => requirement(inputs, vector),
+        "stop" => stop(inputs),
         "identify" => identify(inputs, vector),
         _ => panic!("a topic that nothing answers: {topic}"),
     }
@@ -193,6 +195,24 @@ fn requirement(inputs: &Value, vector: &Value) -> Answers {
         Ok(found.distance)
     });
     vec![(name.clone(), solution.unwrap().value.into())]
+}
+
+fn stop(inputs: &Value) -> Answers {
+    let of = |key: &str| number(&inputs[key]);
+    let stop = Stop::new(StopFigures {
+        speeds_m_s: [of("speed_m_s"); 2],
+        target_m_s: of("target_speed_m_s"),
+        latency_s: of("latency_s"),
+        deceleration_m_s2: of("deceleration_m_s2"),
+        margin_m: of("margin_m"),
+        start: Some(Start::TimeToContact(of("time_to_contact_at_start_s"))),
+    });
+    let [decision, _] = stop.unwrap().decisions();
+    named([
+        ("closing_speed_m_s", decision.closing_m_s.into()),
+        ("decision_distance_m", decision.distance_m.into()),
+        ("decision_time_s", decision.time_s.into()),
+    ])
 }
 
 fn identify(inputs: &Value, vector: &Value) -> Answers {
