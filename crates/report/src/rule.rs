@@ -251,10 +251,11 @@ fn margins(answer: &RuleAnswer) -> Plot {
         ]);
     }
     // The margin does not show what else a camera fails by.
-    let named = |camera: &&CameraAnswer| match (camera.passes, verdict(camera)) {
-        (true, _) => camera.name.clone(),
-        (false, Some(own)) => format!("{}\n{}", camera.name, no(&own.fails_by)),
-        (false, None) => {
+    let named = |camera: &&CameraAnswer| match (camera.verdict, verdict(camera)) {
+        (Verdict::Meets, _) => camera.name.clone(),
+        (Verdict::Undecided, Some(_)) => format!("{}\nundecided", camera.name),
+        (Verdict::Fails, Some(own)) => format!("{}\n{}", camera.name, no(&own.fails_by)),
+        (_, None) => {
             let clauses = camera.fails.iter().chain(&camera.undecided);
             format!("{}\n{}", camera.name, clauses.cloned().collect::<Vec<_>>().join(", "))
         }
@@ -290,6 +291,10 @@ fn margins(answer: &RuleAnswer) -> Plot {
         .series(values)
         .threshold(1.0, "demanded")
         .failing(ranked.iter().map(|camera| !camera.passes).collect())
-        .below("does not meet the rule");
+        .below(if answer.sentence.undecided.is_empty() {
+            "does not meet the rule"
+        } else {
+            "does not meet the rule, or is undecided"
+        });
     Plot { name: "margins".into(), figure: Figure::from(figure), table }
 }
