@@ -13,7 +13,7 @@ mod text;
 mod words;
 
 pub use check::check;
-pub use record::{agreement, record};
+pub use record::{agreement, parsed, record};
 pub use sources::{sources, tests};
 pub use stand_in::{stand_in, stand_in_bundle};
 pub use text::text;

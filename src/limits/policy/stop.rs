@@ -12,7 +12,8 @@
 //! * z grows with v, since z′ ≥ t_l + (v − max(u, 0))/a > 0;
 //! * (z₀ − z)/w has its least value at an end: from a distance z₀ it falls; from a time to contact it is the sum of a line,
 //!   −v/2a, and of a hyperbola in w, so that it is concave or falls;
-//! * v/z, by which the picture moves, grows until v² = 2a(m − u t_l) + max(u, 0)² and falls from there.
+//! * max(v, w)/z, by which the picture moves, grows until v² = 2a(m − u t_l) + u² (u ≥ 0), or (v + |u|)² = 2am − u² (u < 0), and falls
+//!   from there.
 //!
 //! Assumptions: a straight way, constant speeds, full deceleration as soon as the latency is over; the latency holds all that
 //! is between the last photon and the brakes. Units: m, s, m s⁻¹, m s⁻².
@@ -148,14 +149,16 @@ impl Stop {
         Some(if slow_s < fast_s { slow } else { fast })
     }
 
-    /// The one from which the picture moves fastest, v/z.
+    /// The one from which the picture moves fastest, by the vehicle's speed or by the closing speed, if that is larger.
     #[must_use]
     pub fn swiftest(&self) -> Decision {
         let [slowest, fastest] = self.speeds_m_s;
-        let away = self.target_m_s.max(0.0);
-        let squared =
-            2.0 * self.deceleration_m_s2 * (self.margin_m - self.target_m_s * self.latency_s) + away * away;
-        self.at(squared.max(0.0).sqrt().clamp(slowest, fastest))
+        let (a, m, u) = (self.deceleration_m_s2, self.margin_m, self.target_m_s);
+        let turn = match u >= 0.0 {
+            true => (2.0 * a * (m - u * self.latency_s) + u * u).max(0.0).sqrt(),
+            false => (2.0 * a * m - u * u).max(0.0).sqrt() + u,
+        };
+        self.at(turn.clamp(slowest, fastest))
     }
 
     /// At a speed between the ends.
@@ -245,14 +248,15 @@ mod tests {
                     let Ok(stop) = Stop::new(figures) else { continue };
                     let [slow, fast] = stop.decisions();
                     let swiftest = stop.swiftest();
-                    let quickest = swiftest.speed_m_s / swiftest.distance_m;
+                    let pace = |one: &Decision| one.speed_m_s.max(one.closing_m_s) / one.distance_m;
+                    let quickest = pace(&swiftest);
                     for step in 0..=1000 {
                         let at = stop.at(10.0 / 3.6 + f64::from(step) * (55.0 / 3.6) / 1000.0);
                         assert!(at.distance_m >= slow.distance_m * (1.0 - 1e-14));
                         assert!(at.distance_m <= fast.distance_m * (1.0 + 1e-14));
                         let least = stop.hastiest().unwrap().time_s.unwrap();
                         assert!(at.time_s.unwrap() >= least * (1.0 - 1e-12), "{figures:?}");
-                        assert!(at.speed_m_s / at.distance_m <= quickest * (1.0 + 1e-12), "{figures:?}");
+                        assert!(pace(&at) <= quickest * (1.0 + 1e-12), "{figures:?}");
                     }
                 }
             }

@@ -5,7 +5,7 @@ use clap::Args;
 use hadar::demand::Work;
 use hadar::error::{Error, Result};
 use hadar::material::Library;
-use hadar_report::manifest::{Input, Provenance, sha256_of_file};
+use hadar_report::manifest::{Input, sha256_of_file};
 use hadar_report::rule;
 use hadar_study::scenario::rule::{Citation, Figure};
 use hadar_study::scenario::{Date, Rule, day};
@@ -119,13 +119,13 @@ fn verify(certificate: &Path, global: &Global) -> Result<ExitCode> {
     let read =
         File::open(certificate).and_then(|file| file.take(LONGEST_CERTIFICATE).read_to_end(&mut bytes));
     read.map_err(|error| Error::file(action, certificate, error.kind()))?;
-    let before: Value =
-        serde_json::from_slice(&bytes).map_err(|error| told(format!("this is not JSON: {error}")))?;
+    let text = String::from_utf8(bytes).map_err(|_| told("this is not UTF-8 text".into()))?;
+    let before = rule::parsed(&text).map_err(|error| error.in_file(certificate))?;
     let of = |value: &Value, key: &str| value.get(key).cloned().unwrap_or_default();
     let Some(path) = of(&of(&before, "rule"), "path").as_str().map(PathBuf::from) else {
         return Err(told("this is no certificate of a rule".into()));
     };
-    let seed = of(&before, "seed").as_u64().unwrap_or(global.seed);
+    let on = of(&before, "on").as_str().and_then(day);
     // As the one who made it named it, or beside the certificate.
     let beside = certificate.parent().map(|folder| folder.join(&path)).filter(|beside| beside.exists());
     let path = if path.exists() { path } else { beside.unwrap_or(path) };
@@ -150,10 +150,9 @@ fn verify(certificate: &Path, global: &Global) -> Result<ExitCode> {
     rule_read.skip_uncovered(global.skip_uncovered);
     let study = RuleStudy::new(&rule_read, &global.library()?)?;
     let bar = global.progress("pairs");
-    let answer =
-        study.answer(&RuleAsked { seed, ..RuleAsked::default() }, &|done, all| bar.set(done, all))?;
+    let answer = study.answer(&RuleAsked { on, ..RuleAsked::default() }, &|done, all| bar.set(done, all))?;
     bar.finish();
-    let now = rule::record(&study, &answer, &Provenance { seed, ..global.provenance()? })?;
+    let now = rule::record(&study, &answer, &global.provenance()?)?;
     let off = rule::agreement(&before, &now).map_err(|error| error.in_file(certificate))?;
     #[derive(serde::Serialize)]
     struct Output {

@@ -3,6 +3,7 @@
 mod accuracy;
 mod arrows;
 mod cameras;
+mod certificate;
 mod cli;
 mod cli_mistakes;
 mod companion;

@@ -419,3 +419,72 @@ fn the_rule_that_is_written_is_the_rule_that_was_read() {
         assert_eq!(filled, twice);
     }
 }
+
+/// What a clause says of its own target and surroundings is not what the rule's envelope says of the rule's; people of a false alarm
+/// are not as warm as the rule's robots.
+#[test]
+fn a_clause_is_about_what_it_says() {
+    let own = NIGHT.to_owned()
+        + "[[clause]]\nname = \"hot\"\n[clause.target]\nmaterial = \"fabric\"\ntemperature = \"70 degC\"\n\
+           [[clause.environment]]\ntemperature = \"2 degC\"\nlighting = 0.25\n";
+    let answer = answered(&own);
+    let apart = answer.clauses[0].apart().unwrap();
+    assert_eq!(apart.envelope.temperature_k, [343.15; 2]);
+    assert_eq!(
+        (apart.envelope.materials.as_slice(), &apart.envelope.lighting),
+        (["fabric".to_owned()].as_slice(), &vec![[0.25; 2]])
+    );
+    let plate = |more: &str| {
+        let text =
+            NIGHT.replace("materials = [\"aluminium\"]", &format!("materials = [\"aluminium\"]\n{more}"));
+        text + "[[clause]]\nname = \"plate\"\nkind = \"false-alarm\"\nthings = [\"steel-rough\"]\n\
+                [clause.target]\nmaterial = \"steel-rough\"\ntemperature = \"30 degC\"\n\
+                [clause.requirement]\ndetection_probability = 0.9\nfalse_alarm_probability = 0.01\n"
+    };
+    let margin = |text: &str| answered(text).clauses[0].apart().unwrap().cameras[0].clone();
+    let [plain, robots] = ["", "temperature = [\"60 degC\", \"90 degC\"]"].map(|more| margin(&plate(more)));
+    assert_eq!(plain.limiting.temperature_k, 303.15);
+    assert!(close(plain.margin, robots.margin, 1e-9), "{} {}", plain.margin, robots.margin);
+}
+
+/// A target that comes is seen to move as fast as it comes; what spoils a picture spoils it for every clause.
+#[test]
+fn what_spoils_a_picture_spoils_every_clause() {
+    let camera = "[[camera]]\npreset = \"flir-a325sc\"\nexposure = \"50 ms\"\n";
+    let text = |more: &str| {
+        NIGHT
+            .replace("cameras = [\"flir-a325sc\"]\n", "")
+            .replace("60 km/h\"\n", &format!("5 km/h\"\n{more}"))
+            + camera
+    };
+    let blur = |more: &str| only(&text(more)).motion_blur_pixels.unwrap();
+    assert!(blur("closing_speed = \"50 km/h\"\n") > 0.9 * blur(""));
+    let shape = "[[clause]]\nname = \"shape\"\nkind = \"resolution\"\n[clause.requirement]\npixels = 1\nsize = \"5 m\"\n";
+    let slow = measured(&(text("") + shape));
+    assert!(slow.fails_by.iter().any(|by| by.code() == "motion-blur"), "{slow:?}");
+    let warm = "[[clause]]\nname = \"t\"\nkind = \"temperature-error\"\n[clause.requirement]\ntemperature_error = \"90 K\"\n";
+    let full = NIGHT.replace("cameras = [\"flir-a325sc\"]\n", "").split("[stop]").next().unwrap().to_owned()
+        + warm
+        + "[[camera]]\npreset = \"flir-a325sc\"\n";
+    assert_eq!(measured(&full).verdict, Verdict::Meets);
+    let full = measured(&(full + "full_well = 10\n"));
+    assert!(full.fails_by.iter().any(|by| by.code() == "full-well"), "{full:?}");
+}
+
+/// Two figures, each of which fills the well only with the other: met by neither side of one, undecided by both.
+#[test]
+fn what_spoils_a_picture_by_several_figures_at_once_is_undecided() {
+    let scene = uncertain(
+        "exposure = { value = \"10 ms\", u = \"0.3 ms\" }\nnetd = \"50 mK\"\nf_number = 1.0\nfull_well = 1e30",
+        0.001,
+        "",
+    );
+    let reading = only(&scene).brightest_reading;
+    let well = |u: &str| {
+        scene.replace("full_well = 1e30", &format!("full_well = {{ value = {:e}, u = {u} }}", reading / 0.93))
+    };
+    assert_eq!(only(&well(&format!("{:e}", 1e-6 * reading))).verdict, Verdict::Meets);
+    let both = only(&well(&format!("{:e}", 0.03 * reading)));
+    assert_eq!(both.verdict, Verdict::Undecided);
+    assert!(both.undecided_by.iter().any(|by| by.code() == "full-well"));
+}

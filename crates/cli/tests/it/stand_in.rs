@@ -121,3 +121,35 @@ fn mistakes_in_stand_ins() {
         );
     }
 }
+
+/// Where the temperature is known, a stand-in that is no person's is told; people are lit as the envelope says, and what is known of them
+/// beforehand is refused; from between two distances a camera may count more than from either.
+#[test]
+fn people_are_as_the_rule_says_they_are() {
+    let folder = Folder::with(RULE);
+    let free = number(&rows(&folder, "a.toml")[0], "temperature_tolerance_k");
+    for known in ["[]", "[\"lighting\"]"] {
+        folder.file("known.toml", &format!("{RULE}[unknown]\nnuisances = {known}\n"));
+        let tolerance = number(&rows(&folder, "known.toml")[0], "temperature_tolerance_k");
+        assert!(tolerance <= 3.0 + 1e-9, "{known}: {tolerance}");
+        folder
+            .file("hot.toml", &format!("{RULE}temperature = \"37 degC\"\n[unknown]\nnuisances = {known}\n"));
+        assert!(rows(&folder, "hot.toml")[0]["temperature_tolerance_k"].is_null(), "{known}");
+    }
+    for row in rows(&folder, "a.toml") {
+        let lighting = row["farthest"]["person_lighting"][0].as_f64().unwrap();
+        assert!((0.1 - 1e-9..=0.8 + 1e-9).contains(&lighting), "{row}");
+        let kelvin = number(&row["farthest"], "person_temperature_k");
+        assert!((303.15 - 1e-6..=309.15 + 1e-6).contains(&kelvin), "{row}");
+    }
+    folder.file("prior.toml", &format!("{RULE}[unknown]\npriors = {{ lighting = 0.01 }}\n"));
+    let outcome = folder.run(&["rule", "prior.toml", "--stand-in"]);
+    assert!(outcome.code == 1 && outcome.stderr.contains("unknown.priors"), "{}", outcome.stderr);
+    let far = RULE.replace("[\"5 m\", \"5 m\"]", "[\"0.2 m\", \"1 km\"]");
+    let small = far.replace("33 degC\"\n", "33 degC\"\nsize = \"1 cm\"\n")
+        + "[background]\ntemperature = \"10 degC\"\n";
+    folder.file("small.toml", &small.replace("\"aluminium\"]\nemissivity", "\"aluminium\"]\nemissivity"));
+    let found = rows(&folder, "small.toml");
+    assert!(found.iter().all(|row| row["temperature_tolerance_proved_k"].is_null()), "{found:?}");
+    assert!(free > 3.0);
+}

@@ -7,21 +7,22 @@ use crate::text::significant;
 use hadar_study::scenario::Units;
 use hadar_study::scenario::rule::Verdict;
 use hadar_study::study::{CameraVerdict, Found, Measure, MeasuredVerdict, RuleAnswer, Shortfall};
+use hadar_study::warning::Code;
 use std::fmt::Write as _;
 
 /// A line for every camera; of a rule with clauses, a line for each of them below it.
 #[must_use]
 pub fn check(answer: &RuleAnswer) -> String {
+    let idle = answer.warnings.iter().filter(|warning| warning.code() == Code::NotInForce);
+    let idle: String = idle.map(|warning| format!("{warning}\n")).collect();
     if let Some(only) = answer.only() {
         let required = only.requirement.distance;
-        return only
-            .cameras
-            .iter()
-            .map(|camera| format!("{}: {}\n", camera.name, line(camera, required)))
-            .collect();
+        let lines =
+            only.cameras.iter().map(|camera| format!("{}: {}\n", camera.name, line(camera, required)));
+        return idle + &lines.collect::<String>();
     }
     let units = answer.rule.scenario.units();
-    let mut out = String::new();
+    let mut out = idle;
     for (index, camera) in answer.cameras.iter().enumerate() {
         let met = match camera.verdict {
             Verdict::Meets => "met",

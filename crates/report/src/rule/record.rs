@@ -15,6 +15,7 @@ use serde_json::{Value, json};
 
 /// Its name in a report.
 pub(super) const NAME: &str = "certificate.json";
+const NAMED: &str = "name the certificate.json of a report by hadar rule";
 /// Share by which numbers of two runs may differ: worst cases are searched to a hundredth.
 const SAME: f64 = 0.01;
 
@@ -42,8 +43,7 @@ pub fn record(study: &RuleStudy, answer: &RuleAnswer, provenance: &Provenance) -
     Ok(json!({
         "hadar": VERSION,
         "schema": SCHEMA,
-        "command": provenance.command,
-        "seed": provenance.seed,
+        "on": answer.on.map(|day| day.to_string()),
         "rule": {
             "file": file,
             "path": path,
@@ -180,24 +180,41 @@ pub fn agreement(certificate: &Value, now: &Value) -> Result<f64> {
             .unwrap_or_default()
     };
     let (before, read) = (inputs(certificate), inputs(now));
+    let another = |found: String| {
+        Err(Error::malformed(found, "take what it was made with, or make the certificate again"))
+    };
     if let Some(input) = before.iter().find(|input| !read.contains(input)) {
-        let found = match read.iter().find(|other| other.path == input.path) {
+        return another(match read.iter().find(|other| other.path == input.path) {
             Some(_) => format!("{} is another one than the certificate's", input.path),
             None => format!("{}, which the certificate rests on, is not read now", input.path),
-        };
-        return Err(Error::malformed(found, "take what it was made with, by the command that it names"));
+        });
     }
     if let Some(input) = read.iter().find(|input| !before.contains(input)) {
-        let found = format!("{} is read now, of which the certificate says nothing", input.path);
-        return Err(Error::malformed(found, "take what it was made with, by the command that it names"));
+        return another(format!("{} is read now, of which the certificate says nothing", input.path));
     }
     let mut largest = 0.0;
-    let skipped = ["hadar", "command", "path", "inputs"];
-    compare(certificate, now, "", &skipped, &mut largest)?;
+    compare(certificate, now, "", &mut largest)?;
     Ok(largest)
 }
 
-fn compare(a: &Value, b: &Value, place: &str, skipped: &[&str], largest: &mut f64) -> Result<()> {
+/// A certificate in a text that is as this program writes it: nothing twice, nothing in another form.
+///
+/// # Errors
+/// A text that is no JSON, or is in another form.
+pub fn parsed(text: &str) -> Result<Value> {
+    let value: Value = serde_json::from_str(text)
+        .map_err(|error| Error::malformed(format!("this is not JSON: {error}"), NAMED))?;
+    if self::text(&value)? != text {
+        let found = "this was written or changed by another program: its form is not that of a certificate";
+        return Err(Error::malformed(found, NAMED));
+    }
+    Ok(value)
+}
+
+/// Where the rule was is not what it says: it may be found under another name of the same folder.
+const ELSEWHERE: &str = "rule.path";
+
+fn compare(a: &Value, b: &Value, place: &str, largest: &mut f64) -> Result<()> {
     let differs = || {
         let place = if place.is_empty() { "the certificate" } else { place };
         let found = format!("{place}: the certificate says {}, found now is {}", short(a), short(b));
@@ -205,12 +222,21 @@ fn compare(a: &Value, b: &Value, place: &str, skipped: &[&str], largest: &mut f6
     };
     match (a, b) {
         (Value::Object(a), Value::Object(b)) => {
-            let keys = a.keys().chain(b.keys()).filter(|key| !skipped.contains(&key.as_str()));
+            let keys = a.keys().chain(b.keys());
             for key in keys {
                 let place = if place.is_empty() { key.clone() } else { format!("{place}.{key}") };
                 let of =
                     |object: &serde_json::Map<String, Value>| object.get(key).cloned().unwrap_or_default();
-                compare(&of(a), &of(b), &place, skipped, largest)?;
+                if a.contains_key(key) != b.contains_key(key) {
+                    let found = format!("{place}: only one of certificate and what is found now has that");
+                    return Err(Error::malformed(
+                        found,
+                        "the certificate was changed, or made by another program",
+                    ));
+                }
+                if place != ELSEWHERE {
+                    compare(&of(a), &of(b), &place, largest)?;
+                }
             }
             Ok(())
         }
@@ -218,9 +244,9 @@ fn compare(a: &Value, b: &Value, place: &str, skipped: &[&str], largest: &mut f6
             let pairs = x.iter().zip(y).enumerate();
             pairs
                 .into_iter()
-                .try_for_each(|(index, (a, b))| compare(a, b, &format!("{place}[{index}]"), skipped, largest))
+                .try_for_each(|(index, (a, b))| compare(a, b, &format!("{place}[{index}]"), largest))
         }
-        (Value::Number(x), Value::Number(y)) => {
+        (Value::Number(x), Value::Number(y)) if x.is_f64() && y.is_f64() => {
             let (x, y) = (x.as_f64().unwrap_or(f64::NAN), y.as_f64().unwrap_or(f64::NAN));
             let off = if x == y { 0.0 } else { (x - y).abs() / x.abs().max(y.abs()) };
             if off <= SAME {

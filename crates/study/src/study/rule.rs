@@ -190,7 +190,7 @@ impl RuleStudy {
         let idle = asked.on.filter(|day| !about.holds_on(*day));
         let idle = idle.map(|day| Warning::NotInForce { day, from: about.from, until: about.until });
         let warnings = idle.into_iter().chain(self.warnings.iter().cloned()).collect();
-        Ok(RuleAnswer { rule, sentence, cameras, clauses, warnings, stats: ledger.close() })
+        Ok(RuleAnswer { rule, on: asked.on, sentence, cameras, clauses, warnings, stats: ledger.close() })
     }
 }
 

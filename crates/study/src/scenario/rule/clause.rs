@@ -133,11 +133,29 @@ fn one(item: &Entry<'_>, root: &Section<'_>, rule: &Scenario, key: String) -> Re
         Kind::TemperatureError => (temperature_error(&plain)?, of_root(&section, silent)?),
         Kind::DepthError => (depth_error(&plain, stop.is_some())?, of_root(&section, silent)?),
     };
+    if demand != Demand::FalseAlarm {
+        of_its_own(&mut scenario, &plain);
+    }
     scenario.title.clone_from(&rule.title);
     scenario.source = relaid(&rule.source, &key);
     let clause = Clause { name: Some(name), text: said, demand, scenario, stop, key };
     clause.check()?;
     Ok(clause)
+}
+
+/// A clause's own target and surroundings are what they say, not what the rule's envelope says of the rule's.
+fn of_its_own(scenario: &mut Scenario, plain: &Section<'_>) {
+    let (target, objects) = (&scenario.target, &scenario.environment);
+    let Some(envelope) = scenario.envelope.as_mut().filter(|_| !plain.has_own("envelope")) else { return };
+    if plain.has_own("target") {
+        envelope.temperature_k = Some([target.temperature_k; 2]);
+        envelope.materials = Some(vec![target.material.clone()]);
+        envelope.distance_m = target.distance_m.map(|z| [z; 2]).or(envelope.distance_m);
+    }
+    if plain.has_own("environment") {
+        envelope.lighting = Some(objects.iter().map(|object| [object.lighting; 2]).collect());
+        envelope.surroundings_k = Some(objects.iter().map(|object| [object.temperature_k; 2]).collect());
+    }
 }
 
 /// The source of a clause's scenario: its own tables stand where those of the rule stood.
@@ -200,6 +218,11 @@ fn false_alarm(section: &Section<'_>, plain: &Section<'_>, rule: &Scenario) -> R
     if !own_alternatives {
         scenario.alternatives.materials = Some(people);
     }
+    if !plain.has_own("alternatives") {
+        // What robots may be like says nothing of people: these may be as they like, which is the hardest.
+        (scenario.alternatives.temperature_range_k, scenario.alternatives.lighting_range) = (None, None);
+    }
+    of_its_own(&mut scenario, plain);
     if let Some(first) = things.first() {
         scenario.target.material = first.clone();
     }

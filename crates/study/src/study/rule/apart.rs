@@ -192,6 +192,12 @@ impl TellApart {
         stop.or(self.scenario.requirement.speed_m_s)
     }
 
+    /// How fast the way between vehicle and target may change, m s⁻¹.
+    pub(super) fn pace_m_s(&self) -> Option<f64> {
+        let stop = self.stop.map(|spec| spec.stop().decisions()[1]);
+        stop.map(|one| one.speed_m_s.max(one.closing_m_s)).or(self.scenario.requirement.speed_m_s)
+    }
+
     /// Speed and distance at which the picture moves fastest; `None` where no speed is demanded.
     pub(super) fn moving(&self) -> Option<Moving> {
         match &self.stop {

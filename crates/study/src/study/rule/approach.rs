@@ -6,6 +6,7 @@
 //! one; frames must fit into the least time that any speed leaves.
 
 use super::results::{ApproachResult, StopResult};
+use crate::scenario::rule::Clause;
 use crate::study::Shortfall;
 use hadar::instrument::Camera;
 use hadar::policy::Motion;
@@ -21,7 +22,8 @@ pub(super) struct Moving {
 impl Moving {
     pub(super) fn before(stop: &Stop) -> Self {
         let swiftest = stop.swiftest();
-        Self { speed_m_s: swiftest.speed_m_s, distance_m: Some(swiftest.distance_m) }
+        let speed_m_s = swiftest.speed_m_s.max(swiftest.closing_m_s);
+        Self { speed_m_s, distance_m: Some(swiftest.distance_m) }
     }
 
     /// Pixels that the picture moves while all bands are exposed; `None` without a distance.
@@ -65,6 +67,37 @@ impl Approach {
     pub(super) fn shortfall(&self) -> Option<Shortfall> {
         let late = self.result.frames_within.is_some_and(|frames| frames < self.result.frames_needed);
         late.then_some(Shortfall::DecisionTime)
+    }
+}
+
+/// What a manoeuvre spoils of a camera's frames, whatever they are for: they blur, or come too late.
+pub(super) fn spoiled(
+    moving: Option<Moving>,
+    stop: Option<&Stop>,
+    camera: &Camera,
+    bands: usize,
+) -> Vec<Shortfall> {
+    let blur = moving.map(|moving| moving.blur_pixels(camera, bands));
+    let blurred = match blur {
+        Some(Some(blur)) if blur >= 1.0 => Some(Shortfall::MotionBlur),
+        // What cannot be said is not met.
+        Some(None) => Some(Shortfall::MotionUnknown),
+        _ => None,
+    };
+    let late = stop.and_then(|stop| Approach::of(stop, camera, bands).shortfall());
+    blurred.into_iter().chain(late).collect()
+}
+
+impl Moving {
+    /// Of a clause, from the least of its distances.
+    pub(super) fn of(clause: &Clause) -> Option<Self> {
+        match &clause.stop {
+            Some(spec) => Some(Self::before(spec.stop())),
+            None => clause.scenario.requirement.speed_m_s.map(|speed_m_s| Self {
+                speed_m_s,
+                distance_m: clause.envelope().distance_m.map(|[least, _]| least),
+            }),
+        }
     }
 }
 

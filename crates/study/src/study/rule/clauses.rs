@@ -5,8 +5,8 @@ use super::results::{
     StopResult, WhoMeets,
 };
 use super::uncertainty::MarginUncertainty;
-use crate::scenario::Rule;
 use crate::scenario::rule::Verdict;
+use crate::scenario::{Date, Rule};
 use crate::study::companion::Companion;
 use crate::study::{Shortfall, Warning};
 use hadar::demand::Work;
@@ -21,6 +21,8 @@ use serde::ser::{Serialize, SerializeMap, Serializer};
 pub struct RuleAnswer {
     /// The rule with its defaults filled in.
     pub rule: Rule,
+    /// The day that was asked about.
+    pub on: Option<Date>,
     /// Which cameras do, in JSON a sentence.
     pub sentence: WhoMeets,
     /// Every camera, in the order of the rule.

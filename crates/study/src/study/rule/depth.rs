@@ -4,15 +4,15 @@
 //! scene); the bounds are those of [`crate::study::range`]. The least depth error grows with the square of the distance as long as
 //! the picture stays as it is, so that the largest depth at which the demand would still be met gives the margin.
 
-use super::approach::Approach;
+use super::approach::{Approach, Moving, spoiled};
 use super::cameras::Named;
 use super::clauses::{Measure, MeasuredAnswer, MeasuredScene, MeasuredVerdict};
 use super::results::Grade;
 use crate::scenario::range::{Demand, RangeScenario, Subject};
 use crate::scenario::rule::{Clause, DepthDemand, DepthObject, StopSpec, Verdict};
 use crate::scenario::{BandsSpec, Rule};
-use crate::study::Shortfall;
 use crate::study::range::{RangePlan, RangeStudy, Signal, SignalBounds};
+use crate::study::{Shortfall, Warning};
 use hadar::error::Result;
 use hadar::material::Library;
 
@@ -28,6 +28,9 @@ struct Before {
     named: Named,
     study: RangeStudy,
     approach: Option<Approach>,
+    spoiled: Vec<Shortfall>,
+    /// Whether the rule has air, which the street has not.
+    air: bool,
 }
 
 impl DepthClause {
@@ -43,6 +46,9 @@ impl DepthClause {
             let bands = named.bands(&scenario)?;
             let approach =
                 clause.stop.as_ref().map(|spec| Approach::of(StopSpec::stop(spec), &named.camera, bands));
+            let stop = clause.stop.as_ref().map(StopSpec::stop);
+            let spoiled = spoiled(Moving::of(clause), stop, &named.camera, bands);
+            let air = scenario.atmosphere.is_some();
             let mut scene = demand.scene.clone();
             if let Some(approach) = &approach {
                 let [_, far] = approach.distance_m;
@@ -61,7 +67,13 @@ impl DepthClause {
                 requirement: demand.requirement,
                 source: scenario.source,
             };
-            Ok(Before { named: named.clone(), study: RangeStudy::new(&range, library)?, approach })
+            Ok(Before {
+                named: named.clone(),
+                study: RangeStudy::new(&range, library)?,
+                approach,
+                spoiled,
+                air,
+            })
         };
         let cameras = cameras.iter().enumerate().map(before).collect::<Result<_>>()?;
         Ok(Self { demand: demand.clone(), cameras })
@@ -83,6 +95,9 @@ impl DepthClause {
             self.demand.object.name(),
             hadar::words::share(share)
         );
+        if self.cameras.iter().any(|camera| camera.air) {
+            definition += " (the air of the rule is not in it)";
+        }
         if self.cameras.iter().any(|camera| !camera.named.uncertainty.is_empty()) {
             definition += " (uncertainties of the cameras' figures are not carried into it)";
         }
@@ -114,7 +129,10 @@ impl DepthClause {
         if !met {
             fails_by.push(Shortfall::DepthError);
         }
-        fails_by.extend(before.approach.as_ref().and_then(Approach::shortfall));
+        fails_by.extend(before.spoiled.iter().copied());
+        if found.warnings.iter().any(|warning| matches!(warning, Warning::PixelFull { .. })) {
+            fails_by.push(Shortfall::FullWell);
+        }
         let passes = fails_by.is_empty();
         Ok(MeasuredVerdict {
             name: before.named.name.clone(),

@@ -71,10 +71,16 @@ impl Sighted {
         Ok(Self { study, counting, ranges })
     }
 
-    /// The same before another camera.
-    pub(in crate::study) fn before(&self, camera: &Camera, envelope: &Envelope) -> Result<Self> {
+    /// The same before another camera, from a distance.
+    pub(in crate::study) fn before(
+        &self,
+        camera: &Camera,
+        distance_m: Option<f64>,
+        envelope: &Envelope,
+    ) -> Result<Self> {
         let mut study = self.study.clone();
-        (study.bands, study.air) = study.received(Some(camera), study.scenario.target.distance_m)?;
+        study.scenario.target.distance_m = distance_m;
+        (study.bands, study.air) = study.received(Some(camera), distance_m)?;
         study.camera = Some(camera.clone());
         Self::new(study, envelope)
     }

@@ -1,6 +1,7 @@
 //! The margin of a camera that tells materials apart, taken anew with other figures: what `uncertainty` asks for.
 
 use super::apart::{Candidate, TellApart};
+use super::approach::Approach;
 use super::envelope::{Estimate, Sighted};
 use super::search::Searched;
 use super::uncertainty::{Errors, MarginUncertainty, Uncertain};
@@ -46,8 +47,9 @@ impl TellApart {
             }
             _ => None,
         };
-        let of =
-            |camera: &Camera, errors: Errors| self.least_margin(&scenes, ripple.as_ref(), camera, errors);
+        let of = |camera: &Camera, errors: Errors| {
+            self.least_margin((candidate, &scenes), ripple.as_ref(), camera, errors)
+        };
         uncertain.of_margin(distance / self.required, emissivities, true, &of)
     }
 
@@ -80,17 +82,30 @@ impl TellApart {
         scenes
     }
 
+    /// The distance of a scene; of one from where the first frame is taken, where the camera takes it now.
+    fn seen_from_m(&self, candidate: &Candidate, sighted: &Sighted, camera: &Camera) -> Option<f64> {
+        let own = sighted.study.scenario.target.distance_m;
+        let farthest = candidate.distance_m.map(|[_, most]| most);
+        match &self.stop {
+            Some(spec) if own == farthest => {
+                Some(Approach::of(spec.stop(), camera, sighted.study.bands.len()).distance_m[1])
+            }
+            _ => own,
+        }
+    }
+
     /// The least margin of a camera in some scenes.
     fn least_margin(
         &self,
-        scenes: &[Scene],
+        (candidate, scenes): (&Candidate, &[Scene]),
         ripple: Option<&Ripple>,
         camera: &Camera,
         errors: Errors,
     ) -> Result<f64> {
         let mut least = f64::INFINITY;
         for Scene { sighted, alternative, state } in scenes {
-            let sighted = sighted.before(camera, &self.envelope)?;
+            let distance_m = self.seen_from_m(candidate, sighted, camera);
+            let sighted = sighted.before(camera, distance_m, &self.envelope)?;
             let pair = [&sighted.study.target, &sighted.study.alternatives[*alternative]];
             let pair: [Vec<f64>; 2] = match (errors, ripple) {
                 (Errors::Stream(stream), Some(ripple)) => {

@@ -4,7 +4,7 @@
 //! That is geometry alone: neither optics that blur nor noise are in it. It is least at the greatest distance from which a frame
 //! is taken.
 
-use super::approach::Approach;
+use super::approach::{Approach, Moving, spoiled};
 use super::cameras::Named;
 use super::clauses::{Measure, MeasuredAnswer, MeasuredScene, MeasuredVerdict};
 use super::results::Grade;
@@ -22,6 +22,7 @@ pub(super) struct Resolution {
     size_m: f64,
     farthest_m: f64,
     stop: Option<StopSpec>,
+    moving: Option<Moving>,
     rule: Rule,
     /// With the number of its bands.
     cameras: Vec<(Named, usize)>,
@@ -44,7 +45,7 @@ impl Resolution {
         let counted = |named: &Named| Ok((named.clone(), named.bands(scenario)?));
         let cameras = cameras.iter().map(counted).collect::<Result<_>>()?;
         let rule = rule.clone();
-        Ok(Self { pixels, size_m, farthest_m, stop: clause.stop, rule, cameras })
+        Ok(Self { pixels, size_m, farthest_m, stop: clause.stop, moving: Moving::of(clause), rule, cameras })
     }
 
     pub(super) fn answer(&self) -> Result<MeasuredAnswer> {
@@ -78,7 +79,7 @@ impl Resolution {
             value / self.pixels,
             (Shortfall::Pixels, true),
             &named.camera,
-            &|camera| self.approach(camera, bands).and_then(|approach| approach.shortfall()),
+            &|camera| spoiled(self.moving, self.stop.as_ref().map(StopSpec::stop), camera, bands),
             &|camera| Ok(self.reached(camera, bands).1 / self.pixels),
         )?;
         let Judged { verdict, fails_by, undecided_by } = judged;

@@ -239,7 +239,7 @@ impl TellApart {
         let state =
             near.ranges(&self.envelope).map_or_else(|_| near.state.clone(), |ranges| brightest(&ranges));
         let mut warnings = Study { state, ..near.clone() }.camera_warnings();
-        if let (Some(speed), 2..) = (self.speed_m_s(), camera.frames) {
+        if let (Some(speed), 2..) = (self.pace_m_s(), camera.frames) {
             let time_s = camera.acquisition_s(near.bands.len());
             let (frames, way_m) = (camera.frames, time_s * speed);
             warnings.push(Warning::FramesInMotion { frames, time_s, way_m });

@@ -7,16 +7,19 @@
 //!
 //! As all verdicts of a rule it is about what one pixel counts, in all bands and frames: shape, motion and many pixels tell more.
 //!
-//! Proved is a ΔT a little smaller, at which the bound from above is no more than the demand. Cameras are taken at the distance from
-//! which they count most, with the least noise of the envelope: what helps them to tell. With air on the path both ends of the distance
-//! are looked at, and what is between is searched, not proved.
+//! The person's lighting is within the envelope as the stand-in's is, and its temperature where that is known: a stand-in outside is told.
+//!
+//! Proved is a ΔT a little smaller, at which the bound from above is no more than the demand. Cameras are taken from both ends of the
+//! distance, at one of which they count most, with the least noise of the envelope: what helps them to tell. With air on the path, or
+//! a target smaller than a pixel, distances between are searched, and nothing is proved.
 
-use super::apart::TellApart;
+use super::apart::{TellApart, steps};
 use super::{Kind, RuleStudy};
 use crate::scenario::rule::{Demand, StandInSpec};
 use crate::scenario::{Envelope, MaterialRef, Units};
 use crate::study::{Study, Surface};
 use hadar::error::{Error, Result};
+use hadar::fisher::Nuisance;
 use hadar::identifiability::detection;
 use hadar::identifiability::nearest::StateRange;
 use hadar::material::Library;
@@ -104,6 +107,8 @@ struct Before<'a> {
     envelope: &'a Envelope,
     required: f64,
     person_k: [f64; 2],
+    /// Of every object.
+    person_lighting: [f64; 2],
     temperature_k: f64,
 }
 
@@ -125,6 +130,18 @@ impl RuleStudy {
             return Err(error.at(self.rule.scenario.place("")));
         };
         let spec = self.rule.stand_in.clone().unwrap_or_default();
+        if apart
+            .scenario
+            .unknown
+            .priors
+            .keys()
+            .any(|of| matches!(of, Nuisance::Temperature | Nuisance::Lighting))
+        {
+            let found = "what is known beforehand of a person is not known to the bounds of a stand-in";
+            let error =
+                Error::malformed(found, "leave out the priors, and write [envelope] as narrow as they are");
+            return Err(error.at(apart.scenario.place("unknown.priors")));
+        }
         let studies = studies(apart, &spec, library)?;
         let scenario = &apart.scenario;
         let temperature_k = spec.temperature_k.unwrap_or(scenario.target.temperature_k);
@@ -149,9 +166,10 @@ impl RuleStudy {
                         Before::new(study, stand_in, apart, person_k, temperature_k)
                     });
                     let before = before.collect::<Result<Vec<_>>>()?;
-                    let air = ends.len() > 1 && ends.iter().any(|study| study.atmosphere.is_some());
+                    // Between two ends of a plain sight nothing is counted more than at one of them.
+                    let provable = ends.len() <= 2;
                     let names = [camera.as_str(), &ends[0].target.name, &stand_in.name];
-                    row(&before, names.map(str::to_owned), *tolerance, !air)
+                    row(&before, names.map(str::to_owned), *tolerance, provable)
                 })
                 .collect::<Result<_>>()?;
             rows.extend(done);
@@ -186,8 +204,11 @@ fn studies(apart: &TellApart, spec: &StandInSpec, library: &Library) -> Result<V
             };
             scenario.alternatives.materials = asked;
             let mut ends = Vec::new();
+            // Air, and a target that is smaller than its pixel, let a camera count most from between the ends.
+            let plain = scenario.target.size_m.is_none() && scenario.atmosphere.is_none();
             let distances = match candidate.distance_m {
-                Some([least, most]) if least < most => vec![Some(least), Some(most)],
+                Some([least, most]) if least < most && plain => vec![Some(least), Some(most)],
+                Some([least, most]) if least < most => steps([least, most]).map(Some).collect(),
                 other => vec![other.map(|[least, _]| least)],
             };
             for distance_m in distances {
@@ -228,7 +249,25 @@ impl<'a> Before<'a> {
             Error::malformed("a rule without a camera", "name one, as in cameras = [\"ideal-pnrd\"]")
         })?;
         let (envelope, required) = (&apart.envelope, apart.required);
-        Ok(Self { study, stand_in, counting, envelope, required, person_k, temperature_k })
+        let lighting = ranges.lighting().iter();
+        let person_lighting =
+            lighting.fold(study.range.lighting, |[a, b], [low, high]| [a.max(*low), b.min(*high)]);
+        if person_lighting[0] > person_lighting[1] {
+            let found = "the objects have no lighting in common, within which a person could be";
+            let error = Error::malformed(found, "write one range of lighting for all objects");
+            return Err(error.at(study.scenario.place("envelope.lighting")));
+        }
+        Ok(Self { study, stand_in, counting, envelope, required, person_k, person_lighting, temperature_k })
+    }
+
+    /// How wide a tolerance of the temperature may be, K; below 0 where the stand-in is no person's temperature, and that is known.
+    fn widest_k(&self) -> f64 {
+        let [low, high] = self.person_k;
+        let within = (self.temperature_k - low).min(high - self.temperature_k);
+        match self.study.is_unknown(Nuisance::Temperature) {
+            true => widest_k(self.temperature_k),
+            false => widest_k(self.temperature_k).min(within),
+        }
     }
 
     /// The farthest within tolerances.
@@ -249,7 +288,7 @@ impl<'a> Before<'a> {
             alternative: &study.target.emissivity,
             counting: &self.counting,
             unknowns: &study.unknowns,
-            range: StateRange { temperature_k: self.person_k, ..study.range },
+            range: StateRange { temperature_k: self.person_k, lighting: self.person_lighting, ..study.range },
         };
         farthest(&scene, offsets, &ranges, effort)
     }
@@ -267,8 +306,7 @@ fn row(
     provable: bool,
 ) -> Result<StandIn> {
     let required = ends.first().map_or(f64::NAN, |before| before.required);
-    let widest_k =
-        ends.iter().map(|before| WIDEST_K.min(0.5 * before.temperature_k)).fold(WIDEST_K, f64::min);
+    let widest_k = ends.first().map_or(0.0, Before::widest_k);
     let of = |temperature_k: f64, effort: &Effort| -> Result<Farthest> {
         let mut worst: Option<Farthest> = None;
         for before in ends {
@@ -284,7 +322,7 @@ fn row(
     };
     let search = Effort { relative_tolerance: 0.0, boxes: BOXES, enough: None };
     let edge_of = |demanded: f64| -> Result<Option<f64>> {
-        if of(0.0, &search)?.distance >= demanded {
+        if widest_k < 0.0 || of(0.0, &search)?.distance >= demanded {
             return Ok(None);
         }
         if of(widest_k, &search)?.distance <= demanded {

@@ -5,10 +5,10 @@
 //! in the envelope: corners and scenes between them are looked at, then the largest is followed uphill, one range after the other,
 //! in ever smaller steps. Nothing proves that no scene is worse.
 
-use super::approach::Approach;
+use super::approach::{Approach, Moving, spoiled};
 use super::cameras::Named;
 use super::clauses::{Measure, MeasuredAnswer, MeasuredScene, MeasuredVerdict};
-use super::envelope::{Sighted, all, scattered_places, scene_at};
+use super::envelope::{Sighted, all, brightest, scattered_places, scene_at};
 use super::results::Grade;
 use super::uncertainty::{Judged, Uncertain};
 use super::{apart, cameras};
@@ -33,6 +33,7 @@ pub(super) struct TemperatureClause {
     coverage_factor: f64,
     rule: Rule,
     stop: Option<StopSpec>,
+    moving: Option<Moving>,
     envelope: Envelope,
     cameras: Vec<Before>,
 }
@@ -63,8 +64,8 @@ impl TemperatureClause {
         let envelope = clause.envelope();
         let before = |(index, named): (usize, &Named)| before(rule, clause, index, named, &envelope, library);
         let cameras = cameras.iter().enumerate().map(before).collect::<Result<_>>()?;
-        let (rule, stop) = (rule.clone(), clause.stop);
-        Ok(Self { error_k, coverage_factor, rule, stop, envelope, cameras })
+        let (rule, stop, moving) = (rule.clone(), clause.stop, Moving::of(clause));
+        Ok(Self { error_k, coverage_factor, rule, stop, moving, envelope, cameras })
     }
 
     pub(super) fn study(&self) -> Option<&Study> {
@@ -100,10 +101,29 @@ impl TemperatureClause {
         let place = |key: &str| rule.camera_place(named.index, key);
         let uncertain = Uncertain::of(named, (rule.coverage_factor, false), &place)?;
         let bands = before.sighted.first().map_or(1, |sighted| sighted.study.bands.len());
-        let late = |camera: &Camera| Approach::of(self.stop?.stop(), camera, bands).shortfall();
+        let spoils = |camera: &Camera| {
+            let mut found = spoiled(self.moving, self.stop.as_ref().map(StopSpec::stop), camera, bands);
+            let full = before.sighted.iter().any(|sighted| {
+                let own = sighted.study.scenario.target.distance_m;
+                let Ok(seen) = sighted.before(camera, own, &self.envelope) else { return true };
+                let bright = Study { state: brightest(&seen.ranges), ..seen.study };
+                let reading =
+                    bright.camera_result(bright.photon_radiance()).map(|found| found.brightest_reading);
+                camera.full_well.zip(reading).is_some_and(|(full, reading)| reading > full)
+            });
+            found.extend(full.then_some(Shortfall::FullWell));
+            found
+        };
         let of = |camera: &Camera| {
             let Some((found, sighted)) = &worst else { return Ok(0.0) };
-            let sighted = sighted.before(camera, &self.envelope)?;
+            // The first frame is taken where this camera takes it.
+            let own = sighted.study.scenario.target.distance_m;
+            let farthest = before.approach.as_ref().map(|approach| approach.distance_m[1]);
+            let distance_m = match self.stop {
+                Some(spec) if own == farthest => Some(Approach::of(spec.stop(), camera, bands).distance_m[1]),
+                _ => own,
+            };
+            let sighted = sighted.before(camera, distance_m, &self.envelope)?;
             let sigma_k = solver(&sighted).bound(
                 &sighted.study.target.emissivity,
                 &found.state,
@@ -113,7 +133,7 @@ impl TemperatureClause {
             Ok(self.error_k / (self.coverage_factor * sigma_k.sigma))
         };
         let by = (Shortfall::TemperatureError, true);
-        let (judged, uncertainty) = Uncertain::verdict(uncertain, margin, by, &named.camera, &late, &of)?;
+        let (judged, uncertainty) = Uncertain::verdict(uncertain, margin, by, &named.camera, &spoils, &of)?;
         let Judged { verdict, fails_by, undecided_by } = judged;
         let passes = verdict == Verdict::Meets;
         // With more noise than the scene has itself, it may be in the scene's own.

@@ -30,6 +30,8 @@ use rayon::prelude::*;
 /// Draws of figures alone, which a lattice spreads evenly, and with errors of emissivities, which are random.
 const DRAWS: usize = 512;
 const RANDOM_DRAWS: usize = 2048;
+/// Uncertain figures of a camera at most.
+const MOST_FIGURES: usize = 8;
 /// Draws go as many deviations far at most.
 const FARTHEST: f64 = 4.0;
 
@@ -126,6 +128,13 @@ impl<'a> Uncertain<'a> {
             };
             known.push((row, value, *u));
         }
+        if known.len() > MOST_FIGURES {
+            let found = format!("{} uncertain figures", known.len());
+            let instead = format!("state the uncertainty of the {MOST_FIGURES} that matter most");
+            return Err(
+                Error::malformed(found, instead).at(place(known.last().map_or("", |(row, ..)| row.key)))
+            );
+        }
         let own = Self { spec, figures: known, coverage_factor, place };
         for index in 0..own.figures.len() {
             for side in [-coverage_factor, coverage_factor] {
@@ -166,10 +175,16 @@ impl<'a> Uncertain<'a> {
         camera::resolved_at(&spec, self.place)
     }
 
-    /// Every figure on both sides, as far away as the interval goes.
+    /// All figures at once, each on one side or the other, as far away as the interval goes: what is as it should be in all of these is
+    /// surely so.
     pub(super) fn sides(&self) -> impl Iterator<Item = Result<Camera>> + '_ {
-        let sides = (0..self.figures.len()).flat_map(|index| [(index, -1.0), (index, 1.0)]);
-        sides.map(|(index, side)| self.moved(index, side * self.coverage_factor))
+        let count = self.figures.len();
+        (0..1usize << count).map(move |number| {
+            let side = |bit: usize| {
+                if number >> bit & 1 == 1 { self.coverage_factor } else { -self.coverage_factor }
+            };
+            self.camera(&(0..count).map(side).collect::<Vec<_>>())
+        })
     }
 
     /// The verdict on a margin, taken anew by `of`, that fails `by` itself; `other` says what else is wrong with a camera.
@@ -178,14 +193,14 @@ impl<'a> Uncertain<'a> {
         margin: f64,
         (by, draw): (Shortfall, bool),
         own: &Camera,
-        other: &dyn Fn(&Camera) -> Option<Shortfall>,
+        other: &dyn Fn(&Camera) -> Vec<Shortfall>,
         of: &(dyn Fn(&Camera) -> Result<f64> + Sync),
     ) -> Result<(Judged, Option<MarginUncertainty>)> {
-        let mut others = vec![Vec::from_iter(other(own))];
+        let mut others = vec![other(own)];
         let mut found = None;
         if let Some(uncertain) = uncertain.filter(|_| margin > 0.0) {
             for camera in uncertain.sides() {
-                others.push(Vec::from_iter(other(&camera?)));
+                others.push(other(&camera?));
             }
             found = Some(uncertain.of_margin(margin, None, draw, &|camera, _| of(camera))?);
         }

@@ -1,0 +1,161 @@
+//! The certificate as data: its form by a validator that is not ours, and that it is refused where anything was changed.
+
+use crate::support::folder::Folder;
+use std::fs;
+use std::process::Command;
+
+const RULE: &str = r#"cameras = ["flir-a325sc", "ideal-pnrd"]
+[rule]
+name = "People and robots"
+until = 2030-01-01
+[target]
+material = "coat.csv"
+temperature = "33 degC"
+[[environment]]
+temperature = "10 degC"
+lighting = 0.5
+[alternatives]
+materials = ["aluminium"]
+[bands]
+ranges = [["8 um", "9 um"], ["9 um", "10 um"], ["10 um", "11 um"]]
+[envelope]
+temperature = ["30 degC", "36 degC"]
+[stop]
+speed = ["5 mph", "10 mph"]
+latency = "0.5 s"
+deceleration = "2 m/s^2"
+start = "6 s"
+[[clause]]
+name = "people"
+[[clause]]
+name = "shape"
+kind = "resolution"
+[clause.requirement]
+pixels = 4
+size = "0.5 m"
+[[source]]
+keys = ["target", "environment", "alternatives", "bands", "envelope", "stop", "clause[1].requirement"]
+choice = "a test"
+[[camera]]
+name = "ours"
+preset = "flir-a325sc"
+f_number = { value = 1.0, u = 0.05 }
+[sensitivity]
+emissivity_error = 0.0001
+[[source]]
+keys = ["sensitivity"]
+document = "a document"
+clause = "1"
+quote = "its words"
+date = 2024-05-09
+mark = "seen"
+"#;
+
+const COAT: &str = "wavenumber_cm1,emissivity\n700,0.9\n1000,0.95\n1300,0.92\n";
+
+fn certified() -> Folder {
+    let folder = Folder::with(RULE);
+    folder.file("coat.csv", COAT);
+    let outcome = folder.run(&["rule", "a.toml", "--out", "out", "--on", "2030-06-01", "-q"]);
+    assert_eq!((outcome.code, outcome.stderr.as_str()), (0, ""));
+    folder
+}
+
+fn text(folder: &Folder) -> String {
+    fs::read_to_string(folder.path().join("out/certificate.json")).unwrap()
+}
+
+#[test]
+fn its_form_is_that_of_the_schema() {
+    let folder = certified();
+    let schema = hadar_testing::repository().join("schemas/certificate.schema.json");
+    let program = "import json, sys, jsonschema\n\
+        schema, found = (json.load(open(path)) for path in sys.argv[1:3])\n\
+        jsonschema.Draft202012Validator.check_schema(schema)\n\
+        jsonschema.Draft202012Validator(schema).validate(found)\n\
+        found['clauses'][0]['lines'][0]['verdict'] = 'passes'\n\
+        assert list(jsonschema.Draft202012Validator(schema).iter_errors(found))\n";
+    let there = Command::new("python3").args(["-c", "import jsonschema"]).output();
+    if !there.is_ok_and(|there| there.status.success()) {
+        println!("skipped: there is no python3 with jsonschema");
+        return;
+    }
+    let certificate = folder.path().join("out/certificate.json");
+    let ran = Command::new("python3").args(["-c", program]).arg(schema).arg(certificate).output().unwrap();
+    assert!(ran.status.success(), "{}", String::from_utf8_lossy(&ran.stderr));
+}
+
+#[test]
+fn the_statement_is_about_the_certificate() {
+    let folder = certified();
+    let statement: serde_json::Value =
+        serde_json::from_slice(&fs::read(folder.path().join("out/certificate.intoto.json")).unwrap())
+            .unwrap();
+    assert_eq!(statement["_type"], "https://in-toto.io/Statement/v1");
+    assert_eq!(statement["predicateType"], "https://in-toto.io/attestation/test-result/v0.1");
+    let hash = statement["subject"][0]["digest"]["sha256"].as_str().unwrap().to_owned();
+    let manifest: serde_json::Value =
+        serde_json::from_slice(&fs::read(folder.path().join("out/hadar.json")).unwrap()).unwrap();
+    let listed = manifest["files"].as_array().unwrap().iter().find(|file| file["name"] == "certificate.json");
+    assert_eq!(listed.unwrap()["sha256"], hash);
+    let tests = |key: &str| statement["predicate"][key].as_array().unwrap().len();
+    assert_eq!(tests("passedTests") + tests("warnedTests") + tests("failedTests"), 6);
+    assert_eq!(statement["predicate"]["configuration"][0]["name"], "a.toml");
+}
+
+/// The same bytes for any number of threads, and verified; a byte of any input, or of what it says, is told with its name.
+#[test]
+fn what_was_changed_is_named() {
+    let folder = certified();
+    let own = text(&folder);
+    let threads =
+        folder.run(&["rule", "a.toml", "--out", "one", "--on", "2030-06-01", "--threads", "1", "-q"]);
+    assert_eq!(threads.code, 0);
+    assert_eq!(own, fs::read_to_string(folder.path().join("one/certificate.json")).unwrap());
+    let verify = |file: &str| folder.run(&["rule", "--verify", file]);
+    let verified = verify("out/certificate.json");
+    assert_eq!(verified.code, 0, "{}", verified.stderr);
+    assert!(verified.stdout.contains("was found again, to the last digit"), "{}", verified.stdout);
+    // Of its text.
+    let verdict = "\"verdict\": \"fails\"";
+    assert!(own.contains(verdict));
+    for (changed, named) in [
+        (own.replacen(verdict, "\"verdict\": \"meets\"", 1), "verdict"),
+        (
+            own.replacen(verdict, "\"verdict\": \"meets\",\n      \"verdict\": \"fails\"", 1),
+            "its form is not that of a certificate",
+        ),
+        (own.replace("a test", "a law"), "sources[0].choice"),
+        (own.replacen("\"evidence\": \"proved\"", "\"evidence\": \"searched\"", 1), "evidence"),
+        (
+            own.replacen(
+                "\"kind\": \"tell-apart\"",
+                "\"hadar\": \"approved\",\n      \"kind\": \"tell-apart\"",
+                1,
+            ),
+            "clauses[0].hadar",
+        ),
+        (own.replacen("\"schema\": 1", "\"schema\": 2", 1), "schema"),
+        (own.replacen("\"path\": \"coat.csv\"", "\"path\": \"cote.csv\"", 1), "cote.csv"),
+        (own.replacen("2030-06-01", "2029-06-01", 1), "on 2030-06-01"),
+        (own.replace('{', "["), "this is not JSON"),
+    ] {
+        assert_ne!(changed, own, "{named}");
+        folder.file("changed.json", &changed);
+        let outcome = verify("changed.json");
+        assert_eq!(outcome.code, 1, "{named}: {}", outcome.stdout);
+        let own_words = outcome.stderr.contains(named)
+            || (named.starts_with("on ") && outcome.stderr.contains("warnings"));
+        assert!(own_words && outcome.stderr.lines().count() == 1, "{named}: {}", outcome.stderr);
+    }
+    // Of an input.
+    for (file, content) in [("coat.csv", COAT.replace("0.92", "0.91")), ("a.toml", format!("{RULE}\n"))] {
+        let before = fs::read_to_string(folder.path().join(file)).unwrap();
+        folder.file(file, &content);
+        let outcome = verify("out/certificate.json");
+        assert_eq!(outcome.code, 1, "{}", outcome.stdout);
+        assert!(outcome.stderr.contains(&format!("{file}: the file was changed")), "{}", outcome.stderr);
+        folder.file(file, &before);
+    }
+    assert_eq!(verify("out/certificate.json").code, 0);
+}
