@@ -79,7 +79,7 @@ fn no_classifier_tells_the_farthest_from_a_person_more_often() {
         let there = &row["farthest"];
         let scenario = format!(
             "[target]\nmaterial = \"pmma\"\ntemperature = \"{:e} K\"\ndistance = \"5 m\"\n[[environment]]\ntemperature = \"{:e} K\"\n\
-             lighting = {:e}\n[alternatives]\nmaterials = [\"skin\"]\ntemperature = [\"30 degC\", \"36 degC\"]\n[bands]\n\
+             lighting = {:e}\n[alternatives]\nmaterials = [\"skin\"]\ntemperature = [\"30 degC\", \"36 degC\"]\nlighting = [0.1, 0.8]\n[bands]\n\
              ranges = [[\"8 um\", \"9 um\"], [\"9 um\", \"10 um\"], [\"10 um\", \"11 um\"], [\"11 um\", \"12 um\"], [\"12 um\", \"13 um\"]]\n\
              [camera]\npreset = \"flir-a325sc\"\n",
             number(there, "temperature_k"),

@@ -1,10 +1,11 @@
 //! A clause that demands pixels on the target: n = h f/(z p), h the side of the target (m), f the focal length (m), p the side of
 //! a pixel (m), z the distance (m).
 //!
-//! That is geometry alone: neither optics that blur nor noise are in it. It is least at the greatest distance from which a frame
+//! That is geometry alone: neither optics that blur nor noise are in it; pixels that run into each other while a frame is exposed
+//! count as one. It is least at the greatest distance from which a frame
 //! is taken.
 
-use super::approach::{Approach, Moving, spoiled};
+use super::approach::{Approach, Moving};
 use super::cameras::Named;
 use super::clauses::{Measure, MeasuredAnswer, MeasuredScene, MeasuredVerdict};
 use super::results::Grade;
@@ -52,7 +53,7 @@ impl Resolution {
         let judged = |(named, bands): &(Named, usize)| self.judged(named, *bands);
         let cameras = self.cameras.iter().map(judged).collect::<Result<_>>()?;
         let definition = format!(
-            "{} pixels across {} at the greatest distance, by geometry alone",
+            "{} pixels across {} at the greatest distance, by geometry and motion alone",
             self.pixels,
             hadar::words::length(self.size_m)
         );
@@ -63,11 +64,34 @@ impl Resolution {
         self.stop.map(|spec| Approach::of(spec.stop(), camera, bands))
     }
 
-    /// The greatest distance from which a frame is taken, m, and the pixels across the target from there.
+    /// The greatest distance from which a frame is taken, m, and the pixels across the target: from there, or as many as do not run into
+    /// each other while a frame is exposed, where that is fewer. What moves by n/z pixels is h/z large, so that this number is the same
+    /// from everywhere; it is least at the highest speed.
     fn reached(&self, camera: &Camera, bands: usize) -> (f64, f64) {
         let approach = self.approach(camera, bands);
         let distance_m = approach.map_or(self.farthest_m, |approach| approach.distance_m[1]);
-        (distance_m, self.size_m * camera.focal_length_m / (distance_m * camera.pixel_m))
+        let across = |distance_m: f64| self.size_m * camera.focal_length_m / (distance_m * camera.pixel_m);
+        let sharp = across(distance_m);
+        let blur =
+            self.moving.and_then(|moving| Some((moving, moving.distance_m?, moving.blur_pixels(camera, 1)?)));
+        let value = match blur {
+            Some((moving, z, blur)) if blur >= 1.0 => {
+                let fastest = self.stop.map_or(moving.speed_m_s, |spec| {
+                    let one = spec.stop().decisions()[1];
+                    one.speed_m_s.max(one.closing_m_s)
+                });
+                sharp.min(across(z) / blur * moving.speed_m_s / fastest)
+            }
+            _ => sharp,
+        };
+        (distance_m, value)
+    }
+
+    /// Frames that come too late, or of which it cannot be said how they blur.
+    fn spoiled(&self, camera: &Camera, bands: usize) -> Vec<Shortfall> {
+        let unknown = self.moving.is_some_and(|moving| moving.blur_pixels(camera, 1).is_none());
+        let late = self.approach(camera, bands).and_then(|approach| approach.shortfall());
+        unknown.then_some(Shortfall::MotionUnknown).into_iter().chain(late).collect()
     }
 
     fn judged(&self, named: &Named, bands: usize) -> Result<MeasuredVerdict> {
@@ -79,7 +103,7 @@ impl Resolution {
             value / self.pixels,
             (Shortfall::Pixels, true),
             &named.camera,
-            &|camera| spoiled(self.moving, self.stop.as_ref().map(StopSpec::stop), camera, bands),
+            &|camera| self.spoiled(camera, bands),
             &|camera| Ok(self.reached(camera, bands).1 / self.pixels),
         )?;
         let Judged { verdict, fails_by, undecided_by } = judged;
