@@ -142,9 +142,10 @@ fn sources_and_tests_as_a_user_sees_them() {
     assert!(moved.stdout.starts_with("1 of 20 tests of the rule do not hold.\n"), "{}", moved.stdout);
     assert!(moved.stdout.contains("margin is 0.9190, not 0.9500"), "{}", moved.stdout);
     // A rule says on which days it holds.
-    let early = folder.json(&["rule", &pack, "--on", "2026-11-23"]);
+    let fever = hadar_testing::repository().join("rules/fever_screening.toml").display().to_string();
+    let early = folder.json(&["rule", &fever, "--on", "2016-11-23"]);
     assert_eq!(early["warnings"][0]["code"], "not-in-force");
-    assert!(early["warnings"][0]["message"].as_str().unwrap().contains("it holds from 2029-09-01"));
-    let later = folder.json(&["rule", &pack, "--on", "2029-09-01"]);
+    assert!(early["warnings"][0]["message"].as_str().unwrap().contains("it holds from 2017-09-25"));
+    let later = folder.json(&["rule", &fever, "--on", "2017-09-25"]);
     assert!(later["warnings"].as_array().unwrap().iter().all(|warning| warning["code"] != "not-in-force"));
 }
