@@ -24,6 +24,7 @@ mod robust;
 mod rule;
 mod rule_clauses;
 mod rule_mistakes;
+mod rule_uncertainty;
 mod simulate;
 mod stand_in;
 mod written;
@@ -34,6 +35,7 @@ mod support {
     #[path = "../../../../study/tests/it/support/mutation.rs"]
     pub(crate) mod mutation;
     pub(crate) mod page;
+    pub(crate) mod rules;
     pub(crate) mod sound;
     pub(crate) mod uses;
 }

@@ -1,63 +1,10 @@
-//! Rules as people write them: speeds that become distances, several demands, uncertain figures; each against what is known by hand.
+//! Rules as people write them: speeds that become distances, several demands; each against what is known by hand.
 
 use crate::support::folder::Folder;
-use hadar::instrument::presets;
-use hadar::material::Library;
+use crate::support::rules::{NIGHT, answered, close, library, measured, only};
 use hadar_study::scenario::Rule;
 use hadar_study::scenario::rule::Verdict;
-use hadar_study::study::{CameraVerdict, Extent, Found, MeasuredVerdict, RuleAnswer, RuleAsked, RuleStudy};
-use std::sync::OnceLock;
-
-/// One camera of 60 Hz before a pedestrian, with the vehicle of 49 CFR 571.127.
-const NIGHT: &str = r#"cameras = ["flir-a325sc"]
-[target]
-material = "skin"
-temperature = "33 degC"
-[[environment]]
-temperature = "10 degC"
-lighting = 0.5
-[alternatives]
-materials = ["aluminium"]
-[bands]
-ranges = [["8 um", "9 um"], ["9 um", "10 um"], ["11 um", "12 um"]]
-[envelope]
-temperature = ["25 degC", "37 degC"]
-[stop]
-speed = "60 km/h"
-latency = "0.5 s"
-deceleration = "5 m/s^2"
-start = "4.0 s"
-"#;
-
-fn library() -> &'static Library {
-    static LIBRARY: OnceLock<Library> = OnceLock::new();
-    LIBRARY.get_or_init(|| Library::embedded().unwrap())
-}
-
-#[track_caller]
-fn answered(text: &str) -> RuleAnswer {
-    let rule = Rule::from_toml(text, None).unwrap_or_else(|error| panic!("{error}\n{text}"));
-    let study = RuleStudy::new(&rule, library()).unwrap_or_else(|error| panic!("{error}\n{text}"));
-    let asked = RuleAsked { extent: Extent::Margins, ..RuleAsked::default() };
-    study.answer(&asked, &|_, _| ()).unwrap()
-}
-
-#[track_caller]
-fn only(text: &str) -> CameraVerdict {
-    answered(text).only().unwrap().cameras[0].clone()
-}
-
-#[track_caller]
-fn measured(text: &str) -> MeasuredVerdict {
-    match &answered(text).clauses[0].found {
-        Found::Measured(measured) => measured.cameras[0].clone(),
-        Found::Apart(_) => panic!("{text}"),
-    }
-}
-
-fn close(a: f64, b: f64, relative: f64) -> bool {
-    (a - b).abs() <= relative * b.abs()
-}
+use hadar_study::study::{CameraVerdict, RuleAnswer, RuleStudy};
 
 /// The figures of the issue: 36.1 m, 1.83 s, 110 frames of 60 Hz; in three bands one after the other a third of them.
 #[test]
@@ -168,100 +115,6 @@ fn a_temperature_is_known_as_well_as_the_netd_says() {
         (hard.verdict, hard.value.map(|found| close(found, value, 1e-12))),
         (Verdict::Fails, Some(true))
     );
-}
-
-/// A rule of a camera whose noise is all electronic: d goes with 1/NETD, 1/F² and the root of the exposure.
-fn uncertain(figures: &str, demanded: f64, more: &str) -> String {
-    let text = NIGHT.replace("cameras = [\"flir-a325sc\"]\n", "");
-    let (scene, _) = text.split_once("[stop]").unwrap();
-    format!(
-        "{scene}[requirement]\ndistance = {demanded}\n{more}[[camera]]\nname = \"ours\"\nnoise_exposure = \"10 ms\"\npixel = \"12 um\"\n\
-         focal_length = \"14 mm\"\nnetd_temperature = \"25 degC\"\nnetd_f_number = 1.0\n{figures}\n"
-    )
-}
-
-const FIGURES: &str = "netd = { value = \"50 mK\", u = \"1 mK\" }\nf_number = { value = 1.0, u = 0.01 }\nexposure = { value = \"10 ms\", u = \"0.1 ms\" }";
-
-/// First order by hand: shares 2 %, 2 · 1 %, ½ · 1 % of the margin (noise that averages), in all 2.87 %; draws agree to 2 %; the interval is ±k of that.
-#[test]
-fn the_margin_of_uncertain_figures_is_known_by_hand() {
-    let camera = only(&uncertain(FIGURES, 0.01, ""));
-    let found = camera.uncertainty.as_ref().unwrap();
-    let share = found.first_order / camera.margin;
-    // The photons' own noise is a part of 1e-3 of the whole.
-    assert!(close(share, (0.02f64.powi(2) + 0.02f64.powi(2) + 0.005f64.powi(2)).sqrt(), 0.01), "{share}");
-    let contribution = |figure: &str| {
-        let line = found.budget.iter().find(|line| line.figure == figure).unwrap();
-        line.contribution / camera.margin
-    };
-    assert!(close(contribution("netd"), -0.02, 0.01) && close(contribution("f_number"), -0.02, 0.01));
-    assert!(close(contribution("exposure"), 0.005, 0.01));
-    assert!(close(found.budget.iter().map(|line| line.share).sum(), 1.0, 1e-12));
-    let drawn = found.draws.unwrap();
-    assert!(close(drawn.deviation, found.first_order, 0.02), "{drawn:?} {}", found.first_order);
-    assert!(close(0.25 * (drawn.interval[1] - drawn.interval[0]), found.first_order, 0.02), "{drawn:?}");
-    assert!(found.low <= camera.margin - 2.0 * found.first_order && found.high >= drawn.interval[1]);
-    // The nominal margin is that of the figures without their uncertainties.
-    let plain = FIGURES.lines().map(|line| {
-        let (key, value) = line.split_once(" = { value = ").unwrap();
-        format!("{key} = {}\n", value.split(", u").next().unwrap())
-    });
-    let certain = only(&uncertain(&plain.collect::<String>(), 0.01, ""));
-    assert!(certain.uncertainty.is_none() && close(certain.margin, camera.margin, 1e-9));
-}
-
-/// 0.07 above or below the demand with 3 % of uncertainty is decided by two deviations, 0.03 is not; exit code 3 is not 'yes'.
-#[test]
-fn a_camera_near_the_demand_is_undecided() {
-    let least = only(&uncertain(FIGURES, 1.0, "")).statistical_distance;
-    for (factor, verdict) in
-        [(0.9, Verdict::Meets), (0.97, Verdict::Undecided), (1.03, Verdict::Undecided), (1.1, Verdict::Fails)]
-    {
-        let text = uncertain(FIGURES, factor * least, "");
-        let camera = only(&text);
-        assert_eq!((camera.verdict, camera.passes), (verdict, verdict == Verdict::Meets), "{factor}");
-        let folder = Folder::with(&text);
-        let outcome = folder.run(&["rule", "a.toml", "--check"]);
-        assert_eq!(
-            outcome.code,
-            if verdict == Verdict::Meets { 0 } else { 3 },
-            "{factor}: {}",
-            outcome.stdout
-        );
-        if verdict == Verdict::Undecided {
-            assert!(outcome.stdout.contains("undecided: the margin lies between"), "{}", outcome.stdout);
-            let json = folder.json(&["rule", "a.toml"]);
-            assert_eq!(json["cameras"][0]["verdict"], "undecided");
-            assert!(
-                json["sentence"].as_str().unwrap().starts_with("Whether ours meets the rule is undecided.")
-            );
-        }
-        // With a wider guard the surest are undecided too.
-        let wide = only(&uncertain(FIGURES, factor * least, "[uncertainty]\ncoverage_factor = 5\n"));
-        assert_eq!(wide.verdict, Verdict::Undecided, "{factor}");
-    }
-}
-
-/// A figure that no longer is as it was when its uncertainty is 0 would say that the camera was put together otherwise.
-#[test]
-fn a_figure_that_is_stated_again_is_the_same_camera() {
-    for preset in presets::all().unwrap().iter().filter(|preset| preset.camera().is_ok()) {
-        let text = NIGHT.replace("cameras = [\"flir-a325sc\"]\n", "");
-        let (scene, _) = text.split_once("[bands]").unwrap();
-        let scene = format!("{scene}[envelope]\ntemperature = [\"25 degC\", \"37 degC\"]\n");
-        let own = only(&format!("{scene}[[camera]]\npreset = {:?}\n", preset.name));
-        let same =
-            only(&format!("{scene}[[camera]]\npreset = {:?}\nexposure = {{ u = \"0 s\" }}\n", preset.name));
-        // One band tells nothing apart, and what is 0 has no uncertainty.
-        let Some(found) = same.uncertainty else { continue };
-        assert!(close(same.margin, own.margin, 1e-12), "{}", preset.name);
-        assert!(
-            close(found.draws.unwrap().mean, own.margin, 1e-9),
-            "{}: {found:?} {}",
-            preset.name,
-            own.margin
-        );
-    }
 }
 
 #[test]
@@ -375,20 +228,6 @@ fn mistakes_in_rules_as_people_write_them() {
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
-    // What only the cameras know.
-    let text = uncertain(
-        "exposure = \"10 ms\"\nnetd = { value = \"50 mK\", u = \"30 mK\" }\nf_number = 1.0",
-        1.0,
-        "",
-    );
-    let error = RuleStudy::new(&Rule::from_toml(&text, None).unwrap(), library())
-        .and_then(|study| study.answer(&RuleAsked::default(), &|_, _| ()))
-        .unwrap_err()
-        .to_string();
-    assert!(
-        error.contains("camera[0].netd: its uncertainty leads to -0.0100 K, which no netd can be"),
-        "{error}"
-    );
 }
 
 /// What a rule is filled in with is a rule that says the same.
@@ -474,22 +313,4 @@ fn what_spoils_a_picture_spoils_every_clause() {
     assert_eq!(measured(&full).verdict, Verdict::Meets);
     let full = measured(&(full + "full_well = 10\n"));
     assert!(full.fails_by.iter().any(|by| by.code() == "full-well"), "{full:?}");
-}
-
-/// Two figures, each of which fills the well only with the other: met by neither side of one, undecided by both.
-#[test]
-fn what_spoils_a_picture_by_several_figures_at_once_is_undecided() {
-    let scene = uncertain(
-        "exposure = { value = \"10 ms\", u = \"0.3 ms\" }\nnetd = \"50 mK\"\nf_number = 1.0\nfull_well = 1e30",
-        0.001,
-        "",
-    );
-    let reading = only(&scene).brightest_reading;
-    let well = |u: &str| {
-        scene.replace("full_well = 1e30", &format!("full_well = {{ value = {:e}, u = {u} }}", reading / 0.93))
-    };
-    assert_eq!(only(&well(&format!("{:e}", 1e-6 * reading))).verdict, Verdict::Meets);
-    let both = only(&well(&format!("{:e}", 0.03 * reading)));
-    assert_eq!(both.verdict, Verdict::Undecided);
-    assert!(both.undecided_by.iter().any(|by| by.code() == "full-well"));
 }

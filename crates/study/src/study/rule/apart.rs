@@ -62,6 +62,7 @@ pub(super) struct TellApart {
     /// With the defaults filled in that all cameras share.
     pub(super) scenario: Scenario,
     pub(super) stop: Option<StopSpec>,
+    pub(super) moving: Option<Moving>,
     pub(super) envelope: Envelope,
     pub(super) candidates: Vec<Candidate>,
     pub(super) required: f64,
@@ -116,8 +117,8 @@ impl TellApart {
         }
         let first = candidates.first().and_then(|candidate| candidate.near.first());
         let required = first.map_or(1.0, |study| study.required);
-        let rule = rule.clone();
-        Ok(Self { rule, scenario, stop: clause.stop, envelope, candidates, required, warnings })
+        let (rule, stop, moving) = (rule.clone(), clause.stop, Moving::of(clause));
+        Ok(Self { rule, scenario, stop, moving, envelope, candidates, required, warnings })
     }
 
     /// The first camera before the first material, from the least distance: what all of them share.
@@ -196,17 +197,6 @@ impl TellApart {
     pub(super) fn pace_m_s(&self) -> Option<f64> {
         let stop = self.stop.map(|spec| spec.stop().decisions()[1]);
         stop.map(|one| one.speed_m_s.max(one.closing_m_s)).or(self.scenario.requirement.speed_m_s)
-    }
-
-    /// Speed and distance at which the picture moves fastest; `None` where no speed is demanded.
-    pub(super) fn moving(&self) -> Option<Moving> {
-        match &self.stop {
-            Some(spec) => Some(Moving::before(spec.stop())),
-            None => self.scenario.requirement.speed_m_s.map(|speed_m_s| Moving {
-                speed_m_s,
-                distance_m: self.envelope.distance_m.map(|[least, _]| least),
-            }),
-        }
     }
 
     fn envelope_result(&self) -> EnvelopeResult {

@@ -20,7 +20,18 @@ pub(super) struct Moving {
 }
 
 impl Moving {
-    pub(super) fn before(stop: &Stop) -> Self {
+    /// Of a clause, from the least of its distances; `None` where no speed is demanded.
+    pub(super) fn of(clause: &Clause) -> Option<Self> {
+        match &clause.stop {
+            Some(spec) => Some(Self::before(spec.stop())),
+            None => clause.scenario.requirement.speed_m_s.map(|speed_m_s| Self {
+                speed_m_s,
+                distance_m: clause.envelope().distance_m.map(|[least, _]| least),
+            }),
+        }
+    }
+
+    fn before(stop: &Stop) -> Self {
         let swiftest = stop.swiftest();
         let speed_m_s = swiftest.speed_m_s.max(swiftest.closing_m_s);
         Self { speed_m_s, distance_m: Some(swiftest.distance_m) }
@@ -86,19 +97,6 @@ pub(super) fn spoiled(
     };
     let late = stop.and_then(|stop| Approach::of(stop, camera, bands).shortfall());
     blurred.into_iter().chain(late).collect()
-}
-
-impl Moving {
-    /// Of a clause, from the least of its distances.
-    pub(super) fn of(clause: &Clause) -> Option<Self> {
-        match &clause.stop {
-            Some(spec) => Some(Self::before(spec.stop())),
-            None => clause.scenario.requirement.speed_m_s.map(|speed_m_s| Self {
-                speed_m_s,
-                distance_m: clause.envelope().distance_m.map(|[least, _]| least),
-            }),
-        }
-    }
 }
 
 impl StopResult {

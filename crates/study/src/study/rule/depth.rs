@@ -96,10 +96,11 @@ impl DepthClause {
             hadar::words::share(share)
         );
         if self.cameras.iter().any(|camera| camera.air) {
-            definition += " (the air of the rule is not in it)";
+            definition += " (the air of the rule is not in it: no camera is said to meet it)";
         }
         if self.cameras.iter().any(|camera| !camera.named.uncertainty.is_empty()) {
-            definition += " (uncertainties of the cameras' figures are not carried into it)";
+            definition +=
+                " (uncertain figures are not carried into it: no camera that has some is said to meet it)";
         }
         Ok(MeasuredAnswer { quantity, demanded, definition, cameras: verdicts })
     }
@@ -133,14 +134,19 @@ impl DepthClause {
         if found.warnings.iter().any(|warning| matches!(warning, Warning::PixelFull { .. })) {
             fails_by.push(Shortfall::FullWell);
         }
-        let passes = fails_by.is_empty();
+        // The street has no air, and is rendered for each camera as it is stated: who passes without either may not with them.
+        let unasked = before.air || !before.named.uncertainty.is_empty();
+        let (verdict, undecided_by) = match (fails_by.is_empty(), unasked) {
+            (false, _) => (Verdict::Fails, Vec::new()),
+            (true, true) => (Verdict::Undecided, vec![Shortfall::DepthError]),
+            (true, false) => (Verdict::Meets, Vec::new()),
+        };
         Ok(MeasuredVerdict {
             name: before.named.name.clone(),
-            verdict: if passes { Verdict::Meets } else { Verdict::Fails },
-            passes,
+            verdict,
+            passes: verdict == Verdict::Meets,
             fails_by,
-            // A street is rendered for each camera: what its figures' uncertainties do is not asked.
-            undecided_by: Vec::new(),
+            undecided_by,
             uncertainty: None,
             value: (margin > 0.0).then(|| demanded / margin),
             margin,

@@ -127,7 +127,7 @@ impl TellApart {
     /// The longest that the rule allows to collect light, s, and why.
     fn longest(&self, cameras: &[&Camera]) -> (f64, LightTime) {
         let frames = cameras.iter().map(|camera| camera.frames).max().unwrap_or(1);
-        let moving = self.moving();
+        let moving = self.moving;
         let sharp = cameras.iter().filter_map(|camera| {
             let Moving { speed_m_s, distance_m } = moving?;
             Some(Motion::of(camera, distance_m)?.longest_s(speed_m_s))

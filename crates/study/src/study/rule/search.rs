@@ -6,11 +6,11 @@
 
 use super::super::{NearestState, Shortfall, Study, Surface, Warning, warn};
 use super::apart::{Candidate, TellApart};
-use super::approach::Approach;
+use super::approach::spoiled;
 use super::envelope::{Estimate, Sighted, brightest};
 use super::results::{CameraVerdict, Certified, Fixes, Grade, LimitingScene, Proviso, WithoutPlaceholders};
 use super::uncertainty::{self, Judged};
-use crate::scenario::rule::Verdict;
+use crate::scenario::rule::{StopSpec, Verdict};
 use hadar::demand::{self, Reason, Thing};
 use hadar::error::{Error, Result};
 use hadar::fisher::Nuisance;
@@ -207,14 +207,12 @@ impl TellApart {
             image.reading = image.reading.max(seen.brightest_reading);
         }
         let bands = candidate.near.first().map_or(1, |near| near.bands.len());
-        image.blur = self.moving().and_then(|moving| moving.blur_pixels(camera, bands));
+        image.blur = self.moving.and_then(|moving| moving.blur_pixels(camera, bands));
         let blurred =
             image.blur.map(|blur| camera.exposure_of_sweep_s(bands, camera.sweep_s(bands) / blur).max(0.0));
         let full = camera.full_well.map(|full| camera.exposure_s * full / image.reading);
         image.longest_exposure_s = blurred.into_iter().chain(full).reduce(f64::min);
-        if image.blur.is_some_and(|blur| blur >= 1.0) {
-            image.spoiled.push(Shortfall::MotionBlur);
-        }
+        image.spoiled = spoiled(self.moving, self.stop.as_ref().map(StopSpec::stop), camera, bands);
         if camera.full_well.is_some_and(|full| image.reading > full) {
             image.spoiled.push(Shortfall::FullWell);
         }
@@ -223,12 +221,6 @@ impl TellApart {
         {
             image.spoiled.push(Shortfall::FrameRate);
         }
-        if self.moving().is_some() && image.blur.is_none() {
-            // What cannot be said is not met.
-            image.spoiled.push(Shortfall::MotionUnknown);
-        }
-        let approach = self.stop.map(|spec| Approach::of(spec.stop(), camera, bands));
-        image.spoiled.extend(approach.and_then(|approach| approach.shortfall()));
         image
     }
 
@@ -248,7 +240,7 @@ impl TellApart {
         warnings.extend(near.size_unknown(camera, farthest_m));
         let assumed = camera.assumed.iter().cloned();
         warnings.extend(assumed.map(|figure| Warning::CameraFigureAssumed { figure }));
-        if self.moving().is_some() && self.image(candidate, camera).blur.is_none() {
+        if self.moving.is_some() && self.image(candidate, camera).blur.is_none() {
             warnings.push(Warning::RuleMotionBlurUnknown);
         }
         warnings
