@@ -93,7 +93,7 @@ pub use base::{
 pub(crate) use base::{simd, wide};
 pub use limits::{fisher, identifiability, policy, ranging};
 pub use physics::{atmosphere, material, planck, scene, spectrum};
-pub use witness::{render, simulate};
+pub use witness::{decompose, render, simulate};
 
 #[cfg(doctest)]
 #[doc = include_str!("README.md")]

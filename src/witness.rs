@@ -1,4 +1,5 @@
 //! Witnesses of the limits: what draws counts and views, and estimates from them.
 
+pub mod decompose;
 pub mod render;
 pub mod simulate;

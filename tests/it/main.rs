@@ -2,6 +2,7 @@
 
 mod cameras;
 mod decision;
+mod decompose;
 mod derivatives;
 mod detection_reference;
 mod exact_probability;

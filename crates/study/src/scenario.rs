@@ -19,6 +19,7 @@ pub use hadar::material::Extrapolation;
 pub mod atmosphere;
 pub mod bands;
 mod camera;
+pub mod decompose;
 mod entries;
 pub mod envelope;
 pub mod examples;
@@ -35,6 +36,7 @@ mod write;
 
 pub use atmosphere::{AtmosphereSource, AtmosphereSpec};
 pub use bands::{BandSource, BandsSpec};
+pub use decompose::DecomposeScenario;
 pub use envelope::Envelope;
 pub use range::RangeScenario;
 pub use rule::Rule;

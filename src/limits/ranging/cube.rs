@@ -103,14 +103,25 @@ impl Shape {
 pub trait Sample: bytemuck::Pod + Into<f64> + PartialOrd + Debug + Send + Sync + 'static {
     /// Its name in messages, `f32` or `f64`.
     const NAME: &'static str;
+
+    /// The nearest sample to a number.
+    fn of(value: f64) -> Self;
 }
 
 impl Sample for f32 {
     const NAME: &'static str = "f32";
+
+    fn of(value: f64) -> Self {
+        value as Self
+    }
 }
 
 impl Sample for f64 {
     const NAME: &'static str = "f64";
+
+    fn of(value: f64) -> Self {
+        value
+    }
 }
 
 /// A cube that gives its rows.

@@ -11,6 +11,7 @@ pub(super) enum Kind {
     Scenario,
     Rule,
     Range,
+    Decompose,
     Materials,
     Cameras,
 }
@@ -32,6 +33,11 @@ struct Row {
 
 const TABLE: &[Row] = &[
     Row { kind: Kind::Materials, told_by: &[("material", Form::Tables)], name: "a manifest of materials" },
+    Row {
+        kind: Kind::Decompose,
+        told_by: &[("library", Form::Any), ("truth", Form::Any)],
+        name: "a decomposition scenario",
+    },
     Row {
         kind: Kind::Range,
         told_by: &[("scene", Form::Any), ("cube", Form::Any), ("stereo", Form::Any)],
@@ -108,6 +114,7 @@ impl Kind {
             Kind::Scenario => (row.name, format!("hadar size {file}")),
             Kind::Rule => (row.name, format!("hadar rule {file}")),
             Kind::Range => (row.name, format!("hadar range {file}")),
+            Kind::Decompose => (row.name, format!("hadar decompose {file}")),
             Kind::Materials => (row.name, "name a scenario, and give its folder to --library".into()),
             Kind::Cameras => {
                 ("a list of cameras", "write one as [camera] of a scenario that has a [target]".into())

@@ -33,6 +33,7 @@ struct NpyCube<S> {
     start: u64,
     /// Whether the bytes of a sample stand in the other order than this processor's.
     swapped: bool,
+    stored: Stored,
     sample: PhantomData<S>,
 }
 
@@ -41,7 +42,7 @@ pub(super) fn open(mut file: File, path: &Path) -> Result<Cube> {
     let unreadable = |error: std::io::Error| Error::file(READ_CUBE, path, error);
     let len = file.metadata().map_err(unreadable)?.len();
     let (header, start) = header(&mut file, len)?;
-    let (double, order) = sample_type(&header.dtype())?;
+    let (stored, order) = sample_type(&header.dtype())?;
     let shape = shape(&header)?;
     if header.order() == Order::Fortran {
         return Err(Error::malformed(
@@ -49,14 +50,47 @@ pub(super) fn open(mut file: File, path: &Path) -> Result<Cube> {
             "write it with np.save(path, np.ascontiguousarray(a))",
         ));
     }
-    let size = if double { size_of::<f64>() } else { size_of::<f32>() };
-    check_len(len.saturating_sub(start), shape.len() as u64 * size as u64)?;
+    check_len(len.saturating_sub(start), shape.len() as u64 * stored.bytes() as u64)?;
     let (path, swapped) = (path.to_owned(), order != Endianness::of_machine());
-    Ok(if double {
-        Cube::F64(Box::new(NpyCube { file, path, shape, start, swapped, sample: PhantomData }))
+    Ok(if stored.is_double() {
+        Cube::F64(Box::new(NpyCube { file, path, shape, start, swapped, stored, sample: PhantomData }))
     } else {
-        Cube::F32(Box::new(NpyCube { file, path, shape, start, swapped, sample: PhantomData }))
+        Cube::F32(Box::new(NpyCube { file, path, shape, start, swapped, stored, sample: PhantomData }))
     })
+}
+
+/// What a sample is in the file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Stored {
+    Float(usize),
+    Unsigned(usize),
+    Signed(usize),
+}
+
+impl Stored {
+    fn bytes(self) -> usize {
+        let (Self::Float(bytes) | Self::Unsigned(bytes) | Self::Signed(bytes)) = self;
+        bytes
+    }
+
+    /// Whether an `f32` does not hold all of its values.
+    fn is_double(self) -> bool {
+        match self {
+            Self::Float(bytes) => bytes > 4,
+            Self::Unsigned(bytes) | Self::Signed(bytes) => bytes > 2,
+        }
+    }
+
+    /// A whole number of which the bytes are given, the least first.
+    fn whole(self, bytes: &[u8]) -> f64 {
+        let mut wide = [0; 8];
+        wide[..bytes.len()].copy_from_slice(bytes);
+        let shift = 64 - 8 * bytes.len() as u32;
+        match self {
+            Self::Signed(_) => ((u64::from_le_bytes(wide) << shift) as i64 >> shift) as f64,
+            _ => u64::from_le_bytes(wide) as f64,
+        }
+    }
 }
 
 /// The header, and how many bytes it takes.
@@ -122,23 +156,25 @@ fn depth(text: &[u8]) -> usize {
     most
 }
 
-/// Whether samples are doubles, and the order of their bytes.
-fn sample_type(dtype: &DType) -> Result<(bool, Endianness)> {
-    match dtype {
-        DType::Plain(plain) if plain.type_char() == TypeChar::Float && plain.size_field() == 8 => {
-            Ok((true, plain.endianness()))
-        }
-        DType::Plain(plain) if plain.type_char() == TypeChar::Float && plain.size_field() == 4 => {
-            Ok((false, plain.endianness()))
-        }
-        other => {
-            let name: String = other.descr().chars().take(80).collect();
-            Err(Error::malformed(
-                format!("the samples are of type {name}, not f4 or f8"),
-                "write them with np.save(path, a.astype(np.float32))",
-            ))
+/// What samples are, and the order of their bytes.
+fn sample_type(dtype: &DType) -> Result<(Stored, Endianness)> {
+    if let DType::Plain(plain) = dtype {
+        let bytes = usize::try_from(plain.size_field()).unwrap_or(usize::MAX);
+        let stored = match (plain.type_char(), bytes) {
+            (TypeChar::Float, 4 | 8) => Some(Stored::Float(bytes)),
+            (TypeChar::Uint, 1 | 2 | 4 | 8) => Some(Stored::Unsigned(bytes)),
+            (TypeChar::Int, 1 | 2 | 4 | 8) => Some(Stored::Signed(bytes)),
+            _ => None,
+        };
+        if let Some(stored) = stored {
+            return Ok((stored, plain.endianness()));
         }
     }
+    let name: String = dtype.descr().chars().take(80).collect();
+    Err(Error::malformed(
+        format!("the samples are of type {name}, not f4, f8 or whole numbers"),
+        "write them with np.save(path, a.astype(np.float32))",
+    ))
 }
 
 fn shape(header: &NpyHeader) -> Result<Shape> {
@@ -183,8 +219,9 @@ impl<S: Sample> Rows<S> for NpyCube<S> {
             buffer.resize(len, S::zeroed());
         }
         let samples = &mut buffer[..len];
-        let place = self.start + (rows.start * self.shape.row_len() * size_of::<S>()) as u64;
-        read_at(&self.file, &self.path, bytemuck::cast_slice_mut(samples), place).map_err(|error| {
+        let size = self.stored.bytes();
+        let place = self.start + (rows.start * self.shape.row_len() * size) as u64;
+        let unread = |error: std::io::Error| {
             let found = match error.kind() {
                 std::io::ErrorKind::UnexpectedEof => {
                     "the file has become shorter since it was opened; open it again".to_owned()
@@ -193,7 +230,19 @@ impl<S: Sample> Rows<S> for NpyCube<S> {
             };
             let action = format!("read rows {} to {} of the cube", rows.start, rows.end);
             Error::file(action, &self.path, found)
-        })?;
+        };
+        if !matches!(self.stored, Stored::Float(_)) {
+            let mut bytes = vec![0; len * size];
+            read_at(&self.file, &self.path, &mut bytes, place).map_err(unread)?;
+            for (sample, bytes) in samples.iter_mut().zip(bytes.chunks_exact_mut(size)) {
+                if self.swapped != cfg!(target_endian = "big") {
+                    bytes.reverse();
+                }
+                *sample = S::of(self.stored.whole(bytes));
+            }
+            return Ok(samples);
+        }
+        read_at(&self.file, &self.path, bytemuck::cast_slice_mut(samples), place).map_err(unread)?;
         if self.swapped {
             swap_bytes(samples);
         }

@@ -39,7 +39,8 @@ impl Cube {
     /// is, not its name. `variable` names the array in a MATLAB file; it may be left out where only one array is
     /// three-dimensional, or only one is there.
     ///
-    /// An NPY file is read by rows where they are asked for, in C order, `f4` or `f8` of either byte order. An array
+    /// An NPY file is read by rows where they are asked for, in C order: `f4`, `f8` or whole numbers of either byte order,
+    /// those of more than 16 bits as `f64` (above 2⁵³ rounded), the others as `f32`. An array
     /// of a MATLAB file is read whole; it takes its own size of memory and, until this returns, that of up to
     /// 16 bands more. Its doubles and integers of more than 16 bits become `f64` (integers above 2⁵³ are rounded),
     /// singles and smaller integers `f32`.

@@ -1,0 +1,126 @@
+//! A decomposition scenario: a heat cube, the spectra of its surroundings, a library, what is unknown, and the truth if there is one.
+//!
+//! It shares `[bands]` and `[camera]` with a [`super::Scenario`], and their habits: quantities are strings with their unit, every value
+//! is checked when it is read, an error names file, line and key.
+
+mod read;
+mod write;
+
+use super::{BandsSpec, CameraSpec, MaterialRef, Source};
+use hadar::error::Place;
+use std::path::PathBuf;
+
+/// Everything a decomposition scenario says.
+#[derive(Debug, Clone)]
+pub struct DecomposeScenario {
+    /// What it is about, for headings.
+    pub title: Option<String>,
+    /// The counts (`[cube]`).
+    pub cube: HeatCube,
+    /// The bands of the cube.
+    pub bands: BandsSpec,
+    /// The camera, where it says what the counts are.
+    pub camera: Option<CameraSpec>,
+    /// Spectra of the surroundings (`[[environment]]`).
+    pub environment: Vec<LightSource>,
+    /// The materials that a pixel may be (`[library]`).
+    pub library: LibrarySpec,
+    /// What is unknown (`[unknown]`).
+    pub unknown: PixelUnknown,
+    /// What is there, where that is known (`[truth]`).
+    pub truth: Option<TruthSpec>,
+    /// Where it was read from.
+    pub source: Source,
+}
+
+/// A heat cube in a file (`[cube]`). Paths are absolute.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HeatCube {
+    /// Samples `[row][column][band]`.
+    pub data: PathBuf,
+    /// Name of the variable in a .mat file.
+    pub variable: Option<String>,
+    /// What a sample is.
+    pub unit: CubeUnit,
+    /// Deviation of the electronic noise of a sample, in the unit of the cube.
+    pub noise: Option<f64>,
+    /// Bands that are left out, counted from 0 in the order of the cube.
+    pub bad_bands: Vec<usize>,
+}
+
+/// What the samples of a cube are.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum CubeUnit {
+    /// Counts, so many for each photon s⁻¹ m⁻² sr⁻¹ per cm⁻¹ of a band's mean radiance.
+    CountsPerPhotonRadiance(f64),
+    /// Counts of the scenario's camera.
+    Camera,
+    /// Radiance in W m⁻² sr⁻¹ per cm⁻¹, with a noise that is stated.
+    Radiance,
+}
+
+/// Where the spectrum of one of the surroundings is from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum LightSource {
+    /// A column of a table of photon radiances, photons s⁻¹ m⁻² sr⁻¹ per cm⁻¹.
+    Spectrum {
+        /// The table.
+        path: PathBuf,
+        /// Its column.
+        column: String,
+    },
+    /// A surface at a temperature, a blackbody without a material.
+    Surface {
+        /// Its material.
+        material: Option<MaterialRef>,
+        /// Its temperature, K.
+        temperature_k: f64,
+    },
+    /// The mean of rows of the cube itself, from the first up to the second.
+    Rows([usize; 2]),
+}
+
+/// The materials that a pixel may be (`[library]`).
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct LibrarySpec {
+    /// A table of one column a material.
+    pub path: Option<PathBuf>,
+    /// Materials by name, of the table or of the program's library; all if silent.
+    pub materials: Option<Vec<MaterialRef>>,
+    /// Prior probability of each of them, in any scale; equal if silent.
+    pub prior: Option<Vec<f64>>,
+    /// Root mean square error of the emissivities.
+    pub emissivity_error: Option<f64>,
+    /// Length over which these errors are correlated, cm⁻¹.
+    pub emissivity_correlation_cm1: Option<f64>,
+}
+
+/// What is unknown of every pixel, besides its material and lighting (`[unknown]`).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PixelUnknown {
+    /// Temperatures that a pixel may have, K, the lower first.
+    pub temperature_k: [f64; 2],
+    /// The known sum of the lighting factors; at most 1 if silent.
+    pub lighting_total: Option<f64>,
+    /// Whether the scale of the counts is unknown.
+    pub gain: bool,
+}
+
+/// Maps of what is there (`[truth]`).
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct TruthSpec {
+    /// Place in the library of each pixel's material.
+    pub material: Option<PathBuf>,
+    /// Temperature, K.
+    pub temperature: Option<PathBuf>,
+    /// Lighting factors `[row][column][surroundings]`, or a map for each of the first surroundings.
+    pub lighting: Vec<PathBuf>,
+}
+
+impl DecomposeScenario {
+    /// Where a key stands, as [`super::Scenario::place`].
+    #[must_use]
+    pub fn place(&self, key: &str) -> Place {
+        self.source.place(key)
+    }
+}

@@ -1,0 +1,218 @@
+//! Reads a decomposition scenario: every key checked, every error one line with file, line and key.
+
+use super::super::kind::Kind;
+use super::super::paths::{file, material};
+use super::super::read::{document, text_of};
+use super::super::section::{Entry, Section};
+use super::super::{BandsSpec, Source, camera};
+use super::{CubeUnit, DecomposeScenario, HeatCube, LibrarySpec, LightSource, PixelUnknown, TruthSpec};
+use hadar::allowed::{ABOVE_ZERO, ABSOLUTE_TEMPERATURE, SHARE};
+use hadar::error::{Error, Result};
+use hadar::units::Dimension;
+use std::path::Path;
+
+const TABLES: &[&str] = &["title", "cube", "bands", "camera", "environment", "library", "unknown", "truth"];
+const MINIMUM: &str =
+    "write [cube] with data = \"counts.npy\", [bands], and [library] with path = \"library.csv\"";
+/// Temperatures of a scene where nothing is said, K.
+const TEMPERATURES_K: [f64; 2] = [200.0, 400.0];
+const RADIANCE: &str = "W m^-2 sr^-1 per cm^-1";
+
+impl DecomposeScenario {
+    /// Reads a decomposition scenario. Relative paths in it start from its directory.
+    ///
+    /// # Errors
+    /// The first thing that is wrong, in one line with file, line and key, as [`crate::scenario::Scenario::from_file`].
+    pub fn from_file(path: &Path) -> Result<Self> {
+        Self::from_toml(&text_of(path)?, Some(path))
+    }
+
+    /// Reads a decomposition scenario from text; `path` as in [`crate::scenario::Scenario::from_toml`].
+    ///
+    /// # Errors
+    /// As [`DecomposeScenario::from_file`], except those of the file itself.
+    ///
+    /// ```
+    /// use hadar_study::scenario::DecomposeScenario;
+    /// let text = r#"
+    ///     [cube]
+    ///     data = "counts.npy"
+    ///     counts_per_photon_radiance = 2e-14
+    ///     [bands]
+    ///     start = "720 cm^-1"
+    ///     stop = "1250 cm^-1"
+    ///     step = "10 cm^-1"
+    ///     [[environment]]
+    ///     temperature = "-10 degC"
+    ///     [library]
+    ///     materials = ["skin", "aluminium"]
+    /// "#;
+    /// let scenario = DecomposeScenario::from_toml(text, None)?;
+    /// assert_eq!(scenario.unknown.temperature_k, [200.0, 400.0]);
+    /// let error = DecomposeScenario::from_toml(&text.replace("2e-14", "-1"), None).unwrap_err();
+    /// assert!(error.to_string().starts_with("line 4: cube.counts_per_photon_radiance: -1 is out of range"));
+    /// # Ok::<(), hadar::Error>(())
+    /// ```
+    pub fn from_toml(text: &str, path: Option<&Path>) -> Result<Self> {
+        let mut source = Source { path: path.map(Path::to_owned), ..Source::default() };
+        let document = document(text, (Kind::Decompose, MINIMUM), &mut source)?;
+        let root = Section::open(&document, "", &source, TABLES)?;
+        let missing = |key: &str| root.fail(key, Error::malformed("the table is missing", MINIMUM));
+        let camera = root.read("camera", camera::read)?;
+        let cube = root.get("cube").ok_or_else(|| missing("cube"))?;
+        let unknown = root.read("unknown", unknown)?.unwrap_or_default();
+        let scenario = Self {
+            title: root.read("title", |entry| Ok(entry.text("\"What is in this street?\"")?.to_owned()))?,
+            cube: heat_cube(&cube, camera.is_some())?,
+            bands: root.read("bands", BandsSpec::read)?.ok_or_else(|| missing("bands"))?,
+            camera,
+            environment: root
+                .read("environment", |entry| entry.items("[[environment]]")?.iter().map(light).collect())?
+                .unwrap_or_default(),
+            library: root.read("library", library)?.ok_or_else(|| missing("library"))?,
+            unknown,
+            truth: root.read("truth", truth)?,
+            source: Source::default(),
+        };
+        Ok(Self { source, ..scenario })
+    }
+}
+
+impl Default for PixelUnknown {
+    fn default() -> Self {
+        Self { temperature_k: TEMPERATURES_K, lighting_total: None, gain: false }
+    }
+}
+
+fn heat_cube(entry: &Entry<'_>, camera: bool) -> Result<HeatCube> {
+    let section =
+        entry.section(&["data", "variable", "counts_per_photon_radiance", "unit", "noise", "bad_bands"])?;
+    section.at_most_one(&["counts_per_photon_radiance", "unit"])?;
+    let counts = section.number("counts_per_photon_radiance", "2.2e-14", ABOVE_ZERO)?;
+    let radiance = section.choice("unit", &[(RADIANCE, ())])?.is_some();
+    let noise = section.number("noise", "1e-4", ABOVE_ZERO)?;
+    let unit = match (counts, radiance, camera) {
+        (Some(_), _, true) | (_, true, true) => {
+            let found = "a [camera] and a unit say twice what a sample is";
+            return Err(entry.fail(Error::malformed(found, "leave one of them out")));
+        }
+        (Some(counts), ..) => CubeUnit::CountsPerPhotonRadiance(counts),
+        (None, true, _) if noise.is_none() => {
+            let found = "radiances alone do not say how they scatter";
+            let instead = "write noise = 1e-4, the deviation of a sample in that unit";
+            return Err(section.fail("unit", Error::malformed(found, instead)));
+        }
+        (None, true, _) => CubeUnit::Radiance,
+        (None, false, true) => CubeUnit::Camera,
+        (None, false, false) => {
+            let found = "nothing says what a sample is";
+            let instead = format!(
+                "write counts_per_photon_radiance = 2.2e-14, unit = \"{RADIANCE}\" with a noise, or a [camera]"
+            );
+            return Err(entry.fail(Error::malformed(found, instead)));
+        }
+    };
+    Ok(HeatCube {
+        data: file(&section.require("data", "\"counts.npy\"")?)?,
+        variable: section.read("variable", |entry| Ok(entry.text("\"S\"")?.trim().to_owned()))?,
+        unit,
+        noise,
+        bad_bands: section
+            .read("bad_bands", |entry| {
+                let items = entry.items("bad_bands = [0, 53]")?;
+                items.iter().map(|item| item.count("53").map(|band| band as usize)).collect()
+            })?
+            .unwrap_or_default(),
+    })
+}
+
+fn light(entry: &Entry<'_>) -> Result<LightSource> {
+    let section = entry.section(&["spectrum", "column", "material", "temperature", "rows"])?;
+    let kinds = ["spectrum", "rows", "temperature"];
+    let instead = "write temperature = \"-10 degC\", spectrum = \"light.csv\" with column = \"sky\", or rows = [0, 540]";
+    match section.at_most_one(&kinds)? {
+        Some("spectrum") => Ok(LightSource::Spectrum {
+            path: file(&section.require("spectrum", "\"light.csv\"")?)?,
+            column: section.require("column", "\"sky\"")?.text("\"sky\"")?.trim().to_owned(),
+        }),
+        Some("rows") => {
+            let [first, last] = section.require("rows", "[0, 540]")?.pair("[0, 540]")?;
+            let [first, last] = [first.count("0")? as usize, last.count("540")? as usize];
+            if first < last {
+                return Ok(LightSource::Rows([first, last]));
+            }
+            let found = format!("no row from {first} up to {last}");
+            Err(section
+                .fail("rows", Error::malformed(found, "write the first row, and the one after the last")))
+        }
+        Some(_) => Ok(LightSource::Surface {
+            material: section.read("material", material)?,
+            temperature_k: section
+                .require("temperature", "\"-10 degC\"")?
+                .quantity(Dimension::Temperature, ABSOLUTE_TEMPERATURE)?,
+        }),
+        None => Err(entry.fail(Error::malformed("nothing says what these surroundings send", instead))),
+    }
+}
+
+fn library(entry: &Entry<'_>) -> Result<LibrarySpec> {
+    let section =
+        entry.section(&["path", "materials", "prior", "emissivity_error", "emissivity_correlation"])?;
+    let spec = LibrarySpec {
+        path: section.read("path", file)?,
+        materials: section.read("materials", |entry| {
+            entry.items("materials = [\"skin\", \"aluminium\"]")?.iter().map(material).collect()
+        })?,
+        prior: section.read("prior", |entry| {
+            entry.items("prior = [1.0, 0.2]")?.iter().map(|item| item.number("1.0", ABOVE_ZERO)).collect()
+        })?,
+        emissivity_error: section.number("emissivity_error", "0.01", SHARE)?,
+        emissivity_correlation_cm1: section.quantity(
+            "emissivity_correlation",
+            Dimension::Wavenumber,
+            ABOVE_ZERO,
+        )?,
+    };
+    if spec.path.is_none() && spec.materials.is_none() {
+        let instead = "write path = \"library.csv\" or materials = [\"skin\", \"aluminium\"]";
+        return Err(entry.fail(Error::malformed("no materials", instead)));
+    }
+    if spec.emissivity_correlation_cm1.is_some() && spec.emissivity_error.is_none() {
+        let found = Error::malformed("a correlation of no error", "write emissivity_error = 0.01 too");
+        return Err(section.fail("emissivity_correlation", found));
+    }
+    Ok(spec)
+}
+
+fn unknown(entry: &Entry<'_>) -> Result<PixelUnknown> {
+    let section = entry.section(&["temperature", "lighting_total", "gain"])?;
+    let temperature = |end: &Entry<'_>| end.quantity(Dimension::Temperature, ABSOLUTE_TEMPERATURE);
+    let default = PixelUnknown::default();
+    Ok(PixelUnknown {
+        temperature_k: section
+            .read("temperature", |entry| {
+                let ends = entry.range("[\"250 K\", \"340 K\"]", temperature, |k| k)?;
+                if ends[0] < ends[1] {
+                    return Ok(ends);
+                }
+                Err(entry.fail(Error::malformed("a range of one temperature", "write two that differ")))
+            })?
+            .unwrap_or(default.temperature_k),
+        lighting_total: section.number("lighting_total", "1.0", SHARE)?,
+        gain: section.read("gain", Entry::boolean)?.unwrap_or(default.gain),
+    })
+}
+
+fn truth(entry: &Entry<'_>) -> Result<TruthSpec> {
+    let section = entry.section(&["material", "temperature", "lighting"])?;
+    Ok(TruthSpec {
+        material: section.read("material", file)?,
+        temperature: section.read("temperature", file)?,
+        lighting: section
+            .read("lighting", |entry| match entry.is_list() {
+                true => entry.items("[\"v1.npy\"]")?.iter().map(file).collect(),
+                false => Ok(vec![file(entry)?]),
+            })?
+            .unwrap_or_default(),
+    })
+}

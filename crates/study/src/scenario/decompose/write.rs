@@ -1,0 +1,90 @@
+//! Writes a decomposition scenario, as TOML and, in the same structure, for JSON.
+
+use super::super::camera;
+use super::super::entries::{Document, Entries, Part, entries, text};
+use super::super::paths::Paths;
+use super::{CubeUnit, DecomposeScenario, LightSource};
+use hadar::units::Dimension;
+use serde::{Serialize, Serializer};
+use std::path::Path;
+
+impl DecomposeScenario {
+    /// The scenario as TOML, with paths below `directory` written relative to it.
+    #[must_use]
+    pub fn to_toml_beside(&self, directory: &Path) -> String {
+        let absolute = std::path::absolute(directory).ok();
+        text(self.document(Paths { beside: absolute.as_deref() }), &self.source)
+    }
+
+    fn document(&self, paths: Paths<'_>) -> Document {
+        let mut document = Vec::new();
+        if let Some(title) = &self.title {
+            document.push(("title", Part::Value(title.as_str().into())));
+        }
+        let cube = &self.cube;
+        let (counts, unit) = match cube.unit {
+            CubeUnit::CountsPerPhotonRadiance(counts) => (Some(counts), None),
+            CubeUnit::Camera => (None, None),
+            CubeUnit::Radiance => (None, Some("W m^-2 sr^-1 per cm^-1")),
+        };
+        let whole = |numbers: &[usize]| numbers.iter().map(|n| *n as i64).collect::<Vec<_>>();
+        let written = Entries::default()
+            .put("data", paths.file(&cube.data))
+            .put_if("variable", cube.variable.clone())
+            .put_if("counts_per_photon_radiance", counts)
+            .put_if("unit", unit)
+            .put_if("noise", cube.noise)
+            .put_if("bad_bands", (!cube.bad_bands.is_empty()).then(|| whole(&cube.bad_bands)));
+        document.push(("cube", Part::Table(written)));
+        document.push(("bands", Part::Table(self.bands.written(paths))));
+        if let Some(spec) = &self.camera {
+            document.push(("camera", Part::Table(camera::written(spec, paths))));
+        }
+        let lights = self.environment.iter().map(|light| match light {
+            LightSource::Spectrum { path, column } => {
+                Entries::default().put("spectrum", paths.file(path)).put("column", column.clone())
+            }
+            LightSource::Surface { material, temperature_k } => Entries::default()
+                .put_if("material", material.as_ref().map(|material| paths.material(material)))
+                .put_quantity("temperature", Dimension::Temperature, Some(*temperature_k)),
+            LightSource::Rows(rows) => Entries::default().put("rows", whole(rows)),
+        });
+        document.push(("environment", Part::Tables(lights.collect())));
+        let library = &self.library;
+        let names = |materials: &Vec<_>| materials.iter().map(|m| paths.material(m)).collect::<Vec<_>>();
+        let written = Entries::default()
+            .put_if("path", library.path.as_ref().map(|path| paths.file(path)))
+            .put_if("materials", library.materials.as_ref().map(names))
+            .put_if("prior", library.prior.clone())
+            .put_if("emissivity_error", library.emissivity_error)
+            .put_quantity(
+                "emissivity_correlation",
+                Dimension::Wavenumber,
+                library.emissivity_correlation_cm1,
+            );
+        document.push(("library", Part::Table(written)));
+        let unknown = &self.unknown;
+        let written = Entries::default()
+            .put_range("temperature", Dimension::Temperature, Some(unknown.temperature_k))
+            .put_if("lighting_total", unknown.lighting_total)
+            .put("gain", unknown.gain);
+        document.push(("unknown", Part::Table(written)));
+        if let Some(truth) = &self.truth {
+            let file = |path: &Option<_>| path.as_ref().map(|path: &std::path::PathBuf| paths.file(path));
+            let lighting: Vec<String> = truth.lighting.iter().map(|path| paths.file(path)).collect();
+            let written = Entries::default()
+                .put_if("material", file(&truth.material))
+                .put_if("temperature", file(&truth.temperature))
+                .put_if("lighting", (!lighting.is_empty()).then_some(lighting));
+            document.push(("truth", Part::Table(written)));
+        }
+        document
+    }
+}
+
+/// The same keys as the TOML, quantities in the units used inside, with absolute paths.
+impl Serialize for DecomposeScenario {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        entries(self.document(Paths { beside: None }), serializer)
+    }
+}

@@ -1,0 +1,27 @@
+//! Heat cubes decomposed into material, temperature and lighting of every pixel, by maximum likelihood.
+//!
+//! A pixel sends S = e(m)·B(T) + (1 − e(m))·Σₖ Vₖ Sₖ (S44): material m of a library, temperature T, and how much of each of its
+//! surroundings' spectra Sₖ it scatters. For each material the likelihood of its counts is brought to its most over T and V within
+//! their range; what the materials are worth beside each other is their posterior. Where the photons do not tell, it is said.
+//!
+//! * [`Setting`], [`Options`]: what is known; [`decompose()`]: a cube to [`Maps`];
+//! * [`Pixel`], [`flag`]: what is found of a pixel, and what is said of it.
+//!
+//! Intervals are those of the Cramér–Rao bound at the fit, were the material certain; where a lighting factor is at its limit they hold
+//! for that limit. Assumptions: counts are Poisson with added Gaussian noise; bands are independent; the library is exact.
+//!
+//! Source: paper S44, S48, Methods 'TeX degeneracy'.
+
+mod fit;
+mod kernel;
+mod maps;
+mod model;
+mod pixel;
+mod screen;
+mod step;
+#[cfg(test)]
+mod tests;
+
+pub use maps::{Maps, Options, decompose};
+pub use model::{Light, MOST_SURROUNDINGS, Setting};
+pub use pixel::{CANDIDATE_SHARE, NO_FIT, NO_MATERIAL, Pixel, Spared, flag};

@@ -1,0 +1,112 @@
+//! Maximum likelihood of one material for one pixel: steps of Fisher scoring within the range of the unknowns.
+//!
+//! A step solves the quadratic form of the information at hand ([`super::step`]); one that makes the deviance larger is halved. The
+//! information is that of a perfect fit: where a material fits badly, or its temperature and lighting hardly differ, steps come out
+//! too long or too short by the same factor each time, which two of them tell (Aitken). The last step is short and taken without
+//! another look: what is left of it is its square.
+
+use super::kernel::{Asked, MOST, Sums, sums};
+use super::model::Model;
+use super::step::{Limits, State, Step};
+
+/// Length of the last step, squared, in deviations: of a fit that is only compared with others, and of the one that is told.
+pub(super) const COMPARED: f64 = 0.1;
+pub(super) const TOLD: f64 = 1e-6;
+/// Lengths from which a step is looked back at.
+const LONG: f64 = 1e-2;
+pub(super) const MOST_LOOKS: usize = 60;
+/// Share of the step before that is worth a correction.
+const NOTABLE: f64 = 0.05;
+
+/// A material at its best.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Fit {
+    pub(super) state: State,
+    pub(super) deviance: f64,
+}
+
+impl State {
+    /// A temperature with nothing held and no lighting yet.
+    pub(super) fn at(temperature_k: f64) -> Self {
+        Self { temperature_k, mixture: [0.0; MOST], free: [true; MOST], held: false }
+    }
+
+    /// Holds the weights that are 0.
+    pub(super) fn clear(&mut self, vertices: usize) {
+        for j in 0..vertices {
+            self.mixture[j] = self.mixture[j].max(0.0);
+            self.free[j] = self.mixture[j] > 0.0;
+        }
+    }
+}
+
+/// The best state of material `m` from a start, and how many looks that took.
+pub(super) fn fit(
+    model: &Model,
+    m: usize,
+    shifted: &[f64],
+    start: State,
+    short: f64,
+    at: &mut Sums,
+) -> (Fit, usize) {
+    let limits = model.limits();
+    let mut state = start;
+    let mut before: Option<(State, f64)> = None;
+    let mut last: Option<Step> = None;
+    let mut looks = 0;
+    loop {
+        let mixture = &state.mixture[..model.vertices];
+        sums(model, Asked { m, shifted, temperature_k: state.temperature_k, mixture }, at);
+        looks += 1;
+        if let Some((from, deviance)) = before
+            && !(at.deviance <= deviance)
+            && looks < MOST_LOOKS
+        {
+            state = from.halfway(&state, model.vertices);
+            last = None;
+            if from.is_near(&state) {
+                return (Fit { state: from, deviance }, looks);
+            }
+            continue;
+        }
+        let mut next = state;
+        let step = next.step(at, &limits);
+        if !(step.square >= short) || looks >= MOST_LOOKS {
+            return (Fit { state: next, deviance: at.deviance - step.square.max(0.0) }, looks);
+        }
+        let share = last.and_then(|last| step.share_of(&last, at, limits.unknowns)).unwrap_or(0.0);
+        if share.abs() > NOTABLE {
+            // What follows is no longer the step that was foreseen.
+            next.stretch(&step, (1.0 - share.min(0.9)).recip(), &limits);
+            last = None;
+        } else {
+            last = Some(step);
+        }
+        before = (step.square > LONG).then_some((state, at.deviance));
+        state = next;
+    }
+}
+
+impl State {
+    fn halfway(&self, to: &Self, vertices: usize) -> Self {
+        let mut middle = *to;
+        middle.temperature_k = 0.5 * (self.temperature_k + to.temperature_k);
+        for j in 0..vertices {
+            middle.mixture[j] = 0.5 * (self.mixture[j] + to.mixture[j]);
+            middle.free[j] = middle.mixture[j] > 0.0;
+        }
+        middle.held = self.held && to.held;
+        middle
+    }
+
+    fn is_near(&self, to: &Self) -> bool {
+        let apart = (0..MOST).map(|j| (self.mixture[j] - to.mixture[j]).abs()).fold(0.0, f64::max);
+        (self.temperature_k - to.temperature_k).abs() < 1e-9 * self.temperature_k && apart < 1e-9
+    }
+}
+
+impl Model {
+    pub(super) fn limits(&self) -> Limits {
+        Limits { range_k: self.range_k, vertices: self.vertices, gain: self.gain, unknowns: self.unknowns() }
+    }
+}

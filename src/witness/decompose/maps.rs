@@ -1,0 +1,170 @@
+//! A whole cube: rows in parallel, each read, decomposed and put into the maps.
+//!
+//! Every pixel is for itself, so the maps are the same for any number of threads, and only the rows that are in work are in memory.
+
+use super::model::{MOST_SURROUNDINGS, Model, Setting};
+use super::pixel::{Pixel, Spared, Task};
+use super::screen::Screen;
+use crate::error::{Error, Result};
+use crate::ranging::cube::{Cube, Rows, Sample, Shape};
+use rayon::prelude::*;
+
+/// Rows whose mean the bounds are laid out for.
+const SAMPLED_ROWS: usize = 16;
+
+/// How a cube is decomposed, besides its [`Setting`].
+#[derive(Debug, Clone, Default)]
+pub struct Options {
+    /// Prior probability of each material, in any scale; empty for equal ones.
+    pub prior: Vec<f64>,
+    /// Whether every material is fitted to every pixel, also those that a bound excludes.
+    pub no_skip: bool,
+}
+
+/// What is found of every pixel, `[row][column]`.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Maps {
+    /// [`Pixel::material`].
+    pub material: Vec<u16>,
+    /// [`Pixel::temperature_k`].
+    pub temperature_k: Vec<f32>,
+    /// [`Pixel::sigma_k`].
+    pub temperature_sigma_k: Vec<f32>,
+    /// [`Pixel::lighting`], `[row][column][surroundings]`.
+    pub lighting: Vec<f32>,
+    /// [`Pixel::p_value`].
+    pub p_value: Vec<f32>,
+    /// [`Pixel::posterior`].
+    pub posterior: Vec<f32>,
+    /// [`Pixel::candidates`].
+    pub candidates: Vec<u16>,
+    /// [`Pixel::flags`].
+    pub flags: Vec<u8>,
+    /// What was spared.
+    pub spared: Spared,
+}
+
+/// Decomposes a cube of counts; `done` is told how many rows are finished.
+///
+/// # Errors
+/// A setting that is impossible or of another number of bands than the cube; a cube that cannot be read.
+pub fn decompose(
+    setting: &Setting<'_>,
+    options: &Options,
+    cube: &Cube,
+    done: &(dyn Fn(usize) + Sync),
+) -> Result<Maps> {
+    let (found, expected) = (cube.shape().bands(), setting.bands.len());
+    if found != expected {
+        return Err(Error::Length { what: "bands of the cube".into(), found, expected });
+    }
+    match cube {
+        Cube::F32(rows) => whole(setting, options, rows.as_ref(), done),
+        Cube::F64(rows) => whole(setting, options, rows.as_ref(), done),
+    }
+}
+
+fn whole<S: Sample>(
+    setting: &Setting<'_>,
+    options: &Options,
+    cube: &dyn Rows<S>,
+    done: &(dyn Fn(usize) + Sync),
+) -> Result<Maps> {
+    let shape = cube.shape();
+    let model = Model::new(setting)?;
+    let mean = mean_counts(&model, cube)?;
+    let task = Task::new(model, setting, options, &mean)?;
+    let rows: Vec<(Vec<Pixel>, Spared)> = (0..shape.rows())
+        .into_par_iter()
+        .map_init(
+            || (task.room(), Vec::new()),
+            |(room, buffer), row| {
+                let samples = cube.read(row..row + 1, buffer)?;
+                let mut spared = Spared::default();
+                let pixels = samples
+                    .chunks(shape.bands())
+                    .map(|sample| {
+                        for (to, &band) in room.counts.iter_mut().zip(&task.model.used) {
+                            *to = sample[band].into();
+                        }
+                        task.pixel(room, &mut spared)
+                    })
+                    .collect();
+                done(1);
+                Ok((pixels, spared))
+            },
+        )
+        .collect::<Result<_>>()?;
+    Ok(Maps::of(&rows, shape, setting.surroundings.len()))
+}
+
+impl Task {
+    fn new(model: Model, setting: &Setting<'_>, options: &Options, mean: &[f64]) -> Result<Self> {
+        let materials = setting.library.len();
+        let prior = match options.prior.len() {
+            0 => vec![1.0; materials],
+            found if found == materials => options.prior.clone(),
+            found => {
+                return Err(Error::Length { what: "prior probabilities".into(), found, expected: materials });
+            }
+        };
+        if let Some(wrong) = prior.iter().find(|p| !(**p > 0.0 && p.is_finite())) {
+            return Err(Error::out_of_range("prior probability", *wrong, "", "above 0"));
+        }
+        let (mut kinds, mut alike): (Vec<usize>, Vec<usize>) = Default::default();
+        for m in 0..materials {
+            let same =
+                |&first: &usize| setting.library[first] == setting.library[m] && prior[first] == prior[m];
+            match kinds.iter().position(same) {
+                Some(kind) => alike[kind] += 1,
+                None => {
+                    kinds.push(m);
+                    alike.push(1);
+                }
+            }
+        }
+        let most = prior.iter().copied().fold(0.0, f64::max);
+        let handicap = kinds.iter().map(|&m| -2.0 * libm::log(prior[m] / most)).collect();
+        let screen = (!model.gain).then(|| Screen::new(&model, &kinds, mean));
+        Ok(Self { model, screen, kinds, alike, handicap, skip: !options.no_skip })
+    }
+}
+
+/// Mean counts of some rows of the cube, padded.
+fn mean_counts<S: Sample>(model: &Model, cube: &dyn Rows<S>) -> Result<Vec<f64>> {
+    let shape = cube.shape();
+    let (mut sum, mut count, mut buffer) = (vec![0.0; model.width], 0.0, Vec::new());
+    for row in (0..shape.rows()).step_by(shape.rows().div_ceil(SAMPLED_ROWS)) {
+        for sample in cube.read(row..row + 1, &mut buffer)?.chunks(shape.bands()) {
+            let counts = || model.used.iter().map(|&band| sample[band].into());
+            if counts().all(f64::is_finite) {
+                counts().zip(&mut sum).for_each(|(n, sum)| *sum += n);
+                count += 1.0;
+            }
+        }
+    }
+    sum.iter_mut().for_each(|sum| *sum /= f64::max(count, 1.0));
+    Ok(sum)
+}
+
+impl Maps {
+    fn of(rows: &[(Vec<Pixel>, Spared)], shape: Shape, surroundings: usize) -> Self {
+        let pixels = shape.rows() * shape.columns();
+        let all = || rows.iter().flat_map(|(pixels, _)| pixels);
+        let mut lighting = Vec::with_capacity(pixels * surroundings);
+        all().for_each(|p| {
+            lighting.extend(p.lighting[..surroundings.min(MOST_SURROUNDINGS)].iter().map(|v| *v as f32))
+        });
+        Self {
+            material: all().map(|p| p.material).collect(),
+            temperature_k: all().map(|p| p.temperature_k as f32).collect(),
+            temperature_sigma_k: all().map(|p| p.sigma_k as f32).collect(),
+            lighting,
+            p_value: all().map(|p| p.p_value as f32).collect(),
+            posterior: all().map(|p| p.posterior as f32).collect(),
+            candidates: all().map(|p| p.candidates).collect(),
+            flags: all().map(|p| p.flags).collect(),
+            spared: rows.iter().fold(Spared::default(), |sum, (_, spared)| sum + *spared),
+        }
+    }
+}

@@ -1,0 +1,365 @@
+//! The least of a quadratic form of the unknowns within their range: one step of maximum likelihood.
+//!
+//! Q(d) = ½ dᵀJ d − bᵀd over temperature steps within its range and mixtures u of the vertices, u ≥ 0, with Σu = 1 where the camera
+//! is calibrated. J is the information and b the slope of the likelihood. An active set: steps go to the least of the face that
+//! is at hand, or to where they leave it; weights at 0 come back where the slope asks for them. There are at most eight
+//! weights, so the number of faces is small and every one is left at most once downwards.
+//!
+//! Directions along which there is no information (a black target does not scatter) are not taken, and said so. They are found
+//! after each column was scaled to 1, so no unit matters.
+
+use super::kernel::{MOST, Sums};
+
+/// A pivot below this, of columns scaled to 1, is a direction without information of its own.
+const DEPENDENT: f64 = 1e-11;
+/// Deviations that a weight at 0 must promise before it comes back.
+const PROMISE: f64 = 1e-7;
+
+/// Where the unknowns are, and what holds them.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct State {
+    pub(super) temperature_k: f64,
+    /// Weights of the vertices; those beyond their number are 0.
+    pub(super) mixture: [f64; MOST],
+    /// Vertices whose weight is not held at 0.
+    pub(super) free: [bool; MOST],
+    /// Whether the temperature is at an end of its range.
+    pub(super) held: bool,
+}
+
+/// What is fixed about the unknowns.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Limits {
+    pub(super) range_k: [f64; 2],
+    pub(super) vertices: usize,
+    pub(super) gain: bool,
+    /// Unknown numbers, the temperature among them.
+    pub(super) unknowns: usize,
+}
+
+/// Information of the unknowns that are free, factored, the temperature last.
+#[derive(Debug, Clone)]
+struct Face {
+    /// Each direction in the unknowns of [`Sums`], scaled.
+    directions: [[f64; MOST]; MOST],
+    factor: [[f64; MOST]; MOST],
+    blind: [bool; MOST],
+    len: usize,
+    unknowns: usize,
+}
+
+impl State {
+    /// Goes to the least of the form; the way there.
+    pub(super) fn step(&mut self, sums: &Sums, limits: &Limits) -> Step {
+        if limits.unknowns == 2 && !limits.gain && !self.held && self.free[0] && self.free[1] {
+            if let Some(step) = self.step_of_two(sums, limits) {
+                return step;
+            }
+        }
+        let mut slope = sums.slope;
+        let start = *self;
+        // Each round frees or holds one; more than there are faces is rounding.
+        for _ in 0..4 * MOST {
+            let face = Face::new(sums, limits, self);
+            let along = face.least(&slope);
+            let (share, stopped) = self.reach(&along, limits);
+            self.go(&along, share, limits);
+            for (i, slope) in slope[..limits.unknowns].iter_mut().enumerate() {
+                *slope -= share * dot(&sums.information[i], &along, limits.unknowns);
+            }
+            match stopped {
+                Some(Stop::Temperature) => self.held = true,
+                Some(Stop::Vertex(j)) => {
+                    self.mixture[j] = 0.0;
+                    self.free[j] = false;
+                }
+                None => {
+                    if !self.release(&slope, sums, limits) {
+                        break;
+                    }
+                }
+            }
+        }
+        let by = self.unknowns_since(&start, limits);
+        Step { by, square: quadratic(sums, &by, limits.unknowns), held: self.holds() != start.holds() }
+    }
+
+    /// The step of a temperature and one weight that nothing holds and whose columns differ; `None` if a limit is in the way.
+    fn step_of_two(&mut self, sums: &Sums, limits: &Limits) -> Option<Step> {
+        let [[a, b, ..], [_, c, ..], ..] = sums.information;
+        let (p, q) = (sums.slope[0], sums.slope[1]);
+        // 1 − cos² of the angle between the columns.
+        let apart = 1.0 - (b / a) * (b / c);
+        if !(apart > DEPENDENT) {
+            return None;
+        }
+        let temperature = (p - b / c * q) / (a * apart);
+        let weight = (q - b / a * p) / (c * apart);
+        let (to_k, to) = (self.temperature_k + temperature, self.mixture[1] + weight);
+        let [low, high] = limits.range_k;
+        if !(low < to_k && to_k < high && 0.0 < to && to < 1.0) {
+            return None;
+        }
+        self.temperature_k = to_k;
+        (self.mixture[0], self.mixture[1]) = (1.0 - to, to);
+        let mut by = [0.0; MOST];
+        (by[0], by[1]) = (temperature, weight);
+        Some(Step { by, square: temperature.mul_add(p, weight * q).max(0.0), held: false })
+    }
+
+    /// Goes on by a share of a step that was taken to here, as far as the range allows.
+    pub(super) fn stretch(&mut self, step: &Step, share: f64, limits: &Limits) {
+        let rest = step.by.map(|by| (share - 1.0) * by);
+        let (within, _) = self.reach(&rest, limits);
+        self.go(&rest, within, limits);
+    }
+
+    fn holds(&self) -> (bool, [bool; MOST]) {
+        (self.held, self.free)
+    }
+
+    /// Deviation of the temperature, K, that of every weight, and which directions had no information.
+    pub(super) fn deviations(&self, sums: &Sums, limits: &Limits) -> Deviations {
+        // What a range holds is not known better for that.
+        let mut open = *self;
+        open.held = false;
+        let face = Face::new(sums, limits, &open);
+        let mut found = Deviations { temperature_k: f64::INFINITY, weights: [0.0; MOST], blind: false };
+        let last = face.len - 1;
+        found.blind = face.blind[..last].iter().any(|blind| *blind);
+        if !face.blind[last] {
+            found.temperature_k = face.deviation(last);
+        }
+        // Weight j as a linear form of the directions.
+        for j in 0..limits.vertices {
+            let form: Vec<f64> =
+                face.directions[..face.len].iter().map(|d| weight_along(d, j, limits)).collect();
+            found.weights[j] = face.deviation_of(&form);
+        }
+        found
+    }
+
+    fn reach(&self, along: &[f64; MOST], limits: &Limits) -> (f64, Option<Stop>) {
+        let (mut share, mut stopped) = (1.0, None);
+        let [low, high] = limits.range_k;
+        let to = self.temperature_k + along[0];
+        if !(low..=high).contains(&to) {
+            let end = if to < low { low } else { high };
+            share = ((end - self.temperature_k) / along[0]).clamp(0.0, 1.0);
+            stopped = Some(Stop::Temperature);
+        }
+        for j in (0..limits.vertices).filter(|&j| self.free[j]) {
+            let slope = weight_along(along, j, limits);
+            if self.mixture[j] + slope < 0.0 {
+                let until = (self.mixture[j] / -slope).clamp(0.0, 1.0);
+                if until < share {
+                    (share, stopped) = (until, Some(Stop::Vertex(j)));
+                }
+            }
+        }
+        (share, stopped)
+    }
+
+    fn go(&mut self, along: &[f64; MOST], share: f64, limits: &Limits) {
+        let [low, high] = limits.range_k;
+        self.temperature_k = share.mul_add(along[0], self.temperature_k).clamp(low, high);
+        for j in (0..limits.vertices).filter(|&j| self.free[j]) {
+            self.mixture[j] = share.mul_add(weight_along(along, j, limits), self.mixture[j]).max(0.0);
+        }
+        if !limits.gain {
+            let total: f64 = self.mixture[..limits.vertices].iter().sum();
+            self.mixture[..limits.vertices].iter_mut().for_each(|u| *u /= total);
+        }
+    }
+
+    /// Lets go of what would rather move: whether there was any.
+    fn release(&mut self, slope: &[f64; MOST], sums: &Sums, limits: &Limits) -> bool {
+        if self.held {
+            let [low, _] = limits.range_k;
+            let inwards = if self.temperature_k <= low { slope[0] } else { -slope[0] };
+            if inwards > PROMISE * sums.information[0][0].sqrt() {
+                self.held = false;
+                return true;
+            }
+        }
+        let base = (0..limits.vertices).find(|&j| self.free[j]);
+        let mut best = (PROMISE, None);
+        for j in (0..limits.vertices).filter(|&j| !self.free[j]) {
+            let direction = direction_of(j, base.filter(|_| !limits.gain), limits);
+            let length = quadratic(sums, &direction, limits.unknowns).sqrt();
+            let promise = dot(slope, &direction, limits.unknowns) / length;
+            if length > 0.0 && promise > best.0 {
+                best = (promise, Some(j));
+            }
+        }
+        if let (_, Some(j)) = best {
+            self.free[j] = true;
+            return true;
+        }
+        false
+    }
+
+    fn unknowns_since(&self, start: &Self, limits: &Limits) -> [f64; MOST] {
+        let mut moved = [0.0; MOST];
+        moved[0] = self.temperature_k - start.temperature_k;
+        let first = usize::from(!limits.gain);
+        for j in first..limits.vertices {
+            moved[1 + j - first] = self.mixture[j] - start.mixture[j];
+        }
+        moved
+    }
+}
+
+/// A step of the unknowns d.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Step {
+    by: [f64; MOST],
+    /// dᵀJd: its length in deviations, squared, and what the deviance loses by it.
+    pub(super) square: f64,
+    /// Whether it came to a limit or away from one.
+    held: bool,
+}
+
+impl Step {
+    /// What share of the step before this one is: with every step so, they would add up to 1/(1 − share) of it.
+    pub(super) fn share_of(&self, before: &Self, sums: &Sums, n: usize) -> Option<f64> {
+        let along = (0..n).map(|i| self.by[i] * dot(&sums.information[i], &before.by, n)).sum::<f64>();
+        let square = quadratic(sums, &before.by, n);
+        (!self.held && !before.held && square > 0.0).then(|| along / square)
+    }
+}
+
+/// Deviations of the unknowns, those at a limit left there.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Deviations {
+    /// Of the temperature, K; infinite without information.
+    pub(super) temperature_k: f64,
+    /// Of the weight of each vertex.
+    pub(super) weights: [f64; MOST],
+    /// Whether some mixture of the vertices cannot be told from another.
+    pub(super) blind: bool,
+}
+
+enum Stop {
+    Temperature,
+    Vertex(usize),
+}
+
+/// How weight j changes along a direction of the unknowns.
+fn weight_along(direction: &[f64; MOST], j: usize, limits: &Limits) -> f64 {
+    match (limits.gain, j) {
+        (true, j) => direction[1 + j],
+        (false, 0) => -direction[1..limits.vertices].iter().sum::<f64>(),
+        (false, j) => direction[j],
+    }
+}
+
+/// More of vertex j, less of `base`.
+fn direction_of(j: usize, base: Option<usize>, limits: &Limits) -> [f64; MOST] {
+    let mut direction = [0.0; MOST];
+    for (vertex, amount) in std::iter::once((j, 1.0)).chain(base.map(|base| (base, -1.0))) {
+        match (limits.gain, vertex) {
+            (true, vertex) => direction[1 + vertex] += amount,
+            (false, 0) => {}
+            (false, vertex) => direction[vertex] += amount,
+        }
+    }
+    direction
+}
+
+fn dot(a: &[f64; MOST], b: &[f64; MOST], n: usize) -> f64 {
+    a[..n].iter().zip(&b[..n]).map(|(a, b)| a * b).sum()
+}
+
+fn quadratic(sums: &Sums, direction: &[f64; MOST], n: usize) -> f64 {
+    (0..n).map(|i| direction[i] * dot(&sums.information[i], direction, n)).sum::<f64>().max(0.0)
+}
+
+impl Face {
+    fn new(sums: &Sums, limits: &Limits, state: &State) -> Self {
+        let mut face = Self {
+            directions: [[0.0; MOST]; MOST],
+            factor: [[0.0; MOST]; MOST],
+            blind: [false; MOST],
+            len: 0,
+            unknowns: limits.unknowns,
+        };
+        let n = limits.unknowns;
+        let base = (0..limits.vertices).find(|&j| state.free[j]).filter(|_| !limits.gain);
+        for j in (0..limits.vertices).filter(|&j| state.free[j] && Some(j) != base) {
+            face.directions[face.len] = direction_of(j, base, limits);
+            face.len += 1;
+        }
+        if !state.held {
+            face.directions[face.len][0] = 1.0;
+            face.len += 1;
+        }
+        // A column shorter than rounding of the counts themselves has no direction.
+        for i in 0..face.len {
+            let length = quadratic(sums, &face.directions[i], n).sqrt();
+            let scale = if length > f64::MIN_POSITIVE { 1.0 / length } else { 0.0 };
+            face.directions[i][..n].iter_mut().for_each(|x| *x *= scale);
+        }
+        for i in 0..face.len {
+            let mut image = [0.0; MOST];
+            for (k, image) in image[..n].iter_mut().enumerate() {
+                *image = dot(&sums.information[k], &face.directions[i], n);
+            }
+            for j in 0..=i {
+                let mut rest = dot(&image, &face.directions[j], n);
+                for k in 0..j {
+                    rest -= face.factor[i][k] * face.factor[j][k];
+                }
+                if j < i {
+                    face.factor[i][j] = if face.blind[j] { 0.0 } else { rest / face.factor[j][j] };
+                } else if rest > DEPENDENT {
+                    face.factor[i][i] = rest.sqrt();
+                } else {
+                    face.blind[i] = true;
+                }
+            }
+        }
+        face
+    }
+
+    /// L x = b, with nothing along what is blind.
+    fn forward(&self, b: impl Fn(usize) -> f64) -> [f64; MOST] {
+        let mut x = [0.0; MOST];
+        for i in 0..self.len {
+            if !self.blind[i] {
+                let before: f64 = (0..i).map(|k| self.factor[i][k] * x[k]).sum();
+                x[i] = (b(i) - before) / self.factor[i][i];
+            }
+        }
+        x
+    }
+
+    /// The step to the least of the form on this face.
+    fn least(&self, slope: &[f64; MOST]) -> [f64; MOST] {
+        let half = self.forward(|i| dot(slope, &self.directions[i], self.unknowns));
+        let mut steps = [0.0; MOST];
+        for i in (0..self.len).rev().filter(|&i| !self.blind[i]) {
+            let after: f64 = (i + 1..self.len).map(|k| self.factor[k][i] * steps[k]).sum();
+            steps[i] = (half[i] - after) / self.factor[i][i];
+        }
+        let mut along = [0.0; MOST];
+        for (x, along) in along[..self.unknowns].iter_mut().enumerate() {
+            *along = (0..self.len).map(|i| steps[i] * self.directions[i][x]).sum();
+        }
+        along
+    }
+
+    /// Deviation of the temperature, whose direction is the last one: those before are profiled out.
+    fn deviation(&self, last: usize) -> f64 {
+        self.directions[last][0] / self.factor[last][last]
+    }
+
+    /// Deviation of a linear form of the directions: ‖L⁻¹c‖, without ever forming an inverse.
+    fn deviation_of(&self, form: &[f64]) -> f64 {
+        if (0..self.len).any(|i| self.blind[i] && form[i] != 0.0) {
+            return f64::INFINITY;
+        }
+        let white = self.forward(|i| form[i]);
+        white.iter().map(|x| x * x).sum::<f64>().sqrt()
+    }
+}
