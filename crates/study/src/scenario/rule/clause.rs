@@ -14,6 +14,7 @@
 use super::demand::{Demand, depth_error, resolution, temperature_error};
 use super::stop::StopSpec;
 use crate::scenario::entries::{Document, Entries, Part};
+use crate::scenario::envelope::LIGHTING_ROUNDING;
 use crate::scenario::paths::{Paths, material};
 use crate::scenario::read::{of_root, requirement};
 use crate::scenario::section::{Entry, Section, without_repetition};
@@ -237,8 +238,9 @@ impl Clause {
         self.scenario.envelope.clone().unwrap_or_default().filled(&self.scenario)
     }
 
-    /// Refuses what says again what follows from `[stop]`.
+    /// Refuses what says again what follows from `[stop]`, and scenes that are not lit as is known.
     fn check(&self) -> Result<()> {
+        self.lit_as_known()?;
         if self.stop.is_none() {
             return Ok(());
         }
@@ -264,6 +266,20 @@ impl Clause {
             Some((key, _, found)) => Err(Error::malformed(found, "leave it out").at(scenario.place(key))),
             None => Ok(()),
         }
+    }
+
+    /// Refuses an envelope with scenes whose lighting does not add up to the total that is known: the alternative's always does, and
+    /// would seem told apart by that alone.
+    fn lit_as_known(&self) -> Result<()> {
+        let lighting = self.envelope().lighting.unwrap_or_default();
+        let Some(total) = self.scenario.unknown.lighting_total else { return Ok(()) };
+        let [least, most] = [0, 1].map(|end| lighting.iter().map(|range| range[end]).sum::<f64>());
+        if [least, most].iter().all(|sum| (sum - total).abs() <= LIGHTING_ROUNDING) {
+            return Ok(());
+        }
+        let found = format!("there are scenes whose lighting does not add up to lighting_total = {total}");
+        let instead = "write values that do, such as lighting = [[0.3, 0.3], [0.7, 0.7]], a clause for each, or leave out lighting_total";
+        Err(Error::malformed(found, instead).at(self.scenario.place("envelope.lighting")))
     }
 
     /// What it says itself, then the tables in which it differs from the rule.
