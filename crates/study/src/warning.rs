@@ -71,6 +71,8 @@ pub enum Warning {
     MotionBlurUnknown,
     /// A rule with a speed and no distance.
     RuleMotionBlurUnknown,
+    /// What a pixel sees by two statements of a camera.
+    ContradictoryView { finer_rad: f64, coarser_rad: f64 },
     /// A rule on a day on which it does not hold.
     NotInForce { day: Date, from: Option<Date>, until: Option<Date> },
     /// Filters and no temperature of the sensor.
@@ -179,6 +181,7 @@ impl Warning {
             Self::SequentialReadout { .. } => Code::SequentialReadout,
             Self::MotionBlur { .. } => Code::MotionBlur,
             Self::MotionBlurUnknown | Self::RuleMotionBlurUnknown => Code::MotionBlurUnknown,
+            Self::ContradictoryView { .. } => Code::ContradictoryView,
             Self::NotInForce { .. } => Code::NotInForce,
             Self::FilterLightLeftOut | Self::SensorTemperatureIdle => Code::FilterLight,
             Self::Placeholders { .. } => Code::Placeholders,

@@ -103,6 +103,13 @@ impl Display for Warning {
                 "a speed is given, but for the motion blur the scenario must say target.distance",
             ),
             Self::RuleMotionBlurUnknown => f.write_str("a speed is given, but motion blur needs a distance"),
+            Self::ContradictoryView { finer_rad, coarser_rad } => write!(
+                f,
+                "its figures contradict each other: a pixel sees {} or {} mrad, by its side and the focal length or by the view and \
+                 the pixels across it; the coarser counts for pixels on the target, the finer for motion blur",
+                significant(1e3 * finer_rad, 3),
+                significant(1e3 * coarser_rad, 3)
+            ),
             Self::NotInForce { day, from, until } => {
                 write!(f, "the rule does not hold on {day}")?;
                 match (from, until) {

@@ -62,6 +62,13 @@ enum Kind {
     DepthError,
 }
 
+impl Kind {
+    /// Whether it demands a quantity, in a `[requirement]` of its own kind.
+    const fn is_measured(self) -> bool {
+        matches!(self, Self::Resolution | Self::TemperatureError | Self::DepthError)
+    }
+}
+
 const KINDS: [(&str, Kind); 5] = [
     ("tell-apart", Kind::TellApart),
     ("false-alarm", Kind::FalseAlarm),
@@ -136,6 +143,10 @@ fn one(item: &Entry<'_>, root: &Section<'_>, rule: &Scenario, key: String) -> Re
     };
     if demand != Demand::FalseAlarm {
         of_its_own(&mut scenario, &plain);
+    }
+    if kind.is_measured() && stop.is_none() {
+        // Its requirement is another one; how fast the vehicle drives is the rule's to say.
+        scenario.requirement.speed_m_s = rule.requirement.speed_m_s;
     }
     scenario.title.clone_from(&rule.title);
     scenario.source = relaid(&rule.source, &key);
@@ -241,6 +252,7 @@ impl Clause {
     /// Refuses what says again what follows from `[stop]`, and scenes that are not lit as is known.
     fn check(&self) -> Result<()> {
         self.lit_as_known()?;
+        self.street_is_the_envelope()?;
         if self.stop.is_none() {
             return Ok(());
         }
@@ -266,6 +278,18 @@ impl Clause {
             Some((key, _, found)) => Err(Error::malformed(found, "leave it out").at(scenario.place(key))),
             None => Ok(()),
         }
+    }
+
+    /// Refuses a distance of the street beside those of the envelope, over which the depth would not be judged.
+    fn street_is_the_envelope(&self) -> Result<()> {
+        let Demand::DepthError(demand) = &self.demand else { return Ok(()) };
+        let street = demand.object.distance_m(&mut demand.scene.clone()).is_some();
+        if !street || self.scenario.envelope.as_ref().is_none_or(|envelope| envelope.distance_m.is_none()) {
+            return Ok(());
+        }
+        let found = "a distance beside envelope.distance, over which the depth is judged";
+        let key = format!("scene.{}_distance", demand.object.name());
+        Err(Error::malformed(found, "leave it out").at(self.scenario.place(&key)))
     }
 
     /// Refuses an envelope with scenes whose lighting does not add up to the total that is known: the alternative's always does, and

@@ -6,7 +6,7 @@
 
 use super::super::{NearestState, Shortfall, Study, Surface, Warning, warn};
 use super::apart::{Candidate, TellApart};
-use super::approach::spoiled;
+use super::approach::{contradiction, spoiled};
 use super::envelope::{Estimate, Sighted, brightest};
 use super::results::{CameraVerdict, Certified, Fixes, Grade, LimitingScene, Proviso, WithoutPlaceholders};
 use super::uncertainty::{self, Judged};
@@ -240,6 +240,7 @@ impl TellApart {
         warnings.extend(near.size_unknown(camera, farthest_m));
         let assumed = camera.assumed.iter().cloned();
         warnings.extend(assumed.map(|figure| Warning::CameraFigureAssumed { figure }));
+        warnings.extend(contradiction(camera).filter(|_| self.moving.is_some()));
         if self.moving.is_some() && self.image(candidate, camera).blur.is_none() {
             warnings.push(Warning::RuleMotionBlurUnknown);
         }

@@ -5,7 +5,7 @@
 //! in the envelope: corners and scenes between them are looked at, then the largest is followed uphill, one range after the other,
 //! in ever smaller steps. Nothing proves that no scene is worse.
 
-use super::approach::{Approach, Moving, spoiled};
+use super::approach::{Approach, Moving, contradiction, spoiled};
 use super::cameras::Named;
 use super::clauses::{Measure, MeasuredAnswer, MeasuredScene, MeasuredVerdict};
 use super::envelope::{Sighted, all, brightest, scattered_places, scene_at};
@@ -148,8 +148,9 @@ impl TemperatureClause {
             lighting: found.state.lighting,
             surroundings_k: found.state.environment_k,
         });
-        let warnings =
+        let mut warnings =
             before.sighted.first().map(|sighted| sighted.study.camera_warnings()).unwrap_or_default();
+        warnings.extend(contradiction(&named.camera).filter(|_| self.moving.is_some()));
         Ok(MeasuredVerdict {
             name: named.name.clone(),
             verdict,
