@@ -107,6 +107,8 @@ pub enum Warning {
     /// Simulations whose intervals are wider than asked for.
     TrialsEnded { wide: usize, simulations: usize, most_trials: u64, widest: f64, asked: f64 },
 
+    /// Errors of emissivities beside what knows nothing of them.
+    EmissivityErrorsLeftOut,
     /// A worst case that was searched for.
     NotProved,
     /// Noise of the brightest scene.
@@ -196,6 +198,7 @@ impl Warning {
             Self::CameraFiguresAssumed { .. } | Self::CameraFigureAssumed { .. } => Code::CameraFigureAssumed,
             Self::MatrixPriors => Code::MatrixPriors,
             Self::TrialsEnded { .. } => Code::TrialsEnded,
+            Self::EmissivityErrorsLeftOut => Code::EmissivityErrorsLeftOut,
             Self::NotProved => Code::NotProved,
             Self::BrightestNoise => Code::BrightestNoise,
             Self::FramesInMotion { .. } => Code::FramesInMotion,

@@ -115,6 +115,8 @@ catalogue! {
     /// Simulations ended at the most trials with intervals wider than asked for.
     TrialsEnded = "trials-ended", "Raise --trials, or ask for less with --half-width.";
 
+    /// The rule has errors of emissivities, and this answer takes all spectra to be exact.
+    EmissivityErrorsLeftOut = "emissivity-errors-left-out", "Ask for a tolerance of the emissivity that holds them.";
     /// That no scene of the envelope is below the requirement was searched for, not proved.
     NotProved = "not-proved", "Narrow the envelope, so that the search can prove it.";
     /// Noise that depends on the scene is taken where it is largest, so that the distance is a lower bound.

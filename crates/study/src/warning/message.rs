@@ -196,6 +196,9 @@ impl Display for Warning {
                 "{wide} of {simulations} simulations ended after {most_trials} trials of a state with intervals of up to \
                  +- {widest:.2}, not the +- {asked} asked for; raise --trials, or ask for less with --half-width"
             ),
+            Self::EmissivityErrorsLeftOut => f.write_str(
+                "errors of the emissivities, [sensitivity], are not in it: all spectra are taken to be exact",
+            ),
             Self::NotProved => f.write_str(
                 "that no scene of the envelope is below the requirement was searched, not proved",
             ),

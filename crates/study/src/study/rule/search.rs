@@ -97,11 +97,13 @@ impl TellApart {
         let certificate =
             worst.certificate.map_or_else(Certified::counterexample, |found| Certified::of(found, gap));
         let mut grade = Grade::Proved;
-        // What is proved of the worst scene is guarded as its margin is.
+        // What is proved of the worst scene is guarded as its margin is, and what is guarded rests on draws.
         let guard = uncertainty.as_ref().map_or(0.0, |found| distance / self.required - found.low);
-        if passes && worst.lower_bound.is_none_or(|bound| bound / self.required - guard < 1.0) {
+        let lower_bound = worst.lower_bound.map(|bound| (bound - guard * self.required).max(0.0));
+        grade = grade.guarded(verdict, uncertainty.as_ref());
+        if passes && lower_bound.is_none_or(|bound| bound < self.required) {
             warnings.push(Warning::NotProved);
-            grade = Grade::Searched;
+            grade = grade.max(Grade::Searched);
         }
         if at.counting().is_some_and(|own| own.var_added != sighted.counting.var_added) {
             warnings.push(Warning::BrightestNoise);
@@ -176,7 +178,7 @@ impl TellApart {
             margin: distance / self.required,
             statistical_distance: distance,
             detection_probability: detection::probability(distance),
-            lower_bound: worst.lower_bound,
+            lower_bound,
             certificate,
             limiting,
             fixes,
