@@ -14,6 +14,8 @@ use crate::spectrum::Bands;
 
 /// Share of a time that is rounding.
 const SAME_TIME: f64 = 1e-12;
+/// How far the angle of a pixel may be outside what field of view and pixels across it say, as a share: distortion.
+const DISTORTION: f64 = 0.1;
 
 /// A spectral thermal camera.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -101,6 +103,32 @@ impl Camera {
     #[must_use]
     pub fn footprint_m(&self, distance_m: f64) -> f64 {
         self.pixel_m * distance_m / self.focal_length_m
+    }
+
+    /// What a pixel sees, rad: by its side and the focal length, and by the view and the pixels across it, the finer one first. Both are
+    /// the same where the view is not known.
+    #[must_use]
+    pub fn pixel_angles_rad(&self) -> [f64; 2] {
+        let by_lens = self.pixel_m / self.focal_length_m;
+        let by_view = self.view_and_pixels().map_or(by_lens, |(view_rad, pixels)| view_rad / pixels);
+        [by_lens.min(by_view), by_lens.max(by_view)]
+    }
+
+    /// Whether these two are no picture of one lens. It may keep straight lines straight, with 2 tan(θ/2) of a view θ over all pixels,
+    /// or angles, with θ, and distort a little.
+    #[must_use]
+    pub fn contradicts_its_view(&self) -> bool {
+        let by_lens = self.pixel_m / self.focal_length_m;
+        self.view_and_pixels().is_some_and(|(view_rad, pixels)| {
+            let [least, most] = [view_rad / pixels, 2.0 * (0.5 * view_rad).tan() / pixels];
+            !(least * (1.0 - DISTORTION)..=most * (1.0 + DISTORTION)).contains(&by_lens)
+        })
+    }
+
+    /// The view, rad, and the pixels across it, where both are known.
+    #[must_use]
+    pub fn view_and_pixels(&self) -> Option<(f64, f64)> {
+        Some((self.field_of_view_rad?, f64::from(self.pixels?)))
     }
 
     /// The bands as the detector receives them, weighed with the efficiencies that depend on wavenumber.

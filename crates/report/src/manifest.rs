@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::fs::File;
 use std::io::Read as _;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 /// The name of the file.
 pub const NAME: &str = "hadar.json";
@@ -37,7 +37,7 @@ pub struct Provenance {
 /// A file or something built in, by its content.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Input {
-    /// Where it is, from the scenario's folder; `built-in: material skin` of what comes with the program.
+    /// Where it is, from the scenario's folder, with `..` where it is not in it; `built-in: material skin` of what comes with the program.
     pub path: String,
     /// SHA-256 of it; none of what can be read only once.
     pub sha256: Option<String>,
@@ -76,11 +76,10 @@ impl Provenance {
         let home = home.as_deref().and_then(Path::parent);
         let mut listed = Vec::with_capacity(inputs.files.len() + inputs.built_in.len());
         for file in &inputs.files {
-            let absolute = std::path::absolute(file).ok();
-            let beside = absolute.as_deref().zip(home).and_then(|(file, home)| file.strip_prefix(home).ok());
+            let beside = home.and_then(|home| from(home, file));
             let sha256 =
                 sha256_of_file(file).map_err(|error| Error::file("read for its hash", file, error.kind()))?;
-            listed.push(Input { path: slashed(beside.unwrap_or(file)), sha256 });
+            listed.push(Input { path: slashed(beside.as_deref().unwrap_or(file)), sha256 });
         }
         for ((kind, name), content) in &inputs.built_in {
             listed.push(Input { path: format!("built-in: {kind} {name}"), sha256: Some(sha256(content)) });
@@ -148,6 +147,20 @@ impl Manifest {
             .map_err(|error| Error::malformed(error.to_string(), "report this as a bug"))?;
         Ok(text + "\n")
     }
+}
+
+/// The way from a folder to a file, `None` where there is none.
+fn from(home: &Path, file: &Path) -> Option<PathBuf> {
+    let absolute = std::path::absolute(file).ok()?;
+    let plain = |inside: &&Path| inside.components().all(|part| part != Component::ParentDir);
+    if let Some(inside) = absolute.strip_prefix(home).ok().filter(plain) {
+        return Some(inside.to_owned());
+    }
+    // Links are followed, as they are by whoever goes up from there.
+    let (home, file) = (home.canonicalize().ok()?, absolute.canonicalize().ok()?);
+    let shared = home.components().zip(file.components()).take_while(|(one, other)| one == other).count();
+    let up = home.components().skip(shared).map(|_| Component::ParentDir);
+    (shared > 0).then(|| up.chain(file.components().skip(shared)).collect())
 }
 
 /// A path as it is written on every system.

@@ -71,6 +71,8 @@ pub enum Warning {
     MotionBlurUnknown,
     /// A rule with a speed and no distance.
     RuleMotionBlurUnknown,
+    /// What a pixel sees by two statements of a camera.
+    ContradictoryView { finer_rad: f64, coarser_rad: f64 },
     /// A rule on a day on which it does not hold.
     NotInForce { day: Date, from: Option<Date>, until: Option<Date> },
     /// Filters and no temperature of the sensor.
@@ -105,6 +107,8 @@ pub enum Warning {
     /// Simulations whose intervals are wider than asked for.
     TrialsEnded { wide: usize, simulations: usize, most_trials: u64, widest: f64, asked: f64 },
 
+    /// Errors of emissivities beside what knows nothing of them.
+    EmissivityErrorsLeftOut,
     /// A worst case that was searched for.
     NotProved,
     /// Noise of the brightest scene.
@@ -179,6 +183,7 @@ impl Warning {
             Self::SequentialReadout { .. } => Code::SequentialReadout,
             Self::MotionBlur { .. } => Code::MotionBlur,
             Self::MotionBlurUnknown | Self::RuleMotionBlurUnknown => Code::MotionBlurUnknown,
+            Self::ContradictoryView { .. } => Code::ContradictoryView,
             Self::NotInForce { .. } => Code::NotInForce,
             Self::FilterLightLeftOut | Self::SensorTemperatureIdle => Code::FilterLight,
             Self::Placeholders { .. } => Code::Placeholders,
@@ -193,6 +198,7 @@ impl Warning {
             Self::CameraFiguresAssumed { .. } | Self::CameraFigureAssumed { .. } => Code::CameraFigureAssumed,
             Self::MatrixPriors => Code::MatrixPriors,
             Self::TrialsEnded { .. } => Code::TrialsEnded,
+            Self::EmissivityErrorsLeftOut => Code::EmissivityErrorsLeftOut,
             Self::NotProved => Code::NotProved,
             Self::BrightestNoise => Code::BrightestNoise,
             Self::FramesInMotion { .. } => Code::FramesInMotion,

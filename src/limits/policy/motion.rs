@@ -8,6 +8,7 @@
 //! transverse, which is the worst. Averaged frames are laid over each other before they are summed, so that each counts by itself.
 
 use crate::instrument::Camera;
+use std::f64::consts::PI;
 
 /// What the blur of a moving target depends on beside speed and time.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,13 +24,20 @@ impl Motion {
     /// Of a camera whose target is at `distance_m`; `None` where that is not known.
     #[must_use]
     pub fn of(camera: &Camera, distance_m: Option<f64>) -> Option<Self> {
+        let by_lens = camera.pixel_m / camera.focal_length_m;
+        let by_view = camera.view_and_pixels().map_or(by_lens, |(view_rad, pixels)| view_rad / pixels);
+        Self::by(camera, by_view, distance_m)
+    }
+
+    /// The same, a pixel seeing `pixel_rad`: where the figures of a camera contradict each other, one of its
+    /// [`pixel_angles_rad`](Camera::pixel_angles_rad). The number of pixels is believed, so that the view goes with the angle: the finer
+    /// one blurs over more pixels, the coarser one over a wider angle.
+    #[must_use]
+    pub fn by(camera: &Camera, pixel_rad: f64, distance_m: Option<f64>) -> Option<Self> {
         let distance_m = distance_m?;
-        Some(match (camera.pixels, camera.field_of_view_rad) {
-            (Some(pixels), Some(view)) => {
-                Self { pixel_rad: view / f64::from(pixels), transverse: (0.5 * view).sin(), distance_m }
-            }
-            _ => Self { pixel_rad: camera.pixel_m / camera.focal_length_m, transverse: 1.0, distance_m },
-        })
+        let transverse =
+            camera.view_and_pixels().map_or(1.0, |(_, pixels)| (0.5 * (pixel_rad * pixels).min(PI)).sin());
+        Some(Self { pixel_rad, transverse, distance_m })
     }
 
     /// Pixels that the target moves in `time_s`, the vehicle at `speed_m_s`.
@@ -65,6 +73,23 @@ mod tests {
         // One pixel after 12 ms/0.831.
         assert!((motion.longest_s(13.4112) / 14.44e-3 - 1.0).abs() < 1e-3);
         assert!((motion.blur_pixels(motion.fastest_m_s(5e-3), 5e-3) - 1.0).abs() < 1e-14);
+    }
+
+    /// By its lens the camera sees 320 times 2/3 mrad; the finer angle moves over more pixels, the coarser over more of the scene.
+    #[test]
+    fn figures_that_contradict_each_other_make_two_motions() {
+        let camera = presets::get("flir-a325sc").unwrap();
+        let [fine, coarse] = camera.pixel_angles_rad();
+        assert!(camera.contradicts_its_view());
+        assert!((fine * 1500.0 - 1.0).abs() < 1e-12);
+        assert_eq!(Motion::by(&camera, coarse, Some(30.0)), Motion::of(&camera, Some(30.0)));
+        let pixels = |angle: f64| Motion::by(&camera, angle, Some(30.0)).unwrap().blur_pixels(13.4112, 12e-3);
+        let by_hand = 13.4112 * (0.5 * 320.0 / 1500.0_f64).sin() * 12e-3 / (30.0 / 1500.0);
+        assert!((pixels(fine) / by_hand - 1.0).abs() < 1e-12 && pixels(fine) > pixels(coarse));
+        assert!(pixels(fine) * fine < pixels(coarse) * coarse);
+        // What both say alike is one.
+        let lens = Camera { pixel_m: 18e-3 * coarse, ..camera };
+        assert!(!lens.contradicts_its_view());
     }
 
     /// 12 µm behind 18 mm see 20 mm at 30 m: a target that crosses at 1 m/s moves half a pixel in 10 ms.

@@ -9,10 +9,11 @@ use hadar_report::manifest::{Input, sha256_of_file};
 use hadar_report::rule;
 use hadar_study::scenario::rule::{Citation, Figure};
 use hadar_study::scenario::{Date, Rule, day};
-use hadar_study::study::{Extent, RuleAnswer, RuleAsked, RuleStudy, TestResult};
+use hadar_study::study::{Extent, RuleAnswer, RuleAsked, RuleStudy, TestResult, Warning};
 use serde_json::Value;
 use std::fs::File;
 use std::io::Read as _;
+use std::iter;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -76,7 +77,7 @@ pub(super) fn run(args: &RuleArgs, global: &Global) -> Result<ExitCode> {
     let study = RuleStudy::new(&rule_read, &library)?;
     global.inputs_are_safe()?;
     if args.stand_in {
-        return stand_in(&study, &library, global);
+        return stand_in(&study, &library, args.on, global);
     }
     let extent = match args.test {
         true => Extent::Margins,
@@ -126,11 +127,9 @@ fn verify(certificate: &Path, global: &Global) -> Result<ExitCode> {
         return Err(told("this is no certificate of a rule".into()));
     };
     let on = of(&before, "on").as_str().and_then(day);
-    // As the one who made it named it, or beside the certificate.
-    let beside = certificate.parent().map(|folder| folder.join(&path)).filter(|beside| beside.exists());
-    let path = if path.exists() { path } else { beside.unwrap_or(path) };
     let inputs: Vec<Input> = serde_json::from_value(of(&before, "inputs"))
         .map_err(|error| told(format!("its inputs are none: {error}")))?;
+    let path = found_again(path, certificate, inputs.first());
     let home = path.parent().unwrap_or(Path::new(""));
     for input in inputs.iter().filter(|input| !input.path.starts_with("built-in: ")) {
         let file = home.join(&input.path);
@@ -169,10 +168,23 @@ fn verify(certificate: &Path, global: &Global) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
+/// The rule of a certificate: as the one who made it named it, or from a folder that the certificate is in; the one of its content, if
+/// there are several.
+fn found_again(path: PathBuf, certificate: &Path, rule_read: Option<&Input>) -> PathBuf {
+    let absolute = std::path::absolute(certificate).unwrap_or_else(|_| certificate.to_owned());
+    let above = absolute.ancestors().skip(1).map(|folder| folder.join(&path));
+    let there: Vec<PathBuf> = iter::once(path.clone()).chain(above).filter(|path| path.is_file()).collect();
+    let is_it = |path: &&PathBuf| {
+        let hash = sha256_of_file(path).ok().flatten();
+        rule_read.is_some_and(|input| input.sha256 == hash)
+    };
+    there.iter().find(is_it).or(there.first()).cloned().unwrap_or(path)
+}
+
 /// How exact a stand-in must be.
-fn stand_in(study: &RuleStudy, library: &Library, global: &Global) -> Result<ExitCode> {
+fn stand_in(study: &RuleStudy, library: &Library, on: Option<Date>, global: &Global) -> Result<ExitCode> {
     let bar = global.progress("stand-ins");
-    let answer = study.stand_in(library, &|done, all| bar.set(done, all))?;
+    let answer = study.stand_in(library, on, &|done, all| bar.set(done, all))?;
     bar.finish();
     let text = rule::stand_in(&answer);
     let work = global.report(&text, |_| rule::stand_in_bundle(&answer))?;
@@ -185,11 +197,15 @@ fn tested(answer: &RuleAnswer, global: &Global) -> Result<ExitCode> {
     #[derive(serde::Serialize)]
     struct Output {
         tests: Vec<TestResult>,
+        /// That the rule does not hold on the day.
+        warnings: Vec<Warning>,
     }
     let tests = answer.tested();
     let all = tests.iter().all(|test| test.passes);
-    let text = rule::tests(&tests);
-    global.answer(&Output { tests }, &text, &answer.stats)?;
+    let warnings: Vec<Warning> = answer.sentence.idle.iter().cloned().collect();
+    let idle: String = warnings.iter().map(|warning| format!("{warning}\n")).collect();
+    let text = idle + &rule::tests(&tests);
+    global.answer(&Output { tests, warnings }, &text, &answer.stats)?;
     Ok(if all { ExitCode::SUCCESS } else { ExitCode::from(3) })
 }
 

@@ -103,6 +103,69 @@ fn the_statement_is_about_the_certificate() {
     assert_eq!(statement["predicate"]["configuration"][0]["name"], "a.toml");
 }
 
+/// A rule that is not in force demands nothing: nothing is passed, and the first sentence says so, whatever is asked.
+#[test]
+fn a_rule_that_is_not_in_force_is_no_pass() {
+    let folder = Folder::with(
+        &(RULE.to_owned()
+            + "[[test]]\ncamera = \"ours\"\nclause = \"shape\"\nverdict = \"fails\"\n[stand_in]\nemissivity = [0.0]\n[[source]]\nkeys = [\"stand_in\"]\nchoice = \"a test\"\n"),
+    );
+    folder.file("coat.csv", COAT);
+    let idle = "the rule does not hold on 2030-06-01, it held until 2030-01-01";
+    for (day, told, result) in [("2030-06-01", true, "WARNED"), ("2029-06-01", false, "FAILED")] {
+        let run = |more: &[&str]| folder.run(&[&["rule", "a.toml", "--on", day], more].concat()).stdout;
+        let text = run(&["--out", "out", "--force"]);
+        assert_eq!(text.starts_with(&format!("Nothing is demanded: {idle}. As if it did: ")), told, "{text}");
+        let statement = fs::read_to_string(folder.path().join("out/certificate.intoto.json")).unwrap();
+        assert!(statement.contains(&format!("\"result\": \"{result}\"")), "{statement}");
+        for option in ["--check", "--test", "--stand-in"] {
+            assert_eq!(
+                run(&[option]).starts_with(&format!("{idle}\n")),
+                told,
+                "{option}: {}",
+                run(&[option])
+            );
+        }
+        for option in ["--test", "--stand-in"] {
+            let json: serde_json::Value = serde_json::from_str(&run(&[option, "--json"])).unwrap();
+            assert_eq!(json["warnings"][0]["code"] == "not-in-force", told, "{option}");
+        }
+    }
+}
+
+/// Made with spectra beside the rule's folder, and verified from anywhere: files are where they are from the rule.
+#[test]
+fn a_certificate_is_verified_from_any_folder() {
+    let folder = Folder::with("");
+    for name in ["rules", "spectra", "else"] {
+        fs::create_dir(folder.path().join(name)).unwrap();
+    }
+    folder.file("rules/r.toml", &RULE.replace("\"coat.csv\"", "\"coat\""));
+    folder.file("spectra/coat.csv", COAT);
+    let made = folder.run(&["rule", "rules/r.toml", "--library", "spectra", "--out", "rules/out", "-q"]);
+    assert_eq!((made.code, made.stderr.as_str()), (0, ""));
+    let text = fs::read_to_string(folder.path().join("rules/out/certificate.json")).unwrap();
+    assert!(text.contains("\"path\": \"../spectra/coat.csv\""), "{text}");
+    let from = |there: &str, certificate: &str, library: &str| {
+        let output = Command::new(assert_cmd::cargo::cargo_bin!("hadar"))
+            .current_dir(folder.path().join(there))
+            .args(["rule", "--verify", certificate, "--library", library])
+            .output()
+            .unwrap();
+        assert!(output.status.success(), "{there}: {}", String::from_utf8_lossy(&output.stderr));
+    };
+    from("", "rules/out/certificate.json", "spectra");
+    from("else", "../rules/out/certificate.json", "../spectra");
+    from("rules/out", "certificate.json", "../../spectra");
+    folder.file("spectra/coat.csv", &COAT.replace("0.92", "0.91"));
+    let changed = folder.run(&["rule", "--verify", "rules/out/certificate.json", "--library", "spectra"]);
+    assert!(
+        changed.code == 1 && changed.stderr.contains("coat.csv: the file was changed"),
+        "{}",
+        changed.stderr
+    );
+}
+
 /// The same bytes for any number of threads, and verified; a byte of any input, or of what it says, is told with its name.
 #[test]
 fn what_was_changed_is_named() {
@@ -145,8 +208,25 @@ fn what_was_changed_is_named() {
         let outcome = verify("changed.json");
         assert_eq!(outcome.code, 1, "{named}: {}", outcome.stdout);
         let own_words = outcome.stderr.contains(named)
-            || (named.starts_with("on ") && outcome.stderr.contains("warnings"));
+            || (named.starts_with("on ") && outcome.stderr.contains("sentence"));
         assert!(own_words && outcome.stderr.lines().count() == 1, "{named}: {}", outcome.stderr);
+    }
+    // Of its numbers, by less than anyone would round them.
+    let number = |key: &str| {
+        let at = own.find(&format!("\"{key}\": ")).unwrap() + key.len() + 4;
+        let end = at + own[at..].find([',', '\n']).unwrap();
+        let value: f64 = own[at..end].parse().unwrap();
+        format!("{}{:?}{}", &own[..at], value * 1.000_01, &own[end..])
+    };
+    for key in ["margin", "temperature_k"] {
+        folder.file("changed.json", &number(key));
+        let outcome = verify("changed.json");
+        assert!(
+            outcome.code == 1 && outcome.stderr.contains(key),
+            "{key}: {}{}",
+            outcome.stdout,
+            outcome.stderr
+        );
     }
     // Of an input.
     for (file, content) in [("coat.csv", COAT.replace("0.92", "0.91")), ("a.toml", format!("{RULE}\n"))] {

@@ -85,16 +85,95 @@ fn things_that_must_not_be_taken_for_people() {
     assert!(close(margins[0], margins[1], 1e-9));
 }
 
-/// h f/(z p) by hand, at the distance from which the frame is taken.
+/// h/(z α) by hand, at the distance from which the frame is taken; α is the coarser of the two that the camera's figures say.
 #[test]
 fn pixels_on_the_target_are_geometry() {
     let clause = "[[clause]]\nname = \"shape\"\nkind = \"resolution\"\n[clause.requirement]\npixels = 6\nsize = \"0.5 m\"\n";
     let camera = measured(&(NIGHT.to_owned() + clause));
-    let pixels = 0.5 * 18e-3 / (12e-6 * (325.0 / 9.0 + 60.0 / 3.6 * 0.012));
-    assert!(close(camera.value.unwrap(), pixels, 1e-12) && close(camera.margin, pixels / 6.0, 1e-12));
-    assert_eq!(camera.verdict, Verdict::Meets);
-    let more = measured(&(NIGHT.to_owned() + &clause.replace("pixels = 6", "pixels = 21")));
-    assert_eq!(more.verdict, Verdict::Fails);
+    let pixels = |angle: f64| 0.5 / (angle * (325.0 / 9.0 + 60.0 / 3.6 * 0.012));
+    let by_view = pixels(50f64.to_radians() / 320.0);
+    assert!(close(camera.value.unwrap(), by_view, 1e-12) && close(camera.margin, by_view / 6.0, 1e-12));
+    assert_eq!(camera.verdict, Verdict::Fails);
+    assert!(camera.warnings.iter().any(|warning| warning.code().name() == "contradictory-view"));
+    // 25 um of pitch make its lens of 25 degrees, and that is no contradiction; the finer pitch beside that view counts as the view.
+    let with = |figures: &str| {
+        let table = format!("[[camera]]\npreset = \"flir-a325sc\"\n{figures}");
+        measured(&(NIGHT.replace("cameras = [\"flir-a325sc\"]\n", "") + clause + &table))
+    };
+    let own = with("pixel = \"25 um\"\nfield_of_view = \"25 deg\"\n");
+    assert!(close(own.value.unwrap(), pixels(25e-6 / 18e-3), 1e-12) && own.warnings.is_empty(), "{own:?}");
+    let fine = with("pixel = \"12 um\"\nfield_of_view = \"25 deg\"\n");
+    assert!(close(fine.value.unwrap(), pixels(25f64.to_radians() / 320.0), 1e-12));
+    let coarse = with("pixel = \"60 um\"\nfield_of_view = \"25 deg\"\n");
+    assert!(close(coarse.value.unwrap(), pixels(60e-6 / 18e-3), 1e-12));
+}
+
+/// The speed of the rule is that of clauses that demand quantities: what moves by a pixel spoils a temperature and a depth, and the way
+/// while a frame is exposed is as fine as a target is seen.
+#[test]
+fn quantities_are_demanded_at_the_speed_of_the_rule() {
+    let at = |speed: &str, clause: &str| {
+        let (scene, _) = NIGHT.split_once("[stop]").unwrap();
+        measured(&format!(
+            "{scene}distance = [\"5 m\", \"15 m\"]\n[requirement]\nspeed = {speed:?}\n[[clause]]\nname = \"a\"\n{clause}"
+        ))
+    };
+    let blurred = |speed: &str, clause: &str| {
+        let found = at(speed, clause);
+        found.fails_by.iter().any(|by| by.code() == "motion-blur")
+    };
+    let warm = "kind = \"temperature-error\"\n[clause.requirement]\ntemperature_error = \"90 K\"\n";
+    let depth = "kind = \"depth-error\"\n[clause.requirement]\ndepth_error = \"50 m\"\nshare = 0.1\n[clause.stereo]\n\
+                 baseline = \"0.3 m\"\n[clause.scene]\nsize = [60, 80]\n";
+    // A pixel at 5 m in 12 ms by the finer angle, 2/3 mrad: v sin(320/3000) 12 ms = 5 m/1500, v = 2.61 m/s.
+    let fastest = 5.0 / 1500.0 / 0.012 / (320.0_f64 / 3000.0).sin();
+    for clause in [warm, depth] {
+        let [slow, fast] = [0.99, 1.01].map(|share| format!("{} m/s", share * fastest));
+        assert!(!blurred(&slow, clause) && blurred(&fast, clause), "{clause}");
+    }
+    let shape = "kind = \"resolution\"\n[clause.requirement]\npixels = 1\nsize = \"0.5 m\"\n";
+    let pixels = |speed: &str| at(speed, shape).value.unwrap();
+    assert!(close(pixels("0.1 m/s"), 0.5 / (15.0 * 50f64.to_radians() / 320.0), 1e-12));
+    // In 12 ms at 20 m/s from the edge of the wider view.
+    assert!(close(pixels("20 m/s"), 0.5 / (20.0 * 25f64.to_radians().sin() * 0.012), 1e-12));
+}
+
+/// The depth of a range of distances is that of the worst of them, each put where it is; so is that of a range of speeds.
+#[test]
+fn a_depth_is_known_from_the_worst_of_its_distances() {
+    let street = |more: &str, scene: &str| {
+        let (head, _) = NIGHT.split_once("[stop]").unwrap();
+        let head = head.replace("cameras = [\"flir-a325sc\"]\n", "");
+        measured(&format!(
+            "{head}{more}[[clause]]\nname = \"z\"\nkind = \"depth-error\"\n[clause.requirement]\ndepth_error = \"0.2 m\"\nshare = 0.3\n\
+             [clause.stereo]\nbaseline = \"0.5 m\"\n[clause.scene]\nsize = [120, 160]\n{scene}\
+             [[camera]]\npreset = \"flir-a325sc\"\nfocal_length = \"5 mm\"\n"
+        ))
+    };
+    let single = |z: f64| street("", &format!("person_distance = \"{z} m\"\n"));
+    let range = street("distance = [\"4.5 m\", \"12 m\"]\n", "");
+    let each = (0..9).map(|step| single(4.5 * (12.0_f64 / 4.5).powf(f64::from(step) / 8.0)).margin);
+    let least = each.fold(f64::INFINITY, f64::min);
+    assert!(least > 1.0 && close(range.margin, least, 1e-9), "{} {least}", range.margin);
+    assert_eq!(range.verdict, Verdict::Meets);
+    // From 3 m this picture does not show a person who stands 0.9 m aside; 10 km/h are decided from 2.2 m.
+    let near = 25.0 / 18.0 + 0.1 * (25.0_f64 / 9.0).powi(2);
+    let far = 50.0 / 9.0 + 0.1 * (100.0_f64 / 9.0).powi(2);
+    assert_eq!([near, 3.0, far].map(|z| single(z).verdict), [Verdict::Fails, Verdict::Fails, Verdict::Meets]);
+    let stop =
+        "[stop]\nspeed = [\"10 km/h\", \"40 km/h\"]\nlatency = \"0.5 s\"\ndeceleration = \"5 m/s^2\"\n";
+    for (distances, least) in [("distance = [\"3 m\", \"12 m\"]\n", 3.0), (stop, near)] {
+        let found = street(distances, "");
+        assert!(
+            found.verdict == Verdict::Fails && found.fails_by.iter().any(|by| by.code() == "depth-error")
+        );
+        assert!(close(found.limiting.distance_m.unwrap(), least, 1e-9), "{:?}", found.limiting);
+    }
+    let beside = "distance = [\"3 m\", \"12 m\"]\n[[clause]]\nname = \"z\"\nkind = \"depth-error\"\n[clause.requirement]\n\
+                  depth_error = \"1 m\"\n[clause.stereo]\nbaseline = \"0.5 m\"\n[clause.scene]\nperson_distance = \"9 m\"\n";
+    let (head, _) = NIGHT.split_once("[stop]").unwrap();
+    let error = Rule::from_toml(&format!("{head}{beside}"), None).unwrap_err().to_string();
+    assert!(error.contains("scene.person_distance: a distance beside envelope.distance"), "{error}");
 }
 
 /// One band of a known black target, nothing else unknown: σ_T = √(N + σ²)/(∂N/∂T), against the camera's own NETD.
@@ -313,4 +392,23 @@ fn what_spoils_a_picture_spoils_every_clause() {
     assert_eq!(measured(&full).verdict, Verdict::Meets);
     let full = measured(&(full + "full_well = 10\n"));
     assert!(full.fails_by.iter().any(|by| by.code() == "full-well"), "{full:?}");
+}
+
+/// Frames that must be registered hang on the clause in which the vehicle drives farthest meanwhile, whichever is written first.
+#[test]
+fn what_a_yes_hangs_on_is_of_the_hardest_clause() {
+    let (scene, _) = NIGHT.split_once("[stop]").unwrap();
+    let scene = scene.replace("cameras = [\"flir-a325sc\"]\n", "");
+    let clause = |speed: &str| {
+        format!("[[clause]]\nname = {speed:?}\n[clause.requirement]\ndistance = 0.001\nspeed = {speed:?}\n")
+    };
+    let camera =
+        "[[camera]]\npreset = \"ideal-pnrd\"\nexposure = \"0.1 ms\"\nframes = 60\nframe_rate = \"60 Hz\"\n";
+    for speeds in [["1 m/s", "10 m/s"], ["10 m/s", "1 m/s"]] {
+        let demands = speeds.map(clause).concat();
+        let answer = answered(&format!("{scene}distance = [\"15 m\", \"15 m\"]\n{demands}{camera}"));
+        let proviso = answer.cameras[0].provided.unwrap();
+        assert_eq!(proviso.frames, 60);
+        assert!(close(proviso.way_m, 10.0 * proviso.time_s, 1e-12), "{proviso:?}");
+    }
 }

@@ -170,6 +170,41 @@ fn the_least_lighting_of_all_objects_must_leave_room() {
     );
 }
 
+/// Where the total of the lighting is known, scenes that are lit otherwise would be told apart by that alone, of the same materials.
+#[test]
+fn scenes_are_lit_as_much_as_is_known() {
+    let known = |lighting: &str| {
+        RULE.replace("lighting = 0.5\n", "").replace("lighting = [0.2, 0.8]\n", lighting).replace(
+            "[requirement]",
+            "[unknown]\nnuisances = [\"temperature\", \"lighting\"]\nlighting_total = 0.7\n[requirement]",
+        )
+    };
+    let said = |text: &str| Folder::with(text).refusal(&["rule", "a.toml"]);
+    for lighting in ["[0.2, 0.8]", "[0.7, 0.8]", "[0.2, 0.7]", "[0.6, 0.6]"] {
+        let message = said(&known(&format!("lighting = {lighting}\n")));
+        let found = "envelope.lighting: there are scenes whose lighting does not add up to lighting_total = 0.7; write";
+        assert!(message.starts_with("a.toml:18: ") && message.contains(found), "{message}");
+    }
+    for lighting in ["", "lighting = [0.7, 0.7]\n"] {
+        let folder = Folder::with(&known(lighting));
+        assert_eq!(folder.run(&["rule", "a.toml", "--check", "--any"]).code, 0, "{lighting}");
+    }
+    // Two objects that make up the total in every scene, and two that do not, before a camera and before a stand-in.
+    let two = |lighting: &str| {
+        let first = "[[environment]]\ntemperature = \"0 degC\"\nlighting = 0.3\n[[environment]]";
+        known(&format!("lighting = {lighting}\n")).replace("[[environment]]", first)
+    };
+    assert_eq!(
+        Folder::with(&two("[[0.3, 0.3], [0.4, 0.4]]")).run(&["rule", "a.toml", "--check", "--any"]).code,
+        0
+    );
+    let apart = Folder::with(&two("[[0.2, 0.3], [0.4, 0.5]]"));
+    assert!(apart.refusal(&["rule", "a.toml", "--stand-in"]).contains("envelope.lighting: there are scenes"));
+    // A clause with an envelope of its own.
+    let own = known("") + "[[clause]]\nname = \"a\"\n[clause.envelope]\nlighting = [0.1, 0.8]\n";
+    assert!(said(&own).contains("envelope.lighting: there are scenes"));
+}
+
 #[test]
 fn a_rule_is_no_scenario_and_the_other_way_round() {
     let folder = Folder::with(RULE);

@@ -95,6 +95,80 @@ fn no_classifier_tells_the_farthest_from_a_person_more_often() {
     }
 }
 
+/// No camera within its uncertain figures tells what passes: the tolerance is that of a camera with all of them on their good side. Errors
+/// of emissivities are said to be left out, and no more is said than is known.
+#[test]
+fn what_passes_passes_before_the_best_of_the_camera() {
+    let folder = Folder::with("");
+    let with = |figures: &str| {
+        let text = RULE
+            .replace("cameras = [\"flir-a325sc\"]\n", "")
+            .replace("\"skin\", \"pmma\", \"aluminium\"", "\"skin\"");
+        folder.file(
+            "b.toml",
+            &format!("{text}[[camera]]\nname = \"ours\"\npreset = \"ideal-pnrd\"\n{figures}"),
+        );
+        number(&rows(&folder, "b.toml")[0], "temperature_tolerance_k")
+    };
+    let uncertain =
+        with("f_number = { value = 1.3, u = 0.1 }\nexposure = { value = \"10 ms\", u = \"1 ms\" }\n");
+    let [best, nominal] = ["1.1", "1.3"].map(|f_number| {
+        let exposure = if f_number == "1.1" { 12 } else { 10 };
+        with(&format!("f_number = {f_number}\nexposure = \"{exposure} ms\"\n"))
+    });
+    assert!((uncertain / best - 1.0).abs() < 1e-6 && best < nominal, "{uncertain} {best} {nominal}");
+    let text = RULE.replace("\"skin\", \"pmma\", \"aluminium\"", "\"skin\"");
+    folder.file("exact.toml", &text);
+    folder.file("errors.toml", &(text + "[sensitivity]\nemissivity_error = 0.01\n"));
+    let said = |file: &str| folder.run(&["rule", file, "--stand-in"]).stdout;
+    assert!(said("exact.toml").starts_with("No camera tells any of these 2 stand-ins"));
+    let errors = said("errors.toml");
+    assert!(!errors.contains("No camera") && errors.contains("if spectra are exact"), "{errors}");
+    assert!(errors.contains("[emissivity-errors-left-out]"), "{errors}");
+    let warnings = folder.json(&["rule", "errors.toml", "--stand-in"])["warnings"].clone();
+    assert_eq!(warnings[0]["code"], "emissivity-errors-left-out");
+    assert_eq!(folder.json(&["rule", "exact.toml", "--stand-in"])["warnings"], serde_json::json!([]));
+}
+
+/// Of several clauses that tell people apart one is named, and each has tolerances of its own.
+#[test]
+fn the_clause_that_is_turned_round_is_named() {
+    let folder = Folder::with("");
+    let clauses = RULE.replace("[stand_in]", "[[clause]]\nname = \"warm\"\n[[clause]]\nname = \"surer\"\n[clause.requirement]\ndetection_probability = 0.99\n[stand_in]");
+    folder.file("both.toml", &clauses);
+    assert_eq!(
+        folder.refusal(&["rule", "both.toml", "--stand-in"]).split_once(": ").unwrap().1,
+        "stand_in: 2 clauses tell people apart: \"warm\", \"surer\"; write clause = \"warm\" in [stand_in], or another of them"
+    );
+    let named = |name: &str| clauses.replace("[stand_in]", &format!("[stand_in]\nclause = {name:?}"));
+    for (name, probability) in [("warm", 0.9), ("surer", 0.99)] {
+        folder.file("one.toml", &named(name));
+        let found = folder.json(&["rule", "one.toml", "--stand-in"]);
+        assert_eq!(found["clause"], name);
+        assert!((number(&found, "detection_probability") / probability - 1.0).abs() < 1e-12);
+        assert!(
+            folder
+                .run(&["rule", "one.toml", "--stand-in"])
+                .stdout
+                .contains(&format!("clause {name:?}: a stand-in at"))
+        );
+    }
+    folder.file("one.toml", &named("sure"));
+    let message = folder.refusal(&["rule", "one.toml", "--stand-in"]);
+    assert!(
+        message.contains(
+            "stand_in.clause: no clause `sure` tells people apart; write one of \"warm\", \"surer\""
+        ),
+        "{message}"
+    );
+    folder.file("none.toml", &RULE.replace("[stand_in]", "[stand_in]\nclause = \"warm\""));
+    assert!(
+        folder
+            .refusal(&["rule", "none.toml", "--stand-in"])
+            .contains("stand_in.clause: the rule has no [[clause]]")
+    );
+}
+
 #[test]
 fn mistakes_in_stand_ins() {
     let folder = Folder::with("");

@@ -145,7 +145,7 @@ fn row(camera: &CameraVerdict, units: Units) -> String {
         significant(camera.statistical_distance, 3),
         reliability(camera.statistical_distance),
         text::reading(camera),
-        camera.certificate.to_string(),
+        text::certified(camera),
         text::scene(&camera.limiting, units),
         fixes,
     ];

@@ -1,20 +1,18 @@
 //! `--check`: a line a camera, what is known of it and how.
 
-use super::measured::{measure, measured_scene, undecided};
+use super::measured::{guarded, measure, measured_scene, undecided};
 use super::text::{fails_by, without_placeholders};
 use super::words::in_words;
 use crate::text::significant;
 use hadar_study::scenario::Units;
 use hadar_study::scenario::rule::Verdict;
 use hadar_study::study::{CameraVerdict, Found, Measure, MeasuredVerdict, RuleAnswer, Shortfall};
-use hadar_study::warning::Code;
 use std::fmt::Write as _;
 
 /// A line for every camera; of a rule with clauses, a line for each of them below it.
 #[must_use]
 pub fn check(answer: &RuleAnswer) -> String {
-    let idle = answer.warnings.iter().filter(|warning| warning.code() == Code::NotInForce);
-    let idle: String = idle.map(|warning| format!("{warning}\n")).collect();
+    let idle = answer.sentence.idle.as_ref().map_or_else(String::new, |warning| format!("{warning}\n"));
     if let Some(only) = answer.only() {
         let required = only.requirement.distance;
         let lines =
@@ -48,10 +46,20 @@ pub fn check(answer: &RuleAnswer) -> String {
 
 fn measured_line(camera: &MeasuredVerdict, quantity: Measure, units: Units) -> String {
     let value = camera.value.map_or_else(|| "no bound".into(), |value| significant(value, 3));
-    let reached = format!("{} times the demand ({} {value})", at_least(camera.margin), measure(quantity));
+    let value = format!("{} {value}", measure(quantity));
+    let reached = format!("{} times the demand ({value})", at_least(camera.margin));
     let at = measured_scene(&camera.limiting, units);
     match camera.passes {
-        true => format!("{}: {reached}, {at}", camera.grade.name()),
+        true => match &camera.uncertainty {
+            None => format!("{}: {reached}, {at}", camera.grade.name()),
+            Some(found) => {
+                let (low, guarded) = (at_least(found.low), guarded(camera.uncertainty.as_ref()));
+                let grade = camera.grade.name();
+                format!(
+                    "{grade}: at least {low} times the demand{guarded} ({value} as they are stated), {at}"
+                )
+            }
+        },
         false if camera.verdict == Verdict::Undecided => {
             format!("{}: {reached}, {at}", undecided(&camera.undecided_by, camera.uncertainty.as_ref()))
         }
@@ -64,11 +72,15 @@ fn line(camera: &CameraVerdict, required: f64) -> String {
     let said = if camera.verdict == Verdict::Undecided {
         undecided(&camera.undecided_by, camera.uncertainty.as_ref())
     } else if camera.passes {
+        let low = camera.uncertainty.as_ref().map_or(camera.margin, |found| found.low);
+        let guarded = guarded(camera.uncertainty.as_ref());
         let known = match camera.lower_bound {
-            Some(bound) if bound >= required => format!("proved: at least {} everywhere", times(bound)),
+            Some(bound) if bound >= required => {
+                format!("{}: at least {} everywhere{guarded}", camera.grade.name(), times(bound))
+            }
             _ => {
-                let least = times(camera.statistical_distance);
-                format!("met, but searched and not proved: {least} where it is least")
+                let least = times(low * required);
+                format!("met, but searched and not proved: {least} where it is least{guarded}")
             }
         };
         let proviso = camera.provided.as_ref().map_or_else(String::new, |proviso| format!(", if {proviso}"));

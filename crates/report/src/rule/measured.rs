@@ -85,7 +85,9 @@ pub(super) fn measured_scene(scene: &MeasuredScene, units: Units) -> String {
 /// What is undecided, and between which ends the margin lies.
 pub(super) fn undecided(by: &[Shortfall], uncertainty: Option<&MarginUncertainty>) -> String {
     let words = by.iter().map(|reason| match (reason, uncertainty) {
-        (Shortfall::Distance | Shortfall::Pixels | Shortfall::TemperatureError, Some(found)) => {
+        (Shortfall::Distance | Shortfall::Pixels | Shortfall::TemperatureError, Some(found))
+            if found.low < 1.0 =>
+        {
             format!(
                 "the margin lies between {} and {}",
                 significant(found.low, 3),
@@ -95,6 +97,13 @@ pub(super) fn undecided(by: &[Shortfall], uncertainty: Option<&MarginUncertainty
         (other, _) => format!("perhaps {}", in_words(&[*other])),
     });
     format!("undecided: {}", words.collect::<Vec<_>>().join("; "))
+}
+
+/// What is promised of a margin whose figures are uncertain, to end a phrase.
+pub(super) fn guarded(uncertainty: Option<&MarginUncertainty>) -> String {
+    uncertainty.map_or_else(String::new, |found| {
+        format!(", with its uncertain figures at k = {}", significant(found.coverage_factor, 2))
+    })
 }
 
 /// How well a margin is known: its interval by both ways, then the budget, a line each.

@@ -4,9 +4,11 @@ use crate::bundle::Bundle;
 use crate::figures::Plot;
 use crate::plot::{Axis, Figure, LineFigure, Series};
 use crate::table::{Table, number, optional};
+use crate::text::footing::warnings;
 use crate::text::significant;
 use hadar::error::Result;
 use hadar_study::study::{StandIn, StandInAnswer};
+use hadar_study::warning::Code;
 use hadar_study::words::reliability;
 use std::fmt::Write as _;
 
@@ -14,10 +16,13 @@ use std::fmt::Write as _;
 #[must_use]
 pub fn stand_in(answer: &StandInAnswer) -> String {
     let units = answer.units;
-    let mut out = sentence(answer);
+    let idle = answer.warnings.iter().filter(|warning| warning.code() == Code::NotInForce);
+    let mut out: String = idle.map(|warning| format!("{warning}\n")).collect();
+    out.push_str(&sentence(answer));
     let _ = write!(
         out,
-        "\n\na stand-in at {}, before people of {}; told from them at most {} of the time (d = {})\n\n",
+        "\n\n{}a stand-in at {}, before people of {}; told from them at most {} of the time (d = {})\n\n",
+        answer.clause.as_ref().map_or_else(String::new, |clause| format!("clause {clause:?}: ")),
         units.temperature(answer.temperature_k),
         units.temperatures(answer.person_k),
         reliability(answer.distance),
@@ -45,6 +50,8 @@ pub fn stand_in(answer: &StandInAnswer) -> String {
          as the rule demands of cameras; proved: for all that is within, in all scenes of the envelope\n  \
          by what one pixel counts in all bands and frames: shape, motion and many pixels alike are other questions, and tell more\n",
     );
+    let others = answer.warnings.iter().filter(|warning| warning.code() != Code::NotInForce);
+    out.push_str(&warnings(&others.cloned().collect::<Vec<_>>()));
     out
 }
 
@@ -57,6 +64,10 @@ fn sentence(answer: &StandInAnswer) -> String {
     let [passing, all] = [passes.len(), answer.rows.len()];
     match (passes.first(), told.first()) {
         (None, _) => "Every stand-in is told from a person, even at its very temperature.".into(),
+        (Some(_), None) if answer.without_errors => format!(
+            "All {all} stand-ins pass for a person if spectra are exact and their temperatures are within the tolerances below; errors of \
+             the emissivities are not in it."
+        ),
         (Some(_), None) => format!(
             "No camera tells any of these {all} stand-ins from a person, if their temperatures are within the tolerances below."
         ),

@@ -189,7 +189,7 @@ fn details(camera: &CameraVerdict, units: Units) -> String {
         line("until then", approach(seen, units));
     }
     line("limited by", scene(&camera.limiting, units));
-    line("certificate", camera.certificate.to_string());
+    line("certificate", certified(camera));
     if let Some(found) = &camera.uncertainty {
         line("margin", uncertainty(camera.margin, found).join("\n               "));
     }
@@ -210,6 +210,12 @@ fn details(camera: &CameraVerdict, units: Units) -> String {
     }
     out.push('\n');
     out
+}
+
+/// How sure the limiting scene is, and what that is worth where figures are uncertain.
+pub(super) fn certified(camera: &CameraVerdict) -> String {
+    let said = camera.certificate.to_string();
+    if camera.uncertainty.is_none() { said } else { said + ", its figures as they are stated" }
 }
 
 /// A scene in one line.

@@ -11,8 +11,8 @@ use hadar::allowed::{ABOVE_ZERO, ABSOLUTE_TEMPERATURE, SHARE};
 use hadar::error::{Error, Result};
 use hadar::units::Dimension;
 
-/// Lower ends of the lighting may add up to more than 1 by this: rounding, not meaning.
-const LIGHTING_ROUNDING: f64 = 1e-12;
+/// Lighting factors that should add up to a value may miss it by this: rounding, not meaning.
+pub(super) const LIGHTING_ROUNDING: f64 = 1e-12;
 
 /// The keys of `[envelope]`.
 const KEYS: &[&str] = &["temperature", "lighting", "surroundings", "distance", "materials"];

@@ -6,6 +6,7 @@ use std::path::Path;
 use toml::de::DeTable;
 
 use super::camera;
+use super::envelope::LIGHTING_ROUNDING;
 use super::kind::Kind;
 use super::paths::material;
 use super::section::{Entry, Section, without_repetition};
@@ -20,8 +21,6 @@ use hadar::file;
 use hadar::instrument::figures::BLANK;
 use hadar::units::{Dimension, decimal_comma};
 
-/// Lighting factors that should add up to a value may miss it by this: rounding, not meaning.
-const LIGHTING_ROUNDING: f64 = 1e-12;
 /// The longest file taken for a scenario, bytes.
 const LONGEST_FILE: u64 = 1 << 20;
 

@@ -22,9 +22,6 @@ use hadar::policy::practice::resolution::{BACKGROUND_K, PERCEPTION, Transfer, mr
 use hadar::policy::practice::{ObserverTask, PIXELS_PER_CYCLE, Subtense};
 use hadar::spectrum::Bands;
 
-/// How far the angle of a pixel may be outside what field of view and pixels across it say, as a share: distortion.
-const DISTORTION: f64 = 0.1;
-
 /// What a companion table is made of. What is not given makes rows without numbers.
 #[derive(Debug, Clone, Copy)]
 pub struct Given<'a> {
@@ -163,20 +160,15 @@ impl<'a> Seen<'a> {
         row.with(self.across.map(pixels_and_cycles))
     }
 
-    /// The same by field of view and number of pixels, where that contradicts focal length and pixel. A lens may keep straight
-    /// lines straight, with 2 tan(θ/2) of a view θ over all pixels, or angles, with θ.
+    /// The same by field of view and number of pixels, where that contradicts focal length and pixel.
     fn pixels_by_field_of_view(&self) -> Option<CompanionRow> {
         let camera = self.given.camera?;
-        let (view_rad, field) = (camera.field_of_view_rad?, f64::from(camera.pixels?));
+        let (view_rad, field) = camera.view_and_pixels().filter(|_| camera.contradicts_its_view())?;
         let pixel_rad = camera.pixel_m / camera.focal_length_m;
-        let [least, most] = [view_rad / field, 2.0 * (0.5 * view_rad).tan() / field];
-        if (least * (1.0 - DISTORTION)..=most * (1.0 + DISTORTION)).contains(&pixel_rad) {
-            return None;
-        }
         let row = CompanionRow::new(Measure::PixelsByFieldOfView, None)
             .under("field_of_view_rad", view_rad)
             .under("pixels_across_field", field);
-        Some(row.with(self.across.map(|pixels| pixels_and_cycles(pixels * pixel_rad / least))))
+        Some(row.with(self.across.map(|pixels| pixels_and_cycles(pixels * pixel_rad / (view_rad / field)))))
     }
 
     fn johnson_range(&self, task: ObserverTask) -> CompanionRow {

@@ -41,8 +41,8 @@ use self::depth::DepthClause;
 use self::resolution::Resolution;
 use self::temperature::TemperatureClause;
 use super::{Study, Warning};
-use crate::scenario::Rule;
 use crate::scenario::rule::{Clause, Demand, StopSpec, Verdict};
+use crate::scenario::{Date, Rule};
 use hadar::demand::{self, Ledger, Work};
 use hadar::error::Result;
 use hadar::material::Library;
@@ -158,6 +158,14 @@ impl RuleStudy {
         })
     }
 
+    /// That the rule does not hold on a day, if that is so.
+    #[must_use]
+    pub fn idle(&self, on: Option<Date>) -> Option<Warning> {
+        let about = &self.rule.about;
+        let day = on.filter(|day| !about.holds_on(*day))?;
+        Some(Warning::NotInForce { day, from: about.from, until: about.until })
+    }
+
     /// What the rule says of every camera; `progress` is told how many pairs of materials before a camera are done.
     ///
     /// # Errors
@@ -184,11 +192,9 @@ impl RuleStudy {
             clauses.push(answered(clause, found));
         }
         let cameras = together(&clauses);
-        let sentence = who_meets(&clauses, &cameras);
+        let idle = self.idle(asked.on);
+        let sentence = WhoMeets { idle: idle.clone(), ..who_meets(&clauses, &cameras) };
         let rule = self.rule.clone();
-        let about = &rule.about;
-        let idle = asked.on.filter(|day| !about.holds_on(*day));
-        let idle = idle.map(|day| Warning::NotInForce { day, from: about.from, until: about.until });
         let warnings = idle.into_iter().chain(self.warnings.iter().cloned()).collect();
         Ok(RuleAnswer { rule, on: asked.on, sentence, cameras, clauses, warnings, stats: ledger.close() })
     }
@@ -238,7 +244,9 @@ fn together(clauses: &[ClauseAnswer]) -> Vec<CameraAnswer> {
             if line.margin < camera.margin {
                 (camera.margin, camera.limiting_clause, camera.interval) = (line.margin, name(), interval);
             }
-            camera.provided = camera.provided.or(line.provided);
+            // Of all clauses the hardest.
+            let farther = |one: &Proviso| camera.provided.is_none_or(|known| one.is_harder_than(&known));
+            camera.provided = line.provided.filter(farther).or(camera.provided);
             camera.grade = match (camera.verdict, line.verdict) {
                 // One clause that is surely not met is enough; of several the surest counts.
                 (Verdict::Fails, Verdict::Fails) => camera.grade.min(line.grade),

@@ -85,6 +85,8 @@ catalogue! {
     MotionBlur = "motion-blur", "Shorten the exposure, or allow less speed.";
     /// A speed is demanded, but without a distance its blur cannot be known.
     MotionBlurUnknown = "motion-blur-unknown", "Write target.distance, or distance in [envelope].";
+    /// Pixel and focal length of the camera say another angle of a pixel than its field of view and its pixels.
+    ContradictoryView = "contradictory-view", "Correct the figure that is wrong: pixel, focal_length, field_of_view or pixels.";
     /// The rule does not hold on the day that was asked about: nothing is demanded.
     NotInForce = "not-in-force", "Nothing; or ask about another day with --on.";
     /// Light of filters and of the sensor is left out, or the sensor's temperature is given where it does nothing.
@@ -113,6 +115,8 @@ catalogue! {
     /// Simulations ended at the most trials with intervals wider than asked for.
     TrialsEnded = "trials-ended", "Raise --trials, or ask for less with --half-width.";
 
+    /// The rule has errors of emissivities, and this answer takes all spectra to be exact.
+    EmissivityErrorsLeftOut = "emissivity-errors-left-out", "Ask for a tolerance of the emissivity that holds them.";
     /// That no scene of the envelope is below the requirement was searched for, not proved.
     NotProved = "not-proved", "Narrow the envelope, so that the search can prove it.";
     /// Noise that depends on the scene is taken where it is largest, so that the distance is a lower bound.

@@ -103,6 +103,13 @@ impl Display for Warning {
                 "a speed is given, but for the motion blur the scenario must say target.distance",
             ),
             Self::RuleMotionBlurUnknown => f.write_str("a speed is given, but motion blur needs a distance"),
+            Self::ContradictoryView { finer_rad, coarser_rad } => write!(
+                f,
+                "its figures contradict each other: a pixel sees {} or {} mrad, by its side and the focal length or by the view and \
+                 the pixels across it; the coarser counts for pixels on the target, the finer for motion blur",
+                significant(1e3 * finer_rad, 3),
+                significant(1e3 * coarser_rad, 3)
+            ),
             Self::NotInForce { day, from, until } => {
                 write!(f, "the rule does not hold on {day}")?;
                 match (from, until) {
@@ -188,6 +195,9 @@ impl Display for Warning {
                 f,
                 "{wide} of {simulations} simulations ended after {most_trials} trials of a state with intervals of up to \
                  +- {widest:.2}, not the +- {asked} asked for; raise --trials, or ask for less with --half-width"
+            ),
+            Self::EmissivityErrorsLeftOut => f.write_str(
+                "errors of the emissivities, [sensitivity], are not in it: all spectra are taken to be exact",
             ),
             Self::NotProved => f.write_str(
                 "that no scene of the envelope is below the requirement was searched, not proved",

@@ -14,6 +14,7 @@
 use super::demand::{Demand, depth_error, resolution, temperature_error};
 use super::stop::StopSpec;
 use crate::scenario::entries::{Document, Entries, Part};
+use crate::scenario::envelope::LIGHTING_ROUNDING;
 use crate::scenario::paths::{Paths, material};
 use crate::scenario::read::{of_root, requirement};
 use crate::scenario::section::{Entry, Section, without_repetition};
@@ -59,6 +60,13 @@ enum Kind {
     Resolution,
     TemperatureError,
     DepthError,
+}
+
+impl Kind {
+    /// Whether it demands a quantity, in a `[requirement]` of its own kind.
+    const fn is_measured(self) -> bool {
+        matches!(self, Self::Resolution | Self::TemperatureError | Self::DepthError)
+    }
 }
 
 const KINDS: [(&str, Kind); 5] = [
@@ -135,6 +143,10 @@ fn one(item: &Entry<'_>, root: &Section<'_>, rule: &Scenario, key: String) -> Re
     };
     if demand != Demand::FalseAlarm {
         of_its_own(&mut scenario, &plain);
+    }
+    if kind.is_measured() && stop.is_none() {
+        // Its requirement is another one; how fast the vehicle drives is the rule's to say.
+        scenario.requirement.speed_m_s = rule.requirement.speed_m_s;
     }
     scenario.title.clone_from(&rule.title);
     scenario.source = relaid(&rule.source, &key);
@@ -237,8 +249,10 @@ impl Clause {
         self.scenario.envelope.clone().unwrap_or_default().filled(&self.scenario)
     }
 
-    /// Refuses what says again what follows from `[stop]`.
+    /// Refuses what says again what follows from `[stop]`, and scenes that are not lit as is known.
     fn check(&self) -> Result<()> {
+        self.lit_as_known()?;
+        self.street_is_the_envelope()?;
         if self.stop.is_none() {
             return Ok(());
         }
@@ -264,6 +278,32 @@ impl Clause {
             Some((key, _, found)) => Err(Error::malformed(found, "leave it out").at(scenario.place(key))),
             None => Ok(()),
         }
+    }
+
+    /// Refuses a distance of the street beside those of the envelope, over which the depth would not be judged.
+    fn street_is_the_envelope(&self) -> Result<()> {
+        let Demand::DepthError(demand) = &self.demand else { return Ok(()) };
+        let street = demand.object.distance_m(&mut demand.scene.clone()).is_some();
+        if !street || self.scenario.envelope.as_ref().is_none_or(|envelope| envelope.distance_m.is_none()) {
+            return Ok(());
+        }
+        let found = "a distance beside envelope.distance, over which the depth is judged";
+        let key = format!("scene.{}_distance", demand.object.name());
+        Err(Error::malformed(found, "leave it out").at(self.scenario.place(&key)))
+    }
+
+    /// Refuses an envelope with scenes whose lighting does not add up to the total that is known: the alternative's always does, and
+    /// would seem told apart by that alone.
+    fn lit_as_known(&self) -> Result<()> {
+        let lighting = self.envelope().lighting.unwrap_or_default();
+        let Some(total) = self.scenario.unknown.lighting_total else { return Ok(()) };
+        let [least, most] = [0, 1].map(|end| lighting.iter().map(|range| range[end]).sum::<f64>());
+        if [least, most].iter().all(|sum| (sum - total).abs() <= LIGHTING_ROUNDING) {
+            return Ok(());
+        }
+        let found = format!("there are scenes whose lighting does not add up to lighting_total = {total}");
+        let instead = "write values that do, such as lighting = [[0.3, 0.3], [0.7, 0.7]], a clause for each, or leave out lighting_total";
+        Err(Error::malformed(found, instead).at(self.scenario.place("envelope.lighting")))
     }
 
     /// What it says itself, then the tables in which it differs from the rule.

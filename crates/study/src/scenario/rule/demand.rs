@@ -70,6 +70,14 @@ impl DepthObject {
             Self::Car => "car",
         }
     }
+
+    /// Its distance in a street, m.
+    pub(crate) fn distance_m(self, scene: &mut SceneSpec) -> &mut Option<f64> {
+        match self {
+            Self::Person => &mut scene.person_distance_m,
+            Self::Car => &mut scene.car_distance_m,
+        }
+    }
 }
 
 impl Demand {

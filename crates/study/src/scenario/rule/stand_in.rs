@@ -1,6 +1,6 @@
 //! The `[stand_in]` of a rule: what is to pass for a person where cameras are tested, and how exactly its emissivity is known.
 //!
-//! `materials` it may be made of (silent: those of the rule's target), its `temperature` (silent: that of the target), and
+//! `clause` names the one whose limit is turned round, where several tell people apart; `materials` it may be made of (silent: those of the rule's target), its `temperature` (silent: that of the target), and
 //! `emissivity`: tolerances, the same at all wavenumbers, for each of which the tolerance of its temperature is found.
 
 use crate::scenario::MaterialRef;
@@ -19,6 +19,8 @@ const MOST: usize = 64;
 /// A stand-in (`[stand_in]`).
 #[derive(Debug, Clone, PartialEq)]
 pub struct StandInSpec {
+    /// The clause whose limit is turned round, by its name; the only one that tells people apart where `None`.
+    pub clause: Option<String>,
     /// What it may be made of; the materials of the target where `None`.
     pub materials: Option<Vec<MaterialRef>>,
     /// Its temperature, K; that of the target where `None`.
@@ -29,13 +31,14 @@ pub struct StandInSpec {
 
 impl Default for StandInSpec {
     fn default() -> Self {
-        Self { materials: None, temperature_k: None, emissivity: EMISSIVITY.to_vec() }
+        Self { clause: None, materials: None, temperature_k: None, emissivity: EMISSIVITY.to_vec() }
     }
 }
 
 impl StandInSpec {
     pub(super) fn read(entry: &Entry<'_>) -> Result<Self> {
-        let section = entry.section(&["materials", "temperature", "emissivity"])?;
+        let section = entry.section(&["clause", "materials", "temperature", "emissivity"])?;
+        let clause = section.read("clause", |entry| Ok(entry.text("\"crossing\"")?.trim().to_owned()))?;
         let materials = section.read("materials", |entry| {
             let items = entry.items("materials = [\"skin\"]")?;
             if items.is_empty() {
@@ -61,6 +64,7 @@ impl StandInSpec {
             Ok(values)
         })?;
         Ok(Self {
+            clause,
             materials,
             temperature_k: section.quantity("temperature", Dimension::Temperature, ABSOLUTE_TEMPERATURE)?,
             emissivity: emissivity.unwrap_or_else(|| EMISSIVITY.to_vec()),
@@ -72,6 +76,7 @@ impl StandInSpec {
             materials.iter().map(|material| paths.material(material)).collect()
         };
         Entries::default()
+            .put_if("clause", self.clause.as_deref())
             .put_if("materials", self.materials.as_ref().map(names))
             .put_quantity("temperature", Dimension::Temperature, self.temperature_k)
             .put("emissivity", self.emissivity.clone())

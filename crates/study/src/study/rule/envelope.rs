@@ -61,6 +61,17 @@ pub(in crate::study) struct Estimate {
     pub(in crate::study) nearest: State,
 }
 
+impl Study {
+    /// The same before another camera, from a distance.
+    pub(super) fn before(&self, camera: &Camera, distance_m: Option<f64>) -> Result<Self> {
+        let mut study = self.clone();
+        study.scenario.target.distance_m = distance_m;
+        (study.bands, study.air) = study.received(Some(camera), distance_m)?;
+        study.camera = Some(camera.clone());
+        Ok(study)
+    }
+}
+
 impl Sighted {
     /// A study with its camera, over the ranges of an envelope that is filled in.
     pub(in crate::study) fn new(study: Study, envelope: &Envelope) -> Result<Self> {
@@ -78,11 +89,7 @@ impl Sighted {
         distance_m: Option<f64>,
         envelope: &Envelope,
     ) -> Result<Self> {
-        let mut study = self.study.clone();
-        study.scenario.target.distance_m = distance_m;
-        (study.bands, study.air) = study.received(Some(camera), distance_m)?;
-        study.camera = Some(camera.clone());
-        Self::new(study, envelope)
+        Self::new(self.study.before(camera, distance_m)?, envelope)
     }
 
     /// The pair with an alternative, for a search.

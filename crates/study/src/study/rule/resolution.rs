@@ -1,5 +1,5 @@
-//! A clause that demands pixels on the target: n = h f/(z p), h the side of the target (m), f the focal length (m), p the side of
-//! a pixel (m), z the distance (m).
+//! A clause that demands pixels on the target: n = h/(z α), h the side of the target (m), z the distance (m), α what a pixel sees (rad):
+//! its side over the focal length, or the view over the pixels across it, where that is coarser.
 //!
 //! That is geometry alone: neither optics that blur nor noise are in it; pixels that run into each other while a frame is exposed
 //! count as one. It is least at the greatest distance from which a frame
@@ -65,25 +65,21 @@ impl Resolution {
     }
 
     /// The greatest distance from which a frame is taken, m, and the pixels across the target: from there, or as many as do not run into
-    /// each other while a frame is exposed, where that is fewer. What moves by n/z pixels is h/z large, so that this number is the same
-    /// from everywhere; it is least at the highest speed.
+    /// each other while a frame is exposed, where that is fewer: the target over its way meanwhile, the same from everywhere, and least at
+    /// the highest speed.
     fn reached(&self, camera: &Camera, bands: usize) -> (f64, f64) {
         let approach = self.approach(camera, bands);
         let distance_m = approach.map_or(self.farthest_m, |approach| approach.distance_m[1]);
-        let across = |distance_m: f64| self.size_m * camera.focal_length_m / (distance_m * camera.pixel_m);
-        let sharp = across(distance_m);
-        let blur =
-            self.moving.and_then(|moving| Some((moving, moving.distance_m?, moving.blur_pixels(camera, 1)?)));
-        let value = match blur {
-            Some((moving, z, blur)) if blur >= 1.0 => {
-                let fastest = self.stop.map_or(moving.speed_m_s, |spec| {
-                    let one = spec.stop().decisions()[1];
-                    one.speed_m_s.max(one.closing_m_s)
-                });
-                sharp.min(across(z) / blur * moving.speed_m_s / fastest)
-            }
-            _ => sharp,
-        };
+        let [_, coarser] = camera.pixel_angles_rad();
+        let sharp = self.size_m / (distance_m * coarser);
+        let smeared = self.moving.and_then(|moving| {
+            let fastest = self.stop.map_or(moving.speed_m_s, |spec| {
+                let one = spec.stop().decisions()[1];
+                one.speed_m_s.max(one.closing_m_s)
+            });
+            Some(self.size_m / (moving.blur_m(camera, 1)? * fastest / moving.speed_m_s))
+        });
+        let value = smeared.map_or(sharp, |smeared| sharp.min(smeared));
         (distance_m, value)
     }
 
@@ -113,13 +109,13 @@ impl Resolution {
             passes: verdict == Verdict::Meets,
             fails_by,
             undecided_by,
+            grade: Grade::Proved.guarded(verdict, uncertainty.as_ref()),
             uncertainty,
             value: Some(value),
             margin: value / self.pixels,
-            grade: Grade::Proved,
             limiting: MeasuredScene { distance_m: Some(distance_m), ..MeasuredScene::default() },
             approach: self.approach(&named.camera, bands).map(|approach| approach.result),
-            warnings: Vec::new(),
+            warnings: super::approach::contradiction(&named.camera).into_iter().collect(),
         })
     }
 }

@@ -25,6 +25,8 @@ pub struct WhoMeets {
     pub fail: Vec<String>,
     /// Whether it is one clause of several that they meet.
     pub clause: bool,
+    /// That the rule does not hold on the day that is asked about.
+    pub idle: Option<Warning>,
     /// Pairs that limit a camera though each of the two is entered as one number, with the numbers.
     pub placeholders: Vec<(String, String, [f64; 2])>,
 }
@@ -38,6 +40,14 @@ pub struct Proviso {
     pub time_s: f64,
     /// Way of the vehicle meanwhile, m.
     pub way_m: f64,
+}
+
+impl Proviso {
+    /// Whether it hangs on more: a longer way, or more time for the same.
+    pub(super) fn is_harder_than(&self, other: &Self) -> bool {
+        let hard = |one: &Self| (one.way_m, one.time_s, one.frames);
+        hard(self) > hard(other)
+    }
 }
 
 /// A camera over the pairs of which more than one number is known of one of the two.
@@ -138,7 +148,7 @@ pub struct CameraVerdict {
     pub statistical_distance: f64,
     /// Φ of it: no test is right more often there.
     pub detection_probability: f64,
-    /// Proved: no scene of the envelope is below. `None` if nothing is proved.
+    /// Proved: no scene of the envelope is below, by the lower end of uncertain figures. `None` if nothing is proved.
     pub lower_bound: Option<f64>,
     /// How sure the limiting scene is.
     pub certificate: Certified,
@@ -390,6 +400,12 @@ pub enum Grade {
 }
 
 impl Grade {
+    /// That of a line with such a verdict, if its margin is guarded: what is promised then rests on draws.
+    pub(super) fn guarded(self, verdict: Verdict, uncertainty: Option<&MarginUncertainty>) -> Self {
+        let drawn = uncertainty.is_some_and(|found| found.low < found.high);
+        if verdict == Verdict::Meets && drawn { self.max(Self::Simulated) } else { self }
+    }
+
     /// Its name, e.g. `proved`.
     #[must_use]
     pub const fn name(self) -> &'static str {

@@ -6,7 +6,7 @@
 
 use super::super::{NearestState, Shortfall, Study, Surface, Warning, warn};
 use super::apart::{Candidate, TellApart};
-use super::approach::spoiled;
+use super::approach::{contradiction, spoiled};
 use super::envelope::{Estimate, Sighted, brightest};
 use super::results::{CameraVerdict, Certified, Fixes, Grade, LimitingScene, Proviso, WithoutPlaceholders};
 use super::uncertainty::{self, Judged};
@@ -97,11 +97,13 @@ impl TellApart {
         let certificate =
             worst.certificate.map_or_else(Certified::counterexample, |found| Certified::of(found, gap));
         let mut grade = Grade::Proved;
-        // What is proved of the worst scene is guarded as its margin is.
+        // What is proved of the worst scene is guarded as its margin is, and what is guarded rests on draws.
         let guard = uncertainty.as_ref().map_or(0.0, |found| distance / self.required - found.low);
-        if passes && worst.lower_bound.is_none_or(|bound| bound / self.required - guard < 1.0) {
+        let lower_bound = worst.lower_bound.map(|bound| (bound - guard * self.required).max(0.0));
+        grade = grade.guarded(verdict, uncertainty.as_ref());
+        if passes && lower_bound.is_none_or(|bound| bound < self.required) {
             warnings.push(Warning::NotProved);
-            grade = Grade::Searched;
+            grade = grade.max(Grade::Searched);
         }
         if at.counting().is_some_and(|own| own.var_added != sighted.counting.var_added) {
             warnings.push(Warning::BrightestNoise);
@@ -176,7 +178,7 @@ impl TellApart {
             margin: distance / self.required,
             statistical_distance: distance,
             detection_probability: detection::probability(distance),
-            lower_bound: worst.lower_bound,
+            lower_bound,
             certificate,
             limiting,
             fixes,
@@ -240,6 +242,7 @@ impl TellApart {
         warnings.extend(near.size_unknown(camera, farthest_m));
         let assumed = camera.assumed.iter().cloned();
         warnings.extend(assumed.map(|figure| Warning::CameraFigureAssumed { figure }));
+        warnings.extend(contradiction(camera).filter(|_| self.moving.is_some()));
         if self.moving.is_some() && self.image(candidate, camera).blur.is_none() {
             warnings.push(Warning::RuleMotionBlurUnknown);
         }

@@ -10,14 +10,16 @@
 //! The person's lighting is within the envelope as the stand-in's is, and its temperature where that is known: a stand-in outside is told.
 //!
 //! Proved is a ΔT a little smaller, at which the bound from above is no more than the demand. Cameras are taken from both ends of the
-//! distance, at one of which they count most, with the least noise of the envelope: what helps them to tell. With air on the path, or
+//! distance, at one of which they count most, with the least noise of the envelope and with uncertain figures on all sides, as far as the
+//! rule guards them: what helps them to tell. Errors of emissivities (`[sensitivity]`) are not in it, and a warning says so. With air on the path, or
 //! a target smaller than a pixel, distances between are searched, and nothing is proved.
 
 use super::apart::{TellApart, steps};
+use super::uncertainty::Uncertain;
 use super::{Kind, RuleStudy};
 use crate::scenario::rule::{Demand, StandInSpec};
-use crate::scenario::{Envelope, MaterialRef, Units};
-use crate::study::{Study, Surface};
+use crate::scenario::{Date, Envelope, MaterialRef, Scenario, Units};
+use crate::study::{Study, Surface, Warning};
 use hadar::error::{Error, Result};
 use hadar::fisher::Nuisance;
 use hadar::identifiability::detection;
@@ -53,6 +55,11 @@ pub struct StandInAnswer {
     pub temperature_k: f64,
     /// Every camera, person, material and tolerance of the emissivity.
     pub rows: Vec<StandIn>,
+    /// What the reader must know.
+    pub warnings: Vec<Warning>,
+    /// Whether errors of the emissivities, which the rule has, are left out.
+    #[serde(skip)]
+    pub without_errors: bool,
     /// Units of the rule.
     #[serde(skip)]
     pub units: Units,
@@ -113,23 +120,19 @@ struct Before<'a> {
 }
 
 impl RuleStudy {
-    /// Within which tolerances a stand-in passes for a person, by the first clause that tells people apart; `progress` is told how
-    /// many rows of how many are done.
+    /// Within which tolerances a stand-in passes for a person, by the clause that tells people apart, on a day; `progress` is told
+    /// how many rows of how many are done.
     ///
     /// # Errors
-    /// No such clause; a material that is not known; surroundings that leave no room for the largest lighting.
-    pub fn stand_in(&self, library: &Library, progress: &dyn Fn(usize, usize)) -> Result<StandInAnswer> {
-        let mut clauses = self.clauses.iter().zip(&self.rule.clauses);
-        let found = clauses
-            .find(|(kind, clause)| matches!((kind, &clause.demand), (Kind::Apart(_), Demand::TellApart)));
-        let Some((Kind::Apart(apart), clause)) = found else {
-            let error = Error::malformed(
-                "no clause of the rule tells people apart",
-                "write [[clause]] with kind = \"tell-apart\"",
-            );
-            return Err(error.at(self.rule.scenario.place("")));
-        };
+    /// No such clause, or several and none of them named; a material that is not known; surroundings that leave no room for the largest lighting.
+    pub fn stand_in(
+        &self,
+        library: &Library,
+        on: Option<Date>,
+        progress: &dyn Fn(usize, usize),
+    ) -> Result<StandInAnswer> {
         let spec = self.rule.stand_in.clone().unwrap_or_default();
+        let (apart, name) = self.turned(spec.clause.as_deref())?;
         if apart
             .scenario
             .unknown
@@ -165,9 +168,10 @@ impl RuleStudy {
                         let stand_in = &study.alternatives[*index];
                         Before::new(study, stand_in, apart, person_k, temperature_k)
                     });
-                    let before = before.collect::<Result<Vec<_>>>()?;
+                    let before = undominated(before.collect::<Result<Vec<_>>>()?);
                     // Between two ends of a plain sight nothing is counted more than at one of them.
-                    let provable = ends.len() <= 2;
+                    let z = |study: &Study| study.scenario.target.distance_m;
+                    let provable = plain(&apart.scenario) || ends.iter().all(|study| z(study) == z(&ends[0]));
                     let names = [camera.as_str(), &ends[0].target.name, &stand_in.name];
                     row(&before, names.map(str::to_owned), *tolerance, provable)
                 })
@@ -175,8 +179,12 @@ impl RuleStudy {
             rows.extend(done);
             progress(rows.len(), all);
         }
+        let without_errors = scenario.sensitivity.is_some_and(|errors| errors.emissivity_error > 0.0);
+        let left_out = without_errors.then_some(Warning::EmissivityErrorsLeftOut);
         Ok(StandInAnswer {
-            clause: clause.name.clone(),
+            clause: name,
+            warnings: self.idle(on).into_iter().chain(left_out).collect(),
+            without_errors,
             distance: apart.required,
             detection_probability: detection::probability(apart.required),
             person_k,
@@ -187,10 +195,74 @@ impl RuleStudy {
     }
 }
 
-/// For each camera and person the studies whose alternatives are the stand-ins, from the ends of the distances.
+impl RuleStudy {
+    /// The clause whose limit is turned round.
+    fn turned(&self, named: Option<&str>) -> Result<(&TellApart, Option<String>)> {
+        let clauses = self.clauses.iter().zip(&self.rule.clauses).filter_map(|(kind, clause)| match kind {
+            Kind::Apart(apart) if clause.demand == Demand::TellApart => Some((&**apart, clause.name.clone())),
+            _ => None,
+        });
+        let all: Vec<(&TellApart, Option<String>)> = clauses.collect();
+        let names: Vec<String> =
+            all.iter().flat_map(|(_, name)| name).map(|name| format!("{name:?}")).collect();
+        let wrong = |key: &str, found: String, instead: String| {
+            Err(Error::malformed(found, instead).at(self.rule.scenario.place(key)))
+        };
+        match (all.as_slice(), named) {
+            ([], _) => {
+                let instead = "write [[clause]] with kind = \"tell-apart\"".into();
+                wrong("", "no clause of the rule tells people apart".into(), instead)
+            }
+            (_, Some(named)) => match all.iter().find(|(_, name)| name.as_deref() == Some(named)) {
+                Some(found) => Ok(found.clone()),
+                None if names.is_empty() => {
+                    wrong("stand_in.clause", "the rule has no [[clause]]".into(), "leave it out".into())
+                }
+                None => {
+                    let found = format!("no clause `{named}` tells people apart");
+                    wrong("stand_in.clause", found, format!("write one of {}", names.join(", ")))
+                }
+            },
+            ([one], None) => Ok(one.clone()),
+            (_, None) => {
+                let found = format!("{} clauses tell people apart: {}", all.len(), names.join(", "));
+                let instead = format!("write clause = {} in [stand_in], or another of them", names[0]);
+                wrong("stand_in", found, instead)
+            }
+        }
+    }
+}
+
+/// Whether a camera counts most from one of the ends of the distances: not through air, nor where the target is smaller than its pixel.
+fn plain(scenario: &Scenario) -> bool {
+    scenario.target.size_m.is_none() && scenario.atmosphere.is_none()
+}
+
+/// Those of them before which no other, from the same distance, counts as much or more amid as little noise or less.
+fn undominated(all: Vec<Before<'_>>) -> Vec<Before<'_>> {
+    let no_worse = |one: &Before<'_>, other: &Before<'_>| {
+        one.study.scenario.target.distance_m == other.study.scenario.target.distance_m
+            && one.counting.counts_per_radiance >= other.counting.counts_per_radiance
+            && (0..one.study.bands.len()).all(|w| one.counting.var_added(w) <= other.counting.var_added(w))
+    };
+    let mut best: Vec<Before<'_>> = Vec::with_capacity(all.len());
+    for one in all {
+        if !best.iter().any(|known| no_worse(known, &one)) {
+            best.retain(|known| !no_worse(&one, known));
+            best.push(one);
+        }
+    }
+    best
+}
+
+/// For each camera and person the studies whose alternatives are the stand-ins, from the ends of the distances, with uncertain figures of
+/// the camera on all of their sides.
 fn studies(apart: &TellApart, spec: &StandInSpec, library: &Library) -> Result<Vec<(String, Vec<Study>)>> {
     let mut found = Vec::new();
     for candidate in &apart.candidates {
+        let place = |key: &str| apart.rule.camera_place(candidate.named.index, key);
+        let uncertain = apart.uncertain(candidate, &place)?;
+        let sides = uncertain.iter().flat_map(Uncertain::sides).collect::<Result<Vec<_>>>()?;
         for near in &candidate.near {
             let mut scenario = near.scenario.clone();
             let own = scenario.target.material.clone();
@@ -204,8 +276,7 @@ fn studies(apart: &TellApart, spec: &StandInSpec, library: &Library) -> Result<V
             };
             scenario.alternatives.materials = asked;
             let mut ends = Vec::new();
-            // Air, and a target that is smaller than its pixel, let a camera count most from between the ends.
-            let plain = scenario.target.size_m.is_none() && scenario.atmosphere.is_none();
+            let plain = plain(&scenario);
             let distances = match candidate.distance_m {
                 Some([least, most]) if least < most && plain => vec![Some(least), Some(most)],
                 Some([least, most]) if least < most => steps([least, most]).map(Some).collect(),
@@ -219,6 +290,9 @@ fn studies(apart: &TellApart, spec: &StandInSpec, library: &Library) -> Result<V
                 }
                 if materials.contains(&own) {
                     study.alternatives.insert(0, study.target.clone());
+                }
+                for camera in &sides {
+                    ends.push(study.before(camera, distance_m)?);
                 }
                 ends.push(study);
             }

@@ -5,7 +5,7 @@
 //! in the envelope: corners and scenes between them are looked at, then the largest is followed uphill, one range after the other,
 //! in ever smaller steps. Nothing proves that no scene is worse.
 
-use super::approach::{Approach, Moving, spoiled};
+use super::approach::{Approach, Moving, contradiction, spoiled};
 use super::cameras::Named;
 use super::clauses::{Measure, MeasuredAnswer, MeasuredScene, MeasuredVerdict};
 use super::envelope::{Sighted, all, brightest, scattered_places, scene_at};
@@ -31,6 +31,8 @@ const LAST_STEP: f64 = 1e-4;
 pub(super) struct TemperatureClause {
     error_k: f64,
     coverage_factor: f64,
+    /// Whether the rule has errors of emissivities.
+    sensitivity: bool,
     rule: Rule,
     stop: Option<StopSpec>,
     moving: Option<Moving>,
@@ -65,7 +67,8 @@ impl TemperatureClause {
         let before = |(index, named): (usize, &Named)| before(rule, clause, index, named, &envelope, library);
         let cameras = cameras.iter().enumerate().map(before).collect::<Result<_>>()?;
         let (rule, stop, moving) = (rule.clone(), clause.stop, Moving::of(clause));
-        Ok(Self { error_k, coverage_factor, rule, stop, moving, envelope, cameras })
+        let sensitivity = clause.scenario.sensitivity.is_some_and(|errors| errors.emissivity_error > 0.0);
+        Ok(Self { error_k, coverage_factor, sensitivity, rule, stop, moving, envelope, cameras })
     }
 
     pub(super) fn study(&self) -> Option<&Study> {
@@ -78,8 +81,12 @@ impl TemperatureClause {
             verdicts.push(self.judged(camera)?);
             progress(done + 1);
         }
+        let unasked = match self.sensitivity {
+            true => " (errors of the emissivities are not carried into it: no camera is said to meet it)",
+            false => "",
+        };
         let definition = format!(
-            "{} standard deviations of an unbiased estimate of the temperature, the emissivity known, within {} K",
+            "{} standard deviations of an unbiased estimate of the temperature, the emissivity known, within {} K{unasked}",
             self.coverage_factor, self.error_k
         );
         let (quantity, demanded) = (Measure::TemperatureErrorK, self.error_k);
@@ -134,7 +141,11 @@ impl TemperatureClause {
         };
         let by = (Shortfall::TemperatureError, true);
         let (judged, uncertainty) = Uncertain::verdict(uncertain, margin, by, &named.camera, &spoils, &of)?;
-        let Judged { verdict, fails_by, undecided_by } = judged;
+        let Judged { mut verdict, fails_by, mut undecided_by } = judged;
+        // What errors of the emissivity make of the temperature is not in the bound.
+        if verdict == Verdict::Meets && self.sensitivity {
+            (verdict, undecided_by) = (Verdict::Undecided, vec![Shortfall::TemperatureError]);
+        }
         let passes = verdict == Verdict::Meets;
         // With more noise than the scene has itself, it may be in the scene's own.
         let own_noise = worst.as_ref().is_none_or(|(found, sighted)| {
@@ -148,8 +159,12 @@ impl TemperatureClause {
             lighting: found.state.lighting,
             surroundings_k: found.state.environment_k,
         });
-        let warnings =
+        let mut warnings =
             before.sighted.first().map(|sighted| sighted.study.camera_warnings()).unwrap_or_default();
+        warnings.extend(contradiction(&named.camera).filter(|_| self.moving.is_some()));
+        // One scene in which it cannot be shows that it fails.
+        let grade = if verdict != Verdict::Fails || !own_noise { Grade::Searched } else { Grade::Proved };
+        let grade = grade.guarded(verdict, uncertainty.as_ref());
         Ok(MeasuredVerdict {
             name: named.name.clone(),
             verdict,
@@ -159,8 +174,7 @@ impl TemperatureClause {
             uncertainty,
             value,
             margin,
-            // One scene in which it cannot be shows that it fails.
-            grade: if verdict != Verdict::Fails || !own_noise { Grade::Searched } else { Grade::Proved },
+            grade,
             limiting,
             approach: before.approach.as_ref().map(|approach| approach.result),
             warnings,

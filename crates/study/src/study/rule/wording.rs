@@ -14,6 +14,9 @@ impl Display for WhoMeets {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let all = self.meet.len() + self.undecided.len() + self.fail.len();
         let what = if self.clause { "clause" } else { "rule" };
+        if let Some(idle) = &self.idle {
+            write!(f, "Nothing is demanded: {idle}. As if it did: ")?;
+        }
         let meet: Vec<String> = self
             .meet
             .iter()
