@@ -46,6 +46,7 @@
 //! | | [`ranging`] | precision of depth: windows, textures, diffraction, heat cubes |
 //! | | [`policy`] | requirements: solved for, traded off, proved over envelopes of scenes |
 //! | witness | [`simulate`] | counts drawn, classifiers, thermometry, stereo matching: each against its bound |
+//! | | [`decompose`] | heat cubes taken apart: material, temperature and lighting of every pixel |
 //! | | [`render`] | stereo pairs of heat cubes of a scene |
 //!
 //! # Where an equation is computed
@@ -74,7 +75,8 @@
 //! | S35, S36 | depth from disparity, and its error δz | [`ranging::depth`] |
 //! | S37–S40, Tables S4, S5 | information of windows, four cells | [`ranging::information`], [`ranging::noise`] |
 //! | S41–S43 | two views, diffraction, the limit of δz | [`ranging::depth`], [`ranging::psf`] |
-//! | S48 | known total of the lighting factors | [`fisher`], [`scene`] |
+//! | S44 | decomposition of a heat cube | [`decompose`] |
+//! | S48 | known total of the lighting factors | [`fisher`], [`scene`], [`decompose`] |
 //! | Ext. Data Fig. 9 | thermometry | [`fisher::precision`], [`simulate::thermometry`] |
 //! | SII E, Fig. 3d, e | H = t A_p/((1 + γ)F²), motion, requirements | [`policy`] |
 //!

@@ -25,7 +25,7 @@ pub(crate) use pairs::{
 
 use self::exponential::{Double, exp_and_complement, inverse_thermal, product};
 use crate::simd::dispatched;
-use crate::units::SPEED_OF_LIGHT_M_S;
+use crate::units::{SECOND_RADIATION_CM_K, SPEED_OF_LIGHT_M_S};
 
 /// 2c in cm s⁻¹ times cm² per m²: turns ν² (cm⁻²) into photons s⁻¹ m⁻² sr⁻¹ per cm⁻¹.
 const PREFACTOR: f64 = 2.0 * SPEED_OF_LIGHT_M_S * 1e2 * 1e4;
@@ -63,6 +63,17 @@ pub fn occupancy(wavenumber_cm1: f64, temperature_k: f64) -> f64 {
 #[must_use]
 pub fn mode_density(wavenumber_cm1: f64) -> f64 {
     PREFACTOR * wavenumber_cm1 * wavenumber_cm1
+}
+
+/// Temperature (K) of the blackbody that sends the photon radiance `radiance` at wavenumber ν (cm⁻¹); 0 for none.
+///
+/// ```
+/// use hadar::planck::{brightness_temperature, photon_radiance};
+/// assert!((brightness_temperature(900.0, photon_radiance(900.0, 310.0)) / 310.0 - 1.0).abs() < 1e-14);
+/// ```
+#[must_use]
+pub fn brightness_temperature(wavenumber_cm1: f64, radiance: f64) -> f64 {
+    SECOND_RADIATION_CM_K * wavenumber_cm1 / libm::log1p(mode_density(wavenumber_cm1) / radiance)
 }
 
 /// ∂ln B/∂T in K⁻¹: x/(T(1 − e⁻ˣ)), well defined also where B itself underflows.
@@ -119,7 +130,6 @@ dispatched! {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::units::SECOND_RADIATION_CM_K;
 
     #[test]
     fn limits_of_rayleigh_jeans_and_of_underflow() {

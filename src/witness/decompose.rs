@@ -14,14 +14,14 @@
 
 mod fit;
 mod kernel;
+mod library_error;
 mod maps;
 mod model;
 mod pixel;
 mod screen;
 mod step;
-#[cfg(test)]
-mod tests;
 
+pub use library_error::LibraryError;
 pub use maps::{Maps, Options, decompose};
 pub use model::{Light, MOST_SURROUNDINGS, Setting};
 pub use pixel::{CANDIDATE_SHARE, NO_FIT, NO_MATERIAL, Pixel, Spared, flag};

@@ -5,6 +5,7 @@
 
 mod accuracy;
 mod cameras;
+mod decompose;
 mod global;
 mod identify;
 mod materials;
@@ -52,6 +53,8 @@ enum Command {
     Rule(rule::RuleArgs),
     /// How well depth can be measured: bounds of stereo ranging from a scene or a heat cube
     Range(range::RangeArgs),
+    /// A heat cube as material, temperature and lighting of every pixel, and where the photons do not tell
+    Decompose(decompose::DecomposeArgs),
     /// Draw spectra, train and judge classifiers, and hold them against the limit
     Simulate(simulate::SimulateArgs),
     /// The paper's figures and tables made again, with a ledger of what agrees
@@ -101,6 +104,7 @@ fn run(cli: &Cli) -> Result<ExitCode> {
         Command::Identify(args) => identify::run(args, &cli.global),
         Command::Rule(args) => rule::run(args, &cli.global),
         Command::Range(args) => range::run(args, &cli.global),
+        Command::Decompose(args) => decompose::run(args, &cli.global),
         Command::Simulate(args) => simulate::run(args, &cli.global),
         Command::Reproduce(args) => reproduce::run(args, &cli.global),
         Command::Accuracy(args) => accuracy::run(args, &cli.global),

@@ -8,6 +8,7 @@ pub mod accuracy;
 pub mod bundle;
 pub mod cameras;
 pub mod companion;
+pub mod decompose;
 pub mod figures;
 pub mod folder;
 mod html;

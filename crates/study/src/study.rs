@@ -10,6 +10,7 @@ mod bands;
 mod camera;
 mod camera_bands;
 pub mod companion;
+pub mod decompose;
 mod distances;
 mod identify;
 mod looked_up;

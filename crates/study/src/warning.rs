@@ -30,6 +30,13 @@ pub enum Warning {
     /// The spectrum does not cover the bands.
     MaterialSkipped { material: String },
 
+    /// Pixels with a missing sample.
+    PixelsSkipped { pixels: usize, of: usize },
+    /// Pixels that no material explains.
+    LibraryDoesNotFit { pixels: usize, of: usize },
+    /// A library without errors.
+    LibraryTakenAsExact,
+
     /// Equal emissivities.
     Identical,
     /// What both of a pair are entered as.
@@ -166,6 +173,9 @@ impl Warning {
             Self::Material { .. } => Code::Material,
             Self::TargetAmongAlternatives { .. } => Code::TargetAmongAlternatives,
             Self::MaterialSkipped { .. } => Code::MaterialSkipped,
+            Self::PixelsSkipped { .. } => Code::PixelsSkipped,
+            Self::LibraryDoesNotFit { .. } => Code::LibraryDoesNotFit,
+            Self::LibraryTakenAsExact => Code::LibraryTakenAsExact,
             Self::Identical => Code::Identical,
             Self::Equilibrium => Code::Equilibrium,
             Self::Blind => Code::Blind,

@@ -50,6 +50,8 @@ pub enum Thing {
     TrainedClassifiers,
     /// Spectra read by a fit or by an imager.
     Readings,
+    /// Fits of one material of a library to one pixel of a cube.
+    MaterialFits,
     /// Reports of tables and figures.
     Reports,
     /// Figures drawn for reports.
@@ -83,6 +85,7 @@ impl Thing {
             Self::Ratios => "ratios",
             Self::TrainedClassifiers => "trained_classifiers",
             Self::Readings => "readings",
+            Self::MaterialFits => "material_fits",
             Self::Reports => "reports",
             Self::Figures => "figures",
         }
@@ -114,6 +117,7 @@ impl Thing {
             Self::Ratios => "likelihood ratios drawn",
             Self::TrainedClassifiers => "classifiers trained",
             Self::Readings => "readings",
+            Self::MaterialFits => "fits of a material to a pixel",
             Self::Reports => "reports of tables and figures",
             Self::Figures => "figures",
         }
@@ -147,6 +151,8 @@ pub enum Reason {
     Decided,
     /// The interval was narrow enough.
     NarrowEnough,
+    /// A bound excludes it.
+    Bounded,
 }
 
 impl Reason {
@@ -166,6 +172,7 @@ impl Reason {
             Self::ProvedBelow => "proved_below",
             Self::Decided => "decided",
             Self::NarrowEnough => "narrow_enough",
+            Self::Bounded => "bounded",
         }
     }
 
@@ -185,6 +192,7 @@ impl Reason {
             Self::ProvedBelow => "proved not to reach it",
             Self::Decided => "decided without them",
             Self::NarrowEnough => "interval narrow enough",
+            Self::Bounded => "excluded by a bound",
         }
     }
 }

@@ -149,6 +149,15 @@ impl Bands {
         self.first_node.windows(2).map(|nodes| values[nodes[0]..nodes[1]].iter().sum()).collect()
     }
 
+    /// A value of each band at all of its nodes.
+    #[must_use]
+    pub fn spread(&self, per_band: &[f64]) -> Vec<f64> {
+        self.nodes_per_band()
+            .zip(per_band)
+            .flat_map(|(nodes, value)| std::iter::repeat_n(*value, nodes))
+            .collect()
+    }
+
     /// How many nodes each band has.
     pub(crate) fn nodes_per_band(&self) -> impl Iterator<Item = usize> {
         self.first_node.windows(2).map(|nodes| nodes[1] - nodes[0])

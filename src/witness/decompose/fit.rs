@@ -59,7 +59,7 @@ pub(super) fn fit(
         sums(model, Asked { m, shifted, temperature_k: state.temperature_k, mixture }, at);
         looks += 1;
         if let Some((from, deviance)) = before
-            && !(at.deviance <= deviance)
+            && (at.deviance.is_nan() || at.deviance > deviance)
             && looks < MOST_LOOKS
         {
             state = from.halfway(&state, model.vertices);
@@ -71,7 +71,7 @@ pub(super) fn fit(
         }
         let mut next = state;
         let step = next.step(at, &limits);
-        if !(step.square >= short) || looks >= MOST_LOOKS {
+        if step.square.is_nan() || step.square < short || looks >= MOST_LOOKS {
             return (Fit { state: next, deviance: at.deviance - step.square.max(0.0) }, looks);
         }
         let share = last.and_then(|last| step.share_of(&last, at, limits.unknowns)).unwrap_or(0.0);

@@ -31,6 +31,7 @@ pub(super) struct Sums {
     pub(super) slope: [f64; MOST],
     pub(super) chi_square: f64,
     pub(super) deviance: f64,
+    room: Vec<f64>,
 }
 
 /// A state of a material before the counts n′ of a pixel.
@@ -100,19 +101,121 @@ fn far_deviance(model: &Model, asked: Asked<'_>) -> f64 {
 }
 
 dispatched! {
-    /// Fills `sums`; the largest |x|.
+    /// Fills `sums`; the largest |x|. Loops over all bands for what is each band's own, and chunks for what is added up: the
+    /// compiler makes whole vectors of both.
     fn accumulate<'a>(model: &'a Model, asked: Asked<'a>, sums: &'a mut Sums) -> f64 {
-        // Compiled for the few unknowns of most scenes; with more of them columns of zeros fill up.
-        match (model.unknowns(), model.gain) {
-            (1, false) => pass::<1, false>(model, asked, sums),
-            (2, false) => pass::<2, false>(model, asked, sums),
-            (3, false) => pass::<3, false>(model, asked, sums),
-            (_, false) => pass::<MOST, false>(model, asked, sums),
-            (2, true) => pass::<2, true>(model, asked, sums),
-            (3, true) => pass::<3, true>(model, asked, sums),
-            (_, true) => pass::<MOST, true>(model, asked, sums),
+        let (width, count) = (model.width, model.unknowns());
+        let place = model.place(asked.temperature_k);
+        let hermite = Hermite::at(place.share);
+        let scale = model.scale(asked.mixture);
+        let per_kelvin = scale / place.step_k;
+        sums.room.resize(width * (count + 4), 0.0);
+        let (mean, rest) = sums.room.split_at_mut(width);
+        let (weight, rest) = rest.split_at_mut(width);
+        let (relative, rest) = rest.split_at_mut(width);
+        let (deviance, columns) = rest.split_at_mut(width);
+        let [v0, s0, v1, s1, factor] = model.emission(asked.m, place.row);
+        emit(hermite.value, [v0, s0, v1, s1, factor], mean);
+        let (first, weights) = match model.gain {
+            true => (None, asked.mixture),
+            false => (Some(model.base(asked.m)), &asked.mixture[1..]),
+        };
+        for (to, from) in columns[width..].chunks_exact_mut(width).zip(model.columns(asked.m)) {
+            match model.gain {
+                true => to.iter_mut().zip(from.iter().zip(&*mean)).for_each(|(to, (c, value))| *to = c + value),
+                false => to.copy_from_slice(from),
+            }
         }
+        for (mean, noise) in mean.iter_mut().zip(&*model.var_added) {
+            *mean = scale.mul_add(*mean, *noise);
+        }
+        if let Some(base) = first {
+            mean.iter_mut().zip(base).for_each(|(mean, base)| *mean += base);
+        }
+        for (u, column) in weights.iter().zip(model.columns(asked.m)) {
+            mean.iter_mut().zip(column).for_each(|(mean, c)| *mean = u.mul_add(*c, *mean));
+        }
+        let slope = &mut columns[..width];
+        emit(hermite.slope, [v0, s0, v1, s1, factor], slope);
+        slope.iter_mut().for_each(|slope| *slope *= per_kelvin);
+        compare(asked.shifted, mean, weight, relative, deviance);
+        let mut worst = Largest::default();
+        let (mut chi, mut total) = ([0.0; LANES], [0.0; LANES]);
+        let chunks = mean.as_chunks::<LANES>().0.iter().zip(deviance.as_chunks::<LANES>().0);
+        let (counts, relatives) = (asked.shifted.as_chunks::<LANES>().0, relative.as_chunks::<LANES>().0);
+        for ((mean, s), (n, t)) in chunks.zip(counts.iter().zip(relatives)) {
+            let residual: Chunk = std::array::from_fn(|i| n[i] - mean[i]);
+            worst.see(std::array::from_fn(|i| residual[i] / (n[i] + mean[i])));
+            let squared = product(residual, *t);
+            chi = std::array::from_fn(|i| chi[i] + squared[i]);
+            total = added(squared, *s, total);
+        }
+        sums.chi_square = fold(&chi);
+        sums.deviance = fold(&total);
+        for i in 0..count {
+            let column = &columns[i * width..][..width];
+            sums.slope[i] = dot(column, relative);
+            for j in 0..=i {
+                let dot = weighted(column, &columns[j * width..][..width], weight);
+                (sums.information[i][j], sums.information[j][i]) = (dot, dot);
+            }
+        }
+        worst.value()
     }
+}
+
+/// Values or slopes of the table, mixed in these shares, times the factors.
+#[inline(always)]
+fn emit(shares: [f64; 4], [a, b, c, d, factor]: [&[f64]; 5], to: &mut [f64]) {
+    let [p, q, r, s] = shares;
+    let ends = a.iter().zip(b).zip(c.iter().zip(d));
+    for ((to, factor), ((a, b), (c, d))) in to.iter_mut().zip(factor).zip(ends) {
+        *to = factor * p.mul_add(*a, q.mul_add(*b, r.mul_add(*c, s * d)));
+    }
+}
+
+/// 1/N′, r/N′ and s(x) of every band; N′ at least [`FEWEST`].
+#[inline(always)]
+fn compare(counts: &[f64], mean: &mut [f64], weight: &mut [f64], relative: &mut [f64], series: &mut [f64]) {
+    let out = weight.iter_mut().zip(relative).zip(series);
+    for ((n, mean), ((weight, relative), series)) in counts.iter().zip(mean).zip(out) {
+        *mean = if *mean > FEWEST { *mean } else { FEWEST };
+        let sum = n + *mean;
+        let both = 1.0 / (*mean * sum);
+        let residual = n - *mean;
+        *weight = both * sum;
+        *relative = residual * *weight;
+        let x = residual * (both * *mean);
+        let square = x * x;
+        let mut inner = SERIES[7];
+        for a in SERIES[..7].iter().rev() {
+            inner = inner.mul_add(square, *a);
+        }
+        // s = (1 − x)(1 + (x + x²) series)
+        let inner = (x + square).mul_add(inner, 1.0);
+        *series = (-x).mul_add(inner, inner);
+    }
+}
+
+/// Σ a b.
+#[inline(always)]
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let mut sum = [0.0; LANES];
+    for (a, b) in a.as_chunks::<LANES>().0.iter().zip(b.as_chunks::<LANES>().0) {
+        sum = added(*a, *b, sum);
+    }
+    fold(&sum)
+}
+
+/// Σ a b weight.
+#[inline(always)]
+pub(super) fn weighted(a: &[f64], b: &[f64], weight: &[f64]) -> f64 {
+    let mut sum = [0.0; LANES];
+    let chunks = a.as_chunks::<LANES>().0.iter().zip(b.as_chunks::<LANES>().0);
+    for ((a, b), weight) in chunks.zip(weight.as_chunks::<LANES>().0) {
+        sum = added(product(*a, *b), *weight, sum);
+    }
+    fold(&sum)
 }
 
 /// Four values in these shares. A function, since a closure's body need not be compiled for the same processor.
@@ -125,88 +228,4 @@ fn mixed(shares: [f64; 4], of: [Chunk; 4]) -> Chunk {
 #[inline(always)]
 fn in_chunks(values: &[f64], count: usize) -> &[Chunk] {
     &values.as_chunks::<LANES>().0[..count]
-}
-
-/// The sums for `P` unknowns.
-#[inline(always)]
-fn pass<const P: usize, const GAIN: bool>(model: &Model, asked: Asked<'_>, sums: &mut Sums) -> f64 {
-    let count = model.width / LANES;
-    let place = model.place(asked.temperature_k);
-    let hermite = Hermite::at(place.share);
-    let [v0, s0, v1, s1, factor] = model.emission(asked.m, place.row);
-    let (v0, s0, v1) = (in_chunks(v0, count), in_chunks(s0, count), in_chunks(v1, count));
-    let (s1, factor) = (in_chunks(s1, count), in_chunks(factor, count));
-    let scale = model.scale(asked.mixture);
-    let per_kelvin = scale / place.step_k;
-    let base = in_chunks(model.base(asked.m), count);
-    let (noise, counts) = (in_chunks(&model.var_added, count), in_chunks(asked.shifted, count));
-    let mut columns = [base; P];
-    let mut weights = [0.0; P];
-    for (j, (column, u)) in model.columns(asked.m).zip(&asked.mixture[usize::from(!GAIN)..]).enumerate() {
-        columns[j + 1] = in_chunks(column, count);
-        weights[j + 1] = *u;
-    }
-    let filled = model.unknowns();
-    let (mut chi, mut deviance, mut worst) = ([0.0; LANES], [0.0; LANES], Largest::default());
-    let (mut slope, mut information) = ([[0.0; LANES]; P], [[[0.0; LANES]; P]; P]);
-    for c in 0..count {
-        let ends = [v0[c], s0[c], v1[c], s1[c]];
-        let value = product(factor[c], mixed(hermite.value, ends));
-        let rise = product(factor[c], mixed(hermite.slope, ends));
-        let mut mean = fused(scale, value, noise[c]);
-        if !GAIN {
-            mean = std::array::from_fn(|i| mean[i] + base[c][i]);
-        }
-        let mut derivative = [[0.0; LANES]; P];
-        derivative[0] = product([per_kelvin; LANES], rise);
-        for j in 1..P {
-            if P < MOST || j < filled {
-                mean = fused(weights[j], columns[j][c], mean);
-                derivative[j] = columns[j][c];
-                if GAIN {
-                    derivative[j] = std::array::from_fn(|i| derivative[j][i] + value[i]);
-                }
-            }
-        }
-        let mean: Chunk = std::array::from_fn(|i| if mean[i] > FEWEST { mean[i] } else { FEWEST });
-        let n = counts[c];
-        let sum: Chunk = std::array::from_fn(|i| n[i] + mean[i]);
-        let both: Chunk = std::array::from_fn(|i| 1.0 / (mean[i] * sum[i]));
-        let weight = product(both, sum);
-        let residual: Chunk = std::array::from_fn(|i| n[i] - mean[i]);
-        let x = product(residual, product(both, mean));
-        worst.see(x);
-        let relative = product(residual, weight);
-        let square = product(x, x);
-        let mut series = [SERIES[7]; LANES];
-        for a in SERIES[..7].iter().rev() {
-            series = added(series, square, [*a; LANES]);
-        }
-        // s = (1 − x)(1 + (x + x²) series)
-        let odd: Chunk = std::array::from_fn(|i| x[i] + square[i]);
-        let inner = added(odd, series, [1.0; LANES]);
-        let s: Chunk = std::array::from_fn(|i| (-x[i]).mul_add(inner[i], inner[i]));
-        let squared = product(residual, relative);
-        chi = std::array::from_fn(|i| chi[i] + squared[i]);
-        deviance = added(squared, s, deviance);
-        for i in 0..P {
-            if P < MOST || i < filled {
-                slope[i] = added(derivative[i], relative, slope[i]);
-                let weighted = product(derivative[i], weight);
-                for j in 0..=i {
-                    information[i][j] = added(derivative[j], weighted, information[i][j]);
-                }
-            }
-        }
-    }
-    for i in 0..P {
-        sums.slope[i] = fold(&slope[i]);
-        for j in 0..=i {
-            let dot = fold(&information[i][j]);
-            (sums.information[i][j], sums.information[j][i]) = (dot, dot);
-        }
-    }
-    sums.chi_square = fold(&chi);
-    sums.deviance = fold(&deviance);
-    worst.value()
 }

@@ -2,9 +2,11 @@
 //!
 //! Every pixel is for itself, so the maps are the same for any number of threads, and only the rows that are in work are in memory.
 
+use super::library_error::{LibraryError, Modes};
 use super::model::{MOST_SURROUNDINGS, Model, Setting};
 use super::pixel::{Pixel, Spared, Task};
 use super::screen::Screen;
+use crate::demand::Skipping;
 use crate::error::{Error, Result};
 use crate::ranging::cube::{Cube, Rows, Sample, Shape};
 use rayon::prelude::*;
@@ -17,8 +19,10 @@ const SAMPLED_ROWS: usize = 16;
 pub struct Options {
     /// Prior probability of each material, in any scale; empty for equal ones.
     pub prior: Vec<f64>,
-    /// Whether every material is fitted to every pixel, also those that a bound excludes.
-    pub no_skip: bool,
+    /// How wrong the library may be; exact if silent.
+    pub library_error: Option<LibraryError>,
+    /// Whether materials that a bound excludes are left out; the answer is the same.
+    pub skipping: Skipping,
 }
 
 /// What is found of every pixel, `[row][column]`.
@@ -72,7 +76,11 @@ fn whole<S: Sample>(
 ) -> Result<Maps> {
     let shape = cube.shape();
     let model = Model::new(setting)?;
-    let mean = mean_counts(&model, cube)?;
+    let per_unit = 1.0 / setting.units_per_count;
+    let mean = mean_counts(&model, cube, per_unit)?;
+    // What noise is added to may come out below 0.
+    let is_count = |n: f64| n >= 0.0 || n.is_nan();
+    let signed = model.var_added[..model.used.len()].iter().all(|var| *var > 0.0);
     let task = Task::new(model, setting, options, &mean)?;
     let rows: Vec<(Vec<Pixel>, Spared)> = (0..shape.rows())
         .into_par_iter()
@@ -80,12 +88,17 @@ fn whole<S: Sample>(
             || (task.room(), Vec::new()),
             |(room, buffer), row| {
                 let samples = cube.read(row..row + 1, buffer)?;
+                if !signed && let Some(at) = samples.iter().position(|sample| !is_count((*sample).into())) {
+                    let place = (row, at / shape.bands(), at % shape.bands());
+                    return Err(negative(samples[at].into(), place));
+                }
                 let mut spared = Spared::default();
                 let pixels = samples
                     .chunks(shape.bands())
                     .map(|sample| {
                         for (to, &band) in room.counts.iter_mut().zip(&task.model.used) {
-                            *to = sample[band].into();
+                            let value: f64 = sample[band].into();
+                            *to = per_unit * value;
                         }
                         task.pixel(room, &mut spared)
                     })
@@ -96,6 +109,13 @@ fn whole<S: Sample>(
         )
         .collect::<Result<_>>()?;
     Ok(Maps::of(&rows, shape, setting.surroundings.len()))
+}
+
+fn negative(value: f64, (row, column, band): (usize, usize, usize)) -> Error {
+    Error::malformed(
+        format!("row {row}, column {column}, band {band} holds {value}, which is no number of counts"),
+        "give counts from 0, NaN for those that are missing, or the noise that makes them negative",
+    )
 }
 
 impl Task {
@@ -126,12 +146,13 @@ impl Task {
         let most = prior.iter().copied().fold(0.0, f64::max);
         let handicap = kinds.iter().map(|&m| -2.0 * libm::log(prior[m] / most)).collect();
         let screen = (!model.gain).then(|| Screen::new(&model, &kinds, mean));
-        Ok(Self { model, screen, kinds, alike, handicap, skip: !options.no_skip })
+        let modes = options.library_error.map(|error| Modes::new(&model, error)).transpose()?;
+        Ok(Self { modes, model, screen, kinds, alike, handicap, skip: options.skipping.skips() })
     }
 }
 
 /// Mean counts of some rows of the cube, padded.
-fn mean_counts<S: Sample>(model: &Model, cube: &dyn Rows<S>) -> Result<Vec<f64>> {
+fn mean_counts<S: Sample>(model: &Model, cube: &dyn Rows<S>, per_unit: f64) -> Result<Vec<f64>> {
     let shape = cube.shape();
     let (mut sum, mut count, mut buffer) = (vec![0.0; model.width], 0.0, Vec::new());
     for row in (0..shape.rows()).step_by(shape.rows().div_ceil(SAMPLED_ROWS)) {
@@ -143,7 +164,7 @@ fn mean_counts<S: Sample>(model: &Model, cube: &dyn Rows<S>) -> Result<Vec<f64>>
             }
         }
     }
-    sum.iter_mut().for_each(|sum| *sum /= f64::max(count, 1.0));
+    sum.iter_mut().for_each(|sum| *sum *= per_unit / f64::max(count, 1.0));
     Ok(sum)
 }
 

@@ -55,6 +55,8 @@ pub struct Setting<'a> {
     pub counts_per_radiance: &'a [f64],
     /// Variance of electronic noise of each band, counts²; empty for none.
     pub var_added: &'a [f64],
+    /// What one count is in the unit of the cube's samples: 1 where they are counts.
+    pub units_per_count: f64,
     /// Temperatures that a target may have, K.
     pub temperature_k: [f64; 2],
     /// ΣVₖ where it is known; else it is at most 1.
@@ -94,8 +96,8 @@ pub(super) struct Model {
     changes: Aligned,
     /// What the vertices send themselves: `[vertex][band]`.
     light: Aligned,
-    /// κ_w of the bands that count, and the share that a change of emissivity has of them: κ_w Σ w.
-    pub(super) reach: Aligned,
+    /// Mean emissivity of each material in each band: `[material][band]`.
+    emissivity: Aligned,
     /// Mean wavenumber of each band that counts, cm⁻¹.
     pub(super) centres_cm1: Vec<f64>,
 }
@@ -185,7 +187,7 @@ impl Model {
             scattered: Aligned::zeros(library.len() * vertices * width),
             changes: Aligned::zeros(library.len() * (vertices - 1) * width),
             light: Aligned::zeros(vertices * width),
-            reach: Aligned::zeros(width),
+            emissivity: Aligned::zeros(library.len() * width),
             centres_cm1: Vec::new(),
             used,
         };
@@ -204,7 +206,6 @@ impl Model {
         let centres = centres_of(bands, &widths);
         for (lane, &band) in self.used.iter().enumerate() {
             self.var_added[lane] = setting.var_added.get(band).copied().unwrap_or(0.0);
-            self.reach[lane] = counts_per_radiance[band] * widths[band];
             self.centres_cm1.push(centres[band]);
         }
         let used = self.used.clone();
@@ -266,7 +267,8 @@ impl Model {
         }
         let nodes = bands.nodes_cm1();
         let (mut value, mut slope) = (vec![0.0; nodes.len()], vec![0.0; nodes.len()]);
-        let tables = if self.shared { 1 } else { library.len() };
+        // The last table is that of a blackbody, alone where all share it.
+        let tables = if self.shared { 1 } else { library.len() + 1 };
         self.table = Aligned::zeros(tables * (self.steps + 1) * 2 * width);
         self.factor = Aligned::zeros(library.len() * width);
         for row in 0..=self.steps {
@@ -278,7 +280,8 @@ impl Model {
             );
             for table in 0..tables {
                 let times_e = |values: &[f64], factor: f64| -> Vec<f64> {
-                    let e = |j: usize| if self.shared { 1.0 } else { library[table][j] };
+                    let own = library.get(table).filter(|_| !self.shared);
+                    let e = |j: usize| own.map_or(1.0, |own| own[j]);
                     counts(&values.iter().enumerate().map(|(j, x)| factor * e(j) * x).collect::<Vec<_>>())
                 };
                 let at = (table * (self.steps + 1) + row) * 2 * width;
@@ -288,6 +291,9 @@ impl Model {
             }
         }
         for (m, emissivity) in library.iter().enumerate() {
+            let mean: Vec<f64> =
+                bands.weigh(emissivity).iter().zip(&widths).map(|(e, width)| e / width).collect();
+            put(&mut self.emissivity[m * width..][..width], &mean);
             let factor = &mut self.factor[m * width..][..width];
             match self.shared {
                 true => put(factor, emissivity),
@@ -319,6 +325,22 @@ impl Model {
         let at = (table * (self.steps + 1) + row) * 2 * self.width;
         let part = |i: usize| &self.table[at + i * self.width..][..self.width];
         [part(0), part(1), part(2), part(3), &self.factor[m * self.width..][..self.width]]
+    }
+
+    /// Counts of a blackbody at a temperature.
+    pub(super) fn blackbody(&self, temperature_k: f64) -> Vec<f64> {
+        let place = self.place(temperature_k);
+        let [a, b, c, d] = Hermite::at(place.share).value;
+        let len = 2 * self.width;
+        let last = self.table.len() / ((self.steps + 1) * len) - 1;
+        let rows = &self.table[(last * (self.steps + 1) + place.row) * len..][..2 * len];
+        let part = |i: usize, w: usize| rows[i * self.width + w];
+        (0..self.width).map(|w| a * part(0, w) + b * part(1, w) + c * part(2, w) + d * part(3, w)).collect()
+    }
+
+    /// Mean emissivity of material `m` in each band.
+    pub(super) fn emissivity(&self, m: usize) -> &[f64] {
+        &self.emissivity[m * self.width..][..self.width]
     }
 
     /// Cⱼ of all vertices of material `m`, one after the other.

@@ -8,14 +8,18 @@
 
 use super::fit::{COMPARED, Fit, MOST_LOOKS, TOLD, fit};
 use super::kernel::{Asked, Sums, contrast, sums};
+use super::library_error::{Modes, Workplace};
 use super::model::{MOST_SURROUNDINGS, Model};
 use super::screen::{MOST_STARTS, Screen, Screened};
 use super::step::State;
+use crate::demand::{Reason, Thing, Work};
 use crate::simd::Aligned;
 use statrs::function::gamma::gamma_ur;
 
 /// Deviance beyond the best one at which a material no longer counts: its posterior is e⁻¹² of the best one's.
 pub(super) const CUT: f64 = 24.0;
+/// Cost beyond the best one at which a first look is the last, where the library has errors.
+const HOPELESS: f64 = 200.0;
 /// Share of the posterior that the candidates hold.
 pub const CANDIDATE_SHARE: f64 = 0.95;
 /// Below this p-value no material of the library fits.
@@ -111,6 +115,18 @@ pub struct Spared {
     pub unfinished: u64,
 }
 
+impl Spared {
+    /// As lines of a ledger.
+    #[must_use]
+    pub fn work(&self) -> Work {
+        let mut work = Work::default();
+        work.compute(Thing::MaterialFits, self.fitted);
+        work.spare(Thing::MaterialFits, Reason::Bounded, self.excluded);
+        work.spare(Thing::MaterialFits, Reason::Shared, self.equal);
+        work
+    }
+}
+
 impl std::ops::Add for Spared {
     type Output = Self;
 
@@ -136,6 +152,8 @@ pub(super) struct Task {
     pub(super) alike: Vec<usize>,
     /// −2 ln π of each kind, from the most probable of its materials.
     pub(super) handicap: Vec<f64>,
+    /// Errors of the library.
+    pub(super) modes: Option<Modes>,
     /// Whether bounds exclude materials.
     pub(super) skip: bool,
 }
@@ -144,6 +162,7 @@ pub(super) struct Task {
 #[derive(Debug)]
 pub(super) struct Room {
     sums: Sums,
+    workplace: Workplace,
     screened: Option<Screened>,
     pub(super) counts: Aligned,
     shifted: Aligned,
@@ -156,6 +175,7 @@ impl Task {
         let width = self.model.width;
         Room {
             sums: Sums::default(),
+            workplace: Workplace::default(),
             screened: self.screen.as_ref().map(|screen| screen.room(width)),
             counts: Aligned::zeros(width),
             shifted: Aligned::zeros(width),
@@ -183,11 +203,13 @@ impl Task {
 
     /// Fits what no bound excludes; deviances with the handicap of the prior.
     fn fit_all(&self, room: &mut Room, spared: &mut Spared) {
-        let Room { sums, screened, counts, shifted, bounds, fits } = room;
+        let Room { sums, workplace, screened, counts, shifted, bounds, fits } = room;
         fits.clear();
         bounds.clear();
         let mut best = f64::INFINITY;
         let mut starts = [State::at(self.model.range_k[0]); MOST_STARTS];
+        // A step with errors of the library may promise less than many of them bring: far more than what counts is left.
+        let hopeless = |best: f64| if self.skip { best + HOPELESS } else { f64::INFINITY };
         if let (Some(screen), Some(seen)) = (&self.screen, screened.as_mut()) {
             screen.look(counts, shifted, seen);
             // Ordered by what a fit costs if it is near the counts; the bound that excludes knows how near.
@@ -195,24 +217,32 @@ impl Task {
             bounds.sort_by(|a, b| a.0.total_cmp(&b.0));
             for (_, kind) in bounds.iter() {
                 let cut = best + CUT - self.handicap[*kind];
-                if self.skip && cut.is_finite() && screen.at_least(*kind, cut.max(0.0), seen) > cut {
+                let skip = self.skip && self.modes.is_none() && cut.is_finite();
+                if skip && screen.at_least(*kind, cut.max(0.0), seen) > cut {
                     spared.excluded += 1;
                     continue;
                 }
                 screen.chords(*kind, seen);
-                if self.skip && cut.is_finite() && screen.at_least_within(*kind, cut.max(0.0), seen) > cut {
+                if skip && screen.at_least_within(*kind, cut.max(0.0), seen) > cut {
                     spared.excluded += 1;
                     continue;
                 }
                 let count = screen.starts(&self.model, *kind, seen, &mut starts);
-                let found = self.least(*kind, &starts[..count], shifted, sums, spared);
+                let found = self.least(
+                    *kind,
+                    &starts[..count],
+                    shifted,
+                    (&mut *sums, &mut *workplace, hopeless(best)),
+                    spared,
+                );
                 best = best.min(found.deviance);
                 fits.push((*kind, found));
             }
         } else {
             for kind in 0..self.kinds.len() {
                 let start = self.scan(kind, shifted, sums, spared);
-                let found = self.least(kind, &[start], shifted, sums, spared);
+                let found =
+                    self.least(kind, &[start], shifted, (&mut *sums, &mut *workplace, f64::INFINITY), spared);
                 fits.push((kind, found));
             }
         }
@@ -225,13 +255,19 @@ impl Task {
         kind: usize,
         starts: &[State],
         shifted: &[f64],
-        sums: &mut Sums,
+        (sums, workplace, hopeless): (&mut Sums, &mut Workplace, f64),
         spared: &mut Spared,
     ) -> Fit {
         spared.fitted += 1;
         let mut best: Option<Fit> = None;
         for start in starts {
-            let (found, looks) = fit(&self.model, self.kinds[kind], shifted, *start, COMPARED, sums);
+            let (model, m) = (&self.model, self.kinds[kind]);
+            let (mut found, mut looks) = fit(model, m, shifted, *start, COMPARED, sums);
+            if let Some(modes) = &self.modes {
+                let more;
+                (found, more) = workplace.fit(model, modes, m, shifted, (found.state, hopeless), sums);
+                looks += more;
+            }
             spared.looks += looks as u64;
             spared.unfinished += u64::from(looks >= MOST_LOOKS);
             if best.is_none_or(|best| found.deviance < best.deviance) {
@@ -284,7 +320,12 @@ impl Task {
             last = each;
         }
         let m = self.kinds[kind];
-        let (fit, looks) = self::fit(model, m, &room.shifted, fit.state, TOLD, &mut room.sums);
+        let (fit, looks) = match &self.modes {
+            None => self::fit(model, m, &room.shifted, fit.state, TOLD, &mut room.sums),
+            Some(modes) => {
+                room.workplace.fit(model, modes, m, &room.shifted, (fit.state, f64::INFINITY), &mut room.sums)
+            }
+        };
         spared.looks += looks as u64;
         let sums = &room.sums;
         let mixture = &fit.state.mixture[..model.vertices];
@@ -299,7 +340,7 @@ impl Task {
         let no_temperature = !deviations.temperature_k.is_finite();
         let no_lighting = model.vertices > calibrated
             && (deviations.blind
-                || deviations.weights[..model.vertices].iter().any(|s| !(*s < ANY_LIGHTING)));
+                || deviations.weights[..model.vertices].iter().any(|s| s.is_nan() || *s >= ANY_LIGHTING));
         let asked = Asked { m, shifted: &room.shifted, temperature_k: fit.state.temperature_k, mixture };
         let no_information = contrast(model, asked) < CONTRAST;
         let unknowns = usize::from(!at_limit) + free - calibrated.min(free);

@@ -68,6 +68,8 @@ pub(super) struct Screened {
     costs: Aligned,
     shares: Aligned,
     square: f64,
+    /// Squared distance from the space of each material.
+    outside: Vec<f64>,
     /// min v/n′.
     lightest: f64,
     least: f64,
@@ -144,6 +146,7 @@ impl Screen {
             costs: Aligned::zeros(self.grid),
             shares: Aligned::zeros(self.grid),
             square: 0.0,
+            outside: vec![0.0; self.left_out.len()],
             lightest: 0.0,
             least: 0.0,
         }
@@ -152,17 +155,21 @@ impl Screen {
     /// Looks at a pixel of counts n and n′.
     pub(super) fn look(&self, counts: &[f64], shifted: &[f64], to: &mut Screened) {
         project(self, counts, shifted, to);
+        let Screened { coordinates, outside, square, .. } = to;
+        for (outside, coordinates) in outside.iter_mut().zip(coordinates.chunks_exact(self.rank.max(1))) {
+            *outside = (*square - coordinates.iter().map(|c| c * c).sum::<f64>()).max(0.0);
+        }
     }
 
     /// What a fit of a material must cost at least if it is to cost no more than `cut`, whatever its temperature and lighting.
     pub(super) fn at_least(&self, kind: usize, cut: f64, seen: &Screened) -> f64 {
-        let distance = seen.outside(self.coordinates(kind, seen)).sqrt() - self.left_out[kind];
+        let distance = seen.outside[kind].sqrt() - self.left_out[kind];
         seen.share(cut) * distance.max(0.0).powi(2)
     }
 
     /// The same with the range of temperature and lighting, from the chords ([`Screen::chords`]).
     pub(super) fn at_least_within(&self, kind: usize, cut: f64, seen: &Screened) -> f64 {
-        let outside = seen.outside(self.coordinates(kind, seen));
+        let outside = seen.outside[kind];
         let least = seen.costs[..self.chord_count()].iter().copied().fold(f64::INFINITY, f64::min);
         let distance = (outside + least).sqrt() - self.left_out[kind] - self.sag[kind];
         seen.share(cut) * distance.max(0.0).powi(2)
@@ -186,7 +193,7 @@ impl Screen {
         let count = self.chord_count();
         let costs = &seen.costs[..count];
         let least = costs.iter().copied().fold(f64::INFINITY, f64::min);
-        let promising = 2.0 * (least + seen.outside(coordinates)) + 20.0 - seen.outside(coordinates);
+        let promising = 2.0 * least + seen.outside[kind] + 20.0;
         let (mut found, mut best) = (0, f64::INFINITY);
         for place in 0..count {
             let cost = costs[place];
@@ -243,11 +250,6 @@ impl Screen {
 }
 
 impl Screened {
-    /// Squared distance from a space in which the pixel has these coordinates.
-    fn outside(&self, coordinates: &[f64]) -> f64 {
-        (self.square - coordinates.iter().map(|c| c * c).sum::<f64>()).max(0.0)
-    }
-
     /// f, of fits that cost no more than `cut`: N′ ≤ n′ + cut/2 + √(cut²/4 + cut n′).
     fn share(&self, cut: f64) -> f64 {
         let half = 0.5 * cut;
@@ -332,8 +334,7 @@ dispatched! {
             }
             let shortness = &screen.shortness[kind * grid + at..][..LANES];
             let share: Chunk = std::array::from_fn(|k| {
-                let share = dot[k] * shortness[k];
-                if share < 0.0 { 0.0 } else if share > 1.0 { 1.0 } else { share }
+                (dot[k] * shortness[k]).clamp(0.0, 1.0)
             });
             // What is left at the place: |off|² - share (2 dot - share |along|²), formed anew so that nothing cancels.
             let mut cost = [0.0; LANES];

@@ -51,10 +51,9 @@ struct Face {
 impl State {
     /// Goes to the least of the form; the way there.
     pub(super) fn step(&mut self, sums: &Sums, limits: &Limits) -> Step {
-        if limits.unknowns == 2 && !limits.gain && !self.held && self.free[0] && self.free[1] {
-            if let Some(step) = self.step_of_two(sums, limits) {
-                return step;
-            }
+        let of_two = limits.unknowns == 2 && !limits.gain && !self.held && self.free[0] && self.free[1];
+        if let Some(step) = of_two.then(|| self.step_of_two(sums, limits)).flatten() {
+            return step;
         }
         let mut slope = sums.slope;
         let start = *self;
@@ -90,7 +89,7 @@ impl State {
         let (p, q) = (sums.slope[0], sums.slope[1]);
         // 1 − cos² of the angle between the columns.
         let apart = 1.0 - (b / a) * (b / c);
-        if !(apart > DEPENDENT) {
+        if apart.is_nan() || apart <= DEPENDENT {
             return None;
         }
         let temperature = (p - b / c * q) / (a * apart);
@@ -120,15 +119,15 @@ impl State {
 
     /// Deviation of the temperature, K, that of every weight, and which directions had no information.
     pub(super) fn deviations(&self, sums: &Sums, limits: &Limits) -> Deviations {
-        // What a range holds is not known better for that.
-        let mut open = *self;
-        open.held = false;
+        // A temperature at an end of its range is not known better for that.
+        let mut open = Self { held: false, ..*self };
+        let own = Face::new(sums, limits, &open);
+        open.free = [true; MOST];
         let face = Face::new(sums, limits, &open);
         let mut found = Deviations { temperature_k: f64::INFINITY, weights: [0.0; MOST], blind: false };
-        let last = face.len - 1;
-        found.blind = face.blind[..last].iter().any(|blind| *blind);
-        if !face.blind[last] {
-            found.temperature_k = face.deviation(last);
+        found.blind = face.blind[..face.len - 1].iter().any(|blind| *blind);
+        if !own.blind[own.len - 1] {
+            found.temperature_k = own.deviation(own.len - 1);
         }
         // Weight j as a linear form of the directions.
         for j in 0..limits.vertices {

@@ -7,6 +7,7 @@ mod certificate;
 mod cli;
 mod cli_mistakes;
 mod companion;
+mod decompose;
 mod demand;
 mod extremes;
 mod fuzz;

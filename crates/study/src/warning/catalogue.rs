@@ -50,6 +50,14 @@ catalogue! {
     MaterialSkipped = "material-skipped",
         "Choose bands that its spectrum covers, or alternatives.extrapolate = \"hold\".";
 
+    /// Pixels of a cube were left out since a sample of them is missing.
+    PixelsSkipped = "pixels-skipped", "Nothing; or name bands that are always missing in cube.bad_bands.";
+    /// Pixels of a cube are explained by no material of the library.
+    LibraryDoesNotFit = "library-does-not-fit",
+        "Add materials, state how wrong the library is with library.emissivity_error, or check the unit and the light.";
+    /// The emissivities of the library are taken as exact: intervals do not hold what errors of them do.
+    LibraryTakenAsExact = "library-taken-as-exact", "State library.emissivity_error where the spectra are measured ones.";
+
     /// The two materials have equal emissivities in every band: no camera tells them apart.
     Identical = "identical", "Choose bands in which they differ.";
     /// Both materials are entered as one number for all wavenumbers, so that nothing is known of what tells them apart.

@@ -17,6 +17,15 @@ impl Display for Warning {
             Self::TargetAmongAlternatives { target } => {
                 write!(f, "{target} is left out of the alternatives: it is the target")
             }
+            Self::PixelsSkipped { pixels, of } => {
+                write!(f, "{pixels} of {of} pixels have a sample that is no number; they were left out")
+            }
+            Self::LibraryDoesNotFit { pixels, of } => {
+                write!(f, "{pixels} of {of} pixels are explained by no material of the library (p below 1e-4)")
+            }
+            Self::LibraryTakenAsExact => f.write_str(
+                "the library is taken as exact: with errors of its emissivities temperatures are off by more than is said",
+            ),
             Self::MaterialSkipped { material } => {
                 write!(f, "{material} is left out: its spectrum does not cover the bands")
             }

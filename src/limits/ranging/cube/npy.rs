@@ -234,11 +234,23 @@ impl<S: Sample> Rows<S> for NpyCube<S> {
         if !matches!(self.stored, Stored::Float(_)) {
             let mut bytes = vec![0; len * size];
             read_at(&self.file, &self.path, &mut bytes, place).map_err(unread)?;
-            for (sample, bytes) in samples.iter_mut().zip(bytes.chunks_exact_mut(size)) {
-                if self.swapped != cfg!(target_endian = "big") {
-                    bytes.reverse();
+            if self.swapped != cfg!(target_endian = "big") {
+                bytes.chunks_exact_mut(size).for_each(<[u8]>::reverse);
+            }
+            match self.stored {
+                // Counts of most cameras, without a detour.
+                Stored::Unsigned(2) => {
+                    let each = samples.iter_mut().zip(bytes.as_chunks().0);
+                    each.for_each(|(sample, bytes)| *sample = S::of(u16::from_le_bytes(*bytes).into()));
                 }
-                *sample = S::of(self.stored.whole(bytes));
+                Stored::Unsigned(4) => {
+                    let each = samples.iter_mut().zip(bytes.as_chunks().0);
+                    each.for_each(|(sample, bytes)| *sample = S::of(u32::from_le_bytes(*bytes).into()));
+                }
+                _ => {
+                    let each = samples.iter_mut().zip(bytes.chunks_exact(size));
+                    each.for_each(|(sample, bytes)| *sample = S::of(self.stored.whole(bytes)));
+                }
             }
             return Ok(samples);
         }
@@ -321,19 +333,64 @@ fn check_samples<S: Sample>(shape: Shape, samples: &[S]) -> Result<()> {
 }
 
 fn put<S: Sample>(writer: &mut impl Write, shape: Shape, samples: &[S]) -> std::io::Result<()> {
-    let order = Endianness::of_machine().to_str();
-    let (rows, columns, bands) = (shape.rows(), shape.columns(), shape.bands());
-    let size = size_of::<S>();
-    let text = format!(
-        "{{'descr': '{order}f{size}', 'fortran_order': False, 'shape': ({rows}, {columns}, {bands}), }}"
-    );
+    array(writer, &format!("f{}", size_of::<S>()), &[shape.rows(), shape.columns(), shape.bands()], samples)
+}
+
+/// What a map holds for each pixel.
+pub trait Value: bytemuck::Pod {
+    /// NumPy's name of the type, without the order of bytes.
+    const NAME: &'static str;
+}
+
+impl Value for u8 {
+    const NAME: &'static str = "u1";
+}
+
+impl Value for u16 {
+    const NAME: &'static str = "u2";
+}
+
+impl Value for f32 {
+    const NAME: &'static str = "f4";
+}
+
+/// A map of such dimensions, the last one running fastest, as an NPY file (version 1).
+///
+/// # Errors
+/// A number of values that is not that of the dimensions.
+///
+/// ```
+/// let file = hadar::ranging::cube::npy_map(&[1, 2], &[3_u16, 65535])?;
+/// assert_eq!(file.len(), 128 + 2 * 2);
+/// # Ok::<(), hadar::Error>(())
+/// ```
+pub fn npy_map<V: Value>(dimensions: &[usize], values: &[V]) -> Result<Vec<u8>> {
+    let expected = dimensions.iter().product();
+    if values.len() != expected {
+        return Err(Error::Length { what: "values of a map".to_owned(), found: values.len(), expected });
+    }
+    let mut file = Vec::new();
+    array(&mut file, V::NAME, dimensions, values)
+        .map_err(|error| Error::File { action: "write the map".to_owned(), reason: error.to_string() })?;
+    Ok(file)
+}
+
+fn array<V: bytemuck::Pod>(
+    writer: &mut impl Write,
+    name: &str,
+    dimensions: &[usize],
+    values: &[V],
+) -> std::io::Result<()> {
+    let order = if size_of::<V>() == 1 { "|" } else { Endianness::of_machine().to_str() };
+    let dimensions = dimensions.iter().map(usize::to_string).collect::<Vec<_>>().join(", ");
+    let text = format!("{{'descr': '{order}{name}', 'fortran_order': False, 'shape': ({dimensions}), }}");
     // Blanks and a line feed make 10 bytes and the text a multiple of 64: at most 3·20 digits, far below 2¹⁶.
     let padded = (10 + text.len() + 1).next_multiple_of(64) - 11;
     writer.write_all(MAGIC)?;
     writer.write_all(&[1, 0])?;
     writer.write_all(&(padded as u16 + 1).to_le_bytes())?;
     writeln!(writer, "{text:<padded$}")?;
-    writer.write_all(bytemuck::cast_slice(samples))
+    writer.write_all(bytemuck::cast_slice(values))
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use super::super::read::{document, text_of};
 use super::super::section::{Entry, Section};
 use super::super::{BandsSpec, Source, camera};
 use super::{CubeUnit, DecomposeScenario, HeatCube, LibrarySpec, LightSource, PixelUnknown, TruthSpec};
-use hadar::allowed::{ABOVE_ZERO, ABSOLUTE_TEMPERATURE, SHARE};
+use hadar::allowed::{ABOVE_ZERO, ABSOLUTE_TEMPERATURE, Allowed, SHARE};
 use hadar::error::{Error, Result};
 use hadar::units::Dimension;
 use std::path::Path;
@@ -16,6 +16,8 @@ const MINIMUM: &str =
     "write [cube] with data = \"counts.npy\", [bands], and [library] with path = \"library.csv\"";
 /// Temperatures of a scene where nothing is said, K.
 const TEMPERATURES_K: [f64; 2] = [200.0, 400.0];
+/// Rows or bands of a cube at most.
+const MOST_PLACES: f64 = 1e9;
 const RADIANCE: &str = "W m^-2 sr^-1 per cm^-1";
 
 impl DecomposeScenario {
@@ -120,10 +122,19 @@ fn heat_cube(entry: &Entry<'_>, camera: bool) -> Result<HeatCube> {
         bad_bands: section
             .read("bad_bands", |entry| {
                 let items = entry.items("bad_bands = [0, 53]")?;
-                items.iter().map(|item| item.count("53").map(|band| band as usize)).collect()
+                items.iter().map(|item| place(item, "53")).collect()
             })?
             .unwrap_or_default(),
     })
+}
+
+/// A place in a list that is counted from 0.
+fn place(entry: &Entry<'_>, example: &str) -> Result<usize> {
+    let allowed = Allowed {
+        holds: |value| value >= 0.0 && value.fract() == 0.0 && value <= MOST_PLACES,
+        expected: "a whole number from 0",
+    };
+    entry.number(example, allowed).map(|place| place as usize)
 }
 
 fn light(entry: &Entry<'_>) -> Result<LightSource> {
@@ -137,7 +148,7 @@ fn light(entry: &Entry<'_>) -> Result<LightSource> {
         }),
         Some("rows") => {
             let [first, last] = section.require("rows", "[0, 540]")?.pair("[0, 540]")?;
-            let [first, last] = [first.count("0")? as usize, last.count("540")? as usize];
+            let [first, last] = [place(&first, "0")?, place(&last, "540")?];
             if first < last {
                 return Ok(LightSource::Rows([first, last]));
             }

@@ -169,15 +169,40 @@ fn rows_can_be_asked_for_anyhow_but_not_beyond_the_last() {
     assert!(cut.contains("cannot read rows 30 to 40 of the cube: the file has become shorter"), "{cut}");
 }
 
+/// Whole numbers of every width and order of bytes, the largest and the least of each among them.
+#[test]
+fn whole_numbers_are_counts() {
+    let folder = Folder::new();
+    let cases: [(&str, &[u8], [f64; 2]); 6] = [
+        ("|u1", &[7, 255], [7.0, 255.0]),
+        ("|i1", &[7, 128], [7.0, -128.0]),
+        ("<u2", &[1, 2, 255, 255], [513.0, 65535.0]),
+        (">i2", &[1, 2, 128, 0], [258.0, -32768.0]),
+        (">u4", &[0, 1, 0, 0, 255, 255, 255, 255], [65536.0, 4_294_967_295.0]),
+        ("<i8", &[3, 0, 0, 0, 0, 0, 0, 0, 254, 255, 255, 255, 255, 255, 255, 255], [3.0, -2.0]),
+    ];
+    for (descr, bytes, expected) in cases {
+        let header = format!("{{'descr': '{descr}', 'fortran_order': False, 'shape': (1, 1, 2), }}");
+        let cube = Cube::open(&folder.file(&version_1(&header, bytes)), None).unwrap();
+        let found: Vec<f64> = match &cube {
+            Cube::F32(rows) => {
+                rows.read(0..1, &mut Vec::new()).unwrap().iter().map(|x| (*x).into()).collect()
+            }
+            Cube::F64(rows) => rows.read(0..1, &mut Vec::new()).unwrap().to_vec(),
+        };
+        assert_eq!(found, expected, "{descr}");
+    }
+}
+
 #[test]
 fn types_that_are_no_counts_are_named_with_the_remedy() {
     let folder = Folder::new();
-    for descr in ["'<i4'", "'|u1'", "'<c8'", "'|b1'", "'<f2'", "'<f16'", "'|O'", "'<M8[s]'"] {
+    for descr in ["'<c8'", "'|b1'", "'<f2'", "'<f16'", "'|O'", "'<M8[s]'"] {
         let file =
             version_1(&format!("{{'descr': {descr}, 'fortran_order': False, 'shape': (1, 2), }}"), &[0; 64]);
         let message = folder.refusal(&file);
         let expected = format!(
-            "the samples are of type {descr}, not f4 or f8; write them with np.save(path, a.astype(np.float32))"
+            "the samples are of type {descr}, not f4, f8 or whole numbers; write them with np.save(path, a.astype(np.float32))"
         );
         assert_eq!(message, expected);
     }

@@ -1,0 +1,226 @@
+//! `hadar decompose` as its user runs it: files, numbers, mistakes.
+
+use crate::support::folder::Folder;
+use hadar::planck::photon_radiance;
+use hadar::ranging::cube::{Shape, npy_map, write_npy};
+use std::fs;
+
+const SCENARIO: &str = r#"title = "Wall and pane"
+[cube]
+data = "counts.npy"
+counts_per_photon_radiance = 1e-13
+[bands]
+start = "800 cm^-1"
+stop = "1200 cm^-1"
+step = "20 cm^-1"
+[[environment]]
+spectrum = "light.csv"
+column = "sky"
+[[environment]]
+temperature = "20 degC"
+[library]
+path = "library.csv"
+[unknown]
+temperature = ["250 K", "340 K"]
+lighting_total = 1.0
+[truth]
+material = "material.npy"
+temperature = "temperature.npy"
+lighting = "lighting.npy"
+"#;
+
+const ROWS: usize = 2;
+const COLUMNS: usize = 3;
+const BANDS: usize = 21;
+
+fn wavenumber(band: usize) -> f64 {
+    800.0 + 20.0 * band as f64
+}
+
+fn emissivity(material: usize, band: usize) -> f64 {
+    let nu = wavenumber(band);
+    [0.9 + 0.05 * (nu / 30.0).sin(), 0.5 + 0.3 * (-((nu - 1000.0) / 50.0).powi(2)).exp()][material]
+}
+
+fn sky(band: usize) -> f64 {
+    photon_radiance(wavenumber(band), 260.0) * (0.7 + 0.2 * (wavenumber(band) / 45.0).cos())
+}
+
+/// Photon radiance of pixel i, and its truth.
+fn pixel(i: usize) -> (Vec<f64>, usize, f64, f64) {
+    let (material, temperature_k, v) = (i % 2, 285.0 + 5.0 * i as f64, 0.2 + 0.1 * i as f64);
+    let radiance = (0..BANDS).map(|w| {
+        let (e, nu) = (emissivity(material, w), wavenumber(w));
+        let light = v * sky(w) + (1.0 - v) * photon_radiance(nu, 293.15);
+        e * photon_radiance(nu, temperature_k) + (1.0 - e) * light
+    });
+    (radiance.collect(), material, temperature_k, v)
+}
+
+fn with(scenario: &str) -> Folder {
+    let folder = Folder::with(scenario);
+    let tables: Vec<[String; 2]> = (0..BANDS)
+        .map(|w| {
+            let nu = wavenumber(w);
+            [format!("{nu},{},{}", emissivity(0, w), emissivity(1, w)), format!("{nu},{}", sky(w))]
+        })
+        .collect();
+    let table =
+        |head: &str, i: usize| tables.iter().fold(head.to_owned(), |text, rows| text + "\n" + &rows[i]);
+    folder.file("library.csv", &table("wavenumber_cm1,Wall Paint,pane", 0));
+    folder.file("light.csv", &table("wavenumber_cm1,sky", 1));
+    let pixels: Vec<_> = (0..ROWS * COLUMNS).map(pixel).collect();
+    let counts: Vec<f64> = pixels.iter().flat_map(|p| p.0.iter().map(|s| 1e-13 * s)).collect();
+    let shape = |bands| Shape::new(ROWS, COLUMNS, bands).unwrap();
+    write_npy(&folder.path().join("counts.npy"), shape(BANDS), &counts).unwrap();
+    let map = |name: &str, values: Vec<f64>, layers| {
+        write_npy(&folder.path().join(name), shape(layers), &values).unwrap();
+    };
+    let material: Vec<u16> = pixels.iter().map(|p| p.1 as u16).collect();
+    fs::write(folder.path().join("material.npy"), npy_map(&[ROWS, COLUMNS], &material).unwrap()).unwrap();
+    map("temperature.npy", pixels.iter().map(|p| p.2).collect(), 1);
+    map("lighting.npy", pixels.iter().flat_map(|p| [p.3, 1.0 - p.3]).collect(), 2);
+    folder
+}
+
+#[test]
+fn maps_and_numbers_are_those_of_the_scene() {
+    let folder = with(SCENARIO);
+    let found = folder.json(&["decompose", "a.toml", "--out", "out"]);
+    assert_eq!(found["materials"], serde_json::json!(["Wall Paint", "pane"]));
+    assert_eq!(
+        (found["pixels"].as_u64(), found["decided"].as_u64(), found["undecided"].as_u64()),
+        (Some(6), Some(6), Some(0))
+    );
+    let truth = &found["truth"];
+    assert_eq!((truth["right_material"].as_f64(), truth["coverage_95"].as_f64()), (Some(1.0), Some(1.0)));
+    assert_eq!(truth["confusion"], serde_json::json!([[3, 0, 0], [0, 3, 0]]));
+    assert!(truth["temperature_rmse_k"].as_f64().unwrap() < 1e-4);
+    assert!(truth["right_material_limit"].as_f64().unwrap() > 0.999);
+    assert!(found["stats"]["material_fits"].is_object(), "{}", found["stats"]);
+    for (name, bytes) in [
+        ("material.npy", 2),
+        ("temperature_k.npy", 4),
+        ("temperature_sigma_k.npy", 4),
+        ("lighting.npy", 8),
+        ("p_value.npy", 4),
+        ("posterior.npy", 4),
+        ("candidates.npy", 2),
+        ("flags.npy", 1),
+    ] {
+        let file = fs::read(folder.path().join("out").join(name)).unwrap();
+        assert_eq!(file.len(), 128 + ROWS * COLUMNS * bytes, "{name}");
+        let head = String::from_utf8_lossy(&file[10..127]).into_owned();
+        assert!(head.contains(if name == "lighting.npy" { "(2, 3, 2)" } else { "(2, 3)" }), "{head}");
+    }
+    // The scenario that was written asks the same again.
+    let again = folder.json(&["decompose", "out/scenario.toml"]);
+    assert_eq!(again["found"], found["found"]);
+    let text = folder.run(&["decompose", "a.toml", "--stats"]);
+    assert!(text.stdout.starts_with("6 of 6 pixels (100 %) have one material of 2 left."), "{}", text.stdout);
+    assert!(text.stderr.contains("fits of a material to a pixel"), "{}", text.stderr);
+}
+
+/// Radiances in watts with a noise, a camera's counts, light from rows of the cube, some of the materials: the same temperatures.
+#[test]
+fn units_and_lights_are_what_is_said() {
+    let folder = with(SCENARIO);
+    let watts: Vec<f64> = (0..ROWS * COLUMNS)
+        .flat_map(|i| {
+            let joules = |w: usize| 6.626_070_15e-34 * 299_792_458.0 * 100.0 * wavenumber(w);
+            pixel(i).0.iter().enumerate().map(|(w, s)| joules(w) * s).collect::<Vec<_>>()
+        })
+        .collect();
+    write_npy(&folder.path().join("watts.npy"), Shape::new(ROWS, COLUMNS, BANDS).unwrap(), &watts).unwrap();
+    let unit = "unit = \"W m^-2 sr^-1 per cm^-1\"\nnoise = 1e-5";
+    folder.file(
+        "b.toml",
+        &SCENARIO.replace("counts.npy", "watts.npy").replace("counts_per_photon_radiance = 1e-13", unit),
+    );
+    let found = folder.json(&["decompose", "b.toml"]);
+    assert_eq!(found["truth"]["right_material"].as_f64(), Some(1.0));
+    assert!(found["truth"]["temperature_rmse_k"].as_f64().unwrap() < 1e-3, "{}", found["truth"]);
+    // Twice the noise, twice the deviation.
+    folder.file(
+        "c.toml",
+        &SCENARIO
+            .replace("counts.npy", "watts.npy")
+            .replace("counts_per_photon_radiance = 1e-13", &unit.replace("1e-5", "2e-5")),
+    );
+    let noisier = folder.json(&["decompose", "c.toml"]);
+    let sigma = |found: &serde_json::Value| found["found"][0]["temperature_sigma_median_k"].as_f64().unwrap();
+    assert!((sigma(&noisier) / sigma(&found) - 2.0).abs() < 1e-3);
+    let rows = SCENARIO.replace("spectrum = \"light.csv\"\ncolumn = \"sky\"", "rows = [0, 1]");
+    folder.file(
+        "d.toml",
+        &rows.replace(
+            "path = \"library.csv\"",
+            "path = \"library.csv\"\nmaterials = [\"pane\", \"Wall Paint\"]",
+        ),
+    );
+    assert_eq!(folder.json(&["decompose", "d.toml"])["materials"], serde_json::json!(["pane", "Wall Paint"]));
+}
+
+#[test]
+fn mistakes_are_one_line_with_what_to_write() {
+    let folder = with(SCENARIO);
+    let turned = Shape::new(BANDS, ROWS, COLUMNS).unwrap();
+    write_npy(&folder.path().join("turned.npy"), turned, &[1.0; BANDS * ROWS * COLUMNS]).unwrap();
+    let negative = Shape::new(1, 1, BANDS).unwrap();
+    write_npy(&folder.path().join("negative.npy"), negative, &[-3.0; BANDS]).unwrap();
+    let bare = SCENARIO.split("[truth]").next().unwrap();
+    let cases = [
+        (
+            SCENARIO.replace("counts.npy", "turned.npy"),
+            "its first axis seems to be the bands: write it with np.moveaxis(a, 0, 2)",
+        ),
+        (
+            SCENARIO.replace("1200 cm^-1", "1180 cm^-1"),
+            "the cube is 2 x 3 x 21 (rows, columns, bands), but [bands] are 20",
+        ),
+        (bare.replace("counts.npy", "negative.npy"), "row 0, column 0, band 0 holds -3"),
+        (bare.replace("counts.npy", "none.npy"), "none.npy"),
+        (SCENARIO.replace("[\"250 K\", \"340 K\"]", "[\"250 K\", \"250 K\"]"), "a range of one temperature"),
+        (
+            SCENARIO.replace("column = \"sky\"", "column = \"skye\""),
+            "there is no column `skye`; did you mean `sky`?",
+        ),
+        (SCENARIO.replace("counts_per_photon_radiance = 1e-13\n", ""), "nothing says what a sample is"),
+        (SCENARIO.replace("= 1e-13", "= 1e-13\nbad_bands = [21]"), "band 21 of 21; count from 0 up to 20"),
+        (
+            SCENARIO.replace("\"library.csv\"", "\"library.csv\"\nprior = [1.0]"),
+            "1 probabilities for 2 materials",
+        ),
+        (SCENARIO.replace("temperature = \"20 degC\"", "rows = [1, 5]"), "rows 1 to 5 of a cube of 2"),
+        (SCENARIO.replace("\"material.npy\"", "\"counts.npy\""), "the map is 2 x 3 x 21"),
+        (
+            SCENARIO.replace("\"library.csv\"", "\"library.csv\"\nemissivity_correlation = \"50 cm^-1\""),
+            "a correlation of no error",
+        ),
+        (SCENARIO.replace("[library]\npath = \"library.csv\"", "[library]"), "no materials"),
+        (
+            SCENARIO.replace("\"lighting.npy\"", "[\"temperature.npy\"]"),
+            "1 maps of lighting for 2 surroundings",
+        ),
+        (SCENARIO.replace("1e-13", "-1e-13"), "cube.counts_per_photon_radiance"),
+        (SCENARIO.replace("title =", "titel ="), "there is no key `titel`"),
+    ];
+    for (scenario, message) in cases {
+        folder.file("a.toml", &scenario);
+        let outcome = folder.run(&["decompose", "a.toml"]);
+        assert_eq!(outcome.code, 1, "{message}: {}", outcome.stdout);
+        assert!(
+            outcome.stderr.contains(message) && outcome.stderr.trim().lines().count() == 1,
+            "{message}: {}",
+            outcome.stderr
+        );
+    }
+    // Light that does not reach over the bands.
+    folder.file("light.csv", "wavenumber_cm1,sky\n800,1e18\n1000,1e18\n");
+    folder.file("a.toml", SCENARIO);
+    assert!(
+        folder.run(&["decompose", "a.toml"]).stderr.contains("the spectrum reaches from 800 to 1000 cm^-1")
+    );
+    // The file of another command is sent there.
+    assert!(folder.run(&["size", "a.toml"]).stderr.contains("hadar decompose a.toml"));
+}

@@ -1,0 +1,81 @@
+//! A decomposed cube as files: maps, a table per material, pictures.
+
+mod figures;
+mod text;
+
+pub use figures::maps;
+pub use text::text;
+
+use crate::bundle::Bundle;
+use crate::table::{Table, number};
+use hadar::error::Result;
+use hadar::ranging::cube::npy_map;
+use hadar_study::study::decompose::{Decomposed, TruthFound};
+use std::path::Path;
+
+/// All files; paths in the scenario are written relative to `out` where they lie below it.
+///
+/// # Errors
+/// A figure that cannot be drawn.
+pub fn bundle(result: &Decomposed, out: &Path) -> Result<Bundle> {
+    let mut bundle = Bundle::about(result.scenario.title.as_deref());
+    bundle.add_asked("scenario.toml", result.scenario.to_toml_beside(out));
+    bundle.add_table("materials.csv", materials(result))?;
+    if let Some(truth) = &result.truth
+        && !truth.confusion.is_empty()
+    {
+        bundle.add_table("confusion.csv", confusion(result, truth))?;
+    }
+    bundle.add_warnings(&result.warnings)?;
+    let (maps, size) = (&result.maps, [result.shape.rows(), result.shape.columns()]);
+    let lights = maps.lighting.len() / maps.material.len().max(1);
+    bundle.add("material.npy", npy_map(&size, &maps.material)?);
+    bundle.add("temperature_k.npy", npy_map(&size, &maps.temperature_k)?);
+    bundle.add("temperature_sigma_k.npy", npy_map(&size, &maps.temperature_sigma_k)?);
+    bundle.add("lighting.npy", npy_map(&[size[0], size[1], lights], &maps.lighting)?);
+    bundle.add("p_value.npy", npy_map(&size, &maps.p_value)?);
+    bundle.add("posterior.npy", npy_map(&size, &maps.posterior)?);
+    bundle.add("candidates.npy", npy_map(&size, &maps.candidates)?);
+    bundle.add("flags.npy", npy_map(&size, &maps.flags)?);
+    bundle.add_plots(&[figures::maps(result)])?;
+    Ok(bundle)
+}
+
+/// What was found, a row for every material.
+#[must_use]
+pub fn materials(result: &Decomposed) -> Table {
+    let mut table = Table::new([
+        "material",
+        "index",
+        "pixels",
+        "decided",
+        "temperature_median_k",
+        "temperature_tenth_k",
+        "temperature_nine_tenths_k",
+        "temperature_sigma_median_k",
+    ]);
+    for row in &result.found {
+        let index = result.materials.iter().position(|name| *name == row.material);
+        table.push(vec![
+            row.material.clone(),
+            index.map_or_else(String::new, |index| index.to_string()),
+            row.pixels.to_string(),
+            row.decided.to_string(),
+            number(row.temperature_median_k),
+            number(row.temperature_tenths_k[0]),
+            number(row.temperature_tenths_k[1]),
+            number(row.temperature_sigma_median_k),
+        ]);
+    }
+    table
+}
+
+/// Pixels of what is there (rows) by what was found (columns).
+fn confusion(result: &Decomposed, truth: &TruthFound) -> Table {
+    let names = result.materials.iter().map(String::as_str);
+    let mut table = Table::new(std::iter::once("there").chain(names).chain(["none"]));
+    for (name, row) in result.materials.iter().zip(&truth.confusion) {
+        table.push(std::iter::once(name.clone()).chain(row.iter().map(usize::to_string)).collect());
+    }
+    table
+}

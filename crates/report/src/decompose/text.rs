@@ -1,0 +1,156 @@
+//! A decomposed cube in words: how much of it is decided, what is there, how good that is, what was assumed.
+
+use crate::text::footing::warnings;
+use hadar::decompose::flag;
+use hadar::words::{quantity, share, significant, whole};
+use hadar_study::scenario::decompose::CubeUnit;
+use hadar_study::study::decompose::{Decomposed, TruthFound};
+use std::fmt::Write as _;
+
+/// 0 degC, K.
+const FREEZING_K: f64 = 273.15;
+/// Materials that are listed.
+const LISTED: usize = 12;
+
+/// The whole answer.
+#[must_use]
+pub fn text(result: &Decomposed) -> String {
+    let mut out = format!("{}\n\n", sentence(result));
+    out.push_str(&found(result));
+    out.push_str(&flags(result));
+    if let Some(truth) = &result.truth {
+        out.push_str(&against(truth));
+    }
+    out.push_str(&assumptions(result));
+    out.push_str(&warnings(&result.warnings));
+    out
+}
+
+fn of(part: usize, all: usize) -> String {
+    format!("{} of {}", whole(part as u64), whole(all as u64))
+}
+
+fn sentence(result: &Decomposed) -> String {
+    let seen = result.pixels - result.skipped;
+    let mut out = match result.decided {
+        0 => format!("No pixel of {} is decided", whole(seen as u64)),
+        decided => format!(
+            "{} pixels ({}) have one material of {} left",
+            of(decided, seen),
+            share(decided as f64 / seen.max(1) as f64),
+            result.materials.len()
+        ),
+    };
+    match result.undecided {
+        0 => out.push('.'),
+        undecided => {
+            let _ = write!(out, "; {} are undecided.", whole(undecided as u64));
+        }
+    }
+    out
+}
+
+fn found(result: &Decomposed) -> String {
+    let shown = &result.found[..result.found.len().min(LISTED)];
+    let width = shown.iter().map(|row| row.material.chars().count()).max().unwrap_or(0).max(8);
+    let mut out = format!(
+        "Materials, the most probable of each pixel\n  {:width$}  {:>9}  {:>9}  {:>14}  {:>18}  {:>10}\n",
+        "", "pixels", "decided", "median (degC)", "tenths (degC)", "sigma (K)"
+    );
+    let celsius = |k: f64| format!("{:.1}", k - FREEZING_K);
+    for row in shown {
+        let tenths =
+            format!("{} to {}", celsius(row.temperature_tenths_k[0]), celsius(row.temperature_tenths_k[1]));
+        let _ = writeln!(
+            out,
+            "  {:width$}  {:>9}  {:>9}  {:>14}  {tenths:>18}  {:>10}",
+            row.material,
+            whole(row.pixels as u64),
+            whole(row.decided as u64),
+            celsius(row.temperature_median_k),
+            significant(row.temperature_sigma_median_k, 2)
+        );
+    }
+    if let Some(more) = result.found.len().checked_sub(LISTED).filter(|more| *more > 0) {
+        let _ = writeln!(out, "  and {more} more: materials.csv");
+    }
+    out.push('\n');
+    out
+}
+
+fn flags(result: &Decomposed) -> String {
+    if result.flags.is_empty() {
+        return String::new();
+    }
+    let mut out = String::from("Said of pixels\n");
+    for row in &result.flags {
+        let meaning = match row.bit {
+            flag::TEMPERATURE_AT_LIMIT => "temperature at an end of its range",
+            flag::LIGHTING_AT_LIMIT => "lighting at an end of its range",
+            flag::NO_INFORMATION => "they send what their surroundings send: nothing tells the material",
+            flag::LIGHTING_UNKNOWN => "the lighting could be anything: nothing is scattered",
+            flag::NO_FIT => "no material of the library fits (p below 1e-4)",
+            flag::UNDECIDED => "several materials are left by 95 %",
+            flag::SKIPPED => "left out: a sample is missing",
+            _ => "the temperature could be anything: nothing is emitted",
+        };
+        let _ = writeln!(out, "  {:>9}  {meaning}", whole(row.pixels as u64));
+    }
+    out.push('\n');
+    out
+}
+
+fn against(truth: &TruthFound) -> String {
+    let mut out = String::from("Against what is there\n");
+    let percent = |x: f64| format!("{} %", significant(100.0 * x, 4));
+    if let Some(right) = truth.right_material {
+        let limit = truth.right_material_limit.map_or_else(String::new, |limit| {
+            let error = truth.right_material_limit_error.unwrap_or(0.0);
+            format!(
+                "; {} +- {} by the nearest distances (the most of any test between a pixel and the nearest state of another \
+                 material, mean over {} pixels)",
+                percent(limit),
+                significant(100.0 * error, 1),
+                truth.right_material_limit_pixels
+            )
+        });
+        let _ = writeln!(out, "  right material: {}{limit}", percent(right));
+    }
+    if let Some(right) = truth.right_where_decided {
+        let _ = writeln!(out, "  right material where decided: {}", percent(right));
+    }
+    if let (Some(ratio), Some(covered)) = (truth.temperature_error_over_bound_rms, truth.coverage_95) {
+        let _ = writeln!(
+            out,
+            "  temperature error over its Cramér–Rao bound: {} rms; 95 % intervals hold {} ({} pixels of right material within all limits)",
+            significant(ratio, 3),
+            percent(covered),
+            whole(truth.coverage_pixels as u64)
+        );
+    }
+    if let Some(rmse) = truth.temperature_rmse_k {
+        let _ = writeln!(out, "  temperature error of all pixels: {} rms", quantity(rmse, "K"));
+    }
+    out.push('\n');
+    out
+}
+
+fn assumptions(result: &Decomposed) -> String {
+    let scenario = &result.scenario;
+    let [low, high] = scenario.unknown.temperature_k;
+    let total = scenario
+        .unknown
+        .lighting_total
+        .map_or_else(|| "at most 1".to_owned(), |total| format!("{total} in all"));
+    let noise = match scenario.cube.unit {
+        CubeUnit::Radiance => "the stated noise, the same for all samples",
+        _ => "Poisson counts with the stated electronic noise, variance from the model",
+    };
+    format!(
+        "Assumptions\n  likelihood: {noise}; bands independent\n  \
+         unknown: material, temperature {low} to {high} K, lighting of {} surroundings, {total}{}\n  \
+         intervals: Cramér–Rao bound at the fit, were the material certain; materials: profile likelihoods\n\n",
+        scenario.environment.len(),
+        if scenario.unknown.gain { ", gain" } else { "" },
+    )
+}

@@ -1,0 +1,61 @@
+//! A heat cube decomposed: names and files looked up, the maps, and what they are worth where the truth is known.
+
+mod looked_up;
+mod results;
+mod truth;
+
+pub use looked_up::DecomposeStudy;
+pub use results::{Decomposed, FlagCount, MaterialRow, TruthFound};
+
+use self::results::summary;
+use super::Warning;
+use hadar::decompose::{self, LibraryError, Options, Setting};
+use hadar::demand::Skipping;
+use hadar::error::Result;
+
+/// Length over which errors of emissivities are correlated where nothing is said, cm⁻¹.
+const CORRELATION_CM1: f64 = 50.0;
+
+impl DecomposeStudy {
+    /// Decomposes the cube; `done` is told how many rows are finished, of how many.
+    ///
+    /// # Errors
+    /// Counts that are negative, a cube that cannot be read.
+    pub fn decompose(&self, skipping: Skipping, done: &(dyn Fn(usize, usize) + Sync)) -> Result<Decomposed> {
+        let start = std::time::Instant::now();
+        let unknown = self.scenario.unknown;
+        let setting = Setting {
+            bands: &self.bands,
+            library: &self.library,
+            surroundings: &self.lights,
+            counts_per_radiance: &self.counts_per_radiance,
+            var_added: &self.var_added,
+            units_per_count: self.units_per_count,
+            temperature_k: unknown.temperature_k,
+            lighting_total: unknown.lighting_total,
+            gain: unknown.gain,
+            bad_bands: &self.scenario.cube.bad_bands,
+        };
+        let spec = &self.scenario.library;
+        let library_error = spec.emissivity_error.filter(|error| *error > 0.0).map(|relative| LibraryError {
+            relative,
+            correlation_cm1: spec.emissivity_correlation_cm1.unwrap_or(CORRELATION_CM1),
+        });
+        let options = Options { prior: spec.prior.clone().unwrap_or_default(), library_error, skipping };
+        let rows = self.cube.shape().rows();
+        let finished = std::sync::atomic::AtomicUsize::new(0);
+        let progress = |more: usize| {
+            let so_far = finished.fetch_add(more, std::sync::atomic::Ordering::Relaxed) + more;
+            done(so_far, rows);
+        };
+        let maps = decompose::decompose(&setting, &options, &self.cube, &progress)
+            .map_err(|error| self.at_cube(error))?;
+        let seconds = start.elapsed().as_secs_f64();
+        let mut warnings = self.warnings.clone();
+        if library_error.is_none() {
+            warnings.push(Warning::LibraryTakenAsExact);
+        }
+        let truth = self.truth.as_ref().map(|truth| truth.found(self, &maps)).transpose()?;
+        Ok(summary(self, maps, truth, seconds, warnings))
+    }
+}
