@@ -7,8 +7,8 @@
 //! * [`Setting`], [`Options`]: what is known; [`decompose()`]: a cube to [`Maps`];
 //! * [`Pixel`], [`flag`]: what is found of a pixel, and what is said of it.
 //!
-//! Intervals are those of the Cramér–Rao bound at the fit, were the material certain; where a lighting factor is at its limit they hold
-//! for that limit. Assumptions: counts are Poisson with added Gaussian noise; bands are independent; the library is exact.
+//! Intervals are those of the Cramér–Rao bound at the fit, were the material certain, also where a limit holds a lighting factor: its
+//! truth may be a little way off. Assumptions: counts are Poisson with added Gaussian noise; bands are independent; the library is exact.
 //!
 //! Source: paper S44, S48, Methods 'TeX degeneracy'.
 

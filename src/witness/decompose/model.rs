@@ -29,7 +29,7 @@ use crate::units::SECOND_RADIATION_CM_K;
 /// Step of the table times c₂ν/T².
 const STEP: f64 = 0.03;
 /// Most temperatures of the table: a range that asks for more would not fit into memory.
-const MOST_STEPS: f64 = 1e5;
+const MOST_STEPS: f64 = 2e4;
 /// Most surroundings of a scene.
 pub const MOST_SURROUNDINGS: usize = 7;
 

@@ -119,15 +119,14 @@ impl State {
 
     /// Deviation of the temperature, K, that of every weight, and which directions had no information.
     pub(super) fn deviations(&self, sums: &Sums, limits: &Limits) -> Deviations {
-        // A temperature at an end of its range is not known better for that.
-        let mut open = Self { held: false, ..*self };
-        let own = Face::new(sums, limits, &open);
-        open.free = [true; MOST];
+        // What a limit holds is not known better for that: the truth may be a little way off it.
+        let open = Self { held: false, free: [true; MOST], ..*self };
         let face = Face::new(sums, limits, &open);
         let mut found = Deviations { temperature_k: f64::INFINITY, weights: [0.0; MOST], blind: false };
-        found.blind = face.blind[..face.len - 1].iter().any(|blind| *blind);
-        if !own.blind[own.len - 1] {
-            found.temperature_k = own.deviation(own.len - 1);
+        let last = face.len - 1;
+        found.blind = face.blind[..last].iter().any(|blind| *blind);
+        if !face.blind[last] {
+            found.temperature_k = face.deviation(last);
         }
         // Weight j as a linear form of the directions.
         for j in 0..limits.vertices {
@@ -228,7 +227,7 @@ impl Step {
     }
 }
 
-/// Deviations of the unknowns, those at a limit left there.
+/// Deviations of the unknowns, as if no limit held any of them.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Deviations {
     /// Of the temperature, K; infinite without information.
