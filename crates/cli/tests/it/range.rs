@@ -340,7 +340,7 @@ fn bad_cubes_are_told_by_what_is_wrong_with_them() {
         assert!(text.contains("<f8"));
         let mut bytes = fs::read(&path).unwrap();
         let at = bytes.windows(3).position(|window| window == b"<f8").unwrap();
-        bytes[at + 1] = b'i';
+        bytes[at + 1] = b'c';
         fs::write(&path, bytes).unwrap();
     });
     assert!(error.contains("astype"), "{error}");

@@ -3,6 +3,7 @@
 mod looked_up;
 mod results;
 mod truth;
+mod worth;
 
 pub use looked_up::DecomposeStudy;
 pub use results::{Decomposed, FlagCount, MaterialRow, TruthFound};

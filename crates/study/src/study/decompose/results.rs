@@ -1,7 +1,7 @@
 //! What is said of a decomposed cube: how many pixels are decided, what each material has, what was spared.
 
 use super::DecomposeStudy;
-pub use super::truth::TruthFound;
+pub use super::worth::TruthFound;
 use crate::scenario::DecomposeScenario;
 use crate::study::Warning;
 use hadar::decompose::{Maps, NO_MATERIAL, flag};

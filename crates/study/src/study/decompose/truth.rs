@@ -1,62 +1,18 @@
-//! What the maps are worth where it is known what is there.
-//!
-//! * Share of right materials, beside the mean of Φ(d) over some pixels, d the nearest distance from what is there to the nearest of
-//!   the other materials in any state (nothing told between these two states is right more often than that).
-//! * Root mean square of temperature error over the Cramér–Rao bound at the fit, and the share of errors within 1.96 of it: of pixels
-//!   whose material is right and whose state no limit holds.
+//! Maps of what is there, as files have them.
 
-use super::DecomposeStudy;
 use crate::scenario::decompose::TruthSpec;
-use hadar::decompose::{Light, Maps, NO_MATERIAL, flag};
+use hadar::decompose::NO_MATERIAL;
 use hadar::error::{Error, Result};
-use hadar::fisher::{Counting, Nuisance, Unknowns};
-use hadar::identifiability::detection;
-use hadar::identifiability::nearest::{NearestSolver, StateRange};
-use hadar::planck;
 use hadar::ranging::cube::{Cube, Rows, Sample, Shape};
-use hadar::scene::{EnvironmentObject, State, Surroundings};
-use rayon::prelude::*;
 use std::path::Path;
-
-/// Pixels whose limit is computed.
-const LIMITS: usize = 240;
-/// Deviations that hold 95 %.
-const NINETY_FIVE: f64 = 1.959_963_984_540_054;
-/// Temperature of the blackbody that the surroundings are written as shares of, times the hottest of their brightness.
-const HOTTER: f64 = 1.01;
 
 /// Maps of what is there, `[row][column]`.
 #[derive(Debug)]
 pub(super) struct Truth {
-    material: Option<Vec<usize>>,
-    temperature_k: Option<Vec<f64>>,
+    pub(super) material: Option<Vec<usize>>,
+    pub(super) temperature_k: Option<Vec<f64>>,
     /// `[row][column][surroundings]`.
-    lighting: Option<Vec<f64>>,
-}
-
-/// How good the maps are.
-#[derive(Debug, Clone, PartialEq, Default, serde::Serialize)]
-pub struct TruthFound {
-    /// Share of pixels whose material is right.
-    pub right_material: Option<f64>,
-    /// Mean of Φ(d), what no test exceeds between a pixel and the nearest state of the others; `None` without all of the truth.
-    pub right_material_limit: Option<f64>,
-    /// Standard error of that mean.
-    pub right_material_limit_error: Option<f64>,
-    /// Pixels of that mean.
-    pub right_material_limit_pixels: usize,
-    /// Root mean square of the error of the temperature over its bound.
-    pub temperature_error_over_bound_rms: Option<f64>,
-    /// Share of temperatures within 1.96 deviations.
-    pub coverage_95: Option<f64>,
-    /// Pixels of these two.
-    pub coverage_pixels: usize,
-    /// Root mean square error of the temperature of all pixels that have one, K.
-    pub temperature_rmse_k: Option<f64>,
-    /// Share of right materials among the pixels that have one candidate.
-    pub right_where_decided: Option<f64>,
-    /// Pixels of each material that is there (row) by what was found (column, the last one for none).
-    pub confusion: Vec<Vec<usize>>,
+    pub(super) lighting: Option<Vec<f64>>,
 }
 
 impl Truth {
@@ -111,132 +67,6 @@ impl Truth {
         }
         Ok(Self { material, temperature_k, lighting })
     }
-
-    /// Holds the maps against what is there.
-    pub(super) fn found(&self, study: &DecomposeStudy, maps: &Maps) -> Result<TruthFound> {
-        let mut found = TruthFound::default();
-        let pixels = maps.material.len();
-        let share = |count: usize, of: usize| (of > 0).then(|| count as f64 / of as f64);
-        if let Some(material) = &self.material {
-            let known = |i: &usize| material[*i] < study.names.len();
-            let right = |i: &usize| usize::from(maps.material[*i]) == material[*i];
-            let all: Vec<usize> = (0..pixels).filter(known).collect();
-            found.right_material = share(all.iter().filter(|i| right(i)).count(), all.len());
-            let decided: Vec<usize> = all.iter().copied().filter(|i| maps.candidates[*i] == 1).collect();
-            found.right_where_decided = share(decided.iter().filter(|i| right(i)).count(), decided.len());
-            found.confusion = vec![vec![0; study.names.len() + 1]; study.names.len()];
-            for i in &all {
-                let column = usize::from(maps.material[*i]).min(study.names.len());
-                found.confusion[material[*i]][column] += 1;
-            }
-            if let (Some(temperature_k), Some(lighting)) = (&self.temperature_k, &self.lighting) {
-                let chosen: Vec<usize> =
-                    all.iter().copied().step_by(all.len().div_ceil(LIMITS).max(1)).collect();
-                let limits = limits(study, material, temperature_k, lighting, &chosen)?;
-                found.right_material_limit_pixels = limits.len();
-                if !limits.is_empty() {
-                    let count = limits.len() as f64;
-                    let mean = limits.iter().sum::<f64>() / count;
-                    let square = limits.iter().map(|p| (p - mean).powi(2)).sum::<f64>();
-                    found.right_material_limit = Some(mean);
-                    found.right_material_limit_error =
-                        (count > 1.0).then(|| (square / (count * (count - 1.0))).sqrt());
-                }
-            }
-        }
-        if let Some(truth) = &self.temperature_k {
-            let is_open = |i: &usize| {
-                let held = flag::LIGHTING_AT_LIMIT | flag::TEMPERATURE_AT_LIMIT | flag::TEMPERATURE_UNKNOWN;
-                let right = self.material.as_ref().is_none_or(|m| m[*i] == usize::from(maps.material[*i]));
-                right && maps.flags[*i] & (held | flag::SKIPPED) == 0
-            };
-            let error = |i: usize| f64::from(maps.temperature_k[i]) - truth[i];
-            let over: Vec<f64> = (0..pixels)
-                .filter(is_open)
-                .map(|i| error(i) / f64::from(maps.temperature_sigma_k[i]))
-                .collect();
-            found.coverage_pixels = over.len();
-            found.coverage_95 = share(over.iter().filter(|x| x.abs() <= NINETY_FIVE).count(), over.len());
-            found.temperature_error_over_bound_rms = rms(over.iter().copied());
-            found.temperature_rmse_k = rms((0..pixels).map(error).filter(|error| error.is_finite()));
-        }
-        Ok(found)
-    }
-}
-
-fn rms(values: impl Iterator<Item = f64>) -> Option<f64> {
-    let (square, count) = values.fold((0.0, 0), |(sum, count), x| (x.mul_add(x, sum), count + 1));
-    (count > 0).then(|| (square / f64::from(count)).sqrt())
-}
-
-/// Φ(d) to the nearest of the other materials for some pixels.
-fn limits(
-    study: &DecomposeStudy,
-    material: &[usize],
-    temperature_k: &[f64],
-    lighting: &[f64],
-    chosen: &[usize],
-) -> Result<Vec<f64>> {
-    let scale = study.counts_per_radiance[0];
-    let uniform = study.counts_per_radiance.iter().all(|k| (k / scale - 1.0).abs() < 1e-9);
-    if !uniform || study.library.len() < 2 {
-        return Ok(Vec::new());
-    }
-    let surroundings = surroundings(study)?;
-    let mut nuisances = vec![Nuisance::Temperature, Nuisance::Lighting];
-    nuisances.extend(study.scenario.unknown.gain.then_some(Nuisance::Gain));
-    let total = study.scenario.unknown.lighting_total;
-    let unknowns = Unknowns::new(nuisances)?.lighting_total(total)?;
-    let range = StateRange {
-        temperature_k: study.scenario.unknown.temperature_k,
-        lighting_sum: total.unwrap_or(1.0),
-        ..StateRange::default()
-    };
-    let counting = Counting { counts_per_radiance: scale, var_added: study.var_added.clone() };
-    let count = study.lights.len();
-    let limit = |solver: &mut NearestSolver<'_>, i: &usize| {
-        let state = State {
-            temperature_k: temperature_k[*i],
-            lighting: lighting[i * count..][..count].to_vec(),
-            gain: 1.0,
-            environment_k: surroundings.objects().iter().map(|object| object.temperature_k).collect(),
-        };
-        let own = &study.library[material[*i]];
-        let mut nearest = f64::INFINITY;
-        for other in study.library.iter().filter(|other| *other != own) {
-            nearest = nearest.min(solver.with_counting(own, other, &state, &counting)?.distance);
-        }
-        Ok(detection::probability(nearest))
-    };
-    let solver = || NearestSolver::new(&study.bands, &surroundings, unknowns.clone(), range);
-    chosen.par_iter().map_init(solver, limit).collect()
-}
-
-/// The spectra of the surroundings as shares of a blackbody's.
-fn surroundings(study: &DecomposeStudy) -> Result<Surroundings> {
-    let nodes = study.bands.nodes_cm1();
-    let widths = study.bands.widths_cm1();
-    let object = |light: &Light| {
-        let radiance: Vec<f64> = match light {
-            Light::Radiance(radiance) => radiance.clone(),
-            // One value for all nodes of a band.
-            Light::Counts(counts) => {
-                let per_band: Vec<f64> = counts
-                    .iter()
-                    .zip(study.counts_per_radiance.iter().zip(&widths))
-                    .map(|(n, (k, width))| n / (k * width))
-                    .collect();
-                study.bands.spread(&per_band)
-            }
-        };
-        let brightness = nodes.iter().zip(&radiance).map(|(nu, s)| planck::brightness_temperature(*nu, *s));
-        let temperature_k = HOTTER * brightness.fold(1.0, f64::max);
-        let mut blackbody = vec![0.0; nodes.len()];
-        planck::photon_radiance_into(nodes, temperature_k, &mut blackbody);
-        let emissivity = radiance.iter().zip(&blackbody).map(|(s, b)| (s / b).min(1.0)).collect();
-        EnvironmentObject { temperature_k, emissivity: Some(emissivity) }
-    };
-    Surroundings::new(nodes, study.lights.iter().map(object).collect())
 }
 
 /// A map of so many layers as one of `layers`.
