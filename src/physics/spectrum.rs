@@ -18,4 +18,4 @@ mod rows;
 pub use bands::{Band, Bands};
 pub use filter::FilterCurve;
 pub use integrate::INTEGRATION_TOLERANCE;
-pub(crate) use rows::interpolated;
+pub use rows::interpolated;

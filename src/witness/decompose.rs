@@ -19,6 +19,7 @@ mod maps;
 mod model;
 mod pixel;
 mod screen;
+mod space;
 mod step;
 
 pub use library_error::LibraryError;

@@ -18,7 +18,8 @@ pub(super) fn distinct(ascending: impl Iterator<Item = f64>, what: &str) -> Resu
 }
 
 /// The value at x on straight lines between rows of ascending x; beyond them that of the last one.
-pub(crate) fn interpolated(xs: &[f64], ys: &[f64], x: f64) -> f64 {
+#[must_use]
+pub fn interpolated(xs: &[f64], ys: &[f64], x: f64) -> f64 {
     let right = xs.partition_point(|&row| row < x);
     match (xs.get(right), ys.get(right)) {
         (Some(&row), Some(&value)) if row == x || right == 0 => value,

@@ -11,7 +11,7 @@
 //! Source: Snyder, Hammoud and White, J. Opt. Soc. Am. A 10, 1014 (1993), doi:10.1364/JOSAA.10.001014, for σ² in the count.
 
 use super::model::{Hermite, MOST_SURROUNDINGS, Model};
-use crate::simd::{Chunk, LANES, Largest, added, dispatched, fold, fused, product};
+use crate::simd::{Chunk, LANES, Largest, added, dispatched, fold, product};
 
 /// Most unknown numbers: the temperature, and a weight of each vertex.
 pub(super) const MOST: usize = MOST_SURROUNDINGS + 2;
@@ -63,30 +63,24 @@ fn mean_counts(model: &Model, asked: Asked<'_>) -> Vec<f64> {
 }
 
 dispatched! {
-    /// Σ (N − X)²/N′ with X what the surroundings would send in the pixel's place: whether they differ at all.
-    pub(super) fn contrast<'a>(model: &'a Model, asked: Asked<'a>) -> f64 {
-        let count = model.width / LANES;
+    /// Σ (N − X)²/N′ with X what the surroundings would send in the pixel's place: whether they differ at all. N is left in `mean`.
+    pub(super) fn contrast<'a>(model: &'a Model, asked: Asked<'a>, mean: &'a mut [f64]) -> f64 {
         let place = model.place(asked.temperature_k);
-        let shares = Hermite::at(place.share).value;
-        let [v0, s0, v1, s1, factor] = model.emission(asked.m, place.row);
-        let (v0, s0, v1) = (in_chunks(v0, count), in_chunks(s0, count), in_chunks(v1, count));
-        let (s1, factor) = (in_chunks(s1, count), in_chunks(factor, count));
+        emit(Hermite::at(place.share).value, model.emission(asked.m, place.row), mean);
         let scale = model.scale(asked.mixture);
-        let noise = in_chunks(&model.var_added, count);
-        let mut total = [0.0; LANES];
-        for c in 0..count {
-            let value = product(factor[c], mixed(shares, [v0[c], s0[c], v1[c], s1[c]]));
-            let (mut mean, mut off) = (fused(scale, value, noise[c]), product([scale; LANES], value));
-            for (j, u) in asked.mixture.iter().enumerate() {
-                let scattered = in_chunks(model.scattered_of(asked.m, j), count)[c];
-                let light = in_chunks(model.light(j), count)[c];
-                mean = fused(*u, scattered, mean);
-                off = fused(*u, std::array::from_fn(|i| scattered[i] - light[i]), off);
-            }
-            let relative: Chunk = std::array::from_fn(|i| off[i] / f64::max(mean[i], FEWEST));
-            total = added(off, relative, total);
+        mean.iter_mut().for_each(|n| *n *= scale);
+        for (j, u) in asked.mixture.iter().enumerate() {
+            mean.iter_mut().zip(model.scattered_of(asked.m, j)).for_each(|(n, c)| *n = u.mul_add(*c, *n));
         }
-        fold(&total)
+        let mut total = 0.0;
+        for (w, n) in mean.iter().enumerate().take(model.used.len()) {
+            let mut off = *n;
+            for (j, u) in asked.mixture.iter().enumerate() {
+                off -= u * model.light(j)[w];
+            }
+            total += off * off / f64::max(n + model.var_added[w], FEWEST);
+        }
+        total
     }
 }
 
@@ -216,16 +210,4 @@ pub(super) fn weighted(a: &[f64], b: &[f64], weight: &[f64]) -> f64 {
         sum = added(product(*a, *b), *weight, sum);
     }
     fold(&sum)
-}
-
-/// Four values in these shares. A function, since a closure's body need not be compiled for the same processor.
-#[inline(always)]
-fn mixed(shares: [f64; 4], of: [Chunk; 4]) -> Chunk {
-    let last = product([shares[3]; LANES], of[3]);
-    fused(shares[0], of[0], fused(shares[1], of[1], fused(shares[2], of[2], last)))
-}
-
-#[inline(always)]
-fn in_chunks(values: &[f64], count: usize) -> &[Chunk] {
-    &values.as_chunks::<LANES>().0[..count]
 }

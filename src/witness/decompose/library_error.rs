@@ -237,3 +237,6 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     }
     sum
 }
+
+#[cfg(test)]
+mod tests;

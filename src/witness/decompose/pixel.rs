@@ -76,7 +76,7 @@ pub struct Pixel {
     pub sigma_k: f64,
     /// Thermal lighting factors; NaN where the target scatters nothing.
     pub lighting: [f64; MOST_SURROUNDINGS],
-    /// Probability of a larger residual, were the material right.
+    /// Probability of a larger residual, were the material right; NaN where there are as many unknowns as bands.
     pub p_value: f64,
     /// Posterior probability of the material.
     pub posterior: f64,
@@ -166,6 +166,7 @@ pub(super) struct Room {
     screened: Option<Screened>,
     pub(super) counts: Aligned,
     shifted: Aligned,
+    mean: Vec<f64>,
     bounds: Vec<(f64, usize)>,
     fits: Vec<(usize, Fit)>,
 }
@@ -179,6 +180,7 @@ impl Task {
             screened: self.screen.as_ref().map(|screen| screen.room(width)),
             counts: Aligned::zeros(width),
             shifted: Aligned::zeros(width),
+            mean: vec![0.0; width],
             bounds: Vec::with_capacity(self.kinds.len()),
             fits: Vec::with_capacity(self.kinds.len()),
         }
@@ -203,7 +205,7 @@ impl Task {
 
     /// Fits what no bound excludes; deviances with the handicap of the prior.
     fn fit_all(&self, room: &mut Room, spared: &mut Spared) {
-        let Room { sums, workplace, screened, counts, shifted, bounds, fits } = room;
+        let Room { sums, workplace, screened, counts, shifted, bounds, fits, .. } = room;
         fits.clear();
         bounds.clear();
         let mut best = f64::INFINITY;
@@ -338,15 +340,17 @@ impl Task {
         // One vertex alone is no choice; a mixture that lacks one is at a limit.
         let lit_at_limit = model.vertices > calibrated && free < model.vertices;
         let no_temperature = !deviations.temperature_k.is_finite();
+        let any_lighting = ANY_LIGHTING * model.scale(mixture);
         let no_lighting = model.vertices > calibrated
             && (deviations.blind
-                || deviations.weights[..model.vertices].iter().any(|s| s.is_nan() || *s >= ANY_LIGHTING));
+                || deviations.weights[..model.vertices].iter().any(|s| s.is_nan() || *s >= any_lighting));
         let asked = Asked { m, shifted: &room.shifted, temperature_k: fit.state.temperature_k, mixture };
-        let no_information = contrast(model, asked) < CONTRAST;
+        let no_information = contrast(model, asked, &mut room.mean) < CONTRAST;
         let unknowns = usize::from(!at_limit) + free - calibrated.min(free);
         let freedom = model.used.len() as f64 - unknowns as f64;
+        // As many unknowns as bands fit everything, which says nothing.
         let p_value =
-            if freedom > 0.0 { gamma_ur(0.5 * freedom, 0.5 * sums.chi_square.min(1e6)) } else { 1.0 };
+            if freedom > 0.0 { gamma_ur(0.5 * freedom, 0.5 * sums.chi_square.min(1e6)) } else { f64::NAN };
         raise(at_limit, flag::TEMPERATURE_AT_LIMIT);
         raise(lit_at_limit && !no_lighting, flag::LIGHTING_AT_LIMIT);
         raise(no_information, flag::NO_INFORMATION);

@@ -11,7 +11,7 @@ use hadar::instrument::View;
 use hadar::material::{Library, Material};
 use hadar::planck;
 use hadar::ranging::cube::{Cube, Rows, Sample};
-use hadar::spectrum::Bands;
+use hadar::spectrum::{Bands, interpolated};
 use hadar::units::{PLANCK_J_S, SPEED_OF_LIGHT_M_S};
 use std::path::Path;
 
@@ -280,14 +280,13 @@ fn on_nodes(rows: &[(f64, f64)], nodes_cm1: &[f64]) -> Result<Vec<f64>> {
     let (Some((low, _)), Some((high, _))) = (rows.first(), rows.last()) else {
         return Err(Error::malformed("the table has no rows", "write one for every wavenumber"));
     };
+    let (xs, ys): (Vec<f64>, Vec<f64>) = rows.iter().copied().unzip();
     let at = |nu: &f64| {
         if !(*low..=*high).contains(nu) {
             let found = format!("the spectrum reaches from {low} to {high} cm^-1, the bands to {nu} cm^-1");
             return Err(Error::malformed(found, "give rows that cover the bands"));
         }
-        let right = rows.partition_point(|row| row.0 < *nu);
-        let ((x, y), (x0, y0)) = (rows[right], rows[right.saturating_sub(1)]);
-        let value = if x == *nu { y } else { y0 + (y - y0) * ((nu - x0) / (x - x0)) };
+        let value = interpolated(&xs, &ys, *nu);
         if value < 0.0 {
             let found = format!("a radiance of {value} at {nu} cm^-1");
             return Err(Error::malformed(found, "write photons s^-1 m^-2 sr^-1 per cm^-1, from 0"));

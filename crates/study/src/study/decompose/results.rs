@@ -117,6 +117,9 @@ pub(super) fn summary(
         .map(|(bit, flag)| FlagCount { flag, bit: *bit, pixels: has(*bit) })
         .filter(|count| count.pixels > 0)
         .collect();
+    if maps.spared.unfinished > 0 {
+        warnings.push(Warning::UnconvergedFits { fits: maps.spared.unfinished as usize });
+    }
     if skipped > 0 {
         warnings.push(Warning::PixelsSkipped { pixels: skipped, of: pixels });
     }
