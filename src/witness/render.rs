@@ -15,19 +15,17 @@
 //! World axes: x to the right (along the baseline), y up from the ground, z ahead; metres. Nothing is random:
 //! a surface point looks the same to both cameras, and every run gives the same bits.
 //!
-//! Where solids hide each other their shares are added: on the street's road the lighting that is not sky comes out too
-//! large by a tenth (median) and, close behind the car, by up to 1.9 times, against rays through the same solids.
-//!
-//! Assumptions: no atmosphere, thin-lens blur or vignetting; each surface has one temperature; a solid is seen
-//! whole by what it lights, so where solids hide each other or their shadows fall on the ground as a lit surface,
-//! factors are approximate; a person lights others as an upright screen of the same silhouette.
+//! Assumptions: no atmosphere, thin-lens blur or vignetting; the ground is lit by the sky alone when it lights others (no shadows in
+//! what it sends); a ball or a limb lights others as an outline of eight corners or two such.
 //!
 //! Source: paper S1–S4, Fig. 4, Methods 'Monte Carlo path tracing' (there: path tracing, ray depth 8).
 
+mod body;
 mod factor;
 mod light_map;
 mod lighting;
 mod noise;
+mod outline;
 mod radiosity;
 mod rig;
 mod scene;
@@ -35,14 +33,17 @@ mod shape;
 mod street;
 mod surface;
 mod trace;
+mod uneven;
 mod vector;
 mod view;
 mod wall;
 
+pub use body::{Body, MOST_SURFACES, Object};
 pub use rig::Rig;
 pub use scene::Scene;
 pub use street::StreetSpec;
 pub use surface::{Bump, Emissivity, Road, Surface, Texture, Wave};
 pub use trace::{Options, StereoPair};
+pub use uneven::Uneven;
 pub use view::{Part, View};
 pub use wall::WallSpec;

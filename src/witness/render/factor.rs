@@ -8,15 +8,18 @@
 //! is wholly before it. What lies behind the plane through p is cut off first. Φ does not depend on n: a bumpy
 //! surface costs no more than a smooth one.
 //!
+//! What one polygon hides of another is cut away plane by plane: a convex polygon without another one is at the most as many convex
+//! pieces as that has edges.
+//!
 //! Source: J. H. Lambert, Photometria (1760); in this form e.g. Baum, Rushmeier, Winget, SIGGRAPH 1989,
 //! doi:10.1145/74333.74367.
 
-use super::vector::{Vector, along, cross, dot, norm, scaled, subtract};
+use super::vector::{Vector, along, cross, dot, norm, scaled, subtract, unit};
 
-/// Corners that a quadrilateral may have after two cuts, and one to spare.
-const CORNERS: usize = 8;
+/// Corners that a polygon may have: those of an outline, and one more for every cut.
+pub(super) const CORNERS: usize = 16;
 
-/// A convex polygon as seen from a point.
+/// A convex polygon as seen from a point: the cone of directions to it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Polygon {
     corners: [Vector; CORNERS],
@@ -24,72 +27,151 @@ pub(super) struct Polygon {
 }
 
 impl Polygon {
-    /// A quadrilateral, seen from `point`.
-    #[inline]
-    pub(super) fn seen_from(point: Vector, corners: [Vector; 4]) -> Self {
-        let mut polygon = Self { corners: [[0.0; 3]; CORNERS], count: 4 };
-        for (to, from) in polygon.corners.iter_mut().zip(corners) {
-            *to = subtract(from, point);
+    /// The polygon of corners relative to the point, turned so that every r_i × r_{i+1} points inwards; none if it has no area.
+    pub(super) fn wound(corners: &[Vector]) -> Option<Self> {
+        let mut polygon = Self { corners: [[0.0; 3]; CORNERS], count: corners.len().min(CORNERS) };
+        polygon.corners.iter_mut().zip(corners).for_each(|(to, from)| *to = *from);
+        if polygon.count < 3 {
+            return None;
         }
-        polygon
+        let middle = polygon.middle();
+        let turned: f64 = polygon.edges().map(|(here, next)| dot(cross(here, next), middle)).sum();
+        if turned < 0.0 {
+            polygon.corners[..polygon.count].reverse();
+        }
+        (turned != 0.0).then_some(polygon)
     }
 
     fn corners(&self) -> &[Vector] {
         &self.corners[..self.count]
     }
 
-    /// Whether no corner is behind the plane through the point with this normal.
-    #[inline]
-    fn is_before(&self, normal: Vector) -> bool {
-        self.corners().iter().all(|&corner| dot(corner, normal) >= 0.0)
+    fn edges(&self) -> impl Iterator<Item = (Vector, Vector)> + '_ {
+        let corners = self.corners();
+        let next = corners.iter().skip(1).chain(corners.first());
+        corners.iter().zip(next).map(|(here, next)| (*here, *next))
     }
 
-    /// The part before the plane through the point with this normal.
+    /// A direction inside it.
+    pub(super) fn middle(&self) -> Vector {
+        self.corners()
+            .iter()
+            .fold([0.0; 3], |sum, &corner| along(sum, 1.0 / norm(corner).max(f64::MIN_POSITIVE), corner))
+    }
+
+    /// Axis, cosine and sine of a cone about all of it.
+    pub(super) fn cone(&self) -> Cone {
+        let axis = unit(self.middle());
+        let cos = self.corners().iter().map(|&corner| dot(unit(corner), axis)).fold(1.0, f64::min);
+        Cone { axis, cos, sin: (1.0 - cos * cos).max(0.0).sqrt() }
+    }
+
+    /// Keeps the part before the plane through the point with this normal; false if nothing is left.
     #[inline]
-    pub(super) fn cut(&self, normal: Vector) -> Self {
-        if self.is_before(normal) {
-            return *self;
+    pub(super) fn keep(&mut self, normal: Vector) -> bool {
+        let mut sides = [0.0; CORNERS];
+        let (mut before, mut behind) = (false, false);
+        for (side, corner) in sides.iter_mut().zip(self.corners()) {
+            *side = dot(*corner, normal);
+            before |= *side > 0.0;
+            behind |= *side < 0.0;
         }
-        let mut kept = Self { corners: [[0.0; 3]; CORNERS], count: 0 };
-        let mut keep = |corner| {
-            if let Some(place) = kept.corners.get_mut(kept.count) {
+        if !behind || !before {
+            return !behind && self.count > 2;
+        }
+        let mut kept = [[0.0; 3]; CORNERS];
+        let mut count = 0;
+        let mut put = |corner| {
+            if let Some(place) = kept.get_mut(count) {
                 *place = corner;
-                kept.count += 1;
+                count += 1;
             }
         };
-        let corners = self.corners();
-        for (i, &here) in corners.iter().enumerate() {
-            let next = corners[(i + 1) % corners.len()];
-            let (a, b) = (dot(here, normal), dot(next, normal));
+        let mut next = 0;
+        for i in 0..self.count {
+            next += 1;
+            if next == self.count {
+                next = 0;
+            }
+            let (here, a, b) = (self.corners[i], sides[i], sides[next]);
             if a >= 0.0 {
-                keep(here);
+                put(here);
             }
             if (a >= 0.0) != (b >= 0.0) {
-                keep(along(here, a / (a - b), subtract(next, here)));
+                put(along(here, a / (a - b), subtract(self.corners[next], here)));
             }
         }
-        kept
+        self.corners[..count].copy_from_slice(&kept[..count]);
+        self.count = count;
+        count > 2
+    }
+
+    /// The part before the plane through the point with this normal; none if there is nothing.
+    pub(super) fn cut(&self, normal: Vector) -> Option<Self> {
+        let mut part = *self;
+        part.keep(normal).then_some(part)
+    }
+
+    /// Whether some plane through the point along an edge of the other one parts the two.
+    fn is_beside(&self, other: &Self) -> bool {
+        other.edges().any(|(here, next)| {
+            let inwards = cross(here, next);
+            self.corners().iter().all(|&corner| dot(corner, inwards) <= 0.0)
+        })
+    }
+
+    /// What both cover.
+    pub(super) fn overlap(&self, other: &Self) -> Option<Self> {
+        if self.is_beside(other) || other.is_beside(self) {
+            return None;
+        }
+        let mut both = *self;
+        other.edges().all(|(here, next)| both.keep(cross(here, next))).then_some(both)
+    }
+
+    /// What `other` leaves of it, as convex pieces.
+    pub(super) fn minus(&self, other: &Self, pieces: &mut Vec<Self>) {
+        if self.is_beside(other) {
+            pieces.push(*self);
+            return;
+        }
+        let mut rest = *self;
+        for (here, next) in other.edges() {
+            let inwards = cross(here, next);
+            if rest.corners().iter().any(|&corner| dot(corner, inwards) < 0.0) {
+                pieces.extend(rest.cut(scaled(inwards, -1.0)));
+                if !rest.keep(inwards) {
+                    return;
+                }
+            }
+        }
     }
 
     /// Φ, towards the polygon.
     #[inline]
     pub(super) fn factor(&self) -> Vector {
-        let corners = self.corners();
-        if corners.len() < 3 {
-            return [0.0; 3];
-        }
-        let (mut sum, mut middle) = ([0.0; 3], [0.0; 3]);
-        for (i, &here) in corners.iter().enumerate() {
-            let next = corners[if i + 1 == corners.len() { 0 } else { i + 1 }];
+        let sum = self.edges().fold([0.0; 3], |sum, (here, next)| {
             let across = cross(here, next);
             let sine = norm(across);
-            if sine > 0.0 {
-                sum = along(sum, libm::atan2(sine, dot(here, next)) / sine, across);
-            }
-            middle = along(middle, 1.0, here);
-        }
-        let sign = if dot(sum, middle) < 0.0 { -1.0 } else { 1.0 };
-        scaled(sum, sign / (2.0 * std::f64::consts::PI))
+            if sine > 0.0 { along(sum, libm::atan2(sine, dot(here, next)) / sine, across) } else { sum }
+        });
+        scaled(sum, 1.0 / (2.0 * std::f64::consts::PI))
+    }
+}
+
+/// A cone of directions.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Cone {
+    axis: Vector,
+    cos: f64,
+    sin: f64,
+}
+
+impl Cone {
+    /// Whether two cones may have a direction in common.
+    pub(super) fn meets(&self, other: &Self) -> bool {
+        let wide = self.cos <= 0.0 || other.cos <= 0.0;
+        wide || dot(self.axis, other.axis) >= self.cos * other.cos - self.sin * other.sin
     }
 }
 
@@ -101,18 +183,17 @@ pub(super) struct Factor {
 }
 
 impl Factor {
-    /// Adds the part of a polygon that is before the plane with this normal.
+    /// Adds a polygon that is before the surface.
     #[inline]
-    pub(super) fn add(&mut self, polygon: &Polygon, normal: Vector) {
-        let seen = polygon.cut(normal);
-        let (up, down) = ([0.0, 1.0, 0.0], [0.0, -1.0, 0.0]);
-        if seen.is_before(up) {
+    pub(super) fn add(&mut self, seen: &Polygon) {
+        if seen.corners().iter().all(|corner| corner[1] >= 0.0) {
             self.above = along(self.above, 1.0, seen.factor());
-        } else if seen.is_before(down) {
-            self.below = along(self.below, 1.0, seen.factor());
-        } else {
-            self.above = along(self.above, 1.0, seen.cut(up).factor());
-            self.below = along(self.below, 1.0, seen.cut(down).factor());
+            return;
+        }
+        for (to, side) in [(&mut self.above, 1.0), (&mut self.below, -1.0)] {
+            if let Some(part) = seen.cut([0.0, side, 0.0]) {
+                *to = along(*to, 1.0, part.factor());
+            }
         }
     }
 }
@@ -127,7 +208,7 @@ mod tests {
     /// A horizontal rectangle at height c, with a corner above the point, sides a and b.
     fn parallel(a: f64, b: f64, c: f64) -> f64 {
         let corners = [[0.0, c, 0.0], [a, c, 0.0], [a, c, b], [0.0, c, b]];
-        dot(Polygon::seen_from([0.0; 3], corners).factor(), UP)
+        dot(Polygon::wound(&corners).unwrap().factor(), UP)
     }
 
     #[test]
@@ -149,17 +230,17 @@ mod tests {
             let corners = [[0.0, 0.0, c], [b, 0.0, c], [b, a, c], [0.0, a, c]];
             let x = f64::hypot(a, c);
             let exact = ((b / c).atan() - c / x * (b / x).atan()) / (2.0 * PI);
-            let polygon = Polygon::seen_from([0.0; 3], corners);
+            let polygon = Polygon::wound(&corners).unwrap();
             assert!((dot(polygon.factor(), UP) / exact - 1.0).abs() < 1e-12);
             // The same reaching as far below the horizon: cut off there.
             let sunk = corners.map(|[x, y, z]| [x, if y == 0.0 { -a } else { y }, z]);
             let mut factor = Factor::default();
-            factor.add(&Polygon::seen_from([0.0; 3], sunk), UP);
+            factor.add(&Polygon::wound(&sunk).unwrap().cut(UP).unwrap());
             assert!((dot(factor.above, UP) / exact - 1.0).abs() < 1e-12);
             assert_eq!(factor.below, [0.0; 3]);
             // Seen by a wall that faces it: half above, half below.
             let mut factor = Factor::default();
-            factor.add(&Polygon::seen_from([0.0; 3], sunk), [0.0, 0.0, 1.0]);
+            factor.add(&Polygon::wound(&sunk).unwrap());
             assert!((factor.above[2] / factor.below[2] - 1.0).abs() < 1e-12);
             assert!((factor.above[1] / exact - 1.0).abs() < 1e-12);
         }
@@ -168,8 +249,8 @@ mod tests {
     #[test]
     fn a_polygon_behind_or_edge_on_has_none() {
         let corners = [[0.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, -1.0, 1.0], [0.0, -1.0, 1.0]];
-        assert_eq!(Polygon::seen_from([0.0; 3], corners).cut(UP).factor(), [0.0; 3]);
+        assert!(Polygon::wound(&corners).unwrap().cut(UP).is_none());
         let edge_on = [[1.0, 0.0, 0.0], [2.0, 0.0, 0.0], [2.0, 0.0, 1.0], [1.0, 0.0, 1.0]];
-        assert!(dot(Polygon::seen_from([0.0; 3], edge_on).factor(), [1.0, 0.0, 0.0]).abs() < 1e-15);
+        assert!(Polygon::wound(&edge_on).is_none());
     }
 }

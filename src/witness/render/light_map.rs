@@ -5,9 +5,9 @@
 //! for both cameras.
 
 use super::factor::Factor;
-use super::lighting::{Factors, factors};
+use super::lighting::{Factors, Room, factors};
 use super::rig::{Camera, Rig};
-use super::scene::{GROUND, SURFACES, Scene};
+use super::scene::{GROUND, Scene};
 use super::vector::{UP, Vector, along};
 use crate::error::{Error, Result};
 use rayon::prelude::*;
@@ -26,8 +26,10 @@ pub(super) struct LightMap {
     first: [f64; 2],
     columns: usize,
     rows: usize,
-    /// Φ above the horizon of every surface beyond the ground, `[row][column]`.
-    nodes: Vec<[Vector; SURFACES]>,
+    /// Surfaces beyond the ground.
+    surfaces: usize,
+    /// Φ above the horizon of each of them, `[row][column][surface]`.
+    nodes: Vec<Vector>,
 }
 
 impl LightMap {
@@ -35,10 +37,12 @@ impl LightMap {
     /// Cameras so far apart that the ground between what they see is a map without end.
     pub(super) fn new(scene: &Scene, rig: &Rig) -> Result<Self> {
         let camera = rig.camera(0.0);
-        let mut map = Self { camera, step: STEP, first: [0.0; 2], columns: 0, rows: 0, nodes: Vec::new() };
+        let mut map =
+            Self { camera, step: STEP, first: [0.0; 2], columns: 0, rows: 0, surfaces: 0, nodes: Vec::new() };
+        map.surfaces = scene.surfaces.len().saturating_sub(GROUND + 1);
         // The nearest ground, at the lowest row, is displaced the most.
         let lowest = camera.direction(0.0, rig.rows as f64);
-        if lowest[1] >= 0.0 || scene.wall.is_some() || scene.lights.is_empty() {
+        if lowest[1] >= 0.0 || scene.wall.is_some() || scene.solids.is_empty() {
             return Ok(map);
         }
         let depth = rig.height_m / -lowest[1];
@@ -57,22 +61,21 @@ impl LightMap {
         map.first = [-margin, -4.0];
         map.columns = (across / map.step).ceil() as usize + 1;
         map.rows = (down / map.step).ceil() as usize + 1;
-        map.nodes = (0..map.rows * map.columns)
-            .into_par_iter()
-            .map(|i| {
-                let [row, column] = [i / map.columns, i % map.columns].map(|i| i as f64 * map.step);
-                let direction = camera.direction(map.first[0] + column, map.first[1] + row);
-                if direction[1] >= 0.0 {
-                    return [[0.0; 3]; SURFACES];
-                }
-                let mut point = along(camera.origin, -camera.origin[1] / direction[1], direction);
-                point[1] = 0.0;
-                if !point.iter().all(|x| x.is_finite()) {
-                    return [[0.0; 3]; SURFACES];
-                }
-                factors(scene, point, UP, None).map(|factor| factor.above)
-            })
-            .collect();
+        map.nodes = vec![[0.0; 3]; map.rows * map.columns * map.surfaces];
+        let (columns, first, step) = (map.columns, map.first, map.step);
+        map.nodes.par_chunks_mut(map.surfaces).enumerate().for_each_init(Room::default, |room, (i, node)| {
+            let [row, column] = [i / columns, i % columns].map(|i| i as f64 * step);
+            let direction = camera.direction(first[0] + column, first[1] + row);
+            if direction[1] >= 0.0 {
+                return;
+            }
+            let mut point = along(camera.origin, -camera.origin[1] / direction[1], direction);
+            point[1] = 0.0;
+            if point.iter().all(|x| x.is_finite()) {
+                let factors = factors(scene, point, UP, None, room);
+                node.iter_mut().zip(&factors[GROUND + 1..]).for_each(|(to, factor)| *to = factor.above);
+            }
+        });
         Ok(map)
     }
 
@@ -92,14 +95,16 @@ impl LightMap {
         let (s, t) = (u - i as f64, v - j as f64);
         let (upper, lower) = (j * self.columns + i, (j + 1) * self.columns + i);
         let corners = [
-            ((1.0 - s) * (1.0 - t), self.nodes.get(upper)),
-            (s * (1.0 - t), self.nodes.get(upper + 1)),
-            ((1.0 - s) * t, self.nodes.get(lower)),
-            (s * t, self.nodes.get(lower + 1)),
+            ((1.0 - s) * (1.0 - t), upper),
+            (s * (1.0 - t), upper + 1),
+            ((1.0 - s) * t, lower),
+            (s * t, lower + 1),
         ];
-        for (weight, node) in corners {
-            let Some(node) = node else { continue };
-            for (Factor { above, .. }, phi) in factors.iter_mut().zip(node).skip(GROUND + 1) {
+        for (weight, place) in corners {
+            let Some(node) = self.nodes.get(place * self.surfaces..(place + 1) * self.surfaces) else {
+                continue;
+            };
+            for (Factor { above, .. }, phi) in factors.iter_mut().skip(GROUND + 1).zip(node) {
                 *above = along(*above, weight, *phi);
             }
         }

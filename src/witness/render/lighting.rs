@@ -7,73 +7,106 @@
 //! V_sky = (1 + n_y)/2 − Σ_k n·Φ_k,above   V_ground = (1 − n_y)/2 − Σ_k n·Φ_k,below   V_k = n·Φ_k,above + n·Φ_k,below
 //!
 //! so that ΣV = 1 whatever the shapes. Where bumps turn n, the solid is still cut off at the horizon of the smooth
-//! surface. Solids that hide each other count twice; should they then cover more than there is, their shares are
-//! scaled down.
+//! surface; should solids then cover more than there is, their shares are scaled down. Of two solids in one direction the nearer one is
+//! seen: what it hides is cut out of the outline of the other (convex solids that do not reach into each other have one order).
 
-use super::factor::{Factor, Polygon};
-use super::scene::{Form, GROUND, SKY, SURFACES, Scene};
-use super::vector::{Vector, dot};
+use super::factor::{Cone, Factor, Polygon};
+use super::scene::{GROUND, SKY, SURFACES, Scene};
+use super::vector::{Vector, dot, subtract};
+use rayon::prelude::*;
 
 /// Factors of each surface.
 pub(super) type Shares = [f64; SURFACES];
 /// Vector form factors of each surface.
 pub(super) type Factors = [Factor; SURFACES];
 
-/// A face of a box: axis, whether it is the high one, and its corners.
-fn face(low: Vector, high: Vector, axis: usize, upper: bool) -> [Vector; 4] {
-    let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-    let mut corners = [low; 4];
-    for (corner, (a, b)) in
-        corners.iter_mut().zip([(false, false), (true, false), (true, true), (false, true)])
-    {
-        corner[axis] = if upper { high[axis] } else { low[axis] };
-        corner[u] = if a { high[u] } else { low[u] };
-        corner[v] = if b { high[v] } else { low[v] };
-    }
-    corners
-}
-
-impl Form {
-    /// Adds what a point with the smooth normal `normal` sees of it.
-    fn add(&self, point: Vector, normal: Vector, factor: &mut Factor) {
-        match *self {
-            Self::Cuboid { low, high } => {
-                for axis in 0..3 {
-                    // Only the faces that the point is before are seen.
-                    if point[axis] < low[axis] {
-                        factor.add(&Polygon::seen_from(point, face(low, high, axis, false)), normal);
-                    } else if point[axis] > high[axis] {
-                        factor.add(&Polygon::seen_from(point, face(low, high, axis, true)), normal);
-                    }
-                }
-            }
-            Self::Screen { foot, half_width_m, height_m } => {
-                let (x, z) = (foot[0] - point[0], foot[2] - point[2]);
-                let distance = x.hypot(z);
-                if distance == 0.0 {
-                    return;
-                }
-                let side = [half_width_m * z / distance, 0.0, -half_width_m * x / distance];
-                let corner = |s: f64, y: f64| [foot[0] + s * side[0], foot[1] + y, foot[2] + s * side[2]];
-                let corners =
-                    [corner(-1.0, 0.0), corner(1.0, 0.0), corner(1.0, height_m), corner(-1.0, height_m)];
-                factor.add(&Polygon::seen_from(point, corners), normal);
-            }
-        }
-    }
-}
-
-/// Vector form factors at a point that belongs to light `own`, if any.
-pub(super) fn factors(scene: &Scene, point: Vector, smooth: Vector, own: Option<usize>) -> Factors {
-    let mut factors = Factors::default();
-    for (index, light) in scene.lights.iter().enumerate() {
+/// Vector form factors at a point with the smooth normal `smooth` that belongs to the solid `own`, if any.
+pub(super) fn factors(
+    scene: &Scene,
+    point: Vector,
+    smooth: Vector,
+    own: Option<usize>,
+    room: &mut Room,
+) -> Factors {
+    room.seen.clear();
+    for (index, solid) in scene.solids.iter().enumerate() {
         if Some(index) != own
-            && let Some(factor) = factors.get_mut(light.surface)
+            && let Some(mut outline) = solid.shape.outline(point)
         {
-            light.form.add(point, smooth, factor);
+            if !outline.keep(smooth) {
+                continue;
+            }
+            room.seen.push(Seen { index, cone: outline.cone(), outline, hidden_by: 0 });
         }
+    }
+    for i in 1..room.seen.len() {
+        let (before, rest) = room.seen.split_at_mut(i);
+        let Some(here) = rest.first_mut() else { break };
+        for (j, there) in before.iter_mut().enumerate() {
+            if !here.cone.meets(&there.cone) {
+                continue;
+            }
+            let Some(both) = here.outline.overlap(&there.outline) else { continue };
+            if scene.is_nearer(here.index, there.index, point, both.middle()) {
+                there.hidden_by |= 1 << i;
+            } else {
+                here.hidden_by |= 1 << j;
+            }
+        }
+    }
+    let mut factors = Factors::default();
+    let Room { seen, pieces, cut } = room;
+    for solid in seen.iter() {
+        let Some(factor) = scene.solids.get(solid.index).and_then(|own| factors.get_mut(own.surface)) else {
+            continue;
+        };
+        if solid.hidden_by == 0 {
+            factor.add(&solid.outline);
+            continue;
+        }
+        pieces.clear();
+        pieces.push(solid.outline);
+        for (_, other) in seen.iter().enumerate().filter(|(i, _)| solid.hidden_by >> i & 1 == 1) {
+            cut.clear();
+            pieces.iter().for_each(|piece| piece.minus(&other.outline, cut));
+            std::mem::swap(pieces, cut);
+        }
+        pieces.iter().for_each(|piece| factor.add(piece));
     }
     factors
+}
+
+/// A solid as it is seen from the point in work.
+#[derive(Debug)]
+struct Seen {
+    index: usize,
+    outline: Polygon,
+    cone: Cone,
+    /// The solids before it, as bits by their place among those that are seen.
+    hidden_by: u32,
+}
+
+/// Memory that is used again from point to point.
+#[derive(Debug, Default)]
+pub(super) struct Room {
+    seen: Vec<Seen>,
+    pieces: Vec<Polygon>,
+    cut: Vec<Polygon>,
+}
+
+impl Scene {
+    /// Whether the first of two solids is before the other one in a direction in which both are seen.
+    fn is_nearer(&self, first: usize, second: usize, point: Vector, direction: Vector) -> bool {
+        let distance = |index: usize| {
+            self.solids.get(index).map_or(f64::INFINITY, |solid| {
+                // At the rim an outline of few corners reaches a little beyond the solid.
+                let beside =
+                    || dot(subtract(solid.shape.middle(), point), direction) / dot(direction, direction);
+                solid.shape.hit(point, direction).unwrap_or_else(beside)
+            })
+        };
+        distance(first) < distance(second)
+    }
 }
 
 /// Thermal lighting factors of a surface with `normal`; they add up to 1.
@@ -110,13 +143,20 @@ pub(super) fn mean_shares(scene: &Scene, patches_per_side: usize) -> Vec<Shares>
             sum.iter_mut().zip(shares).for_each(|(sum, share)| *sum += area * share);
         }
     };
-    for solid in &scene.solids {
-        for patch in solid.shape.patches(patches_per_side) {
-            if !scene.buried(patch.point, patch.normal) {
-                let factors = factors(scene, patch.point, patch.normal, Some(solid.light));
-                add(solid.surface, patch.area_m2, shares(&factors, patch.normal));
-            }
-        }
+    for (index, solid) in scene.solids.iter().enumerate() {
+        let shared: Vec<Option<(f64, Shares)>> = solid
+            .shape
+            .patches(patches_per_side)
+            .into_par_iter()
+            .map_init(Room::default, |room, patch| {
+                let seen = || {
+                    let factors = factors(scene, patch.point, patch.normal, Some(index), room);
+                    (patch.area_m2, shares(&factors, patch.normal))
+                };
+                (!scene.buried(patch.point, patch.normal)).then(seen)
+            })
+            .collect();
+        shared.into_iter().flatten().for_each(|(area, shares)| add(solid.surface, area, shares));
     }
     add(GROUND, 1.0, shares(&Factors::default(), super::vector::UP));
     if let Some((_, surface)) = scene.wall {

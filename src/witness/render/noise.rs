@@ -9,6 +9,8 @@ use super::vector::Vector;
 
 /// Root mean square of [`gradient`]: 2√(∫w²x² dx ∫w² dx), w the falling quintic on [0, 1].
 pub(super) const GRADIENT_RMS: f64 = 0.215_71;
+/// Root mean square of [`value`]: (∫(w² + (1 − w)²) dx)^{3/2}/√3.
+pub(super) const VALUE_RMS: f64 = 0.400_442;
 /// Root mean square slope, across any direction, of [`value_slope`].
 pub(super) const VALUE_SLOPE_RMS: f64 = 1.081_40;
 
@@ -70,6 +72,22 @@ pub(super) fn gradient(x: f64, y: f64, seed: u32) -> f64 {
     let low = corner(0, 0) + s * (corner(1, 0) - corner(0, 0));
     let high = corner(0, 1) + s * (corner(1, 1) - corner(0, 1));
     low + t * (high - low)
+}
+
+/// Value noise in [−1, 1], values on the corners of unit cells.
+#[inline]
+pub(super) fn value(at: Vector, seed: u32) -> f64 {
+    let cells = at.map(cell);
+    let fade = cells.map(|(_, t)| quintic(t));
+    let mut sum = 0.0;
+    for corner in 0..8_u32 {
+        let side = [corner & 1, corner >> 1 & 1, corner >> 2];
+        let [x, y, z] = std::array::from_fn(|i| cells[i].0.wrapping_add(side[i]));
+        let value = f64::from(hash(x, y, z, seed)) / f64::from(u32::MAX) * 2.0 - 1.0;
+        let weight: Vector = std::array::from_fn(|i| if side[i] == 1 { fade[i] } else { 1.0 - fade[i] });
+        sum += value * weight[0] * weight[1] * weight[2];
+    }
+    sum
 }
 
 /// Slope of value noise with values in [−1, 1] on the corners of unit cells.

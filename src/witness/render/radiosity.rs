@@ -18,9 +18,13 @@ pub(super) struct Basis {
     pub(super) bands: usize,
     /// Number of surfaces.
     pub(super) sources: usize,
-    /// Of each surface, row after row of `bands` values: for each of its emissivities, e B(T), then (1 − e) S_k for
-    /// every surface k. The sky has the first row alone.
+    /// How many temperatures the emission of each surface is mixed from.
+    pub(super) temperatures: Vec<usize>,
+    /// Of each surface, row after row of `bands` values: for each of its emissivities, e B(T) at these temperatures, then (1 − e) S_k
+    /// for every surface k. The sky emits alone.
     pub(super) spectra: Vec<Vec<f64>>,
+    /// S_k at the nodes of the bands.
+    pub(super) leaving: Vec<Vec<f64>>,
 }
 
 impl Basis {
@@ -36,12 +40,14 @@ impl Basis {
         for (surface, object) in scene.surfaces.iter().enumerate() {
             let mut rows = Vec::new();
             let mut append = |at_nodes: &[f64]| rows.extend(bands.weigh(at_nodes));
-            let blackbody = blackbody(nodes, object.temperature_k);
+            let temperatures = object.nodes_k();
             let kinds = if object.is_mixed() { 2 } else { 1 };
             for emissivity in object.emissivity.iter().take(kinds) {
                 let emissivity =
                     emissivity.at_nodes(nodes.len()).map_err(|error| error.for_key(&object.name))?;
-                append(&product(&emissivity, &blackbody));
+                for temperature_k in &temperatures {
+                    append(&product(&emissivity, &blackbody(nodes, *temperature_k)));
+                }
                 if surface == SKY {
                     break;
                 }
@@ -53,18 +59,14 @@ impl Basis {
             }
             spectra.push(rows);
         }
-        Ok(Self { bands: bands.len(), sources: scene.surfaces.len(), spectra })
+        let temperatures = scene.surfaces.iter().map(|surface| surface.nodes_k().len()).collect();
+        Ok(Self { bands: bands.len(), sources: scene.surfaces.len(), temperatures, spectra, leaving })
     }
 }
 
 /// Mean radiance that leaves each surface towards the point that is seen, at the nodes; nothing if that scatters
 /// nothing.
-pub(super) fn leaving(
-    scene: &Scene,
-    mean: &[Shares],
-    nodes_cm1: &[f64],
-    bounces: usize,
-) -> Result<Vec<Vec<f64>>> {
+fn leaving(scene: &Scene, mean: &[Shares], nodes_cm1: &[f64], bounces: usize) -> Result<Vec<Vec<f64>>> {
     if bounces == 0 {
         return Ok(vec![vec![0.0; nodes_cm1.len()]; scene.surfaces.len()]);
     }
@@ -75,7 +77,12 @@ pub(super) fn leaving(
         let [first, second] = [first.at_nodes(nodes_cm1.len())?, second.at_nodes(nodes_cm1.len())?];
         let tau = if surface.is_mixed() { surface.texture.mean() } else { 0.0 };
         let mixed: Vec<f64> = first.iter().zip(&second).map(|(a, b)| (1.0 - tau) * a + tau * b).collect();
-        emitted.push(product(&mixed, &blackbody(nodes_cm1, surface.temperature_k)));
+        let mut radiance = vec![0.0; nodes_cm1.len()];
+        for (temperature_k, weight) in surface.nodes_k().iter().zip(surface.mean_weights()) {
+            let at = blackbody(nodes_cm1, *temperature_k);
+            radiance.iter_mut().zip(at).for_each(|(sum, b)| *sum += weight * b);
+        }
+        emitted.push(product(&mixed, &radiance));
         emissivities.push(mixed);
     }
     let mut leaving = emitted.clone();

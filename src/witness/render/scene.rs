@@ -11,31 +11,13 @@ pub(super) const SKY: usize = 0;
 /// Place of the ground among the surfaces.
 pub(super) const GROUND: usize = 1;
 /// Most surfaces of a scene.
-pub(super) const SURFACES: usize = 6;
+pub(super) const SURFACES: usize = 12;
 
 /// A solid that rays meet.
 #[derive(Debug, Clone)]
 pub(super) struct Solid {
     pub(super) shape: Shape,
     pub(super) surface: usize,
-    /// The light that it is part of: it does not light itself.
-    pub(super) light: usize,
-}
-
-/// A solid as it lights others.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Light {
-    pub(super) surface: usize,
-    pub(super) form: Form,
-}
-
-/// What a light is taken for.
-#[derive(Debug, Clone, Copy)]
-pub(super) enum Form {
-    /// A box, as it is.
-    Cuboid { low: Vector, high: Vector },
-    /// An upright rectangle above `foot` that turns towards whatever it lights.
-    Screen { foot: Vector, half_width_m: f64, height_m: f64 },
 }
 
 /// A scene: sky, ground, and what stands on it or before it.
@@ -44,7 +26,6 @@ pub struct Scene {
     /// Sky, ground and the others.
     pub(super) surfaces: Vec<Surface>,
     pub(super) solids: Vec<Solid>,
-    pub(super) lights: Vec<Light>,
     /// Distance of an endless wall across z, and its surface; the ground before it is not seen.
     pub(super) wall: Option<(f64, usize)>,
 }

@@ -110,6 +110,11 @@ impl Shape {
         }
     }
 
+    /// Whether its normal turns along its surface.
+    pub(super) fn is_round(&self) -> bool {
+        !matches!(self, Self::Cuboid { .. })
+    }
+
     /// Whether a point is inside or on the surface.
     pub(super) fn contains(&self, point: Vector) -> bool {
         match *self {

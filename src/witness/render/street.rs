@@ -1,11 +1,9 @@
 //! The street of the paper's Fig. 4: ground, sky, a car and a person.
 
-use super::scene::{Form, Light, Scene, Solid};
-use super::shape::Shape;
+use super::body::Body;
+use super::scene::Scene;
 use super::surface::{Bump, Emissivity, Road, Surface, Texture};
-use super::vector::{Vector, along};
 use crate::error::{Result, check};
-use std::f64::consts::PI;
 
 const CAR: usize = 2;
 const TYRES: usize = 3;
@@ -113,83 +111,20 @@ impl Scene {
         let tyres = Surface::plain("tyres", spec.tyre_k, &spec.tyre_emissivity);
         let surfaces = vec![sky, ground, car, tyres, person];
         surfaces.iter().try_for_each(Surface::check)?;
-        let mut scene = Self { surfaces, solids: Vec::new(), lights: Vec::new(), wall: None };
+        let mut scene = Self { surfaces, solids: Vec::new(), wall: None };
         if spec.car {
-            scene.add_car(spec.car_at_m, spec.car_size_m)?;
+            let [x, z] = spec.car_at_m;
+            check::finite("place of the car across the road", x, "m")?;
+            check::positive("distance of the car", z, "m")?;
+            let tyres = scene.surfaces[TYRES].clone();
+            scene.stand(CAR, spec.car_at_m, &Body::Car { size_m: spec.car_size_m, tyres })?;
         }
         if spec.person {
-            scene.add_person(spec.person_at_m, spec.person_height_m)?;
+            let [x, z] = spec.person_at_m;
+            check::finite("place of the person across the road", x, "m")?;
+            check::positive("distance of the person", z, "m")?;
+            scene.stand(PERSON, spec.person_at_m, &Body::Person { height_m: spec.person_height_m })?;
         }
         Ok(scene)
-    }
-
-    fn add_box(&mut self, surface: usize, low: Vector, high: Vector) {
-        self.solids.push(Solid { shape: Shape::Cuboid { low, high }, surface, light: self.lights.len() });
-        self.lights.push(Light { surface, form: Form::Cuboid { low, high } });
-    }
-
-    /// A body on four wheels with a cabin on top, in proportion to the size.
-    fn add_car(&mut self, at_m: [f64; 2], size_m: [f64; 3]) -> Result<()> {
-        let [x, z] = at_m;
-        check::finite("place of the car across the road", x, "m")?;
-        check::positive("distance of the car", z, "m")?;
-        let [length, width, height] = size_m;
-        check::positive("length of the car", length, "m")?;
-        check::positive("width of the car", width, "m")?;
-        check::positive("height of the car", height, "m")?;
-        let at = |across: f64, up: f64, ahead: f64| [x + across * width, up * height, z + ahead * length];
-        self.add_box(CAR, at(-0.5, 0.18, 0.0), at(0.5, 0.62, 1.0));
-        self.add_box(CAR, at(-0.43, 0.62, 0.1), at(0.43, 1.0, 0.7));
-        for ahead in [0.12, 0.74] {
-            for across in [-0.48, 0.36] {
-                let low = at(across, 0.0, ahead);
-                self.add_box(TYRES, low, at(across + 0.12, 0.18, ahead + 0.14));
-            }
-        }
-        Ok(())
-    }
-
-    /// Legs, torso, arms and head, in proportion to the height.
-    fn add_person(&mut self, at_m: [f64; 2], height_m: f64) -> Result<()> {
-        let [x, z] = at_m;
-        check::finite("place of the person across the road", x, "m")?;
-        check::positive("distance of the person", z, "m")?;
-        check::positive("height of the person", height_m, "m")?;
-        let s = height_m / 1.75;
-        let at = |across: f64, up: f64, ahead: f64| [x + across * s, up * s, z + ahead * s];
-        let limb = |a: Vector, b: Vector, radius: f64| Shape::Capsule { ends: [a, b], radius: radius * s };
-        let ball = |centre: Vector, semi: Vector| Shape::Ellipsoid { centre, semi: semi.map(|a| a * s) };
-        let parts = [
-            limb(at(-0.11, 0.075, 0.0), at(-0.1, 0.87, 0.0), 0.075),
-            limb(at(0.11, 0.075, 0.08), at(0.1, 0.87, 0.0), 0.075),
-            ball(at(0.0, 1.15, 0.0), [0.2, 0.38, 0.13]),
-            limb(at(-0.22, 1.37, 0.0), at(-0.3, 0.8, -0.05), 0.05),
-            limb(at(0.22, 1.37, 0.0), at(0.3, 0.8, 0.05), 0.05),
-            ball(at(0.0, 1.625, 0.0), [0.085, 0.125, 0.1]),
-        ];
-        // The silhouette of all parts, laid side by side, makes the width of the screen.
-        let silhouette: f64 = parts.iter().map(silhouette_m2).sum();
-        let light = self.lights.len();
-        for shape in parts {
-            self.solids.push(Solid { shape, surface: PERSON, light });
-        }
-        let half_width_m = 0.5 * silhouette / height_m;
-        self.lights.push(Light {
-            surface: PERSON,
-            form: Form::Screen { foot: [x, 0.0, z], half_width_m, height_m },
-        });
-        Ok(())
-    }
-}
-
-/// Area of a part seen along z.
-fn silhouette_m2(shape: &Shape) -> f64 {
-    match *shape {
-        Shape::Cuboid { low, high } => (high[0] - low[0]) * (high[1] - low[1]),
-        Shape::Ellipsoid { semi, .. } => PI * semi[0] * semi[1],
-        Shape::Capsule { ends: [a, b], radius } => {
-            let [x, y, _] = along(b, -1.0, a);
-            PI * radius * radius + 2.0 * radius * x.hypot(y)
-        }
     }
 }

@@ -5,12 +5,15 @@
 //! depth alone), and leaves out what is finer than they can show.
 
 use super::noise;
+use super::uneven::Uneven;
 use super::vector::{Vector, along, dot, unit};
 use crate::error::{Error, Result, check};
 use crate::scene::check_emissivity;
 
 /// More octaves than this are finer than any wavelength.
 const MAX_OCTAVES: usize = 24;
+/// Width of the road over which its mean is taken, m.
+const MEAN_WIDTH_M: f64 = 60.0;
 /// An edge of a lane mark is never sharper than this, m.
 const WORN_EDGE_M: f64 = 0.01;
 
@@ -39,13 +42,15 @@ impl Emissivity {
     }
 }
 
-/// A surface of one temperature.
+/// A surface.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Surface {
     /// Its name.
     pub name: String,
-    /// Temperature, K.
+    /// Mean temperature, K.
     pub temperature_k: f64,
+    /// How the temperature varies over it; the same everywhere where `None`.
+    pub uneven: Option<Uneven>,
     /// Emissivities e₀ and e₁ that the texture mixes.
     pub emissivity: [Emissivity; 2],
     /// The mixing τ of the two.
@@ -55,11 +60,13 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// A smooth surface of one emissivity.
-    pub(super) fn plain(name: &str, temperature_k: f64, emissivity: &Emissivity) -> Self {
+    /// A smooth surface of one temperature and emissivity.
+    #[must_use]
+    pub fn plain(name: &str, temperature_k: f64, emissivity: &Emissivity) -> Self {
         Self {
             name: name.to_owned(),
             temperature_k,
+            uneven: None,
             emissivity: [emissivity.clone(), emissivity.clone()],
             texture: Texture::Plain,
             bump: None,
@@ -73,6 +80,9 @@ impl Surface {
     pub(super) fn check(&self) -> Result<()> {
         let checked = || {
             check::positive("temperature", self.temperature_k, "K")?;
+            if let Some(uneven) = &self.uneven {
+                uneven.check(self.temperature_k)?;
+            }
             for emissivity in &self.emissivity {
                 match emissivity {
                     Emissivity::Constant(value) => drop(check::unit_interval("emissivity", *value)?),
@@ -252,7 +262,7 @@ impl Texture {
         }
     }
 
-    /// τ averaged over the surface; over a square of road 60 m wide.
+    /// τ averaged over the surface; over a road 60 m wide.
     pub(super) fn mean(&self) -> f64 {
         match self {
             Self::Plain => 0.0,
@@ -261,8 +271,12 @@ impl Texture {
                 let fine = Footprint { across_m: 0.0, ahead_m: 0.0, finest_m: 0.0 };
                 let side = 160;
                 let place = |i: usize| (i as f64 + 0.5) * 0.377 - 30.0;
-                let taus = (0..side * side).map(|i| road.at(place(i / side), place(i % side), &fine));
-                crate::sum::sum(&taus.collect::<Vec<_>>()) / (side * side) as f64
+                let taus = (0..side * side).map(|i| road.asphalt(place(i / side), place(i % side), &fine));
+                let asphalt = crate::sum::sum(&taus.collect::<Vec<_>>()) / (side * side) as f64;
+                // Marks are narrower than the steps of any lattice: their share is known.
+                let [dash, gap] = road.dash_m;
+                let marked = road.mark_width_m / MEAN_WIDTH_M * (1.0 + dash / (dash + gap));
+                asphalt + marked.min(1.0) * (road.mark - asphalt)
             }
         }
     }
@@ -277,6 +291,13 @@ fn overlap(x: f64, width: f64, low: f64, high: f64) -> f64 {
 impl Road {
     #[inline]
     fn at(&self, x: f64, z: f64, footprint: &Footprint) -> f64 {
+        let asphalt = self.asphalt(x, z, footprint);
+        asphalt + self.marked(x, z, footprint) * (self.mark - asphalt)
+    }
+
+    /// τ of the road without marks.
+    #[inline]
+    fn asphalt(&self, x: f64, z: f64, footprint: &Footprint) -> f64 {
         let (mut size, mut amplitude, mut square, mut sum) = (self.coarsest_m, 1.0, 0.0, 0.0);
         for octave in 0..self.octaves {
             // From nothing at the finest size to all at twice that.
@@ -297,9 +318,7 @@ impl Road {
             size *= 0.5;
         }
         let scale = if square > 0.0 { self.contrast / (noise::GRADIENT_RMS * square.sqrt()) } else { 0.0 };
-        let asphalt = (self.asphalt + scale * sum).clamp(0.0, 1.0);
-        let marked = self.marked(x, z, footprint);
-        asphalt + marked * (self.mark - asphalt)
+        (self.asphalt + scale * sum).clamp(0.0, 1.0)
     }
 
     /// Share of the place that is painted.

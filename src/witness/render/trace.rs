@@ -4,12 +4,13 @@
 //! coefficients of e B(T) and (1 − e) S_k of the surface it belongs to; those are linear in τ, 1 − τ and V.
 
 use super::light_map::LightMap;
-use super::lighting::{Shares, factors, mean_shares, shares};
+use super::lighting::{Room, Shares, factors, mean_shares, shares};
 use super::radiosity::Basis;
 use super::rig::{Camera, Rig};
 use super::scene::{SKY, SURFACES, Scene, Target};
-use super::surface::Footprint;
-use super::vector::{Vector, along, dot, subtract};
+use super::surface::{Footprint, Surface};
+use super::uneven::NODES;
+use super::vector::{UP, Vector, along, dot, scaled, subtract};
 use super::view::{Centre, MixedRow, View};
 use crate::error::{Error, Result, check};
 use crate::ranging::cube::Shape;
@@ -150,11 +151,13 @@ fn candidates(outlines: &[Outline], column: f64, row: f64) -> u32 {
     outlines.iter().enumerate().fold(0, |bits, (i, outline)| bits | u32::from(within(outline)) << i)
 }
 
-/// A surface point as a ray sees it.
-struct Seen {
-    surface: usize,
+/// What a ray meets.
+#[derive(Clone, Copy)]
+struct Met {
+    target: Target,
+    point: Vector,
+    smooth: Vector,
     texture: f64,
-    shares: Shares,
 }
 
 struct Tracer<'a> {
@@ -171,13 +174,16 @@ struct Tracer<'a> {
 
 impl Tracer<'_> {
     fn view(&self, shape: Shape, tell: &(dyn Fn() + Sync)) -> View {
-        let drawn: Vec<(MixedRow, Vec<(Centre, Shares)>)> = (0..shape.rows())
+        let drawn: Vec<(MixedRow, Vec<Centre>)> = (0..shape.rows())
             .into_par_iter()
-            .map(|row| {
-                let drawn = self.row(row);
-                tell();
-                drawn
-            })
+            .map_init(
+                || (Vec::new(), Room::default()),
+                |(rays, room), row| {
+                    let drawn = self.row(row, rays, room);
+                    tell();
+                    drawn
+                },
+            )
             .collect();
         let pixels = shape.rows() * shape.columns();
         let sources = self.basis.sources;
@@ -191,24 +197,26 @@ impl Tracer<'_> {
             surface: Vec::with_capacity(pixels),
             texture: Vec::with_capacity(pixels),
             lighting: Vec::with_capacity(pixels * sources),
+            pure: Vec::with_capacity(pixels),
             seen_by_other: Vec::with_capacity(pixels),
         };
         for (row, centres) in drawn {
             view.rows.push(row);
-            for (centre, shares) in centres {
+            for centre in centres {
                 view.depth_m.push(centre.depth_m);
                 view.disparity_px.push(self.rig.disparity_px(centre.depth_m));
-                view.temperature_k.push(self.scene.surfaces[usize::from(centre.surface)].temperature_k);
+                view.temperature_k.push(centre.temperature_k);
                 view.surface.push(centre.surface);
                 view.texture.push(centre.texture);
-                view.lighting.extend(shares.iter().take(sources));
+                view.lighting.extend(centre.lighting.iter().take(sources));
+                view.pure.push(centre.pure);
                 view.seen_by_other.push(centre.seen_by_other);
             }
         }
         view
     }
 
-    fn row(&self, row: usize) -> (MixedRow, Vec<(Centre, Shares)>) {
+    fn row(&self, row: usize, rays: &mut Vec<Met>, room: &mut Room) -> (MixedRow, Vec<Centre>) {
         let (columns, samples) = (self.rig.columns, self.options.samples);
         let (mut mixed, mut centres) = (MixedRow::default(), Vec::with_capacity(columns));
         let weight = 1.0 / (samples * samples) as f64;
@@ -216,43 +224,79 @@ impl Tracer<'_> {
         for column in 0..columns {
             let (x, y) = (column as f64, row as f64);
             let solids = candidates(&self.outlines, x, y);
-            centres.push(self.centre(x, y, solids));
-            let mut mixture = Mixture::default();
+            rays.clear();
             for i in 0..samples {
                 for j in 0..samples {
                     let direction = self.camera.direction(x + offset(j), y + offset(i));
                     let (depth, target) = self.scene.hit(self.camera.origin, direction, solids);
-                    mixture.add(weight, &self.seen(direction, depth, target));
+                    rays.push(self.met(direction, depth, target));
                 }
             }
+            let mut mixture = Mixture::default();
+            self.shade(rays, weight, &mut mixture, room);
+            centres.push(self.centre(x, y, solids, &mixture));
             mixture.store(self.basis, &mut mixed);
         }
         (mixed, centres)
     }
 
-    /// What a ray in `direction` sees at `depth`.
+    /// What a ray in `direction` meets at `depth`.
     #[inline]
-    fn seen(&self, direction: Vector, depth: f64, target: Target) -> Seen {
-        let surface = self.scene.surface_of(target);
+    fn met(&self, direction: Vector, depth: f64, target: Target) -> Met {
         if target == Target::Sky {
-            return Seen { surface, texture: 0.0, shares: Shares::default() };
+            return Met { target, point: direction, smooth: UP, texture: 0.0 };
         }
         let mut point = along(self.camera.origin, depth, direction);
         if target == Target::Ground {
             point[1] = 0.0;
         }
-        let object = &self.scene.surfaces[surface];
+        let object = &self.scene.surfaces[self.scene.surface_of(target)];
         let texture =
             if object.is_mixed() { object.texture.at(point, &self.footprint(direction, depth)) } else { 0.0 };
-        let smooth = self.scene.smooth_normal(target, point);
-        let factors = match target {
-            Target::Ground => self.map.at(point),
-            Target::Solid(index) => {
-                factors(self.scene, point, smooth, self.scene.solids.get(index).map(|solid| solid.light))
+        Met { target, point, smooth: self.scene.smooth_normal(target, point), texture }
+    }
+
+    /// Adds the rays of a pixel, side by side on each face: how it is lit is taken at the middle of what they meet there, since form
+    /// factors vary over decimetres; how it is turned, at each ray.
+    fn shade(&self, rays: &mut [Met], weight: f64, mixture: &mut Mixture, room: &mut Room) {
+        let mut left = rays;
+        while let Some(&first) = left.first() {
+            let flat =
+                !matches!(first.target, Target::Solid(index) if self.scene.solids[index].shape.is_round());
+            let alike = |met: &Met| met.target == first.target && (!flat || met.smooth == first.smooth);
+            let mut count = 0;
+            for i in 0..left.len() {
+                if alike(&left[i]) {
+                    left.swap(count, i);
+                    count += 1;
+                }
             }
-            Target::Wall(_) | Target::Sky => Default::default(),
-        };
-        Seen { surface, texture, shares: shares(&factors, object.normal(point, smooth)) }
+            let (own, rest) = std::mem::take(&mut left).split_at_mut(count);
+            left = rest;
+            let surface = self.scene.surface_of(first.target);
+            let object = &self.scene.surfaces[surface];
+            if first.target == Target::Sky {
+                own.iter().for_each(|met| {
+                    mixture.add(weight, surface, met.texture, object, met.point, &[0.0; SURFACES])
+                });
+                continue;
+            }
+            let sum = own.iter().fold([0.0; 3], |sum, met| along(sum, 1.0, met.point));
+            let middle = scaled(sum, 1.0 / count as f64);
+            let factors = match first.target {
+                Target::Ground => self.map.at(middle),
+                Target::Solid(index) => {
+                    let smooth = self.scene.smooth_normal(first.target, middle);
+                    factors(self.scene, middle, smooth, Some(index), room)
+                }
+                Target::Wall(_) | Target::Sky => Default::default(),
+            };
+            let same = (flat && object.bump.is_none()).then(|| shares(&factors, first.smooth));
+            for met in own.iter() {
+                let lit = same.unwrap_or_else(|| shares(&factors, object.normal(met.point, met.smooth)));
+                mixture.add(weight, surface, met.texture, object, met.point, &lit);
+            }
+        }
     }
 
     /// Distances between rays on the ground: functions of the depth alone, up to rounding, since all of a row have
@@ -270,14 +314,19 @@ impl Tracer<'_> {
         }
     }
 
-    fn centre(&self, column: f64, row: f64, solids: u32) -> (Centre, Shares) {
+    fn centre(&self, column: f64, row: f64, solids: u32, mixture: &Mixture) -> Centre {
         let direction = self.camera.direction(column, row);
-        let (depth, target) = self.scene.hit(self.camera.origin, direction, solids);
-        let seen = self.seen(direction, depth, target);
-        let seen_by_other = self.seen_by_other(column, row, direction, depth);
-        let centre =
-            Centre { depth_m: depth, surface: seen.surface as u8, texture: seen.texture, seen_by_other };
-        (centre, seen.shares)
+        let (depth_m, target) = self.scene.hit(self.camera.origin, direction, solids);
+        let surface = self.scene.surface_of(target);
+        let seen_by_other = self.seen_by_other(column, row, direction, depth_m);
+        let mut centre = mixture.mean_of(surface).unwrap_or_else(|| {
+            // Between the rays the centre alone meets it.
+            let mut alone = Mixture::default();
+            self.shade(&mut [self.met(direction, depth_m, target)], 1.0, &mut alone, &mut Room::default());
+            Centre { pure: false, ..alone.mean_of(surface).unwrap_or_default() }
+        });
+        (centre.depth_m, centre.seen_by_other) = (depth_m, seen_by_other);
+        centre
     }
 
     fn seen_by_other(&self, column: f64, row: f64, direction: Vector, depth: f64) -> bool {
@@ -304,34 +353,76 @@ impl Tracer<'_> {
 struct Mixture {
     /// Surfaces that are there, as bits.
     present: u32,
-    /// [surface][emissivity]: weight, then weight × V of every surface.
-    weights: [[(f64, Shares); 2]; SURFACES],
+    parts: [Part; SURFACES],
+}
+
+/// Those of one surface.
+#[derive(Default, Clone, Copy)]
+struct Part {
+    /// Of each emissivity: weight of the emission at each temperature, then weight × V of every surface.
+    kinds: [([f64; NODES], Shares); 2],
+    /// Weight, weight × τ, weight × T.
+    sums: [f64; 3],
+    /// Whether each of the emissivities is there.
+    seen: [bool; 2],
 }
 
 impl Mixture {
     #[inline]
-    fn add(&mut self, weight: f64, seen: &Seen) {
-        let Some(kinds) = self.weights.get_mut(seen.surface) else { return };
-        self.present |= 1 << seen.surface;
-        for (kind, share) in kinds.iter_mut().zip([1.0 - seen.texture, seen.texture]) {
-            let weight = weight * share;
-            kind.0 += weight;
-            for (sum, v) in kind.1.iter_mut().zip(seen.shares) {
-                *sum += weight * v;
+    fn add(
+        &mut self,
+        weight: f64,
+        surface: usize,
+        texture: f64,
+        object: &Surface,
+        point: Vector,
+        lit: &Shares,
+    ) {
+        let Some(part) = self.parts.get_mut(surface) else { return };
+        self.present |= 1 << surface;
+        let temperature_k = object.temperature_at(point);
+        let nodes = object.weights(temperature_k);
+        for (sum, x) in part.sums.iter_mut().zip([1.0, texture, temperature_k]) {
+            *sum += weight * x;
+        }
+        for ((kind, seen), share) in part.kinds.iter_mut().zip(&mut part.seen).zip([1.0 - texture, texture]) {
+            if share > 0.0 {
+                *seen = true;
+                kind.0.iter_mut().zip(nodes).for_each(|(sum, node)| *sum += weight * share * node);
+                kind.1.iter_mut().zip(lit).for_each(|(sum, v)| *sum += weight * share * v);
             }
         }
     }
 
+    /// Means over what is there of a surface.
+    fn mean_of(&self, surface: usize) -> Option<Centre> {
+        let part = self.parts.get(surface).filter(|part| part.sums[0] > 0.0)?;
+        let [weight, texture, kelvin] = part.sums;
+        let mut lighting = Shares::default();
+        for (mean, (a, b)) in lighting.iter_mut().zip(part.kinds[0].1.iter().zip(part.kinds[1].1)) {
+            *mean = (a + b) / weight;
+        }
+        Some(Centre {
+            surface: surface as u8,
+            texture: texture / weight,
+            temperature_k: kelvin / weight,
+            lighting,
+            pure: self.present == 1 << surface && part.seen != [true; 2],
+            ..Centre::default()
+        })
+    }
+
     fn store(&self, basis: &Basis, row: &mut MixedRow) {
-        for (surface, kinds) in self.weights.iter().enumerate() {
+        for (surface, part) in self.parts.iter().enumerate() {
             if self.present >> surface & 1 == 0 {
                 continue;
             }
             row.surfaces.push(surface as u8);
             let end = row.coefficients.len() + basis.rows(surface);
-            for (weight, shares) in kinds {
+            let temperatures = basis.temperatures.get(surface).copied().unwrap_or(1);
+            for (emitted, shares) in &part.kinds {
                 if row.coefficients.len() < end {
-                    row.coefficients.push(*weight);
+                    row.coefficients.extend(emitted.iter().take(temperatures));
                     if surface != SKY {
                         row.coefficients.extend(shares.iter().take(basis.sources));
                     }

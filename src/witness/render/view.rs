@@ -1,5 +1,6 @@
 //! What one camera of the pair sees.
 
+use super::lighting::Shares;
 use super::radiosity::Basis;
 use crate::error::{Error, Result, check};
 use crate::ranging::cube::{MemoryCube, Shape};
@@ -34,17 +35,21 @@ pub(super) struct MixedRow {
     pub(super) coefficients: Vec<f64>,
 }
 
-/// What is at the pixel's centre.
-#[derive(Debug, Clone, Copy)]
+/// What is at the pixel's centre, and what the rays that meet the same surface see in the mean.
+#[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Centre {
     pub(super) depth_m: f64,
     pub(super) surface: u8,
-    pub(super) texture: f64,
     pub(super) seen_by_other: bool,
+    pub(super) texture: f64,
+    pub(super) temperature_k: f64,
+    pub(super) lighting: Shares,
+    /// Whether all rays meet this surface, and one of its emissivities alone.
+    pub(super) pure: bool,
 }
 
-/// One camera's picture, with the truth about it. Maps are `[row][column]` and tell what is at a pixel's centre;
-/// radiance is the mean over the pixel's area.
+/// One camera's picture, with the truth about it. Maps are `[row][column]`. Depth and surface are those at a pixel's centre; texture,
+/// temperature and lighting are means over the part of the pixel that this surface has; radiance is the mean over the pixel's area.
 #[derive(Debug)]
 pub struct View {
     pub(super) shape: Shape,
@@ -62,6 +67,8 @@ pub struct View {
     pub texture: Vec<f64>,
     /// Thermal lighting factors V, `[row][column][surface]`; all 0 in the sky.
     pub lighting: Vec<f64>,
+    /// Whether all of the pixel is one surface of one emissivity: S = e B(T) + (1 − e) ΣVS, with the maps' T and V.
+    pub pure: Vec<bool>,
     /// Whether the other camera sees the same point.
     pub seen_by_other: Vec<bool>,
 }
@@ -71,6 +78,12 @@ impl View {
     #[must_use]
     pub fn shape(&self) -> Shape {
         self.shape
+    }
+
+    /// Mean radiance that leaves each surface towards what it lights, photons s⁻¹ m⁻² sr⁻¹ per cm⁻¹ at the nodes of the bands: S_k.
+    #[must_use]
+    pub fn leaving(&self) -> &[Vec<f64>] {
+        &self.basis.leaving
     }
 
     /// A part of the signal, photons s⁻¹ m⁻² sr⁻¹ in each band, times `factor`: expected counts if that is
@@ -113,8 +126,9 @@ impl View {
                 let surface = row.surfaces.get(entry as usize).map_or(0, |&surface| usize::from(surface));
                 let (own, rest) = coefficients.split_at(self.basis.rows(surface).min(coefficients.len()));
                 let spectra = self.basis.spectra.get(surface).map_or(&[][..], |spectra| spectra.as_slice());
+                let temperatures = self.basis.temperatures.get(surface).copied().unwrap_or(1);
                 for (i, (&weight, spectrum)) in own.iter().zip(spectra.chunks_exact(bands)).enumerate() {
-                    let emitted = i % (1 + self.basis.sources) == 0;
+                    let emitted = i % (temperatures + self.basis.sources) < temperatures;
                     let wanted = match part {
                         Part::Total => true,
                         Part::Emission => emitted,

@@ -63,6 +63,6 @@ impl Scene {
         wall.texture = Texture::Waves { mean: spec.mean, waves: spec.waves.clone() };
         let surfaces = vec![sky, ground, wall];
         surfaces.iter().try_for_each(Surface::check)?;
-        Ok(Self { surfaces, solids: Vec::new(), lights: Vec::new(), wall: Some((spec.distance_m, 2)) })
+        Ok(Self { surfaces, solids: Vec::new(), wall: Some((spec.distance_m, 2)) })
     }
 }

@@ -91,13 +91,13 @@ fn a_pixel_is_the_heat_signal_equation_of_its_surface() {
     let view = drawn(&scene, &small(), &options).left;
     let (total, emission) = (samples(&view, Part::Total), samples(&view, Part::Emission));
     let temperatures = [260.0, 293.15, 320.0, 298.15, 310.15];
+    // Lit by what the others emit; of the ground, at its mean texture.
+    let means = [1.0, 0.8 + 0.2 * scene.surfaces[1].texture.mean(), 0.9, 0.95, 0.95];
     let mut met = [0; 5];
     for (i, &surface) in view.surface.iter().enumerate() {
         let surface = usize::from(surface);
         let e = [1.0, 0.8 + 0.2 * view.texture[i], 0.9, 0.95, 0.95][surface];
         let emitted = e * photon_radiance(NU, temperatures[surface]);
-        // Lit by what the others emit; of the ground, at its mean texture.
-        let means = [1.0, 0.8 + 0.2 * scene.surfaces[1].texture.mean(), 0.9, 0.95, 0.95];
         let light: f64 =
             (0..5).map(|k| view.lighting[5 * i + k] * means[k] * photon_radiance(NU, temperatures[k])).sum();
         assert!((emission[i] / emitted - 1.0).abs() < 1e-12);
