@@ -12,6 +12,7 @@ mod materials;
 mod progress;
 mod provenance;
 mod range;
+mod render;
 mod reproduce;
 mod rule;
 mod simulate;
@@ -55,6 +56,8 @@ enum Command {
     Range(range::RangeArgs),
     /// A heat cube as material, temperature and lighting of every pixel, and where the photons do not tell
     Decompose(decompose::DecomposeArgs),
+    /// Render a scene as a heat cube, with what is true of every pixel
+    Render(render::RenderArgs),
     /// Draw spectra, train and judge classifiers, and hold them against the limit
     Simulate(simulate::SimulateArgs),
     /// The paper's figures and tables made again, with a ledger of what agrees
@@ -105,6 +108,7 @@ fn run(cli: &Cli) -> Result<ExitCode> {
         Command::Rule(args) => rule::run(args, &cli.global),
         Command::Range(args) => range::run(args, &cli.global),
         Command::Decompose(args) => decompose::run(args, &cli.global),
+        Command::Render(args) => render::run(args, &cli.global),
         Command::Simulate(args) => simulate::run(args, &cli.global),
         Command::Reproduce(args) => reproduce::run(args, &cli.global),
         Command::Accuracy(args) => accuracy::run(args, &cli.global),

@@ -131,7 +131,11 @@ impl Folder {
         let manifest =
             Manifest::of(provenance, files.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice())));
         let fill = |report: &Path| -> io::Result<()> {
-            files.iter().try_for_each(|(name, bytes)| fs::write(report.join(name), bytes))?;
+            files.iter().try_for_each(|(name, bytes)| {
+                let path = report.join(name);
+                path.parent().map_or(Ok(()), fs::create_dir_all)?;
+                fs::write(path, bytes)
+            })?;
             fs::write(report.join(manifest::NAME), manifest.to_json().map_err(io::Error::other)?)
         };
         let whole = match place.parent().filter(|_| content.alone) {
@@ -189,10 +193,10 @@ impl Folder {
         names.sort();
         for name in names {
             let (name, path) = (name.to_string_lossy().into_owned(), place.join(&name));
-            let (owned, listed) = content
-                .manifest
-                .as_ref()
-                .map_or((false, false), |manifest| (manifest.owns(place, &name), manifest.lists(&name)));
+            let (owned, listed) = content.manifest.as_ref().map_or((false, false), |manifest| {
+                let owned = manifest.owns(place, &name) || manifest.owns_folder(place, &name);
+                (owned, manifest.lists(&name))
+            });
             if owned {
                 continue;
             }
@@ -296,9 +300,11 @@ fn publish(ready: &Path, place: &Path) -> io::Result<()> {
             .try_for_each(|name| fs::remove_file(place.join(name)))?;
     }
     let names = new.files.iter().map(|file| file.name.as_str()).chain([manifest::NAME]);
-    names
-        .filter(|name| ready.join(name).exists())
-        .try_for_each(|name| rename(ready.join(name), place.join(name)))
+    names.filter(|name| ready.join(name).exists()).try_for_each(|name| {
+        let path = place.join(name);
+        path.parent().map_or(Ok(()), fs::create_dir_all)?;
+        rename(ready.join(name), path)
+    })
 }
 
 #[cfg(not(test))]

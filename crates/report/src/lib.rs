@@ -16,6 +16,7 @@ pub mod identify;
 pub mod manifest;
 pub mod plot;
 pub mod range;
+pub mod render;
 pub mod rule;
 pub mod simulate;
 pub mod size;

@@ -115,12 +115,11 @@ impl Manifest {
             return None;
         }
         let manifest: Self = serde_json::from_slice(&std::fs::read(path).ok()?).ok()?;
-        // Names of files in this folder: whoever changed the list reaches no others by it.
+        // Names of files in this folder and below: whoever changed the list reaches no others by it.
         let inside = |name: &str| {
             let path = PathBuf::from(name);
-            path.file_name().is_some_and(|last| last == name)
-                && path.components().count() == 1
-                && name != NAME
+            let plain = path.components().all(|part| matches!(part, Component::Normal(_)));
+            plain && !name.is_empty() && name != NAME
         };
         manifest.files.iter().all(|file| inside(&file.name)).then_some(manifest)
     }
@@ -128,12 +127,31 @@ impl Manifest {
     /// Whether a file of the folder is listed and as it was written.
     pub(crate) fn owns(&self, folder: &Path, name: &str) -> bool {
         let path = folder.join(name);
-        let plain = path.symlink_metadata().is_ok_and(|found| found.is_file());
+        // No link on the way leads out of it.
+        let inner = Path::new(name).ancestors().skip(1).filter(|above| *above != Path::new(""));
+        let plain = path.symlink_metadata().is_ok_and(|found| found.is_file())
+            && inner
+                .into_iter()
+                .all(|above| folder.join(above).symlink_metadata().is_ok_and(|found| found.is_dir()));
         let listed = self.files.iter().find(|file| file.name == name);
         plain
             && (name == NAME
                 || listed
                     .is_some_and(|file| sha256_of_file(&path).ok().flatten().as_ref() == Some(&file.sha256)))
+    }
+
+    /// Whether a folder in it holds files of the run alone, unchanged.
+    pub(crate) fn owns_folder(&self, folder: &Path, name: &str) -> bool {
+        let path = folder.join(name);
+        let real = path.symlink_metadata().is_ok_and(|found| found.is_dir());
+        let Ok(entries) = std::fs::read_dir(&path) else { return false };
+        let own = |entry: std::io::Result<std::fs::DirEntry>| {
+            let Ok(entry) = entry else { return false };
+            let inner = format!("{name}/{}", entry.file_name().to_string_lossy());
+            self.owns(folder, &inner) || self.owns_folder(folder, &inner)
+        };
+        real && self.files.iter().any(|file| file.name.starts_with(&format!("{name}/")))
+            && entries.into_iter().all(own)
     }
 
     /// Whether a file is listed, changed or not.

@@ -15,12 +15,14 @@ mod distances;
 mod identify;
 mod looked_up;
 pub mod range;
+pub mod render;
 mod resolve;
 mod rule;
 mod shortfall;
 mod sight;
 mod simulate;
 mod size;
+mod stage;
 mod surface;
 mod warn;
 

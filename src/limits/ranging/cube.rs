@@ -18,6 +18,7 @@ mod open;
 pub use band_sum::panchromatic;
 pub use invalid::first_invalid;
 #[cfg(feature = "cubes")]
+pub use mat::mat_file;
 pub use npy::{Value, npy_map, write_npy, write_npy_to};
 #[cfg(feature = "cubes")]
 pub(crate) use open::is_cube;

@@ -114,7 +114,7 @@ impl Scene {
     }
 
     /// The solids of a body of surface `surface`; the tyres of a car are the surface after it.
-    pub(super) fn stand(&mut self, surface: usize, [x, z]: [f64; 2], body: &Body) -> Result<()> {
+    fn stand(&mut self, surface: usize, [x, z]: [f64; 2], body: &Body) -> Result<()> {
         let parts = body.parts(x, z)?;
         for (shape, further) in parts {
             self.solids.push(Solid { shape, surface: surface + further });

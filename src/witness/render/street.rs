@@ -1,13 +1,9 @@
 //! The street of the paper's Fig. 4: ground, sky, a car and a person.
 
-use super::body::Body;
+use super::body::{Body, Object};
 use super::scene::Scene;
 use super::surface::{Bump, Emissivity, Road, Surface, Texture};
-use crate::error::{Result, check};
-
-const CAR: usize = 2;
-const TYRES: usize = 3;
-const PERSON: usize = 4;
+use crate::error::Result;
 
 /// A car and a person on a road.
 ///
@@ -99,32 +95,46 @@ impl Scene {
     /// # Errors
     /// A temperature that is not positive, an emissivity outside [0, 1], a size or distance that is not positive.
     pub fn street(spec: &StreetSpec) -> Result<Self> {
-        let mut ground = Surface::plain("ground", spec.ground_k, &spec.ground_emissivity[0]);
-        ground.emissivity = spec.ground_emissivity.clone();
-        ground.texture = Texture::Road(spec.road.clone());
-        ground.bump = spec.ground_bump;
-        let mut car = Surface::plain("car", spec.car_k, &spec.car_emissivity);
-        car.bump = spec.car_bump;
-        let mut person = Surface::plain("person", spec.person_k, &spec.person_emissivity);
-        person.bump = spec.person_bump;
-        let sky = Surface::plain("sky", spec.sky_k, &spec.sky_emissivity);
-        let tyres = Surface::plain("tyres", spec.tyre_k, &spec.tyre_emissivity);
-        let surfaces = vec![sky, ground, car, tyres, person];
-        surfaces.iter().try_for_each(Surface::check)?;
-        let mut scene = Self { surfaces, solids: Vec::new(), wall: None };
-        if spec.car {
-            let [x, z] = spec.car_at_m;
-            check::finite("place of the car across the road", x, "m")?;
-            check::positive("distance of the car", z, "m")?;
-            let tyres = scene.surfaces[TYRES].clone();
-            scene.stand(CAR, spec.car_at_m, &Body::Car { size_m: spec.car_size_m, tyres })?;
-        }
-        if spec.person {
-            let [x, z] = spec.person_at_m;
-            check::finite("place of the person across the road", x, "m")?;
-            check::positive("distance of the person", z, "m")?;
-            scene.stand(PERSON, spec.person_at_m, &Body::Person { height_m: spec.person_height_m })?;
-        }
+        let mut scene = Self::new(spec.sky(), spec.ground())?;
+        spec.objects().into_iter().try_for_each(|object| scene.add(object))?;
         Ok(scene)
+    }
+}
+
+impl StreetSpec {
+    /// Its sky.
+    #[must_use]
+    pub fn sky(&self) -> Surface {
+        Surface::plain("sky", self.sky_k, &self.sky_emissivity)
+    }
+
+    /// Its road.
+    #[must_use]
+    pub fn ground(&self) -> Surface {
+        let mut ground = Surface::plain("ground", self.ground_k, &self.ground_emissivity[0]);
+        ground.emissivity = self.ground_emissivity.clone();
+        ground.texture = Texture::Road(self.road.clone());
+        ground.bump = self.ground_bump;
+        ground
+    }
+
+    /// Car and person.
+    #[must_use]
+    pub fn objects(&self) -> Vec<Object> {
+        let mut objects = Vec::new();
+        if self.car {
+            let mut surface = Surface::plain("car", self.car_k, &self.car_emissivity);
+            surface.bump = self.car_bump;
+            let tyres = Surface::plain("tyres", self.tyre_k, &self.tyre_emissivity);
+            let body = Body::Car { size_m: self.car_size_m, tyres };
+            objects.push(Object { surface, at_m: self.car_at_m, body });
+        }
+        if self.person {
+            let mut surface = Surface::plain("person", self.person_k, &self.person_emissivity);
+            surface.bump = self.person_bump;
+            let body = Body::Person { height_m: self.person_height_m };
+            objects.push(Object { surface, at_m: self.person_at_m, body });
+        }
+        objects
     }
 }

@@ -5,13 +5,15 @@
 //! depth alone), and leaves out what is finer than they can show.
 
 use super::noise;
-use super::uneven::Uneven;
+use super::uneven::{NODES, Uneven};
 use super::vector::{Vector, along, dot, unit};
 use crate::error::{Error, Result, check};
 use crate::scene::check_emissivity;
 
 /// More octaves than this are finer than any wavelength.
 const MAX_OCTAVES: usize = 24;
+/// All of the emission at the first temperature.
+const ONE: [f64; NODES] = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0];
 /// Width of the road over which its mean is taken, m.
 const MEAN_WIDTH_M: f64 = 60.0;
 /// An edge of a lane mark is never sharper than this, m.
@@ -96,6 +98,33 @@ impl Surface {
             self.texture.check()
         };
         checked().map_err(|error: Error| error.for_key(&self.name))
+    }
+
+    fn varies(&self) -> Option<Uneven> {
+        self.uneven.filter(|uneven| uneven.sigma_k > 0.0)
+    }
+
+    /// Its temperature at a point, K.
+    #[inline]
+    pub(super) fn temperature_at(&self, point: Vector) -> f64 {
+        self.varies().map_or(self.temperature_k, |uneven| uneven.temperature_at(self.temperature_k, point))
+    }
+
+    /// Temperatures whose emission is mixed, K.
+    pub(super) fn nodes_k(&self) -> Vec<f64> {
+        self.varies()
+            .map_or_else(|| vec![self.temperature_k], |uneven| uneven.nodes_k(self.temperature_k).to_vec())
+    }
+
+    /// Shares of their emission at a temperature.
+    #[inline]
+    pub(super) fn weights(&self, temperature_k: f64) -> [f64; NODES] {
+        self.varies().map_or(ONE, |uneven| uneven.weights(self.temperature_k, temperature_k))
+    }
+
+    /// The shares in what all of it emits.
+    pub(super) fn mean_weights(&self) -> [f64; NODES] {
+        self.varies().map_or(ONE, |uneven| uneven.mean_weights(self.temperature_k))
     }
 
     /// Whether it has two emissivities.

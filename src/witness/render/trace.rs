@@ -95,6 +95,33 @@ impl Scene {
         options: &Options,
         progress: &(dyn Fn(usize, usize) + Sync),
     ) -> Result<StereoPair> {
+        let [left, right] = self.drawn(rig, [-0.5, 0.5], bands, options, progress)?;
+        Ok(StereoPair { left, right })
+    }
+
+    /// Draws the picture of the left camera alone, as [`Scene::render`].
+    ///
+    /// # Errors
+    /// As [`Scene::render`].
+    pub fn view(
+        &self,
+        rig: &Rig,
+        bands: &Bands,
+        options: &Options,
+        progress: &(dyn Fn(usize, usize) + Sync),
+    ) -> Result<View> {
+        let [left] = self.drawn(rig, [-0.5], bands, options, progress)?;
+        Ok(left)
+    }
+
+    fn drawn<const VIEWS: usize>(
+        &self,
+        rig: &Rig,
+        sides: [f64; VIEWS],
+        bands: &Bands,
+        options: &Options,
+        progress: &(dyn Fn(usize, usize) + Sync),
+    ) -> Result<[View; VIEWS]> {
         let rig = rig.clone().checked()?;
         options.check()?;
         self.check(&rig)?;
@@ -102,7 +129,7 @@ impl Scene {
         let basis = Arc::new(Basis::new(self, &mean_shares(self, PATCHES), bands, options.bounces)?);
         let map = LightMap::new(self, &rig)?;
         let done = AtomicUsize::new(0);
-        let tell = || progress(done.fetch_add(1, Ordering::Relaxed) + 1, 2 * rig.rows);
+        let tell = || progress(done.fetch_add(1, Ordering::Relaxed) + 1, VIEWS * rig.rows);
         let draw = |side: f64| {
             let (camera, other) = (rig.camera(side), rig.camera(-side));
             let tracer = Tracer {
@@ -118,7 +145,7 @@ impl Scene {
             };
             tracer.view(shape, &tell)
         };
-        Ok(StereoPair { left: draw(-0.5), right: draw(0.5) })
+        Ok(sides.map(draw))
     }
 }
 

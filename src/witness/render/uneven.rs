@@ -5,9 +5,8 @@
 //! spectra. With six nodes and ±30 K about 300 K that errs by 2e-6 of B at 1250 cm⁻¹, and by the sixth power less of smaller ranges.
 
 use super::noise;
-use super::surface::Surface;
 use super::vector::Vector;
-use crate::error::{Result, check};
+use crate::error::{Error, Result, check};
 
 /// Temperatures between which emission is interpolated.
 pub(super) const NODES: usize = 6;
@@ -34,59 +33,42 @@ impl Uneven {
         self.sigma_k / noise::VALUE_RMS
     }
 
-    pub(super) fn check(&self, temperature_k: f64) -> Result<()> {
+    pub(super) fn check(&self, mean_k: f64) -> Result<()> {
         check::positive("size of warmer patches", self.size_m, "m")?;
         check::non_negative("deviation of the temperature", self.sigma_k, "K")?;
-        check::positive("lowest temperature", temperature_k - self.reach_k(), "K")?;
-        check::non_negative("room below the widest range of temperatures", WIDEST_K - self.reach_k(), "K")
-            .map(drop)
-    }
-}
-
-impl Surface {
-    fn varies(&self) -> Option<Uneven> {
-        self.uneven.filter(|uneven| uneven.sigma_k > 0.0)
+        if self.reach_k() > WIDEST_K {
+            let most = format!("at most {:.0} K", WIDEST_K * noise::VALUE_RMS);
+            return Err(Error::out_of_range("deviation of the temperature", self.sigma_k, "K", most));
+        }
+        check::positive("lowest temperature", mean_k - self.reach_k(), "K").map(drop)
     }
 
-    /// Its temperature at a point, K.
+    /// Temperature at a point, K.
     #[inline]
-    pub(super) fn temperature_at(&self, point: Vector) -> f64 {
-        self.varies().map_or(self.temperature_k, |uneven| {
-            self.temperature_k
-                + uneven.reach_k() * noise::value(point.map(|x| x / uneven.size_m), uneven.seed)
-        })
+    pub(super) fn temperature_at(&self, mean_k: f64, point: Vector) -> f64 {
+        mean_k + self.reach_k() * noise::value(point.map(|x| x / self.size_m), self.seed)
     }
 
     /// Temperatures whose emission is mixed, K.
-    pub(super) fn nodes_k(&self) -> Vec<f64> {
-        let Some(uneven) = self.varies() else { return vec![self.temperature_k] };
-        chebyshev().map(|u| self.temperature_k + uneven.reach_k() * u).to_vec()
+    pub(super) fn nodes_k(&self, mean_k: f64) -> [f64; NODES] {
+        chebyshev().map(|u| mean_k + self.reach_k() * u)
     }
 
-    /// Shares Lⱼ of their emission at a temperature; the first is 1 where there is one temperature.
+    /// Shares Lⱼ of their emission at a temperature.
     #[inline]
-    pub(super) fn weights(&self, temperature_k: f64) -> [f64; NODES] {
-        let mut weights = [0.0; NODES];
-        let Some(uneven) = self.varies() else {
-            weights[0] = 1.0;
-            return weights;
-        };
-        let (nodes, u) = (chebyshev(), (temperature_k - self.temperature_k) / uneven.reach_k());
-        for (weight, &own) in weights.iter_mut().zip(&nodes) {
-            let others = nodes.iter().filter(|node| **node != own);
-            *weight = others.map(|node| (u - node) / (own - node)).product();
-        }
-        weights
+    pub(super) fn weights(&self, mean_k: f64, temperature_k: f64) -> [f64; NODES] {
+        let (nodes, u) = (chebyshev(), (temperature_k - mean_k) / self.reach_k());
+        nodes.map(|own| {
+            nodes.iter().filter(|node| **node != own).map(|node| (u - node) / (own - node)).product()
+        })
     }
 
-    /// The shares in what all of it emits.
-    pub(super) fn mean_weights(&self) -> [f64; NODES] {
-        let Some(uneven) = self.varies() else { return self.weights(self.temperature_k) };
+    /// The shares in what all of the surface emits.
+    pub(super) fn mean_weights(&self, mean_k: f64) -> [f64; NODES] {
         let mut sum = [0.0; NODES];
         for i in 0..SIDE * SIDE * SIDE {
-            let at =
-                [i % SIDE, i / SIDE % SIDE, i / SIDE / SIDE].map(|i| f64::from(i) * 0.731 * uneven.size_m);
-            let weights = self.weights(self.temperature_at(at));
+            let at = [i % SIDE, i / SIDE % SIDE, i / SIDE / SIDE].map(|i| f64::from(i) * 0.731 * self.size_m);
+            let weights = self.weights(mean_k, self.temperature_at(mean_k, at));
             sum.iter_mut().zip(weights).for_each(|(sum, weight)| *sum += weight / f64::from(SIDE.pow(3)));
         }
         sum
@@ -104,24 +86,22 @@ fn chebyshev() -> [f64; NODES] {
 mod tests {
     use super::*;
     use crate::planck::photon_radiance;
-    use crate::render::Emissivity;
 
-    fn surface(sigma_k: f64) -> Surface {
-        let uneven = Some(Uneven { sigma_k, size_m: 0.3, seed: 4 });
-        Surface { uneven, ..Surface::plain("s", 300.0, &Emissivity::Constant(0.9)) }
+    fn uneven(sigma_k: f64) -> Uneven {
+        Uneven { sigma_k, size_m: 0.3, seed: 4 }
     }
 
     #[test]
     fn emission_between_the_nodes_is_planck_s() {
         for (sigma_k, tolerance) in [(12.0, 3e-6), (3.0, 1e-9)] {
-            let surface = surface(sigma_k);
+            let surface = uneven(sigma_k);
             let reach = sigma_k / noise::VALUE_RMS;
             for i in 0..=40 {
                 let kelvin = 300.0 + reach * (f64::from(i) / 20.0 - 1.0);
                 let mixed: f64 = surface
-                    .nodes_k()
+                    .nodes_k(300.0)
                     .iter()
-                    .zip(surface.weights(kelvin))
+                    .zip(surface.weights(300.0, kelvin))
                     .map(|(node, weight)| weight * photon_radiance(1250.0, *node))
                     .sum();
                 assert!((mixed / photon_radiance(1250.0, kelvin) - 1.0).abs() < tolerance, "{kelvin}");
@@ -131,12 +111,12 @@ mod tests {
 
     #[test]
     fn temperatures_have_the_deviation_they_are_asked_for() {
-        let surface = surface(2.0);
+        let surface = uneven(2.0);
         let n = 40_000;
         let (mut sum, mut square, mut furthest) = (0.0, 0.0, 0.0_f64);
         for i in 0..n {
             let at = [f64::from(i % 200) * 0.237, f64::from(i / 200) * 0.219, 0.41 * f64::from(i)];
-            let off = surface.temperature_at(at) - 300.0;
+            let off = surface.temperature_at(300.0, at) - 300.0;
             (sum, square) = (sum + off, square + off * off);
             furthest = furthest.max(off.abs());
         }
@@ -147,9 +127,9 @@ mod tests {
         // In the mean over all of it the second order remains: ½ B″ σ².
         let b = |kelvin| photon_radiance(1000.0, kelvin);
         let mean: f64 = surface
-            .nodes_k()
+            .nodes_k(300.0)
             .iter()
-            .zip(surface.mean_weights())
+            .zip(surface.mean_weights(300.0))
             .map(|(node, weight)| weight * b(*node))
             .sum();
         let second = 0.5 * (b(301.0) - 2.0 * b(300.0) + b(299.0)) * 4.0;

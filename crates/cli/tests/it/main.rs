@@ -20,6 +20,7 @@ mod messages;
 mod nearest;
 mod packs;
 mod range;
+mod render;
 mod reproduce;
 mod robust;
 mod rule;

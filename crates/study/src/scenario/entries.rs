@@ -186,6 +186,11 @@ impl Entries {
         self
     }
 
+    /// As the value of a key.
+    pub(super) fn table(self) -> Value {
+        Value::Table(self.entries.into_iter().map(|entry| (entry.key.to_owned(), entry.value)).collect())
+    }
+
     /// The same, read from a table of that name.
     pub(super) fn read_from(self, key: &str) -> Self {
         Self { read_from: Some(key.to_owned()), ..self }

@@ -6,7 +6,7 @@
 pub(super) mod read;
 pub(super) mod write;
 
-use super::{BandsSpec, CameraSpec, MaterialRef, Source};
+use super::{BandsSpec, CameraSpec, SceneSpec, Source};
 use hadar::error::Place;
 pub use hadar::ranging::depth::Demand;
 use hadar::ranging::derivative::Derivative;
@@ -37,36 +37,9 @@ pub struct RangeScenario {
 #[derive(Debug, Clone, PartialEq)]
 pub enum Subject {
     /// A scene that is rendered (`[scene]`).
-    Scene(SceneSpec),
+    Scene(Box<SceneSpec>),
     /// Counts that were measured or computed elsewhere (`[cube]`).
     Cube(CubeSpec),
-}
-
-/// A rendered street (`[scene]`): ground, car, person, sky. What is silent is the renderer's.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct SceneSpec {
-    /// Temperature of the ground, K.
-    pub ground_temperature_k: Option<f64>,
-    /// Temperature of the sky, a blackbody, K.
-    pub sky_temperature_k: Option<f64>,
-    /// Temperature of the car, K.
-    pub car_temperature_k: Option<f64>,
-    /// Temperature of the person, K.
-    pub person_temperature_k: Option<f64>,
-    /// Emissivity of the ground between which its texture varies, lower one first.
-    pub ground_emissivity: Option<[f64; 2]>,
-    /// Material of the car.
-    pub car: Option<MaterialRef>,
-    /// Material of the person.
-    pub person: Option<MaterialRef>,
-    /// Distance of the car, m.
-    pub car_distance_m: Option<f64>,
-    /// Distance of the person, m.
-    pub person_distance_m: Option<f64>,
-    /// Times that light is scattered before it reaches the camera.
-    pub bounces: Option<u32>,
-    /// Rows and columns of the image.
-    pub size: Option<[usize; 2]>,
 }
 
 /// A cube in a file (`[cube]`). Paths are absolute.

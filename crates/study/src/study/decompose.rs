@@ -6,6 +6,7 @@ mod truth;
 mod worth;
 
 pub use looked_up::DecomposeStudy;
+pub(super) use looked_up::spectrum;
 pub use results::{Decomposed, FlagCount, MaterialRow, TruthFound};
 
 use self::results::summary;

@@ -18,6 +18,7 @@ pub use results::{
 };
 
 pub use bounds::{median, quantile};
+pub(super) use resolve::camera_noise;
 
 use self::bounds::Ground;
 use self::looked_up::SECTIONS;

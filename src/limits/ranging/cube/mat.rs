@@ -9,6 +9,9 @@
 mod element;
 mod planes;
 mod stored;
+mod write;
+
+pub use write::mat_file;
 
 use self::element::{COMPRESSED, Class, Element, Head, MATRIX};
 use super::{Cube, MemoryCube, Shape, dimensions};

@@ -1,15 +1,15 @@
 //! Reads a ranging scenario: every key checked, every error one line with file, line and key.
 
 use super::super::kind::Kind as FileKind;
-use super::super::paths::{file, material};
+use super::super::paths::file;
 use super::super::read::{document, text_of};
+use super::super::scene::scene_of;
 use super::super::section::{Entry, Section};
 use super::super::{BandsSpec, Source, camera};
 use super::{
-    CubeSpec, Demand, DepthRequirement, DepthSource, Diffraction, NoiseSource, RangeScenario, SceneSpec,
-    Stereo, Subject,
+    CubeSpec, Demand, DepthRequirement, DepthSource, Diffraction, NoiseSource, RangeScenario, Stereo, Subject,
 };
-use hadar::allowed::{ABOVE_ZERO, ABSOLUTE_TEMPERATURE, Allowed, FROM_ZERO, SHARE};
+use hadar::allowed::{ABOVE_ZERO, Allowed, FROM_ZERO};
 use hadar::error::{Error, Result};
 use hadar::ranging::derivative::Derivative;
 use hadar::ranging::information::Window;
@@ -17,12 +17,9 @@ use hadar::ranging::noise::Joined;
 use hadar::units::Dimension;
 use std::path::Path;
 
-const TABLES: &[&str] = &["title", "scene", "cube", "bands", "camera", "stereo", "requirement"];
+const TABLES: &[&str] = &["title", "scene", "object", "cube", "bands", "camera", "stereo", "requirement"];
 const MINIMUM: &str = "write [scene] for the built-in street or [cube] with left = \"left.npy\", \
                        and [stereo] with baseline = \"0.2 m\"";
-/// Most rows or columns of a rendered image, and most bounces.
-const MOST_PIXELS: u32 = 16_384;
-const MOST_BOUNCES: u32 = 64;
 /// δz/z that is demanded where nothing is said.
 const RELATIVE_ERROR: f64 = 0.05;
 
@@ -67,7 +64,7 @@ fn scenario(text: &str, path: Option<&Path>) -> Result<RangeScenario> {
     let root = Section::open(&document, "", &source, TABLES)?;
     root.at_most_one(&["scene", "cube"])?;
     let subject = match (root.get("scene"), root.get("cube")) {
-        (Some(entry), _) => Subject::Scene(scene(&entry)?),
+        (Some(entry), _) => Subject::Scene(Box::new(scene_of(&root, &entry)?)),
         (None, Some(entry)) => Subject::Cube(cube(&entry)?),
         (None, None) => {
             return Err(
@@ -107,52 +104,6 @@ impl Default for DepthRequirement {
     fn default() -> Self {
         Self { error: Demand::Relative(RELATIVE_ERROR), share: 0.5 }
     }
-}
-
-pub(in crate::scenario) fn scene(entry: &Entry<'_>) -> Result<SceneSpec> {
-    let section = entry.section(&[
-        "ground_temperature",
-        "sky_temperature",
-        "car_temperature",
-        "person_temperature",
-        "ground_emissivity",
-        "car",
-        "person",
-        "car_distance",
-        "person_distance",
-        "bounces",
-        "size",
-    ])?;
-    let temperature = |key| section.quantity(key, Dimension::Temperature, ABSOLUTE_TEMPERATURE);
-    let length = |key| section.quantity(key, Dimension::Length, ABOVE_ZERO);
-    Ok(SceneSpec {
-        ground_temperature_k: temperature("ground_temperature")?,
-        sky_temperature_k: temperature("sky_temperature")?,
-        car_temperature_k: temperature("car_temperature")?,
-        person_temperature_k: temperature("person_temperature")?,
-        ground_emissivity: section.read("ground_emissivity", |entry| {
-            entry.range("[0.8, 1.0]", |end| end.number("0.8", SHARE), |share| share)
-        })?,
-        car: section.read("car", material)?,
-        person: section.read("person", material)?,
-        car_distance_m: length("car_distance")?,
-        person_distance_m: length("person_distance")?,
-        bounces: section.read("bounces", |entry| at_most(entry, "8", MOST_BOUNCES))?,
-        size: section.read("size", |entry| {
-            let [rows, columns] = entry.pair("[480, 640]")?;
-            Ok([rows, columns].map(|side| at_most(&side, "480", MOST_PIXELS).map(|n| n as usize)))
-                .and_then(|[rows, columns]| Ok([rows?, columns?]))
-        })?,
-    })
-}
-
-fn at_most(entry: &Entry<'_>, example: &str, most: u32) -> Result<u32> {
-    let count = entry.count(example)?;
-    if count <= most {
-        return Ok(count);
-    }
-    let found = Error::malformed(format!("{count} is too many"), format!("write at most {most}"));
-    Err(entry.fail(found))
 }
 
 fn cube(entry: &Entry<'_>) -> Result<CubeSpec> {

@@ -3,9 +3,9 @@
 use super::super::camera;
 use super::super::entries::{Document, Entries, Part, entries, text};
 use super::super::paths::Paths;
+use super::super::scene::{objects_written, scene_written};
 use super::{
-    CubeSpec, Demand, DepthRequirement, DepthSource, Diffraction, NoiseSource, RangeScenario, SceneSpec,
-    Stereo, Subject,
+    CubeSpec, Demand, DepthRequirement, DepthSource, Diffraction, NoiseSource, RangeScenario, Stereo, Subject,
 };
 use hadar::units::Dimension;
 use serde::{Serialize, Serializer};
@@ -39,10 +39,15 @@ impl RangeScenario {
         if let Some(title) = &self.title {
             document.push(("title", Part::Value(title.as_str().into())));
         }
-        document.push(match &self.subject {
-            Subject::Scene(spec) => ("scene", Part::Table(scene(spec, paths))),
-            Subject::Cube(spec) => ("cube", Part::Table(cube(spec, paths))),
-        });
+        match &self.subject {
+            Subject::Scene(spec) => {
+                document.push(("scene", Part::Table(scene_written(spec, paths))));
+                if let Some(objects) = &spec.objects {
+                    document.push(("object", Part::Tables(objects_written(objects, paths))));
+                }
+            }
+            Subject::Cube(spec) => document.push(("cube", Part::Table(cube(spec, paths)))),
+        }
         if let Some(spec) = &self.bands {
             document.push(("bands", Part::Table(spec.written(paths))));
         }
@@ -60,22 +65,6 @@ impl Serialize for RangeScenario {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         entries(self.document(Paths { beside: None }), serializer)
     }
-}
-
-pub(in crate::scenario) fn scene(spec: &SceneSpec, paths: Paths<'_>) -> Entries {
-    let material = |material: &Option<_>| material.as_ref().map(|material| paths.material(material));
-    Entries::default()
-        .put_quantity("ground_temperature", Dimension::Temperature, spec.ground_temperature_k)
-        .put_quantity("sky_temperature", Dimension::Temperature, spec.sky_temperature_k)
-        .put_quantity("car_temperature", Dimension::Temperature, spec.car_temperature_k)
-        .put_quantity("person_temperature", Dimension::Temperature, spec.person_temperature_k)
-        .put_if("ground_emissivity", spec.ground_emissivity.map(|ends| ends.to_vec()))
-        .put_if("car", material(&spec.car))
-        .put_if("person", material(&spec.person))
-        .put_quantity("car_distance", Dimension::Length, spec.car_distance_m)
-        .put_quantity("person_distance", Dimension::Length, spec.person_distance_m)
-        .put_if("bounces", spec.bounces)
-        .put_if("size", spec.size.map(|size| size.map(whole).to_vec()))
 }
 
 fn cube(spec: &CubeSpec, paths: Paths<'_>) -> Entries {

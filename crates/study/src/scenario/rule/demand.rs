@@ -2,7 +2,8 @@
 
 use crate::scenario::entries::{Document, Entries, Part};
 use crate::scenario::paths::Paths;
-use crate::scenario::range::{DepthRequirement, SceneSpec, Stereo, read as depth, write as depth_written};
+use crate::scenario::range::{DepthRequirement, Stereo, read as depth, write as depth_written};
+use crate::scenario::scene::{SceneSpec, scene, scene_written};
 use crate::scenario::section::Section;
 use hadar::allowed::ABOVE_ZERO;
 use hadar::error::{Error, Result};
@@ -116,7 +117,7 @@ impl Demand {
                 requirement(
                     depth_written::requirement(demand.requirement).put("object", demand.object.name()),
                 ),
-                ("scene", Part::Table(depth_written::scene(&demand.scene, paths))),
+                ("scene", Part::Table(scene_written(&demand.scene, paths))),
                 ("stereo", Part::Table(depth_written::stereo(&demand.stereo))),
             ]),
         }
@@ -148,7 +149,7 @@ pub(super) fn depth_error(plain: &Section<'_>, stops: bool) -> Result<Demand> {
     let object = entry.table()?.choice("object", &objects)?.unwrap_or(DepthObject::Person);
     let requirement = depth::requirement_beside(&entry, &["object"])?;
     let scene = match plain.get("scene") {
-        Some(entry) => depth::scene(&entry)?,
+        Some(entry) => scene(&entry)?,
         None => SceneSpec::default(),
     };
     let own = match object {

@@ -255,16 +255,7 @@ fn lit(light: &LightSource, cube: &Cube, bands: &Bands, library: &Library, unit:
             radiance.iter_mut().zip(&emissivity).for_each(|(radiance, e)| *radiance *= e);
             Ok(Light::Radiance(radiance))
         }
-        LightSource::Spectrum { path, column } => {
-            let table = columns(path)?;
-            let Some((_, rows)) = table.iter().find(|(name, _)| name == column) else {
-                let names = table.iter().map(|(name, _)| name.as_str());
-                return Err(Error::unknown_name("column", column, names).for_key("column").in_file(path));
-            };
-            let mut rows = rows.clone();
-            rows.sort_by(|a, b| a.0.total_cmp(&b.0));
-            Ok(Light::Radiance(on_nodes(&rows, nodes).map_err(|error| error.in_file(path))?))
-        }
+        LightSource::Spectrum { path, column } => Ok(Light::Radiance(spectrum(path, column, nodes)?)),
         LightSource::Rows([first, last]) => {
             let counts = match cube {
                 Cube::F32(rows) => mean_of(rows.as_ref(), *first, *last),
@@ -273,6 +264,18 @@ fn lit(light: &LightSource, cube: &Cube, bands: &Bands, library: &Library, unit:
             Ok(Light::Counts(counts.iter().map(|n| n / unit).collect()))
         }
     }
+}
+
+/// A column of a table of photon radiances at the nodes.
+pub(in crate::study) fn spectrum(path: &Path, column: &str, nodes_cm1: &[f64]) -> Result<Vec<f64>> {
+    let table = columns(path)?;
+    let Some((_, rows)) = table.iter().find(|(name, _)| name == column) else {
+        let names = table.iter().map(|(name, _)| name.as_str());
+        return Err(Error::unknown_name("column", column, names).for_key("column").in_file(path));
+    };
+    let mut rows = rows.clone();
+    rows.sort_by(|a, b| a.0.total_cmp(&b.0));
+    on_nodes(&rows, nodes_cm1).map_err(|error| error.in_file(path))
 }
 
 /// A spectrum on straight lines between its rows, which must reach over all nodes.

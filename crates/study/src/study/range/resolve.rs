@@ -2,22 +2,17 @@
 
 use super::RangeStudy;
 use super::subject::{Depth, Measured, Rendered, Resolved};
-use crate::scenario::range::{CubeSpec, DepthSource, NoiseSource, SceneSpec, Subject};
-use crate::scenario::{MaterialRef, RangeScenario};
-use crate::study::{bands, camera, camera_bands};
+use crate::scenario::range::{CubeSpec, DepthSource, NoiseSource, Subject};
+use crate::scenario::{RangeScenario, SceneSpec};
+use crate::study::{bands, camera, camera_bands, stage};
 use hadar::error::{Error, Result};
 use hadar::fisher::Counting;
 use hadar::instrument::{Camera, Readout, View};
-use hadar::material::{Library, Material};
+use hadar::material::Library;
 use hadar::ranging::cube::{Cube, Shape};
 use hadar::ranging::depth::StereoGeometry;
 use hadar::ranging::noise::NoiseVariance;
-use hadar::render::{Emissivity, Options, Rig, Scene, StreetSpec};
 use hadar::spectrum::Bands;
-
-/// Samples of a rendered view that are held at a time, four times over; a pixel takes as much as so many beside its own.
-const MOST_SAMPLES: f64 = 2e8;
-const SAMPLES_OF_PIXEL: usize = 32;
 
 impl RangeStudy {
     /// Looks up everything that `scenario` names, materials in `library`, and opens its cubes.
@@ -80,66 +75,16 @@ fn scene(
     camera: &Camera,
     bands: &Bands,
 ) -> Result<Rendered> {
-    let mut street = StreetSpec::default();
-    let set = |to: &mut f64, from: Option<f64>| *to = from.unwrap_or(*to);
-    set(&mut street.ground_k, spec.ground_temperature_k);
-    set(&mut street.sky_k, spec.sky_temperature_k);
-    set(&mut street.car_k, spec.car_temperature_k);
-    set(&mut street.person_k, spec.person_temperature_k);
-    set(&mut street.car_at_m[1], spec.car_distance_m);
-    set(&mut street.person_at_m[1], spec.person_distance_m);
-    if let Some(ends) = spec.ground_emissivity {
-        street.ground_emissivity = ends.map(Emissivity::Constant);
-    }
-    let found = |key: &str, material: &MaterialRef| -> Result<Emissivity> {
-        let place = || scenario.place(&format!("scene.{key}"));
-        let emissivity = match material {
-            MaterialRef::Name(name) => {
-                library.get(name).and_then(|found| found.emissivity(bands.nodes_cm1()))
-            }
-            MaterialRef::File(path) => {
-                Material::from_file(path).and_then(|read| read.emissivity(bands.nodes_cm1()))
-            }
-        };
-        Ok(Emissivity::Spectrum(emissivity.map_err(|error| error.at(place()))?))
-    };
-    if let Some(material) = &spec.car {
-        street.car_emissivity = found("car", material)?;
-    }
-    if let Some(material) = &spec.person {
-        street.person_emissivity = found("person", material)?;
-    }
-    let mut options = Options::default();
-    if let Some(bounces) = spec.bounces {
-        options.bounces = bounces as usize;
-    }
-    let mut rig = Rig {
-        baseline_m: scenario.stereo.baseline_m,
-        focal_length_m: camera.focal_length_m,
-        pixel_m: camera.pixel_m,
-        ..Rig::default()
-    };
-    if let Some([rows, columns]) = spec.size {
-        (rig.rows, rig.columns) = (rows, columns);
-    }
-    let at_scene = |error: Error| error.at(scenario.place("scene"));
-    let scene = Scene::street(&street).map_err(at_scene)?;
-    let samples = rig.rows as f64 * rig.columns as f64 * (bands.len() + SAMPLES_OF_PIXEL) as f64;
-    if samples > MOST_SAMPLES {
-        let found = format!("{} x {} pixels in {} bands", rig.rows, rig.columns, bands.len());
-        let instead = format!(
-            "lower scene.size or the number of bands: {:.0e} pixels fit into memory",
-            MOST_SAMPLES / (bands.len() + SAMPLES_OF_PIXEL) as f64
-        );
-        return Err(at_scene(Error::malformed(found, instead)));
-    }
+    let place = |key: &str| scenario.place(key);
+    let staged = stage::staged(spec, bands, library, &place)?;
+    let rig = stage::rig(spec, camera, scenario.stereo.baseline_m, bands, &place)?;
     let counting = camera.counting(bands, &View::default());
     let noise = camera_noise(&counting, bands.len());
-    Ok(Rendered { scene, rig: rig.checked().map_err(at_scene)?, options, counting, noise })
+    Ok(Rendered { scene: staged.scene, rig, options: stage::options(spec), counting, noise })
 }
 
 /// The camera's noise in every band.
-pub(super) fn camera_noise(counting: &Counting, bands: usize) -> NoiseVariance {
+pub(in crate::study) fn camera_noise(counting: &Counting, bands: usize) -> NoiseVariance {
     let var: Vec<f64> = (0..bands).map(|w| counting.var_added(w)).collect();
     match var.as_slice() {
         [first, rest @ ..] if rest.iter().all(|var| var == first) => match *first {

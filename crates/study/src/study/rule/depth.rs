@@ -73,7 +73,7 @@ impl DepthClause {
             let bands = BandsSpec { source: scenario.bands.source.clone(), ..BandsSpec::default() };
             let mut range = RangeScenario {
                 title: scenario.title.take(),
-                subject: Subject::Scene(demand.scene.clone()),
+                subject: Subject::Scene(Box::new(demand.scene.clone())),
                 bands: Some(bands),
                 camera: scenario.camera.take(),
                 stereo: demand.stereo.clone(),
@@ -83,7 +83,7 @@ impl DepthClause {
             let from = |distance_m: f64| {
                 let mut scene = demand.scene.clone();
                 *demand.object.distance_m(&mut scene) = Some(distance_m);
-                range.subject = Subject::Scene(scene);
+                range.subject = Subject::Scene(Box::new(scene));
                 Ok((distance_m, RangeStudy::new(&range, library)?))
             };
             let studies = distances_m.into_iter().map(from).collect::<Result<_>>()?;

@@ -1,0 +1,54 @@
+//! `hadar render`: a scene as a heat cube with its truth.
+
+use super::global::Global;
+use clap::{Args, ValueEnum};
+use hadar::error::{Error, Result};
+use hadar_report::render::{self, Layout};
+use hadar_study::scenario::RenderScenario;
+use hadar_study::study::render::{RenderPlan, RenderStudy};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+#[derive(Debug, Args)]
+pub(super) struct RenderArgs {
+    /// The scenario (TOML): [scene], [[object]], [bands], [camera]; a ranging scenario of a scene is one too
+    scenario: PathBuf,
+    /// Write expected counts, without noise
+    #[arg(long)]
+    no_noise: bool,
+    /// How the cube and its truth lie in the folder
+    #[arg(long, value_enum, default_value_t = Folders::Npy)]
+    layout: Folders,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Folders {
+    /// NPY files
+    Npy,
+    /// The folders of the HADAR database, with .mat files
+    Hadar,
+}
+
+pub(super) fn run(args: &RenderArgs, global: &Global) -> Result<ExitCode> {
+    if global.out.is_none() && !global.json {
+        let found = "there is nowhere to write the cube to";
+        return Err(Error::malformed(found, "add --out DIR"));
+    }
+    let scenario = RenderScenario::from_file(&args.scenario)?;
+    let study = RenderStudy::new(&scenario, &global.library()?)?;
+    global.inputs_are_safe()?;
+    let bar = global.progress("rows");
+    let plan = RenderPlan { seed: (!args.no_noise).then_some(global.seed) };
+    let result = study.render(plan, &|done, total| bar.set(done, total))?;
+    bar.finish();
+    let text = render::text(&result);
+    let layout = match args.layout {
+        Folders::Npy => Layout::Npy,
+        Folders::Hadar => Layout::Hadar,
+    };
+    let work = global.report(&text, |out| render::bundle(&result, layout, out))?;
+    let json = serde_json::to_value(&result)
+        .map_err(|error| Error::malformed(error.to_string(), "report this as a bug"))?;
+    global.answer_with(json, &text, &work)?;
+    Ok(ExitCode::SUCCESS)
+}

@@ -1,0 +1,210 @@
+//! `hadar render` as its user runs it: the cube and its truth, both layouts, the way back, mistakes.
+
+use crate::support::folder::Folder;
+use hadar::planck::photon_radiance;
+use hadar::ranging::cube::Cube;
+use std::fs;
+
+const SCENARIO: &str = r#"title = "Three at night"
+[scene]
+sky = { material = "sky-us-standard", temperature = "288 K" }
+ground = { material = "asphalt", temperature = "12 degC", variation = "1 K", marks = "marble" }
+library = ["concrete", "asphalt"]
+size = [48, 64]
+[[object]]
+shape = "person"
+material = "skin"
+temperature = "33 degC"
+at = ["-1.2 m", "8 m"]
+roughness = 0.2
+[[object]]
+shape = "robot"
+material = "aluminium"
+temperature = "72.5 degC"
+variation = "2 K"
+at = ["0 m", "8 m"]
+[[object]]
+name = "cab"
+shape = "car"
+material = "pmma"
+temperature = "37 degC"
+tyres = { material = "rubber-tyre", temperature = "30 degC" }
+at = ["1.8 m", "11 m"]
+[bands]
+start = "800 cm^-1"
+stop = "1200 cm^-1"
+step = "20 cm^-1"
+[camera]
+exposure = "2 ms"
+pixel = "120 um"
+f_number = 1.4
+focal_length = "14 mm"
+noise_electrons = 300
+noise_exposure = "2 ms"
+"#;
+
+const ROWS: usize = 48;
+const COLUMNS: usize = 64;
+
+/// The samples of a file, and its dimensions.
+fn samples(folder: &Folder, name: &str) -> (Vec<f64>, [usize; 3]) {
+    let cube = Cube::open(&folder.path().join(name), None).unwrap();
+    let shape = cube.shape();
+    let rows = 0..shape.rows();
+    let values = match &cube {
+        Cube::F32(cube) => cube.read(rows, &mut Vec::new()).unwrap().iter().map(|x| f64::from(*x)).collect(),
+        Cube::F64(cube) => cube.read(rows, &mut Vec::new()).unwrap().to_vec(),
+    };
+    (values, [shape.rows(), shape.columns(), shape.bands()])
+}
+
+/// The rows of a table of numbers.
+fn table(folder: &Folder, name: &str) -> Vec<Vec<f64>> {
+    let text = fs::read_to_string(folder.path().join(name)).unwrap();
+    text.lines().skip(1).map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect()).collect()
+}
+
+/// Every pure pixel is S = e B(T) + (1 − e) ΣVS of the files beside the cube, in one scale of counts.
+#[test]
+fn counts_are_those_of_the_truth_beside_them() {
+    let folder = Folder::with(SCENARIO);
+    let found = folder.json(&["render", "a.toml", "--no-noise", "--out", "out"]);
+    let materials: Vec<&str> =
+        found["materials"].as_array().unwrap().iter().filter_map(|m| m.as_str()).collect();
+    assert_eq!(materials, ["asphalt", "marble", "skin", "aluminium", "pmma", "rubber-tyre", "concrete"]);
+    assert_eq!(found["surroundings"][0], "sky");
+    let (counts, shape) = samples(&folder, "out/counts.npy");
+    assert_eq!(shape, [ROWS, COLUMNS, 21]);
+    let [material, temperature_k, depth_m, surface] = ["material", "temperature_k", "depth_m", "surface"]
+        .map(|map| samples(&folder, &format!("out/{map}.npy")).0);
+    let (lighting, [.., lights]) = samples(&folder, "out/lighting.npy");
+    let (library, surroundings) = (table(&folder, "out/library.csv"), table(&folder, "out/surroundings.csv"));
+    let (mut scale, mut compared, mut seen) = (None, 0, [0; 6]);
+    // From a surface of one temperature first: the scale is its.
+    for i in (0..ROWS * COLUMNS).filter(|i| surface[*i] == 2.0).chain(0..ROWS * COLUMNS) {
+        if depth_m[i].is_infinite() {
+            assert!(material[i] == 65535.0 && temperature_k[i].is_nan());
+            continue;
+        }
+        let v = &lighting[i * lights..(i + 1) * lights];
+        // Where surfaces that are no surroundings light it, the files do not tell all.
+        if material[i] == 65535.0 || v.iter().sum::<f64>() < 1.0 - 1e-6 {
+            continue;
+        }
+        for (w, spectrum) in library.iter().enumerate() {
+            let (e, nu) = (spectrum[1 + material[i] as usize], spectrum[0]);
+            let light: f64 = v.iter().zip(&surroundings[w][1..]).map(|(v, s)| v * s).sum();
+            let radiance = e * photon_radiance(nu, temperature_k[i]) + (1.0 - e) * light;
+            let ratio = counts[i * 21 + w] / radiance;
+            let scale = *scale.get_or_insert(ratio);
+            // Single precision; where temperatures vary, within a pixel of the far ground by 1 K: ½ (x/T)² K² of B.
+            let tolerance = if [1, 3].contains(&(surface[i] as usize)) { 2e-4 } else { 2e-6 };
+            assert!((ratio / scale - 1.0_f64).abs() < tolerance, "{i} {w}: {}", ratio / scale - 1.0);
+        }
+        seen[surface[i] as usize] += 1;
+        compared += 1;
+    }
+    assert!(compared > 1000 && seen[1] > 500, "{compared} {seen:?}");
+}
+
+/// The scenario that is written takes it apart, and its intervals hold what is there.
+#[test]
+fn what_is_rendered_is_taken_apart_again() {
+    let folder = Folder::with(SCENARIO);
+    folder.json(&["render", "a.toml", "--out", "out", "--seed", "7"]);
+    let found = folder.json(&["decompose", "out/decompose.toml"]);
+    let truth = &found["truth"];
+    let share = |key: &str| truth[key].as_f64().unwrap();
+    assert!(share("right_material") > 0.95, "{truth}");
+    assert!(share("right_where_decided") > 0.99, "{truth}");
+    assert!(share("coverage_95") > 0.92, "{truth}");
+    // The same seed draws the same counts, another one others.
+    let first = fs::read(folder.path().join("out/counts.npy")).unwrap();
+    folder.json(&["render", "a.toml", "--out", "again", "--seed", "7", "--threads", "1"]);
+    assert!(first == fs::read(folder.path().join("again/counts.npy")).unwrap());
+    folder.json(&["render", "a.toml", "--out", "again", "--seed", "8"]);
+    assert!(first != fs::read(folder.path().join("again/counts.npy")).unwrap());
+}
+
+/// The folders of the database: the same numbers in other files, temperatures in degC, materials counted from 1.
+#[test]
+fn both_layouts_hold_the_same() {
+    let folder = Folder::with(SCENARIO);
+    folder.json(&["render", "a.toml", "--out", "npy"]);
+    folder.json(&["render", "a.toml", "--out", "mat", "--layout", "hadar"]);
+    let pair = |npy: &str, mat: &str| [samples(&folder, npy), samples(&folder, mat)];
+    let [(a, shape), (b, other)] = pair("npy/counts.npy", "mat/HeatCubes/L_0001_heatcube.mat");
+    assert!(a == b && shape == other);
+    let [(a, shape), (b, other)] = pair("npy/lighting.npy", "mat/GroundTruth/vMap/vMap_L_0001.mat");
+    assert!(a == b && shape == other);
+    let [(a, _), (b, _)] = pair("npy/temperature_k.npy", "mat/GroundTruth/tMap/tMap_L_0001.mat");
+    let same = |(k, c): (&f64, &f64)| (k - 273.15 - c).abs() < 1e-4 || (k.is_nan() && c.is_nan());
+    assert!(a.iter().zip(&b).all(same));
+    let [(a, _), (b, _)] = pair("npy/material.npy", "mat/GroundTruth/eMap/eMap_L_0001.mat");
+    assert!(a.iter().zip(&b).all(|(from_0, from_1)| (from_0 + 1.0) % 65536.0 == *from_1));
+    let (list, _) = samples(&folder, "mat/GroundTruth/eMap/eList.mat");
+    assert_eq!(list, [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
+    // Written over itself, and taken apart.
+    folder.json(&["render", "a.toml", "--out", "mat", "--layout", "hadar", "--seed", "2"]);
+    let found = folder.json(&["decompose", "mat/decompose.toml"]);
+    assert_eq!(found["pixels"].as_u64(), Some((ROWS * COLUMNS) as u64));
+    // What somebody else put there stays.
+    folder.file("mat/GroundTruth/mine.txt", "mine");
+    let refused = folder.refusal(&["render", "a.toml", "--out", "mat", "--layout", "hadar"]);
+    assert!(refused.contains("`GroundTruth`"), "{refused}");
+}
+
+/// A sky of a spectrum is that of the material that it was written from; a pair of cameras gives two views.
+#[test]
+fn skies_and_views_are_what_is_said() {
+    let folder = Folder::with(SCENARIO);
+    folder.json(&["render", "a.toml", "--no-noise", "--out", "out"]);
+    fs::copy(folder.path().join("out/surroundings.csv"), folder.path().join("sky.csv")).unwrap();
+    let spectral = SCENARIO.replace(
+        "sky = { material = \"sky-us-standard\", temperature = \"288 K\" }",
+        "sky = { spectrum = \"sky.csv\", column = \"sky\" }",
+    );
+    folder.file("b.toml", &(spectral + "[stereo]\nbaseline = \"0.2 m\"\n"));
+    folder.json(&["render", "b.toml", "--no-noise", "--out", "pair"]);
+    let (one, _) = samples(&folder, "out/counts.npy");
+    let (right, _) = samples(&folder, "pair/right_counts.npy");
+    let (left, _) = samples(&folder, "pair/counts.npy");
+    assert_ne!(left, right);
+    // The left camera of the pair stands 10 cm to the left; the ground far ahead and the sky look the same.
+    let sky = |cube: &[f64]| cube[..21].to_vec();
+    assert!(sky(&one).iter().zip(sky(&left)).all(|(a, b)| (a / b - 1.0).abs() < 1e-6));
+    // The same file is a ranging scenario.
+    let ranged = folder.json(&["range", "b.toml"]);
+    assert!(ranged["verdict"].is_object(), "{ranged}");
+}
+
+#[test]
+fn mistakes_are_told_in_one_line() {
+    let folder = Folder::with(SCENARIO);
+    assert!(folder.refusal(&["render", "a.toml"]).contains("--out"));
+    for (wrong, instead, said) in [
+        ("shape = \"robot\"", "shape = \"robt\"", "object[1].shape"),
+        ("shape = \"robot\"\n", "", "object[1].shape"),
+        ("at = [\"0 m\", \"8 m\"]", "at = [\"0 m\", \"-8 m\"]", "object[1].at[1]"),
+        ("at = [\"0 m\", \"8 m\"]", "at = [\"0 m\"]", "object[1].at"),
+        ("at = [\"0 m\", \"8 m\"]\n", "", "object[1].at"),
+        ("material = \"skin\"", "material = \"skim\"", "object[0].material"),
+        ("material = \"skin\"\n", "", "object[0].material"),
+        ("roughness = 0.2", "roughness = 2", "object[0].roughness"),
+        ("roughness = 0.2", "radius = \"1 m\"", "object[0].radius"),
+        ("variation = \"2 K\"", "variation = \"20 K\"", "at most 12 K"),
+        ("variation = \"2 K\"", "variation = \"-2 K\"", "object[1].variation"),
+        ("size = [48, 64]", "size = [0, 64]", "scene"),
+        ("size = [48, 64]", "size = [48, 64]\ncar_temperature = \"20 degC\"", "scene.car_temperature"),
+        ("size = [48, 64]", "size = [48, 64]\nsky_temperature = \"20 degC\"", "scene"),
+        ("library = [\"concrete\", \"asphalt\"]", "library = [\"concret\"]", "scene.library[0]"),
+        ("temperature = \"288 K\" }", "temperature = \"0 K\" }", "scene.sky.temperature"),
+        ("[scene]", "[scenery]", "scenery"),
+        ("at = [\"-1.2 m\", \"8 m\"]", "at = [\"0 m\", \"0.1 m\"]\nheight = \"3 m\"", "inside"),
+    ] {
+        assert!(SCENARIO.contains(wrong), "{wrong}");
+        folder.file("wrong.toml", &SCENARIO.replacen(wrong, instead, 1));
+        let refused = folder.refusal(&["render", "wrong.toml", "--out", "out"]);
+        assert!(refused.contains(said), "{instead}: {refused}");
+    }
+}

@@ -1,0 +1,181 @@
+//! A rendered scene as files: the cube, its truth, what lights it, the scenario that takes it apart, pictures.
+
+mod figures;
+mod text;
+
+pub use figures::scene;
+pub use text::text;
+
+use crate::bundle::Bundle;
+use crate::table::{Table, number};
+use hadar::error::Result;
+use hadar::ranging::cube::{mat_file, npy_map};
+use hadar_study::scenario::decompose::{
+    CubeUnit, HeatCube, LibrarySpec, LightSource, PixelUnknown, TruthSpec,
+};
+use hadar_study::scenario::{DecomposeScenario, Source};
+use hadar_study::study::render::{Picture, Rendered};
+use std::path::Path;
+
+/// 0 degC, K.
+const FREEZING_K: f64 = 273.15;
+/// Beyond the temperatures of a scene, those that are searched, K.
+const ROOM_K: f64 = 40.0;
+/// Lighting that is left out below which the factors still add up to 1.
+const NEARLY_ALL: f64 = 0.01;
+
+/// How the cubes lie in the folder.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Layout {
+    /// NPY files.
+    Npy,
+    /// The folders of the HADAR database, .mat files: `HeatCubes`, `GroundTruth`, `Radiance_EnvObj`.
+    Hadar,
+}
+
+/// All files; paths in the scenarios are written relative to `out` where they lie below it.
+///
+/// # Errors
+/// A figure that cannot be drawn, a cube that is too large for its format.
+pub fn bundle(result: &Rendered, layout: Layout, out: &Path) -> Result<Bundle> {
+    let mut bundle = Bundle::about(result.scenario.title.as_deref());
+    bundle.add_asked("scenario.toml", result.scenario.to_toml_beside(out));
+    let spectra = |names: &[String], columns: &[Vec<f64>]| {
+        let header = std::iter::once("wavenumber_cm1").chain(names.iter().map(String::as_str));
+        let mut table = Table::new(header);
+        for (i, nu) in result.wavenumbers_cm1.iter().enumerate() {
+            let values =
+                std::iter::once(*nu).chain(columns.iter().filter_map(|column| column.get(i).copied()));
+            // Every digit: what is taken apart with it must be what was put together.
+            table.push(values.map(|value| format!("{value:e}")).collect());
+        }
+        table
+    };
+    bundle.add_table("library.csv", spectra(&result.materials, &result.emissivities))?;
+    bundle.add_table("surroundings.csv", spectra(&result.surroundings, &result.radiances))?;
+    bundle.add_table("surfaces.csv", surfaces(result))?;
+    bundle.add_warnings(&result.warnings)?;
+    let names: &[[&str; 2]] = match layout {
+        Layout::Npy => &[["", "L"], ["right_", "R"]],
+        Layout::Hadar => &[["", "L"], ["", "R"]],
+    };
+    for (view, [prefix, side]) in result.views.iter().zip(names) {
+        match layout {
+            Layout::Npy => npy(&mut bundle, result, view, prefix)?,
+            Layout::Hadar => database(&mut bundle, result, view, side)?,
+        }
+    }
+    bundle.add("decompose.toml", decomposition(result, layout, out).to_toml_beside(out));
+    bundle.add_plots(&[figures::scene(result)])?;
+    Ok(bundle)
+}
+
+fn npy(bundle: &mut Bundle, result: &Rendered, view: &Picture, prefix: &str) -> Result<()> {
+    let size = [result.shape.rows(), result.shape.columns()];
+    let deep = |layers: usize| [size[0], size[1], layers];
+    let mut add = |name: &str, file: Vec<u8>| bundle.add(format!("{prefix}{name}.npy"), file);
+    add("counts", npy_map(&deep(result.shape.bands()), &view.counts)?);
+    add("material", npy_map(&size, &view.material)?);
+    add("temperature_k", npy_map(&size, &view.temperature_k)?);
+    add("lighting", npy_map(&deep(result.surroundings.len()), &view.lighting)?);
+    add("incident", npy_map(&size, &view.incident)?);
+    add("depth_m", npy_map(&size, &view.depth_m)?);
+    add("surface", npy_map(&size, &view.surface)?);
+    Ok(())
+}
+
+/// The folders of the database: temperatures in degC, materials counted from 1 in a list of their own.
+fn database(bundle: &mut Bundle, result: &Rendered, view: &Picture, side: &str) -> Result<()> {
+    let (rows, columns, bands) = (result.shape.rows(), result.shape.columns(), result.shape.bands());
+    let id = format!("{side}_0001");
+    bundle.add(format!("HeatCubes/{id}_heatcube.mat"), mat_file("S", [rows, columns, bands], &view.counts)?);
+    let celsius: Vec<f32> = view.temperature_k.iter().map(|k| (f64::from(*k) - FREEZING_K) as f32).collect();
+    bundle.add(format!("GroundTruth/tMap/tMap_{id}.mat"), mat_file("tMap", [rows, columns, 1], &celsius)?);
+    let places: Vec<u16> = view.material.iter().map(|place| place.wrapping_add(1)).collect();
+    bundle.add(format!("GroundTruth/eMap/eMap_{id}.mat"), mat_file("eMap", [rows, columns, 1], &places)?);
+    let list: Vec<u16> = (1..=result.materials.len()).filter_map(|place| u16::try_from(place).ok()).collect();
+    let lights = result.surroundings.len();
+    bundle.add(
+        format!("GroundTruth/vMap/vMap_{id}.mat"),
+        mat_file("vMap", [rows, columns, lights], &view.lighting)?,
+    );
+    if side == "L" {
+        bundle.add("GroundTruth/eMap/eList.mat", mat_file("eList", [1, list.len(), 1], &list)?);
+        let spectra: Vec<f32> = result.radiances.iter().flatten().map(|s| *s as f32).collect();
+        let file = mat_file("S_EnvObj", [lights, result.wavenumbers_cm1.len(), 1], &spectra)?;
+        bundle.add("Radiance_EnvObj/S_EnvObj_0001.mat", file);
+    }
+    Ok(())
+}
+
+/// The scenario that takes the left view apart.
+fn decomposition(result: &Rendered, layout: Layout, out: &Path) -> DecomposeScenario {
+    let there = std::path::absolute(out).unwrap_or_else(|_| out.to_owned());
+    let file = |name: &str| there.join(name);
+    let kelvin = result.surfaces.iter().filter(|row| row.pure > 0 && row.depth_m.is_some());
+    let ends = kelvin.fold([f64::INFINITY, 0.0_f64], |[low, high], row| {
+        [low.min(row.temperature_k), high.max(row.temperature_k)]
+    });
+    let temperature_k = match ends {
+        [low, high] if low <= high => [(low - ROOM_K).max(1.0).round(), (high + ROOM_K).round()],
+        _ => PixelUnknown::default().temperature_k,
+    };
+    let truth = |name: &str| (layout == Layout::Npy).then(|| file(name));
+    DecomposeScenario {
+        title: result.scenario.title.clone(),
+        cube: HeatCube {
+            data: file(if layout == Layout::Npy { "counts.npy" } else { "HeatCubes/L_0001_heatcube.mat" }),
+            variable: (layout == Layout::Hadar).then(|| "S".to_owned()),
+            unit: CubeUnit::Camera,
+            noise: None,
+            bad_bands: Vec::new(),
+        },
+        bands: result.scenario.bands.clone(),
+        camera: Some(result.scenario.camera.clone()),
+        environment: result
+            .surroundings
+            .iter()
+            .map(|name| LightSource::Spectrum { path: file("surroundings.csv"), column: name.clone() })
+            .collect(),
+        library: LibrarySpec { path: Some(file("library.csv")), ..LibrarySpec::default() },
+        unknown: PixelUnknown {
+            temperature_k,
+            lighting_total: (result.lighting_left_out < NEARLY_ALL).then_some(1.0),
+            gain: false,
+        },
+        truth: truth("material.npy").map(|material| TruthSpec {
+            material: Some(material),
+            temperature: truth("temperature_k.npy"),
+            lighting: vec![file("lighting.npy")],
+        }),
+        source: Source::default(),
+    }
+}
+
+fn surfaces(result: &Rendered) -> Table {
+    let mut table = Table::new([
+        "surface",
+        "index",
+        "materials",
+        "pixels",
+        "pure_pixels",
+        "temperature_k",
+        "nearest_m",
+        "farthest_m",
+    ]);
+    for (index, row) in result.surfaces.iter().enumerate() {
+        let depth = |end: usize| row.depth_m.map_or_else(String::new, |ends| number(ends[end]));
+        let temperature = if row.pure > 0 { number(row.temperature_k) } else { String::new() };
+        table.push(vec![
+            row.name.clone(),
+            index.to_string(),
+            row.materials.join(", "),
+            row.pixels.to_string(),
+            row.pure.to_string(),
+            temperature,
+            depth(0),
+            depth(1),
+        ]);
+    }
+    table
+}

@@ -1,0 +1,70 @@
+//! A rendered scene in words: what is seen, what it was drawn with, what was assumed.
+
+use crate::text::footing::warnings;
+use hadar::words::{share, significant, whole};
+use hadar_study::study::render::Rendered;
+use std::fmt::Write as _;
+
+const FREEZING_K: f64 = 273.15;
+
+/// The whole answer.
+#[must_use]
+pub fn text(result: &Rendered) -> String {
+    let (rows, columns, bands) = (result.shape.rows(), result.shape.columns(), result.shape.bands());
+    let pixels = rows * columns;
+    let views = if result.views.len() == 2 { "two views" } else { "one view" };
+    let mut out = format!(
+        "Rendered {views} of {rows} x {columns} pixels in {bands} bands; {} of {} pixels are one surface of one material.\n\n",
+        whole(result.pure as u64),
+        whole(pixels as u64)
+    );
+    let width = result.surfaces.iter().map(|row| row.name.chars().count()).max().unwrap_or(0).max(8);
+    let _ = writeln!(
+        out,
+        "Surfaces\n  {:width$}  {:>8}  {:>8}  {:>12}  {:>16}  material",
+        "", "pixels", "pure", "mean (degC)", "depth (m)"
+    );
+    for row in &result.surfaces {
+        let depth = row.depth_m.map_or_else(
+            || "-".to_owned(),
+            |[near, far]| format!("{} to {}", significant(near, 3), significant(far, 3)),
+        );
+        let mean = match row.depth_m {
+            Some(_) if row.pure > 0 => format!("{:.1}", row.temperature_k - FREEZING_K),
+            _ => "-".to_owned(),
+        };
+        let _ = writeln!(
+            out,
+            "  {:width$}  {:>8}  {:>8}  {mean:>12}  {depth:>16}  {}",
+            row.name,
+            whole(row.pixels as u64),
+            whole(row.pure as u64),
+            if row.materials.is_empty() { "-".to_owned() } else { row.materials.join(", ") },
+        );
+    }
+    let _ = writeln!(
+        out,
+        "\nCounts of a sample: {} in the median, electronic noise {}",
+        significant(result.counts_median, 3),
+        significant(result.noise_variance.sqrt(), 3),
+    );
+    match result.seed {
+        Some(seed) => drop(writeln!(out, "Noise: Poisson and electronic, seed {seed}")),
+        None => drop(writeln!(out, "Noise: none, expected counts")),
+    }
+    let _ = writeln!(out, "Surroundings of a decomposition: {}", result.surroundings.join(", "));
+    if result.lighting_left_out > 0.0 {
+        let _ = writeln!(
+            out,
+            "  other surfaces light no pixel with more than {}",
+            share(result.lighting_left_out)
+        );
+    }
+    let _ = writeln!(out, "Time: {} s", significant(result.seconds, 2));
+    out.push_str(
+        "\nAssumptions\n  opaque, Lambertian surfaces; no air between them and the camera; no blur of a lens\n  \
+         what lights a surface is the mean radiance of each other surface, after the scatterings before\n",
+    );
+    out.push_str(&warnings(&result.warnings));
+    out
+}
