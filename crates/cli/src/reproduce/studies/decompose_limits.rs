@@ -1,13 +1,13 @@
 //! How near a decomposed heat cube comes to what the photons allow, over the photons of a pixel.
 //!
-//! * Materials. A pixel is in a random state, or in the state of another material that is the nearest to it (half each): between these two
-//!   no decision is right more often than 1 − ½Σ min(p, q), which is computed, and Φ(d) for many photons, d = d₁√N the nearest distance. A library
-//!   of more materials only makes it harder. So the mean over the pairs is a limit of any method, whatever it knows.
+//! * Materials. A pixel is in a random state, or in the nearest state of one of the other materials, each as often as the others. No
+//!   decision between these states, which the best one knows and a decomposition does not, is right more often than the most probable
+//!   of them: its share, on the same spectra, is a limit of any method. Between two it is 1 − ½Σ min(p, q), for many photons Φ(d), d = d₁√N.
 //! * Random pixels alone have no such limit: a method may favour their materials. Their mean Φ(d) stands beside it, as in `hadar decompose`.
 //! * Temperature: error over the Cramér–Rao bound at the true state, share of 95 % intervals that hold it.
 
 mod files;
-mod pairs;
+mod sets;
 mod temperatures;
 mod text;
 
@@ -20,6 +20,9 @@ use hadar_report::bundle::Bundle;
 /// Photons of a pixel; the quick form has the first.
 const PHOTONS: [f64; 11] = [1e2, 316.0, 1e3, 3160.0, 1e4, 31_600.0, 1e5, 316_000.0, 1e6, 3_160_000.0, 1e7];
 const QUICK: usize = 3;
+/// Random pixels whose neighbours are looked for.
+const SETS_OF_TWO: usize = 300;
+const SETS_OF_ALL: usize = 80;
 /// Two materials that are hard to tell apart, by name.
 const TWO: [&str; 2] = ["concrete", "cinderblock"];
 
@@ -27,8 +30,8 @@ const TWO: [&str; 2] = ["concrete", "cinderblock"];
 pub(super) fn make(order: Order, library: &Library, progress: Progress<'_>) -> Result<(Bundle, String)> {
     let street = Street::new(library)?;
     let two = Street::of(library, &TWO)?;
-    let of_two = pairs::Pairs::new(&two, order.seed)?;
-    let of_many = pairs::Pairs::new(&street, order.seed)?;
+    let of_two = sets::Sets::new(&two, SETS_OF_TWO, order.seed)?;
+    let of_many = sets::Sets::new(&street, SETS_OF_ALL, order.seed)?;
     let photons = order.some_of(&PHOTONS, QUICK);
     let (mut materials, mut temperatures) = (Vec::new(), Vec::new());
     for (i, &photons_each) in photons.iter().enumerate() {

@@ -1,7 +1,7 @@
 //! Tables and plots.
 
 use super::TWO;
-use super::pairs::Decided;
+use super::sets::Decided;
 use super::temperatures::Read;
 use hadar_report::figures::Plot;
 use hadar_report::plot::{Axis, LineFigure, Panel, Rule, Series, Style};
@@ -13,11 +13,31 @@ pub(super) type Row = (f64, Decided, Decided);
 pub(super) fn materials(rows: &[Row]) -> Plot {
     let mut table =
         Table::new(["photons"].map(str::to_owned).into_iter().chain(["two", "many"].iter().flat_map(|of| {
-            ["right", "right_standard_error", "limit", "phi_of_nearest_distance", "right_random_pixels"]
-                .map(|what| format!("{of}_{what}"))
+            [
+                "right",
+                "unnamed",
+                "right_standard_error",
+                "best_decision",
+                "best_decision_standard_error",
+                "best_decision_exact",
+                "right_random_pixels",
+                "phi_random_pixels",
+            ]
+            .map(|what| format!("{of}_{what}"))
         })));
     for (photons, two, many) in rows {
-        let cells = [two, many].map(|d| [d.right, d.right_error, d.limit, d.phi, d.right_random]);
+        let cells = [two, many].map(|d| {
+            [
+                d.right,
+                d.unnamed,
+                d.right_error,
+                d.best,
+                d.best_error,
+                d.exact.unwrap_or(f64::NAN),
+                d.right_random,
+                d.phi,
+            ]
+        });
         table.push_numbers(&[[*photons].as_slice(), &cells.concat()].concat());
     }
     let x: Vec<f64> = rows.iter().map(|row| row.0).collect();
@@ -27,24 +47,23 @@ pub(super) fn materials(rows: &[Row]) -> Plot {
         Axis::log("photons of a pixel"),
         Axis::linear("right materials").range(0.0, 1.0),
     )
-    .subtitle("A pixel is in a random state or in the nearest state of another material, half each.");
+    .subtitle("A pixel is in a random state, or in the nearest state of one of the others; each as often.");
     let of: [(String, fn(&Row) -> Decided); 2] =
         [(format!("{} and {}", TWO[0], TWO[1]), |row| row.1), ("20 materials".to_owned(), |row| row.2)];
     for (i, (name, pick)) in of.into_iter().enumerate() {
         figure = figure
-            .series(Series::line(format!("{name}: limit"), x.clone(), y(&|row| pick(row).limit)).colour(i))
-            .series(Series::points(format!("{name}: found"), x.clone(), y(&|row| pick(row).right)).colour(i))
             .series(
-                Series::line(format!("{name}: Φ(d)"), x.clone(), y(&|row| pick(row).phi))
-                    .style(Style::Dotted)
-                    .colour(i),
-            );
+                Series::line(format!("{name}: best decision"), x.clone(), y(&|row| pick(row).best)).colour(i),
+            )
+            .series(Series::points(format!("{name}: found"), x.clone(), y(&|row| pick(row).right)).colour(i));
     }
-    figure = figure.series(
-        Series::points("20 materials: found, random pixels", x.clone(), y(&|row| row.2.right_random))
-            .open()
-            .colour(1),
-    );
+    figure = figure
+        .series(
+            Series::line("random pixels: Φ(d)", x.clone(), y(&|row| row.2.phi))
+                .style(Style::Dotted)
+                .colour(2),
+        )
+        .series(Series::points("random pixels: found", x, y(&|row| row.2.right_random)).open().colour(2));
     Plot { name: "right_material".into(), figure: figure.into(), table }
 }
 
