@@ -71,6 +71,7 @@ fn found(result: &Decomposed) -> String {
         "", "pixels", "decided", "median (degC)", "tenths (degC)", "sigma (K)"
     );
     let celsius = |k: f64| format!("{:.1}", k - FREEZING_K);
+    let says = |what: String| if result.method.has_likelihood() { what } else { "-".to_owned() };
     for row in shown {
         let tenths =
             format!("{} to {}", celsius(row.temperature_tenths_k[0]), celsius(row.temperature_tenths_k[1]));
@@ -79,9 +80,9 @@ fn found(result: &Decomposed) -> String {
             "  {:width$}  {:>9}  {:>9}  {:>14}  {tenths:>18}  {:>10}",
             row.material,
             whole(row.pixels as u64),
-            whole(row.decided as u64),
+            says(whole(row.decided as u64)),
             celsius(row.temperature_median_k),
-            significant(row.temperature_sigma_median_k, 2)
+            says(significant(row.temperature_sigma_median_k, 2))
         );
     }
     if let Some(more) = result.found.len().checked_sub(LISTED).filter(|more| *more > 0) {

@@ -59,11 +59,15 @@ pub(super) fn materials(rows: &[Row]) -> Plot {
     }
     figure = figure
         .series(
-            Series::line("random pixels: Φ(d)", x.clone(), y(&|row| row.2.phi))
+            Series::line("20 materials, random pixels: Φ(d)", x.clone(), y(&|row| row.2.phi))
                 .style(Style::Dotted)
                 .colour(2),
         )
-        .series(Series::points("random pixels: found", x, y(&|row| row.2.right_random)).open().colour(2));
+        .series(
+            Series::points("20 materials, random pixels: found", x, y(&|row| row.2.right_random))
+                .open()
+                .colour(2),
+        );
     Plot { name: "right_material".into(), figure: figure.into(), table }
 }
 
@@ -87,7 +91,7 @@ pub(super) fn temperatures(rows: &[Read]) -> Plot {
     let figure = LineFigure::new(
         "Temperatures against the Cramér–Rao bound",
         Axis::log("photons of a pixel"),
-        Axis::log("error over bound, rms"),
+        Axis::linear("error over bound, rms").range(0.0, 1.2),
     )
     .subtitle("Random pixels of 20 materials whose material is right and whose state no limit holds.")
     .series(
