@@ -9,6 +9,7 @@
 //!
 //! [`FurtherStudy`] are questions of this project beyond the paper's figures: no part of `all`, no lines of the ledger.
 
+mod candidates;
 mod edfig6;
 mod edfig9;
 mod fig3b;
@@ -177,9 +178,14 @@ fn page(item: Item, effort: Effort, lines: &[Line], figures: &Figures) -> String
         Effort::Quick => format!("Some of the experiments only, made by `hadar reproduce {name} --quick`"),
     };
     let mut page = format!(
-        "# {}\n\n{made} from the scenarios beside it.\n\
+        "# {}\n\n{made} from {}.\n\
          Paper: Bao et al., Nature 619, 743 (2023), doi:10.1038/s41586-023-06174-6.\n\n{}",
         item.title(),
+        if matches!(item, Item::FigS17 | Item::FigS20) {
+            "pixels that it draws"
+        } else {
+            "the scenarios beside it"
+        },
         markdown(lines)
     );
     for (file, caption) in &figures.pictures {

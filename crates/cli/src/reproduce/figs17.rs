@@ -17,6 +17,7 @@ use hadar_report::bundle::Bundle;
 use hadar_report::figures::Plot;
 use hadar_report::plot::{Axis, LineFigure, Panel, Rule, Series, Style};
 use hadar_report::table::{Table, number};
+use hadar_report::text::significant;
 
 const PIXELS: usize = 600;
 const PHOTONS: f64 = 1e8;
@@ -184,9 +185,9 @@ fn lines(rows: &[(&str, Loss, Loss)], papers: f64) -> Vec<Line> {
             "loss with more materials, the most similar one taken",
             "decreases",
             format!(
-                "{:.3} to {:.3}; rises {similar} times in {}",
-                first.2.chi_square,
-                last.2.chi_square,
+                "{} to {}; rises {similar} times in {}",
+                significant(first.2.chi_square, 3),
+                significant(last.2.chi_square, 3),
                 rows.len() - 1
             ),
             holds(similar == 0),
@@ -198,9 +199,9 @@ fn lines(rows: &[(&str, Loss, Loss)], papers: f64) -> Vec<Line> {
             "loss with more materials, the best taken",
             "decreases, lower than in a",
             format!(
-                "{:.3} to {:.3}; rises {best} times in {}",
-                first.1.chi_square,
-                last.1.chi_square,
+                "{} to {}; rises {best} times in {}",
+                significant(first.1.chi_square, 3),
+                significant(last.1.chi_square, 3),
                 rows.len() - 1
             ),
             holds(best == 0 && rows.iter().all(|row| row.1.chi_square <= row.2.chi_square)),
@@ -211,13 +212,14 @@ fn lines(rows: &[(&str, Loss, Loss)], papers: f64) -> Vec<Line> {
             "loss beyond 5 materials",
             "its changes are noise",
             format!(
-                "{fifth:.3} times that of noise at 5, {}",
+                "{} times that of noise at 5, {}",
+                significant(fifth, 3),
                 at_noise.map_or("above noise with all".to_owned(), |at| format!(
                     "noise (within 10 %) from {at} on"
                 ))
             ),
             holds(fifth <= 1.0 + NOISE),
-            "in its network's training, or in the likeness of its materials; here every material of the scene counts until the noise is reached, \
+            "the paper's may be that of its network's training; here every material of the scene counts until the noise of the photons is reached, \
              which more photons put off",
         ),
         Line::new(
@@ -226,7 +228,7 @@ fn lines(rows: &[(&str, Loss, Loss)], papers: f64) -> Vec<Line> {
             "the most distinct",
             format!("{:.2} ({}, {})", papers / rows[2].1.chi_square, rows[1].0, rows[2].0),
             holds((papers / rows[2].1.chi_square - 1.0).abs() < 1e-9),
-            "distinct emissivities are not what takes the most away from the loss; polished brass is rough here",
+            "of these 20 materials, others than the paper's, brass (rough here) takes the most away from the loss, and distinct emissivities alone are not what does",
         ),
         Line::new(
             place,

@@ -4,6 +4,7 @@
 //! right, what is left of the signal, and how far the temperature is off, beside the Cramér–Rao bound. Beside it what the paper says of its
 //! inverse functions in words: [`super::inverse_trade_off`].
 
+use super::candidates::{self, Costs};
 use super::inverse_trade_off;
 use super::ledger::{Line, Verdict};
 use super::order::{Figures, Made, Order};
@@ -13,14 +14,11 @@ use hadar::error::Result;
 use hadar::material::Library;
 use hadar_report::bundle::Bundle;
 use hadar_report::figures::Plot;
-use hadar_report::plot::{Axis, LineFigure, NamedSeries, NamedValues, Series};
+use hadar_report::plot::{Axis, LineFigure, Series};
 use hadar_report::table::{Table, number};
 
 const PIXELS: usize = 1500;
 const PHOTONS: f64 = 1e7;
-/// Typical pixels: material, temperature (K), lighting by the sky; the first is drawn.
-const TYPICAL: [(&str, f64, f64); 3] =
-    [("aluminium-rough", 278.0, 0.7), ("sand-quartz", 276.0, 0.9), ("brick-red", 283.0, 0.4)];
 
 /// What a method makes of all pixels.
 struct Worth {
@@ -37,7 +35,7 @@ struct Worth {
 
 pub(super) fn make(order: Order) -> Result<Made> {
     let street = Street::new(&Library::embedded()?)?;
-    let typical = typical(&street, order.seed)?;
+    let typical = candidates::typical(&street, PHOTONS, order.seed)?;
     let pixels = street.pixels(PIXELS, order.seed)?;
     let counts = street.drawn(&pixels, PHOTONS, order.seed, 1)?;
     let bounds = street.bounds_k(&pixels, PHOTONS)?;
@@ -63,10 +61,10 @@ pub(super) fn make(order: Order) -> Result<Made> {
     }
     let mut bundle = Bundle::default();
     let trade_off = inverse_trade_off::make(order)?;
-    bundle.add_table("costs.csv", costs_table(&street, &typical))?;
+    bundle.add_table("costs.csv", candidates::table(&street, &typical))?;
     bundle.add_table("methods.csv", methods_table(&worth, &bounds))?;
     bundle.add_plots(&[
-        costs(&street, &typical),
+        candidates::plot(&street, &typical),
         temperatures(&street, &pixels, &by_material, &bounds),
         trade_off.plot,
     ])?;
@@ -89,45 +87,6 @@ pub(super) fn make(order: Order) -> Result<Made> {
         ("inverse_trade_off.png", "Errors of the inverse functions over the width of the bands"),
     ];
     Ok((bundle, lines, Figures { pictures, text }))
-}
-
-/// A pixel and what every candidate costs, with scattered light and without.
-struct Costs {
-    pixel: Pixel,
-    tex: Vec<f64>,
-    te: Vec<f64>,
-}
-
-impl Costs {
-    /// Whether the least of some costs is that of the pixel's own material.
-    fn is_right(&self, costs: &[f64]) -> bool {
-        let least = costs.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1));
-        least.is_some_and(|(m, _)| m == self.pixel.material)
-    }
-}
-
-fn typical(street: &Street, seed: u64) -> Result<Vec<Costs>> {
-    let mut out = Vec::new();
-    for (i, (name, temperature_k, v)) in TYPICAL.iter().enumerate() {
-        let material = street.names.iter().position(|one| one == name).unwrap_or(0);
-        let state = street.surroundings.state(*temperature_k, &[*v, 1.0 - v])?;
-        let pixel = Pixel { material, state };
-        let counts = street.drawn(std::slice::from_ref(&pixel), PHOTONS, seed, 1 << 20 | i as u64)?;
-        let mut costs = Costs { pixel, tex: Vec::new(), te: Vec::new() };
-        for emissivity in &street.library {
-            let temperature = |method| -> Result<f64> {
-                let library = std::slice::from_ref(emissivity);
-                let maps = street.decomposed(method, library, counts.clone(), PHOTONS)?;
-                Ok(f64::from(maps.temperature_k[0]))
-            };
-            let tex = street.lit_best(emissivity, temperature(Method::Ml)?, &counts, PHOTONS);
-            let te = street.counts_of(emissivity, temperature(Method::Te)?, &[0.0, 0.0], PHOTONS);
-            costs.tex.push(loss(&counts, &tex));
-            costs.te.push(loss(&counts, &te));
-        }
-        out.push(costs);
-    }
-    Ok(out)
 }
 
 /// Mean loss of the pixels that have a temperature.
@@ -156,26 +115,6 @@ fn losses(street: &Street, method: Method, maps: &Maps, counts: &[f64]) -> f64 {
     sum / count
 }
 
-fn costs_table(street: &Street, typical: &[Costs]) -> Table {
-    let mut table =
-        Table::new(["pixel", "temperature_k", "lighting_by_sky", "candidate", "cost_tex", "cost_te"]);
-    for costs in typical {
-        let state = &costs.pixel.state;
-        for (m, name) in street.names.iter().enumerate() {
-            let sky = state.lighting.first().copied().unwrap_or(f64::NAN);
-            table.push(vec![
-                street.names[costs.pixel.material].to_owned(),
-                number(state.temperature_k),
-                number(sky),
-                (*name).to_owned(),
-                number(costs.tex[m]),
-                number(costs.te[m]),
-            ]);
-        }
-    }
-    table
-}
-
 fn methods_table(worth: &[Worth], bounds: &[f64]) -> Table {
     let mut table = Table::new([
         "method",
@@ -201,27 +140,6 @@ fn methods_table(worth: &[Worth], bounds: &[f64]) -> Table {
         table.push(first.into_iter().chain(numbers.map(number)).collect());
     }
     table
-}
-
-fn costs(street: &Street, typical: &[Costs]) -> Plot {
-    let mut table = Table::new(["candidate", "cost_tex", "cost_te"]);
-    let names: Vec<String> = street.names.iter().map(|name| (*name).to_owned()).collect();
-    let mut figure = NamedValues::new(
-        format!("A pixel of {}: what every candidate costs", TYPICAL[0].0),
-        names.clone(),
-        Axis::log("cost: χ² of each band, 1 is noise"),
-    )
-    .subtitle("With scattered light (TeX) the least cost is that of noise, and the pixel's own; without (TE) it is not.");
-    if let Some(costs) = typical.first() {
-        for (m, name) in names.iter().enumerate() {
-            table.push(vec![name.clone(), number(costs.tex[m]), number(costs.te[m])]);
-        }
-        figure = figure
-            .series(NamedSeries::new("TeX", costs.tex.clone()).colour(0))
-            .series(NamedSeries::new("TE", costs.te.clone()).colour(1))
-            .line(1.0, "noise");
-    }
-    Plot { name: "candidates".into(), figure: figure.into(), table }
 }
 
 fn temperatures(street: &Street, pixels: &[Pixel], off: &[Vec<f64>], bounds: &[f64]) -> Plot {

@@ -48,14 +48,13 @@ pub(super) fn materials(rows: &[Row]) -> Plot {
         Axis::linear("right materials").range(0.0, 1.0),
     )
     .subtitle("A pixel is in a random state, or in the nearest state of one of the others; each as often.");
-    let of: [(String, fn(&Row) -> Decided); 2] =
-        [(format!("{} and {}", TWO[0], TWO[1]), |row| row.1), ("20 materials".to_owned(), |row| row.2)];
-    for (i, (name, pick)) in of.into_iter().enumerate() {
+    let of_two = format!("{} and {}", TWO[0], TWO[1]);
+    for (i, name) in [of_two.as_str(), "20 materials"].into_iter().enumerate() {
+        let of = |row: &Row| if i == 0 { row.1 } else { row.2 };
+        let (best, right) = (y(&|row| of(row).best), y(&|row| of(row).right));
         figure = figure
-            .series(
-                Series::line(format!("{name}: best decision"), x.clone(), y(&|row| pick(row).best)).colour(i),
-            )
-            .series(Series::points(format!("{name}: found"), x.clone(), y(&|row| pick(row).right)).colour(i));
+            .series(Series::line(format!("{name}: best decision"), x.clone(), best).colour(i))
+            .series(Series::points(format!("{name}: found"), x.clone(), right).colour(i));
     }
     figure = figure
         .series(
