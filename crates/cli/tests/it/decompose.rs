@@ -229,17 +229,15 @@ fn mistakes_are_one_line_with_what_to_write() {
 #[test]
 fn methods_say_what_they_are() {
     let folder = with(SCENARIO);
-    for (method, right, candidates) in [
-        ("ml", Some(1.0), 6),
-        ("te", Some(0.5), 6),
-        ("analytic-inverse", Some(0.5), 0),
-        ("grey-body", None, 0),
-    ] {
+    for (method, names, candidates) in
+        [("ml", true, 6), ("te", true, 6), ("analytic-inverse", true, 0), ("grey-body", false, 0)]
+    {
         let found = folder.json(&["decompose", "a.toml", "--method", method, "--out", method]);
         assert_eq!(found["method"], method);
         let truth = &found["truth"];
-        assert_eq!(truth["right_material"].as_f64().is_some(), right.is_some(), "{truth}");
-        assert!(truth["temperature_rmse_k"].as_f64().unwrap() > if method == "ml" { 0.0 } else { 1.0 });
+        assert_eq!(truth["right_material"].is_number(), names, "{truth}");
+        let error_k = truth["temperature_rmse_k"].as_f64().unwrap();
+        assert!(if method == "ml" { error_k < 1e-4 } else { error_k > 0.5 }, "{method}: {error_k}");
         assert_eq!(truth["coverage_95"].is_number(), ["ml", "te"].contains(&method), "{truth}");
         assert!(found["decided"].as_u64().unwrap() <= candidates);
         let lighting = fs::read(folder.path().join(method).join("lighting.npy")).unwrap();

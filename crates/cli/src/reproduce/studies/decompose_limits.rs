@@ -23,13 +23,11 @@ const QUICK: usize = 3;
 /// Random pixels whose neighbours are looked for.
 const SETS_OF_TWO: usize = 300;
 const SETS_OF_ALL: usize = 80;
-/// Two materials that are hard to tell apart, by name.
-const TWO: [&str; 2] = ["concrete", "cinderblock"];
 
 /// The quick form has the tables alone, of the first numbers of photons.
 pub(super) fn make(order: Order, library: &Library, progress: Progress<'_>) -> Result<(Bundle, String)> {
     let street = Street::new(library)?;
-    let two = Street::of(library, &TWO)?;
+    let two = Street::of(library, &sets::TWO)?;
     let of_two = sets::Sets::new(&two, SETS_OF_TWO, order.seed)?;
     let of_many = sets::Sets::new(&street, SETS_OF_ALL, order.seed)?;
     let photons = order.some_of(&PHOTONS, QUICK);

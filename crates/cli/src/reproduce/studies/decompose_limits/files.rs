@@ -1,7 +1,6 @@
 //! Tables and plots.
 
-use super::TWO;
-use super::sets::Decided;
+use super::sets::{Decided, TWO};
 use super::temperatures::Read;
 use hadar_report::figures::Plot;
 use hadar_report::plot::{Axis, LineFigure, Panel, Rule, Series, Style};

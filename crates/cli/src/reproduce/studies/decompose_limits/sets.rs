@@ -9,6 +9,8 @@ use hadar::identifiability::ratio::RatioLaw;
 use hadar::statistics::Statistics;
 use rayon::prelude::*;
 
+/// Two materials that are hard to tell apart, by name.
+pub(super) const TWO: [&str; 2] = ["concrete", "cinderblock"];
 /// States whose spectra are drawn at each number of photons, in all sets together.
 const SPECTRA: usize = 9600;
 

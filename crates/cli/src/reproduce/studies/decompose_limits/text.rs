@@ -1,9 +1,8 @@
 //! The page.
 
 use super::super::page::markdown;
-use super::TWO;
 use super::files::Row;
-use super::sets::Decided;
+use super::sets::{Decided, TWO};
 use super::temperatures::Read;
 use hadar_report::text::significant;
 
