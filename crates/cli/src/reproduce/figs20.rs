@@ -16,6 +16,7 @@ use hadar_report::bundle::Bundle;
 use hadar_report::figures::Plot;
 use hadar_report::plot::{Axis, LineFigure, Series};
 use hadar_report::table::{Table, number};
+use hadar_report::text::significant;
 
 const PIXELS: usize = 1500;
 const PHOTONS: f64 = 1e7;
@@ -204,7 +205,7 @@ fn lines(typical: &[Costs], worth: &[Worth], bounds: &[f64]) -> Vec<Line> {
             "Fig. S20",
             "least cost of these pixels (1 is noise)",
             "TeX the more accurate model",
-            format!("TeX at most {tex_least:.2}, TE at least {te_least:.3e}"),
+            format!("TeX at most {tex_least:.2}, TE at least {}", significant(te_least, 3)),
             choice(tex_least < te_least),
             "chi^2 of each band in the place of the paper's least squares",
         ),
