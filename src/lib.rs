@@ -76,6 +76,7 @@
 //! | S37–S40, Tables S4, S5 | information of windows, four cells | [`ranging::information`], [`ranging::noise`] |
 //! | S41–S43 | two views, diffraction, the limit of δz | [`ranging::depth`], [`ranging::psf`] |
 //! | S44 | decomposition of a heat cube | [`decompose`] |
+//! | S46, S47 | temperature and lighting by slopes along wavenumber, and their errors | [`decompose::Method`], [`decompose::inverse_error`] |
 //! | S48 | known total of the lighting factors | [`fisher`], [`scene`], [`decompose`] |
 //! | Ext. Data Fig. 9 | thermometry | [`fisher::precision`], [`simulate::thermometry`] |
 //! | SII E, Fig. 3d, e | H = t A_p/((1 + γ)F²), motion, requirements | [`policy`] |

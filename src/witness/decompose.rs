@@ -5,6 +5,7 @@
 //! their range; what the materials are worth beside each other is their posterior. Where the photons do not tell, it is said.
 //!
 //! * [`Setting`], [`Options`]: what is known; [`decompose()`]: a cube to [`Maps`];
+//! * [`Method`], [`decompose_by`]: methods that it is compared with; [`inverse_error`]: by how much one of them errs;
 //! * [`Pixel`], [`flag`]: what is found of a pixel, and what is said of it.
 //!
 //! Intervals are those of the Cramér–Rao bound at the fit, were the material certain, also where a limit holds a lighting factor: its
@@ -13,16 +14,22 @@
 //! Source: paper S44, S48, Methods 'TeX degeneracy'.
 
 mod fit;
+mod grey_body;
+mod inverse;
+mod inverse_error;
 mod kernel;
 mod library_error;
 mod maps;
+mod method;
 mod model;
 mod pixel;
 mod screen;
 mod space;
 mod step;
 
+pub use inverse_error::{InverseError, inverse_error};
 pub use library_error::LibraryError;
 pub use maps::{Maps, Options, decompose};
+pub use method::{Method, decompose_by};
 pub use model::{Light, MOST_SURROUNDINGS, Setting};
 pub use pixel::{CANDIDATE_SHARE, NO_FIT, NO_MATERIAL, Pixel, Spared, flag};

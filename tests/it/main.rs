@@ -3,6 +3,7 @@
 mod cameras;
 mod decision;
 mod decompose;
+mod decompose_methods;
 mod derivatives;
 mod detection_reference;
 mod exact_probability;

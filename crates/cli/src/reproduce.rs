@@ -9,14 +9,19 @@
 //!
 //! [`FurtherStudy`] are questions of this project beyond the paper's figures: no part of `all`, no lines of the ledger.
 
+mod candidates;
 mod edfig6;
 mod edfig9;
 mod fig3b;
 mod fig3c;
 mod fig4;
+mod figs17;
+mod figs20;
+mod inverse_trade_off;
 mod ledger;
 mod locking;
 mod order;
+mod pixels;
 mod policy;
 mod scene;
 mod studies;
@@ -50,6 +55,10 @@ pub(crate) enum Item {
     Fig4,
     /// Measures of texture.
     FigS12,
+    /// Loss over the size of the library.
+    FigS17,
+    /// Methods of decomposition.
+    FigS20,
     /// Detectors.
     TabS2,
     /// What resolution is worth in ranging.
@@ -69,11 +78,13 @@ pub(crate) struct Reproduction {
 
 impl Item {
     /// All of them, the quickest first.
-    pub(crate) const ALL: [Self; 10] = [
+    pub(crate) const ALL: [Self; 12] = [
         Self::TabS2,
         Self::TabS5,
         Self::Policy,
         Self::Fig3c,
+        Self::FigS17,
+        Self::FigS20,
         Self::FigS12,
         Self::Fig4,
         Self::EdFig6,
@@ -93,6 +104,8 @@ impl Item {
             Self::EdFig9 => "edfig9",
             Self::Fig4 => "fig4",
             Self::FigS12 => "figs12",
+            Self::FigS17 => "figs17",
+            Self::FigS20 => "figs20",
             Self::TabS5 => "tabs5",
             Self::TabS2 => "tabs2",
             Self::Policy => "policy",
@@ -110,6 +123,8 @@ impl Item {
             Self::EdFig9 => "Extended Data Fig. 9f: thermometry against its bound",
             Self::Fig4 => "Fig. 4: ranging by a thermal image, a heat cube and scattered light",
             Self::FigS12 => "Fig. S12: measures of texture",
+            Self::FigS17 => "Fig. S17: what more materials in the library explain",
+            Self::FigS20 => "Fig. S20: scattered light told apart, or not",
             Self::TabS5 => "Tables S4 and S5: what resolution is worth",
             Self::TabS2 => "Table S2: detectors",
             Self::Policy => "Policy: can a camera tell a person from a robot?",
@@ -144,6 +159,8 @@ impl Item {
             Self::EdFig9 => edfig9::make(order, out, progress)?,
             Self::Fig4 => fig4::make(order, out, progress)?,
             Self::FigS12 => fig4::textures(order)?,
+            Self::FigS17 => figs17::make(order)?,
+            Self::FigS20 => figs20::make(order)?,
             Self::TabS5 => tabs5::make()?,
             Self::TabS2 => tabs2::make(out)?,
             Self::Policy => policy::make(out)?,
@@ -161,9 +178,14 @@ fn page(item: Item, effort: Effort, lines: &[Line], figures: &Figures) -> String
         Effort::Quick => format!("Some of the experiments only, made by `hadar reproduce {name} --quick`"),
     };
     let mut page = format!(
-        "# {}\n\n{made} from the scenarios beside it.\n\
+        "# {}\n\n{made} from {}.\n\
          Paper: Bao et al., Nature 619, 743 (2023), doi:10.1038/s41586-023-06174-6.\n\n{}",
         item.title(),
+        if matches!(item, Item::FigS17 | Item::FigS20) {
+            "pixels that it draws"
+        } else {
+            "the scenarios beside it"
+        },
         markdown(lines)
     );
     for (file, caption) in &figures.pictures {

@@ -58,14 +58,19 @@ pub fn decompose(
     cube: &Cube,
     done: &(dyn Fn(usize) + Sync),
 ) -> Result<Maps> {
-    let (found, expected) = (cube.shape().bands(), setting.bands.len());
-    if found != expected {
-        return Err(Error::Length { what: "bands of the cube".into(), found, expected });
-    }
+    check_bands(setting, cube)?;
     match cube {
         Cube::F32(rows) => whole(setting, options, rows.as_ref(), done),
         Cube::F64(rows) => whole(setting, options, rows.as_ref(), done),
     }
+}
+
+pub(super) fn check_bands(setting: &Setting<'_>, cube: &Cube) -> Result<()> {
+    let (found, expected) = (cube.shape().bands(), setting.bands.len());
+    if found != expected {
+        return Err(Error::Length { what: "bands of the cube".into(), found, expected });
+    }
+    Ok(())
 }
 
 fn whole<S: Sample>(
@@ -74,41 +79,68 @@ fn whole<S: Sample>(
     cube: &dyn Rows<S>,
     done: &(dyn Fn(usize) + Sync),
 ) -> Result<Maps> {
-    let shape = cube.shape();
     let model = Model::new(setting)?;
     let per_unit = 1.0 / setting.units_per_count;
     let mean = mean_counts(&model, cube, per_unit)?;
-    // What noise is added to may come out below 0.
-    let is_count = |n: f64| n >= 0.0 || n.is_nan();
-    let signed = model.var_added[..model.used.len()].iter().all(|var| *var > 0.0);
+    let signed = is_signed(&model);
     let task = Task::new(model, setting, options, &mean)?;
-    let rows: Vec<(Vec<Pixel>, Spared)> = (0..shape.rows())
-        .into_par_iter()
-        .map_init(
-            || (task.room(), Vec::new()),
-            |(room, buffer), row| {
-                let samples = cube.read(row..row + 1, buffer)?;
-                if !signed && let Some(at) = samples.iter().position(|sample| !is_count((*sample).into())) {
-                    let place = (row, at / shape.bands(), at % shape.bands());
-                    return Err(negative(samples[at].into(), place));
-                }
-                let mut spared = Spared::default();
-                let pixels = samples
-                    .chunks(shape.bands())
-                    .map(|sample| {
-                        for (to, &band) in room.counts.iter_mut().zip(&task.model.used) {
-                            let value: f64 = sample[band].into();
-                            *to = per_unit * value;
-                        }
-                        task.pixel(room, &mut spared)
-                    })
-                    .collect();
-                done(1);
-                Ok((pixels, spared))
-            },
-        )
-        .collect::<Result<_>>()?;
-    Ok(Maps::of(&rows, shape, setting.surroundings.len()))
+    let by_rows = ByRows { cube, signed, done };
+    let rows = by_rows.all(
+        || task.room(),
+        |room, sample: &[S], spared| {
+            for (to, &band) in room.counts.iter_mut().zip(&task.model.used) {
+                let value: f64 = sample[band].into();
+                *to = per_unit * value;
+            }
+            task.pixel(room, spared)
+        },
+    )?;
+    Ok(Maps::of(&rows, cube.shape(), setting.surroundings.len()))
+}
+
+/// Whether all bands have noise added, so that samples may come out below 0.
+pub(super) fn is_signed(model: &Model) -> bool {
+    model.var_added[..model.used.len()].iter().all(|var| *var > 0.0)
+}
+
+/// A cube of which every pixel is for itself.
+pub(super) struct ByRows<'a, S> {
+    pub(super) cube: &'a dyn Rows<S>,
+    /// Whether samples may be below 0.
+    pub(super) signed: bool,
+    /// Is told how many rows are finished.
+    pub(super) done: &'a (dyn Fn(usize) + Sync),
+}
+
+/// Pixels of a row, and what was spared in it.
+pub(super) type Row = (Vec<Pixel>, Spared);
+
+impl<S: Sample> ByRows<'_, S> {
+    /// What `pixel` makes of the samples of every pixel, with room of its own for each thread.
+    pub(super) fn all<R>(
+        &self,
+        room: impl Fn() -> R + Sync,
+        pixel: impl Fn(&mut R, &[S], &mut Spared) -> Pixel + Sync,
+    ) -> Result<Vec<Row>> {
+        let shape = self.cube.shape();
+        let is_count = |n: f64| n >= 0.0 || n.is_nan();
+        let of_row = |(room, buffer): &mut (R, Vec<S>), row: usize| {
+            let samples = self.cube.read(row..row + 1, buffer)?;
+            let negative_at = || samples.iter().position(|sample| !is_count((*sample).into()));
+            if !self.signed
+                && let Some(at) = negative_at()
+            {
+                let place = (row, at / shape.bands(), at % shape.bands());
+                return Err(negative(samples[at].into(), place));
+            }
+            let mut spared = Spared::default();
+            let pixels =
+                samples.chunks(shape.bands()).map(|sample| pixel(room, sample, &mut spared)).collect();
+            (self.done)(1);
+            Ok((pixels, spared))
+        };
+        (0..shape.rows()).into_par_iter().map_init(|| (room(), Vec::new()), of_row).collect()
+    }
 }
 
 fn negative(value: f64, (row, column, band): (usize, usize, usize)) -> Error {
@@ -169,7 +201,7 @@ fn mean_counts<S: Sample>(model: &Model, cube: &dyn Rows<S>, per_unit: f64) -> R
 }
 
 impl Maps {
-    fn of(rows: &[(Vec<Pixel>, Spared)], shape: Shape, surroundings: usize) -> Self {
+    pub(super) fn of(rows: &[Row], shape: Shape, surroundings: usize) -> Self {
         let pixels = shape.rows() * shape.columns();
         let all = || rows.iter().flat_map(|(pixels, _)| pixels);
         let mut lighting = Vec::with_capacity(pixels * surroundings);

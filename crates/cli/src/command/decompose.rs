@@ -2,6 +2,7 @@
 
 use super::global::Global;
 use clap::Args;
+use hadar::decompose::Method;
 use hadar::error::Result;
 use hadar_report::decompose;
 use hadar_study::scenario::DecomposeScenario;
@@ -13,6 +14,33 @@ use std::process::ExitCode;
 pub(super) struct DecomposeArgs {
     /// The decomposition scenario (TOML): [cube], [bands], [[environment]], [library]
     scenario: PathBuf,
+    /// How pixels are taken apart
+    #[arg(long, value_enum, default_value_t = By::Ml)]
+    method: By,
+}
+
+/// Methods, as a flag.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum By {
+    /// Maximum likelihood of material, temperature and lighting
+    Ml,
+    /// The paper's inverse functions: slopes along wavenumber take the lighting away (S46, S47)
+    AnalyticInverse,
+    /// Temperature and emissivity alone, as if nothing were scattered
+    Te,
+    /// The blackbody that sends as much in all bands together, as a thermal camera says
+    GreyBody,
+}
+
+impl From<By> for Method {
+    fn from(by: By) -> Self {
+        match by {
+            By::Ml => Self::Ml,
+            By::AnalyticInverse => Self::AnalyticInverse,
+            By::Te => Self::Te,
+            By::GreyBody => Self::GreyBody,
+        }
+    }
 }
 
 pub(super) fn run(args: &DecomposeArgs, global: &Global) -> Result<ExitCode> {
@@ -20,7 +48,8 @@ pub(super) fn run(args: &DecomposeArgs, global: &Global) -> Result<ExitCode> {
     let study = DecomposeStudy::new(&scenario, &global.library()?)?;
     global.inputs_are_safe()?;
     let bar = global.progress("rows");
-    let mut result = study.decompose(global.skipping(), &|done, total| bar.set(done, total))?;
+    let mut result =
+        study.decompose(args.method.into(), global.skipping(), &|done, total| bar.set(done, total))?;
     bar.finish();
     let text = decompose::text(&result);
     result.stats.add(&global.report(&text, |out| decompose::bundle(&result, out))?);

@@ -1,5 +1,6 @@
 //! Studies of this project that are no figures of the paper: each gives the report in the folder of its name.
 
+mod decompose_limits;
 mod exact_probability;
 mod library_figures;
 mod page;
@@ -20,11 +21,14 @@ pub(crate) enum FurtherStudy {
     Priors,
     /// How often the local distance misleads in a whole library.
     LibraryFigures,
+    /// How near a decomposed heat cube comes to its limits.
+    DecomposeLimits,
 }
 
 impl FurtherStudy {
     /// All of them, the quickest first.
-    pub(crate) const ALL: [Self; 3] = [Self::Priors, Self::ExactProbability, Self::LibraryFigures];
+    pub(crate) const ALL: [Self; 4] =
+        [Self::DecomposeLimits, Self::Priors, Self::ExactProbability, Self::LibraryFigures];
 
     /// The name on the command line.
     #[must_use]
@@ -33,6 +37,7 @@ impl FurtherStudy {
             Self::ExactProbability => "exact-probability",
             Self::Priors => "priors",
             Self::LibraryFigures => "library-figures",
+            Self::DecomposeLimits => "decompose-limits",
         }
     }
 
@@ -49,6 +54,7 @@ impl FurtherStudy {
             Self::ExactProbability => "What a test achieves, beside what the distances promise",
             Self::Priors => "What priors do",
             Self::LibraryFigures => "How often the local distance misleads in a whole library",
+            Self::DecomposeLimits => "How near a decomposed heat cube comes to what the photons allow",
         }
     }
 
@@ -72,6 +78,7 @@ impl FurtherStudy {
             Self::ExactProbability => exact_probability::make(order, library, progress),
             Self::Priors => priors::make(order, library, progress),
             Self::LibraryFigures => library_figures::make(order, library, progress),
+            Self::DecomposeLimits => decompose_limits::make(order, library, progress),
         }?;
         Ok((bundle.titled(self.title()), finding))
     }

@@ -224,3 +224,30 @@ fn mistakes_are_one_line_with_what_to_write() {
     // The file of another command is sent there.
     assert!(folder.run(&["size", "a.toml"]).stderr.contains("hadar decompose a.toml"));
 }
+
+/// Every method says which it is and writes the same maps; what it has no notion of is none.
+#[test]
+fn methods_say_what_they_are() {
+    let folder = with(SCENARIO);
+    for (method, names, candidates) in
+        [("ml", true, 6), ("te", true, 6), ("analytic-inverse", true, 0), ("grey-body", false, 0)]
+    {
+        let found = folder.json(&["decompose", "a.toml", "--method", method, "--out", method]);
+        assert_eq!(found["method"], method);
+        let truth = &found["truth"];
+        assert_eq!(truth["right_material"].is_number(), names, "{truth}");
+        let error_k = truth["temperature_rmse_k"].as_f64().unwrap();
+        assert!(if method == "ml" { error_k < 1e-4 } else { error_k > 0.5 }, "{method}: {error_k}");
+        assert_eq!(truth["coverage_95"].is_number(), ["ml", "te"].contains(&method), "{truth}");
+        assert!(found["decided"].as_u64().unwrap() <= candidates);
+        let lighting = fs::read(folder.path().join(method).join("lighting.npy")).unwrap();
+        assert_eq!(lighting.len(), 128 + ROWS * COLUMNS * 8);
+        let text = folder.run(&["decompose", "a.toml", "--method", method]).stdout;
+        assert!(text.contains(&format!("\n  method: {method}")), "{text}");
+        assert!(!text.contains("NaN"), "{text}");
+    }
+    let gain = SCENARIO.replace("lighting_total", "gain = true\nlighting_total");
+    folder.file("b.toml", &gain);
+    let refused = folder.run(&["decompose", "b.toml", "--method", "grey-body"]);
+    assert!(refused.stderr.contains("unknown.gain") && refused.stderr.contains("take --method ml or te"));
+}

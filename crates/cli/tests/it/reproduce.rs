@@ -25,6 +25,12 @@ const IN_PART: [&str; 9] = [
     "skin_rmse.csv",
 ];
 
+/// What `all` makes.
+const ITEMS: [&str; 12] = [
+    "tabs2", "tabs5", "policy", "fig3c", "figs17", "figs20", "figs12", "fig4", "edfig6", "edfig9", "figs7",
+    "fig3b",
+];
+
 /// Rows of a CSV file: in part, by their first number and the classifier.
 type Rows = BTreeMap<String, Vec<(String, String)>>;
 
@@ -68,6 +74,8 @@ fn compare(name: &str, made: &Rows, kept: &Rows) -> usize {
                 continue;
             }
             let tolerance = match column.as_str() {
+                // Shares and losses of drawn pixels; a fit ends at another last digit elsewhere.
+                _ if name.starts_with("figs17/") || name.starts_with("figs20/") => DRAWN * (1.0 + b.abs()),
                 // A draw that falls on the other side of a rounding sends a match elsewhere.
                 c if name == "fig4/matched.csv" && c != "depth_m_truth" => f64::INFINITY,
                 c if ranging && (c.starts_with("entropy") || c == "standard_deviation_with_noise_counts") => {
@@ -113,8 +121,7 @@ fn the_committed_reports_are_those_of_today() {
     assert!(outcome.stdout.starts_with("Of "), "{}", outcome.stdout);
     let committed = hadar_testing::repository().join("reports");
     let mut numbers = 0;
-    for item in ["tabs2", "tabs5", "policy", "fig3c", "figs12", "fig4", "edfig6", "edfig9", "figs7", "fig3b"]
-    {
+    for item in ITEMS {
         for entry in fs::read_dir(folder.path().join("new").join(item)).unwrap() {
             let path = entry.unwrap().path();
             let file = path.file_name().unwrap().to_str().unwrap().to_owned();
@@ -145,8 +152,7 @@ fn the_committed_reports_are_those_of_today() {
             }
         }
     }
-    for item in ["tabs2", "tabs5", "policy", "fig3c", "figs12", "fig4", "edfig6", "edfig9", "figs7", "fig3b"]
-    {
+    for item in ITEMS {
         for entry in fs::read_dir(committed.join(item)).unwrap() {
             let file = entry.unwrap().file_name();
             let made = folder.path().join("new").join(item).join(&file);

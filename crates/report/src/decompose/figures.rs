@@ -3,6 +3,7 @@
 use crate::figures::Plot;
 use crate::plot::{Axis, Picture, Pictures};
 use crate::table::{Table, number};
+use hadar::decompose::Method;
 use hadar_study::study::decompose::Decomposed;
 
 /// Widest picture, pixels: of larger cubes every second, third… row and column is shown.
@@ -62,8 +63,14 @@ pub fn maps(result: &Decomposed) -> Plot {
             format!(" Every {stride}th row and column of {rows} × {columns}; all are in the NPY files.")
         }
     };
+    let by = match result.method {
+        Method::Ml => "Maximum likelihood",
+        Method::AnalyticInverse => "Inverse functions along wavenumber",
+        Method::Te => "Maximum likelihood without scattered light",
+        Method::GreyBody => "Brightness temperature",
+    };
     let figure = Pictures::new("What the photons tell", pictures)
-        .subtitle(format!("Maximum likelihood of every pixel, for itself.{every}"))
+        .subtitle(format!("{by} of every pixel, for itself.{every}"))
         .no_value("nothing is told");
     Plot { name: "maps".into(), figure: figure.into(), table }
 }

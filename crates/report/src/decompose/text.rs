@@ -1,7 +1,7 @@
 //! A decomposed cube in words: how much of it is decided, what is there, how good that is, what was assumed.
 
 use crate::text::footing::warnings;
-use hadar::decompose::flag;
+use hadar::decompose::{Method, flag};
 use hadar::words::{quantity, share, significant, whole};
 use hadar_study::scenario::decompose::CubeUnit;
 use hadar_study::study::decompose::{Decomposed, TruthFound};
@@ -19,7 +19,7 @@ pub fn text(result: &Decomposed) -> String {
     out.push_str(&found(result));
     out.push_str(&flags(result));
     if let Some(truth) = &result.truth {
-        out.push_str(&against(truth));
+        out.push_str(&against(truth, result.method));
     }
     out.push_str(&assumptions(result));
     out.push_str(&warnings(&result.warnings));
@@ -32,6 +32,16 @@ fn of(part: usize, all: usize) -> String {
 
 fn sentence(result: &Decomposed) -> String {
     let seen = result.pixels - result.skipped;
+    if !result.method.has_likelihood() {
+        let named = result.found.iter().map(|row| row.pixels).sum();
+        return match result.method.names_materials() {
+            true => format!(
+                "{} pixels have a material named; how sure that is the method does not say.",
+                of(named, seen)
+            ),
+            false => format!("{} pixels as one blackbody each: no material is told.", whole(seen as u64)),
+        };
+    }
     let mut out = match result.decided {
         0 => format!("No pixel of {} is decided", whole(seen as u64)),
         decided => format!(
@@ -51,6 +61,9 @@ fn sentence(result: &Decomposed) -> String {
 }
 
 fn found(result: &Decomposed) -> String {
+    if !result.method.names_materials() {
+        return String::new();
+    }
     let shown = &result.found[..result.found.len().min(LISTED)];
     let width = shown.iter().map(|row| row.material.chars().count()).max().unwrap_or(0).max(8);
     let mut out = format!(
@@ -58,6 +71,7 @@ fn found(result: &Decomposed) -> String {
         "", "pixels", "decided", "median (degC)", "tenths (degC)", "sigma (K)"
     );
     let celsius = |k: f64| format!("{:.1}", k - FREEZING_K);
+    let says = |what: String| if result.method.has_likelihood() { what } else { "-".to_owned() };
     for row in shown {
         let tenths =
             format!("{} to {}", celsius(row.temperature_tenths_k[0]), celsius(row.temperature_tenths_k[1]));
@@ -66,9 +80,9 @@ fn found(result: &Decomposed) -> String {
             "  {:width$}  {:>9}  {:>9}  {:>14}  {tenths:>18}  {:>10}",
             row.material,
             whole(row.pixels as u64),
-            whole(row.decided as u64),
+            says(whole(row.decided as u64)),
             celsius(row.temperature_median_k),
-            significant(row.temperature_sigma_median_k, 2)
+            says(significant(row.temperature_sigma_median_k, 2))
         );
     }
     if let Some(more) = result.found.len().checked_sub(LISTED).filter(|more| *more > 0) {
@@ -100,7 +114,11 @@ fn flags(result: &Decomposed) -> String {
     out
 }
 
-fn against(truth: &TruthFound) -> String {
+fn against(truth: &TruthFound, method: Method) -> String {
+    let bound = match method {
+        Method::Ml => "its Cramér–Rao bound",
+        _ => "the deviation that the method says",
+    };
     let mut out = String::from("Against what is there\n");
     let percent = |x: f64| format!("{} %", significant(100.0 * x, 4));
     if let Some(right) = truth.right_material {
@@ -122,7 +140,7 @@ fn against(truth: &TruthFound) -> String {
     if let (Some(ratio), Some(covered)) = (truth.temperature_error_over_bound_rms, truth.coverage_95) {
         let _ = writeln!(
             out,
-            "  temperature error over its Cramér–Rao bound: {} rms; 95 % intervals hold {} ({} pixels of right material within all limits)",
+            "  temperature error over {bound}: {} rms; 95 % intervals hold {} ({} pixels of right material within all limits)",
             significant(ratio, 3),
             percent(covered),
             whole(truth.coverage_pixels as u64)
@@ -146,11 +164,36 @@ fn assumptions(result: &Decomposed) -> String {
         CubeUnit::Radiance => "the stated noise, the same for all samples",
         _ => "Poisson counts with the stated electronic noise, variance from the model",
     };
+    let method = result.method.name();
+    let (model, intervals) = match result.method {
+        Method::Ml => {
+            ("", "Cramér–Rao bound at the fit, were the material certain; materials: profile likelihoods")
+        }
+        Method::Te => (
+            ", nothing is scattered",
+            "those of this model, wrong where light is scattered; materials: profile likelihoods",
+        ),
+        Method::AnalyticInverse => {
+            let out = format!(
+                "Assumptions\n  method: {method}: the lighting has no slope along wavenumber (S46, S47); temperature {low} to {high} K, \
+                 lighting of any total\n  intervals: none, the method has none\n\n"
+            );
+            return out;
+        }
+        Method::GreyBody => {
+            let out = format!(
+                "Assumptions\n  method: {method}: emissivity 1, all bands together\n  intervals: none, the method has none\n\n"
+            );
+            return out;
+        }
+    };
+    let lighting = match result.method {
+        Method::Te => String::new(),
+        _ => format!(", lighting of {} surroundings, {total}", scenario.environment.len()),
+    };
     format!(
-        "Assumptions\n  likelihood: {noise}; bands independent\n  \
-         unknown: material, temperature {low} to {high} K, lighting of {} surroundings, {total}{}\n  \
-         intervals: Cramér–Rao bound at the fit, were the material certain; materials: profile likelihoods\n\n",
-        scenario.environment.len(),
+        "Assumptions\n  method: {method}{model}\n  likelihood: {noise}; bands independent\n  \
+         unknown: material, temperature {low} to {high} K{lighting}{}\n  intervals: {intervals}\n\n",
         if scenario.unknown.gain { ", gain" } else { "" },
     )
 }

@@ -11,19 +11,29 @@ pub use results::{Decomposed, FlagCount, MaterialRow, TruthFound};
 
 use self::results::summary;
 use super::Warning;
-use hadar::decompose::{self, LibraryError, Options, Setting};
+use hadar::decompose::{LibraryError, Method, Options, Setting, decompose_by};
 use hadar::demand::Skipping;
-use hadar::error::Result;
+use hadar::error::{Error, Result};
 
 /// Length over which errors of emissivities are correlated where nothing is said, cm⁻¹.
 const CORRELATION_CM1: f64 = 50.0;
 
 impl DecomposeStudy {
-    /// Decomposes the cube; `done` is told how many rows are finished, of how many.
+    /// Decomposes the cube by a method; `done` is told how many rows are finished, of how many.
     ///
     /// # Errors
-    /// Counts that are negative, a cube that cannot be read.
-    pub fn decompose(&self, skipping: Skipping, done: &(dyn Fn(usize, usize) + Sync)) -> Result<Decomposed> {
+    /// Counts that are negative, a cube that cannot be read, an unknown gain with a method that takes none.
+    pub fn decompose(
+        &self,
+        method: Method,
+        skipping: Skipping,
+        done: &(dyn Fn(usize, usize) + Sync),
+    ) -> Result<Decomposed> {
+        if !method.has_likelihood() && self.scenario.unknown.gain {
+            let found = format!("the method {} does not know an unknown gain", method.name());
+            let error = Error::malformed(found, "write gain = false, or take --method ml or te");
+            return Err(error.at(self.scenario.place("unknown.gain")));
+        }
         let start = std::time::Instant::now();
         let unknown = self.scenario.unknown;
         let setting = Setting {
@@ -50,14 +60,14 @@ impl DecomposeStudy {
             let so_far = finished.fetch_add(more, std::sync::atomic::Ordering::Relaxed) + more;
             done(so_far, rows);
         };
-        let maps = decompose::decompose(&setting, &options, &self.cube, &progress)
+        let maps = decompose_by(method, &setting, &options, &self.cube, &progress)
             .map_err(|error| self.at_cube(error))?;
         let seconds = start.elapsed().as_secs_f64();
         let mut warnings = self.warnings.clone();
-        if library_error.is_none() {
+        if library_error.is_none() && method.names_materials() {
             warnings.push(Warning::LibraryTakenAsExact);
         }
-        let truth = self.truth.as_ref().map(|truth| truth.found(self, &maps)).transpose()?;
-        Ok(summary(self, maps, truth, seconds, warnings))
+        let truth = self.truth.as_ref().map(|truth| truth.found(self, method, &maps)).transpose()?;
+        Ok(summary(self, method, maps, truth, seconds, warnings))
     }
 }

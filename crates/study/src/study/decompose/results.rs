@@ -4,7 +4,7 @@ use super::DecomposeStudy;
 pub use super::worth::TruthFound;
 use crate::scenario::DecomposeScenario;
 use crate::study::Warning;
-use hadar::decompose::{Maps, NO_MATERIAL, flag};
+use hadar::decompose::{Maps, Method, NO_MATERIAL, flag};
 use hadar::demand::Work;
 use hadar::ranging::cube::Shape;
 use serde::Serialize;
@@ -14,6 +14,8 @@ use serde::Serialize;
 pub struct Decomposed {
     /// The question.
     pub scenario: DecomposeScenario,
+    /// By which method.
+    pub method: Method,
     /// Rows, columns and bands.
     pub shape: Shape,
     /// Names of the materials, in the order of their indices.
@@ -73,6 +75,7 @@ pub struct FlagCount {
 
 pub(super) fn summary(
     study: &DecomposeStudy,
+    method: Method,
     maps: Maps,
     truth: Option<TruthFound>,
     seconds: f64,
@@ -129,6 +132,7 @@ pub(super) fn summary(
     }
     Decomposed {
         scenario: study.scenario.clone(),
+        method,
         shape: study.cube.shape(),
         materials: study.names.clone(),
         pixels,

@@ -3,11 +3,12 @@
 //! * Share of right materials, beside the mean of Φ(d) over some pixels, d the nearest distance from what is there to the nearest of
 //!   the other materials in any state (nothing told between these two states is right more often than that).
 //! * Root mean square of temperature error over the Cramér–Rao bound at the fit, and the share of errors within 1.96 of it: of pixels
-//!   whose material is right and whose state no limit holds.
+//!   whose material is right and whose state no limit holds. Of a method that takes the scene for another these are the deviations
+//!   that it says; one without deviations has neither.
 
 use super::DecomposeStudy;
 use super::truth::Truth;
-use hadar::decompose::{Light, Maps, flag};
+use hadar::decompose::{Light, Maps, Method, flag};
 use hadar::error::Result;
 use hadar::fisher::{Counting, Nuisance, Unknowns};
 use hadar::identifiability::detection;
@@ -50,11 +51,11 @@ pub struct TruthFound {
 
 impl Truth {
     /// Holds the maps against what is there.
-    pub(super) fn found(&self, study: &DecomposeStudy, maps: &Maps) -> Result<TruthFound> {
+    pub(super) fn found(&self, study: &DecomposeStudy, method: Method, maps: &Maps) -> Result<TruthFound> {
         let mut found = TruthFound::default();
         let pixels = maps.material.len();
         let share = |count: usize, of: usize| (of > 0).then(|| count as f64 / of as f64);
-        if let Some(material) = &self.material {
+        if let Some(material) = self.material.as_ref().filter(|_| method.names_materials()) {
             let known = |i: &usize| material[*i] < study.names.len();
             let right = |i: &usize| usize::from(maps.material[*i]) == material[*i];
             let all: Vec<usize> = (0..pixels).filter(known).collect();
@@ -82,12 +83,16 @@ impl Truth {
             }
         }
         if let Some(truth) = &self.temperature_k {
+            let error = |i: usize| f64::from(maps.temperature_k[i]) - truth[i];
+            found.temperature_rmse_k = rms((0..pixels).map(error).filter(|error| error.is_finite()));
+            if !method.has_likelihood() {
+                return Ok(found);
+            }
             let is_open = |i: &usize| {
                 let held = flag::LIGHTING_AT_LIMIT | flag::TEMPERATURE_AT_LIMIT | flag::TEMPERATURE_UNKNOWN;
                 let right = self.material.as_ref().is_none_or(|m| m[*i] == usize::from(maps.material[*i]));
                 right && maps.flags[*i] & (held | flag::SKIPPED) == 0
             };
-            let error = |i: usize| f64::from(maps.temperature_k[i]) - truth[i];
             let over: Vec<f64> = (0..pixels)
                 .filter(is_open)
                 .map(|i| error(i) / f64::from(maps.temperature_sigma_k[i]))
@@ -95,7 +100,6 @@ impl Truth {
             found.coverage_pixels = over.len();
             found.coverage_95 = share(over.iter().filter(|x| x.abs() <= NINETY_FIVE).count(), over.len());
             found.temperature_error_over_bound_rms = rms(over.iter().copied());
-            found.temperature_rmse_k = rms((0..pixels).map(error).filter(|error| error.is_finite()));
         }
         Ok(found)
     }
