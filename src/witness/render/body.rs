@@ -33,7 +33,7 @@ pub enum Body {
         /// Length, width and height, m.
         size_m: [f64; 3],
         /// Its tyres.
-        tyres: Surface,
+        tyres: Box<Surface>,
     },
     /// A box: a wall, a crate.
     Block {
@@ -97,7 +97,7 @@ impl Scene {
         let surface = self.surfaces.len();
         self.surfaces.push(object.surface);
         if let Body::Car { tyres, .. } = &object.body {
-            self.surfaces.push(tyres.clone());
+            self.surfaces.push(Surface::clone(tyres));
         }
         let check = || -> Result<()> {
             self.surfaces.iter().skip(surface).try_for_each(Surface::check)?;

@@ -125,7 +125,7 @@ impl StreetSpec {
         if self.car {
             let mut surface = Surface::plain("car", self.car_k, &self.car_emissivity);
             surface.bump = self.car_bump;
-            let tyres = Surface::plain("tyres", self.tyre_k, &self.tyre_emissivity);
+            let tyres = Box::new(Surface::plain("tyres", self.tyre_k, &self.tyre_emissivity));
             let body = Body::Car { size_m: self.car_size_m, tyres };
             objects.push(Object { surface, at_m: self.car_at_m, body });
         }

@@ -78,7 +78,7 @@ impl Uneven {
 /// Nodes of Chebyshev's polynomial in [−1, 1].
 fn chebyshev() -> [f64; NODES] {
     const HALF: [f64; NODES / 2] =
-        [0.965_925_826_289_068_3, 0.707_106_781_186_547_6, 0.258_819_045_102_520_7];
+        [0.965_925_826_289_068_3, std::f64::consts::FRAC_1_SQRT_2, 0.258_819_045_102_520_7];
     [-HALF[0], -HALF[1], -HALF[2], HALF[2], HALF[1], HALF[0]]
 }
 

@@ -215,7 +215,10 @@ fn object(spec: &ObjectSpec, key: &str, place: usize, found: Found<'_>) -> Resul
                 None => (&spec.surface, key.to_owned()),
             };
             let size_m = size.unwrap_or(StreetSpec::default().car_size_m);
-            Body::Car { size_m, tyres: surface(&format!("tyres of {own}"), spec, &key, seed, found)? }
+            Body::Car {
+                size_m,
+                tyres: Box::new(surface(&format!("tyres of {own}"), spec, &key, seed, found)?),
+            }
         }
         Form::Block(size_m) => Body::Block { size_m: *size_m },
         Form::Post([height_m, radius_m]) => Body::Post { height_m: *height_m, radius_m: *radius_m },
