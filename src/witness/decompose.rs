@@ -5,6 +5,7 @@
 //! their range; what the materials are worth beside each other is their posterior. Where the photons do not tell, it is said.
 //!
 //! * [`Setting`], [`Options`]: what is known; [`decompose()`]: a cube to [`Maps`];
+//! * [`SpatialPrior`]: what neighbours tell about a pixel, where it is asked for;
 //! * [`Pixel`], [`flag`]: what is found of a pixel, and what is said of it.
 //!
 //! Intervals are those of the Cramér–Rao bound at the fit, were the material certain, also where a limit holds a lighting factor: its
@@ -20,9 +21,11 @@ mod model;
 mod pixel;
 mod screen;
 mod space;
+mod spatial;
 mod step;
 
 pub use library_error::LibraryError;
 pub use maps::{Maps, Options, decompose};
 pub use model::{Light, MOST_SURROUNDINGS, Setting};
 pub use pixel::{CANDIDATE_SHARE, NO_FIT, NO_MATERIAL, Pixel, Spared, flag};
+pub use spatial::{Spatial, SpatialPrior};

@@ -1,14 +1,15 @@
 //! A whole cube: rows in parallel, each read, decomposed and put into the maps.
 //!
-//! Every pixel is for itself, so the maps are the same for any number of threads, and only the rows that are in work are in memory.
+//! Every pixel is for itself, but for a prior over the image ([`super::spatial`]), so the maps are the same for any number of threads, and only the rows that are in work are in memory.
 
 use super::library_error::{LibraryError, Modes};
 use super::model::{MOST_SURROUNDINGS, Model, Setting};
 use super::pixel::{Pixel, Spared, Task};
 use super::screen::Screen;
+use super::spatial::{Kept, KeptRow, Spatial, SpatialPrior};
 use crate::demand::Skipping;
 use crate::error::{Error, Result};
-use crate::ranging::cube::{Cube, Rows, Sample, Shape};
+use crate::ranging::cube::{Cube, Rows, Sample};
 use rayon::prelude::*;
 
 /// Rows whose mean the bounds are laid out for.
@@ -23,6 +24,8 @@ pub struct Options {
     pub library_error: Option<LibraryError>,
     /// Whether materials that a bound excludes are left out; the answer is the same.
     pub skipping: Skipping,
+    /// What neighbours tell about a pixel; each is for itself if silent.
+    pub spatial: Option<SpatialPrior>,
 }
 
 /// What is found of every pixel, `[row][column]`.
@@ -46,6 +49,8 @@ pub struct Maps {
     pub flags: Vec<u8>,
     /// What was spared.
     pub spared: Spared,
+    /// What a prior over the image did, if there was one.
+    pub spatial: Option<Spatial>,
 }
 
 /// Decomposes a cube of counts; `done` is told how many rows are finished.
@@ -75,6 +80,7 @@ fn whole<S: Sample>(
     done: &(dyn Fn(usize) + Sync),
 ) -> Result<Maps> {
     let shape = cube.shape();
+    options.spatial.as_ref().map_or(Ok(()), |prior| prior.check(options.library_error.is_some()))?;
     let model = Model::new(setting)?;
     let per_unit = 1.0 / setting.units_per_count;
     let mean = mean_counts(&model, cube, per_unit)?;
@@ -82,7 +88,7 @@ fn whole<S: Sample>(
     let is_count = |n: f64| n >= 0.0 || n.is_nan();
     let signed = model.var_added[..model.used.len()].iter().all(|var| *var > 0.0);
     let task = Task::new(model, setting, options, &mean)?;
-    let rows: Vec<(Vec<Pixel>, Spared)> = (0..shape.rows())
+    let rows: Vec<(Vec<Pixel>, Spared, KeptRow)> = (0..shape.rows())
         .into_par_iter()
         .map_init(
             || (task.room(), Vec::new()),
@@ -92,23 +98,34 @@ fn whole<S: Sample>(
                     let place = (row, at / shape.bands(), at % shape.bands());
                     return Err(negative(samples[at].into(), place));
                 }
-                let mut spared = Spared::default();
+                let (mut spared, mut kept) = (Spared::default(), KeptRow::default());
                 let pixels = samples
                     .chunks(shape.bands())
                     .map(|sample| {
-                        for (to, &band) in room.counts.iter_mut().zip(&task.model.used) {
-                            let value: f64 = sample[band].into();
-                            *to = per_unit * value;
+                        task.load(sample, per_unit, room);
+                        let pixel = task.pixel(room, &mut spared);
+                        if options.spatial.is_some() {
+                            task.keep(&pixel, room, &mut kept);
                         }
-                        task.pixel(room, &mut spared)
+                        pixel
                     })
                     .collect();
                 done(1);
-                Ok((pixels, spared))
+                Ok((pixels, spared, kept))
             },
         )
         .collect::<Result<_>>()?;
-    Ok(Maps::of(&rows, shape, setting.surroundings.len()))
+    let spared = rows.iter().fold(Spared::default(), |sum, (_, spared, _)| sum + *spared);
+    let (pixels, kept): (Vec<Vec<Pixel>>, Vec<KeptRow>) =
+        rows.into_iter().map(|(pixels, _, kept)| (pixels, kept)).unzip();
+    let mut pixels = pixels.concat();
+    let (mut spared, mut spatial) = (spared, None);
+    if let Some(prior) = &options.spatial {
+        let kept = Kept::of_rows(kept);
+        let (more, about) = prior.apply(&task, &kept, &mut pixels, (cube, per_unit))?;
+        (spared, spatial) = (spared + more, Some(about));
+    }
+    Ok(Maps { spared, spatial, ..Maps::of(&pixels, setting.surroundings.len()) })
 }
 
 fn negative(value: f64, (row, column, band): (usize, usize, usize)) -> Error {
@@ -169,10 +186,9 @@ fn mean_counts<S: Sample>(model: &Model, cube: &dyn Rows<S>, per_unit: f64) -> R
 }
 
 impl Maps {
-    fn of(rows: &[(Vec<Pixel>, Spared)], shape: Shape, surroundings: usize) -> Self {
-        let pixels = shape.rows() * shape.columns();
-        let all = || rows.iter().flat_map(|(pixels, _)| pixels);
-        let mut lighting = Vec::with_capacity(pixels * surroundings);
+    fn of(pixels: &[Pixel], surroundings: usize) -> Self {
+        let all = || pixels.iter();
+        let mut lighting = Vec::with_capacity(pixels.len() * surroundings);
         all().for_each(|p| {
             lighting.extend(p.lighting[..surroundings.min(MOST_SURROUNDINGS)].iter().map(|v| *v as f32))
         });
@@ -185,7 +201,7 @@ impl Maps {
             posterior: all().map(|p| p.posterior as f32).collect(),
             candidates: all().map(|p| p.candidates).collect(),
             flags: all().map(|p| p.flags).collect(),
-            spared: rows.iter().fold(Spared::default(), |sum, (_, spared)| sum + *spared),
+            ..Self::default()
         }
     }
 }
