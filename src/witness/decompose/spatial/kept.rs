@@ -109,6 +109,26 @@ impl Kept {
         kept
     }
 
+    /// Of pixels whose best material has this deviance.
+    #[cfg(test)]
+    pub(super) fn of_pixels(pixels: &[Vec<Candidate>], deviance: f32) -> Self {
+        let row = KeptRow {
+            candidates: pixels.concat(),
+            ends: pixels
+                .iter()
+                .scan(0, |end, own| {
+                    Some({
+                        *end += own.len();
+                        *end
+                    })
+                })
+                .collect(),
+            deviances: vec![deviance; pixels.len()],
+            others: vec![0; pixels.len()],
+        };
+        Self::of_rows(vec![row])
+    }
+
     pub(super) fn pixels(&self) -> usize {
         self.ends.len()
     }

@@ -8,8 +8,9 @@
 //!
 //! More of the image would tell more, so this variance is no smaller than what the prior allows.
 //!
-//! τ, where it is not stated, is that with which half of the differences between neighbours of one material lie within the quartiles
-//! of their deviations, √(σᵢ² + σⱼ² + τ²), taken two standard errors too large: rather too little is smoothed.
+//! τ, where it is not stated, is that with which 80 % of the differences between neighbours of one material lie within 1.28 of their
+//! deviations, √(σᵢ² + σⱼ² + τ²), taken two standard errors too large: rather too little is smoothed. The largest differences are
+//! edges, and no matter.
 //!
 //! Assumption: differences to the neighbours are independent of each other. On a slope those of one side are not, which the others
 //! balance but at an edge.
@@ -20,11 +21,15 @@ use rayon::prelude::*;
 
 /// Deviations beyond which two temperatures are of two things.
 const EDGE: f64 = 3.0;
-/// Median of χ² with one degree of freedom, and its probability density there.
-const MEDIAN: f64 = 0.454_936_423_119_572_7;
-const DENSITY: f64 = 0.471_1;
+/// Share of the differences that are taken for those within a thing; what χ² of one degree of freedom falls below with that
+/// probability, and its probability density there.
+const WITHIN: f64 = 0.8;
+const QUANTILE: f64 = 1.642_374_415_149_816;
+const DENSITY: f64 = 0.136_94;
 /// Standard errors that τ is taken too large by.
 const RATHER: f64 = 2.0;
+/// A step that says nothing, K.
+const LARGEST_K: f64 = 1e3;
 
 /// Temperature and deviation of every pixel with its neighbours, K.
 pub(super) fn levelled(pixels: &[Pixel], columns: usize, step_k: f64) -> Vec<(f64, f64)> {
@@ -63,21 +68,44 @@ pub(super) fn step_k(kept: &Kept, columns: usize) -> f64 {
             pairs.push((apart * apart, f64::from(a.sigma_k).powi(2) + f64::from(b.sigma_k).powi(2)));
         }
     }
-    let standard_error = 0.5 / (DENSITY * (pairs.len() as f64).sqrt());
-    let aim = MEDIAN - RATHER * standard_error;
-    if aim.is_nan() || aim <= 0.0 {
+    let error = RATHER * (WITHIN * (1.0 - WITHIN) / pairs.len() as f64).sqrt() / DENSITY;
+    if pairs.is_empty() || error >= QUANTILE {
         return f64::INFINITY;
     }
-    // The median falls with τ.
-    let median = |tau: f64| {
-        let mut all: Vec<f64> = pairs.iter().map(|(square, var)| square / (var + tau * tau)).collect();
-        let middle = all.len() / 2;
-        *all.select_nth_unstable_by(middle, f64::total_cmp).1
+    let at = |values: &mut [f64], share: f64| {
+        let place = (share * values.len() as f64) as usize;
+        *values.select_nth_unstable_by(place, f64::total_cmp).1
     };
-    let (mut low, mut high) = (1e-6f64, 1e3f64);
+    // Where deviations alone explain more than the differences are, τ is what so many pairs would not tell from nothing.
+    let median = at(&mut pairs.iter().map(|(_, var)| *var).collect::<Vec<_>>(), 0.5);
+    let (mut low, mut high) = ((median * error / QUANTILE).sqrt(), LARGEST_K);
     for _ in 0..50 {
         let middle = (low * high).sqrt();
-        if median(middle) > aim { low = middle } else { high = middle }
+        let mut all: Vec<f64> = pairs.iter().map(|(square, var)| square / (var + middle * middle)).collect();
+        // The quantile falls with τ.
+        match at(&mut all, WITHIN) > QUANTILE - error {
+            true => low = middle,
+            false => high = middle,
+        }
     }
     high
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::decompose::flag;
+
+    fn pixel(temperature_k: f64, sigma_k: f64, material: u16) -> Pixel {
+        Pixel { temperature_k, sigma_k, material, flags: flag::UNDECIDED, ..Pixel::SKIPPED }
+    }
+
+    /// By hand: 1/σ² = 1 and 1/(4 + 1) beside each other; another material and an edge tell nothing.
+    #[test]
+    fn neighbours_of_one_material_are_taken_together() {
+        let row = [pixel(300.0, 1.0, 0), pixel(303.0, 2.0, 0), pixel(303.0, 1.0, 1), pixel(323.0, 1.0, 1)];
+        let found = levelled(&row, 4, 1.0);
+        assert!((found[0].0 - 300.5).abs() < 1e-12 && (found[0].1 - 1.2f64.sqrt().recip()).abs() < 1e-12);
+        assert_eq!((found[2], found[3]), ((303.0, 1.0), (323.0, 1.0)));
+    }
 }

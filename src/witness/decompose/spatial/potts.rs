@@ -131,3 +131,57 @@ fn normalised(candidates: &[Candidate], heard: &[Heard], but: Option<usize>) -> 
     shares.iter_mut().for_each(|share| *share /= total);
     shares
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn candidate(kind: Option<u16>, log_odds: f32, temperature_k: f32, sigma_k: f32) -> Candidate {
+        Candidate { kind, log_odds, temperature_k, sigma_k }
+    }
+
+    /// A row and a column of five pixels: every labelling of them counted.
+    #[test]
+    fn posteriors_of_a_row_are_those_of_all_its_labellings() {
+        let own = |i: u16| {
+            let t = 300.0 + f32::from(i);
+            vec![
+                candidate(Some(i % 3), 0.0, t, 0.7),
+                candidate(Some((i + 1) % 3), -0.4 * f32::from(i), t + 1.5, 1.2),
+                candidate(None, -1.1, f32::NAN, f32::INFINITY),
+                candidate(Some((i + 2) % 3), -2.0, t - 3.0, 0.4),
+            ]
+        };
+        let pixels: Vec<Vec<Candidate>> = (0..5).map(own).collect();
+        let (weight, step_k) = (1.3, 0.5);
+        let mut expected = vec![[0.0f64; 4]; 5];
+        for labelling in 0..4usize.pow(5) {
+            let chosen: Vec<usize> = (0..5).map(|i| labelling / 4usize.pow(i) % 4).collect();
+            let one = |i: usize| pixels[i][chosen[i]];
+            let mut log = (0..5).map(|i| f64::from(one(i).log_odds)).sum::<f64>();
+            for (a, b) in (0..4).map(|i| (one(i), one(i + 1))) {
+                if a.kind.is_some() && a.kind == b.kind {
+                    let var = f64::from(a.sigma_k).powi(2) + f64::from(b.sigma_k).powi(2) + step_k * step_k;
+                    let apart = f64::from(a.temperature_k - b.temperature_k);
+                    log += weight * f64::exp(-apart * apart / (2.0 * var));
+                }
+            }
+            (0..5).for_each(|i| expected[i][chosen[i]] += log.exp());
+        }
+        let kept = Kept::of_pixels(&pixels, 0.0);
+        for columns in [5, 1] {
+            let beliefs = Beliefs::new(&kept, columns, weight, step_k);
+            assert!(beliefs.settled && beliefs.sweeps <= 6, "{}", beliefs.sweeps);
+            for (i, expected) in expected.iter().enumerate() {
+                let total: f64 = expected.iter().sum();
+                for (found, expected) in beliefs.of(&kept, i).iter().zip(expected) {
+                    assert!(
+                        (f64::from(*found) - expected / total).abs() < 1e-6,
+                        "{found} {}",
+                        expected / total
+                    );
+                }
+            }
+        }
+    }
+}

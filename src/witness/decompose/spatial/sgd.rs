@@ -96,3 +96,45 @@ fn spread(values: &mut [f64]) -> (f64, f64) {
     let square: f64 = values.iter().map(|t| (t - mean).powi(2)).sum();
     (median, (square / (count - 1) as f64).sqrt())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::kept::Candidate;
+    use super::*;
+
+    /// The cost on a fine grid of temperatures has its least where the closed form says, for penalties from little to all.
+    #[test]
+    fn temperatures_of_least_cost_are_those_of_a_grid() {
+        let at = |kind: u16, log_odds: f32, temperature_k: f32, sigma_k: f32| Candidate {
+            kind: Some(kind),
+            log_odds,
+            temperature_k,
+            sigma_k,
+        };
+        let around = |t: f32| vec![at(0, 0.0, t, 1.0)];
+        let mut pixels: Vec<Vec<Candidate>> =
+            [301.0, 299.5, 300.2, 300.9, 0.0, 299.0, 300.4, 301.8, 300.1].map(around).to_vec();
+        pixels[4] = vec![at(0, 0.0, 306.0, 1.5), at(1, -0.2, 299.0, 0.8)];
+        let kept = Kept::of_pixels(&pixels, 20.0);
+        let map: Vec<f64> = pixels.iter().map(|own| own[0].temperature_k.into()).collect();
+        let (median, std) = spread(&mut map.clone());
+        for penalty in [0.03, 0.1, 0.6, 3.0] {
+            let mut least = (f64::INFINITY, 0, 0.0);
+            for (place, own) in pixels[4].iter().enumerate() {
+                let (t, sigma) = (f64::from(own.temperature_k), f64::from(own.sigma_k));
+                for at in (0..20_000).map(|i| 290.0 + 1e-3 * f64::from(i)) {
+                    let deviance = 20.0 - 2.0 * f64::from(own.log_odds) + ((at - t) / sigma).powi(2);
+                    let cost = deviance.sqrt() + penalty * (at - median).abs() / std;
+                    if cost < least.0 {
+                        least = (cost, place, at);
+                    }
+                }
+            }
+            let (place, found) = super::least(&kept, &map, 4, 3, penalty);
+            assert!(
+                place == least.1 && (found - least.2).abs() < 2e-3,
+                "{penalty}: {place} {found} {least:?}"
+            );
+        }
+    }
+}
