@@ -4,7 +4,7 @@
 
 use super::library_error::{LibraryError, Modes};
 use super::model::{MOST_SURROUNDINGS, Model, Setting};
-use super::pixel::{Pixel, Spared, Task};
+use super::pixel::{NO_MATERIAL, Pixel, Spared, Task, flag};
 use super::screen::Screen;
 use super::spatial::{Kept, KeptRow, Spatial, SpatialPrior};
 use crate::demand::Skipping;
@@ -186,6 +186,15 @@ fn mean_counts<S: Sample>(model: &Model, cube: &dyn Rows<S>, per_unit: f64) -> R
 }
 
 impl Maps {
+    /// Whether pixel i, counted row after row, has one material left that fits.
+    #[must_use]
+    pub fn is_decided(&self, i: usize) -> bool {
+        let flags = self.flags.get(i).copied().unwrap_or(flag::SKIPPED);
+        self.candidates.get(i) == Some(&1)
+            && self.material.get(i).is_some_and(|material| *material != NO_MATERIAL)
+            && flags & flag::NO_FIT == 0
+    }
+
     fn of(pixels: &[Pixel], surroundings: usize) -> Self {
         let all = || pixels.iter();
         let mut lighting = Vec::with_capacity(pixels.len() * surroundings);

@@ -3,10 +3,12 @@
 mod looked_up;
 mod results;
 mod truth;
+mod vision;
 mod worth;
 
 pub use looked_up::DecomposeStudy;
 pub use results::{Decomposed, FlagCount, MaterialRow, TruthFound};
+pub use vision::Vision;
 
 use self::results::summary;
 use super::Warning;
@@ -42,7 +44,12 @@ impl DecomposeStudy {
             relative,
             correlation_cm1: spec.emissivity_correlation_cm1.unwrap_or(CORRELATION_CM1),
         });
-        let options = Options { prior: spec.prior.clone().unwrap_or_default(), library_error, skipping };
+        let options = Options {
+            prior: spec.prior.clone().unwrap_or_default(),
+            library_error,
+            skipping,
+            spatial: self.scenario.spatial,
+        };
         let rows = self.cube.shape().rows();
         let finished = std::sync::atomic::AtomicUsize::new(0);
         let progress = |more: usize| {
@@ -57,6 +64,7 @@ impl DecomposeStudy {
             warnings.push(Warning::LibraryTakenAsExact);
         }
         let truth = self.truth.as_ref().map(|truth| truth.found(self, &maps)).transpose()?;
-        Ok(summary(self, maps, truth, seconds, warnings))
+        let vision = Vision::of(self, &maps).map_err(|error| self.at_cube(error))?;
+        Ok(summary(self, maps, (truth, vision), seconds, warnings))
     }
 }
