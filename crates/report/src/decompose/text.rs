@@ -1,7 +1,7 @@
 //! A decomposed cube in words: how much of it is decided, what is there, how good that is, what was assumed.
 
 use crate::text::footing::warnings;
-use hadar::decompose::flag;
+use hadar::decompose::{Spatial, SpatialPrior, flag};
 use hadar::words::{quantity, share, significant, whole};
 use hadar_study::scenario::decompose::CubeUnit;
 use hadar_study::study::decompose::{Decomposed, TruthFound};
@@ -19,7 +19,7 @@ pub fn text(result: &Decomposed) -> String {
     out.push_str(&found(result));
     out.push_str(&flags(result));
     if let Some(truth) = &result.truth {
-        out.push_str(&against(truth));
+        out.push_str(&against(truth, result.spatial.is_some()));
     }
     out.push_str(&assumptions(result));
     out.push_str(&warnings(&result.warnings));
@@ -100,17 +100,18 @@ fn flags(result: &Decomposed) -> String {
     out
 }
 
-fn against(truth: &TruthFound) -> String {
+fn against(truth: &TruthFound, neighbours: bool) -> String {
     let mut out = String::from("Against what is there\n");
     let percent = |x: f64| format!("{} %", significant(100.0 * x, 4));
     if let Some(right) = truth.right_material {
         let limit = truth.right_material_limit.map_or_else(String::new, |limit| {
             let error = truth.right_material_limit_error.unwrap_or(0.0);
             format!(
-                "; {} +- {} by the nearest distances (the most of any test between a pixel and the nearest state of another \
+                "; {} +- {} by the nearest distances (the most of any test between a pixel{} and the nearest state of another \
                  material, mean over {} pixels)",
                 percent(limit),
                 significant(100.0 * error, 1),
+                if neighbours { ", without its neighbours," } else { "" },
                 truth.right_material_limit_pixels
             )
         });
@@ -122,7 +123,8 @@ fn against(truth: &TruthFound) -> String {
     if let (Some(ratio), Some(covered)) = (truth.temperature_error_over_bound_rms, truth.coverage_95) {
         let _ = writeln!(
             out,
-            "  temperature error over its Cramér–Rao bound: {} rms; 95 % intervals hold {} ({} pixels of right material within all limits)",
+            "  temperature error over its {}: {} rms; 95 % intervals hold {} ({} pixels of right material within all limits)",
+            if neighbours { "stated deviation" } else { "Cramér–Rao bound" },
             significant(ratio, 3),
             percent(covered),
             whole(truth.coverage_pixels as u64)
@@ -133,6 +135,41 @@ fn against(truth: &TruthFound) -> String {
     }
     out.push('\n');
     out
+}
+
+/// How pixels are decomposed, in a few words.
+pub(super) fn how(result: &Decomposed) -> &'static str {
+    match result.scenario.spatial {
+        None => "Maximum likelihood of every pixel, for itself",
+        Some(SpatialPrior::Potts { .. }) => {
+            "Maximum posterior of every pixel with its neighbours (Potts prior)"
+        }
+        Some(SpatialPrior::TexSgd { .. }) => "Least cost of every pixel with its neighbours (TeX-SGD)",
+    }
+}
+
+/// The prior over the image, a line; nothing where there is none.
+fn neighbours(result: &Decomposed) -> String {
+    let changed =
+        |spatial: &Spatial| format!("; it changed the material of {} pixels", whole(spatial.changed as u64));
+    let Some((prior, about)) = result.scenario.spatial.zip(result.spatial.as_ref()) else {
+        return String::new();
+    };
+    match prior {
+        SpatialPrior::Potts { weight, .. } => format!(
+            "  neighbours (Potts): each of four adds {} to the log-odds of its own material and temperature{}{}\n",
+            significant(weight, 3),
+            about.temperature_step_k.map_or_else(String::new, |step| {
+                format!("; temperatures of a material differ by {} from pixel to pixel", quantity(step, "K"))
+            }),
+            changed(about)
+        ),
+        SpatialPrior::TexSgd { weight } => format!(
+            "  neighbours (TeX-SGD): temperatures are pulled to the median of 3 x 3 pixels, p = {}{}\n",
+            significant(weight, 3),
+            changed(about)
+        ),
+    }
 }
 
 fn assumptions(result: &Decomposed) -> String {
@@ -146,11 +183,21 @@ fn assumptions(result: &Decomposed) -> String {
         CubeUnit::Radiance => "the stated noise, the same for all samples",
         _ => "Poisson counts with the stated electronic noise, variance from the model",
     };
+    let intervals = match scenario.spatial {
+        None => "Cramér–Rao bound at the fit, were the material certain; materials: profile likelihoods",
+        Some(SpatialPrior::Potts { .. }) => {
+            "with the neighbours of its material, were it and the prior certain; materials: posterior under the prior"
+        }
+        Some(SpatialPrior::TexSgd { .. }) => {
+            "Cramér–Rao bound of the pixel alone, which a temperature that was pulled need not keep; candidates: of the pixel alone"
+        }
+    };
     format!(
         "Assumptions\n  likelihood: {noise}; bands independent\n  \
          unknown: material, temperature {low} to {high} K, lighting of {} surroundings, {total}{}\n  \
-         intervals: Cramér–Rao bound at the fit, were the material certain; materials: profile likelihoods\n\n",
+         intervals: {intervals}\n{}\n",
         scenario.environment.len(),
         if scenario.unknown.gain { ", gain" } else { "" },
+        neighbours(result),
     )
 }

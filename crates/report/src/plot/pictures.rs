@@ -1,7 +1,7 @@
 //! Images side by side, each with its own colour bar: a raster of numbers per picture.
 
 use super::axis::{Axis, Ruler};
-use super::colour::{INK, NO_VALUE, WHITE};
+use super::colour::{self, Colour, INK, NO_VALUE, WHITE};
 use super::contour;
 use super::frame::{self, Vertical};
 use super::heat::{draw_bar, shade};
@@ -32,11 +32,25 @@ pub struct Picture {
     pub columns: usize,
     /// Values, row after row, the uppermost first.
     pub values: Vec<f64>,
+    /// Colours in the place of values.
+    pub painted: Option<Painted>,
     /// Rows that are marked by a dashed line.
     pub lines: Vec<usize>,
     /// Values, one for each pixel, between whose signs a line is drawn; nowhere where empty.
     pub boundary: Vec<f64>,
 }
+
+/// Colours of an image that are no scale of one quantity.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Painted {
+    /// Red, green and blue, row after row, the uppermost first.
+    pub pixels: Vec<Rgb>,
+    /// Colours at the ends of the bar of the colour axis, which must have a range; no bar without them.
+    pub ramp: Option<[Rgb; 2]>,
+}
+
+/// Red, green and blue.
+pub type Rgb = (u8, u8, u8);
 
 /// Images side by side, two in a row.
 #[derive(Debug, Clone, PartialEq)]
@@ -51,12 +65,20 @@ pub struct Pictures {
     pub no_value: String,
     /// What the lines between signs mean, for the legend.
     pub boundary_meaning: String,
+    /// Colours of painted images and what they mean, for the legend.
+    pub keys: Vec<(Rgb, String)>,
 }
 
 impl Picture {
     /// An image of `columns` × (number of values / `columns`) pixels.
     pub fn new(title: impl Into<String>, colour: Axis, columns: usize, values: Vec<f64>) -> Self {
-        Self { title: title.into(), colour, columns, values, lines: Vec::new(), boundary: Vec::new() }
+        let (title, painted) = (title.into(), None);
+        Self { title, colour, columns, values, painted, lines: Vec::new(), boundary: Vec::new() }
+    }
+
+    /// An image of colours.
+    pub fn painted(title: impl Into<String>, colour: Axis, columns: usize, painted: Painted) -> Self {
+        Self { painted: Some(painted), ..Self::new(title, colour, columns, Vec::new()) }
     }
 
     /// Marks rows by dashed lines.
@@ -74,7 +96,11 @@ impl Picture {
     }
 
     fn rows(&self) -> usize {
-        self.values.len().checked_div(self.columns).unwrap_or(0)
+        self.pixels().checked_div(self.columns).unwrap_or(0)
+    }
+
+    fn pixels(&self) -> usize {
+        self.painted.as_ref().map_or(self.values.len(), |painted| painted.pixels.len())
     }
 
     fn check(&self) -> Result<()> {
@@ -83,11 +109,11 @@ impl Picture {
             return Err(Error::Length { what, found: self.boundary.len(), expected: self.values.len() });
         }
         let expected = self.rows() * self.columns;
-        if expected > 0 && expected == self.values.len() {
+        if expected > 0 && expected == self.pixels() {
             return Ok(());
         }
         let what = format!("pixels of the picture `{}` in rows of {}", self.title, self.columns);
-        Err(Error::Length { what, found: self.values.len(), expected: expected.max(1) })
+        Err(Error::Length { what, found: self.pixels(), expected: expected.max(1) })
     }
 }
 
@@ -100,6 +126,7 @@ impl Pictures {
             pictures,
             no_value: "no value".to_owned(),
             boundary_meaning: String::new(),
+            keys: Vec::new(),
         }
     }
 
@@ -114,6 +141,13 @@ impl Pictures {
     #[must_use]
     pub fn boundary_meaning(mut self, meaning: impl Into<String>) -> Self {
         self.boundary_meaning = meaning.into();
+        self
+    }
+
+    /// Says what colours of painted images mean.
+    #[must_use]
+    pub fn keys(mut self, keys: Vec<(Rgb, String)>) -> Self {
+        self.keys = keys;
         self
     }
 
@@ -150,7 +184,11 @@ pub(super) fn scene(figure: &Pictures) -> Result<Scene> {
         }
         top = lowest + 12.0;
     }
-    let mut entries = Vec::new();
+    let of_key = |(rgb, label): &(Rgb, String)| {
+        let key = Key::Area { colour: Colour { rgb: *rgb, opacity: 1.0 } };
+        Entry { key, label: label.clone() }
+    };
+    let mut entries: Vec<Entry> = figure.keys.iter().map(of_key).collect();
     if figure.pictures.iter().any(|picture| !picture.boundary.is_empty()) {
         let key = Key::Cased;
         entries.push(Entry { key, label: figure.boundary_meaning.clone() });
@@ -160,7 +198,7 @@ pub(super) fn scene(figure: &Pictures) -> Result<Scene> {
         entries.push(Entry { key, label: figure.no_value.clone() });
     }
     if !entries.is_empty() {
-        let legend = Legend::new(entries, frame::WIDTH, HIGHEST);
+        let legend = Legend::new(entries, frame::WIDTH - 2.0 * frame::EDGE, 0.0);
         top = legend.draw_below(&mut scene, frame::EDGE, frame::WIDTH - frame::EDGE, top);
     }
     scene.height = (top + 6.0).ceil();
@@ -169,6 +207,9 @@ pub(super) fn scene(figure: &Pictures) -> Result<Scene> {
 
 /// Draws a picture with its bar; says where it ends and whether pixels have no value.
 fn draw(scene: &mut Scene, picture: &Picture, left: f64, top: f64, slot: f64) -> (f64, bool) {
+    if let Some(painted) = &picture.painted {
+        return (draw_painted(scene, picture, painted, (left, top), slot), false);
+    }
     let values = || picture.values.iter().copied();
     let ruler = Ruler::fit(picture.colour.scale, picture.colour.range, values(), 0.0);
     let ratio = picture.rows() as f64 / picture.columns as f64;
@@ -198,8 +239,38 @@ fn draw(scene: &mut Scene, picture: &Picture, left: f64, top: f64, slot: f64) ->
     }
     scene.outline(area, 0.9, INK);
     let beside = Rect { left: area.right + APART, right: area.right + APART + BAR, ..area };
-    draw_bar(scene, values(), &bar, &beside);
+    draw_bar(scene, values(), &bar, &beside, &colour::quantity);
     (area.bottom, holes)
+}
+
+/// Draws a painted picture, with a bar if it has one; says where it ends.
+fn draw_painted(
+    scene: &mut Scene,
+    picture: &Picture,
+    painted: &Painted,
+    (left, top): Point,
+    slot: f64,
+) -> f64 {
+    let ratio = picture.rows() as f64 / picture.columns as f64;
+    let ruler = Ruler::fit(picture.colour.scale, picture.colour.range, std::iter::empty(), 0.0);
+    // As wide as its neighbours, with or without a bar.
+    let guess = (0.75 * slot * ratio).min(HIGHEST);
+    let room = Vertical::new(&picture.colour, ruler, guess).room() + BAR + APART - frame::EDGE;
+    let width = (slot - room).min(HIGHEST / ratio);
+    let area = Rect { left, right: left + width, top, bottom: top + width * ratio };
+    scene.marks.push(Mark::Image { area, columns: picture.columns, pixels: painted.pixels.clone() });
+    scene.outline(area, 0.9, INK);
+    if let Some([from, to]) = painted.ramp {
+        let mixed = |part: f64| {
+            let mix =
+                |from: u8, to: u8| (f64::from(from) + part * (f64::from(to) - f64::from(from))).round() as u8;
+            Colour { rgb: (mix(from.0, to.0), mix(from.1, to.1), mix(from.2, to.2)), opacity: 1.0 }
+        };
+        let bar = Vertical::new(&picture.colour, ruler, area.height());
+        let beside = Rect { left: area.right + APART, right: area.right + APART + BAR, ..area };
+        draw_bar(scene, std::iter::empty(), &bar, &beside, &mixed);
+    }
+    area.bottom
 }
 
 /// Lines where the values of the boundary change their sign, but for those around specks.
