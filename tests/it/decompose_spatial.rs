@@ -160,7 +160,9 @@ fn priors_gain_where_photons_are_few() {
                 maps.spatial
             );
         };
-        [("plain", &plain), ("potts", &potts), ("tex-sgd", &sgd)].map(|(name, maps)| said(name, maps));
+        [("plain", &plain), ("potts", &potts), ("tex-sgd", &sgd)]
+            .iter()
+            .for_each(|(name, maps)| said(name, maps));
         for (maps, gain, ratio) in [(&potts, gain, ratio), (&sgd, sgd_gain, sgd_ratio)] {
             assert!(blocks.right(maps, &all) >= blocks.right(&plain, &all) + gain, "{counts}");
             assert!(blocks.right(maps, &edges) >= blocks.right(&plain, &edges), "{counts}");
@@ -185,6 +187,34 @@ fn priors_gain_where_photons_are_few() {
     assert!(strong <= plain - 0.2, "{plain} {strong}");
 }
 
+/// A spot of one pixel that is warmer than its surroundings by two of its deviations is taken for noise, as the prior says, and its
+/// interval misses it more often; one that is warmer by ten stays.
+#[test]
+fn spots_of_one_pixel_are_lost_as_it_is_said() {
+    let covered = |deviations: f64, prior: Option<SpatialPrior>| {
+        let mut blocks = Blocks::new();
+        let cube = blocks.cube(1e5, 7);
+        let sigma = f64::from(blocks.found(&cube, None).unwrap().temperature_sigma_k[6 * COLUMNS + 6]);
+        for i in blocks.single.clone() {
+            blocks.material[i] = blocks.material[i - 1];
+            blocks.temperature_k[i] += deviations * sigma;
+        }
+        let spots = (0..20).flat_map(|seed| {
+            let maps = blocks.found(&blocks.cube(1e5, 100 + seed), prior).unwrap();
+            let off = |i: &usize| f64::from(maps.temperature_k[*i]) - blocks.temperature_k[*i];
+            let within = |i: &usize| off(i).abs() < 1.96 * f64::from(maps.temperature_sigma_k[*i]);
+            blocks.single.iter().map(within).collect::<Vec<_>>()
+        });
+        let spots: Vec<bool> = spots.collect();
+        spots.iter().filter(|within| **within).count() as f64 / spots.len() as f64
+    };
+    let [plain, small, large] = [covered(2.0, None), covered(2.0, Some(POTTS)), covered(10.0, Some(POTTS))];
+    println!(
+        "intervals of spots hold {plain:.3} plain; {small:.3} of two, {large:.3} of ten deviations with a prior"
+    );
+    assert!(plain > 0.9 && small < 0.7 && large > 0.9, "{plain} {small} {large}");
+}
+
 /// Where photons abound no prior changes a material, and temperatures by less than their errors; the number of threads nothing.
 #[test]
 fn priors_change_nothing_where_photons_abound() {
@@ -206,7 +236,8 @@ fn priors_change_nothing_where_photons_abound() {
         };
         let (one, three) = (with(1), with(3));
         assert_eq!(one.spatial, three.spatial);
-        assert!(one == three || one.temperature_k.iter().any(|t| t.is_nan()));
+        // As text, in which a missing number is itself.
+        assert_eq!(format!("{one:?}"), format!("{three:?}"));
     }
 }
 

@@ -103,6 +103,23 @@ impl Picture {
         self.painted.as_ref().map_or(self.values.len(), |painted| painted.pixels.len())
     }
 
+    /// Height over width.
+    fn ratio(&self) -> f64 {
+        self.rows() as f64 / self.columns as f64
+    }
+
+    fn ruler(&self) -> Ruler {
+        Ruler::fit(self.colour.scale, self.colour.range, self.values.iter().copied(), 0.0)
+    }
+
+    /// As wide as a slot allows with the bar beside it.
+    fn width(&self, slot: f64) -> f64 {
+        // The room beside the bar depends on its height only through the number of its ticks.
+        let guess = (0.75 * slot * self.ratio()).min(HIGHEST);
+        let room = Vertical::new(&self.colour, self.ruler(), guess).room() + BAR + APART - frame::EDGE;
+        (slot - room).min(HIGHEST / self.ratio())
+    }
+
     fn check(&self) -> Result<()> {
         if !self.boundary.is_empty() && self.boundary.len() != self.values.len() {
             let what = format!("values between which `{}` has a line", self.title);
@@ -166,6 +183,9 @@ pub(super) fn scene(figure: &Pictures) -> Result<Scene> {
     let mut scene = Scene::new(&figure.title, frame::WIDTH);
     let mut top = frame::heading(&mut scene, &figure.title, &figure.subtitle) + 4.0;
     let mut missing = false;
+    // Painted images are compared with their neighbours pixel by pixel: all are of one width.
+    let painted = figure.pictures.iter().any(|picture| picture.painted.is_some());
+    let width = figure.pictures.iter().map(|picture| picture.width(slot)).fold(slot, f64::min);
     for pair in figure.pictures.chunks(across) {
         let titles: Vec<Vec<String>> =
             pair.iter().map(|picture| text::wrap_at_most(&picture.title, TITLE, slot, 2)).collect();
@@ -178,7 +198,8 @@ pub(super) fn scene(figure: &Pictures) -> Result<Scene> {
                 let y = top + (line as f64 + 0.85) * TITLE * LEADING;
                 scene.text((left, y), words, TITLE, INK, Anchor::Start);
             }
-            let (bottom, holes) = draw(&mut scene, picture, left, upper, slot);
+            let width = if painted { width } else { picture.width(slot) };
+            let (bottom, holes) = draw(&mut scene, picture, (left, upper), width);
             lowest = lowest.max(bottom);
             missing |= holes;
         }
@@ -205,19 +226,15 @@ pub(super) fn scene(figure: &Pictures) -> Result<Scene> {
     Ok(scene)
 }
 
-/// Draws a picture with its bar; says where it ends and whether pixels have no value.
-fn draw(scene: &mut Scene, picture: &Picture, left: f64, top: f64, slot: f64) -> (f64, bool) {
+/// Draws a picture of this width with its bar; says where it ends and whether pixels have no value.
+fn draw(scene: &mut Scene, picture: &Picture, (left, top): Point, width: f64) -> (f64, bool) {
+    let ruler = picture.ruler();
+    let area = Rect { left, right: left + width, top, bottom: top + width * picture.ratio() };
     if let Some(painted) = &picture.painted {
-        return (draw_painted(scene, picture, painted, (left, top), slot), false);
+        draw_painted(scene, picture, painted, &area);
+        return (area.bottom, false);
     }
     let values = || picture.values.iter().copied();
-    let ruler = Ruler::fit(picture.colour.scale, picture.colour.range, values(), 0.0);
-    let ratio = picture.rows() as f64 / picture.columns as f64;
-    // The room beside the bar depends on its height only through the number of its ticks.
-    let guess = (0.75 * slot * ratio).min(HIGHEST);
-    let room = Vertical::new(&picture.colour, ruler, guess).room() + BAR + APART - frame::EDGE;
-    let width = (slot - room).min(HIGHEST / ratio);
-    let area = Rect { left, right: left + width, top, bottom: top + width * ratio };
     let bar = Vertical::new(&picture.colour, ruler, area.height());
     let colour_of = |value: &f64| match ruler.fraction(*value) {
         Some(part) => shade(part).rgb,
@@ -243,21 +260,9 @@ fn draw(scene: &mut Scene, picture: &Picture, left: f64, top: f64, slot: f64) ->
     (area.bottom, holes)
 }
 
-/// Draws a painted picture, with a bar if it has one; says where it ends.
-fn draw_painted(
-    scene: &mut Scene,
-    picture: &Picture,
-    painted: &Painted,
-    (left, top): Point,
-    slot: f64,
-) -> f64 {
-    let ratio = picture.rows() as f64 / picture.columns as f64;
-    let ruler = Ruler::fit(picture.colour.scale, picture.colour.range, std::iter::empty(), 0.0);
-    // As wide as its neighbours, with or without a bar.
-    let guess = (0.75 * slot * ratio).min(HIGHEST);
-    let room = Vertical::new(&picture.colour, ruler, guess).room() + BAR + APART - frame::EDGE;
-    let width = (slot - room).min(HIGHEST / ratio);
-    let area = Rect { left, right: left + width, top, bottom: top + width * ratio };
+/// Draws a painted picture, with a bar if it has one.
+fn draw_painted(scene: &mut Scene, picture: &Picture, painted: &Painted, area: &Rect) {
+    let (area, ruler) = (*area, picture.ruler());
     scene.marks.push(Mark::Image { area, columns: picture.columns, pixels: painted.pixels.clone() });
     scene.outline(area, 0.9, INK);
     if let Some([from, to]) = painted.ramp {
@@ -270,7 +275,6 @@ fn draw_painted(
         let beside = Rect { left: area.right + APART, right: area.right + APART + BAR, ..area };
         draw_bar(scene, std::iter::empty(), &bar, &beside, &mixed);
     }
-    area.bottom
 }
 
 /// Lines where the values of the boundary change their sign, but for those around specks.

@@ -3,8 +3,8 @@
 //! * Texture X = Σₖ Vₖ ∫Sₖ dν over the bands that count: what is around, as a surface sees it from its place, photons s⁻¹ m⁻² sr⁻¹.
 //! * Thermal image ∫S dν over the same bands, photons s⁻¹ m⁻² sr⁻¹: what a camera without bands sees.
 //! * Hues: those the scenario states, then the paper's for vegetation, water and sand, then by the place in the library, so that a
-//!   material keeps its hue whatever else is in the picture. The first ones alternate between blue and yellow, which the colour-blind
-//!   tell apart.
+//!   material keeps its hue whatever is in the picture. The first ones alternate between blue and yellow, which the colour-blind tell
+//!   apart; after them each is in the middle of the widest gap.
 //!
 //! Source: paper, supplement SIII C.
 
@@ -17,8 +17,8 @@ use serde::Serialize;
 
 /// Hues of the first materials, degrees: blue, amber, pink, bluish green, vermillion, violet, lime, cyan.
 const HUES_DEG: [f64; 8] = [210.0, 45.0, 330.0, 165.0, 15.0, 270.0, 75.0, 190.0];
-/// From each of the others to the next: no two of any number are close.
-const GOLDEN_ANGLE_DEG: f64 = 137.507_764_050_037_85;
+/// Hues that are closer than this are not both among the first, degrees.
+const APART_DEG: f64 = 15.0;
 /// Hues of the paper, of 255.
 const NAMED: [(&str, f64); 3] = [("vegetation", 90.0), ("water", 160.0), ("sand", 40.0)];
 /// Shares of the decided pixels that are colder and hotter than the limits.
@@ -44,12 +44,8 @@ impl Vision {
     /// A cube that cannot be read.
     pub(super) fn of(study: &DecomposeStudy, maps: &Maps) -> Result<Self> {
         let spec = &study.scenario.vision;
-        let hue = |(place, name): (usize, &String)| {
-            let stated = spec.hues_deg.get(name).copied();
-            stated.unwrap_or_else(|| hue_deg(place, name))
-        };
         Ok(Self {
-            hues_deg: study.names.iter().enumerate().map(hue).collect(),
+            hues_deg: hues_deg(&study.names, |name| spec.hues_deg.get(name).copied()),
             temperature_k: spec.temperature_k.unwrap_or_else(|| tenths_k(maps)),
             texture: texture(study, maps),
             thermal: match &study.cube {
@@ -60,10 +56,35 @@ impl Vision {
     }
 }
 
-fn hue_deg(place: usize, name: &str) -> f64 {
-    let named = NAMED.iter().find(|(one, _)| one.eq_ignore_ascii_case(name.trim()));
-    let of_place = || HUES_DEG.get(place).copied().unwrap_or((GOLDEN_ANGLE_DEG * place as f64) % 360.0);
-    named.map_or_else(of_place, |(_, hue)| hue * 360.0 / 255.0)
+/// Hues of the materials of a library, some of them stated.
+fn hues_deg(names: &[String], stated: impl Fn(&str) -> Option<f64>) -> Vec<f64> {
+    let of_paper = |name: &str| {
+        let named = NAMED.iter().find(|(one, _)| one.eq_ignore_ascii_case(name.trim()));
+        named.map(|(_, hue)| hue * 360.0 / 255.0)
+    };
+    let fixed: Vec<Option<f64>> = names.iter().map(|name| stated(name).or_else(|| of_paper(name))).collect();
+    let mut taken: Vec<f64> = fixed.iter().flatten().copied().collect();
+    let mut free = |fixed: &Option<f64>| {
+        fixed.unwrap_or_else(|| {
+            let apart = |a: f64, b: f64| 180.0 - ((a - b).abs() - 180.0).abs();
+            let first = HUES_DEG.iter().find(|hue| taken.iter().all(|one| apart(*one, **hue) >= APART_DEG));
+            let hue = first.copied().unwrap_or_else(|| middle_of_widest_gap(&mut taken));
+            taken.push(hue);
+            hue
+        })
+    };
+    fixed.iter().map(&mut free).collect()
+}
+
+/// The middle of the widest gap between hues on their circle, the first of equals.
+fn middle_of_widest_gap(hues: &mut [f64]) -> f64 {
+    hues.sort_by(f64::total_cmp);
+    let next = hues.iter().skip(1).copied().chain(hues.first().map(|first| first + 360.0));
+    let gaps = hues.iter().zip(next);
+    let widest = gaps.fold((0.0, 0.0), |widest, (from, to)| {
+        if to - from > widest.0 + 1e-9 { (to - from, 0.5 * (from + to)) } else { widest }
+    });
+    widest.1 % 360.0
 }
 
 /// Between a tenth and nine tenths of the temperatures of the decided pixels, at least a kelvin apart.
@@ -120,4 +141,25 @@ fn thermal<S: Sample>(study: &DecomposeStudy, cube: &dyn Rows<S>) -> Result<Vec<
         Ok(cube.read(row..row + 1, buffer)?.chunks(shape.bands()).map(sum).collect::<Vec<f32>>())
     });
     Ok(rows.collect::<Result<Vec<_>>>()?.concat())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// No two of thirty hues are closer than half of an even spread, and what is stated holds.
+    #[test]
+    fn hues_are_apart_and_stay() {
+        let names: Vec<String> =
+            (0..30).map(|i| if i == 4 { "Water".to_owned() } else { format!("m{i}") }).collect();
+        let found = hues_deg(&names, |name| (name == "m7").then_some(33.0));
+        assert_eq!((found[0], found[7]), (210.0, 33.0));
+        assert!((found[4] - 225.882_352_941).abs() < 1e-6);
+        let mut sorted = found.clone();
+        sorted.sort_by(f64::total_cmp);
+        assert!(sorted.windows(2).all(|pair| pair[1] - pair[0] >= 5.5), "{sorted:?}");
+        assert!(sorted.iter().all(|hue| (0.0..360.0).contains(hue)));
+        // Materials that are added at the end change no hue.
+        assert_eq!(hues_deg(&names[..20], |name| (name == "m7").then_some(33.0)), found[..20]);
+    }
 }
