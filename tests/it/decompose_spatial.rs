@@ -142,7 +142,7 @@ fn priors_gain_where_photons_are_few() {
     // Counts; gain of right materials and ratio of temperature errors: Potts, TeX-SGD.
     for (counts, [gain, ratio], [sgd_gain, sgd_ratio]) in [
         (1e3, [0.2, 0.7], [0.0, 0.65]),
-        (1e4, [0.045, 0.5], [0.005, 0.8]),
+        (1e4, [0.045, 0.55], [0.005, 0.8]),
         (1e5, [0.001, 0.5], [0.0, 0.8]),
         (1e6, [0.0, 0.6], [0.0, 0.9]),
     ] {
@@ -187,8 +187,8 @@ fn priors_gain_where_photons_are_few() {
     assert!(strong <= plain - 0.2, "{plain} {strong}");
 }
 
-/// A spot of one pixel that is warmer than its surroundings by two of its deviations is taken for noise, as the prior says, and its
-/// interval misses it more often; one that is warmer by ten stays.
+/// A spot of one pixel that is warmer than its surroundings by two of its deviations is often taken for noise, and its interval then
+/// misses it; one that is warmer by four or ten stays. 400 spots: 0.05 are four standard errors.
 #[test]
 fn spots_of_one_pixel_are_lost_as_it_is_said() {
     let covered = |deviations: f64, prior: Option<SpatialPrior>| {
@@ -208,11 +208,12 @@ fn spots_of_one_pixel_are_lost_as_it_is_said() {
         let spots: Vec<bool> = spots.collect();
         spots.iter().filter(|within| **within).count() as f64 / spots.len() as f64
     };
-    let [plain, small, large] = [covered(2.0, None), covered(2.0, Some(POTTS)), covered(10.0, Some(POTTS))];
+    let plain = covered(2.0, None);
+    let [small, clear, large] = [2.0, 4.0, 10.0].map(|deviations| covered(deviations, Some(POTTS)));
     println!(
-        "intervals of spots hold {plain:.3} plain; {small:.3} of two, {large:.3} of ten deviations with a prior"
+        "intervals of spots hold {plain:.3} plain; {small:.3} of two, {clear:.3} of four, {large:.3} of ten deviations with a prior"
     );
-    assert!(plain > 0.9 && small < 0.7 && large > 0.9, "{plain} {small} {large}");
+    assert!(plain > 0.9 && small < 0.8 && clear > 0.9 && large > 0.9, "{plain} {small} {clear} {large}");
 }
 
 /// Where photons abound no prior changes a material, and temperatures by less than their errors; the number of threads nothing.

@@ -43,7 +43,8 @@ pub(in super::super) struct Kept {
 impl Task {
     /// Keeps what was found of the pixel that `room` has fitted; nothing of one that was left out or of which nothing is told.
     pub(in super::super) fn keep(&self, pixel: &Pixel, room: &mut Room, row: &mut KeptRow) {
-        if pixel.material != NO_MATERIAL {
+        let is_fitted = room.fits.first().is_some_and(|(_, fit)| fit.deviance.is_finite());
+        if pixel.material != NO_MATERIAL && is_fitted {
             self.keep_fits(room, row);
         } else {
             row.deviances.push(0.0);

@@ -117,7 +117,8 @@ fn listen(
 fn closeness(a: &Candidate, b: &Candidate, step_k: f64) -> f64 {
     let var = f64::from(a.sigma_k).powi(2) + f64::from(b.sigma_k).powi(2) + step_k * step_k;
     let apart = f64::from(a.temperature_k) - f64::from(b.temperature_k);
-    libm::exp(-0.5 * apart * apart / var)
+    let closeness = libm::exp(-0.5 * apart * apart / var);
+    if closeness.is_nan() { 0.0 } else { closeness }
 }
 
 /// Likelihoods times what was heard, but for one neighbour, as shares of 1.
