@@ -37,7 +37,7 @@ impl Clahe {
         let rows = values.len().checked_div(columns).unwrap_or(0);
         let finite = || values.iter().copied().filter(|value| value.is_finite());
         let (low, high) = finite().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
-        if !(low < high) {
+        if low >= high {
             return values.iter().map(|value| if value.is_finite() { 0.5 } else { *value }).collect();
         }
         let [down, across] = self.tiles.map(|count| count.max(1));

@@ -155,7 +155,7 @@ mod tests {
         };
         let pixels: Vec<Vec<Candidate>> = (0..5).map(own).collect();
         let (weight, step_k) = (1.3, 0.5);
-        let mut expected = vec![[0.0f64; 4]; 5];
+        let mut expected = [[0.0f64; 4]; 5];
         for labelling in 0..4usize.pow(5) {
             let chosen: Vec<usize> = (0..5).map(|i| labelling / 4usize.pow(i) % 4).collect();
             let one = |i: usize| pixels[i][chosen[i]];

@@ -43,7 +43,7 @@ pub(super) fn minimised(kept: &Kept, columns: usize, penalty: f64) -> Found {
         let next: Vec<(usize, f64)> =
             (0..pixels).into_par_iter().map(|i| least(kept, map, i, columns, penalty)).collect();
         let same = |((place, t), (before, k)): (&(usize, f64), (&usize, &f64))| {
-            place == before && !((t - k).abs() > SAME_K)
+            place == before && ((t - k).abs() <= SAME_K || t.is_nan())
         };
         found.settled = next.iter().zip(found.places.iter().zip(map)).all(same);
         (found.places, found.temperatures_k) = next.into_iter().unzip();
