@@ -9,7 +9,9 @@
 //! * [`Pixel`], [`flag`]: what is found of a pixel, and what is said of it.
 //!
 //! Intervals are those of the Cramér–Rao bound at the fit, were the material certain, also where a limit holds a lighting factor: its
-//! truth may be a little way off. Assumptions: counts are Poisson with added Gaussian noise; bands are independent; the library is exact.
+//! truth may be a little way off; those of a prior over the image are its own ([`SpatialPrior`]).
+//!
+//! Assumptions: counts are Poisson with added Gaussian noise; bands are independent; the library is exact.
 //!
 //! Source: paper S44, S48, Methods 'TeX degeneracy'.
 
