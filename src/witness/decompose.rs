@@ -6,10 +6,13 @@
 //!
 //! * [`Setting`], [`Options`]: what is known; [`decompose()`]: a cube to [`Maps`];
 //! * [`Method`], [`decompose_by`]: methods that it is compared with; [`inverse_error`]: by how much one of them errs;
+//! * [`SpatialPrior`]: what neighbours tell about a pixel, where it is asked for;
 //! * [`Pixel`], [`flag`]: what is found of a pixel, and what is said of it.
 //!
 //! Intervals are those of the Cramér–Rao bound at the fit, were the material certain, also where a limit holds a lighting factor: its
-//! truth may be a little way off. Assumptions: counts are Poisson with added Gaussian noise; bands are independent; the library is exact.
+//! truth may be a little way off; those of a prior over the image are its own ([`SpatialPrior`]).
+//!
+//! Assumptions: counts are Poisson with added Gaussian noise; bands are independent; the library is exact.
 //!
 //! Source: paper S44, S48, Methods 'TeX degeneracy'.
 
@@ -25,6 +28,7 @@ mod model;
 mod pixel;
 mod screen;
 mod space;
+mod spatial;
 mod step;
 
 pub use inverse_error::{InverseError, inverse_error};
@@ -33,3 +37,4 @@ pub use maps::{Maps, Options, decompose};
 pub use method::{Method, decompose_by};
 pub use model::{Light, MOST_SURROUNDINGS, Setting};
 pub use pixel::{CANDIDATE_SHARE, NO_FIT, NO_MATERIAL, Pixel, Spared, flag};
+pub use spatial::{Spatial, SpatialPrior};

@@ -4,6 +4,7 @@ mod cameras;
 mod decision;
 mod decompose;
 mod decompose_methods;
+mod decompose_spatial;
 mod derivatives;
 mod detection_reference;
 mod exact_probability;

@@ -1,12 +1,16 @@
 //! A decomposed cube as files: maps, a table per material, pictures.
 
+mod equalise;
 mod figures;
 mod text;
+mod vision;
 
 pub use figures::maps;
 pub use text::text;
+pub use vision::Vision;
 
 use crate::bundle::Bundle;
+use crate::plot::image_png;
 use crate::table::{Table, number};
 use hadar::error::Result;
 use hadar::ranging::cube::npy_map;
@@ -37,7 +41,12 @@ pub fn bundle(result: &Decomposed, out: &Path) -> Result<Bundle> {
     bundle.add("posterior.npy", npy_map(&size, &maps.posterior)?);
     bundle.add("candidates.npy", npy_map(&size, &maps.candidates)?);
     bundle.add("flags.npy", npy_map(&size, &maps.flags)?);
-    bundle.add_plots(&[figures::maps(result)])?;
+    bundle.add("texture.npy", npy_map(&size, &result.vision.texture)?);
+    bundle.add("thermal.npy", npy_map(&size, &result.vision.thermal)?);
+    let vision = Vision::of(result);
+    bundle.add("tex_vision_image.png", image_png(&vision.pixels(), size[1])?);
+    let stride = figures::stride(result.shape);
+    bundle.add_plots(&[vision::plot(result, &vision, stride), figures::maps(result)])?;
     Ok(bundle)
 }
 
@@ -47,6 +56,7 @@ pub fn materials(result: &Decomposed) -> Table {
     let mut table = Table::new([
         "material",
         "index",
+        "hue_deg",
         "pixels",
         "decided",
         "temperature_median_k",
@@ -59,6 +69,9 @@ pub fn materials(result: &Decomposed) -> Table {
         table.push(vec![
             row.material.clone(),
             index.map_or_else(String::new, |index| index.to_string()),
+            index
+                .and_then(|index| result.vision.hues_deg.get(index))
+                .map_or_else(String::new, |h| number(*h)),
             row.pixels.to_string(),
             row.decided.to_string(),
             number(row.temperature_median_k),

@@ -51,7 +51,7 @@ pub use figure::{Band, LineFigure, Marker, Panel, Rule, Series, Style};
 pub use heatmap::HeatMap;
 pub use matrix::{Matrix, Threshold};
 pub use named::{NamedSeries, NamedValues};
-pub use pictures::{Picture, Pictures};
+pub use pictures::{Painted, Picture, Pictures, Rgb};
 
 use hadar::Result;
 
@@ -134,6 +134,14 @@ pub fn render_svg(figure: &Figure) -> Result<String> {
 /// As [`render_svg`].
 pub fn render_png(figure: &Figure) -> Result<Vec<u8>> {
     png::paint(&scene(figure)?)
+}
+
+/// A bare image of so many columns as a PNG file, a pixel each.
+///
+/// # Errors
+/// An image without a pixel.
+pub fn image_png(pixels: &[Rgb], columns: usize) -> Result<Vec<u8>> {
+    png::raster(pixels, columns)
 }
 
 fn scene(figure: &Figure) -> Result<scene::Scene> {

@@ -148,6 +148,8 @@ fn decomposition(result: &Rendered, layout: Layout, out: &Path) -> DecomposeScen
             temperature: truth("temperature_k.npy"),
             lighting: vec![file("lighting.npy")],
         }),
+        spatial: None,
+        vision: Default::default(),
         source: Source::default(),
     }
 }

@@ -36,6 +36,8 @@ pub enum Warning {
     LibraryDoesNotFit { pixels: usize, of: usize },
     /// A library without errors.
     LibraryTakenAsExact,
+    /// Pixels whose material a prior over the image changed, and whether its last sweep still changed something.
+    SpatialPrior { changed: usize, pixels: usize, settled: bool },
 
     /// Equal emissivities.
     Identical,
@@ -176,6 +178,7 @@ impl Warning {
             Self::PixelsSkipped { .. } => Code::PixelsSkipped,
             Self::LibraryDoesNotFit { .. } => Code::LibraryDoesNotFit,
             Self::LibraryTakenAsExact => Code::LibraryTakenAsExact,
+            Self::SpatialPrior { .. } => Code::SpatialPrior,
             Self::Identical => Code::Identical,
             Self::Equilibrium => Code::Equilibrium,
             Self::Blind => Code::Blind,

@@ -1,14 +1,15 @@
 //! A whole cube: rows in parallel, each read, decomposed and put into the maps.
 //!
-//! Every pixel is for itself, so the maps are the same for any number of threads, and only the rows that are in work are in memory.
+//! Every pixel is for itself, but for a prior over the image ([`super::spatial`]), so the maps are the same for any number of threads, and only the rows that are in work are in memory.
 
 use super::library_error::{LibraryError, Modes};
 use super::model::{MOST_SURROUNDINGS, Model, Setting};
-use super::pixel::{Pixel, Spared, Task};
+use super::pixel::{NO_MATERIAL, Pixel, Spared, Task, flag};
 use super::screen::Screen;
+use super::spatial::{Kept, KeptRow, Spatial, SpatialPrior};
 use crate::demand::Skipping;
 use crate::error::{Error, Result};
-use crate::ranging::cube::{Cube, Rows, Sample, Shape};
+use crate::ranging::cube::{Cube, Rows, Sample};
 use rayon::prelude::*;
 
 /// Rows whose mean the bounds are laid out for.
@@ -23,6 +24,8 @@ pub struct Options {
     pub library_error: Option<LibraryError>,
     /// Whether materials that a bound excludes are left out; the answer is the same.
     pub skipping: Skipping,
+    /// What neighbours tell about a pixel; each is for itself if silent.
+    pub spatial: Option<SpatialPrior>,
 }
 
 /// What is found of every pixel, `[row][column]`.
@@ -46,6 +49,8 @@ pub struct Maps {
     pub flags: Vec<u8>,
     /// What was spared.
     pub spared: Spared,
+    /// What a prior over the image did, if there was one.
+    pub spatial: Option<Spatial>,
 }
 
 /// Decomposes a cube of counts; `done` is told how many rows are finished.
@@ -79,6 +84,7 @@ fn whole<S: Sample>(
     cube: &dyn Rows<S>,
     done: &(dyn Fn(usize) + Sync),
 ) -> Result<Maps> {
+    options.spatial.as_ref().map_or(Ok(()), |prior| prior.check(options.library_error.is_some()))?;
     let model = Model::new(setting)?;
     let per_unit = 1.0 / setting.units_per_count;
     let mean = mean_counts(&model, cube, per_unit)?;
@@ -87,15 +93,25 @@ fn whole<S: Sample>(
     let by_rows = ByRows { cube, signed, done };
     let rows = by_rows.all(
         || task.room(),
-        |room, sample: &[S], spared| {
-            for (to, &band) in room.counts.iter_mut().zip(&task.model.used) {
-                let value: f64 = sample[band].into();
-                *to = per_unit * value;
+        |room, sample: &[S], spared, kept: &mut KeptRow| {
+            task.load(sample, per_unit, room);
+            let pixel = task.pixel(room, spared);
+            if options.spatial.is_some() {
+                task.keep(&pixel, room, kept);
             }
-            task.pixel(room, spared)
+            pixel
         },
     )?;
-    Ok(Maps::of(&rows, cube.shape(), setting.surroundings.len()))
+    let mut spared = rows.iter().fold(Spared::default(), |sum, (_, spared, _)| sum + *spared);
+    let (pixels, kept): (Vec<Vec<Pixel>>, Vec<KeptRow>) =
+        rows.into_iter().map(|(pixels, _, kept)| (pixels, kept)).unzip();
+    let (mut pixels, mut spatial) = (pixels.concat(), None);
+    if let Some(prior) = &options.spatial {
+        let kept = Kept::of_rows(kept);
+        let (more, about) = prior.apply(&task, &kept, &mut pixels, (cube, per_unit))?;
+        (spared, spatial) = (spared + more, Some(about));
+    }
+    Ok(Maps { spared, spatial, ..Maps::of(&pixels, setting.surroundings.len()) })
 }
 
 /// Whether all bands have noise added, so that samples may come out below 0.
@@ -112,16 +128,16 @@ pub(super) struct ByRows<'a, S> {
     pub(super) done: &'a (dyn Fn(usize) + Sync),
 }
 
-/// Pixels of a row, and what was spared in it.
-pub(super) type Row = (Vec<Pixel>, Spared);
+/// Pixels of a row, what was spared in it, and what is kept of it besides.
+pub(super) type Row<K> = (Vec<Pixel>, Spared, K);
 
 impl<S: Sample> ByRows<'_, S> {
     /// What `pixel` makes of the samples of every pixel, with room of its own for each thread.
-    pub(super) fn all<R>(
+    pub(super) fn all<R, K: Default + Send>(
         &self,
         room: impl Fn() -> R + Sync,
-        pixel: impl Fn(&mut R, &[S], &mut Spared) -> Pixel + Sync,
-    ) -> Result<Vec<Row>> {
+        pixel: impl Fn(&mut R, &[S], &mut Spared, &mut K) -> Pixel + Sync,
+    ) -> Result<Vec<Row<K>>> {
         let shape = self.cube.shape();
         let is_count = |n: f64| n >= 0.0 || n.is_nan();
         let of_row = |(room, buffer): &mut (R, Vec<S>), row: usize| {
@@ -133,11 +149,13 @@ impl<S: Sample> ByRows<'_, S> {
                 let place = (row, at / shape.bands(), at % shape.bands());
                 return Err(negative(samples[at].into(), place));
             }
-            let mut spared = Spared::default();
-            let pixels =
-                samples.chunks(shape.bands()).map(|sample| pixel(room, sample, &mut spared)).collect();
+            let (mut spared, mut kept) = (Spared::default(), K::default());
+            let pixels = samples
+                .chunks(shape.bands())
+                .map(|sample| pixel(room, sample, &mut spared, &mut kept))
+                .collect();
             (self.done)(1);
-            Ok((pixels, spared))
+            Ok((pixels, spared, kept))
         };
         (0..shape.rows()).into_par_iter().map_init(|| (room(), Vec::new()), of_row).collect()
     }
@@ -201,10 +219,18 @@ fn mean_counts<S: Sample>(model: &Model, cube: &dyn Rows<S>, per_unit: f64) -> R
 }
 
 impl Maps {
-    pub(super) fn of(rows: &[Row], shape: Shape, surroundings: usize) -> Self {
-        let pixels = shape.rows() * shape.columns();
-        let all = || rows.iter().flat_map(|(pixels, _)| pixels);
-        let mut lighting = Vec::with_capacity(pixels * surroundings);
+    /// Whether pixel i, counted row after row, has one material left that fits.
+    #[must_use]
+    pub fn is_decided(&self, i: usize) -> bool {
+        let flags = self.flags.get(i).copied().unwrap_or(flag::SKIPPED);
+        self.candidates.get(i) == Some(&1)
+            && self.material.get(i).is_some_and(|material| *material != NO_MATERIAL)
+            && flags & flag::NO_FIT == 0
+    }
+
+    pub(super) fn of(pixels: &[Pixel], surroundings: usize) -> Self {
+        let all = || pixels.iter();
+        let mut lighting = Vec::with_capacity(pixels.len() * surroundings);
         all().for_each(|p| {
             lighting.extend(p.lighting[..surroundings.min(MOST_SURROUNDINGS)].iter().map(|v| *v as f32))
         });
@@ -217,7 +243,7 @@ impl Maps {
             posterior: all().map(|p| p.posterior as f32).collect(),
             candidates: all().map(|p| p.candidates).collect(),
             flags: all().map(|p| p.flags).collect(),
-            spared: rows.iter().fold(Spared::default(), |sum, (_, spared)| sum + *spared),
+            ..Self::default()
         }
     }
 }

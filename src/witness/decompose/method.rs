@@ -113,8 +113,8 @@ fn compared<S: Sample>(
         }));
         room.iter().all(|n| n.is_finite())
     };
-    let all = |pixel: &(dyn Fn(&[f64]) -> Pixel + Sync)| -> Result<Vec<Row>> {
-        by_rows.all(Vec::new, |room, sample, _| match counts(room, sample) {
+    let all = |pixel: &(dyn Fn(&[f64]) -> Pixel + Sync)| -> Result<Vec<Row<()>>> {
+        by_rows.all(Vec::new, |room, sample, _, ()| match counts(room, sample) {
             true => pixel(room),
             false => Pixel::SKIPPED,
         })
@@ -129,5 +129,6 @@ fn compared<S: Sample>(
             all(&|counts| inverse.pixel(counts))
         }
     }?;
-    Ok(Maps::of(&found, cube.shape(), setting.surroundings.len()))
+    let pixels: Vec<Pixel> = found.into_iter().flat_map(|(pixels, ..)| pixels).collect();
+    Ok(Maps::of(&pixels, setting.surroundings.len()))
 }

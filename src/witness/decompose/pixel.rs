@@ -13,6 +13,7 @@ use super::model::{MOST_SURROUNDINGS, Model};
 use super::screen::{MOST_STARTS, Screen, Screened};
 use super::step::State;
 use crate::demand::{Reason, Thing, Work};
+use crate::ranging::cube::Sample;
 use crate::simd::Aligned;
 use statrs::function::gamma::gamma_ur;
 
@@ -161,14 +162,15 @@ pub(super) struct Task {
 /// Room for one pixel's work.
 #[derive(Debug)]
 pub(super) struct Room {
-    sums: Sums,
-    workplace: Workplace,
+    pub(super) sums: Sums,
+    pub(super) workplace: Workplace,
     screened: Option<Screened>,
-    pub(super) counts: Aligned,
-    shifted: Aligned,
+    counts: Aligned,
+    pub(super) shifted: Aligned,
     mean: Vec<f64>,
     bounds: Vec<(f64, usize)>,
-    fits: Vec<(usize, Fit)>,
+    /// Kinds that count of the pixel at hand, the best first.
+    pub(super) fits: Vec<(usize, Fit)>,
 }
 
 impl Task {
@@ -186,8 +188,21 @@ impl Task {
         }
     }
 
+    /// Takes the samples of a pixel as counts into `room`.
+    pub(super) fn load<S: Sample>(&self, sample: &[S], per_unit: f64, room: &mut Room) {
+        for (to, &band) in room.counts.iter_mut().zip(&self.model.used) {
+            let value: f64 = sample[band].into();
+            *to = per_unit * value;
+        }
+    }
+
     /// Decomposes the counts in `room`.
     pub(super) fn pixel(&self, room: &mut Room, spared: &mut Spared) -> Pixel {
+        self.pixel_of(None, room, spared)
+    }
+
+    /// The same as if `kind` were the material, if the counts leave it; else as the best.
+    pub(super) fn pixel_of(&self, kind: Option<usize>, room: &mut Room, spared: &mut Spared) -> Pixel {
         let model = &self.model;
         if !room.counts[..model.used.len()].iter().all(|n| n.is_finite()) {
             return Pixel::SKIPPED;
@@ -199,7 +214,8 @@ impl Task {
         let best = room.fits.iter().map(|(_, fit)| fit.deviance).fold(f64::INFINITY, f64::min);
         room.fits.retain(|(_, fit)| fit.deviance <= best + CUT);
         room.fits.sort_by(|a, b| a.1.deviance.total_cmp(&b.1.deviance).then(a.0.cmp(&b.0)));
-        let Some(&(kind, fit)) = room.fits.first() else { return Pixel::SKIPPED };
+        let asked = room.fits.iter().find(|(one, _)| Some(*one) == kind);
+        let Some(&(kind, fit)) = asked.or(room.fits.first()) else { return Pixel::SKIPPED };
         self.described(kind, fit, room, spared)
     }
 

@@ -8,6 +8,7 @@ mod cli;
 mod cli_mistakes;
 mod companion;
 mod decompose;
+mod decompose_image;
 mod demand;
 mod extremes;
 mod fuzz;

@@ -98,7 +98,7 @@ fn counts_are_those_of_the_truth_beside_them() {
             let ratio = counts[i * 21 + w] / radiance;
             let scale = *scale.get_or_insert(ratio);
             // Single precision; where temperatures vary, within a pixel of the far ground by 1 K: ½ (x/T)² K² of B.
-            let tolerance = if [1, 3].contains(&(surface[i] as usize)) { 2e-4 } else { 2e-6 };
+            let tolerance = if [1, 3].contains(&(surface[i] as usize)) { 4e-4 } else { 2e-6 };
             assert!((ratio / scale - 1.0_f64).abs() < tolerance, "{i} {w}: {}", ratio / scale - 1.0);
         }
         seen[surface[i] as usize] += 1;

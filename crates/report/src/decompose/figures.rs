@@ -3,17 +3,22 @@
 use crate::figures::Plot;
 use crate::plot::{Axis, Picture, Pictures};
 use crate::table::{Table, number};
-use hadar::decompose::Method;
+use hadar::ranging::cube::Shape;
 use hadar_study::study::decompose::Decomposed;
 
 /// Widest picture, pixels: of larger cubes every second, third… row and column is shown.
 const WIDEST: usize = 320;
 
+/// From a row and column that is shown to the next.
+pub(super) fn stride(shape: Shape) -> usize {
+    shape.columns().max(shape.rows()).div_ceil(WIDEST)
+}
+
 /// The maps.
 #[must_use]
 pub fn maps(result: &Decomposed) -> Plot {
     let (rows, columns) = (result.shape.rows(), result.shape.columns());
-    let stride = columns.max(rows).div_ceil(WIDEST);
+    let stride = stride(result.shape);
     let shown: Vec<(usize, usize)> = (0..rows)
         .step_by(stride)
         .flat_map(|row| (0..columns).step_by(stride).map(move |column| (row, column)))
@@ -63,14 +68,8 @@ pub fn maps(result: &Decomposed) -> Plot {
             format!(" Every {stride}th row and column of {rows} × {columns}; all are in the NPY files.")
         }
     };
-    let by = match result.method {
-        Method::Ml => "Maximum likelihood",
-        Method::AnalyticInverse => "Inverse functions along wavenumber",
-        Method::Te => "Maximum likelihood without scattered light",
-        Method::GreyBody => "Brightness temperature",
-    };
     let figure = Pictures::new("What the photons tell", pictures)
-        .subtitle(format!("{by} of every pixel, for itself.{every}"))
+        .subtitle(format!("{}.{every}", super::text::how(result)))
         .no_value("nothing is told");
     Plot { name: "maps".into(), figure: figure.into(), table }
 }

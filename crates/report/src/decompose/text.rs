@@ -1,7 +1,7 @@
 //! A decomposed cube in words: how much of it is decided, what is there, how good that is, what was assumed.
 
 use crate::text::footing::warnings;
-use hadar::decompose::{Method, flag};
+use hadar::decompose::{Method, Spatial, SpatialPrior, flag};
 use hadar::words::{quantity, share, significant, whole};
 use hadar_study::scenario::decompose::CubeUnit;
 use hadar_study::study::decompose::{Decomposed, TruthFound};
@@ -19,7 +19,7 @@ pub fn text(result: &Decomposed) -> String {
     out.push_str(&found(result));
     out.push_str(&flags(result));
     if let Some(truth) = &result.truth {
-        out.push_str(&against(truth, result.method));
+        out.push_str(&against(truth, result));
     }
     out.push_str(&assumptions(result));
     out.push_str(&warnings(&result.warnings));
@@ -114,8 +114,10 @@ fn flags(result: &Decomposed) -> String {
     out
 }
 
-fn against(truth: &TruthFound, method: Method) -> String {
-    let bound = match method {
+fn against(truth: &TruthFound, result: &Decomposed) -> String {
+    let neighbours = result.spatial.is_some();
+    let bound = match result.method {
+        Method::Ml if neighbours => "its stated deviation",
         Method::Ml => "its Cramér–Rao bound",
         _ => "the deviation that the method says",
     };
@@ -125,10 +127,11 @@ fn against(truth: &TruthFound, method: Method) -> String {
         let limit = truth.right_material_limit.map_or_else(String::new, |limit| {
             let error = truth.right_material_limit_error.unwrap_or(0.0);
             format!(
-                "; {} +- {} by the nearest distances (the most of any test between a pixel and the nearest state of another \
+                "; {} +- {} by the nearest distances (the most of any test between a pixel{} and the nearest state of another \
                  material, mean over {} pixels)",
                 percent(limit),
                 significant(100.0 * error, 1),
+                if neighbours { ", without its neighbours," } else { "" },
                 truth.right_material_limit_pixels
             )
         });
@@ -153,6 +156,44 @@ fn against(truth: &TruthFound, method: Method) -> String {
     out
 }
 
+/// How pixels are decomposed, in a few words.
+pub(super) fn how(result: &Decomposed) -> &'static str {
+    match (result.scenario.spatial, result.method) {
+        (Some(SpatialPrior::Potts { .. }), _) => {
+            "Maximum posterior of every pixel with its neighbours (Potts prior)"
+        }
+        (Some(SpatialPrior::TexSgd { .. }), _) => "Least cost of every pixel with its neighbours (TeX-SGD)",
+        (None, Method::Ml) => "Maximum likelihood of every pixel, for itself",
+        (None, Method::AnalyticInverse) => "Inverse functions along wavenumber, every pixel for itself",
+        (None, Method::Te) => "Maximum likelihood without scattered light, every pixel for itself",
+        (None, Method::GreyBody) => "Brightness temperature of every pixel, for itself",
+    }
+}
+
+/// The prior over the image, a line; nothing where there is none.
+fn neighbours(result: &Decomposed) -> String {
+    let changed =
+        |spatial: &Spatial| format!("; it changed the material of {} pixels", whole(spatial.changed as u64));
+    let Some((prior, about)) = result.scenario.spatial.zip(result.spatial.as_ref()) else {
+        return String::new();
+    };
+    match prior {
+        SpatialPrior::Potts { weight, .. } => format!(
+            "  neighbours (Potts): each of four adds {} to the log-odds of its own material and temperature{}{}\n",
+            significant(weight, 3),
+            about.temperature_step_k.map_or_else(String::new, |step| {
+                format!("; temperatures of a material differ by {} from pixel to pixel", quantity(step, "K"))
+            }),
+            changed(about)
+        ),
+        SpatialPrior::TexSgd { weight } => format!(
+            "  neighbours (TeX-SGD): temperatures are pulled to the median of 3 x 3 pixels, p = {}{}\n",
+            significant(weight, 3),
+            changed(about)
+        ),
+    }
+}
+
 fn assumptions(result: &Decomposed) -> String {
     let scenario = &result.scenario;
     let [low, high] = scenario.unknown.temperature_k;
@@ -165,22 +206,30 @@ fn assumptions(result: &Decomposed) -> String {
         _ => "Poisson counts with the stated electronic noise, variance from the model",
     };
     let method = result.method.name();
-    let (model, intervals) = match result.method {
-        Method::Ml => {
+    let (model, intervals) = match (result.method, scenario.spatial) {
+        (_, Some(SpatialPrior::Potts { .. })) => (
+            "",
+            "with the neighbours of its material, were it and the prior certain; materials: posterior under the prior",
+        ),
+        (_, Some(SpatialPrior::TexSgd { .. })) => (
+            "",
+            "Cramér–Rao bound of the pixel alone, which a temperature that was pulled need not keep; candidates: of the pixel alone",
+        ),
+        (Method::Ml, None) => {
             ("", "Cramér–Rao bound at the fit, were the material certain; materials: profile likelihoods")
         }
-        Method::Te => (
+        (Method::Te, None) => (
             ", nothing is scattered",
             "those of this model, wrong where light is scattered; materials: profile likelihoods",
         ),
-        Method::AnalyticInverse => {
+        (Method::AnalyticInverse, None) => {
             let out = format!(
                 "Assumptions\n  method: {method}: the lighting has no slope along wavenumber (S46, S47); temperature {low} to {high} K, \
                  lighting of any total\n  intervals: none, the method has none\n\n"
             );
             return out;
         }
-        Method::GreyBody => {
+        (Method::GreyBody, None) => {
             let out = format!(
                 "Assumptions\n  method: {method}: emissivity 1, all bands together\n  intervals: none, the method has none\n\n"
             );
@@ -193,7 +242,8 @@ fn assumptions(result: &Decomposed) -> String {
     };
     format!(
         "Assumptions\n  method: {method}{model}\n  likelihood: {noise}; bands independent\n  \
-         unknown: material, temperature {low} to {high} K{lighting}{}\n  intervals: {intervals}\n\n",
+         unknown: material, temperature {low} to {high} K{lighting}{}\n  intervals: {intervals}\n{}\n",
         if scenario.unknown.gain { ", gain" } else { "" },
+        neighbours(result),
     )
 }

@@ -52,7 +52,7 @@ pub(super) fn scene(map: &HeatMap) -> Result<Scene> {
     }
     let values = map.values.iter().copied();
     let beside = Rect { left: right + 18.0, right: right + 18.0 + BAR, ..area };
-    draw_bar(&mut scene, values, &bar, &beside);
+    draw_bar(&mut scene, values, &bar, &beside, &colour::quantity);
     let mut entries = Vec::new();
     for (i, (value, label)) in map.marks.iter().enumerate() {
         let symbol = Symbol { shape: Shape::Right, colour: INK, open: i > 0 };
@@ -223,11 +223,17 @@ fn draw_contours(
 }
 
 /// The colour bar with its scale, and tips where there are values beyond it.
-pub(super) fn draw_bar(scene: &mut Scene, values: impl Iterator<Item = f64>, axis: &Vertical, bar: &Rect) {
+pub(super) fn draw_bar(
+    scene: &mut Scene,
+    values: impl Iterator<Item = f64>,
+    axis: &Vertical,
+    bar: &Rect,
+    colour_of: &dyn Fn(f64) -> Colour,
+) {
     const STRIPS: u16 = 96;
     for i in (0..STRIPS).rev() {
         let part = |i: u16| f64::from(i) / f64::from(STRIPS);
-        let colour = colour::quantity(part(i) + 0.5 / f64::from(STRIPS));
+        let colour = colour_of(part(i) + 0.5 / f64::from(STRIPS));
         // From its own upper edge down to the end: the next ones are painted over it without a seam.
         scene.fill(Rect { top: bar.at(0.0, part(i + 1)).1, ..*bar }, colour);
     }
@@ -242,17 +248,12 @@ pub(super) fn draw_bar(scene: &mut Scene, values: impl Iterator<Item = f64>, axi
     if most > 1.0 + 1e-9 {
         let base = bar.top - 2.0;
         let upper = vec![base, base - 9.0, base];
-        scene.marks.push(Mark::Area {
-            x: x.clone(),
-            upper,
-            lower: vec![base; 3],
-            colour: colour::quantity(1.0),
-        });
+        scene.marks.push(Mark::Area { x: x.clone(), upper, lower: vec![base; 3], colour: colour_of(1.0) });
     }
     if least < -1e-9 {
         let base = bar.bottom + 2.0;
         let lower = vec![base, base + 9.0, base];
-        scene.marks.push(Mark::Area { x, upper: vec![base; 3], lower, colour: colour::quantity(0.0) });
+        scene.marks.push(Mark::Area { x, upper: vec![base; 3], lower, colour: colour_of(0.0) });
     }
     axis.draw_right(scene, bar);
 }

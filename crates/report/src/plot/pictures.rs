@@ -1,7 +1,7 @@
 //! Images side by side, each with its own colour bar: a raster of numbers per picture.
 
 use super::axis::{Axis, Ruler};
-use super::colour::{INK, NO_VALUE, WHITE};
+use super::colour::{self, Colour, INK, NO_VALUE, WHITE};
 use super::contour;
 use super::frame::{self, Vertical};
 use super::heat::{draw_bar, shade};
@@ -32,11 +32,25 @@ pub struct Picture {
     pub columns: usize,
     /// Values, row after row, the uppermost first.
     pub values: Vec<f64>,
+    /// Colours in the place of values.
+    pub painted: Option<Painted>,
     /// Rows that are marked by a dashed line.
     pub lines: Vec<usize>,
     /// Values, one for each pixel, between whose signs a line is drawn; nowhere where empty.
     pub boundary: Vec<f64>,
 }
+
+/// Colours of an image that are no scale of one quantity.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Painted {
+    /// Red, green and blue, row after row, the uppermost first.
+    pub pixels: Vec<Rgb>,
+    /// Colours at the ends of the bar of the colour axis, which must have a range; no bar without them.
+    pub ramp: Option<[Rgb; 2]>,
+}
+
+/// Red, green and blue.
+pub type Rgb = (u8, u8, u8);
 
 /// Images side by side, two in a row.
 #[derive(Debug, Clone, PartialEq)]
@@ -51,12 +65,20 @@ pub struct Pictures {
     pub no_value: String,
     /// What the lines between signs mean, for the legend.
     pub boundary_meaning: String,
+    /// Colours of painted images and what they mean, for the legend.
+    pub keys: Vec<(Rgb, String)>,
 }
 
 impl Picture {
     /// An image of `columns` × (number of values / `columns`) pixels.
     pub fn new(title: impl Into<String>, colour: Axis, columns: usize, values: Vec<f64>) -> Self {
-        Self { title: title.into(), colour, columns, values, lines: Vec::new(), boundary: Vec::new() }
+        let (title, painted) = (title.into(), None);
+        Self { title, colour, columns, values, painted, lines: Vec::new(), boundary: Vec::new() }
+    }
+
+    /// An image of colours.
+    pub fn painted(title: impl Into<String>, colour: Axis, columns: usize, painted: Painted) -> Self {
+        Self { painted: Some(painted), ..Self::new(title, colour, columns, Vec::new()) }
     }
 
     /// Marks rows by dashed lines.
@@ -74,7 +96,28 @@ impl Picture {
     }
 
     fn rows(&self) -> usize {
-        self.values.len().checked_div(self.columns).unwrap_or(0)
+        self.pixels().checked_div(self.columns).unwrap_or(0)
+    }
+
+    fn pixels(&self) -> usize {
+        self.painted.as_ref().map_or(self.values.len(), |painted| painted.pixels.len())
+    }
+
+    /// Height over width.
+    fn ratio(&self) -> f64 {
+        self.rows() as f64 / self.columns as f64
+    }
+
+    fn ruler(&self) -> Ruler {
+        Ruler::fit(self.colour.scale, self.colour.range, self.values.iter().copied(), 0.0)
+    }
+
+    /// As wide as a slot allows with the bar beside it.
+    fn width(&self, slot: f64) -> f64 {
+        // The room beside the bar depends on its height only through the number of its ticks.
+        let guess = (0.75 * slot * self.ratio()).min(HIGHEST);
+        let room = Vertical::new(&self.colour, self.ruler(), guess).room() + BAR + APART - frame::EDGE;
+        (slot - room).min(HIGHEST / self.ratio())
     }
 
     fn check(&self) -> Result<()> {
@@ -83,11 +126,11 @@ impl Picture {
             return Err(Error::Length { what, found: self.boundary.len(), expected: self.values.len() });
         }
         let expected = self.rows() * self.columns;
-        if expected > 0 && expected == self.values.len() {
+        if expected > 0 && expected == self.pixels() {
             return Ok(());
         }
         let what = format!("pixels of the picture `{}` in rows of {}", self.title, self.columns);
-        Err(Error::Length { what, found: self.values.len(), expected: expected.max(1) })
+        Err(Error::Length { what, found: self.pixels(), expected: expected.max(1) })
     }
 }
 
@@ -100,6 +143,7 @@ impl Pictures {
             pictures,
             no_value: "no value".to_owned(),
             boundary_meaning: String::new(),
+            keys: Vec::new(),
         }
     }
 
@@ -114,6 +158,13 @@ impl Pictures {
     #[must_use]
     pub fn boundary_meaning(mut self, meaning: impl Into<String>) -> Self {
         self.boundary_meaning = meaning.into();
+        self
+    }
+
+    /// Says what colours of painted images mean.
+    #[must_use]
+    pub fn keys(mut self, keys: Vec<(Rgb, String)>) -> Self {
+        self.keys = keys;
         self
     }
 
@@ -132,6 +183,9 @@ pub(super) fn scene(figure: &Pictures) -> Result<Scene> {
     let mut scene = Scene::new(&figure.title, frame::WIDTH);
     let mut top = frame::heading(&mut scene, &figure.title, &figure.subtitle) + 4.0;
     let mut missing = false;
+    // Painted images are compared with their neighbours pixel by pixel: all are of one width.
+    let painted = figure.pictures.iter().any(|picture| picture.painted.is_some());
+    let width = figure.pictures.iter().map(|picture| picture.width(slot)).fold(slot, f64::min);
     for pair in figure.pictures.chunks(across) {
         let titles: Vec<Vec<String>> =
             pair.iter().map(|picture| text::wrap_at_most(&picture.title, TITLE, slot, 2)).collect();
@@ -144,13 +198,18 @@ pub(super) fn scene(figure: &Pictures) -> Result<Scene> {
                 let y = top + (line as f64 + 0.85) * TITLE * LEADING;
                 scene.text((left, y), words, TITLE, INK, Anchor::Start);
             }
-            let (bottom, holes) = draw(&mut scene, picture, left, upper, slot);
+            let width = if painted { width } else { picture.width(slot) };
+            let (bottom, holes) = draw(&mut scene, picture, (left, upper), width);
             lowest = lowest.max(bottom);
             missing |= holes;
         }
         top = lowest + 12.0;
     }
-    let mut entries = Vec::new();
+    let of_key = |(rgb, label): &(Rgb, String)| {
+        let key = Key::Area { colour: Colour { rgb: *rgb, opacity: 1.0 } };
+        Entry { key, label: label.clone() }
+    };
+    let mut entries: Vec<Entry> = figure.keys.iter().map(of_key).collect();
     if figure.pictures.iter().any(|picture| !picture.boundary.is_empty()) {
         let key = Key::Cased;
         entries.push(Entry { key, label: figure.boundary_meaning.clone() });
@@ -160,23 +219,22 @@ pub(super) fn scene(figure: &Pictures) -> Result<Scene> {
         entries.push(Entry { key, label: figure.no_value.clone() });
     }
     if !entries.is_empty() {
-        let legend = Legend::new(entries, frame::WIDTH, HIGHEST);
+        let legend = Legend::new(entries, frame::WIDTH - 2.0 * frame::EDGE, 0.0);
         top = legend.draw_below(&mut scene, frame::EDGE, frame::WIDTH - frame::EDGE, top);
     }
     scene.height = (top + 6.0).ceil();
     Ok(scene)
 }
 
-/// Draws a picture with its bar; says where it ends and whether pixels have no value.
-fn draw(scene: &mut Scene, picture: &Picture, left: f64, top: f64, slot: f64) -> (f64, bool) {
+/// Draws a picture of this width with its bar; says where it ends and whether pixels have no value.
+fn draw(scene: &mut Scene, picture: &Picture, (left, top): Point, width: f64) -> (f64, bool) {
+    let ruler = picture.ruler();
+    let area = Rect { left, right: left + width, top, bottom: top + width * picture.ratio() };
+    if let Some(painted) = &picture.painted {
+        draw_painted(scene, picture, painted, &area);
+        return (area.bottom, false);
+    }
     let values = || picture.values.iter().copied();
-    let ruler = Ruler::fit(picture.colour.scale, picture.colour.range, values(), 0.0);
-    let ratio = picture.rows() as f64 / picture.columns as f64;
-    // The room beside the bar depends on its height only through the number of its ticks.
-    let guess = (0.75 * slot * ratio).min(HIGHEST);
-    let room = Vertical::new(&picture.colour, ruler, guess).room() + BAR + APART - frame::EDGE;
-    let width = (slot - room).min(HIGHEST / ratio);
-    let area = Rect { left, right: left + width, top, bottom: top + width * ratio };
     let bar = Vertical::new(&picture.colour, ruler, area.height());
     let colour_of = |value: &f64| match ruler.fraction(*value) {
         Some(part) => shade(part).rgb,
@@ -198,8 +256,25 @@ fn draw(scene: &mut Scene, picture: &Picture, left: f64, top: f64, slot: f64) ->
     }
     scene.outline(area, 0.9, INK);
     let beside = Rect { left: area.right + APART, right: area.right + APART + BAR, ..area };
-    draw_bar(scene, values(), &bar, &beside);
+    draw_bar(scene, values(), &bar, &beside, &colour::quantity);
     (area.bottom, holes)
+}
+
+/// Draws a painted picture, with a bar if it has one.
+fn draw_painted(scene: &mut Scene, picture: &Picture, painted: &Painted, area: &Rect) {
+    let (area, ruler) = (*area, picture.ruler());
+    scene.marks.push(Mark::Image { area, columns: picture.columns, pixels: painted.pixels.clone() });
+    scene.outline(area, 0.9, INK);
+    if let Some([from, to]) = painted.ramp {
+        let mixed = |part: f64| {
+            let mix =
+                |from: u8, to: u8| (f64::from(from) + part * (f64::from(to) - f64::from(from))).round() as u8;
+            Colour { rgb: (mix(from.0, to.0), mix(from.1, to.1), mix(from.2, to.2)), opacity: 1.0 }
+        };
+        let bar = Vertical::new(&picture.colour, ruler, area.height());
+        let beside = Rect { left: area.right + APART, right: area.right + APART + BAR, ..area };
+        draw_bar(scene, std::iter::empty(), &bar, &beside, &mixed);
+    }
 }
 
 /// Lines where the values of the boundary change their sign, but for those around specks.

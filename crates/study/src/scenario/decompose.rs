@@ -3,11 +3,14 @@
 //! It shares `[bands]` and `[camera]` with a [`super::Scenario`], and their habits: quantities are strings with their unit, every value
 //! is checked when it is read, an error names file, line and key.
 
+mod image;
 mod read;
 mod write;
 
 use super::{BandsSpec, CameraSpec, MaterialRef, Source};
+use hadar::decompose::SpatialPrior;
 use hadar::error::Place;
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 /// Everything a decomposition scenario says.
@@ -27,6 +30,10 @@ pub struct DecomposeScenario {
     pub library: LibrarySpec,
     /// What is unknown (`[unknown]`).
     pub unknown: PixelUnknown,
+    /// What neighbours tell about a pixel (`[spatial]`); each is for itself if silent.
+    pub spatial: Option<SpatialPrior>,
+    /// How the picture is coloured (`[vision]`).
+    pub vision: VisionSpec,
     /// What is there, where that is known (`[truth]`).
     pub truth: Option<TruthSpec>,
     /// Where it was read from.
@@ -104,6 +111,15 @@ pub struct PixelUnknown {
     pub lighting_total: Option<f64>,
     /// Whether the scale of the counts is unknown.
     pub gain: bool,
+}
+
+/// How the picture of material, temperature and texture is coloured (`[vision]`).
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct VisionSpec {
+    /// Hues of materials by name, degrees.
+    pub hues_deg: BTreeMap<String, f64>,
+    /// Temperatures of the palest and the fullest colour, K.
+    pub temperature_k: Option<[f64; 2]>,
 }
 
 /// Maps of what is there (`[truth]`).

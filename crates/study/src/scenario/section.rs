@@ -69,6 +69,11 @@ impl<'a> Section<'a> {
         }
     }
 
+    /// The keys of the table itself.
+    pub(super) fn keys(&self) -> impl Iterator<Item = &'a str> {
+        self.table.keys().map(|key| key.get_ref().as_ref())
+    }
+
     /// Whether the key stands in the table itself.
     pub(super) fn has_own(&self, key: &str) -> bool {
         self.table.contains_key(key)

@@ -3,11 +3,13 @@
 mod looked_up;
 mod results;
 mod truth;
+mod vision;
 mod worth;
 
 pub use looked_up::DecomposeStudy;
 pub(super) use looked_up::spectrum;
 pub use results::{Decomposed, FlagCount, MaterialRow, TruthFound};
+pub use vision::Vision;
 
 use self::results::summary;
 use super::Warning;
@@ -34,6 +36,11 @@ impl DecomposeStudy {
             let error = Error::malformed(found, "write gain = false, or take --method ml or te");
             return Err(error.at(self.scenario.place("unknown.gain")));
         }
+        if !method.has_likelihood() && self.scenario.spatial.is_some() {
+            let found = format!("the method {} knows no prior over the image", method.name());
+            let error = Error::malformed(found, "leave [spatial] out, or take --method ml or te");
+            return Err(error.at(self.scenario.place("spatial")));
+        }
         let start = std::time::Instant::now();
         let unknown = self.scenario.unknown;
         let setting = Setting {
@@ -53,7 +60,12 @@ impl DecomposeStudy {
             relative,
             correlation_cm1: spec.emissivity_correlation_cm1.unwrap_or(CORRELATION_CM1),
         });
-        let options = Options { prior: spec.prior.clone().unwrap_or_default(), library_error, skipping };
+        let options = Options {
+            prior: spec.prior.clone().unwrap_or_default(),
+            library_error,
+            skipping,
+            spatial: self.scenario.spatial,
+        };
         let rows = self.cube.shape().rows();
         let finished = std::sync::atomic::AtomicUsize::new(0);
         let progress = |more: usize| {
@@ -68,6 +80,7 @@ impl DecomposeStudy {
             warnings.push(Warning::LibraryTakenAsExact);
         }
         let truth = self.truth.as_ref().map(|truth| truth.found(self, method, &maps)).transpose()?;
-        Ok(summary(self, method, maps, truth, seconds, warnings))
+        let vision = Vision::of(self, &maps).map_err(|error| self.at_cube(error))?;
+        Ok(summary(self, method, maps, (truth, vision), seconds, warnings))
     }
 }

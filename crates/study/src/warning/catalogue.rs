@@ -58,6 +58,9 @@ catalogue! {
     /// The emissivities of the library are taken as exact: intervals do not hold what errors of them do.
     LibraryTakenAsExact = "library-taken-as-exact", "State library.emissivity_error where the spectra are measured ones.";
 
+    /// Materials, posteriors and temperatures rest on a prior over the image: what is small and hardly differs from its surroundings is lost.
+    SpatialPrior = "spatial-prior", "Compare with the answer without [spatial]; trust an object of few pixels only if it is in both.";
+
     /// The two materials have equal emissivities in every band: no camera tells them apart.
     Identical = "identical", "Choose bands in which they differ.";
     /// Both materials are entered as one number for all wavenumbers, so that nothing is known of what tells them apart.

@@ -26,6 +26,14 @@ impl Display for Warning {
             Self::LibraryTakenAsExact => f.write_str(
                 "the library is taken as exact: with errors of its emissivities temperatures are off by more than is said",
             ),
+            Self::SpatialPrior { changed, pixels, settled } => {
+                write!(
+                    f,
+                    "materials, candidates and temperatures rest on a prior over the image, which changed the material of {changed} \
+                     of {pixels} pixels"
+                )?;
+                f.write_str(if *settled { "" } else { "; its last sweep still changed something" })
+            }
             Self::MaterialSkipped { material } => {
                 write!(f, "{material} is left out: its spectrum does not cover the bands")
             }

@@ -5,13 +5,15 @@ use super::super::paths::{file, material};
 use super::super::read::{document, text_of};
 use super::super::section::{Entry, Section};
 use super::super::{BandsSpec, Source, camera};
+use super::image::{spatial, vision};
 use super::{CubeUnit, DecomposeScenario, HeatCube, LibrarySpec, LightSource, PixelUnknown, TruthSpec};
 use hadar::allowed::{ABOVE_ZERO, ABSOLUTE_TEMPERATURE, Allowed, SHARE};
 use hadar::error::{Error, Result};
 use hadar::units::Dimension;
 use std::path::Path;
 
-const TABLES: &[&str] = &["title", "cube", "bands", "camera", "environment", "library", "unknown", "truth"];
+const TABLES: &[&str] =
+    &["title", "cube", "bands", "camera", "environment", "library", "unknown", "spatial", "vision", "truth"];
 const MINIMUM: &str =
     "write [cube] with data = \"counts.npy\", [bands], and [library] with path = \"library.csv\"";
 /// Temperatures of a scene where nothing is said, K.
@@ -73,6 +75,8 @@ impl DecomposeScenario {
                 .unwrap_or_default(),
             library: root.read("library", library)?.ok_or_else(|| missing("library"))?,
             unknown,
+            spatial: root.read("spatial", spatial)?,
+            vision: root.read("vision", vision)?.unwrap_or_default(),
             truth: root.read("truth", truth)?,
             source: Source::default(),
         };

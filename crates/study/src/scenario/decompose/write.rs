@@ -3,7 +3,8 @@
 use super::super::camera;
 use super::super::entries::{Document, Entries, Part, entries, text};
 use super::super::paths::Paths;
-use super::{CubeUnit, DecomposeScenario, LightSource};
+use super::image::{spatial_written, vision_written};
+use super::{CubeUnit, DecomposeScenario, LightSource, VisionSpec};
 use hadar::units::Dimension;
 use serde::{Serialize, Serializer};
 use std::path::Path;
@@ -69,6 +70,12 @@ impl DecomposeScenario {
             .put_if("lighting_total", unknown.lighting_total)
             .put("gain", unknown.gain);
         document.push(("unknown", Part::Table(written)));
+        if let Some(prior) = &self.spatial {
+            document.push(("spatial", Part::Table(spatial_written(prior))));
+        }
+        if self.vision != VisionSpec::default() {
+            document.push(("vision", Part::Table(vision_written(&self.vision))));
+        }
         if let Some(truth) = &self.truth {
             let file = |path: &Option<_>| path.as_ref().map(|path: &std::path::PathBuf| paths.file(path));
             let lighting: Vec<String> = truth.lighting.iter().map(|path| paths.file(path)).collect();

@@ -4,7 +4,7 @@ use super::truth::Truth;
 use crate::scenario::decompose::{CubeUnit, LightSource};
 use crate::scenario::{DecomposeScenario, MaterialRef};
 use crate::study::{Warning, bands, camera, camera_bands};
-use hadar::decompose::Light;
+use hadar::decompose::{Light, SpatialPrior};
 use hadar::error::{Error, Result};
 use hadar::grid::{Grid, READ_SPECTRUM, text_of_file};
 use hadar::instrument::View;
@@ -125,6 +125,17 @@ impl DecomposeStudy {
         if scenario.unknown.lighting_total.is_some() && lights.is_empty() {
             let found = Error::malformed("a total of no lighting", "write [[environment]], or leave it out");
             return Err(at("unknown.lighting_total")(found));
+        }
+        if let Some(other) = scenario.vision.hues_deg.keys().find(|name| !names.contains(name)) {
+            let found = Error::unknown_name("material", other, names.iter().map(String::as_str));
+            return Err(at(&format!("vision.hues.{other}"))(found));
+        }
+        if matches!(scenario.spatial, Some(SpatialPrior::TexSgd { .. }))
+            && scenario.library.emissivity_error.is_some_and(|error| error > 0.0)
+        {
+            let found = "its cost knows no errors of the library";
+            let instead = "write prior = \"potts\", or leave library.emissivity_error out";
+            return Err(at("spatial.prior")(Error::malformed(found, instead)));
         }
         let truth = scenario.truth.as_ref();
         let truth = truth

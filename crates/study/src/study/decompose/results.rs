@@ -1,10 +1,11 @@
 //! What is said of a decomposed cube: how many pixels are decided, what each material has, what was spared.
 
 use super::DecomposeStudy;
+use super::vision::Vision;
 pub use super::worth::TruthFound;
 use crate::scenario::DecomposeScenario;
 use crate::study::Warning;
-use hadar::decompose::{Maps, Method, NO_MATERIAL, flag};
+use hadar::decompose::{Maps, Method, Spatial, flag};
 use hadar::demand::Work;
 use hadar::ranging::cube::Shape;
 use serde::Serialize;
@@ -32,6 +33,10 @@ pub struct Decomposed {
     pub found: Vec<MaterialRow>,
     /// How many pixels have each flag.
     pub flags: Vec<FlagCount>,
+    /// What a prior over the image did, if there was one.
+    pub spatial: Option<Spatial>,
+    /// What is drawn of it.
+    pub vision: Vision,
     /// How good the maps are, where that is known.
     pub truth: Option<TruthFound>,
     /// Time that it took, s.
@@ -77,17 +82,14 @@ pub(super) fn summary(
     study: &DecomposeStudy,
     method: Method,
     maps: Maps,
-    truth: Option<TruthFound>,
+    (truth, vision): (Option<TruthFound>, Vision),
     seconds: f64,
     mut warnings: Vec<Warning>,
 ) -> Decomposed {
     let pixels = maps.material.len();
     let has = |bit: u8| maps.flags.iter().filter(|flags| **flags & bit != 0).count();
     let skipped = has(flag::SKIPPED);
-    let is_decided = |i: usize| {
-        maps.candidates[i] == 1 && maps.material[i] != NO_MATERIAL && maps.flags[i] & flag::NO_FIT == 0
-    };
-    let decided = (0..pixels).filter(|i| is_decided(*i)).count();
+    let decided = (0..pixels).filter(|i| maps.is_decided(*i)).count();
     let mut rows = Vec::new();
     for (place, material) in study.names.iter().enumerate() {
         let own: Vec<usize> = (0..pixels).filter(|i| usize::from(maps.material[*i]) == place).collect();
@@ -108,7 +110,7 @@ pub(super) fn summary(
         rows.push(MaterialRow {
             material: material.clone(),
             pixels: own.len(),
-            decided: own.iter().filter(|i| is_decided(**i)).count(),
+            decided: own.iter().filter(|i| maps.is_decided(**i)).count(),
             temperature_median_k: at(&temperatures, 0.5),
             temperature_tenths_k: [at(&temperatures, 0.1), at(&temperatures, 0.9)],
             temperature_sigma_median_k: at(&sorted(&maps.temperature_sigma_k), 0.5),
@@ -126,6 +128,9 @@ pub(super) fn summary(
     if skipped > 0 {
         warnings.push(Warning::PixelsSkipped { pixels: skipped, of: pixels });
     }
+    if let Some(Spatial { changed, settled, .. }) = maps.spatial {
+        warnings.push(Warning::SpatialPrior { changed, pixels, settled });
+    }
     let unfit = has(flag::NO_FIT);
     if unfit as f64 > 0.01 * (pixels - skipped) as f64 {
         warnings.push(Warning::LibraryDoesNotFit { pixels: unfit, of: pixels - skipped });
@@ -141,6 +146,8 @@ pub(super) fn summary(
         skipped,
         found: rows,
         flags,
+        spatial: maps.spatial,
+        vision,
         truth,
         seconds,
         stats: maps.spared.work(),

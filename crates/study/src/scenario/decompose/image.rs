@@ -1,0 +1,71 @@
+//! What is said of the image as a whole: a prior over it (`[spatial]`) and how its picture is coloured (`[vision]`).
+
+use super::super::entries::Entries;
+use super::super::section::Entry;
+use super::VisionSpec;
+use hadar::allowed::{ABOVE_ZERO, ABSOLUTE_TEMPERATURE, Allowed};
+use hadar::decompose::SpatialPrior;
+use hadar::error::{Error, Result};
+use hadar::units::Dimension;
+
+/// Log-odds of a neighbour where nothing is said: below ln(1 + √q), beyond which the prior alone makes images of one material of q.
+const POTTS_WEIGHT: f64 = 1.0;
+/// The paper's p.
+const TEX_SGD_WEIGHT: f64 = 0.1;
+const WEIGHT: Allowed =
+    Allowed { holds: |value| value > 0.0 && value <= 10.0, expected: "above 0, at most 10" };
+const HUE: Allowed =
+    Allowed { holds: |value| (0.0..360.0).contains(&value), expected: "from 0, below 360 degrees" };
+const POTTS: &str = "potts";
+const TEX_SGD: &str = "tex-sgd";
+
+pub(super) fn spatial(entry: &Entry<'_>) -> Result<SpatialPrior> {
+    let section = entry.section(&["prior", "weight", "temperature_step"])?;
+    let is_potts = section.require("prior", "\"potts\"")?.choice(&[(POTTS, true), (TEX_SGD, false)])?;
+    let weight = section.number("weight", if is_potts { "1.0" } else { "0.1" }, WEIGHT)?;
+    let temperature_step_k =
+        section.quantity("temperature_step", Dimension::TemperatureDifference, ABOVE_ZERO)?;
+    match (is_potts, temperature_step_k) {
+        (true, _) => Ok(SpatialPrior::Potts { weight: weight.unwrap_or(POTTS_WEIGHT), temperature_step_k }),
+        (false, None) => Ok(SpatialPrior::TexSgd { weight: weight.unwrap_or(TEX_SGD_WEIGHT) }),
+        (false, Some(_)) => {
+            let found = "a step of temperatures beside a prior that has none";
+            let instead = "leave it out, or write prior = \"potts\"";
+            Err(section.fail("temperature_step", Error::malformed(found, instead)))
+        }
+    }
+}
+
+pub(super) fn spatial_written(prior: &SpatialPrior) -> Entries {
+    match *prior {
+        SpatialPrior::Potts { weight, temperature_step_k } => Entries::default()
+            .put("prior", POTTS)
+            .put("weight", weight)
+            .put_quantity("temperature_step", Dimension::TemperatureDifference, temperature_step_k),
+        SpatialPrior::TexSgd { weight } => Entries::default().put("prior", TEX_SGD).put("weight", weight),
+    }
+}
+
+pub(super) fn vision(entry: &Entry<'_>) -> Result<VisionSpec> {
+    let section = entry.section(&["hues", "temperature"])?;
+    let temperature = |end: &Entry<'_>| end.quantity(Dimension::Temperature, ABSOLUTE_TEMPERATURE);
+    let hues = section.read("hues", |entry| {
+        let table = entry.table()?;
+        let hue = |name: &str| Ok((name.to_owned(), table.require(name, "210")?.number("210", HUE)?));
+        table.keys().map(hue).collect()
+    })?;
+    Ok(VisionSpec {
+        hues_deg: hues.unwrap_or_default(),
+        temperature_k: section
+            .read("temperature", |entry| entry.wide_range("[\"0 degC\", \"40 degC\"]", temperature, |k| k))?,
+    })
+}
+
+pub(super) fn vision_written(spec: &VisionSpec) -> Entries {
+    let hues: toml::Table = spec.hues_deg.iter().map(|(name, hue)| (name.clone(), (*hue).into())).collect();
+    Entries::default().put_if("hues", (!hues.is_empty()).then_some(hues)).put_range(
+        "temperature",
+        Dimension::Temperature,
+        spec.temperature_k,
+    )
+}

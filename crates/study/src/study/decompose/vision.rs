@@ -1,0 +1,165 @@
+//! What is drawn of a decomposed cube beside its maps: hues of the materials, limits of the temperature, texture, thermal image.
+//!
+//! * Texture X = Σₖ Vₖ ∫Sₖ dν over the bands that count: what is around, as a surface sees it from its place, photons s⁻¹ m⁻² sr⁻¹.
+//! * Thermal image ∫S dν over the same bands, photons s⁻¹ m⁻² sr⁻¹: what a camera without bands sees.
+//! * Hues: those the scenario states, then the paper's for vegetation, water and sand, then by the place in the library, so that a
+//!   material keeps its hue whatever is in the picture. The first ones alternate between blue and yellow, which the colour-blind tell
+//!   apart; after them each is in the middle of the widest gap.
+//!
+//! Source: paper, supplement SIII C.
+
+use super::DecomposeStudy;
+use hadar::decompose::{Light, Maps};
+use hadar::error::Result;
+use hadar::ranging::cube::{Cube, Rows, Sample};
+use rayon::prelude::*;
+use serde::Serialize;
+
+/// Hues of the first materials, degrees: blue, amber, pink, bluish green, vermillion, violet, lime, cyan.
+const HUES_DEG: [f64; 8] = [210.0, 45.0, 330.0, 165.0, 15.0, 270.0, 75.0, 190.0];
+/// Hues that are closer than this are not both among the first, degrees.
+const APART_DEG: f64 = 15.0;
+/// Hues of the paper, of 255.
+const NAMED: [(&str, f64); 3] = [("vegetation", 90.0), ("water", 160.0), ("sand", 40.0)];
+/// Shares of the decided pixels that are colder and hotter than the limits.
+const TENTH: f64 = 0.1;
+
+/// What is drawn.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Vision {
+    /// Hue of each material of the library, degrees.
+    pub hues_deg: Vec<f64>,
+    /// Temperatures of the palest and the fullest colour, K.
+    pub temperature_k: [f64; 2],
+    /// Texture X of every pixel, photons s⁻¹ m⁻² sr⁻¹; NaN where the lighting is unknown.
+    #[serde(skip)]
+    pub texture: Vec<f32>,
+    /// Thermal image, photons s⁻¹ m⁻² sr⁻¹; NaN where a sample is missing.
+    #[serde(skip)]
+    pub thermal: Vec<f32>,
+}
+
+impl Vision {
+    /// # Errors
+    /// A cube that cannot be read.
+    pub(super) fn of(study: &DecomposeStudy, maps: &Maps) -> Result<Self> {
+        let spec = &study.scenario.vision;
+        Ok(Self {
+            hues_deg: hues_deg(&study.names, |name| spec.hues_deg.get(name).copied()),
+            temperature_k: spec.temperature_k.unwrap_or_else(|| tenths_k(maps)),
+            texture: texture(study, maps),
+            thermal: match &study.cube {
+                Cube::F32(rows) => thermal(study, rows.as_ref()),
+                Cube::F64(rows) => thermal(study, rows.as_ref()),
+            }?,
+        })
+    }
+}
+
+/// Hues of the materials of a library, some of them stated.
+fn hues_deg(names: &[String], stated: impl Fn(&str) -> Option<f64>) -> Vec<f64> {
+    let of_paper = |name: &str| {
+        let named = NAMED.iter().find(|(one, _)| one.eq_ignore_ascii_case(name.trim()));
+        named.map(|(_, hue)| hue * 360.0 / 255.0)
+    };
+    let fixed: Vec<Option<f64>> = names.iter().map(|name| stated(name).or_else(|| of_paper(name))).collect();
+    let mut taken: Vec<f64> = fixed.iter().flatten().copied().collect();
+    let mut free = |fixed: &Option<f64>| {
+        fixed.unwrap_or_else(|| {
+            let apart = |a: f64, b: f64| 180.0 - ((a - b).abs() - 180.0).abs();
+            let first = HUES_DEG.iter().find(|hue| taken.iter().all(|one| apart(*one, **hue) >= APART_DEG));
+            let hue = first.copied().unwrap_or_else(|| middle_of_widest_gap(&mut taken));
+            taken.push(hue);
+            hue
+        })
+    };
+    fixed.iter().map(&mut free).collect()
+}
+
+/// The middle of the widest gap between hues on their circle, the first of equals.
+fn middle_of_widest_gap(hues: &mut [f64]) -> f64 {
+    hues.sort_by(f64::total_cmp);
+    let next = hues.iter().skip(1).copied().chain(hues.first().map(|first| first + 360.0));
+    let gaps = hues.iter().zip(next);
+    let widest = gaps.fold((0.0, 0.0), |widest, (from, to)| {
+        if to - from > widest.0 + 1e-9 { (to - from, 0.5 * (from + to)) } else { widest }
+    });
+    widest.1 % 360.0
+}
+
+/// Between a tenth and nine tenths of the temperatures of the decided pixels, at least a kelvin apart.
+fn tenths_k(maps: &Maps) -> [f64; 2] {
+    let decided = maps.temperature_k.iter().enumerate().filter(|(i, t)| t.is_finite() && maps.is_decided(*i));
+    let mut values: Vec<f64> = decided.map(|(_, t)| f64::from(*t)).collect();
+    values.sort_by(f64::total_cmp);
+    let at = |share: f64| {
+        let place = (share * values.len() as f64) as usize;
+        values.get(place.min(values.len().saturating_sub(1))).copied().unwrap_or(293.15)
+    };
+    let (low, high) = (at(TENTH), at(1.0 - TENTH));
+    let short = (1.0 - (high - low)).max(0.0);
+    [low - 0.5 * short, high + 0.5 * short]
+}
+
+/// Bands that count.
+fn used(study: &DecomposeStudy) -> Vec<usize> {
+    (0..study.bands.len()).filter(|band| !study.scenario.cube.bad_bands.contains(band)).collect()
+}
+
+fn texture(study: &DecomposeStudy, maps: &Maps) -> Vec<f32> {
+    let used = used(study);
+    let lights: Vec<f64> = study
+        .lights
+        .iter()
+        .map(|light| {
+            let of_bands: Vec<f64> = match light {
+                Light::Radiance(radiance) => study.bands.weigh(radiance),
+                Light::Counts(counts) => {
+                    counts.iter().zip(&study.counts_per_radiance).map(|(n, k)| n / k).collect()
+                }
+            };
+            used.iter().filter_map(|band| of_bands.get(*band)).sum()
+        })
+        .collect();
+    if lights.is_empty() {
+        return vec![f32::NAN; maps.material.len()];
+    }
+    let sum = |v: &[f32]| v.iter().zip(&lights).map(|(v, light)| f64::from(*v) * light).sum::<f64>() as f32;
+    maps.lighting.chunks(lights.len()).map(sum).collect()
+}
+
+fn thermal<S: Sample>(study: &DecomposeStudy, cube: &dyn Rows<S>) -> Result<Vec<f32>> {
+    let used = used(study);
+    let scale: Vec<f64> =
+        study.counts_per_radiance.iter().map(|k| 1.0 / (k * study.units_per_count)).collect();
+    let sum = |pixel: &[S]| {
+        let of = |band: &usize| Some(scale.get(*band)? * (*pixel.get(*band)?).into());
+        used.iter().filter_map(of).sum::<f64>() as f32
+    };
+    let shape = cube.shape();
+    let rows = (0..shape.rows()).into_par_iter().map_init(Vec::new, |buffer, row| {
+        Ok(cube.read(row..row + 1, buffer)?.chunks(shape.bands()).map(sum).collect::<Vec<f32>>())
+    });
+    Ok(rows.collect::<Result<Vec<_>>>()?.concat())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// No two of thirty hues are closer than half of an even spread, and what is stated holds.
+    #[test]
+    fn hues_are_apart_and_stay() {
+        let names: Vec<String> =
+            (0..30).map(|i| if i == 4 { "Water".to_owned() } else { format!("m{i}") }).collect();
+        let found = hues_deg(&names, |name| (name == "m7").then_some(33.0));
+        assert_eq!((found[0], found[7]), (210.0, 33.0));
+        assert!((found[4] - 225.882_352_941).abs() < 1e-6);
+        let mut sorted = found.clone();
+        sorted.sort_by(f64::total_cmp);
+        assert!(sorted.windows(2).all(|pair| pair[1] - pair[0] >= 5.5), "{sorted:?}");
+        assert!(sorted.iter().all(|hue| (0.0..360.0).contains(hue)));
+        // Materials that are added at the end change no hue.
+        assert_eq!(hues_deg(&names[..20], |name| (name == "m7").then_some(33.0)), found[..20]);
+    }
+}
