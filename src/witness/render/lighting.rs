@@ -31,6 +31,7 @@ pub(super) fn factors(
     room.seen.clear();
     for (index, solid) in scene.solids.iter().enumerate() {
         if Some(index) != own
+            && solid.shape.reaches_before(point, smooth)
             && let Some(mut outline) = solid.shape.outline(point)
         {
             if !outline.keep(smooth) {
