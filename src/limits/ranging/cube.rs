@@ -19,6 +19,7 @@ pub use band_sum::panchromatic;
 pub use invalid::first_invalid;
 #[cfg(feature = "cubes")]
 pub use mat::mat_file;
+#[cfg(feature = "cubes")]
 pub use npy::{Value, npy_map, write_npy, write_npy_to};
 #[cfg(feature = "cubes")]
 pub(crate) use open::is_cube;

@@ -230,31 +230,56 @@ impl Task {
         let hopeless = |best: f64| if self.skip { best + HOPELESS } else { f64::INFINITY };
         if let (Some(screen), Some(seen)) = (&self.screen, screened.as_mut()) {
             screen.look(counts, shifted, seen);
-            // Ordered by what a fit costs if it is near the counts; the bound that excludes knows how near.
+            // By what a fit costs if it is near the counts; the bound that excludes knows how near.
             bounds.extend((0..self.kinds.len()).map(|kind| (screen.at_least(kind, 0.0, seen), kind)));
-            bounds.sort_by(|a, b| a.0.total_cmp(&b.0));
-            for (_, kind) in bounds.iter() {
-                let cut = best + CUT - self.handicap[*kind];
-                let skip = self.skip && self.modes.is_none() && cut.is_finite();
-                if skip && screen.at_least(*kind, cut.max(0.0), seen) > cut {
+            let nearest = bounds.iter().enumerate().min_by(|a, b| a.1.0.total_cmp(&b.1.0));
+            let nearest = nearest.map_or(0, |(place, _)| place);
+            bounds.swap(0, nearest);
+            let cut_of =
+                |kind: usize, best: f64| Some(best + CUT - self.handicap[kind]).filter(|cut| cut.is_finite());
+            let skips = self.skip && self.modes.is_none();
+            let mut place = 0;
+            while let Some(&(_, kind)) = bounds.get(place) {
+                place += 1;
+                let cut = cut_of(kind, best).filter(|_| skips);
+                let excludes = |bound: &dyn Fn(f64) -> f64| cut.is_some_and(|cut| bound(cut.max(0.0)) > cut);
+                if excludes(&|cut| screen.at_least(kind, cut, seen)) {
                     spared.excluded += 1;
                     continue;
                 }
-                screen.chords(*kind, seen);
-                if skip && screen.at_least_within(*kind, cut.max(0.0), seen) > cut {
+                screen.chords(kind, seen);
+                if excludes(&|cut| screen.at_least_within(kind, cut, seen)) {
                     spared.excluded += 1;
                     continue;
                 }
-                let count = screen.starts(&self.model, *kind, seen, &mut starts);
+                let count = screen.starts(&self.model, kind, seen, &mut starts);
                 let found = self.least(
-                    *kind,
+                    kind,
                     &starts[..count],
                     shifted,
                     (&mut *sums, &mut *workplace, hopeless(best)),
                     spared,
                 );
                 best = best.min(found.deviance);
-                fits.push((*kind, found));
+                fits.push((kind, found));
+                if place == 1 {
+                    // The first fit excludes most; what it leaves goes in order.
+                    let all = bounds.len();
+                    let is_left = |kind: usize| {
+                        let cut = cut_of(kind, best).filter(|_| skips);
+                        !cut.is_some_and(|cut| screen.at_least(kind, cut.max(0.0), seen) > cut)
+                    };
+                    let mut rest = 1;
+                    for at in 1..all {
+                        if is_left(bounds[at].1) {
+                            bounds.swap(rest, at);
+                            rest += 1;
+                        }
+                    }
+                    bounds.truncate(rest);
+                    spared.excluded += (all - rest) as u64;
+                    bounds[1..].sort_by(|a, b| a.0.total_cmp(&b.0));
+                }
             }
         } else {
             for kind in 0..self.kinds.len() {

@@ -70,7 +70,12 @@ pub(super) struct Screened {
     /// min v/n′.
     lightest: f64,
     least: f64,
+    /// The least of the costs.
+    nearest: f64,
 }
+
+/// A coordinate beyond all others.
+const BEYOND: f64 = 1e150;
 
 impl Screen {
     /// For materials `kinds` of the model and a cube whose mean counts are `mean` (padded as the model).
@@ -127,6 +132,11 @@ impl Screen {
                     screen.along[(kind * rank + i) * grid + place] = to - from;
                 }
             }
+            // What fills the last chunk is farther away than any chord.
+            if lights < rank {
+                let first = (kind * rank + lights) * grid;
+                screen.curve[first + starts.len() - 1..first + grid].fill(BEYOND);
+            }
             for place in 0..starts.len() - 1 {
                 let along = (lights..rank).map(|i| screen.along[(kind * rank + i) * grid + place]);
                 let square: f64 = along.map(|x| x * x).sum();
@@ -146,6 +156,7 @@ impl Screen {
             outside: vec![0.0; self.left_out.len()],
             lightest: 0.0,
             least: 0.0,
+            nearest: f64::INFINITY,
         }
     }
 
@@ -166,16 +177,14 @@ impl Screen {
 
     /// The same with the range of temperature and lighting, from the chords ([`Screen::chords`]).
     pub(super) fn at_least_within(&self, kind: usize, cut: f64, seen: &Screened) -> f64 {
-        let outside = seen.outside[kind];
-        let least = seen.costs[..self.chord_count()].iter().copied().fold(f64::INFINITY, f64::min);
-        let distance = (outside + least).sqrt() - self.left_out[kind] - self.sag[kind];
+        let distance = (seen.outside[kind] + seen.nearest).sqrt() - self.left_out[kind] - self.sag[kind];
         seen.share(cut) * distance.max(0.0).powi(2)
     }
 
     /// Finds the distances of a pixel from the chords of a material.
     pub(super) fn chords(&self, kind: usize, seen: &mut Screened) {
-        let Screened { coordinates, costs, shares, .. } = seen;
-        chord_distances(self, kind, &coordinates[kind * self.rank..][..self.rank], costs, shares);
+        let Screened { coordinates, costs, shares, nearest, .. } = seen;
+        chord_distances(self, kind, &coordinates[kind * self.rank..][..self.rank], (costs, shares, nearest));
     }
 
     /// Where fits of the material whose chords were looked at begin, the most promising first; how many there are.
@@ -189,8 +198,7 @@ impl Screen {
         let coordinates = self.coordinates(kind, seen);
         let count = self.chord_count();
         let costs = &seen.costs[..count];
-        let least = costs.iter().copied().fold(f64::INFINITY, f64::min);
-        let promising = 2.0 * least + seen.outside[kind] + 20.0;
+        let promising = 2.0 * seen.nearest + seen.outside[kind] + 20.0;
         let (mut found, mut best) = (0, f64::INFINITY);
         for place in 0..count {
             let cost = costs[place];
@@ -313,10 +321,11 @@ dispatched! {
         screen: &'a Screen,
         kind: usize,
         coordinates: &'a [f64],
-        costs: &'a mut Aligned,
-        shares: &'a mut Aligned,
+        found: (&'a mut Aligned, &'a mut Aligned, &'a mut f64),
     ) {
+        let (costs, shares, nearest) = found;
         let (rank, grid, lights) = (screen.rank, screen.grid, screen.lights);
+        let mut least = [f64::INFINITY; LANES];
         for at in (0..grid).step_by(LANES) {
             let lanes = |from: &[f64], i: usize| -> Chunk {
                 let from = &from[(kind * rank + i) * grid + at..][..LANES];
@@ -353,6 +362,8 @@ dispatched! {
             }
             costs[at..][..LANES].copy_from_slice(&cost);
             shares[at..][..LANES].copy_from_slice(&share);
+            least = std::array::from_fn(|k| if cost[k] < least[k] { cost[k] } else { least[k] });
         }
+        *nearest = least.into_iter().fold(f64::INFINITY, f64::min);
     }
 }
