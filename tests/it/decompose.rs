@@ -267,6 +267,20 @@ fn what_the_photons_do_not_tell_is_declared() {
     let maps = scene.found(std::slice::from_ref(&still), 2, &total).unwrap();
     assert_eq!((maps.material[0], maps.flags[0] & flag::NO_INFORMATION), (NO_MATERIAL, flag::NO_INFORMATION));
     assert!((maps.temperature_k[0] - 290.0).abs() < 1.0 && maps.temperature_sigma_k[0].is_finite());
+    // One band alone tells nothing, and no fit has a place to begin from.
+    static OTHERS: [usize; 53] = {
+        let mut others = [0; 53];
+        let mut i = 0;
+        while i < 53 {
+            others[i] = i + 1;
+            i += 1;
+        }
+        others
+    };
+    let one_band =
+        |setting: &mut Setting<'_>| (setting.lighting_total, setting.bad_bands) = (Some(1.0), &OTHERS);
+    let maps = scene.found(std::slice::from_ref(&still), 2, &one_band).unwrap();
+    assert!(!maps.is_decided(0) && maps.p_value[0].is_nan());
     // A missing sample, a dead band, and one that is left out.
     let mut missing = scene.counts(&scene.library[1], 300.0, &[0.5]);
     missing[7] = f64::NAN;

@@ -252,7 +252,12 @@ impl Task {
                     spared.excluded += 1;
                     continue;
                 }
-                let count = screen.starts(&self.model, kind, seen, &mut starts);
+                let mut count = screen.starts(&self.model, kind, seen, &mut starts);
+                if count == 0 {
+                    // Too few bands for chords to be near or far.
+                    starts[0] = self.scan(kind, shifted, sums, spared);
+                    count = 1;
+                }
                 let found = self.least(
                     kind,
                     &starts[..count],
@@ -317,7 +322,8 @@ impl Task {
                 best = Some(found);
             }
         }
-        let mut best = best.unwrap_or(Fit { state: starts[0], deviance: f64::INFINITY });
+        let mut best =
+            best.unwrap_or_else(|| Fit { state: State::at(self.model.range_k[0]), deviance: f64::INFINITY });
         best.deviance += self.handicap[kind];
         best
     }

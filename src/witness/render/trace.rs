@@ -413,7 +413,8 @@ impl Mixture {
             *sum += weight * x;
         }
         for ((kind, seen), share) in part.kinds.iter_mut().zip(&mut part.seen).zip([1.0 - texture, texture]) {
-            if share > 0.0 {
+            // What rounding leaves of the other one is none of it.
+            if share > 1e-9 {
                 *seen = true;
                 kind.0.iter_mut().zip(nodes).for_each(|(sum, node)| *sum += weight * share * node);
                 kind.1.iter_mut().zip(lit).for_each(|(sum, v)| *sum += weight * share * v);

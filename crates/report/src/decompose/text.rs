@@ -4,7 +4,7 @@ use crate::text::footing::warnings;
 use hadar::decompose::{Method, Spatial, SpatialPrior, flag};
 use hadar::words::{quantity, share, significant, whole};
 use hadar_study::scenario::decompose::CubeUnit;
-use hadar_study::study::decompose::{Decomposed, TruthFound};
+use hadar_study::study::decompose::{CORRELATION_CM1, Decomposed, TruthFound};
 use std::fmt::Write as _;
 
 /// 0 degC, K.
@@ -102,7 +102,9 @@ fn flags(result: &Decomposed) -> String {
             flag::TEMPERATURE_AT_LIMIT => "temperature at an end of its range",
             flag::LIGHTING_AT_LIMIT => "lighting at an end of its range",
             flag::NO_INFORMATION => "they send what their surroundings send: nothing tells the material",
-            flag::LIGHTING_UNKNOWN => "the lighting could be anything: nothing is scattered",
+            flag::LIGHTING_UNKNOWN => {
+                "the lighting is not told: nothing is scattered, or surroundings look alike"
+            }
             flag::NO_FIT => "no material of the library fits (p below 1e-4)",
             flag::UNDECIDED => "several materials are left by 95 %",
             flag::SKIPPED => "left out: a sample is missing",
@@ -147,6 +149,13 @@ fn against(truth: &TruthFound, result: &Decomposed) -> String {
             significant(ratio, 3),
             percent(covered),
             whole(truth.coverage_pixels as u64)
+        );
+    }
+    if let Some(covered) = truth.coverage_95_all {
+        let _ = writeln!(
+            out,
+            "  95 % intervals of all pixels, also of a wrong material or none that fits: {}",
+            percent(covered)
         );
     }
     if let Some(rmse) = truth.temperature_rmse_k {
@@ -205,6 +214,15 @@ fn assumptions(result: &Decomposed) -> String {
         CubeUnit::Radiance => "the stated noise, the same for all samples",
         _ => "Poisson counts with the stated electronic noise, variance from the model",
     };
+    let library =
+        scenario.library.emissivity_error.filter(|error| *error > 0.0).map_or_else(String::new, |error| {
+            let over = scenario.library.emissivity_correlation_cm1.unwrap_or(CORRELATION_CM1);
+            format!(
+                " but for errors of the library, {} of the emissivity, to a quarter over {}",
+                share(error),
+                quantity(over, "cm^-1")
+            )
+        });
     let method = result.method.name();
     let (model, intervals) = match (result.method, scenario.spatial) {
         (_, Some(SpatialPrior::Potts { .. })) => (
@@ -241,7 +259,7 @@ fn assumptions(result: &Decomposed) -> String {
         _ => format!(", lighting of {} surroundings, {total}", scenario.environment.len()),
     };
     format!(
-        "Assumptions\n  method: {method}{model}\n  likelihood: {noise}; bands independent\n  \
+        "Assumptions\n  method: {method}{model}\n  likelihood: {noise}; bands independent{library}\n  \
          unknown: material, temperature {low} to {high} K{lighting}{}\n  intervals: {intervals}\n{}\n",
         if scenario.unknown.gain { ", gain" } else { "" },
         neighbours(result),

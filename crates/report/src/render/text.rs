@@ -56,7 +56,7 @@ pub fn text(result: &Rendered) -> String {
     if result.lighting_left_out > 0.0 {
         let _ = writeln!(
             out,
-            "  other surfaces light no pixel with more than {}",
+            "  other surfaces give up to {} of what lights a pixel: there a decomposition by these says that nothing fits, or errs",
             share(result.lighting_left_out)
         );
     }

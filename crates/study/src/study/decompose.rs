@@ -18,7 +18,7 @@ use hadar::demand::Skipping;
 use hadar::error::{Error, Result};
 
 /// Length over which errors of emissivities are correlated where nothing is said, cm⁻¹.
-const CORRELATION_CM1: f64 = 50.0;
+pub const CORRELATION_CM1: f64 = 50.0;
 
 impl DecomposeStudy {
     /// Decomposes the cube by a method; `done` is told how many rows are finished, of how many.
