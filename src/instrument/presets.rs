@@ -11,6 +11,8 @@ use super::{CameraSpec, EfficiencyCurve, NoiseSpec};
 use crate::error::Error;
 #[cfg(feature = "library")]
 use crate::{error::Result, inputs};
+#[cfg(feature = "library")]
+use std::sync::OnceLock;
 
 #[cfg(feature = "library")]
 /// The paper's cameras, and those of public data sheets.
@@ -93,7 +95,12 @@ impl Missing {
 ///
 /// # Errors
 /// A file that is not valid; a test keeps that from happening.
-pub fn all() -> Result<Vec<Preset>> {
+pub fn all() -> Result<&'static [Preset]> {
+    // A rule asks for its cameras thousands of times.
+    static READ: OnceLock<Vec<Preset>> = OnceLock::new();
+    if let Some(cameras) = READ.get() {
+        return Ok(cameras);
+    }
     let mut cameras = Vec::new();
     for (path, text) in FILES {
         let file: File = toml::from_str(text).map_err(|error| {
@@ -101,7 +108,7 @@ pub fn all() -> Result<Vec<Preset>> {
         })?;
         cameras.extend(file.camera);
     }
-    Ok(cameras)
+    Ok(READ.get_or_init(|| cameras))
 }
 
 #[cfg(feature = "library")]
@@ -180,7 +187,7 @@ mod tests {
                 }
             }
         }
-        let names: Vec<String> = all().unwrap().into_iter().map(|preset| preset.name).collect();
+        let names: Vec<String> = all().unwrap().iter().map(|preset| preset.name.clone()).collect();
         let mut once = names.clone();
         once.sort();
         once.dedup();

@@ -39,7 +39,7 @@ pub(super) fn run(args: &CamerasArgs, global: &Global) -> Result<ExitCode> {
     match &args.action {
         Action::List => {
             let json = serde_json::json!({ "cameras": all });
-            let sheets = all.into_iter().map(Sheet::stated).collect::<Vec<_>>();
+            let sheets = all.iter().cloned().map(Sheet::stated).collect::<Vec<_>>();
             global.answer_with(json, &cameras::list(&sheets), &work(0, known))?;
         }
         Action::Show { name } => {

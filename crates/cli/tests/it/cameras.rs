@@ -12,7 +12,7 @@ fn all_cameras_are_listed_in_a_line_and_can_be_shown() {
     let text = folder.run(&["cameras", "list"]).stdout;
     assert!(text.starts_with(&format!("{} cameras, ", all.len())), "{text}");
     assert!(text.lines().all(|line| line.chars().count() <= 110));
-    for preset in &all {
+    for preset in all {
         assert_eq!(text.lines().filter(|line| line.starts_with(&format!("{} ", preset.name))).count(), 1);
         let shown = folder.json(&["cameras", "show", &preset.name]);
         let missing = shown["missing"].as_array().unwrap();
