@@ -230,25 +230,15 @@ impl Task {
         let hopeless = |best: f64| if self.skip { best + HOPELESS } else { f64::INFINITY };
         if let (Some(screen), Some(seen)) = (&self.screen, screened.as_mut()) {
             screen.look(counts, shifted, seen);
-            // By what a fit costs if it is near the counts; the bound that excludes knows how near.
-            bounds.extend((0..self.kinds.len()).map(|kind| (screen.at_least(kind, 0.0, seen), kind)));
-            let nearest = bounds.iter().enumerate().min_by(|a, b| a.1.0.total_cmp(&b.1.0));
-            let nearest = nearest.map_or(0, |(place, _)| place);
-            bounds.swap(0, nearest);
-            let cut_of =
-                |kind: usize, best: f64| Some(best + CUT - self.handicap[kind]).filter(|cut| cut.is_finite());
+            bounds.extend((0..self.kinds.len()).map(|kind| (screen.outside(kind, seen), kind)));
+            screen.nearest_first(bounds, seen);
             let skips = self.skip && self.modes.is_none();
+            // Without what the prior takes off: farther than need be.
+            let mut reach = f64::INFINITY;
             let mut place = 0;
             while let Some(&(_, kind)) = bounds.get(place) {
                 place += 1;
-                let cut = cut_of(kind, best).filter(|_| skips);
-                let excludes = |bound: &dyn Fn(f64) -> f64| cut.is_some_and(|cut| bound(cut.max(0.0)) > cut);
-                if excludes(&|cut| screen.at_least(kind, cut, seen)) {
-                    spared.excluded += 1;
-                    continue;
-                }
-                screen.chords(kind, seen);
-                if excludes(&|cut| screen.at_least_within(kind, cut, seen)) {
+                if screen.is_beyond(kind, reach, seen) || screen.is_beyond_within(kind, reach, seen) {
                     spared.excluded += 1;
                     continue;
                 }
@@ -265,18 +255,17 @@ impl Task {
                     (&mut *sums, &mut *workplace, hopeless(best)),
                     spared,
                 );
-                best = best.min(found.deviance);
                 fits.push((kind, found));
+                if skips && found.deviance < best {
+                    reach = screen.reach(found.deviance.max(0.0) + CUT, seen);
+                }
+                best = best.min(found.deviance);
                 if place == 1 {
                     // The first fit excludes most; what it leaves goes in order.
                     let all = bounds.len();
-                    let is_left = |kind: usize| {
-                        let cut = cut_of(kind, best).filter(|_| skips);
-                        !cut.is_some_and(|cut| screen.at_least(kind, cut.max(0.0), seen) > cut)
-                    };
                     let mut rest = 1;
                     for at in 1..all {
-                        if is_left(bounds[at].1) {
+                        if !screen.is_beyond(bounds[at].1, reach, seen) {
                             bounds.swap(rest, at);
                             rest += 1;
                         }

@@ -43,12 +43,13 @@ pub(super) struct Screen {
     directions: Aligned,
     /// Lighting columns in coordinates: `[material][light][direction]`, triangular.
     lighting: Vec<f64>,
-    /// Coordinates at the temperatures between which chords are drawn, and what they change along a chord:
-    /// `[material][direction][chord]`.
+    /// Coordinates at the temperatures between which chords are drawn, the last one again and again behind them:
+    /// `[material][direction][temperature]`, `nodes` a direction.
     curve: Aligned,
-    along: Aligned,
-    /// 1/length² of the chords beyond the lighting, `[material][chord]`.
+    nodes: usize,
+    /// 1/length² and length² of the chords beyond the lighting, `[material][chord]`.
     shortness: Aligned,
+    length: Aligned,
     temperatures_k: Vec<f64>,
     /// Chords, padded.
     grid: usize,
@@ -61,7 +62,7 @@ pub(super) struct Screen {
 pub(super) struct Screened {
     white: Aligned,
     coordinates: Aligned,
-    /// Squared distances from the chords, and where on them.
+    /// Squared distances from the chords, and where on them: `[material][chord]`.
     costs: Aligned,
     shares: Aligned,
     square: f64,
@@ -70,12 +71,12 @@ pub(super) struct Screened {
     /// min v/n′.
     lightest: f64,
     least: f64,
-    /// The least of the costs.
-    nearest: f64,
+    /// The least of the costs of each material whose chords were looked at, else NaN.
+    nearest: Vec<f64>,
 }
 
-/// A coordinate beyond all others.
-const BEYOND: f64 = 1e150;
+/// Share of a square that rounding may take off what is left of it: a hundred operations.
+const ROUNDING: f64 = 2e-14;
 
 impl Screen {
     /// For materials `kinds` of the model and a cube whose mean counts are `mean` (padded as the model).
@@ -98,6 +99,7 @@ impl Screen {
             .chain((!(rows - 1).is_multiple_of(STRIDE)).then_some(rows - 1))
             .collect();
         let grid = (starts.len() - 1).next_multiple_of(LANES);
+        let nodes = grid + LANES;
         let mut screen = Self {
             used: model.used.len(),
             reference,
@@ -107,9 +109,10 @@ impl Screen {
             columns,
             directions: Aligned::zeros(width * columns),
             lighting: vec![0.0; kinds.len() * lights * rank],
-            curve: Aligned::zeros(kinds.len() * rank * grid),
-            along: Aligned::zeros(kinds.len() * rank * grid),
+            curve: Aligned::zeros(kinds.len() * rank * nodes),
+            nodes,
             shortness: Aligned::zeros(kinds.len() * grid),
+            length: Aligned::zeros(kinds.len() * grid),
             temperatures_k: starts.iter().map(|row| model.temperature_of(*row as f64)).collect(),
             grid,
             left_out: spaces.iter().map(|space| space.left_out).collect(),
@@ -126,21 +129,16 @@ impl Screen {
                 for (light, column) in space.columns.iter().enumerate() {
                     screen.lighting[(kind * lights + light) * rank + i] = dot(direction, column);
                 }
-                for (place, ends) in starts.windows(2).enumerate() {
-                    let [from, to] = [ends[0], ends[1]].map(|row| dot(direction, &space.points[row]));
-                    screen.curve[(kind * rank + i) * grid + place] = from;
-                    screen.along[(kind * rank + i) * grid + place] = to - from;
+                let curve = &mut screen.curve[(kind * rank + i) * nodes..][..nodes];
+                for (place, to) in curve.iter_mut().enumerate() {
+                    *to = dot(direction, &space.points[starts[place.min(starts.len() - 1)]]);
                 }
             }
-            // What fills the last chunk is farther away than any chord.
-            if lights < rank {
-                let first = (kind * rank + lights) * grid;
-                screen.curve[first + starts.len() - 1..first + grid].fill(BEYOND);
-            }
             for place in 0..starts.len() - 1 {
-                let along = (lights..rank).map(|i| screen.along[(kind * rank + i) * grid + place]);
+                let along = (lights..rank).map(|i| screen.along(kind, i, place).1);
                 let square: f64 = along.map(|x| x * x).sum();
                 screen.shortness[kind * grid + place] = if square > 0.0 { 1.0 / square } else { 0.0 };
+                screen.length[kind * grid + place] = square;
             }
         }
         screen
@@ -150,64 +148,104 @@ impl Screen {
         Screened {
             white: Aligned::zeros(width),
             coordinates: Aligned::zeros(self.columns),
-            costs: Aligned::zeros(self.grid),
-            shares: Aligned::zeros(self.grid),
+            costs: Aligned::zeros(self.left_out.len() * self.grid),
+            shares: Aligned::zeros(self.left_out.len() * self.grid),
             square: 0.0,
             outside: vec![0.0; self.left_out.len()],
             lightest: 0.0,
             least: 0.0,
-            nearest: f64::INFINITY,
+            nearest: vec![f64::NAN; self.left_out.len()],
         }
     }
 
     /// Looks at a pixel of counts n and n′.
     pub(super) fn look(&self, counts: &[f64], shifted: &[f64], to: &mut Screened) {
         project(self, counts, shifted, to);
-        let Screened { coordinates, outside, square, .. } = to;
+        let Screened { coordinates, outside, square, nearest, .. } = to;
         for (outside, coordinates) in outside.iter_mut().zip(coordinates.chunks_exact(self.rank.max(1))) {
-            *outside = (*square - coordinates.iter().map(|c| c * c).sum::<f64>()).max(0.0);
+            let inside: f64 = coordinates.iter().map(|c| c * c).sum();
+            *outside = (*square * (1.0 - ROUNDING) - inside).max(0.0);
+        }
+        nearest.fill(f64::NAN);
+    }
+
+    /// The farthest that a fit which costs no more than `cut` may be from the counts: √(cut/f), with N′ ≤ n′ + cut/2 + √(cut²/4 + cut n′).
+    pub(super) fn reach(&self, cut: f64, seen: &Screened) -> f64 {
+        let half = 0.5 * cut;
+        let excess = (half + (half * half + cut * seen.least).sqrt()) / seen.least;
+        (cut * (1.0 + excess) / seen.lightest).sqrt()
+    }
+
+    /// Whether a material is farther away than that, whatever its temperature and lighting.
+    pub(super) fn is_beyond(&self, kind: usize, reach: f64, seen: &Screened) -> bool {
+        seen.outside[kind] > (reach + self.left_out[kind]).powi(2)
+    }
+
+    /// The same with the range of temperature and lighting, from the chords.
+    pub(super) fn is_beyond_within(&self, kind: usize, reach: f64, seen: &mut Screened) -> bool {
+        seen.outside[kind] + self.nearest(kind, seen) > (reach + self.left_out[kind] + self.sag[kind]).powi(2)
+    }
+
+    /// Squared distance of a pixel's counts from what a material sends, without a range of temperature or lighting.
+    pub(super) fn outside(&self, kind: usize, seen: &Screened) -> f64 {
+        seen.outside[kind]
+    }
+
+    /// Squared distance of a pixel from the nearest chord of a material.
+    fn nearest(&self, kind: usize, seen: &mut Screened) -> f64 {
+        if seen.nearest[kind].is_nan() {
+            let Screened { coordinates, costs, shares, nearest, .. } = seen;
+            let [costs, shares] = [costs, shares].map(|of| &mut of[kind * self.grid..][..self.grid]);
+            nearest[kind] =
+                chord_distances(self, kind, &coordinates[kind * self.rank..][..self.rank], costs, shares);
+        }
+        seen.nearest[kind]
+    }
+
+    /// Brings the material whose chords come nearest to a pixel to the front, of materials with their distances without a range.
+    /// Chords of materials that are farther away than that are not looked at.
+    pub(super) fn nearest_first(&self, outside: &mut [(f64, usize)], seen: &mut Screened) {
+        let mut best = f64::INFINITY;
+        for looked in 0..outside.len() {
+            let rest = outside[looked..].iter().enumerate();
+            let Some((next, _)) = rest.min_by(|a, b| a.1.0.total_cmp(&b.1.0)) else { return };
+            outside.swap(looked, looked + next);
+            let (square, kind) = outside[looked];
+            if square > best {
+                return;
+            }
+            let within = square + self.nearest(kind, seen);
+            if within < best {
+                best = within;
+                outside.swap(0, looked);
+            }
         }
     }
 
-    /// What a fit of a material must cost at least if it is to cost no more than `cut`, whatever its temperature and lighting.
-    pub(super) fn at_least(&self, kind: usize, cut: f64, seen: &Screened) -> f64 {
-        let distance = seen.outside[kind].sqrt() - self.left_out[kind];
-        seen.share(cut) * distance.max(0.0).powi(2)
-    }
-
-    /// The same with the range of temperature and lighting, from the chords ([`Screen::chords`]).
-    pub(super) fn at_least_within(&self, kind: usize, cut: f64, seen: &Screened) -> f64 {
-        let distance = (seen.outside[kind] + seen.nearest).sqrt() - self.left_out[kind] - self.sag[kind];
-        seen.share(cut) * distance.max(0.0).powi(2)
-    }
-
-    /// Finds the distances of a pixel from the chords of a material.
-    pub(super) fn chords(&self, kind: usize, seen: &mut Screened) {
-        let Screened { coordinates, costs, shares, nearest, .. } = seen;
-        chord_distances(self, kind, &coordinates[kind * self.rank..][..self.rank], (costs, shares, nearest));
-    }
-
-    /// Where fits of the material whose chords were looked at begin, the most promising first; how many there are.
+    /// Where fits of a material begin, the most promising first; how many there are.
     pub(super) fn starts(
         &self,
         model: &Model,
         kind: usize,
-        seen: &Screened,
+        seen: &mut Screened,
         starts: &mut [State; MOST_STARTS],
     ) -> usize {
+        let promising = 2.0 * self.nearest(kind, seen) + seen.outside[kind] + 20.0;
         let coordinates = self.coordinates(kind, seen);
         let count = self.chord_count();
-        let costs = &seen.costs[..count];
-        let promising = 2.0 * seen.nearest + seen.outside[kind] + 20.0;
+        let costs = &seen.costs[kind * self.grid..][..count];
         let (mut found, mut best) = (0, f64::INFINITY);
         for place in 0..count {
             let cost = costs[place];
-            let before = place.checked_sub(1).map_or(f64::INFINITY, |before| costs[before]);
-            let after = costs.get(place + 1).copied().unwrap_or(f64::INFINITY);
-            if !(cost < before && cost <= after) || cost > promising || found == MOST_STARTS {
+            if cost > promising || found == MOST_STARTS {
                 continue;
             }
-            let share = seen.shares[place];
+            let before = place.checked_sub(1).map_or(f64::INFINITY, |before| costs[before]);
+            let after = costs.get(place + 1).copied().unwrap_or(f64::INFINITY);
+            if !(cost < before && cost <= after) {
+                continue;
+            }
+            let share = seen.shares[kind * self.grid + place];
             let [from, to] = [self.temperatures_k[place], self.temperatures_k[place + 1]];
             let weights = self.weights(kind, coordinates, place, share);
             let mut state = State::at(share.mul_add(to - from, from));
@@ -232,12 +270,18 @@ impl Screen {
         self.temperatures_k.len() - 1
     }
 
+    /// Where a chord begins in a direction, and how far it goes.
+    fn along(&self, kind: usize, direction: usize, place: usize) -> (f64, f64) {
+        let at = (kind * self.rank + direction) * self.nodes + place;
+        (self.curve[at], self.curve[at + 1] - self.curve[at])
+    }
+
     /// Weights of the vertices but the first that suit a place on a chord best, brought into their range.
     fn weights(&self, kind: usize, coordinates: &[f64], place: usize, share: f64) -> [f64; MOST] {
         let rank = self.rank;
         let off = |i: usize| {
-            let at = (kind * rank + i) * self.grid + place;
-            coordinates[i] - share.mul_add(self.along[at], self.curve[at])
+            let (from, along) = self.along(kind, i, place);
+            coordinates[i] - share.mul_add(along, from)
         };
         let column = |light: usize, i: usize| self.lighting[(kind * self.lights + light) * rank + i];
         let mut weights = [0.0; MOST];
@@ -251,15 +295,6 @@ impl Screen {
             weights[..self.lights].iter_mut().for_each(|u| *u /= total);
         }
         weights
-    }
-}
-
-impl Screened {
-    /// f, of fits that cost no more than `cut`: N′ ≤ n′ + cut/2 + √(cut²/4 + cut n′).
-    fn share(&self, cut: f64) -> f64 {
-        let half = 0.5 * cut;
-        let excess = (half + (half * half + cut * self.least).sqrt()) / self.least;
-        self.lightest / (1.0 + excess)
     }
 }
 
@@ -316,43 +351,42 @@ dispatched! {
 }
 
 dispatched! {
-    /// Squared distances from the chords of a material, and where on them.
+    /// Squared distances from the chords of a material, where on them, and the least of them.
     fn chord_distances<'a>(
         screen: &'a Screen,
         kind: usize,
         coordinates: &'a [f64],
-        found: (&'a mut Aligned, &'a mut Aligned, &'a mut f64),
-    ) {
-        let (costs, shares, nearest) = found;
+        costs: &'a mut [f64],
+        shares: &'a mut [f64],
+    ) -> f64 {
         let (rank, grid, lights) = (screen.rank, screen.grid, screen.lights);
         let mut least = [f64::INFINITY; LANES];
         for at in (0..grid).step_by(LANES) {
-            let lanes = |from: &[f64], i: usize| -> Chunk {
-                let from = &from[(kind * rank + i) * grid + at..][..LANES];
-                std::array::from_fn(|k| from[k])
+            let chord = |i: usize| -> [Chunk; 2] {
+                let nodes = &screen.curve[(kind * rank + i) * screen.nodes + at..][..LANES + 1];
+                [std::array::from_fn(|k| nodes[k]), std::array::from_fn(|k| nodes[k + 1] - nodes[k])]
             };
             let (mut square, mut dot) = ([0.0; LANES], [0.0; LANES]);
             for (i, coordinate) in coordinates.iter().enumerate().skip(lights) {
-                let (curve, along) = (lanes(&screen.curve, i), lanes(&screen.along, i));
+                let [curve, along] = chord(i);
                 let off: Chunk = std::array::from_fn(|k| coordinate - curve[k]);
                 square = added(off, off, square);
                 dot = added(off, along, dot);
             }
             let shortness = &screen.shortness[kind * grid + at..][..LANES];
+            let length = &screen.length[kind * grid + at..][..LANES];
             let share: Chunk = std::array::from_fn(|k| {
                 (dot[k] * shortness[k]).clamp(0.0, 1.0)
             });
-            // What is left at the place: |off|² - share (2 dot - share |along|²), formed anew so that nothing cancels.
-            let mut cost = [0.0; LANES];
-            for (i, coordinate) in coordinates.iter().enumerate().skip(lights) {
-                let (curve, along) = (lanes(&screen.curve, i), lanes(&screen.along, i));
-                let off: Chunk = std::array::from_fn(|k| coordinate - share[k].mul_add(along[k], curve[k]));
-                cost = added(off, off, cost);
-            }
+            // |off|² − share (2 dot − share |along|²), less than what it may lose.
+            let mut cost: Chunk = std::array::from_fn(|k| {
+                let gone = share[k] * share[k].mul_add(-length[k], 2.0 * dot[k]);
+                f64::max(0.0, square[k].mul_add(1.0 - ROUNDING, -gone))
+            });
             if lights == 1 {
                 // Beside a chord the lighting reaches an interval.
                 let reach = screen.lighting[kind * rank];
-                let (curve, along) = (lanes(&screen.curve, 0), lanes(&screen.along, 0));
+                let [curve, along] = chord(0);
                 let beyond: Chunk = std::array::from_fn(|k| {
                     let low = curve[k] + f64::min(along[k], 0.0) + f64::min(reach, 0.0);
                     let high = curve[k] + f64::max(along[k], 0.0) + f64::max(reach, 0.0);
@@ -364,6 +398,6 @@ dispatched! {
             shares[at..][..LANES].copy_from_slice(&share);
             least = std::array::from_fn(|k| if cost[k] < least[k] { cost[k] } else { least[k] });
         }
-        *nearest = least.into_iter().fold(f64::INFINITY, f64::min);
+        least.into_iter().fold(f64::INFINITY, f64::min)
     }
 }
