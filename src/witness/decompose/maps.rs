@@ -93,7 +93,11 @@ fn whole<S: Sample>(
     let by_rows = ByRows { cube, signed, done };
     let rows = by_rows.all(
         || task.room(),
-        |room, sample: &[S], spared, kept: &mut KeptRow| {
+        |room, sample: &[S], same, spared, kept: &mut KeptRow| {
+            if let Some(same) = same.filter(|_| task.skip && options.spatial.is_none()) {
+                spared.equal += setting.library.len() as u64;
+                return same;
+            }
             task.load(sample, per_unit, room);
             let pixel = task.pixel(room, spared);
             if options.spatial.is_some() {
@@ -132,11 +136,12 @@ pub(super) struct ByRows<'a, S> {
 pub(super) type Row<K> = (Vec<Pixel>, Spared, K);
 
 impl<S: Sample> ByRows<'_, S> {
-    /// What `pixel` makes of the samples of every pixel, with room of its own for each thread.
+    /// What `pixel` makes of the samples of every pixel, with room of its own for each thread. It is given the pixel before in the
+    /// row where that has the same samples: dead, dark and saturated regions do.
     pub(super) fn all<R, K: Default + Send>(
         &self,
         room: impl Fn() -> R + Sync,
-        pixel: impl Fn(&mut R, &[S], &mut Spared, &mut K) -> Pixel + Sync,
+        pixel: impl Fn(&mut R, &[S], Option<Pixel>, &mut Spared, &mut K) -> Pixel + Sync,
     ) -> Result<Vec<Row<K>>> {
         let shape = self.cube.shape();
         let is_count = |n: f64| n >= 0.0 || n.is_nan();
@@ -150,10 +155,13 @@ impl<S: Sample> ByRows<'_, S> {
                 return Err(negative(samples[at].into(), place));
             }
             let (mut spared, mut kept) = (Spared::default(), K::default());
-            let pixels = samples
-                .chunks(shape.bands())
-                .map(|sample| pixel(room, sample, &mut spared, &mut kept))
-                .collect();
+            let mut pixels: Vec<Pixel> = Vec::with_capacity(shape.columns());
+            let mut before = None;
+            for sample in samples.chunks(shape.bands()) {
+                let same = pixels.last().copied().filter(|_| before == Some(sample));
+                pixels.push(pixel(room, sample, same, &mut spared, &mut kept));
+                before = Some(sample);
+            }
             (self.done)(1);
             Ok((pixels, spared, kept))
         };

@@ -114,7 +114,7 @@ fn compared<S: Sample>(
         room.iter().all(|n| n.is_finite())
     };
     let all = |pixel: &(dyn Fn(&[f64]) -> Pixel + Sync)| -> Result<Vec<Row<()>>> {
-        by_rows.all(Vec::new, |room, sample, _, ()| match counts(room, sample) {
+        by_rows.all(Vec::new, |room, sample, _, _, ()| match counts(room, sample) {
             true => pixel(room),
             false => Pixel::SKIPPED,
         })
