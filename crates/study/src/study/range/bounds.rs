@@ -6,6 +6,7 @@ use super::subject::Truth;
 use crate::scenario::range::{Demand, DepthRequirement};
 use hadar::error::Result;
 use hadar::ranging::depth::StereoGeometry;
+use rayon::prelude::*;
 
 /// What the bounds of a study rest on.
 pub(super) struct Ground<'a> {
@@ -44,8 +45,10 @@ impl Ground<'_> {
                     && self.truth.seen.get(pixels).is_some_and(|seen| seen.iter().all(|seen| *seen))
             })
         };
-        let centres = map.rows.clone().flat_map(|row| map.columns.clone().map(move |column| (row, column)));
-        centres.filter(|&(row, column)| whole(row, column)).collect()
+        let centres = |row: usize| {
+            map.columns.clone().map(move |column| (row, column)).filter(|&(y, x)| whole(y, x)).collect()
+        };
+        map.rows.clone().into_par_iter().map(centres).collect::<Vec<Vec<_>>>().concat()
     }
 
     /// Disparity variance of every window, pixel²; NaN where the right view has no such window.
@@ -112,7 +115,7 @@ impl Ground<'_> {
         };
         let depths: Vec<f64> = chosen.iter().map(|&i| depth(i)).filter(|z| z.is_finite()).collect();
         let signals = maps
-            .iter()
+            .par_iter()
             .zip(variances)
             .map(|(map, var)| {
                 let bounds: Vec<Bound> = chosen
@@ -204,7 +207,7 @@ impl Ground<'_> {
             rows.clone().flat_map(|row| columns.clone().map(move |column| row * self.columns + column));
         let depth_m = centres.map(|at| self.truth.depth_m.get(at).copied().unwrap_or(f64::NAN)).collect();
         let disparity_error_px: Vec<(Signal, Vec<f64>)> =
-            maps.iter().zip(variances).map(|(map, var)| (map.signal, spread(var))).collect();
+            maps.par_iter().zip(variances).map(|(map, var)| (map.signal, spread(var))).collect();
         BoundMaps { rows, columns, disparity_error_px, depth_m, brightest: None, pictures: Vec::new() }
     }
 }
