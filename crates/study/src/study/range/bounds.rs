@@ -86,14 +86,14 @@ impl Ground<'_> {
     ) -> Result<Vec<ObjectBounds>> {
         let name_of =
             |&(row, column): &(usize, usize)| self.truth.object.get(row * self.columns + column).copied();
-        let mut objects = vec![self.object("all windows", windows, maps, variances, &|_| true)?];
-        for (i, name) in self.truth.names.iter().enumerate() {
+        let all = || Some(self.object("all windows", windows, maps, variances, &|_| true));
+        let named = |(i, name): (usize, &String)| {
             let own = |window: &(usize, usize)| name_of(window) == u8::try_from(i).ok();
-            if windows.iter().any(own) {
-                objects.push(self.object(name, windows, maps, variances, &own)?);
-            }
-        }
-        Ok(objects)
+            windows.iter().any(own).then(|| self.object(name, windows, maps, variances, &own))
+        };
+        let (all, named): (_, Vec<_>) =
+            rayon::join(all, || self.truth.names.par_iter().enumerate().map(named).collect());
+        all.into_iter().chain(named.into_iter().flatten()).collect()
     }
 
     fn object(
@@ -102,7 +102,7 @@ impl Ground<'_> {
         windows: &[(usize, usize)],
         maps: &[SignalMap],
         variances: &[Vec<f64>],
-        own: &dyn Fn(&(usize, usize)) -> bool,
+        own: &(dyn Fn(&(usize, usize)) -> bool + Sync),
     ) -> Result<ObjectBounds> {
         // A window counts if it has a partner in every signal that a camera measures: what only might be does not decide.
         let measured = |map: &SignalMap| map.signal != Signal::ScatteredAsMeasured;
