@@ -6,7 +6,7 @@ use super::figures::Plot;
 use super::folder::Folder;
 use super::html;
 use super::manifest::Provenance;
-use super::plot::{Figure, render_png, render_svg};
+use super::plot::{Figure, render};
 use super::table::Table;
 use super::tables;
 use hadar::error::Result;
@@ -164,7 +164,7 @@ impl Bundle {
         let drawn: Vec<(Vec<u8>, Vec<u8>)> = self
             .figures
             .par_iter()
-            .map(|figure| Ok((render_svg(figure)?.into_bytes(), render_png(figure)?)))
+            .map(|figure| render(figure).map(|(svg, png)| (svg.into_bytes(), png)))
             .collect::<Result<_>>()?;
         let content = |content: &Content| match content {
             Content::Bytes(bytes) => bytes.clone(),

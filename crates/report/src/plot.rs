@@ -144,6 +144,17 @@ pub fn image_png(pixels: &[Rgb], columns: usize) -> Result<Vec<u8>> {
     png::raster(pixels, columns)
 }
 
+/// Both, laid out once.
+///
+/// # Errors
+/// As [`render_svg`].
+pub(crate) fn render(figure: &Figure) -> Result<(String, Vec<u8>)> {
+    let scene = scene(figure)?;
+    // The longer one first; rasters of the other are shared out.
+    let (png, svg) = rayon::join(|| png::paint(&scene), || svg::paint(&scene));
+    Ok((svg?, png?))
+}
+
 fn scene(figure: &Figure) -> Result<scene::Scene> {
     match figure {
         Figure::Line(figure) => lines::scene(figure),

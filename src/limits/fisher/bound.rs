@@ -190,6 +190,12 @@ impl Projector {
         self.turned <= NEARLY_DEPENDENT
     }
 
+    /// Length of the last column of the last call along what was left of nuisance i.
+    pub(crate) fn along(&self, i: usize) -> f64 {
+        let share = self.triangle.get((i + 1) * self.norms.len() - 1);
+        share.zip(self.norms.get(i)).map_or(0.0, |(share, norm)| (share * norm).abs())
+    }
+
     /// Whether nuisance i of the last call was zero.
     pub(crate) fn is_zero(&self, i: usize) -> bool {
         self.lengths.get(i).is_none_or(|length| *length == 0.0)

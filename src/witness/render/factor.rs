@@ -8,8 +8,8 @@
 //! is wholly before it. What lies behind the plane through p is cut off first. Φ does not depend on n: a bumpy
 //! surface costs no more than a smooth one.
 //!
-//! What one polygon hides of another is cut away plane by plane: a convex polygon without another one is at the most as many convex
-//! pieces as that has edges.
+//! What one polygon hides of another is the factor of what both cover, which is convex, or is cut away plane by plane: a convex polygon
+//! without another one is at the most as many convex pieces as that has edges.
 //!
 //! Source: J. H. Lambert, Photometria (1760); in this form e.g. Baum, Rushmeier, Winget, SIGGRAPH 1989,
 //! doi:10.1145/74333.74367.
@@ -18,6 +18,8 @@ use super::vector::{Vector, along, cross, dot, norm, scaled, subtract, unit};
 
 /// Corners that a polygon may have: those of an outline, and one more for every cut.
 pub(super) const CORNERS: usize = 16;
+/// Angle between corners below which they are one, rad.
+const CLOSE: f64 = 1e-10;
 
 /// A convex polygon as seen from a point: the cone of directions to it.
 #[derive(Debug, Clone, Copy)]
@@ -50,6 +52,16 @@ impl Polygon {
         let corners = self.corners();
         let next = corners.iter().skip(1).chain(corners.first());
         corners.iter().zip(next).map(|(here, next)| (*here, *next))
+    }
+
+    /// Normals of the planes through the point along its edges, inwards. Corners as close as [`CLOSE`] have no plane but that of
+    /// their rounding.
+    fn planes(&self) -> impl Iterator<Item = Vector> + '_ {
+        self.edges().filter_map(|(here, next)| {
+            let inwards = cross(here, next);
+            let long = dot(inwards, inwards) > CLOSE * CLOSE * dot(here, here) * dot(next, next);
+            long.then_some(inwards)
+        })
     }
 
     /// A direction inside it.
@@ -97,7 +109,7 @@ impl Polygon {
             if a >= 0.0 {
                 put(here);
             }
-            if (a >= 0.0) != (b >= 0.0) {
+            if a > 0.0 && b < 0.0 || a < 0.0 && b > 0.0 {
                 put(along(here, a / (a - b), subtract(self.corners[next], here)));
             }
         }
@@ -113,33 +125,27 @@ impl Polygon {
     }
 
     /// Whether some plane through the point along an edge of the other one parts the two.
-    fn is_beside(&self, other: &Self) -> bool {
-        other.edges().any(|(here, next)| {
-            let inwards = cross(here, next);
-            self.corners().iter().all(|&corner| dot(corner, inwards) <= 0.0)
-        })
+    pub(super) fn is_beside(&self, other: &Self) -> bool {
+        other.planes().any(|inwards| self.corners().iter().all(|&corner| dot(corner, inwards) <= 0.0))
+    }
+
+    /// Whether a plane through the point along an edge of either parts the two.
+    pub(super) fn is_parted(&self, other: &Self) -> bool {
+        self.is_beside(other) || other.is_beside(self)
     }
 
     /// What both cover.
     pub(super) fn overlap(&self, other: &Self) -> Option<Self> {
-        if self.is_beside(other) || other.is_beside(self) {
-            return None;
-        }
         let mut both = *self;
-        other.edges().all(|(here, next)| both.keep(cross(here, next))).then_some(both)
+        other.planes().all(|inwards| both.keep(inwards)).then_some(both)
     }
 
-    /// What `other` leaves of it, as convex pieces.
-    pub(super) fn minus(&self, other: &Self, pieces: &mut Vec<Self>) {
-        if self.is_beside(other) {
-            pieces.push(*self);
-            return;
-        }
+    /// Hands out what `other` leaves of it, as convex pieces.
+    pub(super) fn minus(&self, other: &Self, take: &mut dyn FnMut(&Self)) {
         let mut rest = *self;
-        for (here, next) in other.edges() {
-            let inwards = cross(here, next);
+        for inwards in other.planes() {
             if rest.corners().iter().any(|&corner| dot(corner, inwards) < 0.0) {
-                pieces.extend(rest.cut(scaled(inwards, -1.0)));
+                rest.cut(scaled(inwards, -1.0)).iter().for_each(&mut *take);
                 if !rest.keep(inwards) {
                     return;
                 }
@@ -183,16 +189,16 @@ pub(super) struct Factor {
 }
 
 impl Factor {
-    /// Adds a polygon that is before the surface.
+    /// Adds `sign` times a polygon that is before the surface.
     #[inline]
-    pub(super) fn add(&mut self, seen: &Polygon) {
+    pub(super) fn add(&mut self, seen: &Polygon, sign: f64) {
         if seen.corners().iter().all(|corner| corner[1] >= 0.0) {
-            self.above = along(self.above, 1.0, seen.factor());
+            self.above = along(self.above, sign, seen.factor());
             return;
         }
         for (to, side) in [(&mut self.above, 1.0), (&mut self.below, -1.0)] {
             if let Some(part) = seen.cut([0.0, side, 0.0]) {
-                *to = along(*to, 1.0, part.factor());
+                *to = along(*to, sign, part.factor());
             }
         }
     }
@@ -235,14 +241,32 @@ mod tests {
             // The same reaching as far below the horizon: cut off there.
             let sunk = corners.map(|[x, y, z]| [x, if y == 0.0 { -a } else { y }, z]);
             let mut factor = Factor::default();
-            factor.add(&Polygon::wound(&sunk).unwrap().cut(UP).unwrap());
+            factor.add(&Polygon::wound(&sunk).unwrap().cut(UP).unwrap(), 1.0);
             assert!((dot(factor.above, UP) / exact - 1.0).abs() < 1e-12);
             assert_eq!(factor.below, [0.0; 3]);
             // Seen by a wall that faces it: half above, half below.
             let mut factor = Factor::default();
-            factor.add(&Polygon::wound(&sunk).unwrap());
+            factor.add(&Polygon::wound(&sunk).unwrap(), 1.0);
             assert!((factor.above[2] / factor.below[2] - 1.0).abs() < 1e-12);
             assert!((factor.above[1] / exact - 1.0).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn corners_that_are_one_but_for_rounding_cut_nothing_off() {
+        let square = |half: f64, height: f64| {
+            [[-half, height, -half], [half, height, -half], [half, height, half], [-half, height, half]]
+        };
+        let (wide, [a, b, c, d]) = (Polygon::wound(&square(2.0, 4.0)).unwrap(), square(0.5, 2.0));
+        let both = wide.overlap(&Polygon::wound(&[a, b, c, d]).unwrap()).unwrap().factor();
+        // One step back along the edge: its plane is that of the edge, turned round.
+        for back in [0.0, f64::EPSILON] {
+            let twice = Polygon::wound(&[a, b, [b[0] - back, b[1], b[2]], c, d]).unwrap();
+            let found = wide.overlap(&twice).unwrap().factor();
+            assert!((found[1] / both[1] - 1.0).abs() < 1e-12, "{found:?} {both:?}");
+            let mut left = 0.0;
+            wide.minus(&twice, &mut |piece| left += piece.factor()[1]);
+            assert!(((wide.factor()[1] - left) / both[1] - 1.0).abs() < 1e-12, "{left}");
         }
     }
 

@@ -20,6 +20,9 @@ pub(super) type Shares = [f64; SURFACES];
 /// Vector form factors of each surface.
 pub(super) type Factors = [Factor; SURFACES];
 
+/// Solids before a polygon of which what they cover together is counted in and out, 2^n polygons; of more the polygon is cut first.
+const FEW: u32 = 3;
+
 /// Vector form factors at a point with the smooth normal `smooth` that belongs to the solid `own`, if any.
 pub(super) fn factors(
     scene: &Scene,
@@ -28,27 +31,33 @@ pub(super) fn factors(
     own: Option<usize>,
     room: &mut Room,
 ) -> Factors {
-    room.seen.clear();
+    let seen = &mut room.seen;
+    seen.clear();
     for (index, solid) in scene.solids.iter().enumerate() {
+        let bounds = solid.shape.bounds();
         if Some(index) != own
-            && solid.shape.reaches_before(point, smooth)
+            && reaches_before(bounds, point, smooth)
             && let Some(mut outline) = solid.shape.outline(point)
+            && outline.keep(smooth)
         {
-            if !outline.keep(smooth) {
-                continue;
-            }
-            room.seen.push(Seen { index, cone: outline.cone(), outline, hidden_by: 0 });
+            seen.push(Seen { index, bounds, cone: outline.cone(), outline, hidden_by: 0 });
         }
     }
-    for i in 1..room.seen.len() {
-        let (before, rest) = room.seen.split_at_mut(i);
+    for i in 1..seen.len() {
+        let (before, rest) = seen.split_at_mut(i);
         let Some(here) = rest.first_mut() else { break };
         for (j, there) in before.iter_mut().enumerate() {
-            if !here.cone.meets(&there.cone) {
-                continue;
-            }
-            let Some(both) = here.outline.overlap(&there.outline) else { continue };
-            if scene.is_nearer(here.index, there.index, point, both.middle()) {
+            let nearer = match may_hide(here.bounds, there.bounds, point) {
+                [false, false] => continue,
+                _ if !here.cone.meets(&there.cone) => continue,
+                _ if here.outline.is_parted(&there.outline) => continue,
+                [nearer, farther] if nearer != farther => nearer,
+                _ => {
+                    let Some(both) = here.outline.overlap(&there.outline) else { continue };
+                    scene.is_nearer(here.index, there.index, point, both.middle())
+                }
+            };
+            if nearer {
                 there.hidden_by |= 1 << i;
             } else {
                 here.hidden_by |= 1 << j;
@@ -56,31 +65,67 @@ pub(super) fn factors(
         }
     }
     let mut factors = Factors::default();
-    let Room { seen, pieces, cut } = room;
     for solid in seen.iter() {
-        let Some(factor) = scene.solids.get(solid.index).and_then(|own| factors.get_mut(own.surface)) else {
-            continue;
-        };
-        if solid.hidden_by == 0 {
-            factor.add(&solid.outline);
-            continue;
+        if let Some(factor) = scene.solids.get(solid.index).and_then(|own| factors.get_mut(own.surface)) {
+            add_seen(seen, &solid.outline, solid.hidden_by, 1.0, factor);
         }
-        pieces.clear();
-        pieces.push(solid.outline);
-        for (_, other) in seen.iter().enumerate().filter(|(i, _)| solid.hidden_by >> i & 1 == 1) {
-            cut.clear();
-            pieces.iter().for_each(|piece| piece.minus(&other.outline, cut));
-            std::mem::swap(pieces, cut);
-        }
-        pieces.iter().for_each(|piece| factor.add(piece));
     }
     factors
+}
+
+/// Adds `sign` times what the solids `before` (bits by their place in `seen`) leave of a polygon.
+fn add_seen(seen: &[Seen], polygon: &Polygon, before: u32, sign: f64, factor: &mut Factor) {
+    let Some(first) = seen.get(before.trailing_zeros() as usize) else {
+        factor.add(polygon, sign);
+        return;
+    };
+    let others = before & (before - 1);
+    let before_part = |part: &Polygon| {
+        let hides = |(i, other): &(usize, &Seen)| others >> i & 1 == 1 && !part.is_beside(&other.outline);
+        seen.iter().enumerate().filter(hides).fold(0, |bits, (i, _)| bits | 1_u32 << i)
+    };
+    if before.count_ones() > FEW {
+        let mut add = |piece: &Polygon| add_seen(seen, piece, before_part(piece), sign, factor);
+        polygon.minus(&first.outline, &mut add);
+        return;
+    }
+    add_seen(seen, polygon, others, sign, factor);
+    if let Some(both) = polygon.overlap(&first.outline) {
+        add_seen(seen, &both, before_part(&both), -sign, factor);
+    }
+}
+
+/// Lowest and highest coordinates.
+type Bounds = [Vector; 2];
+
+/// Whether some of a box is before the plane through a point with this normal.
+#[inline]
+fn reaches_before([low, high]: Bounds, point: Vector, normal: Vector) -> bool {
+    let furthest: Vector = std::array::from_fn(|i| if normal[i] > 0.0 { high[i] } else { low[i] });
+    dot(subtract(furthest, point), normal) > 0.0
+}
+
+/// Whether what is in the one box may hide what is in the other, and the other way round: what is beyond a plane between them hides
+/// nothing on the point's side of it.
+#[inline]
+fn may_hide(one: Bounds, other: Bounds, point: Vector) -> [bool; 2] {
+    let mut may = [true; 2];
+    for (i, at) in point.into_iter().enumerate() {
+        for (k, (near, far)) in [(one, other), (other, one)].into_iter().enumerate() {
+            if near[1][i] <= far[0][i] {
+                may[k] &= at < near[1][i];
+                may[1 - k] &= at > far[0][i];
+            }
+        }
+    }
+    may
 }
 
 /// A solid as it is seen from the point in work.
 #[derive(Debug)]
 struct Seen {
     index: usize,
+    bounds: Bounds,
     outline: Polygon,
     cone: Cone,
     /// The solids before it, as bits by their place among those that are seen.
@@ -91,8 +136,6 @@ struct Seen {
 #[derive(Debug, Default)]
 pub(super) struct Room {
     seen: Vec<Seen>,
-    pieces: Vec<Polygon>,
-    cut: Vec<Polygon>,
 }
 
 impl Scene {

@@ -7,7 +7,7 @@
 
 use super::vector::Vector;
 
-/// Root mean square of [`gradient`]: 2√(∫w²x² dx ∫w² dx), w the falling quintic on [0, 1].
+/// Root mean square of [`GradientLine`]: 2√(∫w²x² dx ∫w² dx), w the falling quintic on [0, 1].
 pub(super) const GRADIENT_RMS: f64 = 0.215_71;
 /// Root mean square of [`value`]: (∫(w² + (1 − w)²) dx)^{3/2}/√3.
 pub(super) const VALUE_RMS: f64 = 0.400_442;
@@ -60,18 +60,54 @@ fn quintic(t: f64) -> f64 {
     t * t * t * (t * (t * 6.0 - 15.0) + 10.0)
 }
 
-/// Gradient noise of period-free unit cells, mean 0.
-#[inline]
-pub(super) fn gradient(x: f64, y: f64, seed: u32) -> f64 {
-    let ((i, u), (j, v)) = (cell(x), cell(y));
-    let corner = |di: u32, dj: u32| {
-        let [a, b] = DIRECTIONS[(hash(i.wrapping_add(di), j.wrapping_add(dj), 0, seed) >> 28) as usize];
-        a * (u - f64::from(di)) + b * (v - f64::from(dj))
-    };
-    let (s, t) = (quintic(u), quintic(v));
-    let low = corner(0, 0) + s * (corner(1, 0) - corner(0, 0));
-    let high = corner(0, 1) + s * (corner(1, 1) - corner(0, 1));
-    low + t * (high - low)
+/// Gradient noise of period-free unit cells, mean 0, along a line of one y.
+///
+/// In a cell it is linear in x on either side: what these lines are is found once for all places of the cell that follow each other.
+#[derive(Debug, Clone)]
+pub(super) struct GradientLine {
+    seed: u32,
+    /// Cell in y, the place in it, and the share of its upper side.
+    j: u32,
+    v: f64,
+    t: f64,
+    /// Where the cell in x begins; NaN before the first.
+    start: f64,
+    /// Slope and value at the corner, of its left and its right side.
+    sides: [[f64; 2]; 2],
+}
+
+impl GradientLine {
+    pub(super) fn new(y: f64, seed: u32) -> Self {
+        let (j, v) = cell(y);
+        Self { seed, j, v, t: quintic(v), start: f64::NAN, sides: [[0.0; 2]; 2] }
+    }
+
+    #[inline]
+    pub(super) fn at(&mut self, x: f64) -> f64 {
+        let mut u = x - self.start;
+        if !(0.0..1.0).contains(&u) {
+            u = self.enter(x);
+        }
+        let [[a, b], [c, d]] = self.sides;
+        let (left, right) = (a * u + b, c * (u - 1.0) + d);
+        left + quintic(u) * (right - left)
+    }
+
+    /// Enters the cell of x; the place in it.
+    fn enter(&mut self, x: f64) -> f64 {
+        let (i, u) = cell(x);
+        self.start = x - u;
+        self.sides = [0, 1].map(|di| {
+            let corner = |dj: u32| {
+                let hash = hash(i.wrapping_add(di), self.j.wrapping_add(dj), 0, self.seed);
+                let [a, b] = DIRECTIONS[(hash >> 28) as usize];
+                [a, b * (self.v - f64::from(dj))]
+            };
+            let (low, high) = (corner(0), corner(1));
+            std::array::from_fn(|k| low[k] + self.t * (high[k] - low[k]))
+        });
+        u
+    }
 }
 
 /// Value noise in [−1, 1], values on the corners of unit cells.
@@ -120,7 +156,7 @@ mod tests {
         for i in 0..n * n {
             // Far from the origin, and off the lattice.
             let (x, y) = (f64::from(i / n) * 1.37 - 300.0, f64::from(i % n) * 1.73 + 1e6);
-            let value = gradient(x, y, 7);
+            let value = GradientLine::new(y, 7).at(x);
             sum += value;
             square += value * value;
             let [a, b, _] = value_slope([x, y, 0.31 * x], 7);
@@ -135,10 +171,16 @@ mod tests {
 
     #[test]
     fn the_noise_is_smooth_across_cells_and_differs_by_seed() {
+        let gradient = |x: f64, y: f64, seed: u32| GradientLine::new(y, seed).at(x);
         for (x, y) in [(3.0, 0.4), (-7.0, 2.0), (0.3, -5.0)] {
             let step = 1e-7;
             assert!((gradient(x - step, y - step, 1) - gradient(x + step, y + step, 1)).abs() < 1e-6);
         }
         assert_ne!(gradient(0.3, 0.4, 1), gradient(0.3, 0.4, 2));
+        // Back and forth along a line, and at whole numbers.
+        let mut line = GradientLine::new(0.7, 3);
+        for x in [0.2, 0.9, 1.0, 2.5, 1.7, -0.1, 1e6, 0.2] {
+            assert_eq!(line.at(x), gradient(x, 0.7, 3));
+        }
     }
 }

@@ -51,14 +51,6 @@ impl Shape {
         }
     }
 
-    /// Whether some of the box about it is before the plane through a point with this normal.
-    #[inline]
-    pub(super) fn reaches_before(&self, point: Vector, normal: Vector) -> bool {
-        let [low, high] = self.bounds();
-        let furthest: Vector = std::array::from_fn(|i| if normal[i] > 0.0 { high[i] } else { low[i] });
-        dot(subtract(furthest, point), normal) > 0.0
-    }
-
     /// Its middle.
     pub(super) fn middle(&self) -> Vector {
         let [low, high] = self.bounds();

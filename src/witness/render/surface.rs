@@ -4,7 +4,7 @@
 //! texture knows how far apart the rays are that look at it (the same for both cameras, since it depends on the
 //! depth alone), and leaves out what is finer than they can show.
 
-use super::noise;
+use super::noise::{self, GradientLine};
 use super::uneven::{NODES, Uneven};
 use super::vector::{Vector, along, dot, unit};
 use crate::error::{Error, Result, check};
@@ -283,7 +283,7 @@ impl Texture {
     pub(super) fn at(&self, point: Vector, footprint: &Footprint) -> f64 {
         match self {
             Self::Plain => 0.0,
-            Self::Road(road) => road.at(point[0], point[2], footprint),
+            Self::Road(road) => road.line(point[2], footprint).at(point[0]),
             Self::Waves { mean, waves } => waves.iter().fold(*mean, |sum, wave| {
                 let cycles = wave.cycles_per_m[0] * point[0] + wave.cycles_per_m[1] * point[1];
                 sum + wave.amplitude * libm::cos(std::f64::consts::TAU * cycles + wave.phase_rad)
@@ -300,8 +300,13 @@ impl Texture {
                 let fine = Footprint { across_m: 0.0, ahead_m: 0.0, finest_m: 0.0 };
                 let side = 160;
                 let place = |i: usize| (i as f64 + 0.5) * 0.377 - 30.0;
-                let taus = (0..side * side).map(|i| road.asphalt(place(i / side), place(i % side), &fine));
-                let asphalt = crate::sum::sum(&taus.collect::<Vec<_>>()) / (side * side) as f64;
+                let places: Vec<f64> = (0..side).map(place).collect();
+                let row = |z: &f64| {
+                    let mut line = road.line(*z, &fine);
+                    line.asphalt(&places);
+                    line.sums.iter().sum::<f64>()
+                };
+                let asphalt = places.iter().map(row).sum::<f64>() / (side * side) as f64;
                 // Marks are narrower than the steps of any lattice: their share is known.
                 let [dash, gap] = road.dash_m;
                 let marked = road.mark_width_m / MEAN_WIDTH_M * (1.0 + dash / (dash + gap));
@@ -318,17 +323,12 @@ fn overlap(x: f64, width: f64, low: f64, high: f64) -> f64 {
 }
 
 impl Road {
-    #[inline]
-    fn at(&self, x: f64, z: f64, footprint: &Footprint) -> f64 {
-        let asphalt = self.asphalt(x, z, footprint);
-        asphalt + self.marked(x, z, footprint) * (self.mark - asphalt)
-    }
-
-    /// τ of the road without marks.
-    #[inline]
-    fn asphalt(&self, x: f64, z: f64, footprint: &Footprint) -> f64 {
-        let (mut size, mut amplitude, mut square, mut sum) = (self.coarsest_m, 1.0, 0.0, 0.0);
+    /// The road across z.
+    pub(super) fn line(&self, z: f64, footprint: &Footprint) -> RoadLine<'_> {
+        let (mut cells_per_m, mut amplitude, mut square) = (self.coarsest_m.recip(), 1.0, 0.0);
+        let mut octaves = Vec::with_capacity(self.octaves);
         for octave in 0..self.octaves {
+            let size = cells_per_m.recip();
             // From nothing at the finest size to all at twice that.
             let shown = if footprint.finest_m > 0.0 {
                 (size / footprint.finest_m - 1.0).clamp(0.0, 1.0)
@@ -338,33 +338,80 @@ impl Road {
             if shown > 0.0 {
                 // Between rows that are further apart than a grain, several are averaged.
                 let averaged = 1.0 / (1.0 + footprint.ahead_m / size).sqrt();
-                let seed = self.seed.wrapping_add(octave as u32);
-                let smooth = shown * shown * (3.0 - 2.0 * shown);
-                sum += amplitude * smooth * averaged * noise::gradient(x / size, z / size, seed);
+                let weight = amplitude * shown * shown * (3.0 - 2.0 * shown) * averaged;
+                let noise = GradientLine::new(z * cells_per_m, self.seed.wrapping_add(octave as u32));
+                octaves.push(Octave { weight, cells_per_m, noise });
             }
             square += amplitude * amplitude;
             amplitude *= self.persistence;
-            size *= 0.5;
+            cells_per_m *= 2.0;
         }
         let scale = if square > 0.0 { self.contrast / (noise::GRADIENT_RMS * square.sqrt()) } else { 0.0 };
-        (self.asphalt + scale * sum).clamp(0.0, 1.0)
-    }
-
-    /// Share of the place that is painted.
-    #[inline]
-    fn marked(&self, x: f64, z: f64, footprint: &Footprint) -> f64 {
-        let (side, half) = (0.5 * self.lane_m, 0.5 * self.mark_width_m);
-        let width = footprint.across_m.max(WORN_EDGE_M);
-        let line = overlap(x.abs(), width, side - half, side + half);
-        if line == 0.0 || x > 0.0 {
-            return line;
-        }
+        octaves.iter_mut().for_each(|octave| octave.weight *= scale);
         let ([dash, gap], length) = (self.dash_m, footprint.ahead_m.max(WORN_EDGE_M));
         let painted_until = |z: f64| {
             let periods = z / (dash + gap);
             periods.floor() * dash + ((periods - periods.floor()) * (dash + gap)).min(dash)
         };
-        line * ((painted_until(z + 0.5 * length) - painted_until(z - 0.5 * length)) / length).clamp(0.0, 1.0)
+        let painted = (painted_until(z + 0.5 * length) - painted_until(z - 0.5 * length)) / length;
+        let width_m = footprint.across_m.max(WORN_EDGE_M);
+        RoadLine { road: self, octaves, sums: Vec::new(), width_m, painted: painted.clamp(0.0, 1.0) }
+    }
+}
+
+/// A line across a road, for place after place.
+#[derive(Debug)]
+pub(super) struct RoadLine<'a> {
+    road: &'a Road,
+    /// Those that are shown.
+    octaves: Vec<Octave>,
+    /// Their sums at the places in work.
+    sums: Vec<f64>,
+    /// Width over which the edges of marks are averaged, m.
+    width_m: f64,
+    /// Share of the mark at x < 0 that is painted.
+    painted: f64,
+}
+
+#[derive(Debug)]
+struct Octave {
+    weight: f64,
+    cells_per_m: f64,
+    noise: GradientLine,
+}
+
+impl RoadLine<'_> {
+    /// τ at x.
+    #[inline]
+    pub(super) fn at(&mut self, x: f64) -> f64 {
+        self.sum(&[x])
+    }
+
+    /// Σ τ over places.
+    pub(super) fn sum(&mut self, places: &[f64]) -> f64 {
+        self.asphalt(places);
+        let tau = |(x, asphalt): (&f64, &f64)| asphalt + self.marked(*x) * (self.road.mark - asphalt);
+        places.iter().zip(&self.sums).map(tau).sum()
+    }
+
+    /// τ of the road without marks at every place, in `sums`.
+    fn asphalt(&mut self, places: &[f64]) {
+        self.sums.clear();
+        self.sums.resize(places.len(), self.road.asphalt);
+        for Octave { weight, cells_per_m, noise } in &mut self.octaves {
+            for (sum, x) in self.sums.iter_mut().zip(places) {
+                *sum += *weight * noise.at(x * *cells_per_m);
+            }
+        }
+        self.sums.iter_mut().for_each(|tau| *tau = tau.clamp(0.0, 1.0));
+    }
+
+    /// Share of the place that is painted.
+    #[inline]
+    fn marked(&self, x: f64) -> f64 {
+        let (side, half) = (0.5 * self.road.lane_m, 0.5 * self.road.mark_width_m);
+        let line = overlap(x.abs(), self.width_m, side - half, side + half);
+        if x > 0.0 { line } else { line * self.painted }
     }
 }
 
@@ -380,7 +427,7 @@ mod tests {
         let n = 300;
         let (mut sum, mut square) = (0.0, 0.0);
         for i in 0..n * n {
-            let tau = road.at(f64::from(i / n) * 0.731 - 90.0, f64::from(i % n) * 0.773, &FINE) - 0.5;
+            let tau = road.line(f64::from(i % n) * 0.773, &FINE).at(f64::from(i / n) * 0.731 - 90.0) - 0.5;
             sum += tau;
             square += tau * tau;
         }
@@ -400,8 +447,8 @@ mod tests {
         assert!((at(-1.75, 10.0) - 0.05).abs() < 1e-12 && (at(-1.75, 13.0) - 0.6).abs() < 1e-12);
         // Seen from far away, what is seen is the share that is painted.
         let far = Footprint { across_m: 1.5, ahead_m: 90.0, finest_m: 0.0 };
-        assert!((road.marked(1.75, 500.0, &far) / 0.1 - 1.0).abs() < 1e-9);
-        assert!((road.marked(-1.75, 500.0, &far) / (0.1 / 3.0) - 1.0).abs() < 1e-9);
+        assert!((road.line(500.0, &far).marked(1.75) / 0.1 - 1.0).abs() < 1e-9);
+        assert!((road.line(500.0, &far).marked(-1.75) / (0.1 / 3.0) - 1.0).abs() < 1e-9);
     }
 
     #[test]

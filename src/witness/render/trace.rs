@@ -7,8 +7,8 @@ use super::light_map::LightMap;
 use super::lighting::{Room, Shares, factors, mean_shares, shares};
 use super::radiosity::Basis;
 use super::rig::{Camera, Rig};
-use super::scene::{SKY, SURFACES, Scene, Target};
-use super::surface::{Footprint, Surface};
+use super::scene::{GROUND, SKY, SURFACES, Scene, Target};
+use super::surface::{Footprint, RoadLine, Surface, Texture};
 use super::uneven::NODES;
 use super::vector::{UP, Vector, along, dot, scaled, subtract};
 use super::view::{Centre, MixedRow, View};
@@ -187,6 +187,13 @@ struct Met {
     texture: f64,
 }
 
+/// The road along a row of rays.
+struct RoadRow<'a> {
+    depth: f64,
+    z: f64,
+    line: RoadLine<'a>,
+}
+
 struct Tracer<'a> {
     scene: &'a Scene,
     rig: &'a Rig,
@@ -248,28 +255,80 @@ impl Tracer<'_> {
         let (mut mixed, mut centres) = (MixedRow::default(), Vec::with_capacity(columns));
         let weight = 1.0 / (samples * samples) as f64;
         let offset = |i: usize| (i as f64 + 0.5) / samples as f64 - 0.5;
+        let y = row as f64;
+        let mut roads: Vec<_> = (0..samples).map(|i| self.road(y + offset(i))).collect();
+        let (mut mixture, mut across, mut places) = (Mixture::default(), Vec::new(), Vec::new());
         for column in 0..columns {
-            let (x, y) = (column as f64, row as f64);
+            let x = column as f64;
             let solids = candidates(&self.outlines, x, y);
+            across.clear();
+            across.extend((0..samples).map(|j| self.camera.direction(x + offset(j), y)[0]));
+            if solids == 0 && self.road_alone(&across, &mut places, &mut roads, &mut mixture) {
+                centres.push(self.centre(x, y, solids, &mixture));
+                mixture.store(self.basis, &mut mixed);
+                mixture.clear();
+                continue;
+            }
             rays.clear();
-            for i in 0..samples {
+            for (i, road) in roads.iter_mut().enumerate() {
                 for j in 0..samples {
                     let direction = self.camera.direction(x + offset(j), y + offset(i));
                     let (depth, target) = self.scene.hit(self.camera.origin, direction, solids);
-                    rays.push(self.met(direction, depth, target));
+                    rays.push(self.met(direction, depth, target, road));
                 }
             }
-            let mut mixture = Mixture::default();
             self.shade(rays, weight, &mut mixture, room);
             centres.push(self.centre(x, y, solids, &mixture));
             mixture.store(self.basis, &mut mixed);
+            mixture.clear();
         }
         (mixed, centres)
     }
 
-    /// What a ray in `direction` meets at `depth`.
+    /// The road as the rays of a row meet it, which are of one depth on it.
+    fn road(&self, y: f64) -> Option<RoadRow<'_>> {
+        let direction = self.camera.direction(0.0, y);
+        let (depth, target) = self.scene.hit(self.camera.origin, direction, 0);
+        let ground = self.scene.surfaces.get(GROUND).filter(|ground| ground.is_mixed())?;
+        match &ground.texture {
+            Texture::Road(road) if target == Target::Ground => {
+                let z = along(self.camera.origin, depth, direction)[2];
+                Some(RoadRow { depth, z, line: road.line(z, &self.footprint(direction, depth)) })
+            }
+            _ => None,
+        }
+    }
+
+    /// Adds a pixel without solids whose rays, of these directions across, all meet the road; false where they do not, or where more
+    /// than its texture varies. `places` is room.
+    fn road_alone(
+        &self,
+        across: &[f64],
+        places: &mut Vec<f64>,
+        roads: &mut [Option<RoadRow<'_>>],
+        mixture: &mut Mixture,
+    ) -> bool {
+        let plain = |ground: &&Surface| ground.bump.is_none() && ground.uneven.is_none();
+        let Some(ground) = self.scene.surfaces.get(GROUND).filter(plain) else { return false };
+        if roads.iter().any(Option::is_none) {
+            return false;
+        }
+        let share = 1.0 / (across.len() * across.len()) as f64;
+        let (mut texture, mut middle) = (0.0, [0.0; 3]);
+        for RoadRow { depth, z, line } in roads.iter_mut().flatten() {
+            places.clear();
+            places.extend(across.iter().map(|direction| self.camera.origin[0] + *depth * direction));
+            texture += share * line.sum(places);
+            middle[0] += share * places.iter().sum::<f64>();
+            middle[2] += *z / across.len() as f64;
+        }
+        mixture.add(1.0, GROUND, texture, ground, middle, &shares(&self.map.at(middle), UP));
+        true
+    }
+
+    /// What a ray in `direction` meets at `depth`, with the road of its row.
     #[inline]
-    fn met(&self, direction: Vector, depth: f64, target: Target) -> Met {
+    fn met(&self, direction: Vector, depth: f64, target: Target, road: &mut Option<RoadRow<'_>>) -> Met {
         if target == Target::Sky {
             return Met { target, point: direction, smooth: UP, texture: 0.0 };
         }
@@ -278,8 +337,11 @@ impl Tracer<'_> {
             point[1] = 0.0;
         }
         let object = &self.scene.surfaces[self.scene.surface_of(target)];
-        let texture =
-            if object.is_mixed() { object.texture.at(point, &self.footprint(direction, depth)) } else { 0.0 };
+        let texture = match road {
+            Some(road) if target == Target::Ground => road.line.at(point[0]),
+            _ if object.is_mixed() => object.texture.at(point, &self.footprint(direction, depth)),
+            _ => 0.0,
+        };
         Met { target, point, smooth: self.scene.smooth_normal(target, point), texture }
     }
 
@@ -318,9 +380,15 @@ impl Tracer<'_> {
                 }
                 Target::Wall(_) | Target::Sky => Default::default(),
             };
-            let same = (flat && object.bump.is_none()).then(|| shares(&factors, first.smooth));
+            if flat && object.bump.is_none() && object.uneven.is_none() {
+                // All of them alike but for the texture, of which a mixture is linear.
+                let texture = own.iter().map(|met| met.texture).sum::<f64>() / count as f64;
+                let lit = shares(&factors, first.smooth);
+                mixture.add(weight * count as f64, surface, texture, object, middle, &lit);
+                continue;
+            }
             for met in own.iter() {
-                let lit = same.unwrap_or_else(|| shares(&factors, object.normal(met.point, met.smooth)));
+                let lit = shares(&factors, object.normal(met.point, met.smooth));
                 mixture.add(weight, surface, met.texture, object, met.point, &lit);
             }
         }
@@ -349,7 +417,8 @@ impl Tracer<'_> {
         let mut centre = mixture.mean_of(surface).unwrap_or_else(|| {
             // Between the rays the centre alone meets it.
             let mut alone = Mixture::default();
-            self.shade(&mut [self.met(direction, depth_m, target)], 1.0, &mut alone, &mut Room::default());
+            let met = self.met(direction, depth_m, target, &mut None);
+            self.shade(&mut [met], 1.0, &mut alone, &mut Room::default());
             Centre { pure: false, ..alone.mean_of(surface).unwrap_or_default() }
         });
         (centre.depth_m, centre.seen_by_other) = (depth_m, seen_by_other);
@@ -395,6 +464,16 @@ struct Part {
 }
 
 impl Mixture {
+    /// Takes everything out.
+    fn clear(&mut self) {
+        for (surface, part) in self.parts.iter_mut().enumerate() {
+            if self.present >> surface & 1 == 1 {
+                *part = Part::default();
+            }
+        }
+        self.present = 0;
+    }
+
     #[inline]
     fn add(
         &mut self,

@@ -5,6 +5,7 @@ use super::radiosity::Basis;
 use crate::error::{Error, Result, check};
 use crate::ranging::cube::{MemoryCube, Shape};
 use rayon::prelude::*;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// A part of the heat signal.
@@ -98,7 +99,7 @@ impl View {
             .par_chunks_mut(self.shape.row_len())
             .zip(&self.rows)
             .for_each(|(out, row)| self.fill(part, factor, row, out));
-        if samples.iter().all(|sample| sample.is_finite()) {
+        if samples.par_iter().all(|sample| sample.is_finite()) {
             return MemoryCube::new(self.shape, samples);
         }
         Err(Error::malformed(
@@ -107,13 +108,26 @@ impl View {
         ))
     }
 
-    /// A row of a part of the signal times `factor`, `[column][band]`, into `out`; nothing if there is no such row.
-    pub fn row_into(&self, part: Part, factor: f64, row: usize, out: &mut Vec<f64>) {
-        out.clear();
-        if let Some(row) = self.rows.get(row) {
-            out.resize(self.shape.row_len(), 0.0);
+    /// Rows of a part of the signal times `factor`, `[row][column][band]`, into `out`; nothing of rows that are not there.
+    pub fn rows_into(&self, part: Part, factor: f64, rows: Range<usize>, out: &mut Vec<f64>) {
+        let rows = self.rows.get(rows).unwrap_or_default();
+        out.resize(rows.len() * self.shape.row_len(), 0.0);
+        for (out, row) in out.chunks_exact_mut(self.shape.row_len()).zip(rows) {
             self.fill(part, factor, row, out);
         }
+    }
+
+    /// A part of the signal times `factor`, summed over the bands, `[row][column]`.
+    #[must_use]
+    pub fn sums(&self, part: Part, factor: f64) -> Vec<f64> {
+        let mut sums = vec![0.0; self.shape.rows() * self.shape.columns()];
+        let rows = sums.par_chunks_mut(self.shape.columns()).enumerate();
+        rows.for_each_init(Vec::new, |row, (y, sums)| {
+            self.rows_into(part, factor, y..y + 1, row);
+            let pixels = row.chunks_exact(self.shape.bands());
+            sums.iter_mut().zip(pixels).for_each(|(sum, pixel)| *sum = pixel.iter().sum());
+        });
+        sums
     }
 
     fn fill(&self, part: Part, factor: f64, row: &MixedRow, out: &mut [f64]) {

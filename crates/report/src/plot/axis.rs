@@ -92,6 +92,9 @@ impl Ruler {
         values: impl Iterator<Item = f64>,
         padding: f64,
     ) -> Self {
+        if let Some(ruler) = Self::stated(scale, range) {
+            return ruler;
+        }
         let (low, high) = values
             .filter_map(|value| transform(scale, value))
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), t| (low.min(t), high.max(t)));
@@ -100,11 +103,8 @@ impl Ruler {
 
     /// The stated range, or `low` to `high`, which are on the transformed scale, widened by `padding`.
     pub(super) fn over(scale: Scale, range: Option<(f64, f64)>, low: f64, high: f64, padding: f64) -> Self {
-        let stated = range.and_then(|(a, b)| Some((transform(scale, a)?, transform(scale, b)?)));
-        if let Some((first, last)) = stated
-            && !is_flat(scale, first, last)
-        {
-            return Self { scale, first, last };
+        if let Some(ruler) = Self::stated(scale, range) {
+            return ruler;
         }
         let (first, last) = if low > high {
             (0.0, 1.0)
@@ -127,6 +127,12 @@ impl Ruler {
             }
         };
         Self { scale, first, last }
+    }
+
+    /// The stated range, if it is usable.
+    fn stated(scale: Scale, range: Option<(f64, f64)>) -> Option<Self> {
+        let (first, last) = range.and_then(|(a, b)| Some((transform(scale, a)?, transform(scale, b)?)))?;
+        (!is_flat(scale, first, last)).then_some(Self { scale, first, last })
     }
 
     /// Fraction of the axis at which `value` stands; outside [0, 1] when out of range.

@@ -68,7 +68,8 @@ pub(super) fn scene(matrix: &Matrix) -> Result<Scene> {
 
     let bar_left = area.right + BAR_GAP;
     let bar = Rect { left: bar_left, right: bar_left + BAR, top, bottom: top + grid.bar_height };
-    heat::draw_bar(&mut scene, known(), &grid.bar, &bar, &super::colour::quantity);
+    let fractions = known().filter_map(|value| grid.bar.ruler.fraction(value));
+    heat::draw_bar(&mut scene, fractions, &grid.bar, &bar, &super::colour::quantity);
     if let Some(part) = matrix.threshold.as_ref().and_then(|t| grid.bar.ruler.fraction(t.value))
         && (0.0..=1.0).contains(&part)
     {

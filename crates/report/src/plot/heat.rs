@@ -52,7 +52,13 @@ pub(super) fn scene(map: &HeatMap) -> Result<Scene> {
     }
     let values = map.values.iter().copied();
     let beside = Rect { left: right + 18.0, right: right + 18.0 + BAR, ..area };
-    draw_bar(&mut scene, values, &bar, &beside, &colour::quantity);
+    draw_bar(
+        &mut scene,
+        values.filter_map(|value| bar.ruler.fraction(value)),
+        &bar,
+        &beside,
+        &colour::quantity,
+    );
     let mut entries = Vec::new();
     for (i, (value, label)) in map.marks.iter().enumerate() {
         let symbol = Symbol { shape: Shape::Right, colour: INK, open: i > 0 };
@@ -222,10 +228,10 @@ fn draw_contours(
     }
 }
 
-/// The colour bar with its scale, and tips where there are values beyond it.
+/// The colour bar with its scale, and tips where there are fractions beyond it.
 pub(super) fn draw_bar(
     scene: &mut Scene,
-    values: impl Iterator<Item = f64>,
+    fractions: impl Iterator<Item = f64>,
     axis: &Vertical,
     bar: &Rect,
     colour_of: &dyn Fn(f64) -> Colour,
@@ -240,7 +246,7 @@ pub(super) fn draw_bar(
     scene.outline(*bar, 0.9, INK);
     // A tip at an end of the bar: there are values beyond it.
     let (mut least, mut most) = (0.0f64, 1.0f64);
-    for part in values.filter_map(|value| axis.ruler.fraction(value)) {
+    for part in fractions {
         (least, most) = (least.min(part), most.max(part));
     }
     let middle = 0.5 * (bar.left + bar.right);

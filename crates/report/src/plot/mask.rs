@@ -62,7 +62,8 @@ impl Mask {
             for x in span(from.0, to.0) {
                 let (px, py) = (f64::from(x) + 0.5 - from.0, f64::from(y) + 0.5 - from.1);
                 let t = if square > 0.0 { ((px * dx + py * dy) / square).clamp(0.0, 1.0) } else { 0.0 };
-                let distance = (px - t * dx).hypot(py - t * dy);
+                let (x_off, y_off) = (px - t * dx, py - t * dy);
+                let distance = (x_off * x_off + y_off * y_off).sqrt();
                 let part = (half_width + 0.5 - distance).clamp(0.0, (2.0 * half_width).min(1.0));
                 if part > 0.0 {
                     self.cover(x, y, part);

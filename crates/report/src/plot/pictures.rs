@@ -9,6 +9,7 @@ use super::legend::{CASED, Entry, Key, Legend};
 use super::scene::{Anchor, Mark, Point, Rect, Scene};
 use super::text::{self, LEADING};
 use hadar::{Error, Result};
+use rayon::prelude::*;
 
 /// Width of a colour bar, and its distance from the picture.
 const BAR: f64 = 11.0;
@@ -234,14 +235,10 @@ fn draw(scene: &mut Scene, picture: &Picture, (left, top): Point, width: f64) ->
         draw_painted(scene, picture, painted, &area);
         return (area.bottom, false);
     }
-    let values = || picture.values.iter().copied();
     let bar = Vertical::new(&picture.colour, ruler, area.height());
-    let colour_of = |value: &f64| match ruler.fraction(*value) {
-        Some(part) => shade(part).rgb,
-        None => NO_VALUE.rgb,
-    };
-    let holes = picture.values.iter().any(|value| ruler.fraction(*value).is_none());
-    let pixels = picture.values.iter().map(colour_of).collect();
+    let fractions: Vec<Option<f64>> = picture.values.par_iter().map(|value| ruler.fraction(*value)).collect();
+    let holes = fractions.contains(&None);
+    let pixels = fractions.par_iter().map(|part| part.map_or(NO_VALUE, shade).rgb).collect();
     scene.marks.push(Mark::Image { area, columns: picture.columns, pixels });
     draw_boundary(scene, picture, &area);
     for row in &picture.lines {
@@ -256,7 +253,7 @@ fn draw(scene: &mut Scene, picture: &Picture, (left, top): Point, width: f64) ->
     }
     scene.outline(area, 0.9, INK);
     let beside = Rect { left: area.right + APART, right: area.right + APART + BAR, ..area };
-    draw_bar(scene, values(), &bar, &beside, &colour::quantity);
+    draw_bar(scene, fractions.into_iter().flatten(), &bar, &beside, &colour::quantity);
     (area.bottom, holes)
 }
 

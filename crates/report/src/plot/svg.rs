@@ -14,6 +14,7 @@ use super::scene::{Anchor, Mark, Point, Rect, Scene};
 use super::text;
 use base64::prelude::{BASE64_STANDARD, Engine as _};
 use hadar::Result;
+use rayon::prelude::*;
 
 const SCALE: f64 = 10.0;
 
@@ -24,11 +25,18 @@ pub(super) fn paint(scene: &Scene) -> Result<String> {
     let mut inner = String::new();
     // The backend knows no rasters: marks between two of them are drawn on their own.
     let ground = [Mark::Rect { area, colour: WHITE }];
+    let rasters = scene.marks.par_iter().filter_map(|mark| match mark {
+        Mark::Image { area, columns, pixels } => {
+            Some(png::raster(pixels, *columns).map(|png| image(area, &png)))
+        }
+        _ => None,
+    });
+    let mut rasters = rasters.collect::<Result<Vec<String>>>()?.into_iter();
     for (i, run) in scene.marks.split_inclusive(|mark| matches!(mark, Mark::Image { .. })).enumerate() {
         let ground = if i == 0 { ground.as_slice() } else { &[] };
         inner.push_str(&drawn(ground.iter().chain(run), size)?);
-        if let Some(Mark::Image { area, columns, pixels }) = run.last() {
-            inner.push_str(&image(area, &png::raster(pixels, *columns)?));
+        if let Some(Mark::Image { .. }) = run.last() {
+            inner.extend(rasters.next());
         }
     }
     Ok(format!(

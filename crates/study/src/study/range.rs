@@ -35,6 +35,7 @@ use hadar::ranging::information::{Cell, InformationMap, Request, information};
 use hadar::ranging::noise::NoiseVariance;
 use hadar::render::{Part, StereoPair};
 use hadar::spectrum::Bands;
+use rayon::prelude::*;
 
 /// How a study is to be answered.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -60,7 +61,9 @@ struct Informed {
     /// The four cells of the left view.
     cells: InformationMap,
     truth: Truth,
+    /// Of a scene, with the counts of its left view.
     pair: Option<StereoPair>,
+    counts: Option<Cube>,
 }
 
 impl RangeStudy {
@@ -116,31 +119,26 @@ impl RangeStudy {
         let window = self.scenario.stereo.window;
         let Some(first) = informed.left.first() else { return Err(nothing_to_see()) };
         let windows = ground.windows(first, [window.half_rows(), window.half_columns()]);
-        let variances: Vec<Vec<f64>> = informed
-            .left
-            .iter()
-            .enumerate()
-            .map(|(i, left)| ground.variances(left, informed.right.get(i), &windows))
-            .collect();
+        let of_all = |ground: &Ground<'_>, windows: &[(usize, usize)]| -> Vec<Vec<f64>> {
+            let maps = informed.left.par_iter().enumerate();
+            maps.map(|(i, left)| ground.variances(left, informed.right.get(i), windows)).collect()
+        };
+        let variances = of_all(&ground, &windows);
         let objects = ground.objects(&windows, &informed.left, &variances)?;
         if objects.first().is_none_or(|all| all.windows == 0) {
             return Err(nothing_to_see());
         }
         let mut maps = ground.maps(&windows, &informed.left, &variances);
         if let Some(pair) = &informed.pair {
-            maps.pictures = self.pictures(pair)?;
+            maps.pictures = self.pictures(pair);
             maps.brightest = self.brightest(pair)?;
         }
         let solve_for = self.solutions(&informed, &ground, &windows, &variances)?;
         // The views that are matched have no diffraction.
         let sharp = Ground { var_diffraction_px2: 0.0, ..self.ground(&informed.truth, shape)? };
-        let sharp_variances: Vec<Vec<f64>> = informed
-            .left
-            .iter()
-            .enumerate()
-            .map(|(i, left)| sharp.variances(left, informed.right.get(i), &windows))
-            .collect();
-        let sharp = sharp.maps(&windows, &informed.left, &sharp_variances);
+        let rows = self.line_rows(&maps.rows);
+        let on_lines: Vec<_> = windows.iter().copied().filter(|(row, _)| rows.contains(row)).collect();
+        let sharp = sharp.maps(&on_lines, &informed.left, &of_all(&sharp, &on_lines));
         let lines = self.lines(plan, &informed, [&maps, &sharp], progress)?;
         let ledger = Ledger::open();
         demand::add(&self.looked_up);
@@ -190,10 +188,10 @@ impl RangeStudy {
                 let at = |error: hadar::Error| error.at(self.scenario.place("scene"));
                 let pair = scene.scene.render(&scene.rig, bands, &scene.options, progress).map_err(at)?;
                 let request = self.request(&scene.noise, &Cell::ALL, shape);
-                let (left, cells) = signals::of_scene(scene, &pair.left, bands, &request)?;
-                let (right, _) = signals::of_scene(scene, &pair.right, bands, &request)?;
+                let (left, cells, counts) = signals::of_scene(scene, &pair.left, bands, &request)?;
+                let (right, ..) = signals::of_scene(scene, &pair.right, bands, &request)?;
                 let truth = Truth::of_scene(&scene.scene, &pair.left);
-                Ok(Informed { left, right, cells, truth, pair: Some(pair) })
+                Ok(Informed { left, right, cells, truth, pair: Some(pair), counts: Some(counts) })
             }
             (Resolved::Scene(_), None) => Err(nothing_to_see()),
             (Resolved::Cube(cube), _) => {
@@ -221,7 +219,7 @@ impl RangeStudy {
                     None => Vec::new(),
                 };
                 let truth = Truth::of_cube(cube.depth.as_ref(), shape);
-                Ok(Informed { left: of(&cells), right, cells, truth, pair: None })
+                Ok(Informed { left: of(&cells), right, cells, truth, pair: None, counts: None })
             }
         }
     }
@@ -281,13 +279,9 @@ impl RangeStudy {
             Derivative::Central => Derivative::CubicSpline,
             _ => Derivative::Central,
         };
-        let made;
         let noise;
-        let (cube, noise): (&Cube, &NoiseVariance) = match (&self.subject, &informed.pair) {
-            (Resolved::Scene(scene), Some(pair)) => {
-                made = scene.counts(&pair.left, Part::Total)?;
-                (&made, &scene.noise)
-            }
+        let (cube, noise): (&Cube, &NoiseVariance) = match (&self.subject, &informed.counts) {
+            (Resolved::Scene(scene), Some(counts)) => (counts, &scene.noise),
             (Resolved::Cube(cube), _) => {
                 noise = cube.noise_per_unit()?;
                 (&cube.left, noise.as_ref().unwrap_or(&cube.noise))
@@ -314,15 +308,10 @@ impl RangeStudy {
     }
 
     /// Pictures of the left view, sums over the bands.
-    fn pictures(&self, pair: &StereoPair) -> Result<Vec<(PictureKind, Vec<f64>)>> {
-        let Resolved::Scene(scene) = &self.subject else { return Ok(Vec::new()) };
+    fn pictures(&self, pair: &StereoPair) -> Vec<(PictureKind, Vec<f64>)> {
+        let Resolved::Scene(scene) = &self.subject else { return Vec::new() };
         let view = &pair.left;
-        let summed = |part: Part| {
-            let cube = view.cube(part, scene.counting.counts_per_radiance)?;
-            Ok::<_, hadar::Error>(
-                cube.samples().chunks_exact(view.shape().bands()).map(|pixel| pixel.iter().sum()).collect(),
-            )
-        };
+        let summed = |part: Part| view.sums(part, scene.counting.counts_per_radiance);
         let sky = |depth: &f64| depth.is_infinite();
         let hidden = |values: Vec<f64>| -> Vec<f64> {
             values
@@ -335,13 +324,13 @@ impl RangeStudy {
         // The sky is the first of the surfaces.
         let not_sky =
             view.lighting.chunks_exact(surfaces.max(1)).map(|v| 1.0 - v.first().unwrap_or(&0.0)).collect();
-        Ok(vec![
-            (PictureKind::ThermalImage, summed(Part::Total)?),
-            (PictureKind::Scattered, hidden(summed(Part::Scattered)?)),
+        vec![
+            (PictureKind::ThermalImage, summed(Part::Total)),
+            (PictureKind::Scattered, hidden(summed(Part::Scattered))),
             (PictureKind::Temperature, view.temperature_k.iter().map(|t| t - 273.15).collect()),
             (PictureKind::Lighting, hidden(not_sky)),
             (PictureKind::Depth, view.depth_m.clone()),
-        ])
+        ]
     }
 
     fn warnings(&self, result: &Ranging) -> Vec<Warning> {

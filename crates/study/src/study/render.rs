@@ -246,7 +246,7 @@ impl RenderStudy {
         counts.par_chunks_mut(shape.row_len()).enumerate().try_for_each_init(
             Vec::new,
             |row_of, (row, out)| {
-                view.row_into(Part::Total, self.counting.counts_per_radiance, row, row_of);
+                view.rows_into(Part::Total, self.counting.counts_per_radiance, row..row + 1, row_of);
                 if let Some((seed, side)) = draw {
                     let mut rng = generator(seed, (side << 32) + row as u64);
                     for pixel in row_of.chunks_mut(shape.bands()) {

@@ -20,7 +20,11 @@ use crate::planck;
 use crate::ranging::cube::Shape;
 use crate::ranging::derivative::{Derivative, Differentiator};
 use crate::ranging::information::InformationMap;
+use crate::scene::Columns;
 use rayon::prelude::*;
+
+/// Rows that share the room of one thread at the least.
+const ROWS: usize = 4;
 
 /// A picture with its emission known apart, as a renderer has it.
 #[derive(Debug, Clone, Copy)]
@@ -53,6 +57,8 @@ pub struct BesideEmission {
     /// The scattered signal as if it were measured, Σ(∂R)²/(R + σ²); NaN where a sample is 0 and has no noise, since its quotient
     /// has no value: such samples of a cube are refused by [`information`](crate::ranging::information::information).
     pub scattered_alone: Vec<f64>,
+    /// Scattered counts ΣR.
+    pub scattered_counts: Vec<f64>,
 }
 
 impl EmissionImage<'_> {
@@ -100,10 +106,11 @@ impl EmissionImage<'_> {
         let margin = derivative.margin();
         let differentiator = Differentiator::new(derivative, width)?;
         let columns = width - 2 * margin;
-        let rows: Result<Vec<Vec<[f64; 3]>>> = counts
+        let rows: Result<Vec<Vec<[f64; 4]>>> = counts
             .par_chunks(row_len)
             .zip(emission.par_chunks(row_len).zip(self.scattered.par_chunks(row_len)))
             .zip(self.temperature_k.par_chunks(width))
+            .with_min_len(ROWS)
             .map_init(
                 || Work::new(differentiator.clone(), columns * bands),
                 |work, ((counts, (emission, scattered)), temperature_k)| {
@@ -115,23 +122,24 @@ impl EmissionImage<'_> {
                         let [temperature, strength_too] =
                             work.pixel(self, x, &counts[own.clone()], &emission[own.clone()], temperature_k);
                         let slope = &work.scattered[x * bands..(x + 1) * bands];
-                        let terms = scattered[own].iter().zip(self.var_added).zip(slope);
+                        let scattered = &scattered[own];
+                        let terms = scattered.iter().zip(self.var_added).zip(slope);
                         let alone =
                             terms.map(
                                 |((r, var), slope)| {
                                     if r + var > 0.0 { slope * slope / (r + var) } else { f64::NAN }
                                 },
                             );
-                        [temperature, strength_too, alone.sum()]
+                        [temperature, strength_too, alone.sum(), scattered.iter().sum()]
                     };
                     Ok((0..columns).map(pixel).collect())
                 },
             )
             .collect();
         let all = rows?.concat();
-        let [temperature, strength_too, scattered_alone] =
-            [0, 1, 2].map(|i| all.iter().map(|found| found[i]).collect());
-        Ok(BesideEmission { columns, margin, temperature, strength_too, scattered_alone })
+        let [temperature, strength_too, scattered_alone, scattered_counts] =
+            [0, 1, 2, 3].map(|i| all.iter().map(|found| found[i]).collect());
+        Ok(BesideEmission { columns, margin, temperature, strength_too, scattered_alone, scattered_counts })
     }
 }
 
@@ -173,14 +181,17 @@ impl Work {
         self.warmth.clear();
         self.warmth.extend(emission.iter().zip(&self.per_kelvin).map(|(e, per_kelvin)| e * per_kelvin));
         let slope = &self.slopes[x * bands..(x + 1) * bands];
-        let parts: [&[f64]; 3] = [&self.warmth, emission, slope];
-        [&[0, 2][..], &[0, 1, 2]].map(|unknown| {
-            self.columns.clear();
-            unknown.iter().for_each(|part| self.columns.extend_from_slice(parts[*part]));
-            let found = self.projector.project(&mut self.columns, &self.weights, 1.0);
-            // What is no more than rounding is imitated by the emission.
-            if found.relative_error < 1.0 { found.residual * found.residual } else { 0.0 }
-        })
+        self.columns.clear();
+        for part in [&self.warmth, emission, slope] {
+            self.columns.extend_from_slice(part);
+        }
+        let columns = Columns { values: &mut self.columns, stride: bands };
+        let found = self.projector.reduce(columns, &self.weights, 1.0);
+        // What is no more than rounding is imitated by the emission.
+        let told =
+            |length: f64| if length > found.relative_error * found.residual { length * length } else { 0.0 };
+        // By Pythagoras: what is left beside both, and what lies along what the warmth leaves of the emission.
+        [told(found.residual.hypot(self.projector.along(1))), told(found.residual)]
     }
 
     fn new(differentiator: Differentiator, slopes: usize) -> Self {
@@ -199,6 +210,14 @@ impl Work {
 }
 
 impl BesideEmission {
+    /// Takes in what the rows below tell, of the same picture.
+    pub fn append(&mut self, below: &Self) {
+        self.temperature.extend_from_slice(&below.temperature);
+        self.strength_too.extend_from_slice(&below.strength_too);
+        self.scattered_alone.extend_from_slice(&below.scattered_alone);
+        self.scattered_counts.extend_from_slice(&below.scattered_counts);
+    }
+
     /// Sums of `values` (one of this picture's) over the windows of a map of the same picture.
     #[must_use]
     pub fn windows(&self, values: &[f64], map: &InformationMap, half: [usize; 2]) -> Vec<f64> {

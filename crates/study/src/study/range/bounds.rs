@@ -6,6 +6,7 @@ use super::subject::Truth;
 use crate::scenario::range::{Demand, DepthRequirement};
 use hadar::error::Result;
 use hadar::ranging::depth::StereoGeometry;
+use rayon::prelude::*;
 
 /// What the bounds of a study rest on.
 pub(super) struct Ground<'a> {
@@ -44,8 +45,10 @@ impl Ground<'_> {
                     && self.truth.seen.get(pixels).is_some_and(|seen| seen.iter().all(|seen| *seen))
             })
         };
-        let centres = map.rows.clone().flat_map(|row| map.columns.clone().map(move |column| (row, column)));
-        centres.filter(|&(row, column)| whole(row, column)).collect()
+        let centres = |row: usize| {
+            map.columns.clone().map(move |column| (row, column)).filter(|&(y, x)| whole(y, x)).collect()
+        };
+        map.rows.clone().into_par_iter().map(centres).collect::<Vec<Vec<_>>>().concat()
     }
 
     /// Disparity variance of every window, pixel²; NaN where the right view has no such window.
@@ -83,14 +86,14 @@ impl Ground<'_> {
     ) -> Result<Vec<ObjectBounds>> {
         let name_of =
             |&(row, column): &(usize, usize)| self.truth.object.get(row * self.columns + column).copied();
-        let mut objects = vec![self.object("all windows", windows, maps, variances, &|_| true)?];
-        for (i, name) in self.truth.names.iter().enumerate() {
+        let all = || Some(self.object("all windows", windows, maps, variances, &|_| true));
+        let named = |(i, name): (usize, &String)| {
             let own = |window: &(usize, usize)| name_of(window) == u8::try_from(i).ok();
-            if windows.iter().any(own) {
-                objects.push(self.object(name, windows, maps, variances, &own)?);
-            }
-        }
-        Ok(objects)
+            windows.iter().any(own).then(|| self.object(name, windows, maps, variances, &own))
+        };
+        let (all, named): (_, Vec<_>) =
+            rayon::join(all, || self.truth.names.par_iter().enumerate().map(named).collect());
+        all.into_iter().chain(named.into_iter().flatten()).collect()
     }
 
     fn object(
@@ -99,7 +102,7 @@ impl Ground<'_> {
         windows: &[(usize, usize)],
         maps: &[SignalMap],
         variances: &[Vec<f64>],
-        own: &dyn Fn(&(usize, usize)) -> bool,
+        own: &(dyn Fn(&(usize, usize)) -> bool + Sync),
     ) -> Result<ObjectBounds> {
         // A window counts if it has a partner in every signal that a camera measures: what only might be does not decide.
         let measured = |map: &SignalMap| map.signal != Signal::ScatteredAsMeasured;
@@ -112,7 +115,7 @@ impl Ground<'_> {
         };
         let depths: Vec<f64> = chosen.iter().map(|&i| depth(i)).filter(|z| z.is_finite()).collect();
         let signals = maps
-            .iter()
+            .par_iter()
             .zip(variances)
             .map(|(map, var)| {
                 let bounds: Vec<Bound> = chosen
@@ -204,7 +207,7 @@ impl Ground<'_> {
             rows.clone().flat_map(|row| columns.clone().map(move |column| row * self.columns + column));
         let depth_m = centres.map(|at| self.truth.depth_m.get(at).copied().unwrap_or(f64::NAN)).collect();
         let disparity_error_px: Vec<(Signal, Vec<f64>)> =
-            maps.iter().zip(variances).map(|(map, var)| (map.signal, spread(var))).collect();
+            maps.par_iter().zip(variances).map(|(map, var)| (map.signal, spread(var))).collect();
         BoundMaps { rows, columns, disparity_error_px, depth_m, brightest: None, pictures: Vec::new() }
     }
 }

@@ -1,15 +1,16 @@
 //! Information of every window by each signal, in one view.
 
 use super::results::Signal;
-use super::subject::Rendered;
+use super::subject::{Rendered, nothing_to_see};
 use hadar::error::Result;
-use hadar::ranging::cube::{Cube, Rows as _};
+use hadar::ranging::cube::{Cube, Rows as _, Shape};
 use hadar::ranging::depth::WindowInformation;
 use hadar::ranging::information::{Cell, InformationMap, Request, information};
 use hadar::ranging::noise::Joined;
-use hadar::ranging::reconstruction::EmissionImage;
+use hadar::ranging::reconstruction::{BesideEmission, EmissionImage};
 use hadar::render::{Part, View};
 use hadar::spectrum::Bands;
+use rayon::prelude::*;
 use std::ops::Range;
 
 /// J, photons and Σσ² of every window by one signal.
@@ -66,39 +67,49 @@ impl SignalMap {
     }
 }
 
-/// All signals of one view of a scene, and the four cells of its total signal.
+/// Rows whose emission and scattered light are made at a time: a core's own cache holds them.
+const ROWS: usize = 4;
+
+/// All signals of one view of a scene, the four cells of its total signal, and that signal.
 pub(super) fn of_scene(
     subject: &Rendered,
     view: &View,
     bands: &Bands,
     request: &Request<'_>,
-) -> Result<(Vec<SignalMap>, InformationMap)> {
+) -> Result<(Vec<SignalMap>, InformationMap, Cube)> {
     let factor = subject.counting.counts_per_radiance;
     let total = view.cube(Part::Total, factor)?;
-    let emission = view.cube(Part::Emission, factor)?;
-    let scattered = view.cube(Part::Scattered, factor)?;
+    let (shape, var_added) = (total.shape(), subject.var_per_band(bands.len()));
     let centres: Vec<f64> = bands.bands().iter().map(|band| band.center_cm1).collect();
-    let image = EmissionImage {
-        shape: total.shape(),
-        counts: total.samples(),
-        emission: emission.samples(),
-        scattered: scattered.samples(),
-        temperature_k: &view.temperature_k,
-        wavenumbers_cm1: &centres,
-        var_added: &subject.var_per_band(bands.len()),
-    };
-    let beside = image.beside_emission(request.derivative)?;
-    let margin = request.derivative.margin();
-    let columns = view.shape().columns();
-    let photons: Vec<f64> = scattered
+    let blocks = total
         .samples()
-        .chunks_exact(bands.len())
-        .enumerate()
-        .filter(|(pixel, _)| (margin..columns - margin).contains(&(pixel % columns)))
-        .map(|(_, pixel)| pixel.iter().sum())
-        .collect();
-    drop((emission, scattered));
-    let all = information(&Cube::from(total), request)?;
+        .par_chunks(ROWS * shape.row_len())
+        .zip(view.temperature_k.par_chunks(ROWS * shape.columns()));
+    let blocks = blocks.enumerate().map_init(
+        Default::default,
+        |parts: &mut [Vec<f64>; 2], (i, (counts, temperature_k))| {
+            let rows = counts.len() / shape.row_len();
+            for (part, of) in parts.iter_mut().zip([Part::Emission, Part::Scattered]) {
+                view.rows_into(of, factor, i * ROWS..i * ROWS + rows, part);
+            }
+            let [emission, scattered] = parts;
+            let image = EmissionImage {
+                shape: Shape::new(rows, shape.columns(), shape.bands())?,
+                counts,
+                emission,
+                scattered,
+                temperature_k,
+                wavenumbers_cm1: &centres,
+                var_added: &var_added,
+            };
+            image.beside_emission(request.derivative)
+        },
+    );
+    let mut blocks = blocks.collect::<Result<Vec<BesideEmission>>>()?.into_iter();
+    let Some(mut beside) = blocks.next() else { return Err(nothing_to_see()) };
+    blocks.for_each(|below| beside.append(&below));
+    let total = Cube::from(total);
+    let all = information(&total, request)?;
     let half = [request.window.half_rows(), request.window.half_columns()];
     let of = |signal: Signal, pixels: &[f64]| SignalMap {
         information: beside.windows(pixels, &all, half),
@@ -110,7 +121,7 @@ pub(super) fn of_scene(
         SignalMap::of(Signal::HeatCube, Cell::Full, &all),
         of(Signal::Reconstructed, &beside.temperature),
         of(Signal::ReconstructedBlind, &beside.strength_too),
-        SignalMap { photons: beside.windows(&photons, &all, half), ..alone },
+        SignalMap { photons: beside.windows(&beside.scattered_counts, &all, half), ..alone },
     ];
-    Ok((maps, all))
+    Ok((maps, all, total))
 }

@@ -160,12 +160,9 @@ impl RangeStudy {
         match (&self.subject, &informed.pair) {
             (Resolved::Scene(scene), Some(pair)) => {
                 let view: &View = if left { &pair.left } else { &pair.right };
-                let (mut all, mut row_counts) = (Vec::new(), Vec::new());
-                for row in rows {
-                    view.row_into(Part::Total, scene.counting.counts_per_radiance, row, &mut row_counts);
-                    all.extend_from_slice(&row_counts);
-                }
-                Ok(Counts { rows: all, first, var: per_band(&scene.noise, view.shape().bands()) })
+                let mut counts = Vec::new();
+                view.rows_into(Part::Total, scene.counting.counts_per_radiance, rows, &mut counts);
+                Ok(Counts { rows: counts, first, var: per_band(&scene.noise, view.shape().bands()) })
             }
             (Resolved::Cube(cube), _) => cube.counts(left, rows),
             (Resolved::Scene(_), None) => Ok(Counts { rows: Vec::new(), first, var: Vec::new() }),

@@ -37,7 +37,7 @@ struct Views {
 
 impl RangeStudy {
     /// Rows along which bounds are drawn: those of the scenario, or where a scene has both ground and objects.
-    fn line_rows(&self, rows: &Range<usize>) -> Vec<usize> {
+    pub(super) fn line_rows(&self, rows: &Range<usize>) -> Vec<usize> {
         let own = &self.scenario.stereo.lines;
         match &self.subject {
             Resolved::Scene(_) if own.is_empty() => vec![(rows.end * 5 / 8).clamp(rows.start, rows.end - 1)],
