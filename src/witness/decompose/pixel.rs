@@ -73,7 +73,7 @@ pub struct Pixel {
     pub material: u16,
     /// Its temperature, K; NaN where the pixel was left out or emits nothing.
     pub temperature_k: f64,
-    /// Deviation of the temperature, K, were the material certain; NaN where none fits.
+    /// Deviation of the temperature, K, were the material certain and right: where none fits ([`flag::NO_FIT`]) it says nothing.
     pub sigma_k: f64,
     /// Thermal lighting factors; NaN where the target scatters nothing.
     pub lighting: [f64; MOST_SURROUNDINGS],
@@ -391,16 +391,14 @@ impl Task {
         raise(lit_at_limit && !no_lighting, flag::LIGHTING_AT_LIMIT);
         raise(no_information, flag::NO_INFORMATION);
         raise(no_lighting, flag::LIGHTING_UNKNOWN);
-        let no_fit = p_value < NO_FIT;
-        raise(no_fit, flag::NO_FIT);
+        raise(p_value < NO_FIT, flag::NO_FIT);
         raise(candidates > 1, flag::UNDECIDED);
         raise(no_temperature, flag::TEMPERATURE_UNKNOWN);
         let nothing = f64::NAN;
         Pixel {
             material: if no_information { NO_MATERIAL } else { m as u16 },
             temperature_k: if no_temperature { nothing } else { fit.state.temperature_k },
-            // A model that does not hold says nothing of its own errors.
-            sigma_k: if no_fit { nothing } else { deviations.temperature_k },
+            sigma_k: deviations.temperature_k,
             lighting: if no_lighting { [nothing; MOST_SURROUNDINGS] } else { model.lighting(mixture) },
             p_value,
             posterior: 1.0 / total,
