@@ -257,6 +257,25 @@ fn counts_without_noise_are_taken_apart_again() {
     }
 }
 
+/// Neighbours of the same counts, as in a dark or saturated corner, are fitted once and told alike.
+#[test]
+fn neighbours_of_the_same_counts_are_fitted_once() {
+    let scene = Scene::new();
+    let [a, b] = [0, 1].map(|m| scene.counts(&scene.library[m], 301.3, &[0.7]));
+    let dark = vec![0.0; scene.bands.len()];
+    let few = scene.found(&[a.clone(), dark.clone(), b.clone()], 1, &|_| ()).unwrap();
+    let many = [&a, &a, &dark, &dark, &dark, &b].map(Clone::clone);
+    let maps = scene.found(&many, 1, &|_| ()).unwrap();
+    // The mean of the cube moves the bounds, and no answer.
+    for (i, same) in [0, 0, 1, 1, 1, 2].into_iter().enumerate() {
+        assert_eq!((maps.material[i], maps.flags[i]), (few.material[same], few.flags[same]), "{i}");
+        assert_eq!(maps.temperature_k[i], few.temperature_k[same], "{i}");
+    }
+    assert_eq!(maps.spared.equal - few.spared.equal, 3 * scene.library.len() as u64);
+    let pairs = |maps: &Maps| maps.spared.fitted + maps.spared.excluded + maps.spared.equal;
+    assert_eq!(pairs(&maps), 2 * pairs(&few));
+}
+
 /// What nothing can be known of is said, and not filled in.
 #[test]
 fn what_the_photons_do_not_tell_is_declared() {
