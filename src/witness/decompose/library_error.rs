@@ -17,7 +17,7 @@ use super::kernel::{Sums, weighted};
 use super::model::{Hermite, Model};
 use super::step::State;
 use crate::error::{Result, check};
-use crate::simd::dispatched;
+use crate::simd::{LANES, added, dispatched, fold};
 use nalgebra::{DMatrix, SymmetricEigen};
 
 /// Modes smaller than this share of the largest go to the diagonal.
@@ -84,7 +84,7 @@ pub(super) struct Workplace {
     vectors: Vec<Vec<f64>>,
     /// M, mode by mode.
     scaled: Vec<Vec<f64>>,
-    /// L, row by row.
+    /// L, row by row, with zeros behind each.
     factor: Vec<Vec<f64>>,
     /// h of each vector.
     images: Vec<Vec<f64>>,
@@ -156,17 +156,20 @@ impl Workplace {
             scaled.clear();
             scaled.extend(mode.iter().zip(&reach).map(|(mode, reach)| mode * reach));
         }
+        // Rows are filled up with zeros to whole chunks.
+        let padded = rank.next_multiple_of(LANES);
         self.factor.resize_with(rank, Vec::new);
         for i in 0..rank {
             let mut row = std::mem::take(&mut self.factor[i]);
             row.clear();
+            row.resize(padded, 0.0);
             for j in 0..=i {
                 let own =
                     weighted(&self.scaled[i], &self.scaled[j], &self.weight) + f64::from(u8::from(i == j));
                 let other: &[f64] = if j == i { &row } else { &self.factor[j] };
-                let rest = own - dot(&row, &other[..j]);
+                let rest = own - dot(&row, other, j);
                 // At least 1 on the diagonal: Mᵀ V⁻¹ M adds no less than nothing.
-                row.push(if i == j { rest.max(1.0).sqrt() } else { rest / self.factor[j][j] });
+                row[j] = if i == j { rest.max(1.0).sqrt() } else { rest / self.factor[j][j] };
             }
             deviance += 2.0 * libm::log(row[i]);
             self.factor[i] = row;
@@ -174,9 +177,10 @@ impl Workplace {
         self.images.resize_with(count + 1, Vec::new);
         for (image, vector) in self.images.iter_mut().zip(&self.vectors) {
             image.clear();
+            image.resize(padded, 0.0);
             for i in 0..rank {
                 let along = weighted(&self.scaled[i], vector, &self.weight);
-                image.push((along - dot(&self.factor[i], image)) / self.factor[i][i]);
+                image[i] = (along - dot(&self.factor[i], image, i)) / self.factor[i][i];
             }
         }
         to.chi_square = self.product(0, 0);
@@ -193,7 +197,8 @@ impl Workplace {
     /// aᵀ C⁻¹ b of two vectors.
     #[inline(always)]
     fn product(&self, a: usize, b: usize) -> f64 {
-        weighted(&self.vectors[a], &self.vectors[b], &self.weight) - dot(&self.images[a], &self.images[b])
+        weighted(&self.vectors[a], &self.vectors[b], &self.weight)
+            - dot(&self.images[a], &self.images[b], usize::MAX)
     }
 
     /// The best state of a material from a start, or the first one where even the best that a step promises costs more than
@@ -228,14 +233,14 @@ impl Workplace {
     }
 }
 
-/// Σ a b of two short rows.
+/// Σ a b of the first `count` of two rows of whole chunks, of which one is 0 in the rest of the last chunk.
 #[inline(always)]
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let mut sum = 0.0;
-    for (a, b) in a.iter().zip(b) {
-        sum = a.mul_add(*b, sum);
+fn dot(a: &[f64], b: &[f64], count: usize) -> f64 {
+    let mut sum = [0.0; LANES];
+    for (a, b) in a.as_chunks::<LANES>().0.iter().zip(b.as_chunks::<LANES>().0).take(count.div_ceil(LANES)) {
+        sum = added(*a, *b, sum);
     }
-    sum
+    fold(&sum)
 }
 
 #[cfg(test)]
