@@ -1,7 +1,8 @@
 //! How far apart two materials are when temperature and lighting are unknown.
 //!
 //! * [`local`]: the paper's semantic distance d₀, the tangent at the target (Algorithm 2);
-//! * [`multi`]: all materials against all, and which can be told apart;
+//! * [`multi`]: all materials against all, and which can be told apart; classes of several spectra;
+//! * [`mixture`]: the least distance between mixtures of the members of two classes;
 //! * [`nearest`]: half the separation from the nearest state of the alternative, in units of the noise;
 //! * [`selection`]: which bands or filters tell the most, and what the best few of them keep;
 //! * [`detection`]: probability, information and rigorous brackets from a statistical distance d;
@@ -20,6 +21,7 @@ pub mod lattice;
 pub mod likelihood;
 pub mod linear;
 pub mod local;
+pub mod mixture;
 pub mod multi;
 pub mod nearest;
 pub mod ratio;

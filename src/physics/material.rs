@@ -10,6 +10,7 @@
 //! unless an [`Extrapolation`] is asked for. An emissivity outside [0, 1] is an error, never clamped; only rounding
 //! (1e-9) is forgiven to a model.
 
+mod class;
 // What only manifests ask for is idle without them.
 #[cfg_attr(not(feature = "library"), allow(dead_code, unused_imports))]
 mod dielectric;
@@ -29,6 +30,7 @@ pub mod read;
 mod table;
 mod write;
 
+pub use class::{Class, ClassSpec, MaterialRef, Member, Spread};
 pub use library::Library;
 pub use provenance::{Basis, Provenance};
 pub use write::Summary;

@@ -1,6 +1,7 @@
 //! Tests of the numerical crate, seen from outside.
 
 mod cameras;
+mod classes;
 mod decision;
 mod decompose;
 mod decompose_methods;

@@ -6,6 +6,7 @@ mod text;
 pub use text::{check, text};
 
 use crate::bundle::Bundle;
+use crate::classes;
 use crate::size::pictures_of_pairs;
 use crate::table::{Table, number, optional};
 use crate::tables;
@@ -31,7 +32,8 @@ pub fn bundle(study: &Study, answers: &Answers, seed: u64, out: &Path) -> Result
         }
         bundle.add_table("prediction.csv", table)?;
     }
-    let mut plots = vec![figures::distances(study, &result.pairs)];
+    let mut plots = classes::pictures(&result.classes);
+    plots.push(figures::distances(study, &result.pairs));
     plots.extend(pictures_of_pairs(study, &result.pairs, &result.limiting)?);
     if let Some(matrix) = &answers.matrix {
         bundle.add_table("matrix_nearest.csv", square(matrix, &matrix.distance_nearest, PER_PHOTON))?;

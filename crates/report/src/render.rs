@@ -122,6 +122,7 @@ fn decomposition(result: &Rendered, layout: Layout, out: &Path) -> DecomposeScen
     };
     let truth = |name: &str| (layout == Layout::Npy).then(|| file(name));
     DecomposeScenario {
+        classes: std::collections::BTreeMap::new(),
         title: result.scenario.title.clone(),
         cube: HeatCube {
             data: file(if layout == Layout::Npy { "counts.npy" } else { "HeatCubes/L_0001_heatcube.mat" }),

@@ -8,10 +8,10 @@ pub use text::text;
 
 use self::figures::{Collected, InformationMarks};
 use crate::bundle::Bundle;
-use crate::companion;
 use crate::figures::Plot;
 use crate::table::{Table, number, optional};
 use crate::tables;
+use crate::{classes, companion};
 use hadar::error::Result;
 use hadar::identifiability::detection;
 use hadar_study::study::{PairResult, Sensitivity, Sizing, Study};
@@ -44,6 +44,7 @@ pub fn bundle(study: &Study, result: &Sizing, out: &Path) -> Result<Bundle> {
         bundle.add_table("companion.csv", companion::table([found]))?;
     }
     bundle.add_warnings(&result.warnings)?;
+    bundle.add_plots(&classes::pictures(&result.classes))?;
     bundle.add_plots(&drawn(study, result)?)?;
     let curves = result.trade_offs.iter().flatten();
     bundle.add_plots(&curves.map(|curve| trade_off::trade_off(curve, result)).collect::<Vec<_>>())?;

@@ -9,16 +9,16 @@
 //! environment object fills; V ≥ 0, ΣV ≤ 1); d statistical distance, P = Φ(d) detection probability.
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
 
 use hadar::error::Place;
 pub use hadar::fisher::Nuisance;
 pub use hadar::instrument::{CameraSpec, Efficiency, Readout};
-pub use hadar::material::Extrapolation;
+pub use hadar::material::{ClassSpec, Extrapolation, MaterialRef, Spread};
 
 pub mod atmosphere;
 pub mod bands;
 mod camera;
+mod class;
 pub mod decompose;
 mod entries;
 pub mod envelope;
@@ -57,6 +57,8 @@ pub(crate) use units::interval;
 pub struct Scenario {
     /// What the scenario is about, for headings.
     pub title: Option<String>,
+    /// Kinds of surfaces of several spectra each, by name.
+    pub classes: BTreeMap<String, ClassSpec>,
     /// What is there.
     pub target: Target,
     /// What is behind the target.
@@ -101,6 +103,7 @@ impl Scenario {
 impl PartialEq for Scenario {
     fn eq(&self, other: &Self) -> bool {
         self.title == other.title
+            && self.classes == other.classes
             && self.target == other.target
             && self.background == other.background
             && self.environment == other.environment
@@ -113,15 +116,6 @@ impl PartialEq for Scenario {
             && self.envelope == other.envelope
             && self.sensitivity == other.sensitivity
     }
-}
-
-/// A material by name in the library, or a file with its spectrum.
-#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum MaterialRef {
-    /// Name in the library, e.g. `aluminium`.
-    Name(String),
-    /// Absolute path of a CSV or ECOSTRESS file.
-    File(PathBuf),
 }
 
 /// The object that is there (`[target]`).

@@ -9,6 +9,7 @@ mod air;
 mod bands;
 mod camera;
 mod camera_bands;
+mod classes;
 pub mod companion;
 pub mod decompose;
 mod distances;
@@ -27,6 +28,7 @@ mod surface;
 mod warn;
 
 pub use crate::warning::Warning;
+pub use classes::{ClassAnswer, ClassSide, LeftOut, MixtureAnswer};
 pub use companion::Companion;
 pub use identify::{
     Answers, Apart, Asked, BandNumber, BandsThatMatter, Check, Choice, Exact, ExactLibrary, ExactPair,
@@ -49,6 +51,6 @@ pub use simulate::{
 };
 pub use size::{
     Answer, CameraResult, Elasticities, EmissivityErrors, Finding, InformationCurves, PhotonMap,
-    RequirementResult, Sensitivity, Sizing, Solutions, Spectra, Verdict, VerdictAlone, no_limit,
+    RequirementResult, ScatterOf, Sensitivity, Sizing, Solutions, Spectra, Verdict, VerdictAlone, no_limit,
 };
 pub use surface::Surface;

@@ -29,6 +29,10 @@ pub enum Warning {
     TargetAmongAlternatives { target: String },
     /// The spectrum does not cover the bands.
     MaterialSkipped { material: String },
+    /// A class of the scenario is called as a material that is entered as one number.
+    ClassReplacesPlaceholder { class: String },
+    /// Classes stand by the pair of members that is hardest to tell apart.
+    WorstMembers { target: String, alternative: String },
 
     /// Pixels with a missing sample.
     PixelsSkipped { pixels: usize, of: usize },
@@ -175,6 +179,8 @@ impl Warning {
             Self::Material { .. } => Code::Material,
             Self::TargetAmongAlternatives { .. } => Code::TargetAmongAlternatives,
             Self::MaterialSkipped { .. } => Code::MaterialSkipped,
+            Self::ClassReplacesPlaceholder { .. } => Code::ClassReplacesPlaceholder,
+            Self::WorstMembers { .. } => Code::WorstMembers,
             Self::PixelsSkipped { .. } => Code::PixelsSkipped,
             Self::LibraryDoesNotFit { .. } => Code::LibraryDoesNotFit,
             Self::LibraryTakenAsExact => Code::LibraryTakenAsExact,

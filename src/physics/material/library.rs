@@ -7,10 +7,10 @@
 #[cfg(feature = "library")]
 mod manifests;
 
-use super::Material;
 #[cfg(feature = "library")]
 use super::manifest::Deferred;
 use super::read::{self, Content};
+use super::{ClassSpec, Material};
 use crate::demand::{Reason, Thing, Work};
 use crate::error::{Error, Result};
 use std::collections::BTreeMap;
@@ -35,6 +35,7 @@ const MANIFEST: &str = "manifest.toml";
 pub struct Library {
     materials: BTreeMap<String, Stored>,
     ambiguous: BTreeMap<String, Vec<String>>,
+    classes: BTreeMap<String, ClassSpec>,
     warnings: Vec<String>,
 }
 
@@ -123,6 +124,10 @@ impl Library {
             let source = &material.provenance().source;
             self.warnings.push(format!("the material `{name}` is replaced by that of {source}"));
         }
+        if self.classes.remove(&name).is_some() {
+            let source = &material.provenance().source;
+            self.warnings.push(format!("the class `{name}` is replaced by the material of {source}"));
+        }
         self.materials.insert(name, Stored::Read(material));
     }
 
@@ -141,6 +146,23 @@ impl Library {
             Some(stored) => stored.material(),
             None => Err(Error::unknown_name("material", name, self.names())),
         }
+    }
+
+    /// The class of a name, if a manifest has one.
+    #[must_use]
+    pub fn class(&self, name: &str) -> Option<&ClassSpec> {
+        self.classes.get(name)
+    }
+
+    /// All classes by name.
+    pub fn classes(&self) -> impl Iterator<Item = (&str, &ClassSpec)> {
+        self.classes.iter().map(|(name, class)| (name.as_str(), class))
+    }
+
+    /// Whether a material has this name, made or not.
+    #[must_use]
+    pub fn contains(&self, name: &str) -> bool {
+        self.materials.contains_key(name) || self.ambiguous.contains_key(name)
     }
 
     /// All materials, in the order of their names. Where names will do, [`Library::names`] makes none of them.
@@ -229,7 +251,7 @@ impl Library {
 }
 
 /// The `.csv` and `.txt` files of a directory, in the order of their names.
-fn spectra_in(directory: &Path) -> Result<Vec<PathBuf>> {
+pub(super) fn spectra_in(directory: &Path) -> Result<Vec<PathBuf>> {
     let failed = |error: std::io::Error| match error.kind() {
         std::io::ErrorKind::NotFound => {
             Error::file("read the library", directory, "there is no such directory; check the name")

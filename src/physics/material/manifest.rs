@@ -20,9 +20,21 @@
 //! `cavity = { area_ratio, of = model }`, `mixture = [{ parts, of = model }, …]`, `material = "name"` (one
 //! further up, or of a library added before). A medium is one of `nk = "file.csv"`, `drude`, `lorentz`,
 //! `factorised`, `gaussian`. Files are sought beside the manifest.
+//!
+//! A class of several of them (`class.rs`) has a table of its own, after the materials:
+//!
+//! ```toml
+//! [class.bare-metal]
+//! materials = ["gold", "iron", "my_steel.csv", "steels/"]   # names, files, folders, patterns
+//! weights = [1.0, 2.0, 1.0, 1.0]                            # this and the next may be left out
+//! mixtures = true
+//! covariance = "sample"                                     # or emissivity_error = 0.01, correlation_cm1 = 50.0
+//! ```
 
+mod classes;
 mod deferred;
 
+pub(super) use classes::classes;
 pub(super) use deferred::Deferred;
 
 use super::dielectric::Dielectric;
@@ -47,6 +59,8 @@ struct Manifest {
     version: u32,
     #[serde(default)]
     material: Vec<Entry>,
+    #[serde(default)]
+    class: BTreeMap<String, classes::ClassEntry>,
 }
 
 #[derive(Debug, Clone, Deserialize)]
@@ -169,9 +183,13 @@ pub(super) fn parse(text: &str, path: &Path, around: &Surroundings<'_>) -> Resul
 
 /// The entries of a manifest.
 fn entries(text: &str, path: &Path) -> Result<Vec<Entry>> {
+    manifest(text, path).map(|manifest| manifest.material)
+}
+
+fn manifest(text: &str, path: &Path) -> Result<Manifest> {
     let manifest: Manifest = toml::from_str(text).map_err(|error| syntax(text, &error).in_file(path))?;
     if manifest.version == VERSION {
-        return Ok(manifest.material);
+        return Ok(manifest);
     }
     Err(Error::malformed(
         format!("version {} of the manifest format", manifest.version),

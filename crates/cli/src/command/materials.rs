@@ -4,11 +4,12 @@ use super::global::{Global, as_json};
 use clap::{Args, Subcommand};
 use hadar::demand::{Reason, Thing, Work};
 use hadar::error::{Error, Result};
-use hadar::material::{Library, Material, Summary, read};
+use hadar::material::{Library, Material, MaterialRef, Summary, read};
 use hadar_report::bundle::Bundle;
 use hadar_report::size::figures;
 use hadar_report::text::significant;
 use hadar_study::study::Surface;
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -71,7 +72,24 @@ fn list(library: &Library, global: &Global) -> Result<()> {
         "\n{} materials; `hadar materials show NAME` tells source, licence and range",
         summaries.len()
     );
-    global.answer_with(serde_json::json!({ "materials": summaries }), &out, &library.work())
+    let classes: BTreeMap<&str, Vec<String>> =
+        library.classes().map(|(name, class)| (name, class.materials.iter().map(member).collect())).collect();
+    if !classes.is_empty() {
+        out.push_str("\nClasses, which stand wherever a material may in what is to be told apart\n");
+    }
+    for (name, members) in &classes {
+        let _ = writeln!(out, "  {name}: {}", members.join(", "));
+    }
+    let json = serde_json::json!({ "materials": summaries, "classes": classes });
+    global.answer_with(json, &out, &library.work())
+}
+
+/// What a class names: a material, or where its spectra are.
+fn member(member: &MaterialRef) -> String {
+    match member {
+        MaterialRef::Name(name) => name.clone(),
+        MaterialRef::File(path) => path.display().to_string(),
+    }
 }
 
 /// A material, its emissivity in the paper's bands and what it was taken from.

@@ -4,6 +4,7 @@ mod accuracy;
 mod arrows;
 mod cameras;
 mod certificate;
+mod classes;
 mod cli;
 mod cli_mistakes;
 mod companion;

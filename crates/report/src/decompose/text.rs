@@ -88,6 +88,10 @@ fn found(result: &Decomposed) -> String {
     if let Some(more) = result.found.len().checked_sub(LISTED).filter(|more| *more > 0) {
         let _ = writeln!(out, "  and {more} more: materials.csv");
     }
+    for row in &result.classes {
+        let _ =
+            writeln!(out, "  {} of {} spectra: {} pixels", row.class, row.spectra, whole(row.pixels as u64));
+    }
     out.push('\n');
     out
 }

@@ -9,6 +9,7 @@ use self::bands::{bands, scaling};
 use self::exact::exact;
 use self::matrix::{apart, matrix};
 use self::terms::{camera, does_not_tell, no_limit};
+use crate::classes;
 use crate::text::footing::footing;
 use crate::text::numbers::{numbers, photons, significant};
 use crate::text::pairs::pair_table;
@@ -54,6 +55,7 @@ fn identification(result: &Identification, study: &Study) -> String {
     out.push_str(&pair_table(&result.pairs, study));
     out.push_str(&prediction(result));
     out.push('\n');
+    out.push_str(&classes::text(&result.classes));
     out
 }
 
@@ -63,7 +65,14 @@ fn verdict(result: &Identification, study: &Study) -> String {
     let Some(pair) = result.pairs.iter().find(|pair| pair.alternative == result.limiting) else {
         return out;
     };
-    let (target, all) = (&pair.target, result.pairs.len());
+    // Where there are classes each stands for all of its members.
+    let class = result.pairs.iter().position(|other| other.alternative == pair.alternative);
+    let class = class.and_then(|index| result.classes.get(index));
+    let (target, alternative) = match class {
+        Some(class) => (&class.target.name, &class.alternative.name),
+        None => (&pair.target, &pair.alternative),
+    };
+    let all = result.pairs.len();
     let reliability = words::demanded(study.required_distance());
     // The average is finite also where the state that stands in the scenario is one of equilibrium.
     if let Some(average) = &result.prior_average {
@@ -85,13 +94,16 @@ fn verdict(result: &Identification, study: &Study) -> String {
     if let Some(told) = result.identifiability.told_from {
         let name = camera(study);
         let sentence = match (all, told) {
-            (1, 1) => format!("Yes: {name} tells {target} from {}", pair.alternative),
-            (1, _) => format!("No: {name} {} {target} from {}", does_not_tell(study), pair.alternative),
+            (1, 1) => format!("Yes: {name} tells {target} from {alternative}"),
+            (1, _) => format!("No: {name} {} {target} from {alternative}", does_not_tell(study)),
             (_, told) if told == all => format!("Yes: {name} tells {target} from all {all} alternatives"),
             (_, 0) => format!("No: {name} tells {target} from none of {all} alternatives"),
             (_, told) => format!("No: {name} tells {target} from only {told} of {all} alternatives"),
         };
         let _ = writeln!(out, "{sentence} with {reliability} reliability{}.", no_limit(study));
+        if let Some(class) = class {
+            let _ = writeln!(out, "{class}");
+        }
         if let (false, Some(limit)) = (no_limit(study).is_empty(), pair.statistical_distance_nearest) {
             let _ = writeln!(
                 out,

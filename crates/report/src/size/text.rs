@@ -1,9 +1,9 @@
 //! The main job as text: the verdict first, then the numbers, what would do, and what it hangs on.
 
-use crate::companion;
 use crate::text::footing::{assumptions, gaussian, warnings};
 use crate::text::numbers::{numbers, photons, quantity, significant};
 use crate::text::pairs::pair_table;
+use crate::{classes, companion};
 use hadar::policy::{Quantity, Solution};
 use hadar::words::share;
 use hadar_study::scenario::Units;
@@ -84,6 +84,7 @@ pub fn text(result: &Sizing, study: &Study) -> String {
         }
         out.push('\n');
     }
+    out.push_str(&classes::text(&result.classes));
     out.push_str(&solutions(result, study.units()));
     out.push_str(&sensitivity(result));
     if result.pairs.len() > 1 {

@@ -7,7 +7,7 @@ mod image;
 mod read;
 mod write;
 
-use super::{BandsSpec, CameraSpec, MaterialRef, Source};
+use super::{BandsSpec, CameraSpec, ClassSpec, MaterialRef, Source};
 use hadar::decompose::SpatialPrior;
 use hadar::error::Place;
 use std::collections::BTreeMap;
@@ -26,6 +26,8 @@ pub struct DecomposeScenario {
     pub camera: Option<CameraSpec>,
     /// Spectra of the surroundings (`[[environment]]`).
     pub environment: Vec<LightSource>,
+    /// Kinds of surfaces of several spectra each, by name (`[class.NAME]`).
+    pub classes: BTreeMap<String, ClassSpec>,
     /// The materials that a pixel may be (`[library]`).
     pub library: LibrarySpec,
     /// What is unknown (`[unknown]`).

@@ -14,6 +14,8 @@ pub(super) enum Part {
     Value(Value),
     Table(Entries),
     Tables(Vec<Entries>),
+    /// Tables by name, below one of their own.
+    Named(Vec<(String, Entries)>),
     /// Tables with tables of their own.
     Documents(Vec<(Entries, Document)>),
 }
@@ -54,6 +56,11 @@ fn lay(text: &mut String, document: Document, [header, read]: [&str; 2], source:
             Part::Tables(tables) => {
                 for (index, entries) in tables.iter().enumerate() {
                     entries.write(text, &format!("[[{header}]]"), &format!("{read}[{index}]"), source);
+                }
+            }
+            Part::Named(tables) => {
+                for (name, entries) in tables {
+                    entries.write(text, &format!("[{header}.{name}]"), &dotted(&read, &name), source);
                 }
             }
             Part::Documents(documents) => {
@@ -114,6 +121,11 @@ impl Serialize for Map<'_> {
                 Part::Value(value) => map.serialize_entry(name, value)?,
                 Part::Table(entries) => map.serialize_entry(name, entries)?,
                 Part::Tables(tables) => map.serialize_entry(name, tables)?,
+                Part::Named(tables) => {
+                    let named: BTreeMap<&str, &Entries> =
+                        tables.iter().map(|(n, t)| (n.as_str(), t)).collect();
+                    map.serialize_entry(name, &named)?;
+                }
                 Part::Documents(documents) => {
                     let each = documents.iter().map(|(own, inner)| Map(&own.entries, inner));
                     map.serialize_entry(name, &each.collect::<Vec<_>>())?;

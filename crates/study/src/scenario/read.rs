@@ -5,7 +5,6 @@ use std::path::Path;
 
 use toml::de::DeTable;
 
-use super::camera;
 use super::envelope::LIGHTING_ROUNDING;
 use super::kind::Kind;
 use super::paths::material;
@@ -15,6 +14,7 @@ use super::{
     Alternatives, AtmosphereSpec, Background, BandsSpec, DistanceKind, Envelope, EnvironmentObject,
     Extrapolation, Nuisance, Reliability, Requirement, Scenario, SensitivitySpec, Source, Target, Unknown,
 };
+use super::{camera, class};
 use hadar::allowed::{ABOVE_ZERO, ABSOLUTE_TEMPERATURE, Allowed, SHARE};
 use hadar::error::{Error, Result};
 use hadar::file;
@@ -24,8 +24,9 @@ use hadar::units::{Dimension, decimal_comma};
 /// The longest file taken for a scenario, bytes.
 const LONGEST_FILE: u64 = 1 << 20;
 
-pub(super) const TABLES: [&str; 12] = [
+pub(super) const TABLES: [&str; 13] = [
     "title",
+    "class",
     "target",
     "background",
     "environment",
@@ -133,6 +134,7 @@ pub(super) fn of_root(
     let environment = environment(root, unknown.lighting_total)?;
     Ok(Scenario {
         title: root.read("title", |entry| Ok(entry.text("\"Person or robot?\"")?.to_owned()))?,
+        classes: class::read(root)?,
         target,
         envelope: root.read("envelope", |entry| Envelope::read(entry, environment.len()))?,
         environment,

@@ -12,7 +12,7 @@ use super::entries::{Document, Entries, Part, entries, text};
 use super::paths::Paths;
 use super::{
     Alternatives, Background, EnvironmentObject, Extrapolation, MaterialRef, Nuisance, Reliability,
-    Requirement, Scenario, Target, Unknown, camera,
+    Requirement, Scenario, Target, Unknown, camera, class,
 };
 use hadar::units::Dimension;
 
@@ -50,6 +50,10 @@ impl Scenario {
         let mut document = Vec::new();
         if let Some(title) = &self.title {
             document.push(("title", Part::Value(title.as_str().into())));
+        }
+        if !self.classes.is_empty() {
+            let one = |(name, spec): (&String, &_)| (name.clone(), class::written(spec, paths));
+            document.push(("class", Part::Named(self.classes.iter().map(one).collect())));
         }
         document.push(("target", Part::Table(target(&self.target, paths))));
         if let Some(behind) = &self.background {

@@ -35,15 +35,15 @@ pub(super) fn at_centres(spec: &BandSource, source: &Source) -> Result<Bands> {
 
 /// The materials of a scenario before they are sampled.
 pub(super) struct Materials<'a> {
-    pub(super) target: &'a Material,
-    pub(super) alternatives: &'a [Cow<'a, Material>],
+    /// All that target and alternatives may be of.
+    pub(super) surfaces: &'a [&'a Material],
     /// One per environment object; a blackbody where `None`.
     pub(super) environment: &'a [Option<Cow<'a, Material>>],
 }
 
 impl Materials<'_> {
     fn surfaces(&self) -> impl Iterator<Item = &Material> {
-        std::iter::once(self.target).chain(self.alternatives.iter().map(AsRef::as_ref))
+        self.surfaces.iter().copied()
     }
 
     fn all(&self) -> impl Iterator<Item = &Material> {

@@ -8,7 +8,7 @@ mod worth;
 
 pub use looked_up::DecomposeStudy;
 pub(super) use looked_up::spectrum;
-pub use results::{Decomposed, FlagCount, MaterialRow, TruthFound};
+pub use results::{ClassRow, Decomposed, FlagCount, MaterialRow, TruthFound};
 pub use vision::Vision;
 
 use self::results::summary;
@@ -60,12 +60,8 @@ impl DecomposeStudy {
             relative,
             correlation_cm1: spec.emissivity_correlation_cm1.unwrap_or(CORRELATION_CM1),
         });
-        let options = Options {
-            prior: spec.prior.clone().unwrap_or_default(),
-            library_error,
-            skipping,
-            spatial: self.scenario.spatial,
-        };
+        let options =
+            Options { prior: self.prior.clone(), library_error, skipping, spatial: self.scenario.spatial };
         let rows = self.cube.shape().rows();
         let finished = std::sync::atomic::AtomicUsize::new(0);
         let progress = |more: usize| {

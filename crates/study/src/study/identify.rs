@@ -23,6 +23,8 @@ pub use samples::SampleSpectra;
 pub(super) use scaling::quantile;
 pub use scaling::{BandNumber, LibrarySize, Scaling};
 
+use super::classes::MixtureAnswer;
+use super::distances::Statistical;
 use super::{Study, Surface, Warning, warn};
 use crate::scenario::DistanceKind;
 use hadar::demand::{self, Ledger};
@@ -44,8 +46,10 @@ impl Study {
     pub fn identify(&self) -> Result<Identification> {
         let ledger = Ledger::open();
         demand::add(&self.looked_up);
-        let found =
-            self.alternatives.par_iter().map(|alternative| demand::ledger_of(|| self.pair(alternative)));
+        let found = self.alternatives.par_iter().enumerate().map(|(index, alternative)| {
+            let mixtures = self.classes.get(index).and_then(|answer| answer.mixtures.as_ref());
+            demand::ledger_of(|| self.against(index).pair(alternative, mixtures))
+        });
         let (pairs, pair_warnings): (Vec<_>, Vec<_>) = demand::gathered(found)?.into_iter().unzip();
         let kind = self.scenario.requirement.by;
         let decisive = |pair: &PairResult| pair.statistical_distance.unwrap_or_else(|| pair.distance(kind));
@@ -66,6 +70,7 @@ impl Study {
             prior_average: None,
             pairs,
             limiting,
+            classes: self.classes.clone(),
             warnings,
             stats: ledger.close(),
         })
@@ -117,7 +122,12 @@ impl Study {
         camera.counting(&self.bands, &self.view_of(camera))
     }
 
-    fn pair(&self, alternative: &Surface) -> Result<(PairResult, Vec<Warning>)> {
+    /// With `mixtures`, target and alternative are the worst mixtures found of two classes.
+    fn pair(
+        &self,
+        alternative: &Surface,
+        mixtures: Option<&MixtureAnswer>,
+    ) -> Result<(PairResult, Vec<Warning>)> {
         let kind = self.scenario.requirement.by;
         let counting = self.counting();
         let signal = self.target_signal();
@@ -146,6 +156,13 @@ impl Study {
         let back = self.return_distance(alternative, &nearest)?;
         let statistical =
             counting.as_ref().map(|counting| self.statistical(kind, alternative, counting)).transpose()?;
+        // What is proved of all mixtures may not suffice where the worst that was found does.
+        let statistical = statistical.map(|found| match mixtures {
+            Some(all) if found.reaches(self.required) && all.distance_lower < self.required => {
+                Statistical { distance: all.distance_lower, ..found }
+            }
+            _ => found,
+        });
         let told_apart = statistical.map(|found| found.reaches(self.required));
         let relative_error_statistical = statistical.and_then(|found| found.relative_error);
         let statistical = statistical.map(|found| found.distance);

@@ -2,6 +2,7 @@
 
 use super::Warning;
 use super::air::{Air, Behind};
+use super::classes::{ClassAnswer, Members};
 use super::surface::Surface;
 use crate::scenario::{Scenario, Units};
 use hadar::demand::Work;
@@ -32,6 +33,12 @@ pub struct Study {
     pub(super) range: StateRange,
     pub(super) target: Surface,
     pub(super) alternatives: Vec<Surface>,
+    /// With classes, the member of the target's that is nearest to each alternative; else empty.
+    pub(super) paired: Vec<Surface>,
+    /// What the target, and the alternatives, may be of: classes with their members, materials of one.
+    pub(super) members: [Vec<Members>; 2],
+    /// What the members of classes say together, alternative by alternative; empty without classes.
+    pub(super) classes: Vec<ClassAnswer>,
     pub(super) camera: Option<Camera>,
     pub(super) required: f64,
     /// To what share of itself a nearest distance is proved, if somebody asks.

@@ -3,10 +3,11 @@
 mod defaults;
 mod finder;
 
-use self::defaults::{alternatives_as_written, check_range, fill, state_range, unknowns};
+use self::defaults::{check_range, fill, state_range, unknowns};
 use self::finder::Finder;
 use super::air::{Air, Behind};
 use super::bands::{self, check_detector};
+use super::classes::Members;
 use super::{Study, Surface, camera, camera_bands};
 use crate::scenario::{Reliability, Scenario};
 use hadar::error::{Error, Result};
@@ -40,10 +41,17 @@ impl Study {
     /// # Ok::<(), hadar::Error>(())
     /// ```
     pub fn new(scenario: &Scenario, library: &Library) -> Result<Self> {
+        Self::with_members(scenario, library)?.of_worst_members()
+    }
+
+    /// The same with all members of classes side by side: those of the target's are [`Study::targets`], the first of which is the
+    /// target, and those of the alternatives' are alternatives of their own.
+    pub(super) fn with_members(scenario: &Scenario, library: &Library) -> Result<Self> {
         let mut scenario = scenario.clone();
         let mut finder = Finder { scenario: &scenario, library, warnings: Vec::new(), skies: Vec::new() };
+        finder.check_names()?;
         let target =
-            finder.find("target.material", &scenario.target.material, scenario.target.extrapolate)?;
+            finder.group("target.material", &scenario.target.material, scenario.target.extrapolate)?;
         let environment = scenario
             .environment
             .iter()
@@ -74,11 +82,13 @@ impl Study {
             let place = |key: &str| scenario.place(key);
             finder.warnings.extend(camera_bands::check(camera, spec, &asked, &bands, &place)?);
         }
+        let target = finder.covering(target, &bands, scenario.target.extrapolate)?;
         let alternatives = finder.alternatives(&target, &bands)?;
         let Finder { warnings, skies, .. } = finder;
 
-        let materials =
-            bands::Materials { target: &target, alternatives: &alternatives, environment: &environment };
+        let surfaces = std::iter::once(&target).chain(&alternatives).flat_map(|group| &group.members);
+        let surfaces: Vec<&Material> = surfaces.map(|(material, _)| material.as_ref()).collect();
+        let materials = bands::Materials { surfaces: &surfaces, environment: &environment };
         let bands = bands::integrated(&scenario, bands, &materials)?;
 
         let nodes = bands.nodes_cm1();
@@ -104,12 +114,14 @@ impl Study {
         let state = surroundings
             .state(scenario.target.temperature_k, &lighting)
             .map_err(|error| error.at(scenario.place("environment")))?;
-        let target = on_nodes(&target, "target.material")?;
-        let alternatives = alternatives
-            .iter()
-            .enumerate()
-            .map(|(i, material)| on_nodes(material, &format!("alternatives.materials[{i}]")))
-            .collect::<Result<Vec<_>>>()?;
+        let members = |group: &finder::Group<'_>| {
+            let surfaces = group.members.iter().map(|(material, _)| on_nodes(material, &group.key));
+            let weights = group.members.iter().map(|(_, weight)| *weight).collect();
+            Ok(Members::new(&group.name, group.spec.clone(), surfaces.collect::<Result<_>>()?, weights))
+        };
+        let target = members(&target)?;
+        let groups = alternatives.iter().map(members).collect::<Result<Vec<_>>>()?;
+        let alternatives: Vec<Surface> = groups.iter().flat_map(|group| group.surfaces.clone()).collect();
         let behind = behind
             .map(|(temperature_k, material)| {
                 let surface = match &material {
@@ -135,7 +147,8 @@ impl Study {
         let unknowns = unknowns(&scenario).map_err(|error| error.at(scenario.place("unknown")))?;
         let range = state_range(&scenario);
         check_range(&scenario, &range)?;
-        fill(&mut scenario, &alternatives_as_written(&alternatives), camera.as_ref(), &range);
+        let names: Vec<String> = groups.iter().map(|group| group.name.clone()).collect();
+        fill(&mut scenario, &names, camera.as_ref(), &range);
         let mut study = Self {
             scenario,
             open_bands: bands.clone(),
@@ -147,8 +160,11 @@ impl Study {
             state,
             unknowns,
             range,
-            target,
+            target: target.surfaces.first().cloned().ok_or_else(no_members)?,
             alternatives,
+            members: [vec![target], groups],
+            classes: Vec::new(),
+            paired: Vec::new(),
             camera,
             tolerance: None,
             required,
@@ -161,4 +177,8 @@ impl Study {
         study.check_magnitudes()?;
         Ok(study)
     }
+}
+
+fn no_members() -> Error {
+    Error::malformed("the class has no members", "write materials = [\"my_skin.csv\"]")
 }

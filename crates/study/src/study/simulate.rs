@@ -246,6 +246,7 @@ impl Study {
     /// What of a simulation is not as simple as it looks.
     fn simulation_warnings(&self, plan: &SimulationPlan, points: &[SimulatedPoint]) -> Vec<Warning> {
         let mut warnings = Vec::new();
+        warnings.extend(self.worst_members_alone());
         let bands = self.bands.len() as f64;
         let fewest = points.iter().map(|point| point.photons).fold(f64::INFINITY, f64::min);
         let most = points.iter().map(|point| point.photons).fold(0.0, f64::max);

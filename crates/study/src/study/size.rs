@@ -1,7 +1,7 @@
 //! The main job: does the camera meet the requirement, and what would it have to be.
 
 use super::identify::{PairResult, PhotonsRequired};
-use super::{Check, Companion, Shortfall, Study, Surface, Warning};
+use super::{Check, ClassAnswer, Companion, Shortfall, Study, Surface, Warning};
 use crate::scenario::{DistanceKind, Scenario};
 use hadar::demand::{self, Ledger, Skipping, Work};
 use hadar::error::Result;
@@ -21,7 +21,7 @@ mod wording;
 pub(super) use curves::logarithmic;
 pub use curves::{InformationCurves, PhotonMap, Spectra};
 pub(super) use reach::{Reach, Solvers};
-pub use sensitivity::{Elasticities, EmissivityErrors, Sensitivity};
+pub use sensitivity::{Elasticities, EmissivityErrors, ScatterOf, Sensitivity};
 pub use wording::no_limit;
 
 /// The answer to 'can this camera do it'.
@@ -52,6 +52,9 @@ pub struct Sizing {
     /// What sizing practice says of the camera; `None` without a camera or without target.size.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub companion: Option<Companion>,
+    /// What the members of classes say together, alternative by alternative; empty without classes.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub classes: Vec<ClassAnswer>,
     /// What the reader must know.
     pub warnings: Vec<Warning>,
     /// What it took.
@@ -109,6 +112,8 @@ pub struct Finding {
     pub answer: Answer,
     /// Emissivities of the two, where each is entered as one number.
     pub placeholders: Option<[f64; 2]>,
+    /// Where target or alternative is a class, what its members say together.
+    pub classes: Option<Box<ClassAnswer>>,
 }
 
 /// What was found.
@@ -220,39 +225,40 @@ impl Study {
         let ledger = Ledger::open();
         demand::add(&identification.stats);
         let mut warnings = identification.warnings.clone();
-        let limiting = identification
-            .pairs
-            .iter()
-            .zip(&self.alternatives)
-            .find(|(pair, _)| pair.alternative == identification.limiting);
-        let Some((pair, surface)) = limiting else {
+        let limiting =
+            identification.pairs.iter().position(|pair| pair.alternative == identification.limiting);
+        let Some((index, pair)) = limiting.and_then(|index| Some((index, identification.pairs.get(index)?)))
+        else {
             return Err(hadar::Error::malformed(
                 "there is no alternative",
                 "name one in alternatives.materials",
             ));
         };
-        let requirement = self.requirement(pair, identification.photon_radiance);
-        let camera = self.camera_result(identification.photon_radiance);
-        let solve_for = match &self.camera {
-            Some(camera) => Some(self.solutions(camera, surface)?),
+        // Of a class the member that is nearest to this alternative.
+        let own = self.against(index);
+        let (surface, photon_radiance) = (&own.alternatives[index], own.photon_radiance());
+        let requirement = own.requirement(pair, photon_radiance);
+        let camera = own.camera_result(photon_radiance);
+        let solve_for = match &own.camera {
+            Some(camera) => Some(own.solutions(camera, surface)?),
             None => None,
         };
-        let sensitivity = match &self.camera {
-            Some(camera) => Some(self.sensitivity(camera, surface)?),
+        let sensitivity = match &own.camera {
+            Some(camera) => Some(own.sensitivity(camera, surface, index)?),
             None => None,
         };
         if let Some(camera) = &camera {
-            warnings.extend(self.camera_result_warnings(camera, pair));
+            warnings.extend(own.camera_result_warnings(camera, pair));
         }
-        let companion = match (&self.camera, self.scenario.target.size_m) {
-            (Some(_), Some(_)) => Some(self.companion(pair, None)?),
+        let companion = match (&own.camera, own.scenario.target.size_m) {
+            (Some(_), Some(_)) => Some(own.companion(pair, None)?),
             _ => None,
         };
         let mut scenario = identification.scenario;
         if sensitivity.is_some() {
             scenario.sensitivity.get_or_insert_default();
         }
-        let verdict = self.verdict(pair, &requirement, self.spoiled(camera.as_ref()));
+        let verdict = own.verdict(pair, index, &requirement, own.spoiled(camera.as_ref()));
         Ok(Sizing {
             scenario,
             verdict,
@@ -261,10 +267,11 @@ impl Study {
             solve_for,
             sensitivity,
             trade_offs: None,
-            photon_radiance: identification.photon_radiance,
+            photon_radiance,
             pairs: identification.pairs,
             limiting: identification.limiting,
             companion,
+            classes: identification.classes,
             warnings,
             stats: ledger.close(),
         })
@@ -283,6 +290,7 @@ impl Study {
             (None, [only]) => Some(only.name.clone()),
             (None, _) => None,
         };
+        let index = self.alternatives.iter().position(|other| Some(&other.name) == alternative.as_ref());
         let judged = Answer::Judged {
             enough: check.identifiable,
             spoiled: spoiled.clone(),
@@ -296,6 +304,7 @@ impl Study {
             by: self.scenario.requirement.by,
             answer: self.too_few_bands().filter(|_| !check.identifiable).unwrap_or(judged),
             placeholders: alternative.as_deref().and_then(|name| self.one_numbers(name)),
+            classes: index.and_then(|index| self.classes.get(index)).cloned().map(Box::new),
             alternative,
         };
         let verdict = Verdict {
@@ -403,6 +412,7 @@ impl Study {
     fn verdict(
         &self,
         pair: &PairResult,
+        index: usize,
         requirement: &RequirementResult,
         spoiled: Vec<Shortfall>,
     ) -> Verdict {
@@ -427,6 +437,7 @@ impl Study {
             by: self.scenario.requirement.by,
             answer,
             placeholders: self.one_numbers(&pair.alternative),
+            classes: self.classes.get(index).cloned().map(Box::new),
         };
         Verdict {
             met,

@@ -49,6 +49,10 @@ catalogue! {
     /// An alternative was left out since its spectrum does not cover the bands.
     MaterialSkipped = "material-skipped",
         "Choose bands that its spectrum covers, or alternatives.extrapolate = \"hold\".";
+    /// A class of the scenario has the name of a material of the library that is entered as one number, and stands in its place.
+    ClassReplacesPlaceholder = "class-replaces-placeholder", "Nothing; or call the class otherwise.";
+    /// Of classes only the pair of members that is hardest to tell apart is simulated.
+    WorstMembers = "worst-members", "Name other members to simulate them.";
 
     /// Pixels of a cube were left out since a sample of them is missing.
     PixelsSkipped = "pixels-skipped", "Nothing; or name bands that are always missing in cube.bad_bands.";

@@ -37,6 +37,15 @@ impl Display for Warning {
             Self::MaterialSkipped { material } => {
                 write!(f, "{material} is left out: its spectrum does not cover the bands")
             }
+            Self::ClassReplacesPlaceholder { class } => write!(
+                f,
+                "`{class}` is the class of this scenario, not the material of the library that is entered as one number"
+            ),
+            Self::WorstMembers { target, alternative } => write!(
+                f,
+                "classes stand by the pair of members that is hardest to tell apart, {target} and {alternative}; the others are not \
+                 drawn"
+            ),
             Self::Identical => f.write_str("the two emissivities are equal in every band"),
             Self::Equilibrium => f.write_str(
                 "target and surroundings are in thermal equilibrium; every material looks like a blackbody",

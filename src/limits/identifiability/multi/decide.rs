@@ -63,8 +63,8 @@ impl Decisions {
 }
 
 /// A solver in all bands, and one in few.
-struct Solvers<'s> {
-    all: NearestSolver<'s>,
+pub(super) struct Solvers<'s> {
+    pub(super) all: NearestSolver<'s>,
     few: Option<(LocalSolver<'s>, NearestSolver<'s>)>,
     /// The local distance in few bands of the pair at hand.
     estimate: f64,
@@ -73,7 +73,7 @@ struct Solvers<'s> {
 }
 
 /// The scene in every n-th band.
-struct Few {
+pub(super) struct Few {
     bands: Bands,
     surroundings: Surroundings,
     counting: Counting,
@@ -83,7 +83,11 @@ struct Few {
 }
 
 impl Few {
-    fn of(scene: &LibraryScene<'_>, emissivities: &[&[f64]], counting: &Counting) -> Result<Option<Self>> {
+    pub(super) fn of(
+        scene: &LibraryScene<'_>,
+        emissivities: &[&[f64]],
+        counting: &Counting,
+    ) -> Result<Option<Self>> {
         let nodes = scene.surroundings.nodes_cm1().len();
         emissivities.iter().try_for_each(|emissivity| check_emissivity(emissivity, nodes))?;
         let stride = scene.bands.len() / FEW_BANDS;
@@ -198,16 +202,16 @@ impl LibraryScene<'_> {
 }
 
 /// What is asked of every pair.
-struct Question<'q> {
-    scene: &'q LibraryScene<'q>,
-    emissivities: &'q [&'q [f64]],
-    counting: &'q Counting,
-    required: f64,
-    few: Option<&'q Few>,
+pub(super) struct Question<'q> {
+    pub(super) scene: &'q LibraryScene<'q>,
+    pub(super) emissivities: &'q [&'q [f64]],
+    pub(super) counting: &'q Counting,
+    pub(super) required: f64,
+    pub(super) few: Option<&'q Few>,
 }
 
 impl<'q> Question<'q> {
-    fn solvers(&self) -> Solvers<'q> {
+    pub(super) fn solvers(&self) -> Solvers<'q> {
         let LibraryScene { unknowns, range, .. } = self.scene;
         let few = self.few.map(|few| {
             let (bands, surroundings) = (&few.bands, &few.surroundings);
@@ -223,7 +227,7 @@ impl<'q> Question<'q> {
     }
 
     /// Whether target a is told from alternative b; the distance in the target's own state where it is known.
-    fn reaches(
+    pub(super) fn reaches(
         &self,
         solvers: &mut Solvers<'_>,
         skipping: Skipping,

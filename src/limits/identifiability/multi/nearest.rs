@@ -53,7 +53,7 @@ pub struct LibraryScene<'a> {
 
 impl<'a> LibraryScene<'a> {
     /// A solver of nearest states in this scene.
-    pub(super) fn solver(&self) -> NearestSolver<'a> {
+    pub(in crate::limits::identifiability) fn solver(&self) -> NearestSolver<'a> {
         let solver = NearestSolver::new(self.bands, self.surroundings, self.unknowns.clone(), self.range);
         match self.tolerance {
             Some(tolerance) => solver.proving(tolerance),

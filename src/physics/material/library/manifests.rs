@@ -25,7 +25,11 @@ impl Library {
         let manifest = Arc::new(Deferred::parse(embedded::MANIFEST, path, file)?);
         let stored =
             |(index, name): (usize, &str)| (name.to_owned(), Stored::Embedded(Arc::clone(&manifest), index));
-        Ok(Self { materials: manifest.names().enumerate().map(stored).collect(), ..Self::empty() })
+        Ok(Self {
+            materials: manifest.names().enumerate().map(stored).collect(),
+            classes: manifest.classes().iter().cloned().collect(),
+            ..Self::empty()
+        })
     }
 
     pub(super) fn add_manifest(&mut self, path: &Path, directory: &Path) -> Result<()> {
@@ -34,6 +38,14 @@ impl Library {
             |name: &str| text_of_file(&directory.join(name), "read a file of the manifest").map(Cow::Owned);
         for material in self.manifest(&text, path, &file)? {
             self.add(material);
+        }
+        for (name, class) in manifest::classes(&text, path, directory)? {
+            if self.contains(&name) {
+                let found = format!("`{name}` is a class and a material");
+                let error = Error::malformed(found, "call one of them otherwise");
+                return Err(error.for_key(format!("class.{name}")).in_file(path));
+            }
+            self.classes.insert(name, class);
         }
         Ok(())
     }

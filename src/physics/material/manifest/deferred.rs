@@ -1,9 +1,9 @@
 //! A manifest whose materials are made as they are named: a scenario of two materials reads two spectra, not all.
 
-use super::{Around, Entry, Model, entries, made};
+use super::{Around, Entry, Model, classes, made, manifest};
 use crate::error::Result;
 use crate::inputs;
-use crate::material::Material;
+use crate::material::{ClassSpec, Material};
 use std::borrow::Cow;
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
@@ -18,6 +18,7 @@ pub(in crate::physics::material) struct Deferred {
     path: &'static Path,
     file: File,
     entries: Vec<Entry>,
+    classes: Vec<(String, ClassSpec)>,
     made: Vec<OnceLock<Material>>,
 }
 
@@ -31,14 +32,20 @@ impl Deferred {
         path: &'static Path,
         file: File,
     ) -> Result<Self> {
-        let entries = entries(text, path)?;
-        let made = entries.iter().map(|_| OnceLock::new()).collect();
-        Ok(Self { text, path, file, entries, made })
+        let read = manifest(text, path)?;
+        let classes = classes::of(read.class, path, Path::new(""))?;
+        let made = read.material.iter().map(|_| OnceLock::new()).collect();
+        Ok(Self { text, path, file, entries: read.material, classes, made })
     }
 
     /// Names of the materials, in the order of the entries.
     pub(in crate::physics::material) fn names(&self) -> impl Iterator<Item = &str> {
         self.entries.iter().map(|entry| entry.name.as_str())
+    }
+
+    /// The classes by name.
+    pub(in crate::physics::material) fn classes(&self) -> &[(String, ClassSpec)] {
+        &self.classes
     }
 
     /// Whether a material was made.
@@ -83,6 +90,8 @@ impl Deferred {
     /// up that it is made of. It changes when one of these does, and not with other entries.
     fn definition(&self, index: usize) -> String {
         let entry = self.text.split("[[material]]\n").nth(index + 1).unwrap_or_default();
+        // Classes stand behind the last material.
+        let entry = entry.split("\n[class.").next().unwrap_or_default();
         let lines = entry.lines().filter(|line| !line.is_empty() && !line.starts_with('#'));
         let mut definition: String = lines.flat_map(|line| [line, "\n"]).collect();
         let quoted: Vec<&str> = entry.split('"').skip(1).step_by(2).collect();

@@ -4,7 +4,7 @@ use super::super::kind::Kind;
 use super::super::paths::{file, material};
 use super::super::read::{document, text_of};
 use super::super::section::{Entry, Section};
-use super::super::{BandsSpec, Source, camera};
+use super::super::{BandsSpec, Source, camera, class};
 use super::image::{spatial, vision};
 use super::{CubeUnit, DecomposeScenario, HeatCube, LibrarySpec, LightSource, PixelUnknown, TruthSpec};
 use hadar::allowed::{ABOVE_ZERO, ABSOLUTE_TEMPERATURE, Allowed, SHARE};
@@ -12,8 +12,19 @@ use hadar::error::{Error, Result};
 use hadar::units::Dimension;
 use std::path::Path;
 
-const TABLES: &[&str] =
-    &["title", "cube", "bands", "camera", "environment", "library", "unknown", "spatial", "vision", "truth"];
+const TABLES: &[&str] = &[
+    "title",
+    "class",
+    "cube",
+    "bands",
+    "camera",
+    "environment",
+    "library",
+    "unknown",
+    "spatial",
+    "vision",
+    "truth",
+];
 const MINIMUM: &str =
     "write [cube] with data = \"counts.npy\", [bands], and [library] with path = \"library.csv\"";
 /// Temperatures of a scene where nothing is said, K.
@@ -73,6 +84,7 @@ impl DecomposeScenario {
             environment: root
                 .read("environment", |entry| entry.items("[[environment]]")?.iter().map(light).collect())?
                 .unwrap_or_default(),
+            classes: class::read(&root)?,
             library: root.read("library", library)?.ok_or_else(|| missing("library"))?,
             unknown,
             spatial: root.read("spatial", spatial)?,

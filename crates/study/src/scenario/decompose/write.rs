@@ -1,8 +1,8 @@
 //! Writes a decomposition scenario, as TOML and, in the same structure, for JSON.
 
-use super::super::camera;
 use super::super::entries::{Document, Entries, Part, entries, text};
 use super::super::paths::Paths;
+use super::super::{camera, class};
 use super::image::{spatial_written, vision_written};
 use super::{CubeUnit, DecomposeScenario, LightSource, VisionSpec};
 use hadar::units::Dimension;
@@ -63,6 +63,10 @@ impl DecomposeScenario {
                 Dimension::Wavenumber,
                 library.emissivity_correlation_cm1,
             );
+        if !self.classes.is_empty() {
+            let one = |(name, spec): (&String, &_)| (name.clone(), class::written(spec, paths));
+            document.push(("class", Part::Named(self.classes.iter().map(one).collect())));
+        }
         document.push(("library", Part::Table(written)));
         let unknown = &self.unknown;
         let written = Entries::default()

@@ -33,6 +33,10 @@ pub struct DecomposeStudy {
     /// What one count is in the unit of the cube.
     pub(super) units_per_count: f64,
     pub(super) truth: Option<Truth>,
+    /// Prior probabilities of the materials in any scale; empty if they are equal.
+    pub(super) prior: Vec<f64>,
+    /// Classes by name, with the indices of their members.
+    pub(super) classes: Vec<(String, Vec<usize>)>,
     pub(super) warnings: Vec<Warning>,
 }
 
@@ -72,11 +76,13 @@ impl DecomposeStudy {
             let instead = format!("count from 0 up to {}", bands.len() - 1);
             return Err(at("cube.bad_bands")(Error::malformed(found, instead)));
         }
-        let materials = materials(scenario, library).map_err(|(key, error)| at(&key)(error))?;
+        let mut warnings = Vec::new();
+        let materials =
+            materials(scenario, library, &mut warnings).map_err(|(key, error)| at(&key)(error))?;
         let nodes = bands.nodes_cm1();
-        let emissivities = materials.iter().enumerate().map(|(i, material)| {
+        let emissivities = materials.iter().map(|Listed { material, entry, .. }| {
             let key = match &scenario.library.materials {
-                Some(_) => format!("library.materials[{i}]"),
+                Some(_) => format!("library.materials[{entry}]"),
                 None => "library.path".into(),
             };
             material.emissivity(nodes).map_err(|error| error.at(scenario.place(&key)))
@@ -115,12 +121,26 @@ impl DecomposeStudy {
             lit(light, &cube, &bands, library, units_per_count).map_err(at(&key))
         });
         let lights = lights.collect::<Result<Vec<_>>>()?;
-        let names: Vec<String> = materials.iter().map(|material| material.name().to_owned()).collect();
+        let names: Vec<String> = materials.iter().map(|one| one.material.name().to_owned()).collect();
+        let entries = materials.last().map_or(0, |last| last.entry + 1);
         if let Some(prior) = &scenario.library.prior
-            && prior.len() != names.len()
+            && prior.len() != entries
         {
-            let found = format!("{} probabilities for {} materials", prior.len(), names.len());
+            let found = format!("{} probabilities for {entries} materials", prior.len());
             return Err(at("library.prior")(Error::malformed(found, "write one for each")));
+        }
+        let stated = scenario.library.prior.as_deref();
+        // A class shares its probability among its members.
+        let weigh = |one: &Listed| stated.map_or(1.0, |prior| prior[one.entry]) * one.weight;
+        let is_weighed = stated.is_some() || materials.iter().any(|one| one.class.is_some());
+        let prior = if is_weighed { materials.iter().map(weigh).collect() } else { Vec::new() };
+        let mut classes: Vec<(String, Vec<usize>)> = Vec::new();
+        for (place, one) in materials.iter().enumerate() {
+            let Some(class) = &one.class else { continue };
+            match classes.iter_mut().find(|(name, _)| name == class) {
+                Some((_, members)) => members.push(place),
+                None => classes.push((class.clone(), vec![place])),
+            }
         }
         if scenario.unknown.lighting_total.is_some() && lights.is_empty() {
             let found = Error::malformed("a total of no lighting", "write [[environment]], or leave it out");
@@ -154,7 +174,9 @@ impl DecomposeStudy {
             var_added,
             units_per_count,
             truth,
-            warnings: Vec::new(),
+            prior,
+            classes,
+            warnings,
         })
     }
 
@@ -192,21 +214,75 @@ fn check_shape(cube: &Cube, bands: &Bands) -> Result<()> {
     Err(Error::malformed(found, instead))
 }
 
+/// A material of the library, or a member of a class that stands there.
+struct Listed {
+    material: Material,
+    /// Which of the listed ones it is of.
+    entry: usize,
+    weight: f64,
+    class: Option<String>,
+}
+
+impl Listed {
+    fn alone(entry: usize, material: Material) -> Self {
+        Self { material, entry, weight: 1.0, class: None }
+    }
+}
+
+/// What a name or file of the list is, with all members of a class.
+fn listed(
+    scenario: &DecomposeScenario,
+    library: &Library,
+    (entry, reference): (usize, &MaterialRef),
+    warnings: &mut Vec<Warning>,
+) -> Result<Vec<Listed>> {
+    let name = match reference {
+        MaterialRef::File(path) => return Ok(vec![Listed::alone(entry, Material::from_file(path)?)]),
+        MaterialRef::Name(name) => name,
+    };
+    let Some(spec) = scenario.classes.get(name).or_else(|| library.class(name)) else {
+        return Ok(vec![Listed::alone(entry, library.get(name)?.clone())]);
+    };
+    if spec.mixtures {
+        let found = format!("mixtures of the class `{name}`");
+        return Err(Error::malformed(found, "leave mixtures out: a pixel is taken to be of one member"));
+    }
+    let class = spec.read(library)?;
+    let remark = |reason: &String| Warning::Material {
+        material: name.clone(),
+        remark: format!("passed over: {reason}"),
+    };
+    warnings.extend(class.passed_over.iter().map(remark));
+    let member = |member: hadar::material::Member| {
+        let own = format!("{name}/{}", member.material.name());
+        let material = member.material.with_name(own);
+        Listed { material, entry, weight: member.weight, class: Some(name.clone()) }
+    };
+    Ok(class.members.into_iter().map(member).collect())
+}
+
 /// The materials in the order of the file or list; an error with the key it is about.
 fn materials(
     scenario: &DecomposeScenario,
     library: &Library,
-) -> std::result::Result<Vec<Material>, (String, Error)> {
+    warnings: &mut Vec<Warning>,
+) -> std::result::Result<Vec<Listed>, (String, Error)> {
     let spec = &scenario.library;
     let Some(path) = &spec.path else {
-        let named = spec.materials.iter().flatten().enumerate().map(|(i, reference)| {
-            let found = match reference {
-                MaterialRef::Name(name) => library.get(name).cloned(),
-                MaterialRef::File(path) => Material::from_file(path),
-            };
-            found.map_err(|error| (format!("library.materials[{i}]"), error))
-        });
-        return named.collect();
+        let mut all = Vec::new();
+        for (i, reference) in spec.materials.iter().flatten().enumerate() {
+            let found = listed(scenario, library, (i, reference), warnings);
+            all.extend(found.map_err(|error| (format!("library.materials[{i}]"), error))?);
+        }
+        let mut names = std::collections::BTreeSet::new();
+        return match all.iter().find(|one| !names.insert(one.material.name())) {
+            Some(twice) => {
+                let found = format!("`{}` stands in the library twice", twice.material.name());
+                let error = Error::malformed(found, "name it once");
+                Err((format!("library.materials[{}]", twice.entry), error))
+            }
+            None => Ok(all),
+        };
     };
     let table = columns(path).map_err(|error| ("library.path".to_owned(), error))?;
     let made = |name: &str, rows: &[(f64, f64)]| {
@@ -214,7 +290,8 @@ fn materials(
             .map_err(|error| ("library.path".to_owned(), error.for_key(name).in_file(path)))
     };
     let Some(wanted) = &spec.materials else {
-        return table.iter().map(|(name, rows)| made(name, rows)).collect();
+        let all = table.iter().enumerate();
+        return all.map(|(i, (name, rows))| Ok(Listed::alone(i, made(name, rows)?))).collect();
     };
     let picked = wanted.iter().enumerate().map(|(i, reference)| {
         let key = format!("library.materials[{i}]");
@@ -223,7 +300,7 @@ fn materials(
             return Err((key, found));
         };
         match table.iter().find(|(name, _)| name == wanted) {
-            Some((name, rows)) => made(name, rows),
+            Some((name, rows)) => Ok(Listed::alone(i, made(name, rows)?)),
             None => {
                 let names = table.iter().map(|(name, _)| name.as_str());
                 Err((key, Error::unknown_name("column", wanted, names)))

@@ -31,6 +31,9 @@ pub struct Decomposed {
     pub skipped: usize,
     /// Of each material that was found.
     pub found: Vec<MaterialRow>,
+    /// Of each class of the library; empty without classes.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub classes: Vec<ClassRow>,
     /// How many pixels have each flag.
     pub flags: Vec<FlagCount>,
     /// What a prior over the image did, if there was one.
@@ -65,6 +68,17 @@ pub struct MaterialRow {
     pub temperature_tenths_k: [f64; 2],
     /// Median of the deviations, K.
     pub temperature_sigma_median_k: f64,
+}
+
+/// What was found of a class.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct ClassRow {
+    /// Its name.
+    pub class: String,
+    /// Spectra that it rests on.
+    pub spectra: usize,
+    /// Pixels of which one of its members is the most probable material.
+    pub pixels: usize,
 }
 
 /// How many pixels have a flag.
@@ -117,6 +131,12 @@ pub(super) fn summary(
         });
     }
     rows.sort_by(|a, b| b.pixels.cmp(&a.pixels).then_with(|| a.material.cmp(&b.material)));
+    let classes = study.classes.iter().map(|(class, members)| ClassRow {
+        class: class.clone(),
+        spectra: members.len(),
+        pixels: (0..pixels).filter(|i| members.contains(&usize::from(maps.material[*i]))).count(),
+    });
+    let classes = classes.collect();
     let flags: Vec<FlagCount> = flag::NAMES
         .iter()
         .map(|(bit, flag)| FlagCount { flag, bit: *bit, pixels: has(*bit) })
@@ -145,6 +165,7 @@ pub(super) fn summary(
         undecided: pixels - decided - skipped,
         skipped,
         found: rows,
+        classes,
         flags,
         spatial: maps.spatial,
         vision,

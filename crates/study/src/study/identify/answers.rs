@@ -2,7 +2,7 @@
 
 use crate::study::{Apart, BandsThatMatter, Exact, Identification, Matrix, Scaling, Study, Trial, Warning};
 use hadar::demand::{self, Ledger, Skipping, Thing, if_asked};
-use hadar::error::Result;
+use hadar::error::{Error, Result};
 use hadar::identifiability::multi::Progress;
 
 /// What is asked besides the distances to every alternative: nothing else is computed.
@@ -73,6 +73,11 @@ impl Study {
     /// # Errors
     /// As [`Study::identify`], [`Study::matrix`] and [`Study::told_apart`].
     pub fn answer(&self, asked: &Asked, watch: &Watch<'_>) -> Result<Answers> {
+        if asked.bands.is_some() && self.has_classes() {
+            let found = "bands are chosen for one material against others, and there is a class";
+            let instead = "name those of its members that decide (they stand in the answer without --bands)";
+            return Err(Error::malformed(found, instead).at(self.scenario().place("class")));
+        }
         let ledger = Ledger::open();
         let section = Thing::Sections;
         let mut identification = self.identify()?;

@@ -12,13 +12,13 @@ use hadar::fisher::{Counting, Nuisance, Unknowns};
 use hadar::identifiability::multi::{self, LibraryScene, LocalMatrix, NearestMatrix, Passes, Progress};
 
 impl Study {
-    /// Target and alternatives, each once.
+    /// Target and alternatives, each once; of classes all members.
     ///
     /// # Errors
     /// A single material; different spectra of the same name.
     pub fn materials(&self) -> Result<Vec<&Surface>> {
-        let mut all: Vec<&Surface> = vec![&self.target];
-        for surface in &self.alternatives {
+        let mut all: Vec<&Surface> = Vec::new();
+        for surface in self.all_members() {
             match all.iter().find(|known| known.name == surface.name) {
                 Some(known) if known.emissivity == surface.emissivity => {}
                 Some(_) => {
@@ -38,7 +38,7 @@ impl Study {
     }
 
     /// The scene that all materials share.
-    fn library_scene(&self) -> LibraryScene<'_> {
+    pub(in crate::study) fn library_scene(&self) -> LibraryScene<'_> {
         LibraryScene {
             bands: &self.bands,
             surroundings: &self.surroundings,
@@ -192,7 +192,10 @@ impl Study {
         let kind = self.scenario.requirement.by;
         let ledger = Ledger::open();
         demand::add(&self.looked_up);
-        let failed = if kind == DistanceKind::Nearest {
+        let failed = if self.has_classes() {
+            let failed = self.classes.iter().position(|answer| answer.told_apart != Some(true));
+            failed.map(|index| &self.alternatives[index])
+        } else if kind == DistanceKind::Nearest {
             let emissivities: Vec<&[f64]> =
                 std::iter::once(&self.target).chain(&self.alternatives).map(|m| &m.emissivity[..]).collect();
             let scene = self.library_scene();

@@ -1,6 +1,6 @@
 //! What is known of every pair, and of the target against all alternatives, as data.
 
-use super::super::{PriorAverage, Warning};
+use super::super::{ClassAnswer, PriorAverage, Warning};
 use crate::scenario::{DistanceKind, Scenario};
 use hadar::demand::Work;
 use hadar::identifiability::Status;
@@ -23,6 +23,9 @@ pub struct Identification {
     pub identifiability: Identifiability,
     /// The hardest alternative on average over the priors; `None` without priors, or where it was not asked for.
     pub prior_average: Option<PriorAverage>,
+    /// What the members of classes say together, alternative by alternative; empty without classes.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub classes: Vec<ClassAnswer>,
     /// What the reader must know.
     pub warnings: Vec<Warning>,
     /// What it took. Searches within an average over priors, a choice of bands or a simulated decision are part of that

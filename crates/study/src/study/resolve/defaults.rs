@@ -1,16 +1,11 @@
 //! What a scenario leaves silent: unknowns and ranges, and the echo that says everything.
 
 use crate::scenario::{MaterialRef, Scenario};
-use crate::study::surface::Surface;
 use hadar::error::{Error, Result};
 use hadar::fisher::Unknowns;
 use hadar::identifiability::nearest::StateRange;
 use hadar::instrument::figures::{self, Part, TABLE};
 use hadar::instrument::{Camera, CameraSpec};
-
-pub(super) fn alternatives_as_written(alternatives: &[Surface]) -> Vec<String> {
-    alternatives.iter().map(|surface| surface.name.clone()).collect()
-}
 
 pub(super) fn unknowns(scenario: &Scenario) -> Result<Unknowns> {
     let unknown = &scenario.unknown;

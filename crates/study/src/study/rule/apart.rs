@@ -17,7 +17,7 @@ use super::results::{CameraVerdict, EnvelopeResult, LimitingScene, Quotable, Rul
 use crate::scenario::rule::{Clause, Demand, StopSpec};
 use crate::scenario::{CameraSpec, DistanceKind, Envelope, MaterialRef, Rule, Scenario};
 use crate::study::companion::{Companion, Given, Told};
-use crate::study::{Study, Warning};
+use crate::study::{ClassSide, Study, Warning};
 use hadar::demand::{self, Reason, Skipping, Thing};
 use hadar::error::{Error, Result};
 use hadar::identifiability::detection;
@@ -81,7 +81,10 @@ impl TellApart {
         let envelope = clause.envelope();
         let materials = envelope.materials.clone().unwrap_or_default();
         for (index, material) in materials.iter().enumerate() {
-            if let MaterialRef::Name(name) = material {
+            if let MaterialRef::Name(name) = material
+                && !scenario.classes.contains_key(name)
+                && library.class(name).is_none()
+            {
                 let key = format!("envelope.materials[{index}]");
                 library.get(name).map_err(|error| error.at(scenario.place(&key)))?;
             }
@@ -107,6 +110,14 @@ impl TellApart {
                 scenario.alternatives = study.scenario.alternatives.clone();
             }
             candidates.push(candidate);
+        }
+        // Where the rule says nothing of errors its classes may, each of its own: the largest guard all.
+        if scenario.sensitivity.is_none() {
+            let near = candidates.iter().flat_map(|candidate| &candidate.near);
+            scenario.sensitivity = near.flat_map(Study::stated_spreads).max_by(|a, b| {
+                let [a, b] = [a, b].map(|spec| (spec.emissivity_error, spec.correlation_cm1));
+                a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1))
+            });
         }
         scenario.alternatives.materials = Some(alternatives);
         // Where nothing is said of them, cameras may have bands of their own.
@@ -205,14 +216,21 @@ impl TellApart {
         let objects = &scenario.environment;
         let studies = self.candidates.iter().flat_map(|candidate| &candidate.near);
         let (mut materials, mut alternatives): (Vec<String>, Vec<String>) = (Vec::new(), Vec::new());
+        let mut classes: Vec<ClassSide> = Vec::new();
         for study in studies {
             let add = |names: &mut Vec<String>, name: &str| {
                 if !names.iter().any(|known| known == name) {
                     names.push(name.to_owned());
                 }
             };
-            add(&mut materials, &study.target.name);
-            study.alternatives.iter().for_each(|surface| add(&mut alternatives, &surface.name));
+            let [targets, others] = &study.members;
+            targets.iter().for_each(|members| add(&mut materials, &members.name));
+            others.iter().for_each(|members| add(&mut alternatives, &members.name));
+            for side in study.class_sides() {
+                if !classes.contains(&side) {
+                    classes.push(side);
+                }
+            }
         }
         let Envelope { temperature_k, lighting, surroundings_k, distance_m, .. } = self.envelope.clone();
         EnvelopeResult {
@@ -226,6 +244,7 @@ impl TellApart {
                 .or(distance_m),
             materials,
             alternatives,
+            classes,
         }
     }
 
@@ -273,49 +292,53 @@ fn candidate(
     let (mut between, mut share) = (Vec::new(), 1.0_f64);
     for material in envelope.materials.iter().flatten() {
         scenario.target.material = material.clone();
-        let mut at = |distance_m: Option<f64>| {
+        // Every member of a class is a material of the target.
+        let mut at = |distance_m: Option<f64>| -> Result<Vec<Sighted>> {
             scenario.target.distance_m = distance_m;
-            Study::new(&scenario, library).and_then(|study| Sighted::new(study, envelope))
+            let all = Study::of_each_target(&scenario, library)?.into_iter();
+            all.map(|study| Sighted::new(study, envelope)).collect()
         };
         let stop = clause.stop.as_ref().map(StopSpec::stop);
         let least = match stop {
             Some(stop) => Some(stop.decisions()[0].distance_m),
             None => envelope.distance_m.map(|[least, _]| least),
         };
-        let close = at(least)?;
-        near.push(close.study.clone());
-        let own = stop.map(|stop| Approach::of(stop, &named.camera, close.study.bands.len()));
+        let all_close = at(least)?;
+        near.extend(all_close.iter().map(|close| close.study.clone()));
+        let bands = all_close.first().map_or(1, |close| close.study.bands.len());
+        let own = stop.map(|stop| Approach::of(stop, &named.camera, bands));
         let most = own.as_ref().map(|own| own.distance_m[1]).or(envelope.distance_m.map(|[_, most]| most));
         approach = own.or(approach);
         if least == most {
-            sighted.push(close);
+            sighted.extend(all_close);
             continue;
         }
-        let air = close.study.atmosphere.as_ref().zip(least.zip(most));
-        if let Some((air, (_, most))) = air {
+        let air = all_close.first().and_then(|close| close.study.atmosphere.clone()).zip(least.zip(most));
+        if let Some((air, (_, most))) = &air {
             let key = if stop.is_some() { "stop" } else { "envelope.distance" };
             let place = |error: Error| error.at(clause.scenario.place(key));
-            air.table.optical_depth(&[], most).map_err(place)?;
+            air.table.optical_depth(&[], *most).map_err(place)?;
         }
-        let far = at(most)?;
-        distance_matters |= far.differs_from(&close, NOTICEABLE);
-        if let Some((_, (least, most))) = air {
-            match close.share_of_far(&far, [least, most])? {
-                Some(one) => share = share.min(one),
-                None => {
-                    let inner = steps([least, most]).skip(1).take(DISTANCES - 2);
-                    let seen = inner.map(|z| Sighted::new(close.study.at_distance(z)?, envelope));
-                    sighted.extend(seen.collect::<Result<Vec<_>>>()?);
-                    between.push(close.clone());
-                    sighted.extend([close, far]);
-                    continue;
+        for (close, far) in all_close.into_iter().zip(at(most)?) {
+            distance_matters |= far.differs_from(&close, NOTICEABLE);
+            if let Some((_, (least, most))) = &air {
+                match close.share_of_far(&far, [*least, *most])? {
+                    Some(one) => share = share.min(one),
+                    None => {
+                        let inner = steps([*least, *most]).skip(1).take(DISTANCES - 2);
+                        let seen = inner.map(|z| Sighted::new(close.study.at_distance(z)?, envelope));
+                        sighted.extend(seen.collect::<Result<Vec<_>>>()?);
+                        between.push(close.clone());
+                        sighted.extend([close, far]);
+                        continue;
+                    }
                 }
             }
-        }
-        match (far.is_worse_than(&close), close.is_worse_than(&far)) {
-            (true, _) => sighted.push(far),
-            (false, true) => sighted.push(close),
-            (false, false) => sighted.extend([far, close]),
+            match (far.is_worse_than(&close), close.is_worse_than(&far)) {
+                (true, _) => sighted.push(far),
+                (false, true) => sighted.push(close),
+                (false, false) => sighted.extend([far, close]),
+            }
         }
     }
     let distance_m = approach.as_ref().map(|own: &Approach| own.distance_m).or(envelope.distance_m);

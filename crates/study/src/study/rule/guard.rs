@@ -6,7 +6,7 @@ use super::envelope::{Estimate, Sighted};
 use super::search::Searched;
 use super::uncertainty::{Errors, MarginUncertainty, Uncertain};
 use crate::study::Study;
-use crate::study::size::sensitivity::{linear, ripple::Ripple};
+use crate::study::size::sensitivity::{linear, ripple::Ripple, scatter::Scatter};
 use hadar::error::{Place, Result};
 use hadar::instrument::Camera;
 use hadar::scene::State;
@@ -37,13 +37,14 @@ impl TellApart {
         let ripple = self
             .scenario
             .sensitivity
-            .map(|spec| Ripple::new(at.bands.nodes_cm1(), spec.emissivity_error, spec.correlation_cm1));
+            .map(|spec| Ripple::new(at.bands.nodes_cm1(), spec.emissivity_error, spec.correlation_cm1))
+            .map(Scatter::Ripple);
         let emissivities = match (self.scenario.sensitivity, &ripple, scenes.first()) {
             (Some(spec), Some(ripple), Some(own)) => {
                 let surface = &at.alternatives[worst.pair.alternative];
                 let (nearest, counting) = (&worst.pair.nearest, &own.sighted.counting);
-                let per_unit = linear::sigma(at, surface, nearest, counting, distance, ripple);
-                Some((spec.emissivity_error, per_unit * spec.emissivity_error / self.required))
+                let sigma = linear::sigma(at, surface, nearest, counting, distance, [ripple, ripple]);
+                Some((spec.emissivity_error, sigma / self.required))
             }
             _ => None,
         };
@@ -98,7 +99,7 @@ impl TellApart {
     fn least_margin(
         &self,
         (candidate, scenes): (&Candidate, &[Scene]),
-        ripple: Option<&Ripple>,
+        ripple: Option<&Scatter<'_>>,
         camera: &Camera,
         errors: Errors,
     ) -> Result<f64> {

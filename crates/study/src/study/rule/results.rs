@@ -4,7 +4,7 @@ use super::uncertainty::MarginUncertainty;
 use crate::scenario::Units;
 use crate::scenario::rule::Verdict;
 use crate::study::size::Solutions;
-use crate::study::{NearestState, Shortfall, Warning};
+use crate::study::{ClassSide, NearestState, Shortfall, Warning};
 use hadar::instrument::Readout;
 use hadar::policy::envelope::Certificate;
 use hadar::policy::stop::Decision;
@@ -110,10 +110,13 @@ pub struct EnvelopeResult {
     pub surroundings_k: Vec<[f64; 2]>,
     /// Distance of the target, m; infinitely far where `None`.
     pub distance_m: Option<[f64; 2]>,
-    /// Materials of the target.
+    /// Materials of the target, and classes whose members all are.
     pub materials: Vec<String>,
     /// What they must be told apart from.
     pub alternatives: Vec<String>,
+    /// The classes among them; empty without.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub classes: Vec<ClassSide>,
 }
 
 /// One camera against the rule.

@@ -264,6 +264,11 @@ fn studies(apart: &TellApart, spec: &StandInSpec, library: &Library) -> Result<V
         let uncertain = apart.uncertain(candidate, &place)?;
         let sides = uncertain.iter().flat_map(Uncertain::sides).collect::<Result<Vec<_>>>()?;
         for near in &candidate.near {
+            if near.has_classes() {
+                let found = "a stand-in is judged for one material, and there is a class";
+                let error = Error::malformed(found, "name one of its members in the target and the envelope");
+                return Err(error.at(apart.scenario.place("class")));
+            }
             let mut scenario = near.scenario.clone();
             let own = scenario.target.material.clone();
             let materials: Vec<MaterialRef> = spec.materials.clone().unwrap_or_else(|| vec![own.clone()]);

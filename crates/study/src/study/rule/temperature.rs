@@ -208,7 +208,9 @@ fn before(
         scenario.target.material = material.clone();
         for distance_m in &distances {
             scenario.target.distance_m = *distance_m;
-            sighted.push(Sighted::new(Study::new(&scenario, library)?, envelope)?);
+            for study in Study::of_each_target(&scenario, library)? {
+                sighted.push(Sighted::new(study, envelope)?);
+            }
         }
     }
     Ok(Before { named: named.clone(), sighted, approach })

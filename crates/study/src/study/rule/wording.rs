@@ -88,6 +88,17 @@ impl Serialize for Proviso {
     }
 }
 
+impl EnvelopeResult {
+    /// Names, those of classes with how many spectra they rest on.
+    fn with_spectra(&self, names: &[String]) -> Vec<String> {
+        let named = |name: &String| match self.classes.iter().find(|class| class.name == *name) {
+            Some(class) => format!("any of {} spectra of {name}", class.spectra),
+            None => name.clone(),
+        };
+        names.iter().map(named).collect()
+    }
+}
+
 impl Display for Quotable {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         write!(
@@ -95,8 +106,8 @@ impl Display for Quotable {
             "A camera meets this rule if, in every scene of the envelope ({}), it tells {} from {} with {} reliability \
              (statistical distance d of at least {})",
             in_words(&self.envelope, self.stop.as_ref(), self.units),
-            either(&self.envelope.materials),
-            either(&self.envelope.alternatives),
+            either(&self.envelope.with_spectra(&self.envelope.materials)),
+            either(&self.envelope.with_spectra(&self.envelope.alternatives)),
             demanded(self.required),
             significant(self.required, 4),
         )?;

@@ -4,8 +4,10 @@
 mod emissivity;
 pub(in crate::study) mod linear;
 pub(in crate::study) mod ripple;
+pub(in crate::study) mod scatter;
 
 pub use emissivity::EmissivityErrors;
+pub use scatter::ScatterOf;
 
 use crate::study::size::Reach;
 use crate::study::{Study, Surface};
@@ -39,11 +41,12 @@ impl serde::Serialize for Elasticities {
 }
 
 impl Study {
-    /// What the verdict on `camera` hangs on, against `alternative`.
+    /// What the verdict on `camera` hangs on, against `alternative`, which is the `index`-th.
     pub(in crate::study) fn sensitivity(
         &self,
         camera: &Camera,
         alternative: &Surface,
+        index: usize,
     ) -> Result<Sensitivity> {
         let own = self.task(camera).own();
         let mut reach = Reach::new(self, alternative);
@@ -58,7 +61,7 @@ impl Study {
             };
             found.push((lever, value));
         }
-        let emissivity = self.emissivity_errors(camera, alternative)?;
+        let emissivity = self.emissivity_errors(camera, alternative, index)?;
         Ok(Sensitivity { elasticities: Elasticities(found), emissivity })
     }
 }

@@ -11,7 +11,18 @@ use std::fmt::{self, Display, Formatter};
 
 impl Display for Finding {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        self.answered(f)?;
+        match &self.classes {
+            None => self.answered(f)?,
+            Some(classes) => {
+                let of_all = Self {
+                    target: classes.target.name.clone(),
+                    alternative: self.alternative.is_some().then(|| classes.alternative.name.clone()),
+                    ..self.clone()
+                };
+                of_all.answered(f)?;
+                write!(f, " {classes}")?;
+            }
+        }
         match self.placeholders {
             Some([one, other]) => write!(
                 f,

@@ -6,10 +6,12 @@
 //! quadrature), so pairs are drawn and the nearest state of each is searched in full. Draw k takes stream k of the
 //! generator ChaCha8: the result does not depend on the number of threads.
 //!
+//! Where target or alternative is a class with a covariance, its errors are drawn of that (`scatter`).
+//!
 //! Assumptions: the noise is that of the spectra as they are; the limiting alternative stays the limiting one.
 
 use super::linear;
-use super::ripple::Ripple;
+use super::scatter::ScatterOf;
 use crate::study::identify::quantile;
 use crate::study::size::Solvers;
 use crate::study::{Study, Surface};
@@ -46,6 +48,9 @@ pub struct EmissivityErrors {
     pub share_met: f64,
     /// Deviation of the distance to first order in the errors; `None` for local distances and where it is 0.
     pub sigma_linear: Option<f64>,
+    /// What classes say of their scatter; the two figures above are then those of other surfaces.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub of_classes: Vec<ScatterOf>,
 }
 
 impl Study {
@@ -54,17 +59,19 @@ impl Study {
         &self,
         camera: &Camera,
         alternative: &Surface,
+        index: usize,
     ) -> Result<EmissivityErrors> {
         let spec = self.scenario.sensitivity.unwrap_or_default();
         let counting = self.counting_of(camera);
         let pair = [self.target.emissivity.as_slice(), alternative.emissivity.as_slice()];
         let mut solvers = Solvers::new(self, &self.bands);
         let (distance, nearest) = solvers.reached(self, pair, &counting, None)?;
-        let ripple = Ripple::new(self.bands.nodes_cm1(), spec.emissivity_error, spec.correlation_cm1);
+        let [(own, of_target), (other, of_alternative)] = self.scatters(index, spec);
+        let scatters = [&own, &other];
         let draw = |solvers: &mut Solvers<'_>, stream: usize| {
             let mut random = ChaCha8Rng::seed_from_u64(SEED);
             random.set_stream(stream as u64);
-            let shaken = pair.map(|emissivity| ripple.applied(emissivity, &mut random));
+            let shaken = [0, 1].map(|which| scatters[which].applied(pair[which], &mut random));
             let pair = [shaken[0].as_slice(), shaken[1].as_slice()];
             demand::ledger_of(|| Ok(solvers.reached(self, pair, &counting, None)?.0))
         };
@@ -74,8 +81,7 @@ impl Study {
         let met = distances.iter().filter(|distance| **distance >= self.required).count();
         let sigma_linear = nearest
             .filter(|_| distance > 0.0)
-            .map(|state| linear::sigma(self, alternative, &state, &counting, distance, &ripple))
-            .map(|per_unit| per_unit * spec.emissivity_error);
+            .map(|state| linear::sigma(self, alternative, &state, &counting, distance, scatters));
         Ok(EmissivityErrors {
             error: spec.emissivity_error,
             correlation_cm1: spec.correlation_cm1,
@@ -86,12 +92,14 @@ impl Study {
             distance_95: quantile(&distances, 0.95),
             share_met: met as f64 / DRAWS as f64,
             sigma_linear,
+            of_classes: of_target.into_iter().chain(of_alternative).collect(),
         })
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::ripple::Ripple;
     use super::*;
 
     /// Mean squares and products of 4000 draws; five deviations of such means, √(2/4000) = 0.022, are allowed.

@@ -5,24 +5,26 @@
 //!
 //! ∂d/∂e_j = κ r_w w_j C_j/(2 d √(N + σ²)),   ∂d/∂e′_j = −κ r_w w_j C′_j/(2 d √(N′ + σ²)),
 //!
-//! and the variance is Σ_jk g_j g_k ρ_jk for each surface; with ρ a chain along ascending wavenumber that is one sum.
+//! and the variance is s² Σ_jk g_j g_k ρ_jk for each surface; with ρ a chain along ascending wavenumber that is one sum. By the sample
+//! covariance of a class it is Σ_i (g·m_i)².
 
 use super::ripple::Ripple;
+use super::scatter::Scatter;
 use crate::study::{Study, Surface};
 use hadar::fisher::Counting;
 use hadar::scene::State;
 
-/// Deviation of d per unit of deviation of the emissivities.
+/// Deviation of d.
 pub(in crate::study) fn sigma(
     study: &Study,
     alternative: &Surface,
     nearest: &State,
     counting: &Counting,
     distance: f64,
-    ripple: &Ripple,
+    scatters: [&Scatter<'_>; 2],
 ) -> f64 {
     let [target, other] = gradients(study, alternative, nearest, counting, distance);
-    (variance(&target, ripple) + variance(&other, ripple)).sqrt()
+    (scatters[0].variance(&target) + scatters[1].variance(&other)).sqrt()
 }
 
 /// ∂d/∂e of target and alternative at every node.
@@ -58,6 +60,16 @@ pub(in crate::study) fn gradients(
         let weighed = contrast.zip(bands.weights_cm1()).map(|(contrast, weight)| contrast * weight);
         of_band.zip(weighed).map(|(slope, weighed)| slope * weighed).collect()
     })
+}
+
+impl Scatter<'_> {
+    /// Variance of Σ_j g_j δ_j.
+    fn variance(&self, gradient: &[f64]) -> f64 {
+        match self {
+            Self::Ripple(ripple) => ripple.sigma * ripple.sigma * variance(gradient, ripple),
+            Self::Modes(modes) => modes.iter().map(|mode| hadar::sum::dot(gradient, mode).powi(2)).sum(),
+        }
+    }
 }
 
 /// Σ_jk g_j g_k ρ_jk for errors of unit deviation.

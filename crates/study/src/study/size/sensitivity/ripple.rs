@@ -8,7 +8,7 @@ use rand_distr::{Distribution, StandardNormal};
 pub(in crate::study) struct Ripple {
     /// Nodes in ascending wavenumber, with the correlation to the one before.
     pub(in crate::study) chain: Vec<(usize, f64)>,
-    sigma: f64,
+    pub(in crate::study) sigma: f64,
 }
 
 impl Ripple {

@@ -1,0 +1,248 @@
+//! Classes of several spectra, as a person has them: the verdict, what it rests on, every mistake.
+
+use crate::support::answers::{close, has, number, texts};
+use crate::support::folder::Folder;
+
+/// A person of two spectra before robots of three, from files.
+const CLASSES: &str = r#"[class.person]
+materials = ["skin.csv", "cloth.csv"]
+weights = [1.0, 3.0]
+
+[class.robot]
+materials = ["robots/"]
+
+[target]
+material = "person"
+temperature = "37 degC"
+
+[[environment]]
+temperature = "20 degC"
+lighting = 0.5
+
+[alternatives]
+materials = ["robot"]
+
+[bands]
+start = "760 cm^-1"
+stop = "1240 cm^-1"
+step = "20 cm^-1"
+
+[camera]
+preset = "ideal-pnrd"
+exposure = "1 ms"
+
+[requirement]
+distance = 1.0
+"#;
+
+/// A spectrum of a level with one wave.
+fn spectrum(level: f64, wave: f64, periods: f64) -> String {
+    let mut text = "wavenumber_cm1,emissivity\n".to_owned();
+    for i in 0..=60 {
+        let (nu, t) = (700.0 + 10.0 * f64::from(i), f64::from(i) / 60.0);
+        text += &format!("{nu},{}\n", level + wave * (6.3 * periods * t).cos());
+    }
+    text
+}
+
+fn folder(scenario: &str) -> Folder {
+    let folder = Folder::with(scenario);
+    std::fs::create_dir_all(folder.path().join("robots")).unwrap();
+    std::fs::create_dir_all(folder.path().join("none")).unwrap();
+    for (name, level, wave, periods) in [
+        ("skin.csv", 0.95, 0.01, 1.0),
+        ("cloth.csv", 0.88, 0.02, 0.5),
+        ("robots/paint-a.csv", 0.93, 0.02, 1.5),
+        ("robots/paint-b.csv", 0.90, 0.03, 2.0),
+        ("robots/steel.csv", 0.30, 0.02, 0.7),
+    ] {
+        folder.file(name, &spectrum(level, wave, periods));
+    }
+    folder.file("short.csv", "wavenumber_cm1,emissivity\n800,0.5\n1400,0.6\n");
+    folder
+}
+
+/// The answer on classes is that of the worst of all pairs of members, each asked for by itself.
+#[test]
+fn a_class_is_as_good_as_its_worst_member() {
+    let folder = folder(CLASSES);
+    let answer = folder.json(&["identify", "a.toml", "--json"]);
+    let class = &answer["classes"][0];
+    has(
+        class,
+        &[
+            "target",
+            "alternative",
+            "pairs",
+            "searched",
+            "worst",
+            "distance",
+            "distance_lower",
+            "told_apart",
+            "leave_one_out",
+        ],
+    );
+    assert_eq!(number(&class["pairs"]), 6.0);
+    let (mut least, mut told, mut shares, mut mean) = (f64::INFINITY, 0.0, 0.0, 0.0);
+    let mut worst = Vec::new();
+    for (own, weight) in [("skin.csv", 0.25), ("cloth.csv", 0.75)] {
+        for other in ["robots/paint-a.csv", "robots/paint-b.csv", "robots/steel.csv"] {
+            let alone = CLASSES
+                .replace("material = \"person\"", &format!("material = \"{own}\""))
+                .replace("materials = [\"robot\"]", &format!("materials = [\"{other}\"]"));
+            folder.file("pair.toml", &alone);
+            let pair = folder.json(&["identify", "pair.toml", "--json"])["pairs"][0].clone();
+            let distance = number(&pair["statistical_distance"]);
+            if distance < least {
+                (least, worst) =
+                    (distance, vec![format!("person/{}", stem(own)), format!("robot/{}", stem(other))]);
+            }
+            shares += weight / 3.0;
+            told += weight / 3.0 * f64::from(u8::from(distance >= 1.0));
+            mean += weight / 3.0 * number(&pair["detection_probability"]);
+        }
+    }
+    close("shares", shares, 1.0, 1e-12);
+    close("the worst pair", number(&class["distance"]), least, 1e-6);
+    assert_eq!(texts(&class["worst"]), worst);
+    close("the pair in the answer", number(&answer["pairs"][0]["statistical_distance"]), least, 1e-6);
+    assert!((number(&class["share_of_pairs_told"]) - told).abs() < 1e-12);
+    let [low, high] = [0, 1].map(|end| number(&class["mean_detection_probability"][end]));
+    assert!(low <= mean + 1e-6 && mean <= high + 1e-6, "{low} {mean} {high}");
+    let text = folder.run(&["size", "a.toml"]);
+    assert!(
+        text.stdout.contains("It rests on 2 spectra of person and 3 spectra of robot"),
+        "{}",
+        text.stdout
+    );
+}
+
+fn stem(name: &str) -> &str {
+    name.rsplit('/').next().unwrap().trim_end_matches(".csv")
+}
+
+/// Mixtures of members can only be nearer; a class of a sample covariance is its mean, and says how it scatters.
+#[test]
+fn mixtures_and_means_of_a_class() {
+    let alone = folder(CLASSES).json(&["size", "a.toml", "--json"]);
+    let mixed = CLASSES.replace("[class.robot]", "[class.robot]\nmixtures = true");
+    let answer = folder(&mixed).json(&["size", "a.toml", "--json"]);
+    let (members, mixtures) = (&alone["classes"][0], &answer["classes"][0]["mixtures"]);
+    let (lower, found) = (number(&mixtures["distance_lower"]), number(&mixtures["distance"]));
+    assert!(lower <= found && found <= number(&members["distance"]) * (1.0 + 1e-9), "{mixtures}");
+    let mean = CLASSES.replace("[class.robot]", "[class.robot]\ncovariance = \"sample\"");
+    let answer = folder(&mean).json(&["size", "a.toml", "--json"]);
+    let of = &answer["sensitivity"]["emissivity"]["of_classes"][0];
+    assert_eq!((of["class"].as_str(), number(&of["spectra"])), (Some("robot"), 3.0));
+    // Sample variance of three spectra, averaged over the bands, written down once more.
+    let value = |level: f64, wave: f64, periods: f64, t: f64| level + wave * (6.3 * periods * t).cos();
+    let bands: Vec<f64> = (0..25).map(|i| (60.0 + 20.0 * f64::from(i)) / 600.0).collect();
+    let variance: f64 = bands
+        .iter()
+        .map(|t| {
+            let e = [value(0.93, 0.02, 1.5, *t), value(0.90, 0.03, 2.0, *t), value(0.30, 0.02, 0.7, *t)];
+            let mean = e.iter().sum::<f64>() / 3.0;
+            e.iter().map(|e| (e - mean).powi(2)).sum::<f64>() / 2.0
+        })
+        .sum();
+    close("the scatter of the class", number(&of["error"]), (variance / 25.0).sqrt(), 1e-9);
+}
+
+/// Every member is searched in a rule, and the certificate says how many there are.
+#[test]
+fn a_rule_looks_at_every_member() {
+    let rule = CLASSES.replace("[camera]\npreset = \"ideal-pnrd\"\nexposure = \"1 ms\"\n", "")
+        + "\n[envelope]\ntemperature = [\"30 degC\", \"37 degC\"]\n";
+    let rule = format!("cameras = [\"ideal-pnrd\"]\n{rule}");
+    let folder = folder(&rule);
+    let answer = folder.json(&["rule", "a.toml", "--json"]);
+    let limiting = &answer["cameras"][0]["limiting"];
+    let mut least = f64::INFINITY;
+    for own in ["skin.csv", "cloth.csv"] {
+        for other in ["robots/paint-a.csv", "robots/paint-b.csv", "robots/steel.csv"] {
+            let alone = rule
+                .replace("material = \"person\"", &format!("material = \"{own}\""))
+                .replace("materials = [\"robot\"]", &format!("materials = [\"{other}\"]"));
+            folder.file("pair.toml", &alone);
+            least = least.min(number(&folder.json(&["rule", "pair.toml", "--json"])["cameras"][0]["margin"]));
+        }
+    }
+    // Worst cases are proved to 1 %.
+    close("the margin", number(&answer["cameras"][0]["margin"]), least, 0.01);
+    assert!(limiting["target"].as_str().unwrap().starts_with("person/"), "{limiting}");
+    let text = folder.run(&["rule", "a.toml"]).stdout;
+    assert!(text.contains("any of 2 spectra of person") || text.contains("person"), "{text}");
+}
+
+#[test]
+fn every_mistake_about_classes_is_one_line() {
+    let with = |old: &str, new: &str| CLASSES.replace(old, new);
+    for (scenario, flags, said) in [
+        (
+            with("materials = [\"robots/\"]", "materials = []"),
+            vec![],
+            "class.robot.materials: the class has no members; write",
+        ),
+        (with("\"robots/\"", "\"none/\""), vec![], "no .csv or .txt file is here"),
+        (with("\"robots/\"", "\"robots/*.txt\""), vec![], "no .csv or .txt file is here"),
+        (
+            with("\"cloth.csv\"", "\"short.csv\""),
+            vec![],
+            "target.material: 1 of 2 members of `person` do not cover the bands (760 to 1240 cm^-1): person/short; leave them out",
+        ),
+        (
+            with(
+                "[class.person]\nmaterials = [\"skin.csv\", \"cloth.csv\"]\nweights = [1.0, 3.0]",
+                "[class.person]\nmaterials = [\"short.csv\"]",
+            ),
+            vec!["--skip-uncovered"],
+            "1 of 1 members of `person` do not cover the bands (760 to 1240 cm^-1): person/short; choose bands",
+        ),
+        (
+            with("class.robot", "class.gold"),
+            vec![],
+            "class.gold: `gold` is a class here and a material of the library; call the class otherwise",
+        ),
+        (with("class.robot", "class.\"a b\""), vec![], "`a b` is no name for a class; write small letters"),
+        (
+            with("weights = [1.0, 3.0]", "weights = [1.0]"),
+            vec![],
+            "class.person.weights: 1 weights for 2 materials; write one for each",
+        ),
+        (
+            with("weights = [1.0, 3.0]", "weights = [0.0, 0.0]"),
+            vec![],
+            "class.person: the weights of the class add up to nothing",
+        ),
+        (with("weights = [1.0, 3.0]", "weights = [-1.0, 3.0]"), vec![], "class.person.weights[0]"),
+        (
+            with("weights = [1.0, 3.0]", "covariance = \"sample\"\nmixtures = true"),
+            vec![],
+            "mixtures of a class that stands as its mean",
+        ),
+        (
+            with("weights = [1.0, 3.0]", "emissivity_error = 0.01"),
+            vec![],
+            "errors of an emissivity without their correlation",
+        ),
+        (with("weights = [1.0, 3.0]", "correlation = \"10 cm^-1\""), vec![], "a correlation of no errors"),
+        (
+            with("\"cloth.csv\"", "\"skin.csv\""),
+            vec![],
+            "class.person.materials[1]: the same is already in the list",
+        ),
+        (
+            with("temperature = \"20 degC\"", "temperature = \"20 degC\"\nmaterial = \"robot\""),
+            vec![],
+            "environment[0].material: `robot` is a class of several spectra, and one is needed here",
+        ),
+        (
+            CLASSES.to_owned(),
+            vec!["--bands", "3"],
+            "bands are chosen for one material against others, and there is a class",
+        ),
+    ] {
+        let said_here = folder(&scenario).refusal(&[&["identify", "a.toml"], flags.as_slice()].concat());
+        assert!(said_here.contains(said), "{said_here}\n{said}");
+    }
+}

@@ -1,0 +1,126 @@
+//! What the members of two classes say together.
+
+use hadar::identifiability::multi::ClassDistances;
+use std::fmt::{self, Display, Formatter};
+
+/// A class in an answer; a material is one of itself.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
+pub struct ClassSide {
+    /// Name.
+    pub name: String,
+    /// Spectra that it rests on.
+    pub spectra: usize,
+    /// Whether it is a class at all.
+    pub is_class: bool,
+    /// Whether mixtures of its members belong to it.
+    pub mixtures: bool,
+    /// Whether it stands as the mean of its spectra.
+    pub mean: bool,
+    /// Its members, and their shares.
+    pub members: Vec<String>,
+    /// A share for each; Σ = 1.
+    pub weights: Vec<f64>,
+}
+
+/// The worst pair without one of its members.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
+pub struct LeftOut {
+    /// Class of the member.
+    pub class: String,
+    /// The member.
+    pub member: String,
+    /// Distance of the worst pair that is left.
+    pub distance: Option<f64>,
+}
+
+/// The worst mixture of members.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
+pub struct MixtureAnswer {
+    /// Shares of the target's members that are in it.
+    pub target: Vec<(String, f64)>,
+    /// Shares of the alternative's members that are in it.
+    pub alternative: Vec<(String, f64)>,
+    /// Distance of the two, all parts in one lighting.
+    pub distance: f64,
+    /// No mixture is nearer, even if every part has a lighting of its own.
+    pub distance_lower: f64,
+}
+
+/// What the members of the target's class and of one alternative's say together.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[non_exhaustive]
+pub struct ClassAnswer {
+    /// The target's class.
+    pub target: ClassSide,
+    /// The alternative's.
+    pub alternative: ClassSide,
+    /// Pairs of members.
+    pub pairs: usize,
+    /// Pairs whose distance was searched; the others were proved to decide nothing.
+    pub searched: usize,
+    /// Whether distances are the camera's, else per √photon.
+    pub statistical: bool,
+    /// Statistical distance demanded; `None` without a camera.
+    pub required: Option<f64>,
+    /// The pair of members that is hardest to tell apart.
+    pub worst: [String; 2],
+    /// Its distance.
+    pub distance: f64,
+    /// No pair of members is surely nearer than this.
+    pub distance_lower: f64,
+    /// Whether the camera tells all pairs, and all mixtures where they belong to the classes; `None` without a camera.
+    pub told_apart: Option<bool>,
+    /// Share of the pairs that the camera tells, by the weights of the members.
+    pub share_of_pairs_told: Option<f64>,
+    /// Mean detection probability over the pairs: it is between these.
+    pub mean_detection_probability: Option<[f64; 2]>,
+    /// The worst pair without the one or the other of its members.
+    pub leave_one_out: Vec<LeftOut>,
+    /// The worst mixture, where mixtures belong to a class.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mixtures: Option<MixtureAnswer>,
+    /// What is known of every pair, target by target.
+    #[serde(skip)]
+    pub distances: ClassDistances,
+}
+
+impl ClassAnswer {
+    /// What a verdict may rest on.
+    #[must_use]
+    pub fn decisive(&self) -> f64 {
+        self.mixtures
+            .as_ref()
+            .map_or(self.distance_lower, |found| found.distance_lower.min(self.distance_lower))
+    }
+
+    /// The greatest probability with which one more spectrum, drawn as those of the class were, is nearer than all of them: 1/(n + 1);
+    /// `None` where the class is one material or stands as its mean.
+    #[must_use]
+    pub fn chance_one_more_is_nearer(side: &ClassSide) -> Option<f64> {
+        (side.is_class && !side.mean).then(|| 1.0 / (side.spectra as f64 + 1.0))
+    }
+}
+
+/// How many spectra a verdict rests on, and which two decide.
+impl Display for ClassAnswer {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let rests = |side: &ClassSide| match (side.is_class, side.mean) {
+            (false, _) => side.name.clone(),
+            (true, true) => format!("the mean of {} spectra of {}", side.spectra, side.name),
+            (true, false) if side.spectra == 1 => format!("1 spectrum of {}", side.name),
+            (true, false) => format!("{} spectra of {}", side.spectra, side.name),
+        };
+        let [own, other] = &self.worst;
+        write!(f, "It rests on {} and {}", rests(&self.target), rests(&self.alternative))?;
+        if self.pairs > 1 {
+            write!(f, "; the hardest of {} pairs is {own} against {other}", self.pairs)?;
+        }
+        match &self.mixtures {
+            Some(_) => f.write_str(", and mixtures are counted in."),
+            None => f.write_str("."),
+        }
+    }
+}
