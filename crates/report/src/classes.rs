@@ -6,7 +6,6 @@ use crate::table::{Table, number, optional};
 use crate::text::significant;
 use hadar::words::share;
 use hadar_study::study::{ClassAnswer, ClassSide};
-use hadar_study::words::probability;
 use std::fmt::Write as _;
 
 /// Members of a mixture that are named.
@@ -18,11 +17,14 @@ pub(crate) fn text(answers: &[ClassAnswer]) -> String {
     for answer in answers {
         let _ = writeln!(
             out,
-            "Classes: {} against {}, {} pairs of members ({} searched, the others proved to decide nothing)",
+            "Classes: {} against {}, {} pairs of members{}",
             with_spectra(&answer.target),
             with_spectra(&answer.alternative),
             answer.pairs,
-            answer.searched
+            match answer.searched {
+                searched if searched == answer.pairs => String::new(),
+                searched => format!(" ({searched} searched, the others are proved to decide nothing)"),
+            }
         );
         let mut line = |label: &str, text: String| {
             let _ = writeln!(out, "  {label:<34} {text}");
@@ -35,11 +37,10 @@ pub(crate) fn text(answers: &[ClassAnswer]) -> String {
             line("pairs that the camera tells", format!("{} by the members' weights", share(told)));
         }
         if let Some([low, high]) = answer.mean_detection_probability {
-            let d =
-                |probability: f64| hadar::identifiability::detection::distance_for_probability(probability);
-            let words = match (d(low), d(high)) {
-                (Ok(low), Ok(high)) if high - low < 1e-3 => probability(low, 3),
-                _ => format!("{low:.5} to {high:.5}"),
+            let words = match high - low {
+                _ if low > 0.9995 => "above 0.9995".to_owned(),
+                open if open < 1e-3 => format!("{low:.3}"),
+                _ => format!("{low:.3} to {high:.3}"),
             };
             line("detection probability, mean", words);
         }
@@ -115,7 +116,8 @@ pub(crate) fn table(answers: &[ClassAnswer]) -> Table {
 }
 
 /// The distances of all pairs of members; of those that decide nothing what is proved of them.
-pub(crate) fn pictures(answers: &[ClassAnswer]) -> Vec<Plot> {
+#[must_use]
+pub fn pictures(answers: &[ClassAnswer]) -> Vec<Plot> {
     let drawn = answers.iter().filter(|answer| answer.pairs > 1);
     drawn.map(|answer| picture(answer, answers.len() > 1)).collect()
 }

@@ -7,7 +7,7 @@
 pub mod accuracy;
 pub mod bundle;
 pub mod cameras;
-mod classes;
+pub mod classes;
 pub mod companion;
 pub mod decompose;
 pub mod figures;

@@ -109,8 +109,8 @@ impl Ord for Piece {
 }
 
 impl Mixtures<'_> {
-    /// The least distance of mixtures, proved to `tolerance` of itself where that takes no more than some thousand intervals. Nobody asks
-    /// for what is farther than `enough`, where the proof may end.
+    /// The least distance of mixtures, proved to `tolerance` of itself, or of `enough`, where that takes no more than some thousand
+    /// intervals. Nobody asks for what is farther than `enough`, where the proof may end.
     ///
     /// # Errors
     /// Unknowns other than temperature and lighting, priors, more than four surroundings; a scene without photons.
@@ -133,7 +133,9 @@ impl Mixtures<'_> {
         while let Some(piece) = heap.pop() {
             let least = best.as_ref().map_or(f64::INFINITY, |(best, _)| best.cost);
             lower = piece.bound.max(lower);
-            let done = lower >= least * (1.0 - tolerance).powi(2) || lower >= enough * enough;
+            // Of what is far nearer than anybody asks for only that is of interest.
+            let close = enough.is_finite() && least.sqrt() - lower.sqrt() <= tolerance * enough;
+            let done = lower >= least * (1.0 - tolerance).powi(2) || lower >= enough * enough || close;
             if done || boxes >= MOST_BOXES {
                 break;
             }

@@ -236,13 +236,24 @@ fn matches(pattern: &[u8], name: &[u8]) -> bool {
 
 /// The materials' own names; where several have the same, with what tells their files apart.
 fn unique_names(found: &[(Material, Option<PathBuf>, f64)]) -> Result<Vec<String>> {
-    let mut places: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
+    // A library qualifies names that several files define with those of the files.
+    let own = |material: &Material| -> (String, Option<String>) {
+        match material.name().split_once('@') {
+            Some((name, file)) => (name.to_owned(), Some(file.to_owned())),
+            None => (material.name().to_owned(), None),
+        }
+    };
+    let mut places: BTreeMap<String, Vec<usize>> = BTreeMap::new();
     for (i, (material, ..)) in found.iter().enumerate() {
-        places.entry(material.name()).or_default().push(i);
+        places.entry(own(material).0).or_default().push(i);
     }
-    let mut names: Vec<String> = found.iter().map(|(material, ..)| material.name().to_owned()).collect();
+    let mut names: Vec<String> = found.iter().map(|(material, ..)| own(material).0).collect();
     for same in places.values().filter(|same| same.len() > 1) {
-        let stems: Vec<Vec<String>> = same.iter().map(|i| parts(found[*i].1.as_deref())).collect();
+        let stem = |i: &usize| {
+            let (material, file, _) = &found[*i];
+            own(material).1.or_else(|| file.as_deref().map(read::stem)).unwrap_or_default()
+        };
+        let stems: Vec<Vec<String>> = same.iter().map(|i| parts(&stem(i))).collect();
         let at_end = |from_end: bool| {
             let part = |stem: &Vec<String>, k: usize| match from_end {
                 true => stem.len().checked_sub(k + 1).and_then(|at| stem.get(at)).cloned(),
@@ -268,8 +279,7 @@ fn unique_names(found: &[(Material, Option<PathBuf>, f64)]) -> Result<Vec<String
 }
 
 /// What the name of a file is put together of.
-fn parts(file: Option<&Path>) -> Vec<String> {
-    let stem = file.map(read::stem).unwrap_or_default();
+fn parts(stem: &str) -> Vec<String> {
     stem.split('-').filter(|part| !part.is_empty()).map(str::to_owned).collect()
 }
 

@@ -15,7 +15,7 @@ use std::time::Instant;
 #[derive(Debug, Args)]
 pub(super) struct ReproduceArgs {
     /// Figures and tables: fig3b, figs7, fig3c, fig4, figs12, figs17, figs20, edfig6, edfig9, tabs2, tabs5, policy, or all
-    /// of these; further studies, no part of `all`: decompose-limits, exact-probability, priors, library-figures (with --library FILE)
+    /// of these; further studies, no part of `all`: decompose-limits, exact-probability, priors, library-figures (with --library FILE), person-or-robot (with --library twice)
     #[arg(value_name = "ID", default_value = "all")]
     items: Vec<String>,
     /// Some of the experiments only: within a minute on two cores
@@ -159,6 +159,18 @@ fn asked(names: &[String]) -> Result<Asked> {
 
 /// The materials of the studies: the built-in ones, but those of --library for the study of a whole library.
 fn library(items: &[Item], studies: &[FurtherStudy], global: &Global) -> Result<Library> {
+    let classes = studies.contains(&FurtherStudy::PersonOrRobot);
+    if classes && items.len() + studies.len() > 1 {
+        let found = "person-or-robot is made with another library than the rest";
+        return Err(Error::malformed(found, "ask for it alone"));
+    }
+    if classes && global.library.is_empty() {
+        return Err(Error::malformed(
+            "person-or-robot takes measured spectra that are no part of this program",
+            "give them with --library, twice: the folder of the ECOSTRESS spectral library, and the table `emiLib_synthetic` of \
+             github.com/FanglinBao/HADAR as a CSV file",
+        ));
+    }
     let own = studies.contains(&FurtherStudy::LibraryFigures);
     if own && items.len() + studies.len() > 1 {
         let found = "library-figures is made with another library than the rest";
@@ -171,7 +183,7 @@ fn library(items: &[Item], studies: &[FurtherStudy], global: &Global) -> Result<
              github.com/FanglinBao/HADAR as a CSV file",
         ));
     }
-    if !own && (global.only_library || !global.library.is_empty()) {
+    if !own && !classes && (global.only_library || !global.library.is_empty()) {
         let found = "the paper's figures are made with the built-in library";
         return Err(Error::malformed(found, "leave out --library and --only-library"));
     }
@@ -237,7 +249,8 @@ fn overview(items: &[Item], effort: Effort, ledger: &[Line]) -> String {
     page.push_str(
         "\nFurther studies, made by `hadar reproduce` when asked for by name: [exact decisions](exact_probability/README.md), \
          [the paper's own library](library_figures/README.md), [priors](priors/README.md), \
-         [heat cubes against their limits](decompose_limits/README.md); and [run time against error](accuracy/README.md), by `hadar accuracy`.\n\n",
+         [heat cubes against their limits](decompose_limits/README.md), \
+         [person or robot, of several spectra each](person_or_robot/README.md); and [run time against error](accuracy/README.md), by `hadar accuracy`.\n\n",
     );
     page.push_str(&markdown(ledger));
     page

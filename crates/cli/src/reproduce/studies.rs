@@ -5,6 +5,7 @@ mod exact_probability;
 mod library_figures;
 mod page;
 mod paper_scene;
+mod person_or_robot;
 mod priors;
 
 use super::order::{Order, Progress};
@@ -23,12 +24,19 @@ pub(crate) enum FurtherStudy {
     LibraryFigures,
     /// How near a decomposed heat cube comes to its limits.
     DecomposeLimits,
+    /// A person against a robot, of several spectra each.
+    PersonOrRobot,
 }
 
 impl FurtherStudy {
     /// All of them, the quickest first.
-    pub(crate) const ALL: [Self; 4] =
-        [Self::DecomposeLimits, Self::Priors, Self::ExactProbability, Self::LibraryFigures];
+    pub(crate) const ALL: [Self; 5] = [
+        Self::PersonOrRobot,
+        Self::DecomposeLimits,
+        Self::Priors,
+        Self::ExactProbability,
+        Self::LibraryFigures,
+    ];
 
     /// The name on the command line.
     #[must_use]
@@ -38,6 +46,7 @@ impl FurtherStudy {
             Self::Priors => "priors",
             Self::LibraryFigures => "library-figures",
             Self::DecomposeLimits => "decompose-limits",
+            Self::PersonOrRobot => "person-or-robot",
         }
     }
 
@@ -55,6 +64,7 @@ impl FurtherStudy {
             Self::Priors => "What priors do",
             Self::LibraryFigures => "How often the local distance misleads in a whole library",
             Self::DecomposeLimits => "How near a decomposed heat cube comes to what the photons allow",
+            Self::PersonOrRobot => "Person or robot, with classes on both sides",
         }
     }
 
@@ -79,6 +89,7 @@ impl FurtherStudy {
             Self::Priors => priors::make(order, library, progress),
             Self::LibraryFigures => library_figures::make(order, library, progress),
             Self::DecomposeLimits => decompose_limits::make(order, library, progress),
+            Self::PersonOrRobot => person_or_robot::make(order, library, progress),
         }?;
         Ok((bundle.titled(self.title()), finding))
     }
