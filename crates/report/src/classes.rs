@@ -145,7 +145,7 @@ fn picture(answer: &ClassAnswer, several: bool) -> Plot {
         format!("Every {} against every {}", answer.target.name, answer.alternative.name),
         (format!("{}, the target", answer.target.name), short(rows)),
         (format!("{}, the alternative", answer.alternative.name), short(columns)),
-        (Axis::log(axis).range(least, most.max(2.0 * least)), values),
+        (Axis::log(axis).range(least, if most > 1.01 * least { most } else { 2.0 * least }), values),
     );
     if beyond {
         figure = figure.subtitle(

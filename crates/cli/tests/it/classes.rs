@@ -66,7 +66,7 @@ fn folder(scenario: &str) -> Folder {
 #[test]
 fn a_class_is_as_good_as_its_worst_member() {
     let folder = folder(CLASSES);
-    let answer = folder.json(&["identify", "a.toml", "--json"]);
+    let answer = folder.json(&["identify", "a.toml"]);
     let class = &answer["classes"][0];
     has(
         class,
@@ -91,7 +91,7 @@ fn a_class_is_as_good_as_its_worst_member() {
                 .replace("material = \"person\"", &format!("material = \"{own}\""))
                 .replace("materials = [\"robot\"]", &format!("materials = [\"{other}\"]"));
             folder.file("pair.toml", &alone);
-            let pair = folder.json(&["identify", "pair.toml", "--json"])["pairs"][0].clone();
+            let pair = folder.json(&["identify", "pair.toml"])["pairs"][0].clone();
             let distance = number(&pair["statistical_distance"]);
             if distance < least {
                 (least, worst) =
@@ -124,14 +124,14 @@ fn stem(name: &str) -> &str {
 /// Mixtures of members can only be nearer; a class of a sample covariance is its mean, and says how it scatters.
 #[test]
 fn mixtures_and_means_of_a_class() {
-    let alone = folder(CLASSES).json(&["size", "a.toml", "--json"]);
+    let alone = folder(CLASSES).json(&["size", "a.toml"]);
     let mixed = CLASSES.replace("[class.robot]", "[class.robot]\nmixtures = true");
-    let answer = folder(&mixed).json(&["size", "a.toml", "--json"]);
+    let answer = folder(&mixed).json(&["size", "a.toml"]);
     let (members, mixtures) = (&alone["classes"][0], &answer["classes"][0]["mixtures"]);
     let (lower, found) = (number(&mixtures["distance_lower"]), number(&mixtures["distance"]));
     assert!(lower <= found && found <= number(&members["distance"]) * (1.0 + 1e-9), "{mixtures}");
     let mean = CLASSES.replace("[class.robot]", "[class.robot]\ncovariance = \"sample\"");
-    let answer = folder(&mean).json(&["size", "a.toml", "--json"]);
+    let answer = folder(&mean).json(&["size", "a.toml"]);
     let of = &answer["sensitivity"]["emissivity"]["of_classes"][0];
     assert_eq!((of["class"].as_str(), number(&of["spectra"])), (Some("robot"), 3.0));
     // Sample variance of three spectra, averaged over the bands, written down once more.
@@ -155,7 +155,7 @@ fn a_rule_looks_at_every_member() {
         + "\n[envelope]\ntemperature = [\"30 degC\", \"37 degC\"]\n";
     let rule = format!("cameras = [\"ideal-pnrd\"]\n{rule}");
     let folder = folder(&rule);
-    let answer = folder.json(&["rule", "a.toml", "--json"]);
+    let answer = folder.json(&["rule", "a.toml"]);
     let limiting = &answer["cameras"][0]["limiting"];
     let mut least = f64::INFINITY;
     for own in ["skin.csv", "cloth.csv"] {
@@ -164,7 +164,7 @@ fn a_rule_looks_at_every_member() {
                 .replace("material = \"person\"", &format!("material = \"{own}\""))
                 .replace("materials = [\"robot\"]", &format!("materials = [\"{other}\"]"));
             folder.file("pair.toml", &alone);
-            least = least.min(number(&folder.json(&["rule", "pair.toml", "--json"])["cameras"][0]["margin"]));
+            least = least.min(number(&folder.json(&["rule", "pair.toml"])["cameras"][0]["margin"]));
         }
     }
     // Worst cases are proved to 1 %.

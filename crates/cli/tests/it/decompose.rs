@@ -251,3 +251,45 @@ fn methods_say_what_they_are() {
     let refused = folder.run(&["decompose", "b.toml", "--method", "grey-body"]);
     assert!(refused.stderr.contains("unknown.gain") && refused.stderr.contains("take --method ml or te"));
 }
+
+/// A class in the library: its members are materials, and its pixels are counted together; the wall of the cube is one of them.
+#[test]
+fn a_class_in_the_library_counts_its_members_together() {
+    let folder = with(SCENARIO);
+    let column = |name: &str, i: usize| {
+        let text = (0..BANDS).fold("wavenumber_cm1,emissivity".to_owned(), |text, w| {
+            format!("{text}\n{},{}", wavenumber(w), emissivity(i, w))
+        });
+        folder.file(name, &text);
+    };
+    column("wall.csv", 0);
+    column("pane.csv", 1);
+    let flat = "wavenumber_cm1,emissivity\n700,0.7\n1300,0.72\n";
+    folder.file("flat.csv", flat);
+    let classes = "\n[class.stone]\nmaterials = [\"wall.csv\", \"flat.csv\"]\nweights = [3.0, 1.0]\n";
+    let asked = SCENARIO
+        .replace("path = \"library.csv\"", "materials = [\"stone\", \"pane.csv\"]")
+        .replace("material = \"material.npy\"\n", "")
+        + classes;
+    folder.file("a.toml", &asked);
+    let answer = folder.json(&["decompose", "a.toml"]);
+    let names: Vec<&str> =
+        answer["materials"].as_array().unwrap().iter().filter_map(|m| m.as_str()).collect();
+    assert_eq!(names, ["stone/wall", "stone/flat", "pane"]);
+    let class = &answer["classes"][0];
+    assert_eq!(
+        (class["class"].as_str(), class["spectra"].as_u64(), class["pixels"].as_u64()),
+        (Some("stone"), Some(2), Some(3))
+    );
+    assert_eq!(answer["scenario"]["class"]["stone"]["weights"][0].as_f64(), Some(3.0));
+    for (old, new, said) in [
+        ("\"flat.csv\"", "\"none.csv\"", "there is no such file"),
+        ("weights = [3.0, 1.0]", "mixtures = true", "mixtures of the class `stone`; leave mixtures out"),
+        ("\"pane.csv\"]", "\"wall.csv\", \"stone\"]", "the same is already in the list"),
+        ("[\"stone\", ", "[\"stones\", ", "there is no material `stones`"),
+    ] {
+        folder.file("b.toml", &asked.replace(old, new));
+        let refused = folder.refusal(&["decompose", "b.toml"]);
+        assert!(refused.contains(said), "{refused}\n{said}");
+    }
+}

@@ -26,7 +26,7 @@ materials = ["human", "cloths", "tissue-blood-proxy"]
 materials = ["*paint@*", "black-paint", "black-nextel-paint", "gloss-black-paint", "lamp-ebony-black-paint", "metallic-silver-paint", "ultra-flat-black-paint"]
 
 [class.metal-robot]
-materials = ["al", "oxidizedSteel", "*-metal", "*-metal@*", "*-plate@*"]
+materials = ["al", "oxidized-steel", "*-metal", "*-metal@*", "*-plate@*"]
 "#;
 
 /// The scene of the paper in bands that all spectra cover.

@@ -272,7 +272,14 @@ fn materials(
         let mut all = Vec::new();
         for (i, reference) in spec.materials.iter().flatten().enumerate() {
             let found = listed(scenario, library, (i, reference), warnings);
-            all.extend(found.map_err(|error| (format!("library.materials[{i}]"), error))?);
+            let of_class = match reference {
+                MaterialRef::Name(name) if scenario.classes.contains_key(name) => {
+                    Some(format!("class.{name}"))
+                }
+                _ => None,
+            };
+            let key = of_class.unwrap_or_else(|| format!("library.materials[{i}]"));
+            all.extend(found.map_err(|error| (key, error))?);
         }
         let mut names = std::collections::BTreeSet::new();
         return match all.iter().find(|one| !names.insert(one.material.name())) {

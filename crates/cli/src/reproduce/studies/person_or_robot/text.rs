@@ -57,30 +57,32 @@ pub(super) fn readme(rows: &[Row]) -> String {
             left.push(vec![row.what.clone(), answer.worst.join(" against "), without.member.clone(), d]);
         }
     }
-    let today = rows.first();
-    let painted = rows.iter().find(|row| row.what == "person against painted-robot");
-    let mixed = rows.iter().find(|row| row.what.ends_with("mixed"));
-    let compared = match (today, painted) {
-        (Some(today), Some(painted)) => format!(
+    let of = |what: &str| rows.iter().find(|row| row.what == what);
+    let (today, painted) = (rows.first(), of("person against painted-robot"));
+    let (metal, mixed) = (of("person against metal-robot"), of("person against painted-robot, mixed"));
+    let compared = match (today, painted, metal, mixed) {
+        (Some(today), Some(painted), Some(metal), Some(mixed)) => format!(
             "Two curves, skin entered as 0.95 in all bands and the robot of the paper, ask for {} photons in these bands. Measured spectra of a \
-             person before painted robots ask for {}: the hardest pair decides, not the average one. {}'s distance, {} for the two curves, is {} then; \
-             that of {}, {}, is {}.",
+             person ask for {} before painted robots, for {} before metal ones, and for {} before robots painted in several colours within a pixel. \
+             The distance that {} reaches is {} for the two curves and {} in the worst of all cases; that of {} is {} and {}.",
             photons(today),
             photons(painted),
+            photons(metal),
+            photons(mixed),
             CAMERAS[0],
             significant(today.reached[0], 3),
-            significant(painted.reached[0], 3),
+            significant(mixed.reached[0], 2),
             CAMERAS[1],
             significant(today.reached[1], 3),
-            significant(painted.reached[1], 3),
+            significant(mixed.reached[1], 3),
         ),
         _ => String::new(),
     };
     let mixtures = mixed.and_then(|row| row.classes.first()?.mixtures.as_ref()).map_or_else(String::new, |found| {
         let parts = found.alternative.iter().map(|(name, part)| format!("{} {name}", share(*part)));
         format!(
-            "\n\nA robot painted in several colours within a pixel can be nearer still: {} per sqrt(photon) as {}; no mixture is nearer than {}, \
-             even with every part in a lighting of its own.",
+            "\n\nThe worst of the mixtures found is {} per sqrt(photon) away: {}. No mixture is nearer than {}, even with every part in a lighting of its \
+             own.",
             significant(found.distance, 3),
             parts.collect::<Vec<_>>().join(", "),
             significant(found.distance_lower, 3)
@@ -100,7 +102,7 @@ pub(super) fn readme(rows: &[Row]) -> String {
          Made by `hadar reproduce person-or-robot --library ECOSTRESS --library TABLE`: the folder of the ECOSTRESS spectral library \
          (Baldridge et al. 2009, Meerdink et al. 2019; its paints, metals and plates) and the table `emiLib_synthetic` that the authors of the paper publish \
          (github.com/FanglinBao/HADAR, MIT). Moist tissue is the built-in `tissue-blood-proxy`. The spectra themselves are not part of this program.\n\n\
-         {compared} What a single curve for skin promises, or denies, is not what any skin before any paint does.{mixtures}\n\n\
+         {compared} The verdicts stay: no for the one, yes for the other, and now for every pair of spectra.{mixtures}\n\n\
          ![Photons required](distances.png)\n\n{}\n\
          The distances are per sqrt(photon) in 44 bands of 10 cm^-1 from 810 to 1240 cm^-1, which all spectra cover; 37 degC, V = 0.5, surroundings of 20 degC; \
          the robot's temperature and lighting are unknown.\n\n\
