@@ -6,9 +6,9 @@ use std::path::Path;
 use hadar::instrument::figures::NoiseFigures;
 use hadar::units::Spectral;
 use hadar_study::scenario::{
-    Alternatives, AtmosphereSource, AtmosphereSpec, Background, BandSource, BandsSpec, CameraSpec,
+    Alternatives, AtmosphereSource, AtmosphereSpec, Background, BandSource, BandsSpec, CameraSpec, ClassSpec,
     DistanceKind, Efficiency, Envelope, EnvironmentObject, Extrapolation, MaterialRef, Nuisance, Readout,
-    Reliability, Requirement, Scenario, Source, Target, Unknown,
+    Reliability, Requirement, Scenario, Source, Spread, Target, Unknown,
 };
 use hadar_testing::seeded;
 use proptest::prelude::*;
@@ -62,6 +62,7 @@ fn the_example_is_the_case_of_the_paper() {
     let scenario = Scenario::from_file(&path).unwrap();
     let expected = Scenario {
         title: Some("Can a camera tell a person from a robot?".to_owned()),
+        classes: BTreeMap::new(),
         target: Target {
             material: name("skin"),
             temperature_k: 310.15,
@@ -281,6 +282,23 @@ fn unknown() -> impl Strategy<Value = Unknown> {
     )
 }
 
+/// A class with or without weights, mixtures, a spread.
+fn class() -> impl Strategy<Value = ClassSpec> {
+    let spread = prop_oneof![
+        Just(None),
+        Just(Some(Spread::Sample)),
+        (0.0..0.1, above_zero()).prop_map(|(emissivity_error, correlation_cm1)| {
+            Some(Spread::Stated { emissivity_error, correlation_cm1 })
+        }),
+    ];
+    let members = proptest::collection::btree_set(material(), 1..4);
+    (members, any::<bool>(), any::<bool>(), spread).prop_map(|(materials, weighed, mixtures, spread)| {
+        let materials: Vec<MaterialRef> = materials.into_iter().collect();
+        let weights = weighed.then(|| (0..materials.len()).map(|i| 0.1 + i as f64).collect());
+        ClassSpec { materials, weights, mixtures, spread }
+    })
+}
+
 prop_compose! {
     fn camera()(
         preset in proptest::option::of("[a-z][a-z0-9-]{0,12}"),
@@ -374,9 +392,9 @@ prop_compose! {
         by in proptest::sample::select(DistanceKind::ALL.to_vec()),
         skip_uncovered in any::<bool>(),
         speed_m_s in proptest::option::of(above_zero()),
-        (ranged, width, envelope_materials, near) in (
+        (ranged, width, envelope_materials, near, classes) in (
             any::<bool>(), 0.0..1.0, proptest::option::of(proptest::collection::btree_set(material(), 1..3)),
-            proptest::option::of(above_zero()),
+            proptest::option::of(above_zero()), proptest::collection::btree_map("[a-z]{1,6}", class(), 0..3),
         ),
     ) -> Scenario {
         // Ranges that begin at the scene's own values; the lighting is never widened downwards, so that it fits.
@@ -397,6 +415,7 @@ prop_compose! {
         let background = behind.map(|(temperature_k, material, extrapolate)| Background { temperature_k, material, extrapolate });
         Scenario {
             title,
+            classes,
             target: Target { material, temperature_k, distance_m, size_m, extrapolate: target_extrapolate },
             background,
             environment,

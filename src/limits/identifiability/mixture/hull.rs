@@ -32,11 +32,16 @@ pub(super) struct Hulls<'h> {
     pub(super) var_added: &'h [f64],
 }
 
+/// s and q.
+pub(super) type Shares = [Vec<f64>; 2];
+
+/// Shares to be tried, and whether a member runs out there.
+type Trial = (Shares, bool);
+
 /// A pair of mixtures.
 #[derive(Debug, Clone)]
 pub(super) struct Mixed {
-    /// s and q.
-    pub(super) shares: [Vec<f64>; 2],
+    pub(super) shares: Shares,
     pub(super) cost: f64,
 }
 
@@ -71,7 +76,7 @@ impl Plane {
 }
 
 impl Hulls<'_> {
-    fn counts(&self, shares: &[Vec<f64>; 2]) -> [Vec<f64>; 2] {
+    fn counts(&self, shares: &Shares) -> [Vec<f64>; 2] {
         let bands = self.var_added.len();
         let (mut own, mut other) = (vec![0.0; bands], vec![0.0; bands]);
         for (i, share) in shares[0].iter().enumerate().filter(|(_, share)| **share > 0.0) {
@@ -162,7 +167,7 @@ impl Hulls<'_> {
     }
 
     /// Shares after a whole step and after shorter ones, the longest first; whether a member ran out before the end of it.
-    fn step(&self, at: &Mixed, counts: &[Vec<f64>; 2]) -> (Vec<([Vec<f64>; 2], bool)>, bool) {
+    fn step(&self, at: &Mixed, counts: &[Vec<f64>; 2]) -> (Vec<Trial>, bool) {
         let heaviest = |shares: &[f64]| argmin(shares.iter().map(|share| -share)).0;
         let reference = [heaviest(&at.shares[0]), heaviest(&at.shares[1])];
         let roots: [Vec<f64>; 2] = [0, 1].map(|side| {
@@ -199,8 +204,8 @@ impl Hulls<'_> {
             }
         }
         let (mut longest, mut first) = (1.0, None);
-        for side in 0..2 {
-            for (member, (share, change)) in at.shares[side].iter().zip(&direction[side]).enumerate() {
+        for (side, (shares, changes)) in at.shares.iter().zip(&direction).enumerate() {
+            for (member, (share, change)) in shares.iter().zip(changes).enumerate() {
                 if *change < 0.0 && share + longest * change < 0.0 {
                     (longest, first) = (-share / change, Some((side, member)));
                 }
@@ -208,9 +213,9 @@ impl Hulls<'_> {
         }
         let moved = |length: f64, drop: Option<(usize, usize)>| {
             let mut shares = at.shares.clone();
-            for side in 0..2 {
-                let changes = shares[side].iter_mut().zip(&direction[side]);
-                changes.for_each(|(share, change)| *share = (*share + length * change).max(0.0));
+            for (shares, changes) in shares.iter_mut().zip(&direction) {
+                let each = shares.iter_mut().zip(changes);
+                each.for_each(|(share, change)| *share = (*share + length * change).max(0.0));
             }
             if let Some((side, member)) = drop {
                 shares[side][member] = 0.0;
@@ -278,4 +283,47 @@ fn least_squares(columns: &[&[f64]], right: &[f64]) -> Vec<f64> {
         along[..place].iter_mut().zip(row).for_each(|(along, part)| *along -= found[i] * part);
     }
     found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A target that is the mean of two alternatives is met, whatever third there is; the plane then says nothing is below 0.
+    #[test]
+    fn a_mixture_that_is_the_target_is_found() {
+        let target: Vec<f64> = (0..20).map(|w| 1e4 * (1.0 + 0.3 * f64::from(w).sin())).collect();
+        let tilt = |sign: f64| -> Vec<f64> {
+            target.iter().enumerate().map(|(w, n)| n * (1.0 + sign * 0.01 * (w as f64 - 9.5))).collect()
+        };
+        let far: Vec<f64> = target.iter().map(|n| 1.3 * n).collect();
+        let (targets, alternatives) = (vec![target.clone()], vec![tilt(1.0), far, tilt(-1.0)]);
+        let hulls =
+            Hulls { targets: &targets, photons: &[1.0], alternatives: &alternatives, var_added: &[10.0; 20] };
+        let (found, plane) = hulls.nearest(hulls.pure(0, 1));
+        assert!(found.cost < 1e-12 && (found.shares[1][0] - 0.5).abs() < 1e-6, "{found:?}");
+        assert!(plane.g.iter().all(|g| g.abs() < 1e-6));
+    }
+
+    /// Whatever touches, a plane is below (√a − √b)² for all other counts.
+    #[test]
+    fn planes_are_below() {
+        let spectra: Vec<Vec<f64>> = (0..12)
+            .map(|i| (0..7).map(|w| 10f64.powf((f64::from(7 * i + w) * 1.7).sin() * 4.0)).collect())
+            .collect();
+        let var = [0.0, 1.0, 1e3, 0.0, 5.0, 0.1, 1e6];
+        for touched in spectra.chunks(2) {
+            let plane = Plane::at(&touched[0], &touched[1], &var);
+            for pair in spectra.windows(2) {
+                let exact: f64 = (0..7).map(|w| separation(pair[0][w], pair[1][w], var[w]).powi(2)).sum();
+                let below =
+                    sum::dot(&plane.g, &pair[0]) + sum::dot(&plane.h, &pair[1]) + plane.of_noise(&var)[0];
+                assert!(below <= exact * (1.0 + 1e-9) + 1e-9, "{below} {exact}");
+            }
+            let at =
+                sum::dot(&plane.g, &touched[0]) + sum::dot(&plane.h, &touched[1]) + plane.of_noise(&var)[0];
+            let exact: f64 = (0..7).map(|w| separation(touched[0][w], touched[1][w], var[w]).powi(2)).sum();
+            assert!((at / exact - 1.0).abs() < 1e-9, "{at} {exact}");
+        }
+    }
 }
