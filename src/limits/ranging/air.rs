@@ -16,14 +16,16 @@
 //! Counts are N = κ ∫ L, their variance N + σ²: the light of the path is part of N, since it tells of z too, and its photons
 //! are noise like all others.
 //!
-//! * [`bound`](self): the least error of z ([`AirBound`]); * [`smooth`](self): an emissivity that is known but for smooth errors.
+//! [`AirSolver`] gives the least error of z ([`AirBound`]) and the bands that tell most of it ([`AirChoice`]); an emissivity may be
+//! known but for smooth errors ([`SmoothEmissivity`]).
 //!
 //! Assumptions: those of the table (homogeneous air at rest, no scattering: [`crate::atmosphere`]); the target fills the pixel; one
 //! scattering off the target; the lighting is that of the target's place, unchanged by the path. That a lens near the target gathers
 //! less light (f/z in the étendue) is no ruler: the target's own brightness is not known that well.
 //!
 //! Sources: Hawks, 'Passive ranging using atmospheric oxygen absorption spectra', thesis, Air Force Institute of Technology (2006) for
-//! the principle; Gallastegi et al., Opt. Express 32, 151 (2024), doi:10.1364/OE.507256 (arXiv:2308.05818), for the long-wave infrared.
+//! the principle; in the long-wave infrared Dorken Gallastegi et al., Opt. Express 32, 151 (2024), doi:10.1364/OE.507927 (bounds without
+//! reflected light), arXiv:2308.05818 (images) and arXiv:2603.00273 (with the light of the sky).
 
 mod bound;
 mod choice;

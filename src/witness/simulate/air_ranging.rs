@@ -36,8 +36,8 @@ const NEXT: f64 = 3.0;
 /// Shortest distance that is looked at, m.
 const SHORTEST_M: f64 = 0.1;
 /// Steps from each beginning, and from the best.
-const FEW_STEPS: usize = 6;
-const MOST_STEPS: usize = 60;
+const FEW_STEPS: usize = 12;
+const MOST_STEPS: usize = 200;
 /// Gain of the logarithm of the likelihood below which a fit has ended: its square root is in deviations of the estimate.
 const ENOUGH: f64 = 1e-9;
 /// Damping to begin with, and beyond which nothing helps.

@@ -1,5 +1,6 @@
 //! Studies of this project that are no figures of the paper: each gives the report in the folder of its name.
 
+mod air_ranging;
 mod decompose_limits;
 mod exact_probability;
 mod library_figures;
@@ -23,12 +24,14 @@ pub(crate) enum FurtherStudy {
     LibraryFigures,
     /// How near a decomposed heat cube comes to its limits.
     DecomposeLimits,
+    /// How well a distance can be read from the air on the path.
+    AirRanging,
 }
 
 impl FurtherStudy {
     /// All of them, the quickest first.
-    pub(crate) const ALL: [Self; 4] =
-        [Self::DecomposeLimits, Self::Priors, Self::ExactProbability, Self::LibraryFigures];
+    pub(crate) const ALL: [Self; 5] =
+        [Self::DecomposeLimits, Self::Priors, Self::AirRanging, Self::ExactProbability, Self::LibraryFigures];
 
     /// The name on the command line.
     #[must_use]
@@ -38,6 +41,7 @@ impl FurtherStudy {
             Self::Priors => "priors",
             Self::LibraryFigures => "library-figures",
             Self::DecomposeLimits => "decompose-limits",
+            Self::AirRanging => "air-ranging",
         }
     }
 
@@ -54,6 +58,7 @@ impl FurtherStudy {
             Self::ExactProbability => "What a test achieves, beside what the distances promise",
             Self::Priors => "What priors do",
             Self::LibraryFigures => "How often the local distance misleads in a whole library",
+            Self::AirRanging => "How well a distance can be read from the air on the path",
             Self::DecomposeLimits => "How near a decomposed heat cube comes to what the photons allow",
         }
     }
@@ -79,6 +84,7 @@ impl FurtherStudy {
             Self::Priors => priors::make(order, library, progress),
             Self::LibraryFigures => library_figures::make(order, library, progress),
             Self::DecomposeLimits => decompose_limits::make(order, library, progress),
+            Self::AirRanging => air_ranging::make(order, library, progress),
         }?;
         Ok((bundle.titled(self.title()), finding))
     }

@@ -81,7 +81,7 @@ pub fn error_over_distance(result: &AirRanging) -> Plot {
             Panel::new(Axis::linear("rms over bound"))
                 .band(Band::new("95 % interval", at.clone(), low, high).colour(0))
                 .rule(Rule::horizontal(1.0, ""))
-                .series(Series::points("maximum likelihood", at, value).colour(0)),
+                .series(Series::points("", at, value).colour(0)),
         );
     }
     Plot { name: "error_over_distance".into(), figure: figure.into(), table }

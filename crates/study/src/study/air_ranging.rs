@@ -197,7 +197,7 @@ impl AirRangingStudy {
         }
         let mut witness = Vec::with_capacity(witnesses.len());
         for (i, z) in witnesses.iter().enumerate() {
-            witness.extend(self.witness(&solvers.asked, plan, (i, *z), witnesses.len())?);
+            witness.extend(self.witness(&solvers.asked, plan, (i, *z))?);
             progress(curve.len() + i + 1, jobs);
         }
         let sight = self.sight(&solvers.asked, distance_m)?;

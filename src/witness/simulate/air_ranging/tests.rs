@@ -15,7 +15,7 @@ struct Fixture {
 }
 
 fn fixture() -> Fixture {
-    let bands = Bands::uniform(780.0, 1240.0, 10.0).unwrap();
+    let bands = Bands::uniform(780.0, 1240.0, 20.0).unwrap();
     let sky = EnvironmentObject { temperature_k: 250.0, emissivity: None };
     let emissivity =
         bands.nodes_cm1().iter().map(|nu| 0.92 - 0.1 * (-((nu - 1080.0) / 45.0).powi(2)).exp()).collect();
@@ -81,7 +81,8 @@ fn the_estimator_reaches_the_bound() {
         let bound = solver.bound(&state, &counting).unwrap().sigma_m;
         let fitter = AirFitter::new(&solver, &state, &counting).unwrap();
         let fits = fitter.trials(&state, index as u32, 400, 11).unwrap();
-        assert!(fits.iter().all(|fit| fit.converged && !fit.at_edge));
+        let lost: Vec<_> = fits.iter().filter(|fit| !fit.converged || fit.at_edge).take(3).collect();
+        assert!(lost.is_empty(), "{nuisances:?}, bound {bound}: {lost:?}");
         let estimates: Vec<f64> = fits.iter().map(|fit| fit.distance_m).collect();
         let criteria = Criteria { level: 0.999, ..Criteria::default() };
         let found =

@@ -128,12 +128,16 @@ fn blind(bound: &AirBound) -> Vec<BlindChange> {
     bound.blind_direction.iter().map(change).collect()
 }
 
-/// Names of unknowns, modes of the emissivity as one.
+/// Names of unknowns, those of one kind as one.
 fn named(parameters: &[AirParameter]) -> Vec<String> {
     let mut names: Vec<String> = parameters
         .iter()
         .map(|parameter| match parameter {
             AirParameter::Emissivity(_) => "emissivity".into(),
+            AirParameter::Scene(Parameter::Lighting(_)) => "lighting".into(),
+            AirParameter::Scene(Parameter::EnvironmentTemperature(_)) => {
+                "temperature of the surroundings".into()
+            }
             other => name(*other),
         })
         .collect();

@@ -29,7 +29,6 @@ impl AirRangingStudy {
         solver: &AirSolver<'_>,
         plan: &AirPlan,
         (index, distance_m): (usize, f64),
-        together: usize,
     ) -> Result<Option<AirWitness>> {
         let state = self.state(distance_m);
         let counting = self.counting(&state)?;
@@ -40,7 +39,7 @@ impl AirRangingStudy {
         let fitter = AirFitter::new(solver, &state, &counting)?;
         let fits = fitter.trials(&state, u32::try_from(index).unwrap_or(u32::MAX), plan.trials, plan.seed)?;
         let estimates: Vec<f64> = fits.iter().map(|fit| fit.distance_m).collect();
-        let criteria = Criteria { together, ..Criteria::default() };
+        let criteria = Criteria { together: MOST, ..Criteria::default() };
         let found = Efficiency::of(&estimates, &[distance_m], &JointBound::from_sigma(bound_m)?, &criteria)?;
         let Some(one) = found.parameters.first() else {
             return Err(Error::malformed("estimates of nothing", "report this as a bug"));
