@@ -202,7 +202,7 @@ impl AirRangingStudy {
         }
         let sight = self.sight(&solvers.asked, distance_m)?;
         let farthest_m = self.farthest(&solvers.asked, &curve)?;
-        let stereo_crossing_m = stereo::crossing(&curve);
+        let stereo_crossing_m = results::crossing(&curve);
         let verdict = self.verdict(&at, &sight, farthest_m);
         let bands = self.band_information(&solvers.asked, distance_m)?;
         let mut stats = self.study.looked_up.clone();

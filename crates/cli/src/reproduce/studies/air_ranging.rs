@@ -5,22 +5,21 @@
 //! over what is known of the emissivity, and stereo beside it all.
 
 mod files;
+mod found;
 mod scenes;
 mod text;
 
 use crate::reproduce::order::{Effort, Order, Progress};
+use found::{BANDS, Found, TRIALS};
 use hadar::error::Result;
 use hadar::material::Library;
 use hadar_report::air_ranging;
 use hadar_report::bundle::Bundle;
-use hadar_study::study::air_ranging::{AirPlan, AirPoint, AirRanging};
+use hadar_study::study::air_ranging::{AirPlan, AirPoint};
 use scenes::Scene;
 
 /// Seed of the committed report.
 const SEED: u64 = 20;
-/// Spectra at each distance, and bands that are chosen.
-const TRIALS: usize = 200;
-const BANDS: usize = 4;
 /// Distances, m; the quick form has the first.
 const DISTANCES_M: [f64; 10] = [15.0, 20.0, 25.0, 32.0, 42.0, 54.0, 70.0, 90.0, 120.0, 150.0];
 const QUICK: usize = 2;
@@ -32,18 +31,6 @@ const ERRORS: [f64; 5] = [0.001, 0.003, 0.01, 0.03, 0.1];
 /// Textures of a wall that stereo matches, and how far.
 const TEXTURES: [f64; 3] = [1e-2, 1e-3, 1e-4];
 const FAR_M: [f64; 2] = [15.0, 5000.0];
-
-/// All that is found.
-struct Found {
-    main: AirRanging,
-    /// Least error over the contrast, K.
-    contrasts: Vec<(f64, AirPoint)>,
-    /// Least error over the deviation of the emissivity.
-    errors: Vec<(f64, AirPoint)>,
-    /// Air and stereo over long distances, a curve for each texture.
-    stereo: Vec<(f64, AirRanging)>,
-    seed: u64,
-}
 
 /// The quick form has the tables of the first distances.
 pub(super) fn make(order: Order, library: &Library, progress: Progress<'_>) -> Result<(Bundle, String)> {

@@ -201,3 +201,15 @@ pub struct AirWitness {
     /// Fits that did not converge.
     pub unconverged: usize,
 }
+
+/// The distance beyond which the air tells more than stereo, by the line between two points of the curve on logarithmic axes.
+pub(super) fn crossing(curve: &[AirPoint]) -> Option<f64> {
+    let lead = |point: &AirPoint| Some((point.sigma_window_m? / point.sigma_stereo_m?).ln());
+    curve.windows(2).rev().find_map(|pair| {
+        let (near, far) = (lead(&pair[0])?, lead(&pair[1])?);
+        (near > 0.0 && far <= 0.0).then(|| {
+            let share = near / (near - far);
+            pair[0].distance_m * (pair[1].distance_m / pair[0].distance_m).powf(share)
+        })
+    })
+}

@@ -5,7 +5,6 @@
 //! bound ([`hadar::ranging::depth`]) with the Airy pattern of the lens. Light of the path has no texture, and its noise.
 
 use super::AirRangingStudy;
-use super::results::AirPoint;
 use crate::scenario::air_ranging::AirStereo;
 use hadar::error::Result;
 use hadar::fisher::Counting;
@@ -46,16 +45,4 @@ impl AirRangingStudy {
         let image = Image::Ideal { var_diffraction_m2: spread.var_m2() };
         Ok(geometry.depth_bound(state.distance_m, [window; 2], image)?.sigma_z_m)
     }
-}
-
-/// The distance beyond which the air tells more than stereo, by the line between two points of the curve on logarithmic axes.
-pub(super) fn crossing(curve: &[AirPoint]) -> Option<f64> {
-    let lead = |point: &AirPoint| Some((point.sigma_window_m? / point.sigma_stereo_m?).ln());
-    curve.windows(2).rev().find_map(|pair| {
-        let (near, far) = (lead(&pair[0])?, lead(&pair[1])?);
-        (near > 0.0 && far <= 0.0).then(|| {
-            let share = near / (near - far);
-            pair[0].distance_m * (pair[1].distance_m / pair[0].distance_m).powf(share)
-        })
-    })
 }

@@ -1,6 +1,6 @@
 //! Tables and plots.
 
-use super::Found;
+use super::found::Found;
 use hadar_report::figures::Plot;
 use hadar_report::plot::{Axis, LineFigure, Rule, Series, Style};
 use hadar_report::table::Table;

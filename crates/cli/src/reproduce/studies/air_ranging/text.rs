@@ -1,7 +1,7 @@
 //! What came out, and the page.
 
 use super::super::page::markdown;
-use super::{BANDS, Found, TRIALS};
+use super::found::{BANDS, Found, TRIALS};
 use hadar::words::{length, significant};
 use hadar_study::study::air_ranging::{AirPoint, AirRanging};
 

@@ -1,0 +1,20 @@
+//! What is found, and how much was asked for.
+
+use hadar_study::study::air_ranging::{AirPoint, AirRanging};
+
+/// Spectra at each distance.
+pub(super) const TRIALS: usize = 200;
+/// Bands that are chosen.
+pub(super) const BANDS: usize = 4;
+
+/// All that is found.
+pub(super) struct Found {
+    pub(super) main: AirRanging,
+    /// Least error over the contrast, K.
+    pub(super) contrasts: Vec<(f64, AirPoint)>,
+    /// Least error over the deviation of the emissivity.
+    pub(super) errors: Vec<(f64, AirPoint)>,
+    /// Air and stereo over long distances, a curve for each texture.
+    pub(super) stereo: Vec<(f64, AirRanging)>,
+    pub(super) seed: u64,
+}
