@@ -4,7 +4,8 @@ use crate::figures::{Plot, wavenumber_axis};
 use crate::plot::{Axis, Band, LineFigure, Panel, Rule, Series, Style};
 use crate::table::Table;
 use crate::text::significant;
-use hadar_study::study::air_ranging::{AirPoint, AirRanging};
+use hadar::words::length;
+use hadar_study::study::air_ranging::{AirBand, AirPoint, AirRanging};
 
 fn distance() -> Axis {
     Axis::log("distance (m)")
@@ -121,7 +122,8 @@ pub fn bias(result: &AirRanging) -> Option<Plot> {
     .series(Series::line("bound, with sky", x.clone(), bound).colour(0))
     .series(Series::line("the distance itself", x.clone(), x.clone()).style(Style::Dotted).colour(6));
     if edge.iter().any(|value| value.is_finite()) {
-        figure = figure.series(Series::points("ends at an end of the air's table", x, edge).colour(1).open());
+        figure = figure
+            .series(Series::points("ends at the shortest or longest distance", x, edge).colour(1).open());
     }
     Some(Plot { name: "bias_without_sky".into(), figure: figure.into(), table })
 }
@@ -130,8 +132,20 @@ pub fn bias(result: &AirRanging) -> Option<Plot> {
 #[must_use]
 pub fn information(result: &AirRanging) -> Plot {
     let x: Vec<f64> = result.bands.iter().map(|band| band.center_cm1).collect();
-    let known: Vec<f64> = result.bands.iter().map(|band| band.information_others_known_per_m2).collect();
-    let own: Vec<f64> = result.bands.iter().map(|band| band.information_per_m2).collect();
+    let shares = |what: &dyn Fn(&AirBand) -> f64| -> Vec<f64> {
+        let total: f64 = result.bands.iter().map(what).sum();
+        result
+            .bands
+            .iter()
+            .map(|band| if total > 0.0 { 100.0 * what(band) / total } else { f64::NAN })
+            .collect()
+    };
+    let known = shares(&|band| band.information_others_known_per_m2);
+    let own = shares(&|band| band.information_per_m2);
+    let label = |what: &str, sigma_m: Option<f64>| match sigma_m {
+        Some(sigma_m) => format!("{what}, ± {} in all", length(sigma_m)),
+        None => format!("{what}, none"),
+    };
     let tau: Vec<f64> = result.bands.iter().map(|band| band.transmittance).collect();
     let mut table = Table::new([
         "wavenumber_cm1",
@@ -154,14 +168,18 @@ pub fn information(result: &AirRanging) -> Plot {
     let figure = LineFigure::new(
         format!("What each band tells of {} m", significant(result.at.distance_m, 3)),
         wavenumber_axis(&x),
-        Axis::linear("information per band (m⁻²)"),
+        Axis::linear("share of the information (%)"),
     )
     .subtitle(subtitle(result))
-    .series(Series::line("all else known", x.clone(), known).style(Style::Dashed).colour(3))
-    .series(Series::line("as asked", x.clone(), own).colour(0))
+    .series(
+        Series::line(label("all else known", result.at.sigma_others_known_m), x.clone(), known)
+            .style(Style::Dashed)
+            .colour(3),
+    )
+    .series(Series::line(label("as asked", result.at.sigma_m), x.clone(), own).colour(0))
     .lower(
         Panel::new(Axis::linear("transmittance").range(0.0, 1.0))
-            .series(Series::line("of the air", x, tau).colour(4)),
+            .series(Series::line("transmittance of the air", x, tau).colour(4)),
     );
     Plot { name: "information_by_band".into(), figure: figure.into(), table }
 }

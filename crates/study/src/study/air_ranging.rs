@@ -201,9 +201,9 @@ impl AirRangingStudy {
             progress(curve.len() + i + 1, jobs);
         }
         let sight = self.sight(&solvers.asked, distance_m)?;
-        let farthest_m = self.farthest(&solvers.asked, &curve)?;
+        let met_between_m = self.met_between(&solvers.asked, &curve, distance_m)?;
         let stereo_crossing_m = results::crossing(&curve);
-        let verdict = self.verdict(&at, &sight, farthest_m);
+        let verdict = self.verdict(&at, &sight, met_between_m);
         let bands = self.band_information(&solvers.asked, distance_m)?;
         let mut stats = self.study.looked_up.clone();
         stats.compute(hadar::demand::Thing::Readings, witness.iter().map(|one| one.trials as u64).sum());
@@ -217,7 +217,7 @@ impl AirRangingStudy {
             sight,
             at,
             curve,
-            farthest_m,
+            met_between_m,
             stereo_crossing_m,
             bands,
             best_bands: best,
@@ -231,24 +231,36 @@ impl AirRangingStudy {
         Ok(result)
     }
 
-    /// The distance up to which, from the shortest of the curve, the error is no more than is demanded.
-    fn farthest(&self, solver: &AirSolver<'_>, curve: &[AirPoint]) -> Result<Option<f64>> {
+    /// The stretch of distances in which the error is no more than is demanded: that about the target, else the nearest one.
+    fn met_between(&self, solver: &AirSolver<'_>, curve: &[AirPoint], at_m: f64) -> Result<Option<[f64; 2]>> {
         let Some(demand) = self.scenario.requirement else { return Ok(None) };
-        let does = |z: f64, sigma_m: Option<f64>| sigma_m.is_some_and(|sigma| sigma <= demand.at(z));
-        let met = curve.iter().take_while(|point| does(point.distance_m, point.sigma_m)).count();
-        let Some(last) = met.checked_sub(1).and_then(|last| curve.get(last)) else { return Ok(None) };
-        let Some(next) = curve.get(met) else { return Ok(Some(last.distance_m)) };
-        let (mut near, mut far) = (last.distance_m, next.distance_m);
-        for _ in 0..HALVINGS {
-            let middle = (near * far).sqrt();
-            let state = self.state(middle);
-            let sigma_m = solver.bound(&state, &self.counting(&state)?)?.sigma_m;
-            if does(middle, Some(sigma_m)) {
-                near = middle;
-            } else {
-                far = middle;
+        let meets =
+            |point: &AirPoint| point.sigma_m.is_some_and(|sigma| sigma <= demand.at(point.distance_m));
+        let stretches =
+            || curve.chunk_by(|a, b| meets(a) == meets(b)).filter(|stretch| stretch.iter().all(meets));
+        let holds = |stretch: &&[AirPoint]| {
+            let ends = stretch.first().zip(stretch.last());
+            ends.is_some_and(|(near, far)| near.distance_m <= at_m && at_m <= far.distance_m)
+        };
+        let Some(stretch) = stretches().find(holds).or_else(|| stretches().next()) else { return Ok(None) };
+        let ends = stretch.first().zip(stretch.last()).map(|(near, far)| [near.distance_m, far.distance_m]);
+        let Some([near, far]) = ends else { return Ok(None) };
+        let before = curve.iter().rev().find(|point| point.distance_m < near);
+        let after = curve.iter().find(|point| point.distance_m > far);
+        // Between a distance that does and one that does not.
+        let limit = |inside: f64, outside: Option<&AirPoint>| -> Result<f64> {
+            let Some(outside) = outside else { return Ok(inside) };
+            let (mut inside, mut outside) = (inside, outside.distance_m);
+            for _ in 0..HALVINGS {
+                let middle = (inside * outside).sqrt();
+                let state = self.state(middle);
+                match solver.bound(&state, &self.counting(&state)?)?.sigma_m <= demand.at(middle) {
+                    true => inside = middle,
+                    false => outside = middle,
+                }
             }
-        }
-        Ok(Some(near))
+            Ok(inside)
+        };
+        Ok(Some([limit(near, before)?, limit(far, after)?]))
     }
 }

@@ -28,6 +28,8 @@ const CONTRASTS_K: [f64; 15] =
     [-10.0, -7.0, -5.0, -3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0, 5.0, 7.0, 10.0, 15.0, 20.0];
 /// Deviations of the emissivity.
 const ERRORS: [f64; 5] = [0.001, 0.003, 0.01, 0.03, 0.1];
+/// Noises of a band, µflick.
+const NOISES: [f64; 5] = [0.3, 1.0, 3.0, 10.0, 30.0];
 /// Textures of a wall that stereo matches, and how far.
 const TEXTURES: [f64; 3] = [1e-2, 1e-3, 1e-4];
 const FAR_M: [f64; 2] = [15.0, 5000.0];
@@ -60,7 +62,15 @@ pub(super) fn make(order: Order, library: &Library, progress: Progress<'_>) -> R
         let scene = Scene { texture, ..Scene::default() }.between(FAR_M);
         Ok((texture, scene.study(library)?.range(&AirPlan::default(), &|_, _| {})?))
     };
+    let noise = |&noise_microflick: &f64| {
+        let scene = Scene { noise_microflick, ..Scene::default() }.over(&[100.0]);
+        let found =
+            scene.study(library)?.range(&AirPlan { trials: TRIALS, seed, bands: None }, &|_, _| {})?;
+        Ok(found.witness.into_iter().next().map(|one| (noise_microflick, one)))
+    };
+    let noises: Vec<Option<_>> = NOISES.iter().map(noise).collect::<Result<_>>()?;
     let found = Found {
+        noises: noises.into_iter().flatten().collect(),
         contrasts: CONTRASTS_K.iter().map(contrast).collect::<Result<_>>()?,
         errors: ERRORS.iter().map(error).collect::<Result<_>>()?,
         stereo: TEXTURES.iter().map(far).collect::<Result<_>>()?,

@@ -31,8 +31,8 @@ pub struct AirRanging {
     pub at: AirPoint,
     /// Over the distances asked for.
     pub curve: Vec<AirPoint>,
-    /// Distance up to which what is demanded is met, m.
-    pub farthest_m: Option<f64>,
+    /// Distances between which what is demanded is met, m.
+    pub met_between_m: Option<[f64; 2]>,
     /// Distance beyond which the air tells more than a second camera, m.
     pub stereo_crossing_m: Option<f64>,
     /// What each band tells at the target's own distance.
@@ -71,8 +71,8 @@ pub enum AirFinding {
         sigma_m: f64,
         /// What is unknown besides.
         unknown: Vec<String>,
-        /// What is demanded, whether that is met, and up to where.
-        demand: Option<(Demand, bool, Option<f64>)>,
+        /// What is demanded, whether that is met, and between which distances.
+        demand: Option<(Demand, bool, Option<[f64; 2]>)>,
     },
     /// It changes nothing.
     Unchanged {

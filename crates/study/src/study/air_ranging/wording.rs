@@ -9,7 +9,12 @@ use serde::{Serialize, Serializer};
 use std::fmt::{self, Display, Formatter};
 
 impl AirRangingStudy {
-    pub(super) fn verdict(&self, at: &AirPoint, sight: &AirSight, farthest_m: Option<f64>) -> AirVerdict {
+    pub(super) fn verdict(
+        &self,
+        at: &AirPoint,
+        sight: &AirSight,
+        met_between_m: Option<[f64; 2]>,
+    ) -> AirVerdict {
         let distance_m = at.distance_m;
         let demand = self.scenario.requirement;
         let met = demand.map(|demand| at.sigma_m.is_some_and(|sigma| sigma <= demand.at(distance_m)));
@@ -18,7 +23,7 @@ impl AirRangingStudy {
                 distance_m,
                 sigma_m,
                 unknown: sight.unknown.clone(),
-                demand: demand.zip(met).map(|(demand, met)| (demand, met, farthest_m)),
+                demand: demand.zip(met).map(|(demand, met)| (demand, met, met_between_m)),
             },
             (Sight::Unchanged, _) => AirFinding::Unchanged { distance_m },
             _ => AirFinding::Imitated { distance_m, by: sight.blind_direction.clone() },
@@ -50,10 +55,12 @@ impl Display for AirFinding {
                     Some((last, [])) => write!(f, ", {last} unknown")?,
                     Some((last, others)) => write!(f, ", {} and {last} unknown", others.join(", "))?,
                 }
-                if let Some((demand, _, farthest_m)) = demand {
+                if let Some((demand, _, met_between_m)) = demand {
                     write!(f, " ({} demanded", error_of(*demand))?;
-                    match farthest_m {
-                        Some(farthest_m) => write!(f, ", met up to {} m)", significant(*farthest_m, 3))?,
+                    match met_between_m {
+                        Some([near, far]) => {
+                            write!(f, ", met from {} to {} m)", significant(*near, 3), significant(*far, 3))?;
+                        }
                         None => f.write_str(", met at no distance asked for)")?,
                     }
                 }

@@ -1,6 +1,6 @@
 //! What is found, and how much was asked for.
 
-use hadar_study::study::air_ranging::{AirPoint, AirRanging};
+use hadar_study::study::air_ranging::{AirPoint, AirRanging, AirWitness};
 
 /// Spectra at each distance.
 pub(super) const TRIALS: usize = 200;
@@ -16,5 +16,7 @@ pub(super) struct Found {
     pub(super) errors: Vec<(f64, AirPoint)>,
     /// Air and stereo over long distances, a curve for each texture.
     pub(super) stereo: Vec<(f64, AirRanging)>,
+    /// Estimates of 100 m over the noise of a band, µflick.
+    pub(super) noises: Vec<(f64, AirWitness)>,
     pub(super) seed: u64,
 }

@@ -42,7 +42,7 @@ exposure = "10 ms"
 pixel = "30 um"
 f_number = 2.0
 focal_length = "50 mm"
-nesr = "1 uflick"
+nesr = "NOISE uflick"
 
 [distances]
 DISTANCES
@@ -65,13 +65,21 @@ pub(super) struct Scene {
     pub(super) emissivity_error: f64,
     /// Change of the wall's light from pixel to pixel, as a share of it.
     pub(super) texture: f64,
+    /// Noise of a band, µflick.
+    pub(super) noise_microflick: f64,
     /// The lines of `[distances]`.
     pub(super) distances: String,
 }
 
 impl Default for Scene {
     fn default() -> Self {
-        Self { contrast_k: 10.0, emissivity_error: 0.01, texture: 0.01, distances: String::new() }
+        Self {
+            contrast_k: 10.0,
+            emissivity_error: 0.01,
+            texture: 0.01,
+            noise_microflick: 1.0,
+            distances: String::new(),
+        }
     }
 }
 
@@ -94,6 +102,7 @@ impl Scene {
         SCENE
             .replace("TEMPERATURE", &temperature)
             .replace("ERROR", &self.emissivity_error.to_string())
+            .replace("NOISE", &self.noise_microflick.to_string())
             .replace("DISTANCES", &self.distances)
             .replace("TEXTURE", &self.texture.to_string())
     }

@@ -132,6 +132,20 @@ pub(super) fn readme(found: &Found) -> String {
             format!("{at} where the light changes by {} % from pixel to pixel", 100.0 * texture)
         })
         .collect();
+    let noises: Vec<Vec<String>> = found
+        .noises
+        .iter()
+        .map(|(noise, one)| {
+            let (interval, off) = (one.rmse_over_bound_interval, one.errors.bias);
+            vec![
+                noise.to_string(),
+                length(one.bound_m),
+                format!("{:.3} ({:.3} to {:.3})", one.rmse_over_bound, interval.low, interval.high),
+                format!("{}{}", if off < 0.0 { "−" } else { "+" }, length(off.abs())),
+                hadar::words::share(one.at_edge),
+            ]
+        })
+        .collect();
     let (low, high, holds) = ratios(main);
     format!(
         "# How well a distance can be read from the air on the path\n\n\
@@ -162,6 +176,9 @@ pub(super) fn readme(found: &Found) -> String {
          ![Least error over the contrast](error_over_contrast.png)\n\n\
          At 100 m, over the deviation of the emissivity:\n\n\
          {errors}\n\
+         Over the noise of a band, at 100 m, {TRIALS} spectra each: where the bound comes near the distance itself, the estimate is biased and \
+         errs more than the bound, which is one of unbiased estimates.\n\n\
+         {noises}\n\
          ## Stereo\n\n\
          ![Air and stereo](stereo_against_air.png)\n\n\
          The same camera twice, 0.2 m apart, the same window; each of its pixels has temperature, lighting and emissivity of its own. The air \
@@ -176,6 +193,10 @@ pub(super) fn readme(found: &Found) -> String {
             "the best that were found"
         },
         errors = markdown(&["deviation of the emissivity", "least error", "lighting known"], &errors),
+        noises = markdown(
+            &["noise (µflick)", "bound", "rms over bound", "bias", "at an end of the table"],
+            &noises
+        ),
         crossings = crossings.join(", "),
     )
 }
