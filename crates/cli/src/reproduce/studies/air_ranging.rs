@@ -29,7 +29,7 @@ const CONTRASTS_K: [f64; 15] =
 /// Deviations of the emissivity.
 const ERRORS: [f64; 5] = [0.001, 0.003, 0.01, 0.03, 0.1];
 /// Noises of a band, µflick.
-const NOISES: [f64; 5] = [0.3, 1.0, 3.0, 10.0, 30.0];
+const NOISES: [f64; 6] = [0.3, 1.0, 3.0, 10.0, 30.0, 100.0];
 /// Textures of a wall that stereo matches, and how far.
 const TEXTURES: [f64; 3] = [1e-2, 1e-3, 1e-4];
 const FAR_M: [f64; 2] = [15.0, 5000.0];

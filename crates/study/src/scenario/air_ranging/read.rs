@@ -137,7 +137,9 @@ impl AirRangingScenario {
         };
         let distances_m = match root.get("distances") {
             Some(entry) => distances(&entry)?,
-            None => spaced(AROUND.map(|share| share * distance_m), POINTS),
+            None => {
+                spaced(AROUND.map(|share| (share * distance_m).clamp(f64::MIN_POSITIVE, f64::MAX)), POINTS)
+            }
         };
         let stereo = root.read("stereo", stereo)?;
         let requirement = root.read("requirement", requirement)?;
@@ -149,13 +151,16 @@ impl AirRangingScenario {
 /// Lengths from the first to the last, in equal steps of their logarithm.
 fn spaced([from, to]: [f64; 2], points: u32) -> Vec<f64> {
     let last = points.saturating_sub(1).max(1);
+    let (start, way) = (from.ln(), to.ln() - from.ln());
     // The ends are as they were written.
     let at = |i: u32| match i {
         0 => from,
         _ if i == last => to,
-        _ => from * (to / from).powf(f64::from(i) / f64::from(last)),
+        _ => way.mul_add(f64::from(i) / f64::from(last), start).exp().clamp(from, to),
     };
-    (0..points).map(at).collect()
+    let mut lengths: Vec<f64> = (0..points).map(at).collect();
+    lengths.dedup();
+    lengths
 }
 
 fn distances(entry: &Entry<'_>) -> Result<Vec<f64>> {

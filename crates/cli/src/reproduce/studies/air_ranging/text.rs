@@ -176,8 +176,8 @@ pub(super) fn readme(found: &Found) -> String {
          ![Least error over the contrast](error_over_contrast.png)\n\n\
          At 100 m, over the deviation of the emissivity:\n\n\
          {errors}\n\
-         Over the noise of a band, at 100 m, {TRIALS} spectra each: where the bound comes near the distance itself, the estimate is biased and \
-         errs more than the bound, which is one of unbiased estimates.\n\n\
+         Over the noise of a band, at 100 m, {TRIALS} spectra each: where the bound comes near the distance itself the estimate is biased, since \
+         no distance is below 0, and the bound, one of unbiased estimates, no longer says how much it errs.\n\n\
          {noises}\n\
          ## Stereo\n\n\
          ![Air and stereo](stereo_against_air.png)\n\n\
