@@ -214,12 +214,16 @@ fn every_mistake_is_one_line() {
         outcome.stderr.trim_end().trim_start_matches("error: ").to_owned()
     };
     for (from, to, expected) in [
-        ("nesr = \"0.1 uflick\"\n", "", "a.toml:22: camera.netd: neither a preset nor netd is given"),
-        ("start = \"770 cm^-1\"", "start = \"690 cm^-1\"", "a.toml:3: target.material: "),
+        ("nesr = \"0.1 uflick\"\n", "", "a.toml:18: camera.netd: neither a preset nor netd is given"),
+        (
+            "start = \"770 cm^-1\"",
+            "start = \"690 cm^-1\"",
+            "a.toml:11: bands: wavenumber is 690 cm^-1; it must be from 700 to 1350 cm^-1",
+        ),
         (
             "stop = \"1250 cm^-1\"",
             "stop = \"1390 cm^-1\"",
-            "a.toml:11: bands: wavenumber is 1370 cm^-1; it must be from 700 to 1350 cm^-1",
+            "a.toml:3: target.material: `concrete` is known from 690 to 1362 cm^-1",
         ),
         ("[atmosphere]\nmodel = \"midlatitude-summer\"\n", "", "a.toml: atmosphere: the table is missing"),
         (
@@ -244,7 +248,11 @@ fn every_mistake_is_one_line() {
         ),
         ("texture = 0.01", "texture = 0", "a.toml:30: stereo.texture: texture is 0"),
         ("\"air\"", "\"sound\"", "a.toml:1: signal: `sound` is not known here; write \"air\""),
-        ("signal = \"air\"\n", "stereo = 1\n", "a.toml:2: "),
+        (
+            "texture = 0.01",
+            "window = [9999, 5]\ntexture = 0.01",
+            "a.toml:30: stereo.window[0]: side of the window is 9999 pixels; it must be at most 1000",
+        ),
     ] {
         let message = said(from, to, &[]);
         assert!(message.starts_with(expected), "{from}: {message}");
