@@ -8,12 +8,14 @@
 //! * [`derivative`]: ∂N/∂x on a grid of pixels; [`information`]: J of every window (S37, Tables S4 and S5);
 //! * [`psf`]: what diffraction and the pixel's size leave of a point source; [`depth`]: δz, and what it demands;
 //! * [`reconstruction`]: the same for a scattered signal that is itself estimated from the bands;
+//! * [`air`]: depth from one view, by what the air on the path takes away and adds;
 //! * [`texture`], [`metrics`]: other measures of texture, and of the error of a depth map.
 //!
 //! Assumptions: parallel, calibrated, rectified cameras (no vergence), matching along x alone; no bias bound.
 //!
 //! Source: paper eq. 3, S35–S43, Tables S4 and S5 (doi:10.1038/s41586-023-06174-6).
 
+pub mod air;
 pub mod cube;
 pub mod depth;
 pub mod derivative;

@@ -23,7 +23,7 @@ mod embedded;
 mod growth;
 mod read;
 
-use self::growth::same;
+use self::growth::{Position, same};
 use self::read::Table;
 use crate::error::{Error, Result, check};
 use crate::inputs;
@@ -199,14 +199,57 @@ impl Atmosphere {
     /// # Errors
     /// A distance that is negative, not finite or beyond the longest column; a wavenumber outside the table.
     pub fn optical_depth(&self, nodes_cm1: &[f64], distance_m: f64) -> Result<Vec<f64>> {
+        let position = self.position(distance_m)?;
+        let depths: Vec<f64> = self.table.rows.iter().map(|row| row.depth(position)).collect();
+        nodes_cm1.iter().map(|&node| self.between(node, &depths)).collect()
+    }
+
+    /// Optical depth D and its growth ∂D/∂z with the length of the path, m⁻¹, at each wavenumber (cm⁻¹, in any order): that of the cubic
+    /// of ln D in ln z, D/z · d ln D/d ln z. At the shortest column it is the growth of longer paths.
+    ///
+    /// ```
+    /// use hadar::atmosphere::Atmosphere;
+    /// let air = Atmosphere::embedded("us-standard")?;
+    /// let at = |z: f64| air.optical_depth(&[1000.0], z).map(|depth| depth[0]);
+    /// let (_, growth) = air.optical_depth_and_growth(&[1000.0], 50.0)?;
+    /// assert!(((at(50.01)? - at(49.99)?) / 0.02 / growth[0] - 1.0).abs() < 1e-6);
+    /// # Ok::<(), hadar::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Atmosphere::optical_depth`]; a distance of 0, where the growth has no value.
+    pub fn optical_depth_and_growth(
+        &self,
+        nodes_cm1: &[f64],
+        distance_m: f64,
+    ) -> Result<(Vec<f64>, Vec<f64>)> {
+        check::positive("distance", distance_m, "m")?;
+        let position = self.position(distance_m)?;
+        let (mut depths, mut growths) = (Vec::new(), Vec::new());
+        for row in &self.table.rows {
+            let depth = row.depth(position);
+            depths.push(depth);
+            growths.push(depth * row.slope(position) / distance_m);
+        }
+        let between = |values: &[f64]| -> Result<Vec<f64>> {
+            nodes_cm1.iter().map(|&node| self.between(node, values)).collect()
+        };
+        Ok((between(&depths)?, between(&growths)?))
+    }
+
+    /// The shortest path of the table, m: below it the growth is extrapolated.
+    #[must_use]
+    pub fn shortest_m(&self) -> f64 {
+        self.lengths_m().first().copied().unwrap_or(0.0)
+    }
+
+    fn position(&self, distance_m: f64) -> Result<Position> {
         check::non_negative("distance", distance_m, "m")?;
-        let position = self.table.lengths.locate(distance_m).ok_or_else(|| {
+        self.table.lengths.locate(distance_m).ok_or_else(|| {
             let longest =
                 format!("at most {} m, the longest path in the air of `{}`", self.longest_m(), self.name);
             Error::out_of_range("distance", distance_m, "m", longest)
-        })?;
-        let depths: Vec<f64> = self.table.rows.iter().map(|row| row.depth(position)).collect();
-        nodes_cm1.iter().map(|&node| self.between(node, &depths)).collect()
+        })
     }
 
     /// The value at a wavenumber of what has `values` at the rows.

@@ -7,11 +7,13 @@
 //! * [`decision`]: the maximum-likelihood decision among materials whose states are not known;
 //! * [`spectra`], [`experiment`]: labelled spectra, and how often each classifier is right about them;
 //! * [`thermometry`]: temperatures read by maximum likelihood and by thermal imaging;
+//! * [`air_ranging`]: distances read by maximum likelihood from the air on the path;
 //! * [`efficiency`]: whether an estimator or a classifier reaches its bound.
 //!
 //! Bounds never make use of simulations. Every block of trials has a stream of random numbers of its own, so results
 //! do not depend on the number of threads, and a seed brings them back.
 
+pub mod air_ranging;
 pub mod classifier;
 pub mod decision;
 pub mod draws;

@@ -5,6 +5,7 @@
 //! with a [`manifest`] of whose they are.
 
 pub mod accuracy;
+pub mod air_ranging;
 pub mod bundle;
 pub mod cameras;
 pub mod classes;

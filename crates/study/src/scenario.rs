@@ -15,6 +15,7 @@ pub use hadar::fisher::Nuisance;
 pub use hadar::instrument::{CameraSpec, Efficiency, Readout};
 pub use hadar::material::{ClassSpec, Extrapolation, MaterialRef, Spread};
 
+pub mod air_ranging;
 pub mod atmosphere;
 pub mod bands;
 mod camera;
@@ -36,6 +37,7 @@ pub mod source;
 mod units;
 mod write;
 
+pub use air_ranging::{AirRangingScenario, RangingScenario};
 pub use atmosphere::{AtmosphereSource, AtmosphereSpec};
 pub use bands::{BandSource, BandsSpec};
 pub use decompose::DecomposeScenario;

@@ -6,6 +6,7 @@
 //! command line; text, tables and plots only render them.
 
 mod air;
+pub mod air_ranging;
 mod bands;
 mod camera;
 mod camera_bands;

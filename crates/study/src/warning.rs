@@ -146,6 +146,21 @@ pub enum Warning {
     /// Two bands, or one.
     FewBands { bands: usize },
 
+    /// A target that looks like the air before it.
+    DistanceUnchanged { distance_m: f64 },
+    /// A distance whose change others imitate.
+    DistanceImitated { distance_m: f64 },
+    /// Unknowns of ranging by air that change nothing.
+    AirUnknownWithoutEffect { unknowns: Vec<String> },
+    /// A distance from a spectrum whose emissivity is taken to be known.
+    EmissivityTakenAsExact,
+    /// Width of the narrowest band, and of those that the air is known in, cm⁻¹.
+    AirBandMeans { narrowest_cm1: f64, table_cm1: f64 },
+    /// The nearest distance, and the shortest path of the table, m.
+    AirExtrapolated { nearest_m: f64, shortest_m: f64 },
+    /// A sky with lines of its own.
+    AirMirroredSky,
+
     /// Priors of a simulation.
     PriorsLeftOut,
     /// The fewest photons of an experiment.
@@ -228,6 +243,12 @@ impl Warning {
             Self::NoDepth => Code::NoDepth,
             Self::Derivative { .. } => Code::Derivative,
             Self::FewBands { .. } => Code::FewBands,
+            Self::DistanceUnchanged { .. } | Self::DistanceImitated { .. } => Code::DistanceNotSeen,
+            Self::AirUnknownWithoutEffect { .. } => Code::UnknownWithoutEffect,
+            Self::EmissivityTakenAsExact => Code::EmissivityTakenAsExact,
+            Self::AirBandMeans { .. } => Code::AirBandMeans,
+            Self::AirExtrapolated { .. } => Code::AirExtrapolated,
+            Self::AirMirroredSky => Code::AirMirroredSky,
             Self::PriorsLeftOut => Code::PriorsLeftOut,
             Self::SpectraEmpty { .. } => Code::SpectraEmpty,
             Self::CountsRounded { .. } => Code::CountsRounded,

@@ -118,6 +118,14 @@ struct Knot {
     slope: f64,
 }
 
+impl Knot {
+    /// dy/dx of the cubic to the next knot, at the share t of the way, which is `width` long in x.
+    fn slope_to(&self, next: &Self, width: f64, t: f64) -> f64 {
+        let (secant, left) = ((next.ln_depth - self.ln_depth) / width, 1.0 - t);
+        6.0 * secant * t * left + self.slope * left * (1.0 - 3.0 * t) + next.slope * t * (3.0 * t - 2.0)
+    }
+}
+
 impl Growth {
     /// From transmittances in [0, 1], one for each length, none above the one before.
     pub(super) fn new(lengths: &Lengths, transmittances: &[f64]) -> Self {
@@ -153,6 +161,21 @@ impl Growth {
 }
 
 impl Growth {
+    /// dy/dx = d ln D/d ln L at a place; 0 where nothing absorbs or there is no path. Cubics that meet at a column have one slope
+    /// there; at the shortest one it is that of longer paths.
+    pub(super) fn slope(&self, position: Position) -> f64 {
+        let knot = |index: usize| self.knots.get(index);
+        let slope = match position {
+            Position::Nowhere => None,
+            Position::Column(column) => knot(column).map(|knot| knot.slope),
+            Position::Below(_) => knot(0).map(|first| first.slope.clamp(0.5, 1.0)),
+            Position::Between { low, share, width } => {
+                knot(low).zip(knot(low + 1)).map(|(from, to)| from.slope_to(to, width, share))
+            }
+        };
+        slope.unwrap_or(0.0).max(0.0)
+    }
+
     /// The most that |D′|, |D″| and |D‴| are on a piece, along x = ln L: D′ = Dy′, D″ = D(y′² + y″) and
     /// D‴ = D(y′³ + 3y′y″ + y‴) with D largest at the far end and, on a cubic, y″ a straight line.
     pub(super) fn bend(&self, piece: Piece) -> [f64; 3] {
@@ -168,10 +191,7 @@ impl Growth {
                 knot(low).zip(knot(low + 1)).map(|(from, to)| {
                     let depth = self.depth(Position::Between { low, share: end, width });
                     let (secant, a, b) = ((to.ln_depth - from.ln_depth) / width, from.slope, to.slope);
-                    let slope = |t: f64| {
-                        let left = 1.0 - t;
-                        6.0 * secant * t * left + a * left * (1.0 - 3.0 * t) + b * t * (3.0 * t - 2.0)
-                    };
+                    let slope = |t: f64| from.slope_to(to, width, t);
                     let second = |t: f64| {
                         (6.0 * secant * (1.0 - 2.0 * t) - a * (4.0 - 6.0 * t) - b * (2.0 - 6.0 * t)) / width
                     };

@@ -161,6 +161,36 @@ fn gray_air_follows_beers_law_at_any_length() {
 }
 
 #[test]
+fn the_growth_is_that_of_the_interpolation() {
+    // Beer's law: ∂D/∂z = k at any length, below the first column too.
+    let k = 3.7e-4;
+    let row = LENGTHS_M.map(|length| (-k * length).exp()).to_vec();
+    let beer = table(&LENGTHS_M, &[(1200.0, row.clone()), (700.0, row)]).unwrap();
+    for length in [0.3, 10.0, 17.0, 100.0, 999.0, 1e4] {
+        for growth in beer.optical_depth_and_growth(&[700.0, 801.3], length).unwrap().1 {
+            assert!((growth / k - 1.0).abs() < 1e-11, "{length} {growth}");
+        }
+    }
+    // Differences of the depth itself, at and between columns; h² of them is left.
+    let nodes: Vec<f64> = (0..261).map(|i| 700.0 + 2.5 * f64::from(i)).collect();
+    for name in Atmosphere::names() {
+        let air = Atmosphere::embedded(name).unwrap();
+        for length in [3.0, 15.0, 30.0, 77.0, 100.0, 640.0, 3e3, 8e3] {
+            let h = 1e-4 * length;
+            let at = |z: f64| air.optical_depth(&nodes, z).unwrap();
+            let (depth, growth) = air.optical_depth_and_growth(&nodes, length).unwrap();
+            assert_eq!(depth, at(length));
+            for ((growth, high), low) in growth.iter().zip(at(length + h)).zip(at(length - h)) {
+                let slope = (high - low) / (2.0 * h);
+                // At a column the cubics' bends differ: h of them is left, and there the slope may be 0.
+                assert!((growth - slope).abs() <= 1e-3 * slope + 1e-12, "{name} {length}: {growth} {slope}");
+            }
+        }
+    }
+    assert!(beer.optical_depth_and_growth(&[700.0], 0.0).is_err());
+}
+
+#[test]
 fn digits_that_are_not_there_are_no_infinities() {
     let row = |taus: [f64; 4]| {
         let air =

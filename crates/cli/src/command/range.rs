@@ -1,11 +1,12 @@
-//! `hadar range`: bounds of passive stereo ranging from a scene or a heat cube.
+//! `hadar range`: bounds of passive ranging: by stereo from a scene or a heat cube, or by the air on the path (`signal = "air"`).
 
 use super::global::Global;
 use clap::Args;
 use hadar::error::{Error, Result};
-use hadar_report::range;
-use hadar_study::scenario::RangeScenario;
+use hadar_report::{air_ranging, range};
 use hadar_study::scenario::range::Subject;
+use hadar_study::scenario::{AirRangingScenario, RangeScenario, RangingScenario};
+use hadar_study::study::air_ranging::{AirPlan, AirRangingStudy};
 use hadar_study::study::range::{RangePlan, RangeStudy};
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -17,12 +18,16 @@ const MOST_TRIALS: usize = 1_000_000;
 pub(super) struct RangeArgs {
     /// The ranging scenario (TOML)
     scenario: PathBuf,
-    /// Match noisy views N times along the scenario's lines, and whole views once: do matchers reach the bound?
+    /// Match noisy views N times along the scenario's lines, and whole views once: do matchers reach the bound? By air: fit N spectra
+    /// at each of some distances
     #[arg(long, value_name = "N", default_value_t = 0)]
     trials: usize,
     /// Exit with code 3 if the demand is not met; a cube of one view and one depth is decided by the cheapest proofs alone
     #[arg(long, conflicts_with = "trials")]
     check: bool,
+    /// By air: the N of all bands that tell most of the distance, with what no other choice can exceed
+    #[arg(long, value_name = "N")]
+    bands: Option<usize>,
 }
 
 pub(super) fn run(args: &RangeArgs, global: &Global) -> Result<ExitCode> {
@@ -34,8 +39,37 @@ pub(super) fn run(args: &RangeArgs, global: &Global) -> Result<ExitCode> {
         let expected = format!("at most {MOST_TRIALS}");
         return Err(Error::out_of_range("--trials", args.trials as f64, "", expected));
     }
-    let scenario = RangeScenario::from_file(&args.scenario)?;
-    let study = RangeStudy::new(&scenario, &global.library()?)?;
+    match RangingScenario::from_file(&args.scenario)? {
+        RangingScenario::Stereo(scenario) => by_stereo(args, global, &scenario),
+        RangingScenario::Air(scenario) => by_air(args, global, &scenario),
+    }
+}
+
+fn by_air(args: &RangeArgs, global: &Global, scenario: &AirRangingScenario) -> Result<ExitCode> {
+    if args.check && scenario.requirement.is_none() {
+        let instead = "write [requirement] with distance_error = \"5 m\" or relative_distance_error = 0.05";
+        let found = Error::malformed("--check, but nothing is demanded", instead);
+        return Err(found.at(scenario.place("requirement")));
+    }
+    let study = AirRangingStudy::new(scenario, &global.library()?)?;
+    global.inputs_are_safe()?;
+    let plan = AirPlan { trials: args.trials, seed: global.seed, bands: args.bands };
+    let bar = global.progress("distances");
+    let mut result = study.range(&plan, &|done, total| bar.set(done, total))?;
+    bar.finish();
+    let text = air_ranging::text(&result);
+    result.stats.add(&global.report(&text, |out| air_ranging::bundle(&result, out))?);
+    global.answer(&result, &text, &result.stats)?;
+    let failed = args.check && result.verdict.met != Some(true);
+    Ok(if failed { ExitCode::from(3) } else { ExitCode::SUCCESS })
+}
+
+fn by_stereo(args: &RangeArgs, global: &Global, scenario: &RangeScenario) -> Result<ExitCode> {
+    if args.bands.is_some() {
+        let instead = "leave it out; bands are chosen for signal = \"air\", or of a pair by identify --bands";
+        return Err(Error::malformed("--bands of a stereo scenario", instead));
+    }
+    let study = RangeStudy::new(scenario, &global.library()?)?;
     global.inputs_are_safe()?;
     let plan = RangePlan {
         trials: args.trials,

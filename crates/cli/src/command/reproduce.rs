@@ -15,7 +15,7 @@ use std::time::Instant;
 #[derive(Debug, Args)]
 pub(super) struct ReproduceArgs {
     /// Figures and tables: fig3b, figs7, fig3c, fig4, figs12, figs17, figs20, edfig6, edfig9, tabs2, tabs5, policy, or all
-    /// of these; further studies, no part of `all`: decompose-limits, exact-probability, priors, library-figures (with --library FILE), person-or-robot (with --library twice)
+    /// of these; further studies, no part of `all`: air-ranging, decompose-limits, exact-probability, priors, library-figures (with --library FILE), person-or-robot (with --library twice)
     #[arg(value_name = "ID", default_value = "all")]
     items: Vec<String>,
     /// Some of the experiments only: within a minute on two cores
@@ -249,7 +249,7 @@ fn overview(items: &[Item], effort: Effort, ledger: &[Line]) -> String {
     page.push_str(
         "\nFurther studies, made by `hadar reproduce` when asked for by name: [exact decisions](exact_probability/README.md), \
          [the paper's own library](library_figures/README.md), [priors](priors/README.md), \
-         [heat cubes against their limits](decompose_limits/README.md), \
+         [heat cubes against their limits](decompose_limits/README.md), [distances from the air](air_ranging/README.md), \
          [person or robot, of several spectra each](person_or_robot/README.md); and [run time against error](accuracy/README.md), by `hadar accuracy`.\n\n",
     );
     page.push_str(&markdown(ledger));

@@ -1,5 +1,6 @@
 //! Studies of this project that are no figures of the paper: each gives the report in the folder of its name.
 
+mod air_ranging;
 mod decompose_limits;
 mod exact_probability;
 mod library_figures;
@@ -26,14 +27,17 @@ pub(crate) enum FurtherStudy {
     DecomposeLimits,
     /// A person against a robot, of several spectra each.
     PersonOrRobot,
+    /// How well a distance can be read from the air on the path.
+    AirRanging,
 }
 
 impl FurtherStudy {
     /// All of them, the quickest first.
-    pub(crate) const ALL: [Self; 5] = [
+    pub(crate) const ALL: [Self; 6] = [
         Self::PersonOrRobot,
         Self::DecomposeLimits,
         Self::Priors,
+        Self::AirRanging,
         Self::ExactProbability,
         Self::LibraryFigures,
     ];
@@ -47,6 +51,7 @@ impl FurtherStudy {
             Self::LibraryFigures => "library-figures",
             Self::DecomposeLimits => "decompose-limits",
             Self::PersonOrRobot => "person-or-robot",
+            Self::AirRanging => "air-ranging",
         }
     }
 
@@ -63,6 +68,7 @@ impl FurtherStudy {
             Self::ExactProbability => "What a test achieves, beside what the distances promise",
             Self::Priors => "What priors do",
             Self::LibraryFigures => "How often the local distance misleads in a whole library",
+            Self::AirRanging => "How well a distance can be read from the air on the path",
             Self::DecomposeLimits => "How near a decomposed heat cube comes to what the photons allow",
             Self::PersonOrRobot => "Person or robot, with classes on both sides",
         }
@@ -90,6 +96,7 @@ impl FurtherStudy {
             Self::LibraryFigures => library_figures::make(order, library, progress),
             Self::DecomposeLimits => decompose_limits::make(order, library, progress),
             Self::PersonOrRobot => person_or_robot::make(order, library, progress),
+            Self::AirRanging => air_ranging::make(order, library, progress),
         }?;
         Ok((bundle.titled(self.title()), finding))
     }

@@ -1,6 +1,7 @@
 //! Tests of the command `hadar`, and what several packages do together.
 
 mod accuracy;
+mod air_ranging;
 mod arrows;
 mod cameras;
 mod certificate;

@@ -40,7 +40,7 @@ const TABLE: &[Row] = &[
     },
     Row {
         kind: Kind::Range,
-        told_by: &[("scene", Form::Any), ("cube", Form::Any), ("stereo", Form::Any)],
+        told_by: &[("signal", Form::Any), ("scene", Form::Any), ("cube", Form::Any), ("stereo", Form::Any)],
         name: "a ranging scenario",
     },
     Row {
@@ -89,6 +89,8 @@ impl Kind {
         match row.kind {
             // A list of cameras alone is no rule.
             Kind::Rule if key == "camera" && !has(Kind::Scenario) => Some((Kind::Cameras, row, key)),
+            // The air between has a target before it.
+            Kind::Range if key == "signal" => Some((Kind::Range, row, key)),
             // Whoever mixes a target with a scene to range in is told by the keys that do not belong.
             Kind::Range | Kind::Materials if kinds.len() > 1 => None,
             kind => Some((kind, row, key)),

@@ -179,7 +179,7 @@ fn parse<'t>(text: &'t str, source: &Source) -> Result<DeTable<'t>> {
     Err(error.on_line(line).at(source.place("")))
 }
 
-fn target(entry: &Entry<'_>) -> Result<Target> {
+pub(super) fn target(entry: &Entry<'_>) -> Result<Target> {
     let section = entry.section(&["material", "temperature", "distance", "size", "extrapolate"])?;
     Ok(Target {
         material: material(&section.require("material", "\"skin\"")?)?,
@@ -203,7 +203,7 @@ fn background(entry: &Entry<'_>) -> Result<Background> {
     })
 }
 
-fn environment(root: &Section<'_>, total: Option<f64>) -> Result<Vec<EnvironmentObject>> {
+pub(super) fn environment(root: &Section<'_>, total: Option<f64>) -> Result<Vec<EnvironmentObject>> {
     let example = "[[environment]], in double brackets, once for each object";
     let items = root.read("environment", |entry| entry.items(example))?.unwrap_or_default();
     if items.is_empty() && total.is_some() {
@@ -304,27 +304,31 @@ fn unknown(entry: &Entry<'_>) -> Result<Unknown> {
 }
 
 fn priors(entry: &Entry<'_>, nuisances: &[Nuisance]) -> Result<BTreeMap<Nuisance, f64>> {
+    let section = entry.section(&Nuisance::ALL.map(Nuisance::name))?;
+    let mut priors = BTreeMap::new();
+    for nuisance in Nuisance::ALL {
+        let Some(sigma) = section.get(nuisance.name()) else { continue };
+        if !nuisances.contains(&nuisance) {
+            let found = format!("`{}` is not among unknown.nuisances", nuisance.name());
+            return Err(sigma.fail(Error::malformed(found, "add it there, or remove its prior")));
+        }
+        priors.insert(nuisance, prior(&sigma, nuisance)?);
+    }
+    Ok(priors)
+}
+
+/// Deviation of the prior on an unknown.
+pub(super) fn prior(entry: &Entry<'_>, nuisance: Nuisance) -> Result<f64> {
     let rule = Allowed {
         expected: "above 0 (what is known exactly is left out of unknown.nuisances)",
         ..ABOVE_ZERO
     };
-    let section = entry.section(&Nuisance::ALL.map(Nuisance::name))?;
-    let mut priors = BTreeMap::new();
-    for nuisance in Nuisance::ALL {
-        let Some(prior) = section.get(nuisance.name()) else { continue };
-        if !nuisances.contains(&nuisance) {
-            let found = format!("`{}` is not among unknown.nuisances", nuisance.name());
-            return Err(prior.fail(Error::malformed(found, "add it there, or remove its prior")));
+    match nuisance {
+        Nuisance::Temperature | Nuisance::EnvironmentTemperature => {
+            entry.quantity(Dimension::TemperatureDifference, rule)
         }
-        let sigma = match nuisance {
-            Nuisance::Temperature | Nuisance::EnvironmentTemperature => {
-                prior.quantity(Dimension::TemperatureDifference, rule)?
-            }
-            Nuisance::Lighting | Nuisance::Gain => prior.number("0.1", rule)?,
-        };
-        priors.insert(nuisance, sigma);
+        Nuisance::Lighting | Nuisance::Gain => entry.number("0.1", rule),
     }
-    Ok(priors)
 }
 
 pub(super) fn requirement(entry: &Entry<'_>) -> Result<Requirement> {

@@ -66,7 +66,7 @@ impl Scenario {
             document.push(("atmosphere", Part::Table(spec.written(paths))));
         }
         document.push(("bands", Part::Table(self.bands.written(paths))));
-        document.push(("unknown", Part::Table(unknown(&self.unknown))));
+        document.push(("unknown", Part::Table(unknown(&self.unknown, &[], None))));
         if let Some(spec) = &self.camera {
             document.push(("camera", Part::Table(camera::written(spec, paths))));
         }
@@ -124,8 +124,12 @@ fn alternatives(alternatives: &Alternatives, paths: Paths<'_>) -> Entries {
         .put_if("skip_uncovered", alternatives.skip_uncovered.then_some(true))
 }
 
-fn unknown(unknown: &Unknown) -> Entries {
-    let names: Vec<&str> = unknown.nuisances.iter().map(|nuisance| nuisance.name()).collect();
+/// With names of more unknowns, and the deviation of a prior on the temperature of the air, K.
+pub(super) fn unknown(unknown: &Unknown, more: &[&str], air_prior_k: Option<f64>) -> Entries {
+    let names = unknown.nuisances.iter().map(|nuisance| nuisance.name());
+    let names: Vec<&str> = names.chain(more.iter().copied()).collect();
+    let of_air =
+        |sigma: f64| ("air-temperature".to_owned(), Dimension::TemperatureDifference.format(sigma).into());
     let prior = |(nuisance, sigma): (&Nuisance, &f64)| {
         let value = match nuisance {
             Nuisance::Temperature | Nuisance::EnvironmentTemperature => {
@@ -135,7 +139,7 @@ fn unknown(unknown: &Unknown) -> Entries {
         };
         (nuisance.name().to_owned(), value)
     };
-    let priors: toml::Table = unknown.priors.iter().map(prior).collect();
+    let priors: toml::Table = unknown.priors.iter().map(prior).chain(air_prior_k.map(of_air)).collect();
     Entries::default()
         .put("nuisances", names)
         .put_written("priors", Dimension::TemperatureDifference, priors)

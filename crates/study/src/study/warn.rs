@@ -2,6 +2,8 @@
 
 mod camera;
 
+pub(super) use camera::assumed;
+
 use super::identify::{NearestProof, PairResult};
 use super::{Study, Warning};
 use crate::scenario::DistanceKind;

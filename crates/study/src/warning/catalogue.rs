@@ -156,6 +156,19 @@ catalogue! {
     /// There are too few bands to tell emission from scattered light.
     FewBands = "few-bands", "Give three bands or more.";
 
+    /// The air tells nothing of the distance: the target looks like it, or other unknowns imitate any change.
+    DistanceNotSeen = "distance-not-seen",
+        "Look at a target that is warmer or colder than the air, take more bands, or make an unknown known.";
+    /// The emissivity of the target is taken as exact, whose errors can look like more or less air.
+    EmissivityTakenAsExact = "emissivity-taken-as-exact",
+        "Add \"emissivity\" to unknown.nuisances, with how wrong it may be as emissivity_error.";
+    /// Bands are narrower than those that the table of the air is a mean over: what its lines would tell is not in the answer.
+    AirBandMeans = "air-band-means", "Give a finer table of the air, or take bands as wide as its own.";
+    /// A distance is shorter than any path of the table of the air, which is extrapolated there.
+    AirExtrapolated = "air-extrapolated", "Ask for longer distances, or give a table with shorter paths.";
+    /// The target mirrors a sky whose lines are those of the air on the path: means over bands do not know how they fall together.
+    AirMirroredSky = "air-mirrored-sky", "Take the answer as one of a sky without lines, or give tables that resolve them.";
+
     /// Priors count for nothing in what is drawn and learnt.
     PriorsLeftOut = "priors-left-out", "Compare with limits without priors.";
     /// With so few photons most spectra are empty.

@@ -283,6 +283,43 @@ impl Display for Warning {
             Self::FewBands { .. } => f.write_str(
                 "one band cannot tell emission from scattered light: nothing is left where the temperature is estimated",
             ),
+            Self::DistanceUnchanged { distance_m } => write!(
+                f,
+                "at {} m the distance changes nothing in any band: the target looks like the air",
+                significant(*distance_m, 3)
+            ),
+            Self::DistanceImitated { distance_m } => write!(
+                f,
+                "at {} m other unknowns imitate any change of the distance",
+                significant(*distance_m, 3)
+            ),
+            Self::AirUnknownWithoutEffect { unknowns } => write!(
+                f,
+                "{} {} nothing in this scene",
+                unknowns.join(", "),
+                if unknowns.len() == 1 { "changes" } else { "change" }
+            ),
+            Self::EmissivityTakenAsExact => f.write_str(
+                "the emissivity is taken as exact: errors of it look like more or less air, and the distance is off by more than \
+                 is said",
+            ),
+            Self::AirBandMeans { narrowest_cm1, table_cm1 } => write!(
+                f,
+                "the air is known as means over {} cm^-1, and bands are as narrow as {} cm^-1: what single lines would tell is not in \
+                 the answer, nor what errors of the table do",
+                significant(*table_cm1, 2),
+                significant(*narrowest_cm1, 2)
+            ),
+            Self::AirExtrapolated { nearest_m, shortest_m } => write!(
+                f,
+                "distances from {} m are asked for, the shortest path of the table is {} m: below it the air is extrapolated",
+                significant(*nearest_m, 3),
+                significant(*shortest_m, 3)
+            ),
+            Self::AirMirroredSky => f.write_str(
+                "the target mirrors a sky whose lines are those of the air on the path; means over bands take the two as if they had \
+                 none: what is mirrored comes through better or worse than is said",
+            ),
             Self::PriorsLeftOut => f.write_str(
                 "priors are left out: the spectra that are drawn, and what is learnt from them, know nothing of them",
             ),

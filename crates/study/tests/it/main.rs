@@ -1,5 +1,6 @@
 //! Tests of scenarios and studies.
 
+mod air_ranging;
 mod camera_bands;
 mod companion;
 mod fuzz_readers;

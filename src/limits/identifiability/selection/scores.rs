@@ -97,6 +97,22 @@ impl Scores {
         Ok(Self { columns, counts, var_added, priors: Vec::new(), cancellation: 1.0, required: 1.0 })
     }
 
+    /// The same with Gaussian priors on nuisances, each by its place among the columns and its deviation in the unit of that
+    /// column's parameter.
+    ///
+    /// # Errors
+    /// A column that is not a nuisance, or a deviation that is not positive.
+    pub fn with_priors(mut self, priors: impl IntoIterator<Item = (usize, f64)>) -> Result<Self> {
+        for (column, sigma) in priors {
+            if column + 1 >= self.columns.len() {
+                let expected = format!("below the number of nuisances, {}", self.columns.len() - 1);
+                return Err(Error::out_of_range("column of a prior", column as f64, "", expected));
+            }
+            self.priors.push((column, check::positive("deviation of a prior", sigma, "")?));
+        }
+        Ok(self)
+    }
+
     /// The same pair, of which this distance is required: choices among many pairs then maximise the smallest
     /// ratio of distance to requirement. Required is 1 where nothing is said.
     ///

@@ -1,7 +1,7 @@
 //! How well depth can be measured, in a sentence.
 
 use super::results::{DepthFinding, Signal};
-use crate::scenario::range::Demand;
+use crate::words::error_of;
 use hadar::words::{self, significant};
 use serde::{Serialize, Serializer};
 use std::fmt::{self, Display, Formatter};
@@ -14,7 +14,7 @@ impl Display for DepthFinding {
                     f,
                     "{}: depth can be measured to within {} in {} of the windows at best, by the {} ({} demanded)",
                     if *met { "Yes" } else { "No" },
-                    demand(*error),
+                    error_of(*error),
                     words::share(*share),
                     signal.name(),
                     words::share(*required_share),
@@ -36,14 +36,6 @@ impl Display for DepthFinding {
             ),
             Self::NoBound => f.write_str("No window has a bound."),
         }
-    }
-}
-
-/// What is demanded, in words.
-fn demand(error: Demand) -> String {
-    match error {
-        Demand::Absolute(error_m) => words::length(error_m),
-        Demand::Relative(share) => format!("{} % of it", significant(100.0 * share, 3)),
     }
 }
 

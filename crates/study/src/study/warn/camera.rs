@@ -81,7 +81,7 @@ impl Study {
     }
 
     /// Bands of which more than half is out of the range of the detector; one that is wholly so was refused.
-    fn outside_range(&self, camera: &Camera) -> Option<Warning> {
+    pub(in crate::study) fn outside_range(&self, camera: &Camera) -> Option<Warning> {
         let [low, high] = camera.spectral_range_cm1;
         let beyond = |from: f64, to: f64| (low - from).max(to - high) > HALF * (to - from);
         let outside = self.bands.bands().iter().filter(|band| beyond(band.low_cm1, band.high_cm1)).count();
@@ -101,7 +101,7 @@ fn full_well(result: &CameraResult) -> Option<Warning> {
     (counts > full_well).then_some(Warning::FullWell { counts, full_well })
 }
 
-fn assumed(camera: &Camera) -> Option<Warning> {
+pub(in crate::study) fn assumed(camera: &Camera) -> Option<Warning> {
     let (name, figures) = (&camera.name, &camera.assumed);
     (!figures.is_empty())
         .then(|| Warning::CameraFiguresAssumed { camera: name.clone(), figures: figures.clone() })

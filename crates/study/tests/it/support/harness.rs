@@ -12,7 +12,7 @@ use hadar::ranging::noise::NoiseVariance;
 use hadar::simulate::classifier::{Classifier, SavedModel};
 use hadar::spectrum::Bands;
 use hadar::units::{Dimension, Spectral};
-use hadar_study::scenario::{RangeScenario, Scenario};
+use hadar_study::scenario::{AirRangingScenario, RangeScenario, RangingScenario, Scenario};
 use std::path::{Path, PathBuf};
 
 /// A reader of files, by the name of its target and of its folder of seeds.
@@ -201,9 +201,23 @@ fn scenario(folder: &Folder, bytes: &[u8]) {
     }
 }
 
+fn air_ranging_scenario(scenario: &AirRangingScenario, path: &Path) {
+    for directory in [None, path.parent()] {
+        let text = directory.map_or_else(|| scenario.to_toml(), |beside| scenario.to_toml_beside(beside));
+        match AirRangingScenario::from_toml(&text, Some(path)) {
+            Ok(again) => assert_eq!(&again, scenario, "{text}"),
+            Err(error) => panic!("{error}\n{text}"),
+        }
+    }
+}
+
 fn range_scenario(folder: &Folder, bytes: &[u8]) {
     let path = folder.put("range.toml", bytes);
-    let Some(scenario) = accepted(RangeScenario::from_file(&path)) else { return };
+    let scenario = match accepted(RangingScenario::from_file(&path)) {
+        Some(RangingScenario::Stereo(scenario)) => scenario,
+        Some(RangingScenario::Air(scenario)) => return air_ranging_scenario(&scenario, &path),
+        None => return,
+    };
     for directory in [None, path.parent()] {
         let text = directory.map_or_else(|| scenario.to_toml(), |beside| scenario.to_toml_beside(beside));
         let again = match RangeScenario::from_toml(&text, Some(&path)) {

@@ -1,0 +1,217 @@
+//! The plots of ranging by air: errors over distance, the bias without sky, what each band tells, stereo beside it.
+
+use crate::figures::{Plot, wavenumber_axis};
+use crate::plot::{Axis, Band, LineFigure, Panel, Rule, Series, Style};
+use crate::table::Table;
+use crate::text::significant;
+use hadar::words::length;
+use hadar_study::study::air_ranging::{AirBand, AirPoint, AirRanging};
+
+fn distance() -> Axis {
+    Axis::log("distance (m)")
+}
+
+fn of(curve: &[AirPoint], what: impl Fn(&AirPoint) -> Option<f64>) -> Vec<f64> {
+    curve.iter().map(|point| what(point).unwrap_or(f64::NAN)).collect()
+}
+
+fn subtitle(result: &AirRanging) -> String {
+    let unknown = match result.sight.unknown.is_empty() {
+        true => "nothing unknown besides".to_owned(),
+        false => format!("unknown besides: {}", result.sight.unknown.join(", ")),
+    };
+    format!("{}, {} bands, one pixel, one reading; {unknown}.", result.camera, result.bands.len())
+}
+
+/// The least error over distances, with less unknown, and estimates beside it.
+#[must_use]
+pub fn error_over_distance(result: &AirRanging) -> Plot {
+    let curve = &result.curve;
+    let x: Vec<f64> = curve.iter().map(|point| point.distance_m).collect();
+    let columns = [
+        ("bound, as asked", "sigma_m", Style::Line, 0, of(curve, |point| point.sigma_m)),
+        (
+            "emissivity known",
+            "sigma_emissivity_known_m",
+            Style::Dashed,
+            1,
+            of(curve, |point| point.sigma_emissivity_known_m),
+        ),
+        (
+            "lighting known",
+            "sigma_lighting_known_m",
+            Style::Dotted,
+            2,
+            of(curve, |point| point.sigma_lighting_known_m),
+        ),
+        (
+            "all else known",
+            "sigma_others_known_m",
+            Style::Line,
+            3,
+            of(curve, |point| point.sigma_others_known_m),
+        ),
+    ];
+    let mut table = Table::new(["distance_m"].into_iter().chain(columns.iter().map(|column| column.1)));
+    for (i, x) in x.iter().enumerate() {
+        let row: Vec<f64> = std::iter::once(*x).chain(columns.iter().map(|column| column.4[i])).collect();
+        table.push_numbers(&row);
+    }
+    let name = &result.target;
+    let mut figure = LineFigure::new(
+        format!("How well the distance of {name} can be read from the air"),
+        distance(),
+        Axis::log("error of the distance (m)"),
+    )
+    .subtitle(subtitle(result));
+    for (label, _, style, colour, values) in columns {
+        if values.iter().any(|value| value.is_finite()) {
+            figure = figure.series(Series::line(label, x.clone(), values).style(style).colour(colour));
+        }
+    }
+    figure = figure.series(Series::line("the distance itself", x.clone(), x).style(Style::Dotted).colour(6));
+    if !result.witness.is_empty() {
+        let at: Vec<f64> = result.witness.iter().map(|one| one.distance_m).collect();
+        let rms = result.witness.iter().map(|one| one.errors.rmse).collect();
+        figure = figure.series(Series::points("maximum likelihood, rms", at.clone(), rms).colour(0));
+        let ratio = |what: &dyn Fn(usize) -> f64| (0..at.len()).map(what).collect::<Vec<f64>>();
+        let low = ratio(&|i| result.witness[i].rmse_over_bound_interval.low);
+        let high = ratio(&|i| result.witness[i].rmse_over_bound_interval.high);
+        let value = ratio(&|i| result.witness[i].rmse_over_bound);
+        figure = figure.lower(
+            Panel::new(Axis::linear("rms over bound"))
+                .band(Band::new("95 % interval", at.clone(), low, high).colour(0))
+                .rule(Rule::horizontal(1.0, ""))
+                .series(Series::points("", at, value).colour(0)),
+        );
+    }
+    Plot { name: "error_over_distance".into(), figure: figure.into(), table }
+}
+
+/// What a model without sky finds too much, beside the bound; `None` where there is no sky.
+#[must_use]
+pub fn bias(result: &AirRanging) -> Option<Plot> {
+    let curve = &result.curve;
+    if curve.iter().all(|point| point.bias_without_sky_m.is_none()) {
+        return None;
+    }
+    let x: Vec<f64> = curve.iter().map(|point| point.distance_m).collect();
+    let inside = |edge: bool| {
+        of(curve, |point| {
+            point.bias_without_sky_m.filter(|_| point.without_sky_at_edge == edge).map(f64::abs)
+        })
+    };
+    let (own, edge) = (inside(false), inside(true));
+    let signed = of(curve, |point| point.bias_without_sky_m);
+    let bound = of(curve, |point| point.sigma_m);
+    let mut table = Table::new(["distance_m", "bias_without_sky_m", "sigma_m"]);
+    for (i, x) in x.iter().enumerate() {
+        table.push_numbers(&[*x, signed[i], bound[i]]);
+    }
+    let mut figure = LineFigure::new(
+        "What a model loses that leaves out the sky",
+        distance(),
+        Axis::log("error of the distance (m)"),
+    )
+    .subtitle(format!(
+        "Distance of {} from counts without noise, by a model that takes all of its light for its own emission. Size of the error; its sign \
+         is in the table.",
+        result.target
+    ))
+    .series(Series::line("off, without sky", x.clone(), own).style(Style::Marked).colour(1))
+    .series(Series::line("bound, with sky", x.clone(), bound).colour(0))
+    .series(Series::line("the distance itself", x.clone(), x.clone()).style(Style::Dotted).colour(6));
+    if edge.iter().any(|value| value.is_finite()) {
+        figure = figure
+            .series(Series::points("ends at the shortest or longest distance", x, edge).colour(1).open());
+    }
+    Some(Plot { name: "bias_without_sky".into(), figure: figure.into(), table })
+}
+
+/// What each band tells of the distance, with what the air does there.
+#[must_use]
+pub fn information(result: &AirRanging) -> Plot {
+    let x: Vec<f64> = result.bands.iter().map(|band| band.center_cm1).collect();
+    let shares = |what: &dyn Fn(&AirBand) -> f64| -> Vec<f64> {
+        let total: f64 = result.bands.iter().map(what).sum();
+        result
+            .bands
+            .iter()
+            .map(|band| if total > 0.0 { 100.0 * what(band) / total } else { f64::NAN })
+            .collect()
+    };
+    let known = shares(&|band| band.information_others_known_per_m2);
+    let own = shares(&|band| band.information_per_m2);
+    let label = |what: &str, sigma_m: Option<f64>| match sigma_m {
+        Some(sigma_m) => format!("{what}, ± {} in all", length(sigma_m)),
+        None => format!("{what}, none"),
+    };
+    let tau: Vec<f64> = result.bands.iter().map(|band| band.transmittance).collect();
+    let mut table = Table::new([
+        "wavenumber_cm1",
+        "information_per_m2",
+        "information_others_known_per_m2",
+        "transmittance",
+        "share_of_path",
+        "counts",
+    ]);
+    for band in &result.bands {
+        table.push_numbers(&[
+            band.center_cm1,
+            band.information_per_m2,
+            band.information_others_known_per_m2,
+            band.transmittance,
+            band.share_of_path,
+            band.counts,
+        ]);
+    }
+    let figure = LineFigure::new(
+        format!("What each band tells of {} m", significant(result.at.distance_m, 3)),
+        wavenumber_axis(&x),
+        Axis::linear("share of the information (%)"),
+    )
+    .subtitle(subtitle(result))
+    .series(
+        Series::line(label("all else known", result.at.sigma_others_known_m), x.clone(), known)
+            .style(Style::Dashed)
+            .colour(3),
+    )
+    .series(Series::line(label("as asked", result.at.sigma_m), x.clone(), own).colour(0))
+    .lower(
+        Panel::new(Axis::linear("transmittance").range(0.0, 1.0))
+            .series(Series::line("transmittance of the air", x, tau).colour(4)),
+    );
+    Plot { name: "information_by_band".into(), figure: figure.into(), table }
+}
+
+/// A window by air and by stereo; `None` without a second camera.
+#[must_use]
+pub fn stereo(result: &AirRanging) -> Option<Plot> {
+    let spec = result.scenario.stereo?;
+    let curve = &result.curve;
+    let x: Vec<f64> = curve.iter().map(|point| point.distance_m).collect();
+    let (air, stereo) = (of(curve, |point| point.sigma_window_m), of(curve, |point| point.sigma_stereo_m));
+    let mut table = Table::new(["distance_m", "sigma_air_m", "sigma_stereo_m"]);
+    for (i, x) in x.iter().enumerate() {
+        table.push_numbers(&[*x, air[i], stereo[i]]);
+    }
+    let mut figure = LineFigure::new(
+        "A window by the air and by stereo",
+        distance(),
+        Axis::log("error of the distance (m)"),
+    )
+    .subtitle(format!(
+        "Window of {} × {} pixels of {}. Stereo: baseline {} m, texture {} % from pixel to pixel.",
+        spec.window[0],
+        spec.window[1],
+        result.target,
+        significant(spec.baseline_m, 2),
+        significant(100.0 * spec.texture, 2)
+    ))
+    .series(Series::line("air", x.clone(), air).colour(0))
+    .series(Series::line("stereo", x, stereo).style(Style::Dashed).colour(1));
+    if let Some(crossing) = result.stereo_crossing_m {
+        figure = figure.rule(Rule::vertical(crossing, format!("{} m", significant(crossing, 2))));
+    }
+    Some(Plot { name: "stereo_against_air".into(), figure: figure.into(), table })
+}

@@ -1,0 +1,68 @@
+//! A scenario of ranging by air: one camera, a target, its surroundings, and the air between, whose absorption is the ruler.
+//!
+//! It is a ranging scenario with `signal = "air"` above its first table. `[target]`, `[[environment]]`, `[atmosphere]`, `[bands]` and
+//! `[camera]` are those of a [`Scenario`]; `[unknown]` has the temperature of the air and the emissivity among its unknowns too.
+
+mod read;
+mod write;
+
+use super::{RangeScenario, Scenario, Source};
+use hadar::error::Place;
+pub use hadar::ranging::air::SmoothEmissivity;
+pub use hadar::ranging::depth::Demand;
+
+/// Everything a scenario of ranging by air says, defaults filled in.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AirRangingScenario {
+    /// Target (with its distance), surroundings, air, bands, camera, and what of them is unknown.
+    pub scene: Scenario,
+    /// What else is unknown.
+    pub unknown: AirUnknown,
+    /// Distances at which the error is asked for, m, ascending; each above 0.
+    pub distances_m: Vec<f64>,
+    /// A second camera to compare with.
+    pub stereo: Option<AirStereo>,
+    /// How well the distance must be known.
+    pub requirement: Option<Demand>,
+}
+
+/// What is unknown of air and emissivity (`[unknown]`).
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct AirUnknown {
+    /// The temperature of the air, with the deviation of its prior, K, where it has one.
+    pub air_temperature: Option<Option<f64>>,
+    /// Errors of the emissivity; it is known exactly if silent.
+    pub emissivity: Option<SmoothEmissivity>,
+}
+
+/// A second camera beside the first, and what of the target it could match (`[stereo]`).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AirStereo {
+    /// Distance of the two cameras, m.
+    pub baseline_m: f64,
+    /// Rows and columns of the window that is matched.
+    pub window: [usize; 2],
+    /// Root mean square change of the target's own light from pixel to pixel, as a share of it.
+    pub texture: f64,
+}
+
+/// What a ranging scenario reads distances from.
+#[derive(Debug, Clone)]
+pub enum RangingScenario {
+    /// Two views.
+    Stereo(Box<RangeScenario>),
+    /// The air on the path.
+    Air(Box<AirRangingScenario>),
+}
+
+impl AirRangingScenario {
+    /// Where a key stands, as [`Scenario::place`].
+    #[must_use]
+    pub fn place(&self, key: &str) -> Place {
+        self.source().place(key)
+    }
+
+    fn source(&self) -> &Source {
+        &self.scene.source
+    }
+}
