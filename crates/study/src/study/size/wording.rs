@@ -19,7 +19,26 @@ impl Display for Finding {
                     alternative: self.alternative.is_some().then(|| classes.alternative.name.clone()),
                     ..self.clone()
                 };
-                of_all.answered(f)?;
+                match &classes.mixtures {
+                    Some(found)
+                        if classes.statistical
+                            && found.distance_lower < self.required
+                            && found.distance >= self.required =>
+                    {
+                        write!(
+                            f,
+                            "No: that {} tells {} from {} with {} reliability is so for the worst mixture found (d = {}), but no more than d = {} is \
+                         proved of all mixtures.",
+                            self.camera,
+                            of_all.target,
+                            classes.alternative.name,
+                            demanded(self.required),
+                            significant(found.distance, 3),
+                            significant(found.distance_lower, 3)
+                        )?
+                    }
+                    _ => of_all.answered(f)?,
+                }
                 write!(f, " {classes}")?;
             }
         }
