@@ -17,10 +17,13 @@ pub(crate) fn text(answers: &[ClassAnswer]) -> String {
     for answer in answers {
         let _ = writeln!(
             out,
-            "Classes: {} against {}, {} pairs of members{}",
+            "Classes: {} against {}, {}{}",
             with_spectra(&answer.target),
             with_spectra(&answer.alternative),
-            answer.pairs,
+            match answer.pairs {
+                1 => "one pair of members".to_owned(),
+                pairs => format!("{pairs} pairs of members"),
+            },
             match answer.searched {
                 searched if searched == answer.pairs => String::new(),
                 searched => format!(" ({searched} searched, the others are proved to decide nothing)"),
@@ -34,7 +37,14 @@ pub(crate) fn text(answers: &[ClassAnswer]) -> String {
         let [own, other] = &answer.worst;
         line("hardest pair", format!("{own} against {other}, {}", distance(answer.distance)));
         if let Some(told) = answer.share_of_pairs_told {
-            line("pairs that the camera tells", format!("{} by the members' weights", share(told)));
+            line(
+                if answer.mixtures.is_some() {
+                    "unmixed pairs that it tells"
+                } else {
+                    "pairs that the camera tells"
+                },
+                format!("{} by the members' weights", share(told)),
+            );
         }
         if let Some([low, high]) = answer.mean_detection_probability {
             let words = match high - low {
@@ -52,6 +62,7 @@ pub(crate) fn text(answers: &[ClassAnswer]) -> String {
             let chance = ClassAnswer::chance_one_more_is_nearer(side)?;
             Some(format!("1 in {:.0} of {}", 1.0 / chance, side.name))
         };
+        let chance = |side: &ClassSide| chance(side).filter(|_| answer.mixtures.is_none());
         let chances: Vec<String> =
             [&answer.target, &answer.alternative].into_iter().filter_map(chance).collect();
         if !chances.is_empty() {
@@ -80,6 +91,7 @@ pub(crate) fn text(answers: &[ClassAnswer]) -> String {
 fn with_spectra(side: &ClassSide) -> String {
     match (side.is_class, side.mean) {
         (false, _) => side.name.clone(),
+        (true, false) if side.members.len() == 1 => format!("{} (1 spectrum)", side.name),
         (true, false) => format!("{} ({} spectra)", side.name, side.members.len()),
         (true, true) => format!("{} (mean of {} spectra)", side.name, side.spectra),
     }
@@ -119,10 +131,10 @@ pub(crate) fn table(answers: &[ClassAnswer]) -> Table {
 #[must_use]
 pub fn pictures(answers: &[ClassAnswer]) -> Vec<Plot> {
     let drawn = answers.iter().filter(|answer| answer.pairs > 1);
-    drawn.map(|answer| picture(answer, answers.len() > 1)).collect()
+    drawn.enumerate().map(|(i, answer)| picture(answer, (answers.len() > 1).then_some(i + 1))).collect()
 }
 
-fn picture(answer: &ClassAnswer, several: bool) -> Plot {
+fn picture(answer: &ClassAnswer, place: Option<usize>) -> Plot {
     let (rows, columns) = (&answer.target.members, &answer.alternative.members);
     let values: Vec<f64> = (0..rows.len())
         .flat_map(|a| (0..columns.len()).map(move |b| (a, b)))
@@ -156,7 +168,10 @@ fn picture(answer: &ClassAnswer, several: bool) -> Plot {
         let label = format!("not told apart: d below {}", significant(required, 3));
         figure = figure.threshold(required, label);
     }
-    let name =
-        if several { format!("class_pairs_{}", answer.alternative.name) } else { "class_pairs".into() };
+    // Two alternatives may have the same name.
+    let name = place.map_or_else(
+        || "class_pairs".to_owned(),
+        |place| format!("class_pairs_{place}_{}", answer.alternative.name),
+    );
     Plot { name: name.into(), figure: Figure::from(figure), table: table(std::slice::from_ref(answer)) }
 }

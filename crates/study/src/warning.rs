@@ -31,6 +31,8 @@ pub enum Warning {
     MaterialSkipped { material: String },
     /// A class of the scenario is called as a material that is entered as one number.
     ClassReplacesPlaceholder { class: String },
+    /// Figures of a camera are solved for one pair of members of classes.
+    SolvedForOnePair { target: String, alternative: String },
     /// Classes stand by the pair of members that is hardest to tell apart.
     WorstMembers { target: String, alternative: String },
 
@@ -196,6 +198,7 @@ impl Warning {
             Self::MaterialSkipped { .. } => Code::MaterialSkipped,
             Self::ClassReplacesPlaceholder { .. } => Code::ClassReplacesPlaceholder,
             Self::WorstMembers { .. } => Code::WorstMembers,
+            Self::SolvedForOnePair { .. } => Code::SolvedForOnePair,
             Self::PixelsSkipped { .. } => Code::PixelsSkipped,
             Self::LibraryDoesNotFit { .. } => Code::LibraryDoesNotFit,
             Self::LibraryTakenAsExact => Code::LibraryTakenAsExact,

@@ -65,6 +65,7 @@ pub struct MixtureDistance {
 }
 
 /// Counts of members.
+#[derive(Clone)]
 struct Side {
     counts: Vec<Vec<f64>>,
     /// What a distance is divided by: 1, or their photons.
@@ -72,6 +73,7 @@ struct Side {
 }
 
 /// All that a search needs.
+#[derive(Clone)]
 struct Scene<'s> {
     library: &'s LibraryScene<'s>,
     own: Side,
@@ -135,7 +137,9 @@ impl Mixtures<'_> {
             lower = piece.bound.max(lower);
             // Of what is far nearer than anybody asks for only that is of interest.
             let close = enough.is_finite() && least.sqrt() - lower.sqrt() <= tolerance * enough;
-            let done = lower >= least * (1.0 - tolerance).powi(2) || lower >= enough * enough || close;
+            let proved = lower >= least * (1.0 - tolerance).powi(2) || lower >= enough * enough || close;
+            // There is always one look.
+            let done = best.is_some() && proved;
             if done || boxes >= MOST_BOXES {
                 break;
             }
@@ -167,6 +171,34 @@ impl Mixtures<'_> {
         let (best, temperature_k) = best
             .ok_or_else(|| Error::malformed("the alternative has no temperature in its range", "widen it"))?;
         let mut found = self.in_one_lighting(&scene, &best, temperature_k)?;
+        // Shares and lighting together have more than one valley: from every corner, and from the middle of them.
+        let count = scene.lightings.len() as f64;
+        let objects = scene.light.len();
+        let middle: Vec<f64> =
+            (0..objects).map(|k| scene.lightings.iter().map(|v| v[k]).sum::<f64>() / count).collect();
+        let mut lightings: Vec<Vec<f64>> = vec![middle.clone(), self.scene.state.lighting.clone()];
+        for corner in &scene.lightings {
+            lightings.push(corner.iter().zip(&middle).map(|(v, m)| 0.5 * (v + m)).collect());
+            lightings.push(corner.clone());
+        }
+        if scene.lightings.len() > 1 {
+            for lighting in lightings {
+                let [cold, hot] = range_k;
+                let own_k = self.scene.state.temperature_k.clamp(cold, hot);
+                for kelvin in [temperature_k, own_k] {
+                    let one = Scene { lightings: vec![lighting.clone()], ..scene.clone() };
+                    let start = Mixed {
+                        shares: [vec![1.0; self.targets.len()], vec![1.0; self.alternatives.len()]],
+                        cost: f64::INFINITY,
+                    };
+                    let (start, _) = one.at(kelvin, start);
+                    let other = self.in_one_lighting(&one, &start, kelvin)?;
+                    if other.distance < found.distance {
+                        found = other;
+                    }
+                }
+            }
+        }
         found.lower = lower.max(0.0).sqrt().min(found.distance);
         found.boxes = boxes;
         Ok(found)
@@ -198,7 +230,7 @@ impl Mixtures<'_> {
             let total = unknowns.known_lighting_total();
             let [low, high] = range.lighting;
             let sum = total.unwrap_or(range.lighting_sum);
-            corners(objects, [low.min(sum / objects.max(1) as f64), high], sum, total.is_some())
+            corners(objects, [low.min(sum / objects.max(1) as f64), high], sum, total.is_some())?
         } else {
             vec![state.lighting.clone()]
         };
@@ -329,31 +361,45 @@ impl Scene<'_> {
     }
 }
 
-/// The corners of all lightings within a range of each and of their sum, which is `total` where that is known.
-fn corners(objects: usize, [low, high]: [f64; 2], sum: f64, is_total: bool) -> Vec<Vec<f64>> {
+/// The corners of all lightings within a range of each and of their sum. Where that is known to be `sum`, the last object has what the others
+/// leave of it, whatever its range, as nearest states have it.
+fn corners(objects: usize, [low, high]: [f64; 2], sum: f64, is_total: bool) -> Result<Vec<Vec<f64>>> {
     let high = high.min(sum);
+    let free = if is_total { objects.saturating_sub(1) } else { objects };
+    // What rounding of sums may leave out is taken in: a larger set has no greater least distance.
+    let slack = 1e-12 * sum.max(1.0);
     let mut corners: Vec<Vec<f64>> = Vec::new();
     let mut add = |corner: Vec<f64>| {
         if !corners.contains(&corner) {
             corners.push(corner);
         }
     };
-    for ends in 0..1_usize << objects {
-        let corner: Vec<f64> = (0..objects).map(|k| if ends >> k & 1 == 0 { low } else { high }).collect();
+    for ends in 0..1_usize << free {
+        let corner: Vec<f64> = (0..free).map(|k| if ends >> k & 1 == 0 { low } else { high }).collect();
         let lit: f64 = corner.iter().sum();
-        if !is_total && lit <= sum || objects == 0 {
+        if lit <= sum + slack {
             add(corner.clone());
         }
-        for k in 0..objects {
+        for k in 0..free {
             let rest = sum - (lit - corner[k]);
-            if rest >= low && rest <= high {
+            if rest >= low - slack && rest <= high + slack {
                 let mut corner = corner.clone();
-                corner[k] = rest;
+                corner[k] = rest.max(0.0);
                 add(corner);
             }
         }
     }
-    corners
+    if corners.is_empty() {
+        let found = format!("no lighting from {low} to {high} adds up to {sum} at most");
+        return Err(Error::malformed(found, "widen alternatives.lighting"));
+    }
+    if is_total && objects > 0 {
+        for corner in &mut corners {
+            let lit: f64 = corner.iter().sum();
+            corner.push((sum - lit).max(0.0));
+        }
+    }
+    Ok(corners)
 }
 
 /// Σ p_i e_i.

@@ -126,7 +126,11 @@ impl ClassSpec {
                 MaterialRef::Name(pattern) if pattern.contains(['*', '?']) => {
                     let names = library.names().filter(|name| matches(pattern.as_bytes(), name.as_bytes()));
                     for name in names {
-                        own.push((library.get(name)?.clone(), None));
+                        let material = library.get(name)?;
+                        // A sky is no surface, whatever it is called.
+                        if material.provenance().category != "sky" {
+                            own.push((material.clone(), None));
+                        }
                     }
                     if own.is_empty() {
                         let found = format!("no material of the library is called like `{pattern}`");
@@ -136,11 +140,16 @@ impl ClassSpec {
                         ));
                     }
                 }
+                MaterialRef::Name(name) if library.class(name).is_some() => {
+                    let found = format!("`{name}` is a class itself");
+                    return Err(Error::malformed(found, "name its members"));
+                }
                 MaterialRef::Name(name) => own.push((library.get(name)?.clone(), None)),
                 MaterialRef::File(path) => {
                     for file in files(path)? {
                         if !known.insert(file.clone()) {
-                            continue;
+                            let found = format!("`{}` is in the class twice", file.display());
+                            return Err(Error::malformed(found, "name every spectrum once"));
                         }
                         match read::content_of_file(&file)? {
                             Content::Materials(all) => {
@@ -175,7 +184,8 @@ impl ClassSpec {
             weight: weight / total,
         });
         let members: Vec<Member> = members.collect();
-        if self.spread == Some(Spread::Sample) && members.len() < 2 {
+        let squares: f64 = members.iter().map(|member| member.weight * member.weight).sum();
+        if self.spread == Some(Spread::Sample) && (members.len() < 2 || squares > 1.0 - 1e-9) {
             let found = "the covariance of a sample of one spectrum";
             return Err(Error::malformed(found, "add spectra, or state emissivity_error and correlation"));
         }

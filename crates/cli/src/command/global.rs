@@ -172,7 +172,7 @@ impl Global {
             scenario.requirement.by = by;
         }
         scenario.alternatives.skip_uncovered |= self.skip_uncovered;
-        let study = Study::new(&scenario, &self.library()?)?;
+        let study = Study::new_skipping(&scenario, &self.library()?, self.skipping())?;
         self.inputs_are_safe()?;
         Ok(study)
     }

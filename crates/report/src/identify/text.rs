@@ -152,18 +152,22 @@ fn prediction(result: &Identification) -> String {
 /// The answer of a check.
 #[must_use]
 pub fn check(result: &Check, study: &Study) -> String {
-    let target = &study.target().name;
+    // Where there are classes each stands for all of its members.
+    let classes = study.class_answers();
+    let target = classes.first().map_or(&study.target().name, |class| &class.target.name);
     let camera = camera(study);
     let reliability = words::demanded(study.required_distance());
     match &result.not_told_from {
         Some(other) => {
+            let class = result.failed.and_then(|index| classes.get(index));
+            let other = class.map_or(other, |class| &class.alternative.name);
             let cannot = does_not_tell(study);
             let by = no_limit(study);
             format!("No: {camera} {cannot} {target} from {other} with {reliability} reliability{by}.\n")
         }
         None => {
             let all = match study.alternatives() {
-                [one] => one.name.clone(),
+                [one] => classes.first().map_or(&one.name, |class| &class.alternative.name).clone(),
                 all => format!("all {} alternatives", all.len()),
             };
             let by = no_limit(study);

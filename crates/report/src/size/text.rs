@@ -240,18 +240,39 @@ fn sensitivity(result: &Sizing) -> String {
     };
     line("1 % more of it changes d by", levers);
     let of = &found.emissivity;
-    if of.error > 0.0 {
+    if of.error > 0.0 || !of.of_classes.is_empty() {
         let linear = of.sigma_linear.map_or_else(String::new, |sigma| {
             format!("; to first order {} +- {}", significant(of.distance, 2), significant(sigma, 2))
         });
         let [low, middle, high] =
             [of.distance_5, of.distance_50, of.distance_95].map(|distance| significant(distance, 2));
         let spread = format!("d = {middle} ({low} to {high} in 90 % of {} draws){linear}", of.draws);
-        line(&format!("emissivities wrong by {} rms", of.error), spread);
-        line(
-            &format!("  correlated over {} cm^-1", of.correlation_cm1),
-            format!("{} of the draws meet the requirement: {}", share(of.share_met), conclusion(result)),
-        );
+        let met =
+            format!("{} of the draws meet the requirement: {}", share(of.share_met), conclusion(result));
+        if of.of_classes.is_empty() {
+            line(&format!("emissivities wrong by {} rms", of.error), spread);
+            line(&format!("  correlated over {} cm^-1", of.correlation_cm1), met);
+        } else {
+            line("emissivities scatter as classes say", spread);
+            for class in &of.of_classes {
+                let how = match class.correlation_cm1 {
+                    Some(length) => {
+                        format!("{} rms, correlated over {length} cm^-1", significant(class.error, 2))
+                    }
+                    None => {
+                        format!("{} rms, as its {} spectra do", significant(class.error, 2), class.spectra)
+                    }
+                };
+                line(&format!("  {}", class.class), how);
+            }
+            if of.of_classes.len() == 1 {
+                line(
+                    "  the other",
+                    format!("{} rms, correlated over {} cm^-1", of.error, of.correlation_cm1),
+                );
+            }
+            line("  together", met);
+        }
     }
     out.push('\n');
     out

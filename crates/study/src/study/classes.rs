@@ -70,13 +70,19 @@ impl Study {
         Ok(targets.map(|target| Self { target, ..study.clone() }).collect())
     }
 
+    /// What the target may be of: the members of its class, or the target alone.
+    pub(super) fn targets(&self) -> impl Iterator<Item = &Surface> {
+        let members = self.members[0].iter().flat_map(|members| &members.surfaces);
+        members.chain(std::iter::once(&self.target))
+    }
+
     /// Every member of target and alternatives, each once.
     pub(super) fn all_members(&self) -> impl Iterator<Item = &Surface> {
         self.members.iter().flatten().flat_map(|members| &members.surfaces)
     }
 
     /// The study of the pairs of members that decide: the worst of all as target, and for every alternative the member that is nearest.
-    pub(super) fn of_worst_members(mut self) -> Result<Self> {
+    pub(super) fn of_worst_members(mut self, skipping: Skipping) -> Result<Self> {
         if !self.has_classes() {
             return Ok(self);
         }
@@ -87,7 +93,7 @@ impl Study {
         for other in &alternatives {
             // The target is one material or class.
             let Some(own) = targets.first() else { continue };
-            let (pair, answer) = self.worst_members(own, other)?;
+            let (pair, answer) = self.worst_members(own, other, skipping)?;
             paired.push(pair);
             answers.push(answer);
         }
@@ -102,9 +108,19 @@ impl Study {
         Ok(self)
     }
 
+    /// Of classes, the one alternative that is asked for by its name or that of its class.
+    pub(super) fn paired_with(&self, against: &[String]) -> Option<usize> {
+        let [name] = against else { return None };
+        let is_asked = |answer: &ClassAnswer| answer.alternative.name == *name;
+        let class = self.classes.iter().position(is_asked);
+        class.or_else(|| self.alternatives.iter().position(|surface| surface.name == *name))
+    }
+
     /// That not all members of classes are looked at, where it is so.
-    pub(super) fn worst_members_alone(&self) -> Option<Warning> {
-        let other = self.classes.iter().min_by(|a, b| a.decisive().total_cmp(&b.decisive()))?;
+    pub(super) fn worst_members_alone(&self, against: &[String]) -> Option<Warning> {
+        let asked = self.paired_with(against).and_then(|index| self.classes.get(index));
+        let worst = || self.classes.iter().min_by(|a, b| a.decisive().total_cmp(&b.decisive()));
+        let other = asked.or_else(worst)?;
         let [target, alternative] = other.worst.clone();
         Some(Warning::WorstMembers { target, alternative })
     }
@@ -120,8 +136,13 @@ impl Study {
     }
 
     /// The pair of members that decides between two classes.
-    fn worst_members(&self, own: &Members, other: &Members) -> Result<((Surface, Surface), ClassAnswer)> {
-        let found = self.member_distances(own, other)?;
+    fn worst_members(
+        &self,
+        own: &Members,
+        other: &Members,
+        skipping: Skipping,
+    ) -> Result<((Surface, Surface), ClassAnswer)> {
+        let found = self.member_distances(own, other, skipping)?;
         let statistical = self.camera.is_some();
         let sure = |pair: &MemberPair| match pair.distance {
             Some(distance) => self.sure(distance, pair.lower) * (1.0 - pair.relative_error),
@@ -156,6 +177,17 @@ impl Study {
             [weighed(&|pair| detection::probability(sure(pair).max(0.0))), weighed(&most)]
                 .map(|probability| probability.clamp(0.0, 1.0))
         });
+        // What any pair asks of hardware: (d² L)⁻¹, L the radiance of its target.
+        let least_information = (!statistical).then(|| {
+            let mut least = f64::INFINITY;
+            for (i, target) in own.surfaces.iter().enumerate() {
+                let radiance = Self { target: target.clone(), ..self.clone() }.photon_radiance();
+                for pair in (0..other.surfaces.len()).filter_map(|j| found.pair(i, j)) {
+                    least = least.min(sure(pair).max(0.0).powi(2) * radiance);
+                }
+            }
+            least
+        });
         let (mut target, mut alternative) = (own.surfaces[a].clone(), other.surfaces[b].clone());
         let worst = found.pair(a, b).copied();
         let distance = worst.map_or(f64::NAN, |pair| pair.distance.unwrap_or(pair.lower));
@@ -174,6 +206,7 @@ impl Study {
             mean_detection_probability: mean_probability,
             leave_one_out,
             mixtures: None,
+            least_information,
             distances: found,
         };
         if own.mixtures() || other.mixtures() {
@@ -188,7 +221,7 @@ impl Study {
     }
 
     /// Distances of all pairs of members, by the distance that decides: with a camera statistical.
-    fn member_distances(&self, own: &Members, other: &Members) -> Result<ClassDistances> {
+    fn member_distances(&self, own: &Members, other: &Members, skipping: Skipping) -> Result<ClassDistances> {
         let kind = self.scenario.requirement.by;
         let studies: Vec<Self> =
             own.surfaces.iter().map(|target| Self { target: target.clone(), ..self.clone() }).collect();
@@ -201,7 +234,7 @@ impl Study {
             let scene = self.library_scene();
             let classes = Classes { scene: &scene, targets: &targets, alternatives: &alternatives };
             let required = self.camera.as_ref().map(|_| self.required);
-            return classes.distances(countings.as_deref(), required, Skipping::On, &|_, _| ());
+            return classes.distances(countings.as_deref(), required, skipping, &|_, _| ());
         }
         // Local distances take less time than bounds on them would; priors have no part in a proof.
         let pair = |(study, alternative): (&Self, &Surface)| {

@@ -24,7 +24,6 @@ pub(super) use scaling::quantile;
 pub use scaling::{BandNumber, LibrarySize, Scaling};
 
 use super::classes::MixtureAnswer;
-use super::distances::Statistical;
 use super::{Study, Surface, Warning, warn};
 use crate::scenario::DistanceKind;
 use hadar::demand::{self, Ledger};
@@ -51,12 +50,8 @@ impl Study {
             demand::ledger_of(|| self.against(index).pair(alternative, mixtures))
         });
         let (pairs, pair_warnings): (Vec<_>, Vec<_>) = demand::gathered(found)?.into_iter().unzip();
-        let kind = self.scenario.requirement.by;
-        let decisive = |pair: &PairResult| pair.statistical_distance.unwrap_or_else(|| pair.distance(kind));
-        let limiting = pairs
-            .iter()
-            .min_by(|a, b| decisive(a).total_cmp(&decisive(b)))
-            .map_or_else(String::new, |pair| pair.alternative.clone());
+        let limiting =
+            self.limiting(&pairs).map_or_else(String::new, |index| pairs[index].alternative.clone());
         let mut warnings = self.warnings.clone();
         warnings.extend(self.camera_warnings());
         if self.scenario.envelope.is_some() {
@@ -74,6 +69,18 @@ impl Study {
             warnings,
             stats: ledger.close(),
         })
+    }
+
+    /// The pair that is hardest to tell apart. It is found by its place: two alternatives may have the same name.
+    pub(super) fn limiting(&self, pairs: &[PairResult]) -> Option<usize> {
+        let kind = self.scenario.requirement.by;
+        let decisive = |i: &usize| {
+            let mixtures = self.classes.get(*i).and_then(|answer| answer.mixtures.as_ref());
+            let own = pairs[*i].statistical_distance.unwrap_or_else(|| pairs[*i].distance(kind));
+            // Of mixtures what is proved decides.
+            mixtures.map_or(own, |found| own.min(found.distance_lower))
+        };
+        (0..pairs.len()).min_by(|a, b| decisive(a).total_cmp(&decisive(b)))
     }
 
     /// What the pairs say together.
@@ -157,13 +164,8 @@ impl Study {
         let statistical =
             counting.as_ref().map(|counting| self.statistical(kind, alternative, counting)).transpose()?;
         // What is proved of all mixtures may not suffice where the worst that was found does.
-        let statistical = statistical.map(|found| match mixtures {
-            Some(all) if found.reaches(self.required) && all.distance_lower < self.required => {
-                Statistical { distance: all.distance_lower, ..found }
-            }
-            _ => found,
-        });
-        let told_apart = statistical.map(|found| found.reaches(self.required));
+        let proved = mixtures.is_none_or(|all| all.distance_lower >= self.required);
+        let told_apart = statistical.map(|found| found.reaches(self.required) && proved);
         let relative_error_statistical = statistical.and_then(|found| found.relative_error);
         let statistical = statistical.map(|found| found.distance);
         let limit = match (kind, &counting) {

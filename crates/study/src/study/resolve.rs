@@ -10,6 +10,7 @@ use super::bands::{self, check_detector};
 use super::classes::Members;
 use super::{Study, Surface, camera, camera_bands};
 use crate::scenario::{Reliability, Scenario};
+use hadar::demand::Skipping;
 use hadar::error::{Error, Result};
 use hadar::identifiability::detection;
 use hadar::material::{Library, Material};
@@ -41,7 +42,15 @@ impl Study {
     /// # Ok::<(), hadar::Error>(())
     /// ```
     pub fn new(scenario: &Scenario, library: &Library) -> Result<Self> {
-        Self::with_members(scenario, library)?.of_worst_members()
+        Self::new_skipping(scenario, library, Skipping::On)
+    }
+
+    /// The same, with every pair of members of classes searched in full where nothing is to be skipped.
+    ///
+    /// # Errors
+    /// As [`Study::new`].
+    pub fn new_skipping(scenario: &Scenario, library: &Library, skipping: Skipping) -> Result<Self> {
+        Self::with_members(scenario, library)?.of_worst_members(skipping)
     }
 
     /// The same with all members of classes side by side: those of the target's are [`Study::targets`], the first of which is the

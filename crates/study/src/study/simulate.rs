@@ -162,6 +162,11 @@ impl Study {
             let camera = self.camera.clone().map(|camera| Camera { photon_bunching: false, ..camera });
             return Self { camera, ..self.clone() }.simulate(plan, progress);
         }
+        if let Some(index) = self.paired_with(&plan.against)
+            && let std::borrow::Cow::Owned(own) = self.against(index)
+        {
+            return own.simulate(plan, progress);
+        }
         let ledger = Ledger::open();
         demand::add(&self.looked_up);
         let rivals = self.rivals(&plan.against)?;
@@ -246,7 +251,7 @@ impl Study {
     /// What of a simulation is not as simple as it looks.
     fn simulation_warnings(&self, plan: &SimulationPlan, points: &[SimulatedPoint]) -> Vec<Warning> {
         let mut warnings = Vec::new();
-        warnings.extend(self.worst_members_alone());
+        warnings.extend(self.worst_members_alone(&plan.against));
         let bands = self.bands.len() as f64;
         let fewest = points.iter().map(|point| point.photons).fold(f64::INFINITY, f64::min);
         let most = points.iter().map(|point| point.photons).fold(0.0, f64::max);

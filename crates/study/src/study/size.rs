@@ -225,8 +225,7 @@ impl Study {
         let ledger = Ledger::open();
         demand::add(&identification.stats);
         let mut warnings = identification.warnings.clone();
-        let limiting =
-            identification.pairs.iter().position(|pair| pair.alternative == identification.limiting);
+        let limiting = self.limiting(&identification.pairs);
         let Some((index, pair)) = limiting.and_then(|index| Some((index, identification.pairs.get(index)?)))
         else {
             return Err(hadar::Error::malformed(
@@ -237,7 +236,7 @@ impl Study {
         // Of a class the member that is nearest to this alternative.
         let own = self.against(index);
         let (surface, photon_radiance) = (&own.alternatives[index], own.photon_radiance());
-        let requirement = own.requirement(pair, photon_radiance);
+        let requirement = own.requirement(pair, index, photon_radiance);
         let camera = own.camera_result(photon_radiance);
         let solve_for = match &own.camera {
             Some(camera) => Some(own.solutions(camera, surface)?),
@@ -249,6 +248,12 @@ impl Study {
         };
         if let Some(camera) = &camera {
             warnings.extend(own.camera_result_warnings(camera, pair));
+        }
+        if solve_for.is_some() && self.classes.get(index).is_some_and(|answer| answer.pairs > 1) {
+            warnings.push(Warning::SolvedForOnePair {
+                target: pair.target.clone(),
+                alternative: pair.alternative.clone(),
+            });
         }
         let companion = match (&own.camera, own.scenario.target.size_m) {
             (Some(_), Some(_)) => Some(own.companion(pair, None)?),
@@ -290,7 +295,7 @@ impl Study {
             (None, [only]) => Some(only.name.clone()),
             (None, _) => None,
         };
-        let index = self.alternatives.iter().position(|other| Some(&other.name) == alternative.as_ref());
+        let index = check.failed.or((self.alternatives.len() == 1).then_some(0));
         let judged = Answer::Judged {
             enough: check.identifiable,
             spoiled: spoiled.clone(),
@@ -324,9 +329,17 @@ impl Study {
         Ok(Some(VerdictAlone { scenario, verdict, not_told_from, stats }))
     }
 
-    fn requirement(&self, pair: &PairResult, photon_radiance: f64) -> RequirementResult {
+    fn requirement(&self, pair: &PairResult, index: usize, photon_radiance: f64) -> RequirementResult {
         let hardware = |photons: Option<f64>| {
             photons.map(|photons| policy::hardware_required_m2_s(photons, photon_radiance))
+        };
+        // Of classes the pair that asks for the most photons may be a bright one: that which asks for the most hardware decides that.
+        let least = self.classes.get(index).and_then(|answer| answer.least_information);
+        let photons_of_any = |photons: f64| match least {
+            Some(least) if self.scenario.requirement.by == DistanceKind::Nearest => {
+                photons.max(self.required.powi(2) * photon_radiance / least)
+            }
+            _ => photons,
         };
         let by = pair.photons_required_by;
         RequirementResult {
@@ -334,10 +347,10 @@ impl Study {
             distance: self.required,
             detection_probability: detection::probability(self.required),
             photons: pair.photons_required,
-            hardware_m2_s: hardware(pair.photons_required),
+            hardware_m2_s: hardware(pair.photons_required.map(photons_of_any)),
             photons_by: by,
             hardware_by_m2_s: PhotonsRequired {
-                nearest: hardware(by.nearest),
+                nearest: hardware(by.nearest.map(photons_of_any)),
                 local: hardware(by.local),
                 local_unknown_gain: hardware(by.local_unknown_gain),
             },
@@ -388,8 +401,20 @@ impl Study {
     /// Counts of the fullest reading of a trial.
     pub(super) fn brightest(&self, trial: &Trial) -> Result<f64> {
         let sight = self.sight_at(&trial.camera, trial.distance_m)?;
-        let signal = sight.bands.weigh(&self.surroundings.signal(&self.target.emissivity, &self.state));
-        Ok(trial.camera.brightest_reading(&sight.bands, &signal, &sight.view))
+        let reading = |surface: &Surface| {
+            let signal = sight.bands.weigh(&self.surroundings.signal(&surface.emissivity, &self.state));
+            trial.camera.brightest_reading(&sight.bands, &signal, &sight.view)
+        };
+        Ok(self.targets().map(reading).fold(0.0, f64::max))
+    }
+
+    /// Counts of the fullest reading that any member of the target's class gives.
+    fn brightest_member(&self, camera: &Camera) -> f64 {
+        let reading = |surface: &Surface| {
+            let signal = self.bands.weigh(&self.surroundings.signal(&surface.emissivity, &self.state));
+            camera.brightest_reading(&self.bands, &signal, &self.view_of(camera))
+        };
+        self.targets().map(reading).fold(0.0, f64::max)
     }
 
     pub(super) fn solutions(&self, camera: &Camera, alternative: &Surface) -> Result<Solutions> {
@@ -417,7 +442,9 @@ impl Study {
         spoiled: Vec<Shortfall>,
     ) -> Verdict {
         let (reached, limit) = (pair.statistical_distance, pair.statistical_distance_nearest);
-        let far_enough = reached.map(|reached| reached >= self.required);
+        let mixtures = self.classes.get(index).and_then(|answer| answer.mixtures.as_ref());
+        let proved = mixtures.map(|found| found.distance_lower);
+        let far_enough = pair.told_apart;
         let met = far_enough.map(|enough| enough && spoiled.is_empty());
         let mut fails_by = if far_enough == Some(false) { vec![Shortfall::Distance] } else { Vec::new() };
         fails_by.extend(&spoiled);
@@ -427,7 +454,9 @@ impl Study {
             (_, _, Status::Blind) if few.is_some() => few.unwrap_or(Answer::UnknownsExplain),
             (_, None, Status::Ok | Status::Blind) => Answer::UnknownsExplain,
             (None, Some(photons), _) => Answer::Takes { photons, limit: requirement.photons_by.nearest },
-            (Some(d), Some(_), _) => Answer::Judged { enough: d >= self.required, spoiled, reached, limit },
+            (Some(_), Some(_), _) => {
+                Answer::Judged { enough: far_enough == Some(true), spoiled, reached, limit }
+            }
         };
         let sentence = Finding {
             camera: self.camera.as_ref().map_or_else(String::new, |camera| camera.name.clone()),
@@ -446,7 +475,8 @@ impl Study {
             statistical_distance: reached,
             statistical_distance_nearest: limit,
             required_distance: self.required,
-            margin: reached.map(|reached| reached / self.required),
+            margin: reached
+                .map(|reached| proved.map_or(reached, |proved| reached.min(proved)) / self.required),
         }
     }
 
@@ -471,7 +501,9 @@ impl Study {
         if camera.motion_blur_pixels.is_some_and(|blur| blur >= 1.0) {
             spoiled.push(Shortfall::MotionBlur);
         }
-        if camera.camera.full_well.is_some_and(|full| camera.brightest_reading > full) {
+        // Of a class every member must fit into the well.
+        let brightest = self.brightest_member(&camera.camera).max(camera.brightest_reading);
+        if camera.camera.full_well.is_some_and(|full| brightest > full) {
             spoiled.push(Shortfall::FullWell);
         }
         spoiled

@@ -51,6 +51,8 @@ catalogue! {
         "Choose bands that its spectrum covers, or alternatives.extrapolate = \"hold\".";
     /// A class of the scenario has the name of a material of the library that is entered as one number, and stands in its place.
     ClassReplacesPlaceholder = "class-replaces-placeholder", "Nothing; or call the class otherwise.";
+    /// Figures of the camera, elasticities and pictures are those of the pair of members that is hardest to tell apart before the camera as it is.
+    SolvedForOnePair = "solved-for-one-pair", "Ask again with the figure that was solved for: the verdict is then that of all pairs.";
     /// Of classes only the pair of members that is hardest to tell apart is simulated.
     WorstMembers = "worst-members", "Name other members to simulate them.";
 

@@ -41,6 +41,11 @@ impl Display for Warning {
                 f,
                 "`{class}` is the class of this scenario, not the material of the library that is entered as one number"
             ),
+            Self::SolvedForOnePair { target, alternative } => write!(
+                f,
+                "what each figure may be is solved for {target} against {alternative}, the hardest pair before the camera as it is; before \
+                 another camera another pair of members may be harder"
+            ),
             Self::WorstMembers { target, alternative } => write!(
                 f,
                 "classes stand by the pair of members that is hardest to tell apart, {target} and {alternative}; the others are not \

@@ -45,7 +45,9 @@ impl Library {
                 let error = Error::malformed(found, "call one of them otherwise");
                 return Err(error.for_key(format!("class.{name}")).in_file(path));
             }
-            self.classes.insert(name, class);
+            if self.classes.insert(name.clone(), class).is_some() {
+                self.warnings.push(format!("the class `{name}` is replaced by that of {}", path.display()));
+            }
         }
         Ok(())
     }

@@ -82,6 +82,9 @@ pub struct ClassAnswer {
     /// The worst mixture, where mixtures belong to a class.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mixtures: Option<MixtureAnswer>,
+    /// Without a camera, the least d²L over the pairs, L the photon radiance of the target: what decides which hardware is needed.
+    #[serde(skip)]
+    pub least_information: Option<f64>,
     /// What is known of every pair, target by target.
     #[serde(skip)]
     pub distances: ClassDistances,

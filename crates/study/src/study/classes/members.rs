@@ -48,8 +48,12 @@ impl Members {
         {
             return Ok(());
         }
-        let mean = mixed(&self.surfaces, &self.weights);
         let rest = 1.0 - self.weights.iter().map(|w| w * w).sum::<f64>();
+        if rest < 1e-9 {
+            // All weight is on one: a sample of one has no covariance.
+            return Ok(());
+        }
+        let mean = mixed(&self.surfaces, &self.weights);
         self.modes = self
             .surfaces
             .iter()

@@ -2,13 +2,13 @@
 
 use super::truth::Truth;
 use crate::scenario::decompose::{CubeUnit, LightSource};
-use crate::scenario::{DecomposeScenario, MaterialRef};
+use crate::scenario::{DecomposeScenario, MaterialRef, Spread};
 use crate::study::{Warning, bands, camera, camera_bands};
 use hadar::decompose::{Light, SpatialPrior};
 use hadar::error::{Error, Result};
 use hadar::grid::{Grid, READ_SPECTRUM, text_of_file};
 use hadar::instrument::View;
-use hadar::material::{Library, Material};
+use hadar::material::{Basis, Library, Material};
 use hadar::planck;
 use hadar::ranging::cube::{Cube, Rows, Sample};
 use hadar::spectrum::{Bands, interpolated};
@@ -243,6 +243,16 @@ fn listed(
     let Some(spec) = scenario.classes.get(name).or_else(|| library.class(name)) else {
         return Ok(vec![Listed::alone(entry, library.get(name)?.clone())]);
     };
+    let is_placeholder = library.get(name).is_ok_and(|one| one.provenance().basis == Basis::Constant);
+    if scenario.classes.contains_key(name) && library.contains(name) && !is_placeholder {
+        let found = format!("`{name}` is a class here and a material of the library");
+        return Err(Error::malformed(found, format!("call the class otherwise, such as `any-{name}`")));
+    }
+    if matches!(spec.spread, Some(Spread::Stated { .. })) && scenario.library.emissivity_error.is_none() {
+        let found = format!("errors that the class `{name}` states");
+        let instead = "write them as library.emissivity_error, which is a share of the emissivities of all";
+        return Err(Error::malformed(found, instead));
+    }
     if spec.mixtures {
         let found = format!("mixtures of the class `{name}`");
         return Err(Error::malformed(found, "leave mixtures out: a pixel is taken to be of one member"));
@@ -258,7 +268,8 @@ fn listed(
         let material = member.material.with_name(own);
         Listed { material, entry, weight: member.weight, class: Some(name.clone()) }
     };
-    Ok(class.members.into_iter().map(member).collect())
+    // What is never met is not looked for.
+    Ok(class.members.into_iter().filter(|member| member.weight > 0.0).map(member).collect())
 }
 
 /// The materials in the order of the file or list; an error with the key it is about.

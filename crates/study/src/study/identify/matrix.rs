@@ -193,24 +193,28 @@ impl Study {
         let ledger = Ledger::open();
         demand::add(&self.looked_up);
         let failed = if self.has_classes() {
-            let failed = self.classes.iter().position(|answer| answer.told_apart != Some(true));
-            failed.map(|index| &self.alternatives[index])
+            self.classes.iter().position(|answer| answer.told_apart != Some(true))
         } else if kind == DistanceKind::Nearest {
             let emissivities: Vec<&[f64]> =
                 std::iter::once(&self.target).chain(&self.alternatives).map(|m| &m.emissivity[..]).collect();
             let scene = self.library_scene();
             let failed = scene.first_not_told_from(0, &emissivities, &counting, self.required, skipping)?;
-            failed.map(|i| &self.alternatives[i - 1])
+            failed.map(|i| i - 1)
         } else {
-            skipping.until(&self.alternatives, &[Thing::LocalDistances], |alternative| {
-                let found = self.statistical(kind, alternative, &counting)?;
-                Ok((!found.reaches(self.required)).then_some(alternative))
-            })?
+            skipping.until(
+                self.alternatives.iter().enumerate(),
+                &[Thing::LocalDistances],
+                |(i, alternative)| {
+                    let found = self.statistical(kind, alternative, &counting)?;
+                    Ok((!found.reaches(self.required)).then_some(i))
+                },
+            )?
         };
         Ok(Check {
             scenario: self.scenario.clone(),
             identifiable: failed.is_none(),
-            not_told_from: failed.map(|surface| surface.name.clone()),
+            not_told_from: failed.map(|index| self.alternatives[index].name.clone()),
+            failed,
             stats: ledger.close(),
         })
     }

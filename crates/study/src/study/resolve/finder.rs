@@ -172,7 +172,14 @@ impl<'a> Finder<'a> {
                 found
             }
             None => {
-                let is_target = |name: &str| target.members.iter().any(|(own, _)| own.name() == name);
+                let is_target = |name: &str| {
+                    // Members of a class are called after it; a class may stand in the place of a material.
+                    let own = |(own, _): &(Cow<'_, Material>, f64)| {
+                        own.name() == name
+                            || own.name().strip_prefix(&format!("{}/", target.name)) == Some(name)
+                    };
+                    target.name == name || target.members.iter().any(own)
+                };
                 let others = self.library.names().filter(|name| !is_target(name));
                 let (surfaces, skies): (Vec<_>, Vec<_>) = others.partition(|name| is_surface(name));
                 self.skies = skies.into_iter().map(str::to_owned).collect();

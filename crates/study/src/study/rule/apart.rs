@@ -111,14 +111,13 @@ impl TellApart {
             }
             candidates.push(candidate);
         }
-        // Where the rule says nothing of errors its classes may, each of its own: the largest guard all.
-        if scenario.sensitivity.is_none() {
-            let near = candidates.iter().flat_map(|candidate| &candidate.near);
-            scenario.sensitivity = near.flat_map(Study::stated_spreads).max_by(|a, b| {
-                let [a, b] = [a, b].map(|spec| (spec.emissivity_error, spec.correlation_cm1));
-                a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1))
-            });
-        }
+        // Errors that classes state are those of all their members; the largest, of the rule's own too, guard all.
+        let near = candidates.iter().flat_map(|candidate| &candidate.near);
+        let stated = near.flat_map(Study::stated_spreads).chain(scenario.sensitivity);
+        scenario.sensitivity = stated.max_by(|a, b| {
+            let [a, b] = [a, b].map(|spec| (spec.emissivity_error, spec.correlation_cm1));
+            a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1))
+        });
         scenario.alternatives.materials = Some(alternatives);
         // Where nothing is said of them, cameras may have bands of their own.
         let near = || candidates.iter().flat_map(|candidate| &candidate.near);

@@ -30,13 +30,15 @@ impl Study {
         }
         let mut found: Vec<&Surface> = Vec::new();
         for name in against {
-            let surface = self.alternative(name).ok_or_else(|| {
+            let class = self.classes.iter().position(|answer| answer.alternative.name == *name);
+            let of_class = class.and_then(|index| self.alternatives.get(index));
+            let surface = self.alternative(name).or(of_class).ok_or_else(|| {
                 let names: Vec<&str> =
                     self.alternatives.iter().map(|surface| surface.name.as_str()).collect();
                 let found = format!("`{name}` is none of the alternatives");
                 Error::malformed(found, format!("choose among {}", names.join(", ")))
             })?;
-            if !found.iter().any(|known| known.name == *name) {
+            if !found.iter().any(|known| known.name == surface.name) {
                 found.push(surface);
             }
         }

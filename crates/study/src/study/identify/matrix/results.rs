@@ -104,6 +104,9 @@ pub struct Check {
     pub identifiable: bool,
     /// The first alternative found that it does not; there may be more.
     pub not_told_from: Option<String>,
+    /// Its place among the alternatives.
+    #[serde(skip)]
+    pub failed: Option<usize>,
     /// What was computed for it and what was not.
     pub stats: Work,
 }
