@@ -259,6 +259,15 @@ fn every_mistake_is_one_line() {
     }
     let few = said("points = 4", "points = 3", &["--bands", "2"]);
     assert!(few.starts_with("--bands: number of bands is 2; it must be at least 3, one more than"), "{few}");
+    let fine = WALL
+        .replace("step = \"20 cm^-1\"", "step = \"2 cm^-1\"\n")
+        .replace("= 0.005", "= 0.005\nemissivity_correlation = \"1 cm^-1\"");
+    let outcome = Folder::with(&fine).run(&["range", "a.toml", "-q", "--bands", "4"]);
+    assert!(
+        outcome.stderr.starts_with("error: --bands: number of unknowns is 243; it must be at most 100"),
+        "{}",
+        outcome.stderr
+    );
     let none = said("[requirement]\nrelative_distance_error = 0.2\n", "", &["--check"]);
     assert!(none.contains("requirement: --check, but nothing is demanded"), "{none}");
     // A target in front of air is no scenario of another command.

@@ -141,12 +141,12 @@ fn best(result: &AirRanging) -> String {
     let centres: Vec<String> = best.centers_cm1.iter().map(|nu| format!("{nu:.1}")).collect();
     let proved = match (best.exact, best.sigma_proved_m) {
         (true, _) => "proved to be the best choice".to_owned(),
-        (false, Some(least)) => format!("no choice of as many is below ± {}: proved", length(least)),
+        (false, Some(least)) => format!("no choice of as many is below +- {}: proved", length(least)),
         (false, None) => "nothing is proved of other choices".to_owned(),
     };
     let centres = crate::text::numbers::listed(&centres);
     format!(
-        "Best {} bands at {} m: ± {} ({proved}; all {}: ± {})\n  at {centres} cm^-1, exposed as all are\n\n",
+        "Best {} bands at {} m: +- {} ({proved}; all {}: +- {})\n  at {centres} cm^-1, exposed as all are\n\n",
         best.count,
         significant(result.at.distance_m, 3),
         shown(best.sigma_m),

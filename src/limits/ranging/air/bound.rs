@@ -19,6 +19,8 @@ use crate::units::times_power_of_two;
 
 /// Share of a score below which what is left of it is the rounding of its own elements.
 const NOTHING: f64 = 1e-14;
+/// Share of a change of the distance that an unknown imitates, below which it is not named.
+const IMITATES: f64 = 1e-9;
 
 /// Cramér–Rao bound of a distance.
 #[derive(Debug, Clone, PartialEq)]
@@ -217,8 +219,9 @@ impl<'a> AirSolver<'a> {
         let (of_bands, of_priors) = information.split_at(bands.min(information.len()));
         let direction = |(i, c): (usize, &f64)| {
             let power = powers.last().copied().unwrap_or(0) - powers.get(i).copied().unwrap_or(0);
-            Some((*scores.unknowns.get(i)?, -times_power_of_two(*c, power)))
-                .filter(|(_, change)| *change != 0.0)
+            // Of scores that are all about 1.
+            let change = (c.abs() > IMITATES).then(|| -times_power_of_two(*c, power))?;
+            Some((*scores.unknowns.get(i)?, change))
         };
         let sigma = |length: f64| if length > 0.0 { 1.0 / length / scale } else { f64::INFINITY };
         Ok(AirBound {

@@ -12,6 +12,9 @@ use crate::error::{Error, Result};
 use crate::fisher::Counting;
 use crate::identifiability::selection::best_bands;
 
+/// Unknowns beside which bands are chosen, at most: a search weighs their square for every choice it looks at.
+const MOST_UNKNOWNS: usize = 100;
+
 /// A choice of bands.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AirChoice {
@@ -31,8 +34,17 @@ impl AirSolver<'_> {
     /// The `count` bands with the least error of the distance in `state`.
     ///
     /// # Errors
-    /// As [`AirSolver::bound`]; a number of bands outside 1 to all of them, or too few to tell the distance from what is unknown.
+    /// As [`AirSolver::bound`]; a number of bands outside 1 to all of them, or too few to tell the distance from what is unknown;
+    /// more than 100 unknowns.
     pub fn best_bands(&self, state: &AirState, counting: &Counting, count: usize) -> Result<AirChoice> {
+        let unknowns = self.parameters(self.modes(state, counting)?.len()).len();
+        if unknowns > MOST_UNKNOWNS {
+            let expected = format!(
+                "at most {MOST_UNKNOWNS} to choose bands beside, modes of the emissivity included: state a longer correlation of its errors, or \
+                 take fewer bands"
+            );
+            return Err(Error::out_of_range("number of unknowns", unknowns as f64, "", expected));
+        }
         let scores = self.selection_scores(state, counting)?;
         let found = best_bands(&[scores], count)?;
         let quality = found.quality;

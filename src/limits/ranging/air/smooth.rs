@@ -9,7 +9,7 @@
 //!
 //! Source: Rasmussen and Williams, 'Gaussian Processes for Machine Learning' (2006), section 4.2.
 
-use crate::error::{Result, check};
+use crate::error::{Error, Result, check};
 use crate::spectrum::Bands;
 use nalgebra::{DMatrix, SymmetricEigen};
 
@@ -17,6 +17,8 @@ use nalgebra::{DMatrix, SymmetricEigen};
 const QUARTER: f64 = 3.55;
 /// Variance that modes may leave out, in variances of the noise of a band.
 const LEFT_OUT: f64 = 1e-4;
+/// Bands whose covariance is taken apart, at most: that takes their third power.
+const MOST_BANDS: usize = 1000;
 
 /// How wrong an emissivity may be.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,8 +42,12 @@ impl SmoothModes {
     /// The modes in `bands`.
     ///
     /// # Errors
-    /// A deviation or correlation that is not positive.
+    /// A deviation or correlation that is not positive; more than 1000 bands.
     pub fn new(bands: &Bands, emissivity: SmoothEmissivity) -> Result<Self> {
+        if bands.len() > MOST_BANDS {
+            let expected = format!("at most {MOST_BANDS} where the emissivity is unknown: take wider bands");
+            return Err(Error::out_of_range("number of bands", bands.len() as f64, "", expected));
+        }
         check::positive("error of the emissivity", emissivity.sigma, "")?;
         check::positive("correlation of the errors of the emissivity", emissivity.correlation_cm1, "cm^-1")?;
         let centres: Vec<f64> = bands.bands().iter().map(|band| band.center_cm1).collect();

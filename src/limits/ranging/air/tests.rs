@@ -358,6 +358,11 @@ fn what_does_not_fit_is_refused() {
     assert!(error(AirState { air_k: 0.0, ..state(50.0) }).starts_with("temperature of the air"));
     let other = Counting { var_added: vec![1.0; 3], ..counting.clone() };
     assert!(solver.bound(&state(50.0), &other).is_err());
+    // More than can be taken apart, or chosen beside.
+    let many = Bands::uniform(700.0, 1300.0, 0.5).unwrap();
+    let smooth = SmoothEmissivity { sigma: 0.1, correlation_cm1: 1.0 };
+    let refused = SmoothModes::new(&many, smooth).unwrap_err().to_string();
+    assert!(refused.starts_with("number of bands is 1201; it must be at most 1000"), "{refused}");
     let prior = AirUnknowns { air_temperature: Some(Some(-1.0)), ..AirUnknowns::default() };
     assert!(AirSolver::new(*solver.scene(), prior).is_err());
 }

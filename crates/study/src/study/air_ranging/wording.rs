@@ -42,7 +42,7 @@ impl Display for AirFinding {
                 let at = if demand.is_some() { "at" } else { "At" };
                 write!(
                     f,
-                    "{at} {} m the distance is known to ± {} at best",
+                    "{at} {} m the distance is known to +- {} at best",
                     significant(*distance_m, 3),
                     length(*sigma_m)
                 )?;

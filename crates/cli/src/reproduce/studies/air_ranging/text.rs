@@ -49,7 +49,7 @@ pub(super) fn finding(found: &Found) -> String {
     let (low, high, holds) = ratios(main);
     let best = main.best_bands.as_ref();
     format!(
-        "{} The best {BANDS} bands: ± {}{}. Without sky the model is off by {} at 100 m. Maximum likelihood over the bound from 15 to 150 m: {low:.2} \
+        "{} The best {BANDS} bands: +- {}{}. Without sky the model is off by {} at 100 m. Maximum likelihood over the bound from 15 to 150 m: {low:.2} \
          to {high:.2} (1 within the 95 % interval at {holds} of {} distances).",
         main.verdict.sentence,
         metres(best.and_then(|best| best.sigma_m)),
