@@ -144,10 +144,10 @@ impl EmissivityPrior {
         self.factor.row(v).dot(&self.factor.row(w))
     }
 
-    /// The emissivity that belongs to a z, for instance a drawn one.
+    /// The emissivity that belongs to a z, for instance a drawn one; what is missing of it is 0.
     #[must_use]
-    pub fn at(&self, z: &DVector<f64>) -> Vec<f64> {
-        let apart = &self.factor * z;
+    pub fn at(&self, z: &[f64]) -> Vec<f64> {
+        let apart = &self.factor * DVector::from_fn(self.unknowns(), |k, _| z.get(k).copied().unwrap_or(0.0));
         self.mean.iter().zip(apart.iter()).map(|(mean, more)| mean + more).collect()
     }
 

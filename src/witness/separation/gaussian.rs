@@ -69,7 +69,7 @@ impl Look {
     }
 
     fn emissivity(&self, prior: &EmissivityPrior) -> Vec<f64> {
-        prior.at(&self.factor.solve(&self.along))
+        prior.at(self.factor.solve(&self.along).as_slice())
     }
 }
 
@@ -101,7 +101,7 @@ mod tests {
         let (mut over, mut square, mut error) = (0.0, 0.0, 0.0);
         let draws = 600;
         for _ in 0..draws {
-            let e = prior.at(&DVector::from_fn(prior.unknowns(), |_, _| draw()));
+            let e = prior.at(&(0..prior.unknowns()).map(|_| draw()).collect::<Vec<_>>());
             let y: Vec<f64> =
                 (0..25).map(|w| e[w] * black[w] + (1.0 - e[w]) * light[w] + sigma[w] * draw()).collect();
             let surface = Surface { wavenumbers_cm1: &nu, radiance: &y, light: &light, sigma: &sigma };

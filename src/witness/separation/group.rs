@@ -274,7 +274,7 @@ impl Curve {
         let apart = DVector::from_iterator(used.len(), used.iter().zip(e).map(|(band, e)| e - mean[*band]));
         let right = &found.slope / worse + &matrix * apart;
         let free = factored(&own, &matrix)?;
-        let mut emissivity = prior.at(&free.solve(&own.tr_mul(&right)));
+        let mut emissivity = prior.at(free.solve(&own.tr_mul(&right)).as_slice());
         let mut held: Vec<Option<f64>> = vec![None; used.len()];
         for _ in 0..HELD_ROUNDS {
             let mut more = false;
@@ -295,7 +295,7 @@ impl Curve {
                     right[w] += strong * (limit - mean[used[w]]);
                 }
             }
-            emissivity = prior.at(&factored(&own, &matrix)?.solve(&own.tr_mul(&right)));
+            emissivity = prior.at(factored(&own, &matrix)?.solve(&own.tr_mul(&right)).as_slice());
         }
         emissivity.iter_mut().for_each(|e| *e = e.clamp(0.0, 1.0));
         // Rows of A L⁻ᵀ: the covariance is their products.

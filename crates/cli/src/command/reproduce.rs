@@ -15,7 +15,8 @@ use std::time::Instant;
 #[derive(Debug, Args)]
 pub(super) struct ReproduceArgs {
     /// Figures and tables: fig3b, figs7, fig3c, fig4, figs12, figs17, figs20, edfig6, edfig9, tabs2, tabs5, policy, or all
-    /// of these; further studies, no part of `all`: decompose-limits, exact-probability, priors, library-figures (with --library FILE)
+    /// of these; further studies, no part of `all`: decompose-limits, exact-probability, priors, library-figures (with --library FILE),
+    /// emissivity-from-data (with --library FOLDER)
     #[arg(value_name = "ID", default_value = "all")]
     items: Vec<String>,
     /// Some of the experiments only: within a minute on two cores
@@ -157,20 +158,22 @@ fn asked(names: &[String]) -> Result<Asked> {
     Ok(asked)
 }
 
-/// The materials of the studies: the built-in ones, but those of --library for the study of a whole library.
+/// The materials of the studies: the built-in ones, but those of --library for studies of other ones.
 fn library(items: &[Item], studies: &[FurtherStudy], global: &Global) -> Result<Library> {
-    let own = studies.contains(&FurtherStudy::LibraryFigures);
-    if own && items.len() + studies.len() > 1 {
-        let found = "library-figures is made with another library than the rest";
+    let own = studies.iter().find_map(|study| study.own_library().map(|what| (study.name(), what)));
+    if let Some((name, _)) = own
+        && items.len() + studies.len() > 1
+    {
+        let found = format!("{name} is made with another library than the rest");
         return Err(Error::malformed(found, "ask for it alone"));
     }
-    if own && global.library.is_empty() {
-        return Err(Error::malformed(
-            "library-figures takes all pairs of a library that is not part of this program",
-            "give it with --library FILE; for the committed report it is the table `emiLib_synthetic` of \
-             github.com/FanglinBao/HADAR as a CSV file",
-        ));
+    if let Some((name, what)) = own
+        && global.library.is_empty()
+    {
+        let (what, instead) = what.split_once("; ").unwrap_or((what, "give it with --library"));
+        return Err(Error::malformed(format!("{name} {what}"), instead));
     }
+    let own = own.is_some();
     if !own && (global.only_library || !global.library.is_empty()) {
         let found = "the paper's figures are made with the built-in library";
         return Err(Error::malformed(found, "leave out --library and --only-library"));

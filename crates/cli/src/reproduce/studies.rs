@@ -1,6 +1,7 @@
 //! Studies of this project that are no figures of the paper: each gives the report in the folder of its name.
 
 mod decompose_limits;
+mod emissivity_from_data;
 mod exact_probability;
 mod library_figures;
 mod page;
@@ -23,12 +24,19 @@ pub(crate) enum FurtherStudy {
     LibraryFigures,
     /// How near a decomposed heat cube comes to its limits.
     DecomposeLimits,
+    /// What can be told of temperature and emissivity without a library.
+    EmissivityFromData,
 }
 
 impl FurtherStudy {
     /// All of them, the quickest first.
-    pub(crate) const ALL: [Self; 4] =
-        [Self::DecomposeLimits, Self::Priors, Self::ExactProbability, Self::LibraryFigures];
+    pub(crate) const ALL: [Self; 5] = [
+        Self::DecomposeLimits,
+        Self::Priors,
+        Self::ExactProbability,
+        Self::LibraryFigures,
+        Self::EmissivityFromData,
+    ];
 
     /// The name on the command line.
     #[must_use]
@@ -38,6 +46,7 @@ impl FurtherStudy {
             Self::Priors => "priors",
             Self::LibraryFigures => "library-figures",
             Self::DecomposeLimits => "decompose-limits",
+            Self::EmissivityFromData => "emissivity-from-data",
         }
     }
 
@@ -55,6 +64,23 @@ impl FurtherStudy {
             Self::Priors => "What priors do",
             Self::LibraryFigures => "How often the local distance misleads in a whole library",
             Self::DecomposeLimits => "How near a decomposed heat cube comes to what the photons allow",
+            Self::EmissivityFromData => "Temperature and emissivity without a library",
+        }
+    }
+
+    /// What has to be given with --library, where the built-in materials are not what is studied.
+    #[must_use]
+    pub(crate) const fn own_library(self) -> Option<&'static str> {
+        match self {
+            Self::LibraryFigures => Some(
+                "takes all pairs of a library that is not part of this program; give it with --library FILE; for the committed report it is the \
+                 table `emiLib_synthetic` of github.com/FanglinBao/HADAR as a CSV file",
+            ),
+            Self::EmissivityFromData => Some(
+                "takes measured spectra that are not part of this program; give them with --library FOLDER; for the committed report they are files of \
+                 the ECOSTRESS spectral library, speclib.jpl.nasa.gov",
+            ),
+            _ => None,
         }
     }
 
@@ -79,6 +105,7 @@ impl FurtherStudy {
             Self::Priors => priors::make(order, library, progress),
             Self::LibraryFigures => library_figures::make(order, library, progress),
             Self::DecomposeLimits => decompose_limits::make(order, library, progress),
+            Self::EmissivityFromData => emissivity_from_data::make(order, library, progress),
         }?;
         Ok((bundle.titled(self.title()), finding))
     }
