@@ -21,6 +21,7 @@ mod planck_reference;
 mod properties;
 mod ranging_reference;
 mod selection;
+mod separation;
 
 mod support {
     pub(crate) mod scenes;

@@ -10,7 +10,8 @@
 //!
 //! * Lighting factors are taken off also where a limit holds them.
 //! * Pixels whose χ² is more than [`FAR`] times the median of the group count for less, by its ratio.
-//! * Where χ² exceeds its degrees of freedom, F is divided by their ratio: pixels of a group that differ make its errors larger.
+//! * Where χ²/ν of n pixels exceeds 1 by more than its own scatter allows, what is beyond it is taken as common to all of them: F is
+//!   divided by χ²/ν + n (χ²/ν − 1 − 3√(2/nν)), so that pixels that differ, or a model that is wrong, do not average out.
 //! * Where the solution leaves [0, 1], the bands that do are held at the limit; the deviations stay those without limits.
 
 use super::radiometry::Radiometry;
@@ -28,6 +29,8 @@ const CHUNK: usize = 512;
 const SAME: f64 = 1e-9;
 /// Rounds in which bands are held at a limit.
 const HELD_ROUNDS: usize = 12;
+/// Deviations of χ²/ν that are no sign of a wrong model.
+const SCATTER: f64 = 3.0;
 /// Times the largest information, that which holds a band.
 const HOLDS: f64 = 1e4;
 
@@ -232,6 +235,14 @@ impl Information {
         parts.iter().fold(Self::none(radiometry.used.len()), Self::join)
     }
 
+    /// By how much the information is less than were all as it is modelled.
+    fn worse(&self) -> f64 {
+        let reduced = self.reduced();
+        let beyond = reduced - 1.0 - SCATTER * (2.0 / self.freedom.max(1.0)).sqrt();
+        let worse = reduced.max(1.0) + self.weight * beyond.max(0.0);
+        if worse.is_finite() { worse } else { 1.0 }
+    }
+
     /// χ² for each degree of freedom.
     pub(super) fn reduced(&self) -> f64 {
         if self.freedom > 0.0 { self.chi_square / self.freedom } else { f64::NAN }
@@ -258,23 +269,24 @@ pub(super) struct Curve {
 }
 
 impl Curve {
-    /// From the information at `e`, the emissivities of the bands that count.
+    /// From the information at `e`, the emissivities of the bands that count; `reach` is about how far from them it may go.
     pub(super) fn new(
         radiometry: &Radiometry<'_>,
         prior: &EmissivityPrior,
         found: &Information,
         e: &[f64],
+        reach: f64,
     ) -> Option<Self> {
         let used = &radiometry.used;
-        let worse = found.reduced().max(1.0);
-        let worse = if worse.is_finite() { worse } else { 1.0 };
+        let worse = found.worse();
         let matrix = &found.matrix / worse;
         let (a, mean) = (prior.factor(), prior.mean());
         let own = a.select_rows(used.iter());
         let apart = DVector::from_iterator(used.len(), used.iter().zip(e).map(|(band, e)| e - mean[*band]));
-        let right = &found.slope / worse + &matrix * apart;
         let free = factored(&own, &matrix)?;
-        let mut emissivity = prior.at(free.solve(&own.tr_mul(&right)).as_slice());
+        let damped = &matrix + DMatrix::identity(used.len(), used.len()) / (reach * reach);
+        let right = &found.slope / worse + &damped * apart;
+        let mut emissivity = prior.at(factored(&own, &damped)?.solve(&own.tr_mul(&right)).as_slice());
         let mut held: Vec<Option<f64>> = vec![None; used.len()];
         for _ in 0..HELD_ROUNDS {
             let mut more = false;
@@ -287,7 +299,7 @@ impl Curve {
             if !more {
                 break;
             }
-            let (mut matrix, mut right) = (matrix.clone(), right.clone());
+            let (mut matrix, mut right) = (damped.clone(), right.clone());
             let strong = HOLDS * matrix.diagonal().max().max(1.0);
             for (w, limit) in held.iter().enumerate() {
                 if let Some(limit) = limit {

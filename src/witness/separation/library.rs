@@ -1,13 +1,14 @@
 //! A library out of a heat cube.
 //!
-//! 1. Some pixels are drawn. Each has its emissivity by NEM under an even lighting, and β = e/mean(e) by RATIO; pixels without one are
-//!    declared and left out.
-//! 2. K-means groups β in units of its noise.
-//! 3. The magnitude of each group is the ε_max of NEM at which one emissivity, the mean over its pixels, explains its pixels best,
-//!    each with a temperature and lighting of its own, beside the prior.
-//! 4. Rounds: every pixel goes to the emissivity that explains it best, with its temperature and lighting ([`crate::decompose`]); the
-//!    emissivities are fitted to all pixels at once ([`super::group`]); until nothing changes.
-//! 5. Where a range of counts is asked for, each has a loss on pixels that were kept apart: the mean over them of
+//! 1. Some pixels are drawn. Each has its emissivity by NEM, under that of a few lightings which leaves it smoothest, and β = e/mean(e) by
+//!    RATIO; pixels without one are declared and left out.
+//! 2. K-means makes more groups of β, in units of its noise, than are asked for: what is lit differently may look different.
+//! 3. Each group has emissivities fitted to its pixels, one in each of three parts of [0, 1]: its magnitude is the ε_max of NEM there that
+//!    explains them best, each with a temperature and lighting of its own; then all bands are free ([`super::group`]).
+//! 4. Of these emissivities as many as asked for are taken, those whose physics loss over the pixels is least together.
+//! 5. Rounds: every pixel goes to the emissivity that explains it best, with its temperature and lighting ([`crate::decompose`]); the
+//!    emissivities are fitted to all pixels at once; a step that makes the loss larger is taken back and shortened.
+//! 6. Where a range of counts is asked for, each has a loss on pixels that were kept apart: the mean over them of
 //!    ν ln(χ²/ν) − 2 ln π, χ² the physics loss with ν degrees of freedom, π the share of the pixel's group. The first term is that of a
 //!    likelihood with a scale of its own for each pixel, the second what the name of a group costs: a group that is split in two
 //!    without need costs 2 ln 2 and gains nothing, so that the loss does not fall for ever. The fewest groups within a
@@ -37,7 +38,20 @@ const STARTS: usize = 6;
 /// Pixels of a group by which its magnitude is looked for.
 const LOOKED: usize = 96;
 const MAGNITUDES: [f64; 13] = [0.97, 0.94, 0.9, 0.85, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2, 0.12, 0.06];
-const ROUNDS: usize = 12;
+/// Rounds in which each emissivity is held against all that were not taken.
+const EXCHANGES: usize = 3;
+/// Parts of [0, 1] in which the magnitude of a group is looked for.
+const PARTS: [[f64; 2]; 3] = [[0.0, 0.35], [0.35, 0.8], [0.8, 1.01]];
+const ROUNDS: usize = 30;
+/// Groups of K-means for each that is asked for, and besides.
+const MORE: [usize; 2] = [2, 6];
+/// Pixels of a group that its emissivity is fitted to, those that are compared by all, and those that counts are tried with.
+const OF_GROUP: usize = 240;
+const COMPARED: usize = 1_500;
+const TRIED: usize = 4_000;
+/// How far an emissivity goes in a first step, and when a step is too short to matter.
+const REACH: f64 = 0.03;
+const SHORTEST: f64 = 1e-4;
 /// Share of a deviation that a last round changes at most.
 const SETTLED: f64 = 0.1;
 /// Least emissivity of a start.
@@ -168,15 +182,20 @@ pub fn library_from_cube(
         ));
     }
     let without_nem = fitted.pixels() - profiles.pixels.len();
-    let mut made = Vec::new();
-    for count in fewest..=most {
-        made.push((count, maker.library(&profiles, count)?));
-    }
-    let (chosen, tried) = match range {
-        false => (0, Vec::new()),
-        true => maker.judged(&made, &kept)?,
+    let starts = maker.starts(&profiles, most)?;
+    let (start, tried) = match range {
+        false => (starts.taken(most), Vec::new()),
+        true => {
+            let fewer = fitted.every(TRIED);
+            let mut made = Vec::new();
+            for count in fewest..=most {
+                made.push((count, maker.fitted(&fewer, starts.taken(count))?));
+            }
+            let (chosen, tried) = maker.judged(&made, &kept)?;
+            (made.swap_remove(chosen).1.curves.into_iter().map(|curve| curve.emissivity).collect(), tried)
+        }
     };
-    let Made { curves, information, rounds, settled } = made.swap_remove(chosen).1;
+    let Made { curves, information, rounds, settled } = maker.fitted(&fitted, start)?;
     let mut order: Vec<usize> = (0..curves.len()).collect();
     order.sort_by(|a, b| information[*b].pixels.cmp(&information[*a].pixels).then(a.cmp(b)));
     let clusters: Vec<Cluster> =
@@ -204,8 +223,73 @@ fn cluster(radiometry: &Radiometry<'_>, curve: &Curve, information: &Information
 
 /// Relative emissivities of the pixels that have one, in units of their noise.
 struct Profiles {
+    /// Lightings that were tried.
+    lights: Vec<Vec<f64>>,
     pixels: Vec<usize>,
+    /// Place of each pixel's lighting among them.
+    lit: Vec<usize>,
     whitened: Vec<f64>,
+}
+
+/// Emissivities to start from, and the loss of each with some pixels.
+struct Starts {
+    curves: Vec<Vec<f64>>,
+    losses: Vec<Vec<f64>>,
+}
+
+impl Starts {
+    /// So many of them, that explain the pixels best together.
+    fn taken(&self, count: usize) -> Vec<Vec<f64>> {
+        chosen(&self.losses, count).into_iter().map(|i| self.curves[i].clone()).collect()
+    }
+}
+
+/// A pixel's emissivities, their deviations, and how much is wrong with them were they smooth.
+struct Alone {
+    emissivity: Vec<f64>,
+    sigma: Vec<f64>,
+    roughness: f64,
+}
+
+/// Of emissivities with a loss for each pixel those that explain most together, one after the other, then each against every other.
+fn chosen(losses: &[Vec<f64>], count: usize) -> Vec<usize> {
+    let pixels = losses.first().map_or(0, Vec::len);
+    let least = |of: &[usize]| -> Vec<f64> {
+        (0..pixels).map(|p| of.iter().map(|i| losses[*i][p]).fold(f64::INFINITY, f64::min)).collect()
+    };
+    let with = |i: usize, least: &[f64]| losses[i].iter().zip(least).map(|(own, l)| own.min(*l)).sum::<f64>();
+    let best_beside = |taken: &[usize]| {
+        let least = least(taken);
+        let left = (0..losses.len()).filter(|i| !taken.contains(i));
+        left.map(|i| (i, with(i, &least))).min_by(|a, b| a.1.total_cmp(&b.1))
+    };
+    let mut chosen: Vec<usize> = Vec::new();
+    while chosen.len() < count.min(losses.len()) {
+        let Some((next, _)) = best_beside(&chosen) else { break };
+        chosen.push(next);
+        let mut total: f64 = least(&chosen).iter().sum();
+        for _ in 0..EXCHANGES {
+            let mut changed = false;
+            for place in 0..chosen.len() {
+                let others: Vec<usize> =
+                    chosen.iter().enumerate().filter(|(i, _)| *i != place).map(|(_, own)| *own).collect();
+                if let Some((other, loss)) = best_beside(&others)
+                    && loss < total * (1.0 - 1e-9)
+                {
+                    (chosen[place], total, changed) = (other, loss, true);
+                }
+            }
+            if !changed {
+                break;
+            }
+        }
+    }
+    chosen
+}
+
+/// At most so many of some things, evenly.
+fn every(all: &[usize], most: usize) -> Vec<usize> {
+    all.iter().copied().step_by(all.len().div_ceil(most).max(1)).collect()
 }
 
 /// A library of one count.
@@ -226,8 +310,8 @@ struct Maker<'a> {
 }
 
 impl Maker<'_> {
-    /// NEM of a pixel: emissivities of the bands that count, and their deviations.
-    fn nem(&self, pixel: usize, light: &[f64], max_emissivity: f64) -> Option<[Vec<f64>; 2]> {
+    /// NEM of a pixel.
+    fn nem(&self, pixel: usize, light: &[f64], max_emissivity: f64) -> Option<Alone> {
         let r = self.radiometry;
         let [radiance, sigma] = r.radiance(&self.sample.used(pixel, &r.used));
         let surface =
@@ -235,17 +319,27 @@ impl Maker<'_> {
         let found = nem(&surface, max_emissivity)?;
         let [black, _] = r.blackbody(found.temperature_k);
         let error = black.iter().zip(light).zip(&sigma).map(|((b, x), sigma)| (sigma / (b - x)).abs());
-        let error: Vec<f64> = error.collect();
-        found.emissivity.iter().all(|e| e.is_finite()).then_some([found.emissivity, error])
+        let (e, sigma): (_, Vec<f64>) = (found.emissivity, error.collect());
+        let bent = |w: usize| {
+            let off = e[w] - (e[w - 1] + e[w + 1]) / 2.0;
+            off * off / (sigma[w].powi(2) + (sigma[w - 1].powi(2) + sigma[w + 1].powi(2)) / 4.0)
+        };
+        let roughness = (1..e.len().max(2) - 1).map(bent).sum();
+        e.iter().all(|e| e.is_finite()).then_some(Alone { emissivity: e, sigma, roughness })
     }
 
     fn profiles(&self) -> Profiles {
-        let light = self.radiometry.light(&self.radiometry.even_lighting());
+        let lights: Vec<Vec<f64>> =
+            self.radiometry.lightings().iter().map(|lighting| self.radiometry.light(lighting)).collect();
         let one = |pixel: usize| {
-            let [e, error] = self.nem(pixel, &light, self.asked.max_emissivity)?;
-            let mean = e.iter().sum::<f64>() / e.len() as f64;
-            (mean > LEAST)
-                .then(|| (pixel, ratio(&e), error.iter().map(|error| error / mean).collect::<Vec<f64>>()))
+            let each = lights.iter().enumerate().filter_map(|(lit, light)| {
+                let found = self.nem(pixel, light, self.asked.max_emissivity)?;
+                let mean = found.emissivity.iter().sum::<f64>() / found.emissivity.len() as f64;
+                (mean > LEAST).then_some((lit, mean, found))
+            });
+            let (lit, mean, found) = each.min_by(|a, b| a.2.roughness.total_cmp(&b.2.roughness))?;
+            let error: Vec<f64> = found.sigma.iter().map(|sigma| sigma / mean).collect();
+            Some((pixel, lit, ratio(&found.emissivity), error))
         };
         let found: Vec<_> = (0..self.sample.pixels()).into_par_iter().filter_map(one).collect();
         let width = self.radiometry.used.len();
@@ -253,120 +347,173 @@ impl Maker<'_> {
         let scale: Vec<f64> = (0..width)
             .into_par_iter()
             .map(|w| {
-                let mut errors: Vec<f64> = found.iter().map(|one| one.2[w]).collect();
+                let mut errors: Vec<f64> = found.iter().map(|one| one.3[w]).collect();
                 errors.sort_by(f64::total_cmp);
                 errors.get(errors.len() / 2).copied().unwrap_or(1.0).max(f64::MIN_POSITIVE)
             })
             .collect();
         Profiles {
             pixels: found.iter().map(|one| one.0).collect(),
-            whitened: found.iter().flat_map(|one| one.1.iter().zip(&scale).map(|(b, s)| b / s)).collect(),
+            lit: found.iter().map(|one| one.1).collect(),
+            whitened: found.iter().flat_map(|one| one.2.iter().zip(&scale).map(|(b, s)| b / s)).collect(),
+            lights,
         }
     }
 
-    /// The library of so many groups.
-    fn library(&self, profiles: &Profiles, count: usize) -> Result<Made> {
+    /// Emissivities to start from, enough for so many.
+    fn starts(&self, profiles: &Profiles, count: usize) -> Result<Starts> {
         let width = self.radiometry.used.len();
-        let stride = profiles.pixels.len().div_ceil(GROUPED).max(1);
-        let some: Vec<usize> = (0..profiles.pixels.len()).step_by(stride).collect();
-        // Few pixels are all grouped.
-        let some = if some.len() < count { (0..profiles.pixels.len()).collect() } else { some };
+        let all = profiles.pixels.len();
+        let groups = (MORE[0] * count + MORE[1]).min(all);
+        let stride = if groups * 4 < GROUPED { all.div_ceil(GROUPED).max(1) } else { 1 };
+        let some: Vec<usize> = (0..all).step_by(stride).collect();
+        let groups = groups.min(some.len());
         let points: Vec<f64> =
             some.iter().flat_map(|i| &profiles.whitened[i * width..][..width]).copied().collect();
-        let means = k_means(&points, width, count, self.asked.seed, STARTS)?;
-        let mut groups: Vec<Vec<usize>> = vec![Vec::new(); count];
+        let means = k_means(&points, width, groups, self.asked.seed, STARTS)?;
+        let mut members: Vec<Vec<usize>> = vec![Vec::new(); groups];
         for (i, group) in some.iter().zip(&means.group) {
-            groups[*group].push(profiles.pixels[*i]);
+            members[*group].push(*i);
         }
-        groups.retain(|group| !group.is_empty());
-        let mut curves: Vec<Vec<f64>> =
-            groups.par_iter().map(|group| self.start(group)).collect::<Result<_>>()?;
-        let mut before: Vec<Option<usize>> = Vec::new();
-        let mut rounds = 0;
-        loop {
-            rounds += 1;
-            let library: Vec<Vec<f64>> = curves.iter().map(|e| self.radiometry.at_nodes(e)).collect();
-            let maps = self.sample.decomposed(self.setting, &library)?;
-            let found = states(&maps, self.radiometry);
-            let now: Vec<Option<usize>> = found.iter().map(|state| state.as_ref().map(|s| s.group)).collect();
-            let (mut fitted, mut information) = (Vec::new(), Vec::new());
-            let mut change: f64 = 0.0;
-            for (group, e) in curves.iter().enumerate() {
-                let own: Vec<(usize, &State)> = found
-                    .iter()
-                    .enumerate()
-                    .filter_map(|(i, state)| state.as_ref().filter(|s| s.group == group).map(|s| (i, s)))
-                    .collect();
-                // A group that lost all its pixels is none.
-                if own.is_empty() {
-                    change = f64::INFINITY;
-                    continue;
-                }
-                let used: Vec<f64> = self.radiometry.used.iter().map(|band| e[*band]).collect();
-                let sums = Information::of(self.radiometry, self.sample, &own, &used);
-                let Some(curve) = Curve::new(self.radiometry, self.prior, &sums, &used) else {
-                    let found = "emissivities whose information is no number";
-                    return Err(Error::malformed(found, "check unit and noise of the cube"));
-                };
-                let off = self
-                    .radiometry
-                    .used
-                    .iter()
-                    .map(|b| (curve.emissivity[*b] - e[*b]).abs() / curve.sigma[*b]);
-                change = off.fold(change, f64::max);
-                fitted.push(curve);
-                information.push(sums);
-            }
-            let settled = change < SETTLED && now == before;
-            if settled || rounds == ROUNDS || fitted.is_empty() {
-                return Ok(Made { curves: fitted, information, rounds, settled });
-            }
-            before = now;
-            curves = fitted.into_iter().map(|curve| curve.emissivity).collect();
-        }
+        members.retain(|group| !group.is_empty());
+        let of_group = |group: &Vec<usize>| -> Result<Vec<Vec<f64>>> {
+            let own: Vec<usize> = every(group, OF_GROUP);
+            let pixels = self.sample.some(&own.iter().map(|i| profiles.pixels[*i]).collect::<Vec<_>>());
+            let from = self.magnitudes(profiles, &own)?.into_iter().map(|start| {
+                let made = self.fitted(&pixels, vec![start.clone()])?;
+                Ok(made.curves.into_iter().next().map_or(start, |curve| curve.emissivity))
+            });
+            from.collect()
+        };
+        let curves = members.par_iter().map(of_group).collect::<Result<Vec<_>>>()?.concat();
+        // What each costs every pixel.
+        let compared = self.sample.some(&every(&profiles.pixels, COMPARED));
+        let losses: Vec<Vec<f64>> =
+            curves.par_iter().map(|e| self.losses(&compared, e)).collect::<Result<_>>()?;
+        Ok(Starts { curves, losses })
     }
 
-    /// The emissivity of a group by NEM, with the ε_max that explains its pixels best.
-    fn start(&self, group: &[usize]) -> Result<Vec<f64>> {
-        let r = self.radiometry;
-        let light = r.light(&r.even_lighting());
-        let stride = group.len().div_ceil(LOOKED).max(1);
-        let some: Vec<usize> = group.iter().copied().step_by(stride).collect();
-        let pixels = self.sample.some(&some);
-        let mut best: Option<(f64, Vec<f64>)> = None;
-        let first = self.asked.max_emissivity;
-        for magnitude in std::iter::once(first).chain(MAGNITUDES.into_iter().filter(|m| *m < first)) {
-            let Some(e) = self.mean_of(&some, &light, magnitude) else { continue };
-            let maps = pixels.decomposed(self.setting, &[r.at_nodes(&e)])?;
-            let used: Vec<f64> = r.used.iter().map(|band| e[*band]).collect();
-            let freedom = used.len() as f64;
-            let loss: f64 = states(&maps, r)
-                .iter()
-                .enumerate()
-                .map(|(i, state)| {
-                    let Some(state) = state else { return freedom };
-                    freedom * libm::log1p(chi_square(r, &pixels.used(i, &r.used), &used, state) / freedom)
-                })
-                .sum();
-            let mean = used.iter().sum::<f64>() / freedom;
-            let known = self.asked.prior;
-            let loss = loss + ((mean - known.mean) / known.magnitude).powi(2);
-            if best.as_ref().is_none_or(|best| loss < best.0) {
-                best = Some((loss, e));
+    /// Loss of each pixel with one emissivity.
+    fn losses(&self, pixels: &Sample, e: &[f64]) -> Result<Vec<f64>> {
+        let maps = pixels.decomposed(self.setting, &[self.radiometry.at_nodes(e)])?;
+        let found = states(&maps, self.radiometry);
+        Ok((0..pixels.pixels()).map(|i| self.loss(pixels, i, found[i].as_ref(), e)).collect())
+    }
+
+    /// Loss of a pixel: that of a likelihood whose scale is its own, 0 where the surroundings explain it.
+    fn loss(&self, pixels: &Sample, i: usize, state: Option<&State>, e: &[f64]) -> f64 {
+        let used: Vec<f64> = self.radiometry.used.iter().map(|band| e[*band]).collect();
+        let freedom = used.len() as f64;
+        state.map_or(0.0, |state| {
+            let counts = pixels.used(i, &self.radiometry.used);
+            freedom * libm::log1p(chi_square(self.radiometry, &counts, &used, state) / freedom)
+        })
+    }
+
+    /// Emissivities fitted to pixels, from a start.
+    fn fitted(&self, pixels: &Sample, start: Vec<Vec<f64>>) -> Result<Made> {
+        let used = |e: &[f64]| -> Vec<f64> { self.radiometry.used.iter().map(|band| e[*band]).collect() };
+        let unusable = || {
+            let found = "emissivities whose information is no number";
+            Error::malformed(found, "check unit and noise of the cube")
+        };
+        let mut curves = start;
+        let mut best: Option<(f64, Vec<Vec<f64>>, Vec<Information>)> = None;
+        let mut before: Vec<Option<usize>> = Vec::new();
+        let (mut reach, mut rounds, mut settled) = (REACH, 0, false);
+        while rounds < ROUNDS && !settled && reach > SHORTEST {
+            rounds += 1;
+            let library: Vec<Vec<f64>> = curves.iter().map(|e| self.radiometry.at_nodes(e)).collect();
+            let found = states(&pixels.decomposed(self.setting, &library)?, self.radiometry);
+            let now: Vec<Option<usize>> = found.iter().map(|state| state.as_ref().map(|s| s.group)).collect();
+            let each = found.par_iter().enumerate().map(|(i, state)| {
+                state.as_ref().map_or(0.0, |own| self.loss(pixels, i, Some(own), &curves[own.group]))
+            });
+            let loss: f64 = each.collect::<Vec<f64>>().iter().sum();
+            let worse = best.as_ref().is_some_and(|best| loss > best.0 + curves.len() as f64);
+            if worse {
+                reach *= 0.2;
+            } else {
+                let mut kept = Vec::new();
+                let mut information = Vec::new();
+                for (group, e) in curves.iter().enumerate() {
+                    let own: Vec<(usize, &State)> = found
+                        .iter()
+                        .enumerate()
+                        .filter_map(|(i, state)| state.as_ref().filter(|s| s.group == group).map(|s| (i, s)))
+                        .collect();
+                    // A group that lost all its pixels is none.
+                    if !own.is_empty() {
+                        information.push(Information::of(self.radiometry, pixels, &own, &used(e)));
+                        kept.push(e.clone());
+                    }
+                }
+                best = Some((loss, kept, information));
             }
+            let Some((_, from, information)) = &best else { break };
+            let mut change: f64 = 0.0;
+            let mut next = Vec::new();
+            for (e, sums) in from.iter().zip(information) {
+                let own = used(e);
+                let curve =
+                    Curve::new(self.radiometry, self.prior, sums, &own, reach).ok_or_else(unusable)?;
+                let off = self.radiometry.used.iter().zip(&own);
+                change = off
+                    .map(|(b, e)| (curve.emissivity[*b] - e).abs() / curve.sigma[*b])
+                    .fold(change, f64::max);
+                next.push(curve.emissivity);
+            }
+            settled = !worse && change < SETTLED && now == before && reach > 0.3;
+            if !worse {
+                before = now;
+                reach = f64::min(reach * 2.5, 1.0);
+            }
+            curves = next;
         }
-        Ok(best.map_or_else(|| self.prior.mean().to_vec(), |best| best.1))
+        let Some((_, from, information)) = best else {
+            return Ok(Made { curves: Vec::new(), information: Vec::new(), rounds, settled });
+        };
+        let curves = from.iter().zip(&information).map(|(e, sums)| {
+            Curve::new(self.radiometry, self.prior, sums, &used(e), reach.max(SHORTEST)).ok_or_else(unusable)
+        });
+        Ok(Made { curves: curves.collect::<Result<_>>()?, information, rounds, settled })
+    }
+
+    /// Emissivities of a group by NEM, each with the ε_max of a part of [0, 1] that explains its pixels best: which part is right is
+    /// not seen before all bands are fitted.
+    fn magnitudes(&self, profiles: &Profiles, group: &[usize]) -> Result<Vec<Vec<f64>>> {
+        let some = every(group, LOOKED);
+        let pixels = self.sample.some(&some.iter().map(|i| profiles.pixels[*i]).collect::<Vec<_>>());
+        let first = self.asked.max_emissivity;
+        let all = || std::iter::once(first).chain(MAGNITUDES.into_iter().filter(|m| *m < first));
+        let mut starts = Vec::new();
+        for [low, high] in PARTS {
+            let mut best: Option<(f64, Vec<f64>)> = None;
+            for magnitude in all().filter(|m| (low..high).contains(m)) {
+                let Some(e) = self.mean_of(profiles, &some, magnitude) else { continue };
+                let loss: f64 = self.losses(&pixels, &e)?.iter().sum();
+                if best.as_ref().is_none_or(|best| loss < best.0) {
+                    best = Some((loss, e));
+                }
+            }
+            starts.extend(best.map(|best| best.1));
+        }
+        if starts.is_empty() {
+            starts.push(self.prior.mean().to_vec());
+        }
+        Ok(starts)
     }
 
     /// Mean emissivity of some pixels by NEM, weighted by its information; of all bands.
-    fn mean_of(&self, pixels: &[usize], light: &[f64], max_emissivity: f64) -> Option<Vec<f64>> {
+    fn mean_of(&self, profiles: &Profiles, group: &[usize], max_emissivity: f64) -> Option<Vec<f64>> {
         let width = self.radiometry.used.len();
         let (mut sum, mut weights) = (vec![0.0; width], vec![0.0; width]);
-        for pixel in pixels {
-            let Some([e, error]) = self.nem(*pixel, light, max_emissivity) else { continue };
+        for i in group {
+            let light = &profiles.lights[profiles.lit[*i]];
+            let Some(own) = self.nem(profiles.pixels[*i], light, max_emissivity) else { continue };
             for w in 0..width {
-                let weight = error[w].powi(-2);
-                sum[w] += weight * e[w];
+                let weight = own.sigma[w].powi(-2);
+                sum[w] += weight * own.emissivity[w];
                 weights[w] += weight;
             }
         }
@@ -435,5 +582,22 @@ impl Maker<'_> {
         let least = tried[best].loss;
         let chosen = tried.iter().position(|one| one.loss <= least + one.error).unwrap_or(best);
         Ok((chosen, tried))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two that complement each other are better than the one that is best alone.
+    #[test]
+    fn what_explains_most_together_is_taken() {
+        let losses = [vec![2.0, 2.0, 2.0, 2.0], vec![0.0, 0.0, 9.0, 9.0], vec![9.0, 9.0, 0.0, 0.0]];
+        assert_eq!(chosen(&losses, 1), [0]);
+        let mut two = chosen(&losses, 2);
+        two.sort_unstable();
+        assert_eq!(two, [1, 2]);
+        assert_eq!(chosen(&losses, 7).len(), 3);
+        assert!(chosen(&[], 2).is_empty());
     }
 }

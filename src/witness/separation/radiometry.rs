@@ -78,6 +78,28 @@ impl<'a> Radiometry<'a> {
         vec![self.total.unwrap_or(1.0) / count.max(1) as f64; count]
     }
 
+    /// Lightings that stand for all that are possible: each of the surroundings alone (and darkness, where they may add up to less), steps
+    /// between two of them, and equal shares.
+    pub(super) fn lightings(&self) -> Vec<Vec<f64>> {
+        let count = self.lights.len();
+        let total = self.total.unwrap_or(1.0);
+        let mut vertices: Vec<Vec<f64>> =
+            (0..count).map(|k| (0..count).map(|own| if own == k { total } else { 0.0 }).collect()).collect();
+        if self.total.is_none() {
+            vertices.push(vec![0.0; count]);
+        }
+        let shares: &[f64] = if vertices.len() < 3 { &[0.25, 0.5, 0.75] } else { &[0.5] };
+        let mut all = vertices.clone();
+        for (i, a) in vertices.iter().enumerate() {
+            for b in &vertices[i + 1..] {
+                let mixed = |share: &f64| a.iter().zip(b).map(|(a, b)| a + share * (b - a)).collect();
+                all.extend(shares.iter().map(mixed));
+            }
+        }
+        all.push(self.even_lighting());
+        all
+    }
+
     /// X under a lighting.
     pub(super) fn light(&self, lighting: &[f64]) -> Vec<f64> {
         let mut sum = vec![0.0; self.used.len()];

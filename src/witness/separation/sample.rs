@@ -76,6 +76,12 @@ impl Sample {
         Self { bands: self.bands, counts: of.iter().flat_map(|i| self.pixel(*i)).copied().collect() }
     }
 
+    /// At most so many of the pixels, evenly.
+    pub(super) fn every(&self, most: usize) -> Self {
+        let stride = self.pixels().div_ceil(most).max(1);
+        self.some(&(0..self.pixels()).step_by(stride).collect::<Vec<_>>())
+    }
+
     /// The pixels decomposed by a library.
     pub(super) fn decomposed(&self, setting: &Setting<'_>, library: &[Vec<f64>]) -> Result<Maps> {
         let shape = Shape::new(1, self.pixels(), self.bands)?;

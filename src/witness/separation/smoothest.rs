@@ -1,8 +1,8 @@
 //! The temperature at which the emissivity is smoothest.
 //!
 //! A wrong temperature puts the lines of the scattered light into e(T) = (y − X)/(B(T) − X). The roughness Σ (e_w − mean of the
-//! three around)² over the bands is least where they are gone. Bands in which B(T) passes X within the range of temperatures are
-//! weighed by (B − X)²/σ², so that one without contrast does not count.
+//! three around)² over the bands is least where they are gone. Each is taken in units of its noise, σ/(B − X), so that a band without
+//! contrast does not count and a high temperature, which makes all emissivities small, is none the smoother for it.
 //!
 //! Sources: Borel, Int. Geosci. Remote Sens. Symp. 1998, 546 (ISSTES); Borel, Proc. SPIE 5425, 165 (2004) (ARTEMISS); as maximum
 //! likelihood of second differences with the noise of each.
@@ -28,7 +28,7 @@ pub fn smoothest(surface: &Surface<'_>, range_k: [f64; 2]) -> Separated {
     Separated { temperature_k, emissivity: surface.emissivity_at(temperature_k) }
 }
 
-/// Mean over the bands of the weighted squares of second differences.
+/// Sum over the bands of the squares of second differences, in units of their noise.
 fn roughness(surface: &Surface<'_>, temperature_k: f64) -> f64 {
     let mut black = vec![0.0; surface.wavenumbers_cm1.len()];
     planck::photon_radiance_into(surface.wavenumbers_cm1, temperature_k, &mut black);
@@ -39,17 +39,16 @@ fn roughness(surface: &Surface<'_>, temperature_k: f64) -> f64 {
             ((surface.radiance[w] - surface.light[w]) / apart, (surface.sigma[w] / apart).powi(2))
         })
         .collect();
-    let (mut sum, mut weights) = (0.0, 0.0);
+    let mut sum = 0.0;
     for three in each.windows(3) {
         let [(a, va), (b, vb), (c, vc)] = [three[0], three[1], three[2]];
         let off = b - (a + b + c) / 3.0;
         let weight = 1.0 / (va + 4.0 * vb + vc);
         if weight.is_finite() && off.is_finite() {
             sum += weight * off * off;
-            weights += weight;
         }
     }
-    if weights > 0.0 { sum / weights } else { f64::INFINITY }
+    sum
 }
 
 #[cfg(test)]

@@ -42,7 +42,7 @@ fn bound(known: Smoothness, sky: &Sky, nedt_k: f64, temperature_k: f64, joined: 
         [&nu, &black, &slope, &sky.radiance, &sigma(nedt_k)].map(|values| mean(values));
     let prior = EmissivityPrior::smooth(&nu, known)?;
     let seen = Seen { blackbody: &black, slope: &slope, light: &light, sigma: &sigma };
-    let found = Separation::averaged(&prior, &seen)?;
+    let found = Separation::at(&prior, prior.mean(), &seen)?;
     Ok([found.sigma_temperature_k, found.emissivity_rms()])
 }
 
@@ -92,7 +92,7 @@ impl Bounds {
         };
         let known = self.known;
         let said = format!(
-            "Averaged over emissivities of mean {:.2} ± {:.2} and shape ± {:.3}, to a quarter over {} cm⁻¹, as the measured ones are.",
+            "For emissivities of mean {:.2} ± {:.2} and shape ± {:.3}, to a quarter over {} cm⁻¹, as the measured ones are.",
             known.mean, known.magnitude, known.shape, known.correlation_cm1
         );
         let mut resolution = LineFigure::new(

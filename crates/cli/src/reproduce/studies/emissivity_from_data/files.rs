@@ -38,6 +38,7 @@ pub(super) fn methods(compared: &[Compared]) -> Table {
             row(method, cells);
         }
         let none = f64::NAN;
+        row("van Trees bound, smooth prior", [one.rigorous_temperature_k, none, none, none, 1.0]);
         row("bound, smooth prior", [one.bound_temperature_k, none, one.bound_emissivity, none, 1.0]);
     }
     table

@@ -17,7 +17,7 @@ const SKY: (&str, f64) = ("sky-us-standard", 288.2);
 /// Width of the means that the model atmosphere gives, cm⁻¹.
 const MEANS_CM1: f64 = 20.0;
 /// Deviation of the logarithm of the optical depth within them.
-pub(super) const LINES: f64 = 1.0;
+pub(super) const LINES: f64 = 0.3;
 /// Stream of the lines, the same for every seed: they are part of the scene.
 const LINE_SEED: u64 = 20;
 

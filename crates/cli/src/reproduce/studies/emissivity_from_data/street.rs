@@ -12,7 +12,7 @@ use hadar_report::table::Table;
 
 /// What the street is made of.
 pub(super) const MATERIALS: [&str; 6] =
-    ["asphalt", "brick-red", "soda-lime-glass", "vegetation-leaf", "steel-rough", "skin"];
+    ["asphalt", "brick-red", "soda-lime-glass", "marble", "steel-rough", "vegetation-leaf"];
 /// Photons of a pixel: some 10⁵ a band.
 pub(super) const PHOTONS: f64 = 5.4e6;
 /// Counts of groups that are tried.

@@ -130,6 +130,16 @@ pub(super) fn readme(
             String::new(),
             String::new(),
         ]);
+        rows.push(vec![
+            one.sky.to_owned(),
+            one.nedt_k.to_string(),
+            "van Trees' bound, smooth prior".to_owned(),
+            significant(one.rigorous_temperature_k, 2),
+            String::new(),
+            String::new(),
+            String::new(),
+            String::new(),
+        ]);
         if let Some([_, t, e]) = PUBLISHED.iter().find(|p| p[0] == one.nedt_k) {
             rows.push(vec![
                 "theirs".to_owned(),
@@ -185,8 +195,9 @@ pub(super) fn readme(
          ![Temperature errors](temperature_errors.png)\n\n\
          ## What can be told apart\n\n\
          The bound knows that emissivities have a mean of {:.3} ± {:.3} and a shape of ± {:.3} whose correlation has fallen to a quarter over {} cm⁻¹ (what the \
-         spectra show), and nothing of the temperature. It is a Bayesian one: it holds for errors averaged over emissivities that are drawn from this prior, \
-         and those are in the table too. Single spectra, and methods that know more (principal components), may do better; a method that does \
+         spectra show), and nothing of the temperature. It is a Bayesian one: the deviation of the posterior to first order, its square averaged over emissivities that \
+         are drawn from this prior, and estimates of those are in the table too. Van Trees' bound, which needs no first order, lies below it, as it \
+         counts what large emissivities tell for all. Single spectra, and methods that know more (principal components), may do better; a method that does \
          better on measured spectra knows something of them that is not in the prior.\n\n\
          ![Bound over resolution](bound_resolution.png)\n\n\
          ![Bound over contrast](bound_contrast.png)\n\n\
