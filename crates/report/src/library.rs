@@ -144,6 +144,7 @@ fn decomposition(result: &LibraryFound, out: &Path) -> DecomposeScenario {
         environment: scenario.environment.clone(),
         library: LibrarySpec {
             path: Some(there.join("library.csv")),
+            prior: Some(result.prior.clone()),
             emissivity_error: error,
             emissivity_correlation_cm1: error.map(|_| scenario.emissivity.correlation_cm1),
             ..LibrarySpec::default()

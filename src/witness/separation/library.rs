@@ -14,7 +14,8 @@
 //!    without need costs 2 ln 2 and gains nothing, so that the loss does not fall for ever. The fewest groups within a
 //!    standard error of the least loss are taken.
 //!
-//! The whole cube is then decomposed by the library.
+//! The whole cube is then decomposed by the library. In all of this the prior density of an emissivity's mean counts for every pixel
+//! that is given to it: in a street that lights itself a mirror of the ground sends what the ground sends.
 //!
 //! Source: paper, supplement SV C, which chooses K by hand and names the scan over K as future work.
 
@@ -54,6 +55,8 @@ const REACH: f64 = 0.03;
 const SHORTEST: f64 = 1e-4;
 /// Share of a deviation that a last round changes at most.
 const SETTLED: f64 = 0.1;
+/// −2 ln of a prior density that is held against no emissivity more.
+const MOST_IMPROBABLE: f64 = 40.0;
 /// Least emissivity of a start.
 const LEAST: f64 = 0.005;
 
@@ -113,6 +116,8 @@ pub struct Tried {
 pub struct Found {
     /// The groups, that of the most pixels first.
     pub clusters: Vec<Cluster>,
+    /// Prior probability of each, in any scale: that of its mean emissivity.
+    pub prior: Vec<f64>,
     /// Every count that was tried, where there were several.
     pub tried: Vec<Tried>,
     /// Pixels that were drawn and have all their samples.
@@ -159,7 +164,7 @@ pub fn library_from_cube(
     let radiometry = {
         let check = Sample::of(cube, setting, 1, asked.seed)?;
         if check.pixels() > 0 {
-            check.decomposed(setting, &blank)?;
+            check.decomposed(setting, &blank, Vec::new())?;
         }
         Radiometry::new(setting)
     };
@@ -201,8 +206,10 @@ pub fn library_from_cube(
     let clusters: Vec<Cluster> =
         order.iter().map(|i| cluster(&radiometry, &curves[*i], &information[*i])).collect();
     let library: Vec<Vec<f64>> = clusters.iter().map(|one| radiometry.at_nodes(&one.emissivity)).collect();
-    let maps = decompose(&Setting { library: &library, ..*setting }, &Options::default(), cube, done)?;
-    Ok(Found { clusters, tried, drawn, without_nem, rounds, settled, maps })
+    let prior: Vec<f64> = clusters.iter().map(|one| maker.probability(&one.emissivity)).collect();
+    let options = Options { prior: prior.clone(), ..Options::default() };
+    let maps = decompose(&Setting { library: &library, ..*setting }, &options, cube, done)?;
+    Ok(Found { clusters, prior, tried, drawn, without_nem, rounds, settled, maps })
 }
 
 fn cluster(radiometry: &Radiometry<'_>, curve: &Curve, information: &Information) -> Cluster {
@@ -395,9 +402,21 @@ impl Maker<'_> {
 
     /// Loss of each pixel with one emissivity.
     fn losses(&self, pixels: &Sample, e: &[f64]) -> Result<Vec<f64>> {
-        let maps = pixels.decomposed(self.setting, &[self.radiometry.at_nodes(e)])?;
+        let maps = pixels.decomposed(self.setting, &[self.radiometry.at_nodes(e)], Vec::new())?;
         let found = states(&maps, self.radiometry);
         Ok((0..pixels.pixels()).map(|i| self.loss(pixels, i, found[i].as_ref(), e)).collect())
+    }
+
+    /// −2 ln of the prior density of an emissivity's mean, over its most.
+    fn improbable(&self, e: &[f64]) -> f64 {
+        let used = &self.radiometry.used;
+        let mean = used.iter().map(|band| e[*band]).sum::<f64>() / used.len() as f64;
+        ((mean - self.asked.prior.mean) / self.asked.prior.magnitude).powi(2)
+    }
+
+    /// That density. It has a say in every pixel: a mirror of the ground sends what the ground sends.
+    fn probability(&self, e: &[f64]) -> f64 {
+        libm::exp(-0.5 * self.improbable(e).min(MOST_IMPROBABLE))
     }
 
     /// Loss of a pixel: that of a likelihood whose scale is its own, 0 where the surroundings explain it.
@@ -407,6 +426,7 @@ impl Maker<'_> {
         state.map_or(0.0, |state| {
             let counts = pixels.used(i, &self.radiometry.used);
             freedom * libm::log1p(chi_square(self.radiometry, &counts, &used, state) / freedom)
+                + self.improbable(e).min(MOST_IMPROBABLE)
         })
     }
 
@@ -424,7 +444,8 @@ impl Maker<'_> {
         while rounds < ROUNDS && !settled && reach > SHORTEST {
             rounds += 1;
             let library: Vec<Vec<f64>> = curves.iter().map(|e| self.radiometry.at_nodes(e)).collect();
-            let found = states(&pixels.decomposed(self.setting, &library)?, self.radiometry);
+            let prior = curves.iter().map(|e| self.probability(e)).collect();
+            let found = states(&pixels.decomposed(self.setting, &library, prior)?, self.radiometry);
             let now: Vec<Option<usize>> = found.iter().map(|state| state.as_ref().map(|s| s.group)).collect();
             let each = found.par_iter().enumerate().map(|(i, state)| {
                 state.as_ref().map_or(0.0, |own| self.loss(pixels, i, Some(own), &curves[own.group]))
@@ -537,7 +558,8 @@ impl Maker<'_> {
         for (count, made) in made {
             let curves: Vec<Vec<f64>> =
                 made.curves.iter().map(|c| self.radiometry.at_nodes(&c.emissivity)).collect();
-            let maps = kept.decomposed(self.setting, &curves)?;
+            let prior = made.curves.iter().map(|c| self.probability(&c.emissivity)).collect();
+            let maps = kept.decomposed(self.setting, &curves, prior)?;
             let found = states(&maps, self.radiometry);
             let total: usize = made.information.iter().map(|i| i.pixels).sum();
             let unknowns = 1 + self.radiometry.changes().len();

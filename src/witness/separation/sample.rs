@@ -82,11 +82,16 @@ impl Sample {
         self.some(&(0..self.pixels()).step_by(stride).collect::<Vec<_>>())
     }
 
-    /// The pixels decomposed by a library.
-    pub(super) fn decomposed(&self, setting: &Setting<'_>, library: &[Vec<f64>]) -> Result<Maps> {
+    /// The pixels decomposed by a library, with a prior probability of each emissivity.
+    pub(super) fn decomposed(
+        &self,
+        setting: &Setting<'_>,
+        library: &[Vec<f64>],
+        prior: Vec<f64>,
+    ) -> Result<Maps> {
         let shape = Shape::new(1, self.pixels(), self.bands)?;
         let cube = Cube::from(MemoryCube::new(shape, self.counts.clone())?);
         let setting = Setting { library, units_per_count: 1.0, ..*setting };
-        decompose(&setting, &Options::default(), &cube, &|_| ())
+        decompose(&setting, &Options { prior, ..Options::default() }, &cube, &|_| ())
     }
 }

@@ -118,7 +118,7 @@ fn assumptions(result: &LibraryFound) -> String {
     };
     let known = scenario.emissivity;
     format!(
-        "Assumptions\n  groups: NEM at a largest emissivity of {} under even lighting, ratios, K-means; then least squares on the heat signal\n  \
+        "Assumptions\n  groups: NEM at a largest emissivity of {} under the smoothest of some lightings, ratios, K-means; then least squares on the heat signal\n  \
          beforehand: mean emissivity {} +- {}, shape +- {}, to a quarter over {}\n  \
          unknown: temperature {low} to {high} K, lighting of {} surroundings, {total}\n  noise: {noise}; bands independent\n  \
          errors: all temperatures, lightings and emissivities unknown together; made of {} pixels\n\n",

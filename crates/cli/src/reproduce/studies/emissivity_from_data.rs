@@ -24,7 +24,7 @@ use hadar_report::bundle::Bundle;
 /// Noise of a reading, as a temperature at 300 K.
 pub(super) const NEDT_K: [f64; 2] = [0.03, 0.1];
 /// Scenes of each spectrum, and in the quick form.
-const SCENES: usize = 12;
+const SCENES: usize = 6;
 const QUICK: usize = 1;
 
 /// `library`: the measured spectra. The quick form has the tables alone, with a scene for each spectrum.

@@ -35,9 +35,11 @@ pub struct LibraryFound {
     pub clusters: Vec<ClusterRow>,
     /// Every count that was tried, where there were several.
     pub tried: Vec<Tried>,
+    /// Prior probability of each cluster in a pixel, in any scale: that of its mean emissivity.
+    pub prior: Vec<f64>,
     /// How many pixels have each flag.
     pub flags: Vec<FlagCount>,
-    /// Root mean square of what emissivities may be off by, as a share of them: errors of the library and spread of its pixels.
+    /// What emissivities may be off by, errors of the library and spread of its pixels, over the emissivities, both as root mean squares.
     pub emissivity_error: f64,
     /// How good it is, where that is known.
     pub truth: Option<TruthOfClusters>,
@@ -140,7 +142,7 @@ pub(super) fn summary(
     seconds: f64,
     mut warnings: Vec<Warning>,
 ) -> LibraryFound {
-    let Found { clusters, tried, drawn, without_nem, maps, .. } = found;
+    let Found { clusters, prior, tried, drawn, without_nem, maps, .. } = found;
     let bands = &measured.bands;
     let widths = bands.widths_cm1();
     let wavenumbers_cm1 =
@@ -169,9 +171,9 @@ pub(super) fn summary(
     for row in &rows {
         for band in &used {
             let one = &row.cluster;
-            let relative = one.sigma[*band].hypot(one.spread[*band]) / one.emissivity[*band].max(0.01);
-            square += row.pixels as f64 * relative * relative;
-            weight += row.pixels as f64;
+            let pixels = row.pixels as f64;
+            square += pixels * (one.sigma[*band].powi(2) + one.spread[*band].powi(2));
+            weight += pixels * one.emissivity[*band].powi(2);
         }
     }
     let skipped = flags(&maps, &mut warnings);
@@ -186,6 +188,7 @@ pub(super) fn summary(
         without_nem,
         clusters: rows,
         tried,
+        prior,
         flags: skipped,
         emissivity_error: if weight > 0.0 { f64::sqrt(square / weight) } else { 0.0 },
         truth,
