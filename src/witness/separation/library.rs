@@ -203,6 +203,12 @@ pub fn library_from_cube(
     let Made { curves, information, rounds, settled } = maker.fitted(&fitted, start)?;
     let mut order: Vec<usize> = (0..curves.len()).collect();
     order.sort_by(|a, b| information[*b].pixels.cmp(&information[*a].pixels).then(a.cmp(b)));
+    if curves.is_empty() {
+        return Err(Error::malformed(
+            "all pixels send what they are lit by: nothing tells an emissivity",
+            "check unit and surroundings, or look when the scene is warmer or colder than they are",
+        ));
+    }
     let clusters: Vec<Cluster> =
         order.iter().map(|i| cluster(&radiometry, &curves[*i], &information[*i])).collect();
     let library: Vec<Vec<f64>> = clusters.iter().map(|one| radiometry.at_nodes(&one.emissivity)).collect();
@@ -419,15 +425,21 @@ impl Maker<'_> {
         libm::exp(-0.5 * self.improbable(e).min(MOST_IMPROBABLE))
     }
 
-    /// Loss of a pixel: that of a likelihood whose scale is its own, 0 where the surroundings explain it.
+    /// Loss of a pixel: that of a likelihood whose scale is its own, and what is improbable of the emissivity. Where the
+    /// surroundings explain the pixel, as they do with any mirror, it is no better than a fit should be.
     fn loss(&self, pixels: &Sample, i: usize, state: Option<&State>, e: &[f64]) -> f64 {
         let used: Vec<f64> = self.radiometry.used.iter().map(|band| e[*band]).collect();
         let freedom = used.len() as f64;
-        state.map_or(0.0, |state| {
+        let each = state.map_or(1.0, |state| {
             let counts = pixels.used(i, &self.radiometry.used);
-            freedom * libm::log1p(chi_square(self.radiometry, &counts, &used, state) / freedom)
-                + self.improbable(e).min(MOST_IMPROBABLE)
-        })
+            chi_square(self.radiometry, &counts, &used, state) / freedom
+        });
+        freedom * libm::log1p(each) + self.improbable(e).min(MOST_IMPROBABLE)
+    }
+
+    /// What a pixel without a state costs where there are several emissivities.
+    fn explained(&self) -> f64 {
+        self.radiometry.used.len() as f64 * std::f64::consts::LN_2
     }
 
     /// Emissivities fitted to pixels, from a start.
@@ -448,7 +460,8 @@ impl Maker<'_> {
             let found = states(&pixels.decomposed(self.setting, &library, prior)?, self.radiometry);
             let now: Vec<Option<usize>> = found.iter().map(|state| state.as_ref().map(|s| s.group)).collect();
             let each = found.par_iter().enumerate().map(|(i, state)| {
-                state.as_ref().map_or(0.0, |own| self.loss(pixels, i, Some(own), &curves[own.group]))
+                let own = state.as_ref().map(|own| self.loss(pixels, i, Some(own), &curves[own.group]));
+                own.unwrap_or_else(|| self.explained())
             });
             let loss: f64 = each.collect::<Vec<f64>>().iter().sum();
             let worse = best.as_ref().is_some_and(|best| loss > best.0 + curves.len() as f64);
@@ -468,6 +481,9 @@ impl Maker<'_> {
                         information.push(Information::of(self.radiometry, pixels, &own, &used(e)));
                         kept.push(e.clone());
                     }
+                }
+                if kept.is_empty() {
+                    break;
                 }
                 best = Some((loss, kept, information));
             }
