@@ -10,8 +10,9 @@
 //!
 //! * Lighting factors are taken off also where a limit holds them.
 //! * Pixels whose χ² is more than [`FAR`] times the median of the group count for less, by its ratio.
-//! * Where χ²/ν of n pixels exceeds 1 by more than its own scatter allows, what is beyond it is taken as common to all of them: F is
-//!   divided by χ²/ν + n (χ²/ν − 1 − 3√(2/nν)), so that pixels that differ, or a model that is wrong, do not average out.
+//! * Where χ²/ν of n pixels exceeds 1 by more than its own scatter allows, what is beyond it is taken as common to all of them, and as
+//!   if all W bands of it were along the one direction that tells least: F is divided by χ²/ν + n W (χ²/ν − 1 − 3√(2/nν)). Pixels that
+//!   differ, or a model that is wrong, do not average out; what is left is what the prior says.
 //! * Where the solution leaves [0, 1], the bands that do are held at the limit; the deviations stay those without limits.
 
 use super::radiometry::Radiometry;
@@ -239,7 +240,8 @@ impl Information {
     fn worse(&self) -> f64 {
         let reduced = self.reduced();
         let beyond = reduced - 1.0 - SCATTER * (2.0 / self.freedom.max(1.0)).sqrt();
-        let worse = reduced.max(1.0) + self.weight * beyond.max(0.0);
+        let bands = self.slope.len() as f64;
+        let worse = reduced.max(1.0) + self.weight * bands * beyond.max(0.0);
         if worse.is_finite() { worse } else { 1.0 }
     }
 

@@ -194,7 +194,11 @@ pub fn library_from_cube(
             let fewer = fitted.every(TRIED);
             let mut made = Vec::new();
             for count in fewest..=most {
-                made.push((count, maker.fitted(&fewer, starts.taken(count))?));
+                let one = maker.fitted(&fewer, starts.taken(count))?;
+                made.extend((!one.curves.is_empty()).then_some((count, one)));
+            }
+            if made.is_empty() {
+                return Err(nothing());
             }
             let (chosen, tried) = maker.judged(&made, &kept)?;
             (made.swap_remove(chosen).1.curves.into_iter().map(|curve| curve.emissivity).collect(), tried)
@@ -204,10 +208,7 @@ pub fn library_from_cube(
     let mut order: Vec<usize> = (0..curves.len()).collect();
     order.sort_by(|a, b| information[*b].pixels.cmp(&information[*a].pixels).then(a.cmp(b)));
     if curves.is_empty() {
-        return Err(Error::malformed(
-            "all pixels send what they are lit by: nothing tells an emissivity",
-            "check unit and surroundings, or look when the scene is warmer or colder than they are",
-        ));
+        return Err(nothing());
     }
     let clusters: Vec<Cluster> =
         order.iter().map(|i| cluster(&radiometry, &curves[*i], &information[*i])).collect();
@@ -216,6 +217,13 @@ pub fn library_from_cube(
     let options = Options { prior: prior.clone(), ..Options::default() };
     let maps = decompose(&Setting { library: &library, ..*setting }, &options, cube, done)?;
     Ok(Found { clusters, prior, tried, drawn, without_nem, rounds, settled, maps })
+}
+
+fn nothing() -> Error {
+    Error::malformed(
+        "all pixels send what they are lit by: nothing tells an emissivity",
+        "check unit and surroundings, or look when the scene is warmer or colder than they are",
+    )
 }
 
 fn cluster(radiometry: &Radiometry<'_>, curve: &Curve, information: &Information) -> Cluster {

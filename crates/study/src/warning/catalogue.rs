@@ -67,7 +67,7 @@ catalogue! {
     ClustersWithoutPixels = "clusters-without-pixels", "Ask for fewer, or for a range of counts.";
     /// The magnitude of an emissivity is hardly told from the temperatures of its pixels: the prior holds it.
     MagnitudeHardlyTold = "magnitude-hardly-told",
-        "State [emissivity] as well as you know it, or look under a sky with lines, at pixels of different lighting.";
+        "State unknown.lighting_total, fewer surroundings, or [emissivity] as well as you know it; look under a sky with lines, at pixels of different lighting.";
     /// The last round of grouping and fitting still changed something.
     ClustersNotSettled = "clusters-not-settled", "Compare with another --seed; ask for fewer clusters.";
 

@@ -7,7 +7,7 @@ use hadar::error::Result;
 use hadar::fisher::emissivity::{EmissivityPrior, Seen, Separation, Smoothness};
 use hadar::planck::photon_radiance_and_slope_into;
 use hadar_report::figures::Plot;
-use hadar_report::plot::{Axis, LineFigure, Rule, Series};
+use hadar_report::plot::{Axis, LineFigure, Series};
 use hadar_report::table::Table;
 
 /// Narrow bands that one wide band takes in.
@@ -111,7 +111,6 @@ impl Bounds {
             resolution = resolution.series(series(&self.resolution, i));
             contrast = contrast.series(series(&self.contrast, i));
         }
-        contrast = contrast.rule(Rule::vertical(0.0, "as warm as the air"));
         [
             Plot {
                 name: "bound_resolution".into(),

@@ -61,12 +61,21 @@ pub(super) fn finding(spectra: &Spectra, compared: &[Compared], street: &TakenAp
         each.reverse();
         each.join(" and ")
     };
+    let of_means: Vec<String> = compared
+        .iter()
+        .take(2)
+        .map(|one| {
+            let [t, e] = [one.bound_temperature_k, one.bound_emissivity].map(|x| significant(x, 2));
+            format!("{t} K and {e}")
+        })
+        .collect();
     let mut bounds: Vec<String> = lined.iter().map(|one| significant(one.bound_temperature_k, 2)).collect();
     bounds.reverse();
     format!(
         "{} measured spectra under a sky with lines, NEDT 0.03 and 0.1 K: temperatures err by {} K (NEM), {} K (TES), {} K (smoothest), {} K \
          (principal components of the others), {} K (smooth prior); the bound with nothing known but smoothness is {} K, reached to {} K by \
-         emissivities that are drawn from its prior. Of {} pixels of {} materials {} groups are made; with the library found {} of the pixels have \
+         emissivities that are drawn from its prior. Under a sky of means over 20 cm⁻¹ it is {} at 0.03 K, {} at 0.1 K, beside the published \
+         0.5 K and 0.01, 1 K and 0.015 of smoothness. Of {} pixels of {} materials {} groups are made; with the library found {} of the pixels have \
          the right material (by the true one {}), with temperatures off by {} K (by the true one {} K), and {} of the emissivities lie \
          within 1.96 of their deviations.",
         spectra.names.len(),
@@ -77,6 +86,8 @@ pub(super) fn finding(spectra: &Spectra, compared: &[Compared], street: &TakenAp
         of(4),
         bounds.join(" and "),
         of(5),
+        of_means.first().map_or("", String::as_str),
+        of_means.last().map_or("", String::as_str),
         street.pixels,
         MATERIALS.len(),
         street.found.clusters.len(),
@@ -198,7 +209,8 @@ pub(super) fn readme(
          spectra show), and nothing of the temperature. It is a Bayesian one: the deviation of the posterior to first order, its square averaged over emissivities that \
          are drawn from this prior, and estimates of those are in the table too. Van Trees' bound, which needs no first order, lies below it, as it \
          counts what large emissivities tell for all. Single spectra, and methods that know more (principal components), may do better; a method that does \
-         better on measured spectra knows something of them that is not in the prior.\n\n\
+         better on measured spectra knows something of them that is not in the prior. Measured spectra that the prior does not foresee (deep bands of quartz and \
+         carbonates) are why its estimate, and that of principal components, has an rms error far above the median.\n\n\
          ![Bound over resolution](bound_resolution.png)\n\n\
          ![Bound over contrast](bound_contrast.png)\n\n\
          ## A library out of a cube\n\n\
