@@ -11,7 +11,7 @@
 //! * Lighting factors are taken off also where a limit holds them.
 //! * Pixels whose χ² is more than [`FAR`] times the median of the group count for less, by its ratio.
 //! * Where χ²/ν of n pixels exceeds 1 by more than its own scatter allows, what is beyond it is taken as common to all of them, and as
-//!   if all W bands of it were along the one direction that tells least: F is divided by χ²/ν + n W (χ²/ν − 1 − 3√(2/nν)). Pixels that
+//!   if all W bands of it were along the one direction that tells least: for the deviations F is divided by χ²/ν + n W (χ²/ν − 1 − 3√(2/nν)). Pixels that
 //!   differ, or a model that is wrong, do not average out; what is left is what the prior says.
 //! * Where the solution leaves [0, 1], the bands that do are held at the limit; the deviations stay those without limits.
 
@@ -280,14 +280,16 @@ impl Curve {
         reach: f64,
     ) -> Option<Self> {
         let used = &radiometry.used;
-        let worse = found.worse();
-        let matrix = &found.matrix / worse;
+        // The estimate takes what is beyond the noise for more noise, its deviations take the worst of it.
+        let scale = found.reduced().max(1.0);
+        let scale = if scale.is_finite() { scale } else { 1.0 };
+        let matrix = &found.matrix / scale;
         let (a, mean) = (prior.factor(), prior.mean());
         let own = a.select_rows(used.iter());
         let apart = DVector::from_iterator(used.len(), used.iter().zip(e).map(|(band, e)| e - mean[*band]));
-        let free = factored(&own, &matrix)?;
+        let free = factored(&own, &(&found.matrix / found.worse()))?;
         let damped = &matrix + DMatrix::identity(used.len(), used.len()) / (reach * reach);
-        let right = &found.slope / worse + &damped * apart;
+        let right = &found.slope / scale + &damped * apart;
         let mut emissivity = prior.at(factored(&own, &damped)?.solve(&own.tr_mul(&right)).as_slice());
         let mut held: Vec<Option<f64>> = vec![None; used.len()];
         for _ in 0..HELD_ROUNDS {
