@@ -1,6 +1,7 @@
 //! What every storey stands on: errors, units, sums, lattices, one-dimensional solvers, statistics.
 
 pub mod allowed;
+pub(crate) mod correlation;
 pub mod demand;
 pub mod error;
 pub mod file;

@@ -47,6 +47,7 @@
 //! | | [`policy`] | requirements: solved for, traded off, proved over envelopes of scenes |
 //! | witness | [`simulate`] | counts drawn, classifiers, thermometry, stereo matching: each against its bound |
 //! | | [`decompose`] | heat cubes taken apart: material, temperature and lighting of every pixel |
+//! | | [`separation`] | temperature and emissivity told apart without a library, and a library out of a heat cube |
 //! | | [`render`] | stereo pairs of heat cubes of a scene |
 //!
 //! # Where an equation is computed
@@ -77,6 +78,7 @@
 //! | S41–S43 | two views, diffraction, the limit of δz | [`ranging::depth`], [`ranging::psf`] |
 //! | S44 | decomposition of a heat cube | [`decompose`] |
 //! | S46, S47 | temperature and lighting by slopes along wavenumber, and their errors | [`decompose::Method`], [`decompose::inverse_error`] |
+//! | SV C | a library out of a heat cube | [`separation`]; its bound [`fisher::emissivity`] |
 //! | S48 | known total of the lighting factors | [`fisher`], [`scene`], [`decompose`] |
 //! | Ext. Data Fig. 9 | thermometry | [`fisher::precision`], [`simulate::thermometry`] |
 //! | SII E, Fig. 3d, e | H = t A_p/((1 + γ)F²), motion, requirements | [`policy`] |
@@ -93,10 +95,10 @@ pub use base::error::{Error, Result};
 pub use base::{
     allowed, demand, error, file, grid, inputs, lattice_points, minimum, root, statistics, sum, units, words,
 };
-pub(crate) use base::{simd, wide};
+pub(crate) use base::{correlation, simd, wide};
 pub use limits::{fisher, identifiability, policy, ranging};
 pub use physics::{atmosphere, material, planck, scene, spectrum};
-pub use witness::{decompose, render, simulate};
+pub use witness::{decompose, render, separation, simulate};
 
 #[cfg(doctest)]
 #[doc = include_str!("README.md")]

@@ -2,4 +2,5 @@
 
 pub mod decompose;
 pub mod render;
+pub mod separation;
 pub mod simulate;

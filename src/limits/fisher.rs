@@ -14,6 +14,7 @@
 
 mod bound;
 mod careful;
+pub mod emissivity;
 pub mod precision;
 
 pub(crate) use bound::Reduced;

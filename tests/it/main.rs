@@ -22,6 +22,7 @@ mod planck_reference;
 mod properties;
 mod ranging_reference;
 mod selection;
+mod separation;
 
 mod support {
     pub(crate) mod scenes;

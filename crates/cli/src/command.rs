@@ -8,6 +8,7 @@ mod cameras;
 mod decompose;
 mod global;
 mod identify;
+mod library;
 mod materials;
 mod progress;
 mod provenance;
@@ -56,6 +57,8 @@ enum Command {
     Range(range::RangeArgs),
     /// A heat cube as material, temperature and lighting of every pixel, and where the photons do not tell
     Decompose(decompose::DecomposeArgs),
+    /// Emissivities out of a heat cube: a library where none was measured, with its errors
+    Library(library::LibraryArgs),
     /// Render a scene as a heat cube, with what is true of every pixel
     Render(render::RenderArgs),
     /// Draw spectra, train and judge classifiers, and hold them against the limit
@@ -108,6 +111,7 @@ fn run(cli: &Cli) -> Result<ExitCode> {
         Command::Rule(args) => rule::run(args, &cli.global),
         Command::Range(args) => range::run(args, &cli.global),
         Command::Decompose(args) => decompose::run(args, &cli.global),
+        Command::Library(args) => library::run(args, &cli.global),
         Command::Render(args) => render::run(args, &cli.global),
         Command::Simulate(args) => simulate::run(args, &cli.global),
         Command::Reproduce(args) => reproduce::run(args, &cli.global),

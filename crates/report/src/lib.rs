@@ -15,6 +15,7 @@ pub mod figures;
 pub mod folder;
 mod html;
 pub mod identify;
+pub mod library;
 pub mod manifest;
 pub mod plot;
 pub mod range;

@@ -40,6 +40,16 @@ pub enum Warning {
     PixelsSkipped { pixels: usize, of: usize },
     /// Pixels that no material explains.
     LibraryDoesNotFit { pixels: usize, of: usize },
+    /// Pixels that have no emissivity by themselves, of so many that were looked at.
+    NoRelativeEmissivity { pixels: usize, of: usize },
+    /// A library of one emissivity for all pixels.
+    OneCluster,
+    /// Clusters whose pixels all went to others, of so many that were asked for.
+    ClustersWithoutPixels { left: usize, asked: usize },
+    /// Emissivities of which the magnitude is hardly told: names, and the largest deviation of their means.
+    MagnitudeHardlyTold { clusters: Vec<String>, sigma: f64 },
+    /// A last round that still changed something.
+    ClustersNotSettled { rounds: usize },
     /// A library without errors.
     LibraryTakenAsExact,
     /// Pixels whose material a prior over the image changed, and whether its last sweep still changed something.
@@ -201,6 +211,11 @@ impl Warning {
             Self::SolvedForOnePair { .. } => Code::SolvedForOnePair,
             Self::PixelsSkipped { .. } => Code::PixelsSkipped,
             Self::LibraryDoesNotFit { .. } => Code::LibraryDoesNotFit,
+            Self::NoRelativeEmissivity { .. } => Code::NoRelativeEmissivity,
+            Self::OneCluster => Code::OneCluster,
+            Self::ClustersWithoutPixels { .. } => Code::ClustersWithoutPixels,
+            Self::MagnitudeHardlyTold { .. } => Code::MagnitudeHardlyTold,
+            Self::ClustersNotSettled { .. } => Code::ClustersNotSettled,
             Self::LibraryTakenAsExact => Code::LibraryTakenAsExact,
             Self::SpatialPrior { .. } => Code::SpatialPrior,
             Self::Identical => Code::Identical,

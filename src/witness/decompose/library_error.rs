@@ -16,14 +16,13 @@ use super::fit::{COMPARED, Fit, MOST_LOOKS};
 use super::kernel::{Sums, weighted};
 use super::model::{Hermite, Model};
 use super::step::State;
+use crate::correlation::matern;
 use crate::error::{Result, check};
 use crate::simd::{LANES, added, dispatched, fold};
 use nalgebra::{DMatrix, SymmetricEigen};
 
 /// Modes smaller than this share of the largest go to the diagonal.
 const SMALL_MODE: f64 = 1e-3;
-/// x at which (1 + x + x²/3) e⁻ˣ is a quarter.
-const QUARTER: f64 = 3.55;
 /// Fewest counts of a model.
 const FEWEST: f64 = 1e-6;
 
@@ -51,10 +50,8 @@ impl Modes {
         check::positive("correlation of the errors of the emissivities", error.correlation_cm1, "cm^-1")?;
         let nu = &model.centres_cm1;
         let s = error.relative;
-        let covariance = DMatrix::from_fn(nu.len(), nu.len(), |i, j| {
-            let x = QUARTER * (nu[i] - nu[j]).abs() / error.correlation_cm1;
-            s * s * (1.0 + x + x * x / 3.0) * libm::exp(-x)
-        });
+        let covariance =
+            DMatrix::from_fn(nu.len(), nu.len(), |i, j| s * s * matern(nu[i] - nu[j], error.correlation_cm1));
         let eigen = SymmetricEigen::new(covariance);
         let largest = eigen.eigenvalues.max();
         let mut rest = vec![0.0; model.width];

@@ -15,7 +15,8 @@ use std::time::Instant;
 #[derive(Debug, Args)]
 pub(super) struct ReproduceArgs {
     /// Figures and tables: fig3b, figs7, fig3c, fig4, figs12, figs17, figs20, edfig6, edfig9, tabs2, tabs5, policy, or all
-    /// of these; further studies, no part of `all`: air-ranging, decompose-limits, exact-probability, priors, library-figures (with --library FILE), person-or-robot (with --library twice)
+    /// of these; further studies, no part of `all`: air-ranging, decompose-limits, exact-probability, priors, library-figures (with --library FILE),
+    /// emissivity-from-data (with --library FOLDER), person-or-robot (with --library twice)
     #[arg(value_name = "ID", default_value = "all")]
     items: Vec<String>,
     /// Some of the experiments only: within a minute on two cores
@@ -157,37 +158,28 @@ fn asked(names: &[String]) -> Result<Asked> {
     Ok(asked)
 }
 
-/// The materials of the studies: the built-in ones, but those of --library for the study of a whole library.
+/// The materials of the studies: the built-in ones, but those of --library for studies of other ones.
 fn library(items: &[Item], studies: &[FurtherStudy], global: &Global) -> Result<Library> {
-    let classes = studies.contains(&FurtherStudy::PersonOrRobot);
-    if classes && items.len() + studies.len() > 1 {
-        let found = "person-or-robot is made with another library than the rest";
+    let own = studies.iter().find_map(|study| study.own_library().map(|what| (study.name(), what)));
+    if let Some((name, _)) = own
+        && items.len() + studies.len() > 1
+    {
+        let found = format!("{name} is made with another library than the rest");
         return Err(Error::malformed(found, "ask for it alone"));
     }
-    if classes && global.library.is_empty() {
-        return Err(Error::malformed(
-            "person-or-robot takes measured spectra that are no part of this program",
-            "give them with --library, twice: the folder of the ECOSTRESS spectral library, and the table `emiLib_synthetic` of \
-             github.com/FanglinBao/HADAR as a CSV file",
-        ));
+    if let Some((name, what)) = own
+        && global.library.is_empty()
+    {
+        let (what, instead) = what.split_once("; ").unwrap_or((what, "give it with --library"));
+        return Err(Error::malformed(format!("{name} {what}"), instead));
     }
-    let own = studies.contains(&FurtherStudy::LibraryFigures);
-    if own && items.len() + studies.len() > 1 {
-        let found = "library-figures is made with another library than the rest";
-        return Err(Error::malformed(found, "ask for it alone"));
-    }
-    if own && global.library.is_empty() {
-        return Err(Error::malformed(
-            "library-figures takes all pairs of a library that is not part of this program",
-            "give it with --library FILE; for the committed report it is the table `emiLib_synthetic` of \
-             github.com/FanglinBao/HADAR as a CSV file",
-        ));
-    }
-    if !own && !classes && (global.only_library || !global.library.is_empty()) {
+    let own = own.is_some();
+    if !own && (global.only_library || !global.library.is_empty()) {
         let found = "the paper's figures are made with the built-in library";
         return Err(Error::malformed(found, "leave out --library and --only-library"));
     }
-    let mut library = if own { Library::empty() } else { Library::embedded()? };
+    let adds = studies.contains(&FurtherStudy::PersonOrRobot);
+    let mut library = if own && !adds { Library::empty() } else { Library::embedded()? };
     global.library.iter().try_for_each(|path| library.add_path(path))?;
     Ok(library)
 }
@@ -249,8 +241,8 @@ fn overview(items: &[Item], effort: Effort, ledger: &[Line]) -> String {
     page.push_str(
         "\nFurther studies, made by `hadar reproduce` when asked for by name: [exact decisions](exact_probability/README.md), \
          [the paper's own library](library_figures/README.md), [priors](priors/README.md), \
-         [heat cubes against their limits](decompose_limits/README.md), [distances from the air](air_ranging/README.md), \
-         [person or robot, of several spectra each](person_or_robot/README.md); and [run time against error](accuracy/README.md), by `hadar accuracy`.\n\n",
+         [heat cubes against their limits](decompose_limits/README.md), [emissivity without a library](emissivity_from_data/README.md), \
+         [distances from the air](air_ranging/README.md), [person or robot, of several spectra each](person_or_robot/README.md); and [run time against error](accuracy/README.md), by `hadar accuracy`.\n\n",
     );
     page.push_str(&markdown(ledger));
     page

@@ -13,6 +13,7 @@ use hadar::material::Library;
 use hadar::planck::photon_radiance;
 use hadar::ranging::cube::{Cube, MemoryCube, Shape};
 use hadar::scene::{EnvironmentObject, Parameter, State, Surroundings};
+use hadar::separation::{Asked, Found, library_from_cube};
 use hadar::simulate::draws::{Draws, generator};
 use hadar::spectrum::Bands;
 use hadar::statistics::Statistics;
@@ -188,21 +189,36 @@ impl Street {
         counts: Vec<f64>,
         photons: f64,
     ) -> Result<Maps> {
+        let per = vec![self.counts_per_radiance(photons); self.bands.len()];
+        let (setting, cube) = (self.setting(library, &per), self.cube(counts)?);
+        decompose_by(method, &setting, &Options::default(), &cube, &|_| ())
+    }
+
+    /// A library made of counts alone.
+    pub(super) fn library_of(&self, asked: &Asked, counts: Vec<f64>, photons: f64) -> Result<Found> {
+        let per = vec![self.counts_per_radiance(photons); self.bands.len()];
+        let (setting, cube) = (self.setting(&[], &per), self.cube(counts)?);
+        library_from_cube(&setting, asked, &cube, &|_| ())
+    }
+
+    fn cube(&self, counts: Vec<f64>) -> Result<Cube> {
         let shape = Shape::new(1, counts.len() / self.bands.len(), self.bands.len())?;
-        let cube = Cube::F64(Box::new(MemoryCube::new(shape, counts)?));
-        let setting = Setting {
+        Ok(Cube::F64(Box::new(MemoryCube::new(shape, counts)?)))
+    }
+
+    fn setting<'a>(&'a self, library: &'a [Vec<f64>], counts_per_radiance: &'a [f64]) -> Setting<'a> {
+        Setting {
             bands: &self.bands,
             library,
             surroundings: &self.lights,
-            counts_per_radiance: &vec![self.counts_per_radiance(photons); self.bands.len()],
+            counts_per_radiance,
             var_added: &[],
             units_per_count: 1.0,
             temperature_k: RANGE_K,
             lighting_total: Some(1.0),
             gain: false,
             bad_bands: &[],
-        };
-        decompose_by(method, &setting, &Options::default(), &cube, &|_| ())
+        }
     }
 
     /// Temperatures of the pixels, K, with their material known to the method.

@@ -2,6 +2,7 @@
 
 mod air_ranging;
 mod decompose_limits;
+mod emissivity_from_data;
 mod exact_probability;
 mod library_figures;
 mod page;
@@ -29,17 +30,20 @@ pub(crate) enum FurtherStudy {
     PersonOrRobot,
     /// How well a distance can be read from the air on the path.
     AirRanging,
+    /// What can be told of temperature and emissivity without a library.
+    EmissivityFromData,
 }
 
 impl FurtherStudy {
     /// All of them, the quickest first.
-    pub(crate) const ALL: [Self; 6] = [
+    pub(crate) const ALL: [Self; 7] = [
         Self::PersonOrRobot,
         Self::DecomposeLimits,
         Self::Priors,
         Self::AirRanging,
         Self::ExactProbability,
         Self::LibraryFigures,
+        Self::EmissivityFromData,
     ];
 
     /// The name on the command line.
@@ -52,6 +56,7 @@ impl FurtherStudy {
             Self::DecomposeLimits => "decompose-limits",
             Self::PersonOrRobot => "person-or-robot",
             Self::AirRanging => "air-ranging",
+            Self::EmissivityFromData => "emissivity-from-data",
         }
     }
 
@@ -71,6 +76,27 @@ impl FurtherStudy {
             Self::AirRanging => "How well a distance can be read from the air on the path",
             Self::DecomposeLimits => "How near a decomposed heat cube comes to what the photons allow",
             Self::PersonOrRobot => "Person or robot, with classes on both sides",
+            Self::EmissivityFromData => "Temperature and emissivity without a library",
+        }
+    }
+
+    /// What has to be given with --library, where the built-in materials are not what is studied.
+    #[must_use]
+    pub(crate) const fn own_library(self) -> Option<&'static str> {
+        match self {
+            Self::LibraryFigures => Some(
+                "takes all pairs of a library that is not part of this program; give it with --library FILE; for the committed report it is the \
+                 table `emiLib_synthetic` of github.com/FanglinBao/HADAR as a CSV file",
+            ),
+            Self::EmissivityFromData => Some(
+                "takes measured spectra that are not part of this program; give them with --library FOLDER; for the committed report they are files of \
+                 the ECOSTRESS spectral library, speclib.jpl.nasa.gov",
+            ),
+            Self::PersonOrRobot => Some(
+                "takes measured spectra that are not part of this program; give them with --library, twice: the folder of the ECOSTRESS spectral \
+                 library, and the table `emiLib_synthetic` of github.com/FanglinBao/HADAR as a CSV file",
+            ),
+            _ => None,
         }
     }
 
@@ -97,6 +123,7 @@ impl FurtherStudy {
             Self::DecomposeLimits => decompose_limits::make(order, library, progress),
             Self::PersonOrRobot => person_or_robot::make(order, library, progress),
             Self::AirRanging => air_ranging::make(order, library, progress),
+            Self::EmissivityFromData => emissivity_from_data::make(order, library, progress),
         }?;
         Ok((bundle.titled(self.title()), finding))
     }

@@ -19,6 +19,7 @@ mod identify_libraries;
 mod identify_mistakes;
 mod identify_sections;
 mod identify_words;
+mod library;
 mod messages;
 mod nearest;
 mod packs;

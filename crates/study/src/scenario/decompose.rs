@@ -4,8 +4,8 @@
 //! is checked when it is read, an error names file, line and key.
 
 mod image;
-mod read;
-mod write;
+pub(super) mod read;
+pub(super) mod write;
 
 use super::{BandsSpec, CameraSpec, ClassSpec, MaterialRef, Source};
 use hadar::decompose::SpatialPrior;

@@ -12,6 +12,7 @@ pub(super) enum Kind {
     Rule,
     Range,
     Decompose,
+    Library,
     Materials,
     Cameras,
 }
@@ -33,6 +34,7 @@ struct Row {
 
 const TABLE: &[Row] = &[
     Row { kind: Kind::Materials, told_by: &[("material", Form::Tables)], name: "a manifest of materials" },
+    Row { kind: Kind::Library, told_by: &[("clusters", Form::Any)], name: "what a library is made from" },
     Row {
         kind: Kind::Decompose,
         told_by: &[("library", Form::Any), ("truth", Form::Any)],
@@ -117,6 +119,7 @@ impl Kind {
             Kind::Rule => (row.name, format!("hadar rule {file}")),
             Kind::Range => (row.name, format!("hadar range {file}")),
             Kind::Decompose => (row.name, format!("hadar decompose {file}")),
+            Kind::Library => (row.name, format!("hadar library {file}")),
             Kind::Materials => (row.name, "name a scenario, and give its folder to --library".into()),
             Kind::Cameras => {
                 ("a list of cameras", "write one as [camera] of a scenario that has a [target]".into())

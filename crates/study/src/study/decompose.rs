@@ -7,8 +7,9 @@ mod vision;
 mod worth;
 
 pub use looked_up::DecomposeStudy;
-pub(super) use looked_up::spectrum;
+pub(super) use results::flags;
 pub use results::{ClassRow, Decomposed, FlagCount, MaterialRow, TruthFound};
+pub(super) use truth::Truth;
 pub use vision::Vision;
 
 use self::results::summary;

@@ -2,7 +2,7 @@
 //!
 //! A spectral sky is a surface of the highest brightness temperature T of its radiance L, with e(ν) = L(ν)/B(ν, T) ≤ 1.
 
-use super::decompose::spectrum;
+use super::heat_cube::spectrum;
 use crate::scenario::MaterialRef;
 use crate::scenario::scene::{Form, ObjectSpec, SceneSpec, SkySpec, SurfaceSpec};
 use hadar::error::{Error, Place, Result};

@@ -64,6 +64,19 @@ catalogue! {
     /// The emissivities of the library are taken as exact: intervals do not hold what errors of them do.
     LibraryTakenAsExact = "library-taken-as-exact", "State library.emissivity_error where the spectra are measured ones.";
 
+    /// Pixels of a cube send what they are lit by, or what no surface sends: no emissivity follows from one of them alone.
+    NoRelativeEmissivity = "no-relative-emissivity",
+        "Nothing if they are few; else check unit and surroundings, or look when the scene is warmer than its sky.";
+    /// One emissivity stands for all pixels, whatever they are.
+    OneCluster = "one-cluster", "Write clusters.count = [1, 8], unless the cube shows one material.";
+    /// Clusters were left without a pixel: the others explain all of them better.
+    ClustersWithoutPixels = "clusters-without-pixels", "Ask for fewer, or for a range of counts.";
+    /// The magnitude of an emissivity is hardly told from the temperatures of its pixels: the prior holds it.
+    MagnitudeHardlyTold = "magnitude-hardly-told",
+        "State unknown.lighting_total, fewer surroundings, or [emissivity] as well as you know it; look under a sky with lines, at pixels of different lighting.";
+    /// The last round of grouping and fitting still changed something.
+    ClustersNotSettled = "clusters-not-settled", "Compare with another --seed; ask for fewer clusters.";
+
     /// Materials, posteriors and temperatures rest on a prior over the image: what is small and hardly differs from its surroundings is lost.
     SpatialPrior = "spatial-prior", "Compare with the answer without [spatial]; trust an object of few pixels only if it is in both.";
 

@@ -23,6 +23,25 @@ impl Display for Warning {
             Self::LibraryDoesNotFit { pixels, of } => {
                 write!(f, "{pixels} of {of} pixels are explained by no material of the library (p below 1e-4)")
             }
+            Self::NoRelativeEmissivity { pixels, of } => write!(
+                f,
+                "{pixels} of {of} pixels that were looked at have no emissivity by themselves: they send what they are lit by, or \
+                 what no surface sends"
+            ),
+            Self::OneCluster => f.write_str("one emissivity stands for all pixels, whatever they are made of"),
+            Self::ClustersWithoutPixels { left, asked } => {
+                write!(f, "of {asked} clusters {left} have pixels; the others were left out")
+            }
+            Self::MagnitudeHardlyTold { clusters, sigma } => write!(
+                f,
+                "the magnitude of {} is hardly told from the temperatures (mean emissivity +- {} at most): what was said of \
+                 emissivities beforehand holds it",
+                clusters.join(", "),
+                significant(*sigma, 2)
+            ),
+            Self::ClustersNotSettled { rounds } => {
+                write!(f, "after {rounds} rounds clusters and emissivities still changed")
+            }
             Self::LibraryTakenAsExact => f.write_str(
                 "the library is taken as exact: with errors of its emissivities temperatures are off by more than is said",
             ),

@@ -102,7 +102,7 @@ impl Default for PixelUnknown {
     }
 }
 
-fn heat_cube(entry: &Entry<'_>, camera: bool) -> Result<HeatCube> {
+pub(in crate::scenario) fn heat_cube(entry: &Entry<'_>, camera: bool) -> Result<HeatCube> {
     let section =
         entry.section(&["data", "variable", "counts_per_photon_radiance", "unit", "noise", "bad_bands"])?;
     section.at_most_one(&["counts_per_photon_radiance", "unit"])?;
@@ -145,7 +145,7 @@ fn heat_cube(entry: &Entry<'_>, camera: bool) -> Result<HeatCube> {
 }
 
 /// A place in a list that is counted from 0.
-fn place(entry: &Entry<'_>, example: &str) -> Result<usize> {
+pub(in crate::scenario) fn place(entry: &Entry<'_>, example: &str) -> Result<usize> {
     let allowed = Allowed {
         holds: |value| value >= 0.0 && value.fract() == 0.0 && value <= MOST_PLACES,
         expected: "a whole number from 0",
@@ -153,7 +153,7 @@ fn place(entry: &Entry<'_>, example: &str) -> Result<usize> {
     entry.number(example, allowed).map(|place| place as usize)
 }
 
-fn light(entry: &Entry<'_>) -> Result<LightSource> {
+pub(in crate::scenario) fn light(entry: &Entry<'_>) -> Result<LightSource> {
     let section = entry.section(&["spectrum", "column", "material", "temperature", "rows"])?;
     let kinds = ["spectrum", "rows", "temperature"];
     let instead = "write temperature = \"-10 degC\", spectrum = \"light.csv\" with column = \"sky\", or rows = [0, 540]";
@@ -211,7 +211,7 @@ fn library(entry: &Entry<'_>) -> Result<LibrarySpec> {
     Ok(spec)
 }
 
-fn unknown(entry: &Entry<'_>) -> Result<PixelUnknown> {
+pub(in crate::scenario) fn unknown(entry: &Entry<'_>) -> Result<PixelUnknown> {
     let section = entry.section(&["temperature", "lighting_total", "gain"])?;
     let temperature = |end: &Entry<'_>| end.quantity(Dimension::Temperature, ABSOLUTE_TEMPERATURE);
     let default = PixelUnknown::default();
@@ -230,7 +230,7 @@ fn unknown(entry: &Entry<'_>) -> Result<PixelUnknown> {
     })
 }
 
-fn truth(entry: &Entry<'_>) -> Result<TruthSpec> {
+pub(in crate::scenario) fn truth(entry: &Entry<'_>) -> Result<TruthSpec> {
     let section = entry.section(&["material", "temperature", "lighting"])?;
     Ok(TruthSpec {
         material: section.read("material", file)?,

@@ -2,9 +2,9 @@
 
 use super::super::entries::{Document, Entries, Part, entries, text};
 use super::super::paths::Paths;
-use super::super::{camera, class};
+use super::super::{BandsSpec, CameraSpec, camera, class};
 use super::image::{spatial_written, vision_written};
-use super::{CubeUnit, DecomposeScenario, LightSource, VisionSpec};
+use super::{CubeUnit, DecomposeScenario, HeatCube, LightSource, PixelUnknown, TruthSpec, VisionSpec};
 use hadar::units::Dimension;
 use serde::{Serialize, Serializer};
 use std::path::Path;
@@ -22,35 +22,13 @@ impl DecomposeScenario {
         if let Some(title) = &self.title {
             document.push(("title", Part::Value(title.as_str().into())));
         }
-        let cube = &self.cube;
-        let (counts, unit) = match cube.unit {
-            CubeUnit::CountsPerPhotonRadiance(counts) => (Some(counts), None),
-            CubeUnit::Camera => (None, None),
-            CubeUnit::Radiance => (None, Some("W m^-2 sr^-1 per cm^-1")),
-        };
-        let whole = |numbers: &[usize]| numbers.iter().map(|n| *n as i64).collect::<Vec<_>>();
-        let written = Entries::default()
-            .put("data", paths.file(&cube.data))
-            .put_if("variable", cube.variable.clone())
-            .put_if("counts_per_photon_radiance", counts)
-            .put_if("unit", unit)
-            .put_if("noise", cube.noise)
-            .put_if("bad_bands", (!cube.bad_bands.is_empty()).then(|| whole(&cube.bad_bands)));
-        document.push(("cube", Part::Table(written)));
-        document.push(("bands", Part::Table(self.bands.written(paths))));
-        if let Some(spec) = &self.camera {
-            document.push(("camera", Part::Table(camera::written(spec, paths))));
-        }
-        let lights = self.environment.iter().map(|light| match light {
-            LightSource::Spectrum { path, column } => {
-                Entries::default().put("spectrum", paths.file(path)).put("column", column.clone())
-            }
-            LightSource::Surface { material, temperature_k } => Entries::default()
-                .put_if("material", material.as_ref().map(|material| paths.material(material)))
-                .put_quantity("temperature", Dimension::Temperature, Some(*temperature_k)),
-            LightSource::Rows(rows) => Entries::default().put("rows", whole(rows)),
-        });
-        document.push(("environment", Part::Tables(lights.collect())));
+        document.extend(cube_written(
+            &self.cube,
+            &self.bands,
+            self.camera.as_ref(),
+            &self.environment,
+            paths,
+        ));
         let library = &self.library;
         let names = |materials: &Vec<_>| materials.iter().map(|m| paths.material(m)).collect::<Vec<_>>();
         let written = Entries::default()
@@ -68,12 +46,7 @@ impl DecomposeScenario {
             document.push(("class", Part::Named(self.classes.iter().map(one).collect())));
         }
         document.push(("library", Part::Table(written)));
-        let unknown = &self.unknown;
-        let written = Entries::default()
-            .put_range("temperature", Dimension::Temperature, Some(unknown.temperature_k))
-            .put_if("lighting_total", unknown.lighting_total)
-            .put("gain", unknown.gain);
-        document.push(("unknown", Part::Table(written)));
+        document.push(("unknown", Part::Table(unknown_written(&self.unknown))));
         if let Some(prior) = &self.spatial {
             document.push(("spatial", Part::Table(spatial_written(prior))));
         }
@@ -81,16 +54,68 @@ impl DecomposeScenario {
             document.push(("vision", Part::Table(vision_written(&self.vision))));
         }
         if let Some(truth) = &self.truth {
-            let file = |path: &Option<_>| path.as_ref().map(|path: &std::path::PathBuf| paths.file(path));
-            let lighting: Vec<String> = truth.lighting.iter().map(|path| paths.file(path)).collect();
-            let written = Entries::default()
-                .put_if("material", file(&truth.material))
-                .put_if("temperature", file(&truth.temperature))
-                .put_if("lighting", (!lighting.is_empty()).then_some(lighting));
-            document.push(("truth", Part::Table(written)));
+            document.push(("truth", Part::Table(truth_written(truth, paths))));
         }
         document
     }
+}
+
+/// `[cube]`, `[bands]`, `[camera]` and `[[environment]]`.
+pub(in crate::scenario) fn cube_written(
+    cube: &HeatCube,
+    bands: &BandsSpec,
+    camera: Option<&CameraSpec>,
+    environment: &[LightSource],
+    paths: Paths<'_>,
+) -> Document {
+    let mut document = Vec::new();
+    let (counts, unit) = match cube.unit {
+        CubeUnit::CountsPerPhotonRadiance(counts) => (Some(counts), None),
+        CubeUnit::Camera => (None, None),
+        CubeUnit::Radiance => (None, Some("W m^-2 sr^-1 per cm^-1")),
+    };
+    let whole = |numbers: &[usize]| numbers.iter().map(|n| *n as i64).collect::<Vec<_>>();
+    let written = Entries::default()
+        .put("data", paths.file(&cube.data))
+        .put_if("variable", cube.variable.clone())
+        .put_if("counts_per_photon_radiance", counts)
+        .put_if("unit", unit)
+        .put_if("noise", cube.noise)
+        .put_if("bad_bands", (!cube.bad_bands.is_empty()).then(|| whole(&cube.bad_bands)));
+    document.push(("cube", Part::Table(written)));
+    document.push(("bands", Part::Table(bands.written(paths))));
+    if let Some(spec) = camera {
+        document.push(("camera", Part::Table(camera::written(spec, paths))));
+    }
+    let lights = environment.iter().map(|light| match light {
+        LightSource::Spectrum { path, column } => {
+            Entries::default().put("spectrum", paths.file(path)).put("column", column.clone())
+        }
+        LightSource::Surface { material, temperature_k } => Entries::default()
+            .put_if("material", material.as_ref().map(|material| paths.material(material)))
+            .put_quantity("temperature", Dimension::Temperature, Some(*temperature_k)),
+        LightSource::Rows(rows) => Entries::default().put("rows", whole(rows)),
+    });
+    document.push(("environment", Part::Tables(lights.collect())));
+    document
+}
+
+/// `[unknown]`.
+pub(in crate::scenario) fn unknown_written(unknown: &PixelUnknown) -> Entries {
+    Entries::default()
+        .put_range("temperature", Dimension::Temperature, Some(unknown.temperature_k))
+        .put_if("lighting_total", unknown.lighting_total)
+        .put("gain", unknown.gain)
+}
+
+/// `[truth]`.
+pub(in crate::scenario) fn truth_written(truth: &TruthSpec, paths: Paths<'_>) -> Entries {
+    let file = |path: &Option<_>| path.as_ref().map(|path: &std::path::PathBuf| paths.file(path));
+    let lighting: Vec<String> = truth.lighting.iter().map(|path| paths.file(path)).collect();
+    Entries::default()
+        .put_if("material", file(&truth.material))
+        .put_if("temperature", file(&truth.temperature))
+        .put_if("lighting", (!lighting.is_empty()).then_some(lighting))
 }
 
 /// The same keys as the TOML, quantities in the units used inside, with absolute paths.

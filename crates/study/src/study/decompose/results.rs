@@ -137,24 +137,7 @@ pub(super) fn summary(
         pixels: (0..pixels).filter(|i| members.contains(&usize::from(maps.material[*i]))).count(),
     });
     let classes = classes.collect();
-    let flags: Vec<FlagCount> = flag::NAMES
-        .iter()
-        .map(|(bit, flag)| FlagCount { flag, bit: *bit, pixels: has(*bit) })
-        .filter(|count| count.pixels > 0)
-        .collect();
-    if maps.spared.unfinished > 0 {
-        warnings.push(Warning::UnconvergedFits { fits: maps.spared.unfinished as usize });
-    }
-    if skipped > 0 {
-        warnings.push(Warning::PixelsSkipped { pixels: skipped, of: pixels });
-    }
-    if let Some(Spatial { changed, settled, .. }) = maps.spatial {
-        warnings.push(Warning::SpatialPrior { changed, pixels, settled });
-    }
-    let unfit = has(flag::NO_FIT);
-    if unfit as f64 > 0.01 * (pixels - skipped) as f64 {
-        warnings.push(Warning::LibraryDoesNotFit { pixels: unfit, of: pixels - skipped });
-    }
+    let flags = flags(&maps, &mut warnings);
     Decomposed {
         scenario: study.scenario.clone(),
         method,
@@ -175,4 +158,30 @@ pub(super) fn summary(
         warnings,
         maps,
     }
+}
+
+/// How many pixels have each flag, and what the reader must know of them.
+pub(in crate::study) fn flags(maps: &Maps, warnings: &mut Vec<Warning>) -> Vec<FlagCount> {
+    let pixels = maps.material.len();
+    let has = |bit: u8| maps.flags.iter().filter(|flags| **flags & bit != 0).count();
+    let skipped = has(flag::SKIPPED);
+    let flags: Vec<FlagCount> = flag::NAMES
+        .iter()
+        .map(|(bit, flag)| FlagCount { flag, bit: *bit, pixels: has(*bit) })
+        .filter(|count| count.pixels > 0)
+        .collect();
+    if maps.spared.unfinished > 0 {
+        warnings.push(Warning::UnconvergedFits { fits: maps.spared.unfinished as usize });
+    }
+    if skipped > 0 {
+        warnings.push(Warning::PixelsSkipped { pixels: skipped, of: pixels });
+    }
+    if let Some(Spatial { changed, settled, .. }) = maps.spatial {
+        warnings.push(Warning::SpatialPrior { changed, pixels, settled });
+    }
+    let unfit = has(flag::NO_FIT);
+    if unfit as f64 > 0.01 * (pixels - skipped) as f64 {
+        warnings.push(Warning::LibraryDoesNotFit { pixels: unfit, of: pixels - skipped });
+    }
+    flags
 }

@@ -8,16 +8,16 @@ use std::path::Path;
 
 /// Maps of what is there, `[row][column]`.
 #[derive(Debug)]
-pub(super) struct Truth {
-    pub(super) material: Option<Vec<usize>>,
-    pub(super) temperature_k: Option<Vec<f64>>,
+pub(in crate::study) struct Truth {
+    pub(in crate::study) material: Option<Vec<usize>>,
+    pub(in crate::study) temperature_k: Option<Vec<f64>>,
     /// `[row][column][surroundings]`.
-    pub(super) lighting: Option<Vec<f64>>,
+    pub(in crate::study) lighting: Option<Vec<f64>>,
 }
 
 impl Truth {
     /// Opens the maps; an error with its key.
-    pub(super) fn open(
+    pub(in crate::study) fn open(
         spec: &TruthSpec,
         shape: Shape,
         surroundings: usize,

@@ -1,0 +1,29 @@
+//! `hadar library`: emissivities out of a heat cube, without a library.
+
+use super::global::Global;
+use clap::Args;
+use hadar::error::Result;
+use hadar_report::library;
+use hadar_study::scenario::LibraryScenario;
+use hadar_study::study::library::LibraryStudy;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+#[derive(Debug, Args)]
+pub(super) struct LibraryArgs {
+    /// What the library is made from (TOML): [cube], [bands], [[environment]], [clusters]
+    scenario: PathBuf,
+}
+
+pub(super) fn run(args: &LibraryArgs, global: &Global) -> Result<ExitCode> {
+    let scenario = LibraryScenario::from_file(&args.scenario)?;
+    let study = LibraryStudy::new(&scenario, &global.library()?)?;
+    global.inputs_are_safe()?;
+    let bar = global.progress("rows");
+    let mut result = study.library(global.seed, &|done, total| bar.set(done, total))?;
+    bar.finish();
+    let text = library::text(&result);
+    result.stats.add(&global.report(&text, |out| library::bundle(&result, out))?);
+    global.answer(&result, &text, &result.stats)?;
+    Ok(ExitCode::SUCCESS)
+}

@@ -1,0 +1,180 @@
+//! A library made out of a heat cube, as files: emissivities with their errors, the map of clusters, a scenario that uses it, pictures.
+
+mod figures;
+mod text;
+
+pub use text::text;
+
+use crate::bundle::Bundle;
+use crate::table::{Table, number};
+use hadar::error::Result;
+use hadar::ranging::cube::npy_map;
+use hadar_study::scenario::decompose::{LibrarySpec, TruthSpec};
+use hadar_study::scenario::{DecomposeScenario, Source};
+use hadar_study::study::library::LibraryFound;
+use std::path::Path;
+
+/// Least error of the emissivities that is handed on: with less than this a library is exact.
+const LEAST_ERROR: f64 = 1e-5;
+
+/// All files; paths in the scenarios are written relative to `out` where they lie below it.
+///
+/// # Errors
+/// A figure that cannot be drawn.
+pub fn bundle(result: &LibraryFound, out: &Path) -> Result<Bundle> {
+    let mut bundle = Bundle::about(result.scenario.title.as_deref());
+    bundle.add_asked("scenario.toml", result.scenario.to_toml_beside(out));
+    bundle.add_table("library.csv", library(result))?;
+    bundle.add_table("library_sigma.csv", sigma(result))?;
+    bundle.add_table("clusters.csv", clusters(result))?;
+    if !result.tried.is_empty() {
+        bundle.add_table("counts.csv", tried(result))?;
+    }
+    bundle.add_warnings(&result.warnings)?;
+    let (maps, size) = (&result.maps, [result.shape.rows(), result.shape.columns()]);
+    let lights = maps.lighting.len() / maps.material.len().max(1);
+    bundle.add("cluster.npy", npy_map(&size, &maps.material)?);
+    bundle.add("temperature_k.npy", npy_map(&size, &maps.temperature_k)?);
+    bundle.add("temperature_sigma_k.npy", npy_map(&size, &maps.temperature_sigma_k)?);
+    bundle.add("lighting.npy", npy_map(&[size[0], size[1], lights], &maps.lighting)?);
+    bundle.add("p_value.npy", npy_map(&size, &maps.p_value)?);
+    bundle.add("flags.npy", npy_map(&size, &maps.flags)?);
+    bundle.add("decompose.toml", decomposition(result, out).to_toml_beside(out));
+    bundle.add_plots(&[figures::emissivities(result), figures::maps(result)])?;
+    Ok(bundle)
+}
+
+/// Emissivities, a column for each cluster; a row more at an end where a band is sampled beyond its mean wavenumber.
+fn library(result: &LibraryFound) -> Table {
+    let names = result.clusters.iter().map(|row| row.name.as_str());
+    let mut table = Table::new(std::iter::once("wavenumber_cm1").chain(names));
+    let nu = &result.wavenumbers_cm1;
+    let mut order: Vec<usize> = (0..nu.len()).collect();
+    order.sort_by(|a, b| nu[*a].total_cmp(&nu[*b]));
+    let mut row = |at: f64, band: usize| {
+        let values = result.clusters.iter().map(|own| own.cluster.emissivity[band]);
+        table.push(std::iter::once(at).chain(values).map(number).collect());
+    };
+    let [low, high] = result.range_cm1;
+    if let Some(first) = order.first().filter(|first| nu[**first] > low) {
+        row(low, *first);
+    }
+    for band in &order {
+        row(nu[*band], *band);
+    }
+    if let Some(last) = order.last().filter(|last| nu[**last] < high) {
+        row(high, *last);
+    }
+    table
+}
+
+/// Errors, three columns for each cluster.
+fn sigma(result: &LibraryFound) -> Table {
+    let columns = result
+        .clusters
+        .iter()
+        .flat_map(|row| ["sigma", "sigma_magnitude", "spread"].map(|what| format!("{}_{what}", row.name)));
+    let mut table = Table::new(std::iter::once("wavenumber_cm1".to_owned()).chain(columns));
+    for (band, nu) in result.wavenumbers_cm1.iter().enumerate() {
+        let own = result.clusters.iter().flat_map(|row| {
+            let one = &row.cluster;
+            [one.sigma[band], one.sigma_magnitude[band], one.spread[band]]
+        });
+        table.push(std::iter::once(*nu).chain(own).map(number).collect());
+    }
+    table
+}
+
+fn clusters(result: &LibraryFound) -> Table {
+    let mut table = Table::new([
+        "cluster",
+        "index",
+        "pixels",
+        "fitted_pixels",
+        "emissivity_mean",
+        "emissivity_mean_sigma",
+        "temperature_median_k",
+        "temperature_common_sigma_k",
+        "chi_square_reduced",
+        "bands_at_limit",
+    ]);
+    for (index, row) in result.clusters.iter().enumerate() {
+        let one = &row.cluster;
+        table.push(vec![
+            row.name.clone(),
+            index.to_string(),
+            row.pixels.to_string(),
+            one.fitted.to_string(),
+            number(row.emissivity_mean),
+            number(one.sigma_mean),
+            number(row.temperature_median_k),
+            number(one.sigma_temperature_k),
+            number(one.chi_square_reduced),
+            one.held.to_string(),
+        ]);
+    }
+    table
+}
+
+fn tried(result: &LibraryFound) -> Table {
+    let mut table =
+        Table::new(["clusters", "clusters_with_pixels", "loss", "loss_error", "chi_square_reduced"]);
+    for one in &result.tried {
+        table.push(vec![
+            one.count.to_string(),
+            one.left.to_string(),
+            number(one.loss),
+            number(one.error),
+            number(one.chi_square_reduced),
+        ]);
+    }
+    table
+}
+
+/// The scenario that takes the cube apart with the library.
+fn decomposition(result: &LibraryFound, out: &Path) -> DecomposeScenario {
+    let scenario = &result.scenario;
+    let there = std::path::absolute(out).unwrap_or_else(|_| out.to_owned());
+    let error = (result.emissivity_error > LEAST_ERROR).then(|| rounded_up(result.emissivity_error));
+    DecomposeScenario {
+        classes: std::collections::BTreeMap::new(),
+        title: scenario.title.clone(),
+        cube: scenario.cube.clone(),
+        bands: scenario.bands.clone(),
+        camera: scenario.camera.clone(),
+        environment: scenario.environment.clone(),
+        library: LibrarySpec {
+            path: Some(there.join("library.csv")),
+            prior: Some(result.prior.clone()),
+            emissivity_error: error,
+            emissivity_correlation_cm1: error.map(|_| scenario.emissivity.correlation_cm1),
+            ..LibrarySpec::default()
+        },
+        unknown: scenario.unknown,
+        spatial: None,
+        vision: Default::default(),
+        // Materials of the truth are those of another library.
+        truth: scenario
+            .truth
+            .as_ref()
+            .and_then(|truth| truth.temperature.clone())
+            .map(|temperature| TruthSpec { temperature: Some(temperature), ..TruthSpec::default() }),
+        source: Source::default(),
+    }
+}
+
+/// Two digits, upwards: an error is not made smaller.
+fn rounded_up(value: f64) -> f64 {
+    let scale = 10f64.powi(1 - value.log10().floor() as i32);
+    ((value * scale).ceil() / scale).min(1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::rounded_up;
+
+    #[test]
+    fn an_error_is_rounded_upwards() {
+        assert_eq!([0.0123, 0.5, 0.00301, 2.0].map(rounded_up), [0.013, 0.5, 0.0031, 1.0]);
+    }
+}

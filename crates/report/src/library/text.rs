@@ -1,0 +1,133 @@
+//! A library out of a cube, in words.
+
+use crate::text::footing::warnings;
+use hadar::words::{quantity, share, significant, whole};
+use hadar_study::scenario::decompose::CubeUnit;
+use hadar_study::study::library::{LibraryFound, TruthOfClusters};
+use std::fmt::Write as _;
+
+/// 0 degC, K.
+const FREEZING_K: f64 = 273.15;
+
+/// The whole answer.
+#[must_use]
+pub fn text(result: &LibraryFound) -> String {
+    let mut out = format!("{}\n\n", sentence(result));
+    out.push_str(&clusters(result));
+    out.push_str(&counts(result));
+    if let Some(truth) = &result.truth {
+        out.push_str(&against(truth));
+    }
+    out.push_str(&assumptions(result));
+    out.push_str(&warnings(&result.warnings));
+    out
+}
+
+fn sentence(result: &LibraryFound) -> String {
+    let count = result.clusters.len();
+    let worst = result.clusters.iter().map(|row| row.cluster.sigma_mean).fold(0.0, f64::max);
+    format!(
+        "{} emissivit{} found in {} pixels ({} decided), mean emissivities known to +- {} at worst.",
+        whole(count as u64),
+        if count == 1 { "y" } else { "ies" },
+        whole(result.pixels as u64),
+        share(result.decided as f64 / result.pixels.max(1) as f64),
+        significant(worst, 2)
+    )
+}
+
+fn clusters(result: &LibraryFound) -> String {
+    let width = result.clusters.iter().map(|row| row.name.len()).max().unwrap_or(0).max(8);
+    let mut out = format!(
+        "Clusters, the most pixels first\n  {:width$}  {:>9}  {:>16}  {:>14}  {:>14}  {:>9}\n",
+        "", "pixels", "mean emissivity", "median (degC)", "in common (K)", "chi2/nu"
+    );
+    for row in &result.clusters {
+        let one = &row.cluster;
+        let mean = format!("{:.3} +- {}", row.emissivity_mean, significant(one.sigma_mean, 2));
+        let _ = writeln!(
+            out,
+            "  {:width$}  {:>9}  {mean:>16}  {:>14}  {:>14}  {:>9}",
+            row.name,
+            whole(row.pixels as u64),
+            format!("{:.1}", row.temperature_median_k - FREEZING_K),
+            format!("+- {}", significant(one.sigma_temperature_k, 2)),
+            significant(one.chi_square_reduced, 3)
+        );
+    }
+    out.push_str(
+        "  In common: what all temperatures of a cluster may be off by together, as its emissivity is.\n\n",
+    );
+    out
+}
+
+fn counts(result: &LibraryFound) -> String {
+    if result.tried.is_empty() {
+        return String::new();
+    }
+    let mut out = format!(
+        "Counts tried, by their loss on pixels that were kept apart\n  {:>8}  {:>11}  {:>18}  {:>9}\n",
+        "clusters", "with pixels", "loss", "chi2/nu"
+    );
+    for one in &result.tried {
+        let loss = format!("{:.2} +- {}", one.loss, significant(one.error, 1));
+        let _ = writeln!(
+            out,
+            "  {:>8}  {:>11}  {loss:>18}  {:>9}",
+            one.count,
+            one.left,
+            significant(one.chi_square_reduced, 3)
+        );
+    }
+    out.push_str("  The fewest within a standard error of the least loss are taken; errors are of the difference from it.\n\n");
+    out
+}
+
+fn against(truth: &TruthOfClusters) -> String {
+    let mut out = String::from("Against what is there\n");
+    if let Some(right) = truth.right_material {
+        let _ = writeln!(
+            out,
+            "  pixels of the most frequent material of their cluster: {} %",
+            significant(100.0 * right, 4)
+        );
+    }
+    if let Some(rmse) = truth.temperature_rmse_k {
+        let median = truth.temperature_median_error_k.unwrap_or(f64::NAN);
+        let _ = writeln!(
+            out,
+            "  temperature error: {} rms, {} median",
+            quantity(rmse, "K"),
+            quantity(median, "K")
+        );
+    }
+    out.push('\n');
+    out
+}
+
+fn assumptions(result: &LibraryFound) -> String {
+    let scenario = &result.scenario;
+    let [low, high] = scenario.unknown.temperature_k;
+    let total = scenario
+        .unknown
+        .lighting_total
+        .map_or_else(|| "at most 1".to_owned(), |total| format!("{total} in all"));
+    let noise = match scenario.cube.unit {
+        CubeUnit::Radiance => "the stated noise, the same for all samples",
+        _ => "Poisson counts with the stated electronic noise",
+    };
+    let known = scenario.emissivity;
+    format!(
+        "Assumptions\n  groups: NEM at a largest emissivity of {} under the smoothest of some lightings, ratios, K-means; then least squares on the heat signal\n  \
+         beforehand: mean emissivity {} +- {}, shape +- {}, to a quarter over {}\n  \
+         unknown: temperature {low} to {high} K, lighting of {} surroundings, {total}\n  noise: {noise}; bands independent\n  \
+         errors: all temperatures, lightings and emissivities unknown together; made of {} pixels\n\n",
+        scenario.clusters.max_emissivity,
+        known.mean,
+        known.magnitude,
+        known.shape,
+        quantity(known.correlation_cm1, "cm^-1"),
+        scenario.environment.len(),
+        whole((result.drawn - result.without_nem) as u64),
+    )
+}

@@ -1,0 +1,58 @@
+//! What a library is to be made from: a heat cube, the spectra of its surroundings, how many groups, what is known of emissivities.
+//!
+//! `[cube]`, `[bands]`, `[camera]`, `[[environment]]`, `[unknown]` and `[truth]` are those of a [`super::DecomposeScenario`]; in the
+//! place of `[library]` stands `[clusters]`, with `[emissivity]` beside it.
+
+mod read;
+mod write;
+
+use super::decompose::{HeatCube, LightSource, PixelUnknown, TruthSpec};
+use super::{BandsSpec, CameraSpec, Source};
+use hadar::fisher::emissivity::Smoothness;
+
+/// Everything that the file says.
+#[derive(Debug, Clone)]
+pub struct LibraryScenario {
+    /// What it is about, for headings.
+    pub title: Option<String>,
+    /// The counts (`[cube]`).
+    pub cube: HeatCube,
+    /// The bands of the cube.
+    pub bands: BandsSpec,
+    /// The camera, where it says what the counts are.
+    pub camera: Option<CameraSpec>,
+    /// Spectra of the surroundings (`[[environment]]`).
+    pub environment: Vec<LightSource>,
+    /// How pixels are grouped (`[clusters]`).
+    pub clusters: ClustersSpec,
+    /// What is known of the emissivities beforehand (`[emissivity]`).
+    pub emissivity: Smoothness,
+    /// What is unknown of every pixel (`[unknown]`).
+    pub unknown: PixelUnknown,
+    /// What is there, where that is known (`[truth]`); indices of materials are those of a library of its own.
+    pub truth: Option<TruthSpec>,
+    /// Where it was read from.
+    pub source: Source,
+}
+
+/// How pixels are grouped (`[clusters]`).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ClustersSpec {
+    /// The fewest and the most groups; the count is known where they are the same.
+    pub count: [usize; 2],
+    /// The largest emissivity of NEM, by which pixels are first compared.
+    pub max_emissivity: f64,
+}
+
+/// What is known where nothing is said: any magnitude, and shapes as those of most solids in the long-wave infrared.
+pub const EMISSIVITY: Smoothness =
+    Smoothness { mean: 0.9, magnitude: 0.3, shape: 0.1, correlation_cm1: 50.0 };
+
+/// A cube without what a library needs besides.
+pub(super) const BARE: [&str; 2] = ["npy", "mat"];
+
+/// Whether a path names a bare cube.
+fn is_bare(path: &std::path::Path) -> bool {
+    let end = path.extension().and_then(|end| end.to_str()).map(str::to_ascii_lowercase);
+    end.is_some_and(|end| BARE.contains(&end.as_str()))
+}

@@ -1,0 +1,148 @@
+//! Reads what a library is to be made from: every key checked, every error one line with file, line and key.
+
+use super::super::decompose::PixelUnknown;
+use super::super::decompose::read::{heat_cube, light, truth, unknown};
+use super::super::kind::Kind;
+use super::super::read::{document, text_of};
+use super::super::section::{Entry, Section};
+use super::super::{BandsSpec, Source, camera};
+use super::{ClustersSpec, EMISSIVITY, LibraryScenario, is_bare};
+use hadar::allowed::{ABOVE_ZERO, Allowed, SHARE};
+use hadar::error::{Error, Result};
+use hadar::fisher::emissivity::Smoothness;
+use hadar::units::Dimension;
+use std::path::Path;
+
+const TABLES: &[&str] =
+    &["title", "cube", "bands", "camera", "environment", "clusters", "emissivity", "unknown", "truth"];
+const MINIMUM: &str =
+    "write [cube] with data = \"counts.npy\", [bands], [[environment]], and [clusters] with count = 6";
+/// Most groups.
+const MOST: u32 = 200;
+const COUNT: &str = "count = 6 or count = [2, 12]";
+const MAX_EMISSIVITY: f64 = 0.99;
+const POSITIVE_SHARE: Allowed =
+    Allowed { holds: |value| value > 0.0 && value <= 1.0, expected: "above 0, at most 1" };
+
+impl LibraryScenario {
+    /// Reads the file. Relative paths in it start from its directory.
+    ///
+    /// # Errors
+    /// The first thing that is wrong, in one line with file, line and key; a bare cube, with what to write instead.
+    pub fn from_file(path: &Path) -> Result<Self> {
+        if is_bare(path) {
+            let found = "a cube alone says nothing of its bands, its surroundings and its noise";
+            let name = path.file_name().map_or_else(|| "counts.npy".into(), |name| name.to_string_lossy());
+            let instead = format!(
+                "write a file cube.toml with [cube] data = \"{name}\" and counts_per_photon_radiance or a noise, [bands], \
+                 [[environment]] and [clusters] count = 6, and name that"
+            );
+            return Err(Error::malformed(found, instead).in_file(path));
+        }
+        Self::from_toml(&text_of(path)?, Some(path))
+    }
+
+    /// Reads it from text; `path` as in [`crate::scenario::Scenario::from_toml`].
+    ///
+    /// # Errors
+    /// As [`LibraryScenario::from_file`], except those of the file itself.
+    ///
+    /// ```
+    /// use hadar_study::scenario::LibraryScenario;
+    /// let text = r#"
+    ///     [cube]
+    ///     data = "counts.npy"
+    ///     counts_per_photon_radiance = 2e-14
+    ///     [bands]
+    ///     start = "720 cm^-1"
+    ///     stop = "1250 cm^-1"
+    ///     step = "10 cm^-1"
+    ///     [[environment]]
+    ///     temperature = "-10 degC"
+    ///     [clusters]
+    ///     count = [2, 8]
+    /// "#;
+    /// let scenario = LibraryScenario::from_toml(text, None)?;
+    /// assert_eq!(scenario.clusters.count, [2, 8]);
+    /// let error = LibraryScenario::from_toml(&text.replace("[2, 8]", "0"), None).unwrap_err();
+    /// assert!(error.to_string().starts_with("line 12: clusters.count: "));
+    /// # Ok::<(), hadar::Error>(())
+    /// ```
+    pub fn from_toml(text: &str, path: Option<&Path>) -> Result<Self> {
+        let mut source = Source { path: path.map(Path::to_owned), ..Source::default() };
+        let document = document(text, (Kind::Library, MINIMUM), &mut source)?;
+        let root = Section::open(&document, "", &source, TABLES)?;
+        let missing = |key: &str| root.fail(key, Error::malformed("the table is missing", MINIMUM));
+        let camera = root.read("camera", camera::read)?;
+        let cube = root.get("cube").ok_or_else(|| missing("cube"))?;
+        let unknown = root.read("unknown", unknown)?.unwrap_or(PixelUnknown::default());
+        if unknown.gain {
+            let found = Error::malformed(
+                "no emissivity can be told from an unknown scale of the counts",
+                "write gain = false, or leave it out",
+            );
+            return Err(found.at(source.place("unknown.gain")));
+        }
+        let environment: Vec<_> = root
+            .read("environment", |entry| entry.items("[[environment]]")?.iter().map(light).collect())?
+            .unwrap_or_default();
+        if unknown.lighting_total.is_some() && environment.is_empty() {
+            let found = Error::malformed("a total of no lighting", "write [[environment]], or leave it out");
+            return Err(found.at(source.place("unknown.lighting_total")));
+        }
+        let scenario = Self {
+            title: root.read("title", |entry| Ok(entry.text("\"What is in this street?\"")?.to_owned()))?,
+            cube: heat_cube(&cube, camera.is_some())?,
+            bands: root.read("bands", BandsSpec::read)?.ok_or_else(|| missing("bands"))?,
+            camera,
+            environment,
+            clusters: root.read("clusters", clusters)?.ok_or_else(|| missing("clusters"))?,
+            emissivity: root.read("emissivity", emissivity)?.unwrap_or(EMISSIVITY),
+            unknown,
+            truth: root.read("truth", truth)?,
+            source: Source::default(),
+        };
+        Ok(Self { source, ..scenario })
+    }
+}
+
+fn clusters(entry: &Entry<'_>) -> Result<ClustersSpec> {
+    let section = entry.section(&["count", "max_emissivity"])?;
+    let count = section.require("count", "6")?;
+    let one = |entry: &Entry<'_>| match entry.count("6")? {
+        count if count <= MOST => Ok(count as usize),
+        count => Err(entry.fail(Error::out_of_range("count", f64::from(count), "", "at most 200"))),
+    };
+    let count = match count.is_list() {
+        true => {
+            let [low, high] = count.pair("[2, 12]")?;
+            let [low, high] = [one(&low)?, one(&high)?];
+            if low > high {
+                let found = format!("from {low} to {high} clusters");
+                return Err(count.fail(Error::malformed(found, format!("write count = [{high}, {low}]"))));
+            }
+            [low, high]
+        }
+        false => {
+            let count = one(&count).map_err(|error| match error {
+                Error::At { .. } => error,
+                _ => count.fail(Error::malformed("no count", format!("write {COUNT}"))),
+            })?;
+            [count; 2]
+        }
+    };
+    let max_emissivity = section.number("max_emissivity", "0.99", POSITIVE_SHARE)?;
+    Ok(ClustersSpec { count, max_emissivity: max_emissivity.unwrap_or(MAX_EMISSIVITY) })
+}
+
+fn emissivity(entry: &Entry<'_>) -> Result<Smoothness> {
+    let section = entry.section(&["mean", "magnitude_error", "shape_error", "correlation"])?;
+    Ok(Smoothness {
+        mean: section.number("mean", "0.9", SHARE)?.unwrap_or(EMISSIVITY.mean),
+        magnitude: section.number("magnitude_error", "0.3", POSITIVE_SHARE)?.unwrap_or(EMISSIVITY.magnitude),
+        shape: section.number("shape_error", "0.1", POSITIVE_SHARE)?.unwrap_or(EMISSIVITY.shape),
+        correlation_cm1: section
+            .quantity("correlation", Dimension::Wavenumber, ABOVE_ZERO)?
+            .unwrap_or(EMISSIVITY.correlation_cm1),
+    })
+}
