@@ -246,3 +246,142 @@ fn every_mistake_about_classes_is_one_line() {
         assert!(said_here.contains(said), "{said_here}\n{said}");
     }
 }
+
+/// What spoils the image of any member spoils that of the class: here the one that is not in the hardest pair is too bright for the well.
+#[test]
+fn every_member_must_fit_into_the_well() {
+    let scenario = CLASSES
+        .replace(
+            "materials = [\"skin.csv\", \"cloth.csv\"]\nweights = [1.0, 3.0]",
+            "materials = [\"dim.csv\", \"bright.csv\"]",
+        )
+        .replace("materials = [\"robots/\"]", "materials = [\"alt.csv\", \"alt2.csv\"]");
+    let files = |scenario: &str| {
+        let folder = folder(scenario);
+        for (name, level, wave, periods) in [
+            ("dim.csv", 0.3, 0.05, 1.0),
+            ("bright.csv", 0.97, 0.02, 3.0),
+            ("alt.csv", 0.3, 0.049, 1.0),
+            ("alt2.csv", 0.31, 0.05, 1.1),
+        ] {
+            folder.file(name, &spectrum(level, wave, periods));
+        }
+        folder
+    };
+    let reading = |target: &str| {
+        let alone = scenario.replace("material = \"person\"", &format!("material = \"{target}\""));
+        let answer = files(&alone).json(&["size", "a.toml"]);
+        number(&answer["camera"]["brightest_reading"])
+    };
+    let (dim, bright) = (reading("dim.csv"), reading("bright.csv"));
+    assert!(bright > 1.2 * dim, "{dim} {bright}");
+    let with_well = |well: f64| {
+        scenario.replace("exposure = \"1 ms\"", &format!("exposure = \"1 ms\"\nfull_well = {well}"))
+    };
+    for (well, met) in [(0.5 * (dim + bright), false), (1.01 * bright, true)] {
+        let folder = files(&with_well(well));
+        let answer = folder.json(&["size", "a.toml"]);
+        assert_eq!(answer["verdict"]["met"].as_bool(), Some(met), "{}", answer["verdict"]);
+        assert!(texts(&answer["classes"][0]["worst"])[0].ends_with("dim"));
+        assert_eq!(folder.run(&["size", "a.toml", "--check"]).code, if met { 0 } else { 3 });
+    }
+}
+
+/// Two alternatives of one name are told by their place.
+#[test]
+fn alternatives_of_one_name_do_not_hide_each_other() {
+    let scenario = CLASSES.replace("materials = [\"robot\"]", "materials = [\"far/a.csv\", \"near/a.csv\"]");
+    let folder = folder(&scenario);
+    for (name, level, wave, periods) in [("far/a.csv", 0.3, 0.05, 1.0), ("near/a.csv", 0.95, 0.0105, 1.0)] {
+        std::fs::create_dir_all(folder.path().join(name).parent().unwrap()).unwrap();
+        folder.file(name, &spectrum(level, wave, periods));
+    }
+    let answer = folder.json(&["size", "a.toml"]);
+    let least = number(&answer["classes"][1]["distance"]);
+    assert!(least < 0.1 * number(&answer["classes"][0]["distance"]), "{}", answer["classes"]);
+    close("the verdict", number(&answer["verdict"]["statistical_distance"]), least, 1e-6);
+    let met = answer["verdict"]["met"].as_bool().unwrap();
+    assert_eq!(folder.run(&["size", "a.toml", "--check"]).code, if met { 0 } else { 3 });
+}
+
+/// The bound of mixtures is below every mixture that a pair alone finds, with a known total of the lighting and a narrow range too; a
+/// common member is no distance at all.
+#[test]
+fn bounds_of_mixtures_hold_for_mixtures_one_by_one() {
+    let ranged = |more: &str, unknown: &str| {
+        CLASSES
+            .replace("[camera]\npreset = \"ideal-pnrd\"\nexposure = \"1 ms\"\n", unknown)
+            .replace("materials = [\"robot\"]", &format!("materials = [\"robot\"]\n{more}"))
+            .replace(
+                "lighting = 0.5",
+                "lighting = 0.5\n[[environment]]\ntemperature = \"-20 degC\"\nlighting = 0.4",
+            )
+            .replace("material = \"person\"", "material = \"skin.csv\"")
+            .replace(
+                "materials = [\"robots/\"]",
+                "materials = [\"robots/paint-a.csv\", \"robots/paint-b.csv\"]\nmixtures = true",
+            )
+    };
+    for (more, unknown) in [
+        ("", ""),
+        (
+            "lighting = [0.0, 0.5]",
+            "[unknown]\nnuisances = [\"temperature\", \"lighting\"]\nlighting_total = 0.9\n",
+        ),
+        (
+            "lighting = [0.3, 0.6]",
+            "[unknown]\nnuisances = [\"temperature\", \"lighting\"]\nlighting_total = 0.9\n",
+        ),
+        ("", "[unknown]\nnuisances = [\"temperature\"]\n"),
+        ("", "[unknown]\nnuisances = []\n"),
+    ] {
+        let scenario = ranged(more, unknown);
+        let folder = folder(&scenario);
+        let answer = folder.json(&["identify", "a.toml"]);
+        let mixtures = &answer["classes"][0]["mixtures"];
+        let (lower, found) = (number(&mixtures["distance_lower"]), number(&mixtures["distance"]));
+        let mut least = f64::INFINITY;
+        for tenth in 0..=10 {
+            let p = f64::from(tenth) / 10.0;
+            let (a, b) = (spectrum(0.93, 0.02, 1.5), spectrum(0.90, 0.03, 2.0));
+            let mut text = "wavenumber_cm1,emissivity\n".to_owned();
+            for (a, b) in a.lines().zip(b.lines()).skip(1) {
+                let value = |line: &str| line.split_once(',').unwrap().1.parse::<f64>().unwrap();
+                text +=
+                    &format!("{},{}\n", a.split_once(',').unwrap().0, p * value(a) + (1.0 - p) * value(b));
+            }
+            folder.file("mixed.csv", &text);
+            folder.file(
+                "pair.toml",
+                &scenario.replace("materials = [\"robot\"]", "materials = [\"mixed.csv\"]"),
+            );
+            let pair = folder.json(&["identify", "pair.toml"])["pairs"][0].clone();
+            least = least.min(number(&pair["distance_nearest"]));
+        }
+        assert!(lower <= least * (1.0 + 1e-9), "{more} {unknown}: {lower} {least}");
+        assert!(found <= least * 1.001, "{more} {unknown}: {found} {least}");
+    }
+    let common = ranged("", "").replace("\"robots/paint-b.csv\"", "\"skin.csv\"");
+    let answer = folder(&common).json(&["identify", "a.toml"]);
+    assert_eq!(number(&answer["classes"][0]["distance"]), 0.0);
+}
+
+/// Without alternatives named, the target's own members are none.
+#[test]
+fn the_members_of_the_target_are_no_alternatives() {
+    let scenario = CLASSES
+        .replace(
+            "[class.person]\nmaterials = [\"skin.csv\", \"cloth.csv\"]\nweights = [1.0, 3.0]",
+            "[class.metal]\nmaterials = [\"gold\", \"iron\"]",
+        )
+        .replace("material = \"person\"", "material = \"metal\"")
+        .replace("[alternatives]\nmaterials = [\"robot\"]\n", "");
+    let answer = folder(&scenario).json(&["identify", "a.toml", "--skip-uncovered"]);
+    let names: Vec<&str> = answer["pairs"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|pair| pair["alternative"].as_str().unwrap())
+        .collect();
+    assert!(names.contains(&"copper") && !names.contains(&"gold") && !names.contains(&"iron"), "{names:?}");
+}
