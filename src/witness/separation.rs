@@ -4,9 +4,9 @@
 //! that are in use:
 //!
 //! * [`nem()`]: the largest emissivity of all bands is known (normalised emissivity method); [`ratio`]: what of it does not hang on that;
-//! * [`mmd`]: the least emissivity follows from how much the emissivities differ, by a relation that other spectra have (TES);
-//! * [`smoothest`]: the emissivity has none of the lines of the light that it scatters (ISSTES, ARTEMISS);
-//! * [`gaussian`]: it is drawn from a Gaussian prior, a smooth one or that of principal components of other spectra. What is known
+//! * [`mmd()`]: the least emissivity follows from how much the emissivities differ, by a relation that other spectra have (TES);
+//! * [`smoothest()`]: the emissivity has none of the lines of the light that it scatters (ISSTES, ARTEMISS);
+//! * [`gaussian()`]: it is drawn from a Gaussian prior, a smooth one or that of principal components of other spectra. What is known
 //!   by such a prior has a bound, [`crate::fisher::emissivity`], which this estimate reaches.
 //!
 //! Many pixels of a few materials tell more: [`library_from_cube`] groups them by their relative emissivities and fits one emissivity
