@@ -46,7 +46,6 @@ pub(super) fn make(order: Order, library: &Library, progress: Progress<'_>) -> R
     let street = street::taken_apart(&built_in, if quick { 4000 } else { 40_000 }, order.seed)?;
     let mut bundle = Bundle::default();
     bundle.add_table("methods.csv", files::methods(&compared))?;
-    bundle.add_table("spectra.csv", files::spectra(&spectra))?;
     bundle.add_table("street.csv", files::street(&street))?;
     let [resolution, contrast] = bounds.plots();
     let plots = [files::errors(&compared), resolution, contrast, street.plot()];

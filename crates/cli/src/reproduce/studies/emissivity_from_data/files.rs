@@ -1,7 +1,6 @@
 //! Tables and the picture of the errors.
 
 use super::methods::{Compared, METHODS};
-use super::spectra::{Spectra, wavenumbers_cm1};
 use super::street::{MATERIALS, TakenApart};
 use hadar_report::figures::Plot;
 use hadar_report::plot::{Axis, LineFigure, Series, Style};
@@ -40,16 +39,6 @@ pub(super) fn methods(compared: &[Compared]) -> Table {
         let none = f64::NAN;
         row("van Trees bound, smooth prior", [one.rigorous_temperature_k, none, none, none, 1.0]);
         row("bound, smooth prior", [one.bound_temperature_k, none, one.bound_emissivity, none, 1.0]);
-    }
-    table
-}
-
-pub(super) fn spectra(spectra: &Spectra) -> Table {
-    let header = std::iter::once("wavenumber_cm1".to_owned()).chain(spectra.names.iter().cloned());
-    let mut table = Table::new(header);
-    for (w, nu) in wavenumbers_cm1().iter().enumerate() {
-        let own = spectra.emissivity.iter().map(|e| (e[w] * 1e5).round() / 1e5);
-        table.push(std::iter::once(*nu).chain(own).map(number).collect());
     }
     table
 }
