@@ -21,8 +21,6 @@ use hadar::error::Result;
 use hadar::material::Library;
 use hadar_report::bundle::Bundle;
 
-/// Noise of a reading, as a temperature at 300 K.
-pub(super) const NEDT_K: [f64; 2] = [0.03, 0.1];
 /// Scenes of each spectrum, and in the quick form.
 const SCENES: usize = 6;
 const QUICK: usize = 1;
@@ -36,7 +34,7 @@ pub(super) fn make(order: Order, library: &Library, progress: Progress<'_>) -> R
     let scenes = if quick { QUICK } else { SCENES };
     let mut compared = Vec::new();
     for sky in &skies {
-        for nedt_k in NEDT_K {
+        for nedt_k in methods::NEDT_K {
             compared.push(methods::compare(&spectra, sky, nedt_k, scenes, order.seed)?);
             progress(compared.len(), 2 * skies.len() + 2);
         }

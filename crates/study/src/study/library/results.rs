@@ -1,6 +1,7 @@
 //! What is said of a library that was made out of a cube.
 
 use crate::scenario::LibraryScenario;
+use crate::study::Warning;
 use crate::study::decompose::{FlagCount, Truth, flags};
 use crate::study::heat_cube::Measured;
 use hadar::decompose::{Maps, NO_MATERIAL};
@@ -9,8 +10,6 @@ use hadar::ranging::cube::Shape;
 use hadar::separation::{Cluster, Found, Tried};
 use serde::Serialize;
 use std::collections::BTreeMap;
-
-use super::Warning;
 
 /// A library out of a cube.
 #[derive(Debug, Clone, Serialize)]

@@ -1,7 +1,6 @@
 //! What can be told apart with nothing known but smoothness: over the resolution of the bands, the lines of the sky, and the contrast.
 
-use super::NEDT_K;
-use super::methods::sigma;
+use super::methods::{NEDT_K, sigma};
 use super::spectra::{STEP_CM1, Sky, Spectra, smoothness, wavenumbers_cm1};
 use hadar::error::Result;
 use hadar::fisher::emissivity::{EmissivityPrior, Seen, Separation, Smoothness};

@@ -10,6 +10,8 @@ use hadar::statistics::Statistics;
 use rand::RngExt;
 use rayon::prelude::*;
 
+/// Noise of a reading, as a temperature at 300 K.
+pub(super) const NEDT_K: [f64; 2] = [0.03, 0.1];
 /// Temperatures of the surfaces, and those that are looked for, K.
 const DRAWN_K: [f64; 2] = [295.0, 320.0];
 const LOOKED_K: [f64; 2] = [270.0, 345.0];
