@@ -136,8 +136,8 @@ fn stated_errors_of_a_library_hold() {
         }
         for (one, m) in found.clusters.iter().zip(of) {
             let truth = &scene.materials[m];
-            for w in 0..truth.len() {
-                held += usize::from((one.emissivity[w] - truth[w]).abs() < 1.96 * one.sigma[w]);
+            for ((found, sigma), truth) in one.emissivity.iter().zip(&one.sigma).zip(truth) {
+                held += usize::from((found - truth).abs() < 1.96 * sigma);
                 all += 1;
             }
             let off: f64 =
@@ -179,8 +179,8 @@ fn what_tells_nothing_is_declared() {
     let bands = scene.bands.len();
     let Light::Radiance(ground) = &scene.lights[1] else { panic!() };
     for pixel in 0..20 {
-        for w in 0..bands {
-            scene.counts[pixel * bands + w] = (20.0 * scene.per[w] * ground[w]).round();
+        for (w, ground) in ground.iter().enumerate() {
+            scene.counts[pixel * bands + w] = (20.0 * scene.per[w] * ground).round();
         }
     }
     scene.counts[20 * bands] = f64::NAN;

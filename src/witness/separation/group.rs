@@ -165,18 +165,16 @@ impl Information {
         let (base, last) = orthogonal(&look.others);
         let d = &look.emissivity;
         let mut left = look.residual.clone();
-        for w in 0..width {
-            self.matrix[(w, w)] += weight * d[w] * d[w];
+        for (w, d) in d.iter().enumerate() {
+            self.matrix[(w, w)] += weight * d * d;
         }
         for unit in &base {
             let along = dot(unit, &left);
             left.iter_mut().zip(unit).for_each(|(x, u)| *x -= along * u);
             let column: Vec<f64> = unit.iter().zip(d).map(|(u, d)| u * d).collect();
-            for v in 0..width {
-                let factor = weight * column[v];
-                for w in 0..width {
-                    self.matrix[(w, v)] -= factor * column[w];
-                }
+            for (mut sums, value) in self.matrix.column_iter_mut().zip(&column) {
+                let factor = weight * value;
+                sums.iter_mut().zip(&column).for_each(|(sum, value)| *sum -= factor * value);
             }
         }
         for w in 0..width {
