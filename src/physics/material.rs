@@ -21,6 +21,7 @@ mod gaussian;
 mod library;
 #[cfg(feature = "library")]
 mod manifest;
+mod members;
 #[cfg_attr(not(feature = "library"), allow(dead_code, unused_imports))]
 mod model;
 mod oscillator;
@@ -30,8 +31,9 @@ pub mod read;
 mod table;
 mod write;
 
-pub use class::{Class, ClassSpec, MaterialRef, Member, Spread};
+pub use class::{ClassSpec, MaterialRef, Spread};
 pub use library::Library;
+pub use members::{Class, Member};
 pub use provenance::{Basis, Provenance};
 pub use write::Summary;
 

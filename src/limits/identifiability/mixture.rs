@@ -15,9 +15,11 @@
 
 mod boxes;
 mod hull;
+mod scene;
 
 use self::boxes::Interval;
-use self::hull::{Hulls, Mixed, Plane};
+use self::hull::{Hulls, Mixed};
+use self::scene::{Scene, Side};
 use super::multi::LibraryScene;
 use crate::error::{Error, Result};
 use crate::fisher::{Counting, Nuisance};
@@ -62,28 +64,6 @@ pub struct MixtureDistance {
     pub state: State,
     /// Intervals of temperature that the proof took.
     pub boxes: usize,
-}
-
-/// Counts of members.
-#[derive(Clone)]
-struct Side {
-    counts: Vec<Vec<f64>>,
-    /// What a distance is divided by: 1, or their photons.
-    photons: Vec<f64>,
-}
-
-/// All that a search needs.
-#[derive(Clone)]
-struct Scene<'s> {
-    library: &'s LibraryScene<'s>,
-    own: Side,
-    alternatives: &'s [&'s [f64]],
-    /// Lightings that are the corners of all possible ones.
-    lightings: Vec<Vec<f64>>,
-    /// εB(T) of the surroundings at the nodes.
-    light: Vec<Vec<f64>>,
-    kappa: f64,
-    var_added: Vec<f64>,
 }
 
 /// An interval of temperatures with its bound, the lowest first.
@@ -320,44 +300,6 @@ impl Mixtures<'_> {
             other.clone_from(&step.shares[1]);
         }
         found.ok_or_else(|| Error::malformed("a class has no members", "name some"))
-    }
-}
-
-impl Scene<'_> {
-    /// Counts of the alternative's members in a lighting.
-    fn counts(&self, lighting: &[f64], temperature_k: f64) -> Vec<Vec<f64>> {
-        let LibraryScene { bands, surroundings, state, .. } = self.library;
-        let state = State { temperature_k, lighting: lighting.to_vec(), gain: 1.0, ..(*state).clone() };
-        let of = |emissivity: &&[f64]| {
-            let counts = bands.weigh(&surroundings.signal(emissivity, &state));
-            counts.iter().map(|m| self.kappa * m).collect()
-        };
-        self.alternatives.iter().map(of).collect()
-    }
-
-    /// The nearest mixtures with the alternative at a temperature, and the plane that touches there.
-    fn at(&self, temperature_k: f64, start: Mixed) -> (Mixed, Plane) {
-        let per_lighting: Vec<Vec<Vec<f64>>> =
-            self.lightings.iter().map(|lighting| self.counts(lighting, temperature_k)).collect();
-        let alternatives: Vec<Vec<f64>> = (0..self.alternatives.len())
-            .flat_map(|j| per_lighting.iter().map(move |members| members[j].clone()))
-            .collect();
-        let hulls = Hulls {
-            targets: &self.own.counts,
-            photons: &self.own.photons,
-            alternatives: &alternatives,
-            var_added: &self.var_added,
-        };
-        // The nearest of a start that is given, and of the pure members.
-        let pure = (0..self.own.counts.len())
-            .flat_map(|i| (0..alternatives.len()).map(move |j| (i, j)))
-            .map(|(i, j)| hulls.pure(i, j));
-        let pure = pure.min_by(|a, b| a.cost.total_cmp(&b.cost));
-        let start = match pure {
-            Some(pure) if !start.cost.is_finite() || pure.cost < start.cost => pure,
-            _ => start,
-        };
-        hulls.nearest(start)
     }
 }
 

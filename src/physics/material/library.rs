@@ -7,10 +7,11 @@
 #[cfg(feature = "library")]
 mod manifests;
 
+use super::Material;
+use super::class::ClassSpec;
 #[cfg(feature = "library")]
 use super::manifest::Deferred;
 use super::read::{self, Content};
-use super::{ClassSpec, Material};
 use crate::demand::{Reason, Thing, Work};
 use crate::error::{Error, Result};
 use std::collections::BTreeMap;

@@ -34,9 +34,9 @@
 mod classes;
 mod deferred;
 
-pub(super) use classes::classes;
 pub(super) use deferred::Deferred;
 
+use super::class::ClassSpec;
 use super::dielectric::Dielectric;
 use super::gaussian::Gaussian;
 use super::model::{Model, Polynomial};
@@ -184,6 +184,14 @@ pub(super) fn parse(text: &str, path: &Path, around: &Surroundings<'_>) -> Resul
 /// The entries of a manifest.
 fn entries(text: &str, path: &Path) -> Result<Vec<Entry>> {
     manifest(text, path).map(|manifest| manifest.material)
+}
+
+/// The classes of a manifest by name; `directory` is where its files are.
+///
+/// # Errors
+/// As [`parse`]; a name that is not in kebab-case, covariances that contradict each other or are out of range.
+pub(super) fn classes(text: &str, path: &Path, directory: &Path) -> Result<Vec<(String, ClassSpec)>> {
+    classes::of(manifest(text, path)?.class, path, directory)
 }
 
 fn manifest(text: &str, path: &Path) -> Result<Manifest> {

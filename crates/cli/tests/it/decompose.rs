@@ -285,7 +285,11 @@ fn a_class_in_the_library_counts_its_members_together() {
     for (old, new, said) in [
         ("\"flat.csv\"", "\"none.csv\"", "there is no such file"),
         ("weights = [3.0, 1.0]", "mixtures = true", "mixtures of the class `stone`; leave mixtures out"),
-        ("\"pane.csv\"]", "\"wall.csv\", \"stone\"]", "the same is already in the list"),
+        (
+            "\"pane.csv\"]",
+            "\"wall.csv\", \"stone\"]",
+            "`stone/wall` stands in the library twice; name it once",
+        ),
         ("[\"stone\", ", "[\"stones\", ", "there is no material `stones`"),
     ] {
         folder.file("b.toml", &asked.replace(old, new));

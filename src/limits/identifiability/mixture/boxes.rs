@@ -12,7 +12,7 @@
 //! Rounding: every sum is of terms that are known, and what 64 ulp of them amount to is taken off.
 
 use super::hull::Plane;
-use super::{Scene, Side};
+use super::scene::{Scene, Side};
 use crate::planck;
 use crate::sum;
 use crate::units::SECOND_RADIATION_CM_K;

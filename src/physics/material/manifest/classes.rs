@@ -1,6 +1,5 @@
 //! The classes of a manifest.
 
-use super::manifest;
 use crate::error::{Error, Result};
 use crate::material::class::{ClassSpec, MaterialRef, Spread};
 use crate::material::read;
@@ -33,16 +32,7 @@ enum Covariance {
 /// The classes of a manifest by name; `directory` is where its files are.
 ///
 /// # Errors
-/// As [`super::parse`]; a name that is not in kebab-case, covariances that contradict each other or are out of range.
-pub(in crate::physics::material) fn classes(
-    text: &str,
-    path: &Path,
-    directory: &Path,
-) -> Result<Vec<(String, ClassSpec)>> {
-    of(manifest(text, path)?.class, path, directory)
-}
-
-/// The same of what was read already.
+/// A name that is not in kebab-case, covariances that contradict each other or are out of range.
 pub(super) fn of(
     read: BTreeMap<String, ClassEntry>,
     path: &Path,

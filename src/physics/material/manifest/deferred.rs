@@ -3,7 +3,8 @@
 use super::{Around, Entry, Model, classes, made, manifest};
 use crate::error::Result;
 use crate::inputs;
-use crate::material::{ClassSpec, Material};
+use crate::material::Material;
+use crate::material::class::ClassSpec;
 use std::borrow::Cow;
 use std::path::Path;
 use std::sync::{Arc, OnceLock};

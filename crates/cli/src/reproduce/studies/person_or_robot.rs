@@ -4,8 +4,10 @@
 //! and then spectra that were measured: skin, moist tissue and cloth against every paint and every metal of the library that is given. The
 //! committed report takes the ECOSTRESS spectral library and the one that the paper's authors publish; neither is part of this program.
 
+mod row;
 mod text;
 
+use self::row::{CAMERAS, Row};
 use crate::reproduce::order::{Effort, Order, Progress};
 use hadar::error::{Error, Result};
 use hadar::material::Library;
@@ -52,22 +54,6 @@ const ASKED: [(&str, &str, bool); 6] = [
 ];
 /// The quick form has the first.
 const QUICK: usize = 3;
-/// A camera whose figures are the paper's, and one that counts every photon.
-const CAMERAS: [&str; 2] = ["flir-a325sc", "ideal-pnrd"];
-
-/// What came of one question.
-struct Row {
-    what: String,
-    /// Per √photon; nothing is nearer than the second.
-    distance: f64,
-    lower: f64,
-    photons: Option<f64>,
-    /// Statistical distance that each camera surely reaches.
-    reached: Vec<f64>,
-    /// Where there are classes, by photons and before each camera.
-    classes: Vec<ClassAnswer>,
-}
-
 fn scenario(target: &str, alternative: &str, mixtures: bool, camera: Option<&str>) -> String {
     let classes = match mixtures {
         true => CLASSES.replace("[class.painted-robot]", "[class.painted-robot]\nmixtures = true"),

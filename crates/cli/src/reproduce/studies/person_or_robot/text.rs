@@ -1,6 +1,6 @@
 //! The report's text.
 
-use super::{CAMERAS, Row};
+use super::row::{CAMERAS, Row};
 use crate::reproduce::studies::page::markdown;
 use hadar::words::{share, significant};
 use hadar_study::study::ClassAnswer;
