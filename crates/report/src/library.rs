@@ -135,6 +135,9 @@ fn tried(result: &LibraryFound) -> Table {
 fn decomposition(result: &LibraryFound, out: &Path) -> DecomposeScenario {
     let scenario = &result.scenario;
     let there = std::path::absolute(out).unwrap_or_else(|_| out.to_owned());
+    // What a cluster's emissivity may be off by is above all its magnitude, which all bands have in common.
+    let [first, last] = result.range_cm1;
+    let together = scenario.emissivity.correlation_cm1.max(last - first);
     let error = (result.emissivity_error > LEAST_ERROR).then(|| rounded_up(result.emissivity_error));
     DecomposeScenario {
         classes: std::collections::BTreeMap::new(),
@@ -147,7 +150,7 @@ fn decomposition(result: &LibraryFound, out: &Path) -> DecomposeScenario {
             path: Some(there.join("library.csv")),
             prior: Some(result.prior.clone()),
             emissivity_error: error,
-            emissivity_correlation_cm1: error.map(|_| scenario.emissivity.correlation_cm1),
+            emissivity_correlation_cm1: error.map(|_| together),
             ..LibrarySpec::default()
         },
         unknown: scenario.unknown,
