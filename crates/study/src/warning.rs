@@ -48,6 +48,10 @@ pub enum Warning {
     ClustersWithoutPixels { left: usize, asked: usize },
     /// Emissivities of which the magnitude is hardly told: names, and the largest deviation of their means.
     MagnitudeHardlyTold { clusters: Vec<String>, sigma: f64 },
+    /// Clusters whose pixels one emissivity does not explain, and the largest χ²/ν of them.
+    ClusterDoesNotFit { clusters: Vec<String>, chi_square: f64 },
+    /// So many surroundings, and nothing said of how much they light together.
+    MirrorNotExcluded { surroundings: usize },
     /// A last round that still changed something.
     ClustersNotSettled { rounds: usize },
     /// A library without errors.
@@ -216,6 +220,8 @@ impl Warning {
             Self::ClustersWithoutPixels { .. } => Code::ClustersWithoutPixels,
             Self::MagnitudeHardlyTold { .. } => Code::MagnitudeHardlyTold,
             Self::ClustersNotSettled { .. } => Code::ClustersNotSettled,
+            Self::ClusterDoesNotFit { .. } => Code::ClusterDoesNotFit,
+            Self::MirrorNotExcluded { .. } => Code::MirrorNotExcluded,
             Self::LibraryTakenAsExact => Code::LibraryTakenAsExact,
             Self::SpatialPrior { .. } => Code::SpatialPrior,
             Self::Identical => Code::Identical,

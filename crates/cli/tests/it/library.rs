@@ -153,3 +153,24 @@ fn mistakes_are_one_line_with_what_to_write() {
     assert!(refusal.contains("write a file cube.toml with [cube] data = \"counts.npy\""), "{refusal}");
     assert!(folder.refusal(&["decompose", "a.toml"]).contains("hadar library a.toml"));
 }
+
+/// Lighting without a total leaves mirrors in, and one emissivity for two materials does not fit: both are said.
+#[test]
+fn what_may_be_a_mirror_and_what_does_not_fit_is_said() {
+    let codes = |scenario: &str| -> Vec<String> {
+        let found = with(scenario).json(&["library", "a.toml"]);
+        let all = found["warnings"].as_array().unwrap().clone();
+        all.iter().map(|one| one["code"].as_str().unwrap().to_owned()).collect()
+    };
+    let sound = codes(SCENARIO);
+    assert!(
+        !sound.iter().any(|code| code == "mirror-not-excluded" || code == "cluster-does-not-fit"),
+        "{sound:?}"
+    );
+    let free = codes(&SCENARIO.replace("lighting_total = 1.0\n", ""));
+    assert!(free.iter().any(|code| code == "mirror-not-excluded"), "{free:?}");
+    let one = codes(&SCENARIO.replace("count = 2", "count = 1"));
+    // Pixels that are far from it are left out of the fit, and counted as such.
+    let misfit = |code: &String| code == "cluster-does-not-fit" || code == "library-does-not-fit";
+    assert!(one.iter().any(misfit) && !sound.iter().any(misfit), "{one:?} {sound:?}");
+}

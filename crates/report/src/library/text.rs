@@ -3,6 +3,7 @@
 use crate::text::footing::warnings;
 use hadar::words::{quantity, share, significant, whole};
 use hadar_study::scenario::decompose::CubeUnit;
+use hadar_study::study::Warning;
 use hadar_study::study::library::{LibraryFound, TruthOfClusters};
 use std::fmt::Write as _;
 
@@ -25,9 +26,11 @@ pub fn text(result: &LibraryFound) -> String {
 
 fn sentence(result: &LibraryFound) -> String {
     let count = result.clusters.len();
+    let misfit = result.warnings.iter().any(|warning| matches!(warning, Warning::ClusterDoesNotFit { .. }));
+    let but = if misfit { " Not all of them explain their pixels: see the warnings." } else { "" };
     let worst = result.clusters.iter().map(|row| row.cluster.sigma_mean).fold(0.0, f64::max);
     format!(
-        "{} emissivit{} found in {} pixels ({} decided), mean emissivities known to +- {} at worst.",
+        "{} emissivit{} found in {} pixels ({} decided), mean emissivities known to +- {} at worst.{but}",
         whole(count as u64),
         if count == 1 { "y" } else { "ies" },
         whole(result.pixels as u64),

@@ -13,6 +13,8 @@ use hadar::error::{Error, Result};
 use hadar::material::Library;
 use hadar::separation::{Asked, library_from_cube};
 
+/// Share of χ²/ν above 1 up to which a cluster counts as one material.
+const MISFIT: f64 = 0.05;
 /// A mean emissivity that is known less well than this is hardly told.
 const HARDLY: f64 = 0.05;
 
@@ -104,6 +106,27 @@ impl LibraryStudy {
         }
         if !found.settled {
             warnings.push(Warning::ClustersNotSettled { rounds: found.rounds });
+        }
+        let bands = measured.bands.len().saturating_sub(scenario.cube.bad_bands.len());
+        let misfits: Vec<(String, f64)> = found
+            .clusters
+            .iter()
+            .enumerate()
+            .filter(|(_, one)| {
+                // χ²/ν of as many readings scatters by √(2/ν).
+                let scatter = (2.0 / (one.fitted * bands).max(1) as f64).sqrt();
+                one.chi_square_reduced > 1.0 + MISFIT.max(6.0 * scatter)
+            })
+            .map(|(i, one)| (results::name(i), one.chi_square_reduced))
+            .collect();
+        if !misfits.is_empty() {
+            warnings.push(Warning::ClusterDoesNotFit {
+                chi_square: misfits.iter().map(|one| one.1).fold(0.0, f64::max),
+                clusters: misfits.into_iter().map(|one| one.0).collect(),
+            });
+        }
+        if measured.lights.len() > 1 && scenario.unknown.lighting_total.is_none() {
+            warnings.push(Warning::MirrorNotExcluded { surroundings: measured.lights.len() });
         }
         if found.without_nem > 0 {
             warnings.push(Warning::NoRelativeEmissivity { pixels: found.without_nem, of: found.drawn });

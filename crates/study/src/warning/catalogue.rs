@@ -74,6 +74,11 @@ catalogue! {
     /// The magnitude of an emissivity is hardly told from the temperatures of its pixels: the prior holds it.
     MagnitudeHardlyTold = "magnitude-hardly-told",
         "State unknown.lighting_total, fewer surroundings, or [emissivity] as well as you know it; look under a sky with lines, at pixels of different lighting.";
+    /// The pixels of a cluster scatter about one emissivity by more than their noise: several materials, or a group that was not found.
+    ClusterDoesNotFit = "cluster-does-not-fit",
+        "Ask for more clusters or a range of counts; check unit, noise and light; do not use the emissivities of these.";
+    /// Several surroundings light a pixel with nothing said of their total: what mirrors them is not told from what is as warm.
+    MirrorNotExcluded = "mirror-not-excluded", "State unknown.lighting_total, or name fewer surroundings.";
     /// The last round of grouping and fitting still changed something.
     ClustersNotSettled = "clusters-not-settled", "Compare with another --seed; ask for fewer clusters.";
 

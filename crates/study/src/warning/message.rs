@@ -39,6 +39,18 @@ impl Display for Warning {
                 clusters.join(", "),
                 significant(*sigma, 2)
             ),
+            Self::ClusterDoesNotFit { clusters, chi_square } => write!(
+                f,
+                "the pixels of {} are not explained by one emissivity each (chi2/nu up to {}): they are several materials or none that was \
+                 found, and their errors do not hold",
+                clusters.join(", "),
+                significant(*chi_square, 3)
+            ),
+            Self::MirrorNotExcluded { surroundings } => write!(
+                f,
+                "{surroundings} surroundings light a pixel as much as they like: a mirror of them looks as well as a warm surface does, so that \
+                 emissivities and temperatures may be wrong altogether, by far more than their errors"
+            ),
             Self::ClustersNotSettled { rounds } => {
                 write!(f, "after {rounds} rounds clusters and emissivities still changed")
             }
