@@ -344,8 +344,9 @@ fn corners(objects: usize, [low, high]: [f64; 2], sum: f64, is_total: bool) -> R
     Ok(corners)
 }
 
-/// Σ p_i e_i.
-fn mixed(members: &[&[f64]], shares: &[f64]) -> Vec<f64> {
+/// The emissivity Σ p_i e_i of a mixture, at the nodes of its members.
+#[must_use]
+pub fn mixed(members: &[&[f64]], shares: &[f64]) -> Vec<f64> {
     let nodes = members.first().map_or(0, |member| member.len());
     let at = |node: usize| {
         let parts = members.iter().zip(shares).map(|(member, share)| share * member[node]);

@@ -4,6 +4,7 @@ use super::ClassSide;
 use crate::scenario::{ClassSpec, Spread};
 use crate::study::Surface;
 use hadar::error::Result;
+use hadar::identifiability::mixture;
 
 /// A class with its members on the nodes of the bands; a material is one of itself.
 #[derive(Debug, Clone)]
@@ -86,11 +87,6 @@ impl Members {
 
 /// Σ w_i e_i.
 pub(super) fn mixed(surfaces: &[Surface], weights: &[f64]) -> Vec<f64> {
-    let nodes = surfaces.first().map_or(0, |surface| surface.emissivity.len());
-    let at = |node: usize| {
-        let parts = surfaces.iter().zip(weights).map(|(surface, weight)| weight * surface.emissivity[node]);
-        // Rounding of shares that add up to 1.
-        parts.sum::<f64>().clamp(0.0, 1.0)
-    };
-    (0..nodes).map(at).collect()
+    let spectra: Vec<&[f64]> = surfaces.iter().map(|surface| surface.emissivity.as_slice()).collect();
+    mixture::mixed(&spectra, weights)
 }
