@@ -48,6 +48,7 @@
 //! | witness | [`simulate`] | counts drawn, classifiers, thermometry, stereo matching: each against its bound |
 //! | | [`decompose`] | heat cubes taken apart: material, temperature and lighting of every pixel |
 //! | | [`separation`] | temperature and emissivity told apart without a library, and a library out of a heat cube |
+//! | | [`segmentation`] | maps of materials as maps of categories and objects |
 //! | | [`render`] | stereo pairs of heat cubes of a scene |
 //!
 //! # Where an equation is computed
@@ -80,6 +81,7 @@
 //! | S46, S47 | temperature and lighting by slopes along wavenumber, and their errors | [`decompose::Method`], [`decompose::inverse_error`] |
 //! | SV C | a library out of a heat cube | [`separation`]; its bound [`fisher::emissivity`] |
 //! | S48 | known total of the lighting factors | [`fisher`], [`scene`], [`decompose`] |
+//! | SIII E, Algorithm 4 | semantic segmentation by materials | [`segmentation`] |
 //! | Ext. Data Fig. 9 | thermometry | [`fisher::precision`], [`simulate::thermometry`] |
 //! | SII E, Fig. 3d, e | H = t A_p/((1 + γ)F²), motion, requirements | [`policy`] |
 //!
@@ -98,7 +100,7 @@ pub use base::{
 pub(crate) use base::{correlation, simd, wide};
 pub use limits::{fisher, identifiability, policy, ranging};
 pub use physics::{atmosphere, material, planck, scene, spectrum};
-pub use witness::{decompose, render, separation, simulate};
+pub use witness::{decompose, render, segmentation, separation, simulate};
 
 #[cfg(doctest)]
 #[doc = include_str!("README.md")]

@@ -2,5 +2,6 @@
 
 pub mod decompose;
 pub mod render;
+pub mod segmentation;
 pub mod separation;
 pub mod simulate;

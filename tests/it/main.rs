@@ -21,6 +21,7 @@ mod pairs_reference;
 mod planck_reference;
 mod properties;
 mod ranging_reference;
+mod segmentation;
 mod selection;
 mod separation;
 

@@ -2,6 +2,7 @@
 
 mod equalise;
 mod figures;
+mod segmented;
 mod text;
 mod vision;
 
@@ -43,6 +44,12 @@ pub fn bundle(result: &Decomposed, out: &Path) -> Result<Bundle> {
     bundle.add("flags.npy", npy_map(&size, &maps.flags)?);
     bundle.add("texture.npy", npy_map(&size, &result.vision.texture)?);
     bundle.add("thermal.npy", npy_map(&size, &result.vision.thermal)?);
+    if let Some(found) = &result.segmentation {
+        bundle.add("segmentation.npy", npy_map(&size, &found.map)?);
+        bundle.add_table("categories.csv", segmented::categories(found))?;
+        bundle.add_table("objects.csv", segmented::objects(found))?;
+        bundle.add_plots(&[segmented::plot(result, found, figures::stride(result.shape))])?;
+    }
     let vision = Vision::of(result);
     bundle.add("tex_vision_image.png", image_png(&vision.pixels(), size[1])?);
     let stride = figures::stride(result.shape);

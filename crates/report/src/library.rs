@@ -156,6 +156,8 @@ fn decomposition(result: &LibraryFound, out: &Path) -> DecomposeScenario {
         unknown: scenario.unknown,
         spatial: None,
         vision: Default::default(),
+        categories: Vec::new(),
+        segmentation: Default::default(),
         // Materials of the truth are those of another library.
         truth: scenario
             .truth

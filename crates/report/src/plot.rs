@@ -55,6 +55,12 @@ pub use pictures::{Painted, Picture, Pictures, Rgb};
 
 use hadar::Result;
 
+/// Colour of the area with this index, in pictures of categories.
+#[must_use]
+pub fn categorical(index: usize) -> Rgb {
+    colour::area(index)
+}
+
 /// A number as it is written in pictures: three digits, powers of ten with superscripts.
 pub(crate) fn number(value: f64) -> String {
     ticks::label(value)

@@ -11,7 +11,7 @@ use crate::table::{Table, number};
 use hadar::error::Result;
 use hadar::ranging::cube::{mat_file, npy_map};
 use hadar_study::scenario::decompose::{
-    CubeUnit, HeatCube, LibrarySpec, LightSource, PixelUnknown, TruthSpec,
+    CategorySpec, CubeUnit, HeatCube, LibrarySpec, LightSource, PixelUnknown, TruthSpec,
 };
 use hadar_study::scenario::{DecomposeScenario, Source};
 use hadar_study::study::render::{Picture, Rendered};
@@ -120,6 +120,15 @@ fn decomposition(result: &Rendered, layout: Layout, out: &Path) -> DecomposeScen
         [low, high] if low <= high => [(low - ROOM_K).max(1.0).round(), (high + ROOM_K).round()],
         _ => PixelUnknown::default().temperature_k,
     };
+    // What is a surface there is a number of its map.
+    let place = |name: &String| result.surfaces.iter().position(|row| row.name == *name);
+    let category = |spec: &CategorySpec| CategorySpec {
+        labels: spec.surfaces.iter().filter_map(place).collect(),
+        surfaces: Vec::new(),
+        ..spec.clone()
+    };
+    let categories: Vec<CategorySpec> = result.scenario.categories.iter().map(category).collect();
+    let labelled = categories.iter().any(|spec| !spec.labels.is_empty());
     let truth = |name: &str| (layout == Layout::Npy).then(|| file(name));
     DecomposeScenario {
         classes: std::collections::BTreeMap::new(),
@@ -148,9 +157,12 @@ fn decomposition(result: &Rendered, layout: Layout, out: &Path) -> DecomposeScen
             material: Some(material),
             temperature: truth("temperature_k.npy"),
             lighting: vec![file("lighting.npy")],
+            category: labelled.then(|| file("surface.npy")),
         }),
         spatial: None,
         vision: Default::default(),
+        categories,
+        segmentation: Default::default(),
         source: Source::default(),
     }
 }

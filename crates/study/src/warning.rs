@@ -54,6 +54,8 @@ pub enum Warning {
     MirrorNotExcluded { surroundings: usize },
     /// A last round that still changed something.
     ClustersNotSettled { rounds: usize },
+    /// Objects most of whose pixels have no decided material, of so many that are listed.
+    ObjectsUndecided { objects: usize, of: usize },
     /// A library without errors.
     LibraryTakenAsExact,
     /// Pixels whose material a prior over the image changed, and whether its last sweep still changed something.
@@ -222,6 +224,7 @@ impl Warning {
             Self::ClustersNotSettled { .. } => Code::ClustersNotSettled,
             Self::ClusterDoesNotFit { .. } => Code::ClusterDoesNotFit,
             Self::MirrorNotExcluded { .. } => Code::MirrorNotExcluded,
+            Self::ObjectsUndecided { .. } => Code::ObjectsUndecided,
             Self::LibraryTakenAsExact => Code::LibraryTakenAsExact,
             Self::SpatialPrior { .. } => Code::SpatialPrior,
             Self::Identical => Code::Identical,

@@ -17,6 +17,9 @@ const LISTED: usize = 12;
 pub fn text(result: &Decomposed) -> String {
     let mut out = format!("{}\n\n", sentence(result));
     out.push_str(&found(result));
+    if let Some(segmentation) = &result.segmentation {
+        out.push_str(&super::segmented::text(segmentation));
+    }
     out.push_str(&flags(result));
     if let Some(truth) = &result.truth {
         out.push_str(&against(truth, result));

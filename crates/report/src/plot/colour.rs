@@ -4,6 +4,9 @@
 //! Quantities: viridis of S. van der Walt and N. Smith (matplotlib, released under CC0), perceptually
 //! uniform and readable in grey; its published table at twenty equal steps, linear in sRGB between them.
 
+/// Red, green and blue.
+type Rgb = (u8, u8, u8);
+
 /// Red, green, blue, and opacity from 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Colour {
@@ -45,6 +48,15 @@ const PALETTE: [Colour; 7] = [
 pub(super) fn series(index: usize) -> (Colour, usize) {
     let colour = PALETTE.get(index % PALETTE.len()).copied().unwrap_or(INK);
     (colour, index / PALETTE.len())
+}
+
+/// Colour of an area with this index: the palette, then paler and paler.
+pub(super) fn area(index: usize) -> Rgb {
+    let (colour, times) = series(index);
+    let share = 0.55_f64.powi(i32::try_from(times).unwrap_or(i32::MAX));
+    let paler = |part: u8| (255.0 - share * (255.0 - f64::from(part))).round() as u8;
+    let (r, g, b) = colour.rgb;
+    (paler(r), paler(g), paler(b))
 }
 
 const VIRIDIS: [u32; 20] = [

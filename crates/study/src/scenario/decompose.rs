@@ -3,9 +3,12 @@
 //! It shares `[bands]` and `[camera]` with a [`super::Scenario`], and their habits: quantities are strings with their unit, every value
 //! is checked when it is read, an error names file, line and key.
 
+pub(super) mod category;
 mod image;
 pub(super) mod read;
 pub(super) mod write;
+
+pub use category::{CategorySpec, SegmentationSpec};
 
 use super::{BandsSpec, CameraSpec, ClassSpec, MaterialRef, Source};
 use hadar::decompose::SpatialPrior;
@@ -36,6 +39,10 @@ pub struct DecomposeScenario {
     pub spatial: Option<SpatialPrior>,
     /// How the picture is coloured (`[vision]`).
     pub vision: VisionSpec,
+    /// What materials are parts of (`[[category]]`); nothing is segmented without.
+    pub categories: Vec<CategorySpec>,
+    /// How pixels get a category (`[segmentation]`).
+    pub segmentation: SegmentationSpec,
     /// What is there, where that is known (`[truth]`).
     pub truth: Option<TruthSpec>,
     /// Where it was read from.
@@ -133,6 +140,8 @@ pub struct TruthSpec {
     pub temperature: Option<PathBuf>,
     /// Lighting factors `[row][column][surroundings]`, or a map for each of the first surroundings.
     pub lighting: Vec<PathBuf>,
+    /// A number for each pixel's category.
+    pub category: Option<PathBuf>,
 }
 
 impl DecomposeScenario {

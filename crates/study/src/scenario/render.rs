@@ -2,6 +2,8 @@
 //!
 //! It is a ranging scenario whose pair of cameras may be left out; one file serves both.
 
+use super::decompose::CategorySpec;
+use super::decompose::category::{Told, categories, category_written};
 use super::entries::{Document, Part, entries, text};
 use super::kind::Kind;
 use super::paths::Paths;
@@ -14,7 +16,7 @@ use hadar::error::{Error, Place, Result};
 use serde::{Serialize, Serializer};
 use std::path::Path;
 
-const TABLES: &[&str] = &["title", "scene", "object", "bands", "camera", "stereo", "requirement"];
+const TABLES: &[&str] = &["title", "scene", "object", "bands", "camera", "stereo", "requirement", "category"];
 const MINIMUM: &str =
     "write [scene], [camera] with preset = \"flir-a325sc\", and an [[object]] for all that stands there";
 
@@ -31,6 +33,8 @@ pub struct RenderScenario {
     pub camera: CameraSpec,
     /// The pair of cameras; one view if silent.
     pub stereo: Option<Stereo>,
+    /// What its materials are parts of, for the decomposition.
+    pub categories: Vec<CategorySpec>,
     /// Where it was read from.
     pub source: Source,
 }
@@ -80,6 +84,9 @@ impl RenderScenario {
             bands: root.read("bands", BandsSpec::read)?.unwrap_or_default(),
             camera: root.read("camera", camera::read)?.ok_or_else(|| missing("camera"))?,
             stereo: root.read("stereo", stereo_of_scene)?,
+            categories: root
+                .read("category", |entry| categories(entry, Told::BySurfaces))?
+                .unwrap_or_default(),
             source: Source::default(),
         };
         Ok(Self { source, ..scenario })
@@ -111,6 +118,9 @@ impl RenderScenario {
         document.push(("camera", Part::Table(camera::written(&self.camera, paths))));
         if let Some(pair) = &self.stereo {
             document.push(("stereo", Part::Table(stereo(pair))));
+        }
+        if !self.categories.is_empty() {
+            document.push(("category", Part::Tables(self.categories.iter().map(category_written).collect())));
         }
         document
     }

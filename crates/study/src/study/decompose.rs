@@ -2,6 +2,7 @@
 
 mod looked_up;
 mod results;
+mod segmented;
 mod truth;
 mod vision;
 mod worth;
@@ -9,6 +10,7 @@ mod worth;
 pub use looked_up::DecomposeStudy;
 pub(super) use results::flags;
 pub use results::{ClassRow, Decomposed, FlagCount, MaterialRow, TruthFound};
+pub use segmented::{CategoryRow, ObjectRow, Segmented};
 pub(super) use truth::Truth;
 pub use vision::Vision;
 
@@ -36,6 +38,11 @@ impl DecomposeStudy {
             let found = format!("the method {} does not know an unknown gain", method.name());
             let error = Error::malformed(found, "write gain = false, or take --method ml or te");
             return Err(error.at(self.scenario.place("unknown.gain")));
+        }
+        if !method.names_materials() && !self.scenario.categories.is_empty() {
+            let found = format!("the method {} names no materials", method.name());
+            let error = Error::malformed(found, "leave [[category]] out, or take --method ml");
+            return Err(error.at(self.scenario.place("category")));
         }
         if !method.has_likelihood() && self.scenario.spatial.is_some() {
             let found = format!("the method {} knows no prior over the image", method.name());
@@ -78,6 +85,7 @@ impl DecomposeStudy {
         }
         let truth = self.truth.as_ref().map(|truth| truth.found(self, method, &maps)).transpose()?;
         let vision = Vision::of(self, &maps).map_err(|error| self.at_cube(error))?;
-        Ok(summary(self, method, maps, (truth, vision), seconds, warnings))
+        let segmented = Segmented::of(self, &maps, &vision)?;
+        Ok(summary(self, method, maps, (truth, vision, segmented), seconds, warnings))
     }
 }

@@ -142,6 +142,13 @@ impl RenderStudy {
         let baseline_m = scenario.stereo.as_ref().map_or(BASELINE_M, |stereo| stereo.baseline_m);
         let rig = stage::rig(&scenario.scene, &camera, baseline_m, &bands, &place)?;
         let counting = camera.counting(&bands, &OpticalView::default());
+        let surfaces = || staged.scene.surfaces().iter().map(|surface| surface.name.as_str());
+        for (i, category) in scenario.categories.iter().enumerate() {
+            if let Some(j) = category.surfaces.iter().position(|one| surfaces().all(|name| name != one)) {
+                let error = Error::unknown_name("surface", &category.surfaces[j], surfaces());
+                return Err(error.at(scenario.place(&format!("category[{i}].surfaces[{j}]"))));
+            }
+        }
         Ok(Self { scenario, camera, bands, staged, rig, counting })
     }
 

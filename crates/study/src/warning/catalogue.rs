@@ -82,6 +82,9 @@ catalogue! {
     /// The last round of grouping and fitting still changed something.
     ClustersNotSettled = "clusters-not-settled", "Compare with another --seed; ask for fewer clusters.";
 
+    /// Objects rest on pixels whose material is not decided: several are left, or none fits.
+    ObjectsUndecided = "objects-undecided", "Do not act on them: look closer, expose longer, or add what is there to the library.";
+
     /// Materials, posteriors and temperatures rest on a prior over the image: what is small and hardly differs from its surroundings is lost.
     SpatialPrior = "spatial-prior", "Compare with the answer without [spatial]; trust an object of few pixels only if it is in both.";
 

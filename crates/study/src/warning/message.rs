@@ -54,6 +54,11 @@ impl Display for Warning {
             Self::ClustersNotSettled { rounds } => {
                 write!(f, "after {rounds} rounds clusters and emissivities still changed")
             }
+            Self::ObjectsUndecided { objects, of } => write!(
+                f,
+                "in {objects} of {of} objects less than half of the pixels have one material left: their category is the likelier one, and no \
+                 finding"
+            ),
             Self::LibraryTakenAsExact => f.write_str(
                 "the library is taken as exact: with errors of its emissivities temperatures are off by more than is said",
             ),

@@ -5,6 +5,7 @@ use super::super::paths::{file, material};
 use super::super::read::{document, text_of};
 use super::super::section::{Entry, Section};
 use super::super::{BandsSpec, Source, camera, class};
+use super::category::{Told, categories, segmentation};
 use super::image::{spatial, vision};
 use super::{CubeUnit, DecomposeScenario, HeatCube, LibrarySpec, LightSource, PixelUnknown, TruthSpec};
 use hadar::allowed::{ABOVE_ZERO, ABSOLUTE_TEMPERATURE, Allowed, SHARE};
@@ -23,8 +24,12 @@ const TABLES: &[&str] = &[
     "unknown",
     "spatial",
     "vision",
+    "category",
+    "segmentation",
     "truth",
 ];
+/// Maps of the truth that every heat cube may have.
+pub(in crate::scenario) const TRUTH: &[&str] = &["material", "temperature", "lighting"];
 const MINIMUM: &str =
     "write [cube] with data = \"counts.npy\", [bands], and [library] with path = \"library.csv\"";
 /// Temperatures of a scene where nothing is said, K.
@@ -89,9 +94,23 @@ impl DecomposeScenario {
             unknown,
             spatial: root.read("spatial", spatial)?,
             vision: root.read("vision", vision)?.unwrap_or_default(),
-            truth: root.read("truth", truth)?,
+            categories: root.read("category", |entry| categories(entry, Told::ByLabels))?.unwrap_or_default(),
+            segmentation: root.read("segmentation", segmentation)?.unwrap_or_default(),
+            truth: root.read("truth", |entry| truth(entry, &[TRUTH, &["category"]].concat()))?,
             source: Source::default(),
         };
+        if scenario.categories.is_empty()
+            && let Some(key) = match &scenario.truth {
+                _ if root.get("segmentation").is_some() => Some("segmentation"),
+                Some(truth) if truth.category.is_some() => Some("truth.category"),
+                _ => None,
+            }
+        {
+            let found = "no category to find";
+            let instead =
+                "write [[category]] with name = \"car\" and materials = [\"pmma\"], or leave it out";
+            return Err(root.fail(key, Error::malformed(found, instead)));
+        }
         Ok(Self { source, ..scenario })
     }
 }
@@ -230,11 +249,12 @@ pub(in crate::scenario) fn unknown(entry: &Entry<'_>) -> Result<PixelUnknown> {
     })
 }
 
-pub(in crate::scenario) fn truth(entry: &Entry<'_>) -> Result<TruthSpec> {
-    let section = entry.section(&["material", "temperature", "lighting"])?;
+pub(in crate::scenario) fn truth(entry: &Entry<'_>, keys: &[&str]) -> Result<TruthSpec> {
+    let section = entry.section(keys)?;
     Ok(TruthSpec {
         material: section.read("material", file)?,
         temperature: section.read("temperature", file)?,
+        category: section.read("category", file)?,
         lighting: section
             .read("lighting", |entry| match entry.is_list() {
                 true => entry.items("[\"v1.npy\"]")?.iter().map(file).collect(),

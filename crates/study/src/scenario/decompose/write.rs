@@ -3,8 +3,11 @@
 use super::super::entries::{Document, Entries, Part, entries, text};
 use super::super::paths::Paths;
 use super::super::{BandsSpec, CameraSpec, camera, class};
+use super::category::{category_written, segmentation_written};
 use super::image::{spatial_written, vision_written};
-use super::{CubeUnit, DecomposeScenario, HeatCube, LightSource, PixelUnknown, TruthSpec, VisionSpec};
+use super::{
+    CubeUnit, DecomposeScenario, HeatCube, LightSource, PixelUnknown, SegmentationSpec, TruthSpec, VisionSpec,
+};
 use hadar::units::Dimension;
 use serde::{Serialize, Serializer};
 use std::path::Path;
@@ -52,6 +55,12 @@ impl DecomposeScenario {
         }
         if self.vision != VisionSpec::default() {
             document.push(("vision", Part::Table(vision_written(&self.vision))));
+        }
+        if !self.categories.is_empty() {
+            document.push(("category", Part::Tables(self.categories.iter().map(category_written).collect())));
+        }
+        if self.segmentation != SegmentationSpec::default() {
+            document.push(("segmentation", Part::Table(segmentation_written(self.segmentation))));
         }
         if let Some(truth) = &self.truth {
             document.push(("truth", Part::Table(truth_written(truth, paths))));
@@ -116,6 +125,7 @@ pub(in crate::scenario) fn truth_written(truth: &TruthSpec, paths: Paths<'_>) ->
         .put_if("material", file(&truth.material))
         .put_if("temperature", file(&truth.temperature))
         .put_if("lighting", (!lighting.is_empty()).then_some(lighting))
+        .put_if("category", file(&truth.category))
 }
 
 /// The same keys as the TOML, quantities in the units used inside, with absolute paths.

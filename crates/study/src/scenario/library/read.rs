@@ -1,7 +1,7 @@
 //! Reads what a library is to be made from: every key checked, every error one line with file, line and key.
 
 use super::super::decompose::PixelUnknown;
-use super::super::decompose::read::{heat_cube, light, truth, unknown};
+use super::super::decompose::read::{TRUTH, heat_cube, light, truth, unknown};
 use super::super::kind::Kind;
 use super::super::read::{document, text_of};
 use super::super::section::{Entry, Section};
@@ -99,7 +99,7 @@ impl LibraryScenario {
             clusters: root.read("clusters", clusters)?.ok_or_else(|| missing("clusters"))?,
             emissivity: root.read("emissivity", emissivity)?.unwrap_or(EMISSIVITY),
             unknown,
-            truth: root.read("truth", truth)?,
+            truth: root.read("truth", |entry| truth(entry, TRUTH))?,
             source: Source::default(),
         };
         Ok(Self { source, ..scenario })

@@ -17,7 +17,9 @@ use hadar::ranging::noise::Joined;
 use hadar::units::Dimension;
 use std::path::Path;
 
-const TABLES: &[&str] = &["title", "scene", "object", "cube", "bands", "camera", "stereo", "requirement"];
+/// `category` is for `hadar render`: one file serves both.
+const TABLES: &[&str] =
+    &["title", "scene", "object", "cube", "bands", "camera", "stereo", "requirement", "category"];
 const MINIMUM: &str = "write [scene] for the built-in street or [cube] with left = \"left.npy\", \
                        and [stereo] with baseline = \"0.2 m\"";
 /// δz/z that is demanded where nothing is said.

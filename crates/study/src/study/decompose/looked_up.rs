@@ -1,5 +1,6 @@
 //! Names and files of a decomposition scenario looked up: cube, bands, library, spectra of the surroundings, truth.
 
+use super::segmented::parts;
 use super::truth::Truth;
 use crate::scenario::{DecomposeScenario, MaterialRef, Spread};
 use crate::study::Warning;
@@ -8,6 +9,7 @@ use hadar::decompose::{Light, SpatialPrior};
 use hadar::error::{Error, Result};
 use hadar::material::{Basis, Library, Material};
 use hadar::ranging::cube::Cube;
+use hadar::segmentation::Categories;
 use hadar::spectrum::Bands;
 
 /// A decomposition scenario with everything it names looked up and checked.
@@ -29,6 +31,8 @@ pub struct DecomposeStudy {
     pub(super) prior: Vec<f64>,
     /// Classes by name, with the indices of their members.
     pub(super) classes: Vec<(String, Vec<usize>)>,
+    /// What each material can be a part of.
+    pub(super) categories: Categories,
     pub(super) warnings: Vec<Warning>,
 }
 
@@ -97,6 +101,8 @@ impl DecomposeStudy {
             let instead = "write prior = \"potts\", or leave library.emissivity_error out";
             return Err(at("spatial.prior")(Error::malformed(found, instead)));
         }
+        let categories =
+            parts(&scenario.categories, &names, &classes).map_err(|(key, error)| at(&key)(error))?;
         let truth = scenario.truth.as_ref();
         let truth = truth
             .map(|spec| {
@@ -116,6 +122,7 @@ impl DecomposeStudy {
             truth,
             prior,
             classes,
+            categories,
             warnings,
         })
     }

@@ -1,6 +1,7 @@
 //! What is said of a decomposed cube: how many pixels are decided, what each material has, what was spared.
 
 use super::DecomposeStudy;
+use super::segmented::Segmented;
 use super::vision::Vision;
 pub use super::worth::TruthFound;
 use crate::scenario::DecomposeScenario;
@@ -40,6 +41,9 @@ pub struct Decomposed {
     pub spatial: Option<Spatial>,
     /// What is drawn of it.
     pub vision: Vision,
+    /// What is there by categories; nothing without `[[category]]`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub segmentation: Option<Segmented>,
     /// How good the maps are, where that is known.
     pub truth: Option<TruthFound>,
     /// Time that it took, s.
@@ -96,7 +100,7 @@ pub(super) fn summary(
     study: &DecomposeStudy,
     method: Method,
     maps: Maps,
-    (truth, vision): (Option<TruthFound>, Vision),
+    (truth, vision, segmentation): (Option<TruthFound>, Vision, Option<Segmented>),
     seconds: f64,
     mut warnings: Vec<Warning>,
 ) -> Decomposed {
@@ -138,6 +142,12 @@ pub(super) fn summary(
     });
     let classes = classes.collect();
     let flags = flags(&maps, &mut warnings);
+    if let Some(found) = &segmentation {
+        let guessed = found.objects.iter().filter(|object| 2 * object.decided < object.pixels).count();
+        if guessed > 0 {
+            warnings.push(Warning::ObjectsUndecided { objects: guessed, of: found.objects.len() });
+        }
+    }
     Decomposed {
         scenario: study.scenario.clone(),
         method,
@@ -152,6 +162,7 @@ pub(super) fn summary(
         flags,
         spatial: maps.spatial,
         vision,
+        segmentation,
         truth,
         seconds,
         stats: maps.spared.work(),

@@ -13,6 +13,8 @@ pub(in crate::study) struct Truth {
     pub(in crate::study) temperature_k: Option<Vec<f64>>,
     /// `[row][column][surroundings]`.
     pub(in crate::study) lighting: Option<Vec<f64>>,
+    /// A number for each pixel's category.
+    pub(in crate::study) category: Option<Vec<usize>>,
 }
 
 impl Truth {
@@ -65,7 +67,12 @@ impl Truth {
                 format!("{} maps of lighting for {surroundings} surroundings", lighting.len() / pixels);
             return Err((key.into(), Error::malformed(found, "give one for each [[environment]]")));
         }
-        Ok(Self { material, temperature_k, lighting })
+        let category = spec.category.as_ref().map(|path| map("truth.category", path, &[1])).transpose()?;
+        // What is no whole number is no label.
+        let label =
+            |value: f64| if value >= 0.0 && value.fract() == 0.0 { value as usize } else { usize::MAX };
+        let category = category.map(|labels| labels.into_iter().map(label).collect());
+        Ok(Self { material, temperature_k, lighting, category })
     }
 }
 

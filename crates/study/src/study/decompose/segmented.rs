@@ -1,0 +1,192 @@
+//! What is there by categories: a map of materials segmented, the objects in it, and how it agrees with the truth.
+
+use super::DecomposeStudy;
+use super::vision::Vision;
+use crate::scenario::decompose::CategorySpec;
+use hadar::decompose::Maps;
+use hadar::error::{Error, Result};
+use hadar::segmentation::{
+    Agreement, Categories, NO_CATEGORY, Object, Part, Rule, by_brightness, objects, segment, smoothed,
+};
+use serde::Serialize;
+
+/// A cube segmented.
+#[derive(Debug, Clone, Serialize)]
+pub struct Segmented {
+    /// By which rule.
+    pub rule: Rule,
+    /// Whether each pixel took the commonest category of 5 × 5 in the end.
+    pub smoothing: bool,
+    /// Of each category.
+    pub categories: Vec<CategoryRow>,
+    /// Pixels of no category.
+    pub none: usize,
+    /// Connected parts, the largest first.
+    pub objects: Vec<ObjectRow>,
+    /// Pixels of the smallest object that is listed.
+    pub smallest_object: usize,
+    /// Against the truth, where it is known.
+    pub agreement: Option<Agreement>,
+    /// The best that the thermal image alone can say, laid out with the truth, against it.
+    pub agreement_by_brightness: Option<Agreement>,
+    /// Time that it took, s.
+    pub seconds: f64,
+    /// The map, `[row][column]`.
+    #[serde(skip)]
+    pub map: Vec<u8>,
+}
+
+/// What was found of a category.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct CategoryRow {
+    /// Its name.
+    pub category: String,
+    /// Its pixels.
+    pub pixels: usize,
+    /// Those of them whose material is decided.
+    pub decided: usize,
+    /// Its objects.
+    pub objects: usize,
+}
+
+/// What was found of an object.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ObjectRow {
+    /// The name of its category.
+    pub category: String,
+    /// Its pixels.
+    pub pixels: usize,
+    /// Those of them whose material is decided.
+    pub decided: usize,
+    /// Its first row, and the one after its last.
+    pub rows: [usize; 2],
+    /// Its first column, and the one after its last.
+    pub columns: [usize; 2],
+    /// Median of the temperatures of its decided pixels, K; NaN without.
+    pub temperature_median_k: f64,
+    /// Median of their deviations, each of a pixel, K.
+    pub temperature_sigma_median_k: f64,
+}
+
+/// The parts of all categories as places in the library, a class as all its members; an error with its key.
+pub(super) fn parts(
+    specs: &[CategorySpec],
+    names: &[String],
+    classes: &[(String, Vec<usize>)],
+) -> std::result::Result<Categories, (String, Error)> {
+    let mut all = Vec::with_capacity(specs.len());
+    for (i, spec) in specs.iter().enumerate() {
+        let mut parts: Vec<Part> = Vec::new();
+        for (j, name) in spec.materials.iter().enumerate() {
+            let key = format!("category[{i}].materials[{j}]");
+            let class = classes.iter().find(|(class, _)| class == name).map(|(_, members)| members.clone());
+            let places = class.or_else(|| names.iter().position(|one| one == name).map(|place| vec![place]));
+            let Some(places) = places else {
+                let known = names.iter().chain(classes.iter().map(|(class, _)| class));
+                let known: Vec<&str> = known.map(String::as_str).collect();
+                return Err((key, Error::unknown_name("material of the library", name, known.into_iter())));
+            };
+            let enclosed = spec.enclosed.contains(name);
+            for material in places {
+                if parts.iter().any(|part| part.material == material) {
+                    let found = format!("`{}` stands in the category twice", names[material]);
+                    return Err((key, Error::malformed(found, "name it once, by itself or by its class")));
+                }
+                parts.push(Part { material, enclosed });
+            }
+        }
+        all.push(parts);
+    }
+    Categories::new(names.len(), &all).map_err(|error| ("category".to_owned(), error))
+}
+
+impl Segmented {
+    /// Of the maps of a study; nothing without categories.
+    pub(super) fn of(study: &DecomposeStudy, maps: &Maps, vision: &Vision) -> Result<Option<Self>> {
+        let (specs, spec) = (&study.scenario.categories, study.scenario.segmentation);
+        if specs.is_empty() {
+            return Ok(None);
+        }
+        let start = std::time::Instant::now();
+        let columns = study.cube.shape().columns();
+        let last = |map: Vec<u8>| if spec.smoothing { smoothed(&map, columns) } else { Ok(map) };
+        let map = last(segment(&maps.material, columns, &study.categories, spec.rule)?)?;
+        let found = objects(&map, columns, spec.smallest_object)?;
+        let seconds = start.elapsed().as_secs_f64();
+        let is_decided: Vec<bool> = (0..map.len()).map(|i| maps.is_decided(i)).collect();
+        let mut categories: Vec<CategoryRow> = specs
+            .iter()
+            .map(|spec| CategoryRow { category: spec.name.clone(), pixels: 0, decided: 0, objects: 0 })
+            .collect();
+        for (category, is_decided) in map.iter().zip(&is_decided) {
+            if let Some(row) = categories.get_mut(usize::from(*category)) {
+                row.pixels += 1;
+                row.decided += usize::from(*is_decided);
+            }
+        }
+        let mut decided: Vec<Vec<usize>> = vec![Vec::new(); found.all.len()];
+        for (i, object) in found.of_pixel.iter().enumerate().filter(|(i, _)| is_decided[*i]) {
+            if let Some(pixels) = object.and_then(|object| decided.get_mut(object as usize)) {
+                pixels.push(i);
+            }
+        }
+        let objects: Vec<ObjectRow> = found
+            .all
+            .iter()
+            .zip(&decided)
+            .map(|(object, decided)| row(object, decided, maps, specs))
+            .collect();
+        for object in &found.all {
+            if let Some(row) = categories.get_mut(usize::from(object.category)) {
+                row.objects += 1;
+            }
+        }
+        let (mut agreement, mut agreement_by_brightness) = (None, None);
+        if let Some(truth) = study.truth.as_ref().and_then(|truth| truth.category.as_ref()) {
+            let truth: Vec<u8> = truth.iter().map(|label| of_label(specs, *label)).collect();
+            agreement = Some(Agreement::of(&map, &truth, specs.len()));
+            let thermal = last(by_brightness(&vision.thermal, &truth))?;
+            agreement_by_brightness = Some(Agreement::of(&thermal, &truth, specs.len()));
+        }
+        Ok(Some(Self {
+            rule: spec.rule,
+            smoothing: spec.smoothing,
+            none: map.iter().filter(|category| **category == NO_CATEGORY).count(),
+            categories,
+            objects,
+            smallest_object: spec.smallest_object,
+            agreement,
+            agreement_by_brightness,
+            seconds,
+            map,
+        }))
+    }
+}
+
+fn row(object: &Object, decided: &[usize], maps: &Maps, specs: &[CategorySpec]) -> ObjectRow {
+    let median = |of: &[f32]| {
+        let mut values: Vec<f32> =
+            decided.iter().filter_map(|i| of.get(*i).copied()).filter(|x| x.is_finite()).collect();
+        values.sort_by(f32::total_cmp);
+        values.get(values.len() / 2).map_or(f64::NAN, |x| f64::from(*x))
+    };
+    ObjectRow {
+        category: specs.get(usize::from(object.category)).map_or_else(String::new, |spec| spec.name.clone()),
+        pixels: object.pixels,
+        decided: decided.len(),
+        rows: object.rows,
+        columns: object.columns,
+        temperature_median_k: median(&maps.temperature_k),
+        temperature_sigma_median_k: median(&maps.temperature_sigma_k),
+    }
+}
+
+/// The category that a number of the map of the truth stands for.
+fn of_label(specs: &[CategorySpec], label: usize) -> u8 {
+    let has_labels = specs.iter().any(|spec| !spec.labels.is_empty());
+    let place = match has_labels {
+        true => specs.iter().position(|spec| spec.labels.contains(&label)),
+        false => Some(label).filter(|label| *label < specs.len()),
+    };
+    place.and_then(|place| u8::try_from(place).ok()).unwrap_or(NO_CATEGORY)
+}
