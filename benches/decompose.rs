@@ -1,7 +1,8 @@
 //! How long it takes to take heat cubes apart, and to render one.
 //!
 //! `cargo bench --bench decompose`: 4000 spectra of 54 bands and 27 materials of the library, temperature and one lighting factor unknown,
-//! 1e7 photons in all bands; with errors of the library, a few of them; and the street in 54 bands, 240 × 320 pixels. The case `tex` of
+//! 1e7 photons in all bands; with errors of the library, a few of them; the street in 54 bands, 240 × 320 pixels; and a map of
+//! 1080 × 1920 materials as categories, a tenth of its pixels wrong. The case `tex` of
 //! another program is a grid of 1 K with matrix products, 14 µs a spectrum on one thread at 0.80 right.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
@@ -10,6 +11,7 @@ use hadar::material::Library;
 use hadar::planck::photon_radiance_into;
 use hadar::ranging::cube::{Cube, MemoryCube, Shape};
 use hadar::render::{self, Rig, Scene, StreetSpec};
+use hadar::segmentation::{Categories, Part, Rule, objects, segment, smoothed};
 use hadar::simulate::draws::{Draws, generator};
 use hadar::spectrum::Bands;
 use hadar::statistics::Statistics;
@@ -114,5 +116,37 @@ fn rendered(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, taken_apart, rendered);
+/// Categories and objects of a map of 24 materials: 12 categories, half of the materials in two of them, blocks with noise.
+fn segmented(criterion: &mut Criterion) {
+    let (rows, columns) = (1080_usize, 1920_usize);
+    let parts = |category: usize| {
+        let own = [Part::open(2 * category), Part::open(2 * category + 1)];
+        own.into_iter().chain([Part::enclosed((2 * category + 3) % 24)]).collect::<Vec<_>>()
+    };
+    let categories = Categories::new(24, &(0..12).map(parts).collect::<Vec<_>>()).expect("categories");
+    let material = |i: usize| {
+        let (row, column) = (i / columns, i % columns);
+        let is_noise = (i as f64 * 0.618_034).fract() < 0.1;
+        let block = if is_noise {
+            (i as f64 * 0.414_214).fract() * 24.0
+        } else {
+            (row / 37 * 7 + column / 53) as f64 % 24.0
+        };
+        block as u16
+    };
+    let map: Vec<u16> = (0..rows * columns).map(material).collect();
+    let mut group = criterion.benchmark_group("segmentation");
+    group.sample_size(10).throughput(Throughput::Elements((rows * columns) as u64));
+    for (name, rule) in [("regions", Rule::Regions), ("raster", Rule::Raster)] {
+        group.bench_function(name, |bencher| {
+            bencher.iter(|| {
+                let found = segment(&map, columns, &categories, rule).expect("categories");
+                objects(&smoothed(&found, columns).expect("a map"), columns, 25).expect("objects")
+            });
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, taken_apart, rendered, segmented);
 criterion_main!(benches);

@@ -22,6 +22,9 @@ use crate::error::{Error, Result, check};
 use crate::planck;
 use crate::sum::Compensated;
 
+/// Temperature of the blackbody that given spectra are shares of, times the hottest of their brightness.
+const HOTTER: f64 = 1.01;
+
 /// ΣVₖ may exceed 1 by this much, which is rounding of the user's own numbers.
 const LIGHTING_TOLERANCE: f64 = 1e-12;
 
@@ -80,6 +83,36 @@ impl Surroundings {
             })
             .collect();
         Ok(Self { nodes_cm1: nodes_cm1.to_vec(), objects, blackbody })
+    }
+
+    /// Surroundings that send these spectra (photons s⁻¹ m⁻² sr⁻¹ per cm⁻¹ at `nodes_cm1`), each as shares of a blackbody a little hotter
+    /// than the hottest of its brightness.
+    ///
+    /// # Errors
+    /// A wavenumber that is not positive, a spectrum of another length or without light.
+    ///
+    /// ```
+    /// use hadar::planck::photon_radiance;
+    /// use hadar::scene::Surroundings;
+    /// let nodes = [800.0, 1000.0];
+    /// let sky = vec![0.2 * photon_radiance(800.0, 280.0), photon_radiance(1000.0, 280.0)];
+    /// let around = Surroundings::of_radiances(&nodes, &[sky.clone()])?;
+    /// let object = &around.objects()[0];
+    /// let sent = object.emissivity.as_ref().map(|e| e[0] * photon_radiance(800.0, object.temperature_k));
+    /// assert!((sent.unwrap() / sky[0] - 1.0).abs() < 1e-12);
+    /// # Ok::<(), hadar::Error>(())
+    /// ```
+    pub fn of_radiances(nodes_cm1: &[f64], radiances: &[Vec<f64>]) -> Result<Self> {
+        let object = |radiance: &Vec<f64>| {
+            let brightness =
+                nodes_cm1.iter().zip(radiance).map(|(nu, s)| planck::brightness_temperature(*nu, *s));
+            let temperature_k = HOTTER * brightness.fold(1.0, f64::max);
+            let mut blackbody = vec![0.0; nodes_cm1.len()];
+            planck::photon_radiance_into(nodes_cm1, temperature_k, &mut blackbody);
+            let emissivity = radiance.iter().zip(&blackbody).map(|(s, b)| (s / b).min(1.0)).collect();
+            EnvironmentObject { temperature_k, emissivity: Some(emissivity) }
+        };
+        Self::new(nodes_cm1, radiances.iter().map(object).collect())
     }
 
     /// The environment objects.

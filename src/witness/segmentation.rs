@@ -5,7 +5,7 @@
 //! whether it is *enclosed* where it is a part of a category.
 //!
 //! * [`Categories`]: which material is where; [`Rule`], [`segment`]: a map of materials to a map of categories;
-//! * [`Agreement`]: a map against the truth, category by category; [`by_brightness`]: what brightness alone could say;
+//! * [`Agreement`]: a map against the truth, category by category; [`ByBrightness`]: what brightness alone could say;
 //! * [`objects`]: the connected parts of each category.
 //!
 //! Nothing here knows temperatures or photons: what a pixel's material is worth is said by [`crate::decompose`].
@@ -23,7 +23,7 @@ mod regions;
 mod smoothing;
 
 pub use agreement::Agreement;
-pub use brightness::by_brightness;
+pub use brightness::ByBrightness;
 pub use categories::{Categories, MOST_CATEGORIES, NO_CATEGORY, Part};
 pub use object::{Object, Objects, objects};
 pub use smoothing::smoothed;

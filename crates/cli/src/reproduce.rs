@@ -11,7 +11,10 @@
 
 mod candidates;
 mod edfig6;
+mod edfig7;
+mod edfig8;
 mod edfig9;
+mod edfig9a;
 mod fig3b;
 mod fig3c;
 mod fig4;
@@ -20,6 +23,7 @@ mod figs20;
 mod inverse_trade_off;
 mod ledger;
 mod locking;
+mod night;
 mod order;
 mod pixels;
 mod policy;
@@ -49,8 +53,14 @@ pub(crate) enum Item {
     Fig3c,
     /// Five materials.
     EdFig6,
+    /// A person before a car, and a robot.
+    EdFig7,
+    /// Segmentation by materials.
+    EdFig8,
     /// Thermometry.
     EdFig9,
+    /// Letters that a thermal imager does not see.
+    EdFig9a,
     /// Ranging: bounds by signal, and matching beside them.
     Fig4,
     /// Measures of texture.
@@ -78,13 +88,16 @@ pub(crate) struct Reproduction {
 
 impl Item {
     /// All of them, the quickest first.
-    pub(crate) const ALL: [Self; 12] = [
+    pub(crate) const ALL: [Self; 15] = [
         Self::TabS2,
         Self::TabS5,
         Self::Policy,
         Self::Fig3c,
+        Self::EdFig9a,
         Self::FigS17,
         Self::FigS20,
+        Self::EdFig7,
+        Self::EdFig8,
         Self::FigS12,
         Self::Fig4,
         Self::EdFig6,
@@ -101,7 +114,10 @@ impl Item {
             Self::FigS7 => "figs7",
             Self::Fig3c => "fig3c",
             Self::EdFig6 => "edfig6",
+            Self::EdFig7 => "edfig7",
+            Self::EdFig8 => "edfig8",
             Self::EdFig9 => "edfig9",
+            Self::EdFig9a => "edfig9a",
             Self::Fig4 => "fig4",
             Self::FigS12 => "figs12",
             Self::FigS17 => "figs17",
@@ -120,7 +136,10 @@ impl Item {
             Self::FigS7 => "Fig. S7: the same in three bands, and with a detector's noise",
             Self::Fig3c => "Fig. 3c: photons required over temperature and lighting",
             Self::EdFig6 => "Extended Data Fig. 6: five materials",
+            Self::EdFig7 => "Extended Data Fig. 7: a person before a car, and a robot",
+            Self::EdFig8 => "Extended Data Fig. 8: segmentation by materials",
             Self::EdFig9 => "Extended Data Fig. 9f: thermometry against its bound",
+            Self::EdFig9a => "Extended Data Fig. 9a-d: letters that a thermal imager does not see",
             Self::Fig4 => "Fig. 4: ranging by a thermal image, a heat cube and scattered light",
             Self::FigS12 => "Fig. S12: measures of texture",
             Self::FigS17 => "Fig. S17: what more materials in the library explain",
@@ -156,7 +175,10 @@ impl Item {
             Self::FigS7 => fig3b::three_bands(order, out, progress)?,
             Self::Fig3c => fig3c::make(out)?,
             Self::EdFig6 => edfig6::make(order, out, progress)?,
+            Self::EdFig7 => edfig7::make(order)?,
+            Self::EdFig8 => edfig8::make(order, progress)?,
             Self::EdFig9 => edfig9::make(order, out, progress)?,
+            Self::EdFig9a => edfig9a::make(order)?,
             Self::Fig4 => fig4::make(order, out, progress)?,
             Self::FigS12 => fig4::textures(order)?,
             Self::FigS17 => figs17::make(order)?,
@@ -181,7 +203,7 @@ fn page(item: Item, effort: Effort, lines: &[Line], figures: &Figures) -> String
         "# {}\n\n{made} from {}.\n\
          Paper: Bao et al., Nature 619, 743 (2023), doi:10.1038/s41586-023-06174-6.\n\n{}",
         item.title(),
-        if matches!(item, Item::FigS17 | Item::FigS20) {
+        if matches!(item, Item::FigS17 | Item::FigS20 | Item::EdFig9a) {
             "pixels that it draws"
         } else {
             "the scenarios beside it"

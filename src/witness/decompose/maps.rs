@@ -236,6 +236,14 @@ impl Maps {
             && flags & flag::NO_FIT == 0
     }
 
+    /// The materials, [`NO_MATERIAL`] also where none of the library fits.
+    #[must_use]
+    pub fn fitting_material(&self) -> Vec<u16> {
+        let one =
+            |(material, flags): (&u16, &u8)| if flags & flag::NO_FIT == 0 { *material } else { NO_MATERIAL };
+        self.material.iter().zip(&self.flags).map(one).collect()
+    }
+
     pub(super) fn of(pixels: &[Pixel], surroundings: usize) -> Self {
         let all = || pixels.iter();
         let mut lighting = Vec::with_capacity(pixels.len() * surroundings);

@@ -31,6 +31,7 @@ mod rule;
 mod rule_clauses;
 mod rule_mistakes;
 mod rule_uncertainty;
+mod segmentation;
 mod simulate;
 mod stand_in;
 mod written;

@@ -85,7 +85,7 @@ pub(super) fn text(found: &Segmented) -> String {
     };
     let _ = writeln!(
         out,
-        "  a material in several categories: {rule}{}\n",
+        "  no category: no material, or none that fits; a material in several categories: {rule}{}\n",
         if found.smoothing { "; then the commonest of 5 x 5 pixels" } else { "" }
     );
     out

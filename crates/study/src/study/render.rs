@@ -152,6 +152,18 @@ impl RenderStudy {
         Ok(Self { scenario, camera, bands, staged, rig, counting })
     }
 
+    /// Its bands, as the camera receives them.
+    #[must_use]
+    pub fn bands(&self) -> &Bands {
+        &self.bands
+    }
+
+    /// What the camera counts of them.
+    #[must_use]
+    pub fn counting(&self) -> &Counting {
+        &self.counting
+    }
+
     /// Renders it; `progress` is told rows done, and how many there are.
     ///
     /// # Errors

@@ -6,7 +6,7 @@ use crate::scenario::decompose::CategorySpec;
 use hadar::decompose::Maps;
 use hadar::error::{Error, Result};
 use hadar::segmentation::{
-    Agreement, Categories, NO_CATEGORY, Object, Part, Rule, by_brightness, objects, segment, smoothed,
+    Agreement, ByBrightness, Categories, NO_CATEGORY, Object, Part, Rule, objects, segment, smoothed,
 };
 use serde::Serialize;
 
@@ -110,7 +110,7 @@ impl Segmented {
         let start = std::time::Instant::now();
         let columns = study.cube.shape().columns();
         let last = |map: Vec<u8>| if spec.smoothing { smoothed(&map, columns) } else { Ok(map) };
-        let map = last(segment(&maps.material, columns, &study.categories, spec.rule)?)?;
+        let map = last(segment(&maps.fitting_material(), columns, &study.categories, spec.rule)?)?;
         let found = objects(&map, columns, spec.smallest_object)?;
         let seconds = start.elapsed().as_secs_f64();
         let is_decided: Vec<bool> = (0..map.len()).map(|i| maps.is_decided(i)).collect();
@@ -145,7 +145,7 @@ impl Segmented {
         if let Some(truth) = study.truth.as_ref().and_then(|truth| truth.category.as_ref()) {
             let truth: Vec<u8> = truth.iter().map(|label| of_label(specs, *label)).collect();
             agreement = Some(Agreement::of(&map, &truth, specs.len()));
-            let thermal = last(by_brightness(&vision.thermal, &truth))?;
+            let thermal = last(ByBrightness::learned(&vision.thermal, &truth).of(&vision.thermal))?;
             agreement_by_brightness = Some(Agreement::of(&thermal, &truth, specs.len()));
         }
         Ok(Some(Self {

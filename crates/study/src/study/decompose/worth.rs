@@ -13,16 +13,13 @@ use hadar::error::Result;
 use hadar::fisher::{Counting, Nuisance, Unknowns};
 use hadar::identifiability::detection;
 use hadar::identifiability::nearest::{NearestSolver, StateRange};
-use hadar::planck;
-use hadar::scene::{EnvironmentObject, State, Surroundings};
+use hadar::scene::{State, Surroundings};
 use rayon::prelude::*;
 
 /// Pixels whose limit is computed.
 const LIMITS: usize = 240;
 /// Deviations that hold 95 %.
 const NINETY_FIVE: f64 = 1.959_963_984_540_054;
-/// Temperature of the blackbody that the surroundings are written as shares of, times the hottest of their brightness.
-const HOTTER: f64 = 1.01;
 
 /// How good the maps are.
 #[derive(Debug, Clone, PartialEq, Default, serde::Serialize)]
@@ -172,29 +169,21 @@ fn limits(
     chosen.par_iter().map_init(solver, limit).collect()
 }
 
-/// The spectra of the surroundings as shares of a blackbody's.
+/// The spectra of the surroundings.
 fn surroundings(study: &DecomposeStudy) -> Result<Surroundings> {
     let nodes = study.bands.nodes_cm1();
     let widths = study.bands.widths_cm1();
-    let object = |light: &Light| {
-        let radiance: Vec<f64> = match light {
-            Light::Radiance(radiance) => radiance.clone(),
-            // One value for all nodes of a band.
-            Light::Counts(counts) => {
-                let per_band: Vec<f64> = counts
-                    .iter()
-                    .zip(study.counts_per_radiance.iter().zip(&widths))
-                    .map(|(n, (k, width))| n / (k * width))
-                    .collect();
-                study.bands.spread(&per_band)
-            }
-        };
-        let brightness = nodes.iter().zip(&radiance).map(|(nu, s)| planck::brightness_temperature(*nu, *s));
-        let temperature_k = HOTTER * brightness.fold(1.0, f64::max);
-        let mut blackbody = vec![0.0; nodes.len()];
-        planck::photon_radiance_into(nodes, temperature_k, &mut blackbody);
-        let emissivity = radiance.iter().zip(&blackbody).map(|(s, b)| (s / b).min(1.0)).collect();
-        EnvironmentObject { temperature_k, emissivity: Some(emissivity) }
+    let radiance = |light: &Light| match light {
+        Light::Radiance(radiance) => radiance.clone(),
+        // One value for all nodes of a band.
+        Light::Counts(counts) => {
+            let per_band: Vec<f64> = counts
+                .iter()
+                .zip(study.counts_per_radiance.iter().zip(&widths))
+                .map(|(n, (k, width))| n / (k * width))
+                .collect();
+            study.bands.spread(&per_band)
+        }
     };
-    Surroundings::new(nodes, study.lights.iter().map(object).collect())
+    Surroundings::of_radiances(nodes, &study.lights.iter().map(radiance).collect::<Vec<_>>())
 }
