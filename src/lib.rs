@@ -96,7 +96,7 @@ pub use base::{
     allowed, demand, error, file, grid, inputs, lattice_points, minimum, root, statistics, sum, units, words,
 };
 pub(crate) use base::{correlation, simd, wide};
-pub use limits::{fisher, identifiability, policy, ranging};
+pub use limits::{calibration, fisher, identifiability, policy, ranging};
 pub use physics::{atmosphere, material, planck, scene, spectrum};
 pub use witness::{decompose, render, separation, simulate};
 
