@@ -17,6 +17,7 @@ mod fig3c;
 mod fig4;
 mod figs17;
 mod figs20;
+mod figs29;
 mod inverse_trade_off;
 mod ledger;
 mod locking;
@@ -59,6 +60,8 @@ pub(crate) enum Item {
     FigS17,
     /// Methods of decomposition.
     FigS20,
+    /// Calibration of the response.
+    FigS29,
     /// Detectors.
     TabS2,
     /// What resolution is worth in ranging.
@@ -78,13 +81,14 @@ pub(crate) struct Reproduction {
 
 impl Item {
     /// All of them, the quickest first.
-    pub(crate) const ALL: [Self; 12] = [
+    pub(crate) const ALL: [Self; 13] = [
         Self::TabS2,
         Self::TabS5,
         Self::Policy,
         Self::Fig3c,
         Self::FigS17,
         Self::FigS20,
+        Self::FigS29,
         Self::FigS12,
         Self::Fig4,
         Self::EdFig6,
@@ -106,6 +110,7 @@ impl Item {
             Self::FigS12 => "figs12",
             Self::FigS17 => "figs17",
             Self::FigS20 => "figs20",
+            Self::FigS29 => "figs29",
             Self::TabS5 => "tabs5",
             Self::TabS2 => "tabs2",
             Self::Policy => "policy",
@@ -125,6 +130,7 @@ impl Item {
             Self::FigS12 => "Fig. S12: measures of texture",
             Self::FigS17 => "Fig. S17: what more materials in the library explain",
             Self::FigS20 => "Fig. S20: scattered light told apart, or not",
+            Self::FigS29 => "Fig. S29: the camera's response from blackbodies, and what they determine",
             Self::TabS5 => "Tables S4 and S5: what resolution is worth",
             Self::TabS2 => "Table S2: detectors",
             Self::Policy => "Policy: can a camera tell a person from a robot?",
@@ -161,6 +167,7 @@ impl Item {
             Self::FigS12 => fig4::textures(order)?,
             Self::FigS17 => figs17::make(order)?,
             Self::FigS20 => figs20::make(order)?,
+            Self::FigS29 => figs29::make(order)?,
             Self::TabS5 => tabs5::make()?,
             Self::TabS2 => tabs2::make(out)?,
             Self::Policy => policy::make(out)?,
@@ -181,10 +188,10 @@ fn page(item: Item, effort: Effort, lines: &[Line], figures: &Figures) -> String
         "# {}\n\n{made} from {}.\n\
          Paper: Bao et al., Nature 619, 743 (2023), doi:10.1038/s41586-023-06174-6.\n\n{}",
         item.title(),
-        if matches!(item, Item::FigS17 | Item::FigS20) {
-            "pixels that it draws"
-        } else {
-            "the scenarios beside it"
+        match item {
+            Item::FigS17 | Item::FigS20 => "pixels that it draws",
+            Item::FigS29 => "readings that it draws",
+            _ => "the scenarios beside it",
         },
         markdown(lines)
     );
