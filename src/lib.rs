@@ -98,7 +98,7 @@ pub use base::{
 pub(crate) use base::{correlation, simd, wide};
 pub use limits::{fisher, identifiability, policy, ranging};
 pub use physics::{atmosphere, material, planck, scene, spectrum};
-pub use witness::{decompose, render, separation, simulate};
+pub use witness::{calibrate, decompose, render, separation, simulate};
 
 #[cfg(doctest)]
 #[doc = include_str!("README.md")]

@@ -1,0 +1,3 @@
+//! Calibrations as text and files. A kind a file.
+
+pub mod noise;
