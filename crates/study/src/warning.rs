@@ -62,6 +62,10 @@ pub enum Warning {
     BandsDifferInNoise { chi_square: f64 },
     /// Slope of variance over mean, and its error.
     PhotonsNotTold { per_photon: f64, sigma: f64 },
+    /// Lines that are off in all bands alike.
+    LinesLikeObjects { axis: &'static str, lines: Vec<usize> },
+    /// Stripes of a cube of so many bands.
+    StripesOfFewBands { bands: usize },
     /// A library without errors.
     LibraryTakenAsExact,
     /// Pixels whose material a prior over the image changed, and whether its last sweep still changed something.
@@ -234,6 +238,8 @@ impl Warning {
             Self::TextureInNoise { .. } => Code::TextureInNoise,
             Self::BandsDifferInNoise { .. } => Code::BandsDifferInNoise,
             Self::PhotonsNotTold { .. } => Code::PhotonsNotTold,
+            Self::LinesLikeObjects { .. } => Code::LinesLikeObjects,
+            Self::StripesOfFewBands { .. } => Code::StripesOfFewBands,
             Self::LibraryTakenAsExact => Code::LibraryTakenAsExact,
             Self::SpatialPrior { .. } => Code::SpatialPrior,
             Self::Identical => Code::Identical,

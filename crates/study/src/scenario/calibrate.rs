@@ -2,6 +2,8 @@
 
 pub mod frames;
 pub mod noise;
+pub mod stripes;
 
 pub use frames::Frames;
 pub use noise::NoiseScenario;
+pub use stripes::StripesScenario;

@@ -36,7 +36,11 @@ struct Row {
 const TABLE: &[Row] = &[
     Row { kind: Kind::Materials, told_by: &[("material", Form::Tables)], name: "a manifest of materials" },
     Row { kind: Kind::Library, told_by: &[("clusters", Form::Any)], name: "what a library is made from" },
-    Row { kind: Kind::Calibrate, told_by: &[("noise", Form::Any)], name: "a calibration" },
+    Row {
+        kind: Kind::Calibrate,
+        told_by: &[("noise", Form::Any), ("stripes", Form::Any)],
+        name: "a calibration",
+    },
     Row {
         kind: Kind::Decompose,
         told_by: &[("library", Form::Any), ("truth", Form::Any)],

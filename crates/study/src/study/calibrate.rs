@@ -2,5 +2,7 @@
 
 mod noise;
 mod opened;
+mod stripes;
 
 pub use noise::{NoiseFound, NoiseStudy};
+pub use stripes::{Samples, StripesFound, StripesStudy};

@@ -76,6 +76,21 @@ impl Display for Warning {
                 significant(*per_photon, 2),
                 significant(*sigma, 2)
             ),
+            Self::LinesLikeObjects { axis, lines } => {
+                let shown: Vec<String> = lines.iter().take(10).map(usize::to_string).collect();
+                let more = if lines.len() > 10 { ", …" } else { "" };
+                write!(
+                    f,
+                    "{} {axis} ({}{more}, counted from 0) are off in all bands alike, as a thin object along them would be; they were left as \
+                     they are",
+                    lines.len(),
+                    shown.join(", ")
+                )
+            }
+            Self::StripesOfFewBands { bands } => write!(
+                f,
+                "of {bands} band(s) none tells a stripe from a thin object that lies along a line: what was taken out may have been one"
+            ),
             Self::LibraryTakenAsExact => f.write_str(
                 "the library is taken as exact: with errors of its emissivities temperatures are off by more than is said",
             ),

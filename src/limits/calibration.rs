@@ -1,0 +1,3 @@
+//! What errors of the calibration leave of the information of a cube.
+
+pub mod stripes;
