@@ -54,6 +54,18 @@ pub enum Warning {
     MirrorNotExcluded { surroundings: usize },
     /// A last round that still changed something.
     ClustersNotSettled { rounds: usize },
+    /// Share of differences that were left out of a noise.
+    NoiseOutliers { share: f64 },
+    /// Largest texture that was taken out of the noise of a band, over that noise.
+    TextureInNoise { share: f64 },
+    /// χ²/ν of the noise of bands about one line.
+    BandsDifferInNoise { chi_square: f64 },
+    /// Slope of variance over mean, and its error.
+    PhotonsNotTold { per_photon: f64, sigma: f64 },
+    /// Lines that are off in all bands alike.
+    LinesLikeObjects { axis: &'static str, lines: Vec<usize> },
+    /// Stripes of a cube of so many bands.
+    StripesOfFewBands { bands: usize },
     /// A library without errors.
     LibraryTakenAsExact,
     /// Pixels whose material a prior over the image changed, and whether its last sweep still changed something.
@@ -222,6 +234,12 @@ impl Warning {
             Self::ClustersNotSettled { .. } => Code::ClustersNotSettled,
             Self::ClusterDoesNotFit { .. } => Code::ClusterDoesNotFit,
             Self::MirrorNotExcluded { .. } => Code::MirrorNotExcluded,
+            Self::NoiseOutliers { .. } => Code::NoiseOutliers,
+            Self::TextureInNoise { .. } => Code::TextureInNoise,
+            Self::BandsDifferInNoise { .. } => Code::BandsDifferInNoise,
+            Self::PhotonsNotTold { .. } => Code::PhotonsNotTold,
+            Self::LinesLikeObjects { .. } => Code::LinesLikeObjects,
+            Self::StripesOfFewBands { .. } => Code::StripesOfFewBands,
             Self::LibraryTakenAsExact => Code::LibraryTakenAsExact,
             Self::SpatialPrior { .. } => Code::SpatialPrior,
             Self::Identical => Code::Identical,

@@ -1,0 +1,4 @@
+//! Calibrations as text and files. A kind a file.
+
+pub mod noise;
+pub mod stripes;
