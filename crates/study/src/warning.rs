@@ -66,6 +66,12 @@ pub enum Warning {
     LinesLikeObjects { axis: &'static str, lines: Vec<usize> },
     /// Stripes of a cube of so many bands.
     StripesOfFewBands { bands: usize },
+    /// Scatter of the pixels of a blackbody over the stated noise.
+    BlackbodyNotEven { blackbody: usize, over: f64 },
+    /// χ²/ν of blackbodies about straight lines.
+    BlackbodiesDoNotFit { chi_square: f64 },
+    /// Share of samples beyond the radiances of the blackbodies.
+    BeyondBlackbodies { share: f64, low_k: f64, high_k: f64 },
     /// A library without errors.
     LibraryTakenAsExact,
     /// Pixels whose material a prior over the image changed, and whether its last sweep still changed something.
@@ -240,6 +246,9 @@ impl Warning {
             Self::PhotonsNotTold { .. } => Code::PhotonsNotTold,
             Self::LinesLikeObjects { .. } => Code::LinesLikeObjects,
             Self::StripesOfFewBands { .. } => Code::StripesOfFewBands,
+            Self::BlackbodyNotEven { .. } => Code::BlackbodyNotEven,
+            Self::BlackbodiesDoNotFit { .. } => Code::BlackbodiesDoNotFit,
+            Self::BeyondBlackbodies { .. } => Code::BeyondBlackbodies,
             Self::LibraryTakenAsExact => Code::LibraryTakenAsExact,
             Self::SpatialPrior { .. } => Code::SpatialPrior,
             Self::Identical => Code::Identical,

@@ -116,8 +116,7 @@ impl Channel {
     pub fn left(&self, whitened: &[f64]) -> Vec<f64> {
         let mut rest = whitened.to_vec();
         let ones: Vec<f64> = self.share.iter().map(|share| share.sqrt()).collect();
-        let norm =
-            self.share.iter().zip(&self.apart).map(|(share, b)| share * b * b).sum::<f64>().sqrt();
+        let norm = self.share.iter().zip(&self.apart).map(|(share, b)| share * b * b).sum::<f64>().sqrt();
         let slope: Vec<f64> = ones.iter().zip(&self.apart).map(|(one, b)| one * b / norm).collect();
         for _ in 0..2 {
             for q in [&ones, &slope] {
@@ -160,9 +159,9 @@ impl Blackbodies {
                 let what = "deviations of a reading".into();
                 return Err(Error::Length { what, found: sigma[k].len(), expected: wavenumbers_cm1.len() });
             }
-            sigma[k]
-                .iter()
-                .try_for_each(|sigma| check::positive("deviation of a reading", *sigma, "counts").map(drop))?;
+            sigma[k].iter().try_for_each(|sigma| {
+                check::positive("deviation of a reading", *sigma, "counts").map(drop)
+            })?;
         }
         if count < 2 {
             let found = format!("{count} blackbody temperature{}", if count == 1 { "" } else { "s" });
@@ -175,9 +174,10 @@ impl Blackbodies {
             let found = format!("blackbodies 1 and 2 are both at {} K", temperatures_k[0]);
             return Err(Error::malformed(found, "give two temperatures that differ"));
         }
-        let channels = wavenumbers_cm1.iter().enumerate().map(|(i, nu)| {
-            Channel::new(*nu, &temperatures_k, sigma.iter().map(|sigma| sigma[i]).collect())
-        });
+        let channels = wavenumbers_cm1
+            .iter()
+            .enumerate()
+            .map(|(i, nu)| Channel::new(*nu, &temperatures_k, sigma.iter().map(|sigma| sigma[i]).collect()));
         Ok(Self { channels: channels.collect(), errors_k, temperatures_k })
     }
 
@@ -290,10 +290,7 @@ impl Bound {
         // The reading of no radiance.
         let parts = self.radiance(of, channel, 0.0);
         let square = self.response[channel].powi(2);
-        Parts {
-            var_noise: parts.var_noise * square,
-            var_temperature: parts.var_temperature * square,
-        }
+        Parts { var_noise: parts.var_noise * square, var_temperature: parts.var_temperature * square }
     }
 
     /// Covariance of response and offset in a channel, counts per radiance × counts.
@@ -338,8 +335,9 @@ mod tests {
 
     fn blackbodies() -> Blackbodies {
         let temperatures = vec![283.15, 313.15, 353.15, 353.2];
-        let sigma: Vec<Vec<f64>> =
-            (0..4).map(|k| (0..3).map(|i| 0.01 * (1.0 + 0.3 * k as f64 + 0.2 * i as f64)).collect()).collect();
+        let sigma: Vec<Vec<f64>> = (0..4)
+            .map(|k| (0..3).map(|i| 0.01 * (1.0 + 0.3 * k as f64 + 0.2 * i as f64)).collect())
+            .collect();
         Blackbodies::new(&NU, temperatures, vec![0.05, 0.02, 0.08, 0.04], &sigma).unwrap()
     }
 

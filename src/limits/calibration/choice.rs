@@ -81,11 +81,7 @@ pub fn radiance_error(wanted: &Wanted, temperatures_k: &[f64]) -> Result<Radianc
 ///
 /// # Errors
 /// Fewer than two temperatures to choose from that differ.
-pub fn best_blackbodies(
-    wanted: &Wanted,
-    among_k: &[f64],
-    count: usize,
-) -> Result<(Vec<f64>, RadianceError)> {
+pub fn best_blackbodies(wanted: &Wanted, among_k: &[f64], count: usize) -> Result<(Vec<f64>, RadianceError)> {
     let mut best: Option<(Vec<f64>, RadianceError)> = None;
     let better = |found: RadianceError, best: &Option<(Vec<f64>, RadianceError)>| {
         best.as_ref().is_none_or(|(_, known)| found.total_k() < known.total_k())

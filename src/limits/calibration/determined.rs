@@ -146,9 +146,8 @@ impl Determined {
         let Some((d, v)) = right_vectors(scores * a) else { return Err(no_values()) };
         let av = a * &v;
         let modes = d.len();
-        let smooth = |j: usize| {
-            (0..modes).map(|i| av[(j, i)].powi(2) / (1.0 + d[i] * d[i])).sum::<f64>().sqrt()
-        };
+        let smooth =
+            |j: usize| (0..modes).map(|i| av[(j, i)].powi(2) / (1.0 + d[i] * d[i])).sum::<f64>().sqrt();
         // D Uᵀ S = Vᵀ (S A)ᵀ S, so that the left vectors are not needed.
         let mut seen = v.tr_mul(&(scores * a).tr_mul(scores));
         for i in 0..modes {

@@ -277,8 +277,7 @@ mod tests {
             let (ra, rb) = (readings[a], readings[b]);
             let own = if a == b { 0.09 } else { 0.0 };
             let offset = if ra.filter == rb.filter { 1e6 } else { 0.0 };
-            let shared =
-                if ra.blackbody == rb.blackbody { errors[ra.blackbody].powi(2) } else { 0.0 };
+            let shared = if ra.blackbody == rb.blackbody { errors[ra.blackbody].powi(2) } else { 0.0 };
             own + offset + shared * slope[a] * slope[b]
         });
         let design = DMatrix::from_fn(9, 8, |i, j| {

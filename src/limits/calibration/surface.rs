@@ -70,8 +70,7 @@ pub fn errors(
     let both_noise =
         (off_own * own.var_response + emissivity * off * black.var_response) / (response * apart);
     // Temperatures: what each δ moves.
-    let e_own: Vec<f64> =
-        own.gain.iter().zip(&own.slope).map(|(h, slope)| emissivity * h * slope).collect();
+    let e_own: Vec<f64> = own.gain.iter().zip(&own.slope).map(|(h, slope)| emissivity * h * slope).collect();
     let x_own: Vec<f64> =
         own.leverages(surroundings).zip(&own.slope).map(|(l, slope)| a * l * slope / apart).collect();
     let e_black: Vec<f64> =

@@ -106,22 +106,18 @@ pub fn spectrometer(
         };
         let black: Vec<Vec<f64>> =
             of.blackbodies_k.iter().zip(of.errors_k).map(|(t, u)| read(t, u, 1.0)).collect();
-        let own: Vec<Vec<f64>> = of
-            .surface_k
-            .iter()
-            .zip(of.surface_errors_k)
-            .map(|(t, u)| read(t, u, of.emissivity))
-            .collect();
+        let own: Vec<Vec<f64>> =
+            of.surface_k.iter().zip(of.surface_errors_k).map(|(t, u)| read(t, u, of.emissivity)).collect();
         let scene = read(&of.scene_k, &0.0, 1.0);
         let found = Calibration::found(blackbodies, &black)?;
         let surface = found.surface(&twin.readings(of.surface_k, of.surface_errors_k)?, &own)?;
         let (of_black, bound) = (&found.blackbodies, &found.bound);
-        let response = held((0..channels).map(|c| {
-            (found.response[c] - twin.response[c], bound.response(of_black, c).sigma())
-        }));
-        let offset = held(
+        let response = held(
             (0..channels)
-                .map(|c| (found.offset(c) - twin.offset[c], bound.offset(of_black, c).sigma())),
+                .map(|c| (found.response[c] - twin.response[c], bound.response(of_black, c).sigma())),
+        );
+        let offset = held(
+            (0..channels).map(|c| (found.offset(c) - twin.offset[c], bound.offset(of_black, c).sigma())),
         );
         let radiance = held((0..channels).map(|c| {
             let measured = found.radiance(c, scene[c]);
@@ -185,8 +181,7 @@ pub fn filter_wheel(
         let radiance = held((0..twin.wheel.filters()).map(|q| {
             let of = |x: &[f64]| twin.wheel.counts(q, &truth, x);
             let noise = sigma * (normal(&mut rng) - normal(&mut rng));
-            let measured =
-                found.radiance(&twin.wheel, q, of(&scene) - of(&reference) + noise, reference_k);
+            let measured = found.radiance(&twin.wheel, q, of(&scene) - of(&reference) + noise, reference_k);
             let own = 2f64.sqrt() * sigma * measured.per_count;
             (measured.radiance - of(&scene) / of(&vec![1.0; centres.len()]), own.hypot(measured.sigma_common))
         }));
@@ -220,8 +215,7 @@ mod tests {
                 scene_k: 310.0,
             };
             let found = spectrometer(&twin, of, 2000, 3).unwrap();
-            let all =
-                [found.response, found.offset, found.radiance, found.emissivity, found.surroundings];
+            let all = [found.response, found.offset, found.radiance, found.emissivity, found.surroundings];
             for one in all {
                 assert!((0.93..0.97).contains(&one.share), "{found:?}");
             }

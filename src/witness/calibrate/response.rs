@@ -128,7 +128,10 @@ impl Response {
         let factor = qr.r();
         let mut solved = right.rows(0, columns).clone_owned();
         let unread = || {
-            Error::malformed("a filter that no blackbody was read through", "leave it out, or give its readings")
+            Error::malformed(
+                "a filter that no blackbody was read through",
+                "leave it out, or give its readings",
+            )
         };
         if !factor.solve_upper_triangular_mut(&mut solved) {
             return Err(unread());

@@ -170,13 +170,13 @@ impl FilterWheelTwin {
     ) -> Vec<f64> {
         let mut radiance = vec![0.0; self.wheel.centres_cm1().len()];
         planck::photon_radiance_into(self.wheel.centres_cm1(), temperature_k, &mut radiance);
-        let counts: Vec<f64> = (0..self.wheel.filters())
-            .map(|q| self.wheel.counts(q, &self.response, &radiance))
-            .collect();
+        let counts: Vec<f64> =
+            (0..self.wheel.filters()).map(|q| self.wheel.counts(q, &self.response, &radiance)).collect();
         let mut out = Vec::with_capacity(size[0] * size[1] * counts.len());
         for pixel in 0..size[0] * size[1] {
             let (eta, phase) = (self.eta(size, pixel), pixel as f64);
-            let dark = self.dark * libm::sin(0.7 * phase) + self.diaphragm * (1.0 - eta) * libm::cos(0.2 * phase);
+            let dark =
+                self.dark * libm::sin(0.7 * phase) + self.diaphragm * (1.0 - eta) * libm::cos(0.2 * phase);
             for (counts, offset) in counts.iter().zip(&self.offsets) {
                 let noise = if sigma > 0.0 { sigma * normal(rng) } else { 0.0 };
                 out.push(eta * counts + offset * (1.0 + 0.1 * libm::cos(0.3 * phase)) + dark + noise);

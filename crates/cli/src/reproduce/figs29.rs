@@ -72,8 +72,7 @@ pub(super) fn make(order: Order) -> Result<Made> {
     let experiments = if order.effort == Effort::Full { EXPERIMENTS } else { QUICK_EXPERIMENTS };
     let coverage = filter_wheel(&twin, sigma, TEMPERATURE_ERROR_K, 320.0, experiments, order.seed)?;
     let choices = designs::choices(&twin, sigma / (readings.len() as f64).sqrt(), TEMPERATURE_ERROR_K)?;
-    let shown =
-        Shown { found, exact, uncertain, bias, over_noise, choices, coverage, experiments, twin };
+    let shown = Shown { found, exact, uncertain, bias, over_noise, choices, coverage, experiments, twin };
     let mut bundle = Bundle::default();
     bundle.add_table("response.csv", response_table(&shown))?;
     bundle.add_table("kernels.csv", kernels(&shown))?;
@@ -96,7 +95,8 @@ fn drawn(twin: &FilterWheelTwin, errors: &[f64], sigma: f64, seed: u64) -> Resul
     let mut rng = generator(seed, 1 << 30);
     // Normal numbers: readings of no photons with such noise.
     let mut normal = |count: usize| -> Result<Vec<f64>> {
-        let draws = Draws::new(&Statistics::Poisson, &vec![0.0; count])?.with_electronic_noise(&vec![1.0; count])?;
+        let draws =
+            Draws::new(&Statistics::Poisson, &vec![0.0; count])?.with_electronic_noise(&vec![1.0; count])?;
         let mut out = vec![0.0; count];
         draws.draw_into(&mut rng, &mut out);
         Ok(out)

@@ -38,7 +38,12 @@ const TABLE: &[Row] = &[
     Row { kind: Kind::Library, told_by: &[("clusters", Form::Any)], name: "what a library is made from" },
     Row {
         kind: Kind::Calibrate,
-        told_by: &[("noise", Form::Any), ("stripes", Form::Any)],
+        told_by: &[
+            ("response", Form::Any),
+            ("blackbody", Form::Any),
+            ("noise", Form::Any),
+            ("stripes", Form::Any),
+        ],
         name: "a calibration",
     },
     Row {

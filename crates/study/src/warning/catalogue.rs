@@ -66,6 +66,13 @@ catalogue! {
 
     /// Lines of a cube are off in all bands alike, and were left as they are: a thin object along them looks like that.
     LinesLikeObjects = "lines-like-objects", "Write stripes.in_all_bands = true where they are stripes.";
+    /// Pixels of a blackbody scatter more than the noise that is stated: they differ in their response, or the noise is larger.
+    BlackbodyNotEven = "blackbody-not-even",
+        "State the noise that hadar calibrate noise finds; calibrate pixels of different response one by one.";
+    /// Readings of three or more blackbodies lie off straight lines by more than their noise and temperatures allow.
+    BlackbodiesDoNotFit = "blackbodies-do-not-fit", "State a larger noise or uncertainty; look for a response that is not linear.";
+    /// A scene has radiances below those of the coldest blackbody, or above those of the warmest.
+    BeyondBlackbodies = "beyond-blackbodies", "Give blackbodies that enclose the scene: errors grow outside of them, and the response may bend.";
     /// Stripes were taken out of a cube of too few bands to tell them from thin objects.
     StripesOfFewBands = "stripes-of-few-bands", "Look at the picture of what was taken out.";
     /// Differences of samples were left out of a noise since they are far larger than it.

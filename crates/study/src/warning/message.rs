@@ -87,6 +87,22 @@ impl Display for Warning {
                     shown.join(", ")
                 )
             }
+            Self::BlackbodyNotEven { blackbody, over } => write!(
+                f,
+                "the pixels of blackbody[{blackbody}] scatter by {} times the stated noise: errors that are said to be common to all pixels \
+                 may be larger",
+                significant(*over, 2)
+            ),
+            Self::BlackbodiesDoNotFit { chi_square } => write!(
+                f,
+                "the blackbodies do not lie on straight lines (chi2/nu {}): errors are larger than stated",
+                significant(*chi_square, 2)
+            ),
+            Self::BeyondBlackbodies { share, low_k, high_k } => write!(
+                f,
+                "{} % of the samples are outside of the blackbodies' radiances ({low_k} to {high_k} K)",
+                significant(100.0 * share, 2)
+            ),
             Self::StripesOfFewBands { bands } => write!(
                 f,
                 "of {bands} band(s) none tells a stripe from a thin object that lies along a line: what was taken out may have been one"

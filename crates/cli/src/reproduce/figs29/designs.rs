@@ -93,7 +93,13 @@ pub(super) fn choices(twin: &FilterWheelTwin, sigma: f64, error_k: f64) -> Resul
     Ok(out)
 }
 
-fn row(twin: &FilterWheelTwin, wheel: &FilterWheel, design: &Design, sigma: f64, error_k: f64) -> Result<Row> {
+fn row(
+    twin: &FilterWheelTwin,
+    wheel: &FilterWheel,
+    design: &Design,
+    sigma: f64,
+    error_k: f64,
+) -> Result<Row> {
     let readings = design.readings(sigma);
     let blackbodies = readings.iter().map(|reading| reading.blackbody + 1).max().unwrap_or(0);
     let errors = vec![error_k; blackbodies];

@@ -33,7 +33,9 @@ fn response(shown: &Shown) -> Plot {
         Axis::linear("wavenumber (cm⁻¹)"),
         Axis::linear("response (peak of the typical curve: 1)"),
     )
-    .subtitle("Bars: 95 %, of the readings together with what is known of smooth curves about the typical one.")
+    .subtitle(
+        "Bars: 95 %, of the readings together with what is known of smooth curves about the typical one.",
+    )
     .series(Series::line("true", nu.clone(), truth.clone()).colour(0))
     .series(Series::line("typical curve", nu.clone(), typical.to_vec()).style(Style::Dashed).colour(6))
     .series(Series::points("estimated", nu.clone(), values.clone()).colour(1))
@@ -63,9 +65,7 @@ fn directions(shown: &Shown) -> Plot {
         Axis::log("σ of its coefficient (peak of the response: 1)").range(1e-5, 1e4),
     )
     .subtitle(format!("Singular values of the scores, inverted; {beyond} points above 10⁴ are not shown."))
-    .series(
-        Series::points("temperatures exact", x.clone(), exact).style(Style::Marked).colour(0),
-    )
+    .series(Series::points("temperatures exact", x.clone(), exact).style(Style::Marked).colour(0))
     .series(Series::points("temperatures to 20 mK", x, uncertain).style(Style::Marked).colour(1))
     .rule(Rule::horizontal(0.1, "a tenth of the peak"));
     Plot { name: "directions".into(), figure: figure.into(), table }

@@ -107,7 +107,11 @@ pub(super) fn make(order: Order, _: &Library, progress: Progress<'_>) -> Result<
             surroundings_k: 275.0,
             scene_k: 310.0,
         };
-        held.push(Held { blackbodies_k, errors_k, coverage: spectrometer(&twin, of, experiments, order.seed)? });
+        held.push(Held {
+            blackbodies_k,
+            errors_k,
+            coverage: spectrometer(&twin, of, experiments, order.seed)?,
+        });
         progress(i + 1, total);
     }
     let wanted = Wanted {

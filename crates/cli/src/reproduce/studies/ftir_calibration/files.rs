@@ -6,7 +6,8 @@ use hadar_report::plot::{Axis, HeatMap, LineFigure, Marker, Series, Style};
 use hadar_report::table::{Table, number};
 
 pub(super) fn coverage(shown: &Shown) -> Table {
-    let mut table = Table::new(["blackbodies_k", "temperature_errors_k", "quantity", "coverage", "deviation"]);
+    let mut table =
+        Table::new(["blackbodies_k", "temperature_errors_k", "quantity", "coverage", "deviation"]);
     let list = |values: &[f64]| values.iter().map(f64::to_string).collect::<Vec<_>>().join(" ");
     for held in &shown.held {
         let c = held.coverage;
@@ -88,8 +89,14 @@ pub(super) fn pairs(shown: &Shown) -> Plot {
 
 pub(super) fn surface(shown: &Shown) -> Plot {
     let plane = &shown.surface;
-    let mut table =
-        Table::new(["colder_k", "warmer_k", "error", "by_noise", "by_temperatures", "by_change_of_emissivity"]);
+    let mut table = Table::new([
+        "colder_k",
+        "warmer_k",
+        "error",
+        "by_noise",
+        "by_temperatures",
+        "by_change_of_emissivity",
+    ]);
     rows(&mut table, plane, |e| vec![e.total(), e.noise, e.temperature, e.bias]);
     let values = plane.errors.iter().map(|e| e.map_or(f64::NAN, |e| e.total())).collect();
     let mut figure = HeatMap::new(
@@ -114,7 +121,8 @@ pub(super) fn surface(shown: &Shown) -> Plot {
 }
 
 pub(super) fn spacing(shown: &Shown) -> Plot {
-    let mut table = Table::new(["apart_k", "by_noise", "by_temperatures", "by_change_of_emissivity", "error"]);
+    let mut table =
+        Table::new(["apart_k", "by_noise", "by_temperatures", "by_change_of_emissivity", "error"]);
     for (apart, e) in &shown.spacing {
         table.push_numbers(&[*apart, e.noise, e.temperature, e.bias, e.total()]);
     }

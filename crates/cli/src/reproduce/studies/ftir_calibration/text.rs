@@ -23,7 +23,10 @@ pub(super) fn finding(shown: &Shown) -> String {
     let surface = shown.surface.least(0.0, |e| e.total());
     let warm = shown.surface.least(300.0, |e| e.total());
     let pair = pair.map_or_else(String::new, |(a, b, e)| {
-        format!("The best two blackbodies for scenes of 270 to 320 K are at {a} and {b} K ({} mK); ", significant(1e3 * e.total_k(), 3))
+        format!(
+            "The best two blackbodies for scenes of 270 to 320 K are at {a} and {b} K ({} mK); ",
+            significant(1e3 * e.total_k(), 3)
+        )
     });
     let emissivity = surface.zip(warm).map_or_else(String::new, |((a, b, e), (c, d, f))| {
         format!(
@@ -95,15 +98,7 @@ pub(super) fn readme(shown: &Shown, seed: u64) -> String {
         finding(shown),
         shown.experiments,
         markdown(
-            &[
-                "blackbodies (K)",
-                "to (K)",
-                "response",
-                "offset",
-                "radiance",
-                "emissivity",
-                "surroundings"
-            ],
+            &["blackbodies (K)", "to (K)", "response", "offset", "radiance", "emissivity", "surroundings"],
             &held
         ),
         1e3 * TEMPERATURE_ERROR_K,
