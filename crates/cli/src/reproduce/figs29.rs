@@ -1,16 +1,17 @@
 //! Fig. S29: the camera's response from blackbodies, and how much of it they determine.
 //!
 //! A twin of prototype 1 ([`FilterWheelTwin`]), whose truth is known: 31 blackbodies, ten filters, 30 values of the response. Readings are means
-//! over [`PIXELS`] pixels about the centre. How many of the 30 values they determine, what smoothness adds and costs, and what other
+//! over [`shown::PIXELS`] pixels about the centre. How many of the 30 values they determine, what smoothness adds and costs, and what other
 //! temperatures and filters would determine in the same time ([`designs`]).
 
 mod designs;
 mod lines;
 mod pictures;
+mod shown;
 
 use super::order::{Effort, Figures, Made, Order};
-use designs::{Choice, Row};
-use hadar::calibrate::coverage::{FilterWheelCoverage, filter_wheel};
+use designs::Row;
+use hadar::calibrate::coverage::filter_wheel;
 use hadar::calibrate::response::Response;
 use hadar::calibrate::twin::FilterWheelTwin;
 use hadar::calibration::determined::Determined;
@@ -19,32 +20,12 @@ use hadar::simulate::draws::{Draws, generator};
 use hadar::statistics::Statistics;
 use hadar_report::bundle::Bundle;
 use hadar_report::table::{Table, number};
+use shown::{PIXELS, Shown, TEMPERATURE_ERROR_K};
 
-/// Pixels about the centre that a reading is the mean of.
-const PIXELS: f64 = 400.0;
-/// Deviation of a blackbody's temperature from what it is set to, K.
-const TEMPERATURE_ERROR_K: f64 = 0.02;
 const EXPERIMENTS: usize = 600;
 const QUICK_EXPERIMENTS: usize = 60;
 /// Deviations of a reading, counts, over which the number is shown.
 const SIGMAS: [f64; 9] = [10.0, 3.0, 1.0, 0.3, 0.1, 0.05, 0.02, 0.005, 0.001];
-
-/// All that is shown.
-struct Shown {
-    twin: FilterWheelTwin,
-    /// One drawn calibration.
-    found: Response,
-    /// At exact temperatures, and at uncertain ones.
-    exact: Determined,
-    uncertain: Determined,
-    /// (K − 1)(r − m).
-    bias: Vec<f64>,
-    /// σ of a reading; number at exact and at uncertain temperatures; effective numbers.
-    over_noise: Vec<[f64; 5]>,
-    choices: Vec<Choice>,
-    coverage: FilterWheelCoverage,
-    experiments: usize,
-}
 
 pub(super) fn make(order: Order) -> Result<Made> {
     let twin = FilterWheelTwin::prototype()?;

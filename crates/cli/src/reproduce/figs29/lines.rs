@@ -1,7 +1,8 @@
 //! What the paper says of its calibration, and what comes out.
 
 use super::super::ledger::{Line, Verdict};
-use super::{PIXELS, Shown, TEMPERATURE_ERROR_K, designs};
+use super::designs;
+use super::shown::{PIXELS, Shown, TEMPERATURE_ERROR_K};
 
 pub(super) fn all(shown: &Shown) -> Vec<Line> {
     let (exact, uncertain) = (&shown.exact, &shown.uncertain);

@@ -1,6 +1,7 @@
 //! The pictures of the response's calibration.
 
-use super::Shown;
+use super::designs::Choice;
+use super::shown::Shown;
 use hadar_report::figures::Plot;
 use hadar_report::plot::{Axis, LineFigure, NamedSeries, NamedValues, Panel, Rule, Series, Style};
 use hadar_report::table::{Table, number};
@@ -100,7 +101,7 @@ fn over_noise(shown: &Shown) -> Plot {
 fn choices(shown: &Shown) -> Plot {
     let names: Vec<String> = shown.choices.iter().map(|one| one.name.clone()).collect();
     let mut table = Table::new(["choice", "determined", "effective", "effective_exact_temperatures"]);
-    let of = |pick: &dyn Fn(&super::Choice) -> f64| shown.choices.iter().map(pick).collect::<Vec<f64>>();
+    let of = |pick: &dyn Fn(&Choice) -> f64| shown.choices.iter().map(pick).collect::<Vec<f64>>();
     let (determined, effective, exact) = (
         of(&|one| one.uncertain.number as f64),
         of(&|one| one.uncertain.effective),

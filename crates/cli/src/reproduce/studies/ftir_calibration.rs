@@ -5,86 +5,30 @@
 //! * the error of an emissivity from two temperatures of a surface (S57), over both: noise against the change of the emissivity.
 
 mod files;
+mod shown;
 mod text;
 
 use crate::reproduce::order::{Effort, Order, Progress};
-use hadar::calibrate::coverage::{Experiment, SpectrometerCoverage, spectrometer};
+use hadar::calibrate::coverage::{Experiment, spectrometer};
 use hadar::calibrate::twin::SpectrometerTwin;
-use hadar::calibration::choice::{
-    EmissivityError, RadianceError, Wanted, WantedSurface, best_blackbodies, emissivity_error, radiance_error,
-};
+use hadar::calibration::choice::{Wanted, WantedSurface, best_blackbodies, emissivity_error, radiance_error};
 use hadar::error::Result;
 use hadar::material::Library;
 use hadar::planck;
 use hadar_report::bundle::Bundle;
+use shown::{
+    Best, EMISSIVITY, Held, Plane, READINGS, SLOPE_PER_K, SURROUNDINGS_K, Shown, TEMPERATURE_ERROR_K,
+    WANTED_K,
+};
 
-/// Deviation of the temperature of each blackbody and of the surface, K.
-const TEMPERATURE_ERROR_K: f64 = 0.03;
-/// Readings that all the time is worth.
-const READINGS: f64 = 64.0;
 /// Scenes whose radiance is to be measured, K.
 const SCENES_K: [f64; 6] = [270.0, 280.0, 290.0, 300.0, 310.0, 320.0];
 /// Temperatures that blackbodies may have: with a cooled one, and without.
 const COOLED_K: [f64; 2] = [250.0, 400.0];
 const HEATED_K: [f64; 2] = [300.0, 400.0];
 const COUNTS: [usize; 4] = [2, 3, 4, 6];
-/// The surface: emissivity, its change, where it is wanted, and the temperature of its surroundings.
-const EMISSIVITY: f64 = 0.9;
-const SLOPE_PER_K: f64 = 1e-4;
-const WANTED_K: f64 = 310.0;
-const SURROUNDINGS_K: f64 = 295.0;
 const EXPERIMENTS: usize = 2000;
 const QUICK_EXPERIMENTS: usize = 200;
-
-/// Blackbodies, their deviations, and what their experiments held.
-struct Held {
-    blackbodies_k: &'static [f64],
-    errors_k: &'static [f64],
-    coverage: SpectrometerCoverage,
-}
-
-/// The best settings of a number.
-struct Best {
-    within_k: [f64; 2],
-    temperatures_k: Vec<f64>,
-    error: RadianceError,
-}
-
-/// Errors over two temperatures; none where they are the same.
-struct Plane<T> {
-    axis_k: Vec<f64>,
-    errors: Vec<Option<T>>,
-}
-
-impl<T: Copy> Plane<T> {
-    fn over(axis_k: Vec<f64>, of: impl Fn(f64, f64) -> Result<T>) -> Result<Self> {
-        let mut errors = Vec::new();
-        for y in &axis_k {
-            for x in &axis_k {
-                errors.push(if x < y { Some(of(*x, *y)?) } else { None });
-            }
-        }
-        Ok(Self { axis_k, errors })
-    }
-
-    /// The least by `size` whose lower temperature is at least `from_k`: both temperatures, and the error.
-    fn least(&self, from_k: f64, size: impl Fn(T) -> f64) -> Option<(f64, f64, T)> {
-        let n = self.axis_k.len();
-        let all = self.errors.iter().enumerate();
-        let found = all.filter_map(|(i, error)| error.map(|e| (self.axis_k[i % n], self.axis_k[i / n], e)));
-        found.filter(|one| one.0 >= from_k).min_by(|a, b| size(a.2).total_cmp(&size(b.2)))
-    }
-}
-
-struct Shown {
-    experiments: usize,
-    held: Vec<Held>,
-    pairs: Plane<RadianceError>,
-    best: Vec<Best>,
-    surface: Plane<EmissivityError>,
-    /// Distance of two temperatures about the wanted one, and errors.
-    spacing: Vec<(f64, EmissivityError)>,
-}
 
 const SETS: [(&[f64], &[f64]); 3] = [
     (&[283.15, 333.15], &[0.0, 0.0]),

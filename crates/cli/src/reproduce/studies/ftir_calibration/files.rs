@@ -1,6 +1,7 @@
 //! Tables and pictures.
 
-use super::{Plane, SURROUNDINGS_K, Shown, TEMPERATURE_ERROR_K, WANTED_K};
+use super::shown::{Plane, SURROUNDINGS_K, Shown, TEMPERATURE_ERROR_K, WANTED_K};
+use hadar::calibration::choice::EmissivityError;
 use hadar_report::figures::Plot;
 use hadar_report::plot::{Axis, HeatMap, LineFigure, Marker, Series, Style};
 use hadar_report::table::{Table, number};
@@ -127,7 +128,7 @@ pub(super) fn spacing(shown: &Shown) -> Plot {
         table.push_numbers(&[*apart, e.noise, e.temperature, e.bias, e.total()]);
     }
     let x: Vec<f64> = shown.spacing.iter().map(|one| one.0).collect();
-    let of = |pick: &dyn Fn(&super::EmissivityError) -> f64| {
+    let of = |pick: &dyn Fn(&EmissivityError) -> f64| {
         shown.spacing.iter().map(|one| pick(&one.1)).collect::<Vec<f64>>()
     };
     let figure = LineFigure::new(

@@ -1,7 +1,7 @@
 //! The report's text.
 
 use super::super::page::markdown;
-use super::{EMISSIVITY, READINGS, SLOPE_PER_K, SURROUNDINGS_K, Shown, TEMPERATURE_ERROR_K, WANTED_K};
+use super::shown::{EMISSIVITY, READINGS, SLOPE_PER_K, SURROUNDINGS_K, Shown, TEMPERATURE_ERROR_K, WANTED_K};
 use hadar_report::text::significant;
 
 fn list(values: &[f64]) -> String {
