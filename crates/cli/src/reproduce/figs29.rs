@@ -107,7 +107,7 @@ fn response_table(shown: &Shown) -> Table {
             shown.found.values[j],
             shown.found.sigma(j),
             shown.exact.sigma_prior[j],
-            shown.exact.sigma_free[j],
+            pictures::told(shown.exact.sigma_free[j]),
             shown.bias[j],
         ]);
     }

@@ -51,15 +51,20 @@ fn response(shown: &Shown) -> Plot {
     Plot { name: "response".into(), figure: figure.into(), table }
 }
 
+/// A deviation beyond which rounding has a say is none.
+pub(super) fn told(sigma: f64) -> f64 {
+    if sigma < 1e4 { sigma } else { f64::NAN }
+}
+
 fn directions(shown: &Shown) -> Plot {
-    let sigma = |d: &[f64]| d.iter().map(|d| 1.0 / d).collect::<Vec<f64>>();
+    let sigma = |d: &[f64]| d.iter().map(|d| told(1.0 / d)).collect::<Vec<f64>>();
     let (exact, uncertain) = (sigma(&shown.exact.singular), sigma(&shown.uncertain.singular));
     let mut table = Table::new(["direction", "sigma_exact_temperatures", "sigma"]);
     for i in 0..exact.len() {
         table.push_numbers(&[(i + 1) as f64, exact[i], uncertain[i]]);
     }
     let x: Vec<f64> = (1..=exact.len()).map(|i| i as f64).collect();
-    let beyond = exact.iter().chain(&uncertain).filter(|sigma| **sigma > 1e4).count();
+    let beyond = exact.iter().chain(&uncertain).filter(|sigma| sigma.is_nan()).count();
     let figure = LineFigure::new(
         format!("{} of 30 values are determined by the readings alone", shown.uncertain.number),
         Axis::linear("direction of the response, the best known first"),
