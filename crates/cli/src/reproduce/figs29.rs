@@ -63,6 +63,7 @@ pub(super) fn make(order: Order) -> Result<Made> {
     let text = text(&shown);
     let pictures = vec![
         ("response.png", "The response of the twin, estimated and true"),
+        ("resolved.png", "What a value of the estimate sees of the true response"),
         ("directions.png", "How well each direction of the response is known"),
         ("number_over_noise.png", "Values that are determined over the noise of a reading"),
         ("choices.png", "What other temperatures and filters would determine in the same time"),
@@ -135,6 +136,8 @@ fn text(shown: &Shown) -> String {
          of the peak, correlated over 100 cm⁻¹, about the typical curve.\n\n\
          Of 30 values {} are determined, {} were the temperatures exact (numerical rank {}); effective numbers {:.1} and {:.1}. The most of the \
          choices below, '{}', determines {best} (effective {effective:.1}) in the same time.\n\n\
+         Wider temperatures and more, narrower filters determine more; more readings between the same ends do not, and neither does time that is \
+         shared by the most information (ln det, exact temperatures): two temperatures determine one value a filter, three one or two.\n\n\
          Intervals of 95 % hold {:.3} ± {:.3} of the values and {:.3} ± {:.3} of the radiances behind filters in {} calibrations of responses that \
          are drawn from the prior. For the twin's own response smoothness costs at most {:.3} of the peak (`bias_of_smoothness`).\n",
         1e3 * 0.05 / PIXELS.sqrt(),

@@ -75,7 +75,9 @@ fn compare(name: &str, made: &Rows, kept: &Rows) -> usize {
             }
             let tolerance = match column.as_str() {
                 // Shares and losses of drawn pixels; a fit ends at another last digit elsewhere.
-                _ if ["figs17/", "figs20/", "figs29/"].iter().any(|item| name.starts_with(item)) => DRAWN * (1.0 + b.abs()),
+                _ if ["figs17/", "figs20/", "figs29/"].iter().any(|item| name.starts_with(item)) => {
+                    DRAWN * (1.0 + b.abs())
+                }
                 // A draw that falls on the other side of a rounding sends a match elsewhere.
                 c if name == "fig4/matched.csv" && c != "depth_m_truth" => f64::INFINITY,
                 c if ranging && (c.starts_with("entropy") || c == "standard_deviation_with_noise_counts") => {

@@ -52,7 +52,7 @@ pub fn text(result: &BlackbodyFound) -> String {
         (square / result.channels.len().max(1) as f64).sqrt()
     };
     let (noise, temperature) = (rms(&|row| row.sigma_middle_k[0]), rms(&|row| row.sigma_middle_k[1]));
-    let milli = |kelvin: f64| quantity(1e3 * kelvin, "mK");
+    let milli = |kelvin: f64| if kelvin > 0.0 { quantity(kelvin, "K") } else { "0".to_owned() };
     let mut out = format!(
         "{} channels calibrated by {} blackbodies: a radiance as at {} K errs by {} in all pixels alike, and by {} in each sample.\n\n",
         result.channels.len(),

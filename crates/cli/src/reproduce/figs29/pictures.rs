@@ -6,8 +6,8 @@ use hadar_report::figures::Plot;
 use hadar_report::plot::{Axis, LineFigure, NamedSeries, NamedValues, Panel, Rule, Series, Style};
 use hadar_report::table::{Table, number};
 
-pub(super) fn all(shown: &Shown) -> [Plot; 4] {
-    [response(shown), directions(shown), over_noise(shown), choices(shown)]
+pub(super) fn all(shown: &Shown) -> [Plot; 5] {
+    [response(shown), kernels(shown), directions(shown), over_noise(shown), choices(shown)]
 }
 
 fn bars(x: &[f64], low: &[f64], high: &[f64]) -> Series {
@@ -42,13 +42,38 @@ fn response(shown: &Shown) -> Plot {
     .series(Series::points("estimated", nu.clone(), values.clone()).colour(1))
     .series(bars(&nu, &edge(-1.0), &edge(1.0)).colour(1))
     .lower(
-        Panel::new(Axis::linear("difference from the true one"))
+        Panel::new(Axis::linear("less the true one"))
             .series(Series::line("", nu.clone(), off(typical)).style(Style::Dashed).colour(6))
             .series(Series::points("", nu.clone(), off(values)).colour(1))
             .series(bars(&nu, &off(&edge(-1.0)), &off(&edge(1.0))).colour(1))
             .rule(Rule::horizontal(0.0, "")),
     );
     Plot { name: "response".into(), figure: figure.into(), table }
+}
+
+/// Kernels of these values are drawn.
+const VALUES: [usize; 5] = [4, 9, 14, 20, 26];
+
+fn kernels(shown: &Shown) -> Plot {
+    let nu = shown.twin.wheel.centres_cm1().to_vec();
+    let names = VALUES.map(|j| format!("estimate_at_{:.0}_cm1", nu[j]));
+    let mut table = Table::new(std::iter::once("wavenumber_cm1".to_owned()).chain(names));
+    let of = |j: usize| shown.uncertain.kernels.row(j).iter().copied().collect::<Vec<f64>>();
+    for (i, nu) in nu.iter().enumerate() {
+        let row: Vec<f64> = std::iter::once(*nu).chain(VALUES.map(|j| of(j)[i])).collect();
+        table.push_numbers(&row);
+    }
+    let mut figure = LineFigure::new(
+        "What a value of the estimate sees of the true response",
+        Axis::linear("wavenumber of the true response (cm⁻¹)"),
+        Axis::linear("share (resolving kernel)"),
+    )
+    .subtitle("A value that is resolved has a share of 1 at its own wavenumber and of 0 elsewhere; values 25.7 cm⁻¹ apart.");
+    for (colour, j) in VALUES.into_iter().enumerate() {
+        let label = format!("estimate at {:.0} cm⁻¹", nu[j]);
+        figure = figure.series(Series::line(label, nu.clone(), of(j)).style(Style::Marked).colour(colour));
+    }
+    Plot { name: "resolved".into(), figure: figure.into(), table }
 }
 
 /// A deviation beyond which rounding has a say is none.
