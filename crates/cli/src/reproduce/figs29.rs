@@ -55,7 +55,7 @@ pub(super) fn make(order: Order) -> Result<Made> {
     let choices = designs::choices(&twin, sigma / (readings.len() as f64).sqrt(), TEMPERATURE_ERROR_K)?;
     let shown = Shown { found, exact, uncertain, bias, over_noise, choices, coverage, experiments, twin };
     let mut bundle = Bundle::default();
-    bundle.add_table("response.csv", response_table(&shown))?;
+    bundle.add_table("values.csv", response_table(&shown))?;
     bundle.add_table("kernels.csv", kernels(&shown))?;
     bundle.add_table("designs.csv", designs::table(&shown.choices))?;
     bundle.add_table("shares.csv", designs::shares(&shown.choices))?;
@@ -139,7 +139,7 @@ fn text(shown: &Shown) -> String {
          Wider temperatures and more, narrower filters determine more; more readings between the same ends do not, and neither does time that is \
          shared by the most information (ln det, exact temperatures): two temperatures determine one value a filter, three one or two.\n\n\
          Intervals of 95 % hold {:.3} ± {:.3} of the values and {:.3} ± {:.3} of the radiances behind filters in {} calibrations of responses that \
-         are drawn from the prior. For the twin's own response smoothness costs at most {:.3} of the peak (`bias_of_smoothness`).\n",
+         are drawn from the prior. For the twin's own response smoothness costs at most {:.3} of the peak (`values.csv`).\n",
         1e3 * 0.05 / PIXELS.sqrt(),
         1e3 * TEMPERATURE_ERROR_K,
         uncertain.number,

@@ -22,7 +22,7 @@ const RADIANCE: &str = "W m^-2 sr^-1 per cm^-1";
 pub fn bundle(result: &BlackbodyFound, out: &Path) -> Result<Bundle> {
     let mut bundle = Bundle::about(result.scenario.title.as_deref());
     bundle.add_asked("scenario.toml", result.scenario.to_toml_beside(out));
-    bundle.add_table("response.csv", response(result))?;
+    bundle.add_table("channels.csv", response(result))?;
     bundle.add_table("temperatures.csv", temperatures(result))?;
     if let Some(scene) = &result.scene {
         let mut cube = Vec::with_capacity(scene.shape.len() * 4 + 128);

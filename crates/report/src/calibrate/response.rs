@@ -22,7 +22,7 @@ const WIDEST: usize = 420;
 pub fn bundle(result: &ResponseFound, out: &Path) -> Result<Bundle> {
     let mut bundle = Bundle::about(result.scenario.title.as_deref());
     bundle.add_asked("scenario.toml", result.scenario.to_toml_beside(out));
-    bundle.add_table("response.csv", response(result))?;
+    bundle.add_table("values.csv", response(result))?;
     bundle.add_table("covariance.csv", square(result, &result.covariance))?;
     bundle.add_table("kernels.csv", square(result, &result.kernels))?;
     bundle.add_table("filters.csv", filters(result))?;

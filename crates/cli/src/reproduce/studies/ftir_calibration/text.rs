@@ -24,7 +24,7 @@ pub(super) fn finding(shown: &Shown) -> String {
     let warm = shown.surface.least(300.0, |e| e.total());
     let pair = pair.map_or_else(String::new, |(a, b, e)| {
         format!(
-            "The best two blackbodies for scenes of 270 to 320 K are at {a} and {b} K ({} mK); ",
+            "The best two blackbodies for scenes of 270 to 320 K are at {a} and {b} K, the ends of what is allowed ({} mK); ",
             significant(1e3 * e.total_k(), 3)
         )
     });
@@ -82,7 +82,9 @@ pub(super) fn readme(shown: &Shown, seed: u64) -> String {
          Error of a radiance that is common to all pixels, as temperature, for scenes of 270 to 320 K; each blackbody to {:.0} mK, {READINGS} readings \
          in all, whatever the number of settings.\n\n{}\n\
          ![Error over the temperatures of two blackbodies](blackbodies.png)\n\n\
-         Noise wants them apart; errors of their temperatures want them about the scenes, since outside of them they are carried over by a leverage.\n\n\
+         The ends of what is allowed: noise wants them apart, and what an error of a temperature does goes with B′(T), which is small before a \
+         cold blackbody, times a leverage that falls with their distance. A setting that stands there more than once is one that errs for itself \
+         each time, another blackbody or the same one set anew; where its error stays the same, nothing is gained by it.\n\n\
          ## Emissivity from two temperatures of a surface\n\n\
          Emissivity {EMISSIVITY}, changing by {SLOPE_PER_K} per K and wanted at {WANTED_K} K, surroundings at {SURROUNDINGS_K} K; the surface to {:.0} mK; \
          calibrated by blackbodies at 283.15 and 353.15 K.\n\n\
