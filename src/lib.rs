@@ -41,7 +41,8 @@
 //! | | [`atmosphere`] | the air between |
 //! | | [`scene`] | the heat signal S and its derivatives |
 //! | instrument | [`instrument`] | the camera: étendue, efficiencies, noise budget, photon bunching, presets |
-//! | limits | [`fisher`] | Fisher information and Cramér–Rao bounds |
+//! | limits | [`calibration`] | what errors of the calibration leave of the information |
+//! | | [`fisher`] | Fisher information and Cramér–Rao bounds |
 //! | | [`identifiability`] | distances between materials: local, nearest, exact; many materials; bands that matter |
 //! | | [`ranging`] | precision of depth: windows, textures, diffraction, heat cubes |
 //! | | [`policy`] | requirements: solved for, traded off, proved over envelopes of scenes |
@@ -98,9 +99,9 @@ pub use base::{
     allowed, demand, error, file, grid, inputs, lattice_points, minimum, root, statistics, sum, units, words,
 };
 pub(crate) use base::{correlation, simd, wide};
-pub use limits::{fisher, identifiability, policy, ranging};
+pub use limits::{calibration, fisher, identifiability, policy, ranging};
 pub use physics::{atmosphere, material, planck, scene, spectrum};
-pub use witness::{decompose, render, segmentation, separation, simulate};
+pub use witness::{calibrate, decompose, render, segmentation, separation, simulate};
 
 #[cfg(doctest)]
 #[doc = include_str!("README.md")]

@@ -1,5 +1,6 @@
 //! Bounds that no algorithm beats. None of them calls a simulation, which is their independent witness.
 
+pub mod calibration;
 pub mod fisher;
 pub mod identifiability;
 pub mod policy;

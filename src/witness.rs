@@ -1,5 +1,6 @@
 //! Witnesses of the limits: what draws counts and views, and estimates from them.
 
+pub mod calibrate;
 pub mod decompose;
 pub mod render;
 pub mod segmentation;

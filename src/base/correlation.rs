@@ -5,6 +5,11 @@
 //!
 //! Source: Rasmussen and Williams, 'Gaussian Processes for Machine Learning' (2006), section 4.2.
 
+use nalgebra::{DMatrix, SymmetricEigen};
+
+/// Modes whose deviation is a smaller share of the largest one's are left out.
+const SMALL_MODE: f64 = 1e-6;
+
 /// x at which (1 + x + x²/3) e⁻ˣ is a quarter.
 const QUARTER: f64 = 3.55;
 
@@ -12,6 +17,19 @@ const QUARTER: f64 = 3.55;
 pub(crate) fn matern(apart: f64, length: f64) -> f64 {
     let x = QUARTER * apart.abs() / length;
     (1.0 + x + x * x / 3.0) * libm::exp(-x)
+}
+
+/// A of a covariance A Aᵀ: √eigenvalue × eigenvector of the largest few, a column each.
+pub(crate) fn modes(covariance: DMatrix<f64>, most: usize) -> DMatrix<f64> {
+    let eigen = SymmetricEigen::new(covariance);
+    let mut order: Vec<usize> = (0..eigen.eigenvalues.len()).collect();
+    order.sort_by(|a, b| eigen.eigenvalues[*b].total_cmp(&eigen.eigenvalues[*a]));
+    let least = SMALL_MODE * SMALL_MODE * eigen.eigenvalues.max();
+    order.retain(|k| eigen.eigenvalues[*k] > least);
+    order.truncate(most);
+    DMatrix::from_fn(eigen.eigenvectors.nrows(), order.len(), |w, k| {
+        eigen.eigenvalues[order[k]].sqrt() * eigen.eigenvectors[(w, order[k])]
+    })
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@
 //! `--check`. With `--json` stdout is one object and nothing else.
 
 mod accuracy;
+mod calibrate;
 mod cameras;
 mod decompose;
 mod global;
@@ -59,6 +60,8 @@ enum Command {
     Decompose(decompose::DecomposeArgs),
     /// Emissivities out of a heat cube: a library where none was measured, with its errors
     Library(library::LibraryArgs),
+    /// A camera out of its own cubes: noise, stripes
+    Calibrate(calibrate::CalibrateArgs),
     /// Render a scene as a heat cube, with what is true of every pixel
     Render(render::RenderArgs),
     /// Draw spectra, train and judge classifiers, and hold them against the limit
@@ -112,6 +115,7 @@ fn run(cli: &Cli) -> Result<ExitCode> {
         Command::Range(args) => range::run(args, &cli.global),
         Command::Decompose(args) => decompose::run(args, &cli.global),
         Command::Library(args) => library::run(args, &cli.global),
+        Command::Calibrate(args) => calibrate::run(args, &cli.global),
         Command::Render(args) => render::run(args, &cli.global),
         Command::Simulate(args) => simulate::run(args, &cli.global),
         Command::Reproduce(args) => reproduce::run(args, &cli.global),

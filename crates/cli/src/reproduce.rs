@@ -20,6 +20,7 @@ mod fig3c;
 mod fig4;
 mod figs17;
 mod figs20;
+mod figs29;
 mod inverse_trade_off;
 mod ledger;
 mod locking;
@@ -69,6 +70,8 @@ pub(crate) enum Item {
     FigS17,
     /// Methods of decomposition.
     FigS20,
+    /// Calibration of the response.
+    FigS29,
     /// Detectors.
     TabS2,
     /// What resolution is worth in ranging.
@@ -88,7 +91,7 @@ pub(crate) struct Reproduction {
 
 impl Item {
     /// All of them, the quickest first.
-    pub(crate) const ALL: [Self; 15] = [
+    pub(crate) const ALL: [Self; 16] = [
         Self::TabS2,
         Self::TabS5,
         Self::Policy,
@@ -98,6 +101,7 @@ impl Item {
         Self::FigS20,
         Self::EdFig7,
         Self::EdFig8,
+        Self::FigS29,
         Self::FigS12,
         Self::Fig4,
         Self::EdFig6,
@@ -122,6 +126,7 @@ impl Item {
             Self::FigS12 => "figs12",
             Self::FigS17 => "figs17",
             Self::FigS20 => "figs20",
+            Self::FigS29 => "figs29",
             Self::TabS5 => "tabs5",
             Self::TabS2 => "tabs2",
             Self::Policy => "policy",
@@ -144,6 +149,7 @@ impl Item {
             Self::FigS12 => "Fig. S12: measures of texture",
             Self::FigS17 => "Fig. S17: what more materials in the library explain",
             Self::FigS20 => "Fig. S20: scattered light told apart, or not",
+            Self::FigS29 => "Fig. S29: the camera's response from blackbodies, and what they determine",
             Self::TabS5 => "Tables S4 and S5: what resolution is worth",
             Self::TabS2 => "Table S2: detectors",
             Self::Policy => "Policy: can a camera tell a person from a robot?",
@@ -183,6 +189,7 @@ impl Item {
             Self::FigS12 => fig4::textures(order)?,
             Self::FigS17 => figs17::make(order)?,
             Self::FigS20 => figs20::make(order)?,
+            Self::FigS29 => figs29::make(order)?,
             Self::TabS5 => tabs5::make()?,
             Self::TabS2 => tabs2::make(out)?,
             Self::Policy => policy::make(out)?,
@@ -203,10 +210,10 @@ fn page(item: Item, effort: Effort, lines: &[Line], figures: &Figures) -> String
         "# {}\n\n{made} from {}.\n\
          Paper: Bao et al., Nature 619, 743 (2023), doi:10.1038/s41586-023-06174-6.\n\n{}",
         item.title(),
-        if matches!(item, Item::FigS17 | Item::FigS20 | Item::EdFig9a) {
-            "pixels that it draws"
-        } else {
-            "the scenarios beside it"
+        match item {
+            Item::FigS17 | Item::FigS20 | Item::EdFig9a => "pixels that it draws",
+            Item::FigS29 => "readings that it draws",
+            _ => "the scenarios beside it",
         },
         markdown(lines)
     );

@@ -7,6 +7,7 @@
 pub mod accuracy;
 pub mod air_ranging;
 pub mod bundle;
+pub mod calibrate;
 pub mod cameras;
 pub mod classes;
 pub mod companion;

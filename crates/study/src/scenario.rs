@@ -18,6 +18,7 @@ pub use hadar::material::{ClassSpec, Extrapolation, MaterialRef, Spread};
 pub mod air_ranging;
 pub mod atmosphere;
 pub mod bands;
+pub mod calibrate;
 mod camera;
 mod class;
 pub mod decompose;

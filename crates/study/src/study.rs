@@ -8,6 +8,7 @@
 mod air;
 pub mod air_ranging;
 mod bands;
+pub mod calibrate;
 mod camera;
 mod camera_bands;
 mod classes;

@@ -56,6 +56,24 @@ pub enum Warning {
     ClustersNotSettled { rounds: usize },
     /// Objects most of whose pixels have no decided material, of so many that are listed.
     ObjectsUndecided { objects: usize, of: usize },
+    /// Share of differences that were left out of a noise.
+    NoiseOutliers { share: f64 },
+    /// Largest texture that was taken out of the noise of a band, over that noise.
+    TextureInNoise { share: f64 },
+    /// χ²/ν of the noise of bands about one line.
+    BandsDifferInNoise { chi_square: f64 },
+    /// Slope of variance over mean, and its error.
+    PhotonsNotTold { per_photon: f64, sigma: f64 },
+    /// Lines that are off in all bands alike.
+    LinesLikeObjects { axis: &'static str, lines: Vec<usize> },
+    /// Stripes of a cube of so many bands.
+    StripesOfFewBands { bands: usize },
+    /// Scatter of the pixels of a blackbody over the stated noise.
+    BlackbodyNotEven { blackbody: usize, over: f64 },
+    /// χ²/ν of blackbodies about straight lines.
+    BlackbodiesDoNotFit { chi_square: f64 },
+    /// Share of samples beyond the radiances of the blackbodies.
+    BeyondBlackbodies { share: f64, low_k: f64, high_k: f64 },
     /// A library without errors.
     LibraryTakenAsExact,
     /// Pixels whose material a prior over the image changed, and whether its last sweep still changed something.
@@ -225,6 +243,15 @@ impl Warning {
             Self::ClusterDoesNotFit { .. } => Code::ClusterDoesNotFit,
             Self::MirrorNotExcluded { .. } => Code::MirrorNotExcluded,
             Self::ObjectsUndecided { .. } => Code::ObjectsUndecided,
+            Self::NoiseOutliers { .. } => Code::NoiseOutliers,
+            Self::TextureInNoise { .. } => Code::TextureInNoise,
+            Self::BandsDifferInNoise { .. } => Code::BandsDifferInNoise,
+            Self::PhotonsNotTold { .. } => Code::PhotonsNotTold,
+            Self::LinesLikeObjects { .. } => Code::LinesLikeObjects,
+            Self::StripesOfFewBands { .. } => Code::StripesOfFewBands,
+            Self::BlackbodyNotEven { .. } => Code::BlackbodyNotEven,
+            Self::BlackbodiesDoNotFit { .. } => Code::BlackbodiesDoNotFit,
+            Self::BeyondBlackbodies { .. } => Code::BeyondBlackbodies,
             Self::LibraryTakenAsExact => Code::LibraryTakenAsExact,
             Self::SpatialPrior { .. } => Code::SpatialPrior,
             Self::Identical => Code::Identical,

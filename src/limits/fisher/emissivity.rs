@@ -28,15 +28,12 @@
 //! Source: van Trees, 'Detection, Estimation, and Modulation Theory' I (1968), section 2.4; Rockah and Schultheiss, IEEE Trans.
 //! ASSP 35, 286 (1987), doi:10.1109/TASSP.1987.1165144, for unknowns of which some are random.
 
-use crate::correlation::matern;
+use crate::correlation::{matern, modes};
 use crate::error::{Error, Result, check};
-use nalgebra::{DMatrix, DVector, SymmetricEigen};
+use nalgebra::{DMatrix, DVector};
 
 #[cfg(test)]
 mod tests;
-
-/// Modes whose deviation is a smaller share of the largest one's are left out.
-const SMALL_MODE: f64 = 1e-6;
 
 /// What is known of an emissivity beforehand but its values: how large it may be, how much it varies and how smoothly.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
@@ -156,19 +153,6 @@ impl EmissivityPrior {
     pub fn unknowns(&self) -> usize {
         self.factor.ncols()
     }
-}
-
-/// √eigenvalue × eigenvector of the largest few.
-fn modes(covariance: DMatrix<f64>, most: usize) -> DMatrix<f64> {
-    let eigen = SymmetricEigen::new(covariance);
-    let mut order: Vec<usize> = (0..eigen.eigenvalues.len()).collect();
-    order.sort_by(|a, b| eigen.eigenvalues[*b].total_cmp(&eigen.eigenvalues[*a]));
-    let least = SMALL_MODE * SMALL_MODE * eigen.eigenvalues.max();
-    order.retain(|k| eigen.eigenvalues[*k] > least);
-    order.truncate(most);
-    DMatrix::from_fn(eigen.eigenvectors.nrows(), order.len(), |w, k| {
-        eigen.eigenvalues[order[k]].sqrt() * eigen.eigenvectors[(w, order[k])]
-    })
 }
 
 /// What is seen of a surface, one value for each band.

@@ -4,6 +4,7 @@ mod air_ranging;
 mod decompose_limits;
 mod emissivity_from_data;
 mod exact_probability;
+mod ftir_calibration;
 mod library_figures;
 mod page;
 mod paper_scene;
@@ -32,11 +33,14 @@ pub(crate) enum FurtherStudy {
     AirRanging,
     /// What can be told of temperature and emissivity without a library.
     EmissivityFromData,
+    /// Blackbodies before a spectrometer.
+    FtirCalibration,
 }
 
 impl FurtherStudy {
     /// All of them, the quickest first.
-    pub(crate) const ALL: [Self; 7] = [
+    pub(crate) const ALL: [Self; 8] = [
+        Self::FtirCalibration,
         Self::PersonOrRobot,
         Self::DecomposeLimits,
         Self::Priors,
@@ -57,6 +61,7 @@ impl FurtherStudy {
             Self::PersonOrRobot => "person-or-robot",
             Self::AirRanging => "air-ranging",
             Self::EmissivityFromData => "emissivity-from-data",
+            Self::FtirCalibration => "ftir-calibration",
         }
     }
 
@@ -77,6 +82,7 @@ impl FurtherStudy {
             Self::DecomposeLimits => "How near a decomposed heat cube comes to what the photons allow",
             Self::PersonOrRobot => "Person or robot, with classes on both sides",
             Self::EmissivityFromData => "Temperature and emissivity without a library",
+            Self::FtirCalibration => "Calibration of a spectrometer by blackbodies",
         }
     }
 
@@ -124,6 +130,7 @@ impl FurtherStudy {
             Self::PersonOrRobot => person_or_robot::make(order, library, progress),
             Self::AirRanging => air_ranging::make(order, library, progress),
             Self::EmissivityFromData => emissivity_from_data::make(order, library, progress),
+            Self::FtirCalibration => ftir_calibration::make(order, library, progress),
         }?;
         Ok((bundle.titled(self.title()), finding))
     }

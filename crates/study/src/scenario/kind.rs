@@ -13,6 +13,7 @@ pub(super) enum Kind {
     Range,
     Decompose,
     Library,
+    Calibrate,
     Materials,
     Cameras,
 }
@@ -35,6 +36,16 @@ struct Row {
 const TABLE: &[Row] = &[
     Row { kind: Kind::Materials, told_by: &[("material", Form::Tables)], name: "a manifest of materials" },
     Row { kind: Kind::Library, told_by: &[("clusters", Form::Any)], name: "what a library is made from" },
+    Row {
+        kind: Kind::Calibrate,
+        told_by: &[
+            ("response", Form::Any),
+            ("blackbody", Form::Any),
+            ("noise", Form::Any),
+            ("stripes", Form::Any),
+        ],
+        name: "a calibration",
+    },
     Row {
         kind: Kind::Decompose,
         told_by: &[("library", Form::Any), ("truth", Form::Any)],
@@ -120,6 +131,7 @@ impl Kind {
             Kind::Range => (row.name, format!("hadar range {file}")),
             Kind::Decompose => (row.name, format!("hadar decompose {file}")),
             Kind::Library => (row.name, format!("hadar library {file}")),
+            Kind::Calibrate => (row.name, format!("hadar calibrate {key} {file}")),
             Kind::Materials => (row.name, "name a scenario, and give its folder to --library".into()),
             Kind::Cameras => {
                 ("a list of cameras", "write one as [camera] of a scenario that has a [target]".into())

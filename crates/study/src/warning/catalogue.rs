@@ -64,6 +64,27 @@ catalogue! {
     /// The emissivities of the library are taken as exact: intervals do not hold what errors of them do.
     LibraryTakenAsExact = "library-taken-as-exact", "State library.emissivity_error where the spectra are measured ones.";
 
+    /// Lines of a cube are off in all bands alike, and were left as they are: a thin object along them looks like that.
+    LinesLikeObjects = "lines-like-objects", "Write stripes.in_all_bands = true where they are stripes.";
+    /// Pixels of a blackbody scatter more than the noise that is stated: they differ in their response, or the noise is larger.
+    BlackbodyNotEven = "blackbody-not-even",
+        "State the noise that hadar calibrate noise finds; calibrate pixels of different response one by one.";
+    /// Readings of three or more blackbodies lie off straight lines by more than their noise and temperatures allow.
+    BlackbodiesDoNotFit = "blackbodies-do-not-fit", "State a larger noise or uncertainty; look for a response that is not linear.";
+    /// A scene has radiances below those of the coldest blackbody, or above those of the warmest.
+    BeyondBlackbodies = "beyond-blackbodies", "Give blackbodies that enclose the scene: errors grow outside of them, and the response may bend.";
+    /// Stripes were taken out of a cube of too few bands to tell them from thin objects.
+    StripesOfFewBands = "stripes-of-few-bands", "Look at the picture of what was taken out.";
+    /// Differences of samples were left out of a noise since they are far larger than it.
+    NoiseOutliers = "noise-outliers", "Nothing if they are few; else give frames of a scene that stands still.";
+    /// A single frame has texture in what neighbours differ by, and other bands had to tell it from noise.
+    TextureInNoise = "texture-in-noise", "Give two or more frames of the same scene, or one of an even surface.";
+    /// Bands of a cube scatter by noise models of their own.
+    BandsDifferInNoise = "bands-differ-in-noise",
+        "Use the variance of each band (sigma.csv); give counts as the camera made them, before bands were scaled.";
+    /// The slope of variance over mean is not told from 0.
+    PhotonsNotTold = "photons-not-told", "Give a scene of darker and brighter parts, or more frames.";
+
     /// Pixels of a cube send what they are lit by, or what no surface sends: no emissivity follows from one of them alone.
     NoRelativeEmissivity = "no-relative-emissivity",
         "Nothing if they are few; else check unit and surroundings, or look when the scene is warmer than its sky.";

@@ -59,6 +59,59 @@ impl Display for Warning {
                 "in {objects} of {of} objects less than half of the pixels have one material left: their category is the likelier one, and no \
                  finding"
             ),
+            Self::NoiseOutliers { share } => write!(
+                f,
+                "{} % of the differences are beyond 6 deviations and were left out: frames of a scene that moved, bad pixels or edges",
+                significant(100.0 * share, 2)
+            ),
+            Self::TextureInNoise { share } => write!(
+                f,
+                "texture was taken out of the noise of single bands, up to {} of it: as far as it is not alike in neighbouring bands, \
+                 the noise is too large",
+                significant(*share, 2)
+            ),
+            Self::BandsDifferInNoise { chi_square } => write!(
+                f,
+                "bands do not have one noise model in common (chi2/nu {}): neither photons per unit nor electronic noise hold for all",
+                significant(*chi_square, 2)
+            ),
+            Self::PhotonsNotTold { per_photon, sigma } => write!(
+                f,
+                "noise that grows with light is not told from noise that does not: one photon is {} +- {} unit(s)",
+                significant(*per_photon, 2),
+                significant(*sigma, 2)
+            ),
+            Self::LinesLikeObjects { axis, lines } => {
+                let shown: Vec<String> = lines.iter().take(10).map(usize::to_string).collect();
+                let more = if lines.len() > 10 { ", …" } else { "" };
+                write!(
+                    f,
+                    "{} {axis} ({}{more}, counted from 0) are off in all bands alike, as a thin object along them would be; they were left as \
+                     they are",
+                    lines.len(),
+                    shown.join(", ")
+                )
+            }
+            Self::BlackbodyNotEven { blackbody, over } => write!(
+                f,
+                "the pixels of blackbody[{blackbody}] scatter by {} times the stated noise: errors that are said to be common to all pixels \
+                 may be larger",
+                significant(*over, 2)
+            ),
+            Self::BlackbodiesDoNotFit { chi_square } => write!(
+                f,
+                "the blackbodies do not lie on straight lines (chi2/nu {}): errors are larger than stated",
+                significant(*chi_square, 2)
+            ),
+            Self::BeyondBlackbodies { share, low_k, high_k } => write!(
+                f,
+                "{} % of the samples are outside of the blackbodies' radiances ({low_k} to {high_k} K)",
+                significant(100.0 * share, 2)
+            ),
+            Self::StripesOfFewBands { bands } => write!(
+                f,
+                "of {bands} band(s) none tells a stripe from a thin object that lies along a line: what was taken out may have been one"
+            ),
             Self::LibraryTakenAsExact => f.write_str(
                 "the library is taken as exact: with errors of its emissivities temperatures are off by more than is said",
             ),

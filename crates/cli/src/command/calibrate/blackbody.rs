@@ -1,0 +1,28 @@
+//! `hadar calibrate blackbody`: response and offset of a spectrometer, and the radiance of a cube.
+
+use super::super::global::Global;
+use clap::Args;
+use hadar::error::Result;
+use hadar_report::calibrate::blackbody;
+use hadar_study::scenario::calibrate::BlackbodyScenario;
+use hadar_study::study::calibrate::BlackbodyStudy;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+#[derive(Debug, Args)]
+pub(super) struct BlackbodyArgs {
+    /// A calibration scenario (TOML): [bands], [[blackbody]], [noise], [scene]
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
+}
+
+pub(super) fn run(args: &BlackbodyArgs, global: &Global) -> Result<ExitCode> {
+    let scenario = BlackbodyScenario::from_file(&args.file)?;
+    let study = BlackbodyStudy::new(&scenario)?;
+    global.inputs_are_safe()?;
+    let mut result = study.calibrate()?;
+    let text = blackbody::text(&result);
+    result.stats.add(&global.report(&text, |out| blackbody::bundle(&result, out))?);
+    global.answer(&result, &text, &result.stats)?;
+    Ok(ExitCode::SUCCESS)
+}

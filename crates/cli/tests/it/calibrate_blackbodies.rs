@@ -1,0 +1,302 @@
+//! `hadar calibrate blackbody` and `response` as their user runs them: files, numbers, mistakes.
+
+use crate::support::folder::Folder;
+use hadar::calibrate::twin::{FilterWheelTwin, passband};
+use hadar::planck::photon_radiance;
+use hadar::ranging::cube::{Cube, Shape, write_npy};
+use hadar::simulate::draws::{Draws, generator};
+use hadar::statistics::Statistics;
+use hadar::units::{PLANCK_J_S, SPEED_OF_LIGHT_M_S};
+use std::path::Path;
+
+const SPECTROMETER: &str = r#"title = "FTIR of today"
+[bands]
+start = "800 cm^-1"
+stop = "1200 cm^-1"
+step = "20 cm^-1"
+[[blackbody]]
+temperature = "10 degC"
+uncertainty = "30 mK"
+data = "cold.npy"
+[[blackbody]]
+temperature = "35 degC"
+uncertainty = "30 mK"
+data = "mild.npy"
+[[blackbody]]
+temperature = "60 degC"
+uncertainty = "30 mK"
+data = "warm.npy"
+[noise]
+sample = 2.0
+[scene]
+data = "scene.npy"
+"#;
+const BANDS: usize = 21;
+
+fn wavenumber(band: usize) -> f64 {
+    800.0 + 20.0 * band as f64
+}
+
+/// Normal numbers.
+fn normal(count: usize, stream: u64) -> Vec<f64> {
+    let draws = Draws::new(&Statistics::Poisson, &vec![0.0; count]).unwrap();
+    let draws = draws.with_electronic_noise(&vec![1.0; count]).unwrap();
+    let mut out = vec![0.0; count];
+    draws.draw_into(&mut generator(17, stream), &mut out);
+    out
+}
+
+fn write(folder: &Folder, name: &str, size: [usize; 3], samples: &[f64]) {
+    write_npy(&folder.path().join(name), Shape::new(size[0], size[1], size[2]).unwrap(), samples).unwrap();
+}
+
+/// Rows and columns of the scene; a pixel has a temperature of its own.
+const SIZE: [usize; 2] = [20, 30];
+
+fn scene_k(pixel: usize) -> f64 {
+    290.0 + 0.05 * pixel as f64
+}
+
+/// Blackbodies of 8 × 8 pixels, the mildest 60 mK warmer than it says; a scene; noise of 2.
+fn spectrometer(scenario: &str) -> Folder {
+    let folder = Folder::with(scenario);
+    let response = |band: usize| 1e-15 * (1.0 + 0.3 * (band as f64 / 4.0).sin());
+    let cube = |temperatures: &[f64], stream: u64| -> Vec<f64> {
+        let noise = normal(temperatures.len() * BANDS, stream);
+        let pixel = |(i, z): (usize, &f64)| {
+            let band = i % BANDS;
+            let b = photon_radiance(wavenumber(band), temperatures[i / BANDS]);
+            response(band) * b - 300.0 + 2.0 * z
+        };
+        noise.iter().enumerate().map(pixel).collect()
+    };
+    for (stream, (name, t)) in
+        [("cold.npy", 283.15), ("mild.npy", 308.21), ("warm.npy", 333.15)].iter().enumerate()
+    {
+        write(&folder, name, [8, 8, BANDS], &cube(&[*t; 64], stream as u64));
+    }
+    let pixels: Vec<f64> = (0..SIZE[0] * SIZE[1]).map(scene_k).collect();
+    write(&folder, "scene.npy", [SIZE[0], SIZE[1], BANDS], &cube(&pixels, 9));
+    folder
+}
+
+fn read(path: &Path) -> Vec<f64> {
+    let mut buffer = Vec::new();
+    match Cube::open(path, None).unwrap() {
+        Cube::F32(cube) => {
+            let rows = cube.read(0..cube.shape().rows(), &mut buffer).unwrap();
+            rows.iter().map(|x| f64::from(*x)).collect()
+        }
+        Cube::F64(_) => panic!("calibrated cubes are of 32 bits"),
+    }
+}
+
+/// Noise of each sample as stated, and the error of all pixels together within what is common to them.
+#[test]
+fn radiances_err_as_they_say() {
+    let folder = spectrometer(SPECTROMETER);
+    let found = folder.json(&["calibrate", "blackbody", "a.toml", "--out", "out"]);
+    assert_eq!(found["channels"].as_array().unwrap().len(), BANDS);
+    assert_eq!(found["warnings"].as_array().unwrap().len(), 0, "{}", found["warnings"]);
+    let out = folder.path().join("out");
+    let (radiance, common) = (read(&out.join("radiance.npy")), read(&out.join("sigma_common.npy")));
+    let pixels = SIZE[0] * SIZE[1];
+    let (mut worst, mut sum) = (0.0_f64, 0.0);
+    for band in 0..BANDS {
+        let joules = PLANCK_J_S * SPEED_OF_LIGHT_M_S * 100.0 * wavenumber(band);
+        let noise = found["scene"]["sigma_noise"][band].as_f64().unwrap();
+        let off = |pixel: usize| {
+            radiance[pixel * BANDS + band] - joules * photon_radiance(wavenumber(band), scene_k(pixel))
+        };
+        let mean = (0..pixels).map(off).sum::<f64>() / pixels as f64;
+        let var = (0..pixels).map(|pixel| (off(pixel) - mean).powi(2)).sum::<f64>() / (pixels - 1) as f64;
+        // 600 samples know a deviation to 3 %; the slope of the common error adds little.
+        assert!((var.sqrt() / noise - 1.0).abs() < 0.13, "{band} {}", var.sqrt() / noise);
+        let sigma = common[(pixels / 2) * BANDS + band].hypot(noise / (pixels as f64).sqrt());
+        worst = worst.max((mean / sigma).abs());
+        sum += (mean / sigma).powi(2);
+    }
+    // One blackbody is off by two deviations.
+    assert!(worst < 4.5 && sum / (BANDS as f64) < 6.0, "{worst} {sum}");
+    // Of three blackbodies the middle one is seen to be off.
+    let shift = found["temperature_shifts_k"][1][0].as_f64().unwrap();
+    assert!(shift > 0.01 && shift < 0.08, "{shift}");
+    let text = folder.run(&["calibrate", "blackbody", "a.toml"]).stdout;
+    assert!(
+        text.starts_with("21 channels calibrated by 3 blackbodies: a radiance as at 308.1 K errs by "),
+        "{text}"
+    );
+    // What was written can be run again, and decomposed.
+    let again = folder.json(&["calibrate", "blackbody", "out/scenario.toml"]);
+    assert_eq!(again["channels"], found["channels"]);
+    assert!(text.contains("unit = \"W m^-2 sr^-1 per cm^-1\""), "{text}");
+}
+
+#[test]
+fn what_a_spectrometer_cannot_be_calibrated_with_is_said() {
+    let folder = spectrometer(SPECTROMETER);
+    let says = |scenario: &str, words: &[&str]| {
+        folder.file("a.toml", scenario);
+        let line = folder.refusal(&["calibrate", "blackbody", "a.toml"]);
+        assert!(words.iter().all(|word| line.contains(word)), "{line}");
+    };
+    let equal = SPECTROMETER.replace("35 degC", "10 degC").replace("60 degC", "10 degC");
+    says(
+        &equal,
+        &["a.toml:11: blackbody[1].temperature", "blackbody[0] and blackbody[1] are both at 283.15 K"],
+    );
+    let one = SPECTROMETER.split("[[blackbody]]\ntemperature = \"35").next().unwrap().to_owned();
+    says(&(one + "[noise]\nsample = 2.0\n"), &["one temperature tells response and offset not apart"]);
+    says(&SPECTROMETER.replace("sample = 2.0\n", ""), &["nothing says how samples scatter", "sample = 1.5"]);
+    says(&SPECTROMETER.replace("mild.npy", "none.npy"), &["none.npy", "there is no such file"]);
+    says(
+        &SPECTROMETER.replace("20 cm^-1", "10 cm^-1"),
+        &["blackbody[0].data", "8 x 8 x 21", "[bands] are 41"],
+    );
+    let mut samples = vec![1.0; 64 * BANDS];
+    samples[3 * BANDS + 5] = f64::NAN;
+    write(&folder, "nan.npy", [8, 8, BANDS], &samples);
+    let words = ["nan.npy", "row 0, column 3, band 5 (counted from 0)", "sample is NaN"];
+    says(&SPECTROMETER.replace("mild.npy", "nan.npy"), &words[1..]);
+    says(&SPECTROMETER.replace("scene.npy", "nan.npy"), &words[1..]);
+    // A calibration is no scenario of a target, and is sent where it belongs.
+    folder.file("a.toml", SPECTROMETER);
+    assert!(folder.refusal(&["size", "a.toml"]).contains("hadar calibrate blackbody"));
+}
+
+const WHEEL: &str = r#"title = "Response of a camera"
+[response]
+filters = "filters.csv"
+typical = "typical.csv"
+centre_half = 3
+[[blackbody]]
+temperature = "35 degC"
+data = "bb0.npy"
+[[blackbody]]
+temperature = "60 degC"
+data = "bb1.npy"
+[[blackbody]]
+temperature = "85 degC"
+data = "bb2.npy"
+[[blackbody]]
+temperature = "110 degC"
+data = "bb3.npy"
+[noise]
+sample = 1.0
+[scene]
+data = "scene.npy"
+reference = "bb0.npy"
+reference_temperature = "35 degC"
+"#;
+
+/// The twin of prototype 1 before four blackbodies and a scene of 330 K.
+fn wheel(scenario: &str) -> (Folder, FilterWheelTwin) {
+    let folder = Folder::with(scenario);
+    let mut twin = FilterWheelTwin::prototype().unwrap();
+    let fine: Vec<f64> = (0..1201).map(|i| 400.0 + f64::from(i)).collect();
+    let filters: Vec<[f64; 2]> = hadar::calibrate::twin::FILTERS.to_vec();
+    let curves: Vec<Vec<f64>> = filters.iter().map(|filter| passband(*filter, &fine)).collect();
+    let names: Vec<String> = (0..10).map(|q| format!("f{q}")).collect();
+    let mut text = format!("wavenumber_cm1,{}\n", names.join(","));
+    for (i, nu) in fine.iter().enumerate() {
+        let cells: Vec<String> = curves.iter().map(|curve| curve[i].to_string()).collect();
+        text += &format!("{nu},{}\n", cells.join(","));
+    }
+    folder.file("filters.csv", &text);
+    // The truth of means over each value, as the program takes filters.
+    let centres = twin.wheel.centres_cm1().to_vec();
+    let step = centres[1] - centres[0];
+    let mean = |filter: &[f64; 2]| -> Vec<f64> {
+        let at = |nu: &f64| {
+            let points: Vec<f64> = (0..11).map(|i| nu + step * ((f64::from(i) + 0.5) / 11.0 - 0.5)).collect();
+            passband(*filter, &points).iter().sum::<f64>() / 11.0
+        };
+        centres.iter().map(at).collect()
+    };
+    let counts = twin.wheel.weight(0, 10) / step / twin.wheel.transmittance(0)[10];
+    twin.wheel = hadar::calibration::filter_wheel::FilterWheel::new(
+        centres.clone(),
+        filters.iter().map(mean).collect(),
+        counts,
+    )
+    .unwrap();
+    let typical: Vec<String> =
+        centres.iter().zip(twin.prior.mean()).map(|(nu, r)| format!("{nu},{r}")).collect();
+    folder.file("typical.csv", &format!("wavenumber_cm1,response\n{}\n", typical.join("\n")));
+    let mut rng = generator(8, 0);
+    for (k, t) in [308.15, 333.15, 358.15, 383.15].iter().enumerate() {
+        let cube = twin.blackbody_cube(*t, [15, 17], 1.0, &mut rng);
+        write(&folder, &format!("bb{k}.npy"), [15, 17, 10], &cube);
+    }
+    write(&folder, "scene.npy", [15, 17, 10], &twin.blackbody_cube(330.0, [15, 17], 1.0, &mut rng));
+    write(&folder, "small.npy", [15, 16, 10], &vec![1.0; 15 * 16 * 10]);
+    (folder, twin)
+}
+
+#[test]
+fn a_response_comes_with_what_is_determined_and_radiances_with_their_errors() {
+    let (folder, twin) = wheel(WHEEL);
+    let found = folder.json(&["calibrate", "response", "a.toml", "--out", "out"]);
+    let determined = found["determined"].as_u64().unwrap();
+    assert!((3..20).contains(&determined), "{determined}");
+    let text = folder.run(&["calibrate", "response", "a.toml"]).stdout;
+    let first =
+        format!("Of 30 response values the readings determine {determined}; the rest is the typical curve");
+    assert!(text.starts_with(&first), "{text}");
+    // Counts per radiance of the twin at a response of 1.
+    let step = twin.wheel.centres_cm1()[1] - twin.wheel.centres_cm1()[0];
+    let scale = twin.wheel.weight(0, 10) / step / twin.wheel.transmittance(0)[10];
+    let mut square = 0.0;
+    for (j, truth) in twin.response.iter().enumerate() {
+        let row = &found["response"][j];
+        let [value, sigma] = ["response", "sigma"].map(|key| row[key].as_f64().unwrap());
+        square += ((value / scale - truth) * scale / sigma).powi(2);
+    }
+    // Neighbours go together: far fewer than 30 errors, each of a deviation of 1.
+    assert!(square / 30.0 < 3.5, "{}", square / 30.0);
+    // The vignette, and the same radiance in all pixels.
+    let radiance = read(&folder.path().join("out/radiance.npy"));
+    let blackbody: Vec<f64> = twin.wheel.centres_cm1().iter().map(|nu| photon_radiance(*nu, 330.0)).collect();
+    for q in 0..10 {
+        let truth = twin.wheel.counts(q, &twin.response, &blackbody)
+            / twin.wheel.counts(q, &twin.response, &[1.0; 30]);
+        let mean = radiance.iter().skip(q).step_by(10).sum::<f64>() / 255.0;
+        let of = |key: &str| found["scene"][key][q].as_f64().unwrap();
+        // The reference is one of the blackbodies, and its noise in all of them; the vignette's centre adds its own.
+        let sigma = of("sigma_common").hypot(of("sigma_noise") / 255f64.sqrt()).hypot(0.002 * truth);
+        assert!((mean - truth).abs() < 4.5 * sigma, "{q} {mean} {truth} {sigma}");
+    }
+    let again = folder.json(&["calibrate", "response", "out/scenario.toml"]);
+    assert_eq!(again["response"], found["response"]);
+}
+
+#[test]
+fn what_no_response_comes_from_is_said() {
+    let (folder, _) = wheel(WHEEL);
+    let says = |scenario: &str, words: &[&str]| {
+        folder.file("a.toml", scenario);
+        let line = folder.refusal(&["calibrate", "response", "a.toml"]);
+        assert!(words.iter().all(|word| line.contains(word)), "{line}");
+    };
+    says(
+        &WHEEL.replace("reference = \"bb0.npy\"", "reference = \"small.npy\""),
+        &["a.toml:", "scene.reference", "15 x 16 x 10", "the scene is 15 x 17 x 10"],
+    );
+    let equal = ["60", "85", "110"]
+        .iter()
+        .fold(WHEEL.to_owned(), |text, t| text.replace(&format!("\"{t} degC\""), "\"35 degC\""));
+    says(&equal, &["blackbody[1].temperature", "blackbody[0] and blackbody[1] are both at 308.15 K"]);
+    says(&WHEEL.replace("sample = 1.0\n", ""), &["nothing says how samples scatter"]);
+    // The last filter is a mixture of two others.
+    let table = std::fs::read_to_string(folder.path().join("filters.csv")).unwrap();
+    let mixed = table.lines().enumerate().map(|(i, line)| {
+        let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
+        if i > 0 {
+            let of = |q: usize| cells[q].parse::<f64>().unwrap();
+            cells[10] = (0.3 * of(2) + 0.6 * of(5)).to_string();
+        }
+        cells.join(",")
+    });
+    folder.file("filters.csv", &mixed.collect::<Vec<_>>().join("\n"));
+    says(WHEEL, &["response.filters", "filter `f9`", "the most like `f4`", "linearly dependent"]);
+}

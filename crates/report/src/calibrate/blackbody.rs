@@ -1,0 +1,185 @@
+//! A spectrometer calibrated by blackbodies, as files: response and offset with their errors, the radiance of a scene, a picture.
+
+use crate::bundle::Bundle;
+use crate::figures::{Plot, wavenumber_axis};
+use crate::plot::{Axis, LineFigure, Panel, Series, Style};
+use crate::table::{Table, number};
+use crate::text::footing::{ASSUMPTIONS, warnings};
+use hadar::error::Result;
+use hadar::ranging::cube::{npy_map, write_npy_to};
+use hadar::words::{quantity, significant};
+use hadar_study::study::calibrate::{BlackbodyFound, ChannelRow};
+use std::fmt::Write as _;
+use std::path::Path;
+
+/// What the samples of a calibrated cube are, as a decomposition scenario has it.
+const RADIANCE: &str = "W m^-2 sr^-1 per cm^-1";
+
+/// All files; paths in the scenario are written relative to `out` where they lie below it.
+///
+/// # Errors
+/// A figure that cannot be drawn.
+pub fn bundle(result: &BlackbodyFound, out: &Path) -> Result<Bundle> {
+    let mut bundle = Bundle::about(result.scenario.title.as_deref());
+    bundle.add_asked("scenario.toml", result.scenario.to_toml_beside(out));
+    bundle.add_table("channels.csv", response(result))?;
+    bundle.add_table("temperatures.csv", temperatures(result))?;
+    if let Some(scene) = &result.scene {
+        let mut cube = Vec::with_capacity(scene.shape.len() * 4 + 128);
+        write_npy_to(&mut cube, scene.shape, &scene.radiance)?;
+        bundle.add("radiance.npy", cube);
+        let mut common = Vec::with_capacity(scene.shape.len() * 4 + 128);
+        write_npy_to(&mut common, scene.shape, &scene.sigma_common)?;
+        bundle.add("sigma_common.npy", common);
+        let noise: Vec<f32> = scene.sigma_noise.iter().map(|sigma| *sigma as f32).collect();
+        bundle.add("sigma_noise.npy", npy_map(&[noise.len()], &noise)?);
+        let mut table = Table::new(["wavenumber_cm1", "sigma_noise", "sigma_common_median"]);
+        for (c, row) in result.channels.iter().enumerate() {
+            table.push_numbers(&[row.wavenumber_cm1, scene.sigma_noise[c], scene.sigma_common_median[c]]);
+        }
+        bundle.add_table("sigma.csv", table)?;
+    }
+    bundle.add_warnings(&result.warnings)?;
+    bundle.add_plots(&[figure(result)])?;
+    Ok(bundle)
+}
+
+/// The whole answer.
+#[must_use]
+pub fn text(result: &BlackbodyFound) -> String {
+    let rms = |of: &dyn Fn(&ChannelRow) -> f64| {
+        let square: f64 = result.channels.iter().map(|row| of(row).powi(2)).sum();
+        (square / result.channels.len().max(1) as f64).sqrt()
+    };
+    let (noise, temperature) = (rms(&|row| row.sigma_middle_k[0]), rms(&|row| row.sigma_middle_k[1]));
+    let milli = |kelvin: f64| if kelvin > 0.0 { quantity(kelvin, "K") } else { "0".to_owned() };
+    let mut out = format!(
+        "{} channels calibrated by {} blackbodies: a radiance as at {} K errs by {} in all pixels alike, and by {} in each sample.\n\n",
+        result.channels.len(),
+        result.temperature_shifts_k.len(),
+        significant(result.middle_k, 4),
+        milli(noise.hypot(temperature)),
+        milli(rms(&|row| row.noise_middle_k))
+    );
+    let _ = writeln!(out, "Common to all pixels (rms of the channels)");
+    let _ = writeln!(out, "  by noise of the blackbodies' readings      {}", milli(noise));
+    let _ = writeln!(out, "  by their temperatures, in all channels     {}\n", milli(temperature));
+    let _ = writeln!(out, "Blackbodies                stated to        found off by");
+    for (spec, [shift, sigma]) in result.scenario.blackbodies.iter().zip(&result.temperature_shifts_k) {
+        let found = match result.chi_square_reduced {
+            Some(_) if spec.uncertainty_k > 0.0 => format!("{:.1} +- {:.1} mK", 1e3 * shift, 1e3 * sigma),
+            _ => "-".to_owned(),
+        };
+        let _ = writeln!(
+            out,
+            "  {:>10}             {:>10}        {found}",
+            format!("{:.2} K", spec.temperature_k),
+            milli(spec.uncertainty_k)
+        );
+    }
+    match result.chi_square_reduced {
+        Some(chi) => {
+            let _ = writeln!(out, "  about straight lines: chi2/nu {}", significant(chi, 3));
+        }
+        None => out.push_str(
+            "  two blackbodies fit any line: nothing tells whether response or temperatures are right\n",
+        ),
+    }
+    if let Some(scene) = &result.scene {
+        let mean = |values: &[f64]| {
+            let square: f64 = values.iter().map(|x| x * x).sum();
+            (square / values.len().max(1) as f64).sqrt()
+        };
+        let _ = writeln!(
+            out,
+            "\nScene: radiance.npy ({RADIANCE}); noise of each sample {} (sigma_noise.npy, by band), common to all pixels {} \
+             (sigma_common.npy)\n  [cube]\n  data = \"radiance.npy\"\n  unit = \"{RADIANCE}\"\n  noise = {:e}",
+            significant(mean(&scene.sigma_noise), 2),
+            significant(mean(&scene.sigma_common_median), 2),
+            mean(&scene.sigma_noise)
+        );
+    }
+    let _ = writeln!(
+        out,
+        "\n{ASSUMPTIONS}\n  C = R B(T) + xi in every channel, R and xi the same in all pixels; blackbodies of emissivity 1 that fill the view; noise of {} \
+         (unit of the cubes) in every sample.\n",
+        significant(result.scenario.noise, 3)
+    );
+    out + &warnings(&result.warnings)
+}
+
+fn response(result: &BlackbodyFound) -> Table {
+    let mut table = Table::new([
+        "wavenumber_cm1",
+        "response",
+        "response_sigma",
+        "response_sigma_by_noise",
+        "response_sigma_by_temperatures",
+        "offset",
+        "offset_sigma",
+        "covariance",
+        "sigma_middle_by_noise_k",
+        "sigma_middle_by_temperatures_k",
+        "noise_middle_k",
+    ]);
+    for row in &result.channels {
+        table.push_numbers(&[
+            row.wavenumber_cm1,
+            row.response,
+            row.response_error.sigma(),
+            row.response_error.var_noise.sqrt(),
+            row.response_error.var_temperature.sqrt(),
+            row.offset,
+            row.offset_error.sigma(),
+            row.covariance,
+            row.sigma_middle_k[0],
+            row.sigma_middle_k[1],
+            row.noise_middle_k,
+        ]);
+    }
+    table
+}
+
+fn temperatures(result: &BlackbodyFound) -> Table {
+    let mut table = Table::new(["temperature_k", "uncertainty_k", "found_off_by_k", "sigma_k"]);
+    for (spec, [shift, sigma]) in result.scenario.blackbodies.iter().zip(&result.temperature_shifts_k) {
+        table.push([spec.temperature_k, spec.uncertainty_k, *shift, *sigma].map(number).to_vec());
+    }
+    table
+}
+
+fn figure(result: &BlackbodyFound) -> Plot {
+    let x: Vec<f64> = result.channels.iter().map(|row| row.wavenumber_cm1).collect();
+    let of = |pick: &dyn Fn(&ChannelRow) -> f64| result.channels.iter().map(pick).collect::<Vec<f64>>();
+    let peak = of(&|row| row.response.abs()).into_iter().fold(0.0, f64::max);
+    let (noise, temperature) =
+        (of(&|row| 1e3 * row.sigma_middle_k[0]), of(&|row| 1e3 * row.sigma_middle_k[1]));
+    let own = of(&|row| 1e3 * row.noise_middle_k);
+    let mut table = Table::new([
+        "wavenumber_cm1",
+        "response_over_peak",
+        "common_by_noise_mk",
+        "common_by_temperatures_mk",
+        "noise_of_a_sample_mk",
+    ]);
+    for (c, row) in result.channels.iter().enumerate() {
+        table.push_numbers(&[x[c], row.response / peak, noise[c], temperature[c], own[c]]);
+    }
+    let figure = LineFigure::new(
+        "Response by blackbodies, and the errors it leaves",
+        wavenumber_axis(&x),
+        Axis::linear("response (peak: 1)"),
+    )
+    .subtitle(format!(
+        "Errors of a radiance as temperature, at {} K in the middle of the blackbodies.",
+        significant(result.middle_k, 4)
+    ))
+    .series(Series::line("response", x.clone(), of(&|row| row.response / peak)).colour(0))
+    .lower(
+        Panel::new(Axis::log("error (mK)"))
+            .series(Series::line("common to all pixels, by noise", x.clone(), noise).colour(1))
+            .series(Series::line("common, by temperatures", x.clone(), temperature).colour(2))
+            .series(Series::line("each sample", x, own).style(Style::Dashed).colour(6)),
+    );
+    Plot { name: "response".into(), figure: figure.into(), table }
+}

@@ -1,0 +1,237 @@
+//! The noise of a camera, as files: variances of the bands, the camera's figures, variance over mean as a picture.
+
+use crate::bundle::Bundle;
+use crate::figures::Plot;
+use crate::plot::{Axis, LineFigure, Series};
+use crate::table::{Table, number};
+use crate::text::footing::{ASSUMPTIONS, warnings};
+use hadar::calibrate::Line;
+use hadar::error::Result;
+use hadar::units::Dimension;
+use hadar::words::{significant, whole};
+use hadar_study::study::calibrate::NoiseFound;
+use std::fmt::Write as _;
+use std::path::Path;
+
+/// Curves of a figure.
+const MOST: usize = 6;
+
+/// All files; paths in the scenario are written relative to `out` where they lie below it.
+///
+/// # Errors
+/// A figure that cannot be drawn.
+pub fn bundle(result: &NoiseFound, out: &Path) -> Result<Bundle> {
+    let mut bundle = Bundle::about(result.scenario.title.as_deref());
+    bundle.add_asked("scenario.toml", result.scenario.to_toml_beside(out));
+    bundle.add_table("noise.csv", bands(result))?;
+    bundle.add_table("variance.csv", variances(result))?;
+    bundle.add_table("sigma.csv", sigmas(result))?;
+    if let Some(camera) = camera(result) {
+        bundle.add("camera.toml", camera);
+    }
+    bundle.add_warnings(&result.warnings)?;
+    bundle.add_plots(&[transfer(result)])?;
+    Ok(bundle)
+}
+
+/// The whole answer.
+#[must_use]
+pub fn text(result: &NoiseFound) -> String {
+    let mut out = format!("{}\n\n", sentence(result));
+    let common = &result.transfer.common;
+    let _ = writeln!(out, "Variance of a sample of mean m (unit of the cube), all bands");
+    let line = |name: &str, [value, low, high]: [f64; 3]| {
+        let [low, high] = [low, high].map(|end| significant(end, 3));
+        format!("  {name:<34}  {:>10}   95 %: {low} to {high}\n", significant(value, 3))
+    };
+    let of = |value: f64, sigma: f64| {
+        let [low, high] = Line::interval(value, sigma);
+        [value, low, high]
+    };
+    out += &line("a, electronic noise (unit^2)", of(common.electronic, common.sigma_electronic));
+    out += &line("b, one photon (unit)", of(common.per_photon, common.sigma_per_photon));
+    if result.gain_deviation.is_some() {
+        out += &line("c, spread of gains squared", of(common.spread, common.sigma_spread));
+    }
+    out += &line("1/b, photons per unit", result.photons_per_unit);
+    out += &line("sqrt(a)/b, noise of a reading (e-)", result.noise_electrons);
+    let _ = writeln!(
+        out,
+        "  bands about their common line: chi2/nu {}; own lines of all {} bands are in noise.csv\n",
+        significant(result.transfer.chi_square_reduced, 2),
+        result.transfer.bands.len()
+    );
+    if let Some(camera) = camera(result) {
+        let _ = writeln!(out, "For a scenario\n{}", indented(&camera));
+    }
+    let _ = writeln!(out, "{ASSUMPTIONS}");
+    let how = match result.transfer.uneven {
+        None => format!(
+            "  {} frames of one scene that did not change; a pixel is compared with itself.",
+            result.frames
+        ),
+        Some(uneven) => format!(
+            "  one frame: neighbours of a row are compared, {} % of them left out as different; texture that three neighbouring bands\n  \
+             share is taken out (at most {} of the noise of a band).",
+            significant(100.0 * uneven, 2),
+            significant(result.transfer.bands.iter().map(|band| band.texture).fold(0.0, f64::max), 2)
+        ),
+    };
+    let _ = writeln!(out, "{how}");
+    let _ = writeln!(
+        out,
+        "  Poissonian photons; noise that is independent between pixels and bands; a sample without light is {}.\n",
+        significant(result.scenario.noise.dark_level, 4)
+    );
+    out + &warnings(&result.warnings)
+}
+
+fn sentence(result: &NoiseFound) -> String {
+    let [photons, low, high] = result.photons_per_unit;
+    let [noise, least, most] = result.noise_electrons;
+    if !result.usable {
+        return format!(
+            "No camera's figures follow from these {} samples: see the warnings; variances of the bands are measured all the same.",
+            whole((result.shape.len() * result.frames) as u64)
+        );
+    }
+    let half = |low: f64, high: f64| significant(0.5 * (high - low), 2);
+    if least <= 0.0 {
+        return format!(
+            "One unit of the cube is {} photons (+- {}), and the electronic noise of a reading is below {} electrons.",
+            significant(photons, 3),
+            half(low, high),
+            significant(most, 3)
+        );
+    }
+    format!(
+        "One unit of the cube is {} photons (+- {}), and the electronic noise of a reading is {} electrons (+- {}).",
+        significant(photons, 3),
+        half(low, high),
+        significant(noise, 3),
+        half(least, most)
+    )
+}
+
+/// The figures as a scenario's `[camera]` has them; none where they do not hold.
+fn camera(result: &NoiseFound) -> Option<String> {
+    if !result.usable {
+        return None;
+    }
+    let [photons, ..] = result.photons_per_unit;
+    let [noise, least, most] = result.noise_electrons;
+    let mut out = String::from("[camera]\n");
+    let _ = writeln!(out, "# one unit of the cube is {} photons", significant(photons, 4));
+    let _ = match least > 0.0 {
+        true => writeln!(out, "noise_electrons = {}", significant(noise, 3)),
+        // What is not seen is taken as large as it can be.
+        false => writeln!(out, "noise_electrons = {} # at most", significant(most, 3)),
+    };
+    let _ = match result.scenario.noise.exposure_s {
+        Some(exposure_s) => {
+            writeln!(out, "noise_exposure = \"{}\"", Dimension::Time.format(exposure_s))
+        }
+        None => writeln!(out, "# noise_exposure = \"…\": the exposure of these frames"),
+    };
+    Some(out)
+}
+
+fn indented(text: &str) -> String {
+    text.lines().map(|line| format!("  {line}\n")).collect()
+}
+
+/// What was found of each band.
+fn bands(result: &NoiseFound) -> Table {
+    let mut table = Table::new([
+        "band",
+        "mean",
+        "variance",
+        "variance_sigma",
+        "texture_share",
+        "electronic_variance",
+        "electronic_variance_sigma",
+        "per_photon",
+        "per_photon_sigma",
+        "gain_variance",
+        "gain_variance_sigma",
+    ]);
+    for (i, band) in result.transfer.bands.iter().enumerate() {
+        let line = band.line.as_ref();
+        let of = |value: fn(&Line) -> f64| line.map_or_else(String::new, |line| number(value(line)));
+        table.push(vec![
+            i.to_string(),
+            number(band.mean),
+            number(band.variance),
+            number(band.sigma_variance),
+            number(band.texture),
+            of(|line| line.electronic),
+            of(|line| line.sigma_electronic),
+            of(|line| line.per_photon),
+            of(|line| line.sigma_per_photon),
+            of(|line| line.spread),
+            of(|line| line.sigma_spread),
+        ]);
+    }
+    table
+}
+
+/// Variance of the electronic noise in photons squared, as the `[cube]` of a ranging scenario reads it.
+fn variances(result: &NoiseFound) -> Table {
+    let common = &result.transfer.common;
+    let variance = common.noise_electrons().powi(2);
+    let mut table = Table::new(["band", "variance_counts2"]);
+    for band in 0..result.transfer.bands.len() {
+        table.push(vec![band.to_string(), number(if variance.is_finite() { variance } else { 0.0 })]);
+    }
+    table
+}
+
+/// Deviation of a sample at the mean of its band, all noise together, in the unit of the cube.
+fn sigmas(result: &NoiseFound) -> Table {
+    let mut table = Table::new(["band", "sigma"]);
+    for (i, band) in result.transfer.bands.iter().enumerate() {
+        table.push(vec![i.to_string(), number(band.variance.max(0.0).sqrt())]);
+    }
+    table
+}
+
+/// Variance over mean, some bands.
+fn transfer(result: &NoiseFound) -> Plot {
+    let bands = &result.transfer.bands;
+    let shown: Vec<usize> = match bands.len() {
+        few if few <= MOST => (0..few).collect(),
+        many => (0..MOST).map(|i| i * (many - 1) / (MOST - 1)).collect(),
+    };
+    let mut table = Table::new(["band", "mean", "variance", "variance_sigma", "common_line"]);
+    let common = &result.transfer.common;
+    let mut figure = LineFigure::new(
+        "Photon transfer: variance of the samples against their mean",
+        Axis::linear("mean (unit of the cube)"),
+        Axis::linear("variance (unit of the cube squared)"),
+    )
+    .subtitle(format!(
+        "Each point: samples of nearly one mean in one band; line: all bands together, one photon = {} unit(s), electronic noise {}.",
+        significant(common.per_photon, 3),
+        format!("{} electrons", significant(common.noise_electrons(), 3))
+    ));
+    let mut ends = [f64::INFINITY, f64::NEG_INFINITY];
+    for band in &shown {
+        let bins = &bands[*band].bins;
+        for [mean, variance, sigma] in bins {
+            ends = [ends[0].min(*mean), ends[1].max(*mean)];
+            table.push(vec![
+                band.to_string(),
+                number(*mean),
+                number(*variance),
+                number(*sigma),
+                number(common.variance(*mean)),
+            ]);
+        }
+        let column = |of: usize| bins.iter().map(|bin| bin[of]).collect::<Vec<f64>>();
+        figure = figure.series(Series::points(format!("band {band}"), column(0), column(1)));
+    }
+    let at: Vec<f64> = (0..=40).map(|i| ends[0] + (ends[1] - ends[0]) * f64::from(i) / 40.0).collect();
+    let values = at.iter().map(|mean| common.variance(*mean)).collect();
+    let figure = figure.series(Series::line("all bands", at, values));
+    Plot { name: "photon_transfer".into(), figure: figure.into(), table }
+}

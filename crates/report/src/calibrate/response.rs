@@ -1,0 +1,206 @@
+//! The response of a camera behind a filter wheel, as files: values with their covariance, η, radiances of a scene, pictures.
+
+use crate::bundle::Bundle;
+use crate::figures::{Plot, wavenumber_axis};
+use crate::plot::{Axis, Band, LineFigure, Picture, Pictures, Series, Style};
+use crate::table::{Table, number, optional};
+use crate::text::footing::{ASSUMPTIONS, warnings};
+use hadar::error::Result;
+use hadar::ranging::cube::{npy_map, write_npy_to};
+use hadar::words::{quantity, significant};
+use hadar_study::study::calibrate::{ResponseFound, ResponseRow};
+use std::fmt::Write as _;
+use std::path::Path;
+
+/// Widest picture, pixels: of larger cubes every second, third… row and column is shown.
+const WIDEST: usize = 420;
+
+/// All files; paths in the scenario are written relative to `out` where they lie below it.
+///
+/// # Errors
+/// A figure that cannot be drawn.
+pub fn bundle(result: &ResponseFound, out: &Path) -> Result<Bundle> {
+    let mut bundle = Bundle::about(result.scenario.title.as_deref());
+    bundle.add_asked("scenario.toml", result.scenario.to_toml_beside(out));
+    bundle.add_table("values.csv", response(result))?;
+    bundle.add_table("covariance.csv", square(result, &result.covariance))?;
+    bundle.add_table("kernels.csv", square(result, &result.kernels))?;
+    bundle.add_table("filters.csv", filters(result))?;
+    let mut plots = vec![figure(result)];
+    if let Some(eta) = &result.eta {
+        let values: Vec<f32> = eta.values.iter().map(|eta| *eta as f32).collect();
+        bundle.add("eta.npy", npy_map(&result.size, &values)?);
+        plots.push(vignette(result, &eta.values));
+    }
+    if let Some(scene) = &result.scene {
+        let mut cube = Vec::with_capacity(scene.shape.len() * 4 + 128);
+        write_npy_to(&mut cube, scene.shape, &scene.radiance)?;
+        bundle.add("radiance.npy", cube);
+        let to = |values: &[f64]| values.iter().map(|x| *x as f32).collect::<Vec<f32>>();
+        bundle.add("sigma_noise.npy", npy_map(&[result.filters.len()], &to(&scene.sigma_noise))?);
+        bundle.add("sigma_common.npy", npy_map(&[result.filters.len()], &to(&scene.sigma_common))?);
+    }
+    bundle.add_warnings(&result.warnings)?;
+    bundle.add_plots(&plots)?;
+    Ok(bundle)
+}
+
+/// The whole answer.
+#[must_use]
+pub fn text(result: &ResponseFound) -> String {
+    let values = result.response.len();
+    let known = result.scenario.response.known;
+    let mut out = format!(
+        "Of {values} response values the readings determine {}; the rest is the {} curve and that responses are smooth.\n\n",
+        result.determined,
+        if result.scenario.response.typical.is_some() { "typical" } else { "level" }
+    );
+    let peak = result.response.iter().map(|row| row.response).fold(0.0, f64::max);
+    let relative = |of: &dyn Fn(&ResponseRow) -> f64| {
+        let square: f64 = result.response.iter().map(|row| (of(row) / peak).powi(2)).sum();
+        100.0 * (square / values.max(1) as f64).sqrt()
+    };
+    let _ = writeln!(
+        out,
+        "  determined: directions known to a tenth of the peak by the readings alone (numerical rank {})",
+        result.rank
+    );
+    let _ = writeln!(
+        out,
+        "  with smoothness: {} numbers are the readings' own; values known to {} % of the peak (rms; beforehand {} %)",
+        significant(result.effective, 3),
+        significant(relative(&|row| row.sigma), 2),
+        significant(relative(&|row| row.sigma_beforehand), 2)
+    );
+    let _ = writeln!(
+        out,
+        "  readings about the fit: chi2 over their number {}",
+        significant(result.chi_square_reduced, 3)
+    );
+    if let (Some([low, high]), Some(sigma)) = (result.eta_range, result.eta_sigma) {
+        let _ = writeln!(
+            out,
+            "  relative transmittance of the wheel: {} to {}, each pixel to {}",
+            significant(low, 3),
+            significant(high, 3),
+            significant(sigma, 2)
+        );
+    }
+    if let Some(scene) = &result.scene {
+        out.push_str("\nScene: radiance.npy, mean photon radiance over filter and response (photons s^-1 m^-2 sr^-1 per cm^-1)\n");
+        let width = result.filters.iter().map(|name| name.chars().count()).max().unwrap_or(0).max(6);
+        let _ = writeln!(
+            out,
+            "  {:width$}  {:>18}  {:>20}",
+            "filter", "noise of a sample", "common to all pixels"
+        );
+        for (q, name) in result.filters.iter().enumerate() {
+            let [noise, common] = [scene.sigma_noise[q], scene.sigma_common[q]].map(|x| significant(x, 2));
+            let _ = writeln!(out, "  {name:width$}  {noise:>18}  {common:>20}");
+        }
+    }
+    let _ = writeln!(
+        out,
+        "\n{ASSUMPTIONS}\n  an offset for each filter that stays the same; blackbodies of emissivity 1 that fill the view; noise of {} (unit of the \
+         cubes) in every sample\n  known beforehand: scale to {} %, shape to {} % of the peak, correlated over {}\n",
+        significant(result.scenario.noise, 3),
+        significant(100.0 * known.scale, 2),
+        significant(100.0 * known.shape, 2),
+        quantity(known.correlation_cm1, "cm^-1")
+    );
+    out + &warnings(&result.warnings)
+}
+
+fn response(result: &ResponseFound) -> Table {
+    let mut table = Table::new([
+        "wavenumber_cm1",
+        "response",
+        "sigma",
+        "sigma_beforehand",
+        "sigma_readings_alone",
+        "typical",
+    ]);
+    for row in &result.response {
+        table.push(vec![
+            number(row.wavenumber_cm1),
+            number(row.response),
+            number(row.sigma),
+            number(row.sigma_beforehand),
+            optional(row.sigma_readings_alone),
+            number(row.typical),
+        ]);
+    }
+    table
+}
+
+fn square(result: &ResponseFound, values: &[f64]) -> Table {
+    let names = result.response.iter().map(|row| format!("{:.1}", row.wavenumber_cm1));
+    let mut table = Table::new(std::iter::once("wavenumber_cm1".to_owned()).chain(names));
+    for (row, values) in result.response.iter().zip(values.chunks(result.response.len().max(1))) {
+        let cells = values.iter().map(|x| number(*x));
+        table.push(std::iter::once(number(row.wavenumber_cm1)).chain(cells).collect());
+    }
+    table
+}
+
+fn filters(result: &ResponseFound) -> Table {
+    let mut table = Table::new(["filter", "offset", "sigma_noise", "sigma_common"]);
+    for (q, name) in result.filters.iter().enumerate() {
+        let scene = |pick: &dyn Fn(&hadar_study::study::calibrate::FilterRadiances) -> f64| {
+            optional(result.scene.as_ref().map(pick))
+        };
+        table.push(vec![
+            name.clone(),
+            number(result.offsets[q]),
+            scene(&|scene| scene.sigma_noise[q]),
+            scene(&|scene| scene.sigma_common[q]),
+        ]);
+    }
+    table
+}
+
+fn figure(result: &ResponseFound) -> Plot {
+    let x: Vec<f64> = result.response.iter().map(|row| row.wavenumber_cm1).collect();
+    let peak = result.response.iter().map(|row| row.response).fold(0.0, f64::max);
+    let of = |pick: &dyn Fn(&ResponseRow) -> f64| {
+        result.response.iter().map(|row| pick(row) / peak).collect::<Vec<f64>>()
+    };
+    let (values, sigma, typical) = (of(&|row| row.response), of(&|row| row.sigma), of(&|row| row.typical));
+    let mut table = Table::new(["wavenumber_cm1", "response_over_peak", "low_95", "high_95", "typical"]);
+    let edge = |sign: f64| -> Vec<f64> {
+        values.iter().zip(&sigma).map(|(value, sigma)| value + sign * 1.96 * sigma).collect()
+    };
+    let (low, high) = (edge(-1.0), edge(1.0));
+    for j in 0..x.len() {
+        table.push_numbers(&[x[j], values[j], low[j], high[j], typical[j]]);
+    }
+    let figure = LineFigure::new(
+        format!("Response: {} of {} values are determined by the readings", result.determined, x.len()),
+        wavenumber_axis(&x),
+        Axis::linear("response (peak: 1)"),
+    )
+    .subtitle("Shaded: 95 %, of the readings together with what is known beforehand.")
+    .band(Band::new("95 %", x.clone(), low, high).colour(1))
+    .series(Series::line("known beforehand", x.clone(), typical).style(Style::Dashed).colour(6))
+    .series(Series::line("estimated", x, values).style(Style::Marked).colour(1));
+    Plot { name: "response".into(), figure: figure.into(), table }
+}
+
+fn vignette(result: &ResponseFound, eta: &[f64]) -> Plot {
+    let [rows, columns] = result.size;
+    let stride = rows.max(columns).div_ceil(WIDEST);
+    let mut table = Table::new(["row", "column", "eta"]);
+    let mut shown = Vec::new();
+    for row in (0..rows).step_by(stride) {
+        for column in (0..columns).step_by(stride) {
+            let value = eta[row * columns + column];
+            table.push(vec![row.to_string(), column.to_string(), number(value)]);
+            shown.push(value);
+        }
+    }
+    let figure = Pictures::new(
+        "Relative transmittance of the filter wheel",
+        vec![Picture::new("η", Axis::linear("η (1 at the centre)"), columns.div_ceil(stride), shown)],
+    );
+    Plot { name: "eta".into(), figure: figure.into(), table }
+}

@@ -1,0 +1,160 @@
+//! A destriped cube as files: the cube, what was taken out with its errors, pictures before and after.
+
+use crate::bundle::Bundle;
+use crate::figures::Plot;
+use crate::plot::{Axis, Picture, Pictures};
+use crate::table::{Table, number};
+use crate::text::footing::{ASSUMPTIONS, warnings};
+use hadar::error::Result;
+use hadar::ranging::cube::{npy_map, write_npy_to};
+use hadar::words::{significant, whole};
+use hadar_study::study::calibrate::{Samples, StripesFound};
+use std::fmt::Write as _;
+use std::path::Path;
+
+/// Widest picture, pixels: of larger cubes every second, third… column is shown.
+const WIDEST: usize = 420;
+/// Share of the samples beyond each end of the colours.
+const CUT: f64 = 0.005;
+
+/// All files; paths in the scenario are written relative to `out` where they lie below it.
+///
+/// # Errors
+/// A figure that cannot be drawn.
+pub fn bundle(result: &StripesFound, out: &Path) -> Result<Bundle> {
+    let mut bundle = Bundle::about(result.scenario.title.as_deref());
+    bundle.add_asked("scenario.toml", result.scenario.to_toml_beside(out));
+    let mut cube = Vec::with_capacity(result.shape.len() * 8 + 128);
+    match &result.corrected {
+        Samples::F32(samples) => write_npy_to(&mut cube, result.shape, samples)?,
+        Samples::F64(samples) => write_npy_to(&mut cube, result.shape, samples)?,
+    }
+    bundle.add("destriped.npy", cube);
+    bundle.add_table("stripes.csv", stripes(result))?;
+    let found = &result.destriped;
+    let size = [found.lines, found.bands];
+    bundle.add("gain.npy", npy_map(&size, &found.map(1.0, |stripe| stripe.gain))?);
+    bundle.add("gain_sigma.npy", npy_map(&size, &found.map(0.0, |stripe| stripe.sigma_gain))?);
+    bundle.add("offset.npy", npy_map(&size, &found.map(0.0, |stripe| stripe.offset))?);
+    bundle.add("offset_sigma.npy", npy_map(&size, &found.map(0.0, |stripe| stripe.sigma_offset))?);
+    bundle.add(
+        "sigma_common.npy",
+        npy_map(&size, &found.map(0.0, |stripe| stripe.sigma_common(stripe.level)))?,
+    );
+    bundle.add_warnings(&result.warnings)?;
+    bundle.add_plots(&[before_and_after(result)])?;
+    Ok(bundle)
+}
+
+/// The whole answer.
+#[must_use]
+pub fn text(result: &StripesFound) -> String {
+    let found = &result.destriped;
+    let name = found.axis.name();
+    let all = found.lines * found.bands;
+    let mut out = match result.striped {
+        0 => {
+            format!("No stripes: none of {} {name} is off in any of {} bands.\n\n", found.lines, found.bands)
+        }
+        striped => format!(
+            "{} of {} {name} (of {} bands) are striped, off by {} % of their level (rms); corrected, an error of {} % is left, common to \
+             the pixels of a line.\n\n",
+            whole(striped as u64),
+            whole(all as u64),
+            found.bands,
+            significant(100.0 * result.off_relative, 2),
+            significant(100.0 * result.left_relative, 2)
+        ),
+    };
+    let least = found.detectable.iter().copied().fold(f64::INFINITY, f64::min);
+    let most = found.detectable.iter().copied().fold(0.0, f64::max);
+    let _ = writeln!(
+        out,
+        "  lines that are off by less than {} (unit of the cube; {} in the worst band) are not seen and stay as they are",
+        significant(least, 2),
+        significant(most, 2)
+    );
+    let _ = writeln!(
+        out,
+        "  all lines that are not striped are bit by bit those of the cube\n\n{ASSUMPTIONS}\n  A striped line reads g x + o along its whole \
+         length, gains are 1 +- {}; the clean lines beside it say what it should read.\n",
+        significant(result.scenario.stripes.gain_deviation, 2)
+    );
+    out + &warnings(&result.warnings)
+}
+
+fn stripes(result: &StripesFound) -> Table {
+    let mut table = Table::new([
+        "line",
+        "band",
+        "gain",
+        "gain_sigma",
+        "offset",
+        "offset_sigma",
+        "level",
+        "off_at_level",
+        "off_sigma",
+    ]);
+    for stripe in &result.destriped.stripes {
+        let numbers = [
+            stripe.gain,
+            stripe.sigma_gain,
+            stripe.offset,
+            stripe.sigma_offset,
+            stripe.level,
+            stripe.off,
+            stripe.sigma,
+        ];
+        let places = [stripe.line, stripe.band].map(|place| place.to_string());
+        table.push(places.into_iter().chain(numbers.map(number)).collect());
+    }
+    table
+}
+
+/// The band of the most stripes, before, after, and what was taken out.
+fn before_and_after(result: &StripesFound) -> Plot {
+    let (rows, columns) = (result.shape.rows(), result.shape.columns());
+    // Rows and columns stay as they are along stripes only: every line across them is shown.
+    let stride = columns.max(rows).div_ceil(WIDEST);
+    let (before, after) = (&result.before, result.after());
+    let shown: Vec<(usize, usize)> = (0..rows)
+        .step_by(stride)
+        .flat_map(|row| (0..columns).step_by(stride).map(move |column| (row, column)))
+        .collect();
+    let take = |values: &[f64]| -> Vec<f64> {
+        shown
+            .iter()
+            .map(|(row, column)| values.get(row * columns + column).copied().unwrap_or(f64::NAN))
+            .collect()
+    };
+    let (before, after) = (take(before), take(&after));
+    let taken: Vec<f64> = before.iter().zip(&after).map(|(a, b)| a - b).collect();
+    let mut sorted: Vec<f64> = after.iter().copied().filter(|x| x.is_finite()).collect();
+    sorted.sort_by(f64::total_cmp);
+    let end = |share: f64| sorted.get((share * sorted.len().saturating_sub(1) as f64) as usize).copied();
+    let (low, high) = (end(CUT).unwrap_or(0.0), end(1.0 - CUT).unwrap_or(1.0));
+    let axis = || {
+        let axis = Axis::linear("sample (unit of the cube)");
+        if low < high { axis.range(low, high) } else { axis }
+    };
+    let mut table = Table::new(["row", "column", "before", "after"]);
+    for ((row, column), (before, after)) in shown.iter().zip(before.iter().zip(&after)) {
+        table.push(vec![row.to_string(), column.to_string(), number(*before), number(*after)]);
+    }
+    let wide = columns.div_ceil(stride);
+    let every = match stride {
+        1 => String::new(),
+        stride => format!(" Every {stride}th row and column of {rows} × {columns}."),
+    };
+    let figure = Pictures::new(
+        "A cube and its stripes",
+        vec![
+            Picture::new("before", axis(), wide, before),
+            Picture::new("after", axis(), wide, after),
+            Picture::new("taken out", Axis::linear("sample (unit of the cube)"), wide, taken),
+        ],
+    )
+    .subtitle(format!("Band {} (counted from 0), that of the most stripes.{every}", result.shown_band))
+    .no_value("no sample");
+    Plot { name: "before_and_after".into(), figure: figure.into(), table }
+}

@@ -1,0 +1,101 @@
+//! Blackbodies that were read (`[[blackbody]]`), the noise of a sample (`[noise]`) and the cube to be calibrated (`[scene]`).
+
+use super::super::entries::Entries;
+use super::super::paths::{Paths, file};
+use super::super::section::{Entry, Section};
+use hadar::allowed::{ABOVE_ZERO, ABSOLUTE_TEMPERATURE, FROM_ZERO};
+use hadar::error::{Error, Result};
+use hadar::units::Dimension;
+use std::path::PathBuf;
+
+const EXAMPLE: &str = "[[blackbody]] with temperature = \"10 degC\" and data = \"cold.npy\", twice or more";
+
+/// A blackbody that was read.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BlackbodySpec {
+    /// Its temperature, K.
+    pub temperature_k: f64,
+    /// Deviation of that temperature, K.
+    pub uncertainty_k: f64,
+    /// Its cube.
+    pub data: CubeFile,
+}
+
+/// A cube in a file. Paths are absolute.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CubeFile {
+    /// Samples `[row][column][band]`.
+    pub path: PathBuf,
+    /// Name of the variable in a .mat file.
+    pub variable: Option<String>,
+}
+
+impl CubeFile {
+    pub(super) fn read(section: &Section<'_>, example: &str) -> Result<Self> {
+        Ok(Self {
+            path: file(&section.require("data", example)?)?,
+            variable: section.read("variable", |entry| Ok(entry.text("\"S\"")?.trim().to_owned()))?,
+        })
+    }
+
+    pub(super) fn written(&self, paths: Paths<'_>) -> Entries {
+        Entries::default().put("data", paths.file(&self.path)).put_if("variable", self.variable.clone())
+    }
+}
+
+impl BlackbodySpec {
+    fn read(entry: &Entry<'_>) -> Result<Self> {
+        let section = entry.section(&["temperature", "uncertainty", "data", "variable"])?;
+        let temperature = section.require("temperature", "\"10 degC\"")?;
+        let uncertainty = section.quantity("uncertainty", Dimension::TemperatureDifference, FROM_ZERO)?;
+        Ok(Self {
+            temperature_k: temperature.quantity(Dimension::Temperature, ABSOLUTE_TEMPERATURE)?,
+            uncertainty_k: uncertainty.unwrap_or(0.0),
+            data: CubeFile::read(&section, "\"cold.npy\"")?,
+        })
+    }
+
+    pub(super) fn written(&self, paths: Paths<'_>) -> Entries {
+        let entries = self.data.written(paths);
+        let entries = entries.put_quantity("temperature", Dimension::Temperature, Some(self.temperature_k));
+        entries.put_quantity("uncertainty", Dimension::TemperatureDifference, Some(self.uncertainty_k))
+    }
+}
+
+/// `[[blackbody]]`, two of them or more, of which two temperatures differ.
+pub(super) fn blackbodies(root: &Section<'_>) -> Result<Vec<BlackbodySpec>> {
+    let Some(list) = root.get("blackbody") else {
+        let found = Error::malformed("no blackbody is named", format!("write {EXAMPLE}"));
+        return Err(root.fail("blackbody", found));
+    };
+    let entries = list.items("[[blackbody]]")?;
+    let specs = entries.iter().map(BlackbodySpec::read).collect::<Result<Vec<_>>>()?;
+    let (Some(first), Some(second)) = (specs.first(), specs.get(1)) else {
+        let found = Error::malformed(
+            "one temperature tells response and offset not apart",
+            format!("write {EXAMPLE}, at temperatures that differ"),
+        );
+        return Err(list.fail(found));
+    };
+    if specs.iter().all(|spec| spec.temperature_k == first.temperature_k) {
+        let found = format!(
+            "blackbody[0] and blackbody[1] are both at {}",
+            Dimension::Temperature.format(second.temperature_k)
+        );
+        let error = Error::malformed(found, "give two temperatures that differ");
+        return Err(root.fail("blackbody[1].temperature", error));
+    }
+    Ok(specs)
+}
+
+/// `[noise] sample`.
+pub(super) fn noise(root: &Section<'_>) -> Result<f64> {
+    const INSTEAD: &str = "write [noise] with sample = 1.5, the deviation of one sample in the unit of the cubes (hadar calibrate noise finds it)";
+    let stated = root.read("noise", |entry| {
+        let section = entry.section(&["sample"])?;
+        section.number("sample", "1.5", ABOVE_ZERO)
+    })?;
+    stated
+        .flatten()
+        .ok_or_else(|| root.fail("noise", Error::malformed("nothing says how samples scatter", INSTEAD)))
+}

@@ -1,0 +1,13 @@
+//! Calibrations answered: cubes opened, and what they tell of the camera. A kind a file.
+
+mod blackbody;
+mod noise;
+mod opened;
+mod response;
+mod stripes;
+mod whole;
+
+pub use blackbody::{BlackbodyFound, BlackbodyStudy, ChannelRow, SceneFound};
+pub use noise::{NoiseFound, NoiseStudy};
+pub use response::{FilterRadiances, ResponseFound, ResponseRow, ResponseStudy};
+pub use stripes::{Samples, StripesFound, StripesStudy};

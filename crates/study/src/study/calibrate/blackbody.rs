@@ -1,0 +1,286 @@
+//! Response and offset of a spectrometer by blackbodies, and the radiance of a scene.
+
+use super::whole::{at, means, open, pairs, shown};
+use crate::scenario::calibrate::BlackbodyScenario;
+use crate::study::{Warning, bands};
+use hadar::calibrate::spectrometer::Calibration;
+use hadar::calibration::blackbody::{Blackbodies, Parts};
+use hadar::demand::{Thing, Work};
+use hadar::error::{Error, Result};
+use hadar::planck;
+use hadar::ranging::cube::{Cube, Shape};
+use hadar::units::{PLANCK_J_S, SPEED_OF_LIGHT_M_S};
+use serde::Serialize;
+
+/// By so much the pixels of a blackbody may scatter more than the stated noise.
+const UNEVEN: f64 = 1.1;
+/// χ²/ν beyond which blackbodies do not lie on lines, at least.
+const MISFIT: f64 = 1.3;
+/// Share of the samples that may lie beyond the blackbodies without a word.
+const BEYOND: f64 = 0.01;
+/// Samples of which the typical errors of a scene are taken.
+const LOOKED_AT: usize = 20_000;
+
+/// Cubes that are open.
+#[derive(Debug)]
+pub struct BlackbodyStudy {
+    scenario: BlackbodyScenario,
+    wavenumbers_cm1: Vec<f64>,
+    cubes: Vec<Cube>,
+    scene: Option<Cube>,
+}
+
+/// A channel with its errors; radiances in photons s⁻¹ m⁻² sr⁻¹ per cm⁻¹.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct ChannelRow {
+    /// Its wavenumber, cm⁻¹.
+    pub wavenumber_cm1: f64,
+    /// R, counts per radiance.
+    pub response: f64,
+    /// Its errors.
+    pub response_error: Parts,
+    /// ξ, counts.
+    pub offset: f64,
+    /// Its errors, counts.
+    pub offset_error: Parts,
+    /// Covariance of the two.
+    pub covariance: f64,
+    /// Error common to all pixels of a radiance in the middle of the blackbodies, as temperature, K: by noise, by temperatures.
+    pub sigma_middle_k: [f64; 2],
+    /// Noise of one sample as temperature there, K.
+    pub noise_middle_k: f64,
+}
+
+/// A calibrated scene, W m⁻² sr⁻¹ per cm⁻¹.
+#[derive(Debug, Clone, Serialize)]
+pub struct SceneFound {
+    /// Rows, columns and bands.
+    pub shape: Shape,
+    /// Radiance of every sample.
+    #[serde(skip)]
+    pub radiance: Vec<f32>,
+    /// Deviation common to all pixels, at every sample's radiance.
+    #[serde(skip)]
+    pub sigma_common: Vec<f32>,
+    /// Deviation of each sample for itself, of every band.
+    pub sigma_noise: Vec<f64>,
+    /// Median of the deviations common to all pixels, of every band.
+    pub sigma_common_median: Vec<f64>,
+}
+
+/// What was found.
+#[derive(Debug, Clone, Serialize)]
+pub struct BlackbodyFound {
+    /// The question.
+    pub scenario: BlackbodyScenario,
+    /// The channels.
+    pub channels: Vec<ChannelRow>,
+    /// The temperature in the middle of the blackbodies, K.
+    pub middle_k: f64,
+    /// Errors of the blackbodies' temperatures as found, and their deviations, K.
+    pub temperature_shifts_k: Vec<[f64; 2]>,
+    /// χ² over its degrees of freedom; none of two blackbodies.
+    pub chi_square_reduced: Option<f64>,
+    /// The scene.
+    pub scene: Option<SceneFound>,
+    /// Time that it took, s.
+    pub seconds: f64,
+    /// What was done and what was spared.
+    pub stats: Work,
+    /// What the reader must know.
+    pub warnings: Vec<Warning>,
+}
+
+impl BlackbodyStudy {
+    /// Opens the cubes.
+    ///
+    /// # Errors
+    /// Files that cannot be used, bands that are not those of the cubes; with file, line and key.
+    pub fn new(scenario: &BlackbodyScenario) -> Result<Self> {
+        let source = &scenario.source;
+        let bands = bands::at_centres(&scenario.bands.source, source)?;
+        if !bands.one_node_per_band() {
+            let found = "channels of a spectrometer are bands of one wavenumber each";
+            let instead = "write start, stop and step, or rows; filters are for hadar calibrate response";
+            return Err(at(source, "bands")(Error::malformed(found, instead)));
+        }
+        let check = |cube: &Cube| {
+            if cube.shape().bands() == bands.len() {
+                return Ok(());
+            }
+            let found = format!("the cube is {}, but [bands] are {}", shown(cube.shape()), bands.len());
+            Err(Error::malformed(found, "make [bands] those of the cube"))
+        };
+        let opened = |file, key: &str| -> Result<Cube> {
+            let cube = open(file, source, key)?;
+            check(&cube).map_err(at(source, key))?;
+            Ok(cube)
+        };
+        let cubes = scenario.blackbodies.iter().enumerate();
+        Ok(Self {
+            cubes: cubes
+                .map(|(k, spec)| opened(&spec.data, &format!("blackbody[{k}].data")))
+                .collect::<Result<_>>()?,
+            scene: scenario.scene.as_ref().map(|scene| opened(scene, "scene.data")).transpose()?,
+            wavenumbers_cm1: bands.nodes_cm1().to_vec(),
+            scenario: scenario.clone(),
+        })
+    }
+
+    /// Calibrates.
+    ///
+    /// # Errors
+    /// Samples that are no numbers, channels that respond to nothing.
+    pub fn calibrate(&self) -> Result<BlackbodyFound> {
+        let start = std::time::Instant::now();
+        let (scenario, source) = (&self.scenario, &self.scenario.source);
+        let nu = &self.wavenumbers_cm1;
+        let (mut counts, mut sigma, mut warnings) = (Vec::new(), Vec::new(), Vec::new());
+        let mut samples = 0;
+        for (k, cube) in self.cubes.iter().enumerate() {
+            let (mean, scatter) = means(cube).map_err(at(source, &format!("blackbody[{k}].data")))?;
+            let shape = cube.shape();
+            let pixels = shape.rows() * shape.columns();
+            samples += shape.len();
+            let over = scatter.iter().map(|s| (s / scenario.noise).powi(2)).sum::<f64>() / nu.len() as f64;
+            // χ²/ν of so many samples scatters by √(2/ν).
+            let chance = 1.0 + 5.0 * (2.0 / ((pixels.max(2) - 1) * nu.len()) as f64).sqrt();
+            if pixels > 1 && over.sqrt() > UNEVEN.max(chance.sqrt()) {
+                warnings.push(Warning::BlackbodyNotEven { blackbody: k, over: over.sqrt() });
+            }
+            counts.push(mean);
+            sigma.push(vec![scenario.noise / (pixels as f64).sqrt(); nu.len()]);
+        }
+        let specs = &scenario.blackbodies;
+        let temperatures_k: Vec<f64> = specs.iter().map(|spec| spec.temperature_k).collect();
+        let errors_k = specs.iter().map(|spec| spec.uncertainty_k).collect();
+        let of = Blackbodies::new(nu, temperatures_k.clone(), errors_k, &sigma)
+            .map_err(at(source, "blackbody"))?;
+        let found = Calibration::found(of, &counts).map_err(at(source, "blackbody"))?;
+        let freedom = nu.len() * (specs.len() - 2);
+        let chi_square_reduced = (freedom > 0).then(|| found.chi_square / freedom as f64);
+        if let Some(chi) =
+            chi_square_reduced.filter(|chi| *chi > MISFIT.max(1.0 + 5.0 * (2.0 / freedom as f64).sqrt()))
+        {
+            warnings.push(Warning::BlackbodiesDoNotFit { chi_square: chi });
+        }
+        let [low, high] = ends(&temperatures_k);
+        let middle_k = 0.5 * (low + high);
+        let channels = (0..nu.len()).map(|c| self.row(&found, c, middle_k)).collect();
+        let scene = self.scene.as_ref().map(|cube| self.radiance(&found, cube)).transpose();
+        let scene = scene.map_err(at(source, "scene.data"))?;
+        if let Some(scene) = &scene {
+            samples += scene.shape.len();
+            let beyond = beyond(scene, nu, [low, high]);
+            if beyond > BEYOND {
+                warnings.push(Warning::BeyondBlackbodies { share: beyond, low_k: low, high_k: high });
+            }
+        }
+        let shifts = found.temperature_shifts_k.iter().enumerate();
+        let mut stats = Work::default();
+        stats.compute(Thing::Samples, samples as u64);
+        Ok(BlackbodyFound {
+            scenario: scenario.clone(),
+            channels,
+            middle_k,
+            temperature_shifts_k: shifts
+                .map(|(k, shift)| [*shift, found.bound.sigma_temperature_k(&found.blackbodies, k)])
+                .collect(),
+            chi_square_reduced,
+            scene,
+            seconds: start.elapsed().as_secs_f64(),
+            stats,
+            warnings,
+        })
+    }
+
+    fn row(&self, found: &Calibration, c: usize, middle_k: f64) -> ChannelRow {
+        let nu = self.wavenumbers_cm1[c];
+        let slope = planck::photon_radiance_slope(nu, middle_k);
+        let middle = found.bound.radiance(&found.blackbodies, c, planck::photon_radiance(nu, middle_k));
+        ChannelRow {
+            wavenumber_cm1: nu,
+            response: found.response[c],
+            response_error: found.bound.response(&found.blackbodies, c),
+            offset: found.offset(c),
+            offset_error: found.bound.offset(&found.blackbodies, c),
+            covariance: found.bound.covariance(&found.blackbodies, c),
+            sigma_middle_k: [middle.var_noise.sqrt() / slope, middle.var_temperature.sqrt() / slope],
+            noise_middle_k: self.scenario.noise / found.response[c].abs() / slope,
+        }
+    }
+
+    fn radiance(&self, found: &Calibration, cube: &Cube) -> Result<SceneFound> {
+        let of = &found.blackbodies;
+        // The variance of a radiance is a parabola: by three of its values.
+        let lines: Vec<[f64; 6]> = (0..self.wavenumbers_cm1.len())
+            .map(|c| {
+                let channel = &of.channels()[c];
+                let reach = channel.apart.iter().fold(0.0_f64, |most, b| most.max(b.abs()));
+                let var = |s: f64| found.bound.radiance(of, c, s).sigma().powi(2);
+                let mean = channel.mean_radiance;
+                let [below, middle, above] = [var(mean - reach), var(mean), var(mean + reach)];
+                let joules = joules(self.wavenumbers_cm1[c]);
+                let square = joules * joules;
+                [
+                    joules * mean,
+                    joules / found.response[c],
+                    found.centre[c],
+                    square * middle,
+                    0.5 * joules * (above - below) / reach,
+                    0.5 * (above + below - 2.0 * middle) / (reach * reach),
+                ]
+            })
+            .collect();
+        let both = pairs(cube, |band, sample| {
+            let [mean, gain, centre, p, q, r] = lines[band];
+            let off = gain * (sample - centre);
+            let var = off.mul_add(off.mul_add(r, q), p);
+            [(mean + off) as f32, var.max(0.0).sqrt() as f32]
+        })?;
+        let (radiance, sigma_common): (Vec<f32>, Vec<f32>) = both.into_iter().map(|[a, b]| (a, b)).unzip();
+        let shape = cube.shape();
+        let median = |band: usize| {
+            let every = (shape.len() / shape.bands() / LOOKED_AT).max(1) * shape.bands();
+            let mut some: Vec<f32> = sigma_common.iter().skip(band).step_by(every).copied().collect();
+            some.sort_by(f32::total_cmp);
+            some.get(some.len() / 2).map_or(f64::NAN, |x| f64::from(*x))
+        };
+        Ok(SceneFound {
+            shape,
+            sigma_noise: lines.iter().map(|line| (self.scenario.noise * line[1]).abs()).collect(),
+            sigma_common_median: (0..shape.bands()).map(median).collect(),
+            radiance,
+            sigma_common,
+        })
+    }
+}
+
+/// Energy of a photon, J.
+fn joules(wavenumber_cm1: f64) -> f64 {
+    PLANCK_J_S * SPEED_OF_LIGHT_M_S * 100.0 * wavenumber_cm1
+}
+
+fn ends(temperatures_k: &[f64]) -> [f64; 2] {
+    let fold = |with: fn(f64, f64) -> f64, from: f64| temperatures_k.iter().copied().fold(from, with);
+    [fold(f64::min, f64::INFINITY), fold(f64::max, 0.0)]
+}
+
+/// Share of some of the samples that lie beyond the radiances of the blackbodies.
+fn beyond(scene: &SceneFound, wavenumbers_cm1: &[f64], [low_k, high_k]: [f64; 2]) -> f64 {
+    let limits: Vec<[f64; 2]> = wavenumbers_cm1
+        .iter()
+        .map(|nu| [low_k, high_k].map(|t| joules(*nu) * planck::photon_radiance(*nu, t)))
+        .collect();
+    let bands = limits.len();
+    let every = (scene.radiance.len() / bands / LOOKED_AT).max(1);
+    let (mut out, mut all) = (0.0, 0.0);
+    for pixel in scene.radiance.chunks(bands).step_by(every) {
+        for (radiance, ([low, high], noise)) in pixel.iter().zip(limits.iter().zip(&scene.sigma_noise)) {
+            let radiance = f64::from(*radiance);
+            out += f64::from(u8::from(radiance < low - 3.0 * noise || radiance > high + 3.0 * noise));
+            all += 1.0;
+        }
+    }
+    out / f64::max(all, 1.0)
+}

@@ -1,0 +1,119 @@
+//! Cubes of a calibration read whole, every sample a number.
+
+use crate::scenario::Source;
+use crate::scenario::calibrate::blackbodies::CubeFile;
+use hadar::error::{Error, Result};
+use hadar::ranging::cube::{Cube, Rows, Sample, Shape};
+use rayon::prelude::*;
+
+/// Puts file, line and key on an error.
+pub(super) fn at<'a>(source: &'a Source, key: &str) -> impl Fn(Error) -> Error + use<'a> {
+    let key = key.to_owned();
+    move |error| match &error {
+        Error::At { place, .. } if place.path.is_some() => error.for_key(key.clone()),
+        _ => error.at(source.place(&key)),
+    }
+}
+
+/// Opens a cube that is named under a key.
+pub(super) fn open(file: &CubeFile, source: &Source, key: &str) -> Result<Cube> {
+    Cube::open(&file.path, file.variable.as_deref()).map_err(at(source, key))
+}
+
+/// Rows, columns and bands in words.
+pub(super) fn shown(shape: Shape) -> String {
+    format!("{} x {} x {} (rows, columns, bands)", shape.rows(), shape.columns(), shape.bands())
+}
+
+/// A sample that is no number.
+fn no_number<S: Sample>(samples: &[S], row: usize, shape: Shape) -> Option<Error> {
+    let place = samples.iter().position(|sample| !(*sample).into().is_finite())?;
+    let value: f64 = samples[place].into();
+    let (column, band) = (place / shape.bands(), place % shape.bands());
+    Some(
+        Error::out_of_range("sample", value, "", "a finite number; leave out what the camera did not read")
+            .for_key(format!("row {row}, column {column}, band {band} (counted from 0)")),
+    )
+}
+
+/// Every row as it is read, by many threads; `of` is told the row and its samples.
+fn rows<S: Sample, T: Send>(
+    cube: &dyn Rows<S>,
+    out: &mut [T],
+    per_row: usize,
+    of: impl Fn(&[S], &mut [T]) + Sync,
+) -> Result<()> {
+    let shape = cube.shape();
+    out.par_chunks_mut(per_row).enumerate().try_for_each_init(Vec::new, |buffer, (row, out)| {
+        let samples = cube.read(row..row + 1, buffer)?;
+        if !samples.iter().fold(true, |all, sample| all & (*sample).into().is_finite())
+            && let Some(error) = no_number(samples, row, shape)
+        {
+            return Err(error);
+        }
+        of(samples, out);
+        Ok(())
+    })
+}
+
+/// All samples.
+pub(super) fn samples(cube: &Cube) -> Result<Vec<f64>> {
+    let shape = cube.shape();
+    let mut out = vec![0.0; shape.len()];
+    match cube {
+        Cube::F32(cube) => rows(cube.as_ref(), &mut out, shape.row_len(), copied),
+        Cube::F64(cube) => rows(cube.as_ref(), &mut out, shape.row_len(), copied),
+    }?;
+    Ok(out)
+}
+
+fn copied<S: Sample>(samples: &[S], out: &mut [f64]) {
+    out.iter_mut().zip(samples).for_each(|(out, sample)| *out = (*sample).into());
+}
+
+/// Two numbers made of each sample, given with its band.
+pub(super) fn pairs(cube: &Cube, of: impl Fn(usize, f64) -> [f32; 2] + Sync) -> Result<Vec<[f32; 2]>> {
+    fn each<S: Sample>(
+        cube: &dyn Rows<S>,
+        out: &mut [[f32; 2]],
+        of: impl Fn(usize, f64) -> [f32; 2] + Sync,
+    ) -> Result<()> {
+        let shape = cube.shape();
+        let bands = shape.bands();
+        rows(cube, out, shape.row_len(), |samples, out| {
+            for (samples, out) in samples.chunks(bands).zip(out.chunks_mut(bands)) {
+                for (band, (sample, out)) in samples.iter().zip(out).enumerate() {
+                    *out = of(band, (*sample).into());
+                }
+            }
+        })
+    }
+    let mut out = vec![[0.0; 2]; cube.shape().len()];
+    match cube {
+        Cube::F32(cube) => each(cube.as_ref(), &mut out, of),
+        Cube::F64(cube) => each(cube.as_ref(), &mut out, of),
+    }?;
+    Ok(out)
+}
+
+/// Mean of every band over all pixels, and the deviation of a pixel from it.
+pub(super) fn means(cube: &Cube) -> Result<(Vec<f64>, Vec<f64>)> {
+    let (shape, samples) = (cube.shape(), samples(cube)?);
+    let bands = shape.bands();
+    let pixels = (shape.rows() * shape.columns()) as f64;
+    let (mut sum, mut square) = (vec![0.0; bands], vec![0.0; bands]);
+    let first: Vec<f64> = samples[..bands].to_vec();
+    for pixel in samples.chunks(bands) {
+        for (band, sample) in pixel.iter().enumerate() {
+            let off = sample - first[band];
+            sum[band] += off;
+            square[band] += off * off;
+        }
+    }
+    let scatter = |(sum, square): (&f64, &f64)| {
+        let var = (square - sum * sum / pixels) / (pixels - 1.0).max(1.0);
+        var.max(0.0).sqrt()
+    };
+    let scatters = sum.iter().zip(&square).map(scatter).collect();
+    Ok((first.iter().zip(&sum).map(|(first, sum)| first + sum / pixels).collect(), scatters))
+}

@@ -1,0 +1,119 @@
+//! Stripes of a push-broom cube: lines whose gain and offset are off, found and taken out.
+//!
+//! A line (a row or a column) of a band reads y = g·x + o of what it should read, x. Each line is looked at in segments, whose means
+//! are little noisy; the lines beside it say what it should read. A line is striped where it is off from the clean lines on both sides
+//! of it the same way (a true edge is off from one side only; a slope from both, but not the same way), along the whole line, as one gain
+//! and one offset would have it. Gain and offset are then fitted to its segments with weights that leave out those of another kind
+//! (bisquare), the clean lines on both sides interpolated as reference, or the nearer one where an edge lies between them. A prior of the
+//! gain holds it where the line has no contrast. Lines that are not striped are left as they are.
+//!
+//! What a thin object along a line would do to all bands alike is not taken for a stripe unless that is asked for: `left` names it.
+//! Where a third of the lines of a band are striped, nothing tells the scene from the stripes, and nothing is made.
+//!
+//! Errors: of the fit, not below those of the same fit to clean lines, which truly differ from their neighbours too. An error of a line
+//! is common to all its pixels: σ(x)² = (σ_p² + σ_g²(x − x₀)²)/g² at a level x, least at the level x₀ of the line.
+//!
+//! Source: paper, supplement SV A, where streaks are detected and taken out by a linear transform; how is our own.
+
+mod apply;
+mod fit;
+mod found;
+mod scan;
+mod segments;
+
+pub use found::{Axis, Destriped, Sought, Stripe};
+
+use self::found::Stripe as One;
+use self::scan::{Band, striped};
+use self::segments::Segments;
+use crate::error::{Error, Result};
+use crate::ranging::cube::{Rows, Sample};
+use rayon::prelude::*;
+
+/// Fewest lines, and pixels of a line.
+const FEWEST: [usize; 2] = [8, 16];
+/// Share of striped lines of a band from which on they are the rule.
+const MOST: f64 = 1.0 / 3.0;
+/// Bands that are needed to tell a thin object.
+const TELLING: usize = 4;
+/// Likeness of neighbouring bands above which a line that is off in most bands is an object.
+const ALIKE: f64 = 0.5;
+
+/// Finds the stripes of a cube.
+///
+/// # Errors
+/// A cube of too few lines or of lines that are too short, one that is constant or empty, stripes that fill a band.
+pub fn find_stripes<S: Sample>(cube: &dyn Rows<S>, sought: &Sought) -> Result<Destriped> {
+    let shape = cube.shape();
+    let (lines, pixels) = match sought.axis {
+        Axis::Rows => (shape.rows(), shape.columns()),
+        Axis::Columns => (shape.columns(), shape.rows()),
+    };
+    let name = sought.axis.name();
+    if lines < FEWEST[0] || pixels < FEWEST[1] {
+        let found = format!("{lines} {name} of {pixels} pixels");
+        let instead = format!(
+            "stripes are seen in {} {name} or more of {} pixels or more; is it the other axis?",
+            FEWEST[0], FEWEST[1]
+        );
+        return Err(Error::malformed(found, instead));
+    }
+    let segments = Segments::of(cube, sought.axis)?;
+    if segments.is_constant() {
+        let found = "all samples of the cube are the same";
+        return Err(Error::malformed(found, "give a cube as it was measured"));
+    }
+    let bands = shape.bands();
+    let looked: Vec<Band> =
+        (0..bands).into_par_iter().map(|band| striped(&segments, band, sought.gain_deviation)).collect();
+    if looked.iter().all(|band| band.usable == 0) {
+        return Err(Error::malformed(
+            "no line has samples that are numbers",
+            "give a cube that was measured",
+        ));
+    }
+    for (band, seen) in looked.iter().enumerate() {
+        if seen.count() as f64 > MOST * seen.usable as f64 || seen.without_reference > 0 {
+            let found = format!(
+                "stripes in {} of {} {name} of band {band} (counted from 0), too many to tell them from the scene",
+                seen.count(),
+                seen.usable
+            );
+            let instead = "correct the cube by a uniform source first, or leave the band out";
+            return Err(Error::malformed(found, instead));
+        }
+    }
+    let left = match sought.in_all_bands {
+        true => Vec::new(),
+        false => (0..lines).filter(|line| is_object(&looked, *line)).collect(),
+    };
+    let mut stripes: Vec<One> = looked
+        .iter()
+        .enumerate()
+        .flat_map(|(band, seen)| seen.stripes(band))
+        .filter(|stripe| !left.contains(&stripe.line))
+        .collect();
+    stripes.sort_by_key(|stripe| (stripe.line, stripe.band));
+    Ok(Destriped {
+        axis: sought.axis,
+        lines,
+        bands,
+        stripes,
+        left,
+        detectable: looked.iter().map(|seen| seen.detectable).collect(),
+        levels: looked.iter().map(|seen| seen.level).collect(),
+    })
+}
+
+/// Whether a line is off in most bands, and alike in neighbouring ones.
+fn is_object(bands: &[Band], line: usize) -> bool {
+    let off: Vec<f64> = bands.iter().map(|band| band.offset(line)).collect();
+    let striped = off.iter().filter(|off| **off != 0.0).count();
+    if bands.len() < TELLING || 2 * striped <= bands.len() {
+        return false;
+    }
+    let relative: Vec<f64> = off.iter().zip(bands).map(|(off, band)| off / band.level.abs()).collect();
+    let squares: f64 = relative.iter().map(|x| x * x).sum();
+    let products: f64 = relative.windows(2).map(|pair| pair[0] * pair[1]).sum();
+    products > ALIKE * squares
+}

@@ -1,0 +1,89 @@
+//! What is sought, and what was found.
+
+/// Along what stripes lie.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Axis {
+    /// Every row has a gain and an offset.
+    Rows,
+    /// Every column has.
+    Columns,
+}
+
+impl Axis {
+    /// `rows` or `columns`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Rows => "rows",
+            Self::Columns => "columns",
+        }
+    }
+}
+
+/// How stripes are looked for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sought {
+    /// Along what they lie.
+    pub axis: Axis,
+    /// Deviation of the gains of lines from 1, as it is known beforehand.
+    pub gain_deviation: f64,
+    /// Whether a line that is off in all bands alike is a stripe too.
+    pub in_all_bands: bool,
+}
+
+/// A line of a band that reads g·x + o.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+pub struct Stripe {
+    /// The line, counted from 0.
+    pub line: usize,
+    /// The band, counted from 0.
+    pub band: usize,
+    /// Gain g.
+    pub gain: f64,
+    /// Standard error of it.
+    pub sigma_gain: f64,
+    /// Offset o, in the unit of the cube.
+    pub offset: f64,
+    /// Standard error of it, which goes together with that of the gain.
+    pub sigma_offset: f64,
+    /// Level x₀ at which the errors of gain and line are independent.
+    pub level: f64,
+    /// How far the line is off there.
+    pub off: f64,
+    /// Standard error of that, which all pixels of the line have in common.
+    pub sigma: f64,
+}
+
+impl Stripe {
+    /// What the line should read where it reads `sample`.
+    #[must_use]
+    pub fn corrected(&self, sample: f64) -> f64 {
+        (sample - self.offset) / self.gain
+    }
+
+    /// Standard error that all pixels of level `x` of the line have in common once it is corrected.
+    #[must_use]
+    pub fn sigma_common(&self, x: f64) -> f64 {
+        self.sigma.hypot(self.sigma_gain * (x - self.level)) / self.gain.abs()
+    }
+}
+
+/// The stripes of a cube.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct Destriped {
+    /// Along what they lie.
+    pub axis: Axis,
+    /// Lines of the cube.
+    pub lines: usize,
+    /// Bands of the cube.
+    pub bands: usize,
+    /// The stripes, by line and band.
+    pub stripes: Vec<Stripe>,
+    /// Lines that are off in all bands alike, and were left as they are.
+    pub left: Vec<usize>,
+    /// Least that a line of each band must be off to be seen, in the unit of the cube.
+    pub detectable: Vec<f64>,
+    /// Median of the lines of each band.
+    pub levels: Vec<f64>,
+}

@@ -1,0 +1,238 @@
+//! The striped lines of one band.
+
+use super::fit::{Fitted, fitted, median, scatter};
+use super::found::Stripe;
+use super::segments::Segments;
+
+/// Deviations above which a line is off.
+const OFF: f64 = 6.0;
+/// Share of its segments that a stripe is seen in.
+const ALONG: f64 = 0.8;
+/// Rounds in which lines are set apart.
+const ROUNDS: usize = 8;
+/// Farthest line that stands for a neighbour.
+const FARTHEST: usize = 8;
+/// Deviations by which two references differ where an edge lies between them.
+const EDGE: f64 = 4.0;
+/// Rounding of samples of 32 bits, relative.
+const ROUNDING: f64 = 1e-7;
+
+/// A band that was looked at.
+#[derive(Debug)]
+pub(super) struct Band {
+    /// Lines that have samples.
+    pub(super) usable: usize,
+    /// Striped lines that have no clean one near.
+    pub(super) without_reference: usize,
+    /// Median of its lines.
+    pub(super) level: f64,
+    /// Least that a line must be off.
+    pub(super) detectable: f64,
+    found: Vec<Option<Fitted>>,
+    /// Errors of clean lines over those of their fits, of p and of h.
+    inflation: [f64; 2],
+    /// Least scatter of the segments.
+    least: f64,
+    prior: f64,
+}
+
+impl Band {
+    pub(super) fn count(&self) -> usize {
+        self.found.iter().flatten().count()
+    }
+
+    /// How far a line is off; 0 of a clean one.
+    pub(super) fn offset(&self, line: usize) -> f64 {
+        self.found.get(line).copied().flatten().map_or(0.0, |fit| fit.off)
+    }
+
+    pub(super) fn stripes(&self, band: usize) -> impl Iterator<Item = Stripe> {
+        self.found.iter().enumerate().filter_map(move |(line, fit)| {
+            let fit = (*fit)?;
+            let scatter = fit.scatter.max(self.least);
+            let sigma = self.inflation[0] * scatter * fit.unit[0].sqrt();
+            // The prior holds the gain however much clean lines differ.
+            let sigma_gain = (self.inflation[1] * scatter * fit.unit[1].sqrt()).min(self.prior);
+            Some(Stripe {
+                line,
+                band,
+                gain: 1.0 + fit.slope,
+                sigma_gain,
+                offset: fit.off - fit.slope * fit.level,
+                sigma_offset: sigma.hypot(sigma_gain * fit.level),
+                level: fit.level,
+                off: fit.off,
+                sigma,
+            })
+        })
+    }
+}
+
+/// Lines of a band with what is known of them.
+struct Lines {
+    means: Vec<Vec<f64>>,
+    /// Lines that may stand for others.
+    clean: Vec<bool>,
+    /// Scatter of a segment's difference from its neighbour.
+    least: f64,
+    prior: f64,
+}
+
+/// Looks at a band.
+pub(super) fn striped(segments: &Segments, band: usize, prior: f64) -> Band {
+    let means = segments.of_band(band);
+    let there = |line: &Vec<f64>| 2 * line.iter().filter(|mean| mean.is_finite()).count() >= line.len();
+    let clean: Vec<bool> = means.iter().map(there).collect();
+    let usable = clean.iter().filter(|clean| **clean).count();
+    let finite = means.iter().flatten().copied().filter(|mean| mean.is_finite());
+    let level = median(&mut finite.collect::<Vec<f64>>());
+    let mut within: Vec<f64> = means
+        .windows(2)
+        .filter_map(|pair| {
+            let apart: Vec<f64> =
+                pair[0].iter().zip(&pair[1]).map(|(a, b)| a - b).filter(|d| d.is_finite()).collect();
+            (apart.len() > 5).then(|| scatter(&apart))
+        })
+        .collect();
+    let least = median(&mut within).max(ROUNDING * level.abs());
+    let mut lines = Lines { means, clean, least, prior };
+    let mut flagged = vec![false; segments.lines];
+    for _ in 0..ROUNDS {
+        let more: Vec<usize> =
+            (0..segments.lines).filter(|line| lines.clean[*line] && lines.is_off(*line)).collect();
+        if more.is_empty() {
+            break;
+        }
+        for line in more {
+            flagged[line] = true;
+            lines.clean[line] = false;
+        }
+    }
+    let mut found = vec![None; segments.lines];
+    let mut without_reference = 0;
+    for line in (0..segments.lines).filter(|line| flagged[*line]) {
+        // Beside all those that were set apart since, it may look clean.
+        if !lines.is_off(line) {
+            continue;
+        }
+        match lines.fit(line) {
+            Some(fit) => found[line] = Some(fit),
+            None => without_reference += 1,
+        }
+    }
+    let inflation = lines.inflation();
+    let detectable = OFF * least / (segments.count as f64).sqrt();
+    Band { usable, without_reference, level, detectable, found, inflation, least, prior }
+}
+
+impl Lines {
+    /// The two nearest clean lines on a side.
+    fn clean_on(&self, line: usize, up: bool) -> Vec<usize> {
+        let near = 1..=FARTHEST;
+        let place = |by: usize| if up { line.checked_sub(by) } else { Some(line + by) };
+        near.filter_map(place).filter(|at| self.clean.get(*at) == Some(&true)).take(2).collect()
+    }
+
+    /// The clean lines on both sides at a segment, the farther one extrapolated beyond the ends of the image, with the share of the first.
+    fn sides(&self, line: usize) -> Option<[Vec<f64>; 3]> {
+        let (above, below) = (self.clean_on(line, true), self.clean_on(line, false));
+        let of = |at: usize| self.means.get(at);
+        let beyond = |near: &[f64], far: &[f64], [a, b]: [usize; 2]| -> Vec<f64> {
+            let share = line.abs_diff(a) as f64 / a.abs_diff(b) as f64;
+            near.iter().zip(far).map(|(near, far)| near + (near - far) * share).collect()
+        };
+        match (above.as_slice(), below.as_slice()) {
+            ([a, ..], [b, ..]) => {
+                let share = line.abs_diff(*b) as f64 / a.abs_diff(*b) as f64;
+                let between = of(*a)?.iter().zip(of(*b)?).map(|(a, b)| share * a + (1.0 - share) * b);
+                Some([of(*a)?.clone(), of(*b)?.clone(), between.collect()])
+            }
+            ([a, b, ..], []) | ([], [a, b, ..]) => {
+                let far = beyond(of(*a)?, of(*b)?, [*a, *b]);
+                Some([of(*a)?.clone(), far.clone(), far])
+            }
+            _ => None,
+        }
+    }
+
+    /// Whether a line is off from both sides the same way, all along.
+    fn is_off(&self, line: usize) -> bool {
+        let Some([one, other, between]) = self.sides(line) else { return false };
+        let Some(own) = self.means.get(line) else { return false };
+        let off: Vec<f64> = own
+            .iter()
+            .zip(one.iter().zip(&other))
+            .map(|(own, (one, other))| {
+                let (a, b) = (own - one, own - other);
+                match a * b > 0.0 {
+                    true if a.abs() < b.abs() => a,
+                    true => b,
+                    false if (a * b).is_nan() => f64::NAN,
+                    false => 0.0,
+                }
+            })
+            .collect();
+        let Some(fit) = fitted(&between, &off, self.least, self.prior) else { return false };
+        let (mut square, mut seen, mut same) = (0.0, 0.0, 0.0);
+        for (x, off) in between.iter().zip(&off) {
+            let model = fit.at(*x);
+            if !(model.is_finite() && off.is_finite()) {
+                continue;
+            }
+            square += model * model;
+            if model.abs() > 0.5 * self.least {
+                seen += 1.0;
+                same += f64::from(u8::from(off * model > 0.0));
+            }
+        }
+        let there = off.iter().filter(|off| off.is_finite()).count() as f64;
+        square.sqrt() > OFF * self.least && 2.0 * seen > there && same >= ALONG * seen
+    }
+
+    /// Gain and offset of a line from the clean ones beside it.
+    fn fit(&self, line: usize) -> Option<Fitted> {
+        let [one, other, between] = self.sides(line)?;
+        let own = self.means.get(line)?;
+        let mut fit: Option<Fitted> = None;
+        for _ in 0..3 {
+            let reference: Vec<f64> = (0..own.len())
+                .map(|i| {
+                    if !((one[i] - other[i]).abs() > EDGE * self.least) {
+                        return between[i];
+                    }
+                    // What the line would read if it were clean.
+                    let clean = own[i] - fit.as_ref().map_or(0.0, |fit| fit.at(between[i]));
+                    let near = |x: f64| (x - clean).abs();
+                    match fit {
+                        Some(_) if near(between[i]) < near(one[i]).min(near(other[i])) => between[i],
+                        _ if near(one[i]) < near(other[i]) => one[i],
+                        _ => other[i],
+                    }
+                })
+                .collect();
+            let off: Vec<f64> = own.iter().zip(&reference).map(|(own, x)| own - x).collect();
+            fit = Some(fitted(&reference, &off, 0.5 * self.least, self.prior)?);
+        }
+        fit
+    }
+
+    /// How much more the fits of clean lines scatter than they say.
+    fn inflation(&self) -> [f64; 2] {
+        let fits: Vec<Fitted> = (0..self.means.len())
+            .filter(|line| self.clean[*line])
+            .filter_map(|line| self.fit(line))
+            .collect();
+        let of = |value: &dyn Fn(&Fitted) -> f64| {
+            let mut values: Vec<f64> = fits.iter().map(|fit| value(fit).abs()).collect();
+            if values.len() < 5 {
+                return 1.0;
+            }
+            let middle = median(&mut values) * 1.482_602;
+            let place = (values.len() * 95 / 100).min(values.len() - 1);
+            let far = *values.select_nth_unstable_by(place, f64::total_cmp).1 / 1.96;
+            middle.max(far).max(1.0)
+        };
+        let error = |fit: &Fitted, which: usize| fit.scatter.max(self.least) * fit.unit[which].sqrt();
+        [of(&|fit| fit.off / error(fit, 0)), of(&|fit| fit.slope / error(fit, 1))]
+    }
+}
