@@ -15,7 +15,7 @@ fn shape() -> Shape {
 }
 
 /// A normal deviate, well enough: twelve uniform ones.
-fn normal(random: &mut impl rand::Rng) -> f64 {
+fn normal(random: &mut impl RngExt) -> f64 {
     (0..12).map(|_| random.random_range(0.0..1.0)).sum::<f64>() - 6.0
 }
 

@@ -9,6 +9,7 @@ mod page;
 mod paper_scene;
 mod person_or_robot;
 mod priors;
+mod stripes;
 
 use super::order::{Order, Progress};
 use hadar::error::Result;
@@ -32,12 +33,15 @@ pub(crate) enum FurtherStudy {
     AirRanging,
     /// What can be told of temperature and emissivity without a library.
     EmissivityFromData,
+    /// What stripes of a cube cost.
+    Stripes,
 }
 
 impl FurtherStudy {
     /// All of them, the quickest first.
-    pub(crate) const ALL: [Self; 7] = [
+    pub(crate) const ALL: [Self; 8] = [
         Self::PersonOrRobot,
+        Self::Stripes,
         Self::DecomposeLimits,
         Self::Priors,
         Self::AirRanging,
@@ -57,6 +61,7 @@ impl FurtherStudy {
             Self::PersonOrRobot => "person-or-robot",
             Self::AirRanging => "air-ranging",
             Self::EmissivityFromData => "emissivity-from-data",
+            Self::Stripes => "stripes",
         }
     }
 
@@ -77,6 +82,7 @@ impl FurtherStudy {
             Self::DecomposeLimits => "How near a decomposed heat cube comes to what the photons allow",
             Self::PersonOrRobot => "Person or robot, with classes on both sides",
             Self::EmissivityFromData => "Temperature and emissivity without a library",
+            Self::Stripes => "What stripes cost, and what destriping gives back",
         }
     }
 
@@ -124,6 +130,7 @@ impl FurtherStudy {
             Self::PersonOrRobot => person_or_robot::make(order, library, progress),
             Self::AirRanging => air_ranging::make(order, library, progress),
             Self::EmissivityFromData => emissivity_from_data::make(order, library, progress),
+            Self::Stripes => stripes::make(order, library, progress),
         }?;
         Ok((bundle.titled(self.title()), finding))
     }
