@@ -3,6 +3,7 @@
 mod accuracy;
 mod air_ranging;
 mod arrows;
+mod calibrate;
 mod cameras;
 mod certificate;
 mod classes;
