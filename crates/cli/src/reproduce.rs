@@ -10,12 +10,15 @@
 //! [`FurtherStudy`] are questions of this project beyond the paper's figures: no part of `all`, no lines of the ledger.
 
 mod candidates;
+mod edfig1;
+mod edfig5;
 mod edfig6;
 mod edfig9;
 mod fig3b;
 mod fig3c;
 mod fig4;
 mod figs17;
+mod figs19;
 mod figs20;
 mod inverse_trade_off;
 mod ledger;
@@ -27,6 +30,7 @@ mod scene;
 mod studies;
 mod tabs2;
 mod tabs5;
+mod textured;
 
 pub(crate) use ledger::{Line, Verdict, markdown, table};
 pub(crate) use order::{Effort, Order, Progress};
@@ -49,6 +53,10 @@ pub(crate) enum Item {
     Fig3c,
     /// Five materials.
     EdFig6,
+    /// Texture of the sky's light.
+    EdFig1,
+    /// Textures: standard deviation and information.
+    EdFig5,
     /// Thermometry.
     EdFig9,
     /// Ranging: bounds by signal, and matching beside them.
@@ -57,6 +65,8 @@ pub(crate) enum Item {
     FigS12,
     /// Loss over the size of the library.
     FigS17,
+    /// Ranging on textures.
+    FigS19,
     /// Methods of decomposition.
     FigS20,
     /// Detectors.
@@ -78,7 +88,7 @@ pub(crate) struct Reproduction {
 
 impl Item {
     /// All of them, the quickest first.
-    pub(crate) const ALL: [Self; 12] = [
+    pub(crate) const ALL: [Self; 15] = [
         Self::TabS2,
         Self::TabS5,
         Self::Policy,
@@ -86,6 +96,9 @@ impl Item {
         Self::FigS17,
         Self::FigS20,
         Self::FigS12,
+        Self::EdFig1,
+        Self::EdFig5,
+        Self::FigS19,
         Self::Fig4,
         Self::EdFig6,
         Self::EdFig9,
@@ -100,11 +113,14 @@ impl Item {
             Self::Fig3b => "fig3b",
             Self::FigS7 => "figs7",
             Self::Fig3c => "fig3c",
+            Self::EdFig1 => "edfig1",
+            Self::EdFig5 => "edfig5",
             Self::EdFig6 => "edfig6",
             Self::EdFig9 => "edfig9",
             Self::Fig4 => "fig4",
             Self::FigS12 => "figs12",
             Self::FigS17 => "figs17",
+            Self::FigS19 => "figs19",
             Self::FigS20 => "figs20",
             Self::TabS5 => "tabs5",
             Self::TabS2 => "tabs2",
@@ -119,11 +135,14 @@ impl Item {
             Self::Fig3b => "Fig. 3b: classifiers against the shot-noise limit, 536 bands",
             Self::FigS7 => "Fig. S7: the same in three bands, and with a detector's noise",
             Self::Fig3c => "Fig. 3c: photons required over temperature and lighting",
+            Self::EdFig1 => "Extended Data Fig. 1b: texture of the sky's light",
+            Self::EdFig5 => "Extended Data Fig. 5: textures by standard deviation and by information",
             Self::EdFig6 => "Extended Data Fig. 6: five materials",
             Self::EdFig9 => "Extended Data Fig. 9f: thermometry against its bound",
             Self::Fig4 => "Fig. 4: ranging by a thermal image, a heat cube and scattered light",
             Self::FigS12 => "Fig. S12: measures of texture",
             Self::FigS17 => "Fig. S17: what more materials in the library explain",
+            Self::FigS19 => "Fig. S19 and Table I: ranging on decomposed texture",
             Self::FigS20 => "Fig. S20: scattered light told apart, or not",
             Self::TabS5 => "Tables S4 and S5: what resolution is worth",
             Self::TabS2 => "Table S2: detectors",
@@ -155,11 +174,14 @@ impl Item {
             Self::Fig3b => fig3b::all_bands(order, out, progress)?,
             Self::FigS7 => fig3b::three_bands(order, out, progress)?,
             Self::Fig3c => fig3c::make(out)?,
+            Self::EdFig1 => edfig1::make(order, out)?,
+            Self::EdFig5 => edfig5::make(order, out)?,
             Self::EdFig6 => edfig6::make(order, out, progress)?,
             Self::EdFig9 => edfig9::make(order, out, progress)?,
             Self::Fig4 => fig4::make(order, out, progress)?,
             Self::FigS12 => fig4::textures(order)?,
             Self::FigS17 => figs17::make(order)?,
+            Self::FigS19 => figs19::make(order, out)?,
             Self::FigS20 => figs20::make(order)?,
             Self::TabS5 => tabs5::make()?,
             Self::TabS2 => tabs2::make(out)?,

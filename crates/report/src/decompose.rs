@@ -5,9 +5,10 @@ mod figures;
 mod text;
 mod vision;
 
+pub use equalise::{Clahe, Curves};
 pub use figures::maps;
 pub use text::text;
-pub use vision::Vision;
+pub use vision::{DARKEST, Vision, brightness, saturation};
 
 use crate::bundle::Bundle;
 use crate::plot::image_png;
@@ -43,6 +44,10 @@ pub fn bundle(result: &Decomposed, out: &Path) -> Result<Bundle> {
     bundle.add("flags.npy", npy_map(&size, &maps.flags)?);
     bundle.add("texture.npy", npy_map(&size, &result.vision.texture)?);
     bundle.add("thermal.npy", npy_map(&size, &result.vision.thermal)?);
+    if let Some(of_sky) = &result.vision.distilled {
+        bundle.add("distilled_texture.npy", npy_map(&size, &of_sky.texture)?);
+        bundle.add("distilled_texture_sigma.npy", npy_map(&size, &of_sky.sigma)?);
+    }
     let vision = Vision::of(result);
     bundle.add("tex_vision_image.png", image_png(&vision.pixels(), size[1])?);
     let stride = figures::stride(result.shape);
