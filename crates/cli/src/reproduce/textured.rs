@@ -95,7 +95,7 @@ pub(super) struct Textured {
 }
 
 impl Textured {
-    /// The yard, drawn with a seed; `exposures` times as long.
+    /// A yard, drawn with a seed.
     pub(super) fn new(toml: &str, seed: u64) -> Result<Self> {
         let library = Library::embedded()?;
         let scenario = RenderScenario::from_toml(toml, None)?;

@@ -238,6 +238,57 @@ mod tests {
         }
     }
 
+    /// An equalised image in levels tells no more of a pixel's count than the count, and as much as its levels' probabilities say; the
+    /// standard deviation of the image rises all the same. The probabilities are sums over the counts, one by one.
+    #[test]
+    fn equalisation_raises_contrast_and_never_information() {
+        const LEVELS: usize = 256;
+        let top = (LEVELS - 1) as f64;
+        let steps: Vec<f64> = (1..LEVELS).map(|k| (k as f64 - 0.5) / top).collect();
+        for seed in 0..4_usize {
+            // Counts about a few hundred thousand with a weak texture, and a bright corner that takes the scale.
+            let image: Vec<f64> = noise(64 * 64 + seed)[seed..]
+                .iter()
+                .enumerate()
+                .map(|(i, x)| 3e5 + 4e3 * x + if i < 200 { 2e5 } else { 0.0 })
+                .collect();
+            let curves = Clahe::of(64, 64).curves(&image, 64);
+            for i in [1000 + 97 * seed, 2222, 3000, 4000] {
+                let (mean, sigma) = (image[i], image[i].sqrt());
+                let ends = [mean - 8.0 * sigma, mean + 8.0 * sigma];
+                let edges = curves.crossings(i, ends, &steps);
+                assert!(edges.windows(2).all(|pair| pair[0] <= pair[1]));
+                let share = hadar::ranging::levels::share_left(mean, sigma, &edges);
+                let of = |mean: f64| {
+                    let mut p = [0.0; LEVELS];
+                    let step = 0.01 * sigma;
+                    for k in -900..=900 {
+                        let n = image[i] + f64::from(k) * step;
+                        let level = (curves.at(i, n) * top).round() as usize;
+                        p[level] += (-0.5 * ((n - mean) / sigma).powi(2)).exp() * step
+                            / (sigma * std::f64::consts::TAU.sqrt());
+                    }
+                    p
+                };
+                let h = 0.02 * sigma;
+                let (before, here, after) = (of(mean - h), of(mean), of(mean + h));
+                let each = (0..LEVELS).filter(|k| here[*k] > 1e-12);
+                let j: f64 = each.map(|k| (after[k] - before[k]).powi(2) / (4.0 * h * h * here[k])).sum();
+                let expected = j * sigma * sigma;
+                assert!((share / expected - 1.0).abs() < 0.02, "{i}: {share} {expected}");
+                assert!((0.0..=1.0).contains(&share));
+            }
+            let deviation = |image: &[f64]| {
+                let own = &image[2048..];
+                let mean = own.iter().sum::<f64>() / own.len() as f64;
+                (own.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / own.len() as f64).sqrt()
+            };
+            let span = image.iter().fold(0.0_f64, |most, x| most.max(*x)) - 3e5;
+            let shown = Clahe::of(64, 64).equalised(&image, 64);
+            assert!(deviation(&shown) > 2.0 * deviation(&image) / span);
+        }
+    }
+
     /// Two halves of different brightness each get the whole scale.
     #[test]
     fn tiles_bring_out_what_is_in_them() {
