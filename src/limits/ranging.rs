@@ -9,6 +9,7 @@
 //! * [`psf`]: what diffraction and the pixel's size leave of a point source; [`depth`]: δz, and what it demands;
 //! * [`reconstruction`]: the same for a scattered signal that is itself estimated from the bands;
 //! * [`air`]: depth from one view, by what the air on the path takes away and adds;
+//! * [`levels`]: what is left of it in an image of grey levels;
 //! * [`texture`], [`metrics`]: other measures of texture, and of the error of a depth map.
 //!
 //! Assumptions: parallel, calibrated, rectified cameras (no vergence), matching along x alone; no bias bound.
@@ -20,6 +21,7 @@ pub mod cube;
 pub mod depth;
 pub mod derivative;
 pub mod information;
+pub mod levels;
 pub mod metrics;
 pub mod noise;
 pub mod psf;

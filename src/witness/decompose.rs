@@ -7,6 +7,7 @@
 //! * [`Setting`], [`Options`]: what is known; [`decompose()`]: a cube to [`Maps`];
 //! * [`Method`], [`decompose_by`]: methods that it is compared with; [`inverse_error`]: by how much one of them errs;
 //! * [`SpatialPrior`]: what neighbours tell about a pixel, where it is asked for;
+//! * [`distil()`]: what of the light on a surface is the sky's; [`texture_information()`]: what cube and textures tell of a place;
 //! * [`Pixel`], [`flag`]: what is found of a pixel, and what is said of it.
 //!
 //! Intervals are those of the Cramér–Rao bound at the fit, were the material certain, also where a limit holds a lighting factor: its
@@ -16,6 +17,7 @@
 //!
 //! Source: paper S44, S48, Methods 'TeX degeneracy'.
 
+mod distil;
 mod fit;
 mod grey_body;
 mod inverse;
@@ -30,7 +32,10 @@ mod screen;
 mod space;
 mod spatial;
 mod step;
+mod tangent;
+mod texture_information;
 
+pub use distil::{Distilled, Residue, Sky, distil};
 pub use inverse_error::{InverseError, inverse_error};
 pub use library_error::LibraryError;
 pub use maps::{Maps, Options, decompose};
@@ -38,3 +43,4 @@ pub use method::{Method, decompose_by};
 pub use model::{Light, MOST_SURROUNDINGS, Setting};
 pub use pixel::{CANDIDATE_SHARE, NO_FIT, NO_MATERIAL, Pixel, Spared, flag};
 pub use spatial::{Spatial, SpatialPrior};
+pub use texture_information::{TextureInformation, texture_information};

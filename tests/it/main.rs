@@ -10,6 +10,7 @@ mod decompose_methods;
 mod decompose_spatial;
 mod derivatives;
 mod detection_reference;
+mod distil;
 mod exact_probability;
 mod inputs;
 mod likelihood;

@@ -10,6 +10,8 @@
 //! [`FurtherStudy`] are questions of this project beyond the paper's figures: no part of `all`, no lines of the ledger.
 
 mod candidates;
+mod edfig1;
+mod edfig5;
 mod edfig6;
 mod edfig7;
 mod edfig8;
@@ -19,6 +21,7 @@ mod fig3b;
 mod fig3c;
 mod fig4;
 mod figs17;
+mod figs19;
 mod figs20;
 mod figs29;
 mod inverse_trade_off;
@@ -32,6 +35,7 @@ mod scene;
 mod studies;
 mod tabs2;
 mod tabs5;
+mod textured;
 
 pub(crate) use ledger::{Line, Verdict, markdown, table};
 pub(crate) use order::{Effort, Order, Progress};
@@ -58,6 +62,10 @@ pub(crate) enum Item {
     EdFig7,
     /// Segmentation by materials.
     EdFig8,
+    /// Texture of the sky's light.
+    EdFig1,
+    /// Textures: standard deviation and information.
+    EdFig5,
     /// Thermometry.
     EdFig9,
     /// Letters that a thermal imager does not see.
@@ -68,6 +76,8 @@ pub(crate) enum Item {
     FigS12,
     /// Loss over the size of the library.
     FigS17,
+    /// Ranging on textures.
+    FigS19,
     /// Methods of decomposition.
     FigS20,
     /// Calibration of the response.
@@ -91,7 +101,7 @@ pub(crate) struct Reproduction {
 
 impl Item {
     /// All of them, the quickest first.
-    pub(crate) const ALL: [Self; 16] = [
+    pub(crate) const ALL: [Self; 19] = [
         Self::TabS2,
         Self::TabS5,
         Self::Policy,
@@ -103,6 +113,9 @@ impl Item {
         Self::EdFig8,
         Self::FigS29,
         Self::FigS12,
+        Self::EdFig1,
+        Self::EdFig5,
+        Self::FigS19,
         Self::Fig4,
         Self::EdFig6,
         Self::EdFig9,
@@ -117,6 +130,8 @@ impl Item {
             Self::Fig3b => "fig3b",
             Self::FigS7 => "figs7",
             Self::Fig3c => "fig3c",
+            Self::EdFig1 => "edfig1",
+            Self::EdFig5 => "edfig5",
             Self::EdFig6 => "edfig6",
             Self::EdFig7 => "edfig7",
             Self::EdFig8 => "edfig8",
@@ -125,6 +140,7 @@ impl Item {
             Self::Fig4 => "fig4",
             Self::FigS12 => "figs12",
             Self::FigS17 => "figs17",
+            Self::FigS19 => "figs19",
             Self::FigS20 => "figs20",
             Self::FigS29 => "figs29",
             Self::TabS5 => "tabs5",
@@ -140,6 +156,8 @@ impl Item {
             Self::Fig3b => "Fig. 3b: classifiers against the shot-noise limit, 536 bands",
             Self::FigS7 => "Fig. S7: the same in three bands, and with a detector's noise",
             Self::Fig3c => "Fig. 3c: photons required over temperature and lighting",
+            Self::EdFig1 => "Extended Data Fig. 1b: texture of the sky's light",
+            Self::EdFig5 => "Extended Data Fig. 5: textures by standard deviation and by information",
             Self::EdFig6 => "Extended Data Fig. 6: five materials",
             Self::EdFig7 => "Extended Data Fig. 7: a person before a car, and a robot",
             Self::EdFig8 => "Extended Data Fig. 8: segmentation by materials",
@@ -148,6 +166,7 @@ impl Item {
             Self::Fig4 => "Fig. 4: ranging by a thermal image, a heat cube and scattered light",
             Self::FigS12 => "Fig. S12: measures of texture",
             Self::FigS17 => "Fig. S17: what more materials in the library explain",
+            Self::FigS19 => "Fig. S19 and Table I: ranging on decomposed texture",
             Self::FigS20 => "Fig. S20: scattered light told apart, or not",
             Self::FigS29 => "Fig. S29: the camera's response from blackbodies, and what they determine",
             Self::TabS5 => "Tables S4 and S5: what resolution is worth",
@@ -180,6 +199,8 @@ impl Item {
             Self::Fig3b => fig3b::all_bands(order, out, progress)?,
             Self::FigS7 => fig3b::three_bands(order, out, progress)?,
             Self::Fig3c => fig3c::make(out)?,
+            Self::EdFig1 => edfig1::make(order, out)?,
+            Self::EdFig5 => edfig5::make(order, out)?,
             Self::EdFig6 => edfig6::make(order, out, progress)?,
             Self::EdFig7 => edfig7::make(order)?,
             Self::EdFig8 => edfig8::make(order, progress)?,
@@ -188,6 +209,7 @@ impl Item {
             Self::Fig4 => fig4::make(order, out, progress)?,
             Self::FigS12 => fig4::textures(order)?,
             Self::FigS17 => figs17::make(order)?,
+            Self::FigS19 => figs19::make(order, out)?,
             Self::FigS20 => figs20::make(order)?,
             Self::FigS29 => figs29::make(order)?,
             Self::TabS5 => tabs5::make()?,

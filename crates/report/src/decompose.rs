@@ -6,9 +6,10 @@ mod segmented;
 mod text;
 mod vision;
 
+pub use equalise::{Clahe, Curves};
 pub use figures::maps;
 pub use text::text;
-pub use vision::Vision;
+pub use vision::{DARKEST, Vision, brightness, saturation};
 
 use crate::bundle::Bundle;
 use crate::plot::image_png;
@@ -49,6 +50,10 @@ pub fn bundle(result: &Decomposed, out: &Path) -> Result<Bundle> {
         bundle.add_table("categories.csv", segmented::categories(found))?;
         bundle.add_table("objects.csv", segmented::objects(found))?;
         bundle.add_plots(&[segmented::plot(result, found, figures::stride(result.shape))])?;
+    }
+    if let Some(of_sky) = &result.vision.distilled {
+        bundle.add("distilled_texture.npy", npy_map(&size, &of_sky.texture)?);
+        bundle.add("distilled_texture_sigma.npy", npy_map(&size, &of_sky.sigma)?);
     }
     let vision = Vision::of(result);
     bundle.add("tex_vision_image.png", image_png(&vision.pixels(), size[1])?);

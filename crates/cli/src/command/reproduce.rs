@@ -14,7 +14,7 @@ use std::time::Instant;
 
 #[derive(Debug, Args)]
 pub(super) struct ReproduceArgs {
-    /// Figures and tables: fig3b, figs7, fig3c, fig4, figs12, figs17, figs20, edfig6, edfig9, tabs2, tabs5, policy, or all
+    /// Figures and tables: fig3b, figs7, fig3c, fig4, figs12, figs17, figs19, figs20, edfig1, edfig5, edfig6, edfig9, tabs2, tabs5, policy, or all
     /// of these; further studies, no part of `all`: air-ranging, decompose-limits, exact-probability, priors, library-figures (with --library FILE),
     /// emissivity-from-data (with --library FOLDER), person-or-robot (with --library twice)
     #[arg(value_name = "ID", default_value = "all")]

@@ -159,6 +159,40 @@ fn the_picture_shows_what_is_there() {
     assert!(said.contains("pulled to the median of 3 x 3 pixels, p = 0.100"), "{said}");
 }
 
+/// With a sky named its light alone is written, V S_sky where the ground is black, and makes the picture bright if asked.
+#[test]
+fn the_light_of_the_sky_is_distilled() {
+    let folder = with(&SCENARIO.replace("hues =", "sky = 0\nbrightness = \"distilled\"\nhues ="));
+    let found = folder.json(&["decompose", "a.toml", "--out", "out"]);
+    let from_sky = 20.0 * (0..BANDS).map(sky).sum::<f64>();
+    let [texture, sigma] =
+        ["distilled_texture.npy", "distilled_texture_sigma.npy"].map(|name| map(&folder, name));
+    for i in (0..ROWS * COLUMNS).filter(|i| *i != HOLE) {
+        let expected = truth(i).2 * from_sky;
+        assert!((texture[i] / expected - 1.0).abs() < 1e-3, "{i}: {} {expected}", texture[i]);
+        assert!(sigma[i] > 0.0 && sigma[i] < 0.2 * expected, "{i}: {}", sigma[i]);
+    }
+    assert!(texture[HOLE].is_nan() && sigma[HOLE].is_nan());
+    let of_sky = &found["vision"]["distilled"];
+    assert!(
+        of_sky["medians"][1].as_f64().unwrap() > 0.0 && of_sky["residues"].as_array().unwrap().len() == 3
+    );
+    let again = folder.json(&["decompose", "out/scenario.toml"]);
+    assert_eq!(
+        (&again["scenario"]["vision"], of_sky),
+        (&found["scenario"]["vision"], &again["vision"]["distilled"])
+    );
+    assert_eq!(found["scenario"]["vision"]["brightness"], "distilled");
+    let said = folder.run(&["decompose", "a.toml"]).stdout;
+    assert!(said.contains("Texture of the sky's light (distilled_texture.npy)"), "{said}");
+    // The same texture as without its use for the picture, whose brightness it changes.
+    let bright = std::fs::read(folder.path().join("out/tex_vision_image.png")).unwrap();
+    folder.file("b.toml", &SCENARIO.replace("hues =", "sky = 0\nhues ="));
+    folder.json(&["decompose", "b.toml", "--out", "out"]);
+    assert_eq!(map(&folder, "distilled_texture.npy")[0], texture[0]);
+    assert_ne!(std::fs::read(folder.path().join("out/tex_vision_image.png")).unwrap(), bright);
+}
+
 #[test]
 fn mistakes_about_the_image_are_one_line_with_what_to_write() {
     let folder = with(SCENARIO);
@@ -173,6 +207,13 @@ fn mistakes_about_the_image_are_one_line_with_what_to_write() {
             "there is no material `Wal Paint`; did you mean `Wall Paint`?",
         ),
         ("= 30 }", "= 400 }", "vision.hues"),
+        (
+            "hues =",
+            "sky = 2\nhues =",
+            "vision.sky: environment 2 as the sky, of 2; count the [[environment]] tables from 0",
+        ),
+        ("hues =", "sky = 0.5\nhues =", "vision.sky"),
+        ("hues =", "brightness = \"distilled\"\nhues =", "a distilled texture without a sky; write sky = 0"),
         (
             "[\"10 degC\", \"40 degC\"]",
             "[\"10 degC\", \"10 degC\"]",

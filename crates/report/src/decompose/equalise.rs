@@ -21,61 +21,120 @@ pub(super) const LIMIT: f64 = 3.5;
 
 /// How an image is cut, and what a bin holds at most as a multiple of the mean one.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Clahe {
+pub struct Clahe {
     pub(super) tiles: [usize; 2],
     pub(super) limit: f64,
 }
 
+/// The maps from values to brightness that an image has been equalised by, one for each pixel.
+#[derive(Debug, Clone)]
+pub struct Curves {
+    rows: usize,
+    columns: usize,
+    tiles: [usize; 2],
+    ends: [f64; 2],
+    /// Of each tile, the shares below the edges of its bins; nothing of an empty one.
+    shares: Vec<Vec<f64>>,
+}
+
+impl Curves {
+    fn place(&self, value: f64) -> f64 {
+        let [low, high] = self.ends;
+        (value - low) / (high - low) * BINS as f64
+    }
+
+    /// What a tile says of a value: along its curve, which a tile without a pixel does not have.
+    fn says(&self, row: usize, column: usize, value: f64) -> Option<f64> {
+        let curve = self.shares.get(row * self.tiles[1] + column).filter(|curve| !curve.is_empty())?;
+        let at = self.place(value).clamp(0.0, BINS as f64);
+        let bin = (at as usize).min(BINS - 1);
+        let (from, to) = (curve.get(bin)?, curve.get(bin + 1)?);
+        Some(from + (at - bin as f64) * (to - from))
+    }
+
+    /// Brightness, from 0 to 1, of a value at the pixel `i`, counted row after row; a value that is no number stays what it is.
+    #[must_use]
+    pub fn at(&self, i: usize, value: f64) -> f64 {
+        let [low, high] = self.ends;
+        if !value.is_finite() {
+            return value;
+        }
+        if low >= high {
+            return 0.5;
+        }
+        let [down, across] = self.tiles;
+        let (upper, lower, downwards) = between(i / self.columns, self.rows, down);
+        let (left, right, sideways) = between(i % self.columns, self.columns, across);
+        let corners = [
+            (upper, left, (1.0 - downwards) * (1.0 - sideways)),
+            (upper, right, (1.0 - downwards) * sideways),
+            (lower, left, downwards * (1.0 - sideways)),
+            (lower, right, downwards * sideways),
+        ];
+        let said = corners.iter().filter_map(|(row, column, w)| Some((self.says(*row, *column, value)?, w)));
+        let (sum, weight) = said.fold((0.0, 0.0), |(sum, all), (x, w)| (sum + w * x, all + w));
+        // A pixel is in a tile that has it, at least.
+        if weight > 0.0 { sum / weight } else { 0.5 }
+    }
+
+    /// Values between `ends` at which the brightness of the pixel `i` passes each of `levels`, which rise.
+    #[must_use]
+    pub fn crossings(&self, i: usize, [from, to]: [f64; 2], levels: &[f64]) -> Vec<f64> {
+        let [low, high] = self.ends;
+        let knot = |bin: usize| low + (high - low) * bin as f64 / BINS as f64;
+        let bins = |value: f64| self.place(value).clamp(0.0, BINS as f64);
+        let knots = (bins(from).floor() as usize + 1..=bins(to).ceil() as usize).map(knot);
+        let inside = knots.filter(|x| *x > from && *x < to);
+        let mut before = (from, self.at(i, from));
+        let mut found = Vec::new();
+        let mut next = levels.partition_point(|level| *level <= before.1);
+        for x in inside.chain([to]) {
+            let here = (x, self.at(i, x));
+            while let Some(level) = levels.get(next).filter(|level| **level <= here.1) {
+                found.push(before.0 + (level - before.1) / (here.1 - before.1) * (here.0 - before.0));
+                next += 1;
+            }
+            before = here;
+        }
+        found
+    }
+}
+
 impl Clahe {
     /// For an image of so many rows and columns.
-    pub(super) fn of(rows: usize, columns: usize) -> Self {
+    #[must_use]
+    pub fn of(rows: usize, columns: usize) -> Self {
         Self { tiles: [rows, columns].map(|side| (side / SMALLEST).clamp(1, TILES)), limit: LIMIT }
     }
 
     /// The image `[row][column]` with values from 0 to 1.
-    pub(super) fn equalised(self, values: &[f64], columns: usize) -> Vec<f64> {
+    #[must_use]
+    pub fn equalised(self, values: &[f64], columns: usize) -> Vec<f64> {
+        let curves = self.curves(values, columns);
+        values.iter().enumerate().map(|(i, value)| curves.at(i, *value)).collect()
+    }
+
+    /// The maps that equalise an image `[row][column]`.
+    #[must_use]
+    pub fn curves(self, values: &[f64], columns: usize) -> Curves {
         let rows = values.len().checked_div(columns).unwrap_or(0);
-        let finite = || values.iter().copied().filter(|value| value.is_finite());
-        let (low, high) = finite().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
-        if low >= high {
-            return values.iter().map(|value| if value.is_finite() { 0.5 } else { *value }).collect();
-        }
+        let finite = values.iter().copied().filter(|value| value.is_finite());
+        let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
         let [down, across] = self.tiles.map(|count| count.max(1));
+        let mut curves =
+            Curves { rows, columns, tiles: [down, across], ends: [low, high], shares: Vec::new() };
+        if low >= high {
+            return curves;
+        }
         let mut tiles = vec![vec![0.0; BINS]; down * across];
-        let place = |value: f64| (value - low) / (high - low) * BINS as f64;
         for (i, value) in values.iter().enumerate().filter(|(_, value)| value.is_finite()) {
             let (row, column) = (i / columns * down / rows, i % columns * across / columns);
-            let bin = (place(*value) as usize).min(BINS - 1);
+            let bin = (curves.place(*value) as usize).min(BINS - 1);
             let count = tiles.get_mut(row * across + column).and_then(|tile| tile.get_mut(bin));
             count.into_iter().for_each(|count| *count += 1.0);
         }
-        let shares: Vec<Vec<f64>> = tiles.into_iter().map(|tile| self.below(tile)).collect();
-        // What a tile says of a value: along its curve, which a tile without a pixel does not have.
-        let says = |row: usize, column: usize, value: f64| {
-            let curve = shares.get(row * across + column).filter(|curve| !curve.is_empty())?;
-            let at = place(value).min(BINS as f64);
-            let bin = (at as usize).min(BINS - 1);
-            let (from, to) = (curve.get(bin)?, curve.get(bin + 1)?);
-            Some(from + (at - bin as f64) * (to - from))
-        };
-        let pixel = |(i, value): (usize, &f64)| {
-            if !value.is_finite() {
-                return *value;
-            }
-            let (upper, lower, downwards) = between(i / columns, rows, down);
-            let (left, right, sideways) = between(i % columns, columns, across);
-            let corners = [
-                (upper, left, (1.0 - downwards) * (1.0 - sideways)),
-                (upper, right, (1.0 - downwards) * sideways),
-                (lower, left, downwards * (1.0 - sideways)),
-                (lower, right, downwards * sideways),
-            ];
-            let said = corners.iter().filter_map(|(row, column, w)| Some((says(*row, *column, *value)?, w)));
-            let (sum, weight) = said.fold((0.0, 0.0), |(sum, all), (x, w)| (sum + w * x, all + w));
-            // A pixel is in a tile that has it, at least.
-            if weight > 0.0 { sum / weight } else { 0.5 }
-        };
-        values.iter().enumerate().map(pixel).collect()
+        curves.shares = tiles.into_iter().map(|tile| self.below(tile)).collect();
+        curves
     }
 
     /// Shares of a histogram below each edge of its bins, once it is limited; nothing of an empty one.
@@ -176,6 +235,57 @@ mod tests {
                 let most = if limit.is_finite() { (limit + 1.0) * apart / span } else { 1.0 };
                 assert!(shown >= -1e-12 && shown <= most + 1e-12, "{limit}");
             }
+        }
+    }
+
+    /// An equalised image in levels tells no more of a pixel's count than the count, and as much as its levels' probabilities say; the
+    /// standard deviation of the image rises all the same. The probabilities are sums over the counts, one by one.
+    #[test]
+    fn equalisation_raises_contrast_and_never_information() {
+        const LEVELS: usize = 256;
+        let top = (LEVELS - 1) as f64;
+        let steps: Vec<f64> = (1..LEVELS).map(|k| (k as f64 - 0.5) / top).collect();
+        for seed in 0..4_usize {
+            // Counts about a few hundred thousand with a weak texture, and a bright corner that takes the scale.
+            let image: Vec<f64> = noise(64 * 64 + seed)[seed..]
+                .iter()
+                .enumerate()
+                .map(|(i, x)| 3e5 + 4e3 * x + if i < 200 { 2e5 } else { 0.0 })
+                .collect();
+            let curves = Clahe::of(64, 64).curves(&image, 64);
+            for i in [1000 + 97 * seed, 2222, 3000, 4000] {
+                let (mean, sigma) = (image[i], image[i].sqrt());
+                let ends = [mean - 8.0 * sigma, mean + 8.0 * sigma];
+                let edges = curves.crossings(i, ends, &steps);
+                assert!(edges.windows(2).all(|pair| pair[0] <= pair[1]));
+                let share = hadar::ranging::levels::share_left(mean, sigma, &edges);
+                let of = |mean: f64| {
+                    let mut p = [0.0; LEVELS];
+                    let step = 0.01 * sigma;
+                    for k in -900..=900 {
+                        let n = image[i] + f64::from(k) * step;
+                        let level = (curves.at(i, n) * top).round() as usize;
+                        p[level] += (-0.5 * ((n - mean) / sigma).powi(2)).exp() * step
+                            / (sigma * std::f64::consts::TAU.sqrt());
+                    }
+                    p
+                };
+                let h = 0.02 * sigma;
+                let (before, here, after) = (of(mean - h), of(mean), of(mean + h));
+                let each = (0..LEVELS).filter(|k| here[*k] > 1e-12);
+                let j: f64 = each.map(|k| (after[k] - before[k]).powi(2) / (4.0 * h * h * here[k])).sum();
+                let expected = j * sigma * sigma;
+                assert!((share / expected - 1.0).abs() < 0.02, "{i}: {share} {expected}");
+                assert!((0.0..=1.0).contains(&share));
+            }
+            let deviation = |image: &[f64]| {
+                let own = &image[2048..];
+                let mean = own.iter().sum::<f64>() / own.len() as f64;
+                (own.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / own.len() as f64).sqrt()
+            };
+            let span = image.iter().fold(0.0_f64, |most, x| most.max(*x)) - 3e5;
+            let shown = Clahe::of(64, 64).equalised(&image, 64);
+            assert!(deviation(&shown) > 2.0 * deviation(&image) / span);
         }
     }
 

@@ -24,8 +24,31 @@ pub fn text(result: &Decomposed) -> String {
     if let Some(truth) = &result.truth {
         out.push_str(&against(truth, result));
     }
+    out.push_str(&distilled(result));
     out.push_str(&assumptions(result));
     out.push_str(&warnings(&result.warnings));
+    out
+}
+
+fn distilled(result: &Decomposed) -> String {
+    let Some(of_sky) = &result.vision.distilled else { return String::new() };
+    let [texture, sigma] = of_sky.medians;
+    let mut out = format!(
+        "Texture of the sky's light (distilled_texture.npy)\n  {} photons s^-1 m^-2 sr^-1 with a deviation of {}, medians; {} scatterings\n",
+        significant(texture, 4),
+        significant(sigma, 2),
+        of_sky.scatterings
+    );
+    for of in &of_sky.residues {
+        let name = result.materials.get(of.material).map_or("", String::as_str);
+        let _ = writeln!(
+            out,
+            "  residue of {name}: {} of a band's noise of {} is light that the surroundings do not explain",
+            significant(of.light, 2),
+            significant(of.noise, 2)
+        );
+    }
+    out.push_str("  Residues are taken for the sky's as far as they are no noise; light of objects that are no surroundings is in them.\n\n");
     out
 }
 

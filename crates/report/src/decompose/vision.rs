@@ -8,12 +8,13 @@ use super::equalise::{Clahe, LIMIT};
 use crate::figures::Plot;
 use crate::plot::{Axis, Painted, Picture, Pictures};
 use crate::table::{Table, number};
+use hadar_study::scenario::decompose::Brightness;
 use hadar_study::study::decompose::Decomposed;
 
 /// Saturation at the lower limit of the temperature; the paper has 0, which is also that of nothing known.
 const PALEST: f64 = 0.25;
 /// Brightness of the darkest texture; the paper has 0.
-const DARKEST: f64 = 0.3;
+pub const DARKEST: f64 = 0.3;
 /// Saturation and brightness of what shows the material alone.
 const PLAIN: [f64; 2] = [0.8, 0.9];
 /// Share of the textures that are darker than the scale, and brighter.
@@ -42,20 +43,16 @@ impl Vision {
             asked.hues_deg.get(usize::from(*material)).copied()
         };
         let hue_deg: Vec<Option<f64>> = (0..maps.material.len()).map(hue).collect();
-        let [low, high] = asked.temperature_k;
-        let warmth = |t: f32| ((f64::from(t) - low) / (high - low)).clamp(0.0, 1.0);
-        let saturation = hue_deg.iter().zip(&maps.temperature_k).map(|(hue, t)| match hue {
-            Some(_) if t.is_finite() => PALEST + (1.0 - PALEST) * warmth(*t),
+        let saturations = hue_deg.iter().zip(&maps.temperature_k).map(|(hue, t)| match hue {
+            Some(_) if t.is_finite() => saturation(f64::from(*t), asked.temperature_k),
             Some(_) => PALEST,
             None => 0.0,
         });
-        let saturation = saturation.collect();
-        let textures = logarithms(&asked.texture);
-        let equalised = Clahe::of(result.shape.rows(), result.shape.columns())
-            .equalised(&textures, result.shape.columns());
-        let brightness =
-            equalised.iter().map(|x| DARKEST + (1.0 - DARKEST) * if x.is_finite() { *x } else { 0.5 });
-        Self { hue_deg, saturation, brightness: brightness.collect() }
+        let saturation = saturations.collect();
+        let is_of_sky = result.scenario.vision.brightness == Brightness::Distilled;
+        let of_sky = asked.distilled.as_ref().filter(|_| is_of_sky);
+        let texture = of_sky.map_or(&asked.texture, |of_sky| &of_sky.texture);
+        Self { hue_deg, saturation, brightness: brightness(texture, result.shape.columns()) }
     }
 
     /// Colours of the pixels, red, green and blue.
@@ -64,6 +61,21 @@ impl Vision {
         let each = self.hue_deg.iter().zip(self.saturation.iter().zip(&self.brightness));
         each.map(|(hue, (s, v))| rgb(hue.unwrap_or(0.0), *s, *v)).collect()
     }
+}
+
+/// Brightness of textures: their logarithms, equalised; in the middle where there is none.
+#[must_use]
+pub fn brightness(textures: &[f32], columns: usize) -> Vec<f64> {
+    let rows = textures.len().checked_div(columns).unwrap_or(0);
+    let equalised = Clahe::of(rows, columns).equalised(&logarithms(textures), columns);
+    let bright = |x: f64| DARKEST + (1.0 - DARKEST) * if x.is_finite() { x } else { 0.5 };
+    equalised.into_iter().map(bright).collect()
+}
+
+/// Saturation of a temperature between limits.
+#[must_use]
+pub fn saturation(temperature_k: f64, [low, high]: [f64; 2]) -> f64 {
+    PALEST + (1.0 - PALEST) * ((temperature_k - low) / (high - low)).clamp(0.0, 1.0)
 }
 
 /// Logarithms, those of the darkest and the brightest few at the ends of the others.
@@ -119,7 +131,7 @@ pub(super) fn plot(result: &Decomposed, vision: &Vision, stride: usize) -> Plot 
     let unit = "(photons s⁻¹ m⁻² sr⁻¹)";
     let thermal = take(&asked.thermal, f32::is_finite);
     let texture = take(&asked.texture, |x| x > 0.0);
-    let pictures = vec![
+    let mut pictures = vec![
         Picture::painted(
             "TeX vision: hue the material, saturation the temperature, brightness the texture",
             Axis::linear("temperature (K)").range(low, high),
@@ -145,6 +157,14 @@ pub(super) fn plot(result: &Decomposed, vision: &Vision, stride: usize) -> Plot 
             texture.clone(),
         ),
     ];
+    if let Some(of_sky) = &asked.distilled {
+        pictures.push(Picture::new(
+            "Distilled texture: what they see of the sky's light",
+            Axis::log(format!("incident radiance {unit}")),
+            wide,
+            take(&of_sky.texture, |x| x > 0.0),
+        ));
+    }
     let mut keys: Vec<((u8, u8, u8), String)> = Vec::new();
     for row in result.found.iter().filter(|row| row.decided > 0).take(LISTED) {
         let place = result.materials.iter().position(|name| *name == row.material);

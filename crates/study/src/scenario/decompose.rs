@@ -138,6 +138,20 @@ pub struct VisionSpec {
     pub hues_deg: BTreeMap<String, f64>,
     /// Temperatures of the palest and the fullest colour, K.
     pub temperature_k: Option<[f64; 2]>,
+    /// Which of the surroundings is the sky, counted from 0; its texture is distilled then.
+    pub sky: Option<usize>,
+    /// What is bright.
+    pub brightness: Brightness,
+}
+
+/// What is bright in the picture (`vision.brightness`).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Brightness {
+    /// All light that a surface sees.
+    #[default]
+    Texture,
+    /// That of the sky.
+    Distilled,
 }
 
 /// Maps of what is there (`[truth]`).

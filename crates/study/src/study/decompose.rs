@@ -12,7 +12,7 @@ pub(super) use results::flags;
 pub use results::{ClassRow, Decomposed, FlagCount, MaterialRow, TruthFound};
 pub use segmented::{CategoryRow, ObjectRow, Segmented};
 pub(super) use truth::Truth;
-pub use vision::Vision;
+pub use vision::{DistilledTexture, Vision, hues_deg};
 
 use self::results::summary;
 use super::Warning;
@@ -49,6 +49,11 @@ impl DecomposeStudy {
             let error = Error::malformed(found, "leave [spatial] out, or take --method ml or te");
             return Err(error.at(self.scenario.place("spatial")));
         }
+        if !method.has_likelihood() && self.scenario.vision.sky.is_some() {
+            let found = format!("the method {} has no residue to distil a texture of", method.name());
+            let error = Error::malformed(found, "leave vision.sky out, or take --method ml");
+            return Err(error.at(self.scenario.place("vision.sky")));
+        }
         let start = std::time::Instant::now();
         let unknown = self.scenario.unknown;
         let setting = Setting {
@@ -84,7 +89,7 @@ impl DecomposeStudy {
             warnings.push(Warning::LibraryTakenAsExact);
         }
         let truth = self.truth.as_ref().map(|truth| truth.found(self, method, &maps)).transpose()?;
-        let vision = Vision::of(self, &maps).map_err(|error| self.at_cube(error))?;
+        let vision = Vision::of(self, &setting, &maps).map_err(|error| self.at_cube(error))?;
         let segmented = Segmented::of(self, &maps, &vision)?;
         Ok(summary(self, method, maps, (truth, vision, segmented), seconds, warnings))
     }

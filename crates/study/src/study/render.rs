@@ -82,6 +82,15 @@ pub struct Rendered {
     /// Emissivities of the materials at these.
     #[serde(skip)]
     pub emissivities: Vec<Vec<f64>>,
+    /// The bands.
+    #[serde(skip)]
+    pub bands: Bands,
+    /// Counts for each unit of a band's radiance, m² sr s.
+    #[serde(skip)]
+    pub counts_per_radiance: f64,
+    /// Variance of the electronic noise of a sample of each band, counts².
+    #[serde(skip)]
+    pub var_added: Vec<f64>,
     /// Radiances of the surroundings at these, photons s⁻¹ m⁻² sr⁻¹ per cm⁻¹.
     #[serde(skip)]
     pub radiances: Vec<Vec<f64>>,
@@ -217,6 +226,9 @@ impl RenderStudy {
             warnings,
             views,
             wavenumbers_cm1: nodes.to_vec(),
+            bands: self.bands.clone(),
+            counts_per_radiance: self.counting.counts_per_radiance,
+            var_added: (0..bands).map(|band| self.counting.var_added(band)).collect(),
             emissivities: materials.iter().map(|(_, emissivity)| at_nodes(emissivity, nodes.len())).collect(),
             materials: materials.into_iter().map(|(name, _)| name).collect(),
             radiances: chosen.iter().map(|surface| left.leaving()[*surface].clone()).collect(),

@@ -2,7 +2,7 @@
 
 use super::super::entries::Entries;
 use super::super::section::Entry;
-use super::VisionSpec;
+use super::{Brightness, VisionSpec};
 use hadar::allowed::{ABOVE_ZERO, ABSOLUTE_TEMPERATURE, Allowed};
 use hadar::decompose::SpatialPrior;
 use hadar::error::{Error, Result};
@@ -16,6 +16,12 @@ const WEIGHT: Allowed =
     Allowed { holds: |value| value > 0.0 && value <= 10.0, expected: "above 0, at most 10" };
 const HUE: Allowed =
     Allowed { holds: |value| (0.0..360.0).contains(&value), expected: "from 0, below 360 degrees" };
+const PLACE: Allowed = Allowed {
+    holds: |value| value >= 0.0 && value.fract() == 0.0 && value <= 1e6,
+    expected: "a whole number from 0",
+};
+const BRIGHTNESS: [(&str, Brightness); 2] =
+    [("texture", Brightness::Texture), ("distilled", Brightness::Distilled)];
 const POTTS: &str = "potts";
 const TEX_SGD: &str = "tex-sgd";
 
@@ -47,15 +53,24 @@ pub(super) fn spatial_written(prior: &SpatialPrior) -> Entries {
 }
 
 pub(super) fn vision(entry: &Entry<'_>) -> Result<VisionSpec> {
-    let section = entry.section(&["hues", "temperature"])?;
+    let section = entry.section(&["hues", "temperature", "sky", "brightness"])?;
     let temperature = |end: &Entry<'_>| end.quantity(Dimension::Temperature, ABSOLUTE_TEMPERATURE);
     let hues = section.read("hues", |entry| {
         let table = entry.table()?;
         let hue = |name: &str| Ok((name.to_owned(), table.require(name, "210")?.number("210", HUE)?));
         table.keys().map(hue).collect()
     })?;
+    let sky = section.number("sky", "0", PLACE)?.map(|place| place as usize);
+    let brightness = section.choice("brightness", &BRIGHTNESS)?.unwrap_or_default();
+    if sky.is_none() && brightness == Brightness::Distilled {
+        let found = "a distilled texture without a sky";
+        let instead = "write sky = 0, the place of the sky among the [[environment]] tables, counted from 0";
+        return Err(section.fail("brightness", Error::malformed(found, instead)));
+    }
     Ok(VisionSpec {
         hues_deg: hues.unwrap_or_default(),
+        sky,
+        brightness,
         temperature_k: section
             .read("temperature", |entry| entry.wide_range("[\"0 degC\", \"40 degC\"]", temperature, |k| k))?,
     })
@@ -63,9 +78,10 @@ pub(super) fn vision(entry: &Entry<'_>) -> Result<VisionSpec> {
 
 pub(super) fn vision_written(spec: &VisionSpec) -> Entries {
     let hues: toml::Table = spec.hues_deg.iter().map(|(name, hue)| (name.clone(), (*hue).into())).collect();
-    Entries::default().put_if("hues", (!hues.is_empty()).then_some(hues)).put_range(
-        "temperature",
-        Dimension::Temperature,
-        spec.temperature_k,
-    )
+    let brightness = BRIGHTNESS.iter().find(|(_, own)| *own == spec.brightness);
+    Entries::default()
+        .put_if("hues", (!hues.is_empty()).then_some(hues))
+        .put_range("temperature", Dimension::Temperature, spec.temperature_k)
+        .put_if("sky", spec.sky.map(|sky| sky as i64))
+        .put_if("brightness", brightness.filter(|_| spec.sky.is_some()).map(|(name, _)| *name))
 }

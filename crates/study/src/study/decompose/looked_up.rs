@@ -94,6 +94,15 @@ impl DecomposeStudy {
             let found = Error::unknown_name("material", other, names.iter().map(String::as_str));
             return Err(at(&format!("vision.hues.{other}"))(found));
         }
+        if let Some(sky) = scenario.vision.sky.filter(|sky| *sky >= lights.len()) {
+            let found = format!("environment {sky} as the sky, of {}", lights.len());
+            let error = Error::malformed(found, "count the [[environment]] tables from 0");
+            return Err(at("vision.sky")(error));
+        }
+        if scenario.vision.sky.is_some() && scenario.unknown.gain {
+            let found = "the light of a sky in counts of unknown scale";
+            return Err(at("vision.sky")(Error::malformed(found, "write unknown.gain = false")));
+        }
         if matches!(scenario.spatial, Some(SpatialPrior::TexSgd { .. }))
             && scenario.library.emissivity_error.is_some_and(|error| error > 0.0)
         {

@@ -9,7 +9,9 @@
 //! Source: paper, supplement SIII C.
 
 use super::DecomposeStudy;
-use hadar::decompose::{Light, Maps};
+use crate::scenario::MaterialRef;
+use crate::scenario::decompose::LightSource;
+use hadar::decompose::{Light, Maps, Residue, Setting, Sky, distil};
 use hadar::error::Result;
 use hadar::ranging::cube::{Cube, Rows, Sample};
 use rayon::prelude::*;
@@ -37,12 +39,32 @@ pub struct Vision {
     /// Thermal image, photons s⁻¹ m⁻² sr⁻¹; NaN where a sample is missing.
     #[serde(skip)]
     pub thermal: Vec<f32>,
+    /// Texture of the sky's light alone, where a sky is named.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub distilled: Option<DistilledTexture>,
+}
+
+/// A distilled texture, and what it is made of.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DistilledTexture {
+    /// The texture of every pixel, photons s⁻¹ m⁻² sr⁻¹; NaN where material or lighting is unknown.
+    #[serde(skip)]
+    pub texture: Vec<f32>,
+    /// Its deviation.
+    #[serde(skip)]
+    pub sigma: Vec<f32>,
+    /// Median of the texture, and of its deviation.
+    pub medians: [f64; 2],
+    /// Scatterings of the sky's light between the surroundings until nothing changed.
+    pub scatterings: usize,
+    /// How much of the residue of each material is light.
+    pub residues: Vec<Residue>,
 }
 
 impl Vision {
     /// # Errors
     /// A cube that cannot be read.
-    pub(super) fn of(study: &DecomposeStudy, maps: &Maps) -> Result<Self> {
+    pub(super) fn of(study: &DecomposeStudy, setting: &Setting<'_>, maps: &Maps) -> Result<Self> {
         let spec = &study.scenario.vision;
         Ok(Self {
             hues_deg: hues_deg(&study.names, |name| spec.hues_deg.get(name).copied()),
@@ -52,12 +74,50 @@ impl Vision {
                 Cube::F32(rows) => thermal(study, rows.as_ref()),
                 Cube::F64(rows) => thermal(study, rows.as_ref()),
             }?,
+            distilled: spec.sky.map(|sky| distilled(study, setting, maps, sky)).transpose()?,
         })
     }
 }
 
-/// Hues of the materials of a library, some of them stated.
-fn hues_deg(names: &[String], stated: impl Fn(&str) -> Option<f64>) -> Vec<f64> {
+/// The texture of the sky's light. Surroundings that are rows of the cube are shown by these, those of a material of the library by its
+/// pixels; of others it is not known what they scatter.
+fn distilled(
+    study: &DecomposeStudy,
+    setting: &Setting<'_>,
+    maps: &Maps,
+    sky: usize,
+) -> Result<DistilledTexture> {
+    let columns = study.cube.shape().columns();
+    let shown = |light: &LightSource| -> Vec<usize> {
+        match light {
+            LightSource::Rows([first, last]) => (first * columns..last * columns).collect(),
+            LightSource::Surface { material: Some(MaterialRef::Name(name)), .. } => {
+                let place = study.names.iter().position(|own| own == name);
+                let is_own = |i: &usize| place.is_some_and(|place| usize::from(maps.material[*i]) == place);
+                (0..maps.material.len()).filter(is_own).collect()
+            }
+            _ => Vec::new(),
+        }
+    };
+    let shown_by: Vec<Vec<usize>> = study.scenario.environment.iter().map(shown).collect();
+    let found = distil(setting, maps, &study.cube, Sky { place: sky, shown_by: &shown_by })?;
+    let median = |of: &[f32]| {
+        let mut known: Vec<f64> = of.iter().map(|x| f64::from(*x)).filter(|x| x.is_finite()).collect();
+        known.sort_by(f64::total_cmp);
+        known.get(known.len() / 2).copied().unwrap_or(f64::NAN)
+    };
+    Ok(DistilledTexture {
+        medians: [median(&found.texture), median(&found.sigma)],
+        texture: found.texture,
+        sigma: found.sigma,
+        scatterings: found.scatterings,
+        residues: found.residues,
+    })
+}
+
+/// Hues of the materials of a library, some of them stated, degrees.
+#[must_use]
+pub fn hues_deg(names: &[String], stated: impl Fn(&str) -> Option<f64>) -> Vec<f64> {
     let of_paper = |name: &str| {
         let named = NAMED.iter().find(|(one, _)| one.eq_ignore_ascii_case(name.trim()));
         named.map(|(_, hue)| hue * 360.0 / 255.0)
