@@ -11,7 +11,7 @@
 
 use super::ledger::{Line, Verdict};
 use super::order::{Figures, Made, Order};
-use super::textured::{Textured, YARD, median, window_sums};
+use super::textured::{EXPOSURE, Textured, median, window_sums};
 use hadar::decompose::{Maps, NO_MATERIAL, TextureInformation, texture_information};
 use hadar::error::Result;
 use hadar::ranging::cube::{MemoryCube, Shape};
@@ -27,6 +27,7 @@ use hadar_report::plot::{Axis, Painted, Picture};
 use hadar_report::range::picture_plot;
 use hadar_report::table::{Table, number};
 use hadar_study::study::decompose::hues_deg;
+use hadar_study::study::range::quantile;
 use hadar_study::study::render::Picture as Rendered;
 use std::path::Path;
 
@@ -130,7 +131,7 @@ fn density(image: &[f64], counts: &[bool], shape: Shape) -> Result<f64> {
 }
 
 fn compared(order: Order) -> Result<Compared> {
-    let yard = Textured::new(YARD, order.seed)?;
+    let yard = Textured::new(EXPOSURE, order.seed)?;
     let (shape, columns, all) = (yard.shape, yard.shape.columns(), yard.all());
     let [expected, drawn] = [&yard.expected.views[0], &yard.drawn.views[0]];
     let cube = yard.cube(expected)?;
@@ -140,9 +141,9 @@ fn compared(order: Order) -> Result<Compared> {
     let information = texture_information(&yard.setting(all), &true_fit, &cube, &found)?;
     let (thermal, mean) = (yard.thermal(drawn), yard.thermal(expected));
     let curves = Clahe::of(shape.rows(), columns).curves(&thermal, columns);
-    let equalise = |image: &[f64]| -> Vec<f64> {
-        levels(&image.iter().enumerate().map(|(i, n)| curves.at(i, *n)).collect::<Vec<_>>())
-    };
+    let smooth =
+        |image: &[f64]| image.iter().enumerate().map(|(i, n)| curves.at(i, *n)).collect::<Vec<f64>>();
+    let equalise = |image: &[f64]| levels(&smooth(image));
     let top = (LEVELS - 1) as f64;
     let steps: Vec<f64> = (1..LEVELS).map(|k| (k as f64 - 0.5) / top).collect();
     let added: f64 = yard.expected.var_added.iter().sum();
@@ -197,6 +198,12 @@ fn compared(order: Order) -> Result<Compared> {
             Some([&equalised, &equalised_mean]),
             &equalised_information,
             matched(&equalised, &equalise(&yard.thermal(right))),
+        )?,
+        row(
+            "thermal image, equalised, no levels",
+            Some([&smooth(&thermal), &smooth(&mean)]),
+            &information.thermal,
+            None,
         )?,
         row(
             "pseudo-TeX vision, its brightness",
@@ -256,8 +263,9 @@ fn by_matching(yard: &Textured, [left, right]: [&Rendered; 2], [a, b]: [&[f64]; 
         }
         let j = i / columns * columns + place as usize;
         let (share, same) = (place.fract(), |j: usize| right.surface[j] == left.surface[i]);
+        let pure = |j: usize| right.material[j] != NO_MATERIAL;
         let there = (1.0 - share) * b[j] + share * b[j + 1];
-        if same(j) && same(j + 1) && there.is_finite() {
+        if same(j) && same(j + 1) && pure(j) && pure(j + 1) && there.is_finite() {
             // The mean of two has less noise than one.
             let noise = 1.0 + (1.0 - share).powi(2) + share * share;
             square += (a[i] - there).powi(2) / noise;
@@ -378,17 +386,23 @@ fn looks(found: &Compared, order: Order) -> Result<Option<Plot>> {
             ),
         ),
     ];
-    let subtitle = "Left camera, 12 ms, 54 bands. Grey: nothing told. Hues of materials and of segments are not the same.";
+    let subtitle = "Left camera, 200 us, 54 bands. Grey: nothing told. Hues of materials and of segments are not the same.";
     Ok(picture_plot("looks", "One heat cube in five ways", subtitle.to_owned(), pictures))
 }
 
 /// Information of windows.
 fn maps(found: &Compared) -> Option<Plot> {
     let (shape, columns) = (found.yard.shape, found.yard.shape.columns());
+    let told: Vec<f64> = window_sums(&found.information.cube, shape, HALF);
+    let told: Vec<f64> = told.into_iter().filter(|j| j.is_finite()).collect();
+    let most = quantile(&told, 0.98);
+    let ends = [1e-6 * most, most];
     let of = |key: &str, title: &str, j: &[f64]| {
-        let least = 1e-4;
-        let values = window_sums(j, shape, HALF).iter().map(|j| j.clamp(least, 1e4)).collect();
-        (key.to_owned(), Picture::new(title, Axis::log("J (pixel⁻²)").range(least, 1e4), columns, values))
+        let values = window_sums(j, shape, HALF).iter().map(|j| j.clamp(ends[0], ends[1])).collect();
+        (
+            key.to_owned(),
+            Picture::new(title, Axis::log("J (pixel⁻²)").range(ends[0], ends[1]), columns, values),
+        )
     };
     let pictures = vec![
         of("cube_per_px2", "Heat cube, all bands: the most there is", &found.information.cube),
@@ -399,7 +413,7 @@ fn maps(found: &Compared) -> Option<Plot> {
         of("distilled_per_px2", "Distilled texture", &found.information.distilled),
     ];
     let subtitle = format!(
-        "Of windows of {SIDE} × {SIDE} pixels, from the expected counts. Where nothing is told, the least of the scale."
+        "Of windows of {SIDE} × {SIDE} pixels, from the expected counts. Beyond the scale: its ends."
     );
     picture_plot("information", "Fisher information of a window's place along x", subtitle, pictures)
 }
@@ -440,7 +454,7 @@ fn text(found: &Compared) -> String {
 fn lines(found: &Compared) -> Vec<Line> {
     let deviation = |name: &str| find(found, name).and_then(|row| row.deviation).unwrap_or(f64::NAN);
     let information = |name: &str| find(found, name).map_or(f64::NAN, |row| row.information);
-    let agc = "thermal image, equalised";
+    let agc = "thermal image, equalised, 256";
     let tex = "texture X, logarithm";
     let ratio = deviation(tex) / deviation(agc);
     let raised = deviation(agc) / deviation("thermal image");

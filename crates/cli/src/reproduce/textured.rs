@@ -6,11 +6,15 @@
 use hadar::decompose::{Distilled, Light, Maps, NO_MATERIAL, Options, Setting, Sky, decompose, distil};
 use hadar::error::{Error, Result};
 use hadar::material::Library;
+use hadar::planck::{photon_radiance, photon_radiance_slope};
 use hadar::ranging::cube::{Cube, MemoryCube, Shape};
 use hadar_study::scenario::RenderScenario;
 use hadar_study::scenario::scene::{Form, SurfaceSpec};
+use hadar_study::study::range;
 use hadar_study::study::render::{Picture, RenderPlan, RenderStudy, Rendered};
 
+/// Exposure of the yard, as it stands there.
+pub(super) const EXPOSURE: &str = "200 us";
 /// What sends nothing, K.
 const DARK_K: f64 = 3.0;
 /// Temperatures that a decomposition may find, K.
@@ -18,12 +22,13 @@ const RANGE_K: [f64; 2] = [250.0, 340.0];
 /// The sky is the first of the surroundings of a rendering, the ground the second.
 pub(super) const SKY: usize = 0;
 const GROUND: usize = 1;
+const GROUND_K: f64 = 285.15;
 /// Of the yard: distance of the cameras, m, and focal length over pixel.
 const BASELINE_M: f64 = 0.2;
 const FOCAL_PX: f64 = 14e-3 / 28e-6;
 
 /// The yard.
-pub(super) const YARD: &str = r#"title = "A yard at night: rough ground, a wall of bricks, a car, a person"
+const YARD: &str = r#"title = "A yard at night: rough ground, a wall of bricks, a car, a person"
 
 [scene]
 sky = { material = "sky-us-standard", temperature = "288 K" }
@@ -66,7 +71,7 @@ stop = "1250 cm^-1"
 step = "10 cm^-1"
 
 [camera]
-exposure = "12 ms"
+exposure = "200 us"
 pixel = "28 um"
 f_number = 1.4
 focal_length = "14 mm"
@@ -95,10 +100,11 @@ pub(super) struct Textured {
 }
 
 impl Textured {
-    /// A yard, drawn with a seed.
-    pub(super) fn new(toml: &str, seed: u64) -> Result<Self> {
+    /// The yard at an exposure, drawn with a seed.
+    pub(super) fn new(exposure: &str, seed: u64) -> Result<Self> {
+        let toml = YARD.replace(EXPOSURE, exposure);
         let library = Library::embedded()?;
-        let scenario = RenderScenario::from_toml(toml, None)?;
+        let scenario = RenderScenario::from_toml(&toml, None)?;
         let render = |scenario: &RenderScenario, seed: Option<u64>| {
             RenderStudy::new(scenario, &library)?.render(RenderPlan { seed }, &|_, _| ())
         };
@@ -199,6 +205,20 @@ impl Textured {
         picture.counts.chunks(self.shape.bands()).map(|n| n.iter().map(|n| f64::from(*n)).sum()).collect()
     }
 
+    /// Noise of a pixel in temperature, K: of all counts together on the ground.
+    pub(super) fn netd_k(&self) -> f64 {
+        let ground = self.of_ground();
+        let counts = self.thermal(self.left());
+        let mean = median(counts.iter().zip(&ground).filter(|(_, own)| **own).map(|(n, _)| *n));
+        let nodes = self.expected.bands.nodes_cm1();
+        let sums = [photon_radiance, photon_radiance_slope].map(|of| {
+            let each: Vec<f64> = nodes.iter().map(|nu| of(*nu, GROUND_K)).collect();
+            self.expected.bands.weigh(&each).iter().sum::<f64>()
+        });
+        let added: f64 = self.expected.var_added.iter().sum();
+        (mean + added).sqrt() / mean * sums[0] / sums[1]
+    }
+
     /// Pixels of one surface, one material.
     pub(super) fn pure(&self) -> Vec<bool> {
         self.left().material.iter().map(|m| *m != NO_MATERIAL).collect()
@@ -247,9 +267,7 @@ fn with_only_the_sky(scenario: &RenderScenario) -> RenderScenario {
 
 /// Median of what is finite.
 pub(super) fn median(values: impl Iterator<Item = f64>) -> f64 {
-    let mut all: Vec<f64> = values.filter(|x| x.is_finite()).collect();
-    all.sort_by(f64::total_cmp);
-    all.get(all.len() / 2).copied().unwrap_or(f64::NAN)
+    range::median(&values.filter(|x| x.is_finite()).collect::<Vec<_>>())
 }
 
 /// Correlation of two images where both are finite.
