@@ -128,6 +128,7 @@ fn kernels(shown: &Shown) -> Table {
 
 fn text(shown: &Shown) -> String {
     let (exact, uncertain) = (&shown.exact, &shown.uncertain);
+    let of = |place: usize| shown.choices.get(place).map_or(0, |choice| choice.uncertain.number);
     let Row { number: best, effective, .. } = designs::most(&shown.choices).uncertain;
     format!(
         "The twin's filters and response are stated in its source; the paper's are pictures. A reading is the mean of {PIXELS} pixels of 50 mK noise \
@@ -136,8 +137,8 @@ fn text(shown: &Shown) -> String {
          of the peak, correlated over 100 cm⁻¹, about the typical curve.\n\n\
          Of 30 values {} are determined, {} were the temperatures exact (numerical rank {}); effective numbers {:.1} and {:.1}. The most of the \
          choices below, '{}', determines {best} (effective {effective:.1}) in the same time.\n\n\
-         Wider temperatures and more, narrower filters determine more; more readings between the same ends do not, and neither does time that is \
-         shared by the most information (ln det, exact temperatures): two temperatures determine one value a filter, three one or two.\n\n\
+         Wider temperatures and more, narrower filters determine more. More readings between the same ends hardly do: {} with two temperatures, {} \
+         with three, {} with 31; nor does time that is shared by the most information (ln det, exact temperatures).\n\n\
          Intervals of 95 % hold {:.3} ± {:.3} of the values and {:.3} ± {:.3} of the radiances behind filters in {} calibrations of responses that \
          are drawn from the prior. For the twin's own response smoothness costs at most {:.3} of the peak (`values.csv`).\n",
         1e3 * 0.05 / PIXELS.sqrt(),
@@ -148,6 +149,9 @@ fn text(shown: &Shown) -> String {
         uncertain.effective,
         exact.effective,
         designs::most(&shown.choices).name,
+        of(1),
+        of(2),
+        of(0),
         shown.coverage.response.share,
         shown.coverage.response.sigma,
         shown.coverage.radiance.share,
