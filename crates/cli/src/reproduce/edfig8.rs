@@ -22,8 +22,6 @@ const SCENES: [(&str, &str); 4] = [
 ];
 /// The scene of materials that the library knows as one number each.
 const GREY: &str = "meadow";
-/// Of the scenes, those of the quick form.
-const QUICK: usize = 1;
 /// How a map was made.
 const WAYS: [&str; 6] = [
     "found_regions",
@@ -42,13 +40,12 @@ struct Scene {
 }
 
 pub(super) fn make(order: Order, progress: Progress<'_>) -> Result<Made> {
-    let chosen = order.some_of(&SCENES, QUICK);
     let mut bundle = Bundle::default();
     let (mut scenes, mut plots) = (Vec::new(), Vec::new());
     let mut table = Table::new(["scene", "category"].into_iter().chain(WAYS));
     // What brightness means is learned from another street.
     let [street, parking] = [Night::of(SCENES[0].1, order.seed)?, Night::of(SCENES[1].1, order.seed)?];
-    for (i, (name, toml)) in chosen.iter().enumerate() {
+    for (i, (name, toml)) in SCENES.iter().enumerate() {
         let own = if i > 1 { Some(Night::of(toml, order.seed)?) } else { None };
         let (night, teacher) = match (&own, i) {
             (Some(night), _) => (night, &street),
@@ -89,7 +86,7 @@ pub(super) fn make(order: Order, progress: Progress<'_>) -> Result<Made> {
             night.table(&[("there", &night.truth), ("by_materials", &found), ("by_brightness", &thermal)]);
         plots.push(Plot { name: (*name).into(), figure: figure.into(), table: pixels });
         scenes.push(Scene { name, right_material: night.right_material(), agreements });
-        progress(i + 1, chosen.len());
+        progress(i + 1, SCENES.len());
     }
     bundle.add_table("iou.csv", table)?;
     bundle.add_plots(&plots)?;
@@ -105,7 +102,7 @@ pub(super) fn make(order: Order, progress: Progress<'_>) -> Result<Made> {
         ("yard.png", "Yard: thermal image, truth, by materials, by brightness"),
         ("meadow.png", "Meadow: thermal image, truth, by materials, by brightness"),
     ];
-    let pictures = captions.into_iter().take(scenes.len()).collect();
+    let pictures = captions.to_vec();
     Ok((bundle, lines(&scenes), Figures { pictures, text }))
 }
 

@@ -22,7 +22,7 @@ use rayon::prelude::*;
 /// Temperatures that a pixel may have, K.
 const RANGE_K: [f64; 2] = [240.0, 400.0];
 /// Pixels whose limit is computed.
-const LIMITS: usize = 60;
+const LIMITS: usize = 40;
 /// Counts drawn of each of them, and of the nearest state of the other material.
 const DRAWS: usize = 40;
 /// The colour of no category.
