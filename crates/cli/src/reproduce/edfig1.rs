@@ -53,7 +53,7 @@ pub(super) fn make(order: Order, out: &Path) -> Result<Made> {
     let mut shown = None;
     for exposure in order.some_of(&[EXPOSURE, LONG], 1).iter().copied() {
         let of = &Textured::new(exposure, order.seed)?;
-        for surroundings in [of.all(), TWO] {
+        for surroundings in order.some_of(&[of.all(), TWO], 1).iter().copied() {
             let (maps, found) = of.apart(&of.drawn.views[0], surroundings)?;
             let (texture, case) = (of.texture(&maps), (surroundings, exposure));
             rows.extend(images(of, &maps, (&found, &texture, &truth), case));
