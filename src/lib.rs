@@ -79,6 +79,7 @@
 //! | S37–S40, Tables S4, S5 | information of windows, four cells | [`ranging::information`], [`ranging::noise`] |
 //! | S41–S43 | two views, diffraction, the limit of δz | [`ranging::depth`], [`ranging::psf`] |
 //! | S44 | decomposition of a heat cube | [`decompose`] |
+//! | S45, Ext. Data Fig. 1b | texture of the sky's light alone | [`decompose::distil()`] |
 //! | S46, S47 | temperature and lighting by slopes along wavenumber, and their errors | [`decompose::Method`], [`decompose::inverse_error`] |
 //! | SV C | a library out of a heat cube | [`separation`]; its bound [`fisher::emissivity`] |
 //! | S48 | known total of the lighting factors | [`fisher`], [`scene`], [`decompose`] |

@@ -88,8 +88,6 @@ pub(super) struct Textured {
     /// Expected counts with all of the truth, and as drawn.
     pub(super) expected: Rendered,
     pub(super) drawn: Rendered,
-    /// With only the sky on.
-    pub(super) by_sky: Rendered,
     lights: Vec<Light>,
     kappa: Vec<f64>,
     /// Distance of the cameras, m, and focal length, pixels.
@@ -110,7 +108,6 @@ impl Textured {
         };
         let expected = render(&scenario, None)?;
         let drawn = render(&scenario, Some(seed))?;
-        let by_sky = render(&with_only_the_sky(&scenario), None)?;
         Ok(Self {
             shape: expected.shape,
             lights: expected.radiances.iter().cloned().map(Light::Radiance).collect(),
@@ -121,8 +118,15 @@ impl Textured {
             scenario,
             expected,
             drawn,
-            by_sky,
         })
+    }
+
+    /// Light of the sky alone on the left view, X̄, by a rendering with nothing else on.
+    pub(super) fn light_of_sky(&self) -> Result<Vec<f64>> {
+        let dark = with_only_the_sky(&self.scenario);
+        let study = RenderStudy::new(&dark, &Library::embedded()?)?;
+        let found = study.render(RenderPlan { seed: None }, &|_, _| ())?;
+        Ok(found.views.first().map_or_else(Vec::new, |view| self.light(view)))
     }
 
     pub(super) fn pixels(&self) -> usize {
@@ -289,4 +293,26 @@ pub(super) fn window_sums(values: &[f64], shape: Shape, half: usize) -> Vec<f64>
         .map(|i| along(&|x| values[i / columns * columns + x], columns, i % columns))
         .collect();
     (0..rows * columns).map(|i| along(&|y| wide[y * columns + i % columns], rows, i / columns)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn windows_sum_what_is_in_them() {
+        let shape = Shape::new(4, 5, 2).unwrap();
+        let values: Vec<f64> = (0..20).map(f64::from).collect();
+        let found = window_sums(&values, shape, 1);
+        assert_eq!((found[6], found[13]), (54.0, 9.0 * 13.0));
+        assert!(found[..6].iter().all(|x| x.is_nan()) && found[9].is_nan() && found[14].is_nan());
+    }
+
+    #[test]
+    fn correlation_knows_gain_and_sign() {
+        let pairs = |f: &dyn Fn(f64) -> f64| correlation((0..9).map(|i| (f64::from(i), f(f64::from(i)))));
+        assert!((pairs(&|x| 3.0 - 2.0 * x) + 1.0).abs() < 1e-12);
+        assert!(pairs(&|x| (x - 4.0).powi(2)).abs() < 1e-12);
+        assert!((correlation([(1.0, 2.0), (f64::NAN, 0.0), (2.0, 3.0)].into_iter()) - 1.0).abs() < 1e-12);
+    }
 }
