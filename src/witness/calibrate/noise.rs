@@ -34,8 +34,9 @@ use self::start::Start;
 use crate::error::{Error, Result};
 use crate::ranging::cube::{Rows, Sample};
 
-/// Fewest samples of a bin that is fitted.
-const FEWEST: f64 = 64.0;
+/// Fewest differences of a bin that is fitted, and of all.
+const FEWEST: f64 = 16.0;
+const FEWEST_OF_ALL: f64 = 256.0;
 /// Deviations of ⟨d_A d_B⟩ above which a ratio by it is taken.
 const TOLD: f64 = 10.0;
 
@@ -106,7 +107,7 @@ pub fn photon_transfer<S: Sample>(frames: &[&dyn Rows<S>], asked: &Asked) -> Res
     let cells = gathered(frames, &start)?;
     let bands = shape.bands();
     let count = cells.count();
-    if count < FEWEST * 4.0 {
+    if count < FEWEST_OF_ALL {
         let found = format!("{count} differences of samples, too few to see how they scatter");
         return Err(Error::malformed(found, "give more pixels or more frames"));
     }
