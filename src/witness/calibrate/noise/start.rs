@@ -1,9 +1,10 @@
 //! A first look at some rows: the range of the means, how large a difference may be, which neighbours are alike.
 
-use super::cells::BINS;
 use crate::error::{Error, Result};
 use crate::ranging::cube::{Rows, Sample};
 
+/// Bins of the mean of each band, at most.
+pub(super) const BINS: usize = 24;
 /// Rows that are looked at.
 const ROWS: usize = 24;
 /// Deviations beyond which a difference is an outlier.

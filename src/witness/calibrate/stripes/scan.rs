@@ -163,7 +163,8 @@ impl Lines {
         for _ in 0..3 {
             let reference: Vec<f64> = (0..own.len())
                 .map(|i| {
-                    if !((one[i] - other[i]).abs() > EDGE * self.least) {
+                    let apart = (one[i] - other[i]).abs();
+                    if apart <= EDGE * self.least || apart.is_nan() {
                         return between[i];
                     }
                     // What the line would read if it were clean.
