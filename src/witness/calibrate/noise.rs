@@ -34,8 +34,9 @@ use self::start::Start;
 use crate::error::{Error, Result};
 use crate::ranging::cube::{Rows, Sample};
 
-/// Fewest samples of a bin that is fitted.
-const FEWEST: f64 = 64.0;
+/// Fewest differences of a bin that is fitted, and of all.
+const FEWEST: f64 = 16.0;
+const FEWEST_OF_ALL: f64 = 256.0;
 /// Deviations of ⟨d_A d_B⟩ above which a ratio by it is taken.
 const TOLD: f64 = 10.0;
 
@@ -106,7 +107,7 @@ pub fn photon_transfer<S: Sample>(frames: &[&dyn Rows<S>], asked: &Asked) -> Res
     let cells = gathered(frames, &start)?;
     let bands = shape.bands();
     let count = cells.count();
-    if count < FEWEST * 4.0 {
+    if count < FEWEST_OF_ALL {
         let found = format!("{count} differences of samples, too few to see how they scatter");
         return Err(Error::malformed(found, "give more pixels or more frames"));
     }
@@ -114,8 +115,7 @@ pub fn photon_transfer<S: Sample>(frames: &[&dyn Rows<S>], asked: &Asked) -> Res
     let averaged = frames.len().max(2) as f64;
     let spatial = frames.len() == 1;
     let sets: Vec<Vec<Vec<Bin>>> = (0..bands).map(|band| replicates(&cells, band, spatial)).collect();
-    let of_bands: Vec<OfBand> =
-        sets.iter().enumerate().map(|(band, sets)| of_band(&cells, band, sets, averaged, asked)).collect();
+    let of_bands: Vec<OfBand> = sets.iter().map(|sets| of_band(sets, averaged, asked)).collect();
     let all: Vec<Vec<Bin>> = (0..=GROUPS)
         .map(|group| sets.iter().flat_map(|sets| sets.get(group).into_iter().flatten().copied()).collect())
         .collect();
@@ -156,7 +156,7 @@ fn replicates(cells: &Cells, band: usize, spatial: bool) -> Vec<Vec<Bin>> {
         .collect()
 }
 
-fn of_band(cells: &Cells, band: usize, sets: &[Vec<Bin>], averaged: f64, asked: &Asked) -> OfBand {
+fn of_band(sets: &[Vec<Bin>], averaged: f64, asked: &Asked) -> OfBand {
     let pooled = |bins: &[Bin]| {
         let weight: f64 = bins.iter().map(|bin| bin.weight).sum();
         let of = |value: &dyn Fn(&Bin) -> f64| {
@@ -176,7 +176,6 @@ fn of_band(cells: &Cells, band: usize, sets: &[Vec<Bin>], averaged: f64, asked: 
             [bin.mean, bin.variance, fit::jackknife(&others)]
         })
         .collect();
-    let _ = (cells, band);
     OfBand {
         line: fitted(sets, averaged, asked.gain_spread),
         mean,

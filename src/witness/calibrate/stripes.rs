@@ -7,7 +7,9 @@
 //! (bisquare), the clean lines on both sides interpolated as reference, or the nearer one where an edge lies between them. A prior of the
 //! gain holds it where the line has no contrast. Lines that are not striped are left as they are.
 //!
-//! What a thin object along a line would do to all bands alike is not taken for a stripe unless that is asked for: `left` names it.
+//! What the bands beside are off by too, as median of up to six of them over their levels, is the scene's and stays in the line. A line
+//! that is off in most bands, alike in neighbouring ones, as a thin object along it would be, is left as it is: `left` names it. Both only
+//! of four bands or more, and not where stripes in all bands are asked for.
 //! Where a third of the lines of a band are striped, nothing tells the scene from the stripes, and nothing is made.
 //!
 //! Errors: of the fit, not below those of the same fit to clean lines, which truly differ from their neighbours too. An error of a line
@@ -16,6 +18,7 @@
 //! Source: paper, supplement SV A, where streaks are detected and taken out by a linear transform; how is our own.
 
 mod apply;
+mod common;
 mod fit;
 mod found;
 mod scan;
@@ -23,7 +26,7 @@ mod segments;
 
 pub use found::{Axis, Destriped, Sought, Stripe};
 
-use self::found::Stripe as One;
+use self::common::{Told, told};
 use self::scan::{Band, striped};
 use self::segments::Segments;
 use crate::error::{Error, Result};
@@ -72,44 +75,39 @@ pub fn find_stripes<S: Sample>(cube: &dyn Rows<S>, sought: &Sought) -> Result<De
             "give a cube that was measured",
         ));
     }
-    for (band, seen) in looked.iter().enumerate() {
-        if seen.count() as f64 > MOST * seen.usable as f64 || seen.without_reference > 0 {
+    let shared = !sought.in_all_bands && bands >= TELLING;
+    let told: Vec<Told> = (0..bands).into_par_iter().filter_map(|band| told(&looked, band, shared)).collect();
+    for (band, (seen, told)) in looked.iter().zip(&told).enumerate() {
+        if told.at_first_sight as f64 > MOST * seen.usable as f64 || seen.without_reference > 0 {
             let found = format!(
                 "stripes in {} of {} {name} of band {band} (counted from 0), too many to tell them from the scene",
-                seen.count(),
+                told.at_first_sight.max(seen.without_reference),
                 seen.usable
             );
             let instead = "correct the cube by a uniform source first, or leave the band out";
             return Err(Error::malformed(found, instead));
         }
     }
-    let left = match sought.in_all_bands {
-        true => Vec::new(),
-        false => (0..lines).filter(|line| is_object(&looked, *line)).collect(),
+    let left: Vec<usize> = match shared {
+        true => (0..lines).filter(|line| is_object(&looked, *line)).collect(),
+        false => Vec::new(),
     };
-    let mut stripes: Vec<One> = looked
-        .iter()
-        .enumerate()
-        .flat_map(|(band, seen)| seen.stripes(band))
+    let detectable = told.iter().map(|told| told.detectable).collect();
+    let mut stripes: Vec<Stripe> = told
+        .into_iter()
+        .flat_map(|told| told.stripes)
         .filter(|stripe| !left.contains(&stripe.line))
         .collect();
     stripes.sort_by_key(|stripe| (stripe.line, stripe.band));
-    Ok(Destriped {
-        axis: sought.axis,
-        lines,
-        bands,
-        stripes,
-        left,
-        detectable: looked.iter().map(|seen| seen.detectable).collect(),
-        levels: looked.iter().map(|seen| seen.level).collect(),
-    })
+    let levels = looked.iter().map(|seen| seen.level).collect();
+    Ok(Destriped { axis: sought.axis, lines, bands, stripes, left, detectable, levels })
 }
 
 /// Whether a line is off in most bands, and alike in neighbouring ones.
 fn is_object(bands: &[Band], line: usize) -> bool {
     let off: Vec<f64> = bands.iter().map(|band| band.offset(line)).collect();
     let striped = off.iter().filter(|off| **off != 0.0).count();
-    if bands.len() < TELLING || 2 * striped <= bands.len() {
+    if 2 * striped <= bands.len() {
         return false;
     }
     let relative: Vec<f64> = off.iter().zip(bands).map(|(off, band)| off / band.level.abs()).collect();

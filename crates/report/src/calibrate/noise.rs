@@ -214,9 +214,9 @@ fn transfer(result: &NoiseFound) -> Plot {
         Axis::linear("variance (unit of the cube squared)"),
     )
     .subtitle(format!(
-        "Each point: samples of nearly one mean in one band; line: all bands together, one photon = {} unit(s), electronic noise {}.",
+        "Each point: samples of nearly one mean in one band; line: all bands together, one photon = {} unit(s), electronic noise {} electrons.",
         significant(common.per_photon, 3),
-        format!("{} electrons", significant(common.noise_electrons(), 3))
+        significant(common.noise_electrons(), 3)
     ));
     let mut ends = [f64::INFINITY, f64::NEG_INFINITY];
     for band in &shown {

@@ -1,14 +1,12 @@
 //! Sums of squared differences in bins of the mean, in interleaved groups.
 
-use super::start::Start;
+use super::start::{BINS, Start};
 use crate::error::Result;
 use crate::ranging::cube::{Rows, Sample};
 use rayon::prelude::*;
 
 /// Groups of a jackknife.
 pub(super) const GROUPS: usize = 32;
-/// Bins of the mean of each band.
-pub(super) const BINS: usize = 24;
 /// Parts of the rows that are gathered at the same time; sums do not depend on threads.
 const PARTS: usize = 16;
 

@@ -1,13 +1,16 @@
 //! A first look at some rows: the range of the means, how large a difference may be, which neighbours are alike.
 
-use super::cells::BINS;
 use crate::error::{Error, Result};
 use crate::ranging::cube::{Rows, Sample};
 
+/// Bins of the mean of each band, at most.
+pub(super) const BINS: usize = 24;
 /// Rows that are looked at.
 const ROWS: usize = 24;
 /// Deviations beyond which a difference is an outlier.
 const OUTLIER: f64 = 6.0;
+/// Differences of a bin, about.
+const OF_BIN: usize = 150;
 /// Levels at which the scatter is looked at.
 const LEVELS: usize = 8;
 /// Median of χ² of one degree of freedom.
@@ -17,6 +20,8 @@ const MEDIAN: f64 = 0.454_936;
 #[derive(Debug, Clone)]
 pub(super) struct Start {
     pub(super) dark_level: f64,
+    /// Bins of a band that are in use.
+    bins: usize,
     /// Largest difference of all other bands together of neighbours that are alike.
     pub(super) even: f64,
     /// Lowest and highest mean of each band.
@@ -81,15 +86,18 @@ impl Start {
                 [mean(0), (median(&mut squares) / MEDIAN).max(0.25 * mean(1))]
             }));
         }
-        Ok(Self { dark_level, even, range, levels })
+        let pixels = shape.rows() * shape.columns();
+        let differences = if frames.len() > 1 { pixels * (frames.len() - 1) } else { pixels / 4 };
+        let bins = (differences / OF_BIN).clamp(3, BINS);
+        Ok(Self { dark_level, bins, even, range, levels })
     }
 
     /// The bin of a mean.
     pub(super) fn bin(&self, band: usize, mean: f64) -> usize {
         let [low, high] = self.range[band];
-        let place = (mean - low) / (high - low) * BINS as f64;
+        let place = (mean - low) / (high - low) * self.bins as f64;
         // What is below goes to the first, NaN of a band of one level too.
-        (place as usize).min(BINS - 1)
+        (place as usize).min(self.bins - 1)
     }
 
     /// The largest squared difference that is no outlier.

@@ -76,7 +76,7 @@ pub(super) fn fitted(levels: &[f64], off: &[f64], least: f64, prior: f64) -> Opt
         };
         let weights: Vec<f64> = points.iter().map(|(x, y)| weight(*x, *y)).collect();
         let total: f64 = weights.iter().sum();
-        if !(total > 0.0) {
+        if total <= 0.0 || total.is_nan() {
             return None;
         }
         let of = |value: &dyn Fn(&(f64, f64)) -> f64| {

@@ -1,7 +1,6 @@
 //! The striped lines of one band.
 
 use super::fit::{Fitted, fitted, median, scatter};
-use super::found::Stripe;
 use super::segments::Segments;
 
 /// Deviations above which a line is off.
@@ -26,45 +25,22 @@ pub(super) struct Band {
     pub(super) without_reference: usize,
     /// Median of its lines.
     pub(super) level: f64,
-    /// Least that a line must be off.
-    pub(super) detectable: f64,
-    found: Vec<Option<Fitted>>,
-    /// Errors of clean lines over those of their fits, of p and of h.
-    inflation: [f64; 2],
+    /// Every line against the clean ones beside it.
+    pub(super) fits: Vec<Option<Fitted>>,
+    /// Lines that are off from both sides the same way, all along.
+    pub(super) candidate: Vec<bool>,
     /// Least scatter of the segments.
-    least: f64,
-    prior: f64,
+    pub(super) least: f64,
+    /// Deviation of the gains.
+    pub(super) prior: f64,
 }
 
 impl Band {
-    pub(super) fn count(&self) -> usize {
-        self.found.iter().flatten().count()
-    }
-
-    /// How far a line is off; 0 of a clean one.
+    /// How far a line that looks striped is off; 0 of a clean one.
     pub(super) fn offset(&self, line: usize) -> f64 {
-        self.found.get(line).copied().flatten().map_or(0.0, |fit| fit.off)
-    }
-
-    pub(super) fn stripes(&self, band: usize) -> impl Iterator<Item = Stripe> {
-        self.found.iter().enumerate().filter_map(move |(line, fit)| {
-            let fit = (*fit)?;
-            let scatter = fit.scatter.max(self.least);
-            let sigma = self.inflation[0] * scatter * fit.unit[0].sqrt();
-            // The prior holds the gain however much clean lines differ.
-            let sigma_gain = (self.inflation[1] * scatter * fit.unit[1].sqrt()).min(self.prior);
-            Some(Stripe {
-                line,
-                band,
-                gain: 1.0 + fit.slope,
-                sigma_gain,
-                offset: fit.off - fit.slope * fit.level,
-                sigma_offset: sigma.hypot(sigma_gain * fit.level),
-                level: fit.level,
-                off: fit.off,
-                sigma,
-            })
-        })
+        let own = self.candidate.get(line).copied().unwrap_or(false);
+        let fit = self.fits.get(line).copied().flatten().filter(|_| own);
+        fit.map_or(0.0, |fit| fit.off)
     }
 }
 
@@ -108,21 +84,11 @@ pub(super) fn striped(segments: &Segments, band: usize, prior: f64) -> Band {
             lines.clean[line] = false;
         }
     }
-    let mut found = vec![None; segments.lines];
-    let mut without_reference = 0;
-    for line in (0..segments.lines).filter(|line| flagged[*line]) {
-        // Beside all those that were set apart since, it may look clean.
-        if !lines.is_off(line) {
-            continue;
-        }
-        match lines.fit(line) {
-            Some(fit) => found[line] = Some(fit),
-            None => without_reference += 1,
-        }
-    }
-    let inflation = lines.inflation();
-    let detectable = OFF * least / (segments.count as f64).sqrt();
-    Band { usable, without_reference, level, detectable, found, inflation, least, prior }
+    // Beside all those that were set apart since, it may look clean.
+    let candidate: Vec<bool> = (0..segments.lines).map(|line| flagged[line] && lines.is_off(line)).collect();
+    let fits: Vec<Option<Fitted>> = (0..segments.lines).map(|line| lines.fit(line)).collect();
+    let without_reference = candidate.iter().zip(&fits).filter(|(own, fit)| **own && fit.is_none()).count();
+    Band { usable, without_reference, level, fits, candidate, least, prior }
 }
 
 impl Lines {
@@ -197,7 +163,8 @@ impl Lines {
         for _ in 0..3 {
             let reference: Vec<f64> = (0..own.len())
                 .map(|i| {
-                    if !((one[i] - other[i]).abs() > EDGE * self.least) {
+                    let apart = (one[i] - other[i]).abs();
+                    if apart <= EDGE * self.least || apart.is_nan() {
                         return between[i];
                     }
                     // What the line would read if it were clean.
@@ -214,25 +181,5 @@ impl Lines {
             fit = Some(fitted(&reference, &off, 0.5 * self.least, self.prior)?);
         }
         fit
-    }
-
-    /// How much more the fits of clean lines scatter than they say.
-    fn inflation(&self) -> [f64; 2] {
-        let fits: Vec<Fitted> = (0..self.means.len())
-            .filter(|line| self.clean[*line])
-            .filter_map(|line| self.fit(line))
-            .collect();
-        let of = |value: &dyn Fn(&Fitted) -> f64| {
-            let mut values: Vec<f64> = fits.iter().map(|fit| value(fit).abs()).collect();
-            if values.len() < 5 {
-                return 1.0;
-            }
-            let middle = median(&mut values) * 1.482_602;
-            let place = (values.len() * 95 / 100).min(values.len() - 1);
-            let far = *values.select_nth_unstable_by(place, f64::total_cmp).1 / 1.96;
-            middle.max(far).max(1.0)
-        };
-        let error = |fit: &Fitted, which: usize| fit.scatter.max(self.least) * fit.unit[which].sqrt();
-        [of(&|fit| fit.off / error(fit, 0)), of(&|fit| fit.slope / error(fit, 1))]
     }
 }

@@ -95,7 +95,8 @@ impl NoiseStudy {
         if texture > TEXTURE {
             warnings.push(Warning::TextureInNoise { share: texture });
         }
-        let alike = !(transfer.chi_square_reduced > MISFIT);
+        // One or two bands have no scatter.
+        let alike = transfer.chi_square_reduced <= MISFIT || transfer.chi_square_reduced.is_nan();
         if !alike {
             warnings.push(Warning::BandsDifferInNoise { chi_square: transfer.chi_square_reduced });
         }

@@ -113,9 +113,10 @@ pub(super) fn pictures(twin: &Twin, share: f64, seed: u64) -> Result<Plot> {
     let off_k = |samples: &[f64]| -> Vec<f64> {
         let pixel = |pixel: usize| {
             let (mut score, mut whole) = (0.0, 0.0);
-            for i in pixel * BANDS..(pixel + 1) * BANDS {
+            let own = samples.iter().enumerate().skip(pixel * BANDS).take(BANDS);
+            for (i, sample) in own {
                 let weight = twin.per_kelvin[i] / twin.var(i);
-                score += weight * (samples[i] - twin.mean[i]);
+                score += weight * (sample - twin.mean[i]);
                 whole += weight * twin.per_kelvin[i];
             }
             score / whole
@@ -124,7 +125,7 @@ pub(super) fn pictures(twin: &Twin, share: f64, seed: u64) -> Result<Plot> {
     };
     let layers = [of_band(&samples), of_band(&corrected), off_k(&samples), off_k(&corrected)];
     let mut table = Table::new(["row", "column", "before", "after", "off_before_k", "off_after_k"]);
-    for i in (0..ROWS * COLUMNS).filter(|i| i % COLUMNS % 4 == 0) {
+    for i in (0..ROWS * COLUMNS).filter(|i| (i % COLUMNS).is_multiple_of(4)) {
         let values = layers.iter().map(|layer| number(layer[i]));
         table
             .push([(i / COLUMNS).to_string(), (i % COLUMNS).to_string()].into_iter().chain(values).collect());

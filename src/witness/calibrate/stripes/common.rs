@@ -1,0 +1,125 @@
+//! What a line is off by in the bands beside: the scene, which bands have in common, and what is left for a stripe.
+
+use super::fit::{Fitted, median};
+use super::found::Stripe;
+use super::scan::Band;
+
+/// Deviations above which a line is off.
+const OFF: f64 = 6.0;
+/// Bands on each side that are looked at, and the fewest of them together.
+const BESIDE: usize = 3;
+const FEWEST: usize = 3;
+/// Deviations above which what they say counts.
+const TOLD: f64 = 3.0;
+/// A normal deviate's deviation over its median absolute value; error of a median over that of a mean.
+const PER_MEDIAN: f64 = 1.482_602;
+const OF_MEDIAN: f64 = 1.253_314;
+
+/// A line of a band: what is left of how far it is off, with the errors of its fit alone.
+#[derive(Debug, Clone, Copy)]
+struct Left {
+    fit: Fitted,
+    off: f64,
+    sigma: f64,
+    sigma_slope: f64,
+}
+
+/// What was found in a band.
+#[derive(Debug)]
+pub(super) struct Told {
+    pub(super) stripes: Vec<Stripe>,
+    /// Lines that look striped, clean ones however different from each other.
+    pub(super) at_first_sight: usize,
+    /// Least that a line must be off to be seen.
+    pub(super) detectable: f64,
+}
+
+/// The stripes of a band; what bands beside have in common is the scene's, unless that is not to be.
+pub(super) fn told(bands: &[Band], band: usize, shared: bool) -> Option<Told> {
+    let own = bands.get(band)?;
+    let left: Vec<Option<Left>> = own
+        .fits
+        .iter()
+        .enumerate()
+        .map(|(line, fit)| {
+            let fit = (*fit)?;
+            let [off, var] = if shared { beside(bands, band, line) } else { [0.0; 2] };
+            let scatter = fit.scatter.max(own.least);
+            let sigma = (scatter * scatter * fit.unit[0] + var).sqrt();
+            Some(Left { fit, off: fit.off - off, sigma, sigma_slope: scatter * fit.unit[1].sqrt() })
+        })
+        .collect();
+    let clean = |of: &dyn Fn(&Left) -> f64| {
+        let lines = left.iter().zip(&own.candidate).filter(|(_, candidate)| !**candidate);
+        inflation(lines.filter_map(|(left, _)| left.as_ref()).map(of).collect())
+    };
+    let of_line = clean(&|left| left.off / left.sigma);
+    let of_slope = clean(&|left| left.fit.slope / left.sigma_slope);
+    let mut found = Told { stripes: Vec::new(), at_first_sight: 0, detectable: 0.0 };
+    let mut errors = Vec::new();
+    for (line, left) in left.iter().enumerate() {
+        let Some(left) = left else { continue };
+        // The prior holds the gain however much clean lines differ.
+        let sigma_gain = |inflation: f64| (inflation * left.sigma_slope).min(own.prior);
+        let off = |line: f64, slope: f64| {
+            (left.off / (line * left.sigma)).hypot(left.fit.slope / sigma_gain(slope))
+        };
+        errors.push(of_line * left.sigma);
+        if !own.candidate.get(line).copied().unwrap_or(false) {
+            continue;
+        }
+        found.at_first_sight += usize::from(off(1.0, 1.0) > OFF);
+        if off(of_line, of_slope) > OFF {
+            let (sigma, sigma_gain, level) = (of_line * left.sigma, sigma_gain(of_slope), left.fit.level);
+            found.stripes.push(Stripe {
+                line,
+                band,
+                gain: 1.0 + left.fit.slope,
+                sigma_gain,
+                offset: left.off - left.fit.slope * level,
+                sigma_offset: sigma.hypot(sigma_gain * level),
+                level,
+                off: left.off,
+                sigma,
+            });
+        }
+    }
+    found.detectable = OFF * median(&mut errors);
+    Some(found)
+}
+
+/// How far the bands beside say that a line is off by what it shows, and the variance of that.
+fn beside(bands: &[Band], band: usize, line: usize) -> [f64; 2] {
+    let range = band.saturating_sub(BESIDE)..(band + BESIDE + 1).min(bands.len());
+    let fit = |other: &Band| other.fits.get(line).copied().flatten().map(|fit| (fit, other.level));
+    let others: Vec<(Fitted, f64)> =
+        range.filter(|other| *other != band).filter_map(|other| bands.get(other).and_then(fit)).collect();
+    let level = bands.get(band).map_or(0.0, |own| own.level);
+    if others.len() < FEWEST {
+        return [0.0; 2];
+    }
+    let relative: Vec<f64> = others.iter().map(|(fit, level)| fit.off / level).collect();
+    let middle = median(&mut relative.clone());
+    let mut apart: Vec<f64> = relative.iter().map(|x| (x - middle).abs()).collect();
+    let mut formal: Vec<f64> =
+        others.iter().map(|(fit, level)| fit.scatter * fit.unit[0].sqrt() / level.abs()).collect();
+    let scatter = (PER_MEDIAN * median(&mut apart)).max(median(&mut formal));
+    let sigma = OF_MEDIAN * scatter / (others.len() as f64).sqrt();
+    match middle.abs() > TOLD * sigma {
+        true => [middle * level, (sigma * level).powi(2)],
+        false => [0.0; 2],
+    }
+}
+
+/// How much more values scatter than by 1: what is widest of their middle and their tails.
+fn inflation(mut values: Vec<f64>) -> f64 {
+    values.iter_mut().for_each(|value| *value = value.abs());
+    values.retain(|value| value.is_finite());
+    if values.len() < 5 {
+        return 1.0;
+    }
+    let middle = median(&mut values) * PER_MEDIAN;
+    let place = (values.len() * 95 / 100).min(values.len() - 1);
+    let far = *values.select_nth_unstable_by(place, f64::total_cmp).1 / 1.96;
+    middle.max(far).max(1.0)
+}
