@@ -1,5 +1,7 @@
 //! Tests of the numerical crate, seen from outside.
 
+mod calibrate_noise;
+mod calibrate_stripes;
 mod cameras;
 mod classes;
 mod decision;

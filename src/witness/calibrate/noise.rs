@@ -11,7 +11,8 @@
 //! truly (texture) is common to bands, noise is not. With d the differences over √2 of a band and of two bands A and B beside it, texture
 //! alone is in the means ⟨d d_A⟩, ⟨d d_B⟩ and ⟨d_A d_B⟩, and ⟨d²⟩ − ⟨d d_A⟩⟨d d_B⟩/⟨d_A d_B⟩ is without it as far as the textures of the
 //! three bands are proportional to each other. Where there is too little of it for a ratio, its contrast is taken to be that of the
-//! neighbouring band: ½(⟨d d_A⟩ m/m_A + ⟨d d_B⟩ m/m_B). Pairs that all other bands together tell apart are left out.
+//! neighbouring band: ½(⟨d d_A⟩ m/m_A + ⟨d d_B⟩ m/m_B). Of the pairs the half is taken that all other bands together tell
+//! least apart.
 //!
 //! Samples are gathered in bins of their mean; the line is fitted by weighted least squares. Noise of the means themselves, which would
 //! make b too small, and the skewness of photon counts, which would make it too large, are taken out of the sums. Errors are those of a

@@ -242,7 +242,8 @@ fn overview(items: &[Item], effort: Effort, ledger: &[Line]) -> String {
         "\nFurther studies, made by `hadar reproduce` when asked for by name: [exact decisions](exact_probability/README.md), \
          [the paper's own library](library_figures/README.md), [priors](priors/README.md), \
          [heat cubes against their limits](decompose_limits/README.md), [emissivity without a library](emissivity_from_data/README.md), \
-         [distances from the air](air_ranging/README.md), [person or robot, of several spectra each](person_or_robot/README.md), \
+         [distances from the air](air_ranging/README.md), [stripes of a cube](stripes/README.md), \
+         [person or robot, of several spectra each](person_or_robot/README.md), \
          [calibration of a spectrometer](ftir_calibration/README.md); and [run time against error](accuracy/README.md), by `hadar accuracy`.\n\n",
     );
     page.push_str(&markdown(ledger));

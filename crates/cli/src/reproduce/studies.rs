@@ -10,6 +10,7 @@ mod page;
 mod paper_scene;
 mod person_or_robot;
 mod priors;
+mod stripes;
 
 use super::order::{Order, Progress};
 use hadar::error::Result;
@@ -35,13 +36,16 @@ pub(crate) enum FurtherStudy {
     EmissivityFromData,
     /// Blackbodies before a spectrometer.
     FtirCalibration,
+    /// What stripes of a cube cost.
+    Stripes,
 }
 
 impl FurtherStudy {
     /// All of them, the quickest first.
-    pub(crate) const ALL: [Self; 8] = [
+    pub(crate) const ALL: [Self; 9] = [
         Self::FtirCalibration,
         Self::PersonOrRobot,
+        Self::Stripes,
         Self::DecomposeLimits,
         Self::Priors,
         Self::AirRanging,
@@ -62,6 +66,7 @@ impl FurtherStudy {
             Self::AirRanging => "air-ranging",
             Self::EmissivityFromData => "emissivity-from-data",
             Self::FtirCalibration => "ftir-calibration",
+            Self::Stripes => "stripes",
         }
     }
 
@@ -83,6 +88,7 @@ impl FurtherStudy {
             Self::PersonOrRobot => "Person or robot, with classes on both sides",
             Self::EmissivityFromData => "Temperature and emissivity without a library",
             Self::FtirCalibration => "Calibration of a spectrometer by blackbodies",
+            Self::Stripes => "What stripes cost, and what destriping gives back",
         }
     }
 
@@ -131,6 +137,7 @@ impl FurtherStudy {
             Self::AirRanging => air_ranging::make(order, library, progress),
             Self::EmissivityFromData => emissivity_from_data::make(order, library, progress),
             Self::FtirCalibration => ftir_calibration::make(order, library, progress),
+            Self::Stripes => stripes::make(order, library, progress),
         }?;
         Ok((bundle.titled(self.title()), finding))
     }

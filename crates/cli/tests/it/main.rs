@@ -3,6 +3,7 @@
 mod accuracy;
 mod air_ranging;
 mod arrows;
+mod calibrate;
 mod calibrate_blackbodies;
 mod cameras;
 mod certificate;

@@ -186,11 +186,15 @@ fn variances(result: &NoiseFound) -> Table {
     table
 }
 
-/// Deviation of a sample at the mean of its band, all noise together, in the unit of the cube.
+/// Deviations in the unit of the cube, as the `[cube]` of a decomposition reads them: of a sample at the mean of its band, and of the
+/// electronic noise in it; the common line's where it holds, else the band's own.
 fn sigmas(result: &NoiseFound) -> Table {
-    let mut table = Table::new(["band", "sigma"]);
+    let mut table = Table::new(["band", "sigma", "electronic_sigma"]);
     for (i, band) in result.transfer.bands.iter().enumerate() {
-        table.push(vec![i.to_string(), number(band.variance.max(0.0).sqrt())]);
+        let line = if result.usable { Some(result.transfer.common) } else { band.line };
+        // Of what is not told apart, all is taken for electronic noise: too much rather than too little.
+        let electronic = line.map_or(band.variance, |line| line.electronic).max(0.0);
+        table.push(vec![i.to_string(), number(band.variance.max(0.0).sqrt()), number(electronic.sqrt())]);
     }
     table
 }

@@ -12,8 +12,9 @@ use hadar_study::study::calibrate::{Samples, StripesFound};
 use std::fmt::Write as _;
 use std::path::Path;
 
-/// Widest picture, pixels: of larger cubes every second, third… column is shown.
+/// Largest picture, pixels.
 const WIDEST: usize = 420;
+const HIGHEST: usize = 300;
 /// Share of the samples beyond each end of the colours.
 const CUT: f64 = 0.005;
 
@@ -114,13 +115,12 @@ fn stripes(result: &StripesFound) -> Table {
 /// The band of the most stripes, before, after, and what was taken out.
 fn before_and_after(result: &StripesFound) -> Plot {
     let (rows, columns) = (result.shape.rows(), result.shape.columns());
-    // Rows and columns stay as they are along stripes only: every line across them is shown.
-    let stride = columns.max(rows).div_ceil(WIDEST);
+    // A part of it, every line as it is: what is left out would hide stripes.
+    let (high, wide) = (rows.min(HIGHEST), columns.min(WIDEST));
+    let (top, left) = ((rows - high) / 2, (columns - wide) / 2);
     let (before, after) = (&result.before, result.after());
-    let shown: Vec<(usize, usize)> = (0..rows)
-        .step_by(stride)
-        .flat_map(|row| (0..columns).step_by(stride).map(move |column| (row, column)))
-        .collect();
+    let shown: Vec<(usize, usize)> =
+        (top..top + high).flat_map(|row| (left..left + wide).map(move |column| (row, column))).collect();
     let take = |values: &[f64]| -> Vec<f64> {
         shown
             .iter()
@@ -132,29 +132,31 @@ fn before_and_after(result: &StripesFound) -> Plot {
     let mut sorted: Vec<f64> = after.iter().copied().filter(|x| x.is_finite()).collect();
     sorted.sort_by(f64::total_cmp);
     let end = |share: f64| sorted.get((share * sorted.len().saturating_sub(1) as f64) as usize).copied();
-    let (low, high) = (end(CUT).unwrap_or(0.0), end(1.0 - CUT).unwrap_or(1.0));
+    let ends = [end(CUT).unwrap_or(0.0), end(1.0 - CUT).unwrap_or(1.0)];
     let axis = || {
-        let axis = Axis::linear("sample (unit of the cube)");
-        if low < high { axis.range(low, high) } else { axis }
+        let axis = Axis::linear("sample");
+        if ends[0] < ends[1] { axis.range(ends[0], ends[1]) } else { axis }
     };
     let mut table = Table::new(["row", "column", "before", "after"]);
     for ((row, column), (before, after)) in shown.iter().zip(before.iter().zip(&after)) {
         table.push(vec![row.to_string(), column.to_string(), number(*before), number(*after)]);
     }
-    let wide = columns.div_ceil(stride);
-    let every = match stride {
-        1 => String::new(),
-        stride => format!(" Every {stride}th row and column of {rows} × {columns}."),
+    let part = match (high, wide) == (rows, columns) {
+        true => String::new(),
+        false => format!(" The middle {high} × {wide} pixels of {rows} × {columns}."),
     };
     let figure = Pictures::new(
         "A cube and its stripes",
         vec![
             Picture::new("before", axis(), wide, before),
             Picture::new("after", axis(), wide, after),
-            Picture::new("taken out", Axis::linear("sample (unit of the cube)"), wide, taken),
+            Picture::new("taken out", Axis::linear("sample"), wide, taken),
         ],
     )
-    .subtitle(format!("Band {} (counted from 0), that of the most stripes.{every}", result.shown_band))
+    .subtitle(format!(
+        "Band {} (counted from 0), that of the most stripes, in the unit of the cube.{part}",
+        result.shown_band
+    ))
     .no_value("no sample");
     Plot { name: "before_and_after".into(), figure: figure.into(), table }
 }

@@ -51,10 +51,19 @@ pub struct HeatCube {
     pub variable: Option<String>,
     /// What a sample is.
     pub unit: CubeUnit,
-    /// Deviation of the electronic noise of a sample, in the unit of the cube.
-    pub noise: Option<f64>,
+    /// Deviation of the electronic noise of a sample, of radiances that of all noise, in the unit of the cube.
+    pub noise: Option<CubeNoise>,
     /// Bands that are left out, counted from 0 in the order of the cube.
     pub bad_bands: Vec<usize>,
+}
+
+/// What is said of the noise of a cube, in its unit.
+#[derive(Debug, Clone, PartialEq)]
+pub enum CubeNoise {
+    /// One deviation for all bands.
+    Uniform(f64),
+    /// A table with a row for each band.
+    File(PathBuf),
 }
 
 /// What the samples of a cube are.

@@ -1,5 +1,6 @@
 //! A heat cube with what is around it, its bands and its noise looked up: what every question about a cube begins with.
 
+use super::cube_noise::var_of_bands;
 use super::{bands, camera, camera_bands};
 use crate::scenario::decompose::{CubeUnit, HeatCube, LightSource};
 use crate::scenario::{BandsSpec, CameraSpec, MaterialRef, Source};
@@ -76,27 +77,28 @@ impl Said<'_> {
         let centres: Vec<f64> =
             bands.weigh(bands.nodes_cm1()).iter().zip(&widths).map(|(sum, width)| sum / width).collect();
         let mut units_per_count = 1.0;
-        let noise = self.cube.noise;
+        let noise =
+            var_of_bands(self.cube.noise.as_ref(), self.cube.unit, bands.len()).map_err(at("cube.noise"))?;
+        let added = |band: usize| noise.as_ref().and_then(|var| var.get(band).copied()).unwrap_or(0.0);
         let (counts_per_radiance, var_added) = match self.cube.unit {
             CubeUnit::CountsPerPhotonRadiance(counts) => {
-                let var = noise.map_or(0.0, |noise| noise * noise);
-                (widths.iter().map(|width| counts / width).collect(), vec![var; bands.len()])
+                (widths.iter().map(|width| counts / width).collect(), (0..bands.len()).map(added).collect())
             }
             CubeUnit::Radiance => {
                 // A variance so much larger than that of the photons that the noise alone counts.
-                let deviation = noise.unwrap_or(f64::NAN);
-                units_per_count = deviation * deviation / (PER_VARIANCE * largest(&cube)?.max(deviation));
+                let least = (0..bands.len()).map(added).fold(f64::INFINITY, f64::min);
+                units_per_count = least / (PER_VARIANCE * largest(&cube)?.max(least.sqrt()));
                 let joules = |nu: &f64| PLANCK_J_S * SPEED_OF_LIGHT_M_S * 100.0 * nu;
                 let scale = |(nu, width): (&f64, &f64)| joules(nu) / (units_per_count * width);
-                let var = (deviation / units_per_count).powi(2);
-                (centres.iter().zip(&widths).map(scale).collect(), vec![var; bands.len()])
+                let var = (0..bands.len()).map(|band| added(band) / units_per_count / units_per_count);
+                (centres.iter().zip(&widths).map(scale).collect(), var.collect())
             }
             CubeUnit::Camera => {
                 let Some(camera) = &camera else {
                     return Err(at("camera")(Error::malformed("the table is missing", "write [camera]")));
                 };
                 let counting = camera.counting(&bands, &View::default());
-                let var = (0..bands.len()).map(|w| counting.var_added(w) + noise.map_or(0.0, |n| n * n));
+                let var = (0..bands.len()).map(|w| counting.var_added(w) + added(w));
                 (vec![counting.counts_per_radiance; bands.len()], var.collect())
             }
         };

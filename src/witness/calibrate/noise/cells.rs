@@ -185,7 +185,9 @@ impl Cells {
             }
             let group = (row * 7 + pair) % GROUPS;
             for band in 0..bands {
-                if (sum - d[band]).abs() > start.even {
+                let [a, b] = beside(band, bands).map(|band| d[band]);
+                // The noise of none of the three has a say in what is alike.
+                if (sum - d[band] - a - b).abs() > start.even {
                     self.uneven += 1.0;
                     continue;
                 }
@@ -197,7 +199,6 @@ impl Cells {
                     self.outliers += 1.0;
                     continue;
                 }
-                let [a, b] = beside(band, bands).map(|band| d[band]);
                 let cell = &mut self.cells[(band * BINS + start.bin(band, mean)) * GROUPS + group];
                 cell.dof += 1.0;
                 cell.mean += mean;

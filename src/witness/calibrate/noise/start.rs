@@ -8,14 +8,10 @@ use crate::ranging::cube::{Rows, Sample};
 const ROWS: usize = 24;
 /// Deviations beyond which a difference is an outlier.
 const OUTLIER: f64 = 6.0;
-/// Deviations of all other bands together within which neighbours are alike.
-const ALIKE: f64 = 3.0;
 /// Levels at which the scatter is looked at.
 const LEVELS: usize = 8;
 /// Median of χ² of one degree of freedom.
 const MEDIAN: f64 = 0.454_936;
-/// A normal deviate's deviation over its median absolute value.
-const PER_MEDIAN: f64 = 1.482_602;
 
 /// What was seen.
 #[derive(Debug, Clone)]
@@ -68,7 +64,8 @@ impl Start {
         sums.retain(|sum| sum.is_finite());
         let even = match sums.is_empty() {
             true => f64::INFINITY,
-            false => ALIKE * PER_MEDIAN * median(&mut sums),
+            // The more even half.
+            false => median(&mut sums),
         };
         let (mut range, mut levels) = (Vec::new(), Vec::new());
         for mut seen in seen {

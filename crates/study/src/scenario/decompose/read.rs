@@ -1,12 +1,14 @@
 //! Reads a decomposition scenario: every key checked, every error one line with file, line and key.
 
 use super::super::kind::Kind;
-use super::super::paths::{file, material};
+use super::super::paths::{file, is_path, material};
 use super::super::read::{document, text_of};
 use super::super::section::{Entry, Section};
 use super::super::{BandsSpec, Source, camera, class};
 use super::image::{spatial, vision};
-use super::{CubeUnit, DecomposeScenario, HeatCube, LibrarySpec, LightSource, PixelUnknown, TruthSpec};
+use super::{
+    CubeNoise, CubeUnit, DecomposeScenario, HeatCube, LibrarySpec, LightSource, PixelUnknown, TruthSpec,
+};
 use hadar::allowed::{ABOVE_ZERO, ABSOLUTE_TEMPERATURE, Allowed, SHARE};
 use hadar::error::{Error, Result};
 use hadar::units::Dimension;
@@ -108,7 +110,10 @@ pub(in crate::scenario) fn heat_cube(entry: &Entry<'_>, camera: bool) -> Result<
     section.at_most_one(&["counts_per_photon_radiance", "unit"])?;
     let counts = section.number("counts_per_photon_radiance", "2.2e-14", ABOVE_ZERO)?;
     let radiance = section.choice("unit", &[(RADIANCE, ())])?.is_some();
-    let noise = section.number("noise", "1e-4", ABOVE_ZERO)?;
+    let noise = section.read("noise", |entry| match entry.text("\"noise.csv\"") {
+        Ok(text) if is_path(text) => file(entry).map(CubeNoise::File),
+        _ => entry.number("1e-4", ABOVE_ZERO).map(CubeNoise::Uniform),
+    })?;
     let unit = match (counts, radiance, camera) {
         (Some(_), _, true) | (_, true, true) => {
             let found = "a [camera] and a unit say twice what a sample is";

@@ -4,10 +4,13 @@ use super::super::entries::{Document, Entries, Part, entries, text};
 use super::super::paths::Paths;
 use super::super::{BandsSpec, CameraSpec, camera, class};
 use super::image::{spatial_written, vision_written};
-use super::{CubeUnit, DecomposeScenario, HeatCube, LightSource, PixelUnknown, TruthSpec, VisionSpec};
+use super::{
+    CubeNoise, CubeUnit, DecomposeScenario, HeatCube, LightSource, PixelUnknown, TruthSpec, VisionSpec,
+};
 use hadar::units::Dimension;
 use serde::{Serialize, Serializer};
 use std::path::Path;
+use toml::Value;
 
 impl DecomposeScenario {
     /// The scenario as TOML, with paths below `directory` written relative to it.
@@ -80,7 +83,13 @@ pub(in crate::scenario) fn cube_written(
         .put_if("variable", cube.variable.clone())
         .put_if("counts_per_photon_radiance", counts)
         .put_if("unit", unit)
-        .put_if("noise", cube.noise)
+        .put_if(
+            "noise",
+            cube.noise.as_ref().map(|noise| match noise {
+                CubeNoise::Uniform(sigma) => Value::from(*sigma),
+                CubeNoise::File(path) => Value::from(paths.file(path)),
+            }),
+        )
         .put_if("bad_bands", (!cube.bad_bands.is_empty()).then(|| whole(&cube.bad_bands)));
     document.push(("cube", Part::Table(written)));
     document.push(("bands", Part::Table(bands.written(paths))));

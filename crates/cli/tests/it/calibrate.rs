@@ -1,0 +1,240 @@
+//! `hadar calibrate` as its user runs it: noise and stripes, files, mistakes; and that a decomposition holds with what came out.
+
+use crate::support::folder::Folder;
+use hadar::planck::photon_radiance;
+use hadar::ranging::cube::{Cube, Shape, write_npy};
+use hadar::simulate::draws::{Draws, generator};
+use hadar::statistics::Statistics;
+use rand::RngExt;
+use std::fs;
+
+const ROWS: usize = 24;
+const COLUMNS: usize = 40;
+const BANDS: usize = 15;
+const ELECTRONS: f64 = 3000.0;
+
+const DECOMPOSITION: &str = r#"[cube]
+data = "frame_1.npy"
+counts_per_photon_radiance = 1e-13
+[bands]
+start = "800 cm^-1"
+stop = "1080 cm^-1"
+step = "20 cm^-1"
+[[environment]]
+temperature = "10 degC"
+[library]
+path = "library.csv"
+[unknown]
+temperature = ["250 K", "340 K"]
+lighting_total = 1.0
+[truth]
+temperature = "temperature.npy"
+"#;
+
+fn wavenumber(band: usize) -> f64 {
+    800.0 + 20.0 * band as f64
+}
+
+fn emissivity(band: usize) -> f64 {
+    0.9 + 0.05 * (wavenumber(band) / 30.0).sin()
+}
+
+/// Means of a wall whose temperature changes, and the temperatures.
+fn wall() -> (Vec<f64>, Vec<f64>) {
+    let (mut means, mut temperature) = (Vec::new(), Vec::new());
+    for i in 0..ROWS * COLUMNS {
+        let t = 275.0 + 45.0 * (i % COLUMNS) as f64 / COLUMNS as f64 + 3.0 * (i as f64 / 90.0).sin();
+        temperature.push(t);
+        for band in 0..BANDS {
+            let (e, nu) = (emissivity(band), wavenumber(band));
+            means.push(1e-13 * (e * photon_radiance(nu, t) + (1.0 - e) * photon_radiance(nu, 283.15)));
+        }
+    }
+    (means, temperature)
+}
+
+fn drawn(means: &[f64], stream: u64) -> Vec<f64> {
+    let draws = Draws::new(&Statistics::Poisson, means).unwrap();
+    let draws = draws.with_electronic_noise(&vec![ELECTRONS * ELECTRONS; means.len()]).unwrap();
+    let mut counts = vec![0.0; means.len()];
+    draws.draw_into(&mut generator(8, stream), &mut counts);
+    counts
+}
+
+fn written(folder: &Folder, name: &str, bands: usize, samples: &[f64]) {
+    let shape = Shape::new(samples.len() / COLUMNS / bands, COLUMNS, bands).unwrap();
+    write_npy(&folder.path().join(name), shape, samples).unwrap();
+}
+
+fn walls() -> Folder {
+    let folder = Folder::with(DECOMPOSITION);
+    let (means, temperature) = wall();
+    written(&folder, "frame_1.npy", BANDS, &drawn(&means, 0));
+    written(&folder, "frame_2.npy", BANDS, &drawn(&means, 1));
+    written(&folder, "temperature.npy", 1, &temperature);
+    let rows: Vec<String> =
+        (0..BANDS).map(|w| format!("{},{},{}", wavenumber(w), emissivity(w), emissivity(w))).collect();
+    folder.file(
+        "library.csv",
+        &format!(
+            "wavenumber_cm1,wall\n{}\n",
+            rows.iter().map(|row| row.rsplit_once(',').unwrap().0).collect::<Vec<_>>().join("\n")
+        ),
+    );
+    folder
+}
+
+#[test]
+fn noise_of_two_frames_makes_the_intervals_of_a_decomposition_hold() {
+    let folder = walls();
+    let found = folder.json(&["calibrate", "noise", "frame_1.npy", "frame_2.npy", "--out", "noise"]);
+    let [electrons, low, high] = [0, 1, 2].map(|i| found["noise_electrons"][i].as_f64().unwrap());
+    assert!(low < ELECTRONS && ELECTRONS < high && high - low < 0.2 * electrons, "{low} {high}");
+    let [low, high] = [1, 2].map(|i| found["photons_per_unit"][i].as_f64().unwrap());
+    assert!(low < 1.0 && 1.0 < high, "{low} {high}");
+    let camera = fs::read_to_string(folder.path().join("noise/camera.toml")).unwrap();
+    assert!(camera.starts_with("[camera]\n") && camera.contains("\nnoise_electrons = "), "{camera}");
+    // The scenario that was written asks the same again, for any number of threads.
+    let again = folder.json(&["calibrate", "noise", "noise/scenario.toml", "--threads", "1"]);
+    assert_eq!(again["common"], found["common"]);
+    // Without noise intervals hold half of the temperatures.
+    let covered = |text: &str| {
+        folder.file("b.toml", text);
+        folder.json(&["decompose", "b.toml"])["truth"]["coverage_95"].as_f64().unwrap()
+    };
+    let without = covered(DECOMPOSITION);
+    let with = covered(&DECOMPOSITION.replace("1e-13\n", "1e-13\nnoise = \"noise/sigma.csv\"\n"));
+    // 960 pixels: 0.95 +- 0.007.
+    assert!(without < 0.7 && (0.925..=0.975).contains(&with), "{without} {with}");
+    let text = folder.run(&["calibrate", "noise", "frame_1.npy", "frame_2.npy"]).stdout;
+    assert!(text.starts_with("One unit of the cube is "), "{text}");
+    // The same file is the noise of a ranging scenario.
+    let range = "[cube]\nleft = \"frame_1.npy\"\nnoise_variance = \"noise/variance.csv\"\n[stereo]\nbaseline = \"0.2 m\"\n\
+                 focal_length = \"14 mm\"\npixel = \"24 um\"\nwindow = [5, 5]\n";
+    folder.file("range.toml", range);
+    let outcome = folder.run(&["range", "range.toml"]);
+    assert_eq!(outcome.code, 0, "{}", outcome.stderr);
+}
+
+#[test]
+fn an_error_that_all_pixels_have_in_common_is_in_the_intervals() {
+    // Each cube has gains of its own, 1 % rms: as a calibration leaves them. 24 cubes.
+    let folder = walls();
+    let (means, _) = wall();
+    let mean = |w: usize| means.iter().skip(w).step_by(BANDS).sum::<f64>() / (ROWS * COLUMNS) as f64;
+    let table = |common: bool| {
+        let rows =
+            (0..BANDS).map(|w| format!("{w},{ELECTRONS},{}", if common { 0.01 * mean(w) } else { 0.0 }));
+        format!("band,electronic_sigma,sigma_common\n{}\n", rows.collect::<Vec<_>>().join("\n"))
+    };
+    folder.file("with.csv", &table(true));
+    folder.file("without.csv", &table(false));
+    let mut random = generator(9, 0);
+    let mut held = [0.0; 2];
+    for cube in 0..24 {
+        let half = 0.01 * 3.0_f64.sqrt();
+        let gains: Vec<f64> = (0..BANDS).map(|_| 1.0 + random.random_range(-half..half)).collect();
+        let samples: Vec<f64> =
+            drawn(&means, 10 + cube).iter().enumerate().map(|(i, x)| x * gains[i % BANDS]).collect();
+        written(&folder, "frame_1.npy", BANDS, &samples);
+        for (held, name) in held.iter_mut().zip(["with", "without"]) {
+            let noise = format!("1e-13\nnoise = \"./{name}.csv\"\n");
+            folder.file("b.toml", &DECOMPOSITION.replace("1e-13\n", &noise));
+            let found = folder.json(&["decompose", "b.toml", "--threads", "1"]);
+            *held += found["truth"]["coverage_95"].as_f64().unwrap() / 24.0;
+        }
+    }
+    // Pixels of a cube err together: 24 draws of what is off, 0.95 +- 0.045.
+    println!("intervals hold {} with the common error, {} without", held[0], held[1]);
+    assert!(held[0] > 0.86 && held[1] < 0.75, "{held:?}");
+}
+
+#[test]
+fn stripes_are_taken_out_and_the_rest_stays() {
+    let folder = Folder::with("[cube]\ndata = \"cube.npy\"\n[stripes]\naxis = \"rows\"\n");
+    let (means, _) = wall();
+    let mut samples = drawn(&means, 0);
+    for (row, band) in [(5, 3), (11, 7), (12, 7), (18, 0)] {
+        for column in 0..COLUMNS {
+            let sample = &mut samples[(row * COLUMNS + column) * BANDS + band];
+            *sample = 1.03 * *sample + 2e4;
+        }
+    }
+    written(&folder, "cube.npy", BANDS, &samples);
+    let found = folder.json(&["calibrate", "stripes", "a.toml", "--out", "out"]);
+    let lines: Vec<[u64; 2]> = found["stripes"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|one| ["line", "band"].map(|key| one[key].as_u64().unwrap()))
+        .collect();
+    assert_eq!(lines, [[5, 3], [11, 7], [12, 7], [18, 0]]);
+    let cube = Cube::open(&folder.path().join("out/destriped.npy"), None).unwrap();
+    let Cube::F64(rows) = cube else { panic!("the samples have another type") };
+    let mut buffer = Vec::new();
+    let own = rows.read(0..ROWS, &mut buffer).unwrap();
+    for (i, (own, was)) in own.iter().zip(&samples).enumerate() {
+        let (row, band) = ((i / BANDS / COLUMNS) as u64, (i % BANDS) as u64);
+        assert_eq!(own.to_bits() != was.to_bits(), lines.contains(&[row, band]), "{row} {band}");
+    }
+    // Bare, it says the same.
+    assert_eq!(folder.json(&["calibrate", "stripes", "cube.npy"])["stripes"], found["stripes"]);
+    let again = folder.json(&["calibrate", "stripes", "out/scenario.toml", "--threads", "1"]);
+    assert_eq!(again["stripes"], found["stripes"]);
+    let clean = folder.run(&["calibrate", "stripes", "out/destriped.npy"]);
+    assert!(clean.stdout.starts_with("No stripes: none of 24 rows is off"), "{}", clean.stdout);
+}
+
+#[test]
+fn mistakes_are_one_message() {
+    let folder = walls();
+    folder.file("noise.toml", "[cube]\ndata = [\"frame_1.npy\", \"none.npy\"]\n[noise]\n");
+    folder.file("stripes.toml", "[cube]\ndata = \"frame_1.npy\"\n[stripes]\naxis = \"bands\"\n");
+    folder.file("two.toml", "[cube]\ndata = [\"frame_1.npy\", \"frame_2.npy\"]\n[stripes]\n");
+    written(&folder, "one_row.npy", BANDS, &drawn(&wall().0[..COLUMNS * BANDS], 3));
+    written(&folder, "constant.npy", 4, &vec![5.0; 20 * COLUMNS * 4]);
+    written(&folder, "two_bands.npy", 2, &drawn(&wall().0[..20 * COLUMNS * 2], 4));
+    let mut random = generator(3, 3);
+    let (means, _) = wall();
+    let gains: Vec<f64> = (0..ROWS * BANDS).map(|_| random.random_range(0.9..1.1)).collect();
+    let filled: Vec<f64> = drawn(&means, 5)
+        .iter()
+        .enumerate()
+        .map(|(i, x)| x * gains[i / BANDS / COLUMNS * BANDS + i % BANDS])
+        .collect();
+    written(&folder, "filled.npy", BANDS, &filled);
+    for (arguments, message) in [
+        (["noise", "noise.toml"], "noise.toml:2: cube.data[1]"),
+        (
+            ["noise", "two_bands.npy"],
+            "two_bands.npy: a single frame of 2 band(s); give two or more frames of the same scene",
+        ),
+        (["noise", "constant.npy"], "constant.npy: samples do not scatter at all"),
+        (
+            ["stripes", "stripes.toml"],
+            "stripes.toml:4: stripes.axis: `bands` is not known here; write \"rows\" or \"columns\"",
+        ),
+        (["stripes", "two.toml"], "two.toml:2: cube.data: 2 cubes; write one"),
+        (["stripes", "one_row.npy"], "one_row.npy: 1 rows of 40 pixels; stripes are seen in 8 rows or more"),
+        (["stripes", "constant.npy"], "constant.npy: all samples of the cube are the same"),
+        (
+            ["stripes", "filled.npy"],
+            "too many to tell them from the scene; correct the cube by a uniform source first",
+        ),
+        (["noise", "a.toml"], "this is a decomposition scenario"),
+    ] {
+        let refusal = folder.refusal(&["calibrate", arguments[0], arguments[1]]);
+        assert!(refusal.contains(message), "{arguments:?}: {refusal}");
+    }
+    let several = folder.refusal(&["calibrate", "noise", "frame_1.npy", "noise.toml"]);
+    assert!(several.contains("noise.toml: a scenario among several files"), "{several}");
+    folder.file("sigma.csv", "band,sigma\n0,1\n");
+    folder.file("b.toml", &DECOMPOSITION.replace("1e-13\n", "1e-13\nnoise = \"sigma.csv\"\n"));
+    let refusal = folder.refusal(&["decompose", "b.toml"]);
+    assert!(refusal.contains("sigma.csv") && refusal.contains("no column electronic_sigma"), "{refusal}");
+    folder.file("sigma.csv", "band,electronic_sigma\n0,1\n");
+    let refusal = folder.refusal(&["decompose", "b.toml"]);
+    assert!(refusal.contains("noise of the bands: 1 values where 15 are needed"), "{refusal}");
+    let other = folder.refusal(&["range", "stripes.toml"]);
+    assert!(other.contains("this is a calibration; hadar calibrate stripes"), "{other}");
+}

@@ -1,0 +1,76 @@
+//! Noise of a cube by band, as `[cube] noise` states it: one deviation, or a table with a row for each band.
+//!
+//! A table has a column `sigma` (all noise of a sample; for radiances) or `electronic_sigma` (what is added to shot noise; for counts),
+//! and, where it is known, `sigma_common`: what all pixels are off by together, as errors of a calibration are. For the interval of one
+//! pixel that is one more deviation, independent of its noise: the squares add.
+
+use crate::scenario::decompose::{CubeNoise, CubeUnit};
+use hadar::error::{Error, Result, check};
+use hadar::grid::{Grid, text_of_file};
+use std::path::Path;
+
+/// Squared deviations of the bands, in the unit of the cube squared; `None` where nothing is said.
+pub(super) fn var_of_bands(
+    noise: Option<&CubeNoise>,
+    unit: CubeUnit,
+    bands: usize,
+) -> Result<Option<Vec<f64>>> {
+    match noise {
+        None => Ok(None),
+        Some(CubeNoise::Uniform(sigma)) => Ok(Some(vec![sigma * sigma; bands])),
+        Some(CubeNoise::File(path)) => {
+            let column = if unit == CubeUnit::Radiance { "sigma" } else { "electronic_sigma" };
+            table(path, column, bands).map(Some).map_err(|error| error.in_file(path))
+        }
+    }
+}
+
+fn table(path: &Path, column: &str, bands: usize) -> Result<Vec<f64>> {
+    let grid =
+        Grid::parse(&text_of_file(path, "read the noise of the bands")?).map_err(|error| match &error {
+            Error::Malformed { found, .. } => {
+                Error::malformed(found.clone(), format!("begin it with a line such as band,{column}"))
+            }
+            _ => error,
+        })?;
+    let place = |name: &str| grid.header.iter().position(|own| own == name);
+    let Some(own) = place(column) else {
+        let found = format!("the file has no column {column}");
+        let instead = match column {
+            "sigma" => "radiances take all their noise from it: write band,sigma and a row for each band",
+            _ => {
+                "counts scatter by themselves: write band,electronic_sigma, the noise that is added to that, and a row for each band"
+            }
+        };
+        return Err(Error::malformed(found, instead));
+    };
+    if grid.rows.len() != bands {
+        return Err(Error::Length {
+            what: "noise of the bands".into(),
+            found: grid.rows.len(),
+            expected: bands,
+        });
+    }
+    let common = place("sigma_common");
+    let mut var = Vec::with_capacity(bands);
+    for (i, (line, cells)) in grid.rows.iter().enumerate() {
+        let cell = |place: usize| cells.get(place).copied().unwrap_or(f64::NAN);
+        if let Some(band) = place("band")
+            && cell(band) != i as f64
+        {
+            let found = format!("band {} in the place of {i}", cell(band));
+            return Err(Error::malformed(found, "give a row for each band, counted from 0").on_line(*line));
+        }
+        let at = |name: &str, value: f64| {
+            check::non_negative(name, value, "").map_err(|error| error.for_key(name).on_line(*line))
+        };
+        let sigma = at(column, cell(own))?;
+        let more = common.map_or(Ok(0.0), |place| at("sigma_common", cell(place)))?;
+        if column == "sigma" && sigma == 0.0 {
+            let found = Error::out_of_range("sigma", 0.0, "", "above 0, for nothing is known exactly");
+            return Err(found.on_line(*line));
+        }
+        var.push(sigma * sigma + more * more);
+    }
+    Ok(var)
+}

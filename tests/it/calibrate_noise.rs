@@ -1,0 +1,151 @@
+//! Photon transfer on twins whose noise is known.
+
+use hadar::calibrate::{Asked, Line, Transfer, photon_transfer};
+use hadar::ranging::cube::{MemoryCube, Rows, Shape};
+use hadar::simulate::draws::{Draws, generator};
+use hadar::statistics::Statistics;
+use rand::RngExt;
+
+const ASKED: Asked = Asked { dark_level: 0.0, gain_spread: false };
+/// Unit of the cube for a photon, and electrons of a reading.
+const UNIT: f64 = 0.25;
+const ELECTRONS: f64 = 30.0;
+
+fn drawn(draws: &[Draws], pixels: usize, seed: u64, stream: u64, unit: f64, offset: f64) -> Vec<f64> {
+    let bands = draws[0].bands();
+    let mut random = generator(seed, stream);
+    let (mut samples, mut counts) = (Vec::with_capacity(pixels * bands), vec![0.0; bands]);
+    for pixel in 0..pixels {
+        draws[pixel % draws.len()].draw_into(&mut random, &mut counts);
+        samples.extend(counts.iter().map(|n| unit * n + offset));
+    }
+    samples
+}
+
+fn draws_of(means: impl Iterator<Item = Vec<f64>>, electrons: f64) -> Vec<Draws> {
+    let one = |means: Vec<f64>| {
+        let var = vec![electrons * electrons; means.len()];
+        Draws::new(&Statistics::Poisson, &means).unwrap().with_electronic_noise(&var).unwrap()
+    };
+    means.map(one).collect()
+}
+
+fn transfer(frames: Vec<Vec<f64>>, shape: Shape, asked: &Asked) -> Transfer {
+    let cubes: Vec<_> = frames.into_iter().map(|samples| MemoryCube::new(shape, samples).unwrap()).collect();
+    let frames: Vec<&dyn Rows<f64>> = cubes.iter().map(|cube| cube as &dyn Rows<f64>).collect();
+    photon_transfer(&frames, asked).unwrap()
+}
+
+/// Shares of the trials in which the intervals of a, b and √a/b hold the truth.
+fn held(trials: u64, one: impl Fn(u64) -> Line) -> [f64; 3] {
+    let mut held = [0.0; 3];
+    for trial in 0..trials {
+        let line = one(trial);
+        let a = (UNIT * ELECTRONS).powi(2);
+        let ends = [
+            (Line::interval(line.electronic, line.sigma_electronic), a),
+            (Line::interval(line.per_photon, line.sigma_per_photon), UNIT),
+            (line.noise_electrons_interval(), ELECTRONS),
+        ];
+        for (held, ([low, high], truth)) in held.iter_mut().zip(ends) {
+            *held += f64::from(u8::from(low <= truth && truth <= high)) / trials as f64;
+        }
+    }
+    held
+}
+
+#[test]
+fn intervals_of_two_frames_hold_the_truth() {
+    // Levels of 400 to 4000 photons. 1000 trials: 0.95 +- 0.0069.
+    let shape = Shape::new(30, 64, 3).unwrap();
+    let levels = |i: usize| vec![400.0 + 50.0 * i as f64, 500.0 + 55.0 * i as f64, 450.0 + 40.0 * i as f64];
+    let draws = draws_of((0..64).map(levels), ELECTRONS);
+    let found = held(1000, |trial| {
+        let frame = |k| drawn(&draws, 30 * 64, 11, 2 * trial + k, UNIT, 0.0);
+        transfer(vec![frame(0), frame(1)], shape, &ASKED).common
+    });
+    println!("two frames: a {}, b {}, electrons {}", found[0], found[1], found[2]);
+    assert!(found.iter().all(|share| (0.93..=0.97).contains(share)), "{found:?}");
+}
+
+#[test]
+fn intervals_of_one_frame_hold_the_truth_beside_texture() {
+    // Texture of 3 % that differs by a factor between bands; 1000 trials.
+    let shape = Shape::new(20, 128, 8).unwrap();
+    let mut random = generator(5, 0);
+    let means = (0..20 * 128).map(|i| {
+        let (row, column) = (i / 128, i % 128);
+        let level = 500.0 + 180.0 * row as f64 + 40.0 * (column as f64 / 9.0).sin();
+        let texture: f64 = random.random_range(-0.05..0.05);
+        (0..8).map(|w| level * (1.0 + 0.1 * w as f64) * (1.0 + texture * (1.0 - 0.06 * w as f64))).collect()
+    });
+    let draws = draws_of(means, ELECTRONS);
+    let found = held(1000, |trial| {
+        transfer(vec![drawn(&draws, 20 * 128, 12, trial, UNIT, 0.0)], shape, &ASKED).common
+    });
+    println!("one frame: a {}, b {}, electrons {}", found[0], found[1], found[2]);
+    assert!(found.iter().all(|share| (0.93..=0.97).contains(share)), "{found:?}");
+    let one = transfer(vec![drawn(&draws, 20 * 128, 13, 0, UNIT, 0.0)], shape, &ASKED);
+    assert!(one.bands.iter().all(|band| band.texture > 0.2), "{:?}", one.bands[0]);
+}
+
+#[test]
+fn a_dark_level_and_outliers_do_not_matter() {
+    let shape = Shape::new(60, 64, 3).unwrap();
+    let draws = draws_of((0..64).map(|i| vec![300.0 + 60.0 * f64::from(i); 3]), 10.0);
+    let frame = |k, offset| drawn(&draws, 60 * 64, 3, k, UNIT, offset);
+    let plain = transfer(vec![frame(0, 0.0), frame(1, 0.0), frame(2, 0.0)], shape, &ASKED);
+    let asked = Asked { dark_level: 1000.0, ..ASKED };
+    let mut spoiled = frame(1, 1000.0);
+    for i in (5..spoiled.len()).step_by(400) {
+        spoiled[i] += 900.0;
+    }
+    spoiled[17] = f64::NAN;
+    let shifted = transfer(vec![frame(0, 1000.0), spoiled, frame(2, 1000.0)], shape, &asked);
+    assert!(shifted.outliers > 0.002 && shifted.outliers < 0.004, "{}", shifted.outliers);
+    let (a, b) = (plain.common, shifted.common);
+    assert!((a.per_photon - b.per_photon).abs() < 0.5 * a.sigma_per_photon, "{a:?} {b:?}");
+    assert!(
+        (a.per_photon - UNIT).abs() < 4.0 * a.sigma_per_photon && a.sigma_per_photon < 0.01 * UNIT,
+        "{a:?}"
+    );
+}
+
+#[test]
+fn gains_that_differ_are_told_from_photons_by_a_curve() {
+    // Every pixel has a gain of its own, 2 % rms, in every band.
+    let shape = Shape::new(100, 128, 4).unwrap();
+    let draws = draws_of((0..128).map(|i| vec![500.0 + 150.0 * f64::from(i / 2); 4]), ELECTRONS);
+    let mut samples = drawn(&draws, 100 * 128, 21, 0, UNIT, 0.0);
+    let mut random = generator(22, 0);
+    let half_width = 0.02 * 3.0_f64.sqrt();
+    samples.iter_mut().for_each(|sample| *sample *= 1.0 + random.random_range(-half_width..half_width));
+    let asked = Asked { gain_spread: true, ..ASKED };
+    let line = transfer(vec![samples], shape, &asked).common;
+    assert!((line.spread - 4e-4).abs() < 4.0 * line.sigma_spread && line.sigma_spread < 4e-5, "{line:?}");
+    assert!((line.per_photon - UNIT).abs() < 4.0 * line.sigma_per_photon, "{line:?}");
+}
+
+#[test]
+fn what_tells_no_noise_is_refused() {
+    let shape = |rows, bands| Shape::new(rows, 32, bands).unwrap();
+    let refused = |frames: Vec<(Shape, Vec<f64>)>| {
+        let cubes: Vec<_> = frames.into_iter().map(|(shape, s)| MemoryCube::new(shape, s).unwrap()).collect();
+        let frames: Vec<&dyn Rows<f64>> = cubes.iter().map(|cube| cube as &dyn Rows<f64>).collect();
+        photon_transfer(&frames, &ASKED).unwrap_err().to_string()
+    };
+    let noise = |len: usize, seed| {
+        let mut random = generator(seed, 0);
+        (0..len).map(|_| random.random_range(0.0..1.0)).collect::<Vec<f64>>()
+    };
+    let one = refused(vec![(shape(9, 2), noise(9 * 64, 1))]);
+    assert!(one.contains("a single frame of 2 band(s); give two or more frames"), "{one}");
+    let other = refused(vec![(shape(9, 2), noise(9 * 64, 1)), (shape(8, 2), noise(8 * 64, 2))]);
+    assert!(other.contains("frame 2 is 8 x 32 x 2, the first one 9 x 32 x 2"), "{other}");
+    let constant = refused(vec![(shape(9, 4), vec![7.0; 9 * 32 * 4])]);
+    assert!(constant.contains("do not scatter at all"), "{constant}");
+    let nothing = refused(vec![(shape(9, 4), vec![f64::NAN; 9 * 32 * 4])]);
+    assert!(nothing.contains("no two samples that can be compared"), "{nothing}");
+    let few = refused(vec![(shape(1, 3), noise(96, 3))]);
+    assert!(few.contains("too few to see how they scatter"), "{few}");
+}
