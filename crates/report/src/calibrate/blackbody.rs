@@ -6,7 +6,7 @@ use crate::plot::{Axis, LineFigure, Panel, Series, Style};
 use crate::table::{Table, number};
 use crate::text::footing::{ASSUMPTIONS, warnings};
 use hadar::error::Result;
-use hadar::ranging::cube::{npy_map, write_npy_to};
+use hadar::ranging::cube::write_npy_to;
 use hadar::words::{quantity, significant};
 use hadar_study::study::calibrate::{BlackbodyFound, ChannelRow};
 use std::fmt::Write as _;
@@ -31,11 +31,11 @@ pub fn bundle(result: &BlackbodyFound, out: &Path) -> Result<Bundle> {
         let mut common = Vec::with_capacity(scene.shape.len() * 4 + 128);
         write_npy_to(&mut common, scene.shape, &scene.sigma_common)?;
         bundle.add("sigma_common.npy", common);
-        let noise: Vec<f32> = scene.sigma_noise.iter().map(|sigma| *sigma as f32).collect();
-        bundle.add("sigma_noise.npy", npy_map(&[noise.len()], &noise)?);
-        let mut table = Table::new(["wavenumber_cm1", "sigma_noise", "sigma_common_median"]);
+        // As `[cube] noise` of a decomposition takes it.
+        let mut table = Table::new(["band", "wavenumber_cm1", "sigma", "sigma_common"]);
         for (c, row) in result.channels.iter().enumerate() {
-            table.push_numbers(&[row.wavenumber_cm1, scene.sigma_noise[c], scene.sigma_common_median[c]]);
+            let numbers = [row.wavenumber_cm1, scene.sigma_noise[c], scene.sigma_common_most[c]].map(number);
+            table.push(std::iter::once(c.to_string()).chain(numbers).collect());
         }
         bundle.add_table("sigma.csv", table)?;
     }
@@ -92,11 +92,11 @@ pub fn text(result: &BlackbodyFound) -> String {
         };
         let _ = writeln!(
             out,
-            "\nScene: radiance.npy ({RADIANCE}); noise of each sample {} (sigma_noise.npy, by band), common to all pixels {} \
-             (sigma_common.npy)\n  [cube]\n  data = \"radiance.npy\"\n  unit = \"{RADIANCE}\"\n  noise = {:e}",
+            "\nScene: radiance.npy ({RADIANCE}); noise of each sample {} (rms of the bands), common to all pixels up to {}\n  \
+             by band in sigma.csv, by sample in sigma_common.npy; for a decomposition\n  [cube]\n  data = \"radiance.npy\"\n  unit = \
+             \"{RADIANCE}\"\n  noise = \"sigma.csv\"",
             significant(mean(&scene.sigma_noise), 2),
-            significant(mean(&scene.sigma_common_median), 2),
-            mean(&scene.sigma_noise)
+            significant(mean(&scene.sigma_common_most), 2),
         );
     }
     let _ = writeln!(

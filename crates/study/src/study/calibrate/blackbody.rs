@@ -64,8 +64,8 @@ pub struct SceneFound {
     pub sigma_common: Vec<f32>,
     /// Deviation of each sample for itself, of every band.
     pub sigma_noise: Vec<f64>,
-    /// Median of the deviations common to all pixels, of every band.
-    pub sigma_common_median: Vec<f64>,
+    /// Deviation common to all pixels that it is no larger than in 95 of 100 of them, of every band.
+    pub sigma_common_most: Vec<f64>,
 }
 
 /// What was found.
@@ -240,16 +240,16 @@ impl BlackbodyStudy {
         })?;
         let (radiance, sigma_common): (Vec<f32>, Vec<f32>) = both.into_iter().map(|[a, b]| (a, b)).unzip();
         let shape = cube.shape();
-        let median = |band: usize| {
+        let most = |band: usize| {
             let every = (shape.len() / shape.bands() / LOOKED_AT).max(1) * shape.bands();
             let mut some: Vec<f32> = sigma_common.iter().skip(band).step_by(every).copied().collect();
             some.sort_by(f32::total_cmp);
-            some.get(some.len() / 2).map_or(f64::NAN, |x| f64::from(*x))
+            some.get(some.len() * 95 / 100).map_or(f64::NAN, |x| f64::from(*x))
         };
         Ok(SceneFound {
             shape,
             sigma_noise: lines.iter().map(|line| (self.scenario.noise * line[1]).abs()).collect(),
-            sigma_common_median: (0..shape.bands()).map(median).collect(),
+            sigma_common_most: (0..shape.bands()).map(most).collect(),
             radiance,
             sigma_common,
         })
