@@ -49,7 +49,7 @@ pub struct Sky<'a> {
 pub struct Distilled {
     /// X̄ with its share of the residue.
     pub texture: Vec<f32>,
-    /// Its deviation.
+    /// Its deviation; NaN where the material is not decided ([`Maps::is_decided`]).
     pub sigma: Vec<f32>,
     /// X̄ of the model alone.
     pub of_model: Vec<f32>,
@@ -316,7 +316,7 @@ fn second(
     let all: Vec<f64> = of_sky.iter().map(|s| s.iter().sum()).collect();
     let l = tangents.of_lighting(&all);
     let mut pixels = Vec::new();
-    each_pixel(tangents, maps, row, &mut |_, found| {
+    each_pixel(tangents, maps, row, &mut |i, found| {
         let Some((m, rho, tangent, lighting)) = found else {
             pixels.push([f64::NAN; 4]);
             return;
@@ -337,7 +337,10 @@ fn second(
             }
         }
         let sigma = var.sqrt();
-        pixels.push([texture, sigma, of_model, whole].map(|x| if sigma.is_finite() { x } else { f64::NAN }));
+        // Were another material right, the texture would be another one altogether.
+        let claimed = if maps.is_decided(i) { sigma } else { f64::NAN };
+        pixels
+            .push([texture, claimed, of_model, whole].map(|x| if sigma.is_finite() { x } else { f64::NAN }));
     });
     pixels
 }

@@ -139,7 +139,7 @@ fn images(
         one(WHOLE, &whole, None),
         Beside { rms: f64::NAN, median: f64::NAN, ..one(RESIDUE, &residue, None) },
         beside(truth, (FUSED, &fused), Some(&found.sigma), (RIGHT.to_owned(), &right), case),
-        beside(truth, (FUSED, &fused), Some(&found.sigma), undecided, case),
+        beside(truth, (FUSED, &fused), None, undecided, case),
     ]
 }
 
@@ -243,7 +243,8 @@ fn plots(
             ),
         ),
     ];
-    let subtitle = "Left camera, 200 us, 54 bands, all surroundings known. No value: sky, pixels of two surfaces, no material.";
+    let subtitle = "Left camera, 200 us, 54 bands, all surroundings known. No value: sky, pixels of two surfaces, no material; \
+                    no deviation where it is not decided.";
     picture_plot(
         "distillation",
         "Texture distilled: what surfaces see of the sky's light",
