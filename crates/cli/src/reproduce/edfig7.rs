@@ -92,7 +92,7 @@ pub(super) fn make(order: Order) -> Result<Made> {
         ],
     )
     .subtitle(
-        "11 bands, light scattered once. The thermal image was laid out with the truth: each of 256 brightnesses is what it most often is.",
+        "11 bands, light scattered once. The thermal image was laid out with the truth: each of 256 brightnesses is what it most often is. The table beside holds one in 4 rows and columns.",
     )
     .no_value("nothing is told")
     .keys(night.keys());

@@ -79,7 +79,7 @@ pub(super) fn make(order: Order, progress: Progress<'_>) -> Result<Made> {
                 night.painted(format!("By brightness, mIoU {}", iou(&agreements[4])), &thermal),
             ],
         )
-        .subtitle("Brightness: each of 256 is what it most often is in another street, of all that is here.")
+        .subtitle("Brightness: each of 256 is what it most often is in another street, of all that is here. The table beside holds one in 4 rows and columns.")
         .no_value("nothing is told")
         .keys(night.keys());
         let pixels =

@@ -159,7 +159,7 @@ fn spectra(bench: &Bench) -> Plot {
         let all = bench.bands.nodes_cm1().iter().copied().zip(emissivity.iter().copied());
         let mut rows: Vec<(f64, f64)> = all.collect();
         rows.sort_by(|a, b| a.0.total_cmp(&b.0));
-        rows.dedup_by(|a, b| a.0 == b.0);
+        rows.dedup_by(|a, b| a.0 - b.0 < 1.0);
         rows
     };
     let mut table = Table::new(["material", "wavenumber_cm1", "emissivity"]);

@@ -25,6 +25,8 @@ const RANGE_K: [f64; 2] = [240.0, 400.0];
 const LIMITS: usize = 40;
 /// Counts drawn of each of them, and of the nearest state of the other material.
 const DRAWS: usize = 40;
+/// One in so many rows and columns is in the table beside a picture.
+const TABLED: usize = 4;
 /// The colour of no category.
 const NONE: Rgb = (190, 190, 190);
 
@@ -215,12 +217,15 @@ impl Night {
         keys.chain([(NONE, "none".to_owned())]).collect()
     }
 
-    /// Maps of categories, a row for every pixel.
+    /// Maps of categories, a row for one in [`TABLED`] rows and columns.
     pub(super) fn table(&self, maps: &[(&str, &[u8])]) -> Table {
         let header = ["row", "column", "thermal_counts"].into_iter().chain(maps.iter().map(|map| map.0));
         let mut table = Table::new(header);
         let names = self.names();
         for (i, thermal) in self.thermal.iter().enumerate() {
+            if i / self.columns() % TABLED != 0 || i % self.columns() % TABLED != 0 {
+                continue;
+            }
             let of = |(_, map): &(&str, &[u8])| {
                 names.get(usize::from(map[i])).map_or_else(String::new, |name| (*name).to_owned())
             };
