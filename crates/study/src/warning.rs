@@ -70,6 +70,8 @@ pub enum Warning {
     StripesOfFewBands { bands: usize },
     /// Scatter of the pixels of a blackbody over the stated noise.
     BlackbodyNotEven { blackbody: usize, over: f64 },
+    /// Samples of pixels that respond to nothing.
+    DeadSamples { samples: usize },
     /// χ²/ν of blackbodies about straight lines.
     BlackbodiesDoNotFit { chi_square: f64 },
     /// Share of samples beyond the radiances of the blackbodies.
@@ -250,6 +252,7 @@ impl Warning {
             Self::LinesLikeObjects { .. } => Code::LinesLikeObjects,
             Self::StripesOfFewBands { .. } => Code::StripesOfFewBands,
             Self::BlackbodyNotEven { .. } => Code::BlackbodyNotEven,
+            Self::DeadSamples { .. } => Code::DeadSamples,
             Self::BlackbodiesDoNotFit { .. } => Code::BlackbodiesDoNotFit,
             Self::BeyondBlackbodies { .. } => Code::BeyondBlackbodies,
             Self::LibraryTakenAsExact => Code::LibraryTakenAsExact,

@@ -150,8 +150,8 @@ impl Determined {
             |j: usize| (0..modes).map(|i| av[(j, i)].powi(2) / (1.0 + d[i] * d[i])).sum::<f64>().sqrt();
         // D Uᵀ S = Vᵀ (S A)ᵀ S, so that the left vectors are not needed.
         let mut seen = v.tr_mul(&(scores * a).tr_mul(scores));
-        for i in 0..modes {
-            seen.row_mut(i).scale_mut(1.0 / (1.0 + d[i] * d[i]));
+        for (mut row, d) in seen.row_iter_mut().zip(&d) {
+            row.scale_mut(1.0 / (1.0 + d * d));
         }
         Ok(Self {
             sigma_free: (0..values).map(free).collect(),

@@ -31,6 +31,11 @@ pub fn bundle(result: &BlackbodyFound, out: &Path) -> Result<Bundle> {
         let mut common = Vec::with_capacity(scene.shape.len() * 4 + 128);
         write_npy_to(&mut common, scene.shape, &scene.sigma_common)?;
         bundle.add("sigma_common.npy", common);
+        if let Some(pixel) = &scene.sigma_pixel {
+            let mut own = Vec::with_capacity(scene.shape.len() * 4 + 128);
+            write_npy_to(&mut own, scene.shape, pixel)?;
+            bundle.add("sigma_pixel.npy", own);
+        }
         // As `[cube] noise` of a decomposition takes it.
         let mut table = Table::new(["band", "wavenumber_cm1", "sigma", "sigma_common"]);
         for (c, row) in result.channels.iter().enumerate() {
@@ -101,8 +106,13 @@ pub fn text(result: &BlackbodyFound) -> String {
     }
     let _ = writeln!(
         out,
-        "\n{ASSUMPTIONS}\n  C = R B(T) + xi in every channel, R and xi the same in all pixels; blackbodies of emissivity 1 that fill the view; noise of {} \
-         (unit of the cubes) in every sample.\n",
+        "\n{ASSUMPTIONS}\n  C = R B(T) + xi in every channel, R and xi {}; blackbodies of emissivity 1 that fill the view; noise of {} (unit of the cubes) \
+         in every sample.\n",
+        match &result.scene {
+            Some(scene) if scene.sigma_pixel.is_some() =>
+                "of each pixel its own (errors of its own calibration in sigma_pixel.npy)",
+            _ => "the same in all pixels",
+        },
         significant(result.scenario.noise, 3)
     );
     out + &warnings(&result.warnings)

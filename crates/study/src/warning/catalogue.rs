@@ -69,6 +69,8 @@ catalogue! {
     /// Pixels of a blackbody scatter more than the noise that is stated: they differ in their response, or the noise is larger.
     BlackbodyNotEven = "blackbody-not-even",
         "State the noise that hadar calibrate noise finds; calibrate pixels of different response one by one.";
+    /// Samples of pixels that read the same before all blackbodies have no radiance.
+    DeadSamples = "dead-samples", "Nothing if they are the camera's bad pixels.";
     /// Readings of three or more blackbodies lie off straight lines by more than their noise and temperatures allow.
     BlackbodiesDoNotFit = "blackbodies-do-not-fit", "State a larger noise or uncertainty; look for a response that is not linear.";
     /// A scene has radiances below those of the coldest blackbody, or above those of the warmest.

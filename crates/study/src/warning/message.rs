@@ -98,6 +98,10 @@ impl Display for Warning {
                  may be larger",
                 significant(*over, 2)
             ),
+            Self::DeadSamples { samples } => write!(
+                f,
+                "{samples} sample(s) are of pixels whose readings of the blackbodies do not differ beyond noise: no radiance is given for them"
+            ),
             Self::BlackbodiesDoNotFit { chi_square } => write!(
                 f,
                 "the blackbodies do not lie on straight lines (chi2/nu {}): errors are larger than stated",

@@ -52,7 +52,7 @@ fn response(shown: &Shown) -> Plot {
 }
 
 /// Kernels of these values are drawn.
-const VALUES: [usize; 5] = [4, 9, 14, 20, 26];
+const VALUES: [usize; 3] = [4, 14, 26];
 
 fn kernels(shown: &Shown) -> Plot {
     let nu = shown.twin.wheel.centres_cm1().to_vec();

@@ -25,10 +25,21 @@ pub struct BlackbodyScenario {
     /// Deviation of one sample, in the unit of the cubes (`[noise] sample`).
     pub noise: f64,
     /// The cube to be calibrated (`[scene]`).
-    pub scene: Option<CubeFile>,
+    pub scene: Option<SpectralScene>,
     /// Where it was read from.
     pub source: Source,
 }
+
+/// A cube to be calibrated (`[scene]`).
+#[derive(Debug, Clone, PartialEq)]
+pub struct SpectralScene {
+    /// The cube.
+    pub data: CubeFile,
+    /// Whether each pixel has a response and an offset of its own, which cubes of blackbodies of the same size tell.
+    pub each_pixel: bool,
+}
+
+const RESPONSES: [(&str, bool); 2] = [("common", false), ("each-pixel", true)];
 
 impl BlackbodyScenario {
     /// Reads the file. Relative paths in it start from its directory.
@@ -76,7 +87,11 @@ impl BlackbodyScenario {
             blackbodies: blackbodies(&root)?,
             noise: noise(&root)?,
             scene: root.read("scene", |entry| {
-                CubeFile::read(&entry.section(&["data", "variable"])?, "\"scene.npy\"")
+                let section = entry.section(&["data", "variable", "response"])?;
+                Ok(SpectralScene {
+                    data: CubeFile::read(&section, "\"scene.npy\"")?,
+                    each_pixel: section.choice("response", &RESPONSES)?.unwrap_or(false),
+                })
             })?,
             source: Source::default(),
         };
@@ -102,7 +117,8 @@ impl BlackbodyScenario {
         ));
         document.push(("noise", Part::Table(Entries::default().put("sample", self.noise))));
         if let Some(scene) = &self.scene {
-            document.push(("scene", Part::Table(scene.written(paths))));
+            let response = RESPONSES[usize::from(scene.each_pixel)].0;
+            document.push(("scene", Part::Table(scene.data.written(paths).put("response", response))));
         }
         document
     }

@@ -8,7 +8,7 @@ use super::super::paths::{Paths, file};
 use super::super::read::{document, text_of};
 use super::super::section::{Entry, Section};
 use super::blackbodies::{BlackbodySpec, CubeFile, blackbodies, noise};
-use hadar::allowed::{ABOVE_ZERO, ABSOLUTE_TEMPERATURE};
+use hadar::allowed::{ABOVE_ZERO, ABSOLUTE_TEMPERATURE, FROM_ZERO};
 use hadar::calibration::determined::CurveSmoothness;
 use hadar::error::{Error, Result};
 use hadar::units::Dimension;
@@ -71,6 +71,8 @@ pub struct SceneSpec {
     pub reference: PathBuf,
     /// Temperature of the reference, K.
     pub reference_k: f64,
+    /// Deviation of that temperature, K.
+    pub reference_error_k: f64,
 }
 
 impl ResponseScenario {
@@ -136,6 +138,9 @@ impl ResponseScenario {
             let written = scene.data.written(paths).put("reference", paths.file(&scene.reference));
             let kelvin = Some(scene.reference_k);
             let written = written.put_quantity("reference_temperature", Dimension::Temperature, kelvin);
+            let error = Some(scene.reference_error_k);
+            let written =
+                written.put_quantity("reference_uncertainty", Dimension::TemperatureDifference, error);
             document.push(("scene", Part::Table(written)));
         }
         document
@@ -184,12 +189,21 @@ fn response(entry: &Entry<'_>) -> Result<ResponseSpec> {
 }
 
 fn scene(entry: &Entry<'_>) -> Result<SceneSpec> {
-    let section = entry.section(&["data", "variable", "reference", "reference_temperature"])?;
+    let section = entry.section(&[
+        "data",
+        "variable",
+        "reference",
+        "reference_temperature",
+        "reference_uncertainty",
+    ])?;
     let reference_k = section.require("reference_temperature", "\"20 degC\"")?;
     Ok(SceneSpec {
         data: CubeFile::read(&section, "\"scene.npy\"")?,
         reference: file(&section.require("reference", "\"reference.npy\"")?)?,
         reference_k: reference_k.quantity(Dimension::Temperature, ABSOLUTE_TEMPERATURE)?,
+        reference_error_k: section
+            .quantity("reference_uncertainty", Dimension::TemperatureDifference, FROM_ZERO)?
+            .unwrap_or(0.0),
     })
 }
 

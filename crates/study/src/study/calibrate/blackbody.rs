@@ -1,6 +1,6 @@
 //! Response and offset of a spectrometer by blackbodies, and the radiance of a scene.
 
-use super::whole::{at, means, open, pairs, shown};
+use super::whole::{at, beside, means, open, pairs, shown};
 use crate::scenario::calibrate::BlackbodyScenario;
 use crate::study::{Warning, bands};
 use hadar::calibrate::spectrometer::Calibration;
@@ -16,6 +16,8 @@ use serde::Serialize;
 const UNEVEN: f64 = 1.1;
 /// χ²/ν beyond which blackbodies do not lie on lines, at least.
 const MISFIT: f64 = 1.3;
+/// A response within so many of its deviations from 0 is none.
+const DEAD: f64 = 5.0;
 /// Share of the samples that may lie beyond the blackbodies without a word.
 const BEYOND: f64 = 0.01;
 /// Samples of which the typical errors of a scene are taken.
@@ -62,7 +64,12 @@ pub struct SceneFound {
     /// Deviation common to all pixels, at every sample's radiance.
     #[serde(skip)]
     pub sigma_common: Vec<f32>,
-    /// Deviation of each sample for itself, of every band.
+    /// Deviation that each pixel has for itself in all scenes, by the noise of its own calibration; none where all have one.
+    #[serde(skip)]
+    pub sigma_pixel: Option<Vec<f32>>,
+    /// Samples of pixels that respond to nothing.
+    pub dead: usize,
+    /// Deviation of each sample for itself, of every band; with that of its pixel's calibration (rms) where it has its own.
     pub sigma_noise: Vec<f64>,
     /// Deviation common to all pixels that it is no larger than in 95 of 100 of them, of every band.
     pub sigma_common_most: Vec<f64>,
@@ -121,7 +128,7 @@ impl BlackbodyStudy {
             cubes: cubes
                 .map(|(k, spec)| opened(&spec.data, &format!("blackbody[{k}].data")))
                 .collect::<Result<_>>()?,
-            scene: scenario.scene.as_ref().map(|scene| opened(scene, "scene.data")).transpose()?,
+            scene: scenario.scene.as_ref().map(|scene| opened(&scene.data, "scene.data")).transpose()?,
             wavenumbers_cm1: bands.nodes_cm1().to_vec(),
             scenario: scenario.clone(),
         })
@@ -145,7 +152,8 @@ impl BlackbodyStudy {
             let over = scatter.iter().map(|s| (s / scenario.noise).powi(2)).sum::<f64>() / nu.len() as f64;
             // χ²/ν of so many samples scatters by √(2/ν).
             let chance = 1.0 + 5.0 * (2.0 / ((pixels.max(2) - 1) * nu.len()) as f64).sqrt();
-            if pixels > 1 && over.sqrt() > UNEVEN.max(chance.sqrt()) {
+            let each_pixel = scenario.scene.as_ref().is_some_and(|scene| scene.each_pixel);
+            if !each_pixel && pixels > 1 && over.sqrt() > UNEVEN.max(chance.sqrt()) {
                 warnings.push(Warning::BlackbodyNotEven { blackbody: k, over: over.sqrt() });
             }
             counts.push(mean);
@@ -167,8 +175,14 @@ impl BlackbodyStudy {
         let [low, high] = ends(&temperatures_k);
         let middle_k = 0.5 * (low + high);
         let channels = (0..nu.len()).map(|c| self.row(&found, c, middle_k)).collect();
-        let scene = self.scene.as_ref().map(|cube| self.radiance(&found, cube)).transpose();
-        let scene = scene.map_err(at(source, "scene.data"))?;
+        let scene = match (&self.scene, &scenario.scene) {
+            (Some(cube), Some(spec)) if spec.each_pixel => Some(self.radiance_of_each(&found, cube)?),
+            (Some(cube), _) => Some(self.radiance(&found, cube).map_err(at(source, "scene.data"))?),
+            (None, _) => None,
+        };
+        if let Some(dead) = scene.as_ref().map(|scene| scene.dead).filter(|dead| *dead > 0) {
+            warnings.push(Warning::DeadSamples { samples: dead });
+        }
         if let Some(scene) = &scene {
             samples += scene.shape.len();
             let beyond = beyond(scene, nu, [low, high]);
@@ -240,20 +254,101 @@ impl BlackbodyStudy {
         })?;
         let (radiance, sigma_common): (Vec<f32>, Vec<f32>) = both.into_iter().map(|[a, b]| (a, b)).unzip();
         let shape = cube.shape();
-        let most = |band: usize| {
-            let every = (shape.len() / shape.bands() / LOOKED_AT).max(1) * shape.bands();
-            let mut some: Vec<f32> = sigma_common.iter().skip(band).step_by(every).copied().collect();
-            some.sort_by(f32::total_cmp);
-            some.get(some.len() * 95 / 100).map_or(f64::NAN, |x| f64::from(*x))
-        };
         Ok(SceneFound {
             shape,
+            sigma_pixel: None,
+            dead: 0,
             sigma_noise: lines.iter().map(|line| (self.scenario.noise * line[1]).abs()).collect(),
-            sigma_common_most: (0..shape.bands()).map(most).collect(),
+            sigma_common_most: most(&sigma_common, shape),
             radiance,
             sigma_common,
         })
     }
+
+    /// Every pixel by a response and an offset of its own; temperatures of the blackbodies as all pixels together find them.
+    fn radiance_of_each(&self, found: &Calibration, cube: &Cube) -> Result<SceneFound> {
+        let (source, noise) = (&self.scenario.source, self.scenario.noise);
+        let shape = cube.shape();
+        for (k, other) in self.cubes.iter().enumerate() {
+            if other.shape() != shape {
+                let sizes =
+                    format!("the cube is {}, but the scene is {}", shown(other.shape()), shown(shape));
+                let instead = "give blackbodies of its size, or write response = \"common\" in [scene]";
+                return Err(at(source, &format!("blackbody[{k}].data"))(Error::malformed(sizes, instead)));
+            }
+        }
+        let (nu, of) = (&self.wavenumbers_cm1, &found.blackbodies);
+        let temperatures_k =
+            of.temperatures_k().iter().zip(&found.temperature_shifts_k).map(|(t, shift)| t + shift).collect();
+        let sigma = vec![vec![noise; nu.len()]; self.cubes.len()];
+        let own = Blackbodies::new(nu, temperatures_k, vec![0.0; self.cubes.len()], &sigma)
+            .map_err(at(source, "blackbody"))?;
+        // Of the temperatures alone: a parabola, by three of its values.
+        let lines: Vec<[f64; 4]> = (0..nu.len())
+            .map(|c| {
+                let channel = &own.channels()[c];
+                let reach = channel.apart.iter().fold(0.0_f64, |most, b| most.max(b.abs()));
+                let mean = channel.mean_radiance;
+                let var = |s: f64| found.bound.radiance(of, c, s).var_temperature;
+                let [below, middle, above] = [var(mean - reach), var(mean), var(mean + reach)];
+                let (slope, bend) = (0.5 * (above - below) / reach, 0.5 * (above + below - 2.0 * middle));
+                [joules(nu[c]), middle, slope, bend / (reach * reach)]
+            })
+            .collect();
+        let place = |k: usize, error: Error| match k {
+            0 => at(source, "scene.data")(error),
+            k => at(source, &format!("blackbody[{}].data", k - 1))(error),
+        };
+        let [radiance, sigma_common, sigma_pixel] = beside(cube, &self.cubes, place, |c, sample, black| {
+            let (channel, [joules, p, q, r]) = (&own.channels()[c], lines[c]);
+            let (mut response, mut centre) = (0.0, 0.0);
+            for ((h, share), count) in channel.gain.iter().zip(&channel.share).zip(black) {
+                response += h * count;
+                centre += share * count;
+            }
+            if response * response < DEAD * DEAD * channel.var_response {
+                return [f32::NAN; 3];
+            }
+            let off = (sample - centre) / response;
+            let common = off.mul_add(off.mul_add(r, q), p).max(0.0).sqrt();
+            let pixel = (off * off).mul_add(channel.var_response, channel.var_centre).sqrt() / response.abs();
+            [channel.mean_radiance + off, common, pixel].map(|x| (joules * x) as f32)
+        })?;
+        let dead = radiance.iter().filter(|x| x.is_nan()).count();
+        let rms = |band: usize| {
+            let every = (shape.len() / shape.bands() / LOOKED_AT).max(1) * shape.bands();
+            let some = sigma_pixel.iter().skip(band).step_by(every).filter(|x| x.is_finite());
+            let (sum, count) = some.fold((0.0, 0.0_f64), |(sum, count), x| {
+                (f64::from(*x).mul_add(f64::from(*x), sum), count + 1.0)
+            });
+            sum / count.max(1.0)
+        };
+        let sigma_noise = (0..nu.len()).map(|c| {
+            let sample = lines[c][0] * noise / found.response[c];
+            sample.mul_add(sample, rms(c)).sqrt()
+        });
+        Ok(SceneFound {
+            shape,
+            sigma_noise: sigma_noise.collect(),
+            sigma_common_most: most(&sigma_common, shape),
+            dead,
+            radiance,
+            sigma_common,
+            sigma_pixel: Some(sigma_pixel),
+        })
+    }
+}
+
+/// Of each band, what 95 of 100 samples do not exceed.
+fn most(sigma: &[f32], shape: Shape) -> Vec<f64> {
+    let every = (shape.len() / shape.bands() / LOOKED_AT).max(1) * shape.bands();
+    let of = |band: usize| {
+        let mut some: Vec<f32> =
+            sigma.iter().skip(band).step_by(every).copied().filter(|x| x.is_finite()).collect();
+        some.sort_by(f32::total_cmp);
+        some.get(some.len() * 95 / 100).map_or(f64::NAN, |x| f64::from(*x))
+    };
+    (0..shape.bands()).map(of).collect()
 }
 
 /// Energy of a photon, J.
@@ -278,6 +373,9 @@ fn beyond(scene: &SceneFound, wavenumbers_cm1: &[f64], [low_k, high_k]: [f64; 2]
     for pixel in scene.radiance.chunks(bands).step_by(every) {
         for (radiance, ([low, high], noise)) in pixel.iter().zip(limits.iter().zip(&scene.sigma_noise)) {
             let radiance = f64::from(*radiance);
+            if !radiance.is_finite() {
+                continue;
+            }
             out += f64::from(u8::from(radiance < low - 3.0 * noise || radiance > high + 3.0 * noise));
             all += 1.0;
         }

@@ -61,9 +61,10 @@ pub struct FilterRadiances {
     /// Mean radiance of every sample over its filter and the response.
     #[serde(skip)]
     pub radiance: Vec<f32>,
-    /// Deviation of a sample for itself at the centre, of every filter; over η elsewhere.
+    /// Deviation of a sample for itself at the centre, of every filter, with that of its pixel's η at the rms of the scene's contrast; noise
+    /// is that over η elsewhere.
     pub sigma_noise: Vec<f64>,
-    /// Deviation common to all pixels at the mean radiance, of every filter.
+    /// Deviation common to all pixels at the mean radiance, of every filter: by the response, by the centre's η, by the reference's temperature.
     pub sigma_common: Vec<f64>,
 }
 
@@ -312,28 +313,43 @@ impl ResponseStudy {
         let shape = scene.shape();
         let scene = samples(scene).map_err(at(source, "scene.data"))?;
         let reference = samples(reference).map_err(at(source, "scene.reference"))?;
-        let ones = vec![1.0; shape.rows() * shape.columns()];
-        let eta = eta.map_or(&ones, |eta| &eta.values);
-        let counts = subtracted(&scene, &reference, eta, filters).map_err(at(source, "scene"))?;
+        let pixels = shape.rows() * shape.columns();
+        let ones = vec![1.0; pixels];
+        let (values, sigma_eta, sigma_centre) = match eta {
+            Some(eta) => (&eta.values, eta.sigma, eta.sigma_centre),
+            None => (&ones, 0.0, 0.0),
+        };
+        let counts = subtracted(&scene, &reference, values, filters).map_err(at(source, "scene"))?;
         let lines: Vec<FilterRadiance> =
             (0..filters).map(|q| found.radiance(wheel, q, 0.0, reference_k)).collect();
-        let mut mean = vec![0.0; filters];
+        let (mut mean, mut square) = (vec![0.0; filters], vec![0.0; filters]);
+        for pixel in counts.chunks(filters) {
+            for (q, count) in pixel.iter().enumerate() {
+                mean[q] += count / pixels as f64;
+                square[q] += count * count / pixels as f64;
+            }
+        }
         let radiance = counts
             .iter()
             .enumerate()
-            .map(|(i, count)| {
-                mean[i % filters] += count / ones.len() as f64;
-                (lines[i % filters].radiance + lines[i % filters].per_count * count) as f32
-            })
-            .collect();
+            .map(|(i, count)| (lines[i % filters].radiance + lines[i % filters].per_count * count) as f32);
         let noise = std::f64::consts::SQRT_2 * self.scenario.noise;
+        let mut slope = vec![0.0; self.centres_cm1.len()];
+        let mut base = slope.clone();
+        planck::photon_radiance_and_slope_into(&self.centres_cm1, reference_k, &mut base, &mut slope);
+        let error_k = self.scenario.scene.as_ref().map_or(0.0, |spec| spec.reference_error_k);
+        let common = |q: usize| {
+            let by_response = found.radiance(wheel, q, mean[q], reference_k).sigma_common;
+            let by_centre = lines[q].per_count * square[q].sqrt() * sigma_centre;
+            let by_reference = lines[q].per_count * wheel.counts(q, &found.values, &slope) * error_k;
+            by_response.hypot(by_centre).hypot(by_reference)
+        };
+        let own = |q: usize| lines[q].per_count * noise.hypot(square[q].sqrt() * sigma_eta);
         Ok(FilterRadiances {
             shape,
-            radiance,
-            sigma_noise: lines.iter().map(|line| noise * line.per_count).collect(),
-            sigma_common: (0..filters)
-                .map(|q| found.radiance(wheel, q, mean[q], reference_k).sigma_common)
-                .collect(),
+            radiance: radiance.collect(),
+            sigma_noise: (0..filters).map(own).collect(),
+            sigma_common: (0..filters).map(common).collect(),
         })
     }
 }

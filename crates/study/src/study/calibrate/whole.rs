@@ -117,3 +117,48 @@ pub(super) fn means(cube: &Cube) -> Result<(Vec<f64>, Vec<f64>)> {
     let scatters = sum.iter().zip(&square).map(scatter).collect();
     Ok((first.iter().zip(&sum).map(|(first, sum)| first + sum / pixels).collect(), scatters))
 }
+
+/// A row of a cube as numbers.
+fn row_of(cube: &Cube, row: usize, out: &mut Vec<f64>) -> Result<()> {
+    fn of<S: Sample>(cube: &dyn Rows<S>, row: usize, out: &mut Vec<f64>) -> Result<()> {
+        let mut buffer = Vec::new();
+        let samples = cube.read(row..row + 1, &mut buffer)?;
+        out.clear();
+        out.extend(samples.iter().map(|sample| -> f64 { (*sample).into() }));
+        match out.iter().fold(true, |all, sample| all & sample.is_finite()) {
+            true => Ok(()),
+            false => no_number(samples, row, cube.shape()).map_or(Ok(()), Err),
+        }
+    }
+    match cube {
+        Cube::F32(cube) => of(cube.as_ref(), row, out),
+        Cube::F64(cube) => of(cube.as_ref(), row, out),
+    }
+}
+
+/// Three numbers made of every sample of a scene and those of the same place in other cubes; `place` puts the name of the cube, 0 the
+/// scene, on an error.
+pub(super) fn beside(
+    scene: &Cube,
+    others: &[Cube],
+    place: impl Fn(usize, Error) -> Error + Sync,
+    of: impl Fn(usize, f64, &[f64]) -> [f32; 3] + Sync,
+) -> Result<[Vec<f32>; 3]> {
+    let shape = scene.shape();
+    let [mut a, mut b, mut c] = [0; 3].map(|_| vec![0.0_f32; shape.len()]);
+    let per_row = shape.row_len();
+    let rows = a.par_chunks_mut(per_row).zip(b.par_chunks_mut(per_row)).zip(c.par_chunks_mut(per_row));
+    let start = || (Vec::new(), vec![Vec::new(); others.len()], vec![0.0; others.len()]);
+    rows.enumerate().try_for_each_init(start, |(own, beside, values), (row, ((a, b), c))| {
+        row_of(scene, row, own).map_err(|error| place(0, error))?;
+        for (k, (cube, samples)) in others.iter().zip(beside.iter_mut()).enumerate() {
+            row_of(cube, row, samples).map_err(|error| place(k + 1, error))?;
+        }
+        for (i, sample) in own.iter().enumerate() {
+            values.iter_mut().zip(beside.iter()).for_each(|(value, samples)| *value = samples[i]);
+            [a[i], b[i], c[i]] = of(i % shape.bands(), *sample, values);
+        }
+        Ok(())
+    })?;
+    Ok([a, b, c])
+}
