@@ -2,8 +2,8 @@
 //!
 //! A line (a row or a column) of a band reads y = g·x + o of what it should read, x. Each line is looked at in segments, whose means
 //! are little noisy; the lines beside it say what it should read. A line is striped where it is off from the clean lines on both sides
-//! of it the same way (a true edge is off from one side only; a slope from both, but not the same way), along the whole line, as one gain
-//! and one offset would have it. Gain and offset are then fitted to its segments with weights that leave out those of another kind
+//! of it, and from where two of them on a side lead, the same way: a true edge is off from one side only, a slope from both but not the
+//! same way, a ridge not from where its sides lead. It must be so along the whole line, as one gain and one offset would have it. Gain and offset are then fitted to its segments with weights that leave out those of another kind
 //! (bisquare), the clean lines on both sides interpolated as reference, or the nearer one where an edge lies between them. A prior of the
 //! gain holds it where the line has no contrast. Lines that are not striped are left as they are.
 //!

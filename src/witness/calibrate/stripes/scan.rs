@@ -121,21 +121,46 @@ impl Lines {
         }
     }
 
-    /// Whether a line is off from both sides the same way, all along.
+    /// What the clean lines on each side say of a line: the nearest, and the two nearest on a straight line.
+    fn told(&self, line: usize) -> Vec<Vec<f64>> {
+        let mut told = Vec::new();
+        for near in [true, false].map(|up| self.clean_on(line, up)) {
+            let means = |place: Option<&usize>| place.and_then(|at| self.means.get(*at));
+            if let Some(one) = means(near.first()) {
+                told.push(one.clone());
+                if let (Some(two), [a, b]) = (means(near.get(1)), near.as_slice()) {
+                    let share = line.abs_diff(*a) as f64 / a.abs_diff(*b) as f64;
+                    told.push(one.iter().zip(two).map(|(one, two)| one + (one - two) * share).collect());
+                }
+            }
+        }
+        told
+    }
+
+    /// Whether a line is off the same way from all that both sides say, all along: no edge, no slope and no ridge is.
     fn is_off(&self, line: usize) -> bool {
-        let Some([one, other, between]) = self.sides(line) else { return false };
+        let Some([_, _, between]) = self.sides(line) else { return false };
         let Some(own) = self.means.get(line) else { return false };
+        let told = self.told(line);
         let off: Vec<f64> = own
             .iter()
-            .zip(one.iter().zip(&other))
-            .map(|(own, (one, other))| {
-                let (a, b) = (own - one, own - other);
-                match a * b > 0.0 {
-                    true if a.abs() < b.abs() => a,
-                    true => b,
-                    false if (a * b).is_nan() => f64::NAN,
-                    false => 0.0,
+            .enumerate()
+            .map(|(i, own)| {
+                let mut least = f64::INFINITY;
+                for told in &told {
+                    let apart = own - told.get(i).copied().unwrap_or(f64::NAN);
+                    if apart.is_nan() {
+                        return f64::NAN;
+                    }
+                    if least.is_infinite() {
+                        least = apart;
+                    } else if apart * least <= 0.0 {
+                        return 0.0;
+                    } else if apart.abs() < least.abs() {
+                        least = apart;
+                    }
                 }
+                least
             })
             .collect();
         let Some(fit) = fitted(&between, &off, self.least, self.prior) else { return false };
