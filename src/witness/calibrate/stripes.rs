@@ -2,12 +2,13 @@
 //!
 //! A line (a row or a column) of a band reads y = g·x + o of what it should read, x. Each line is looked at in segments, whose means
 //! are little noisy; the lines beside it say what it should read. A line is striped where it is off from the clean lines on both sides
-//! of it the same way (a true edge is off from one side only; a slope from both, but not the same way), along the whole line, as one gain
-//! and one offset would have it. Gain and offset are then fitted to its segments with weights that leave out those of another kind
+//! of it, and from where two of them on a side lead, the same way: a true edge is off from one side only, a slope from both but not the
+//! same way, a ridge not from where its sides lead. It must be so along the whole line, as one gain and one offset would have it. Gain and offset are then fitted to its segments with weights that leave out those of another kind
 //! (bisquare), the clean lines on both sides interpolated as reference, or the nearer one where an edge lies between them. A prior of the
 //! gain holds it where the line has no contrast. Lines that are not striped are left as they are.
 //!
 //! What the bands beside are off by too, as median of up to six of them over their levels, is the scene's and stays in the line. A line
+//! of which they show nothing is one although another lies beside it, as two lines of a ridge would. One
 //! that is off in most bands, alike in neighbouring ones, as a thin object along it would be, is left as it is: `left` names it. Both only
 //! of four bands or more, and not where stripes in all bands are asked for.
 //! Where a third of the lines of a band are striped, nothing tells the scene from the stripes, and nothing is made.
@@ -26,7 +27,7 @@ mod segments;
 
 pub use found::{Axis, Destriped, Sought, Stripe};
 
-use self::common::{Told, told};
+use self::common::{Told, overlooked, told};
 use self::scan::{Band, striped};
 use self::segments::Segments;
 use crate::error::{Error, Result};
@@ -39,6 +40,8 @@ const FEWEST: [usize; 2] = [8, 16];
 const MOST: f64 = 1.0 / 3.0;
 /// Bands that are needed to tell a thin object.
 const TELLING: usize = 4;
+/// Looks for stripes that have others beside them.
+const LOOKS: usize = 3;
 /// Likeness of neighbouring bands above which a line that is off in most bands is an object.
 const ALIKE: f64 = 0.5;
 
@@ -67,7 +70,7 @@ pub fn find_stripes<S: Sample>(cube: &dyn Rows<S>, sought: &Sought) -> Result<De
         return Err(Error::malformed(found, "give a cube as it was measured"));
     }
     let bands = shape.bands();
-    let looked: Vec<Band> =
+    let mut looked: Vec<Band> =
         (0..bands).into_par_iter().map(|band| striped(&segments, band, sought.gain_deviation)).collect();
     if looked.iter().all(|band| band.usable == 0) {
         return Err(Error::malformed(
@@ -76,6 +79,16 @@ pub fn find_stripes<S: Sample>(cube: &dyn Rows<S>, sought: &Sought) -> Result<De
         ));
     }
     let shared = !sought.in_all_bands && bands >= TELLING;
+    if shared {
+        for _ in 0..LOOKS {
+            let more: Vec<Vec<usize>> =
+                (0..bands).into_par_iter().map(|band| overlooked(&looked, band)).collect();
+            if more.iter().all(Vec::is_empty) {
+                break;
+            }
+            looked.par_iter_mut().zip(&more).for_each(|(band, more)| band.again(more));
+        }
+    }
     let told: Vec<Told> = (0..bands).into_par_iter().filter_map(|band| told(&looked, band, shared)).collect();
     for (band, (seen, told)) in looked.iter().zip(&told).enumerate() {
         if told.at_first_sight as f64 > MOST * seen.usable as f64 || seen.without_reference > 0 {

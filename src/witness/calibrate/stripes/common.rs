@@ -34,27 +34,44 @@ pub(super) struct Told {
     pub(super) detectable: f64,
 }
 
+/// Lines that look clean in a band and are off from their neighbours all along by what the bands beside do not show.
+pub(super) fn overlooked(bands: &[Band], band: usize) -> Vec<usize> {
+    let Some(own) = bands.get(band) else { return Vec::new() };
+    let left = left_of(bands, band, true);
+    let of_line = inflation(clean(&left, own).map(|left| left.off / left.sigma).collect());
+    let is = |(line, left): (usize, &Option<Left>)| {
+        let left = (*left)?;
+        let clean = own.candidate.get(line) == Some(&false);
+        (clean && left.off.abs() > OFF * of_line * left.sigma && own.is_ridge(line)).then_some(line)
+    };
+    left.iter().enumerate().filter_map(is).collect()
+}
+
+/// The lines that look clean.
+fn clean<'a>(left: &'a [Option<Left>], own: &'a Band) -> impl Iterator<Item = &'a Left> {
+    let lines = left.iter().zip(&own.candidate).filter(|(_, candidate)| !**candidate);
+    lines.filter_map(|(left, _)| left.as_ref())
+}
+
+/// What is left of every line of a band.
+fn left_of(bands: &[Band], band: usize, shared: bool) -> Vec<Option<Left>> {
+    let Some(own) = bands.get(band) else { return Vec::new() };
+    let one = |(line, fit): (usize, &Option<Fitted>)| {
+        let fit = (*fit)?;
+        let [off, var] = if shared { beside(bands, band, line) } else { [0.0; 2] };
+        let scatter = fit.scatter.max(own.least);
+        let sigma = (scatter * scatter * fit.unit[0] + var).sqrt();
+        Some(Left { fit, off: fit.off - off, sigma, sigma_slope: scatter * fit.unit[1].sqrt() })
+    };
+    own.fits.iter().enumerate().map(one).collect()
+}
+
 /// The stripes of a band; what bands beside have in common is the scene's, unless that is not to be.
 pub(super) fn told(bands: &[Band], band: usize, shared: bool) -> Option<Told> {
     let own = bands.get(band)?;
-    let left: Vec<Option<Left>> = own
-        .fits
-        .iter()
-        .enumerate()
-        .map(|(line, fit)| {
-            let fit = (*fit)?;
-            let [off, var] = if shared { beside(bands, band, line) } else { [0.0; 2] };
-            let scatter = fit.scatter.max(own.least);
-            let sigma = (scatter * scatter * fit.unit[0] + var).sqrt();
-            Some(Left { fit, off: fit.off - off, sigma, sigma_slope: scatter * fit.unit[1].sqrt() })
-        })
-        .collect();
-    let clean = |of: &dyn Fn(&Left) -> f64| {
-        let lines = left.iter().zip(&own.candidate).filter(|(_, candidate)| !**candidate);
-        inflation(lines.filter_map(|(left, _)| left.as_ref()).map(of).collect())
-    };
-    let of_line = clean(&|left| left.off / left.sigma);
-    let of_slope = clean(&|left| left.fit.slope / left.sigma_slope);
+    let left = left_of(bands, band, shared);
+    let of_line = inflation(clean(&left, own).map(|left| left.off / left.sigma).collect());
+    let of_slope = inflation(clean(&left, own).map(|left| left.fit.slope / left.sigma_slope).collect());
     let mut found = Told { stripes: Vec::new(), at_first_sight: 0, detectable: 0.0 };
     let mut errors = Vec::new();
     for (line, left) in left.iter().enumerate() {

@@ -33,9 +33,38 @@ pub(super) struct Band {
     pub(super) least: f64,
     /// Deviation of the gains.
     pub(super) prior: f64,
+    look: Vec<Look>,
+    lines: Lines,
 }
 
 impl Band {
+    /// Whether a line is off from its two neighbours the same way, a ridge or none.
+    pub(super) fn is_ridge(&self, line: usize) -> bool {
+        self.lines.is_off(line, false)
+    }
+
+    /// Sets more lines apart, and looks at all of them beside those that are left.
+    pub(super) fn again(&mut self, more: &[usize]) {
+        for line in more {
+            if let (Some(look), Some(clean)) = (self.look.get_mut(*line), self.lines.clean.get_mut(*line)) {
+                (*look, *clean) = (Look::Second, false);
+            }
+        }
+        let (look, lines) = (&self.look, &self.lines);
+        let all = 0..look.len();
+        // Beside all those that were set apart since, it may look clean.
+        self.candidate = all
+            .clone()
+            .map(|line| match look[line] {
+                Look::None => false,
+                own => lines.is_off(line, own == Look::First),
+            })
+            .collect();
+        self.fits = all.map(|line| lines.fit(line)).collect();
+        let pairs = self.candidate.iter().zip(&self.fits);
+        self.without_reference = pairs.filter(|(own, fit)| **own && fit.is_none()).count();
+    }
+
     /// How far a line that looks striped is off; 0 of a clean one.
     pub(super) fn offset(&self, line: usize) -> f64 {
         let own = self.candidate.get(line).copied().unwrap_or(false);
@@ -45,6 +74,7 @@ impl Band {
 }
 
 /// Lines of a band with what is known of them.
+#[derive(Debug)]
 struct Lines {
     means: Vec<Vec<f64>>,
     /// Lines that may stand for others.
@@ -75,7 +105,7 @@ pub(super) fn striped(segments: &Segments, band: usize, prior: f64) -> Band {
     let mut flagged = vec![false; segments.lines];
     for _ in 0..ROUNDS {
         let more: Vec<usize> =
-            (0..segments.lines).filter(|line| lines.clean[*line] && lines.is_off(*line)).collect();
+            (0..segments.lines).filter(|line| lines.clean[*line] && lines.is_off(*line, true)).collect();
         if more.is_empty() {
             break;
         }
@@ -84,11 +114,30 @@ pub(super) fn striped(segments: &Segments, band: usize, prior: f64) -> Band {
             lines.clean[line] = false;
         }
     }
-    // Beside all those that were set apart since, it may look clean.
-    let candidate: Vec<bool> = (0..segments.lines).map(|line| flagged[line] && lines.is_off(line)).collect();
-    let fits: Vec<Option<Fitted>> = (0..segments.lines).map(|line| lines.fit(line)).collect();
-    let without_reference = candidate.iter().zip(&fits).filter(|(own, fit)| **own && fit.is_none()).count();
-    Band { usable, without_reference, level, fits, candidate, least, prior }
+    let look = flagged.iter().map(|flagged| if *flagged { Look::First } else { Look::None }).collect();
+    let mut band = Band {
+        usable,
+        without_reference: 0,
+        level,
+        fits: Vec::new(),
+        candidate: Vec::new(),
+        least,
+        prior,
+        look,
+        lines,
+    };
+    band.again(&[]);
+    band
+}
+
+/// When a line was set apart.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Look {
+    None,
+    /// By this band alone.
+    First,
+    /// As the bands beside show nothing of it.
+    Second,
 }
 
 impl Lines {
@@ -121,21 +170,46 @@ impl Lines {
         }
     }
 
-    /// Whether a line is off from both sides the same way, all along.
-    fn is_off(&self, line: usize) -> bool {
-        let Some([one, other, between]) = self.sides(line) else { return false };
+    /// What the clean lines on each side say of a line: the nearest, and the two nearest on a straight line.
+    fn told(&self, line: usize, straight: bool) -> Vec<Vec<f64>> {
+        let mut told = Vec::new();
+        for near in [true, false].map(|up| self.clean_on(line, up)) {
+            let means = |place: Option<&usize>| place.and_then(|at| self.means.get(*at));
+            if let Some(one) = means(near.first()) {
+                told.push(one.clone());
+                if straight && let (Some(two), [a, b]) = (means(near.get(1)), near.as_slice()) {
+                    let share = line.abs_diff(*a) as f64 / a.abs_diff(*b) as f64;
+                    told.push(one.iter().zip(two).map(|(one, two)| one + (one - two) * share).collect());
+                }
+            }
+        }
+        told
+    }
+
+    /// Whether a line is off the same way from all that both sides say, all along: no edge, no slope and, with straight lines, no ridge is.
+    fn is_off(&self, line: usize, straight: bool) -> bool {
+        let Some([_, _, between]) = self.sides(line) else { return false };
         let Some(own) = self.means.get(line) else { return false };
+        let told = self.told(line, straight);
         let off: Vec<f64> = own
             .iter()
-            .zip(one.iter().zip(&other))
-            .map(|(own, (one, other))| {
-                let (a, b) = (own - one, own - other);
-                match a * b > 0.0 {
-                    true if a.abs() < b.abs() => a,
-                    true => b,
-                    false if (a * b).is_nan() => f64::NAN,
-                    false => 0.0,
+            .enumerate()
+            .map(|(i, own)| {
+                let mut least = f64::INFINITY;
+                for told in &told {
+                    let apart = own - told.get(i).copied().unwrap_or(f64::NAN);
+                    if apart.is_nan() {
+                        return f64::NAN;
+                    }
+                    if least.is_infinite() {
+                        least = apart;
+                    } else if apart * least <= 0.0 {
+                        return 0.0;
+                    } else if apart.abs() < least.abs() {
+                        least = apart;
+                    }
                 }
+                least
             })
             .collect();
         let Some(fit) = fitted(&between, &off, self.least, self.prior) else { return false };

@@ -17,6 +17,8 @@ use hadar::error::Result;
 use hadar::material::Library;
 use hadar_report::bundle::Bundle;
 use measure::measured;
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Shares of striped lines; the quick form has the first.
 const SHARES: [f64; 5] = [0.05, 0.02, 0.1, 0.15, 0.2];
@@ -30,11 +32,12 @@ const SHOWN: f64 = 0.1;
 pub(super) fn make(order: Order, _library: &Library, progress: Progress<'_>) -> Result<(Bundle, String)> {
     let scene = twin::Twin::new()?;
     let shares = order.some_of(&SHARES, QUICK);
-    let mut rows = Vec::new();
-    for (i, &share) in shares.iter().enumerate() {
-        rows.push(measured(&scene, share, CUBES, order.seed, (i as u64) << 16)?);
-        progress(i + 1, shares.len());
-    }
+    let done = AtomicUsize::new(0);
+    let one = |(i, &share): (usize, &f64)| {
+        measured(&scene, share, CUBES, order.seed, (i as u64) << 16)
+            .inspect(|_| progress(done.fetch_add(1, Ordering::Relaxed) + 1, shares.len()))
+    };
+    let mut rows = shares.par_iter().enumerate().map(one).collect::<Result<Vec<_>>>()?;
     rows.sort_by(|a, b| a.share.total_cmp(&b.share));
     let mut bundle = Bundle::default();
     let finding = text::finding(&rows);

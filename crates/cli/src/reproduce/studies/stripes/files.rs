@@ -125,7 +125,9 @@ pub(super) fn pictures(twin: &Twin, share: f64, seed: u64) -> Result<Plot> {
     };
     let layers = [of_band(&samples), of_band(&corrected), off_k(&samples), off_k(&corrected)];
     let mut table = Table::new(["row", "column", "before", "after", "off_before_k", "off_after_k"]);
-    for i in (0..ROWS * COLUMNS).filter(|i| (i % COLUMNS).is_multiple_of(4)) {
+    for i in
+        (0..ROWS * COLUMNS).filter(|i| (i % COLUMNS).is_multiple_of(8) && (i / COLUMNS).is_multiple_of(2))
+    {
         let values = layers.iter().map(|layer| number(layer[i]));
         table
             .push([(i / COLUMNS).to_string(), (i % COLUMNS).to_string()].into_iter().chain(values).collect());

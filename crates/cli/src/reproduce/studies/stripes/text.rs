@@ -73,14 +73,16 @@ pub(super) fn readme(rows: &[Row], cubes: u64, seed: u64) -> String {
          ## Information that is left (bounds)\n\n\
          Of the position of a window of 15 × 15 pixels (S37, gain and offset of each line of the window projected out), along / across the \
          lines, over that of a clean cube.\n\n{}\n\
-         Unknown offsets take from a shift along the lines the mean slope of each line, from a shift across them nearly all: what differs from line to \
+         Unknown offsets take from a shift along the lines the mean slope of each line, from a shift across them more: what differs from line to \
          line is what an offset does. A stereo pair whose baseline lies along the lines loses least.\n\n\
          ## What estimates do\n\n\
          Errors of position over the bound of a clean cube, and errors of a pixel's temperature (K), each in the clean / striped / destriped \
          cube; the bound of the temperature: clean / striped lines left out / destriped.\n\n{}\n\
          ![Errors over the clean bound](errors.png)\n\n![Before and after](before_and_after.png)\n\n\
-         Lines whose error is smaller than what is seen (six deviations of their segments) stay striped; they are in the errors above. The \
-         temperature is that of emissivity 0.95, all bands weighed by noise and by the remaining error of their line.\n",
+         The bounds of a destriped cube take lines that were not found for clean; the errors have them as they are. Where a line is off by less than \
+         six of the deviations by which clean lines differ from their neighbours (here texture as large as the stripes), it stays striped, and above \
+         some 5 % of striped lines it is these that are left: leaving striped lines out, if they were known, would do better. The temperature is that \
+         of emissivity 0.95, all bands weighed by noise and by the remaining error of their line.\n",
         100.0 * GAIN,
         100.0 * OFFSET,
         markdown(
