@@ -221,5 +221,12 @@ fn mistakes_are_named() {
         said(&setting, 0, &none[..1]).starts_with("lists of pixels that show the surroundings: 1 values")
     );
     assert!(said(&setting, 0, &[vec![], vec![3000]]).contains("pixel 3000 of 3000"));
+    let short = Maps { temperature_k: vec![290.0], ..maps.clone() };
+    let error = distil(&setting, &short, &cube, Sky { place: 0, shown_by: &none }).unwrap_err().to_string();
+    assert!(error.starts_with("temperatures of the maps: 1 values"), "{error}");
+    let found = distil(&setting, &maps, &cube, Sky { place: 0, shown_by: &none }).unwrap();
+    let dark = Setting { surroundings: &[], lighting_total: None, ..setting };
+    let error = texture_information(&dark, &maps, &cube, &found).unwrap_err().to_string();
+    assert!(error.starts_with("lighting factors: 6000 values where 0 are needed"), "{error}");
     assert!(said(&Setting { gain: true, ..setting }, 0, &none).contains("calibrate the camera"));
 }

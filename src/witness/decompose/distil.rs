@@ -150,18 +150,30 @@ pub fn distil(setting: &Setting<'_>, maps: &Maps, cube: &Cube, sky: Sky<'_>) -> 
     })
 }
 
-fn checked(setting: &Setting<'_>, maps: &Maps, cube: &Cube, sky: Sky<'_>) -> Result<()> {
+/// Maps and cube are of one size, and as the setting says.
+pub(super) fn fits(setting: &Setting<'_>, maps: &Maps, cube: &Cube) -> Result<()> {
     let shape = cube.shape();
     let pixels = shape.rows() * shape.columns();
     for (what, found, expected) in [
         ("bands of the cube", shape.bands(), setting.bands.len()),
         ("pixels of the maps", maps.material.len(), pixels),
-        ("lists of pixels that show the surroundings", sky.shown_by.len(), setting.surroundings.len()),
+        ("temperatures of the maps", maps.temperature_k.len(), pixels),
         ("lighting factors", maps.lighting.len(), pixels * setting.surroundings.len()),
     ] {
         if found != expected {
             return Err(Error::Length { what: what.into(), found, expected });
         }
+    }
+    Ok(())
+}
+
+fn checked(setting: &Setting<'_>, maps: &Maps, cube: &Cube, sky: Sky<'_>) -> Result<()> {
+    fits(setting, maps, cube)?;
+    let pixels = maps.material.len();
+    let (found, expected) = (sky.shown_by.len(), setting.surroundings.len());
+    if found != expected {
+        let what = "lists of pixels that show the surroundings".into();
+        return Err(Error::Length { what, found, expected });
     }
     if sky.place >= setting.surroundings.len() {
         let found = format!("surroundings {} as the sky", sky.place);
@@ -199,12 +211,15 @@ pub(super) fn over_rows<T: Send>(
 /// A row of samples, its place, and what they are of.
 pub(super) type Row<'a, 'b> = (usize, &'a [f64], &'a Setting<'b>);
 
-/// Does `with` for each pixel that has a material, a temperature and a lighting, with its whitened residue; false for the others.
+/// Material, whitened residue, columns and lighting of a pixel.
+pub(super) type Fitted<'a> = (usize, &'a [f64], &'a Tangent, &'a [f64]);
+
+/// Does `with` for each pixel that has a material, a temperature and a lighting, and without anything for the others.
 pub(super) fn each_pixel(
     tangents: &Tangents<'_>,
     maps: &Maps,
     (row, counts, setting): Row<'_, '_>,
-    with: &mut dyn FnMut(usize, Option<(usize, &[f64], &Tangent, &[f64])>),
+    with: &mut dyn FnMut(usize, Option<Fitted<'_>>),
 ) {
     let (bands, lights) = (setting.bands.len(), setting.surroundings.len());
     let columns = counts.len() / bands;

@@ -14,7 +14,7 @@
 //!
 //! Source: paper S37–S40; Kay, 'Fundamentals of Statistical Signal Processing' (1993), chapter 3.
 
-use super::distil::{Distilled, each_pixel, fused, over_rows};
+use super::distil::{Distilled, each_pixel, fits, fused, over_rows};
 use super::maps::Maps;
 use super::model::Setting;
 use super::tangent::{Tangent, Tangents, dot};
@@ -50,17 +50,19 @@ pub fn texture_information(
 ) -> Result<TextureInformation> {
     let tangents = Tangents::new(setting)?;
     let shape = expected.shape();
-    if shape.bands() != setting.bands.len() || shape.columns() < 3 {
-        let found = format!("{} columns and {} bands", shape.columns(), shape.bands());
-        return Err(Error::malformed(
-            found,
-            format!("give 3 columns at least, {} bands", setting.bands.len()),
-        ));
+    fits(setting, maps, expected)?;
+    if shape.columns() < 3 {
+        let found = format!("a cube of {} columns", shape.columns());
+        return Err(Error::malformed(found, "give at least 3: differences along x take two neighbours"));
     }
-    let pixels = shape.rows() * shape.columns();
-    if maps.material.len() != pixels || distilled.texture.len() != pixels {
-        let what = "pixels of the maps".into();
-        return Err(Error::Length { what, found: maps.material.len(), expected: pixels });
+    for (what, found, wanted) in [
+        ("pixels of the distilled texture", distilled.texture.len(), maps.material.len()),
+        ("materials of the distilled texture", distilled.var_light.len(), setting.library.len()),
+        ("surroundings of the distilled texture", distilled.of_sky.len(), setting.surroundings.len()),
+    ] {
+        if found != wanted {
+            return Err(Error::Length { what: what.into(), found, expected: wanted });
+        }
     }
     let rows = over_rows(expected, &|row, counts| {
         let (bands, columns) = (setting.bands.len(), shape.columns());

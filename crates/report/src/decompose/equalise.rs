@@ -83,7 +83,7 @@ impl Curves {
         let [low, high] = self.ends;
         let knot = |bin: usize| low + (high - low) * bin as f64 / BINS as f64;
         let bins = |value: f64| self.place(value).clamp(0.0, BINS as f64);
-        let knots = (bins(from).floor() as usize + 1..=bins(to).ceil() as usize).map(knot);
+        let knots = (bins(from).floor() as usize..=bins(to).ceil() as usize).map(knot);
         let inside = knots.filter(|x| *x > from && *x < to);
         let mut before = (from, self.at(i, from));
         let mut found = Vec::new();
