@@ -98,14 +98,17 @@ fn regions_within_regions_are_decided_from_the_outside() {
 
 #[test]
 fn agreement_by_hand() {
-    // Truth 0 0 0 1 1, one unknown; found 0 0 1 1 nothing.
-    let agreement = Agreement::of(&[0, 0, 1, 1, NO_CATEGORY, 0], &[0, 0, 0, 1, 1, NO_CATEGORY], 3);
-    assert_eq!(agreement.confusion, [[2, 1, 0, 0], [0, 1, 0, 1], [0, 0, 0, 0]]);
+    // Truth 0 0 0 1 1, none of them, not known; found 0 0 1 1 none, 0, 0.
+    let none = NO_CATEGORY;
+    let truth = [Some(0), Some(0), Some(0), Some(1), Some(1), Some(none), None];
+    let agreement = Agreement::of(&[0, 0, 1, 1, none, 0, 0], truth, 3);
+    assert_eq!(agreement.confusion, [[2, 1, 0, 0], [0, 1, 0, 1], [0, 0, 0, 0], [1, 0, 0, 0]]);
     let [a, b, c] = agreement.iou[..] else { panic!() };
-    assert!((a.unwrap() - 2.0 / 3.0).abs() < 1e-15 && (b.unwrap() - 1.0 / 3.0).abs() < 1e-15 && c.is_none());
-    assert!((agreement.mean_iou.unwrap() - 0.5).abs() < 1e-15);
-    assert!((agreement.right.unwrap() - 0.6).abs() < 1e-15);
-    assert_eq!(Agreement::of(&[0], &[NO_CATEGORY], 1).mean_iou, None);
+    assert!((a.unwrap() - 0.5).abs() < 1e-15 && (b.unwrap() - 1.0 / 3.0).abs() < 1e-15 && c.is_none());
+    assert!((agreement.mean_iou.unwrap() - 5.0 / 12.0).abs() < 1e-15);
+    assert!((agreement.right.unwrap() - 0.5).abs() < 1e-15 && agreement.pixels == 6);
+    assert_eq!(Agreement::of(&[none], [Some(none)], 1).mean_iou, None);
+    assert_eq!(Agreement::of(&[0], [None], 1).right, None);
 }
 
 #[test]

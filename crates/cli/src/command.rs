@@ -60,7 +60,7 @@ enum Command {
     Decompose(decompose::DecomposeArgs),
     /// Emissivities out of a heat cube: a library where none was measured, with its errors
     Library(library::LibraryArgs),
-    /// A camera out of its own cubes: noise, stripes
+    /// What blackbodies and cubes tell of a camera: response, radiance with its errors, noise, stripes
     Calibrate(calibrate::CalibrateArgs),
     /// Render a scene as a heat cube, with what is true of every pixel
     Render(render::RenderArgs),

@@ -121,12 +121,12 @@ fn decomposition(result: &Rendered, layout: Layout, out: &Path) -> DecomposeScen
         _ => PixelUnknown::default().temperature_k,
     };
     // What is a surface there is a number of its map.
-    let place = |name: &String| result.surfaces.iter().position(|row| row.name == *name);
-    let category = |spec: &CategorySpec| CategorySpec {
-        labels: spec.surfaces.iter().filter_map(place).collect(),
-        surfaces: Vec::new(),
-        ..spec.clone()
+    let places = |spec: &CategorySpec| {
+        let named = result.surfaces.iter().enumerate().filter(|(_, row)| spec.surfaces.contains(&row.name));
+        named.map(|(place, _)| place).collect()
     };
+    let category =
+        |spec: &CategorySpec| CategorySpec { labels: places(spec), surfaces: Vec::new(), ..spec.clone() };
     let categories: Vec<CategorySpec> = result.scenario.categories.iter().map(category).collect();
     let labelled = categories.iter().any(|spec| !spec.labels.is_empty());
     let truth = |name: &str| (layout == Layout::Npy).then(|| file(name));

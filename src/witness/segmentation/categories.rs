@@ -95,6 +95,12 @@ impl Categories {
         self.count == 0
     }
 
+    /// Whether a material can be a part of a category.
+    #[must_use]
+    pub fn contains(&self, category: u8, material: u16) -> bool {
+        self.of(material).iter().any(|one| one.category == category)
+    }
+
     /// What a material can be a part of; nothing for no material, or one that is in no category.
     pub(super) fn of(&self, material: u16) -> &[Candidate] {
         self.of_material.get(usize::from(material)).map_or(&[], Vec::as_slice)

@@ -117,7 +117,7 @@ impl Night {
     }
 
     pub(super) fn agreement(&self, found: &[u8]) -> Agreement {
-        Agreement::of(found, &self.truth, self.specs.len())
+        Agreement::of(found, self.truth.iter().map(|one| Some(*one)), self.specs.len())
     }
 
     /// Share of pixels whose material was found, of those of one material.

@@ -35,7 +35,7 @@ pub(super) fn text(found: &Segmented) -> String {
     }
     let _ = writeln!(
         out,
-        "\nObjects of {} pixels or more{}\n  {:width$}  {:>9}  {:>9}  {:>13}  {:>13}  {:>14}",
+        "\nObjects of {} pixels or more{}\n  {:width$}  {:>9}  {:>9}  {:>13}  {:>13}  {:>14}  {:>10}",
         found.smallest_object,
         if found.objects.is_empty() { ": none" } else { "" },
         "",
@@ -43,7 +43,8 @@ pub(super) fn text(found: &Segmented) -> String {
         "decided",
         "rows",
         "columns",
-        "median (degC)"
+        "median (degC)",
+        "sigma (K)"
     );
     let span = |[first, after]: [usize; 2]| format!("{first} to {}", after - 1);
     for row in found.objects.iter().take(LISTED) {
@@ -51,10 +52,14 @@ pub(super) fn text(found: &Segmented) -> String {
             k if k.is_finite() => format!("{:.1}", k - FREEZING_K),
             _ => "-".to_owned(),
         };
+        let sigma = match row.temperature_sigma_median_k {
+            k if k.is_finite() => significant(k, 2),
+            _ => "-".to_owned(),
+        };
         let guessed = if 2 * row.decided < row.pixels { "  undecided" } else { "" };
         let _ = writeln!(
             out,
-            "  {:width$}  {:>9}  {:>9}  {:>13}  {:>13}  {celsius:>14}{guessed}",
+            "  {:width$}  {:>9}  {:>9}  {:>13}  {:>13}  {celsius:>14}  {sigma:>10}{guessed}",
             row.category,
             whole(row.pixels as u64),
             whole(row.decided as u64),
@@ -65,9 +70,12 @@ pub(super) fn text(found: &Segmented) -> String {
     if let Some(more) = found.objects.len().checked_sub(LISTED).filter(|more| *more > 0) {
         let _ = writeln!(out, "  and {more} more: objects.csv");
     }
-    let said = |agreement: &Agreement| {
-        let iou = agreement.mean_iou.map_or_else(|| "none".to_owned(), |iou| significant(iou, 3));
-        format!("mIoU {iou}, {} of the pixels right", agreement.right.map_or_else(String::new, share))
+    let said = |agreement: &Agreement| match (agreement.mean_iou, agreement.right) {
+        (Some(iou), Some(right)) => {
+            format!("mIoU {}, {} of the pixels right", significant(iou, 3), share(right))
+        }
+        (None, Some(right)) => format!("no pixel is of a category or was given one, {} right", share(right)),
+        _ => "the truth of no pixel is known".to_owned(),
     };
     if let Some(agreement) = &found.agreement {
         let _ = writeln!(out, "  against what is there: {}", said(agreement));
@@ -85,7 +93,8 @@ pub(super) fn text(found: &Segmented) -> String {
     };
     let _ = writeln!(
         out,
-        "  no category: no material, or none that fits; a material in several categories: {rule}{}\n",
+        "  decided: one material left, of this category; objects may join where they touch, and what is not in the library may be taken for what is\n  \
+         sigma: of one pixel, its material certain; no category: no material, or none that fits\n  a material in several categories: {rule}{}\n",
         if found.smoothing { "; then the commonest of 5 x 5 pixels" } else { "" }
     );
     out

@@ -158,7 +158,21 @@ impl RenderStudy {
                 return Err(error.at(scenario.place(&format!("category[{i}].surfaces[{j}]"))));
             }
         }
-        Ok(Self { scenario, camera, bands, staged, rig, counting })
+        let study = Self { scenario, camera, bands, staged, rig, counting };
+        let (materials, _) = study.materials();
+        for (i, category) in study.scenario.categories.iter().enumerate() {
+            let is_there = |one: &String| materials.iter().any(|(name, _)| name == one);
+            if let Some(j) = category.materials.iter().position(|one| !is_there(one)) {
+                let names = materials.iter().map(|(name, _)| name.as_str());
+                let error = Error::unknown_name(
+                    "material of the scene or of scene.library",
+                    &category.materials[j],
+                    names,
+                );
+                return Err(error.at(study.scenario.place(&format!("category[{i}].materials[{j}]"))));
+            }
+        }
+        Ok(study)
     }
 
     /// Its bands, as the camera receives them.

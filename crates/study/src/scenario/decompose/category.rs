@@ -110,6 +110,10 @@ pub(in crate::scenario) fn categories(entry: &Entry<'_>, told: Told) -> Result<V
 
 fn category(section: &Section<'_>) -> Result<CategorySpec> {
     let name = section.require("name", "\"car\"")?.text("\"car\"")?.trim().to_owned();
+    if name.is_empty() || name.eq_ignore_ascii_case("none") {
+        let found = format!("`{name}`, which says that a pixel has no category");
+        return Err(section.fail("name", Error::malformed(found, "give it another name")));
+    }
     let text = |item: &Entry<'_>| Ok(item.text("\"pmma\"")?.trim().to_owned());
     let listed = section.require("materials", "[\"pmma\"]")?;
     let items = listed.items(EXAMPLE)?;

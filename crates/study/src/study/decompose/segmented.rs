@@ -10,6 +10,9 @@ use hadar::segmentation::{
 };
 use serde::Serialize;
 
+/// Number of a pixel whose truth is not known, unless it is a label.
+const NOT_KNOWN: usize = 255;
+
 /// A cube segmented.
 #[derive(Debug, Clone, Serialize)]
 pub struct Segmented {
@@ -43,7 +46,7 @@ pub struct CategoryRow {
     pub category: String,
     /// Its pixels.
     pub pixels: usize,
-    /// Those of them whose material is decided.
+    /// Those of them that have one material left, of this category.
     pub decided: usize,
     /// Its objects.
     pub objects: usize,
@@ -56,7 +59,7 @@ pub struct ObjectRow {
     pub category: String,
     /// Its pixels.
     pub pixels: usize,
-    /// Those of them whose material is decided.
+    /// Those of them that have one material left, of this category.
     pub decided: usize,
     /// Its first row, and the one after its last.
     pub rows: [usize; 2],
@@ -113,7 +116,10 @@ impl Segmented {
         let map = last(segment(&maps.fitting_material(), columns, &study.categories, spec.rule)?)?;
         let found = objects(&map, columns, spec.smallest_object)?;
         let seconds = start.elapsed().as_secs_f64();
-        let is_decided: Vec<bool> = (0..map.len()).map(|i| maps.is_decided(i)).collect();
+        // Decided to be of the category that the pixel was given.
+        let is_decided: Vec<bool> = (0..map.len())
+            .map(|i| maps.is_decided(i) && study.categories.contains(map[i], maps.material[i]))
+            .collect();
         let mut categories: Vec<CategoryRow> = specs
             .iter()
             .map(|spec| CategoryRow { category: spec.name.clone(), pixels: 0, decided: 0, objects: 0 })
@@ -142,11 +148,12 @@ impl Segmented {
             }
         }
         let (mut agreement, mut agreement_by_brightness) = (None, None);
-        if let Some(truth) = study.truth.as_ref().and_then(|truth| truth.category.as_ref()) {
-            let truth: Vec<u8> = truth.iter().map(|label| of_label(specs, *label)).collect();
-            agreement = Some(Agreement::of(&map, &truth, specs.len()));
-            let thermal = last(ByBrightness::learned(&vision.thermal, &truth).of(&vision.thermal))?;
-            agreement_by_brightness = Some(Agreement::of(&thermal, &truth, specs.len()));
+        if let Some(labels) = study.truth.as_ref().and_then(|truth| truth.category.as_ref()) {
+            let truth: Vec<Option<u8>> = labels.iter().map(|label| of_label(specs, *label)).collect();
+            agreement = Some(Agreement::of(&map, truth.iter().copied(), specs.len()));
+            let known: Vec<u8> = truth.iter().map(|one| one.unwrap_or(NO_CATEGORY)).collect();
+            let thermal = last(ByBrightness::learned(&vision.thermal, &known).of(&vision.thermal))?;
+            agreement_by_brightness = Some(Agreement::of(&thermal, truth, specs.len()));
         }
         Ok(Some(Self {
             rule: spec.rule,
@@ -181,12 +188,15 @@ fn row(object: &Object, decided: &[usize], maps: &Maps, specs: &[CategorySpec]) 
     }
 }
 
-/// The category that a number of the map of the truth stands for.
-fn of_label(specs: &[CategorySpec], label: usize) -> u8 {
+/// What a number of the map of the truth stands for: a category, none of them, or that it is not known.
+fn of_label(specs: &[CategorySpec], label: usize) -> Option<u8> {
     let has_labels = specs.iter().any(|spec| !spec.labels.is_empty());
     let place = match has_labels {
         true => specs.iter().position(|spec| spec.labels.contains(&label)),
         false => Some(label).filter(|label| *label < specs.len()),
     };
-    place.and_then(|place| u8::try_from(place).ok()).unwrap_or(NO_CATEGORY)
+    match place {
+        Some(place) => u8::try_from(place).ok(),
+        None => (label != NOT_KNOWN).then_some(NO_CATEGORY),
+    }
 }

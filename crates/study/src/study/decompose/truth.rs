@@ -67,11 +67,19 @@ impl Truth {
                 format!("{} maps of lighting for {surroundings} surroundings", lighting.len() / pixels);
             return Err((key.into(), Error::malformed(found, "give one for each [[environment]]")));
         }
-        let category = spec.category.as_ref().map(|path| map("truth.category", path, &[1])).transpose()?;
-        // What is no whole number is no label.
-        let label =
-            |value: f64| if value >= 0.0 && value.fract() == 0.0 { value as usize } else { usize::MAX };
-        let category = category.map(|labels| labels.into_iter().map(label).collect());
+        let category = match &spec.category {
+            None => None,
+            Some(path) => {
+                let key = "truth.category";
+                let labels = map(key, path, &[1])?;
+                if let Some(wrong) = labels.iter().find(|value| !(**value >= 0.0 && value.fract() == 0.0)) {
+                    let found = format!("a pixel of category {wrong}");
+                    let instead = "give each a whole number, 255 where the truth is not known";
+                    return Err((key.into(), Error::malformed(found, instead).in_file(path)));
+                }
+                Some(labels.into_iter().map(|label| label as usize).collect())
+            }
+        };
         Ok(Self { material, temperature_k, lighting, category })
     }
 }

@@ -98,6 +98,7 @@ impl Truth {
             let over: Vec<f64> = (0..pixels)
                 .filter(is_open)
                 .map(|i| error(i) / f64::from(maps.temperature_sigma_k[i]))
+                .filter(|over| !over.is_nan())
                 .collect();
             found.coverage_pixels = over.len();
             found.coverage_95 = share(over.iter().filter(|x| x.abs() <= NINETY_FIVE).count(), over.len());
