@@ -315,8 +315,8 @@ fn a_response_comes_with_what_is_determined_and_radiances_with_their_errors() {
             / twin.wheel.counts(q, &twin.response, &[1.0; 30]);
         let mean = radiance.iter().skip(q).step_by(10).sum::<f64>() / 255.0;
         let of = |key: &str| found["scene"][key][q].as_f64().unwrap();
-        // The reference is one of the blackbodies, so that noise is not quite independent: a tenth more.
-        let sigma = 1.1 * of("sigma_common").hypot(of("sigma_noise") / 255f64.sqrt());
+        // The reference is one of the blackbodies, so that noise is not quite independent: 0.2 % more, a tenth of a kelvin.
+        let sigma = of("sigma_common").hypot(of("sigma_noise") / 255f64.sqrt()).hypot(0.002 * truth);
         assert!((mean - truth).abs() < 4.5 * sigma, "{q} {mean} {truth} {sigma}");
     }
     let again = folder.json(&["calibrate", "response", "out/scenario.toml"]);
