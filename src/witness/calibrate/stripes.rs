@@ -7,13 +7,13 @@
 //! (bisquare), the clean lines on both sides interpolated as reference, or the nearer one where an edge lies between them. A prior of the
 //! gain holds it where the line has no contrast. Lines that are not striped are left as they are.
 //!
-//! What the bands beside are off by too, as median of up to six of them over their levels, is the scene's and stays in the line. A line
-//! of which they show nothing is one although another lies beside it, as two lines of a ridge would. One
-//! that is off in most bands, alike in neighbouring ones, as a thin object along it would be, is left as it is: `left` names it. Both only
+//! What the bands beside are off by too, as median of up to six of them over their levels, is the scene's and stays in the line. Where
+//! they show nothing, two lines beside each other are stripes too, and no ridge. A line that is off in most bands, alike in neighbouring ones, as a thin object along it would be, is left as it is: `left` names it. Both only
 //! of four bands or more, and not where stripes in all bands are asked for.
 //! Where a third of the lines of a band are striped, nothing tells the scene from the stripes, and nothing is made.
 //!
-//! Errors: of the fit, not below those of the same fit to clean lines, which truly differ from their neighbours too. An error of a line
+//! Errors: of the fit, not below those of the same fit to clean lines, which truly differ from their neighbours too, and a quarter more, for
+//! lines beside may be striped by less than is seen. An error of a line
 //! is common to all its pixels: σ(x)² = (σ_p² + σ_g²(x − x₀)²)/g² at a level x, least at the level x₀ of the line.
 //!
 //! Source: paper, supplement SV A, where streaks are detected and taken out by a linear transform; how is our own.
@@ -66,7 +66,7 @@ pub fn find_stripes<S: Sample>(cube: &dyn Rows<S>, sought: &Sought) -> Result<De
     }
     let segments = Segments::of(cube, sought.axis)?;
     if segments.is_constant() {
-        let found = "all samples of the cube are the same";
+        let found = "all samples of the cube are the same, or none is a number";
         return Err(Error::malformed(found, "give a cube as it was measured"));
     }
     let bands = shape.bands();
