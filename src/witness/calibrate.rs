@@ -19,4 +19,4 @@ pub mod twin;
 pub mod vignette;
 
 pub use noise::{Asked, Line, OfBand, Transfer, photon_transfer};
-pub use stripes::{Axis, Destriped, Sought, Stripe, find_stripes};
+pub use stripes::{Axis, Destriped, Kept, Sought, Stripe, Why, find_stripes};

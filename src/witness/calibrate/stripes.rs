@@ -23,10 +23,12 @@ mod apply;
 mod common;
 mod fit;
 mod found;
+mod keep;
 mod scan;
 mod segments;
+mod steps;
 
-pub use found::{Axis, Destriped, Sought, Stripe};
+pub use found::{Axis, Destriped, Kept, Sought, Stripe, Why};
 
 use self::common::{Told, overlooked, told};
 use self::scan::{Band, striped};
@@ -103,7 +105,10 @@ pub fn find_stripes<S: Sample>(cube: &dyn Rows<S>, sought: &Sought) -> Result<De
         }
     }
     let left: Vec<usize> = match shared {
-        true => (0..lines).filter(|line| is_object(&looked, *line)).collect(),
+        true => {
+            let striped = |line| told.iter().any(|told| told.stripes.iter().any(|one| one.line == line));
+            (0..lines).filter(|line| is_object(&looked, *line, striped(*line))).collect()
+        }
         false => Vec::new(),
     };
     let detectable = told.iter().map(|told| told.detectable).collect();
@@ -113,15 +118,22 @@ pub fn find_stripes<S: Sample>(cube: &dyn Rows<S>, sought: &Sought) -> Result<De
         .filter(|stripe| !left.contains(&stripe.line))
         .collect();
     stripes.sort_by_key(|stripe| (stripe.line, stripe.band));
+    let mut kept = keep::without_scene(&looked, lines);
+    keep::in_part(&looked, &mut stripes, &mut kept);
+    if shared {
+        keep::of_neighbouring_bands(&mut stripes, &mut kept);
+        keep::beside_steps(&looked, lines, &left, &mut stripes, &mut kept);
+    }
+    kept.sort_by_key(|kept| (kept.line, kept.band));
     let levels = looked.iter().map(|seen| seen.level).collect();
-    Ok(Destriped { axis: sought.axis, lines, bands, stripes, left, detectable, levels })
+    Ok(Destriped { axis: sought.axis, lines, bands, stripes, left, kept, detectable, levels })
 }
 
-/// Whether a line is off in most bands, and alike in neighbouring ones.
-fn is_object(bands: &[Band], line: usize) -> bool {
-    let off: Vec<f64> = bands.iter().map(|band| band.offset(line)).collect();
-    let striped = off.iter().filter(|off| **off != 0.0).count();
-    if 2 * striped <= bands.len() {
+/// Whether a line is off in most bands, and alike in neighbouring ones; of a striped one, whatever it is off by counts.
+fn is_object(bands: &[Band], line: usize, striped: bool) -> bool {
+    let off: Vec<f64> = bands.iter().map(|band| band.offset(line, striped)).collect();
+    let count = off.iter().filter(|off| **off != 0.0).count();
+    if 2 * count <= bands.len() {
         return false;
     }
     let relative: Vec<f64> = off.iter().zip(bands).map(|(off, band)| off / band.level.abs()).collect();

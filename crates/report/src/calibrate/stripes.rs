@@ -5,6 +5,7 @@ use crate::figures::Plot;
 use crate::plot::{Axis, Picture, Pictures};
 use crate::table::{Table, number};
 use crate::text::footing::{ASSUMPTIONS, warnings};
+use hadar::calibrate::Why;
 use hadar::error::Result;
 use hadar::ranging::cube::{npy_map, write_npy_to};
 use hadar::words::{significant, whole};
@@ -42,6 +43,7 @@ pub fn bundle(result: &StripesFound, out: &Path) -> Result<Bundle> {
         "sigma_common.npy",
         npy_map(&size, &found.map(0.0, |stripe| stripe.sigma_common(stripe.level)))?,
     );
+    bundle.add_table("left.csv", left(result))?;
     bundle.add_warnings(&result.warnings)?;
     bundle.add_plots(&[before_and_after(result)])?;
     Ok(bundle)
@@ -53,25 +55,50 @@ pub fn text(result: &StripesFound) -> String {
     let found = &result.destriped;
     let name = found.axis.name();
     let all = found.lines * found.bands;
+    let places = |lines: &[usize]| -> String {
+        let shown: Vec<String> = lines.iter().take(10).map(usize::to_string).collect();
+        shown.join(", ") + if lines.len() > 10 { ", …" } else { "" }
+    };
+    let alike = match found.left.as_slice() {
+        [] => String::new(),
+        left => format!(
+            "{} {name} ({}, counted from 0) are off in all bands alike and left as they are: in_all_bands = true takes them as stripes",
+            whole(left.len() as u64),
+            places(left)
+        ),
+    };
+    let untold = found.kept.iter().filter(|kept| !matches!(kept.why, Why::Dead | Why::Missing)).count();
+    let single = match untold {
+        0 => String::new(),
+        untold => format!(
+            "{} {name} of single bands look off and are left, as they may be the scene's (warnings below)",
+            whole(untold as u64)
+        ),
+    };
+    let also: Vec<String> = [alike, single].into_iter().filter(|text| !text.is_empty()).collect();
+    let also = also.join("; ");
     let mut out = match result.striped {
+        0 if !also.is_empty() => format!("Nothing was corrected: {also}.\n\n"),
         0 => {
             format!("No stripes: none of {} {name} is off in any of {} bands.\n\n", found.lines, found.bands)
         }
         striped => format!(
             "{} of {} {name} (of {} bands) are striped, off by {} % of their level (rms); corrected, an error of {} % is left, common to \
-             the pixels of a line.\n\n",
+             the pixels of a line{}.\n\n",
             whole(striped as u64),
             whole(all as u64),
             found.bands,
             significant(100.0 * result.off_relative, 2),
-            significant(100.0 * result.left_relative, 2)
+            significant(100.0 * result.left_relative, 2),
+            if also.is_empty() { String::new() } else { format!("; {also}") }
         ),
     };
     let least = found.detectable.iter().copied().fold(f64::INFINITY, f64::min);
     let most = found.detectable.iter().copied().fold(0.0, f64::max);
     let _ = writeln!(
         out,
-        "  lines that are off by less than {} (unit of the cube; {} in the worst band) are not seen and stay as they are",
+        "  lines, each alone among clean ones, that are off by less than {} (unit of the cube; {} in the worst band) are not seen and stay as they \
+         are; lines side by side and those at the ends of the image are not seen whatever they are off by where all bands are",
         significant(least, 2),
         significant(most, 2)
     );
@@ -82,6 +109,22 @@ pub fn text(result: &StripesFound) -> String {
         significant(result.scenario.stripes.gain_deviation, 2)
     );
     out + &warnings(&result.warnings)
+}
+
+/// What is no clean line and was left.
+fn left(result: &StripesFound) -> Table {
+    let mut table = Table::new(["line", "band", "why", "off_at_level"]);
+    for kept in &result.destriped.kept {
+        let why = match kept.why {
+            Why::InPart => "off in a part",
+            Why::NeighbouringBands => "off in neighbouring bands",
+            Why::BesideStep => "beside a step",
+            Why::Dead => "one value",
+            Why::Missing => "no samples",
+        };
+        table.push(vec![kept.line.to_string(), kept.band.to_string(), why.to_owned(), number(kept.off)]);
+    }
+    table
 }
 
 fn stripes(result: &StripesFound) -> Table {

@@ -75,6 +75,19 @@ catalogue! {
     BlackbodiesDoNotFit = "blackbodies-do-not-fit", "State a larger noise or uncertainty; look for a response that is not linear.";
     /// A scene has radiances below those of the coldest blackbody, or above those of the warmest.
     BeyondBlackbodies = "beyond-blackbodies", "Give blackbodies that enclose the scene: errors grow outside of them, and the response may bend.";
+    /// Lines of a band are off in a part of their length only, as an object along them would be, and were left as they are.
+    LinesOffInPart = "lines-off-in-part", "Look at these lines; a striped one is off along its whole length.";
+    /// Lines are off the same way in bands side by side, as a feature of a material would be, and were left as they are.
+    LinesOffInNeighbouringBands = "lines-off-in-neighbouring-bands",
+        "Look at these lines; correct them by a uniform source where they are stripes.";
+    /// A band steps from line to line where other bands do not: lines striped side by side, or the edge of a material.
+    LinesBesideSteps = "lines-beside-steps", "Look at these lines; correct them by a uniform source where they are stripes.";
+    /// Lines of a band hold one value alone: nothing of the scene is in them, and they were left as they are.
+    LinesDead = "lines-dead", "Set their samples to NaN, or leave the band out.";
+    /// Lines of a band have no samples, or less than half of them, and were not looked at.
+    LinesMissing = "lines-missing", "Nothing; or look where the samples went.";
+    /// Lines that are off in most bands were taken as striped since that was asked for: thin objects along them look the same.
+    StripesInAllBands = "stripes-in-all-bands", "Look at the picture of what was taken out.";
     /// Stripes were taken out of a cube of too few bands to tell them from thin objects.
     StripesOfFewBands = "stripes-of-few-bands", "Look at the picture of what was taken out.";
     /// Differences of samples were left out of a noise since they are far larger than it.

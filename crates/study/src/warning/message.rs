@@ -112,6 +112,41 @@ impl Display for Warning {
                 "{} % of the samples are outside of the blackbodies' radiances ({low_k} to {high_k} K)",
                 significant(100.0 * share, 2)
             ),
+            Self::LinesOffInPart { axis, lines } => write!(
+                f,
+                "{} are off in a part of their length only, as an object along them would be; they were left as they are",
+                places(axis, lines)
+            ),
+            Self::LinesOffInNeighbouringBands { axis, lines } => write!(
+                f,
+                "{} are off the same way in bands side by side, as a feature of a material would be; they were left as they are",
+                places(axis, lines)
+            ),
+            Self::LinesBesideSteps { axis, lines } => write!(
+                f,
+                "{} lie at a step from line to line that the bands beside do not have: lines striped side by side, or the edge of a material; \
+                 nothing tells which, and they were left as they are",
+                places(axis, lines)
+            ),
+            Self::LinesDead { axis, lines } => write!(
+                f,
+                "{} hold one value alone: nothing of the scene is in them, and they were left as they are",
+                places(axis, lines)
+            ),
+            Self::LinesMissing { axis, lines } => {
+                write!(f, "{} have less than half of their samples and were not looked at", places(axis, lines))
+            }
+            Self::StripesInAllBands { axis, lines } => {
+                let shown: Vec<String> = lines.iter().take(10).map(usize::to_string).collect();
+                let more = if lines.len() > 10 { ", …" } else { "" };
+                write!(
+                    f,
+                    "{} {axis} ({}{more}, counted from 0) were off in most bands and taken as striped, as was asked for: objects along them \
+                     would have been taken out too",
+                    lines.len(),
+                    shown.join(", ")
+                )
+            }
             Self::StripesOfFewBands { bands } => write!(
                 f,
                 "of {bands} band(s) none tells a stripe from a thin object that lies along a line: what was taken out may have been one"
@@ -492,4 +527,12 @@ fn in_words(parameter: Parameter, objects: usize) -> String {
 
 fn short(value: f64) -> String {
     significant(value, 2)
+}
+
+/// Lines of single bands, so many that are read.
+fn places(axis: &str, lines: &[[usize; 2]]) -> String {
+    let shown: Vec<String> =
+        lines.iter().take(10).map(|[line, band]| format!("{line} of band {band}")).collect();
+    let more = if lines.len() > 10 { ", …" } else { "" };
+    format!("{} {axis} of single bands ({}{more}, counted from 0)", lines.len(), shown.join(", "))
 }

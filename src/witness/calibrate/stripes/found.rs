@@ -69,6 +69,35 @@ impl Stripe {
     }
 }
 
+/// Why a line of a band was left as it is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Why {
+    /// A part of it is not off, as where an object lies along the other part.
+    InPart,
+    /// It is off the same way in the band beside, as a feature of a material is.
+    NeighbouringBands,
+    /// Its band has a step there that other bands do not have: lines striped side by side, or the edge of a material.
+    BesideStep,
+    /// All its samples are the same: nothing of the scene is in them.
+    Dead,
+    /// It has too few samples.
+    Missing,
+}
+
+/// A line of a band that is no clean one, and was left as it is.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+pub struct Kept {
+    /// The line, counted from 0.
+    pub line: usize,
+    /// The band, counted from 0.
+    pub band: usize,
+    /// Why.
+    pub why: Why,
+    /// How far it looks off; NaN where that is not known.
+    pub off: f64,
+}
+
 /// The stripes of a cube.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Destriped {
@@ -82,7 +111,9 @@ pub struct Destriped {
     pub stripes: Vec<Stripe>,
     /// Lines that are off in all bands alike, and were left as they are.
     pub left: Vec<usize>,
-    /// Least that a line of each band must be off to be seen, in the unit of the cube.
+    /// Other lines of single bands that are no clean ones, and were left as they are.
+    pub kept: Vec<Kept>,
+    /// Least that a line of each band, alone among clean ones, must be off to be seen, in the unit of the cube.
     pub detectable: Vec<f64>,
     /// Median of the lines of each band.
     pub levels: Vec<f64>,

@@ -13,6 +13,10 @@ const ROUNDS: usize = 8;
 const FARTHEST: usize = 8;
 /// Deviations by which two references differ where an edge lies between them.
 const EDGE: f64 = 4.0;
+/// Part of a line that is looked at for itself; deviations by which it is off from the line; share of the stripe below which it is none.
+const PARTS: usize = 16;
+const APART: f64 = 5.0;
+const NEARER: f64 = 0.6;
 /// Rounding of samples of 32 bits, relative.
 const ROUNDING: f64 = 1e-7;
 
@@ -27,12 +31,16 @@ pub(super) struct Band {
     pub(super) level: f64,
     /// Every line against the clean ones beside it.
     pub(super) fits: Vec<Option<Fitted>>,
+    /// Whether all of a line follows its gain and offset.
+    pub(super) follows: Vec<bool>,
     /// Lines that are off from both sides the same way, all along.
     pub(super) candidate: Vec<bool>,
     /// Least scatter of the segments.
     pub(super) least: f64,
     /// Deviation of the gains.
     pub(super) prior: f64,
+    /// Lines of one value.
+    pub(super) dead: Vec<bool>,
     look: Vec<Look>,
     lines: Lines,
 }
@@ -60,14 +68,22 @@ impl Band {
                 own => lines.is_off(line, own == Look::First),
             })
             .collect();
-        self.fits = all.map(|line| lines.fit(line)).collect();
-        let pairs = self.candidate.iter().zip(&self.fits);
-        self.without_reference = pairs.filter(|(own, fit)| **own && fit.is_none()).count();
+        let fits: Vec<Option<(Fitted, bool)>> = all.map(|line| lines.fit(line)).collect();
+        self.follows = fits.iter().map(|fit| fit.is_none_or(|(_, follows)| follows)).collect();
+        self.fits = fits.into_iter().map(|fit| fit.map(|(fit, _)| fit)).collect();
+        // A line that was set apart and is a candidate no more, as nothing is left to compare it with, is none to be called clean.
+        let pairs = self.look.iter().zip(&self.fits);
+        self.without_reference = pairs.filter(|(own, fit)| **own != Look::None && fit.is_none()).count();
     }
 
-    /// How far a line that looks striped is off; 0 of a clean one.
-    pub(super) fn offset(&self, line: usize) -> f64 {
-        let own = self.candidate.get(line).copied().unwrap_or(false);
+    /// The segments of a line.
+    pub(super) fn means(&self, line: usize) -> &[f64] {
+        self.lines.means.get(line).map_or(&[], Vec::as_slice)
+    }
+
+    /// How far a line that looks striped, or any, is off; 0 of a clean one.
+    pub(super) fn offset(&self, line: usize, any: bool) -> f64 {
+        let own = any || self.candidate.get(line).copied().unwrap_or(false);
         let fit = self.fits.get(line).copied().flatten().filter(|_| own);
         fit.map_or(0.0, |fit| fit.off)
     }
@@ -86,9 +102,16 @@ struct Lines {
 
 /// Looks at a band.
 pub(super) fn striped(segments: &Segments, band: usize, prior: f64) -> Band {
-    let means = segments.of_band(band);
+    let mut means = segments.of_band(band);
+    let dead = segments.flat(band);
     let there = |line: &Vec<f64>| 2 * line.iter().filter(|mean| mean.is_finite()).count() >= line.len();
-    let clean: Vec<bool> = means.iter().map(there).collect();
+    let clean: Vec<bool> = means.iter().zip(&dead).map(|(line, dead)| there(line) && !dead).collect();
+    let own = |(line, dead): (&mut Vec<f64>, &bool)| {
+        if *dead {
+            line.fill(f64::NAN);
+        }
+    };
+    means.iter_mut().zip(&dead).for_each(own);
     let usable = clean.iter().filter(|clean| **clean).count();
     let finite = means.iter().flatten().copied().filter(|mean| mean.is_finite());
     let level = median(&mut finite.collect::<Vec<f64>>());
@@ -120,9 +143,11 @@ pub(super) fn striped(segments: &Segments, band: usize, prior: f64) -> Band {
         without_reference: 0,
         level,
         fits: Vec::new(),
+        follows: Vec::new(),
         candidate: Vec::new(),
         least,
         prior,
+        dead,
         look,
         lines,
     };
@@ -173,13 +198,13 @@ impl Lines {
     /// What the clean lines on each side say of a line: the nearest, and the two nearest on a straight line.
     fn told(&self, line: usize, straight: bool) -> Vec<Vec<f64>> {
         let mut told = Vec::new();
-        for near in [true, false].map(|up| self.clean_on(line, up)) {
+        for up in [true, false] {
+            let near = self.clean_on(line, up);
             let means = |place: Option<&usize>| place.and_then(|at| self.means.get(*at));
             if let Some(one) = means(near.first()) {
                 told.push(one.clone());
-                if straight && let (Some(two), [a, b]) = (means(near.get(1)), near.as_slice()) {
-                    let share = line.abs_diff(*a) as f64 / a.abs_diff(*b) as f64;
-                    told.push(one.iter().zip(two).map(|(one, two)| one + (one - two) * share).collect());
+                if straight && let Some(straight) = self.straight(line, up) {
+                    told.push(straight);
                 }
             }
         }
@@ -229,31 +254,95 @@ impl Lines {
         square.sqrt() > OFF * self.least && 2.0 * seen > there && same >= ALONG * seen
     }
 
-    /// Gain and offset of a line from the clean ones beside it.
-    fn fit(&self, line: usize) -> Option<Fitted> {
+    /// Gain and offset of a line from the clean ones beside it, and whether all of the line follows them.
+    fn fit(&self, line: usize) -> Option<(Fitted, bool)> {
         let [one, other, between] = self.sides(line)?;
         let own = self.means.get(line)?;
-        let mut fit: Option<Fitted> = None;
+        let straight = [true, false].map(|up| self.straight(line, up));
+        // A slope is no edge: straight lines from both sides meet on it.
+        let edge: Vec<bool> = (0..own.len())
+            .map(|i| {
+                let apart = (one[i] - other[i]).abs();
+                let meet = match &straight {
+                    [Some(a), Some(b)] => (a[i] - b[i]).abs() <= (0.5 * apart).max(1.5 * EDGE * self.least),
+                    _ => false,
+                };
+                apart > EDGE * self.least && !meet
+            })
+            .collect();
+        let rule = 2 * edge.iter().filter(|edge| **edge).count() > edge.len();
+        let mut found: Option<(Fitted, bool)> = None;
         for _ in 0..3 {
             let reference: Vec<f64> = (0..own.len())
                 .map(|i| {
-                    let apart = (one[i] - other[i]).abs();
-                    if apart <= EDGE * self.least || apart.is_nan() {
+                    if !edge[i] {
                         return between[i];
                     }
+                    let Some((fit, _)) = &found else {
+                        // The nearer side would hide a part of the stripe: only where all of the line lies at an edge.
+                        return match rule {
+                            false => f64::NAN,
+                            true if (own[i] - one[i]).abs() < (own[i] - other[i]).abs() => one[i],
+                            true => other[i],
+                        };
+                    };
                     // What the line would read if it were clean.
-                    let clean = own[i] - fit.as_ref().map_or(0.0, |fit| fit.at(between[i]));
+                    let clean = own[i] - fit.at(between[i]);
                     let near = |x: f64| (x - clean).abs();
-                    match fit {
-                        Some(_) if near(between[i]) < near(one[i]).min(near(other[i])) => between[i],
-                        _ if near(one[i]) < near(other[i]) => one[i],
-                        _ => other[i],
+                    if near(between[i]) < near(one[i]).min(near(other[i])) {
+                        between[i]
+                    } else if near(one[i]) < near(other[i]) {
+                        one[i]
+                    } else {
+                        other[i]
                     }
                 })
                 .collect();
             let off: Vec<f64> = own.iter().zip(&reference).map(|(own, x)| own - x).collect();
-            fit = Some(fitted(&reference, &off, 0.5 * self.least, self.prior)?);
+            let fit = match fitted(&reference, &off, 0.5 * self.least, self.prior) {
+                None if found.is_none() => fitted(
+                    &between,
+                    &own.iter().zip(&between).map(|(own, x)| own - x).collect::<Vec<f64>>(),
+                    0.5 * self.least,
+                    self.prior,
+                )?,
+                fit => fit?,
+            };
+            let follows = self.follows(&fit, &reference, &off, &edge);
+            found = Some((fit, follows));
         }
-        fit
+        found
+    }
+
+    /// The two nearest clean lines on a side, on a straight line.
+    fn straight(&self, line: usize, up: bool) -> Option<Vec<f64>> {
+        let near = self.clean_on(line, up);
+        let [a, b] = near.as_slice() else { return None };
+        let share = line.abs_diff(*a) as f64 / a.abs_diff(*b) as f64;
+        let (one, two) = (self.means.get(*a)?, self.means.get(*b)?);
+        Some(one.iter().zip(two).map(|(one, two)| one + (one - two) * share).collect())
+    }
+
+    /// Whether no part of a line, at its ends or a sixteenth of it, is nearer to its neighbours than to its gain and offset.
+    fn follows(&self, fit: &Fitted, reference: &[f64], off: &[f64], edge: &[bool]) -> bool {
+        let part = (off.len() / PARTS).max(1);
+        let is_off = |range: std::ops::Range<usize>| {
+            let (mut count, mut seen, mut said) = (0.0, 0.0, 0.0);
+            for i in range {
+                let model = fit.at(reference[i]);
+                if !edge[i] && model.is_finite() && off[i].is_finite() {
+                    count += 1.0;
+                    seen += off[i];
+                    said += model;
+                }
+            }
+            let towards = seen * f64::signum(said);
+            (said - seen).abs() > APART * self.least * f64::sqrt(count)
+                && towards < NEARER * said.abs()
+                && towards > -0.5 * said.abs()
+        };
+        let ends = (1..=part).any(|w| is_off(0..w) || is_off(off.len() - w..off.len()));
+        let within = |w: usize| (0..=off.len() - w).any(|first| is_off(first..first + w));
+        !(ends || [1, 2, 4].iter().any(|times| part * times <= off.len() && within(part * times)))
     }
 }

@@ -9,6 +9,9 @@ use rayon::prelude::*;
 const PIXELS: usize = 16;
 const SEGMENTS: [usize; 2] = [8, 48];
 
+/// Least and largest of no sample.
+const NONE: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
+
 /// Means, NaN where less than half of a segment is there.
 #[derive(Debug)]
 pub(super) struct Segments {
@@ -17,6 +20,8 @@ pub(super) struct Segments {
     bands: usize,
     /// `[line][segment][band]`.
     means: Vec<f64>,
+    /// `[line][band]`: the line has two samples or more, all the same.
+    flat: Vec<bool>,
     constant: bool,
 }
 
@@ -35,7 +40,7 @@ impl Segments {
             Axis::Rows => rows,
             Axis::Columns => count,
         };
-        let sums: Vec<(Vec<f64>, f64, f64)> = (0..parts)
+        let sums: Vec<(Vec<f64>, Vec<[f64; 2]>)> = (0..parts)
             .into_par_iter()
             .map(|part| {
                 let across = match axis {
@@ -43,7 +48,7 @@ impl Segments {
                     Axis::Columns => columns,
                 };
                 let (mut sum, mut there) = (vec![0.0; across * bands], vec![0_u32; across * bands]);
-                let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+                let mut ends = vec![NONE; across * bands];
                 let mut buffer = Vec::new();
                 let range = match axis {
                     Axis::Rows => part..part + 1,
@@ -62,14 +67,13 @@ impl Segments {
                             Axis::Columns => place = column,
                         }
                         let own = place * bands..(place + 1) * bands;
-                        let each = sum[own.clone()].iter_mut().zip(&mut there[own]).zip(pixel);
-                        for ((sum, there), sample) in each {
+                        let each = sum[own.clone()].iter_mut().zip(&mut there[own.clone()]).zip(pixel);
+                        for (((sum, there), sample), ends) in each.zip(&mut ends[own]) {
                             let value: f64 = (*sample).into();
                             if value.is_finite() {
                                 *sum += value;
                                 *there += 1;
-                                low = low.min(value);
-                                high = high.max(value);
+                                *ends = [ends[0].min(value), ends[1].max(value)];
                             }
                         }
                     }
@@ -81,11 +85,22 @@ impl Segments {
                     };
                     *sum = if 2 * *there as usize >= full { *sum / f64::from(*there) } else { f64::NAN };
                 }
-                Ok((sum, low, high))
+                Ok((sum, ends))
             })
             .collect::<Result<_>>()?;
-        let low = sums.iter().map(|part| part.1).fold(f64::INFINITY, f64::min);
-        let high = sums.iter().map(|part| part.2).fold(f64::NEG_INFINITY, f64::max);
+        let mut ends = vec![NONE; lines * bands];
+        for (part, (_, own)) in sums.iter().enumerate() {
+            for (place, own) in own.iter().enumerate() {
+                let line = match axis {
+                    Axis::Rows => part,
+                    Axis::Columns => place / bands,
+                };
+                let ends = &mut ends[line * bands + place % bands];
+                *ends = [ends[0].min(own[0]), ends[1].max(own[1])];
+            }
+        }
+        let all = ends.iter().fold(NONE, |all, own| [all[0].min(own[0]), all[1].max(own[1])]);
+        let flat = ends.iter().map(|own| own[0] >= own[1]).collect();
         let means = match axis {
             Axis::Rows => sums.into_iter().flat_map(|part| part.0).collect(),
             Axis::Columns => {
@@ -99,19 +114,31 @@ impl Segments {
                 means
             }
         };
-        Ok(Self { lines, count, bands, means, constant: low >= high })
+        Ok(Self { lines, count, bands, means, flat, constant: all[0] >= all[1] })
     }
 
     pub(super) fn is_constant(&self) -> bool {
         self.constant
     }
 
+    /// Lines of a band that hold one value alone, where most others do not: nothing of the scene is in them.
+    pub(super) fn flat(&self, band: usize) -> Vec<bool> {
+        let there = |line: usize| (0..self.count).any(|i| self.mean(line, i, band).is_finite());
+        let flat: Vec<bool> =
+            (0..self.lines).map(|line| self.flat[line * self.bands + band] && there(line)).collect();
+        match 2 * flat.iter().filter(|flat| **flat).count() <= self.lines {
+            true => flat,
+            false => vec![false; self.lines],
+        }
+    }
+
+    fn mean(&self, line: usize, segment: usize, band: usize) -> f64 {
+        self.means[(line * self.count + segment) * self.bands + band]
+    }
+
     /// The segments of every line of a band.
     pub(super) fn of_band(&self, band: usize) -> Vec<Vec<f64>> {
-        let line = |line: usize| {
-            let at = |segment: usize| (line * self.count + segment) * self.bands + band;
-            (0..self.count).map(|segment| self.means[at(segment)]).collect()
-        };
+        let line = |line: usize| (0..self.count).map(|i| self.mean(line, i, band)).collect();
         (0..self.lines).map(line).collect()
     }
 }

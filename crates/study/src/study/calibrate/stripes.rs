@@ -3,7 +3,7 @@
 use super::opened::opened;
 use crate::scenario::calibrate::StripesScenario;
 use crate::study::Warning;
-use hadar::calibrate::{Destriped, find_stripes};
+use hadar::calibrate::{Destriped, Why, find_stripes};
 use hadar::demand::{Thing, Work};
 use hadar::error::{Error, Result};
 use hadar::ranging::cube::{Cube, Rows, Sample, Shape};
@@ -116,6 +116,32 @@ impl StripesStudy {
         if !destriped.left.is_empty() {
             warnings
                 .push(Warning::LinesLikeObjects { axis: sought.axis.name(), lines: destriped.left.clone() });
+        }
+        let axis = sought.axis.name();
+        let kept = |why: Why| -> Vec<[usize; 2]> {
+            let own = destriped.kept.iter().filter(|kept| kept.why == why);
+            own.map(|kept| [kept.line, kept.band]).collect()
+        };
+        for why in [Why::InPart, Why::NeighbouringBands, Why::BesideStep, Why::Dead, Why::Missing] {
+            let lines = kept(why);
+            if lines.is_empty() {
+                continue;
+            }
+            warnings.push(match why {
+                Why::InPart => Warning::LinesOffInPart { axis, lines },
+                Why::NeighbouringBands => Warning::LinesOffInNeighbouringBands { axis, lines },
+                Why::BesideStep => Warning::LinesBesideSteps { axis, lines },
+                Why::Dead => Warning::LinesDead { axis, lines },
+                Why::Missing => Warning::LinesMissing { axis, lines },
+            });
+        }
+        if sought.in_all_bands {
+            let bands = |line: usize| destriped.stripes.iter().filter(|one| one.line == line).count();
+            let lines: Vec<usize> =
+                (0..destriped.lines).filter(|line| 2 * bands(*line) > shape.bands()).collect();
+            if !lines.is_empty() && shape.bands() >= TELLING {
+                warnings.push(Warning::StripesInAllBands { axis, lines });
+            }
         }
         if shape.bands() < TELLING && count > 0 {
             warnings.push(Warning::StripesOfFewBands { bands: shape.bands() });
