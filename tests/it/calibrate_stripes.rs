@@ -138,9 +138,10 @@ fn stripes_are_found_and_their_errors_hold() {
         f64::sqrt(before / all),
         f64::sqrt(after / all)
     );
-    assert!((0.93..=0.985).contains(&share), "{share}");
+    // Without the quarter that is added for stripes beside that are too small to be seen: 0.896.
+    assert!((0.9..=0.995).contains(&share), "{share}");
     assert!(
-        (missed as f64) < 0.03 * all && (false_ones as f64) < 0.01 * all,
+        (missed as f64) < 0.12 * all && (false_ones as f64) < 0.01 * all,
         "{missed} {false_ones} of {all}"
     );
     assert!(after < 0.02 * before, "{after} {before}");

@@ -1,20 +1,21 @@
 //! Stripes of a push-broom cube: lines whose gain and offset are off, found and taken out.
 //!
-//! A line (a row or a column) of a band reads y = g·x + o of what it should read, x. Each line is looked at in segments, whose means
-//! are little noisy; the lines beside it say what it should read. A line is striped where it is off from the clean lines on both sides
-//! of it, and from where two of them on a side lead, the same way: a true edge is off from one side only, a slope from both but not the
-//! same way, a ridge not from where its sides lead. It must be so along the whole line, as one gain and one offset would have it. Gain and offset are then fitted to its segments with weights that leave out those of another kind
-//! (bisquare), the clean lines on both sides interpolated as reference, or the nearer one where an edge lies between them. A prior of the
-//! gain holds it where the line has no contrast. Lines that are not striped are left as they are.
+//! A line (a row or a column) of a band reads y = g·x + o of what it should read, x. Each line is looked at in segments, whose means are
+//! little noisy; the lines beside it say what it should read. A line is striped where it is off from the clean lines on both sides of it,
+//! and from where two of them on a side lead, the same way: a true edge is off from one side only, a slope from both but not the same way,
+//! a ridge not from where its sides lead. It must be so along the whole line, as one gain and one offset would have it. Gain and offset are
+//! then fitted to its segments with weights that leave out those of another kind (bisquare), the clean lines on both sides interpolated as
+//! reference, or the nearer one where an edge lies between them. A prior of the gain holds it where the line has no contrast. Lines that
+//! are not striped are left as they are.
 //!
-//! What the bands beside are off by too, as median of up to six of them over their levels, is the scene's and stays in the line. A line
-//! of which they show nothing is one although another lies beside it, as two lines of a ridge would. One
-//! that is off in most bands, alike in neighbouring ones, as a thin object along it would be, is left as it is: `left` names it. Both only
-//! of four bands or more, and not where stripes in all bands are asked for.
-//! Where a third of the lines of a band are striped, nothing tells the scene from the stripes, and nothing is made.
+//! What the bands beside are off by too, as median of up to six of them over their levels, is the scene's and stays in the line. Where they
+//! show nothing, two lines beside each other are stripes too, and no ridge. A line that is off in most bands, alike in neighbouring ones,
+//! as a thin object along it would be, is left as it is: `left` names it. Both only of four bands or more, and not where stripes in all
+//! bands are asked for. Where a third of the lines of a band are striped, nothing tells the scene from the stripes, and nothing is made.
 //!
-//! Errors: of the fit, not below those of the same fit to clean lines, which truly differ from their neighbours too. An error of a line
-//! is common to all its pixels: σ(x)² = (σ_p² + σ_g²(x − x₀)²)/g² at a level x, least at the level x₀ of the line.
+//! Errors: of the fit, not below those of the same fit to clean lines, which truly differ from their neighbours too, and a quarter more,
+//! for lines beside may be striped by less than is seen. An error of a line is common to all its pixels: σ(x)² = (σ_p² + σ_g²(x − x₀)²)/g²
+//! at a level x, least at the level x₀ of the line.
 //!
 //! Source: paper, supplement SV A, where streaks are detected and taken out by a linear transform; how is our own.
 
@@ -66,7 +67,7 @@ pub fn find_stripes<S: Sample>(cube: &dyn Rows<S>, sought: &Sought) -> Result<De
     }
     let segments = Segments::of(cube, sought.axis)?;
     if segments.is_constant() {
-        let found = "all samples of the cube are the same";
+        let found = "all samples of the cube are the same, or none is a number";
         return Err(Error::malformed(found, "give a cube as it was measured"));
     }
     let bands = shape.bands();

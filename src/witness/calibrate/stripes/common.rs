@@ -6,6 +6,9 @@ use super::scan::Band;
 
 /// Deviations above which a line is off.
 const OFF: f64 = 6.0;
+/// Errors over those that clean lines have: lines beside may be striped by less than is seen. On twins without it intervals of 95 % hold
+/// 90 % (little texture, a tenth of the lines striped) to 99 %.
+const UNSEEN: f64 = 1.25;
 /// Bands on each side that are looked at, and the fewest of them together.
 const BESIDE: usize = 3;
 const FEWEST: usize = 3;
@@ -87,7 +90,8 @@ pub(super) fn told(bands: &[Band], band: usize, shared: bool) -> Option<Told> {
         }
         found.at_first_sight += usize::from(off(1.0, 1.0) > OFF);
         if off(of_line, of_slope) > OFF {
-            let (sigma, sigma_gain, level) = (of_line * left.sigma, sigma_gain(of_slope), left.fit.level);
+            let (sigma, sigma_gain, level) =
+                (UNSEEN * of_line * left.sigma, sigma_gain(of_slope), left.fit.level);
             found.stripes.push(Stripe {
                 line,
                 band,

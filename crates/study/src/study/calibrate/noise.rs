@@ -101,7 +101,9 @@ impl NoiseStudy {
             warnings.push(Warning::BandsDifferInNoise { chi_square: transfer.chi_square_reduced });
         }
         let [low, high] = Line::interval(common.per_photon, common.sigma_per_photon);
-        let told = low > 0.0;
+        let [least, most] = common.noise_electrons_interval();
+        // A variance of electronic noise that cannot be 0 or more is another noise than this.
+        let told = low > 0.0 && most > 0.0;
         if !told {
             warnings.push(Warning::PhotonsNotTold {
                 per_photon: common.per_photon,
@@ -110,7 +112,6 @@ impl NoiseStudy {
         }
         let shape = self.frames.first().map(Cube::shape).map_or_else(|| Shape::new(1, 1, 1), Ok)?;
         let inverse = |b: f64| if b > 0.0 { 1.0 / b } else { f64::INFINITY };
-        let [least, most] = common.noise_electrons_interval();
         Ok(NoiseFound {
             scenario: self.scenario.clone(),
             shape,
