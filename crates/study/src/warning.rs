@@ -60,8 +60,10 @@ pub enum Warning {
     NoiseOutliers { share: f64 },
     /// Largest texture that was taken out of the noise of a band, over that noise.
     TextureInNoise { share: f64 },
-    /// χ²/ν of the noise of bands about one line.
-    BandsDifferInNoise { chi_square: f64 },
+    /// χ²/ν of the noise of bands about one line, and what it stays below by chance.
+    BandsDifferInNoise { chi_square: f64, limit: f64 },
+    /// Variance that a sample without light would have, its error, and the level that was taken as no light.
+    NoiseBelowZero { electronic: f64, sigma: f64, dark_level: f64 },
     /// Slope of variance over mean, and its error.
     PhotonsNotTold { per_photon: f64, sigma: f64 },
     /// Lines that are off in all bands alike.
@@ -248,6 +250,7 @@ impl Warning {
             Self::NoiseOutliers { .. } => Code::NoiseOutliers,
             Self::TextureInNoise { .. } => Code::TextureInNoise,
             Self::BandsDifferInNoise { .. } => Code::BandsDifferInNoise,
+            Self::NoiseBelowZero { .. } => Code::NoiseBelowZero,
             Self::PhotonsNotTold { .. } => Code::PhotonsNotTold,
             Self::LinesLikeObjects { .. } => Code::LinesLikeObjects,
             Self::StripesOfFewBands { .. } => Code::StripesOfFewBands,
