@@ -80,7 +80,7 @@ impl Display for Warning {
             Self::NoiseBelowZero { electronic, sigma, dark_level } => write!(
                 f,
                 "the variance of a sample without light would be {} +- {}, below 0, or the line is below 0 where samples are darkest: no \
-                 camera does that, and no light is not at the level {}",
+                 camera does that; is no light at the level {} (noise.dark_level)?",
                 significant(*electronic, 2),
                 significant(*sigma, 2),
                 significant(*dark_level, 4)
