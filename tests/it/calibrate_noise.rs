@@ -149,3 +149,95 @@ fn what_tells_no_noise_is_refused() {
     let few = refused(vec![(shape(1, 3), noise(96, 3))]);
     assert!(few.contains("too few to see how they scatter"), "{few}");
 }
+
+/// A scene of few bright pixels: photons of each pixel, in each of `bands`.
+fn skewed(rows: usize, columns: usize, bands: usize) -> Vec<Vec<f64>> {
+    let one = |i: usize| {
+        let (row, column) = ((i / columns) as f64, (i % columns) as f64 / (columns - 1) as f64);
+        let level = 1000.0 + 12_000.0 * column.powi(4) + 200.0 * (row / 3.0).sin();
+        (0..bands).map(|w| level * (1.0 + 0.1 * w as f64)).collect()
+    };
+    (0..rows * columns).map(one).collect()
+}
+
+#[test]
+fn the_noise_of_a_band_is_that_of_all_its_samples() {
+    // Small cubes, 30 x 30. Each sigma^2 is told to some 3 %: the mean of 40 to 0.5 %, of one frame (texture) to 2 %.
+    let shape = Shape::new(30, 30, 4).unwrap();
+    let means = skewed(30, 30, 4);
+    let truth: Vec<[f64; 2]> = (0..4)
+        .map(|w| {
+            let mean = means.iter().map(|pixel| pixel[w]).sum::<f64>() / means.len() as f64;
+            [UNIT * mean, UNIT * UNIT * (ELECTRONS * ELECTRONS + mean)]
+        })
+        .collect();
+    let brightest = UNIT * means.iter().map(|pixel| pixel[3]).fold(0.0, f64::max);
+    let draws = draws_of(means.into_iter(), ELECTRONS);
+    for frames in [2_u64, 1] {
+        let mut ratio = 0.0;
+        for trial in 0..40 {
+            let frame = |k| drawn(&draws, 900, 31, 2 * trial + k, UNIT, 0.0);
+            let found = transfer((0..frames).map(frame).collect(), shape, &ASKED);
+            for (band, [mean, var]) in found.bands.iter().zip(&truth) {
+                assert!((band.mean_of_all / mean - 1.0).abs() < 0.005, "{} {mean}", band.mean_of_all);
+                ratio += band.variance_at_mean(Some(&found.common)) / var / 160.0;
+            }
+            // What was compared reaches up to the brightest pixels.
+            let highest = found.bands[3].bins.last().unwrap()[0];
+            assert!(highest > 0.6 * brightest, "{highest} {brightest}");
+        }
+        println!("{frames} frame(s): variance over truth {ratio}");
+        assert!((ratio - 1.0).abs() < if frames == 2 { 0.015 } else { 0.06 }, "{frames}: {ratio}");
+    }
+}
+
+#[test]
+fn bands_of_one_camera_are_alike_and_others_are_not() {
+    // 60 draws each: 0.06 false alarms are expected. The mean of chi2/nu has a deviation of 0.1 (6 bands) and 0.06 (12).
+    for (bands, frames) in [(6, 2_u64), (12, 2), (6, 1)] {
+        let shape = Shape::new(30, 30, bands).unwrap();
+        let draws = draws_of(skewed(30, 30, bands).into_iter(), ELECTRONS);
+        let (mut mean, mut others, mut told) = (0.0, 0, 0);
+        for trial in 0..60 {
+            let frame = |k| drawn(&draws, 900, 37 + frames, 2 * trial + k, UNIT, 0.0);
+            let cubes: Vec<Vec<f64>> = (0..frames).map(frame).collect();
+            let found = transfer(cubes.clone(), shape, &ASKED);
+            mean += found.chi_square_reduced / 60.0;
+            others += i32::from(!found.is_common());
+            if trial < 10 {
+                // One band in another unit.
+                let scaled = cubes.into_iter().map(|mut samples| {
+                    samples.iter_mut().skip(2).step_by(bands).for_each(|sample| *sample *= 2.0);
+                    samples
+                });
+                told += i32::from(!transfer(scaled.collect(), shape, &ASKED).is_common());
+            }
+        }
+        println!(
+            "{bands} bands, {frames} frame(s): chi2/nu {mean}, false alarms {others}, told {told} of 10"
+        );
+        assert!((0.7..1.3).contains(&mean) && others <= 1, "{bands} {frames}: {mean} {others}");
+        assert!(told >= if frames == 2 { 9 } else { 5 }, "{bands} {frames}: {told}");
+    }
+}
+
+#[test]
+fn what_keeps_a_line_from_being_fitted_is_named() {
+    let refused = |frames: Vec<Vec<f64>>, shape: Shape, dark_level: f64| {
+        let cubes: Vec<_> = frames.into_iter().map(|s| MemoryCube::new(shape, s).unwrap()).collect();
+        let frames: Vec<&dyn Rows<f64>> = cubes.iter().map(|cube| cube as &dyn Rows<f64>).collect();
+        photon_transfer(&frames, &Asked { dark_level, ..ASKED }).unwrap_err().to_string()
+    };
+    let shape = Shape::new(20, 32, 3).unwrap();
+    let draws = draws_of(std::iter::once(vec![1000.0; 3]), ELECTRONS);
+    let frame = |stream| drawn(&draws, 640, 41, stream, UNIT, 0.0);
+    let level = refused(vec![frame(0), frame(1)], shape, 0.0);
+    assert!(level.contains("where their own noise is") && level.contains("darker and brighter"), "{level}");
+    let dark = refused(vec![frame(0), frame(1)], shape, 1e9);
+    assert!(dark.contains("noise.dark_level: 1000000000, but samples of band 0 have a mean of 2"), "{dark}");
+    let mut missing = [frame(0), frame(1)];
+    missing[0].iter_mut().skip(1).step_by(3).for_each(|sample| *sample = f64::NAN);
+    let [one, other] = missing;
+    let few = refused(vec![one, other], shape, 0.0);
+    assert!(few.contains("0 differences of samples of band 1, too few"), "{few}");
+}

@@ -111,9 +111,16 @@ pub enum Warning {
     TextureInNoise {
         share: f64,
     },
-    /// χ²/ν of the noise of bands about one line.
+    /// χ²/ν of the noise of bands about one line, and what it stays below by chance.
     BandsDifferInNoise {
         chi_square: f64,
+        limit: f64,
+    },
+    /// Variance that a sample without light would have, its error, and the level that was taken as no light.
+    NoiseBelowZero {
+        electronic: f64,
+        sigma: f64,
+        dark_level: f64,
     },
     /// Slope of variance over mean, and its error.
     PhotonsNotTold {
@@ -174,9 +181,6 @@ pub enum Warning {
         share: f64,
         low_k: f64,
         high_k: f64,
-    },
-    StripesOfFewBands {
-        bands: usize,
     },
     /// A library without errors.
     LibraryTakenAsExact,
@@ -489,6 +493,7 @@ impl Warning {
             Self::NoiseOutliers { .. } => Code::NoiseOutliers,
             Self::TextureInNoise { .. } => Code::TextureInNoise,
             Self::BandsDifferInNoise { .. } => Code::BandsDifferInNoise,
+            Self::NoiseBelowZero { .. } => Code::NoiseBelowZero,
             Self::PhotonsNotTold { .. } => Code::PhotonsNotTold,
             Self::LinesLikeObjects { .. } => Code::LinesLikeObjects,
             Self::LinesOffInPart { .. } => Code::LinesOffInPart,

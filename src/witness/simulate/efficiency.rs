@@ -269,7 +269,7 @@ fn around(value: f64, freedom: f64, level: f64) -> Result<Interval> {
 }
 
 /// Quantile of χ²/ν.
-fn chi_square(probability: f64, freedom: f64) -> Result<f64> {
+pub(crate) fn chi_square(probability: f64, freedom: f64) -> Result<f64> {
     if freedom > MANY {
         // Wilson and Hilferty.
         let z = statrs::function::erf::erfc_inv(2.0 * (1.0 - probability)) * std::f64::consts::SQRT_2;

@@ -235,6 +235,45 @@ fn mistakes_are_one_message() {
     folder.file("sigma.csv", "band,electronic_sigma\n0,1\n");
     let refusal = folder.refusal(&["decompose", "b.toml"]);
     assert!(refusal.contains("noise of the bands: 1 values where 15 are needed"), "{refusal}");
+    // Rows that say of which bands they are.
+    let rows = |first: f64| {
+        let row = |w: usize| format!("{},1\n", first + 20.0 * w as f64);
+        format!("wavenumber_cm1,electronic_sigma\n{}", (0..BANDS).map(row).collect::<String>())
+    };
+    folder.file("sigma.csv", &rows(300.0));
+    let refusal = folder.refusal(&["decompose", "b.toml"]);
+    let message = "sigma.csv:2: wavenumber_cm1: a row at 300 cm^-1 for band 0 at 800 cm^-1";
+    assert!(refusal.contains(message), "{refusal}");
+    folder.file("sigma.csv", &rows(801.0));
+    assert_eq!(folder.run(&["decompose", "b.toml"]).code, 0);
     let other = folder.refusal(&["range", "stripes.toml"]);
     assert!(other.contains("this is a calibration; hadar calibrate stripes"), "{other}");
+}
+
+#[test]
+fn a_dark_level_that_is_not_said_makes_no_camera() {
+    let folder = walls();
+    let (means, _) = wall();
+    let least = means.iter().copied().fold(f64::INFINITY, f64::min);
+    for stream in [0, 1] {
+        let samples: Vec<f64> = drawn(&means, 10 + stream).iter().map(|n| n + 100.0 * least).collect();
+        written(&folder, &format!("off_{stream}.npy"), BANDS, &samples);
+    }
+    let found = folder.json(&["calibrate", "noise", "off_0.npy", "off_1.npy", "--out", "off"]);
+    assert_eq!(found["usable"], false);
+    assert!(found["warnings"].to_string().contains("noise-below-zero"), "{}", found["warnings"]);
+    assert!(!folder.path().join("off/camera.toml").exists());
+    let text = folder.run(&["calibrate", "noise", "off_0.npy", "off_1.npy"]).stdout;
+    assert!(text.starts_with("No camera's figures follow") && text.contains("noise.dark_level"), "{text}");
+    let asked = |dark: f64| {
+        format!("[cube]\ndata = [\"off_0.npy\", \"off_1.npy\"]\n[noise]\ndark_level = {dark:e}\n")
+    };
+    folder.file("dark.toml", &asked(100.0 * least));
+    assert_eq!(folder.json(&["calibrate", "noise", "dark.toml"])["usable"], true);
+    folder.file("dark.toml", &asked(1e12));
+    let refusal = folder.refusal(&["calibrate", "noise", "dark.toml"]);
+    assert!(
+        refusal.contains("dark.toml:4: noise.dark_level: 1000000000000, but samples of band 0"),
+        "{refusal}"
+    );
 }

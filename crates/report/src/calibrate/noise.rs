@@ -57,8 +57,15 @@ pub fn text(result: &NoiseFound) -> String {
     out += &line("sqrt(a)/b, noise of a reading (e-)", result.noise_electrons);
     let _ = writeln!(
         out,
-        "  bands about their common line: chi2/nu {}; own lines of all {} bands are in noise.csv\n",
-        significant(result.transfer.chi_square_reduced, 2),
+        "  {}; own lines of all {} bands are in noise.csv\n",
+        match result.transfer.chi_square_reduced.is_nan() {
+            true => "whether bands have a line in common is not told by so few".to_owned(),
+            false => format!(
+                "bands about their common line: chi2/nu {}, by chance below {} (99.9 %)",
+                significant(result.transfer.chi_square_reduced, 2),
+                significant(result.transfer.chi_square_limit, 2)
+            ),
+        },
         result.transfer.bands.len()
     );
     if let Some(camera) = camera(result) {
@@ -71,8 +78,8 @@ pub fn text(result: &NoiseFound) -> String {
             result.frames
         ),
         Some(uneven) => format!(
-            "  one frame: neighbours of a row are compared, {} % of them left out as different; texture that three neighbouring bands\n  \
-             share is taken out (at most {} of the noise of a band).",
+            "  one frame: neighbours of a row are compared, {} % of them, as many of bright as of dark ones, left out as different;\n  \
+             texture that three neighbouring bands share is taken out (at most {} of the noise of a band).",
             significant(100.0 * uneven, 2),
             significant(result.transfer.bands.iter().map(|band| band.texture).fold(0.0, f64::max), 2)
         ),
@@ -80,7 +87,11 @@ pub fn text(result: &NoiseFound) -> String {
     let _ = writeln!(out, "{how}");
     let _ = writeln!(
         out,
-        "  Poissonian photons; noise that is independent between pixels and bands; a sample without light is {}.\n",
+        "  {} % of the differences are left out as beyond 6 deviations; a band's sigma (sigma.csv) is that at the mean of all its samples.\n  \
+         Poissonian photons; a sample without light is {}.\n  \
+         Noise that is independent between pixels and bands, which is not checked: noise of whole rows or of all bands alike is in these\n  \
+         figures, but what follows from several samples by them errs by more than it says.\n",
+        significant(100.0 * result.transfer.outliers, 2),
         significant(result.scenario.noise.dark_level, 4)
     );
     out + &warnings(&result.warnings)
@@ -144,6 +155,7 @@ fn indented(text: &str) -> String {
 fn bands(result: &NoiseFound) -> Table {
     let mut table = Table::new([
         "band",
+        "mean_of_all",
         "mean",
         "variance",
         "variance_sigma",
@@ -160,6 +172,7 @@ fn bands(result: &NoiseFound) -> Table {
         let of = |value: fn(&Line) -> f64| line.map_or_else(String::new, |line| number(value(line)));
         table.push(vec![
             i.to_string(),
+            number(band.mean_of_all),
             number(band.mean),
             number(band.variance),
             number(band.sigma_variance),
@@ -187,14 +200,15 @@ fn variances(result: &NoiseFound) -> Table {
 }
 
 /// Deviations in the unit of the cube, as the `[cube]` of a decomposition reads them: of a sample at the mean of its band, and of the
-/// electronic noise in it; the common line's where it holds, else the band's own.
+/// electronic noise in it; the common line's where it holds, else the band's own, wider by its standard error.
 fn sigmas(result: &NoiseFound) -> Table {
     let mut table = Table::new(["band", "sigma", "electronic_sigma"]);
     for (i, band) in result.transfer.bands.iter().enumerate() {
-        let line = if result.usable { Some(result.transfer.common) } else { band.line };
+        let common = result.usable.then_some(&result.transfer.common);
+        let variance = band.variance_at_mean(common).max(0.0);
         // Of what is not told apart, all is taken for electronic noise: too much rather than too little.
-        let electronic = line.map_or(band.variance, |line| line.electronic).max(0.0);
-        table.push(vec![i.to_string(), number(band.variance.max(0.0).sqrt()), number(electronic.sqrt())]);
+        let electronic = common.map_or(variance, |line| line.electronic).max(0.0);
+        table.push(vec![i.to_string(), number(variance.sqrt()), number(electronic.sqrt())]);
     }
     table
 }

@@ -7,25 +7,61 @@
 use crate::scenario::decompose::{CubeNoise, CubeUnit};
 use hadar::error::{Error, Result, check};
 use hadar::grid::{Grid, text_of_file};
+use hadar::words::significant;
 use std::path::Path;
+
+/// Share of the way to the next band by which a row may be off its band: numbers are rounded, and centres are those of a response.
+const SAME_BAND: f64 = 0.25;
 
 /// Squared deviations of the bands, in the unit of the cube squared; `None` where nothing is said.
 pub(super) fn var_of_bands(
     noise: Option<&CubeNoise>,
     unit: CubeUnit,
-    bands: usize,
+    centres_cm1: &[f64],
+    widths_cm1: &[f64],
 ) -> Result<Option<Vec<f64>>> {
     match noise {
         None => Ok(None),
-        Some(CubeNoise::Uniform(sigma)) => Ok(Some(vec![sigma * sigma; bands])),
+        Some(CubeNoise::Uniform(sigma)) => Ok(Some(vec![sigma * sigma; centres_cm1.len()])),
         Some(CubeNoise::File(path)) => {
             let column = if unit == CubeUnit::Radiance { "sigma" } else { "electronic_sigma" };
-            table(path, column, bands).map(Some).map_err(|error| error.in_file(path))
+            table(path, column, centres_cm1, widths_cm1).map(Some).map_err(|error| error.in_file(path))
         }
     }
 }
 
-fn table(path: &Path, column: &str, bands: usize) -> Result<Vec<f64>> {
+/// Rows that say where they are, beside the bands that they are taken for.
+fn check_wavenumbers(grid: &Grid, centres_cm1: &[f64], widths_cm1: &[f64]) -> Result<()> {
+    let named = |(place, name): (usize, &String)| match name.as_str() {
+        "wavenumber_cm1" => Some((place, false)),
+        "wavelength_um" => Some((place, true)),
+        _ => None,
+    };
+    let Some((place, is_wavelength)) = grid.header.iter().enumerate().find_map(named) else { return Ok(()) };
+    for (i, ((line, cells), centre)) in grid.rows.iter().zip(centres_cm1).enumerate() {
+        let cell = cells.get(place).copied().unwrap_or(f64::NAN);
+        let own = if is_wavelength { 1e4 / cell } else { cell };
+        let beside = [i.checked_sub(1), Some(i + 1)].into_iter().flatten().filter_map(|k| centres_cm1.get(k));
+        let apart = beside.map(|other| (other - centre).abs()).fold(f64::INFINITY, f64::min);
+        // A band alone reaches over its own width.
+        let apart = if apart.is_finite() { apart } else { widths_cm1.get(i).copied().unwrap_or(0.0) };
+        let off = (own - centre).abs();
+        if off.is_nan() || off > SAME_BAND * apart {
+            let found = format!(
+                "a row at {} cm^-1 for band {i} at {} cm^-1",
+                significant(own, 6),
+                significant(*centre, 6)
+            );
+            let key = if is_wavelength { "wavelength_um" } else { "wavenumber_cm1" };
+            let instead = "give the noise of these bands, a row for each in their order";
+            return Err(Error::malformed(found, instead).for_key(key).on_line(*line));
+        }
+    }
+    Ok(())
+}
+
+fn table(path: &Path, column: &str, centres_cm1: &[f64], widths_cm1: &[f64]) -> Result<Vec<f64>> {
+    let bands = centres_cm1.len();
     let grid =
         Grid::parse(&text_of_file(path, "read the noise of the bands")?).map_err(|error| match &error {
             Error::Malformed { found, .. } => {
@@ -51,6 +87,7 @@ fn table(path: &Path, column: &str, bands: usize) -> Result<Vec<f64>> {
             expected: bands,
         });
     }
+    check_wavenumbers(&grid, centres_cm1, widths_cm1)?;
     let common = place("sigma_common");
     let mut var = Vec::with_capacity(bands);
     for (i, (line, cells)) in grid.rows.iter().enumerate() {

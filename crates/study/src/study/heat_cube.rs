@@ -77,8 +77,8 @@ impl Said<'_> {
         let centres: Vec<f64> =
             bands.weigh(bands.nodes_cm1()).iter().zip(&widths).map(|(sum, width)| sum / width).collect();
         let mut units_per_count = 1.0;
-        let noise =
-            var_of_bands(self.cube.noise.as_ref(), self.cube.unit, bands.len()).map_err(at("cube.noise"))?;
+        let noise = var_of_bands(self.cube.noise.as_ref(), self.cube.unit, &centres, &widths)
+            .map_err(at("cube.noise"))?;
         let added = |band: usize| noise.as_ref().and_then(|var| var.get(band).copied()).unwrap_or(0.0);
         let (counts_per_radiance, var_added) = match self.cube.unit {
             CubeUnit::CountsPerPhotonRadiance(counts) => {

@@ -97,6 +97,9 @@ catalogue! {
     /// Bands of a cube scatter by noise models of their own.
     BandsDifferInNoise = "bands-differ-in-noise",
         "Use the variance of each band (sigma.csv); give counts as the camera made them, before bands were scaled.";
+    /// The noise of a sample without light comes out below 0: what is taken as no light is not, or samples are not photon counts.
+    NoiseBelowZero = "noise-below-zero",
+        "State the sample without light, noise.dark_level; give counts as the camera made them, one scene for all bands.";
     /// The slope of variance over mean is not told from 0.
     PhotonsNotTold = "photons-not-told", "Give a scene of darker and brighter parts, or more frames.";
 

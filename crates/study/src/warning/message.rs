@@ -70,10 +70,20 @@ impl Display for Warning {
                  the noise is too large",
                 significant(*share, 2)
             ),
-            Self::BandsDifferInNoise { chi_square } => write!(
+            Self::BandsDifferInNoise { chi_square, limit } => write!(
                 f,
-                "bands do not have one noise model in common (chi2/nu {}): neither photons per unit nor electronic noise hold for all",
-                significant(*chi_square, 2)
+                "bands do not have one noise model in common (chi2/nu {}, by chance below {}): neither photons per unit nor electronic noise \
+                 hold for all",
+                significant(*chi_square, 2),
+                significant(*limit, 2)
+            ),
+            Self::NoiseBelowZero { electronic, sigma, dark_level } => write!(
+                f,
+                "the variance of a sample without light would be {} +- {}, below 0, or the line is below 0 where samples are darkest: no \
+                 camera does that; is no light at the level {} (noise.dark_level)?",
+                significant(*electronic, 2),
+                significant(*sigma, 2),
+                significant(*dark_level, 4)
             ),
             Self::PhotonsNotTold { per_photon, sigma } => write!(
                 f,

@@ -26,12 +26,12 @@ pub(super) struct Cell {
 }
 
 impl Cell {
-    fn add(&mut self, other: &Self, sign: f64) {
-        self.dof += sign * other.dof;
-        self.mean += sign * other.mean;
-        self.square += sign * other.square;
-        self.with.iter_mut().zip(&other.with).for_each(|(own, other)| *own += sign * other);
-        self.beside.iter_mut().zip(&other.beside).for_each(|(own, other)| *own += sign * other);
+    pub(super) fn add(&mut self, other: &Self) {
+        self.dof += other.dof;
+        self.mean += other.mean;
+        self.square += other.square;
+        self.with.iter_mut().zip(&other.with).for_each(|(own, other)| *own += other);
+        self.beside.iter_mut().zip(&other.beside).for_each(|(own, other)| *own += other);
     }
 
     /// Variance of texture by the products with the bands beside, `scale` their mean signal over this band's; how is decided by the
@@ -48,6 +48,8 @@ impl Cell {
 pub(super) struct Cells {
     bands: usize,
     cells: Vec<Cell>,
+    /// Sum and number of all samples of each band that are there, above the dark level.
+    all: Vec<[f64; 2]>,
     pub(super) outliers: f64,
     pub(super) uneven: f64,
     pub(super) even: f64,
@@ -56,14 +58,20 @@ pub(super) struct Cells {
 impl Cells {
     fn new(bands: usize) -> Self {
         let cells = vec![Cell::default(); bands * BINS * GROUPS];
-        Self { bands, cells, outliers: 0.0, uneven: 0.0, even: 0.0 }
+        let all = vec![[0.0; 2]; bands];
+        Self { bands, cells, all, outliers: 0.0, uneven: 0.0, even: 0.0 }
     }
 
     fn add(&mut self, other: &Self) {
-        self.cells.iter_mut().zip(&other.cells).for_each(|(own, other)| own.add(other, 1.0));
+        self.cells.iter_mut().zip(&other.cells).for_each(|(own, other)| own.add(other));
+        self.all.iter_mut().flatten().zip(other.all.iter().flatten()).for_each(|(own, other)| *own += other);
         self.outliers += other.outliers;
         self.uneven += other.uneven;
         self.even += other.even;
+    }
+
+    pub(super) fn bands(&self) -> usize {
+        self.bands
     }
 
     pub(super) fn count(&self) -> f64 {
@@ -78,12 +86,31 @@ impl Cells {
                 let mut sum = Cell::default();
                 for (group, cell) in groups.iter().enumerate() {
                     if Some(group) != without {
-                        sum.add(cell, 1.0);
+                        sum.add(cell);
                     }
                 }
                 sum
             })
             .collect()
+    }
+
+    /// Mean of all samples of a band above the dark level, compared or not, and their number.
+    pub(super) fn of_all(&self, band: usize) -> [f64; 2] {
+        let [sum, count] = self.all.get(band).copied().unwrap_or_default();
+        [sum / count, count]
+    }
+
+    /// Notes all samples of a row of one frame.
+    fn note<S: Sample>(&mut self, row_of: &[S], dark_level: f64) {
+        for pixel in row_of.chunks_exact(self.bands) {
+            for (sample, [sum, count]) in pixel.iter().zip(self.all.iter_mut().map(|all| all.each_mut())) {
+                let sample: f64 = (*sample).into();
+                if sample.is_finite() {
+                    *sum += sample - dark_level;
+                    *count += 1.0;
+                }
+            }
+        }
     }
 
     fn signal(&self, band: usize) -> f64 {
@@ -122,6 +149,7 @@ pub(super) fn gathered<S: Sample>(frames: &[&dyn Rows<S>], start: &Start) -> Res
                 for (frame, buffer) in frames.iter().zip(&mut buffers) {
                     read.push(frame.read(row..row + 1, buffer)?);
                 }
+                read.iter().for_each(|samples| cells.note(samples, start.dark_level));
                 match read.as_slice() {
                     [one] => cells.neighbours(one, row, start),
                     several => cells.frames(several, row, start),
@@ -172,10 +200,11 @@ impl Cells {
         let mut d = vec![0.0; bands];
         for (pair, samples) in row_of.chunks_exact(2 * bands).enumerate() {
             let (left, right) = samples.split_at(bands);
-            let mut sum = 0.0;
+            let (mut bright, mut sum) = (0.0, 0.0);
             for ((d, left), right) in d.iter_mut().zip(left).zip(right) {
                 let (left, right): (f64, f64) = ((*left).into(), (*right).into());
                 *d = (left - right) * std::f64::consts::FRAC_1_SQRT_2;
+                bright += left + right;
                 sum += *d;
             }
             if !sum.is_finite() {
@@ -185,7 +214,7 @@ impl Cells {
             for band in 0..bands {
                 let [a, b] = beside(band, bands).map(|band| d[band]);
                 // The noise of none of the three has a say in what is alike.
-                if (sum - d[band] - a - b).abs() > start.even {
+                if !start.even(bright, (sum - d[band] - a - b).abs()) {
                     self.uneven += 1.0;
                     continue;
                 }

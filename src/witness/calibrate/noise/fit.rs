@@ -77,12 +77,26 @@ fn covariance(one: &[f64], other: &[f64]) -> f64 {
     one.iter().zip(other).map(|(x, y)| (x - a) * (y - b)).sum::<f64>() * (count - 1.0) / count
 }
 
-/// Fits the whole, the first of the sets, and everything without a group, the others. `None` where means do not spread, or too few bins.
-pub(super) fn fitted(sets: &[Vec<Bin>], averaged: f64, spread: bool) -> Option<Line> {
-    let (whole, others) = sets.split_first()?;
-    let [a, b, c] = solved(whole, averaged, spread)?;
-    let others: Vec<[f64; 3]> =
-        others.iter().map(|bins| solved(bins, averaged, spread)).collect::<Option<_>>()?;
+/// Why there is no line.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum NoLine {
+    /// So many bins, and so many that are needed.
+    Bins(usize, usize),
+    /// The variance that is left when texture is taken out is not above 0.
+    AllTexture,
+    /// Deviation of the means, and of their noise: they do not differ by more than that.
+    OneLevel([f64; 2]),
+}
+
+/// Solutions of the whole, the first of the sets, and of everything without a group, the others.
+pub(super) fn replicated(sets: &[Vec<Bin>], averaged: f64, spread: bool) -> Result<Vec<[f64; 3]>, NoLine> {
+    sets.iter().map(|bins| solved(bins, averaged, spread)).collect()
+}
+
+/// The line of the whole with the errors that the others show.
+pub(super) fn line(solutions: &[[f64; 3]]) -> Option<Line> {
+    let ([a, b, c], others) = solutions.split_first()?;
+    let [a, b, c] = [*a, *b, *c];
     let column = |of: usize| others.iter().map(|x| x[of]).collect::<Vec<f64>>();
     let [one, two, three] = [0, 1, 2].map(column);
     let [sigma_a, sigma_b] = [jackknife(&one), jackknife(&two)];
@@ -100,18 +114,22 @@ pub(super) fn fitted(sets: &[Vec<Bin>], averaged: f64, spread: bool) -> Option<L
 }
 
 /// Weighted least squares, weights by the line itself; a straight one with the noise of the means taken out.
-fn solved(bins: &[Bin], averaged: f64, spread: bool) -> Option<[f64; 3]> {
+fn solved(bins: &[Bin], averaged: f64, spread: bool) -> Result<[f64; 3], NoLine> {
     let terms = if spread { 3 } else { 2 };
     if bins.len() < terms {
-        return None;
+        return Err(NoLine::Bins(bins.len(), terms));
     }
     let total: f64 = bins.iter().map(|bin| bin.weight).sum();
     let of =
         |value: &dyn Fn(&Bin) -> f64| bins.iter().map(|bin| bin.weight * value(bin)).sum::<f64>() / total;
     let (m0, v0) = (of(&|bin| bin.mean), of(&|bin| bin.variance));
     let scale = of(&|bin| (bin.mean - m0).powi(2)).sqrt();
-    if !(scale > 0.0 && v0 > 0.0) {
-        return None;
+    let one_level = NoLine::OneLevel([scale, (v0 / averaged).max(0.0).sqrt()]);
+    if !(v0 > 0.0 && v0.is_finite()) {
+        return Err(NoLine::AllTexture);
+    }
+    if !(scale > 0.0) {
+        return Err(one_level);
     }
     // About the middle, in units of the spread of the means and of the mean variance.
     let mut x = [1.0, 0.0, 0.0];
@@ -136,10 +154,10 @@ fn solved(bins: &[Bin], averaged: f64, spread: bool) -> Option<[f64; 3]> {
                 right[1] -= weight * skewness;
             }
         }
-        x = cholesky(&normal, &right, terms)?;
+        x = cholesky(&normal, &right, terms).ok_or(one_level)?;
     }
     let (a, b, c) = (x[0] * v0, x[1] * v0 / scale, x[2] * v0 / (scale * scale));
-    Some([a - b * m0 + c * m0 * m0, b - 2.0 * c * m0, c])
+    Ok([a - b * m0 + c * m0 * m0, b - 2.0 * c * m0, c])
 }
 
 /// Solves a symmetric positive system of up to three unknowns.

@@ -22,8 +22,8 @@ pub(super) struct Start {
     pub(super) dark_level: f64,
     /// Bins of a band that are in use.
     bins: usize,
-    /// Largest difference of all other bands together of neighbours that are alike.
-    pub(super) even: f64,
+    /// Highest brightness of a level, and the largest difference of all other bands together of its neighbours that are alike.
+    even: Vec<[f64; 2]>,
     /// Lowest and highest mean of each band.
     range: Vec<[f64; 2]>,
     /// Mean and variance at each level of each band, the lowest first.
@@ -66,12 +66,14 @@ impl Start {
                 "give a cube as it was measured, frames that differ by their noise",
             ));
         }
-        sums.retain(|sum| sum.is_finite());
-        let even = match sums.is_empty() {
-            true => f64::INFINITY,
-            // The more even half.
-            false => median(&mut sums),
-        };
+        sums.retain(|[bright, sum]| bright.is_finite() && sum.is_finite());
+        sums.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        let per_level = sums.len().div_ceil(LEVELS).max(1);
+        let even = sums.chunks(per_level).map(|level| {
+            let mut differences: Vec<f64> = level.iter().map(|pair| pair[1]).collect();
+            [level.last().map_or(f64::INFINITY, |pair| pair[0]), median(&mut differences)]
+        });
+        let even = even.collect();
         let (mut range, mut levels) = (Vec::new(), Vec::new());
         for mut seen in seen {
             seen.sort_by(|a, b| a[0].total_cmp(&b[0]));
@@ -90,6 +92,13 @@ impl Start {
         let differences = if frames.len() > 1 { pixels * (frames.len() - 1) } else { pixels / 4 };
         let bins = (differences / OF_BIN).clamp(3, BINS);
         Ok(Self { dark_level, bins, even, range, levels })
+    }
+
+    /// Whether neighbours are of the more even half of those that are as bright: noise grows with light, so that one limit for all would
+    /// leave out what is bright.
+    pub(super) fn even(&self, bright: f64, sum: f64) -> bool {
+        let level = self.even.iter().find(|level| bright <= level[0]).or(self.even.last());
+        level.is_none_or(|level| sum <= level[1])
     }
 
     /// The bin of a mean.
@@ -113,18 +122,19 @@ impl Start {
     }
 }
 
-/// Notes mean and squared difference of two pixels, band by band; the absolute sum of the differences.
-fn pairs<S: Sample>(left: &[S], right: &[S], dark_level: f64, seen: &mut [Vec<[f64; 2]>]) -> f64 {
-    let mut sum = 0.0;
+/// Notes mean and squared difference of two pixels, band by band; their brightness and the absolute sum of the differences.
+fn pairs<S: Sample>(left: &[S], right: &[S], dark_level: f64, seen: &mut [Vec<[f64; 2]>]) -> [f64; 2] {
+    let (mut bright, mut sum) = (0.0, 0.0);
     for ((left, right), seen) in left.iter().zip(right).zip(seen) {
         let (left, right): (f64, f64) = ((*left).into(), (*right).into());
         let d = (left - right) * std::f64::consts::FRAC_1_SQRT_2;
+        bright += left + right;
         sum += d;
         if d.is_finite() {
             seen.push([0.5 * (left + right) - dark_level, d * d]);
         }
     }
-    sum.abs()
+    [bright, sum.abs()]
 }
 
 fn median(values: &mut [f64]) -> f64 {

@@ -11,10 +11,10 @@ use serde::Serialize;
 
 /// Share of texture in what neighbours differ by from which on its removal matters.
 const TEXTURE: f64 = 0.2;
+/// Key of the sample without light.
+const DARK_LEVEL: &str = "noise.dark_level";
 /// Share of outliers from which on they are said.
 const OUTLIERS: f64 = 1e-3;
-/// χ²/ν of the bands about their common line above which they have none in common.
-const MISFIT: f64 = 2.0;
 
 /// Cubes that are open.
 #[derive(Debug)]
@@ -73,6 +73,9 @@ impl NoiseStudy {
         let place = |error: Error| match (&error, &self.scenario.source.path, self.scenario.cube.data.first())
         {
             (Error::At { place, .. }, ..) if place.path.is_some() => error,
+            (Error::At { place, .. }, Some(_), _) if place.key.as_deref() == Some(DARK_LEVEL) => {
+                error.at(self.scenario.source.place(DARK_LEVEL))
+            }
             (_, Some(_), _) => error.at(self.scenario.source.place("cube.data")),
             (_, None, Some(path)) => error.in_file(path),
             _ => error,
@@ -95,15 +98,25 @@ impl NoiseStudy {
         if texture > TEXTURE {
             warnings.push(Warning::TextureInNoise { share: texture });
         }
-        // One or two bands have no scatter.
-        let alike = transfer.chi_square_reduced <= MISFIT || transfer.chi_square_reduced.is_nan();
+        let alike = transfer.is_common();
         if !alike {
-            warnings.push(Warning::BandsDifferInNoise { chi_square: transfer.chi_square_reduced });
+            warnings.push(Warning::BandsDifferInNoise {
+                chi_square: transfer.chi_square_reduced,
+                limit: transfer.chi_square_limit,
+            });
         }
         let [low, high] = Line::interval(common.per_photon, common.sigma_per_photon);
         let [least, most] = common.noise_electrons_interval();
-        // A variance of electronic noise that cannot be 0 or more is another noise than this.
-        let told = low > 0.0 && most > 0.0;
+        let told = low > 0.0;
+        // No camera has a variance below 0, without light or at the least that was seen.
+        let possible = !told || (most > 0.0 && transfer.least_variance() > 0.0);
+        if !possible {
+            warnings.push(Warning::NoiseBelowZero {
+                electronic: common.electronic,
+                sigma: common.sigma_electronic,
+                dark_level: spec.dark_level,
+            });
+        }
         if !told {
             warnings.push(Warning::PhotonsNotTold {
                 per_photon: common.per_photon,
@@ -119,7 +132,7 @@ impl NoiseStudy {
             photons_per_unit: [inverse(common.per_photon), inverse(high), inverse(low)],
             noise_electrons: [common.noise_electrons(), least, most],
             gain_deviation: spec.gain_spread.then(|| common.spread.max(0.0).sqrt()),
-            usable: told && alike,
+            usable: told && alike && possible,
             transfer,
             stats: {
                 let mut work = Work::default();
