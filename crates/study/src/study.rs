@@ -32,7 +32,7 @@ mod stage;
 mod surface;
 mod warn;
 
-pub use crate::warning::Warning;
+pub use crate::warning::{Warning, WorstBlackbody};
 pub use classes::{ClassAnswer, ClassSide, LeftOut, MixtureAnswer};
 pub use companion::Companion;
 pub use identify::{

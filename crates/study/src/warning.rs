@@ -168,6 +168,26 @@ pub enum Warning {
         blackbody: usize,
         over: f64,
     },
+    /// Blackbodies whose temperatures are taken as exact since nothing is said of them.
+    UncertaintyNotStated {
+        blackbodies: Vec<usize>,
+        of: usize,
+    },
+    /// Channels whose response is known to no better than a fifth, and the largest error over the response.
+    ResponseBarelyKnown {
+        channels: usize,
+        of: usize,
+        worst: f64,
+    },
+    /// χ² per degree of freedom of readings about a response, and the blackbody that explains most of it by a temperature other by so much.
+    ResponseDoesNotFit {
+        chi_square: f64,
+        worst: Option<WorstBlackbody>,
+    },
+    /// Samples of a scene that are no numbers.
+    MissingSamples {
+        samples: usize,
+    },
     /// Samples of pixels that respond to nothing.
     DeadSamples {
         samples: usize,
@@ -504,6 +524,10 @@ impl Warning {
             Self::StripesInAllBands { .. } => Code::StripesInAllBands,
             Self::StripesOfFewBands { .. } => Code::StripesOfFewBands,
             Self::BlackbodyNotEven { .. } => Code::BlackbodyNotEven,
+            Self::UncertaintyNotStated { .. } => Code::UncertaintyNotStated,
+            Self::ResponseBarelyKnown { .. } => Code::ResponseBarelyKnown,
+            Self::ResponseDoesNotFit { .. } => Code::ResponseDoesNotFit,
+            Self::MissingSamples { .. } => Code::MissingSamples,
             Self::DeadSamples { .. } => Code::DeadSamples,
             Self::BlackbodiesDoNotFit { .. } => Code::BlackbodiesDoNotFit,
             Self::BeyondBlackbodies { .. } => Code::BeyondBlackbodies,
@@ -585,6 +609,17 @@ impl Warning {
     pub fn says_as(&self, other: &Self) -> bool {
         self.code() == other.code() && self.to_string() == other.to_string()
     }
+}
+
+/// A blackbody whose readings are those of another temperature.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WorstBlackbody {
+    /// Its place, from 0.
+    pub blackbody: usize,
+    /// Its temperature as stated, K.
+    pub temperature_k: f64,
+    /// By how much warmer its readings are than that, K.
+    pub off_k: f64,
 }
 
 impl Serialize for Warning {

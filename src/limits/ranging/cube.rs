@@ -207,7 +207,10 @@ impl<S: Sample> Rows<S> for MemoryCube<S> {
 fn dimensions(found: usize) -> Error {
     Error::malformed(
         format!("the array has {found} dimension{}", if found == 1 { "" } else { "s" }),
-        "give [row][column][band], or [row][column] for one band",
+        match found {
+            1 => "give [row][column][band]; a spectrum as [1][1][band]",
+            _ => "give [row][column][band], or [row][column] for one band",
+        },
     )
 }
 

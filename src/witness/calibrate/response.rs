@@ -27,6 +27,9 @@ use crate::error::{Error, Result, check};
 use crate::planck;
 use nalgebra::{DMatrix, DVector};
 
+/// Share of a column that is left of it below which it is rounding.
+const FITTED: f64 = 1e-9;
+
 /// A response with its covariance.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Response {
@@ -40,6 +43,25 @@ pub struct Response {
     pub temperature_shifts_k: Vec<f64>,
     /// Σ of the squared residuals in units of their deviations, priors included.
     pub chi_square: f64,
+    /// Its part of the readings alone.
+    pub chi_square_readings: f64,
+    /// What that part is expected to be, n − tr H of the readings' rows; all of it is fitted where it is near 0.
+    pub freedom: f64,
+    /// Deviations of the K_q, counts.
+    pub offset_sigmas: Vec<f64>,
+    /// The blackbody by whose other temperature χ² falls most.
+    pub worst: Option<Suspect>,
+}
+
+/// A blackbody whose temperature, were it free, would explain part of χ².
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Suspect {
+    /// Its place.
+    pub blackbody: usize,
+    /// By how much warmer its readings are than they should be, K.
+    pub shift_k: f64,
+    /// By how much χ² falls.
+    pub explains: f64,
 }
 
 /// A mean radiance behind a filter, photons s⁻¹ m⁻² sr⁻¹ per cm⁻¹.
@@ -80,9 +102,6 @@ impl Response {
             check::positive("deviation of a reading", reading.sigma, "counts")?;
         }
         let first = Self::pass(wheel, prior, readings, counts, (errors_k, prior.mean()))?;
-        if errors_k.is_empty() {
-            return Ok(first);
-        }
         Self::pass(wheel, prior, readings, counts, (errors_k, &first.values))
     }
 
@@ -100,7 +119,7 @@ impl Response {
         let mut right = DVector::zeros(n + modes + temperatures);
         let centres = wheel.centres_cm1();
         let (mut radiance, mut slope) = (vec![0.0; centres.len()], vec![0.0; centres.len()]);
-        let mut last_k = f64::NAN;
+        let (mut last_k, mut per_kelvin) = (f64::NAN, Vec::with_capacity(n));
         for (i, (reading, count)) in readings.iter().zip(counts).enumerate() {
             if reading.temperature_k != last_k {
                 last_k = check::positive("temperature of a blackbody", reading.temperature_k, "K")?;
@@ -114,10 +133,10 @@ impl Response {
             }
             rows[(i, modes + reading.filter)] = 1.0 / reading.sigma;
             if temperatures > 0 {
-                let per_kelvin = wheel.counts(reading.filter, about, &slope);
                 rows[(i, modes + filters + reading.blackbody)] =
-                    per_kelvin * errors_k[reading.blackbody] / reading.sigma;
+                    wheel.counts(reading.filter, about, &slope) * errors_k[reading.blackbody] / reading.sigma;
             }
+            per_kelvin.push(wheel.counts(reading.filter, about, &slope) / reading.sigma);
             right[i] = (count - wheel.counts(reading.filter, prior.mean(), &radiance)) / reading.sigma;
         }
         (0..modes).for_each(|z| rows[(n + z, z)] = 1.0);
@@ -136,7 +155,28 @@ impl Response {
         if !factor.solve_upper_triangular_mut(&mut solved) {
             return Err(unread());
         }
-        let residual = kept.1 - kept.0 * &solved;
+        let residual = kept.1 - &kept.0 * &solved;
+        // F⁻ᵀ of columns, whose lengths are their variances after the fit.
+        let within = |mut of: DMatrix<f64>| match factor.tr_solve_upper_triangular_mut(&mut of) {
+            true => Ok(of),
+            false => Err(unread()),
+        };
+        let freedom = n as f64 - within(kept.0.rows(0, n).transpose())?.norm_squared();
+        let offset_sigmas =
+            within(DMatrix::from_fn(columns, filters, |i, q| f64::from(u8::from(i == modes + q))))?;
+        let mut worst: Option<Suspect> = None;
+        for blackbody in 0..=readings.iter().map(|reading| reading.blackbody).max().unwrap_or(0) {
+            let own = |i: usize| if readings[i].blackbody == blackbody { per_kelvin[i] } else { 0.0 };
+            let column = DMatrix::from_fn(n, 1, |i, _| own(i));
+            let along = (0..n).map(|i| own(i) * residual[i]).sum::<f64>();
+            let left =
+                column.norm_squared() - within(kept.0.rows(0, n).transpose() * &column)?.norm_squared();
+            if left > FITTED * column.norm_squared()
+                && worst.is_none_or(|worst| along * along / left > worst.explains)
+            {
+                worst = Some(Suspect { blackbody, shift_k: along / left, explains: along * along / left });
+            }
+        }
         let mut covariance = DMatrix::zeros(columns, centres.len());
         covariance.rows_mut(0, modes).copy_from(&prior.factor().transpose());
         if !factor.tr_solve_upper_triangular_mut(&mut covariance) {
@@ -149,6 +189,10 @@ impl Response {
             offsets: (0..filters).map(|q| solved[modes + q]).collect(),
             temperature_shifts_k: shifts.collect(),
             chi_square: residual.norm_squared(),
+            chi_square_readings: residual.rows(0, n).norm_squared(),
+            freedom,
+            offset_sigmas: offset_sigmas.column_iter().map(|column| column.norm()).collect(),
+            worst,
         })
     }
 

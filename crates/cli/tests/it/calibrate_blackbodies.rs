@@ -123,7 +123,11 @@ fn radiances_err_as_they_say() {
     assert!(shift > 0.01 && shift < 0.08, "{shift}");
     let text = folder.run(&["calibrate", "blackbody", "a.toml"]).stdout;
     assert!(
-        text.starts_with("21 channels calibrated by 3 blackbodies: a radiance as at 308.1 K errs by "),
+        text.starts_with(
+            "21 channels calibrated by 3 blackbodies: radiances as at 283.1 to 333.1 K err by up to "
+        ) || text.starts_with(
+            "21 channels calibrated by 3 blackbodies: radiances as at 283.2 to 333.2 K err by up to "
+        ),
         "{text}"
     );
     // What was written can be run again, and decomposed.
@@ -154,10 +158,6 @@ fn pixels_that_differ_are_calibrated_each_for_itself() {
         write(&folder, name, [rows, columns, BANDS], &of(&|_| *t, 20 + stream as u64));
     }
     write(&folder, "scene.npy", [rows, columns, BANDS], &of(&scene_k, 29));
-    let codes = |found: &serde_json::Value| -> Vec<String> {
-        let all = found["warnings"].as_array().unwrap().iter();
-        all.map(|warning| warning["code"].as_str().unwrap().to_owned()).collect()
-    };
     let common = folder.json(&["calibrate", "blackbody", "a.toml"]);
     assert!(codes(&common).contains(&"blackbody-not-even".to_owned()), "{}", common["warnings"]);
     folder.file(
@@ -211,10 +211,107 @@ fn what_a_spectrometer_cannot_be_calibrated_with_is_said() {
     write(&folder, "nan.npy", [8, 8, BANDS], &samples);
     let words = ["nan.npy", "row 0, column 3, band 5 (counted from 0)", "sample is NaN"];
     says(&SPECTROMETER.replace("mild.npy", "nan.npy"), &words[1..]);
-    says(&SPECTROMETER.replace("scene.npy", "nan.npy"), &words[1..]);
+    // Swapped data: warmer blackbodies read less.
+    let swapped = SPECTROMETER
+        .replace("cold.npy", "x")
+        .replace("warm.npy", "cold.npy")
+        .replace("\"x\"", "\"warm.npy\"");
+    says(&swapped, &["warmer blackbodies read less in 21 of 21 channels", "swapped"]);
+    let same = SPECTROMETER.replace("mild.npy", "cold.npy").replace("warm.npy", "cold.npy");
+    says(&same, &["response of a channel is 0"]);
+    let cold = read_doubles(&folder.path().join("cold.npy"));
+    // Another reading of the same: 64 pixels, a mean of which scatters by 0.25.
+    let again: Vec<f64> = cold.iter().enumerate().map(|(i, x)| x + 0.1 * (i as f64).sin() + 0.1).collect();
+    write(&folder, "again.npy", [8, 8, BANDS], &again);
+    says(&same.replacen("cold.npy", "again.npy", 1), &["read the same within noise in every channel"]);
+    let turned: Vec<f64> =
+        cold.iter().enumerate().map(|(i, x)| if i % BANDS == 7 { -x } else { *x }).collect();
+    let mut warmer = read_doubles(&folder.path().join("warm.npy"));
+    warmer.iter_mut().skip(7).step_by(BANDS).for_each(|x| *x = -*x);
+    write(&folder, "turned.npy", [8, 8, BANDS], &turned);
+    write(&folder, "turned-warm.npy", [8, 8, BANDS], &warmer);
+    let two = SPECTROMETER.replace("cold.npy", "turned.npy").replace("warm.npy", "turned-warm.npy");
+    says(&two, &["read less in 1 of 21 channels (the first at 940", "order of the bands"]);
+    // Temperatures that do not differ beyond what they are known to.
+    let near = SPECTROMETER.replace("35 degC", "10.01 degC").replace("60 degC", "10.1 degC");
+    says(&near, &["differ by 100 mK that is known to 42.4 mK only", "127 mK apart or more"]);
+    says(
+        &SPECTROMETER.replace("sample = 2.0", "sample = 2e-200"),
+        &["noise.sample", "give the cubes in counts"],
+    );
     // A calibration is no scenario of a target, and is sent where it belongs.
     folder.file("a.toml", SPECTROMETER);
     assert!(folder.refusal(&["size", "a.toml"]).contains("hadar calibrate blackbody"));
+}
+
+fn read_doubles(path: &Path) -> Vec<f64> {
+    let mut buffer = Vec::new();
+    match Cube::open(path, None).unwrap() {
+        Cube::F64(cube) => cube.read(0..cube.shape().rows(), &mut buffer).unwrap().to_vec(),
+        Cube::F32(_) => panic!("cubes of these tests are of 64 bits"),
+    }
+}
+
+fn codes(found: &serde_json::Value) -> Vec<String> {
+    let all = found["warnings"].as_array().unwrap().iter();
+    all.map(|warning| warning["code"].as_str().unwrap().to_owned()).collect()
+}
+
+/// Temperatures that are hardly apart, or of which nothing is said; the first sentence has the largest error, not the least.
+#[test]
+fn a_response_that_is_hardly_known_is_said_to_be() {
+    let folder = spectrometer(SPECTROMETER);
+    let (first, rest) = SPECTROMETER.split_once("[[blackbody]]\ntemperature = \"35").unwrap();
+    let (_, last) = rest.split_once("[[blackbody]]").unwrap();
+    let two = format!("{first}[[blackbody]]{last}");
+    // A kelvin apart, each known to 0.2 K: the response to 28 %.
+    let near = two.replace("60 degC", "11 degC").replace("30 mK", "200 mK");
+    folder.file("a.toml", &near);
+    let found = folder.json(&["calibrate", "blackbody", "a.toml"]);
+    assert!(codes(&found).contains(&"response-barely-known".to_owned()), "{}", found["warnings"]);
+    // By hand: at either blackbody a radiance errs by 0.2 K as its temperature does, in the middle by 0.2/√2.
+    folder.file("a.toml", &two.replace("30 mK", "200 mK"));
+    let found = folder.json(&["calibrate", "blackbody", "a.toml"]);
+    assert_eq!(codes(&found), Vec::<String>::new());
+    let worst = found["worst"]["sigma_common_k"][1].as_f64().unwrap();
+    assert!((worst / 0.2 - 1.0).abs() < 1e-3, "{worst}");
+    let most = found["scene"]["sigma_common_most_k"].as_f64().unwrap();
+    assert!(most > 0.14 && most < 0.21, "{most}");
+    let text = folder.run(&["calibrate", "blackbody", "a.toml"]).stdout;
+    assert!(text.contains("only sigma.csv carries it"), "{text}");
+    folder.file("a.toml", &two.replacen("uncertainty = \"30 mK\"\n", "", 1));
+    let found = folder.json(&["calibrate", "blackbody", "a.toml", "--out", "out"]);
+    assert_eq!(codes(&found), ["uncertainty-not-stated"]);
+    assert!(found["warnings"][0]["message"].as_str().unwrap().contains("blackbody[0]"));
+    // And said again when what was written is run.
+    assert_eq!(
+        codes(&folder.json(&["calibrate", "blackbody", "out/scenario.toml"])),
+        ["uncertainty-not-stated"]
+    );
+}
+
+/// Samples of a scene that are no numbers have no radiance; all others have what they had.
+#[test]
+fn a_scene_may_miss_samples() {
+    let folder = spectrometer(SPECTROMETER);
+    folder.json(&["calibrate", "blackbody", "a.toml", "--out", "whole"]);
+    let mut samples = read_doubles(&folder.path().join("scene.npy"));
+    samples[5 * BANDS + 3] = f64::NAN;
+    samples.iter_mut().skip(4).step_by(BANDS).for_each(|x| *x = f64::NAN);
+    write(&folder, "scene.npy", [SIZE[0], SIZE[1], BANDS], &samples);
+    let found = folder.json(&["calibrate", "blackbody", "a.toml", "--out", "holes"]);
+    assert_eq!(codes(&found), ["missing-samples"]);
+    assert_eq!(found["scene"]["missing"], SIZE[0] * SIZE[1] + 1);
+    assert!(
+        found["scene"]["sigma_common_most"].as_array().unwrap().iter().all(|x| x.as_f64().unwrap() > 0.0)
+    );
+    let [whole, holes] = ["whole", "holes"].map(|out| read(&folder.path().join(out).join("radiance.npy")));
+    for (i, (a, b)) in whole.iter().zip(&holes).enumerate() {
+        match i == 5 * BANDS + 3 || i % BANDS == 4 {
+            true => assert!(b.is_nan()),
+            false => assert!((a / b - 1.0).abs() < 1e-12, "{i} {a} {b}"),
+        }
+    }
 }
 
 const WHEEL: &str = r#"title = "Response of a camera"
@@ -321,6 +418,54 @@ fn a_response_comes_with_what_is_determined_and_radiances_with_their_errors() {
     }
     let again = folder.json(&["calibrate", "response", "out/scenario.toml"]);
     assert_eq!(again["response"], found["response"]);
+}
+
+/// A blackbody whose temperature is stated wrongly is named, with how far it is off; errors are then said not to hold.
+#[test]
+fn a_wrong_temperature_behind_filters_is_named() {
+    let (folder, _) = wheel(WHEEL);
+    let scenario = WHEEL.split("[scene]").next().unwrap().to_owned();
+    folder.file("a.toml", &scenario);
+    let found = folder.json(&["calibrate", "response", "a.toml", "--out", "out"]);
+    assert_eq!(codes(&found), ["uncertainty-not-stated"]);
+    // 40 readings, less 10 offsets and what the readings tell of the curve.
+    let freedom = found["freedom"].as_f64().unwrap();
+    let effective = found["effective"].as_f64().unwrap();
+    assert!((freedom - (30.0 - effective)).abs() < 1e-3, "{freedom} {effective}");
+    let chi = found["chi_square_reduced"].as_f64().unwrap();
+    assert!((chi - 1.0).abs() < 5.0 * (2.0 / freedom).sqrt(), "{chi}");
+    assert_eq!(found["misfit"], false);
+    let text = folder.run(&["calibrate", "response", "a.toml"]).stdout;
+    assert!(text.contains("counts (unit of the cubes) per photon s^-1 m^-2 sr^-1"), "{text}");
+    // Offsets with their deviations, also without a scene.
+    let table = std::fs::read_to_string(folder.path().join("out/filters.csv")).unwrap();
+    let [offset, sigma] = [1, 2].map(|c| table.lines().nth(1).unwrap().split(',').nth(c).unwrap().to_owned());
+    assert!(table.starts_with("filter,offset,offset_sigma"), "{table}");
+    assert!(sigma.parse::<f64>().unwrap() > 0.0 && offset.parse::<f64>().is_ok(), "{table}");
+    folder.file("a.toml", &scenario.replace("\"85 degC\"", "\"87.5 degC\""));
+    let found = folder.json(&["calibrate", "response", "a.toml"]);
+    let warning = &found["warnings"][0];
+    assert_eq!(warning["code"], "response-does-not-fit", "{}", found["warnings"]);
+    let message = warning["message"].as_str().unwrap();
+    assert!(
+        message.contains("blackbody[2] (360.65 K)") && message.contains("2.5") && message.contains("colder"),
+        "{message}"
+    );
+    let text = folder.run(&["calibrate", "response", "a.toml"]).stdout;
+    assert!(
+        text.starts_with("The readings do not fit a response, so that no error or interval below holds"),
+        "{text}"
+    );
+    assert!(text.contains("values known to no stated share"), "{text}");
+    // Noise that is stated far too small: no blackbody is to blame.
+    folder.file("a.toml", &scenario.replace("sample = 1.0", "sample = 0.01"));
+    let found = folder.json(&["calibrate", "response", "a.toml"]);
+    assert_eq!(found["misfit"], true, "{}", found["warnings"]);
+    for (values, says) in [("0", "from 2 to 200"), ("1", "from 2 to 200")] {
+        folder.file("a.toml", &scenario.replace("centre_half = 3", &format!("values = {values}")));
+        let line = folder.refusal(&["calibrate", "response", "a.toml"]);
+        assert!(line.contains(says), "{line}");
+    }
 }
 
 #[test]

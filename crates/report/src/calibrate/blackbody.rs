@@ -52,34 +52,44 @@ pub fn bundle(result: &BlackbodyFound, out: &Path) -> Result<Bundle> {
 /// The whole answer.
 #[must_use]
 pub fn text(result: &BlackbodyFound) -> String {
-    let rms = |of: &dyn Fn(&ChannelRow) -> f64| {
-        let square: f64 = result.channels.iter().map(|row| of(row).powi(2)).sum();
-        (square / result.channels.len().max(1) as f64).sqrt()
-    };
-    let (noise, temperature) = (rms(&|row| row.sigma_middle_k[0]), rms(&|row| row.sigma_middle_k[1]));
+    let worst = result.worst;
+    let [noise, temperature] = worst.sigma_common_k;
     let milli = |kelvin: f64| if kelvin > 0.0 { quantity(kelvin, "K") } else { "0".to_owned() };
     let mut out = format!(
-        "{} channels calibrated by {} blackbodies: a radiance as at {} K errs by {} in all pixels alike, and by {} in each sample.\n\n",
+        "{} channels calibrated by {} blackbodies: radiances as at {} to {} K err by up to {} in all pixels alike, and by up to {} in \
+         each sample{}.\n\n",
         result.channels.len(),
         result.temperature_shifts_k.len(),
-        significant(result.middle_k, 4),
+        significant(worst.range_k[0], 4),
+        significant(worst.range_k[1], 4),
         milli(noise.hypot(temperature)),
-        milli(rms(&|row| row.noise_middle_k))
+        milli(worst.noise_k),
+        match &result.scene {
+            Some(scene) => format!(
+                "; those of the scene by up to {} in all pixels alike",
+                milli(scene.sigma_common_most_k)
+            ),
+            None => String::new(),
+        }
     );
-    let _ = writeln!(out, "Common to all pixels (rms of the channels)");
+    let _ = writeln!(
+        out,
+        "Common to all pixels (rms of the channels, as at {} K, where it is the largest)",
+        significant(worst.at_k, 4)
+    );
     let _ = writeln!(out, "  by noise of the blackbodies' readings      {}", milli(noise));
     let _ = writeln!(out, "  by their temperatures, in all channels     {}\n", milli(temperature));
     let _ = writeln!(out, "Blackbodies                stated to        found off by");
     for (spec, [shift, sigma]) in result.scenario.blackbodies.iter().zip(&result.temperature_shifts_k) {
         let found = match result.chi_square_reduced {
-            Some(_) if spec.uncertainty_k > 0.0 => format!("{:.1} +- {:.1} mK", 1e3 * shift, 1e3 * sigma),
+            Some(_) if spec.error_k() > 0.0 => format!("{:.1} +- {:.1} mK", 1e3 * shift, 1e3 * sigma),
             _ => "-".to_owned(),
         };
         let _ = writeln!(
             out,
             "  {:>10}             {:>10}        {found}",
             format!("{:.2} K", spec.temperature_k),
-            milli(spec.uncertainty_k)
+            spec.uncertainty_k.map_or_else(|| "not stated".to_owned(), milli)
         );
     }
     match result.chi_square_reduced {
@@ -99,9 +109,10 @@ pub fn text(result: &BlackbodyFound) -> String {
             out,
             "\nScene: radiance.npy ({RADIANCE}); noise of each sample {} (rms of the bands), common to all pixels up to {}\n  \
              by band in sigma.csv, by sample in sigma_common.npy; for a decomposition\n  [cube]\n  data = \"radiance.npy\"\n  unit = \
-             \"{RADIANCE}\"\n  noise = \"sigma.csv\"",
+             \"{RADIANCE}\"\n  noise = \"sigma.csv\"\n  (a number as noise leaves out what all pixels have in common, up to {}: only sigma.csv carries it)",
             significant(mean(&scene.sigma_noise), 2),
             significant(mean(&scene.sigma_common_most), 2),
+            milli(scene.sigma_common_most_k),
         );
     }
     let _ = writeln!(
@@ -153,7 +164,7 @@ fn response(result: &BlackbodyFound) -> Table {
 fn temperatures(result: &BlackbodyFound) -> Table {
     let mut table = Table::new(["temperature_k", "uncertainty_k", "found_off_by_k", "sigma_k"]);
     for (spec, [shift, sigma]) in result.scenario.blackbodies.iter().zip(&result.temperature_shifts_k) {
-        table.push([spec.temperature_k, spec.uncertainty_k, *shift, *sigma].map(number).to_vec());
+        table.push([spec.temperature_k, spec.error_k(), *shift, *sigma].map(number).to_vec());
     }
     table
 }

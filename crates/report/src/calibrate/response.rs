@@ -50,8 +50,14 @@ pub fn bundle(result: &ResponseFound, out: &Path) -> Result<Bundle> {
 pub fn text(result: &ResponseFound) -> String {
     let values = result.response.len();
     let known = result.scenario.response.known;
+    let headline = match result.misfit {
+        true => {
+            "The readings do not fit a response, so that no error or interval below holds (see the warning).\n"
+        }
+        false => "",
+    };
     let mut out = format!(
-        "Of {values} response values the readings determine {}; the rest is the {} curve and that responses are smooth.\n\n",
+        "{headline}Of {values} response values the readings determine {}; the rest is the {} curve and that responses are smooth.\n\n",
         result.determined,
         if result.scenario.response.typical.is_some() { "typical" } else { "level" }
     );
@@ -67,15 +73,30 @@ pub fn text(result: &ResponseFound) -> String {
     );
     let _ = writeln!(
         out,
-        "  with smoothness: {} numbers are the readings' own; values known to {} % of the peak (rms; beforehand {} %)",
+        "  with smoothness: {} numbers are the readings' own; values {} of the peak (rms; beforehand {} %)",
         significant(result.effective, 3),
-        significant(relative(&|row| row.sigma), 2),
+        match result.misfit {
+            true => "known to no stated share".to_owned(),
+            false => format!("known to {} %", significant(relative(&|row| row.sigma), 2)),
+        },
         significant(relative(&|row| row.sigma_beforehand), 2)
     );
+    let _ = match result.chi_square_reduced {
+        Some(chi) => writeln!(
+            out,
+            "  readings about the fit: chi2/nu {} (nu {})",
+            significant(chi, 3),
+            significant(result.freedom, 3)
+        ),
+        None => writeln!(
+            out,
+            "  readings about the fit: the unknowns fit any readings, so that nothing tests them"
+        ),
+    };
     let _ = writeln!(
         out,
-        "  readings about the fit: chi2 over their number {}",
-        significant(result.chi_square_reduced, 3)
+        "  unit of the response: counts (unit of the cubes) per photon s^-1 m^-2 sr^-1; its peak {}",
+        significant(peak, 3)
     );
     if let (Some([low, high]), Some(sigma)) = (result.eta_range, result.eta_sigma) {
         let _ = writeln!(
@@ -144,7 +165,7 @@ fn square(result: &ResponseFound, values: &[f64]) -> Table {
 }
 
 fn filters(result: &ResponseFound) -> Table {
-    let mut table = Table::new(["filter", "offset", "sigma_noise", "sigma_common"]);
+    let mut table = Table::new(["filter", "offset", "offset_sigma", "sigma_noise", "sigma_common"]);
     for (q, name) in result.filters.iter().enumerate() {
         let scene = |pick: &dyn Fn(&hadar_study::study::calibrate::FilterRadiances) -> f64| {
             optional(result.scene.as_ref().map(pick))
@@ -152,6 +173,7 @@ fn filters(result: &ResponseFound) -> Table {
         table.push(vec![
             name.clone(),
             number(result.offsets[q]),
+            number(result.offset_sigmas[q]),
             scene(&|scene| scene.sigma_noise[q]),
             scene(&|scene| scene.sigma_common[q]),
         ]);

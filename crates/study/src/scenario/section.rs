@@ -302,13 +302,19 @@ impl<'a> Entry<'a> {
 
     /// A whole number of at least 1.
     pub(super) fn count(&self, example: &str) -> Result<u32> {
+        self.count_within([1, u32::MAX], example)
+    }
+
+    /// A whole number from the first to the second of `within`.
+    pub(super) fn count_within(&self, within: [u32; 2], example: &str) -> Result<u32> {
+        let [least, most] = within;
         let whole = match self.value {
             DeValue::Integer(digits) => u32::from_str_radix(digits.as_str(), digits.radix()).ok(),
             _ => None,
         };
-        whole.filter(|count| *count >= 1).ok_or_else(|| {
+        whole.filter(|count| (least..=most).contains(count)).ok_or_else(|| {
             let instead =
-                format!("write a whole number from 1 to {}, e.g. {} = {example}", u32::MAX, self.leaf());
+                format!("write a whole number from {least} to {most}, e.g. {} = {example}", self.leaf());
             self.wrong_type(instead)
         })
     }

@@ -4,10 +4,11 @@ mod blackbody;
 mod noise;
 mod opened;
 mod response;
+mod stated;
 mod stripes;
 mod whole;
 
-pub use blackbody::{BlackbodyFound, BlackbodyStudy, ChannelRow, SceneFound};
+pub use blackbody::{BlackbodyFound, BlackbodyStudy, ChannelRow, SceneFound, Worst};
 pub use noise::{NoiseFound, NoiseStudy};
 pub use response::{FilterRadiances, ResponseFound, ResponseRow, ResponseStudy};
 pub use stripes::{Samples, StripesFound, StripesStudy};

@@ -69,6 +69,16 @@ catalogue! {
     /// Pixels of a blackbody scatter more than the noise that is stated: they differ in their response, or the noise is larger.
     BlackbodyNotEven = "blackbody-not-even",
         "State the noise that hadar calibrate noise finds; calibrate pixels of different response one by one.";
+    /// Temperatures of blackbodies are taken as exact, since no uncertainty of them is stated.
+    UncertaintyNotStated = "uncertainty-not-stated", "State blackbody.uncertainty of each blackbody (\"0 K\" where it is exact).";
+    /// Responses of channels are known to no better than a fifth of them.
+    ResponseBarelyKnown = "response-barely-known",
+        "Give blackbodies further apart, or better known, or read longer; leave out channels that see nothing.";
+    /// Readings of blackbodies behind filters lie off the response by more than their noise and temperatures allow.
+    ResponseDoesNotFit = "response-does-not-fit",
+        "Check the temperature of the blackbody that is named, the stated noise, and whether the response is linear.";
+    /// A scene has samples that are no numbers.
+    MissingSamples = "missing-samples", "Nothing if they are the camera's bad pixels.";
     /// Samples of pixels that read the same before all blackbodies have no radiance.
     DeadSamples = "dead-samples", "Nothing if they are the camera's bad pixels.";
     /// Readings of three or more blackbodies lie off straight lines by more than their noise and temperatures allow.

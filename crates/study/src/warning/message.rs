@@ -108,6 +108,38 @@ impl Display for Warning {
                  may be larger",
                 significant(*over, 2)
             ),
+            Self::UncertaintyNotStated { blackbodies, of } => {
+                let which: Vec<String> = blackbodies.iter().map(|k| format!("blackbody[{k}]")).collect();
+                let which = if blackbodies.len() == *of { "all blackbodies".to_owned() } else { which.join(", ") };
+                write!(f, "the temperature of {which} is taken as exact since no uncertainty is stated: errors are larger than said")
+            }
+            Self::ResponseBarelyKnown { channels, of, worst } => write!(
+                f,
+                "the response of {channels} of {of} channels is hardly known (to {} % of it at worst): errors of radiances to first order \
+                 do not hold there",
+                significant(100.0 * worst, 2)
+            ),
+            Self::ResponseDoesNotFit { chi_square, worst } => {
+                write!(
+                    f,
+                    "the readings lie off the response (chi2/nu {}): errors that are said, and intervals, do not hold",
+                    significant(*chi_square, 3)
+                )?;
+                match worst {
+                    Some(worst) => write!(
+                        f,
+                        "; blackbody[{}] ({:.2} K) explains most of it: it reads as if it were {} {}",
+                        worst.blackbody,
+                        worst.temperature_k,
+                        quantity(worst.off_k.abs(), "K"),
+                        if worst.off_k > 0.0 { "warmer" } else { "colder" }
+                    ),
+                    None => f.write_str("; no single blackbody explains it"),
+                }
+            }
+            Self::MissingSamples { samples } => {
+                write!(f, "{samples} sample(s) of the scene are no numbers: no radiance is given for them")
+            }
             Self::DeadSamples { samples } => write!(
                 f,
                 "{samples} sample(s) are of pixels whose readings of the blackbodies do not differ beyond noise: no radiance is given for them"

@@ -6,17 +6,23 @@ use super::super::section::{Entry, Section};
 use hadar::allowed::{ABOVE_ZERO, ABSOLUTE_TEMPERATURE, FROM_ZERO};
 use hadar::error::{Error, Result};
 use hadar::units::Dimension;
+use hadar::words::quantity;
 use std::path::PathBuf;
 
 const EXAMPLE: &str = "[[blackbody]] with temperature = \"10 degC\" and data = \"cold.npy\", twice or more";
+
+/// Temperatures that differ by fewer of their deviations calibrate nothing.
+const APART: f64 = 3.0;
+/// Deviations of a sample beyond which squares of what follows from them are no numbers any more.
+const RANGE: [f64; 2] = [1e-60, 1e60];
 
 /// A blackbody that was read.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BlackbodySpec {
     /// Its temperature, K.
     pub temperature_k: f64,
-    /// Deviation of that temperature, K.
-    pub uncertainty_k: f64,
+    /// Deviation of that temperature, K; none where nothing is said of it, and then it is taken as exact.
+    pub uncertainty_k: Option<f64>,
     /// Its cube.
     pub data: CubeFile,
 }
@@ -50,7 +56,7 @@ impl BlackbodySpec {
         let uncertainty = section.quantity("uncertainty", Dimension::TemperatureDifference, FROM_ZERO)?;
         Ok(Self {
             temperature_k: temperature.quantity(Dimension::Temperature, ABSOLUTE_TEMPERATURE)?,
-            uncertainty_k: uncertainty.unwrap_or(0.0),
+            uncertainty_k: uncertainty,
             data: CubeFile::read(&section, "\"cold.npy\"")?,
         })
     }
@@ -58,7 +64,13 @@ impl BlackbodySpec {
     pub(super) fn written(&self, paths: Paths<'_>) -> Entries {
         let entries = self.data.written(paths);
         let entries = entries.put_quantity("temperature", Dimension::Temperature, Some(self.temperature_k));
-        entries.put_quantity("uncertainty", Dimension::TemperatureDifference, Some(self.uncertainty_k))
+        entries.put_quantity("uncertainty", Dimension::TemperatureDifference, self.uncertainty_k)
+    }
+
+    /// Deviation of its temperature as it is reckoned with, K.
+    #[must_use]
+    pub fn error_k(&self) -> f64 {
+        self.uncertainty_k.unwrap_or(0.0)
     }
 }
 
@@ -85,7 +97,27 @@ pub(super) fn blackbodies(root: &Section<'_>) -> Result<Vec<BlackbodySpec>> {
         let error = Error::malformed(found, "give two temperatures that differ");
         return Err(root.fail("blackbody[1].temperature", error));
     }
+    apart(&specs).map_err(|error| root.fail("blackbody", error))?;
     Ok(specs)
+}
+
+/// Whether some two temperatures differ beyond what they are uncertain by.
+fn apart(specs: &[BlackbodySpec]) -> Result<()> {
+    let pairs =
+        specs.iter().enumerate().flat_map(|(k, one)| specs[..k].iter().map(move |other| (one, other)));
+    let ratio = |(one, other): (&BlackbodySpec, &BlackbodySpec)| {
+        let apart = (one.temperature_k - other.temperature_k).abs();
+        let error = one.error_k().hypot(other.error_k());
+        (if apart > 0.0 { apart / error } else { 0.0 }, apart, error)
+    };
+    let best = pairs.map(ratio).max_by(|a, b| a.0.total_cmp(&b.0));
+    let Some((_, apart, error)) = best.filter(|(ratio, ..)| *ratio < APART) else {
+        return Ok(());
+    };
+    let kelvin = |value: f64| quantity(value, "K");
+    let found = format!("temperatures differ by {} that is known to {} only", kelvin(apart), kelvin(error));
+    let instead = format!("give blackbodies that are {} apart or more", kelvin(APART * error));
+    Err(Error::malformed(found, instead))
 }
 
 /// `[noise] sample`.
@@ -93,7 +125,17 @@ pub(super) fn noise(root: &Section<'_>) -> Result<f64> {
     const INSTEAD: &str = "write [noise] with sample = 1.5, the deviation of one sample in the unit of the cubes (hadar calibrate noise finds it)";
     let stated = root.read("noise", |entry| {
         let section = entry.section(&["sample"])?;
-        section.number("sample", "1.5", ABOVE_ZERO)
+        let sample = section.number("sample", "1.5", ABOVE_ZERO)?;
+        if let Some(value) = sample.filter(|value| !(RANGE[0]..=RANGE[1]).contains(value)) {
+            let error = Error::out_of_range(
+                "noise of a sample",
+                value,
+                "",
+                "from 1e-60 to 1e60: give the cubes in counts",
+            );
+            return Err(section.fail("sample", error));
+        }
+        Ok(sample)
     })?;
     stated
         .flatten()

@@ -166,11 +166,7 @@ fn response(entry: &Entry<'_>) -> Result<ResponseSpec> {
         let error = Error::malformed(found, "write start = \"595 cm^-1\" and stop = \"1340 cm^-1\"");
         return Err(section.fail("stop", error));
     }
-    let values = section.read("values", |entry| entry.count("30"))?.unwrap_or(VALUES);
-    if !(2..=MOST).contains(&values) {
-        let error = Error::out_of_range("values", f64::from(values), "", "between 2 and 200");
-        return Err(section.fail("values", error));
-    }
+    let values = section.read("values", |entry| entry.count_within([2, MOST], "30"))?.unwrap_or(VALUES);
     let number = |key: &str, example: &str, silent: f64| -> Result<f64> {
         Ok(section.number(key, example, ABOVE_ZERO)?.unwrap_or(silent))
     };

@@ -1,7 +1,9 @@
 //! Response and offset of a spectrometer by blackbodies, and the radiance of a scene.
 
+use super::stated::uncertainty_not_stated;
 use super::whole::{at, beside, means, open, pairs, shown};
 use crate::scenario::calibrate::BlackbodyScenario;
+use crate::scenario::calibrate::blackbodies::BlackbodySpec;
 use crate::study::{Warning, bands};
 use hadar::calibrate::spectrometer::Calibration;
 use hadar::calibration::blackbody::{Blackbodies, Parts};
@@ -10,12 +12,19 @@ use hadar::error::{Error, Result};
 use hadar::planck;
 use hadar::ranging::cube::{Cube, Shape};
 use hadar::units::{PLANCK_J_S, SPEED_OF_LIGHT_M_S};
+use hadar::words::significant;
 use serde::Serialize;
 
 /// By so much the pixels of a blackbody may scatter more than the stated noise.
 const UNEVEN: f64 = 1.1;
 /// χ²/ν beyond which blackbodies do not lie on lines, at least.
 const MISFIT: f64 = 1.3;
+/// A response that is known to no better than this share of it is hardly known.
+const BARELY: f64 = 0.2;
+/// Readings beyond which squares of them are no numbers any more.
+const LARGEST: f64 = 1e60;
+/// Temperatures of the range of the blackbodies at which errors are looked at.
+const STEPS: usize = 41;
 /// A response within so many of its deviations from 0 is none.
 const DEAD: f64 = 5.0;
 /// Share of the samples that may lie beyond the blackbodies without a word.
@@ -69,10 +78,27 @@ pub struct SceneFound {
     pub sigma_pixel: Option<Vec<f32>>,
     /// Samples of pixels that respond to nothing.
     pub dead: usize,
+    /// Samples that are no numbers.
+    pub missing: usize,
+    /// Deviation common to all pixels as a temperature that it is no larger than in 95 of 100 of them, rms of the bands, K.
+    pub sigma_common_most_k: f64,
     /// Deviation of each sample for itself, of every band; with that of its pixel's calibration (rms) where it has its own.
     pub sigma_noise: Vec<f64>,
     /// Deviation common to all pixels that it is no larger than in 95 of 100 of them, of every band.
     pub sigma_common_most: Vec<f64>,
+}
+
+/// The largest errors of radiances between those of the blackbodies, rms of the channels, K.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Worst {
+    /// Coldest and warmest blackbody.
+    pub range_k: [f64; 2],
+    /// The temperature at which what is common to all pixels is the largest.
+    pub at_k: f64,
+    /// Common to all pixels there: by noise, by temperatures.
+    pub sigma_common_k: [f64; 2],
+    /// Noise of a sample where it is the largest.
+    pub noise_k: f64,
 }
 
 /// What was found.
@@ -84,6 +110,8 @@ pub struct BlackbodyFound {
     pub channels: Vec<ChannelRow>,
     /// The temperature in the middle of the blackbodies, K.
     pub middle_k: f64,
+    /// Where between the blackbodies the error common to all pixels is the largest.
+    pub worst: Worst,
     /// Errors of the blackbodies' temperatures as found, and their deviations, K.
     pub temperature_shifts_k: Vec<[f64; 2]>,
     /// χ² over its degrees of freedom; none of two blackbodies.
@@ -156,15 +184,34 @@ impl BlackbodyStudy {
             if !each_pixel && pixels > 1 && over.sqrt() > UNEVEN.max(chance.sqrt()) {
                 warnings.push(Warning::BlackbodyNotEven { blackbody: k, over: over.sqrt() });
             }
+            if let Some(large) = mean.iter().find(|count| count.abs() > LARGEST) {
+                let error = Error::out_of_range(
+                    "mean of a blackbody",
+                    *large,
+                    "",
+                    "below 1e60: give the cubes in counts",
+                );
+                return Err(at(source, &format!("blackbody[{k}].data"))(error));
+            }
             counts.push(mean);
             sigma.push(vec![scenario.noise / (pixels as f64).sqrt(); nu.len()]);
         }
         let specs = &scenario.blackbodies;
         let temperatures_k: Vec<f64> = specs.iter().map(|spec| spec.temperature_k).collect();
-        let errors_k = specs.iter().map(|spec| spec.uncertainty_k).collect();
+        let errors_k = specs.iter().map(BlackbodySpec::error_k).collect();
         let of = Blackbodies::new(nu, temperatures_k.clone(), errors_k, &sigma)
             .map_err(at(source, "blackbody"))?;
         let found = Calibration::found(of, &counts).map_err(at(source, "blackbody"))?;
+        self.responds(&found).map_err(at(source, "blackbody"))?;
+        warnings.extend(uncertainty_not_stated(specs));
+        let shares = (0..nu.len())
+            .map(|c| found.bound.response(&found.blackbodies, c).sigma() / found.response[c].abs());
+        let (barely, worst) = shares.fold((0, 0.0_f64), |(count, worst), share| {
+            (count + usize::from(share > BARELY), worst.max(share))
+        });
+        if barely > 0 {
+            warnings.push(Warning::ResponseBarelyKnown { channels: barely, of: nu.len(), worst });
+        }
         let freedom = nu.len() * (specs.len() - 2);
         let chi_square_reduced = (freedom > 0).then(|| found.chi_square / freedom as f64);
         if let Some(chi) =
@@ -183,6 +230,9 @@ impl BlackbodyStudy {
         if let Some(dead) = scene.as_ref().map(|scene| scene.dead).filter(|dead| *dead > 0) {
             warnings.push(Warning::DeadSamples { samples: dead });
         }
+        if let Some(missing) = scene.as_ref().map(|scene| scene.missing).filter(|missing| *missing > 0) {
+            warnings.push(Warning::MissingSamples { samples: missing });
+        }
         if let Some(scene) = &scene {
             samples += scene.shape.len();
             let beyond = beyond(scene, nu, [low, high]);
@@ -197,6 +247,7 @@ impl BlackbodyStudy {
             scenario: scenario.clone(),
             channels,
             middle_k,
+            worst: self.worst(&found, [low, high]),
             temperature_shifts_k: shifts
                 .map(|(k, shift)| [*shift, found.bound.sigma_temperature_k(&found.blackbodies, k)])
                 .collect(),
@@ -206,6 +257,72 @@ impl BlackbodyStudy {
             stats,
             warnings,
         })
+    }
+
+    /// Whether warmer blackbodies read more.
+    fn responds(&self, found: &Calibration) -> Result<()> {
+        let nu = &self.wavenumbers_cm1;
+        let beyond = |sign: f64| {
+            let sigma = |c: usize| found.blackbodies.channels()[c].var_response.sqrt();
+            (0..nu.len()).filter(move |c| sign * found.response[*c] > DEAD * sigma(*c)).collect::<Vec<_>>()
+        };
+        let (more, less) = (beyond(1.0), beyond(-1.0));
+        match less.first() {
+            None if more.is_empty() => Err(Error::malformed(
+                "the blackbodies read the same within noise in every channel",
+                "check that their data are two files, and the noise of a sample",
+            )),
+            None => Ok(()),
+            Some(first) => {
+                let all = nu.len();
+                let place = significant(nu[*first], 5);
+                let found = format!(
+                    "warmer blackbodies read less in {} of {all} channels (the first at {place} cm^-1)",
+                    less.len()
+                );
+                let instead = match less.len() > more.len() {
+                    true => {
+                        "check whether data or temperatures of the blackbodies are swapped; turn the sign of all cubes if the \
+                             instrument counts downwards"
+                    }
+                    false => {
+                        "check the order of the bands and the phase of the spectra, and leave out channels that see nothing"
+                    }
+                };
+                Err(Error::malformed(found, instead))
+            }
+        }
+    }
+
+    fn worst(&self, found: &Calibration, range_k: [f64; 2]) -> Worst {
+        let [low, high] = range_k;
+        let nu = &self.wavenumbers_cm1;
+        let at = |i: usize| {
+            let t = low + (high - low) * i as f64 / (STEPS - 1) as f64;
+            let mut square = [0.0; 3];
+            for (c, nu) in nu.iter().enumerate() {
+                let slope = planck::photon_radiance_slope(*nu, t);
+                let parts = found.bound.radiance(&found.blackbodies, c, planck::photon_radiance(*nu, t));
+                let noise = self.scenario.noise / found.response[c];
+                for (sum, var) in
+                    square.iter_mut().zip([parts.var_noise, parts.var_temperature, noise * noise])
+                {
+                    *sum += var / (slope * slope) / self.wavenumbers_cm1.len() as f64;
+                }
+            }
+            (t, square)
+        };
+        let all: Vec<(f64, [f64; 3])> = (0..STEPS).map(at).collect();
+        let of = |entry: &(f64, [f64; 3])| entry.1[0] + entry.1[1];
+        let first = all[0];
+        let (at_k, square) =
+            all.iter().fold(first, |most, entry| if of(entry) > of(&most) { *entry } else { most });
+        Worst {
+            range_k,
+            at_k,
+            sigma_common_k: [square[0].sqrt(), square[1].sqrt()],
+            noise_k: all.iter().map(|entry| entry.1[2]).fold(0.0, f64::max).sqrt(),
+        }
     }
 
     fn row(&self, found: &Calibration, c: usize, middle_k: f64) -> ChannelRow {
@@ -258,8 +375,10 @@ impl BlackbodyStudy {
             shape,
             sigma_pixel: None,
             dead: 0,
+            missing: radiance.iter().filter(|x| x.is_nan()).count(),
+            sigma_common_most_k: most_k(&self.wavenumbers_cm1, &radiance, &sigma_common),
             sigma_noise: lines.iter().map(|line| (self.scenario.noise * line[1]).abs()).collect(),
-            sigma_common_most: most(&sigma_common, shape),
+            sigma_common_most: most(&sigma_common, shape, |c| lines[c][3].max(0.0).sqrt()),
             radiance,
             sigma_common,
         })
@@ -314,7 +433,9 @@ impl BlackbodyStudy {
             let pixel = (off * off).mul_add(channel.var_response, channel.var_centre).sqrt() / response.abs();
             [channel.mean_radiance + off, common, pixel].map(|x| (joules * x) as f32)
         })?;
-        let dead = radiance.iter().filter(|x| x.is_nan()).count();
+        let mut missing = 0;
+        pairs(cube, |_, _| [0.0; 2])?.iter().for_each(|pair| missing += usize::from(pair[0].is_nan()));
+        let dead = radiance.iter().filter(|x| x.is_nan()).count() - missing;
         let rms = |band: usize| {
             let every = (shape.len() / shape.bands() / LOOKED_AT).max(1) * shape.bands();
             let some = sigma_pixel.iter().skip(band).step_by(every).filter(|x| x.is_finite());
@@ -330,7 +451,9 @@ impl BlackbodyStudy {
         Ok(SceneFound {
             shape,
             sigma_noise: sigma_noise.collect(),
-            sigma_common_most: most(&sigma_common, shape),
+            sigma_common_most: most(&sigma_common, shape, |c| lines[c][0] * lines[c][1].max(0.0).sqrt()),
+            sigma_common_most_k: most_k(nu, &radiance, &sigma_common),
+            missing,
             dead,
             radiance,
             sigma_common,
@@ -339,16 +462,38 @@ impl BlackbodyStudy {
     }
 }
 
-/// Of each band, what 95 of 100 samples do not exceed.
-fn most(sigma: &[f32], shape: Shape) -> Vec<f64> {
+/// Of each band, what 95 of 100 samples do not exceed; of bands without a number what `else_of` says.
+fn most(sigma: &[f32], shape: Shape, else_of: impl Fn(usize) -> f64) -> Vec<f64> {
     let every = (shape.len() / shape.bands() / LOOKED_AT).max(1) * shape.bands();
     let of = |band: usize| {
         let mut some: Vec<f32> =
             sigma.iter().skip(band).step_by(every).copied().filter(|x| x.is_finite()).collect();
         some.sort_by(f32::total_cmp);
-        some.get(some.len() * 95 / 100).map_or(f64::NAN, |x| f64::from(*x))
+        some.get(some.len() * 95 / 100).map_or_else(|| else_of(band), |x| f64::from(*x))
     };
     (0..shape.bands()).map(of).collect()
+}
+
+/// What errors of radiances are as temperatures: of each band what 95 of 100 samples do not exceed, rms of the bands, K.
+fn most_k(wavenumbers_cm1: &[f64], radiance: &[f32], sigma: &[f32]) -> f64 {
+    let bands = wavenumbers_cm1.len();
+    let every = (radiance.len() / bands / LOOKED_AT).max(1) * bands;
+    let (mut sum, mut count) = (0.0, 0.0_f64);
+    for (band, nu) in wavenumbers_cm1.iter().enumerate() {
+        let both = radiance.iter().zip(sigma).skip(band).step_by(every);
+        let of = |(radiance, sigma): (&f32, &f32)| {
+            let t = planck::brightness_temperature(*nu, f64::from(*radiance) / joules(*nu));
+            f64::from(*sigma) / (joules(*nu) * planck::photon_radiance_slope(*nu, t))
+        };
+        let positive = both.filter(|(radiance, _)| **radiance > 0.0);
+        let mut all: Vec<f64> = positive.map(of).filter(|x| x.is_finite()).collect();
+        all.sort_by(f64::total_cmp);
+        if let Some(most) = all.get(all.len() * 95 / 100) {
+            sum += most * most;
+            count += 1.0;
+        }
+    }
+    (sum / count.max(1.0)).sqrt()
 }
 
 /// Energy of a photon, J.

@@ -1,10 +1,11 @@
 //! The response of a camera behind a filter wheel by blackbodies, the wheel's relative transmittance, and radiances behind the filters.
 
+use super::stated::uncertainty_not_stated;
 use super::whole::{at, open, samples, shown};
 use crate::scenario::calibrate::ResponseScenario;
-use crate::scenario::calibrate::blackbodies::CubeFile;
-use crate::study::Warning;
+use crate::scenario::calibrate::blackbodies::{BlackbodySpec, CubeFile};
 use crate::study::heat_cube::columns;
+use crate::study::{Warning, WorstBlackbody};
 use hadar::calibrate::response::{FilterRadiance, Response};
 use hadar::calibrate::vignette::{Vignette, centre, subtracted};
 use hadar::calibration::determined::{CurvePrior, Determined};
@@ -21,7 +22,11 @@ use std::path::Path;
 const POINTS: usize = 11;
 /// A column of this ending is the reflectance of the filter before it.
 const REFLECTANCE: &str = ":reflectance";
-/// χ² over the number of readings beyond which they do not fit, at least.
+/// Fewest degrees of freedom of a test of the readings.
+const TESTED: f64 = 0.5;
+/// Share of χ² of which one blackbody is named as its cause.
+const EXPLAINS: f64 = 0.5;
+/// χ² per degree of freedom beyond which readings do not fit, at least.
 const MISFIT: f64 = 1.3;
 
 /// Cubes that are open, and filters looked up.
@@ -93,8 +98,14 @@ pub struct ResponseFound {
     pub sigma_directions: Vec<Option<f64>>,
     /// Offsets K_q + ξ at the centre, counts.
     pub offsets: Vec<f64>,
-    /// χ² over the number of readings.
-    pub chi_square_reduced: f64,
+    /// Their deviations, counts.
+    pub offset_sigmas: Vec<f64>,
+    /// χ² of the readings over its degrees of freedom; none where the unknowns fit any readings.
+    pub chi_square_reduced: Option<f64>,
+    /// Those, n − tr H: the readings less what the unknowns take of them.
+    pub freedom: f64,
+    /// Whether the readings lie off the response beyond chance, so that errors do not hold.
+    pub misfit: bool,
     /// Rows and columns of the cubes.
     pub size: [usize; 2],
     /// Relative transmittance η of every pixel; none where the cubes are all centre.
@@ -202,17 +213,27 @@ impl ResponseStudy {
         let wheel = self.wheel(scale)?;
         let prior = CurvePrior::smooth(&self.centres_cm1, &self.typical, scenario.response.known)
             .map_err(at(source, "response"))?;
-        let errors: Vec<f64> = specs.iter().map(|spec| spec.uncertainty_k).collect();
+        let errors: Vec<f64> = specs.iter().map(BlackbodySpec::error_k).collect();
         let errors = if errors.iter().any(|u| *u > 0.0) { &errors[..] } else { &[] };
         let found =
             Response::found(&wheel, &prior, &readings, &counts, errors).map_err(at(source, "blackbody"))?;
         let about = (!errors.is_empty()).then_some((errors, &found.values[..]));
         let known = Determined::of(&wheel.scores(&readings, about)?, &prior)?;
-        let chi_square_reduced = found.chi_square / readings.len() as f64;
+        // Of readings that are all fitted nothing is left to be tested.
+        let chi_square_reduced = (found.freedom > TESTED).then(|| found.chi_square_readings / found.freedom);
         let mut warnings = Vec::new();
-        if chi_square_reduced > MISFIT.max(1.0 + 5.0 * (2.0 / readings.len() as f64).sqrt()) {
-            warnings.push(Warning::BlackbodiesDoNotFit { chi_square: chi_square_reduced });
+        let limit = MISFIT.max(1.0 + 5.0 * (2.0 / found.freedom.max(TESTED)).sqrt());
+        let misfit = chi_square_reduced.filter(|chi| *chi > limit);
+        if let Some(chi_square) = misfit {
+            let worst = found.worst.filter(|worst| worst.explains > EXPLAINS * found.chi_square);
+            let worst = worst.map(|worst| WorstBlackbody {
+                blackbody: worst.blackbody,
+                temperature_k: specs[worst.blackbody].temperature_k,
+                off_k: worst.shift_k,
+            });
+            warnings.push(Warning::ResponseDoesNotFit { chi_square, worst });
         }
+        warnings.extend(uncertainty_not_stated(specs));
         let values = self.centres_cm1.len();
         let row = |j: usize| ResponseRow {
             wavenumber_cm1: self.centres_cm1[j],
@@ -256,7 +277,10 @@ impl ResponseStudy {
                 .map(|(i, d)| (i < known.rank).then(|| 1.0 / d))
                 .collect(),
             offsets: found.offsets.clone(),
+            offset_sigmas: found.offset_sigmas.clone(),
             chi_square_reduced,
+            freedom: found.freedom,
+            misfit: misfit.is_some(),
             size,
             eta_range: eta.as_ref().map(range),
             eta_sigma: eta.as_ref().map(|eta| eta.sigma),

@@ -36,17 +36,19 @@ fn no_number<S: Sample>(samples: &[S], row: usize, shape: Shape) -> Option<Error
     )
 }
 
-/// Every row as it is read, by many threads; `of` is told the row and its samples.
+/// Every row as it is read, by many threads; `of` is told the row and its samples, which may be no numbers where they may be `missing`.
 fn rows<S: Sample, T: Send>(
     cube: &dyn Rows<S>,
     out: &mut [T],
     per_row: usize,
+    missing: bool,
     of: impl Fn(&[S], &mut [T]) + Sync,
 ) -> Result<()> {
     let shape = cube.shape();
     out.par_chunks_mut(per_row).enumerate().try_for_each_init(Vec::new, |buffer, (row, out)| {
         let samples = cube.read(row..row + 1, buffer)?;
-        if !samples.iter().fold(true, |all, sample| all & (*sample).into().is_finite())
+        if !missing
+            && !samples.iter().fold(true, |all, sample| all & (*sample).into().is_finite())
             && let Some(error) = no_number(samples, row, shape)
         {
             return Err(error);
@@ -61,8 +63,8 @@ pub(super) fn samples(cube: &Cube) -> Result<Vec<f64>> {
     let shape = cube.shape();
     let mut out = vec![0.0; shape.len()];
     match cube {
-        Cube::F32(cube) => rows(cube.as_ref(), &mut out, shape.row_len(), copied),
-        Cube::F64(cube) => rows(cube.as_ref(), &mut out, shape.row_len(), copied),
+        Cube::F32(cube) => rows(cube.as_ref(), &mut out, shape.row_len(), false, copied),
+        Cube::F64(cube) => rows(cube.as_ref(), &mut out, shape.row_len(), false, copied),
     }?;
     Ok(out)
 }
@@ -71,7 +73,7 @@ fn copied<S: Sample>(samples: &[S], out: &mut [f64]) {
     out.iter_mut().zip(samples).for_each(|(out, sample)| *out = (*sample).into());
 }
 
-/// Two numbers made of each sample, given with its band.
+/// Two numbers made of each sample, given with its band; NaN of samples that are no numbers.
 pub(super) fn pairs(cube: &Cube, of: impl Fn(usize, f64) -> [f32; 2] + Sync) -> Result<Vec<[f32; 2]>> {
     fn each<S: Sample>(
         cube: &dyn Rows<S>,
@@ -80,10 +82,11 @@ pub(super) fn pairs(cube: &Cube, of: impl Fn(usize, f64) -> [f32; 2] + Sync) -> 
     ) -> Result<()> {
         let shape = cube.shape();
         let bands = shape.bands();
-        rows(cube, out, shape.row_len(), |samples, out| {
+        rows(cube, out, shape.row_len(), true, |samples, out| {
             for (samples, out) in samples.chunks(bands).zip(out.chunks_mut(bands)) {
                 for (band, (sample, out)) in samples.iter().zip(out).enumerate() {
-                    *out = of(band, (*sample).into());
+                    let sample: f64 = (*sample).into();
+                    *out = if sample.is_finite() { of(band, sample) } else { [f32::NAN; 2] };
                 }
             }
         })
@@ -119,24 +122,24 @@ pub(super) fn means(cube: &Cube) -> Result<(Vec<f64>, Vec<f64>)> {
 }
 
 /// A row of a cube as numbers.
-fn row_of(cube: &Cube, row: usize, out: &mut Vec<f64>) -> Result<()> {
-    fn of<S: Sample>(cube: &dyn Rows<S>, row: usize, out: &mut Vec<f64>) -> Result<()> {
+fn row_of(cube: &Cube, row: usize, missing: bool, out: &mut Vec<f64>) -> Result<()> {
+    fn of<S: Sample>(cube: &dyn Rows<S>, row: usize, missing: bool, out: &mut Vec<f64>) -> Result<()> {
         let mut buffer = Vec::new();
         let samples = cube.read(row..row + 1, &mut buffer)?;
         out.clear();
         out.extend(samples.iter().map(|sample| -> f64 { (*sample).into() }));
-        match out.iter().fold(true, |all, sample| all & sample.is_finite()) {
+        match missing || out.iter().fold(true, |all, sample| all & sample.is_finite()) {
             true => Ok(()),
             false => no_number(samples, row, cube.shape()).map_or(Ok(()), Err),
         }
     }
     match cube {
-        Cube::F32(cube) => of(cube.as_ref(), row, out),
-        Cube::F64(cube) => of(cube.as_ref(), row, out),
+        Cube::F32(cube) => of(cube.as_ref(), row, missing, out),
+        Cube::F64(cube) => of(cube.as_ref(), row, missing, out),
     }
 }
 
-/// Three numbers made of every sample of a scene and those of the same place in other cubes; `place` puts the name of the cube, 0 the
+/// Three numbers made of every sample of a scene and those of the same place in other cubes, NaN where the scene has no number; `place` puts the name of the cube, 0 the
 /// scene, on an error.
 pub(super) fn beside(
     scene: &Cube,
@@ -150,13 +153,17 @@ pub(super) fn beside(
     let rows = a.par_chunks_mut(per_row).zip(b.par_chunks_mut(per_row)).zip(c.par_chunks_mut(per_row));
     let start = || (Vec::new(), vec![Vec::new(); others.len()], vec![0.0; others.len()]);
     rows.enumerate().try_for_each_init(start, |(own, beside, values), (row, ((a, b), c))| {
-        row_of(scene, row, own).map_err(|error| place(0, error))?;
+        row_of(scene, row, true, own).map_err(|error| place(0, error))?;
         for (k, (cube, samples)) in others.iter().zip(beside.iter_mut()).enumerate() {
-            row_of(cube, row, samples).map_err(|error| place(k + 1, error))?;
+            row_of(cube, row, false, samples).map_err(|error| place(k + 1, error))?;
         }
         for (i, sample) in own.iter().enumerate() {
             values.iter_mut().zip(beside.iter()).for_each(|(value, samples)| *value = samples[i]);
-            [a[i], b[i], c[i]] = of(i % shape.bands(), *sample, values);
+            if sample.is_finite() {
+                [a[i], b[i], c[i]] = of(i % shape.bands(), *sample, values);
+            } else {
+                [a[i], b[i], c[i]] = [f32::NAN; 3];
+            }
         }
         Ok(())
     })?;

@@ -236,7 +236,7 @@ fn sizes_that_do_not_fit_are_found_at_opening() {
         ),
         (
             f4("(4,)", &[0; 16]),
-            "the array has 1 dimension; give [row][column][band], or [row][column] for one band",
+            "the array has 1 dimension; give [row][column][band]; a spectrum as [1][1][band]",
         ),
         (
             f4("()", &[0; 4]),
