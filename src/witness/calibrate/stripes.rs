@@ -13,6 +13,14 @@
 //! as a thin object along it would be, is left as it is: `left` names it. Both only of four bands or more, and not where stripes in all
 //! bands are asked for. Where a third of the lines of a band are striped, nothing tells the scene from the stripes, and nothing is made.
 //!
+//! What may be the scene's is left and named (`kept`): a line of which a part, an end or a sixteenth, is nearer to its neighbours than to
+//! its gain and offset; one that is off the same way in the band beside, as a feature of a material is; what lies within three lines of a
+//! step that its band alone has, as lines striped side by side or the edge of a material make it. A line of one value, but for noise, where
+//! the lines beside vary, is dead: it stands for no other and stays as it is. Lines that were set apart until none was left to compare with
+//! are refused. Where all bands are off, lines side by side or at the ends of the image are not told from the scene and are not seen.
+//!
+//! An edge is where the straight lines through the two clean lines of each side do not meet; a slope is none, and both sides count.
+//!
 //! Errors: of the fit, not below those of the same fit to clean lines, which truly differ from their neighbours too, and a quarter more,
 //! for lines beside may be striped by less than is seen. An error of a line is common to all its pixels: σ(x)² = (σ_p² + σ_g²(x − x₀)²)/g²
 //! at a level x, least at the level x₀ of the line.

@@ -97,8 +97,8 @@ pub fn text(result: &StripesFound) -> String {
     let most = found.detectable.iter().copied().fold(0.0, f64::max);
     let _ = writeln!(
         out,
-        "  lines, each alone among clean ones, that are off by less than {} (unit of the cube; {} in the worst band) are not seen and stay as they \
-         are; lines side by side and those at the ends of the image are not seen whatever they are off by where all bands are",
+        "  lines, each alone among clean ones, that are off by less than {} (unit of the cube; {} in the worst band) are not seen and stay as they are\n  \
+         nor are lines side by side, or at the ends of the image, that are off in all bands: nothing tells them from the scene",
         significant(least, 2),
         significant(most, 2)
     );

@@ -172,7 +172,7 @@ impl Display for Warning {
             ),
             Self::LinesDead { axis, lines } => write!(
                 f,
-                "{} hold one value alone: nothing of the scene is in them, and they were left as they are",
+                "{} hold one value alone where the lines beside vary: nothing of the scene is in them, and they were left as they are",
                 places(axis, lines)
             ),
             Self::LinesMissing { axis, lines } => {

@@ -79,7 +79,7 @@ pub enum Why {
     NeighbouringBands,
     /// Its band has a step there that other bands do not have: lines striped side by side, or the edge of a material.
     BesideStep,
-    /// All its samples are the same: nothing of the scene is in them.
+    /// All its samples are the same, but for noise, where those of lines beside are not: nothing of the scene is in them.
     Dead,
     /// It has too few samples.
     Missing,

@@ -17,6 +17,9 @@ const EDGE: f64 = 4.0;
 const PARTS: usize = 16;
 const APART: f64 = 5.0;
 const NEARER: f64 = 0.6;
+/// Scatter of lines, over that of a segment, from which on they vary; share of it below which a line between them does not.
+const CONTRAST: f64 = 6.0;
+const FLAT: f64 = 0.2;
 /// Rounding of samples of 32 bits, relative.
 const ROUNDING: f64 = 1e-7;
 
@@ -103,16 +106,15 @@ struct Lines {
 /// Looks at a band.
 pub(super) fn striped(segments: &Segments, band: usize, prior: f64) -> Band {
     let mut means = segments.of_band(band);
-    let dead = segments.flat(band);
+    let mut dead = segments.flat(band);
     let there = |line: &Vec<f64>| 2 * line.iter().filter(|mean| mean.is_finite()).count() >= line.len();
-    let clean: Vec<bool> = means.iter().zip(&dead).map(|(line, dead)| there(line) && !dead).collect();
+    let mut clean: Vec<bool> = means.iter().zip(&dead).map(|(line, dead)| there(line) && !dead).collect();
     let own = |(line, dead): (&mut Vec<f64>, &bool)| {
         if *dead {
             line.fill(f64::NAN);
         }
     };
     means.iter_mut().zip(&dead).for_each(own);
-    let usable = clean.iter().filter(|clean| **clean).count();
     let finite = means.iter().flatten().copied().filter(|mean| mean.is_finite());
     let level = median(&mut finite.collect::<Vec<f64>>());
     let mut within: Vec<f64> = means
@@ -124,6 +126,11 @@ pub(super) fn striped(segments: &Segments, band: usize, prior: f64) -> Band {
         })
         .collect();
     let least = median(&mut within).max(ROUNDING * level.abs());
+    for line in without_contrast(&means, least) {
+        (dead[line], clean[line]) = (true, false);
+        means[line].fill(f64::NAN);
+    }
+    let usable = clean.iter().filter(|clean| **clean).count();
     let mut lines = Lines { means, clean, least, prior };
     let mut flagged = vec![false; segments.lines];
     for _ in 0..ROUNDS {
@@ -153,6 +160,20 @@ pub(super) fn striped(segments: &Segments, band: usize, prior: f64) -> Band {
     };
     band.again(&[]);
     band
+}
+
+/// Lines that do not vary where both lines beside them do: nothing of the scene is in them.
+fn without_contrast(means: &[Vec<f64>], least: f64) -> Vec<usize> {
+    let is = |(l, three): (usize, &[Vec<f64>])| {
+        let [above, own, below] = three else { return None };
+        let [above, own, below] = [above, own, below].map(|line| {
+            let there: Vec<f64> = line.iter().copied().filter(|mean| mean.is_finite()).collect();
+            scatter(&there)
+        });
+        let beside = above.min(below);
+        (beside > CONTRAST * least && own < FLAT * beside).then_some(l + 1)
+    };
+    means.windows(3).enumerate().filter_map(is).collect()
 }
 
 /// When a line was set apart.
