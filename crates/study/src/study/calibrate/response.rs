@@ -346,13 +346,14 @@ impl ResponseStudy {
         let counts = subtracted(&scene, &reference, values, filters).map_err(at(source, "scene"))?;
         let lines: Vec<FilterRadiance> =
             (0..filters).map(|q| found.radiance(wheel, q, 0.0, reference_k)).collect();
-        let (mut mean, mut square) = (vec![0.0; filters], vec![0.0; filters]);
+        let mut ends = vec![[f64::INFINITY, f64::NEG_INFINITY]; filters];
         for pixel in counts.chunks(filters) {
-            for (q, count) in pixel.iter().enumerate() {
-                mean[q] += count / pixels as f64;
-                square[q] += count * count / pixels as f64;
+            for (end, count) in ends.iter_mut().zip(pixel) {
+                *end = [end[0].min(*count), end[1].max(*count)];
             }
         }
+        // Errors that grow with what is above the reference are largest at an end of the scene: each filter has the largest.
+        let most: Vec<f64> = ends.iter().map(|[low, high]| low.abs().max(high.abs())).collect();
         let radiance = counts
             .iter()
             .enumerate()
@@ -363,12 +364,13 @@ impl ResponseStudy {
         planck::photon_radiance_and_slope_into(&self.centres_cm1, reference_k, &mut base, &mut slope);
         let error_k = self.scenario.scene.as_ref().map_or(0.0, |spec| spec.reference_error_k);
         let common = |q: usize| {
-            let by_response = found.radiance(wheel, q, mean[q], reference_k).sigma_common;
-            let by_centre = lines[q].per_count * square[q].sqrt() * sigma_centre;
+            let at = |count: f64| found.radiance(wheel, q, count, reference_k).sigma_common;
+            let by_response = at(ends[q][0]).max(at(ends[q][1]));
+            let by_centre = lines[q].per_count * most[q] * sigma_centre;
             let by_reference = lines[q].per_count * wheel.counts(q, &found.values, &slope) * error_k;
             by_response.hypot(by_centre).hypot(by_reference)
         };
-        let own = |q: usize| lines[q].per_count * noise.hypot(square[q].sqrt() * sigma_eta);
+        let own = |q: usize| lines[q].per_count * noise.hypot(most[q] * sigma_eta);
         Ok(FilterRadiances {
             shape,
             radiance: radiance.collect(),
