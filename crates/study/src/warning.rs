@@ -159,6 +159,11 @@ pub enum Warning {
         axis: &'static str,
         lines: Vec<usize>,
     },
+    /// Lines of single bands that look striped and have no clean one near.
+    LinesWithoutReference {
+        axis: &'static str,
+        lines: Vec<[usize; 2]>,
+    },
     /// Stripes of a cube of so many bands.
     StripesOfFewBands {
         bands: usize,
@@ -521,6 +526,7 @@ impl Warning {
             Self::LinesBesideSteps { .. } => Code::LinesBesideSteps,
             Self::LinesDead { .. } => Code::LinesDead,
             Self::LinesMissing { .. } => Code::LinesMissing,
+            Self::LinesWithoutReference { .. } => Code::LinesWithoutReference,
             Self::StripesInAllBands { .. } => Code::StripesInAllBands,
             Self::StripesOfFewBands { .. } => Code::StripesOfFewBands,
             Self::BlackbodyNotEven { .. } => Code::BlackbodyNotEven,

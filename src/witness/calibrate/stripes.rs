@@ -102,7 +102,9 @@ pub fn find_stripes<S: Sample>(cube: &dyn Rows<S>, sought: &Sought) -> Result<De
     }
     let told: Vec<Told> = (0..bands).into_par_iter().filter_map(|band| told(&looked, band, shared)).collect();
     for (band, (seen, told)) in looked.iter().zip(&told).enumerate() {
-        if told.at_first_sight as f64 > MOST * seen.usable as f64 || seen.without_reference > 0 {
+        if told.at_first_sight as f64 > MOST * seen.usable as f64
+            || seen.without_reference as f64 > MOST * seen.usable as f64
+        {
             let found = format!(
                 "stripes in {} of {} {name} of band {band} (counted from 0), too many to tell them from the scene",
                 told.at_first_sight.max(seen.without_reference),

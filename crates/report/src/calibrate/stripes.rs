@@ -120,6 +120,7 @@ fn left(result: &StripesFound) -> Table {
             Why::NeighbouringBands => "off in neighbouring bands",
             Why::BesideStep => "beside a step",
             Why::Dead => "one value",
+            Why::WithoutReference => "no clean line near",
             Why::Missing => "no samples",
         };
         table.push(vec![kept.line.to_string(), kept.band.to_string(), why.to_owned(), number(kept.off)]);

@@ -94,6 +94,8 @@ catalogue! {
     LinesBesideSteps = "lines-beside-steps", "Look at these lines; correct them by a uniform source where they are stripes.";
     /// Lines of a band hold one value alone: nothing of the scene is in them, and they were left as they are.
     LinesDead = "lines-dead", "Set their samples to NaN, or leave the band out.";
+    /// Lines of a band look striped, have no clean line near to be compared with, and were left as they are.
+    LinesWithoutReference = "lines-without-reference", "Correct them by a uniform source, or leave the band out.";
     /// Lines of a band have no samples, or less than half of them, and were not looked at.
     LinesMissing = "lines-missing", "Nothing; or look where the samples went.";
     /// Lines that are off in most bands were taken as striped since that was asked for: thin objects along them look the same.

@@ -175,6 +175,11 @@ impl Display for Warning {
                 "{} hold one value alone where the lines beside vary: nothing of the scene is in them, and they were left as they are",
                 places(axis, lines)
             ),
+            Self::LinesWithoutReference { axis, lines } => write!(
+                f,
+                "{} look striped and have no clean line near to be compared with; they were left as they are",
+                places(axis, lines)
+            ),
             Self::LinesMissing { axis, lines } => {
                 write!(f, "{} have less than half of their samples and were not looked at", places(axis, lines))
             }

@@ -81,6 +81,8 @@ pub enum Why {
     BesideStep,
     /// All its samples are the same, but for noise, where those of lines beside are not: nothing of the scene is in them.
     Dead,
+    /// It looks striped, and has no clean line near that it could be compared with.
+    WithoutReference,
     /// It has too few samples.
     Missing,
 }

@@ -7,13 +7,16 @@ use super::steps::{own_steps, steps};
 /// Lines from a step within which nothing is a stripe: those that the lines at the step are compared with.
 const NEAR: usize = 3;
 
-/// Lines that hold nothing of the scene.
+/// Lines that hold nothing of the scene, and those that nothing is left to compare with.
 pub(super) fn without_scene(bands: &[Band], lines: usize) -> Vec<Kept> {
     let of_band = |(band, own): (usize, &Band)| {
         let why = |line: usize| {
             let there = own.means(line).iter().filter(|mean| mean.is_finite()).count();
             if own.dead.get(line) == Some(&true) {
                 return Some(Why::Dead);
+            }
+            if own.is_alone(line) {
+                return Some(Why::WithoutReference);
             }
             (2 * there < own.means(line).len()).then_some(Why::Missing)
         };

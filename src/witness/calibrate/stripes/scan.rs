@@ -84,6 +84,12 @@ impl Band {
         self.lines.means.get(line).map_or(&[], Vec::as_slice)
     }
 
+    /// Whether a line was set apart, and has nothing left to compare it with.
+    pub(super) fn is_alone(&self, line: usize) -> bool {
+        self.look.get(line).is_some_and(|look| *look != Look::None)
+            && matches!(self.fits.get(line), Some(None))
+    }
+
     /// How far a line that looks striped, or any, is off; 0 of a clean one.
     pub(super) fn offset(&self, line: usize, any: bool) -> f64 {
         let own = any || self.candidate.get(line).copied().unwrap_or(false);

@@ -122,7 +122,14 @@ impl StripesStudy {
             let own = destriped.kept.iter().filter(|kept| kept.why == why);
             own.map(|kept| [kept.line, kept.band]).collect()
         };
-        for why in [Why::InPart, Why::NeighbouringBands, Why::BesideStep, Why::Dead, Why::Missing] {
+        for why in [
+            Why::InPart,
+            Why::NeighbouringBands,
+            Why::BesideStep,
+            Why::WithoutReference,
+            Why::Dead,
+            Why::Missing,
+        ] {
             let lines = kept(why);
             if lines.is_empty() {
                 continue;
@@ -132,6 +139,7 @@ impl StripesStudy {
                 Why::NeighbouringBands => Warning::LinesOffInNeighbouringBands { axis, lines },
                 Why::BesideStep => Warning::LinesBesideSteps { axis, lines },
                 Why::Dead => Warning::LinesDead { axis, lines },
+                Why::WithoutReference => Warning::LinesWithoutReference { axis, lines },
                 Why::Missing => Warning::LinesMissing { axis, lines },
             });
         }
