@@ -223,7 +223,7 @@ impl Night {
         let mut table = Table::new(header);
         let names = self.names();
         for (i, thermal) in self.thermal.iter().enumerate() {
-            if i / self.columns() % TABLED != 0 || i % self.columns() % TABLED != 0 {
+            if [i / self.columns(), i % self.columns()].iter().any(|at| !at.is_multiple_of(TABLED)) {
                 continue;
             }
             let of = |(_, map): &(&str, &[u8])| {

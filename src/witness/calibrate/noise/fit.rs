@@ -128,7 +128,7 @@ fn solved(bins: &[Bin], averaged: f64, spread: bool) -> Result<[f64; 3], NoLine>
     if !(v0 > 0.0 && v0.is_finite()) {
         return Err(NoLine::AllTexture);
     }
-    if !(scale > 0.0) {
+    if scale.is_nan() || scale <= 0.0 {
         return Err(one_level);
     }
     // About the middle, in units of the spread of the means and of the mean variance.

@@ -6,5 +6,5 @@ use crate::study::Warning;
 /// Temperatures that are taken as exact since nothing is said of them.
 pub(super) fn uncertainty_not_stated(specs: &[BlackbodySpec]) -> Option<Warning> {
     let silent: Vec<usize> = (0..specs.len()).filter(|k| specs[*k].uncertainty_k.is_none()).collect();
-    (!silent.is_empty()).then(|| Warning::UncertaintyNotStated { blackbodies: silent, of: specs.len() })
+    (!silent.is_empty()).then_some(Warning::UncertaintyNotStated { blackbodies: silent, of: specs.len() })
 }

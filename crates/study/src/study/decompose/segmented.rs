@@ -87,7 +87,7 @@ pub(super) fn parts(
             let Some(places) = places else {
                 let known = names.iter().chain(classes.iter().map(|(class, _)| class));
                 let known: Vec<&str> = known.map(String::as_str).collect();
-                return Err((key, Error::unknown_name("material of the library", name, known.into_iter())));
+                return Err((key, Error::unknown_name("material of the library", name, known)));
             };
             let enclosed = spec.enclosed.contains(name);
             for material in places {
