@@ -11,7 +11,7 @@ use std::fs;
 const ROWS: usize = 24;
 const COLUMNS: usize = 40;
 const BANDS: usize = 15;
-const ELECTRONS: f64 = 3000.0;
+const ELECTRONS: f64 = 20_000.0;
 
 const DECOMPOSITION: &str = r#"[cube]
 data = "frame_1.npy"
@@ -154,7 +154,7 @@ fn stripes_are_taken_out_and_the_rest_stays() {
     let folder = Folder::with("[cube]\ndata = \"cube.npy\"\n[stripes]\naxis = \"rows\"\n");
     let (means, _) = wall();
     let mut samples = drawn(&means, 0);
-    for (row, band) in [(5, 3), (11, 7), (12, 7), (18, 0)] {
+    for (row, band) in [(5, 3), (11, 7), (16, 7), (18, 0)] {
         for column in 0..COLUMNS {
             let sample = &mut samples[(row * COLUMNS + column) * BANDS + band];
             *sample = 1.03 * *sample + 2e4;
@@ -168,7 +168,7 @@ fn stripes_are_taken_out_and_the_rest_stays() {
         .iter()
         .map(|one| ["line", "band"].map(|key| one[key].as_u64().unwrap()))
         .collect();
-    assert_eq!(lines, [[5, 3], [11, 7], [12, 7], [18, 0]]);
+    assert_eq!(lines, [[5, 3], [11, 7], [16, 7], [18, 0]]);
     let cube = Cube::open(&folder.path().join("out/destriped.npy"), None).unwrap();
     let Cube::F64(rows) = cube else { panic!("the samples have another type") };
     let mut buffer = Vec::new();
@@ -204,7 +204,7 @@ fn mistakes_are_one_message() {
         .collect();
     written(&folder, "filled.npy", BANDS, &filled);
     for (arguments, message) in [
-        (["noise", "noise.toml"], "noise.toml:2: cube.data[1]"),
+        (["noise", "noise.toml"], "none.npy: cube.data[1]: cannot read the cube"),
         (
             ["noise", "two_bands.npy"],
             "two_bands.npy: a single frame of 2 band(s); give two or more frames of the same scene",

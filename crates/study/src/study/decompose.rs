@@ -1,5 +1,6 @@
 //! A heat cube decomposed: names and files looked up, the maps, and what they are worth where the truth is known.
 
+mod categories;
 mod looked_up;
 mod results;
 mod segmented;

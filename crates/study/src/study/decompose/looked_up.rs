@@ -1,6 +1,6 @@
 //! Names and files of a decomposition scenario looked up: cube, bands, library, spectra of the surroundings, truth.
 
-use super::segmented::parts;
+use super::categories::parts;
 use super::truth::Truth;
 use crate::scenario::{DecomposeScenario, MaterialRef, Spread};
 use crate::study::Warning;
