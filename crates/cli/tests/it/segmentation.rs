@@ -59,7 +59,7 @@ fn with(scenario: &str) -> Folder {
         counts.extend(nodes.iter().map(|nu| {
             let e = emissivity(material, *nu);
             let signal = e * photon_radiance(*nu, kelvin) + (1.0 - e) * photon_radiance(*nu, 263.15);
-            if *letter == b'x' { f64::NAN } else { 1e-13 * 20.0 * signal }
+            if *letter == b'x' { f64::NAN } else { 1e-13 * signal }
         }));
     }
     let (rows, columns) = (PICTURE.len(), PICTURE[0].len());
@@ -131,7 +131,7 @@ fn what_is_wrong_is_said_with_its_line() {
         ("labels = [3]", "labels = [3.5]", "category[1].labels[0]: "),
         ("smallest_object = 2", "smallest_object = 0", "segmentation.smallest_object: "),
         ("smoothing = false", "rule = \"best\"", "segmentation.rule: "),
-        ("enclosed = [\"pane\"]", "surfaces = [\"wall\"]", "category[0].surfaces: "),
+        ("enclosed = [\"pane\"]", "surfaces = [\"wall\"]", "category[0]: there is no key `surfaces`"),
     ] {
         assert!(SCENARIO.contains(from), "{from}");
         let folder = with(&SCENARIO.replacen(from, to, 1));
