@@ -144,10 +144,10 @@ fn stripes_are_found_and_their_errors_hold() {
     );
     // Without the quarter that is added for stripes beside that are too small to be seen: 0.896.
     assert!((0.9..=0.995).contains(&share), "{share}");
-    // Of lines in ten that are striped some stand side by side: those are left, some of them unnamed, and a clean one between them is
-    // taken for a stripe now and then (measured: 37 of 2064).
+    // Where one line in ten is striped some stand side by side: those are left and named, and a clean one between them is taken for a
+    // stripe now and then (measured: 37 of 2064).
     assert!(
-        (missed as f64) < 0.27 * all && (false_ones as f64) < 0.025 * all,
+        (missed as f64) < 0.03 * all && (false_ones as f64) < 0.025 * all,
         "{missed} {false_ones} of {all}"
     );
     assert!(after < 0.02 * before, "{after} {before}");
