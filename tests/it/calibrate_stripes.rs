@@ -194,6 +194,35 @@ fn stripes_that_fill_the_cube_are_refused_and_thin_objects_left() {
     assert!(seen.stripes.iter().all(|one| one.line != 40 && one.sigma.is_finite() && one.gain.is_finite()));
 }
 
+/// Every line of every band with a gain of its own: none stands out, and the contrast along the lines hides it.
+#[test]
+fn gains_of_all_lines_are_refused() {
+    for (rows, deviation) in [(24, 0.1), (60, 0.02), (60, 0.3), (200, 0.05)] {
+        for seed in 0..5 {
+            let (columns, bands) = (40, 15);
+            let mut random = generator(seed, 7);
+            let gains: Vec<f64> =
+                (0..rows * bands).map(|_| 1.0 + deviation * random.random_range(-1.0..1.0)).collect();
+            let mut samples = Vec::new();
+            for row in 0..rows {
+                for column in 0..columns {
+                    let level = 1.0 + column as f64 / columns as f64 + 0.1 * (row as f64 / 9.0).sin();
+                    for band in 0..bands {
+                        let mean = 1e4 * (1.0 + 0.03 * band as f64) * level;
+                        samples.push(gains[row * bands + band] * (mean + 50.0 * normal(&mut random)));
+                    }
+                }
+            }
+            let cube = MemoryCube::new(Shape::new(rows, columns, bands).unwrap(), samples).unwrap();
+            let refused = find_stripes(&cube, &SOUGHT).unwrap_err().to_string();
+            assert!(
+                refused.contains("too many to tell them from the scene"),
+                "{rows} {deviation}: {refused}"
+            );
+        }
+    }
+}
+
 #[test]
 fn what_has_no_stripes_to_see_is_refused() {
     let refused = |rows, columns, samples: Vec<f64>| {

@@ -29,6 +29,7 @@
 
 mod apply;
 mod common;
+mod filled;
 mod fit;
 mod found;
 mod keep;
@@ -43,6 +44,7 @@ use self::scan::{Band, striped};
 use self::segments::Segments;
 use crate::error::{Error, Result};
 use crate::ranging::cube::{Rows, Sample};
+use crate::words::significant;
 use rayon::prelude::*;
 
 /// Fewest lines, and pixels of a line.
@@ -88,6 +90,16 @@ pub fn find_stripes<S: Sample>(cube: &dyn Rows<S>, sought: &Sought) -> Result<De
             "no line has samples that are numbers",
             "give a cube that was measured",
         ));
+    }
+    let levels: Vec<f64> = looked.iter().map(|seen| seen.level).collect();
+    if let Some((band, step)) = filled::filled(&segments, &levels) {
+        let found = format!(
+            "{name} of band {band} (counted from 0) that differ from one to the next by {} % of their level, as those of the bands beside do \
+             not: stripes, too many to tell them from the scene",
+            significant(100.0 * step, 2)
+        );
+        let instead = "correct the cube by a uniform source first, or leave the band out";
+        return Err(Error::malformed(found, instead));
     }
     let shared = !sought.in_all_bands && bands >= TELLING;
     if shared {
@@ -135,7 +147,6 @@ pub fn find_stripes<S: Sample>(cube: &dyn Rows<S>, sought: &Sought) -> Result<De
         keep::beside_steps(&looked, lines, &left, &mut stripes, &mut kept);
     }
     kept.sort_by_key(|kept| (kept.line, kept.band));
-    let levels = looked.iter().map(|seen| seen.level).collect();
     Ok(Destriped { axis: sought.axis, lines, bands, stripes, left, kept, detectable, levels })
 }
 

@@ -10,6 +10,9 @@
 //! and η σ/√(n Q) common to all of them, of the n pixels about the centre. Noise in m makes η too small by a share of
 //! (1 − 1/blackbodies) σ² (readings)/(n Q), far below these.
 //!
+//! The paper has one η for all filters. Whether that holds the readings tell: χ² of what it leaves, C − C̄ − η (m − m̄), over σ². A share by
+//! which a filter's own η differs is an error of that filter's radiances that no deviation here holds.
+//!
 //! [`subtracted`]: (C − C⁰)/η (S51). Units: counts; η 1. Assumptions: noise of one deviation σ for all samples; blackbodies that are
 //! uniform; patterns that stay the same.
 
@@ -25,6 +28,10 @@ pub struct Vignette {
     pub sigma: f64,
     /// Relative deviation common to all pixels, by that of the centre.
     pub sigma_centre: f64,
+    /// χ² of what one η for all filters leaves of the readings, over its degrees of freedom; NaN without any.
+    pub chi_square_reduced: f64,
+    /// These degrees of freedom.
+    pub freedom: usize,
 }
 
 /// Pixels of an image about its centre: all within `half` rows and columns.
@@ -79,10 +86,26 @@ impl Vignette {
                     sum += (cube[start + q] - first[start + q]) * apart[q];
                 }
             }
-            sum / square
+            let eta = sum / square;
+            // What is left, each filter about its own mean.
+            let left = |q: usize| {
+                let off = |(cube, apart): (&Vec<f64>, &Vec<f64>)| {
+                    cube[start + q] - first[start + q] - eta * apart[q]
+                };
+                let offs: Vec<f64> = cubes.iter().zip(&apart).map(off).collect();
+                let mean = offs.iter().sum::<f64>() * inverse;
+                offs.iter().map(|off| (off - mean).powi(2)).sum::<f64>()
+            };
+            // Noise of the centre is in what is left too.
+            let var = sigma * sigma * (1.0 + eta * eta / centre.len() as f64);
+            (eta, (0..filters).map(left).sum::<f64>() / var)
         };
+        let each: Vec<(f64, f64)> = (0..pixels).into_par_iter().map(value).collect();
+        let freedom = pixels * (filters * (count - 1)).saturating_sub(1);
         Ok(Self {
-            values: (0..pixels).into_par_iter().map(value).collect(),
+            chi_square_reduced: each.iter().map(|(_, chi)| chi).sum::<f64>() / freedom as f64,
+            freedom,
+            values: each.into_iter().map(|(eta, _)| eta).collect(),
             sigma: sigma / square.sqrt(),
             sigma_centre: sigma / (square * centre.len() as f64).sqrt(),
         })
@@ -151,12 +174,20 @@ mod tests {
     fn errors_of_the_transmittance_are_as_stated() {
         let twin = FilterWheelTwin::prototype().unwrap();
         let size = [9, 11];
-        let (mut held, mut all) = (0.0, 0.0);
+        let (mut held, mut all, mut chi) = (0.0, 0.0, 0.0);
         for draw in 0..40 {
             let mut rng = generator(6, draw);
             let cubes: Vec<Vec<f64>> =
                 [308.15, 340.0, 380.0].iter().map(|t| twin.blackbody_cube(*t, size, 0.5, &mut rng)).collect();
             let found = Vignette::found(&cubes, 10, &centre(size, 1), 0.5).unwrap();
+            chi += found.chi_square_reduced / 40.0;
+            // A filter that transmits half a percent less at each step down.
+            let mut other = cubes.clone();
+            for cube in &mut other {
+                (0..99).for_each(|pixel| cube[pixel * 10 + 4] *= 1.0 - 0.005 * (pixel / 11) as f64);
+            }
+            let other = Vignette::found(&other, 10, &centre(size, 1), 0.5).unwrap();
+            assert!(other.chi_square_reduced > 3.0, "{}", other.chi_square_reduced);
             let about = centre(size, 1);
             let truth = about.iter().map(|p| twin.eta(size, *p)).sum::<f64>() / about.len() as f64;
             for (pixel, eta) in found.values.iter().enumerate().filter(|(p, _)| !about.contains(p)) {
@@ -166,5 +197,7 @@ mod tests {
             }
         }
         assert!((held / all - 0.95_f64).abs() < 0.024, "{}", held / all);
+        // 40 draws of 1881 degrees of freedom, and the centre's share of a tenth that 20 readings have in common.
+        assert!((chi - 1.0_f64).abs() < 0.02, "{chi}");
     }
 }

@@ -6,7 +6,6 @@ use hadar::ranging::cube::{Cube, Shape, write_npy};
 use hadar::simulate::draws::{Draws, generator};
 use hadar::statistics::Statistics;
 use rand::RngExt;
-use std::fs;
 
 const ROWS: usize = 24;
 const COLUMNS: usize = 40;
@@ -212,6 +211,10 @@ fn mistakes_are_one_message() {
         (["stripes", "two.toml"], "two.toml:2: cube.data: 2 cubes; write one"),
         (["stripes", "one_row.npy"], "one_row.npy: 1 rows of 40 pixels; stripes are seen in 8 rows or more"),
         (["stripes", "constant.npy"], "constant.npy: all samples of the cube are the same"),
+        (
+            ["stripes", "filled.npy"],
+            "stripes, too many to tell them from the scene; correct the cube by a uniform source first",
+        ),
         (["noise", "a.toml"], "this is a decomposition scenario"),
     ] {
         let refusal = folder.refusal(&["calibrate", arguments[0], arguments[1]]);

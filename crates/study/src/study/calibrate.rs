@@ -4,11 +4,13 @@ mod blackbody;
 mod noise;
 mod opened;
 mod response;
+mod scene_radiance;
 mod stated;
 mod stripes;
 mod whole;
 
-pub use blackbody::{BlackbodyFound, BlackbodyStudy, ChannelRow, SceneFound, Worst};
+pub use blackbody::{BlackbodyFound, BlackbodyStudy, ChannelRow, Worst};
 pub use noise::{NoiseFound, NoiseStudy};
 pub use response::{FilterRadiances, ResponseFound, ResponseRow, ResponseStudy};
+pub use scene_radiance::SceneFound;
 pub use stripes::{Samples, StripesFound, StripesStudy};

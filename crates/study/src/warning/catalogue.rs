@@ -74,6 +74,9 @@ catalogue! {
     /// Responses of channels are known to no better than a fifth of them.
     ResponseBarelyKnown = "response-barely-known",
         "Give blackbodies further apart, or better known, or read longer; leave out channels that see nothing.";
+    /// What filters transmit over the image differs from filter to filter by more than noise.
+    VignetteDiffers = "vignette-differs-by-filter",
+        "Use the pixels about the centre, or calibrate filter by filter with hadar calibrate blackbody and response = \"each-pixel\".";
     /// Readings of blackbodies behind filters lie off the response by more than their noise and temperatures allow.
     ResponseDoesNotFit = "response-does-not-fit",
         "Check the temperature of the blackbody that is named, the stated noise, and whether the response is linear.";
@@ -88,7 +91,7 @@ catalogue! {
     /// Lines of a band are off in a part of their length only, as an object along them would be, and were left as they are.
     LinesOffInPart = "lines-off-in-part", "Look at these lines; a striped one is off along its whole length.";
     /// Lines are off the same way in bands side by side, as a feature of a material would be, and were left as they are.
-    LinesOffInNeighbouringBands = "lines-off-in-neighbouring-bands",
+    LinesOffBeside = "lines-off-in-neighbouring-bands",
         "Look at these lines; correct them by a uniform source where they are stripes.";
     /// A band steps from line to line where other bands do not: lines striped side by side, or the edge of a material.
     LinesBesideSteps = "lines-beside-steps", "Look at these lines; correct them by a uniform source where they are stripes.";

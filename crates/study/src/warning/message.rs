@@ -119,6 +119,11 @@ impl Display for Warning {
                  do not hold there",
                 significant(100.0 * worst, 2)
             ),
+            Self::VignetteDiffers { chi_square } => write!(
+                f,
+                "one vignetting does not explain all filters (chi2/nu {}): away from the centre radiances err by more than is said",
+                significant(*chi_square, 3)
+            ),
             Self::ResponseDoesNotFit { chi_square, worst } => {
                 write!(
                     f,
@@ -159,7 +164,7 @@ impl Display for Warning {
                 "{} are off in a part of their length only, as an object along them would be; they were left as they are",
                 places(axis, lines)
             ),
-            Self::LinesOffInNeighbouringBands { axis, lines } => write!(
+            Self::LinesOffBeside { axis, lines } => write!(
                 f,
                 "{} are off the same way in bands side by side, as a feature of a material would be; they were left as they are",
                 places(axis, lines)

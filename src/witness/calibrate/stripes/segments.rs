@@ -132,7 +132,8 @@ impl Segments {
         }
     }
 
-    fn mean(&self, line: usize, segment: usize, band: usize) -> f64 {
+    /// Of one segment.
+    pub(super) fn mean(&self, line: usize, segment: usize, band: usize) -> f64 {
         self.means[(line * self.count + segment) * self.bands + band]
     }
 

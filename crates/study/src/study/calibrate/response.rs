@@ -248,6 +248,11 @@ impl ResponseStudy {
             .then(|| Vignette::found(&cubes, filters, &middle, scenario.noise))
             .transpose()
             .map_err(at(source, "blackbody"))?;
+        if let Some(eta) = &eta
+            && eta.chi_square_reduced > MISFIT.max(1.0 + 5.0 * (2.0 / eta.freedom.max(1) as f64).sqrt())
+        {
+            warnings.push(Warning::VignetteDiffers { chi_square: eta.chi_square_reduced });
+        }
         let scene = match &self.scene {
             Some([scene, reference]) => {
                 Some(self.radiances(&wheel, &found, eta.as_ref(), [scene, reference])?)

@@ -136,7 +136,7 @@ impl StripesStudy {
             }
             warnings.push(match why {
                 Why::InPart => Warning::LinesOffInPart { axis, lines },
-                Why::NeighbouringBands => Warning::LinesOffInNeighbouringBands { axis, lines },
+                Why::NeighbouringBands => Warning::LinesOffBeside { axis, lines },
                 Why::BesideStep => Warning::LinesBesideSteps { axis, lines },
                 Why::Dead => Warning::LinesDead { axis, lines },
                 Why::WithoutReference => Warning::LinesWithoutReference { axis, lines },
