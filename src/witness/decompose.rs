@@ -5,6 +5,7 @@
 //! their range; what the materials are worth beside each other is their posterior. Where the photons do not tell, it is said.
 //!
 //! * [`Setting`], [`Options`]: what is known; [`decompose()`]: a cube to [`Maps`];
+//! * [`widen`]: what an error that all bands and pixels have in common adds to the deviations;
 //! * [`Method`], [`decompose_by`]: methods that it is compared with; [`inverse_error`]: by how much one of them errs;
 //! * [`SpatialPrior`]: what neighbours tell about a pixel, where it is asked for;
 //! * [`distil()`]: what of the light on a surface is the sky's; [`texture_information()`]: what cube and textures tell of a place;
@@ -34,6 +35,7 @@ mod spatial;
 mod step;
 mod tangent;
 mod texture_information;
+mod together;
 
 pub use distil::{Distilled, Residue, Sky, distil};
 pub use inverse_error::{InverseError, inverse_error};
@@ -44,3 +46,4 @@ pub use model::{Light, MOST_SURROUNDINGS, Setting};
 pub use pixel::{CANDIDATE_SHARE, NO_FIT, NO_MATERIAL, Pixel, Spared, flag};
 pub use spatial::{Spatial, SpatialPrior};
 pub use texture_information::{TextureInformation, texture_information};
+pub use together::widen;

@@ -37,9 +37,10 @@ pub fn bundle(result: &BlackbodyFound, out: &Path) -> Result<Bundle> {
             bundle.add("sigma_pixel.npy", own);
         }
         // As `[cube] noise` of a decomposition takes it.
-        let mut table = Table::new(["band", "wavenumber_cm1", "sigma", "sigma_common"]);
+        let mut table = Table::new(["band", "wavenumber_cm1", "sigma", "sigma_common", "sigma_together"]);
         for (c, row) in result.channels.iter().enumerate() {
-            let numbers = [row.wavenumber_cm1, scene.sigma_noise[c], scene.sigma_common_most[c]].map(number);
+            let sigmas = [scene.sigma_noise[c], scene.sigma_common_most[c], scene.sigma_together[c]];
+            let numbers = [[row.wavenumber_cm1].as_slice(), &sigmas].concat().into_iter().map(number);
             table.push(std::iter::once(c.to_string()).chain(numbers).collect());
         }
         bundle.add_table("sigma.csv", table)?;

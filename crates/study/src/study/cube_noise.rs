@@ -1,8 +1,9 @@
 //! Noise of a cube by band, as `[cube] noise` states it: one deviation, or a table with a row for each band.
 //!
 //! A table has a column `sigma` (all noise of a sample; for radiances) or `electronic_sigma` (what is added to shot noise; for counts),
-//! and, where it is known, `sigma_common`: what all pixels are off by together, as errors of a calibration are. For the interval of one
-//! pixel that is one more deviation, independent of its noise: the squares add.
+//! and, where it is known, `sigma_common`: what all pixels are off by, each band for itself, as by noise of a calibration. For the interval of
+//! one pixel that is one more deviation, independent of its noise: the squares add. `sigma_together` is what all bands are off by together,
+//! as by temperatures of blackbodies: bands do not average it down, so that it is kept apart.
 
 use crate::scenario::decompose::{CubeNoise, CubeUnit};
 use hadar::error::{Error, Result, check};
@@ -13,19 +14,30 @@ use std::path::Path;
 /// Share of the way to the next band by which a row may be off its band: numbers are rounded, and centres are those of a response.
 const SAME_BAND: f64 = 0.25;
 
-/// Squared deviations of the bands, in the unit of the cube squared; `None` where nothing is said.
-pub(super) fn var_of_bands(
+/// Noise of the bands, in the unit of the cube.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct NoiseOfBands {
+    /// Squared deviations; none where nothing is said.
+    pub(super) var: Option<Vec<f64>>,
+    /// What all bands are off by together, a deviation; none where nothing is said.
+    pub(super) together: Option<Vec<f64>>,
+}
+
+/// As `[cube] noise` says.
+pub(super) fn of_bands(
     noise: Option<&CubeNoise>,
     unit: CubeUnit,
     centres_cm1: &[f64],
     widths_cm1: &[f64],
-) -> Result<Option<Vec<f64>>> {
+) -> Result<NoiseOfBands> {
     match noise {
-        None => Ok(None),
-        Some(CubeNoise::Uniform(sigma)) => Ok(Some(vec![sigma * sigma; centres_cm1.len()])),
+        None => Ok(NoiseOfBands::default()),
+        Some(CubeNoise::Uniform(sigma)) => {
+            Ok(NoiseOfBands { var: Some(vec![sigma * sigma; centres_cm1.len()]), together: None })
+        }
         Some(CubeNoise::File(path)) => {
             let column = if unit == CubeUnit::Radiance { "sigma" } else { "electronic_sigma" };
-            table(path, column, centres_cm1, widths_cm1).map(Some).map_err(|error| error.in_file(path))
+            table(path, column, centres_cm1, widths_cm1).map_err(|error| error.in_file(path))
         }
     }
 }
@@ -60,7 +72,7 @@ fn check_wavenumbers(grid: &Grid, centres_cm1: &[f64], widths_cm1: &[f64]) -> Re
     Ok(())
 }
 
-fn table(path: &Path, column: &str, centres_cm1: &[f64], widths_cm1: &[f64]) -> Result<Vec<f64>> {
+fn table(path: &Path, column: &str, centres_cm1: &[f64], widths_cm1: &[f64]) -> Result<NoiseOfBands> {
     let bands = centres_cm1.len();
     let grid =
         Grid::parse(&text_of_file(path, "read the noise of the bands")?).map_err(|error| match &error {
@@ -88,8 +100,8 @@ fn table(path: &Path, column: &str, centres_cm1: &[f64], widths_cm1: &[f64]) -> 
         });
     }
     check_wavenumbers(&grid, centres_cm1, widths_cm1)?;
-    let common = place("sigma_common");
-    let mut var = Vec::with_capacity(bands);
+    let (common, coherent) = (place("sigma_common"), place("sigma_together"));
+    let (mut var, mut together) = (Vec::with_capacity(bands), Vec::with_capacity(bands));
     for (i, (line, cells)) in grid.rows.iter().enumerate() {
         let cell = |place: usize| cells.get(place).copied().unwrap_or(f64::NAN);
         if let Some(band) = place("band")
@@ -108,6 +120,8 @@ fn table(path: &Path, column: &str, centres_cm1: &[f64], widths_cm1: &[f64]) -> 
             return Err(found.on_line(*line));
         }
         var.push(sigma * sigma + more * more);
+        together.push(coherent.map_or(Ok(0.0), |place| at("sigma_together", cell(place)))?);
     }
-    Ok(var)
+    let together = together.iter().any(|sigma| *sigma > 0.0).then_some(together);
+    Ok(NoiseOfBands { var: Some(var), together })
 }

@@ -17,7 +17,7 @@ pub use vision::{DistilledTexture, Vision, hues_deg};
 
 use self::results::summary;
 use super::Warning;
-use hadar::decompose::{LibraryError, Method, Options, Setting, decompose_by};
+use hadar::decompose::{LibraryError, Method, Options, Setting, decompose_by, widen};
 use hadar::demand::Skipping;
 use hadar::error::{Error, Result};
 
@@ -82,8 +82,12 @@ impl DecomposeStudy {
             let so_far = finished.fetch_add(more, std::sync::atomic::Ordering::Relaxed) + more;
             done(so_far, rows);
         };
-        let maps = decompose_by(method, &setting, &options, &self.cube, &progress)
+        let mut maps = decompose_by(method, &setting, &options, &self.cube, &progress)
             .map_err(|error| self.at_cube(error))?;
+        if let Some(together) = self.together.as_ref().filter(|_| method.has_likelihood()) {
+            widen(&setting, &mut maps, together)
+                .map_err(|error| error.at(self.scenario.place("cube.noise")))?;
+        }
         let seconds = start.elapsed().as_secs_f64();
         let mut warnings = self.warnings.clone();
         if library_error.is_none() && method.names_materials() {

@@ -1,6 +1,6 @@
 //! A heat cube with what is around it, its bands and its noise looked up: what every question about a cube begins with.
 
-use super::cube_noise::var_of_bands;
+use super::cube_noise::of_bands;
 use super::{bands, camera, camera_bands};
 use crate::scenario::decompose::{CubeUnit, HeatCube, LightSource};
 use crate::scenario::{BandsSpec, CameraSpec, MaterialRef, Source};
@@ -36,6 +36,8 @@ pub(super) struct Measured {
     pub(super) lights: Vec<Light>,
     pub(super) counts_per_radiance: Vec<f64>,
     pub(super) var_added: Vec<f64>,
+    /// What all bands and pixels are off by together, a deviation of each band in counts; none where nothing is said.
+    pub(super) together: Option<Vec<f64>>,
     /// What one count is in the unit of the cube.
     pub(super) units_per_count: f64,
 }
@@ -77,9 +79,9 @@ impl Said<'_> {
         let centres: Vec<f64> =
             bands.weigh(bands.nodes_cm1()).iter().zip(&widths).map(|(sum, width)| sum / width).collect();
         let mut units_per_count = 1.0;
-        let noise = var_of_bands(self.cube.noise.as_ref(), self.cube.unit, &centres, &widths)
+        let noise = of_bands(self.cube.noise.as_ref(), self.cube.unit, &centres, &widths)
             .map_err(at("cube.noise"))?;
-        let added = |band: usize| noise.as_ref().and_then(|var| var.get(band).copied()).unwrap_or(0.0);
+        let added = |band: usize| noise.var.as_ref().and_then(|var| var.get(band).copied()).unwrap_or(0.0);
         let (counts_per_radiance, var_added) = match self.cube.unit {
             CubeUnit::CountsPerPhotonRadiance(counts) => {
                 (widths.iter().map(|width| counts / width).collect(), (0..bands.len()).map(added).collect())
@@ -107,7 +109,9 @@ impl Said<'_> {
             lit(light, &cube, &bands, library, units_per_count).map_err(at(&key))
         });
         let lights = lights.collect::<Result<Vec<_>>>()?;
-        Ok(Measured { cube, bands, lights, counts_per_radiance, var_added, units_per_count })
+        let together =
+            noise.together.map(|sigma| sigma.into_iter().map(|sigma| sigma / units_per_count).collect());
+        Ok(Measured { cube, bands, lights, counts_per_radiance, var_added, together, units_per_count })
     }
 }
 

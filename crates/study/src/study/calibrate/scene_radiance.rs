@@ -42,6 +42,8 @@ pub struct SceneFound {
     pub sigma_noise: Vec<f64>,
     /// Deviation common to all pixels that it is no larger than in 95 of 100 of them, of every band.
     pub sigma_common_most: Vec<f64>,
+    /// What of it all bands have together, by the blackbodies' temperatures: the largest between their radiances, of every band.
+    pub sigma_together: Vec<f64>,
 }
 
 /// A calibrated spectrometer before a scene.
@@ -56,6 +58,16 @@ pub(super) struct Spectrometer<'a> {
 }
 
 impl Spectrometer<'_> {
+    fn together(&self) -> Vec<f64> {
+        let of = &self.found.blackbodies;
+        let one = |(c, nu): (usize, &f64)| {
+            let radiances = of.temperatures_k().iter().map(|t| planck::photon_radiance(*nu, *t));
+            let var = radiances.map(|s| self.found.bound.radiance(of, c, s).var_temperature);
+            joules(*nu) * var.fold(0.0, f64::max).sqrt()
+        };
+        self.wavenumbers_cm1.iter().enumerate().map(one).collect()
+    }
+
     /// With one response of each band for all pixels.
     pub(super) fn radiance(&self, cube: &Cube) -> Result<SceneFound> {
         let (found, of) = (self.found, &self.found.blackbodies);
@@ -95,6 +107,7 @@ impl Spectrometer<'_> {
             sigma_common_most_k: most_k(self.wavenumbers_cm1, &radiance, &sigma_common),
             sigma_noise: lines.iter().map(|line| (self.noise * line[1]).abs()).collect(),
             sigma_common_most: most(&sigma_common, shape, |c| lines[c][3].max(0.0).sqrt()),
+            sigma_together: self.together(),
             radiance,
             sigma_common,
         })
@@ -168,6 +181,7 @@ impl Spectrometer<'_> {
             shape,
             sigma_noise: sigma_noise.collect(),
             sigma_common_most: most(&sigma_common, shape, |c| lines[c][0] * lines[c][1].max(0.0).sqrt()),
+            sigma_together: self.together(),
             sigma_common_most_k: most_k(nu, &radiance, &sigma_common),
             missing,
             dead,

@@ -24,6 +24,8 @@ pub struct DecomposeStudy {
     pub(super) lights: Vec<Light>,
     pub(super) counts_per_radiance: Vec<f64>,
     pub(super) var_added: Vec<f64>,
+    /// What all bands and pixels are off by together, counts.
+    pub(super) together: Option<Vec<f64>>,
     /// What one count is in the unit of the cube.
     pub(super) units_per_count: f64,
     pub(super) truth: Option<Truth>,
@@ -52,7 +54,8 @@ impl DecomposeStudy {
         };
         let at = |key: &str| said.at(key);
         let measured = said.measured(library)?;
-        let Measured { cube, bands, lights, counts_per_radiance, var_added, units_per_count } = measured;
+        let Measured { cube, bands, lights, counts_per_radiance, var_added, together, units_per_count } =
+            measured;
         let mut warnings = Vec::new();
         let materials =
             materials(scenario, library, &mut warnings).map_err(|(key, error)| at(&key)(error))?;
@@ -127,6 +130,7 @@ impl DecomposeStudy {
             lights,
             counts_per_radiance,
             var_added,
+            together,
             units_per_count,
             truth,
             prior,
