@@ -49,7 +49,7 @@ pub struct Sky<'a> {
 pub struct Distilled {
     /// X̄ with its share of the residue.
     pub texture: Vec<f32>,
-    /// Its deviation; NaN where the material is not decided ([`Maps::is_decided`]).
+    /// Its deviation; NaN where several materials are left ([`Maps::candidates`]).
     pub sigma: Vec<f32>,
     /// X̄ of the model alone.
     pub of_model: Vec<f32>,
@@ -353,7 +353,7 @@ fn second(
         }
         let sigma = var.sqrt();
         // Were another material right, the texture would be another one altogether.
-        let claimed = if maps.is_decided(i) { sigma } else { f64::NAN };
+        let claimed = if maps.candidates.get(i) == Some(&1) { sigma } else { f64::NAN };
         pixels
             .push([texture, claimed, of_model, whole].map(|x| if sigma.is_finite() { x } else { f64::NAN }));
     });

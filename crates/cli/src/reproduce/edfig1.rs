@@ -244,7 +244,7 @@ fn plots(
         ),
     ];
     let subtitle = "Left camera, 200 us, 54 bands, all surroundings known. No value: sky, pixels of two surfaces, no material; \
-                    no deviation where it is not decided.";
+                    no deviation where several are left.";
     picture_plot(
         "distillation",
         "Texture distilled: what surfaces see of the sky's light",

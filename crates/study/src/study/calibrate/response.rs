@@ -244,7 +244,8 @@ impl ResponseStudy {
             sigma_readings_alone: Some(scale * known.sigma_free[j]).filter(|sigma| sigma.is_finite()),
         };
         let covariance = &found.factor * found.factor.transpose() * (scale * scale);
-        let eta = (middle.len() < shape.rows() * shape.columns())
+        // Also where all pixels are about the centre: then it is of each to their mean.
+        let eta = (shape.rows() * shape.columns() > 1)
             .then(|| Vignette::found(&cubes, filters, &middle, scenario.noise))
             .transpose()
             .map_err(at(source, "blackbody"))?;
