@@ -62,6 +62,8 @@ impl Vignette {
             let found = format!("pixel {beyond} about the centre, of {pixels}");
             return Err(Error::malformed(found, "name pixels of the image"));
         }
+        let mut within = vec![false; pixels];
+        centre.iter().for_each(|pixel| within[*pixel] = true);
         let inverse = 1.0 / count as f64;
         let mut apart = vec![vec![0.0; filters]; count];
         for (cube, apart) in cubes.iter().zip(&mut apart) {
@@ -96,8 +98,9 @@ impl Vignette {
                 let mean = offs.iter().sum::<f64>() * inverse;
                 offs.iter().map(|off| (off - mean).powi(2)).sum::<f64>()
             };
-            // Noise of the centre is in what is left too.
-            let var = sigma * sigma * (1.0 + eta * eta / centre.len() as f64);
+            // Noise of the centre is in what is left too; a pixel of the centre has a part of it in common with its own.
+            let common = if within[pixel] { 2.0 * eta } else { 0.0 };
+            let var = sigma * sigma * (1.0 + (eta * eta - common) / centre.len() as f64);
             (eta, (0..filters).map(left).sum::<f64>() / var)
         };
         let each: Vec<(f64, f64)> = (0..pixels).into_par_iter().map(value).collect();
