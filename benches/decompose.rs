@@ -6,10 +6,10 @@
 //! another program is a grid of 1 K with matrix products, 14 µs a spectrum on one thread at 0.80 right.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use hadar::cube::{Cube, MemoryCube, Shape};
 use hadar::decompose::{LibraryError, Light, Options, Setting, decompose};
 use hadar::material::Library;
 use hadar::planck::photon_radiance_into;
-use hadar::ranging::cube::{Cube, MemoryCube, Shape};
 use hadar::render::{self, Rig, Scene, StreetSpec};
 use hadar::segmentation::{Categories, Part, Rule, objects, segment, smoothed};
 use hadar::simulate::draws::{Draws, generator};

@@ -3,13 +3,13 @@
 //! Skin against aluminium over 536 bands (715 to 1250 cm⁻¹), surroundings at 20 °C, as in `distances.rs`. Every call gets
 //! another temperature than the call before, so that nothing may be kept from it.
 
+use hadar::cube::{Cube, MemoryCube, Shape};
 use hadar::fisher::{Nuisance, Unknowns};
 use hadar::identifiability::local::LocalSolver;
 use hadar::identifiability::multi::LocalMatrix;
 use hadar::identifiability::nearest::{NearestSolver, StateRange};
 use hadar::identifiability::ratio::RatioLaw;
 use hadar::planck::{photon_radiance_and_slope_into, photon_radiance_difference_into};
-use hadar::ranging::cube::{Cube, MemoryCube, Shape};
 use hadar::ranging::derivative::Derivative;
 use hadar::ranging::information::{Cell, Request, Window, information};
 use hadar::ranging::noise::{Joined, NoiseVariance};

@@ -5,7 +5,7 @@
 //! 5 × 5 windows), and 1080 × 1920 × 54 read from a file by rows, beside a copy of as many samples in memory.
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use hadar::ranging::cube::{Cube, MemoryCube, Shape, write_npy};
+use hadar::cube::{Cube, MemoryCube, Shape, write_npy};
 use hadar::ranging::derivative::Derivative;
 use hadar::ranging::information::decide::decide;
 use hadar::ranging::information::{Cell, Request, Window, information};

@@ -7,7 +7,7 @@
 //! of √(2/J) = 0.0318 pixels and of the depth of z² p √(2/J)/(b f) = 12.3 cm at 30 m. Five
 //! pixels a period find J to 2e-4.
 
-use hadar::ranging::cube::{MemoryCube, Shape};
+use hadar::cube::{MemoryCube, Shape};
 use hadar::ranging::depth::{Image, StereoGeometry, WindowInformation};
 use hadar::ranging::derivative::Derivative;
 use hadar::ranging::information::{Cell, Request, Window, information};

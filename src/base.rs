@@ -2,6 +2,7 @@
 
 pub mod allowed;
 pub(crate) mod correlation;
+pub mod cube;
 pub mod demand;
 pub mod error;
 pub mod file;

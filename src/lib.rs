@@ -34,6 +34,7 @@
 //! | base | [`error`], [`units`], [`statistics`] | errors with place and remedy; constants and quantities; laws of counts |
 //! | | [`sum`], [`root`], [`minimum`] | sums without growing error, crossings and minima in one dimension |
 //! | | [`lattice_points`], [`grid`] | points that fill the unit cube, files of numbers |
+//! | | [`cube`] | heat cubes, in memory or read by rows from files |
 //! | | [`demand`], [`allowed`], [`words`] | what a question needs and what of it was computed; ranges of figures; numbers in words |
 //! | physics | [`planck`] | photon radiance of a blackbody and its differences |
 //! | | [`spectrum`] | bands: grids, filters, integrals |
@@ -97,7 +98,8 @@ mod witness;
 
 pub use base::error::{Error, Result};
 pub use base::{
-    allowed, demand, error, file, grid, inputs, lattice_points, minimum, root, statistics, sum, units, words,
+    allowed, cube, demand, error, file, grid, inputs, lattice_points, minimum, root, statistics, sum, units,
+    words,
 };
 pub(crate) use base::{correlation, simd, wide};
 pub use limits::{calibration, fisher, identifiability, policy, ranging};

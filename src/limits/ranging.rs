@@ -4,7 +4,7 @@
 //! from the photons in it. With J the Fisher information about the window's x position (pixel⁻²), the disparity
 //! is known to δd ≥ √(1/J_left + 1/J_right) pixels (S41) and depth to δz = z²/(b f)·pitch·δd (S36).
 //!
-//! * [`cube`]: counts `[row][column][band]`, in memory or read by rows; [`noise`]: their electronic noise;
+//! * [`noise`]: electronic noise of the counts of a heat cube;
 //! * [`derivative`]: ∂N/∂x on a grid of pixels; [`information`]: J of every window (S37, Tables S4 and S5);
 //! * [`psf`]: what diffraction and the pixel's size leave of a point source; [`depth`]: δz, and what it demands;
 //! * [`reconstruction`]: the same for a scattered signal that is itself estimated from the bands;
@@ -17,7 +17,6 @@
 //! Source: paper eq. 3, S35–S43, Tables S4 and S5 (doi:10.1038/s41586-023-06174-6).
 
 pub mod air;
-pub mod cube;
 pub mod depth;
 pub mod derivative;
 pub mod information;

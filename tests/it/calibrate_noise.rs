@@ -1,7 +1,7 @@
 //! Photon transfer on twins whose noise is known.
 
 use hadar::calibrate::{Asked, Line, Transfer, photon_transfer};
-use hadar::ranging::cube::{MemoryCube, Rows, Shape};
+use hadar::cube::{MemoryCube, Rows, Shape};
 use hadar::simulate::draws::{Draws, generator};
 use hadar::statistics::Statistics;
 use rand::RngExt;

@@ -1,7 +1,7 @@
 //! Stripes put into twins and taken out again.
 
 use hadar::calibrate::{Axis, Destriped, Sought, Why, find_stripes};
-use hadar::ranging::cube::{MemoryCube, Shape};
+use hadar::cube::{MemoryCube, Shape};
 use hadar::simulate::draws::generator;
 use rand::RngExt;
 

@@ -1,11 +1,11 @@
 //! Heat cubes with known truth, made without this program, decomposed: shares, errors and intervals against what is known of them.
 
+use hadar::cube::{Cube, MemoryCube, Rows, Shape};
 use hadar::decompose::{LibraryError, Light, Maps, NO_MATERIAL, Options, Setting, decompose, flag};
 use hadar::demand::Skipping;
 use hadar::fisher::precision::PrecisionSolver;
 use hadar::fisher::{Counting, Nuisance, Unknowns};
 use hadar::planck::photon_radiance;
-use hadar::ranging::cube::{Cube, MemoryCube, Rows, Shape};
 use hadar::scene::{EnvironmentObject, Parameter, Surroundings};
 use hadar::spectrum::Bands;
 use serde_json::Value;
@@ -80,7 +80,7 @@ impl Reference {
     }
 }
 
-fn read<S: hadar::ranging::cube::Sample>(rows: &dyn Rows<S>) -> Vec<f64> {
+fn read<S: hadar::cube::Sample>(rows: &dyn Rows<S>) -> Vec<f64> {
     let mut buffer = Vec::new();
     rows.read(0..rows.shape().rows(), &mut buffer).unwrap().iter().map(|x| (*x).into()).collect()
 }

@@ -1,10 +1,10 @@
 //! The methods that a decomposition is compared with, against closed forms, and errors of the inverse functions against drawn counts.
 
+use hadar::cube::{Cube, MemoryCube, Shape};
 use hadar::decompose::{
     Light, Maps, Method, NO_MATERIAL, Options, Setting, decompose_by, flag, inverse_error,
 };
 use hadar::planck::{brightness_temperature, photon_radiance};
-use hadar::ranging::cube::{Cube, MemoryCube, Shape};
 use hadar::spectrum::Bands;
 
 const SCALE: f64 = 1e-12;

@@ -3,7 +3,7 @@
 //! `support/ranging.json`: counts of 7 × 7 × 3 samples, a window of 5 × 5 pixels around (3, 3), the four cells with and
 //! without electronic noise, computed in rational arithmetic.
 
-use hadar::ranging::cube::{Cube, MemoryCube, Shape};
+use hadar::cube::{Cube, MemoryCube, Shape};
 use hadar::ranging::derivative::Derivative;
 use hadar::ranging::information::{Cell, Request, Window, information};
 use hadar::ranging::noise::{Joined, NoiseVariance};

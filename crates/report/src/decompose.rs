@@ -14,8 +14,8 @@ pub use vision::{DARKEST, Vision, brightness, saturation};
 use crate::bundle::Bundle;
 use crate::plot::image_png;
 use crate::table::{Table, number};
+use hadar::cube::npy_map;
 use hadar::error::Result;
-use hadar::ranging::cube::npy_map;
 use hadar_study::study::decompose::{Decomposed, TruthFound};
 use std::path::Path;
 

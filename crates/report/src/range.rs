@@ -8,8 +8,8 @@ pub use text::text;
 
 use crate::bundle::Bundle;
 use crate::table::{Table, number, optional};
+use hadar::cube::{Shape, write_npy_to};
 use hadar::error::Result;
-use hadar::ranging::cube::{Shape, write_npy_to};
 use hadar_study::study::range::{Line, Ranging};
 use std::path::Path;
 

@@ -8,8 +8,8 @@ pub use text::text;
 
 use crate::bundle::Bundle;
 use crate::table::{Table, number};
+use hadar::cube::{mat_file, npy_map};
 use hadar::error::Result;
-use hadar::ranging::cube::{mat_file, npy_map};
 use hadar_study::scenario::decompose::{
     CategorySpec, CubeUnit, HeatCube, LibrarySpec, LightSource, PixelUnknown, TruthSpec,
 };

@@ -36,7 +36,7 @@ mod tests;
 
 pub use self::request::{Cell, InformationMap, Request, Window};
 
-use super::cube::Cube;
+use crate::cube::Cube;
 use crate::error::Result;
 
 /// J of every window whose centre lies in the rows asked for.

@@ -10,7 +10,7 @@
 
 mod read;
 
-use super::cube::{Cube, Shape};
+use crate::cube::{Cube, Shape};
 use crate::error::{Error, Result, check};
 
 /// Variance σ² of the electronic noise of each sample, counts².

@@ -18,8 +18,8 @@ mod entropy;
 pub use deviation::standard_deviation;
 pub use entropy::{global_entropy, local_entropy};
 
-use super::cube::{MemoryCube, Rows};
 use super::information::Window;
+use crate::cube::{MemoryCube, Rows};
 use crate::error::{Error, Result};
 use std::ops::Range;
 

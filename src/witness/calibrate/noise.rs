@@ -35,8 +35,8 @@ pub use fit::Line;
 use self::cells::{Cell, Cells, GROUPS, gathered};
 use self::fit::{Bin, NoLine, line, replicated};
 use self::start::Start;
+use crate::cube::{Rows, Sample};
 use crate::error::{Error, Result};
-use crate::ranging::cube::{Rows, Sample};
 use crate::simulate::efficiency::chi_square;
 use crate::words::significant;
 
@@ -137,7 +137,7 @@ pub fn photon_transfer<S: Sample>(frames: &[&dyn Rows<S>], asked: &Asked) -> Res
     })?;
     if let Some((i, other)) = frames.iter().enumerate().find(|(_, frame)| frame.shape() != shape) {
         let other = other.shape();
-        let of = |s: crate::ranging::cube::Shape| format!("{} x {} x {}", s.rows(), s.columns(), s.bands());
+        let of = |s: crate::cube::Shape| format!("{} x {} x {}", s.rows(), s.columns(), s.bands());
         let found = format!("frame {} is {}, the first one {}", i + 1, of(other), of(shape));
         return Err(Error::malformed(found, "give frames of one scene by one camera, all of one shape"));
     }

@@ -42,8 +42,8 @@ pub use found::{Axis, Destriped, Kept, Sought, Stripe, Why};
 use self::common::{Told, overlooked, told};
 use self::scan::{Band, striped};
 use self::segments::Segments;
+use crate::cube::{Rows, Sample};
 use crate::error::{Error, Result};
-use crate::ranging::cube::{Rows, Sample};
 use crate::words::significant;
 use rayon::prelude::*;
 

@@ -26,8 +26,8 @@ use super::maps::Maps;
 use super::model::Setting;
 use super::pixel::NO_MATERIAL;
 use super::tangent::{Tangent, Tangents, dot};
+use crate::cube::{Cube, Rows, Sample};
 use crate::error::{Error, Result};
-use crate::ranging::cube::{Cube, Rows, Sample};
 use rayon::prelude::*;
 
 /// Most scatterings; what comes later changes nothing unless everything is a mirror.

@@ -7,9 +7,9 @@ use super::model::{MOST_SURROUNDINGS, Model, Setting};
 use super::pixel::{NO_MATERIAL, Pixel, Spared, Task, flag};
 use super::screen::Screen;
 use super::spatial::{Kept, KeptRow, Spatial, SpatialPrior};
+use crate::cube::{Cube, Rows, Sample};
 use crate::demand::Skipping;
 use crate::error::{Error, Result};
-use crate::ranging::cube::{Cube, Rows, Sample};
 use rayon::prelude::*;
 
 /// Rows whose mean the bounds are laid out for.

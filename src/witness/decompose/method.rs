@@ -18,8 +18,8 @@ use super::inverse::Inverse;
 use super::maps::{ByRows, Maps, Options, Row, check_bands, decompose, is_signed};
 use super::model::{Model, Setting};
 use super::pixel::Pixel;
+use crate::cube::{Cube, Rows, Sample};
 use crate::error::{Error, Result};
-use crate::ranging::cube::{Cube, Rows, Sample};
 
 /// How material, temperature and lighting are found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]

@@ -12,8 +12,8 @@ use super::library_error::{Modes, Workplace};
 use super::model::{MOST_SURROUNDINGS, Model};
 use super::screen::{MOST_STARTS, Screen, Screened};
 use super::step::State;
+use crate::cube::Sample;
 use crate::demand::{Reason, Thing, Work};
-use crate::ranging::cube::Sample;
 use crate::simd::Aligned;
 use statrs::function::gamma::gamma_ur;
 

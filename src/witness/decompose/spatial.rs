@@ -18,8 +18,8 @@ pub(super) use kept::{Kept, KeptRow};
 
 use self::potts::Beliefs;
 use super::pixel::{CANDIDATE_SHARE, Pixel, Spared, Task, flag};
+use crate::cube::{Rows, Sample};
 use crate::error::{Error, Result};
-use crate::ranging::cube::{Rows, Sample};
 use rayon::prelude::*;
 
 /// Largest log-odds of a neighbour: e¹⁰ is certainty, and single precision still holds the product of four.

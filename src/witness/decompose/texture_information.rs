@@ -18,8 +18,8 @@ use super::distil::{Distilled, each_pixel, fits, fused, over_rows};
 use super::maps::Maps;
 use super::model::Setting;
 use super::tangent::{Tangent, Tangents, dot};
+use crate::cube::Cube;
 use crate::error::{Error, Result};
-use crate::ranging::cube::Cube;
 
 /// J of every pixel, `[row][column]`, pixel⁻². A first and a last column have none, nor has a reading where it is unknown: 0.
 #[derive(Debug, Clone, PartialEq, Default)]

@@ -58,9 +58,9 @@ pub fn widen(setting: &Setting<'_>, maps: &mut Maps, together: &[f64]) -> Result
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cube::{Cube, MemoryCube, Shape};
     use crate::decompose::{Options, decompose};
     use crate::planck::{photon_radiance, photon_radiance_slope};
-    use crate::ranging::cube::{Cube, MemoryCube, Shape};
     use crate::spectrum::Bands;
 
     /// A blackbody whose counts are those of 70 mK more in all bands: the temperature is off by as much, whatever the noise. Errors of other

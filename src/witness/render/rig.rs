@@ -5,8 +5,8 @@
 //! F = f/pixel is the focal length in pixels and whole numbers are pixel centres. Disparity: d = x_L − x_R = b F/z.
 
 use super::vector::{Vector, along, dot, subtract};
+use crate::cube::Shape;
 use crate::error::{Error, Result, check};
-use crate::ranging::cube::Shape;
 
 /// A stereo camera above the ground; the left camera stands at x = −b/2, the right one at +b/2.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]

@@ -2,8 +2,8 @@
 
 use super::lighting::Shares;
 use super::radiosity::Basis;
+use crate::cube::{MemoryCube, Shape};
 use crate::error::{Error, Result, check};
-use crate::ranging::cube::{MemoryCube, Shape};
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;

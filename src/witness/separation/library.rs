@@ -24,10 +24,10 @@ use super::k_means::k_means;
 use super::nem::{Surface, nem, ratio};
 use super::radiometry::Radiometry;
 use super::sample::Sample;
+use crate::cube::Cube;
 use crate::decompose::{Maps, Options, Setting, decompose};
 use crate::error::{Error, Result, check};
 use crate::fisher::emissivity::{EmissivityPrior, Smoothness};
-use crate::ranging::cube::Cube;
 use rayon::prelude::*;
 
 /// Pixels that emissivities are fitted to, and those that counts of groups are judged by.

@@ -1,8 +1,8 @@
 //! Pixels of a cube that a library is made from: some of them, drawn evenly, so that the work does not grow with the cube.
 
+use crate::cube::{Cube, MemoryCube, Rows, Sample as Stored, Shape};
 use crate::decompose::{Maps, Options, Setting, decompose};
 use crate::error::Result;
-use crate::ranging::cube::{Cube, MemoryCube, Rows, Sample as Stored, Shape};
 use crate::simulate::draws::generator;
 use rayon::prelude::*;
 

@@ -2,10 +2,10 @@
 
 use super::ledger::{Line, Verdict};
 use super::order::{Figures, Made, Order, Progress};
+use hadar::cube::{Cube, MemoryCube, Rows as _};
 use hadar::demand::Skipping;
 use hadar::error::Result;
 use hadar::material::Library;
-use hadar::ranging::cube::{Cube, MemoryCube, Rows as _};
 use hadar::ranging::derivative::Derivative;
 use hadar::ranging::information::{Cell, Request, Window, information};
 use hadar::ranging::noise::{Joined, NoiseVariance};
@@ -273,7 +273,7 @@ pub(super) fn textures(order: Order) -> Result<Made> {
     // The sky scatters nothing: as bright as the dimmest of the rest, it adds no edge of its own kind.
     let dimmest = scattered.iter().copied().filter(|n| *n > 0.0).fold(f64::INFINITY, f64::min);
     let scattered: Vec<f64> = scattered.iter().map(|n| if *n > 0.0 { *n } else { dimmest }).collect();
-    let shape = hadar::ranging::cube::Shape::new(paper.shape.rows(), columns, 1)?;
+    let shape = hadar::cube::Shape::new(paper.shape.rows(), columns, 1)?;
     let window = Window::new(SIDE, SIDE)?;
     let mut plots = Vec::new();
     let mut lines = Vec::new();

@@ -10,9 +10,9 @@
 use super::ledger::{Line, Verdict};
 use super::order::{Figures, Made, Order};
 use super::textured::{EXPOSURE, Textured, median, window_sums};
+use hadar::cube::Shape;
 use hadar::decompose::{Maps, texture_information};
 use hadar::error::Result;
-use hadar::ranging::cube::Shape;
 use hadar::ranging::information::Window;
 use hadar::ranging::metrics::DepthMetrics;
 use hadar::simulate::matching::block::Block;

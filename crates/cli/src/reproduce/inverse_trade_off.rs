@@ -7,13 +7,13 @@
 use super::ledger::{Line, Verdict};
 use super::order::Order;
 use super::pixels::{RANGE_K, rms};
+use hadar::cube::{Cube, MemoryCube, Shape};
 use hadar::decompose::{Light, Method, Options, Setting, decompose_by, inverse_error};
 use hadar::error::Result;
 use hadar::fisher::precision::PrecisionSolver;
 use hadar::fisher::{Counting, Nuisance, Unknowns};
 use hadar::material::Library;
 use hadar::planck::photon_radiance;
-use hadar::ranging::cube::{Cube, MemoryCube, Shape};
 use hadar::scene::{EnvironmentObject, Parameter, Surroundings};
 use hadar::simulate::draws::{Draws, generator};
 use hadar::spectrum::Bands;

@@ -1,5 +1,6 @@
 //! A scene rendered, its heat cube taken apart, and its materials made categories: what Extended Data Figs. 7 and 8 do.
 
+use hadar::cube::{Cube, MemoryCube, Shape};
 use hadar::decompose::{Light, Maps, NO_MATERIAL, Options, Setting, decompose};
 use hadar::error::{Error, Result};
 use hadar::fisher::{Nuisance, Unknowns};
@@ -7,7 +8,6 @@ use hadar::identifiability::detection;
 use hadar::identifiability::nearest::{NearestSolver, StateRange};
 use hadar::material::Library;
 use hadar::planck::photon_radiance;
-use hadar::ranging::cube::{Cube, MemoryCube, Shape};
 use hadar::scene::{State, Surroundings};
 use hadar::segmentation::{Agreement, ByBrightness, Categories, NO_CATEGORY, Part, Rule, segment, smoothed};
 use hadar::simulate::draws::{Draws, generator};

@@ -4,6 +4,7 @@
 //! blackbody of 5 °C; T from 270 to 310 K and V from 0 to 1, uniform and independent; 54 bands from 720 to 1250 cm⁻¹, shot noise.
 //! Photons of a pixel are those that a blackbody of 290 K sends in all bands.
 
+use hadar::cube::{Cube, MemoryCube, Shape};
 use hadar::decompose::{Light, Maps, Method, Options, Setting, decompose_by};
 use hadar::error::Result;
 use hadar::fisher::precision::PrecisionSolver;
@@ -11,7 +12,6 @@ use hadar::fisher::{Counting, Nuisance, Unknowns};
 use hadar::identifiability::nearest::StateRange;
 use hadar::material::Library;
 use hadar::planck::photon_radiance;
-use hadar::ranging::cube::{Cube, MemoryCube, Shape};
 use hadar::scene::{EnvironmentObject, Parameter, State, Surroundings};
 use hadar::separation::{Asked, Found, library_from_cube};
 use hadar::simulate::draws::{Draws, generator};

@@ -2,9 +2,9 @@
 
 use super::ledger::{Line, Verdict};
 use super::order::{Figures, Made};
+use hadar::cube::{Cube, MemoryCube, Shape};
 use hadar::error::Result;
 use hadar::instrument::presets;
-use hadar::ranging::cube::{Cube, MemoryCube, Shape};
 use hadar::ranging::derivative::Derivative;
 use hadar::ranging::information::{Cell, Request, Window, information};
 use hadar::ranging::noise::{Joined, NoiseVariance};

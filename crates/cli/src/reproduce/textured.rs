@@ -3,11 +3,11 @@
 //! What is true of it is known: material, temperature, lighting and depth of every pixel, and X̄, the light of the sky alone, from a second
 //! rendering in which everything but the sky is at 3 K and sends nothing, scatterings included.
 
+use hadar::cube::{Cube, MemoryCube, Shape};
 use hadar::decompose::{Distilled, Light, Maps, NO_MATERIAL, Options, Setting, Sky, decompose, distil};
 use hadar::error::{Error, Result};
 use hadar::material::Library;
 use hadar::planck::{photon_radiance, photon_radiance_slope};
-use hadar::ranging::cube::{Cube, MemoryCube, Shape};
 use hadar_study::scenario::RenderScenario;
 use hadar_study::scenario::scene::{Form, SurfaceSpec};
 use hadar_study::study::range;

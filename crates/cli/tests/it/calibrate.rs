@@ -1,8 +1,8 @@
 //! `hadar calibrate` as its user runs it: noise and stripes, files, mistakes; and that a decomposition holds with what came out.
 
 use crate::support::folder::Folder;
+use hadar::cube::{Cube, Shape, write_npy};
 use hadar::planck::photon_radiance;
-use hadar::ranging::cube::{Cube, Shape, write_npy};
 use hadar::simulate::draws::{Draws, generator};
 use hadar::statistics::Statistics;
 use rand::RngExt;

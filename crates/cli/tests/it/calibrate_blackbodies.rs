@@ -2,8 +2,8 @@
 
 use crate::support::folder::Folder;
 use hadar::calibrate::twin::{FilterWheelTwin, passband};
+use hadar::cube::{Cube, Shape, write_npy};
 use hadar::planck::photon_radiance;
-use hadar::ranging::cube::{Cube, Shape, write_npy};
 use hadar::simulate::draws::{Draws, generator};
 use hadar::statistics::Statistics;
 use hadar::units::{PLANCK_J_S, SPEED_OF_LIGHT_M_S};

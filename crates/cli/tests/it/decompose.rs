@@ -1,8 +1,8 @@
 //! `hadar decompose` as its user runs it: files, numbers, mistakes.
 
 use crate::support::folder::Folder;
+use hadar::cube::{Shape, npy_map, write_npy};
 use hadar::planck::photon_radiance;
-use hadar::ranging::cube::{Shape, npy_map, write_npy};
 use std::fs;
 
 const SCENARIO: &str = r#"title = "Wall and pane"

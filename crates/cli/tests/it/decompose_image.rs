@@ -1,8 +1,8 @@
 //! `hadar decompose` with a prior over the image, and the picture that it draws.
 
 use crate::support::folder::Folder;
+use hadar::cube::{Cube, Rows, Sample, Shape, write_npy};
 use hadar::planck::photon_radiance;
-use hadar::ranging::cube::{Cube, Rows, Sample, Shape, write_npy};
 use std::collections::HashMap;
 
 const SCENARIO: &str = r#"[cube]

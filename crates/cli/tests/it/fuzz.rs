@@ -5,7 +5,7 @@
 
 use crate::support::mutation::mutated;
 use crate::support::sound::{all, fault};
-use hadar::ranging::cube::{Shape, write_npy_to};
+use hadar::cube::{Shape, write_npy_to};
 use hadar_testing::repository;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};

@@ -1,7 +1,7 @@
 //! `hadar range` as a user runs it: scenes and cubes, bounds against closed forms, every mistake one line.
 
 use crate::support::folder::{Folder, Outcome};
-use hadar::ranging::cube::{Shape, write_npy};
+use hadar::cube::{Shape, write_npy};
 use serde_json::Value;
 use std::f64::consts::PI;
 use std::fs;
@@ -172,7 +172,7 @@ fn a_report_has_every_plot_with_its_table_and_its_maps() {
         }
     }
     let map = folder.path().join("out/disparity_error_px_heat_cube.npy");
-    let cube = hadar::ranging::cube::Cube::open(&map, None).unwrap();
+    let cube = hadar::cube::Cube::open(&map, None).unwrap();
     assert_eq!((cube.shape().rows(), cube.shape().columns()), (56, 76));
     let again = folder.run(&["range", "out/scenario.toml", "-q"]);
     assert_eq!(again.code, 0, "{}", again.stderr);

@@ -1,8 +1,8 @@
 //! `hadar render` as its user runs it: the cube and its truth, both layouts, the way back, mistakes.
 
 use crate::support::folder::Folder;
+use hadar::cube::Cube;
 use hadar::planck::photon_radiance;
-use hadar::ranging::cube::Cube;
 use std::fs;
 
 const SCENARIO: &str = r#"title = "Three at night"

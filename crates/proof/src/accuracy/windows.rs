@@ -7,8 +7,8 @@
 use super::chart::{Chart, Measured};
 use super::timing::{Budget, seconds_of};
 use super::{Item, Order};
+use hadar::cube::{Cube, MemoryCube, Shape};
 use hadar::error::Result;
-use hadar::ranging::cube::{Cube, MemoryCube, Shape};
 use hadar::ranging::derivative::Derivative;
 use hadar::ranging::information::{Cell, Request, Window, information};
 use hadar::ranging::noise::{Joined, NoiseVariance};

@@ -3,7 +3,7 @@
 use crate::figures::Plot;
 use crate::plot::{Axis, Picture, Pictures};
 use crate::table::{Table, number};
-use hadar::ranging::cube::Shape;
+use hadar::cube::Shape;
 use hadar_study::study::decompose::Decomposed;
 
 /// Widest picture, pixels: of larger cubes every second, third… row and column is shown.

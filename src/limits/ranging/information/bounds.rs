@@ -9,7 +9,7 @@
 //! the bound is infinite, where one is NaN or infinite it is NaN: neither proves anything.
 
 use super::direct::{Stretch, last};
-use crate::ranging::cube::Sample;
+use crate::cube::Sample;
 use crate::simd::{Chunk, LANES, dispatched, fold_all};
 
 /// Samples that bounds can be taken of.

@@ -4,8 +4,8 @@ use super::blocks::Plan;
 use super::kernels::Seen;
 use super::limits::{LEAST, Place};
 use super::rows::Raw;
+use crate::cube::Shape;
 use crate::error::Result;
-use crate::ranging::cube::Shape;
 use std::ops::Range;
 
 /// Rows as they were read, with what their samples are to be checked against.

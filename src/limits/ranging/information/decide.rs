@@ -18,9 +18,9 @@ use super::blocks::{Plan, Strip, run};
 use super::boxes::{Image, window_sums};
 use super::samples::{BandSums, Room, bounds_of_row, pixels_of_row};
 use super::{Cell, Request, Window, pixels};
+use crate::cube::Cube;
 use crate::demand::{Reason, Thing, Work};
 use crate::error::{Error, Result, check};
-use crate::ranging::cube::Cube;
 use std::ops::Range;
 
 /// Columns that are evaluated or left out together.

@@ -8,7 +8,7 @@
 use super::boxes::{chunks, chunks_mut};
 use super::kernels::{Quotients, Seen, minus, plus, square, stride};
 use super::limits::MOST;
-use crate::ranging::cube::Sample;
+use crate::cube::Sample;
 use crate::simd::{Chunk, LANES, dispatched, fold_all};
 
 /// Highest window that is summed row by row.

@@ -3,8 +3,8 @@
 //! A count is 0 or lies between [`LEAST`] and [`MOST`]: far beyond any detector on both sides, and such that products
 //! of the seven sums over the largest windows still are ordinary doubles.
 
+use crate::cube::Shape;
 use crate::error::{Error, Result};
-use crate::ranging::cube::Shape;
 use crate::ranging::noise::NoiseVariance;
 
 /// The largest count and variance.

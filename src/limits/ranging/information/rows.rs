@@ -3,8 +3,8 @@
 use super::bounds::Bounded;
 use super::direct::{Direct, Pixels, Stretch};
 use super::kernels::{Seen, Stored};
+use crate::cube::{Cube, Rows};
 use crate::error::Result;
-use crate::ranging::cube::{Cube, Rows};
 use crate::simd::Chunk;
 use std::ops::Range;
 

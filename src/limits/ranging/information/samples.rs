@@ -15,8 +15,8 @@ use super::checks::Checked;
 use super::request::Cell;
 use super::rows::Buffer;
 use super::strips::{StripRoom, StripRow};
+use crate::cube::Cube;
 use crate::error::Result;
-use crate::ranging::cube::Cube;
 use crate::ranging::noise::NoiseVariance;
 use std::ops::Range;
 

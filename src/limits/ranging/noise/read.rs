@@ -4,11 +4,11 @@
 //! falling); one row per band, in the order of the cube. An NPY or MATLAB file has one variance per sample.
 
 use super::NoiseVariance;
+use crate::cube::Shape;
+#[cfg(feature = "cubes")]
+use crate::cube::{Cube, is_cube};
 use crate::error::{Error, Result, check};
 use crate::grid::{Grid, text_of_file};
-use crate::ranging::cube::Shape;
-#[cfg(feature = "cubes")]
-use crate::ranging::cube::{Cube, is_cube};
 use std::path::Path;
 
 const VARIANCE: &str = "variance_counts2";
@@ -25,7 +25,7 @@ impl NoiseVariance {
     /// order, another number of bands or samples than the cube has.
     ///
     /// ```no_run
-    /// use hadar::ranging::{cube::Shape, noise::NoiseVariance};
+    /// use hadar::{cube::Shape, ranging::noise::NoiseVariance};
     /// let noise = NoiseVariance::from_file("read_noise.csv".as_ref(), Shape::new(480, 640, 54)?)?;
     /// # Ok::<(), hadar::Error>(())
     /// ```
@@ -106,7 +106,7 @@ fn in_order(
 #[cfg(all(test, feature = "cubes"))]
 mod tests {
     use super::*;
-    use crate::ranging::cube::write_npy;
+    use crate::cube::write_npy;
 
     fn of(text: &str, bands: usize) -> Result<Vec<f64>> {
         per_band(text, Shape::new(2, 2, bands).unwrap()).map(|noise| match noise {

@@ -14,10 +14,10 @@
 //!
 //! Source: as the module's.
 
+use crate::cube::Shape;
 use crate::error::{Error, Result};
 use crate::fisher::Projector;
 use crate::planck;
-use crate::ranging::cube::Shape;
 use crate::ranging::derivative::{Derivative, Differentiator};
 use crate::ranging::information::InformationMap;
 use crate::scene::Columns;
@@ -69,7 +69,8 @@ impl EmissionImage<'_> {
     ///
     /// ```
     /// use hadar::planck::photon_radiance;
-    /// use hadar::ranging::{cube::Shape, derivative::Derivative, reconstruction::EmissionImage};
+    /// use hadar::cube::Shape;
+    /// use hadar::ranging::{derivative::Derivative, reconstruction::EmissionImage};
     /// // A grey road at 290 K under a sky of 250 K, its emissivity rising along x.
     /// let bands = [800.0, 900.0, 1000.0, 1100.0];
     /// let pixel = |x: usize| (0.8 + 0.01 * x as f64, bands.map(|nu| [photon_radiance(nu, 290.0), photon_radiance(nu, 250.0)]));

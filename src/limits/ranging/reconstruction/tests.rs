@@ -1,7 +1,7 @@
 use super::*;
+use crate::cube::Shape;
 use crate::fisher::precision::PrecisionSolver;
 use crate::planck;
-use crate::ranging::cube::Shape;
 use crate::ranging::derivative::Derivative;
 use crate::scene::EnvironmentObject;
 use crate::simulate::draws::{Draws, generator};

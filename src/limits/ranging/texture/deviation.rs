@@ -11,8 +11,8 @@
 //! Statistician 37, 242 (1983).
 
 use super::{Image, TextureMap};
+use crate::cube::MemoryCube;
 use crate::error::{Error, Result};
-use crate::ranging::cube::MemoryCube;
 use crate::ranging::information::Window;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -23,7 +23,8 @@ use std::ops::Range;
 /// More bands than one, a value that is not finite (or beyond 10¹⁴⁰), a window larger than the image or of one pixel.
 ///
 /// ```
-/// use hadar::ranging::{cube::{MemoryCube, Shape}, information::Window, texture::standard_deviation};
+/// use hadar::cube::{MemoryCube, Shape};
+/// use hadar::ranging::{information::Window, texture::standard_deviation};
 /// let image = MemoryCube::new(Shape::new(1, 4, 1)?, vec![1.0, 2.0, 3.0, 3.0])?;
 /// let map = standard_deviation(&image, Window::new(1, 3)?)?;
 /// assert_eq!((map.rows, map.columns), (0..1, 1..3));

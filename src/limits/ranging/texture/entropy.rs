@@ -8,8 +8,8 @@
 //! Source: Huang, Yang, Tang, IEEE Trans. ASSP 27, 13 (1979).
 
 use super::{Image, TextureMap};
+use crate::cube::MemoryCube;
 use crate::error::{Error, Result};
-use crate::ranging::cube::MemoryCube;
 use crate::ranging::information::Window;
 use rayon::prelude::*;
 
@@ -24,7 +24,8 @@ const LEVELS: usize = 256;
 /// the image.
 ///
 /// ```
-/// use hadar::ranging::{cube::{MemoryCube, Shape}, information::Window, texture::local_entropy};
+/// use hadar::cube::{MemoryCube, Shape};
+/// use hadar::ranging::{information::Window, texture::local_entropy};
 /// let image = MemoryCube::new(Shape::new(1, 4, 1)?, vec![5.0, 5.0, 5.0, 9.0])?;
 /// let map = local_entropy(&image, Window::new(1, 3)?, None)?;
 /// assert_eq!(map.values[0], 0.0);
@@ -59,7 +60,8 @@ pub fn local_entropy(image: &MemoryCube<f64>, window: Window, range: Option<[f64
 /// More bands than one, a value that is not finite (or beyond 10¹⁴⁰), a range that does not rise.
 ///
 /// ```
-/// use hadar::ranging::{cube::{MemoryCube, Shape}, texture::global_entropy};
+/// use hadar::cube::{MemoryCube, Shape};
+/// use hadar::ranging::texture::global_entropy;
 /// let image = MemoryCube::new(Shape::new(2, 2, 1)?, vec![3.0, 8.0, 8.0, 3.0])?;
 /// assert_eq!(global_entropy(&image, None)?, 1.0);
 /// # Ok::<(), hadar::Error>(())

@@ -1,5 +1,5 @@
 use super::*;
-use crate::ranging::cube::Shape;
+use crate::cube::Shape;
 use crate::simulate::draws::generator;
 use rand::RngExt;
 

@@ -1,8 +1,8 @@
 //! Sums of squared differences in bins of the mean, in interleaved groups.
 
 use super::start::{BINS, Start};
+use crate::cube::{Rows, Sample};
 use crate::error::Result;
-use crate::ranging::cube::{Rows, Sample};
 use rayon::prelude::*;
 
 /// Groups of a jackknife.

@@ -1,7 +1,7 @@
 //! A first look at some rows: the range of the means, how large a difference may be, which neighbours are alike.
 
+use crate::cube::{Rows, Sample};
 use crate::error::{Error, Result};
-use crate::ranging::cube::{Rows, Sample};
 
 /// Bins of the mean of each band, at most.
 pub(super) const BINS: usize = 24;

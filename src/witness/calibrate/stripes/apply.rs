@@ -1,8 +1,8 @@
 //! The cube without its stripes.
 
 use super::found::{Axis, Destriped, Stripe};
+use crate::cube::{Rows, Sample};
 use crate::error::Result;
-use crate::ranging::cube::{Rows, Sample};
 use rayon::prelude::*;
 
 impl Destriped {

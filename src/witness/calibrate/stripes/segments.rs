@@ -1,8 +1,8 @@
 //! Means of the segments of every line.
 
 use super::found::Axis;
+use crate::cube::{Rows, Sample};
 use crate::error::Result;
-use crate::ranging::cube::{Rows, Sample};
 use rayon::prelude::*;
 
 /// Pixels of a segment, about, and how many segments there are.

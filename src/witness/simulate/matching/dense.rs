@@ -38,7 +38,7 @@ impl DisparityMap {
 /// Matches every window of the left view.
 ///
 /// ```
-/// use hadar::ranging::{cube::Shape, information::Window};
+/// use hadar::{cube::Shape, ranging::information::Window};
 /// use hadar::simulate::matching::{Search, StereoPair, block::Block, dense::disparity_map, texture::Texture};
 /// let shape = Shape::new(20, 60, 1)?;
 /// let texture = Texture::random(1, &[1e4], 0.1, 0.2, 40)?;

@@ -1,8 +1,8 @@
 //! The parts of an image that are needed, in planes `[row][band][column]`, so that no other sample is drawn or
 //! copied.
 
+use crate::cube::{Cube, Rows, Sample, Shape};
 use crate::error::Result;
-use crate::ranging::cube::{Cube, Rows, Sample, Shape};
 use crate::ranging::noise::NoiseVariance;
 use std::ops::Range;
 

@@ -9,8 +9,8 @@
 use super::texture::Texture;
 use super::trials::{Centre, Matches, MatchingTrials, Noisy, Run, Setup};
 use super::{Matcher, Search, StereoPair};
+use crate::cube::Shape;
 use crate::error::{Error, Result};
-use crate::ranging::cube::Shape;
 use crate::ranging::noise::NoiseVariance;
 use crate::simulate::efficiency::Errors;
 use crate::simulate::sequential::Interval;

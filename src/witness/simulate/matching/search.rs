@@ -1,14 +1,14 @@
 //! Two views, the disparities that are tried in them, and what a match comes to.
 
+use crate::cube::Shape;
 use crate::error::{Error, Result, check};
-use crate::ranging::cube::Shape;
 use crate::ranging::information::Window;
 use std::ops::Range;
 
 /// Two views of the same shape: expected counts, or readings.
 ///
 /// ```
-/// use hadar::ranging::cube::Shape;
+/// use hadar::cube::Shape;
 /// use hadar::simulate::matching::StereoPair;
 /// let shape = Shape::new(1, 2, 1)?;
 /// assert!(StereoPair::new(shape, &[1.0, 2.0], &[2.0, 3.0]).is_ok());

@@ -4,8 +4,8 @@
 //! uniform, a = c√(2/K): the root mean square contrast is c. As sampled values: what the pixel's size does to
 //! a wave is in its amplitude. A view at disparity d is N(x + d, y), d = 0 the left one.
 
+use crate::cube::Shape;
 use crate::error::{Error, Result, check};
-use crate::ranging::cube::Shape;
 use crate::simulate::draws::generator;
 use rand::RngExt;
 use std::f64::consts::TAU;
@@ -13,7 +13,7 @@ use std::f64::consts::TAU;
 /// A texture.
 ///
 /// ```
-/// use hadar::ranging::cube::Shape;
+/// use hadar::cube::Shape;
 /// use hadar::simulate::matching::texture::Texture;
 /// let texture = Texture::random(1, &[1e6], 0.1, 0.25, 40)?;
 /// let (left, right) = (texture.view(Shape::new(5, 9, 1)?, 0.0)?, texture.view(Shape::new(5, 9, 1)?, 2.0)?);

@@ -74,7 +74,8 @@ impl Matches {
 /// Repeated matches, ready to run.
 ///
 /// ```
-/// use hadar::ranging::{cube::Shape, information::Window, noise::NoiseVariance};
+/// use hadar::cube::Shape;
+/// use hadar::ranging::{information::Window, noise::NoiseVariance};
 /// use hadar::simulate::matching::{Matcher, Search, StereoPair, block::Block, texture::Texture};
 /// use hadar::simulate::matching::trials::{Centre, MatchingTrials, Noisy, Run, Setup};
 /// let shape = Shape::new(5, 60, 1)?;

@@ -2,9 +2,9 @@
 
 use super::super::order::Order;
 use super::super::textured::{EXPOSURE, Textured, median, window_sums};
+use hadar::cube::{MemoryCube, Shape};
 use hadar::decompose::{Maps, NO_MATERIAL, TextureInformation, texture_information};
 use hadar::error::Result;
-use hadar::ranging::cube::{MemoryCube, Shape};
 use hadar::ranging::information::Window;
 use hadar::ranging::levels::share_left;
 use hadar::ranging::texture::standard_deviation;

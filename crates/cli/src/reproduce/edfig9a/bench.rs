@@ -1,5 +1,6 @@
 //! Letters on a wafer before ten filters: what is there, what the camera counts, what is read of it, and what could be.
 
+use hadar::cube::{Cube, MemoryCube, Shape};
 use hadar::decompose::{Light, Maps, Options, Setting, decompose};
 use hadar::error::Result;
 use hadar::fisher::precision::PrecisionSolver;
@@ -9,7 +10,6 @@ use hadar::identifiability::nearest::{NearestSolver, StateRange};
 use hadar::instrument::{Camera, View, presets};
 use hadar::material::Library;
 use hadar::planck::photon_radiance;
-use hadar::ranging::cube::{Cube, MemoryCube, Shape};
 use hadar::root::crossing;
 use hadar::scene::{EnvironmentObject, Parameter, State, Surroundings};
 use hadar::simulate::draws::{Draws, generator};

@@ -8,10 +8,10 @@ use crate::scenario::calibrate::blackbodies::BlackbodySpec;
 use crate::study::{Warning, bands};
 use hadar::calibrate::spectrometer::Calibration;
 use hadar::calibration::blackbody::{Blackbodies, Parts};
+use hadar::cube::Cube;
 use hadar::demand::{Thing, Work};
 use hadar::error::{Error, Result};
 use hadar::planck;
-use hadar::ranging::cube::Cube;
 use hadar::words::significant;
 use serde::Serialize;
 

@@ -4,9 +4,9 @@ use super::opened::opened;
 use crate::scenario::calibrate::NoiseScenario;
 use crate::study::Warning;
 use hadar::calibrate::{Asked, Line, Transfer, photon_transfer};
+use hadar::cube::{Cube, Rows, Shape};
 use hadar::demand::{Thing, Work};
 use hadar::error::{Error, Result};
-use hadar::ranging::cube::{Cube, Rows, Shape};
 use serde::Serialize;
 
 /// Share of texture in what neighbours differ by from which on its removal matters.

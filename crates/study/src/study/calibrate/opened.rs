@@ -2,8 +2,8 @@
 
 use crate::scenario::Source;
 use crate::scenario::calibrate::Frames;
+use hadar::cube::Cube;
 use hadar::error::{Error, Result};
-use hadar::ranging::cube::Cube;
 
 /// Opens every frame; errors name the file, and the key where it was named by one.
 pub(super) fn opened(frames: &Frames, source: &Source) -> Result<Vec<Cube>> {

@@ -7,9 +7,9 @@ use super::whole::{at, beside, pairs, shown};
 use crate::scenario::Source;
 use hadar::calibrate::spectrometer::Calibration;
 use hadar::calibration::blackbody::Blackbodies;
+use hadar::cube::{Cube, Shape};
 use hadar::error::{Error, Result};
 use hadar::planck;
-use hadar::ranging::cube::{Cube, Shape};
 use hadar::units::{PLANCK_J_S, SPEED_OF_LIGHT_M_S};
 use serde::Serialize;
 

@@ -4,9 +4,9 @@ use super::opened::opened;
 use crate::scenario::calibrate::StripesScenario;
 use crate::study::Warning;
 use hadar::calibrate::{Destriped, Why, find_stripes};
+use hadar::cube::{Cube, Rows, Sample, Shape};
 use hadar::demand::{Thing, Work};
 use hadar::error::{Error, Result};
-use hadar::ranging::cube::{Cube, Rows, Sample, Shape};
 use serde::Serialize;
 
 /// Bands from which on a thin object is told from a stripe.

@@ -2,8 +2,8 @@
 
 use crate::scenario::Source;
 use crate::scenario::calibrate::blackbodies::CubeFile;
+use hadar::cube::{Cube, Rows, Sample, Shape};
 use hadar::error::{Error, Result};
-use hadar::ranging::cube::{Cube, Rows, Sample, Shape};
 use rayon::prelude::*;
 
 /// Puts file, line and key on an error.

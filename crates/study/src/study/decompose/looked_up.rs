@@ -5,10 +5,10 @@ use super::truth::Truth;
 use crate::scenario::{DecomposeScenario, MaterialRef, Spread};
 use crate::study::Warning;
 use crate::study::heat_cube::{Measured, Said, columns};
+use hadar::cube::Cube;
 use hadar::decompose::{Light, SpatialPrior};
 use hadar::error::{Error, Result};
 use hadar::material::{Basis, Library, Material};
-use hadar::ranging::cube::Cube;
 use hadar::segmentation::Categories;
 use hadar::spectrum::Bands;
 

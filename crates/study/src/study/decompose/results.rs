@@ -6,9 +6,9 @@ use super::vision::Vision;
 pub use super::worth::TruthFound;
 use crate::scenario::DecomposeScenario;
 use crate::study::Warning;
+use hadar::cube::Shape;
 use hadar::decompose::{Maps, Method, Spatial, flag};
 use hadar::demand::Work;
-use hadar::ranging::cube::Shape;
 use serde::Serialize;
 
 /// A cube decomposed.

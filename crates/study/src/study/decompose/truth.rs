@@ -1,9 +1,9 @@
 //! Maps of what is there, as files have them.
 
 use crate::scenario::decompose::TruthSpec;
+use hadar::cube::{Cube, Rows, Sample, Shape};
 use hadar::decompose::NO_MATERIAL;
 use hadar::error::{Error, Result};
-use hadar::ranging::cube::{Cube, Rows, Sample, Shape};
 use std::path::Path;
 
 /// Maps of what is there, `[row][column]`.

@@ -11,9 +11,9 @@
 use super::DecomposeStudy;
 use crate::scenario::MaterialRef;
 use crate::scenario::decompose::LightSource;
+use hadar::cube::{Cube, Rows, Sample};
 use hadar::decompose::{Light, Maps, Residue, Setting, Sky, distil};
 use hadar::error::Result;
-use hadar::ranging::cube::{Cube, Rows, Sample};
 use rayon::prelude::*;
 use serde::Serialize;
 

@@ -3,8 +3,8 @@
 use crate::scenario::RangeScenario;
 use crate::scenario::range::Demand;
 use crate::study::Warning;
+use hadar::cube::Shape;
 use hadar::demand::Work;
-use hadar::ranging::cube::Shape;
 use hadar::ranging::depth::DepthSolution;
 use hadar::ranging::metrics::DepthMetrics;
 use serde::Serialize;

@@ -2,8 +2,8 @@
 
 use super::results::Signal;
 use super::subject::{Rendered, nothing_to_see};
+use hadar::cube::{Cube, Rows as _, Shape};
 use hadar::error::Result;
-use hadar::ranging::cube::{Cube, Rows as _, Shape};
 use hadar::ranging::depth::WindowInformation;
 use hadar::ranging::information::{Cell, InformationMap, Request, information};
 use hadar::ranging::noise::Joined;

@@ -1,8 +1,8 @@
 //! What a ranging study looks at: a rendered pair with all its truth, or measured cubes.
 
+use hadar::cube::{Cube, Shape};
 use hadar::error::{Error, Result};
 use hadar::fisher::Counting;
-use hadar::ranging::cube::{Cube, Shape};
 use hadar::ranging::noise::NoiseVariance;
 use hadar::render::{Options, Part, Rig, Scene, View};
 

@@ -3,8 +3,8 @@
 use super::results::{BoundMaps, Line, Matched, Signal};
 use super::subject::{Rendered, Resolved, Truth};
 use super::{Informed, Progress, RangePlan, RangeStudy, median};
+use hadar::cube::Shape;
 use hadar::error::{Error, Result};
-use hadar::ranging::cube::Shape;
 use hadar::ranging::metrics::DepthMetrics;
 use hadar::ranging::noise::{Joined, NoiseVariance};
 use hadar::render::{Part, StereoPair as Rendering, View};

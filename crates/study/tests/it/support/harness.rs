@@ -6,8 +6,8 @@
 //! refuses, it must refuse in one short line. Time and memory are watched by whoever runs this.
 
 use hadar::Error;
+use hadar::cube::{Cube, Rows, Sample, Shape, first_invalid, panchromatic};
 use hadar::material::{Library, Material, read};
-use hadar::ranging::cube::{Cube, Rows, Sample, Shape, first_invalid, panchromatic};
 use hadar::ranging::noise::NoiseVariance;
 use hadar::simulate::classifier::{Classifier, SavedModel};
 use hadar::spectrum::Bands;

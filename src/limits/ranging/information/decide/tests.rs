@@ -1,7 +1,7 @@
 use super::super::information;
 use super::super::tests::{counts, cube, request};
 use super::*;
-use crate::ranging::cube::{MemoryCube, Shape};
+use crate::cube::{MemoryCube, Shape};
 use crate::ranging::derivative::Derivative;
 use crate::ranging::noise::{Joined, NoiseVariance};
 use proptest::prelude::*;

@@ -1,8 +1,8 @@
 //! The scene, its counts, and stripes put into them.
 
+use hadar::cube::{MemoryCube, Shape};
 use hadar::error::Result;
 use hadar::planck::photon_radiance;
-use hadar::ranging::cube::{MemoryCube, Shape};
 use hadar::simulate::draws::{Draws, generator};
 use hadar::statistics::Statistics;
 use rand::RngExt;

@@ -47,9 +47,9 @@ impl Shape {
     /// A dimension that is 0, or more samples than memory has addresses.
     ///
     /// ```
-    /// let shape = hadar::ranging::cube::Shape::new(480, 640, 54)?;
+    /// let shape = hadar::cube::Shape::new(480, 640, 54)?;
     /// assert_eq!(shape.row_len(), 640 * 54);
-    /// assert!(hadar::ranging::cube::Shape::new(480, 0, 54).is_err());
+    /// assert!(hadar::cube::Shape::new(480, 0, 54).is_err());
     /// # Ok::<(), hadar::Error>(())
     /// ```
     pub fn new(rows: usize, columns: usize, bands: usize) -> Result<Self> {

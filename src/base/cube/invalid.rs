@@ -8,7 +8,7 @@ use crate::error::Error;
 /// [`Rows::read`](super::Rows::read) gives them.
 ///
 /// ```
-/// use hadar::ranging::cube::{Shape, first_invalid};
+/// use hadar::cube::{Shape, first_invalid};
 /// let shape = Shape::new(9, 1, 2)?;
 /// assert!(first_invalid(&[1.0, 0.0, 2.5, 3.0], 7, shape).is_none());
 /// let error = first_invalid(&[1.0, 0.0, 2.5, -3.0], 7, shape).ok_or("none")?.to_string();

@@ -2,8 +2,8 @@
 
 use super::planes::Number;
 use super::stored::{Stored, decode};
+use crate::cube::READ_CUBE;
 use crate::error::{Error, Result};
-use crate::ranging::cube::READ_CUBE;
 use flate2::read::ZlibDecoder;
 use std::fmt;
 use std::io::Read;

@@ -294,7 +294,7 @@ fn swap_bytes<S: Sample>(samples: &mut [S]) {
 /// A number of samples that is not that of the shape; a file that cannot be written.
 ///
 /// ```no_run
-/// use hadar::ranging::cube::{Shape, write_npy};
+/// use hadar::cube::{Shape, write_npy};
 /// write_npy("scene.npy".as_ref(), Shape::new(1, 2, 2)?, &[10.0_f32, 11.0, 20.0, 21.0])?;
 /// # Ok::<(), hadar::Error>(())
 /// ```
@@ -312,7 +312,7 @@ pub fn write_npy<S: Sample>(path: &Path, shape: Shape, samples: &[S]) -> Result<
 /// A number of samples that is not that of the shape; whatever the writer refuses.
 ///
 /// ```
-/// use hadar::ranging::cube::{Shape, write_npy_to};
+/// use hadar::cube::{Shape, write_npy_to};
 /// let mut bytes = Vec::new();
 /// write_npy_to(&mut bytes, Shape::new(1, 2, 2)?, &[10.0_f32, 11.0, 20.0, 21.0])?;
 /// assert!(bytes.starts_with(b"\x93NUMPY\x01\x00"));
@@ -360,7 +360,7 @@ impl Value for f32 {
 /// A number of values that is not that of the dimensions.
 ///
 /// ```
-/// let file = hadar::ranging::cube::npy_map(&[1, 2], &[3_u16, 65535])?;
+/// let file = hadar::cube::npy_map(&[1, 2], &[3_u16, 65535])?;
 /// assert_eq!(file.len(), 128 + 2 * 2);
 /// # Ok::<(), hadar::Error>(())
 /// ```

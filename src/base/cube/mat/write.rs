@@ -6,8 +6,8 @@
 //! Source: MathWorks, 'MAT-File Format' (R2025a), level 5.
 
 use super::element::MATRIX;
+use crate::cube::Value;
 use crate::error::{Error, Result};
-use crate::ranging::cube::Value;
 
 /// Bytes of the header's text.
 const TEXT: usize = 116;
@@ -21,7 +21,7 @@ const UINT32: u32 = 6;
 /// A number of values that is not that of the dimensions; an array that is too large for such a file.
 ///
 /// ```
-/// use hadar::ranging::cube::mat_file;
+/// use hadar::cube::mat_file;
 /// let file = mat_file("tMap", [1, 2, 1], &[21.5_f32, 36.6])?;
 /// assert_eq!(&file[..6], b"MATLAB");
 /// assert!(mat_file("tMap", [2, 2, 1], &[21.5_f32]).is_err());

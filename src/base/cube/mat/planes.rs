@@ -3,8 +3,8 @@
 //! Bands are read some at a time, so many as fill a cache line of the result, and transposed in tiles of as many
 //! rows: every line of either array is then in the cache until all of it is done.
 
+use crate::cube::{Sample, Shape};
 use crate::error::{Error, Result};
-use crate::ranging::cube::{Sample, Shape};
 use rayon::prelude::*;
 
 /// Bands that are read at a time, and rows of a tile: a cache line of `f32`.

@@ -52,7 +52,7 @@ impl Cube {
     /// type, a number of dimensions other than 2 or 3, a dimension of 0, no array or several to choose from.
     ///
     /// ```no_run
-    /// use hadar::ranging::cube::Cube;
+    /// use hadar::cube::Cube;
     /// let cube = Cube::open("street.npy".as_ref(), None)?;
     /// assert_eq!(cube.shape().bands(), 54);
     /// let cube = Cube::open("street.mat".as_ref(), Some("S"))?;

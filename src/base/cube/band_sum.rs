@@ -15,7 +15,7 @@ const BLOCK: usize = 1 << 18;
 /// A file that cannot be read, a count that is negative or no finite number.
 ///
 /// ```
-/// use hadar::ranging::cube::{MemoryCube, Shape, panchromatic};
+/// use hadar::cube::{MemoryCube, Shape, panchromatic};
 /// let cube = MemoryCube::new(Shape::new(1, 2, 3)?, vec![1.0_f32, 2.0, 3.0, 10.0, 20.0, 30.0])?;
 /// let image = panchromatic(&cube.into())?;
 /// assert_eq!(image.samples(), [6.0, 60.0]);

@@ -1,5 +1,5 @@
 use super::*;
-use crate::ranging::cube::MemoryCube;
+use crate::cube::MemoryCube;
 use std::path::PathBuf;
 
 /// Headers as NumPy 2.4 writes them, without the blanks before the line feed: version, dictionary, bytes in all.
