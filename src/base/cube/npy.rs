@@ -362,6 +362,8 @@ impl Value for f32 {
 /// ```
 /// let file = hadar::cube::npy_map(&[1, 2], &[3_u16, 65535])?;
 /// assert_eq!(file.len(), 128 + 2 * 2);
+/// let of_one = hadar::cube::npy_map(&[2], &[3_u16, 65535])?;
+/// assert!(String::from_utf8_lossy(&of_one).contains("'shape': (2,)"));
 /// # Ok::<(), hadar::Error>(())
 /// ```
 pub fn npy_map<V: Value>(dimensions: &[usize], values: &[V]) -> Result<Vec<u8>> {
@@ -382,7 +384,11 @@ fn array<V: bytemuck::Pod>(
     values: &[V],
 ) -> std::io::Result<()> {
     let order = if size_of::<V>() == 1 { "|" } else { Endianness::of_machine().to_str() };
-    let dimensions = dimensions.iter().map(usize::to_string).collect::<Vec<_>>().join(", ");
+    let dimensions = match dimensions {
+        // To NumPy (10) is a number, no shape.
+        [one] => format!("{one},"),
+        more => more.iter().map(usize::to_string).collect::<Vec<_>>().join(", "),
+    };
     let text = format!("{{'descr': '{order}{name}', 'fortran_order': False, 'shape': ({dimensions}), }}");
     // Blanks and a line feed make 10 bytes and the text a multiple of 64: at most 3·20 digits, far below 2¹⁶.
     let padded = (10 + text.len() + 1).next_multiple_of(64) - 11;
