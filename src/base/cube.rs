@@ -152,9 +152,35 @@ impl Cube {
     /// Its shape.
     #[must_use]
     pub fn shape(&self) -> Shape {
+        CubeRef::from(self).shape()
+    }
+}
+
+/// A cube of either kind of sample that belongs to somebody else, such as an array of another language.
+#[derive(Debug, Clone, Copy)]
+pub enum CubeRef<'a> {
+    /// 32-bit samples.
+    F32(&'a dyn Rows<f32>),
+    /// 64-bit samples.
+    F64(&'a dyn Rows<f64>),
+}
+
+impl CubeRef<'_> {
+    /// Its shape.
+    #[must_use]
+    pub fn shape(self) -> Shape {
         match self {
             Self::F32(cube) => cube.shape(),
             Self::F64(cube) => cube.shape(),
+        }
+    }
+}
+
+impl<'a> From<&'a Cube> for CubeRef<'a> {
+    fn from(cube: &'a Cube) -> Self {
+        match cube {
+            Cube::F32(cube) => Self::F32(cube.as_ref()),
+            Cube::F64(cube) => Self::F64(cube.as_ref()),
         }
     }
 }

@@ -6,7 +6,7 @@ use super::figures::Plot;
 use super::folder::Folder;
 use super::html;
 use super::manifest::Provenance;
-use super::plot::{Figure, render};
+use super::plot::{Figure, render, render_svg};
 use super::table::Table;
 use super::tables;
 use hadar::error::Result;
@@ -117,6 +117,18 @@ impl Bundle {
     #[must_use]
     pub fn figures(&self) -> usize {
         self.figures.len()
+    }
+
+    /// The figures as SVG, with the names of their files without ending.
+    ///
+    /// # Errors
+    /// A figure that cannot be drawn.
+    pub fn drawings(&self) -> Result<Vec<(String, String)>> {
+        let figures = self.files.iter().filter_map(|(name, content)| match content {
+            Content::Svg(figure) => Some((name.trim_end_matches(".svg"), self.figures.get(*figure)?)),
+            _ => None,
+        });
+        figures.map(|(name, figure)| Ok((name.to_owned(), render_svg(figure)?))).collect()
     }
 
     /// Writes all files into a folder, which is made if it is not there, with the answer as text and everything on one page;

@@ -21,6 +21,22 @@ pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 /// added without.
 pub const SCHEMA: u32 = 1;
 
+/// A result as a program reads it: its keys behind the version of this program and the number of its form.
+///
+/// # Errors
+/// A result that is no JSON, which would be a bug.
+pub fn answer_json(answer: &impl Serialize) -> Result<String> {
+    #[derive(Serialize)]
+    struct Versioned<'a, T> {
+        hadar: &'static str,
+        schema: u32,
+        #[serde(flatten)]
+        answer: &'a T,
+    }
+    serde_json::to_string_pretty(&Versioned { hadar: VERSION, schema: SCHEMA, answer })
+        .map_err(|error| Error::malformed(error.to_string(), "report this as a bug"))
+}
+
 /// Who made a report of what.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Provenance {

@@ -39,6 +39,16 @@ use std::path::Path;
 const HARDWARE: [Quantity; 5] =
     [Quantity::Exposure, Quantity::Pixel, Quantity::FNumber, Quantity::Noise, Quantity::Frames];
 
+/// A rule's answer as JSON.
+#[derive(Debug, serde::Serialize)]
+pub struct Output<'a> {
+    /// The answer.
+    #[serde(flatten)]
+    pub answer: &'a RuleAnswer,
+    /// All that it rests on, by its content.
+    pub inputs: &'a [Input],
+}
+
 /// All files; paths in the rule are written relative to `out` where they lie below it.
 ///
 /// # Errors

@@ -36,7 +36,7 @@ mod tests;
 
 pub use self::request::{Cell, InformationMap, Request, Window};
 
-use crate::cube::Cube;
+use crate::cube::CubeRef;
 use crate::error::Result;
 
 /// J of every window whose centre lies in the rows asked for.
@@ -44,7 +44,8 @@ use crate::error::Result;
 /// # Errors
 /// A window or derivative that does not fit into the image; noise that does not fit the cube; a count or variance that is
 /// negative, NaN, infinite or beyond 1e27; a count below 1e-27 without electronic noise; a cube that cannot be read.
-pub fn information(cube: &Cube, request: &Request<'_>) -> Result<InformationMap> {
+pub fn information<'c>(cube: impl Into<CubeRef<'c>>, request: &Request<'_>) -> Result<InformationMap> {
+    let cube = cube.into();
     let plan = blocks::Plan::new(cube.shape(), request)?;
     let sums = samples::band_sums(cube, &plan, plan.block_rows())?;
     let mut map = pixels::windows(&plan, &sums)?;

@@ -7,7 +7,7 @@ use super::model::{MOST_SURROUNDINGS, Model, Setting};
 use super::pixel::{NO_MATERIAL, Pixel, Spared, Task, flag};
 use super::screen::Screen;
 use super::spatial::{Kept, KeptRow, Spatial, SpatialPrior};
-use crate::cube::{Cube, Rows, Sample};
+use crate::cube::{CubeRef, Rows, Sample};
 use crate::demand::Skipping;
 use crate::error::{Error, Result};
 use rayon::prelude::*;
@@ -57,20 +57,21 @@ pub struct Maps {
 ///
 /// # Errors
 /// A setting that is impossible or of another number of bands than the cube; a cube that cannot be read.
-pub fn decompose(
+pub fn decompose<'c>(
     setting: &Setting<'_>,
     options: &Options,
-    cube: &Cube,
+    cube: impl Into<CubeRef<'c>>,
     done: &(dyn Fn(usize) + Sync),
 ) -> Result<Maps> {
+    let cube = cube.into();
     check_bands(setting, cube)?;
     match cube {
-        Cube::F32(rows) => whole(setting, options, rows.as_ref(), done),
-        Cube::F64(rows) => whole(setting, options, rows.as_ref(), done),
+        CubeRef::F32(rows) => whole(setting, options, rows, done),
+        CubeRef::F64(rows) => whole(setting, options, rows, done),
     }
 }
 
-pub(super) fn check_bands(setting: &Setting<'_>, cube: &Cube) -> Result<()> {
+pub(super) fn check_bands(setting: &Setting<'_>, cube: CubeRef<'_>) -> Result<()> {
     let (found, expected) = (cube.shape().bands(), setting.bands.len());
     if found != expected {
         return Err(Error::Length { what: "bands of the cube".into(), found, expected });

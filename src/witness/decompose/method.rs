@@ -18,7 +18,7 @@ use super::inverse::Inverse;
 use super::maps::{ByRows, Maps, Options, Row, check_bands, decompose, is_signed};
 use super::model::{Model, Setting};
 use super::pixel::Pixel;
-use crate::cube::{Cube, Rows, Sample};
+use crate::cube::{CubeRef, Rows, Sample};
 use crate::error::{Error, Result};
 
 /// How material, temperature and lighting are found.
@@ -69,27 +69,27 @@ impl Method {
 ///
 /// # Errors
 /// As [`decompose`]; an unknown gain, which the analytic inverse and the grey body do not know.
-pub fn decompose_by(
+pub fn decompose_by<'c>(
     method: Method,
     setting: &Setting<'_>,
     options: &Options,
-    cube: &Cube,
+    cube: impl Into<CubeRef<'c>>,
     done: &(dyn Fn(usize) + Sync),
 ) -> Result<Maps> {
     if !method.has_likelihood() && setting.gain {
         let found = format!("an unknown gain and the method {}", method.name());
         return Err(Error::malformed(found, "calibrate the camera, or take the method ml or te"));
     }
-    match (method, cube) {
-        (Method::Ml, _) => decompose(setting, options, cube, done),
-        (Method::Te, _) => {
+    match (method, cube.into()) {
+        (Method::Ml, cube) => decompose(setting, options, cube, done),
+        (Method::Te, cube) => {
             let dark = Setting { surroundings: &[], lighting_total: None, ..*setting };
             let mut maps = decompose(&dark, options, cube, done)?;
             maps.lighting = vec![f32::NAN; maps.material.len() * setting.surroundings.len()];
             Ok(maps)
         }
-        (_, Cube::F32(rows)) => compared(method, setting, rows.as_ref(), cube, done),
-        (_, Cube::F64(rows)) => compared(method, setting, rows.as_ref(), cube, done),
+        (_, cube @ CubeRef::F32(rows)) => compared(method, setting, rows, cube, done),
+        (_, cube @ CubeRef::F64(rows)) => compared(method, setting, rows, cube, done),
     }
 }
 
@@ -97,7 +97,7 @@ fn compared<S: Sample>(
     method: Method,
     setting: &Setting<'_>,
     rows: &dyn Rows<S>,
-    cube: &Cube,
+    cube: CubeRef<'_>,
     done: &(dyn Fn(usize) + Sync),
 ) -> Result<Maps> {
     check_bands(setting, cube)?;

@@ -12,7 +12,7 @@ use hadar::material::Library;
 use hadar::units::decimal_comma;
 use hadar_report::bundle::{About, Bundle};
 use hadar_report::folder::{Folder, Strangers};
-use hadar_report::manifest::{Provenance, SCHEMA, VERSION};
+use hadar_report::manifest::{Provenance, answer_json};
 use hadar_report::text;
 use hadar_study::scenario::Scenario;
 use hadar_study::study::Study;
@@ -147,12 +147,7 @@ impl Global {
 
     /// Prints a result: JSON with `--json`, with the version of the program and of its form, else the text.
     pub(super) fn print(&self, json: &impl serde::Serialize, text: &str) -> Result<()> {
-        let text = if self.json {
-            serde_json::to_string_pretty(&Versioned { hadar: VERSION, schema: SCHEMA, answer: json })
-                .map_err(|error| Error::malformed(error.to_string(), "report this as a bug"))?
-        } else {
-            Stream::Out.answer(text.trim_end())
-        };
+        let text = if self.json { answer_json(json)? } else { Stream::Out.answer(text.trim_end()) };
         match writeln!(std::io::stdout(), "{text}") {
             // A reader that has seen enough (`| head`) is no error.
             Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
@@ -196,15 +191,6 @@ impl Global {
         self.note(&format!("wrote {count} files to {}{look}", out.display()));
         Ok(())
     }
-}
-
-/// A result as it is printed.
-#[derive(serde::Serialize)]
-struct Versioned<'a, T: serde::Serialize> {
-    hadar: &'static str,
-    schema: u32,
-    #[serde(flatten)]
-    answer: &'a T,
 }
 
 /// Anything as JSON.

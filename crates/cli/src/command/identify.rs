@@ -3,8 +3,7 @@
 use super::global::{By, Global, plain_number};
 use super::progress::Bar;
 use clap::Args;
-use hadar::error::{Error, Place, Result, check};
-use hadar::simulate::sequential::Plan;
+use hadar::error::Result;
 use hadar_report::identify;
 use hadar_study::study::{Asked, Law, Study, Trial, Watch};
 use std::path::PathBuf;
@@ -70,9 +69,6 @@ pub(super) fn run(args: &IdentifyArgs, global: &Global) -> Result<ExitCode> {
     if args.check {
         return only_check(&study, global);
     }
-    let most = study.bands().len();
-    number_of("--bands", args.bands, most)?;
-    number_of("--filters", args.filters, most)?;
     let chosen = args.bands.is_some() || args.filters.is_some();
     let asked = Asked {
         matrix: args.matrix,
@@ -96,17 +92,6 @@ pub(super) fn run(args: &IdentifyArgs, global: &Global) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// How many bands or filters can be asked for.
-fn number_of(flag: &str, asked: Option<usize>, most: usize) -> Result<()> {
-    match asked {
-        Some(k) if k == 0 || k > most => {
-            let expected = format!("from 1 to the number of bands, {most}");
-            Err(Error::out_of_range(flag, k as f64, "", expected))
-        }
-        _ => Ok(()),
-    }
-}
-
 /// Laws of counting, as a flag.
 #[derive(Debug, Clone, Copy, clap::ValueEnum)]
 enum Statistics {
@@ -124,13 +109,7 @@ fn trial(args: &IdentifyArgs, global: &Global) -> Result<Trial> {
         Statistics::Gaussian => Law::Gaussian,
         Statistics::NegativeBinomial => Law::NegativeBinomial,
     });
-    if let Some(photons) = args.photons {
-        check::positive("--photons", photons, "")?;
-    }
-    let flag = if args.trials == 0 { "--trials" } else { "--half-width" };
-    let at_flag = |error: Error| error.at(Place { key: Some(flag.into()), ..Place::default() });
-    let plan = Plan::new(global.seed, args.half_width, args.trials).map_err(at_flag)?;
-    Ok(Trial { law, photons: args.photons, plan })
+    Trial::asked(law, args.photons, (global.seed, args.half_width, args.trials))
 }
 
 /// The answer to one question, at the first proof.

@@ -11,9 +11,6 @@ use hadar_study::study::range::{RangePlan, RangeStudy};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// Most draws of the noise.
-const MOST_TRIALS: usize = 1_000_000;
-
 #[derive(Debug, Args)]
 pub(super) struct RangeArgs {
     /// The ranging scenario (TOML)
@@ -31,15 +28,9 @@ pub(super) struct RangeArgs {
 }
 
 pub(super) fn run(args: &RangeArgs, global: &Global) -> Result<ExitCode> {
-    if args.trials == 1 {
-        let expected = "at least 2, for one error has no scatter; 0 for the bounds alone";
-        return Err(Error::out_of_range("--trials", 1.0, "", expected));
-    }
-    if args.trials > MOST_TRIALS {
-        let expected = format!("at most {MOST_TRIALS}");
-        return Err(Error::out_of_range("--trials", args.trials as f64, "", expected));
-    }
-    match RangingScenario::from_file(&args.scenario)? {
+    let scenario = RangingScenario::from_file(&args.scenario)?;
+    scenario.check_asked(args.trials, args.bands)?;
+    match scenario {
         RangingScenario::Stereo(scenario) => by_stereo(args, global, &scenario),
         RangingScenario::Air(scenario) => by_air(args, global, &scenario),
     }
@@ -65,10 +56,6 @@ fn by_air(args: &RangeArgs, global: &Global, scenario: &AirRangingScenario) -> R
 }
 
 fn by_stereo(args: &RangeArgs, global: &Global, scenario: &RangeScenario) -> Result<ExitCode> {
-    if args.bands.is_some() {
-        let instead = "leave it out; bands are chosen for signal = \"air\", or of a pair by identify --bands";
-        return Err(Error::malformed("--bands of a stereo scenario", instead));
-    }
     let study = RangeStudy::new(scenario, &global.library()?)?;
     global.inputs_are_safe()?;
     let plan = RangePlan {
@@ -78,10 +65,6 @@ fn by_stereo(args: &RangeArgs, global: &Global, scenario: &RangeScenario) -> Res
         // A report shows all windows.
         verdict_alone: args.check && global.out.is_none(),
     };
-    if args.trials > 0 && matches!(scenario.subject, Subject::Cube(_)) {
-        let found = "--trials match views whose truth is known, which a cube's is not";
-        return Err(Error::malformed(found, "leave it out, or give a [scene]"));
-    }
     if args.check && matches!(&scenario.subject, Subject::Cube(cube) if cube.depth.is_none()) {
         let found =
             Error::malformed("--check demands a depth error", "write depth = \"12 m\" or a file of depths");

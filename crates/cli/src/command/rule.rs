@@ -94,17 +94,8 @@ pub(super) fn run(args: &RuleArgs, global: &Global) -> Result<ExitCode> {
     let text = if extent == Extent::Verdicts { rule::check(&answer) } else { rule::text(&answer, &study) };
     let provenance = global.provenance()?;
     answer.stats.add(&global.report(&text, |out| rule::bundle(&study, &answer, &provenance, out))?);
-    global.answer(&Output { answer: &answer, inputs: &provenance.inputs }, &text, &answer.stats)?;
+    global.answer(&rule::Output { answer: &answer, inputs: &provenance.inputs }, &text, &answer.stats)?;
     Ok(code(args, &answer))
-}
-
-/// What is printed with `--json`.
-#[derive(serde::Serialize)]
-struct Output<'a> {
-    #[serde(flatten)]
-    answer: &'a RuleAnswer,
-    /// All that the answer rests on, by its content.
-    inputs: &'a [Input],
 }
 
 /// Whether a certificate says what is found now.

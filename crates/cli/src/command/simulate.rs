@@ -3,23 +3,16 @@
 use super::global::Global;
 use clap::Args;
 use hadar::demand::ledger_of;
-use hadar::error::{Error, Result, check};
-use hadar::grid::text_of_file;
-use hadar::simulate::classifier::{Method, SavedModel};
-use hadar::simulate::experiment::Design;
-use hadar::simulate::spectra::Parts;
-use hadar::units::Dimension;
+use hadar::error::{Error, Result};
 use hadar_report::bundle::Bundle;
 use hadar_report::simulate::{self, thermometry as thermometry_report};
-use hadar_study::study::{PhotonLaw, SimulationPlan, Study};
-use std::path::{Path, PathBuf};
+use hadar_study::study::{PhotonLaw, SimulationAsked, SimulationPlan, Study, true_temperatures};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// Most true temperatures, and most spectra at each.
-const MOST_TEMPERATURES: usize = 10_000;
+/// Most spectra at each true temperature.
 const MOST_READINGS: usize = 10_000_000;
-/// Normalised photon numbers N d₀² that a sweep covers, and its curves.
-const SWEEP: [f64; 2] = [0.01, 10.0];
+/// Normalised photon numbers N d₀² that curves of a sweep cover.
 const CURVES: [f64; 2] = [0.01, 1e8];
 const CURVE_POINTS: usize = 101;
 
@@ -149,29 +142,7 @@ pub(super) fn run(args: &SimulateArgs, global: &Global) -> Result<ExitCode> {
 }
 
 fn thermometry(range: &str, args: &SimulateArgs, study: &Study, global: &Global) -> Result<ExitCode> {
-    let at_flag = |error: Error| error.for_key("--thermometry");
-    let temperature = |text: &str| Dimension::Temperature.parse(text).map_err(at_flag);
-    let temperatures = match (range.split_once(".."), args.temperatures) {
-        (None, _) => vec![temperature(range)?],
-        (Some(_), rows @ (0 | 1)) => {
-            return Err(Error::out_of_range("--temperatures", rows as f64, "", "at least 2 for a range"));
-        }
-        (Some((low, high)), rows) => {
-            let ends = [low, high].map(str::trim);
-            let (low, high) = (temperature(low)?, temperature(high)?);
-            if low > high {
-                let found = format!("the range goes from {} to {}", ends[0], ends[1]);
-                let instead = format!("write the lower end first: \"{}..{}\"", ends[1], ends[0]);
-                return Err(at_flag(Error::malformed(found, instead)));
-            }
-            if rows > MOST_TEMPERATURES {
-                let expected = format!("at most {MOST_TEMPERATURES}");
-                return Err(Error::out_of_range("--temperatures", rows as f64, "", expected));
-            }
-            let step = (high - low) / (rows - 1) as f64;
-            (0..rows).map(|i| (i as f64).mul_add(step, low)).collect()
-        }
-    };
+    let temperatures = true_temperatures(range, args.temperatures)?;
     if args.spectra > MOST_READINGS {
         let expected = format!("at most {MOST_READINGS} at each temperature");
         return Err(Error::out_of_range("--spectra", args.spectra as f64, "", expected));
@@ -187,60 +158,20 @@ fn thermometry(range: &str, args: &SimulateArgs, study: &Study, global: &Global)
 }
 
 fn plan(args: &SimulateArgs, study: &Study, global: &Global) -> Result<SimulationPlan> {
-    let methods = if args.classifiers.is_empty() && args.skip_spectra {
-        vec![Method::LikelihoodRatio]
-    } else if args.classifiers.is_empty() && args.model.is_empty() {
-        Method::ALL.to_vec()
-    } else {
-        let mut methods = Vec::new();
-        for name in &args.classifiers {
-            let method = Method::from_name(name.trim())?;
-            if !methods.contains(&method) {
-                methods.push(method);
-            }
-        }
-        methods
-    };
-    let against = if args.against == ["all"] {
-        study.alternatives().iter().map(|surface| surface.name.clone()).collect()
-    } else {
-        args.against.clone()
-    };
-    let models: Vec<SavedModel> = args.model.iter().map(|path| saved(path)).collect::<Result<_>>()?;
-    for (saved, path) in models.iter().zip(&args.model) {
-        study.check_model(saved, &against).map_err(|error| error.in_file(path))?;
-    }
-    Parts::of(args.spectra).map_err(|error| error.for_key("--spectra"))?;
-    for &photons in &args.photons {
-        check::positive("number of photons", photons, "").map_err(|error| error.for_key("--photons"))?;
-    }
-    let photons = match args.sweep {
-        Some(experiments) => study
-            .sweep(SWEEP, experiments, &against, !args.shot_noise_only)
-            .map_err(|error| error.for_key("--sweep"))?,
-        None => args.photons.clone(),
-    };
-    Ok(SimulationPlan {
-        photons,
+    study.plan(&SimulationAsked {
+        classifiers: args.classifiers.clone(),
+        spectra: args.spectra,
+        photons: args.photons.clone(),
+        sweep: args.sweep,
         law: match args.statistics {
             Statistics::Poisson => PhotonLaw::Poisson,
             Statistics::NegativeBinomial => PhotonLaw::NegativeBinomial,
             Statistics::FixedTotal => PhotonLaw::FixedTotal,
         },
         camera_noise: !args.shot_noise_only,
-        against,
-        design: Design {
-            per_class: args.spectra,
-            methods,
-            seed: global.seed,
-            level: 0.95,
-            skip_spectra: args.skip_spectra,
-        },
-        models,
+        against: args.against.clone(),
+        models: args.model.clone(),
+        skip_spectra: args.skip_spectra,
+        seed: global.seed,
     })
-}
-
-fn saved(path: &Path) -> Result<SavedModel> {
-    let text = text_of_file(path, "read the model")?;
-    SavedModel::from_json(&text).map_err(|error| error.in_file(path))
 }

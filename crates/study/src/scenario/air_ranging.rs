@@ -6,10 +6,14 @@
 mod read;
 mod write;
 
+use super::range::Subject;
 use super::{RangeScenario, Scenario, Source};
-use hadar::error::Place;
+use hadar::error::{Error, Place, Result};
 pub use hadar::ranging::air::SmoothEmissivity;
 pub use hadar::ranging::depth::Demand;
+
+/// Most draws of the noise.
+const MOST_TRIALS: usize = 1_000_000;
 
 /// Everything a scenario of ranging by air says, defaults filled in.
 #[derive(Debug, Clone, PartialEq)]
@@ -53,6 +57,33 @@ pub enum RangingScenario {
     Stereo(Box<RangeScenario>),
     /// The air on the path.
     Air(Box<AirRangingScenario>),
+}
+
+impl RangingScenario {
+    /// Whether so many draws, and so many bands, can be asked for. Messages name the flags of the command line.
+    ///
+    /// # Errors
+    /// A single draw or more than a million; bands of a stereo scenario; draws of a cube, whose truth nobody knows.
+    pub fn check_asked(&self, trials: usize, bands: Option<usize>) -> Result<()> {
+        if trials == 1 {
+            let expected = "at least 2, for one error has no scatter; 0 for the bounds alone";
+            return Err(Error::out_of_range("--trials", 1.0, "", expected));
+        }
+        if trials > MOST_TRIALS {
+            return Err(Error::out_of_range("--trials", trials as f64, "", format!("at most {MOST_TRIALS}")));
+        }
+        let Self::Stereo(scenario) = self else { return Ok(()) };
+        if bands.is_some() {
+            let instead =
+                "leave it out; bands are chosen for signal = \"air\", or of a pair by identify --bands";
+            return Err(Error::malformed("--bands of a stereo scenario", instead));
+        }
+        if trials > 0 && matches!(scenario.subject, Subject::Cube(_)) {
+            let found = "--trials match views whose truth is known, which a cube's is not";
+            return Err(Error::malformed(found, "leave it out, or give a [scene]"));
+        }
+        Ok(())
+    }
 }
 
 impl AirRangingScenario {

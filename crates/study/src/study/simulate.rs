@@ -7,6 +7,7 @@
 //!
 //! Whether a classifier beats the limit is asked at a level that holds for all comparisons together (Bonferroni).
 
+mod asked;
 mod experiment;
 mod magnitudes;
 mod noise_curves;
@@ -14,6 +15,7 @@ mod photons;
 mod standing;
 mod thermometry;
 
+pub use asked::{SimulationAsked, true_temperatures};
 pub(super) use experiment::normal_error;
 pub use noise_curves::{NoiseCurve, NoiseCurves};
 pub use standing::{SimulatedPerformance, Standing};

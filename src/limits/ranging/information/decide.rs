@@ -18,7 +18,7 @@ use super::blocks::{Plan, Strip, run};
 use super::boxes::{Image, window_sums};
 use super::samples::{BandSums, Room, bounds_of_row, pixels_of_row};
 use super::{Cell, Request, Window, pixels};
-use crate::cube::Cube;
+use crate::cube::{Cube, CubeRef};
 use crate::demand::{Reason, Thing, Work};
 use crate::error::{Error, Result, check};
 use std::ops::Range;
@@ -93,7 +93,7 @@ pub fn decide(cube: &Cube, request: &Request<'_>, required_per_pixel2: f64) -> R
         quotients: vec![0.0; rows.len() * inner.len()],
         evaluated: Vec::new(),
         plan: &plan,
-        cube,
+        cube: cube.into(),
     };
     state.evaluated = vec![false; rows.len() * state.strips.len()];
 
@@ -153,7 +153,7 @@ pub fn decide(cube: &Cube, request: &Request<'_>, required_per_pixel2: f64) -> R
 
 struct State<'a> {
     plan: &'a Plan<'a>,
-    cube: &'a Cube,
+    cube: CubeRef<'a>,
     strips: Vec<Strip>,
     /// Σ_b (∂N)²/(N + σ²), 0 where not yet evaluated.
     quotients: Vec<f64>,

@@ -3,7 +3,7 @@
 use super::bounds::Bounded;
 use super::direct::{Direct, Pixels, Stretch};
 use super::kernels::{Seen, Stored};
-use crate::cube::{Cube, Rows};
+use crate::cube::{CubeRef, Rows};
 use crate::error::Result;
 use crate::simd::Chunk;
 use std::ops::Range;
@@ -17,11 +17,11 @@ pub(super) struct Buffer {
 
 impl Buffer {
     /// Reads rows.
-    pub(super) fn read<'a>(&'a mut self, cube: &'a Cube, rows: Range<usize>) -> Result<Raw<'a>> {
+    pub(super) fn read<'a>(&'a mut self, cube: CubeRef<'a>, rows: Range<usize>) -> Result<Raw<'a>> {
         let len = rows.len() * cube.shape().row_len();
         match cube {
-            Cube::F32(cube) => exactly(cube.as_ref(), rows, len, &mut self.narrow).map(Raw::F32),
-            Cube::F64(cube) => exactly(cube.as_ref(), rows, len, &mut self.wide).map(Raw::F64),
+            CubeRef::F32(cube) => exactly(cube, rows, len, &mut self.narrow).map(Raw::F32),
+            CubeRef::F64(cube) => exactly(cube, rows, len, &mut self.wide).map(Raw::F64),
         }
     }
 }

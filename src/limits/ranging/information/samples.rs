@@ -15,7 +15,7 @@ use super::checks::Checked;
 use super::request::Cell;
 use super::rows::Buffer;
 use super::strips::{StripRoom, StripRow};
-use crate::cube::Cube;
+use crate::cube::CubeRef;
 use crate::error::Result;
 use crate::ranging::noise::NoiseVariance;
 use std::ops::Range;
@@ -53,7 +53,7 @@ fn take<'a>(rest: &mut &'a mut [f64], len: usize) -> &'a mut [f64] {
 }
 
 /// The first pass.
-pub(super) fn band_sums(cube: &Cube, plan: &Plan<'_>, block_rows: usize) -> Result<BandSums> {
+pub(super) fn band_sums(cube: CubeRef<'_>, plan: &Plan<'_>, block_rows: usize) -> Result<BandSums> {
     let (rows, inner) = (plan.rows(), plan.inner().len());
     let room = |wanted: bool, rows: usize, columns: usize| vec![0.0; if wanted { rows * columns } else { 0 }];
     let mut sums = BandSums {
@@ -87,7 +87,7 @@ pub(super) fn band_sums(cube: &Cube, plan: &Plan<'_>, block_rows: usize) -> Resu
 /// The quotients of one row of pixels, in some of the strips of a plan for [`Cell::Full`] alone; `to` is for all
 /// columns with a derivative.
 pub(super) fn pixels_of_row(
-    cube: &Cube,
+    cube: CubeRef<'_>,
     plan: &Plan<'_>,
     y: usize,
     strips: &[&Strip],
@@ -96,7 +96,7 @@ pub(super) fn pixels_of_row(
 ) -> Result<()> {
     let counts = room.counts.read(cube, y..y + 1)?;
     let variances = match plan.request.noise {
-        NoiseVariance::PerSample(cube) => Some(room.variances.read(cube, y..y + 1)?),
+        NoiseVariance::PerSample(cube) => Some(room.variances.read(cube.into(), y..y + 1)?),
         _ => None,
     };
     let checked = Checked::new(plan, (y, y + 1), counts, variances);
@@ -117,7 +117,7 @@ pub(super) fn pixels_of_row(
 
 /// Upper bounds of the quotients of one row of pixels, likewise; with the central difference.
 pub(super) fn bounds_of_row(
-    cube: &Cube,
+    cube: CubeRef<'_>,
     plan: &Plan<'_>,
     y: usize,
     strips: &[&Strip],
@@ -143,13 +143,13 @@ pub(super) struct Room {
 }
 
 impl Block<'_> {
-    fn work(mut self, cube: &Cube, plan: &Plan<'_>, strips: &[Strip], room: &mut Room) -> Result<()> {
+    fn work(mut self, cube: CubeRef<'_>, plan: &Plan<'_>, strips: &[Strip], room: &mut Room) -> Result<()> {
         let last =
             if plan.wants(Cell::Spectral) { self.tops.end + plan.request.window.rows() - 1 } else { 0 };
         let read = self.owned.start..self.owned.end.max(last);
         let counts = room.counts.read(cube, read.clone())?;
         let variances = match plan.request.noise {
-            NoiseVariance::PerSample(cube) => Some(room.variances.read(cube, read.clone())?),
+            NoiseVariance::PerSample(cube) => Some(room.variances.read(cube.into(), read.clone())?),
             _ => None,
         };
         let checked = Checked::new(plan, (read.start, read.end), counts, variances);

@@ -127,7 +127,7 @@ proptest! {
 
         // The same bits in blocks of other heights, for part of the rows, and in the decision.
         let plan = blocks::Plan::new(shape, &request).unwrap();
-        let other = samples::band_sums(&cube(shape, &counts), &plan, 1 + seed as usize % 5).unwrap();
+        let other = samples::band_sums((&cube(shape, &counts)).into(), &plan, 1 + seed as usize % 5).unwrap();
         prop_assert_eq!(&other.spectral, &map.information[2]);
         let part = Request { centres: map.rows.start + map.rows.len() / 2..rows, ..request.clone() };
         let part = information(&cube(shape, &counts), &part).unwrap();

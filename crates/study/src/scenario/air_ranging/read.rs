@@ -47,12 +47,19 @@ impl RangingScenario {
     /// # Errors
     /// The first thing that is wrong, in one line with file, line and key, as [`Scenario::from_file`].
     pub fn from_file(path: &Path) -> Result<Self> {
-        let text = text_of(path)?;
-        let (parsed, _) = toml::de::DeTable::parse_recoverable(&text);
+        Self::from_toml(&text_of(path)?, Some(path))
+    }
+
+    /// Reads a ranging scenario of either kind from text; `path` as in [`Scenario::from_toml`].
+    ///
+    /// # Errors
+    /// As [`RangingScenario::from_file`], except those of the file itself.
+    pub fn from_toml(text: &str, path: Option<&Path>) -> Result<Self> {
+        let (parsed, _) = toml::de::DeTable::parse_recoverable(text);
         if parsed.get_ref().contains_key("signal") {
-            return AirRangingScenario::from_toml(&text, Some(path)).map(|air| Self::Air(Box::new(air)));
+            return AirRangingScenario::from_toml(text, path).map(|air| Self::Air(Box::new(air)));
         }
-        RangeScenario::from_toml(&text, Some(path)).map(|stereo| Self::Stereo(Box::new(stereo)))
+        RangeScenario::from_toml(text, path).map(|stereo| Self::Stereo(Box::new(stereo)))
     }
 }
 

@@ -78,6 +78,9 @@ impl Study {
             let instead = "name those of its members that decide (they stand in the answer without --bands)";
             return Err(Error::malformed(found, instead).at(self.scenario().place("class")));
         }
+        let (bands, filters) = asked.bands.unwrap_or_default();
+        number_of("--bands", bands, self.bands.len())?;
+        number_of("--filters", filters, self.bands.len())?;
         let ledger = Ledger::open();
         let section = Thing::Sections;
         let mut identification = self.identify()?;
@@ -106,10 +109,20 @@ impl Study {
         }
         let apart = if_asked(asked.apart, section, 1, || self.told_apart(asked.skipping, watch.decided))?;
         let scaling = if_asked(asked.scaling, section, 1, || self.scaling(watch.searched))?;
-        let (bands, filters) = asked.bands.unwrap_or_default();
         let bands_that_matter =
             if_asked(asked.bands.is_some(), section, 1, || self.bands_that_matter(bands, filters))?;
         identification.stats = ledger.close();
         Ok(Answers { identification, matrix, apart, scaling, bands_that_matter, exact })
+    }
+}
+
+/// How many bands or filters can be asked for.
+fn number_of(flag: &str, asked: Option<usize>, most: usize) -> Result<()> {
+    match asked {
+        Some(k) if k == 0 || k > most => {
+            let expected = format!("from 1 to the number of bands, {most}");
+            Err(Error::out_of_range(flag, k as f64, "", expected))
+        }
+        _ => Ok(()),
     }
 }

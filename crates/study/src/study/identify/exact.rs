@@ -11,7 +11,7 @@ pub use results::{Exact, ExactLibrary, ExactPair};
 use crate::study::simulate::normal_error;
 use crate::study::{Study, Surface};
 use hadar::demand::{self, Reason, Thing};
-use hadar::error::{Error, Result};
+use hadar::error::{Error, Result, check};
 use hadar::fisher::{Counting, Nuisance};
 use hadar::identifiability::bracket::KnownStates;
 use hadar::identifiability::detection;
@@ -52,6 +52,26 @@ pub struct Trial {
     pub photons: Option<f64>,
     /// Seed, interval and limit of trials.
     pub plan: Plan,
+}
+
+impl Trial {
+    /// A simulation as it is asked for: seed, half width of the 95 % interval at which it stops, most trials. Messages name the flags
+    /// of the command line.
+    ///
+    /// # Errors
+    /// Photons that are not positive; what [`Plan::new`] refuses.
+    pub fn asked(
+        law: Option<Law>,
+        photons: Option<f64>,
+        (seed, half_width, trials): (u64, f64, u64),
+    ) -> Result<Self> {
+        if let Some(photons) = photons {
+            check::positive("--photons", photons, "")?;
+        }
+        let flag = if trials == 0 { "--trials" } else { "--half-width" };
+        let plan = Plan::new(seed, half_width, trials).map_err(|error| error.for_key(flag))?;
+        Ok(Self { law, photons, plan })
+    }
 }
 
 impl Study {

@@ -1,0 +1,376 @@
+//! The commands `size`, `identify`, `rule`, `range` and `simulate`: the same study, the same JSON.
+
+use crate::error::{named, raised};
+use crate::question::Question;
+use crate::threads::with_threads;
+use hadar::demand::{Reason, Skipping, Thing, Work, ledger_of};
+use hadar::error::{Error, Result};
+use hadar::inputs::Noting;
+use hadar::material::Library;
+use hadar_report::bundle::Bundle;
+use hadar_report::manifest::{Provenance, answer_json};
+use hadar_report::{
+    air_ranging, identify as identify_report, range, rule as rule_report, simulate as simulate_report,
+    size as size_report,
+};
+use hadar_study::scenario::{DistanceKind, RangingScenario, Rule, Scenario, day};
+use hadar_study::study::air_ranging::{AirPlan, AirRangingStudy};
+use hadar_study::study::range::{RangePlan, RangeStudy};
+use hadar_study::study::{
+    Asked, Extent, Law, PhotonLaw, RuleAsked, RuleStudy, SimulationAsked, Study, Trial, Watch,
+};
+use pyo3::prelude::*;
+use std::path::{Path, PathBuf};
+
+type Draw = Box<dyn Fn() -> Result<Bundle> + Send + Sync>;
+
+/// What a command answers.
+#[pyclass(frozen, module = "hadar._hadar")]
+pub(crate) struct Answer {
+    /// One JSON object, as the command prints with `--json`.
+    #[pyo3(get)]
+    json: String,
+    /// As the command prints.
+    #[pyo3(get)]
+    text: String,
+    /// What is to be said of the library.
+    #[pyo3(get)]
+    library_warnings: Vec<String>,
+    draw: Draw,
+}
+
+#[pymethods]
+impl Answer {
+    /// The pictures as SVG, by the names of their files.
+    fn pictures(&self, py: Python<'_>) -> PyResult<Vec<(String, String)>> {
+        with_threads(py, None, || (self.draw)()?.drawings())
+    }
+}
+
+/// What all commands share.
+#[derive(FromPyObject)]
+pub(crate) struct Common {
+    #[pyo3(item)]
+    library: Vec<PathBuf>,
+    #[pyo3(item)]
+    only_library: bool,
+    #[pyo3(item)]
+    skip_uncovered: bool,
+    #[pyo3(item)]
+    seed: u64,
+    #[pyo3(item)]
+    skipping: bool,
+    #[pyo3(item)]
+    threads: Option<usize>,
+}
+
+/// Found by a command: text, JSON, pictures to be drawn.
+struct Found {
+    json: String,
+    text: String,
+    draw: Draw,
+}
+
+impl Common {
+    fn skipping(&self) -> Skipping {
+        if self.skipping { Skipping::On } else { Skipping::Off }
+    }
+
+    fn library(&self) -> Result<Library> {
+        let mut library = if self.only_library { Library::empty() } else { Library::embedded()? };
+        for path in &self.library {
+            library.add_path(path)?;
+        }
+        if library.is_empty() {
+            return Err(Error::malformed(
+                "the library is empty",
+                "add spectra with library=, or leave out only_library",
+            ));
+        }
+        Ok(library)
+    }
+
+    /// Answers without the interpreter; files are noted as they are read.
+    fn answer(
+        &self,
+        py: Python<'_>,
+        question: &Question,
+        find: impl FnOnce(&Noting, &mut dyn FnMut() -> Result<Library>) -> Result<Found> + Send,
+    ) -> PyResult<Answer> {
+        with_threads(py, self.threads, || {
+            let noting = Noting::open();
+            let mut library_warnings = Vec::new();
+            let mut read = || {
+                let library = self.library()?;
+                library_warnings = library.warnings().to_vec();
+                Ok(library)
+            };
+            let found = find(&noting, &mut read).map_err(|error| question.told(error))?;
+            let Found { json, text, draw } = found;
+            Ok(Answer { json, text, library_warnings, draw })
+        })
+    }
+
+    fn study(
+        &self,
+        question: &Question,
+        by: Option<DistanceKind>,
+        library: &mut dyn FnMut() -> Result<Library>,
+    ) -> Result<Study> {
+        let mut scenario = question.read(Scenario::from_file, Scenario::from_toml)?;
+        if let Some(by) = by {
+            scenario.requirement.by = by;
+        }
+        scenario.alternatives.skip_uncovered |= self.skip_uncovered;
+        Study::new_skipping(&scenario, &library()?, self.skipping())
+    }
+}
+
+/// A report that nobody asked for, as the command counts it.
+fn no_report() -> Work {
+    let mut work = Work::default();
+    work.spare(Thing::Reports, Reason::NotAsked, 1);
+    work
+}
+
+fn by_name(by: Option<&str>) -> PyResult<Option<DistanceKind>> {
+    let of = |by| named("distance", by, &DistanceKind::ALL, DistanceKind::name).map_err(raised);
+    by.map(of).transpose()
+}
+
+/// `hadar size`.
+#[pyfunction]
+pub(crate) fn size(
+    py: Python<'_>,
+    scenario: &Bound<'_, PyAny>,
+    by: Option<&str>,
+    common: Common,
+) -> PyResult<Answer> {
+    let (question, by) = (Question::of(scenario)?, by_name(by)?);
+    common.answer(py, &question, |_, library| {
+        let study = common.study(&question, by, library)?;
+        let mut result = study.size()?;
+        let (trade_offs, work) = ledger_of(|| study.trade_offs(&result))?;
+        result.trade_offs = Some(trade_offs);
+        result.stats.add(&work);
+        let text = size_report::text(&result, &study);
+        result.stats.add(&no_report());
+        let json = answer_json(&result)?;
+        Ok(Found { json, text, draw: Box::new(move || size_report::bundle(&study, &result, Path::new(""))) })
+    })
+}
+
+/// What `hadar identify` can be asked besides.
+#[derive(FromPyObject)]
+pub(crate) struct Identify {
+    #[pyo3(item)]
+    matrix: bool,
+    #[pyo3(item)]
+    apart: bool,
+    #[pyo3(item)]
+    prove: Option<f64>,
+    #[pyo3(item)]
+    scaling: bool,
+    #[pyo3(item)]
+    bands: Option<usize>,
+    #[pyo3(item)]
+    filters: Option<usize>,
+    #[pyo3(item)]
+    exact: bool,
+    #[pyo3(item)]
+    statistics: Option<String>,
+    #[pyo3(item)]
+    photons: Option<f64>,
+    #[pyo3(item)]
+    half_width: f64,
+    #[pyo3(item)]
+    trials: u64,
+    #[pyo3(item)]
+    average: bool,
+}
+
+const LAWS: [(Law, &str); 3] =
+    [(Law::Poisson, "poisson"), (Law::Gaussian, "gaussian"), (Law::NegativeBinomial, "negative-binomial")];
+
+/// `hadar identify`.
+#[pyfunction]
+pub(crate) fn identify(
+    py: Python<'_>,
+    scenario: &Bound<'_, PyAny>,
+    by: Option<&str>,
+    more: Identify,
+    common: Common,
+) -> PyResult<Answer> {
+    let (question, by) = (Question::of(scenario)?, by_name(by)?);
+    let law = more.statistics.as_deref().map(|law| named("statistics", law, &LAWS, |law| law.1));
+    let law = law.transpose().map_err(raised)?.map(|law| law.0);
+    common.answer(py, &question, |_, library| {
+        let mut study = common.study(&question, by, library)?;
+        if let Some(share) = more.prove {
+            study = study.proving(share)?;
+        }
+        let trial = || Trial::asked(law, more.photons, (common.seed, more.half_width, more.trials));
+        let asked = Asked {
+            matrix: more.matrix,
+            apart: more.apart,
+            skipping: common.skipping(),
+            scaling: more.scaling,
+            bands: (more.bands.is_some() || more.filters.is_some()).then_some((more.bands, more.filters)),
+            exact: more.exact.then(trial).transpose()?,
+            average: more.average,
+        };
+        let silent = |_: usize, _: usize| ();
+        let watch = Watch { searched: &silent, decided: &silent, simulated: &silent, averaged: &silent };
+        let mut answers = study.answer(&asked, &watch)?;
+        let text = identify_report::text(&answers, &study);
+        answers.identification.stats.add(&no_report());
+        let (json, seed) = (answer_json(&answers)?, common.seed);
+        Ok(Found {
+            json,
+            text,
+            draw: Box::new(move || identify_report::bundle(&study, &answers, seed, Path::new(""))),
+        })
+    })
+}
+
+/// `hadar rule`.
+#[pyfunction]
+pub(crate) fn rule(
+    py: Python<'_>,
+    rule: &Bound<'_, PyAny>,
+    on: Option<&str>,
+    common: Common,
+) -> PyResult<Answer> {
+    let question = Question::of(rule)?;
+    let on = on.map(|on| {
+        day(on)
+            .ok_or_else(|| raised(Error::malformed(format!("on: `{on}` is no day"), "write \"2029-09-01\"")))
+    });
+    let on = on.transpose()?;
+    common.answer(py, &question, |noting, library| {
+        let mut rule_read = question.read(Rule::from_file, Rule::from_toml)?;
+        rule_read.skip_uncovered(common.skip_uncovered);
+        let study = RuleStudy::new(&rule_read, &library()?)?;
+        let (extent, skipping, seed) = (Extent::Everything, common.skipping(), common.seed);
+        let mut answer = study.answer(&RuleAsked { extent, skipping, seed, on }, &|_, _| ())?;
+        let text = rule_report::text(&answer, &study);
+        answer.stats.add(&no_report());
+        let provenance = Provenance::of("unknown", Vec::new(), seed, &noting.so_far())?;
+        let json = answer_json(&rule_report::Output { answer: &answer, inputs: &provenance.inputs })?;
+        let draw = move || rule_report::bundle(&study, &answer, &provenance, Path::new(""));
+        Ok(Found { json, text, draw: Box::new(draw) })
+    })
+}
+
+/// `hadar range`.
+#[pyfunction]
+pub(crate) fn range_(
+    py: Python<'_>,
+    scenario: &Bound<'_, PyAny>,
+    trials: usize,
+    bands: Option<usize>,
+    common: Common,
+) -> PyResult<Answer> {
+    let question = Question::of(scenario)?;
+    common.answer(py, &question, |_, library| {
+        let scenario = question.read(RangingScenario::from_file, RangingScenario::from_toml)?;
+        scenario.check_asked(trials, bands)?;
+        match scenario {
+            RangingScenario::Air(scenario) => {
+                let study = AirRangingStudy::new(&scenario, &library()?)?;
+                let plan = AirPlan { trials, seed: common.seed, bands };
+                let mut result = study.range(&plan, &|_, _| ())?;
+                let text = air_ranging::text(&result);
+                result.stats.add(&no_report());
+                let json = answer_json(&result)?;
+                Ok(Found { json, text, draw: Box::new(move || air_ranging::bundle(&result, Path::new(""))) })
+            }
+            RangingScenario::Stereo(scenario) => {
+                let study = RangeStudy::new(&scenario, &library()?)?;
+                let (seed, skipping) = (common.seed, common.skipping());
+                let plan = RangePlan { trials, seed, skipping, verdict_alone: false };
+                let mut result = study.range(&plan, &|_, _| ())?;
+                let text = range::text(&result);
+                result.stats.add(&no_report());
+                let json = answer_json(&result)?;
+                Ok(Found { json, text, draw: Box::new(move || range::bundle(&result, Path::new(""))) })
+            }
+        }
+    })
+}
+
+/// What `hadar simulate` can be asked besides.
+#[derive(FromPyObject)]
+pub(crate) struct Simulate {
+    #[pyo3(item)]
+    classifiers: Vec<String>,
+    #[pyo3(item)]
+    spectra: usize,
+    #[pyo3(item)]
+    photons: Vec<f64>,
+    #[pyo3(item)]
+    sweep: Option<usize>,
+    #[pyo3(item)]
+    statistics: String,
+    #[pyo3(item)]
+    shot_noise_only: bool,
+    #[pyo3(item)]
+    against: Vec<String>,
+    #[pyo3(item)]
+    model: Vec<PathBuf>,
+    #[pyo3(item)]
+    skip_spectra: bool,
+    #[pyo3(item)]
+    thermometry: Option<String>,
+    #[pyo3(item)]
+    temperatures: usize,
+}
+
+const PHOTON_LAWS: [(PhotonLaw, &str); 3] = [
+    (PhotonLaw::Poisson, "poisson"),
+    (PhotonLaw::NegativeBinomial, "negative-binomial"),
+    (PhotonLaw::FixedTotal, "fixed-total"),
+];
+
+/// `hadar simulate`.
+#[pyfunction]
+pub(crate) fn simulate(
+    py: Python<'_>,
+    scenario: &Bound<'_, PyAny>,
+    more: Simulate,
+    common: Common,
+) -> PyResult<Answer> {
+    let question = Question::of(scenario)?;
+    let law = named("statistics", &more.statistics, &PHOTON_LAWS, |law| law.1).map_err(raised)?.0;
+    common.answer(py, &question, |_, library| {
+        let study = common.study(&question, None, library)?;
+        if let Some(range) = &more.thermometry {
+            let temperatures = hadar_study::study::true_temperatures(range, more.temperatures)?;
+            let mut result = study.thermometry(&temperatures, more.spectra, common.seed, &|_, _| ())?;
+            let text = simulate_report::thermometry::text(&result);
+            result.stats.add(&no_report());
+            let json = answer_json(&result)?;
+            let draw = move || simulate_report::thermometry::bundle(&study, &result, Path::new(""));
+            return Ok(Found { json, text, draw: Box::new(draw) });
+        }
+        let asked = SimulationAsked {
+            classifiers: more.classifiers.clone(),
+            spectra: more.spectra,
+            photons: more.photons.clone(),
+            sweep: more.sweep,
+            law,
+            camera_noise: !more.shot_noise_only,
+            against: more.against.clone(),
+            models: more.model.clone(),
+            skip_spectra: more.skip_spectra,
+            seed: common.seed,
+        };
+        let (plan, planning) = ledger_of(|| study.plan(&asked))?;
+        let (mut result, _) = study.simulate(&plan, &|_, _| ())?;
+        let text = simulate_report::text(&result, &study);
+        result.stats.add(&planning.and(&no_report()));
+        let json = answer_json(&result)?;
+        let draw = move || simulate_report::bundle(&study, &result, None, Path::new(""));
+        Ok(Found { json, text, draw: Box::new(draw) })
+    })
+}

@@ -1,0 +1,116 @@
+//! Heat cubes taken apart.
+
+use crate::array::{list, numbers, rows, shaped};
+use crate::error::{named, raised};
+use crate::lent::Lent;
+use crate::scene::bands;
+use crate::threads::with_threads;
+use hadar::decompose::{LibraryError, Light, Maps, Method, Options, Setting, SpatialPrior, decompose_by};
+use hadar::demand::Skipping;
+use hadar::error::Error;
+use numpy::PyUntypedArrayMethods as _;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// Temperatures that a target may have where nothing is said, K: as `hadar decompose`.
+const RANGE_K: [f64; 2] = [200.0, 400.0];
+
+/// Material, temperature and lighting of every pixel, by the names of [`Maps`].
+#[pyfunction]
+#[pyo3(signature = (cube, library, light, bands, *, counts_per_radiance, var_added=None, units_per_count=1.0,
+    temperature_range=None, lighting_total=None, gain=false, bad_bands=None, light_in_counts=false, prior=None,
+    emissivity_error=None, method="ml", potts=None, tex_sgd=None, skipping=true, threads=None))]
+#[expect(clippy::too_many_arguments, reason = "keywords of Python")]
+pub(crate) fn decompose<'py>(
+    py: Python<'py>,
+    cube: &Bound<'py, PyAny>,
+    library: &Bound<'py, PyAny>,
+    light: &Bound<'py, PyAny>,
+    bands: &Bound<'py, PyAny>,
+    counts_per_radiance: &Bound<'py, PyAny>,
+    var_added: Option<&Bound<'py, PyAny>>,
+    units_per_count: f64,
+    temperature_range: Option<[f64; 2]>,
+    lighting_total: Option<f64>,
+    gain: bool,
+    bad_bands: Option<Vec<usize>>,
+    light_in_counts: bool,
+    prior: Option<&Bound<'py, PyAny>>,
+    emissivity_error: Option<(f64, f64)>,
+    method: &str,
+    potts: Option<(f64, Option<f64>)>,
+    tex_sgd: Option<f64>,
+    skipping: bool,
+    threads: Option<usize>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let lent = Lent::of(cube)?;
+    let view = lent.view()?;
+    let bands = self::bands(bands)?;
+    let each = |given: &Bound<'_, PyAny>, what: &str| -> PyResult<Vec<f64>> {
+        let alone = numbers::<f64>(given, what)?.ndim() == 0;
+        let values = list(given, what)?;
+        Ok(match values.first() {
+            Some(one) if alone => vec![*one; bands.len()],
+            _ => values,
+        })
+    };
+    let counts_per_radiance = each(counts_per_radiance, "counts_per_radiance")?;
+    let var_added = var_added.map_or(Ok(Vec::new()), |given| each(given, "var_added"))?;
+    let library = rows(library, "library")?;
+    let kind = if light_in_counts { Light::Counts } else { Light::Radiance };
+    let surroundings = match numbers::<f64>(light, "light")?.len() {
+        0 => Vec::new(),
+        _ => rows(light, "light")?.into_iter().map(kind).collect::<Vec<_>>(),
+    };
+    let method = named("method", method, &Method::ALL, Method::name).map_err(raised)?;
+    let spatial = match (potts, tex_sgd) {
+        (None, None) => None,
+        (Some((weight, temperature_step_k)), None) => {
+            Some(SpatialPrior::Potts { weight, temperature_step_k })
+        }
+        (None, Some(weight)) => Some(SpatialPrior::TexSgd { weight }),
+        (Some(_), Some(_)) => {
+            return Err(raised(Error::malformed("two priors over the image", "take potts or tex_sgd")));
+        }
+    };
+    let options = Options {
+        prior: prior.map_or(Ok(Vec::new()), |given| list(given, "prior"))?,
+        library_error: emissivity_error
+            .map(|(relative, correlation_cm1)| LibraryError { relative, correlation_cm1 }),
+        skipping: if skipping { Skipping::On } else { Skipping::Off },
+        spatial,
+    };
+    let setting = Setting {
+        bands: &bands,
+        library: &library,
+        surroundings: &surroundings,
+        counts_per_radiance: &counts_per_radiance,
+        var_added: &var_added,
+        units_per_count,
+        temperature_k: temperature_range.unwrap_or(RANGE_K),
+        lighting_total,
+        gain,
+        bad_bands: bad_bands.as_deref().unwrap_or_default(),
+    };
+    let maps = with_threads(py, threads, || decompose_by(method, &setting, &options, view.cube(), &|_| ()))?;
+    given_back(py, lent.pixels(), surroundings.len(), maps)
+}
+
+fn given_back<'py>(
+    py: Python<'py>,
+    pixels: &[usize],
+    surroundings: usize,
+    maps: Maps,
+) -> PyResult<Bound<'py, PyDict>> {
+    let lit: Vec<usize> = pixels.iter().copied().chain([surroundings]).collect();
+    let out = PyDict::new(py);
+    out.set_item("material", shaped(py, pixels, maps.material)?)?;
+    out.set_item("temperature_k", shaped(py, pixels, maps.temperature_k)?)?;
+    out.set_item("temperature_sigma_k", shaped(py, pixels, maps.temperature_sigma_k)?)?;
+    out.set_item("lighting", shaped(py, &lit, maps.lighting)?)?;
+    out.set_item("p_value", shaped(py, pixels, maps.p_value)?)?;
+    out.set_item("posterior", shaped(py, pixels, maps.posterior)?)?;
+    out.set_item("candidates", shaped(py, pixels, maps.candidates)?)?;
+    out.set_item("flags", shaped(py, pixels, maps.flags)?)?;
+    Ok(out)
+}

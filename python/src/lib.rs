@@ -1,0 +1,42 @@
+//! `hadar._hadar`: what the Python package `hadar` is made of; how it is called stands in `hadar/_hadar.pyi`.
+//!
+//! Numbers come as NumPy arrays and are worked on where they lie, scenarios as files, text or dicts. The interpreter is free
+//! meanwhile. Errors are those of the command, as exceptions.
+
+mod answer;
+mod array;
+mod decompose;
+mod error;
+mod lent;
+mod library;
+mod pairs;
+mod planck;
+mod question;
+mod scene;
+mod threads;
+mod windows;
+
+/// The compiled part of the package.
+#[pyo3::pymodule]
+mod _hadar {
+    #[pymodule_export]
+    use crate::answer::{Answer, identify, range_, rule, simulate, size};
+    #[pymodule_export]
+    use crate::decompose::decompose;
+    #[pymodule_export]
+    use crate::error::HadarError;
+    #[pymodule_export]
+    use crate::library::{emissivity, materials};
+    #[pymodule_export]
+    use crate::pairs::{Local, Nearest, local, matrix, nearest};
+    #[pymodule_export]
+    use crate::planck::{brightness_temperature, planck, planck_slope};
+    #[pymodule_export]
+    use crate::scene::Scene;
+    #[pymodule_export]
+    use crate::windows::window_information;
+
+    #[pymodule_export]
+    #[expect(non_upper_case_globals, reason = "a name of Python")]
+    const __version__: &str = hadar_report::manifest::VERSION;
+}

@@ -1,0 +1,192 @@
+//! Distances of pairs of materials, and of all against all.
+
+use crate::array::{flat, rows, shaped};
+use crate::error::{named, raised};
+use crate::scene::Scene;
+use crate::threads::with_threads;
+use hadar::error::check;
+use hadar::identifiability::local::LocalSolver;
+use hadar::identifiability::multi::{LibraryScene, LocalMatrix};
+use hadar::identifiability::nearest::NearestSolver;
+use hadar::identifiability::{Status, detection};
+use numpy::PyArrayDyn;
+use pyo3::prelude::*;
+
+/// See `_hadar.pyi`.
+#[pyclass(frozen, get_all, module = "hadar")]
+#[derive(Debug)]
+pub(crate) struct Local {
+    distance: f64,
+    distance_no_nuisance: f64,
+    relative_error: f64,
+    status: &'static str,
+    per_photon: bool,
+}
+
+/// See `_hadar.pyi`.
+#[pyclass(frozen, get_all, module = "hadar")]
+#[derive(Debug)]
+pub(crate) struct Nearest {
+    distance: f64,
+    lower: f64,
+    relative_error: f64,
+    converged: bool,
+    per_photon: bool,
+    temperature: f64,
+    lighting: Py<PyAny>,
+    gain: f64,
+}
+
+#[pymethods]
+impl Local {
+    /// Φ(d), of a distance with a camera's counts.
+    #[getter]
+    fn probability(&self) -> Option<f64> {
+        (!self.per_photon).then(|| detection::probability(self.distance))
+    }
+
+    fn __repr__(&self) -> String {
+        format!("Local(distance={:e}, {}, status='{}')", self.distance, unit(self.per_photon), self.status)
+    }
+}
+
+#[pymethods]
+impl Nearest {
+    /// Φ(d), of a distance with a camera's counts.
+    #[getter]
+    fn probability(&self) -> Option<f64> {
+        (!self.per_photon).then(|| detection::probability(self.distance))
+    }
+
+    fn __repr__(&self) -> String {
+        let Self { distance, lower, temperature, .. } = self;
+        format!(
+            "Nearest(distance={distance:e}, lower={lower:e}, {}, temperature={temperature})",
+            unit(self.per_photon)
+        )
+    }
+}
+
+fn unit(per_photon: bool) -> &'static str {
+    if per_photon { "per root of a photon" } else { "statistical" }
+}
+
+/// The distance at the target's own state.
+#[pyfunction]
+pub(crate) fn local(
+    target: &Bound<'_, PyAny>,
+    alternative: &Bound<'_, PyAny>,
+    scene: &Bound<'_, Scene>,
+) -> PyResult<Local> {
+    let scene = scene.get();
+    let target = scene.emissivity(target, "target")?;
+    let alternative = scene.emissivity(alternative, "alternative")?;
+    let mut solver = LocalSolver::new(&scene.bands, &scene.surroundings, scene.unknowns.clone());
+    let found = match &scene.counting {
+        None => solver.per_photon(&target, &alternative, &scene.state, f64::INFINITY),
+        Some(counting) => solver.with_counting(&target, &alternative, &scene.state, counting),
+    };
+    let found = found.map_err(raised)?;
+    Ok(Local {
+        distance: found.distance,
+        distance_no_nuisance: found.distance_no_nuisance,
+        relative_error: found.relative_error,
+        status: match found.status {
+            Status::Ok => "ok",
+            Status::Equilibrium => "equilibrium",
+            Status::Blind => "blind",
+            Status::Identical => "identical",
+        },
+        per_photon: scene.counting.is_none(),
+    })
+}
+
+/// The distance to the nearest state of the alternative.
+#[pyfunction]
+#[pyo3(signature = (target, alternative, scene, *, prove=1e-6))]
+pub(crate) fn nearest(
+    py: Python<'_>,
+    target: &Bound<'_, PyAny>,
+    alternative: &Bound<'_, PyAny>,
+    scene: &Bound<'_, Scene>,
+    prove: Option<f64>,
+) -> PyResult<Nearest> {
+    let scene = scene.get();
+    let target = scene.emissivity(target, "target")?;
+    let alternative = scene.emissivity(alternative, "alternative")?;
+    let prove = share(prove)?;
+    let found = py.detach(|| {
+        let Scene { bands, surroundings, unknowns, range, state, .. } = scene;
+        let solver = NearestSolver::new(bands, surroundings, unknowns.clone(), *range);
+        let mut solver = match prove {
+            Some(share) => solver.proving(share),
+            None => solver,
+        };
+        match &scene.counting {
+            None => solver.per_photon(&target, &alternative, state, f64::INFINITY),
+            Some(counting) => solver.with_counting(&target, &alternative, state, counting),
+        }
+    });
+    let found = found.map_err(raised)?;
+    Ok(Nearest {
+        distance: found.distance,
+        lower: found.lower,
+        relative_error: found.relative_error,
+        converged: found.converged,
+        per_photon: scene.counting.is_none(),
+        temperature: found.state.temperature_k,
+        lighting: flat(py, found.state.lighting).into_any().unbind(),
+        gain: found.state.gain,
+    })
+}
+
+/// Distances of every material (row) from every other one (column).
+#[pyfunction]
+#[pyo3(signature = (emissivities, scene, *, by="local", prove=None, threads=None))]
+pub(crate) fn matrix<'py>(
+    py: Python<'py>,
+    emissivities: &Bound<'py, PyAny>,
+    scene: &Bound<'py, Scene>,
+    by: &str,
+    prove: Option<f64>,
+    threads: Option<usize>,
+) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    let scene = scene.get();
+    let by_nearest = named("distance", by, &[false, true], |near| if near { "nearest" } else { "local" });
+    let by_nearest = by_nearest.map_err(raised)?;
+    let spectra = rows(emissivities, "emissivities")?;
+    for (row, spectrum) in spectra.iter().enumerate() {
+        let checked = hadar::scene::check_emissivity(spectrum, scene.bands.nodes_cm1().len());
+        checked.map_err(|error| raised(error.for_key(format!("emissivities[{row}]"))))?;
+    }
+    let tolerance = share(prove)?;
+    let found = with_threads(py, threads, || {
+        let spectra: Vec<&[f64]> = spectra.iter().map(Vec::as_slice).collect();
+        let Scene { bands, surroundings, unknowns, range, state, counting } = scene;
+        if by_nearest {
+            let library = LibraryScene { bands, surroundings, unknowns, range: *range, state, tolerance };
+            let found = match counting {
+                None => library.nearest_per_photon(&spectra, &|_, _| ()),
+                Some(counting) => library.nearest_with_counting(&spectra, counting, &|_, _| ()),
+            };
+            return found.map(|found| found.distance);
+        }
+        let mut local = LocalMatrix::new(bands, surroundings, unknowns.clone());
+        match counting {
+            None => local.per_photon(&spectra, state),
+            Some(counting) => local.with_counting(&spectra, state, counting),
+        }
+    })?;
+    shaped(py, &[spectra.len(), spectra.len()], found)
+}
+
+/// To what share of itself a distance is proved.
+fn share(prove: Option<f64>) -> PyResult<Option<f64>> {
+    let Some(share) = prove else { return Ok(None) };
+    check::positive("prove", share, "").map_err(raised)?;
+    if share >= 1.0 {
+        let expected = "above 0 and below 1, e.g. 1e-6";
+        return Err(raised(hadar::Error::out_of_range("prove", share, "", expected)));
+    }
+    Ok(Some(share))
+}

@@ -1,0 +1,174 @@
+//! A scene: bands, the target's state, its surroundings, what is unknown, and how photons are counted.
+
+use crate::array::{flat, list, numbers, rows};
+use crate::error::{named, raised};
+use hadar::error::{Error, Result};
+use hadar::fisher::{Counting, Nuisance, Unknowns};
+use hadar::identifiability::nearest::StateRange;
+use hadar::scene::{EnvironmentObject, State, Surroundings};
+use hadar::spectrum::Bands;
+use numpy::{PyArray1, PyUntypedArrayMethods as _};
+use pyo3::prelude::*;
+use std::collections::BTreeMap;
+
+/// See `_hadar.pyi`.
+#[pyclass(frozen, module = "hadar")]
+#[derive(Debug)]
+pub(crate) struct Scene {
+    pub(crate) bands: Bands,
+    pub(crate) surroundings: Surroundings,
+    pub(crate) unknowns: Unknowns,
+    pub(crate) state: State,
+    pub(crate) range: StateRange,
+    /// Counts of a camera; silent for a bound per √photon.
+    pub(crate) counting: Option<Counting>,
+}
+
+/// Bands by their centres, or by rows of lower and upper ends.
+pub(crate) fn bands(given: &Bound<'_, PyAny>) -> PyResult<Bands> {
+    let array = numbers::<f64>(given, "bands")?;
+    let view = array.as_array();
+    let ascending = |values: &[f64]| match values.windows(2).find(|pair| !matches!(pair, [a, b] if a < b)) {
+        None => Ok(()),
+        Some(_) => Err(Error::malformed(
+            "bands: wavenumbers that do not ascend",
+            "sort them, and with them every array over the bands: nu[::-1] turns it round",
+        )),
+    };
+    let found = match (view.ndim(), array.shape()) {
+        (0 | 1, _) => {
+            let centres: Vec<f64> = view.iter().copied().collect();
+            ascending(&centres).and_then(|()| Bands::from_centers(&centres))
+        }
+        (2, [_, 2]) => {
+            let ends: Vec<f64> = view.iter().copied().collect();
+            let ranges: Vec<(f64, f64)> =
+                ends.chunks_exact(2).filter_map(|ends| Some((*ends.first()?, *ends.get(1)?))).collect();
+            let lower: Vec<f64> = ranges.iter().map(|range| range.0).collect();
+            ascending(&lower).and_then(|()| Bands::from_ranges(&ranges))
+        }
+        (_, shape) => Err(Error::malformed(
+            format!("bands: an array of shape {shape:?}"),
+            "give centres (bands,) or lower and upper ends (bands, 2), in cm^-1",
+        )),
+    };
+    found.map_err(raised)
+}
+
+#[pymethods]
+impl Scene {
+    #[new]
+    #[pyo3(signature = (bands, temperature, lighting=None, environment=None, *, environment_emissivity=None,
+        unknown=None, priors=None, lighting_total=None, temperature_range=None, lighting_range=None,
+        counts_per_radiance=None, var_added=None))]
+    #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
+    fn new(
+        bands: &Bound<'_, PyAny>,
+        temperature: f64,
+        lighting: Option<&Bound<'_, PyAny>>,
+        environment: Option<&Bound<'_, PyAny>>,
+        environment_emissivity: Option<&Bound<'_, PyAny>>,
+        unknown: Option<Vec<String>>,
+        priors: Option<BTreeMap<String, f64>>,
+        lighting_total: Option<f64>,
+        temperature_range: Option<[f64; 2]>,
+        lighting_range: Option<[f64; 2]>,
+        counts_per_radiance: Option<f64>,
+        var_added: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let bands = self::bands(bands)?;
+        let of =
+            |given: Option<&Bound<'_, PyAny>>, what| given.map_or(Ok(Vec::new()), |given| list(given, what));
+        let (lighting, environment) = (of(lighting, "lighting")?, of(environment, "environment")?);
+        let emissivities = match environment_emissivity {
+            Some(given) => rows(given, "environment_emissivity")?.into_iter().map(Some).collect(),
+            None => vec![None; environment.len()],
+        };
+        let counting = match (counts_per_radiance, of(var_added, "var_added")?) {
+            (None, var_added) if var_added.is_empty() => None,
+            (None, _) => {
+                let found = "var_added without counts_per_radiance";
+                let instead =
+                    "say how many counts there are: counts_per_radiance=etendue * efficiency * time";
+                return Err(raised(Error::malformed(found, instead)));
+            }
+            (Some(counts_per_radiance), var_added) => {
+                let all = |one: f64| vec![one; bands.len()];
+                let var_added = if let [one] = *var_added { all(one) } else { var_added };
+                Some(Counting { counts_per_radiance, var_added })
+            }
+        };
+        let make = || -> Result<Self> {
+            let (found, expected) = (emissivities.len(), environment.len());
+            if found != expected {
+                return Err(Error::Length {
+                    what: "emissivities of the environment".into(),
+                    found,
+                    expected,
+                });
+            }
+            let objects = environment.iter().zip(emissivities);
+            let objects =
+                objects.map(|(&temperature_k, emissivity)| EnvironmentObject { temperature_k, emissivity });
+            let surroundings = Surroundings::new(bands.nodes_cm1(), objects.collect())?;
+            let state = surroundings.state(temperature, &lighting)?;
+            let unknowns = unknowns(unknown, priors.unwrap_or_default(), lighting_total)?;
+            let mut range = StateRange::default();
+            range.temperature_k = temperature_range.unwrap_or(range.temperature_k);
+            range.lighting = lighting_range.unwrap_or(range.lighting);
+            range.check()?;
+            counting.as_ref().map_or(Ok(()), |counting| counting.check(bands.len()))?;
+            Ok(Self { bands, surroundings, unknowns, state, range, counting })
+        };
+        make().map_err(raised)
+    }
+
+    /// Where emissivities are asked for, cm⁻¹.
+    #[getter]
+    fn nodes<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        flat(py, self.bands.nodes_cm1().to_vec())
+    }
+
+    /// Signal of an emissivity at the nodes, photons s⁻¹ m⁻² sr⁻¹ of each band.
+    fn signal<'py>(&self, emissivity: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let spectrum = self.emissivity(emissivity, "emissivity")?;
+        Ok(flat(emissivity.py(), self.bands.weigh(&self.surroundings.signal(&spectrum, &self.state))))
+    }
+
+    fn __repr__(&self) -> String {
+        let (low, high) = self.bands.range_cm1();
+        format!(
+            "Scene({} bands of {low:.6} to {high:.6} cm^-1, {} K, lighting {:?})",
+            self.bands.len(),
+            self.state.temperature_k,
+            self.state.lighting
+        )
+    }
+}
+
+impl Scene {
+    /// An emissivity at the nodes of the bands.
+    pub(crate) fn emissivity(&self, given: &Bound<'_, PyAny>, what: &str) -> PyResult<Vec<f64>> {
+        let spectrum = list(given, what)?;
+        let checked = hadar::scene::check_emissivity(&spectrum, self.bands.nodes_cm1().len());
+        checked.map_err(|error| raised(error.for_key(what)))?;
+        Ok(spectrum)
+    }
+}
+
+fn unknowns(
+    names: Option<Vec<String>>,
+    priors: BTreeMap<String, f64>,
+    lighting_total: Option<f64>,
+) -> Result<Unknowns> {
+    let nuisance = |name: &str| named("unknown", name, &Nuisance::ALL, Nuisance::name);
+    let set = match names {
+        None => vec![Nuisance::Temperature, Nuisance::Lighting],
+        Some(names) => names.iter().map(|name| nuisance(name)).collect::<Result<_>>()?,
+    };
+    let mut unknowns = Unknowns::new(set)?;
+    for (name, sigma) in &priors {
+        unknowns = unknowns.prior(nuisance(name)?, *sigma)?;
+    }
+    unknowns.lighting_total(lighting_total)
+}
