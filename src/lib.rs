@@ -98,8 +98,8 @@ mod witness;
 
 pub use base::error::{Error, Result};
 pub use base::{
-    allowed, cube, demand, error, file, grid, inputs, lattice_points, minimum, root, statistics, sum, units,
-    words,
+    allowed, cube, demand, envi_header, error, file, grid, inputs, lattice_points, minimum, root,
+    spectral_unit, statistics, sum, units, words,
 };
 pub(crate) use base::{correlation, simd, wide};
 pub use limits::{calibration, fisher, identifiability, policy, ranging};
