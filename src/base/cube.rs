@@ -6,16 +6,43 @@
 //! From a file: [`Cube::open`]; to one: [`write_npy`]. [`first_invalid`] names the sample that is no count,
 //! [`panchromatic`] adds the bands.
 
+#[cfg(feature = "cubes")]
+mod arrange;
+#[cfg(feature = "cubes")]
+mod axes;
+mod band_order;
 mod band_sum;
+#[cfg(feature = "cubes")]
+mod blocks;
+#[cfg(feature = "cubes")]
+mod envi;
+#[cfg(feature = "cubes")]
+mod found;
+#[cfg(feature = "hdf5")]
+mod hdf5;
 mod invalid;
 #[cfg(feature = "cubes")]
 mod mat;
 #[cfg(feature = "cubes")]
 mod npy;
 #[cfg(feature = "cubes")]
+mod npz;
+#[cfg(feature = "cubes")]
 mod open;
+#[cfg(feature = "cubes")]
+mod raw;
+#[cfg(feature = "cubes")]
+mod stored;
+#[cfg(feature = "cubes")]
+mod values;
 
+#[cfg(feature = "cubes")]
+pub use axes::Axes;
 pub use band_sum::panchromatic;
+#[cfg(feature = "cubes")]
+pub use envi::{EnviBands, envi_files};
+#[cfg(feature = "cubes")]
+pub use found::{Found, Opened};
 pub use invalid::first_invalid;
 #[cfg(feature = "cubes")]
 pub use mat::mat_file;
@@ -226,18 +253,6 @@ impl<S: Sample> Rows<S> for MemoryCube<S> {
             .get(rows.start.saturating_mul(len)..rows.end.saturating_mul(len))
             .ok_or_else(|| beyond(&rows, self.shape))
     }
-}
-
-#[cfg(feature = "cubes")]
-/// An array of neither two nor three dimensions.
-fn dimensions(found: usize) -> Error {
-    Error::malformed(
-        format!("the array has {found} dimension{}", if found == 1 { "" } else { "s" }),
-        match found {
-            1 => "give [row][column][band]; a spectrum as [1][1][band]",
-            _ => "give [row][column][band], or [row][column] for one band",
-        },
-    )
 }
 
 /// Rows that a cube does not have.

@@ -4,6 +4,7 @@ mod calibrate_noise;
 mod calibrate_stripes;
 mod cameras;
 mod classes;
+mod cubes;
 mod decision;
 mod decompose;
 mod decompose_methods;

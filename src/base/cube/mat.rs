@@ -7,14 +7,14 @@
 //! Source: MathWorks, 'MAT-File Format' (R2025a), level 5.
 
 mod element;
-mod planes;
-mod stored;
 mod write;
 
 pub use write::mat_file;
 
 use self::element::{COMPRESSED, Class, Element, Head, MATRIX};
-use super::{Cube, MemoryCube, Shape, dimensions};
+use super::axes::Axes;
+use super::found::{Found, Opened};
+use super::{Cube, MemoryCube, Sample, Shape, arrange};
 use crate::error::{Error, Result};
 use std::fs::File;
 use std::io::{BufReader, Read, Seek, SeekFrom};
@@ -33,26 +33,48 @@ struct Variable {
 }
 
 /// Opens a file whose header has been seen.
-pub(super) fn open(file: File, little_endian: bool, name: Option<&str>) -> Result<Cube> {
+pub(super) fn open(
+    file: File,
+    little_endian: bool,
+    name: Option<&str>,
+    axes: Option<Axes>,
+) -> Result<Opened> {
     let variables = directory(&file, little_endian)?;
     let chosen = choose(&variables, name)?;
     let head = &chosen.head;
     let of_variable = |error: Error| error.for_key(head.name.clone());
-    let (class, shape) = numeric(head).map_err(of_variable)?;
+    let class = numeric(head).map_err(of_variable)?;
+    let mut sides: Vec<usize> = head.dimensions.iter().map(|side| *side as usize).collect();
+    // MATLAB drops a last dimension of 1.
+    if axes.is_some() && sides.len() == 2 {
+        sides.push(1);
+    }
+    let said = axes.unwrap_or_default();
+    let shape = said.shape(&sides).map_err(of_variable)?;
     let content = content(&file, chosen)?;
     let mut element = Element::of(content, chosen.compressed, chosen.len, little_endian)?;
     // The head again, to come to the numbers.
     element.head()?;
-    if class.is_double() {
-        samples::<f64>(&mut element, shape).map(Cube::from).map_err(of_variable)
-    } else {
-        samples::<f32>(&mut element, shape).map(Cube::from).map_err(of_variable)
+    // The first index runs fastest.
+    let order = said.reversed();
+    let cube = match class.is_double() {
+        true => samples::<f64>(&mut element, shape, order).map(Cube::from),
+        false => samples::<f32>(&mut element, shape, order).map(Cube::from),
     }
+    .map_err(of_variable)?;
+    let bytes = shape.len() as u64 * if class.is_double() { 8 } else { 4 };
+    let found = Found {
+        variable: Some(head.name.clone()),
+        memory_bytes: Some(bytes),
+        axes,
+        ..Found::array("MATLAB 5", shape, class.name(), &sides)
+    };
+    Ok(Opened { cube, found })
 }
 
-fn samples<S: planes::Number>(element: &mut Element<impl Read>, shape: Shape) -> Result<MemoryCube<S>> {
+fn samples<S: Sample>(element: &mut Element<impl Read>, shape: Shape, order: Axes) -> Result<MemoryCube<S>> {
     let stored = element.numbers(shape.len() as u64)?;
-    let samples = planes::transposed(shape, |plane: &mut [S]| element.fill(stored, plane))?;
+    let samples = arrange::whole(shape, order, |slices: &mut [S]| element.fill(stored, slices))?;
     element.finish()?;
     MemoryCube::new(shape, samples)
 }
@@ -132,8 +154,8 @@ fn choose<'a>(variables: &'a [Variable], name: Option<&str>) -> Result<&'a Varia
     }
 }
 
-/// What the numbers are, and how many.
-fn numeric(head: &Head) -> Result<(Class, Shape)> {
+/// What the numbers are.
+fn numeric(head: &Head) -> Result<Class> {
     let refused = |what: &str| {
         Error::malformed(
             format!("the variable is {what}"),
@@ -141,18 +163,11 @@ fn numeric(head: &Head) -> Result<(Class, Shape)> {
         )
     };
     let class = head.class.filter(|class| class.is_numeric()).ok_or_else(|| refused(&head.class_name()))?;
-    if head.complex {
-        return Err(refused("complex"));
+    match (head.complex, head.logical) {
+        (true, _) => Err(refused("complex")),
+        (_, true) => Err(refused("logical")),
+        _ => Ok(class),
     }
-    if head.logical {
-        return Err(refused("logical"));
-    }
-    let [rows, columns, bands] = match *head.dimensions {
-        [rows, columns] => [rows, columns, 1],
-        [rows, columns, bands] => [rows, columns, bands],
-        ref other => return Err(dimensions(other.len())),
-    };
-    Ok((class, Shape::new(rows as usize, columns as usize, bands as usize)?))
 }
 
 #[cfg(test)]

@@ -1,18 +1,17 @@
-//! NPY files: read by rows at their place in the file, and written.
-//!
-//! A read goes from the file straight into the caller's buffer; nothing is shared between threads but the file's
-//! descriptor, so that several read at once.
+//! NPY files: what their header says, and how they are written.
 //!
 //! Source: NumPy, `numpy.lib.format` (versions 1.0, 2.0, 3.0).
 
-use super::{Cube, READ_CUBE, Rows, Sample, Shape, beyond, dimensions};
+use super::axes::Axes;
+use super::found::{Found, Opened};
+use super::raw::Raw;
+use super::stored::Stored;
+use super::{READ_CUBE, Sample, Shape};
 use crate::error::{Error, Result};
 use npyz::{DType, Endianness, NpyHeader, Order, TypeChar};
 use std::fs::File;
 use std::io::{BufWriter, Read, Seek, SeekFrom, Write};
-use std::marker::PhantomData;
-use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// What an NPY file begins with.
 pub(super) const MAGIC: &[u8] = b"\x93NUMPY";
@@ -23,84 +22,61 @@ const MAX_HEADER: usize = 10_000;
 /// Deepest nesting of a header that is looked at: a type made of types made of types.
 const MAX_DEPTH: usize = 8;
 
-/// A cube in an NPY file.
+/// What the header of an array says.
 #[derive(Debug)]
-struct NpyCube<S> {
-    file: File,
-    path: PathBuf,
-    shape: Shape,
-    /// Place of the first sample in the file.
-    start: u64,
-    /// Whether the bytes of a sample stand in the other order than this processor's.
-    swapped: bool,
-    stored: Stored,
-    sample: PhantomData<S>,
+pub(super) struct Array {
+    pub(super) shape: Shape,
+    pub(super) sides: Vec<usize>,
+    /// Outermost first, as it is stored.
+    pub(super) order: Axes,
+    pub(super) stored: Stored,
+    pub(super) little_endian: bool,
+    /// Bytes before the first sample.
+    pub(super) start: u64,
 }
 
-/// Opens an NPY file.
-pub(super) fn open(mut file: File, path: &Path) -> Result<Cube> {
-    let unreadable = |error: std::io::Error| Error::file(READ_CUBE, path, error);
-    let len = file.metadata().map_err(unreadable)?.len();
-    let (header, start) = header(&mut file, len)?;
-    let (stored, order) = sample_type(&header.dtype())?;
-    let shape = shape(&header)?;
-    if header.order() == Order::Fortran {
-        return Err(Error::malformed(
-            "the array is in Fortran order, its rows not together",
-            "write it with np.save(path, np.ascontiguousarray(a))",
-        ));
-    }
-    check_len(len.saturating_sub(start), shape.len() as u64 * stored.bytes() as u64)?;
-    let (path, swapped) = (path.to_owned(), order != Endianness::of_machine());
-    Ok(if stored.is_double() {
-        Cube::F64(Box::new(NpyCube { file, path, shape, start, swapped, stored, sample: PhantomData }))
-    } else {
-        Cube::F32(Box::new(NpyCube { file, path, shape, start, swapped, stored, sample: PhantomData }))
-    })
+/// Opens an array that fills `len` bytes of a file from a place.
+pub(super) fn open(
+    mut file: File,
+    path: &Path,
+    (place, len): (u64, u64),
+    axes: Option<Axes>,
+    format: &'static str,
+) -> Result<Opened> {
+    file.seek(SeekFrom::Start(place)).map_err(|error| Error::file(READ_CUBE, path, error))?;
+    let array = Array::read(&mut file, len, axes)?;
+    let Array { shape, sides, order, stored, little_endian, start } = array;
+    let start = place + start;
+    let raw = Raw { file, path: path.to_owned(), shape, start, order, stored, little_endian, values: None };
+    let cube = raw.cube();
+    let found = Found { axes, ..Found::array(format, shape, stored.name(), &sides) };
+    Ok(Opened { cube, found })
 }
 
-/// What a sample is in the file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Stored {
-    Float(usize),
-    Unsigned(usize),
-    Signed(usize),
-}
-
-impl Stored {
-    fn bytes(self) -> usize {
-        let (Self::Float(bytes) | Self::Unsigned(bytes) | Self::Signed(bytes)) = self;
-        bytes
-    }
-
-    /// Whether an `f32` does not hold all of its values.
-    fn is_double(self) -> bool {
-        match self {
-            Self::Float(bytes) => bytes > 4,
-            Self::Unsigned(bytes) | Self::Signed(bytes) => bytes > 2,
-        }
-    }
-
-    /// A whole number of which the bytes are given, the least first.
-    fn whole(self, bytes: &[u8]) -> f64 {
-        let mut wide = [0; 8];
-        wide[..bytes.len()].copy_from_slice(bytes);
-        let shift = 64 - 8 * bytes.len() as u32;
-        match self {
-            Self::Signed(_) => ((u64::from_le_bytes(wide) << shift) as i64 >> shift) as f64,
-            _ => u64::from_le_bytes(wide) as f64,
-        }
+impl Array {
+    /// Reads the header of an array of `len` bytes in all.
+    pub(super) fn read(file: &mut impl Read, len: u64, axes: Option<Axes>) -> Result<Self> {
+        let (header, start) = header(file, len)?;
+        let (stored, order) = sample_type(&header.dtype())?;
+        let sides: Vec<usize> =
+            header.shape().iter().map(|side| usize::try_from(*side).unwrap_or(usize::MAX)).collect();
+        let said = axes.unwrap_or_default();
+        let shape = said.shape(&sides)?;
+        check_len(len.saturating_sub(start), Raw::bytes(shape, stored))?;
+        // The first index runs fastest in Fortran order; the third of two is that of the only band, wherever it stands.
+        let order_of_axes = if header.order() == Order::Fortran { said.reversed() } else { said };
+        let little_endian = order == Endianness::Little;
+        Ok(Self { shape, sides, order: order_of_axes, stored, little_endian, start })
     }
 }
 
 /// The header, and how many bytes it takes.
-fn header(file: &mut File, len: u64) -> Result<(NpyHeader, u64)> {
+fn header(file: &mut impl Read, len: u64) -> Result<(NpyHeader, u64)> {
     let cut = || truncated("the file ends within its header".to_owned());
     let mut bytes = Vec::with_capacity(256);
     // The first 12 bytes tell how many there are.
     let mut fill = |bytes: &mut Vec<u8>, upto: u64| -> Result<()> {
-        file.seek(SeekFrom::Start(bytes.len() as u64)).map_err(|_| cut())?;
-        (&*file).take(upto - bytes.len() as u64).read_to_end(bytes).map_err(|_| cut())?;
+        file.take(upto - bytes.len() as u64).read_to_end(bytes).map_err(|_| cut())?;
         if bytes.len() as u64 == upto { Ok(()) } else { Err(cut()) }
     };
     fill(&mut bytes, 12)?;
@@ -159,32 +135,26 @@ fn depth(text: &[u8]) -> usize {
 /// What samples are, and the order of their bytes.
 fn sample_type(dtype: &DType) -> Result<(Stored, Endianness)> {
     if let DType::Plain(plain) = dtype {
-        let bytes = usize::try_from(plain.size_field()).unwrap_or(usize::MAX);
-        let stored = match (plain.type_char(), bytes) {
-            (TypeChar::Float, 4 | 8) => Some(Stored::Float(bytes)),
-            (TypeChar::Uint, 1 | 2 | 4 | 8) => Some(Stored::Unsigned(bytes)),
-            (TypeChar::Int, 1 | 2 | 4 | 8) => Some(Stored::Signed(bytes)),
+        let stored = match plain.type_char() {
+            TypeChar::Float => Stored::float(plain.size_field()),
+            TypeChar::Uint => Stored::whole(false, plain.size_field()),
+            TypeChar::Int => Stored::whole(true, plain.size_field()),
+            TypeChar::Bool => Some(Stored::U8),
             _ => None,
         };
         if let Some(stored) = stored {
             return Ok((stored, plain.endianness()));
         }
+        if plain.type_char() == TypeChar::Complex {
+            let instead = "write one of its parts, as np.save(path, np.abs(a).astype(np.float32))";
+            return Err(Error::malformed("the samples are complex numbers", instead));
+        }
     }
     let name: String = dtype.descr().chars().take(80).collect();
     Err(Error::malformed(
-        format!("the samples are of type {name}, not f4, f8 or whole numbers"),
+        format!("the samples are of type {name}, not floating-point or whole numbers"),
         "write them with np.save(path, a.astype(np.float32))",
     ))
-}
-
-fn shape(header: &NpyHeader) -> Result<Shape> {
-    let [rows, columns, bands] = match *header.shape() {
-        [rows, columns] => [rows, columns, 1],
-        [rows, columns, bands] => [rows, columns, bands],
-        ref other => return Err(dimensions(other.len())),
-    }
-    .map(|n| usize::try_from(n).unwrap_or(usize::MAX));
-    Shape::new(rows, columns, bands)
 }
 
 fn truncated(found: String) -> Error {
@@ -201,90 +171,6 @@ fn check_len(found: u64, expected: u64) -> Result<()> {
             format!("the file has {} bytes more than its header announces", found - expected),
             "write the array alone with np.save(path, a)",
         )),
-    }
-}
-
-impl<S: Sample> Rows<S> for NpyCube<S> {
-    fn shape(&self) -> Shape {
-        self.shape
-    }
-
-    fn read<'a>(&'a self, rows: Range<usize>, buffer: &'a mut Vec<S>) -> Result<&'a [S]> {
-        if rows.start > rows.end || rows.end > self.shape.rows() {
-            return Err(beyond(&rows, self.shape));
-        }
-        let len = rows.len() * self.shape.row_len();
-        // What is there already is only overwritten: cleared once, not with every read.
-        if buffer.len() < len {
-            buffer.resize(len, S::zeroed());
-        }
-        let samples = &mut buffer[..len];
-        let size = self.stored.bytes();
-        let place = self.start + (rows.start * self.shape.row_len() * size) as u64;
-        let unread = |error: std::io::Error| {
-            let found = match error.kind() {
-                std::io::ErrorKind::UnexpectedEof => {
-                    "the file has become shorter since it was opened; open it again".to_owned()
-                }
-                _ => error.to_string(),
-            };
-            let action = format!("read rows {} to {} of the cube", rows.start, rows.end);
-            Error::file(action, &self.path, found)
-        };
-        if !matches!(self.stored, Stored::Float(_)) {
-            let mut bytes = vec![0; len * size];
-            read_at(&self.file, &self.path, &mut bytes, place).map_err(unread)?;
-            if self.swapped != cfg!(target_endian = "big") {
-                bytes.chunks_exact_mut(size).for_each(<[u8]>::reverse);
-            }
-            match self.stored {
-                // Counts of most cameras, without a detour.
-                Stored::Unsigned(2) => {
-                    let each = samples.iter_mut().zip(bytes.as_chunks().0);
-                    each.for_each(|(sample, bytes)| *sample = S::of(u16::from_le_bytes(*bytes).into()));
-                }
-                Stored::Unsigned(4) => {
-                    let each = samples.iter_mut().zip(bytes.as_chunks().0);
-                    each.for_each(|(sample, bytes)| *sample = S::of(u32::from_le_bytes(*bytes).into()));
-                }
-                _ => {
-                    let each = samples.iter_mut().zip(bytes.chunks_exact(size));
-                    each.for_each(|(sample, bytes)| *sample = S::of(self.stored.whole(bytes)));
-                }
-            }
-            return Ok(samples);
-        }
-        read_at(&self.file, &self.path, bytemuck::cast_slice_mut(samples), place).map_err(unread)?;
-        if self.swapped {
-            swap_bytes(samples);
-        }
-        Ok(samples)
-    }
-}
-
-#[cfg(unix)]
-fn read_at(file: &File, _path: &Path, bytes: &mut [u8], place: u64) -> std::io::Result<()> {
-    std::os::unix::fs::FileExt::read_exact_at(file, bytes, place)
-}
-
-#[cfg(not(unix))]
-fn read_at(_file: &File, path: &Path, bytes: &mut [u8], place: u64) -> std::io::Result<()> {
-    read_reopened(path, bytes, place)
-}
-
-/// Where the system has no read at a place, every read has its own descriptor, so that threads need not wait.
-#[cfg(any(not(unix), test))]
-fn read_reopened(path: &Path, bytes: &mut [u8], place: u64) -> std::io::Result<()> {
-    let mut file = File::open(path)?;
-    file.seek(SeekFrom::Start(place))?;
-    file.read_exact(bytes)
-}
-
-fn swap_bytes<S: Sample>(samples: &mut [S]) {
-    if size_of::<S>() == size_of::<u32>() {
-        bytemuck::cast_slice_mut::<S, u32>(samples).iter_mut().for_each(|word| *word = word.swap_bytes());
-    } else {
-        bytemuck::cast_slice_mut::<S, u64>(samples).iter_mut().for_each(|word| *word = word.swap_bytes());
     }
 }
 

@@ -1,8 +1,7 @@
 //! One array of a MATLAB file: flags, dimensions and name, then numbers.
 
-use super::planes::Number;
-use super::stored::{Stored, decode};
-use crate::cube::READ_CUBE;
+use crate::cube::stored::{Stored, decode_next};
+use crate::cube::{READ_CUBE, Sample};
 use crate::error::{Error, Result};
 use flate2::read::ZlibDecoder;
 use std::fmt;
@@ -14,9 +13,6 @@ pub(super) const COMPRESSED: u32 = 15;
 
 /// Most that one byte of a zlib stream can stand for (RFC 1951: 258 bytes in two bits).
 const MAX_INFLATION: u64 = 1032;
-
-/// Numbers decoded at a time, bytes; a multiple of 8.
-const CHUNK: usize = 1 << 15;
 
 /// The longest name and the most dimensions that are looked at, bytes.
 const MAX_SHORT: u32 = 4096;
@@ -39,7 +35,7 @@ impl Class {
         matches!(self.0, 6 | 12..=15)
     }
 
-    const fn name(self) -> &'static str {
+    pub(super) const fn name(self) -> &'static str {
         match self.0 {
             1 => "cell",
             2 => "struct",
@@ -170,7 +166,8 @@ impl<R: Read> Element<R> {
     /// The tag of `count` numbers, which is where [`Self::fill`] begins.
     pub(super) fn numbers(&mut self, count: u64) -> Result<Stored> {
         let (kind, len, inline) = self.tag()?;
-        let stored = Stored::of(kind).ok_or_else(|| damaged(&format!("its numbers are of type {kind}")))?;
+        let stored =
+            Stored::of_mat(kind).ok_or_else(|| damaged(&format!("its numbers are of type {kind}")))?;
         let needed = count.checked_mul(stored.size() as u64);
         let left = if inline { 4 } else { self.left };
         if needed != Some(u64::from(len)) || u64::from(len) > left {
@@ -180,14 +177,9 @@ impl<R: Read> Element<R> {
     }
 
     /// The next numbers.
-    pub(super) fn fill<S: Number>(&mut self, stored: Stored, numbers: &mut [S]) -> Result<()> {
-        let mut bytes = [0; CHUNK];
-        for numbers in numbers.chunks_mut(CHUNK / stored.size()) {
-            let bytes = &mut bytes[..numbers.len() * stored.size()];
-            self.exact(bytes)?;
-            decode(bytes, stored, self.little_endian, numbers);
-        }
-        Ok(())
+    pub(super) fn fill<S: Sample>(&mut self, stored: Stored, numbers: &mut [S]) -> Result<()> {
+        let little_endian = self.little_endian;
+        decode_next(|bytes| self.exact(bytes), stored, little_endian, numbers)
     }
 
     /// Reads a zlib stream to its end, so that its checksum is looked at.

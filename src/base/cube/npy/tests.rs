@@ -1,5 +1,6 @@
 use super::*;
-use crate::cube::MemoryCube;
+use crate::cube::raw::read_reopened;
+use crate::cube::{Cube, MemoryCube, Rows};
 use std::path::PathBuf;
 
 /// Headers as NumPy 2.4 writes them, without the blanks before the line feed: version, dictionary, bytes in all.
@@ -197,19 +198,19 @@ fn whole_numbers_are_counts() {
 #[test]
 fn types_that_are_no_counts_are_named_with_the_remedy() {
     let folder = Folder::new();
-    for descr in ["'<c8'", "'|b1'", "'<f2'", "'<f16'", "'|O'", "'<M8[s]'"] {
+    for descr in ["'<f16'", "'|O'", "'<M8[s]'"] {
         let file =
             version_1(&format!("{{'descr': {descr}, 'fortran_order': False, 'shape': (1, 2), }}"), &[0; 64]);
         let message = folder.refusal(&file);
         let expected = format!(
-            "the samples are of type {descr}, not f4, f8 or whole numbers; write them with np.save(path, a.astype(np.float32))"
+            "the samples are of type {descr}, not floating-point or whole numbers; write them with np.save(path, a.astype(np.float32))"
         );
         assert_eq!(message, expected);
     }
     let structured = "{'descr': [('a', '<f4'), ('b', '<i2')], 'fortran_order': False, 'shape': (1, 2), }";
     let message = folder.refusal(&version_1(structured, &[0; 12]));
     assert!(
-        message.starts_with("the samples are of type [('a', '<f4'), ('b', '<i2'), ], not f4"),
+        message.starts_with("the samples are of type [('a', '<f4'), ('b', '<i2'), ], not floating-point"),
         "{message}"
     );
 }
@@ -247,10 +248,6 @@ fn sizes_that_do_not_fit_are_found_at_opening() {
             "the array has 4 dimensions; give [row][column][band], or [row][column] for one band",
         ),
         (
-            version_1("{'descr': '<f4', 'fortran_order': True, 'shape': (2, 2), }", &[0; 16]),
-            "the array is in Fortran order, its rows not together; write it with np.save(path, np.ascontiguousarray(a))",
-        ),
-        (
             f4("(900000000, 900000000)", &[0; 16]),
             "the file has 16 of the 3240000000000000000 bytes of samples that its header announces; it was not written or copied to its end; write it again",
         ),
@@ -269,8 +266,7 @@ fn files_of_another_kind_are_told_apart() {
     for (bytes, message) in [
         (b"".as_slice(), "the file is empty"),
         (b"row,column\n1,2\n", "this is not an NPY file: it does not begin with \\x93NUMPY"),
-        (b"PK\x03\x04....", "this is a ZIP archive, such as np.savez writes"),
-        (b"\x89HDF\r\n\x1a\n....", "this is an HDF5 file"),
+        (b"PK\x03\x04....", "the archive is damaged"),
         (b"\x93NUMPY\x04\x00v\x00{}..", "the file is of version 4 of the NPY format"),
         (b"\x93NUMPY\x01\x00v", "the file ends within its header"),
         (b"\x93NUMPY\x01\x00v\x00{'descr': '<f4'", "the file ends within its header"),

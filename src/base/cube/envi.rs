@@ -1,0 +1,152 @@
+//! ENVI images: raw samples in one file, their header in another.
+//!
+//! A sample is gain · number + offset (`data gain values`, `data offset values`), or number / `reflectance scale factor`; what
+//! equals `data ignore value` is NaN.
+//!
+//! Source: NV5 Geospatial, ENVI Header Files (documentation of ENVI).
+
+mod write;
+
+pub use write::{EnviBands, envi_files};
+
+use super::axes::Axes;
+use super::found::{Found, Opened};
+use super::raw::Raw;
+use super::stored::Stored;
+use super::values::Values;
+use super::{READ_CUBE, Shape};
+use crate::envi_header::{ByteOrder, DataType, EnviHeader, Interleave};
+use crate::error::{Error, Result};
+use std::fs::File;
+use std::path::Path;
+
+const SCALE: &str = "reflectance scale factor";
+const GAINS: &str = "data gain values";
+const OFFSETS: &str = "data offset values";
+const IGNORED: &str = "data ignore value";
+
+/// Opens the data at a path by their header.
+pub(super) fn open(file: File, path: &Path, header_path: &Path, axes: Option<Axes>) -> Result<Opened> {
+    if let Some(axes) = axes {
+        let found = format!("axes = \"{axes}\" of an ENVI file");
+        return Err(Error::malformed(found, "leave axes out: its header says them by the interleave"));
+    }
+    let len = file.metadata().map_err(|error| Error::file(READ_CUBE, path, error))?.len();
+    let header = EnviHeader::from_file(header_path)?;
+    let in_header = |error: Error| error.in_file(header_path);
+    let layout = header.layout().map_err(in_header)?;
+    let shape = Shape::new(layout.lines, layout.samples, layout.bands).map_err(in_header)?;
+    match layout.bytes() {
+        Some(bytes) if bytes == len => {}
+        bytes => {
+            let bytes =
+                bytes.map_or_else(|| "more than can be counted".to_owned(), |bytes| bytes.to_string());
+            let found = format!("the file has {len} bytes, where its header announces {bytes}");
+            let instead = "copy it to its end, or mend samples, lines, bands, data type or header offset";
+            return Err(Error::malformed(found, instead));
+        }
+    }
+    let values = values(&header, shape.bands()).map_err(in_header)?;
+    let missing = values.as_ref().map_or_else(Vec::new, |values| values.missing().to_vec());
+    let (order, format) = match layout.interleave {
+        Interleave::Bsq => (Axes::IMAGES, "ENVI BSQ"),
+        Interleave::Bil => (Axes::LINES, "ENVI BIL"),
+        Interleave::Bip => (Axes::default(), "ENVI BIP"),
+    };
+    let stored = stored(layout.data_type);
+    let raw = Raw {
+        file,
+        path: path.to_owned(),
+        shape,
+        start: layout.header_offset,
+        order,
+        stored,
+        little_endian: layout.byte_order == ByteOrder::Little,
+        values,
+    };
+    let cube = raw.cube();
+    let (centres_cm1, widths_cm1) = match bands(&header, shape.bands()).map_err(in_header)? {
+        Some((centres, widths)) => (Some(centres), widths),
+        None => (None, None),
+    };
+    let good = header.good_bands(shape.bands()).map_err(in_header)?.unwrap_or_default();
+    let bad_bands = good.iter().enumerate().filter(|(_, good)| !**good).map(|(band, _)| band).collect();
+    // The header says which axis is which: there is no side to wonder about.
+    let found = Found::array(format, shape, stored.name(), &[]);
+    Ok(Opened { found: Found { missing, bad_bands, centres_cm1, widths_cm1, ..found }, cube })
+}
+
+const fn stored(data_type: DataType) -> Stored {
+    match data_type {
+        DataType::U8 => Stored::U8,
+        DataType::I16 => Stored::I16,
+        DataType::I32 => Stored::I32,
+        DataType::F32 => Stored::F32,
+        DataType::F64 => Stored::F64,
+        DataType::U16 => Stored::U16,
+        DataType::U32 => Stored::U32,
+        DataType::I64 => Stored::I64,
+        DataType::U64 => Stored::U64,
+    }
+}
+
+/// What the numbers stand for.
+fn values(header: &EnviHeader, bands: usize) -> Result<Option<Values>> {
+    let for_bands = |key: &str| header.numbers_for(key, bands, "bands");
+    let (gains, offsets) = (for_bands(GAINS)?, for_bands(OFFSETS)?);
+    let gain = match (header.number(SCALE)?, gains) {
+        (Some(_), Some(_)) => {
+            let found = format!("a {SCALE} beside {GAINS}");
+            return Err(header.wrong(SCALE, Error::malformed(found, "keep the one that holds")));
+        }
+        (Some(scale), None) if scale > 0.0 => Some(vec![1.0 / scale]),
+        (Some(scale), None) => {
+            return Err(header.wrong(SCALE, Error::out_of_range(SCALE, scale, "", "above 0")));
+        }
+        (None, gains) => gains,
+    };
+    if let Some(0.0) = gain.iter().flatten().copied().find(|gain| *gain == 0.0) {
+        return Err(header.wrong(GAINS, Error::out_of_range("gain", 0.0, "", "another number than 0")));
+    }
+    let is_nan = |text: &str| text.trim_start_matches(['-', '+']).eq_ignore_ascii_case("nan");
+    // What is no number is missing without being told.
+    let missing = match header.text(IGNORED) {
+        Some(text) if is_nan(text) => None,
+        _ => header.number(IGNORED)?,
+    };
+    Ok(Values::new(gain, offsets, missing.into_iter().collect()))
+}
+
+/// Centres and widths of the bands, cm⁻¹; none without a unit, which is not guessed.
+fn bands(header: &EnviHeader, bands: usize) -> Result<Option<(Vec<f64>, Option<Vec<f64>>)>> {
+    let (Some(unit), Some(centres)) =
+        (header.wavelength_unit()?, header.numbers_for("wavelength", bands, "bands")?)
+    else {
+        return Ok(None);
+    };
+    let positive = |key: &str, numbers: &[f64]| match numbers.iter().find(|number| **number <= 0.0) {
+        None => Ok(()),
+        Some(wrong) => Err(header.wrong(key, Error::out_of_range(key, *wrong, unit.name(), "above 0"))),
+    };
+    positive("wavelength", &centres)?;
+    let widths = header.numbers_for("fwhm", bands, "bands")?;
+    let widths = match widths {
+        None => None,
+        Some(widths) => {
+            positive("fwhm", &widths)?;
+            let width = |(centre, width): (&f64, &f64)| {
+                let [a, b] = [-0.5, 0.5].map(|half| unit.wavenumber_cm1(centre + half * width));
+                (a - b).abs()
+            };
+            if let Some((centre, _)) =
+                centres.iter().zip(&widths).find(|(centre, width)| **width >= 2.0 * **centre)
+            {
+                let found = format!("a band at {centre} {} that reaches below 0", unit.name());
+                return Err(header
+                    .wrong("fwhm", Error::malformed(found, "give the widths in the unit of wavelength")));
+            }
+            Some(centres.iter().zip(&widths).map(width).collect())
+        }
+    };
+    Ok(Some((centres.iter().map(|centre| unit.wavenumber_cm1(*centre)).collect(), widths)))
+}

@@ -1,0 +1,105 @@
+//! What a file was read as: said with every answer, since a cube whose axes are mistaken looks like any other.
+
+use super::{Axes, Cube, Shape};
+use serde::Serialize;
+use std::fmt;
+
+/// A short first axis before two of this many times its length may be the bands.
+const SHORT: usize = 2;
+
+/// A cube, and what its file was read as.
+#[derive(Debug)]
+pub struct Opened {
+    /// The cube.
+    pub cube: Cube,
+    /// What the file was read as.
+    pub found: Found,
+}
+
+/// What a file was read as.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Found {
+    /// Name of the file, without its folder.
+    pub file: String,
+    /// What kind of file it is.
+    pub format: &'static str,
+    /// Which array of the file.
+    pub variable: Option<String>,
+    /// Rows, columns and bands.
+    #[serde(flatten)]
+    pub shape: Shape,
+    /// How a sample is stored, `u16` or `f32`.
+    pub stored: &'static str,
+    /// In which order the array was said to have its axes.
+    pub axes: Option<Axes>,
+    /// Memory that the cube takes where it could not be left in the file, bytes.
+    pub memory_bytes: Option<u64>,
+    /// Stored numbers that were read as nothing measured.
+    pub missing: Vec<f64>,
+    /// Bands that the file says are bad, counted from 0 in its order.
+    pub bad_bands: Vec<usize>,
+    /// Centres of the bands in the order of the file, cm⁻¹, where it says them.
+    #[serde(skip)]
+    pub centres_cm1: Option<Vec<f64>>,
+    /// Widths of the bands, cm⁻¹, where it says them.
+    #[serde(skip)]
+    pub widths_cm1: Option<Vec<f64>>,
+    /// Sides of the array as the file has them.
+    #[serde(skip)]
+    pub(super) sides: Vec<usize>,
+}
+
+impl Found {
+    /// What is known of any array.
+    pub(super) fn array(format: &'static str, shape: Shape, stored: &'static str, sides: &[usize]) -> Self {
+        Self {
+            file: String::new(),
+            format,
+            variable: None,
+            shape,
+            stored,
+            axes: None,
+            memory_bytes: None,
+            missing: Vec::new(),
+            bad_bands: Vec::new(),
+            centres_cm1: None,
+            widths_cm1: None,
+            sides: sides.to_vec(),
+        }
+    }
+
+    /// Whether nobody has said what the axes are and the first is so short that it may be the bands.
+    #[must_use]
+    pub fn may_begin_with_bands(&self) -> bool {
+        match *self.sides.as_slice() {
+            [a, b, c] => self.axes.is_none() && a > 1 && a.saturating_mul(SHORT) <= b.min(c),
+            _ => false,
+        }
+    }
+}
+
+impl fmt::Display for Found {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (rows, columns, bands) = (self.shape.rows(), self.shape.columns(), self.shape.bands());
+        write!(f, "{rows} rows x {columns} columns x {bands} bands, {}, {}", self.stored, self.file)?;
+        let mut more = vec![self.format.to_owned()];
+        if let Some(variable) = &self.variable {
+            more.push(format!("variable {variable}"));
+        }
+        if let Some(axes) = &self.axes {
+            more.push(format!("axes {axes}"));
+        }
+        if !self.missing.is_empty() {
+            let numbers: Vec<String> = self.missing.iter().map(f64::to_string).collect();
+            more.push(format!("{} taken as missing", numbers.join(" and ")));
+        }
+        if !self.bad_bands.is_empty() {
+            let bands: Vec<String> = self.bad_bands.iter().map(usize::to_string).collect();
+            more.push(format!("bands {} bad by its list", bands.join(", ")));
+        }
+        if let Some(bytes) = self.memory_bytes {
+            more.push(format!("whole in memory, {:.1} MB", bytes as f64 / 1e6));
+        }
+        write!(f, " ({})", more.join("; "))
+    }
+}

@@ -1,0 +1,172 @@
+//! Arrays of an HDF5 file: their type, their dimensions, what their attributes say.
+
+use super::{damaged, sound};
+use crate::cube::Sample;
+use crate::cube::stored::{Stored, decode};
+use crate::cube::values::Values;
+use crate::error::{Error, Result};
+use crate::spectral_unit::SpectralUnit;
+use hdf5_pure::{AttrValue, Dataset, Datatype, DatatypeByteOrder, File, Group};
+use std::collections::HashMap;
+
+/// Groups within groups, and arrays, that are looked at.
+const MOST_DEPTH: usize = 8;
+const MOST_ARRAYS: usize = 1000;
+/// What NetCDF fills floating-point arrays with where nothing else is said.
+const NETCDF_FILL: f64 = 9.969_209_968_386_869e36;
+/// What the spectral axis of a file is called.
+const AXIS: [&str; 4] = ["wavelength", "wavelengths", "wavenumber", "wavenumbers"];
+
+/// An array of numbers.
+#[derive(Debug)]
+pub(super) struct Array {
+    pub(super) dataset: Dataset,
+    pub(super) stored: Stored,
+    pub(super) little_endian: bool,
+    /// Sides as NumPy would say them, or MATLAB where MATLAB has written it.
+    pub(super) sides: Vec<usize>,
+    pub(super) matlab: bool,
+    pub(super) values: Option<Values>,
+}
+
+impl Array {
+    pub(super) fn of(dataset: Dataset) -> Result<Self> {
+        let (stored, little_endian) = number(&dataset.datatype().map_err(damaged)?)?;
+        let side = |side: u64| usize::try_from(side).unwrap_or(usize::MAX);
+        let mut sides: Vec<usize> = dataset.shape().map_err(damaged)?.into_iter().map(side).collect();
+        let attributes = dataset.attrs().map_err(damaged)?;
+        let matlab = attributes.contains_key("MATLAB_class");
+        if matlab {
+            sides.reverse();
+        }
+        // NetCDF has no unsigned numbers in its older model, and says it beside them.
+        let unsigned = attributes.get("_Unsigned").and_then(AttrValue::as_str);
+        let stored = match (unsigned.is_some_and(|text| text.eq_ignore_ascii_case("true")), stored) {
+            (true, Stored::I8) => Stored::U8,
+            (true, Stored::I16) => Stored::U16,
+            (true, Stored::I32) => Stored::U32,
+            (true, Stored::I64) => Stored::U64,
+            _ => stored,
+        };
+        let values = values(&attributes, stored)?;
+        Ok(Self { dataset, stored, little_endian, sides, matlab, values })
+    }
+
+    /// Some slices of the first dimension, as they are stored.
+    pub(super) fn slices<S: Sample>(&self, first: usize, count: usize, out: &mut [S]) -> Result<()> {
+        let bytes = sound(|| self.dataset.read_raw_rows(first as u64, count as u64).map_err(damaged))?;
+        if bytes.len() != out.len() * self.stored.size() {
+            return Err(damaged("the array ends too early"));
+        }
+        decode(&bytes, self.stored, self.little_endian, out);
+        Ok(())
+    }
+}
+
+/// How numbers of a type are stored, and whether their least byte comes first.
+fn number(datatype: &Datatype) -> Result<(Stored, bool)> {
+    let other = || {
+        let instead = "write the cube as an array of floats or whole numbers";
+        Error::malformed("the variable is no array of such numbers as a cube has", instead)
+    };
+    let (stored, order) = match datatype {
+        Datatype::FixedPoint { size, byte_order, layout }
+            if layout.bit_offset == 0 && u32::from(layout.bit_precision) == 8 * size =>
+        {
+            (Stored::whole(layout.signed, u64::from(*size)), byte_order)
+        }
+        Datatype::FloatingPoint { size, byte_order, layout } => {
+            let ieee = matches!(
+                (size, layout.exponent_size, layout.mantissa_size),
+                (2, 5, 10) | (4, 8, 23) | (8, 11, 52)
+            );
+            (Stored::float(u64::from(*size)).filter(|_| ieee), byte_order)
+        }
+        // Truth values of Python.
+        Datatype::Enumeration { base_type, size: 1, .. } => return number(base_type),
+        Datatype::Compound { members, .. } if members.len() == 2 => {
+            let instead = "write one of its parts, such as the magnitude";
+            return Err(Error::malformed("the samples are complex numbers or pairs", instead));
+        }
+        _ => return Err(other()),
+    };
+    let little_endian = match order {
+        DatatypeByteOrder::LittleEndian => true,
+        DatatypeByteOrder::BigEndian => false,
+        _ => return Err(other()),
+    };
+    Ok((stored.ok_or_else(other)?, little_endian))
+}
+
+/// What the numbers stand for, by the conventions of NetCDF.
+fn values(attributes: &HashMap<String, AttrValue>, stored: Stored) -> Result<Option<Values>> {
+    let wrong = |key: &str, found: &str| {
+        Error::malformed(format!("the attribute is {found}"), "write it as one number").for_key(key)
+    };
+    let numbers = |key: &str| match attributes.get(key) {
+        None => Ok(Vec::new()),
+        Some(value) => {
+            let signed = || value.to_i64s().map(|all| all.iter().map(|one| *one as f64).collect());
+            let unsigned = || value.to_u64s().map(|all| all.iter().map(|one| *one as f64).collect());
+            let numbers = value.to_f64s().or_else(signed).or_else(unsigned);
+            numbers.ok_or_else(|| wrong(key, "no number"))
+        }
+    };
+    let one = |key: &str| match numbers(key)?.as_slice() {
+        [] => Ok(None),
+        [value] if value.is_finite() => Ok(Some(vec![*value])),
+        _ => Err(wrong(key, "not one finite number")),
+    };
+    let mut missing = [numbers("_FillValue")?, numbers("missing_value")?].concat();
+    if missing.is_empty()
+        && attributes.contains_key("DIMENSION_LIST")
+        && matches!(stored, Stored::F32 | Stored::F64)
+    {
+        missing.push(NETCDF_FILL);
+    }
+    missing.retain(|value| !value.is_nan());
+    missing.dedup();
+    Ok(Values::new(one("scale_factor")?, one("add_offset")?, missing))
+}
+
+/// All arrays by their path, those that MATLAB keeps for itself left out.
+pub(super) fn listed(source: &File) -> Vec<(String, Dataset)> {
+    let mut found = Vec::new();
+    within(&source.root(), "", MOST_DEPTH, &mut found);
+    found
+}
+
+fn within(group: &Group, path: &str, depth: usize, found: &mut Vec<(String, Dataset)>) {
+    for name in group.datasets().unwrap_or_default() {
+        if found.len() < MOST_ARRAYS
+            && let Ok(dataset) = group.dataset(&name)
+        {
+            found.push((format!("{path}{name}"), dataset));
+        }
+    }
+    for name in group.groups().unwrap_or_default() {
+        if depth > 0
+            && found.len() < MOST_ARRAYS
+            && !name.starts_with('#')
+            && let Ok(inner) = group.group(&name)
+        {
+            within(&inner, &format!("{path}{name}/"), depth - 1, found);
+        }
+    }
+}
+
+/// Centres of the bands, cm⁻¹, of an axis of so many numbers beside the array that says its unit.
+pub(super) fn wavelengths(source: &File, array: &str, bands: usize) -> Option<Vec<f64>> {
+    let folder = array.rsplit_once('/').map_or("", |(folder, _)| folder);
+    AXIS.iter().find_map(|name| {
+        let path = if folder.is_empty() { (*name).to_owned() } else { format!("{folder}/{name}") };
+        let axis = source.dataset(&path).ok()?;
+        if axis.shape().ok()? != [bands as u64] {
+            return None;
+        }
+        let unit = SpectralUnit::spelt(axis.attrs().ok()?.get("units")?.as_str()?)?;
+        let centres: Vec<f64> =
+            axis.read_f64().ok()?.into_iter().map(|value| unit.wavenumber_cm1(value)).collect();
+        centres.iter().all(|centre| *centre > 0.0 && centre.is_finite()).then_some(centres)
+    })
+}
