@@ -6,6 +6,7 @@
 mod accuracy;
 mod calibrate;
 mod cameras;
+mod cube_format;
 mod decompose;
 mod global;
 mod identify;

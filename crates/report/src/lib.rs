@@ -11,6 +11,7 @@ pub mod calibrate;
 pub mod cameras;
 pub mod classes;
 pub mod companion;
+pub mod cube_format;
 pub mod decompose;
 pub mod figures;
 pub mod folder;

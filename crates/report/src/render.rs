@@ -7,6 +7,7 @@ pub use figures::scene;
 pub use text::text;
 
 use crate::bundle::Bundle;
+use crate::cube_format::CubeFormat;
 use crate::table::{Table, number};
 use hadar::cube::{mat_file, npy_map};
 use hadar::error::Result;
@@ -37,7 +38,7 @@ pub enum Layout {
 ///
 /// # Errors
 /// A figure that cannot be drawn, a cube that is too large for its format.
-pub fn bundle(result: &Rendered, layout: Layout, out: &Path) -> Result<Bundle> {
+pub fn bundle(result: &Rendered, layout: Layout, format: CubeFormat, out: &Path) -> Result<Bundle> {
     let mut bundle = Bundle::about(result.scenario.title.as_deref());
     bundle.add_asked("scenario.toml", result.scenario.to_toml_beside(out));
     let spectra = |names: &[String], columns: &[Vec<f64>]| {
@@ -61,20 +62,25 @@ pub fn bundle(result: &Rendered, layout: Layout, out: &Path) -> Result<Bundle> {
     };
     for (view, [prefix, side]) in result.views.iter().zip(names) {
         match layout {
-            Layout::Npy => npy(&mut bundle, result, view, prefix)?,
+            Layout::Npy => npy(&mut bundle, result, view, (prefix, format))?,
             Layout::Hadar => database(&mut bundle, result, view, side)?,
         }
     }
-    bundle.add("decompose.toml", decomposition(result, layout, out).to_toml_beside(out));
+    bundle.add("decompose.toml", decomposition(result, layout, format, out).to_toml_beside(out));
     bundle.add_plots(&[figures::scene(result)])?;
     Ok(bundle)
 }
 
-fn npy(bundle: &mut Bundle, result: &Rendered, view: &Picture, prefix: &str) -> Result<()> {
+fn npy(
+    bundle: &mut Bundle,
+    result: &Rendered,
+    view: &Picture,
+    (prefix, format): (&str, CubeFormat),
+) -> Result<()> {
     let size = [result.shape.rows(), result.shape.columns()];
     let deep = |layers: usize| [size[0], size[1], layers];
+    format.add(bundle, &format!("{prefix}counts"), result.shape, &view.counts, &result.wavenumbers_cm1)?;
     let mut add = |name: &str, file: Vec<u8>| bundle.add(format!("{prefix}{name}.npy"), file);
-    add("counts", npy_map(&deep(result.shape.bands()), &view.counts)?);
     add("material", npy_map(&size, &view.material)?);
     add("temperature_k", npy_map(&size, &view.temperature_k)?);
     add("lighting", npy_map(&deep(result.surroundings.len()), &view.lighting)?);
@@ -109,7 +115,7 @@ fn database(bundle: &mut Bundle, result: &Rendered, view: &Picture, side: &str) 
 }
 
 /// The scenario that takes the left view apart.
-fn decomposition(result: &Rendered, layout: Layout, out: &Path) -> DecomposeScenario {
+fn decomposition(result: &Rendered, layout: Layout, format: CubeFormat, out: &Path) -> DecomposeScenario {
     let there = std::path::absolute(out).unwrap_or_else(|_| out.to_owned());
     let file = |name: &str| there.join(name);
     let kelvin = result.surfaces.iter().filter(|row| row.pure > 0 && row.depth_m.is_some());
@@ -129,18 +135,21 @@ fn decomposition(result: &Rendered, layout: Layout, out: &Path) -> DecomposeScen
         |spec: &CategorySpec| CategorySpec { labels: places(spec), surfaces: Vec::new(), ..spec.clone() };
     let categories: Vec<CategorySpec> = result.scenario.categories.iter().map(category).collect();
     let labelled = categories.iter().any(|spec| !spec.labels.is_empty());
-    let truth = |name: &str| (layout == Layout::Npy).then(|| file(name));
     DecomposeScenario {
         classes: std::collections::BTreeMap::new(),
         title: result.scenario.title.clone(),
         cube: HeatCube {
-            data: file(if layout == Layout::Npy { "counts.npy" } else { "HeatCubes/L_0001_heatcube.mat" }),
+            data: match layout {
+                Layout::Npy => file(&format.file("counts")),
+                Layout::Hadar => file("HeatCubes/L_0001_heatcube.mat"),
+            },
             variable: (layout == Layout::Hadar).then(|| "S".to_owned()),
+            axes: None,
             unit: CubeUnit::Camera,
             noise: None,
             bad_bands: Vec::new(),
         },
-        bands: result.scenario.bands.clone(),
+        bands: Some(result.scenario.bands.clone()),
         camera: Some(result.scenario.camera.clone()),
         environment: result
             .surroundings
@@ -153,11 +162,22 @@ fn decomposition(result: &Rendered, layout: Layout, out: &Path) -> DecomposeScen
             lighting_total: (result.lighting_left_out < NEARLY_ALL).then_some(1.0),
             gain: false,
         },
-        truth: truth("material.npy").map(|material| TruthSpec {
-            material: Some(material),
-            temperature: truth("temperature_k.npy"),
-            lighting: vec![file("lighting.npy")],
-            category: labelled.then(|| file("surface.npy")),
+        truth: Some(match layout {
+            Layout::Npy => TruthSpec {
+                material: Some(file("material.npy")),
+                temperature: Some(file("temperature_k.npy")),
+                lighting: vec![file("lighting.npy")],
+                category: labelled.then(|| file("surface.npy")),
+                ..TruthSpec::default()
+            },
+            Layout::Hadar => TruthSpec {
+                material: Some(file("GroundTruth/eMap/eMap_L_0001.mat")),
+                material_list: Some(file("GroundTruth/eMap/eList.mat")),
+                temperature: Some(file("GroundTruth/tMap/tMap_L_0001.mat")),
+                celsius: true,
+                lighting: vec![file("GroundTruth/vMap/vMap_L_0001.mat")],
+                category: None,
+            },
         }),
         spatial: None,
         vision: Default::default(),

@@ -13,6 +13,7 @@ mod camera;
 mod camera_bands;
 mod classes;
 pub mod companion;
+mod cube_bands;
 mod cube_noise;
 pub mod decompose;
 mod distances;

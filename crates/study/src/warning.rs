@@ -36,6 +36,10 @@ pub enum Warning {
     /// Classes stand by the pair of members that is hardest to tell apart.
     WorstMembers { target: String, alternative: String },
 
+    /// A cube that was read so, whose first axis may be the bands.
+    AxesInDoubt { rows: usize, columns: usize, bands: usize },
+    /// Bands said as wavelengths, of a cube whose file does not say their order.
+    BandOrderTaken,
     /// Pixels with a missing sample.
     PixelsSkipped { pixels: usize, of: usize },
     /// Pixels that no material explains.
@@ -261,6 +265,8 @@ impl Warning {
             Self::ClassReplacesPlaceholder { .. } => Code::ClassReplacesPlaceholder,
             Self::WorstMembers { .. } => Code::WorstMembers,
             Self::SolvedForOnePair { .. } => Code::SolvedForOnePair,
+            Self::AxesInDoubt { .. } => Code::AxesInDoubt,
+            Self::BandOrderTaken => Code::BandOrderTaken,
             Self::PixelsSkipped { .. } => Code::PixelsSkipped,
             Self::LibraryDoesNotFit { .. } => Code::LibraryDoesNotFit,
             Self::NoRelativeEmissivity { .. } => Code::NoRelativeEmissivity,

@@ -1,8 +1,10 @@
 //! `hadar render`: a scene as a heat cube with its truth.
 
+use super::cube_format::CubeFormatArgs;
 use super::global::Global;
 use clap::{Args, ValueEnum};
 use hadar::error::{Error, Result};
+use hadar_report::cube_format::CubeFormat;
 use hadar_report::render::{self, Layout};
 use hadar_study::scenario::RenderScenario;
 use hadar_study::study::render::{RenderPlan, RenderStudy};
@@ -19,6 +21,8 @@ pub(super) struct RenderArgs {
     /// How the cube and its truth lie in the folder
     #[arg(long, value_enum, default_value_t = Folders::Npy)]
     layout: Folders,
+    #[command(flatten)]
+    cube_format: CubeFormatArgs,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -34,6 +38,14 @@ pub(super) fn run(args: &RenderArgs, global: &Global) -> Result<ExitCode> {
         let found = "there is nowhere to write the cube to";
         return Err(Error::malformed(found, "add --out DIR"));
     }
+    let (layout, format) = match (args.layout, args.cube_format.format()) {
+        (Folders::Npy, format) => (Layout::Npy, format),
+        (Folders::Hadar, CubeFormat::Npy) => (Layout::Hadar, CubeFormat::Npy),
+        (Folders::Hadar, CubeFormat::Envi) => {
+            let found = "the folders of the HADAR database have .mat files";
+            return Err(Error::malformed(found, "leave --cube-format or --layout out"));
+        }
+    };
     let scenario = RenderScenario::from_file(&args.scenario)?;
     let study = RenderStudy::new(&scenario, &global.library()?)?;
     global.inputs_are_safe()?;
@@ -42,11 +54,7 @@ pub(super) fn run(args: &RenderArgs, global: &Global) -> Result<ExitCode> {
     let result = study.render(plan, &|done, total| bar.set(done, total))?;
     bar.finish();
     let text = render::text(&result);
-    let layout = match args.layout {
-        Folders::Npy => Layout::Npy,
-        Folders::Hadar => Layout::Hadar,
-    };
-    let work = global.report(&text, |out| render::bundle(&result, layout, out))?;
+    let work = global.report(&text, |out| render::bundle(&result, layout, format, out))?;
     let json = serde_json::to_value(&result)
         .map_err(|error| Error::malformed(error.to_string(), "report this as a bug"))?;
     global.answer_with(json, &text, &work)?;

@@ -1,11 +1,11 @@
 //! A spectrometer calibrated by blackbodies, as files: response and offset with their errors, the radiance of a scene, a picture.
 
 use crate::bundle::Bundle;
+use crate::cube_format::CubeFormat;
 use crate::figures::{Plot, wavenumber_axis};
 use crate::plot::{Axis, LineFigure, Panel, Series, Style};
 use crate::table::{Table, number};
 use crate::text::footing::{ASSUMPTIONS, warnings};
-use hadar::cube::write_npy_to;
 use hadar::error::Result;
 use hadar::words::{quantity, significant};
 use hadar_study::study::calibrate::{BlackbodyFound, ChannelRow};
@@ -19,22 +19,19 @@ const RADIANCE: &str = "W m^-2 sr^-1 per cm^-1";
 ///
 /// # Errors
 /// A figure that cannot be drawn.
-pub fn bundle(result: &BlackbodyFound, out: &Path) -> Result<Bundle> {
+pub fn bundle(result: &BlackbodyFound, format: CubeFormat, out: &Path) -> Result<Bundle> {
     let mut bundle = Bundle::about(result.scenario.title.as_deref());
     bundle.add_asked("scenario.toml", result.scenario.to_toml_beside(out));
     bundle.add_table("channels.csv", response(result))?;
     bundle.add_table("temperatures.csv", temperatures(result))?;
     if let Some(scene) = &result.scene {
-        let mut cube = Vec::with_capacity(scene.shape.len() * 4 + 128);
-        write_npy_to(&mut cube, scene.shape, &scene.radiance)?;
-        bundle.add("radiance.npy", cube);
-        let mut common = Vec::with_capacity(scene.shape.len() * 4 + 128);
-        write_npy_to(&mut common, scene.shape, &scene.sigma_common)?;
-        bundle.add("sigma_common.npy", common);
+        let centres: Vec<f64> = result.channels.iter().map(|row| row.wavenumber_cm1).collect();
+        let mut add =
+            |name: &str, samples: &[f32]| format.add(&mut bundle, name, scene.shape, samples, &centres);
+        add("radiance", &scene.radiance)?;
+        add("sigma_common", &scene.sigma_common)?;
         if let Some(pixel) = &scene.sigma_pixel {
-            let mut own = Vec::with_capacity(scene.shape.len() * 4 + 128);
-            write_npy_to(&mut own, scene.shape, pixel)?;
-            bundle.add("sigma_pixel.npy", own);
+            add("sigma_pixel", pixel)?;
         }
         // As `[cube] noise` of a decomposition takes it.
         let mut table = Table::new(["band", "wavenumber_cm1", "sigma", "sigma_common", "sigma_together"]);
@@ -52,7 +49,7 @@ pub fn bundle(result: &BlackbodyFound, out: &Path) -> Result<Bundle> {
 
 /// The whole answer.
 #[must_use]
-pub fn text(result: &BlackbodyFound) -> String {
+pub fn text(result: &BlackbodyFound, format: CubeFormat) -> String {
     let worst = result.worst;
     let [noise, temperature] = worst.sigma_common_k;
     let milli = |kelvin: f64| if kelvin > 0.0 { quantity(kelvin, "K") } else { "0".to_owned() };
@@ -102,17 +99,19 @@ pub fn text(result: &BlackbodyFound) -> String {
         ),
     }
     if let Some(scene) = &result.scene {
+        let file = format.file("radiance");
         let mean = |values: &[f64]| {
             let square: f64 = values.iter().map(|x| x * x).sum();
             (square / values.len().max(1) as f64).sqrt()
         };
         let _ = writeln!(
             out,
-            "\nScene: radiance.npy ({RADIANCE}); noise of each sample {} (rms of the bands), common to all pixels up to {}\n  \
-             by band in sigma.csv, by sample in sigma_common.npy; for a decomposition\n  [cube]\n  data = \"radiance.npy\"\n  unit = \
+            "\nScene: {file} ({RADIANCE}); noise of each sample {} (rms of the bands), common to all pixels up to {}\n  \
+             by band in sigma.csv, by sample in {}; for a decomposition\n  [cube]\n  data = \"{file}\"\n  unit = \
              \"{RADIANCE}\"\n  noise = \"sigma.csv\"\n  (a number as noise leaves out what all pixels have in common, up to {}: only sigma.csv carries it)",
             significant(mean(&scene.sigma_noise), 2),
             significant(mean(&scene.sigma_common_most), 2),
+            format.file("sigma_common"),
             milli(scene.sigma_common_most_k),
         );
     }

@@ -4,7 +4,7 @@ use crate::bundle::Bundle;
 use crate::figures::Plot;
 use crate::plot::{Axis, LineFigure, Series};
 use crate::table::{Table, number};
-use crate::text::footing::{ASSUMPTIONS, warnings};
+use crate::text::footing::{ASSUMPTIONS, read_as, warnings};
 use hadar::calibrate::Line;
 use hadar::error::Result;
 use hadar::units::Dimension;
@@ -38,6 +38,8 @@ pub fn bundle(result: &NoiseFound, out: &Path) -> Result<Bundle> {
 #[must_use]
 pub fn text(result: &NoiseFound) -> String {
     let mut out = format!("{}\n\n", sentence(result));
+    // The others are of the same shape.
+    out.extend(result.read.first().map(read_as));
     let common = &result.transfer.common;
     let _ = writeln!(out, "Variance of a sample of mean m (unit of the cube), all bands");
     let line = |name: &str, [value, low, high]: [f64; 3]| {

@@ -1,12 +1,13 @@
 //! A destriped cube as files: the cube, what was taken out with its errors, pictures before and after.
 
 use crate::bundle::Bundle;
+use crate::cube_format::CubeFormat;
 use crate::figures::Plot;
 use crate::plot::{Axis, Picture, Pictures};
 use crate::table::{Table, number};
-use crate::text::footing::{ASSUMPTIONS, warnings};
+use crate::text::footing::{ASSUMPTIONS, read_as, warnings};
 use hadar::calibrate::Why;
-use hadar::cube::{npy_map, write_npy_to};
+use hadar::cube::npy_map;
 use hadar::error::Result;
 use hadar::words::{significant, whole};
 use hadar_study::study::calibrate::{Samples, StripesFound};
@@ -23,15 +24,15 @@ const CUT: f64 = 0.005;
 ///
 /// # Errors
 /// A figure that cannot be drawn.
-pub fn bundle(result: &StripesFound, out: &Path) -> Result<Bundle> {
+pub fn bundle(result: &StripesFound, format: CubeFormat, out: &Path) -> Result<Bundle> {
     let mut bundle = Bundle::about(result.scenario.title.as_deref());
     bundle.add_asked("scenario.toml", result.scenario.to_toml_beside(out));
-    let mut cube = Vec::with_capacity(result.shape.len() * 8 + 128);
+    // In the order of its file.
+    let centres = result.read.centres_cm1.as_deref().unwrap_or_default();
     match &result.corrected {
-        Samples::F32(samples) => write_npy_to(&mut cube, result.shape, samples)?,
-        Samples::F64(samples) => write_npy_to(&mut cube, result.shape, samples)?,
+        Samples::F32(samples) => format.add(&mut bundle, "destriped", result.shape, samples, centres)?,
+        Samples::F64(samples) => format.add(&mut bundle, "destriped", result.shape, samples, centres)?,
     }
-    bundle.add("destriped.npy", cube);
     bundle.add_table("stripes.csv", stripes(result))?;
     let found = &result.destriped;
     let size = [found.lines, found.bands];
@@ -93,6 +94,7 @@ pub fn text(result: &StripesFound) -> String {
             if also.is_empty() { String::new() } else { format!("; {also}") }
         ),
     };
+    out += &read_as(&result.read);
     let least = found.detectable.iter().copied().fold(f64::INFINITY, f64::min);
     let most = found.detectable.iter().copied().fold(0.0, f64::max);
     let _ = writeln!(

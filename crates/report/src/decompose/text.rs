@@ -1,6 +1,6 @@
 //! A decomposed cube in words: how much of it is decided, what is there, how good that is, what was assumed.
 
-use crate::text::footing::warnings;
+use crate::text::footing::{read_as, warnings};
 use hadar::decompose::{Method, Spatial, SpatialPrior, flag};
 use hadar::words::{quantity, share, significant, whole};
 use hadar_study::scenario::decompose::CubeUnit;
@@ -15,7 +15,7 @@ const LISTED: usize = 12;
 /// The whole answer.
 #[must_use]
 pub fn text(result: &Decomposed) -> String {
-    let mut out = format!("{}\n\n", sentence(result));
+    let mut out = format!("{}\n\n{}", sentence(result), read_as(&result.read));
     out.push_str(&found(result));
     if let Some(segmentation) = &result.segmentation {
         out.push_str(&super::segmented::text(segmentation));

@@ -1,6 +1,6 @@
 //! A library out of a cube, in words.
 
-use crate::text::footing::warnings;
+use crate::text::footing::{read_as, warnings};
 use hadar::words::{quantity, share, significant, whole};
 use hadar_study::scenario::decompose::CubeUnit;
 use hadar_study::study::Warning;
@@ -13,7 +13,7 @@ const FREEZING_K: f64 = 273.15;
 /// The whole answer.
 #[must_use]
 pub fn text(result: &LibraryFound) -> String {
-    let mut out = format!("{}\n\n", sentence(result));
+    let mut out = format!("{}\n\n{}", sentence(result), read_as(&result.read));
     out.push_str(&clusters(result));
     out.push_str(&counts(result));
     if let Some(truth) = &result.truth {

@@ -1,6 +1,7 @@
 //! What results rest on, and what their reader must know.
 
 use super::numbers::listed;
+use hadar::cube::Found;
 use hadar::instrument::Readout;
 use hadar_study::scenario::{AtmosphereSource, DistanceKind, Nuisance, Scenario};
 use hadar_study::study::{Identification, Study, Warning};
@@ -9,6 +10,11 @@ use std::fmt::Write as _;
 /// Headings that end an answer, in this order.
 pub(crate) const ASSUMPTIONS: &str = "Assumptions";
 pub(crate) const WARNINGS: &str = "Warnings";
+
+/// What the file of a cube was read as, on a line.
+pub(crate) fn read_as(found: &Found) -> String {
+    format!("Cube: {found}\n\n")
+}
 
 /// What results rest on, and what the reader must know.
 pub(crate) fn footing(result: &Identification, study: &Study) -> String {

@@ -11,6 +11,7 @@ pub(super) mod write;
 pub use category::{CategorySpec, SegmentationSpec};
 
 use super::{BandsSpec, CameraSpec, ClassSpec, MaterialRef, Source};
+use hadar::cube::Axes;
 use hadar::decompose::SpatialPrior;
 use hadar::error::Place;
 use std::collections::BTreeMap;
@@ -23,8 +24,8 @@ pub struct DecomposeScenario {
     pub title: Option<String>,
     /// The counts (`[cube]`).
     pub cube: HeatCube,
-    /// The bands of the cube.
-    pub bands: BandsSpec,
+    /// The bands of the cube; those that its file says if silent.
+    pub bands: Option<BandsSpec>,
     /// The camera, where it says what the counts are.
     pub camera: Option<CameraSpec>,
     /// Spectra of the surroundings (`[[environment]]`).
@@ -54,8 +55,10 @@ pub struct DecomposeScenario {
 pub struct HeatCube {
     /// Samples `[row][column][band]`.
     pub data: PathBuf,
-    /// Name of the variable in a .mat file.
+    /// Name of the array in a file of several.
     pub variable: Option<String>,
+    /// Which of its dimensions is which.
+    pub axes: Option<Axes>,
     /// What a sample is.
     pub unit: CubeUnit,
     /// Deviation of the electronic noise of a sample, of radiances that of all noise, in the unit of the cube.
@@ -159,8 +162,12 @@ pub enum Brightness {
 pub struct TruthSpec {
     /// Place in the library of each pixel's material.
     pub material: Option<PathBuf>,
-    /// Temperature, K.
+    /// What its numbers stand for, as the HADAR database has it: the place, from 1, in this list of places in the library, from 1.
+    pub material_list: Option<PathBuf>,
+    /// Temperature, K or degC.
     pub temperature: Option<PathBuf>,
+    /// Whether it is in degC.
+    pub celsius: bool,
     /// Lighting factors `[row][column][surroundings]`, or a map for each of the first surroundings.
     pub lighting: Vec<PathBuf>,
     /// A number for each pixel's category.

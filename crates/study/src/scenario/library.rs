@@ -17,8 +17,8 @@ pub struct LibraryScenario {
     pub title: Option<String>,
     /// The counts (`[cube]`).
     pub cube: HeatCube,
-    /// The bands of the cube.
-    pub bands: BandsSpec,
+    /// The bands of the cube; those that its file says if silent.
+    pub bands: Option<BandsSpec>,
     /// The camera, where it says what the counts are.
     pub camera: Option<CameraSpec>,
     /// Spectra of the surroundings (`[[environment]]`).
@@ -47,12 +47,3 @@ pub struct ClustersSpec {
 /// What is known where nothing is said: any magnitude, and shapes as those of most solids in the long-wave infrared.
 pub const EMISSIVITY: Smoothness =
     Smoothness { mean: 0.9, magnitude: 0.3, shape: 0.1, correlation_cm1: 50.0 };
-
-/// A cube without what a library needs besides.
-pub(super) const BARE: [&str; 2] = ["npy", "mat"];
-
-/// Whether a path names a bare cube.
-fn is_bare(path: &std::path::Path) -> bool {
-    let end = path.extension().and_then(|end| end.to_str()).map(str::to_ascii_lowercase);
-    end.is_some_and(|end| BARE.contains(&end.as_str()))
-}

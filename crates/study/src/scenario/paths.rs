@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use super::MaterialRef;
-use super::section::Entry;
+use super::section::{Entry, Section};
+use hadar::cube::Axes;
 use hadar::error::{Error, Result};
 
 /// How file paths are written.
@@ -37,6 +38,28 @@ pub(super) fn material(entry: &Entry<'_>) -> Result<MaterialRef> {
 pub(super) fn is_path(text: &str) -> bool {
     let lower = text.to_lowercase();
     text.contains(['/', '\\']) || lower.ends_with(".csv") || lower.ends_with(".txt")
+}
+
+/// The name of an array in a file of several (`variable`).
+pub(super) fn variable(section: &Section<'_>) -> Result<Option<String>> {
+    section.read("variable", |entry| Ok(entry.text("\"S\"")?.trim().to_owned()))
+}
+
+/// Which dimension of an array is which (`axes`).
+pub(super) fn axes(section: &Section<'_>) -> Result<Option<Axes>> {
+    section.read("axes", |entry| {
+        Axes::named(entry.text("\"bands,rows,columns\"")?).map_err(|error| entry.fail(error))
+    })
+}
+
+/// Endings of files that hold a cube and nothing else.
+pub(super) const CUBES: [&str; 13] =
+    ["npy", "npz", "mat", "hdr", "img", "dat", "bsq", "bil", "bip", "h5", "hdf5", "nc", "nc4"];
+
+/// Whether a path names a cube by its ending.
+pub(super) fn is_cube(path: &Path) -> bool {
+    let end = path.extension().and_then(|end| end.to_str()).map(str::to_ascii_lowercase);
+    end.is_some_and(|end| CUBES.contains(&end.as_str()))
 }
 
 /// A path, from the scenario's directory, made absolute.

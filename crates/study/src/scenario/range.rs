@@ -7,6 +7,7 @@ pub(super) mod read;
 pub(super) mod write;
 
 use super::{BandsSpec, CameraSpec, SceneSpec, Source};
+use hadar::cube::Axes;
 use hadar::error::Place;
 pub use hadar::ranging::depth::Demand;
 use hadar::ranging::derivative::Derivative;
@@ -49,8 +50,10 @@ pub struct CubeSpec {
     pub left: PathBuf,
     /// The right view; without it the right one is taken to carry as much information as the left.
     pub right: Option<PathBuf>,
-    /// Name of the variable in a .mat file.
+    /// Name of the array in a file of several.
     pub variable: Option<String>,
+    /// Which dimension of both views is which.
+    pub axes: Option<Axes>,
     /// Photons that one unit of the file stands for.
     pub photons_per_unit: f64,
     /// Variance of the electronic noise; the camera's if silent.

@@ -67,7 +67,7 @@ impl DecomposeStudy {
             temperature_k: unknown.temperature_k,
             lighting_total: unknown.lighting_total,
             gain: unknown.gain,
-            bad_bands: &self.scenario.cube.bad_bands,
+            bad_bands: &self.bad_bands,
         };
         let spec = &self.scenario.library;
         let library_error = spec.emissivity_error.filter(|error| *error > 0.0).map(|relative| LibraryError {

@@ -1,10 +1,11 @@
 //! A heat cube with what is around it, its bands and its noise looked up: what every question about a cube begins with.
 
-use super::cube_noise::of_bands;
-use super::{bands, camera, camera_bands};
+use super::cube_bands::{InOrder, axes_in_doubt};
+use super::cube_noise::{NoiseOfBands, of_bands};
+use super::{Warning, bands, camera, camera_bands};
 use crate::scenario::decompose::{CubeUnit, HeatCube, LightSource};
-use crate::scenario::{BandsSpec, CameraSpec, MaterialRef, Source};
-use hadar::cube::{Cube, Rows, Sample};
+use crate::scenario::{BandSource, BandsSpec, CameraSpec, MaterialRef, Source};
+use hadar::cube::{Cube, Found, Rows, Sample};
 use hadar::decompose::Light;
 use hadar::error::{Error, Result};
 use hadar::grid::{Grid, READ_SPECTRUM, text_of_file};
@@ -22,7 +23,7 @@ const PER_VARIANCE: f64 = 1e6;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Said<'a> {
     pub(super) cube: &'a HeatCube,
-    pub(super) bands: &'a BandsSpec,
+    pub(super) bands: Option<&'a BandsSpec>,
     pub(super) camera: Option<&'a CameraSpec>,
     pub(super) environment: &'a [LightSource],
     pub(super) source: &'a Source,
@@ -32,6 +33,11 @@ pub(super) struct Said<'a> {
 #[derive(Debug)]
 pub(super) struct Measured {
     pub(super) cube: Cube,
+    /// What its file was read as.
+    pub(super) read: Found,
+    /// Bands that are left out, as the scenario and the file say, in rising wavenumber.
+    pub(super) bad_bands: Vec<usize>,
+    pub(super) warnings: Vec<Warning>,
     pub(super) bands: Bands,
     pub(super) lights: Vec<Light>,
     pub(super) counts_per_radiance: Vec<f64>,
@@ -57,30 +63,68 @@ impl Said<'_> {
     pub(super) fn measured(&self, library: &Library) -> Result<Measured> {
         let at = |key: &str| self.at(key);
         let camera = self.camera.map(|spec| camera::resolved(spec, self.source)).transpose()?;
-        let asked = camera_bands::asked(&self.bands.source, camera.as_ref().zip(self.camera));
-        if self.bands.integrate {
+        if self.bands.is_some_and(|spec| spec.integrate) {
             let found = "integrals over bands are not made here";
             let instead = "leave bands.integrate out: a filter is sampled at the rows of its curve";
             return Err(at("bands.integrate")(Error::malformed(found, instead)));
         }
-        let mut bands = bands::at_centres(&asked, self.source)?;
+        let (path, variable) = (&self.cube.data, self.cube.variable.as_deref());
+        let opened = InOrder::open(path, variable, self.cube.axes).map_err(at("cube.data"))?;
+        let (asked, mut bands) = match self.bands {
+            Some(spec) => {
+                let asked = camera_bands::asked(&spec.source, camera.as_ref().zip(self.camera));
+                let bands = bands::at_centres(&asked, self.source)?;
+                (asked, bands)
+            }
+            None => (BandSource::Rows(path.clone()), opened.bands().map_err(at("bands"))?),
+        };
+        opened.check(&bands).map_err(at("cube.data"))?;
+        let doubt = axes_in_doubt(&opened.found, self.bands.map(|_| &bands));
+        let mut warnings: Vec<Warning> = doubt.into_iter().collect();
+        if asked.is_in_wavelength() && opened.found.centres_cm1.is_none() && bands.len() > 1 {
+            warnings.push(Warning::BandOrderTaken);
+        }
         if let (Some(camera), Some(spec)) = (&camera, self.camera) {
             camera_bands::check(camera, spec, &asked, &bands, &|key| self.source.place(key))?;
             bands = camera.received(&bands);
         }
-        let cube = Cube::open(&self.cube.data, self.cube.variable.as_deref()).map_err(at("cube.data"))?;
-        check_shape(&cube, &bands).map_err(at("cube.data"))?;
         if let Some(bad) = self.cube.bad_bands.iter().find(|band| **band >= bands.len()) {
             let found = format!("band {bad} of {}", bands.len());
             let instead = format!("count from 0 up to {}", bands.len() - 1);
             return Err(at("cube.bad_bands")(Error::malformed(found, instead)));
         }
+        let is_bad: Vec<bool> = (0..bands.len())
+            .map(|band| self.cube.bad_bands.contains(&band) || opened.found.bad_bands.contains(&band))
+            .collect();
+        let bad_bands: Vec<usize> = opened
+            .rising(&is_bad)
+            .iter()
+            .enumerate()
+            .filter(|(_, bad)| **bad)
+            .map(|(band, _)| band)
+            .collect();
+        if bad_bands.len() == bands.len() {
+            let found =
+                Error::malformed("all bands are bad", "leave some of them, or mend the list of the file");
+            return Err(at("cube.bad_bands")(found));
+        }
         let widths = bands.widths_cm1();
         let centres: Vec<f64> =
             bands.weigh(bands.nodes_cm1()).iter().zip(&widths).map(|(sum, width)| sum / width).collect();
         let mut units_per_count = 1.0;
-        let noise = of_bands(self.cube.noise.as_ref(), self.cube.unit, &centres, &widths)
-            .map_err(at("cube.noise"))?;
+        // Its table has the order of the file.
+        let noise = of_bands(
+            self.cube.noise.as_ref(),
+            self.cube.unit,
+            &opened.of_file(&centres),
+            &opened.of_file(&widths),
+        )
+        .map_err(at("cube.noise"))?;
+        let noise = NoiseOfBands {
+            var: noise.var.map(|var| opened.rising(&var)),
+            together: noise.together.map(|sigma| opened.rising(&sigma)),
+        };
+        let InOrder { cube, found: read, .. } = opened;
         let added = |band: usize| noise.var.as_ref().and_then(|var| var.get(band).copied()).unwrap_or(0.0);
         let (counts_per_radiance, var_added) = match self.cube.unit {
             CubeUnit::CountsPerPhotonRadiance(counts) => {
@@ -111,28 +155,19 @@ impl Said<'_> {
         let lights = lights.collect::<Result<Vec<_>>>()?;
         let together =
             noise.together.map(|sigma| sigma.into_iter().map(|sigma| sigma / units_per_count).collect());
-        Ok(Measured { cube, bands, lights, counts_per_radiance, var_added, together, units_per_count })
+        Ok(Measured {
+            cube,
+            read,
+            bad_bands,
+            warnings,
+            bands,
+            lights,
+            counts_per_radiance,
+            var_added,
+            together,
+            units_per_count,
+        })
     }
-}
-
-fn check_shape(cube: &Cube, bands: &Bands) -> Result<()> {
-    let shape = cube.shape();
-    if shape.bands() == bands.len() {
-        return Ok(());
-    }
-    let found = format!(
-        "the cube is {} x {} x {} (rows, columns, bands), but [bands] are {}",
-        shape.rows(),
-        shape.columns(),
-        shape.bands(),
-        bands.len()
-    );
-    let instead = match (shape.rows() == bands.len(), shape.columns() == bands.len()) {
-        (true, _) => "its first axis seems to be the bands: write it with np.moveaxis(a, 0, 2)",
-        (_, true) => "its second axis seems to be the bands: write it with np.moveaxis(a, 1, 2)",
-        _ => "make [bands] those of the cube",
-    };
-    Err(Error::malformed(found, instead))
 }
 
 /// Name and rows (cm⁻¹, value) of a column.

@@ -34,7 +34,7 @@ impl LibraryStudy {
     pub fn new(scenario: &LibraryScenario, library: &Library) -> Result<Self> {
         let said = Said {
             cube: &scenario.cube,
-            bands: &scenario.bands,
+            bands: scenario.bands.as_ref(),
             camera: scenario.camera.as_ref(),
             environment: &scenario.environment,
             source: &scenario.source,
@@ -71,7 +71,7 @@ impl LibraryStudy {
             temperature_k: scenario.unknown.temperature_k,
             lighting_total: scenario.unknown.lighting_total,
             gain: false,
-            bad_bands: &scenario.cube.bad_bands,
+            bad_bands: &measured.bad_bands,
         };
         let clusters = scenario.clusters;
         let asked = Asked {
@@ -95,7 +95,7 @@ impl LibraryStudy {
             _ => error.in_file(&scenario.cube.data),
         })?;
         let truth = self.truth.as_ref().map(|truth| results::against(truth, &found.maps));
-        let mut warnings = Vec::new();
+        let mut warnings = measured.warnings.clone();
         if clusters.count == [1, 1] {
             warnings.push(Warning::OneCluster);
         }
@@ -107,7 +107,7 @@ impl LibraryStudy {
         if !found.settled {
             warnings.push(Warning::ClustersNotSettled { rounds: found.rounds });
         }
-        let bands = measured.bands.len().saturating_sub(scenario.cube.bad_bands.len());
+        let bands = measured.bands.len().saturating_sub(measured.bad_bands.len());
         let misfits: Vec<(String, f64)> = found
             .clusters
             .iter()

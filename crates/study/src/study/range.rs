@@ -155,6 +155,10 @@ impl RangeStudy {
         let mut result = Ranging {
             scenario: self.scenario.clone(),
             verdict: self.verdict(objects.first())?,
+            read: match &self.subject {
+                Resolved::Cube(cube) => Some(cube.read.clone()),
+                Resolved::Scene(_) => None,
+            },
             shape,
             geometry: self.geometry(ground.var_diffraction_px2)?,
             cells: self.cell_medians(&informed, &windows)?,
@@ -166,7 +170,11 @@ impl RangeStudy {
             warnings: Vec::new(),
             maps,
         };
-        result.warnings = self.warnings(&result);
+        if let Resolved::Cube(cube) = &self.subject {
+            result.warnings.clone_from(&cube.warnings);
+        }
+        let more = self.warnings(&result);
+        result.warnings.extend(more);
         Ok(result)
     }
 

@@ -56,6 +56,11 @@ catalogue! {
     /// Of classes only the pair of members that is hardest to tell apart is simulated.
     WorstMembers = "worst-members", "Name other members to simulate them.";
 
+    /// The first axis of a cube is so short that it may be that of the bands.
+    AxesInDoubt = "axes-in-doubt", "Write cube.axes, \"bands,rows,columns\" or \"rows,columns,bands\".";
+    /// Bands are stated as wavelengths, and the file of the cube does not say in which order it has them.
+    BandOrderTaken = "band-order-taken",
+        "Write the cube with its wavelengths, as an ENVI file, or turn its bands round if they begin with the shortest.";
     /// Pixels of a cube were left out since a sample of them is missing.
     PixelsSkipped = "pixels-skipped", "Nothing; or name bands that are always missing in cube.bad_bands.";
     /// Pixels of a cube are explained by no material of the library.

@@ -17,6 +17,14 @@ impl Display for Warning {
             Self::TargetAmongAlternatives { target } => {
                 write!(f, "{target} is left out of the alternatives: it is the target")
             }
+            Self::AxesInDoubt { rows, columns, bands } => write!(
+                f,
+                "the cube was read as {rows} rows x {columns} columns x {bands} bands, though its first axis is the shortest by far"
+            ),
+            Self::BandOrderTaken => f.write_str(
+                "the bands are written as wavelengths, but the cube's file does not say them: its first band was taken as that of the \
+                 longest wavelength",
+            ),
             Self::PixelsSkipped { pixels, of } => {
                 write!(f, "{pixels} of {of} pixels have a sample that is no number; they were left out")
             }

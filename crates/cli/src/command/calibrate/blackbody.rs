@@ -1,5 +1,6 @@
 //! `hadar calibrate blackbody`: response and offset of a spectrometer, and the radiance of a cube.
 
+use super::super::cube_format::CubeFormatArgs;
 use super::super::global::Global;
 use clap::Args;
 use hadar::error::Result;
@@ -14,6 +15,8 @@ pub(super) struct BlackbodyArgs {
     /// A calibration scenario (TOML): [bands], [[blackbody]], [noise], [scene]
     #[arg(value_name = "FILE")]
     file: PathBuf,
+    #[command(flatten)]
+    cube_format: CubeFormatArgs,
 }
 
 pub(super) fn run(args: &BlackbodyArgs, global: &Global) -> Result<ExitCode> {
@@ -21,8 +24,10 @@ pub(super) fn run(args: &BlackbodyArgs, global: &Global) -> Result<ExitCode> {
     let study = BlackbodyStudy::new(&scenario)?;
     global.inputs_are_safe()?;
     let mut result = study.calibrate()?;
-    let text = blackbody::text(&result);
-    result.stats.add(&global.report(&text, |out| blackbody::bundle(&result, out))?);
+    let text = blackbody::text(&result, args.cube_format.format());
+    result
+        .stats
+        .add(&global.report(&text, |out| blackbody::bundle(&result, args.cube_format.format(), out))?);
     global.answer(&result, &text, &result.stats)?;
     Ok(ExitCode::SUCCESS)
 }

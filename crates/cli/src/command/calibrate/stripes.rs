@@ -1,5 +1,6 @@
 //! `hadar calibrate stripes`: lines whose gain and offset are off.
 
+use super::super::cube_format::CubeFormatArgs;
 use super::super::global::Global;
 use clap::Args;
 use hadar::error::Result;
@@ -11,9 +12,11 @@ use std::process::ExitCode;
 
 #[derive(Debug, Args)]
 pub(super) struct StripesArgs {
-    /// A calibration scenario (TOML): [cube], [stripes]; or the cube itself (.npy, .mat), whose rows are looked at
+    /// A calibration scenario (TOML): [cube], [stripes]; or the cube itself (.npy, .hdr, .mat, …), whose rows are looked at
     #[arg(value_name = "FILE")]
     file: PathBuf,
+    #[command(flatten)]
+    cube_format: CubeFormatArgs,
 }
 
 pub(super) fn run(args: &StripesArgs, global: &Global) -> Result<ExitCode> {
@@ -25,7 +28,7 @@ pub(super) fn run(args: &StripesArgs, global: &Global) -> Result<ExitCode> {
     global.inputs_are_safe()?;
     let mut result = study.destripe()?;
     let text = stripes::text(&result);
-    result.stats.add(&global.report(&text, |out| stripes::bundle(&result, out))?);
+    result.stats.add(&global.report(&text, |out| stripes::bundle(&result, args.cube_format.format(), out))?);
     global.answer(&result, &text, &result.stats)?;
     Ok(ExitCode::SUCCESS)
 }

@@ -1,9 +1,10 @@
 //! Blackbodies that were read (`[[blackbody]]`), the noise of a sample (`[noise]`) and the cube to be calibrated (`[scene]`).
 
 use super::super::entries::Entries;
-use super::super::paths::{Paths, file};
+use super::super::paths::{Paths, axes, file, variable};
 use super::super::section::{Entry, Section};
 use hadar::allowed::{ABOVE_ZERO, ABSOLUTE_TEMPERATURE, FROM_ZERO};
+use hadar::cube::Axes;
 use hadar::error::{Error, Result};
 use hadar::units::Dimension;
 use hadar::words::quantity;
@@ -32,26 +33,32 @@ pub struct BlackbodySpec {
 pub struct CubeFile {
     /// Samples `[row][column][band]`.
     pub path: PathBuf,
-    /// Name of the variable in a .mat file.
+    /// Name of the array in a file of several.
     pub variable: Option<String>,
+    /// Which of its dimensions is which.
+    pub axes: Option<Axes>,
 }
 
 impl CubeFile {
     pub(super) fn read(section: &Section<'_>, example: &str) -> Result<Self> {
         Ok(Self {
             path: file(&section.require("data", example)?)?,
-            variable: section.read("variable", |entry| Ok(entry.text("\"S\"")?.trim().to_owned()))?,
+            variable: variable(section)?,
+            axes: axes(section)?,
         })
     }
 
     pub(super) fn written(&self, paths: Paths<'_>) -> Entries {
-        Entries::default().put("data", paths.file(&self.path)).put_if("variable", self.variable.clone())
+        Entries::default()
+            .put("data", paths.file(&self.path))
+            .put_if("variable", self.variable.clone())
+            .put_if("axes", self.axes.map(|axes| axes.to_string()))
     }
 }
 
 impl BlackbodySpec {
     fn read(entry: &Entry<'_>) -> Result<Self> {
-        let section = entry.section(&["temperature", "uncertainty", "data", "variable"])?;
+        let section = entry.section(&["temperature", "uncertainty", "data", "variable", "axes"])?;
         let temperature = section.require("temperature", "\"10 degC\"")?;
         let uncertainty = section.quantity("uncertainty", Dimension::TemperatureDifference, FROM_ZERO)?;
         Ok(Self {

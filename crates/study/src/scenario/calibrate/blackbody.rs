@@ -87,7 +87,7 @@ impl BlackbodyScenario {
             blackbodies: blackbodies(&root)?,
             noise: noise(&root)?,
             scene: root.read("scene", |entry| {
-                let section = entry.section(&["data", "variable", "response"])?;
+                let section = entry.section(&["data", "variable", "axes", "response"])?;
                 Ok(SpectralScene {
                     data: CubeFile::read(&section, "\"scene.npy\"")?,
                     each_pixel: section.choice("response", &RESPONSES)?.unwrap_or(false),

@@ -1,8 +1,9 @@
 //! Cubes as they were measured (`[cube]` of a calibration): one, or several frames of the same scene.
 
 use super::super::entries::Entries;
-use super::super::paths::{Paths, file};
+use super::super::paths::{Paths, axes, file, is_cube, variable};
 use super::super::section::Entry;
+use hadar::cube::Axes;
 use hadar::error::Result;
 use std::path::{Path, PathBuf};
 use toml::Value;
@@ -12,28 +13,29 @@ use toml::Value;
 pub struct Frames {
     /// Samples `[row][column][band]` of each.
     pub data: Vec<PathBuf>,
-    /// Name of the variable in a .mat file.
+    /// Name of the array in files of several.
     pub variable: Option<String>,
+    /// Which of their dimensions is which.
+    pub axes: Option<Axes>,
 }
 
 impl Frames {
     /// Whether a path names a cube and no scenario.
     #[must_use]
     pub fn is_bare(path: &Path) -> bool {
-        let end = path.extension().and_then(|end| end.to_str()).map(str::to_ascii_lowercase);
-        end.is_some_and(|end| ["npy", "mat"].contains(&end.as_str()))
+        is_cube(path)
     }
 
     /// Bare cubes.
     #[must_use]
     pub fn bare(paths: &[PathBuf]) -> Self {
         let absolute = |path: &PathBuf| std::path::absolute(path).unwrap_or_else(|_| path.clone());
-        Self { data: paths.iter().map(absolute).collect(), variable: None }
+        Self { data: paths.iter().map(absolute).collect(), variable: None, axes: None }
     }
 
     /// `data`, one or a list, and `variable`.
     pub(in crate::scenario) fn read(entry: &Entry<'_>) -> Result<Self> {
-        let section = entry.section(&["data", "variable"])?;
+        let section = entry.section(&["data", "variable", "axes"])?;
         let data = section.require("data", "\"counts.npy\"")?;
         Ok(Self {
             data: match data.is_list() {
@@ -44,7 +46,8 @@ impl Frames {
                     .collect::<Result<_>>()?,
                 false => vec![file(&data)?],
             },
-            variable: section.read("variable", |entry| Ok(entry.text("\"S\"")?.trim().to_owned()))?,
+            variable: variable(&section)?,
+            axes: axes(&section)?,
         })
     }
 
@@ -53,6 +56,9 @@ impl Frames {
             [one] => Value::from(paths.file(one)),
             several => Value::from(several.iter().map(|path| paths.file(path)).collect::<Vec<_>>()),
         };
-        Entries::default().put("data", data).put_if("variable", self.variable.clone())
+        Entries::default()
+            .put("data", data)
+            .put_if("variable", self.variable.clone())
+            .put_if("axes", self.axes.map(|axes| axes.to_string()))
     }
 }

@@ -188,6 +188,7 @@ fn scene(entry: &Entry<'_>) -> Result<SceneSpec> {
     let section = entry.section(&[
         "data",
         "variable",
+        "axes",
         "reference",
         "reference_temperature",
         "reference_uncertainty",

@@ -1,7 +1,7 @@
 //! Reads a decomposition scenario: every key checked, every error one line with file, line and key.
 
 use super::super::kind::Kind;
-use super::super::paths::{file, is_path, material};
+use super::super::paths::{axes, file, is_path, material, variable};
 use super::super::read::{document, text_of};
 use super::super::section::{Entry, Section};
 use super::super::{BandsSpec, Source, camera, class};
@@ -31,7 +31,8 @@ const TABLES: &[&str] = &[
     "truth",
 ];
 /// Maps of the truth that every heat cube may have.
-pub(in crate::scenario) const TRUTH: &[&str] = &["material", "temperature", "lighting"];
+pub(in crate::scenario) const TRUTH: &[&str] =
+    &["material", "material_list", "temperature", "temperature_unit", "lighting"];
 const MINIMUM: &str =
     "write [cube] with data = \"counts.npy\", [bands], and [library] with path = \"library.csv\"";
 /// Temperatures of a scene where nothing is said, K.
@@ -86,7 +87,7 @@ impl DecomposeScenario {
         let scenario = Self {
             title: root.read("title", |entry| Ok(entry.text("\"What is in this street?\"")?.to_owned()))?,
             cube: heat_cube(&cube, camera.is_some())?,
-            bands: root.read("bands", BandsSpec::read)?.ok_or_else(|| missing("bands"))?,
+            bands: root.read("bands", BandsSpec::read)?,
             camera,
             environment: root
                 .read("environment", |entry| entry.items("[[environment]]")?.iter().map(light).collect())?
@@ -124,8 +125,15 @@ impl Default for PixelUnknown {
 }
 
 pub(in crate::scenario) fn heat_cube(entry: &Entry<'_>, camera: bool) -> Result<HeatCube> {
-    let section =
-        entry.section(&["data", "variable", "counts_per_photon_radiance", "unit", "noise", "bad_bands"])?;
+    let section = entry.section(&[
+        "data",
+        "variable",
+        "axes",
+        "counts_per_photon_radiance",
+        "unit",
+        "noise",
+        "bad_bands",
+    ])?;
     section.at_most_one(&["counts_per_photon_radiance", "unit"])?;
     let counts = section.number("counts_per_photon_radiance", "2.2e-14", ABOVE_ZERO)?;
     let radiance = section.choice("unit", &[(RADIANCE, ())])?.is_some();
@@ -156,7 +164,8 @@ pub(in crate::scenario) fn heat_cube(entry: &Entry<'_>, camera: bool) -> Result<
     };
     Ok(HeatCube {
         data: file(&section.require("data", "\"counts.npy\"")?)?,
-        variable: section.read("variable", |entry| Ok(entry.text("\"S\"")?.trim().to_owned()))?,
+        variable: variable(&section)?,
+        axes: axes(&section)?,
         unit,
         noise,
         bad_bands: section
@@ -256,9 +265,18 @@ pub(in crate::scenario) fn unknown(entry: &Entry<'_>) -> Result<PixelUnknown> {
 
 pub(in crate::scenario) fn truth(entry: &Entry<'_>, keys: &[&str]) -> Result<TruthSpec> {
     let section = entry.section(keys)?;
+    for (key, of) in [("material_list", "material"), ("temperature_unit", "temperature")] {
+        if section.get(key).is_some() && section.get(of).is_none() {
+            let found =
+                Error::malformed(format!("there is no {of} that it is said of"), format!("write {of} too"));
+            return Err(section.fail(key, found));
+        }
+    }
     Ok(TruthSpec {
         material: section.read("material", file)?,
+        material_list: section.read("material_list", file)?,
         temperature: section.read("temperature", file)?,
+        celsius: section.choice("temperature_unit", &[("K", false), ("degC", true)])?.unwrap_or(false),
         category: section.read("category", file)?,
         lighting: section
             .read("lighting", |entry| match entry.is_list() {

@@ -29,7 +29,7 @@ impl DecomposeScenario {
         }
         document.extend(cube_written(
             &self.cube,
-            &self.bands,
+            self.bands.as_ref(),
             self.camera.as_ref(),
             &self.environment,
             paths,
@@ -74,7 +74,7 @@ impl DecomposeScenario {
 /// `[cube]`, `[bands]`, `[camera]` and `[[environment]]`.
 pub(in crate::scenario) fn cube_written(
     cube: &HeatCube,
-    bands: &BandsSpec,
+    bands: Option<&BandsSpec>,
     camera: Option<&CameraSpec>,
     environment: &[LightSource],
     paths: Paths<'_>,
@@ -89,6 +89,7 @@ pub(in crate::scenario) fn cube_written(
     let written = Entries::default()
         .put("data", paths.file(&cube.data))
         .put_if("variable", cube.variable.clone())
+        .put_if("axes", cube.axes.map(|axes| axes.to_string()))
         .put_if("counts_per_photon_radiance", counts)
         .put_if("unit", unit)
         .put_if(
@@ -100,7 +101,9 @@ pub(in crate::scenario) fn cube_written(
         )
         .put_if("bad_bands", (!cube.bad_bands.is_empty()).then(|| whole(&cube.bad_bands)));
     document.push(("cube", Part::Table(written)));
-    document.push(("bands", Part::Table(bands.written(paths))));
+    if let Some(spec) = bands {
+        document.push(("bands", Part::Table(spec.written(paths))));
+    }
     if let Some(spec) = camera {
         document.push(("camera", Part::Table(camera::written(spec, paths))));
     }
@@ -131,7 +134,9 @@ pub(in crate::scenario) fn truth_written(truth: &TruthSpec, paths: Paths<'_>) ->
     let lighting: Vec<String> = truth.lighting.iter().map(|path| paths.file(path)).collect();
     Entries::default()
         .put_if("material", file(&truth.material))
+        .put_if("material_list", file(&truth.material_list))
         .put_if("temperature", file(&truth.temperature))
+        .put_if("temperature_unit", truth.celsius.then_some("degC"))
         .put_if("lighting", (!lighting.is_empty()).then_some(lighting))
         .put_if("category", file(&truth.category))
 }

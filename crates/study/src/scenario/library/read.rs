@@ -3,10 +3,11 @@
 use super::super::decompose::PixelUnknown;
 use super::super::decompose::read::{TRUTH, heat_cube, light, truth, unknown};
 use super::super::kind::Kind;
+use super::super::paths::is_cube;
 use super::super::read::{document, text_of};
 use super::super::section::{Entry, Section};
 use super::super::{BandsSpec, Source, camera};
-use super::{ClustersSpec, EMISSIVITY, LibraryScenario, is_bare};
+use super::{ClustersSpec, EMISSIVITY, LibraryScenario};
 use hadar::allowed::{ABOVE_ZERO, Allowed, SHARE};
 use hadar::error::{Error, Result};
 use hadar::fisher::emissivity::Smoothness;
@@ -30,7 +31,8 @@ impl LibraryScenario {
     /// # Errors
     /// The first thing that is wrong, in one line with file, line and key; a bare cube, with what to write instead.
     pub fn from_file(path: &Path) -> Result<Self> {
-        if is_bare(path) {
+        // A cube without what a library needs besides.
+        if is_cube(path) {
             let found = "a cube alone says nothing of its bands, its surroundings and its noise";
             let name = path.file_name().map_or_else(|| "counts.npy".into(), |name| name.to_string_lossy());
             let instead = format!(
@@ -93,7 +95,7 @@ impl LibraryScenario {
         let scenario = Self {
             title: root.read("title", |entry| Ok(entry.text("\"What is in this street?\"")?.to_owned()))?,
             cube: heat_cube(&cube, camera.is_some())?,
-            bands: root.read("bands", BandsSpec::read)?.ok_or_else(|| missing("bands"))?,
+            bands: root.read("bands", BandsSpec::read)?,
             camera,
             environment,
             clusters: root.read("clusters", clusters)?.ok_or_else(|| missing("clusters"))?,

@@ -23,7 +23,7 @@ impl LibraryScenario {
         }
         document.extend(cube_written(
             &self.cube,
-            &self.bands,
+            self.bands.as_ref(),
             self.camera.as_ref(),
             &self.environment,
             paths,

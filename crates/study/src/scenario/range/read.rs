@@ -1,7 +1,7 @@
 //! Reads a ranging scenario: every key checked, every error one line with file, line and key.
 
 use super::super::kind::Kind as FileKind;
-use super::super::paths::file;
+use super::super::paths::{axes, file, is_cube, variable};
 use super::super::read::{document, text_of};
 use super::super::scene::scene_of;
 use super::super::section::{Entry, Section};
@@ -109,12 +109,20 @@ impl Default for DepthRequirement {
 }
 
 fn cube(entry: &Entry<'_>) -> Result<CubeSpec> {
-    let section =
-        entry.section(&["left", "right", "variable", "photons_per_unit", "noise_variance", "depth"])?;
+    let section = entry.section(&[
+        "left",
+        "right",
+        "variable",
+        "axes",
+        "photons_per_unit",
+        "noise_variance",
+        "depth",
+    ])?;
     Ok(CubeSpec {
         left: file(&section.require("left", "\"left.npy\"")?)?,
         right: section.read("right", file)?,
-        variable: section.read("variable", |entry| Ok(entry.text("\"HSI\"")?.trim().to_owned()))?,
+        variable: variable(&section)?,
+        axes: axes(&section)?,
         photons_per_unit: section.number("photons_per_unit", "1.0", ABOVE_ZERO)?.unwrap_or(1.0),
         noise: section.read("noise_variance", |entry| match entry.text("\"noise.csv\"") {
             Ok(_) => file(entry).map(NoiseSource::File),
@@ -122,8 +130,7 @@ fn cube(entry: &Entry<'_>) -> Result<CubeSpec> {
         })?,
         depth: section.read("depth", |entry| {
             let text = entry.text("\"12 m\" or \"depth.npy\"")?.trim();
-            let lower = text.to_lowercase();
-            if [".npy", ".mat"].iter().any(|ending| lower.ends_with(ending)) {
+            if is_cube(Path::new(text)) {
                 return file(entry).map(DepthSource::File);
             }
             entry.quantity(Dimension::Length, ABOVE_ZERO).map(DepthSource::Uniform)

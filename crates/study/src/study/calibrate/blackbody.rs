@@ -2,9 +2,11 @@
 
 use super::scene_radiance::{DEAD, SceneFound, Spectrometer, beyond};
 use super::stated::uncertainty_not_stated;
-use super::whole::{at, means, open, shown};
+use super::whole::{at, means};
 use crate::scenario::calibrate::BlackbodyScenario;
 use crate::scenario::calibrate::blackbodies::BlackbodySpec;
+use crate::scenario::calibrate::blackbodies::CubeFile;
+use crate::study::cube_bands::InOrder;
 use crate::study::{Warning, bands};
 use hadar::calibrate::spectrometer::Calibration;
 use hadar::calibration::blackbody::{Blackbodies, Parts};
@@ -109,17 +111,11 @@ impl BlackbodyStudy {
             let instead = "write start, stop and step, or rows; filters are for hadar calibrate response";
             return Err(at(source, "bands")(Error::malformed(found, instead)));
         }
-        let check = |cube: &Cube| {
-            if cube.shape().bands() == bands.len() {
-                return Ok(());
-            }
-            let found = format!("the cube is {}, but [bands] are {}", shown(cube.shape()), bands.len());
-            Err(Error::malformed(found, "make [bands] those of the cube"))
-        };
-        let opened = |file, key: &str| -> Result<Cube> {
-            let cube = open(file, source, key)?;
-            check(&cube).map_err(at(source, key))?;
-            Ok(cube)
+        let opened = |file: &CubeFile, key: &str| -> Result<Cube> {
+            let opened =
+                InOrder::open(&file.path, file.variable.as_deref(), file.axes).map_err(at(source, key))?;
+            opened.check(&bands).map_err(at(source, key))?;
+            Ok(opened.cube)
         };
         let cubes = scenario.blackbodies.iter().enumerate();
         Ok(Self {

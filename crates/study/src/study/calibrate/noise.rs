@@ -1,10 +1,10 @@
 //! The noise of a camera out of its cubes.
 
-use super::opened::opened;
+use super::opened::Measured;
 use crate::scenario::calibrate::NoiseScenario;
 use crate::study::Warning;
 use hadar::calibrate::{Asked, Line, Transfer, photon_transfer};
-use hadar::cube::{Cube, Rows, Shape};
+use hadar::cube::{Cube, Found, Rows, Shape};
 use hadar::demand::{Thing, Work};
 use hadar::error::{Error, Result};
 use serde::Serialize;
@@ -20,7 +20,7 @@ const OUTLIERS: f64 = 1e-3;
 #[derive(Debug)]
 pub struct NoiseStudy {
     scenario: NoiseScenario,
-    frames: Vec<Cube>,
+    frames: Measured,
 }
 
 /// The noise that was found.
@@ -28,6 +28,8 @@ pub struct NoiseStudy {
 pub struct NoiseFound {
     /// The question.
     pub scenario: NoiseScenario,
+    /// What the files were read as.
+    pub read: Vec<Found>,
     /// Rows, columns and bands.
     pub shape: Shape,
     /// How many frames there are.
@@ -57,7 +59,7 @@ impl NoiseStudy {
     /// # Errors
     /// Files that cannot be used, with file, line and key.
     pub fn new(scenario: &NoiseScenario) -> Result<Self> {
-        Ok(Self { frames: opened(&scenario.cube, &scenario.source)?, scenario: scenario.clone() })
+        Ok(Self { frames: Measured::open(&scenario.cube, &scenario.source)?, scenario: scenario.clone() })
     }
 
     /// The noise.
@@ -68,8 +70,8 @@ impl NoiseStudy {
         let start = std::time::Instant::now();
         let spec = self.scenario.noise;
         let asked = Asked { dark_level: spec.dark_level, gain_spread: spec.gain_spread };
-        let singles: Vec<&dyn Rows<f32>> = self.frames.iter().filter_map(of_32).collect();
-        let doubles: Vec<&dyn Rows<f64>> = self.frames.iter().filter_map(of_64).collect();
+        let singles: Vec<&dyn Rows<f32>> = self.frames.cubes.iter().filter_map(of_32).collect();
+        let doubles: Vec<&dyn Rows<f64>> = self.frames.cubes.iter().filter_map(of_64).collect();
         let place = |error: Error| match (&error, &self.scenario.source.path, self.scenario.cube.data.first())
         {
             (Error::At { place, .. }, ..) if place.path.is_some() => error,
@@ -90,7 +92,7 @@ impl NoiseStudy {
         }
         .map_err(place)?;
         let common = transfer.common;
-        let mut warnings = Vec::new();
+        let mut warnings = self.frames.warnings();
         if transfer.outliers > OUTLIERS {
             warnings.push(Warning::NoiseOutliers { share: transfer.outliers });
         }
@@ -123,12 +125,13 @@ impl NoiseStudy {
                 sigma: common.sigma_per_photon,
             });
         }
-        let shape = self.frames.first().map(Cube::shape).map_or_else(|| Shape::new(1, 1, 1), Ok)?;
+        let shape = self.frames.cubes.first().map(Cube::shape).map_or_else(|| Shape::new(1, 1, 1), Ok)?;
         let inverse = |b: f64| if b > 0.0 { 1.0 / b } else { f64::INFINITY };
         Ok(NoiseFound {
             scenario: self.scenario.clone(),
+            read: self.frames.read.clone(),
             shape,
-            frames: self.frames.len(),
+            frames: self.frames.cubes.len(),
             photons_per_unit: [inverse(common.per_photon), inverse(high), inverse(low)],
             noise_electrons: [common.noise_electrons(), least, most],
             gain_deviation: spec.gain_spread.then(|| common.spread.max(0.0).sqrt()),
@@ -136,7 +139,7 @@ impl NoiseStudy {
             transfer,
             stats: {
                 let mut work = Work::default();
-                work.compute(Thing::Samples, (self.frames.len() * shape.len()) as u64);
+                work.compute(Thing::Samples, (self.frames.cubes.len() * shape.len()) as u64);
                 work
             },
             seconds: start.elapsed().as_secs_f64(),

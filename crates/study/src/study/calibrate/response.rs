@@ -153,7 +153,7 @@ impl ResponseStudy {
         let scene = scenario.scene.as_ref().map(|spec| {
             let scene = open(&spec.data, source, "scene.data")?;
             same_size(&scene, &cubes[0], "blackbody[0]").map_err(at(source, "scene.data"))?;
-            let file = CubeFile { path: spec.reference.clone(), variable: spec.data.variable.clone() };
+            let file = CubeFile { path: spec.reference.clone(), ..spec.data.clone() };
             let reference = open(&file, source, "scene.reference")?;
             same_size(&reference, &scene, "the scene").map_err(at(source, "scene.reference"))?;
             Ok([scene, reference])

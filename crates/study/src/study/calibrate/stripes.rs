@@ -1,10 +1,10 @@
 //! A cube without its stripes.
 
-use super::opened::opened;
+use super::opened::Measured;
 use crate::scenario::calibrate::StripesScenario;
 use crate::study::Warning;
 use hadar::calibrate::{Destriped, Why, find_stripes};
-use hadar::cube::{Cube, Rows, Sample, Shape};
+use hadar::cube::{Cube, Found, Rows, Sample, Shape};
 use hadar::demand::{Thing, Work};
 use hadar::error::{Error, Result};
 use serde::Serialize;
@@ -17,6 +17,8 @@ const TELLING: usize = 4;
 pub struct StripesStudy {
     scenario: StripesScenario,
     cube: Cube,
+    read: Found,
+    warnings: Vec<Warning>,
 }
 
 /// Samples of either kind.
@@ -33,6 +35,8 @@ pub enum Samples {
 pub struct StripesFound {
     /// The question.
     pub scenario: StripesScenario,
+    /// What the file was read as.
+    pub read: Found,
     /// Rows, columns and bands.
     pub shape: Shape,
     /// Striped lines, counted in every band.
@@ -66,9 +70,12 @@ impl StripesStudy {
     /// # Errors
     /// A file that cannot be used, with file, line and key.
     pub fn new(scenario: &StripesScenario) -> Result<Self> {
-        let [cube] = <[Cube; 1]>::try_from(opened(&scenario.cube, &scenario.source)?)
-            .map_err(|_| Error::malformed("several cubes", "give one"))?;
-        Ok(Self { cube, scenario: scenario.clone() })
+        let opened = Measured::open(&scenario.cube, &scenario.source)?;
+        let warnings = opened.warnings();
+        let several = || Error::malformed("several cubes", "give one");
+        let [cube] = <[Cube; 1]>::try_from(opened.cubes).map_err(|_| several())?;
+        let [read] = <[Found; 1]>::try_from(opened.read).map_err(|_| several())?;
+        Ok(Self { cube, read, warnings, scenario: scenario.clone() })
     }
 
     /// The cube without its stripes.
@@ -112,7 +119,7 @@ impl StripesStudy {
             (destriped.stripes.iter().map(square).sum::<f64>() / count.max(1) as f64).sqrt()
         };
         let (off_relative, left_relative) = (rms(&|stripe| stripe.off), rms(&|stripe| stripe.sigma));
-        let mut warnings = Vec::new();
+        let mut warnings = self.warnings.clone();
         if !destriped.left.is_empty() {
             warnings
                 .push(Warning::LinesLikeObjects { axis: sought.axis.name(), lines: destriped.left.clone() });
@@ -158,6 +165,7 @@ impl StripesStudy {
         stats.compute(Thing::Samples, shape.len() as u64);
         Ok(StripesFound {
             scenario: self.scenario.clone(),
+            read: self.read.clone(),
             shape,
             striped: count,
             off_relative,

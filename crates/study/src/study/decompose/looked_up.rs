@@ -5,7 +5,7 @@ use super::truth::Truth;
 use crate::scenario::{DecomposeScenario, MaterialRef, Spread};
 use crate::study::Warning;
 use crate::study::heat_cube::{Measured, Said, columns};
-use hadar::cube::Cube;
+use hadar::cube::{Cube, Found};
 use hadar::decompose::{Light, SpatialPrior};
 use hadar::error::{Error, Result};
 use hadar::material::{Basis, Library, Material};
@@ -17,6 +17,10 @@ use hadar::spectrum::Bands;
 pub struct DecomposeStudy {
     pub(super) scenario: DecomposeScenario,
     pub(super) cube: Cube,
+    /// What its file was read as.
+    pub(super) read: Found,
+    /// Bands that are left out, in rising wavenumber.
+    pub(super) bad_bands: Vec<usize>,
     pub(super) bands: Bands,
     /// Names of the materials, and their emissivities at the nodes of the bands.
     pub(super) names: Vec<String>,
@@ -47,16 +51,15 @@ impl DecomposeStudy {
     pub fn new(scenario: &DecomposeScenario, library: &Library) -> Result<Self> {
         let said = Said {
             cube: &scenario.cube,
-            bands: &scenario.bands,
+            bands: scenario.bands.as_ref(),
             camera: scenario.camera.as_ref(),
             environment: &scenario.environment,
             source: &scenario.source,
         };
         let at = |key: &str| said.at(key);
         let measured = said.measured(library)?;
-        let Measured { cube, bands, lights, counts_per_radiance, var_added, together, units_per_count } =
-            measured;
-        let mut warnings = Vec::new();
+        let Measured { cube, read, bad_bands, mut warnings, bands, lights, .. } = measured;
+        let Measured { counts_per_radiance, var_added, together, units_per_count, .. } = measured;
         let materials =
             materials(scenario, library, &mut warnings).map_err(|(key, error)| at(&key)(error))?;
         let nodes = bands.nodes_cm1();
@@ -124,6 +127,8 @@ impl DecomposeStudy {
         Ok(Self {
             scenario: scenario.clone(),
             cube,
+            read,
+            bad_bands,
             bands,
             names,
             library: emissivities,

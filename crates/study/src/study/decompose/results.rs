@@ -6,7 +6,7 @@ use super::vision::Vision;
 pub use super::worth::TruthFound;
 use crate::scenario::DecomposeScenario;
 use crate::study::Warning;
-use hadar::cube::Shape;
+use hadar::cube::{Found, Shape};
 use hadar::decompose::{Maps, Method, Spatial, flag};
 use hadar::demand::Work;
 use serde::Serialize;
@@ -18,6 +18,8 @@ pub struct Decomposed {
     pub scenario: DecomposeScenario,
     /// By which method.
     pub method: Method,
+    /// What the file of the cube was read as.
+    pub read: Found,
     /// Rows, columns and bands.
     pub shape: Shape,
     /// Names of the materials, in the order of their indices.
@@ -151,6 +153,7 @@ pub(super) fn summary(
     Decomposed {
         scenario: study.scenario.clone(),
         method,
+        read: study.read.clone(),
         shape: study.cube.shape(),
         materials: study.names.clone(),
         pixels,

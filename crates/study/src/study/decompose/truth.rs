@@ -6,6 +6,9 @@ use hadar::decompose::NO_MATERIAL;
 use hadar::error::{Error, Result};
 use std::path::Path;
 
+/// 0 degC, K.
+const FREEZING_K: f64 = 273.15;
+
 /// Maps of what is there, `[row][column]`.
 #[derive(Debug)]
 pub(in crate::study) struct Truth {
@@ -33,6 +36,11 @@ impl Truth {
             Some(path) => {
                 let key = "truth.material";
                 let places = map(key, path, &[1])?;
+                let places = match &spec.material_list {
+                    None => places,
+                    Some(list) => listed(&places, list)
+                        .map_err(|error| ("truth.material_list".to_owned(), error.in_file(list)))?,
+                };
                 let wrong = |place: &&f64| {
                     !(place.fract() == 0.0
                         && (**place >= 0.0 && **place < materials as f64
@@ -46,8 +54,12 @@ impl Truth {
                 Some(places.iter().map(|place| *place as usize).collect())
             }
         };
-        let temperature_k =
-            spec.temperature.as_ref().map(|path| map("truth.temperature", path, &[1])).transpose()?;
+        let zero_k = if spec.celsius { FREEZING_K } else { 0.0 };
+        let kelvin = |path| {
+            let values = map("truth.temperature", path, &[1])?;
+            Ok(values.into_iter().map(|value| value + zero_k).collect())
+        };
+        let temperature_k = spec.temperature.as_deref().map(kelvin).transpose()?;
         let key = "truth.lighting";
         let lighting = match spec.lighting.as_slice() {
             [] => None,
@@ -84,6 +96,22 @@ impl Truth {
     }
 }
 
+/// Places in the library, from 0, of places in a list of them, both from 1; 0 stands for none.
+fn listed(places: &[f64], list: &Path) -> Result<Vec<f64>> {
+    let list = all(&Cube::open(list, None)?)?;
+    let place = |place: &f64| match *place {
+        0.0 => Ok(f64::from(NO_MATERIAL)),
+        place if place >= 1.0 && place.fract() == 0.0 && place <= list.len() as f64 => {
+            Ok(list[place as usize - 1] - 1.0)
+        }
+        place => {
+            let found = format!("place {place} of a list of {}", list.len());
+            Err(Error::malformed(found, "give the list that belongs to truth.material"))
+        }
+    };
+    places.iter().map(place).collect()
+}
+
 /// A map of so many layers as one of `layers`.
 fn values(path: &Path, shape: Shape, layers: &[usize]) -> Result<Vec<f64>> {
     let cube = Cube::open(path, None)?;
@@ -100,11 +128,16 @@ fn values(path: &Path, shape: Shape, layers: &[usize]) -> Result<Vec<f64>> {
         );
         return Err(Error::malformed(found, "give one value for each pixel").in_file(path));
     }
+    all(&cube)
+}
+
+/// All samples of a cube.
+fn all(cube: &Cube) -> Result<Vec<f64>> {
     fn read<S: Sample>(rows: &dyn Rows<S>) -> Result<Vec<f64>> {
         let mut buffer = Vec::new();
         Ok(rows.read(0..rows.shape().rows(), &mut buffer)?.iter().map(|x| (*x).into()).collect())
     }
-    match &cube {
+    match cube {
         Cube::F32(rows) => read(rows.as_ref()),
         Cube::F64(rows) => read(rows.as_ref()),
     }

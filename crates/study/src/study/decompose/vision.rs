@@ -163,7 +163,7 @@ fn tenths_k(maps: &Maps) -> [f64; 2] {
 
 /// Bands that count.
 fn used(study: &DecomposeStudy) -> Vec<usize> {
-    (0..study.bands.len()).filter(|band| !study.scenario.cube.bad_bands.contains(band)).collect()
+    (0..study.bands.len()).filter(|band| !study.bad_bands.contains(band)).collect()
 }
 
 fn texture(study: &DecomposeStudy, maps: &Maps) -> Vec<f32> {

@@ -16,6 +16,8 @@ use std::collections::BTreeMap;
 pub struct LibraryFound {
     /// The question.
     pub scenario: LibraryScenario,
+    /// What the file of the cube was read as.
+    pub read: hadar::cube::Found,
     /// Rows, columns and bands.
     pub shape: Shape,
     /// Mean wavenumber of each band, cm⁻¹.
@@ -148,7 +150,7 @@ pub(super) fn summary(
         bands.weigh(bands.nodes_cm1()).iter().zip(&widths).map(|(sum, width)| sum / width).collect();
     let (low, high) = bands.range_cm1();
     let pixels = maps.material.len();
-    let used: Vec<usize> = (0..bands.len()).filter(|band| !scenario.cube.bad_bands.contains(band)).collect();
+    let used: Vec<usize> = (0..bands.len()).filter(|band| !measured.bad_bands.contains(band)).collect();
     let rows: Vec<ClusterRow> = clusters
         .into_iter()
         .enumerate()
@@ -178,6 +180,7 @@ pub(super) fn summary(
     let skipped = flags(&maps, &mut warnings);
     LibraryFound {
         scenario: scenario.clone(),
+        read: measured.read.clone(),
         shape: measured.cube.shape(),
         wavenumbers_cm1,
         range_cm1: [low, high],

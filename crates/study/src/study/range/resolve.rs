@@ -4,8 +4,9 @@ use super::RangeStudy;
 use super::subject::{Depth, Measured, Rendered, Resolved};
 use crate::scenario::range::{CubeSpec, DepthSource, NoiseSource, Subject};
 use crate::scenario::{RangeScenario, SceneSpec};
+use crate::study::cube_bands::{InOrder, axes_in_doubt};
 use crate::study::{bands, camera, camera_bands, stage};
-use hadar::cube::{Cube, Shape};
+use hadar::cube::{Cube, Opened, Shape};
 use hadar::error::{Error, Result};
 use hadar::fisher::Counting;
 use hadar::instrument::{Camera, Readout, View};
@@ -108,12 +109,24 @@ fn cube(
             _ => error.at(scenario.place(key)),
         }
     };
+    // The camera's noise is that of its bands in rising wavenumber; stated noise has the order of the file.
+    let by_band = bands.filter(|_| spec.noise.is_none() && camera.is_some());
     let open = |key: &'static str, path: &std::path::Path| {
-        Cube::open(path, spec.variable.as_deref()).map_err(at(key))
+        let variable = spec.variable.as_deref();
+        let opened = match by_band {
+            None => Cube::open_as(path, variable, spec.axes),
+            Some(bands) => InOrder::open(path, variable, spec.axes).and_then(|opened| {
+                opened.check(bands)?;
+                Ok(Opened { cube: opened.cube, found: opened.found })
+            }),
+        };
+        opened.map_err(at(key))
     };
-    let left = open("cube.left", &spec.left)?;
+    let Opened { cube: left, found: read } = open("cube.left", &spec.left)?;
+    let warnings = axes_in_doubt(&read, bands).into_iter().collect();
     let shape = left.shape();
     let right = spec.right.as_deref().map(|path| open("cube.right", path)).transpose()?;
+    let right = right.map(|opened| opened.cube);
     if let Some(found) = right.as_ref().map(Cube::shape)
         && found != shape
     {
@@ -156,7 +169,7 @@ fn cube(
             Some(Depth::Map(depth_map(&depth, shape).map_err(at("cube.depth"))?))
         }
     };
-    Ok(Measured { left, right, noise, photons_per_unit: spec.photons_per_unit, depth })
+    Ok(Measured { left, read, warnings, right, noise, photons_per_unit: spec.photons_per_unit, depth })
 }
 
 fn depth_map(depth: &Cube, shape: Shape) -> Result<Vec<f64>> {

@@ -3,7 +3,7 @@
 use crate::scenario::RangeScenario;
 use crate::scenario::range::Demand;
 use crate::study::Warning;
-use hadar::cube::Shape;
+use hadar::cube::{Found, Shape};
 use hadar::demand::Work;
 use hadar::ranging::depth::DepthSolution;
 use hadar::ranging::metrics::DepthMetrics;
@@ -70,6 +70,8 @@ pub struct Ranging {
     pub scenario: RangeScenario,
     /// Yes or no, in a sentence and in numbers.
     pub verdict: DepthVerdict,
+    /// What the file of the left view was read as, where there is one.
+    pub read: Option<Found>,
     /// Rows, columns and bands of a view.
     pub shape: Shape,
     /// Where the cameras stand and what a pixel of disparity means.

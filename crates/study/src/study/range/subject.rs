@@ -1,6 +1,7 @@
 //! What a ranging study looks at: a rendered pair with all its truth, or measured cubes.
 
-use hadar::cube::{Cube, Shape};
+use crate::study::Warning;
+use hadar::cube::{Cube, Found, Shape};
 use hadar::error::{Error, Result};
 use hadar::fisher::Counting;
 use hadar::ranging::noise::NoiseVariance;
@@ -27,6 +28,9 @@ pub(super) struct Rendered {
 #[derive(Debug)]
 pub(super) struct Measured {
     pub(super) left: Cube,
+    /// What the file of the left view was read as.
+    pub(super) read: Found,
+    pub(super) warnings: Vec<Warning>,
     pub(super) right: Option<Cube>,
     pub(super) noise: NoiseVariance,
     pub(super) photons_per_unit: f64,

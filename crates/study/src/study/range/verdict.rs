@@ -61,6 +61,7 @@ impl RangeStudy {
         Ok(Some(Ranging {
             scenario: self.scenario.clone(),
             verdict,
+            read: Some(cube.read.clone()),
             shape,
             geometry: self.geometry(var_diffraction_px2)?,
             objects: Vec::new(),
@@ -69,7 +70,10 @@ impl RangeStudy {
             lines: Vec::new(),
             matched: Vec::new(),
             stats,
-            warnings: self.unseen(&decision.stats, shape, required * cube.photons_per_unit),
+            warnings: {
+                let unseen = self.unseen(&decision.stats, shape, required * cube.photons_per_unit);
+                cube.warnings.iter().cloned().chain(unseen).collect()
+            },
             maps: BoundMaps::default(),
         }))
     }
