@@ -53,6 +53,25 @@ pub fn so_far() -> Inputs {
     OPEN.with_borrow(|open| open.clone().unwrap_or_default())
 }
 
+/// What comes of a job, and what it read; the list that is open around it is left as it is.
+pub fn inputs_of<T>(job: impl FnOnce() -> T) -> (T, Inputs) {
+    let around = OPEN.replace(Some(Inputs::default()));
+    let made = job();
+    (made, OPEN.replace(around).unwrap_or_default())
+}
+
+/// What another list has was read.
+pub fn add(other: &Inputs) {
+    other.files.iter().for_each(|path| file(path));
+    OPEN.with_borrow_mut(|open| {
+        if let Some(inputs) = open {
+            for (name, content) in &other.built_in {
+                inputs.built_in.entry(name.clone()).or_insert_with(|| content.clone());
+            }
+        }
+    });
+}
+
 /// A file was read.
 pub fn file(path: &Path) {
     OPEN.with_borrow_mut(|open| {

@@ -303,8 +303,13 @@ impl Spectral {
     }
 }
 
-/// The leading number of a text, and the rest.
-fn parts(text: &str) -> (&str, &str) {
+/// The leading number of a text, and the rest: of a quantity its unit.
+///
+/// ```
+/// assert_eq!(hadar::units::parts("4.7e10 cm Hz^0.5/W"), ("4.7e10", "cm Hz^0.5/W"));
+/// ```
+#[must_use]
+pub fn parts(text: &str) -> (&str, &str) {
     let (number, rest) = text.split_at(number_end(text));
     (number.trim(), rest.trim())
 }

@@ -21,6 +21,7 @@ mod rule;
 mod simulate;
 mod size;
 mod stderr;
+mod sweep;
 mod terminal;
 mod threads;
 
@@ -67,6 +68,8 @@ enum Command {
     Render(render::RenderArgs),
     /// Draw spectra, train and judge classifiers, and hold them against the limit
     Simulate(simulate::SimulateArgs),
+    /// Many scenes or cameras: a file's keys varied, a row of a table for each, resumed where it was left
+    Sweep(sweep::SweepArgs),
     /// The paper's figures and tables made again, with a ledger of what agrees
     Reproduce(reproduce::ReproduceArgs),
     /// Run time against error: every method of a computation over its effort, beside extended precision
@@ -119,6 +122,7 @@ fn run(cli: &Cli) -> Result<ExitCode> {
         Command::Calibrate(args) => calibrate::run(args, &cli.global),
         Command::Render(args) => render::run(args, &cli.global),
         Command::Simulate(args) => simulate::run(args, &cli.global),
+        Command::Sweep(args) => sweep::run(args, &cli.global),
         Command::Reproduce(args) => reproduce::run(args, &cli.global),
         Command::Accuracy(args) => accuracy::run(args, &cli.global),
         Command::Materials(args) => materials::run(args, &cli.global),

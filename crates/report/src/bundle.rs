@@ -6,6 +6,7 @@ use super::figures::Plot;
 use super::folder::Folder;
 use super::html;
 use super::manifest::Provenance;
+use super::parquet;
 use super::plot::{Figure, render, render_svg};
 use super::table::Table;
 use super::tables;
@@ -105,6 +106,24 @@ impl Bundle {
             self.add(format!("{}.csv", plot.name), plot.table.to_csv()?);
             self.figures.push(plot.figure.clone());
         }
+        Ok(())
+    }
+
+    /// Adds every table as Parquet too, beside its CSV.
+    ///
+    /// # Errors
+    /// A program that was built without Parquet.
+    pub fn add_parquet(&mut self) -> Result<()> {
+        let mut made = Vec::new();
+        for (name, content) in &self.files {
+            let (Some(stem), Content::Bytes(bytes)) = (name.strip_suffix(".csv"), content) else { continue };
+            let name = format!("{stem}.parquet");
+            if self.names().all(|known| known != name) {
+                let columns = parquet::of_csv(&String::from_utf8_lossy(bytes))?;
+                made.push((name, Content::Bytes(parquet::file(&columns)?)));
+            }
+        }
+        self.files.extend(made);
         Ok(())
     }
 

@@ -1,6 +1,6 @@
 //! Results made readable: a module a command, with its text, its tables, its figures and the files of `--out`.
 //!
-//! What they share: [`plot`] draws, [`figures`] joins a figure and its table, [`table`] writes CSV, [`tables`] and [`text`]
+//! What they share: [`plot`] draws, [`figures`] joins a figure and its table, [`table`] writes CSV, [`parquet`](mod@parquet) the same with types, [`tables`] and [`text`]
 //! say what several commands say, [`bundle`] gathers files and makes one page of them, [`folder`] puts them in place, all or none,
 //! with a [`manifest`] of whose they are.
 
@@ -19,12 +19,14 @@ mod html;
 pub mod identify;
 pub mod library;
 pub mod manifest;
+pub mod parquet;
 pub mod plot;
 pub mod range;
 pub mod render;
 pub mod rule;
 pub mod simulate;
 pub mod size;
+pub mod sweep;
 pub mod table;
 pub mod tables;
 pub mod text;

@@ -203,7 +203,8 @@ fn slashed(path: &Path) -> String {
 }
 
 /// SHA-256 (FIPS 180-4) in hexadecimal digits.
-pub(crate) fn sha256(bytes: &[u8]) -> String {
+#[must_use]
+pub fn sha256(bytes: &[u8]) -> String {
     digits(Sha256::new_with_prefix(bytes))
 }
 

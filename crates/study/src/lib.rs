@@ -2,6 +2,7 @@
 //!
 //! * [`scenario`]: what a file says, checked, in one unit per dimension; errors name file, line and key.
 //! * [`study`]: a scenario with its materials, bands, surroundings and camera looked up, and what follows: a folder a command.
+//! * [`sweep`]: one question about many scenes or cameras, a row of a table for each.
 //!
 //! ```
 //! use hadar::material::Library;
@@ -15,6 +16,7 @@
 
 pub mod scenario;
 pub mod study;
+pub mod sweep;
 pub mod warning;
 pub mod words;
 

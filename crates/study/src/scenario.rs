@@ -35,9 +35,11 @@ pub mod rule;
 pub mod scene;
 mod section;
 pub mod sensitivity;
+mod setting;
 pub mod source;
 mod units;
 mod write;
+mod written;
 
 pub use air_ranging::{AirRangingScenario, RangingScenario};
 pub use atmosphere::{AtmosphereSource, AtmosphereSpec};
@@ -46,14 +48,17 @@ pub use decompose::DecomposeScenario;
 pub use envelope::Envelope;
 pub use library::LibraryScenario;
 pub use range::RangeScenario;
+pub use read::command_for;
 pub use render::RenderScenario;
 pub use rule::Rule;
 pub use scene::SceneSpec;
 pub use section::{Date, day};
 pub use sensitivity::SensitivitySpec;
+pub use setting::Setting;
 pub use source::Source;
 pub use units::Units;
 pub(crate) use units::interval;
+pub use written::Written;
 
 /// Everything a scenario file says, defaults filled in.
 ///

@@ -58,6 +58,7 @@ pub use simulate::{
 };
 pub use size::{
     Answer, CameraResult, Elasticities, EmissivityErrors, Finding, InformationCurves, PhotonMap,
-    RequirementResult, ScatterOf, Sensitivity, Sizing, Solutions, Spectra, Verdict, VerdictAlone, no_limit,
+    RequirementResult, ScatterOf, Sensitivity, SizeAsked, Sizing, Solutions, Spectra, Verdict, VerdictAlone,
+    no_limit,
 };
 pub use surface::Surface;

@@ -16,6 +16,7 @@ use hadar_report::manifest::{Provenance, answer_json};
 use hadar_report::text;
 use hadar_study::scenario::Scenario;
 use hadar_study::study::Study;
+use std::borrow::Cow;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -28,6 +29,9 @@ pub(super) struct Global {
     /// Write a report into this folder: one page, the answer, scenario, tables and plots
     #[arg(long, global = true, value_name = "DIR")]
     pub(super) out: Option<PathBuf>,
+    /// Write the tables of a report as Parquet too, beside the CSV
+    #[arg(long, global = true, value_name = "FORMAT", requires = "out")]
+    pub(super) format: Option<Format>,
     /// Take an --out folder although it holds files that hadar did not write, or that were changed: those in the way are
     /// replaced, the others stay
     #[arg(long, global = true)]
@@ -172,6 +176,15 @@ impl Global {
         Ok(study)
     }
 
+    /// The same files with tables in the format that was asked for.
+    pub(super) fn formatted<'b>(&self, bundle: &'b Bundle) -> Result<Cow<'b, Bundle>> {
+        let mut bundle = Cow::Borrowed(bundle);
+        if self.format.is_some() {
+            bundle.to_mut().add_parquet()?;
+        }
+        Ok(bundle)
+    }
+
     /// Who makes the report of what.
     pub(super) fn provenance(&self) -> Result<Provenance> {
         provenance::of_this_run(self.seed)
@@ -179,6 +192,7 @@ impl Global {
 
     /// Writes the files, with the answer and a page of all where there is an answer, and says where.
     pub(super) fn write(&self, bundle: &Bundle, out: &Path, answer: Option<&str>) -> Result<()> {
+        let bundle = self.formatted(bundle)?;
         let (provenance, inputs) = (self.provenance()?, inputs::so_far().files);
         let about = About { answer: answer.unwrap_or_default(), provenance: &provenance, inputs: &inputs };
         let folder = self.folder(out);
@@ -203,6 +217,13 @@ pub(super) fn plain_number(text: &str) -> std::result::Result<f64, String> {
     text.parse().map_err(|error: std::num::ParseFloatError| {
         decimal_comma(text).map_or_else(|| error.to_string(), |comma| comma.to_string())
     })
+}
+
+/// Formats of tables, as a flag.
+#[derive(Debug, Clone, Copy, clap::ValueEnum)]
+pub(super) enum Format {
+    /// Apache Parquet
+    Parquet,
 }
 
 /// The distance that decides, as a flag.

@@ -5,11 +5,11 @@ use hadar::inputs;
 use hadar_report::manifest::Provenance;
 
 /// Commit of the program's source, from its build.
-const COMMIT: &str = env!("HADAR_COMMIT");
+pub(super) const COMMIT: &str = env!("HADAR_COMMIT");
 
-/// Options that change no answer: where it is put, how it is printed, by how many threads it is found.
-const SILENT: [&str; 5] = ["--json", "--stats", "--quiet", "-q", "--force"];
-const SILENT_WITH_VALUE: [&str; 2] = ["--out", "--threads"];
+/// Options that change no answer: where it is put, how it is printed, by how many threads, processes and runs it is found.
+const SILENT: [&str; 6] = ["--json", "--stats", "--quiet", "-q", "--force", "--merge"];
+const SILENT_WITH_VALUE: [&str; 3] = ["--out", "--threads", "--shard"];
 
 /// Names that most reports take. All of them are known only when the work is done, and are looked at then.
 pub(super) const USUAL_NAMES: [&str; 7] =

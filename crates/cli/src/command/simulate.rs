@@ -24,7 +24,7 @@ pub(super) struct SimulateArgs {
     #[arg(long, value_name = "NAMES", value_delimiter = ',', help_heading = "Classifiers")]
     classifiers: Vec<String>,
     /// Spectra of each class: a quarter for training, a quarter for validation, half for the test
-    #[arg(long, value_name = "N", default_value_t = 5000, help_heading = "Spectra")]
+    #[arg(long, value_name = "N", default_value_t = hadar_study::sweep::SPECTRA, help_heading = "Spectra")]
     spectra: usize,
     /// Photons of the target, one experiment each (default: the camera's; without one those required)
     #[arg(

@@ -36,6 +36,7 @@ mod rule_uncertainty;
 mod segmentation;
 mod simulate;
 mod stand_in;
+mod sweep;
 mod written;
 
 mod support {

@@ -110,6 +110,17 @@ impl Kind {
         }
     }
 
+    /// The command that answers a file, if there is one for its kind.
+    pub(super) fn command_for(document: &DeTable<'_>) -> Option<&'static str> {
+        match Self::of(document)?.0 {
+            Self::Scenario => Some("size"),
+            Self::Rule => Some("rule"),
+            Self::Range => Some("range"),
+            Self::Decompose => Some("decompose"),
+            Self::Library | Self::Calibrate | Self::Materials | Self::Cameras => None,
+        }
+    }
+
     /// Refuses a file of another kind than this one, which a command asks for, and names the command it is for.
     pub(super) fn check(self, document: &DeTable<'_>, source: &Source) -> Result<()> {
         let Some((kind, row, key)) = Self::of(document) else { return Ok(()) };

@@ -13,16 +13,13 @@ use super::source::LineStarts;
 use super::{
     Alternatives, AtmosphereSpec, Background, BandsSpec, DistanceKind, Envelope, EnvironmentObject,
     Extrapolation, Nuisance, Reliability, Requirement, Scenario, SensitivitySpec, Source, Target, Unknown,
+    Written,
 };
 use super::{camera, class};
 use hadar::allowed::{ABOVE_ZERO, ABSOLUTE_TEMPERATURE, Allowed, SHARE};
 use hadar::error::{Error, Result};
-use hadar::file;
 use hadar::instrument::figures::BLANK;
 use hadar::units::{Dimension, decimal_comma};
-
-/// The longest file taken for a scenario, bytes.
-const LONGEST_FILE: u64 = 1 << 20;
 
 pub(super) const TABLES: [&str; 13] = [
     "title",
@@ -41,22 +38,6 @@ pub(super) const TABLES: [&str; 13] = [
 ];
 pub(super) const MINIMUM: &str = "write [target] with material = \"skin\" and temperature = \"37 degC\"";
 
-/// The text of a scenario file.
-pub(super) fn text_of(path: &Path) -> Result<String> {
-    let action = "read the scenario";
-    if path.is_dir() {
-        return Err(Error::file(action, path, "it is a directory; name the .toml file inside it"));
-    }
-    let bytes = file::bytes(path, action, LONGEST_FILE)?;
-    String::from_utf8(bytes).map_err(|error| {
-        let valid = error.utf8_error().valid_up_to();
-        let line = 1 + error.as_bytes().iter().take(valid).filter(|byte| **byte == b'\n').count();
-        Error::malformed("the file is not UTF-8 text", "name a TOML file, saved as UTF-8")
-            .on_line(line)
-            .in_file(path)
-    })
-}
-
 impl Scenario {
     /// Reads a scenario file. Relative paths in it start from its directory.
     ///
@@ -65,7 +46,7 @@ impl Scenario {
     /// directory, not UTF-8), its syntax, an unknown or missing key, a value of the wrong type, without its
     /// unit or outside its range, or values that contradict each other.
     pub fn from_file(path: &Path) -> Result<Self> {
-        Self::from_toml(&text_of(path)?, Some(path))
+        Self::from_written(&Written::from_file(path)?)
     }
 
     /// Reads a scenario from text. `path` is the file it is from, which messages name and relative paths
@@ -92,32 +73,49 @@ impl Scenario {
     /// );
     /// ```
     pub fn from_toml(text: &str, path: Option<&Path>) -> Result<Self> {
-        scenario(text, path)
+        Self::from_written(&Written::of(text, path))
+    }
+
+    /// Reads a scenario with values in the place of its own.
+    ///
+    /// # Errors
+    /// As [`Scenario::from_file`], except those of the file itself.
+    pub fn from_written(written: &Written) -> Result<Self> {
+        let mut source = written.source();
+        let document = document(written, (Kind::Scenario, MINIMUM), &mut source)?;
+        let root = Section::open(&document, "", &source, &TABLES)?;
+        let mut scenario = of_root(&root, requirement)?;
+        scenario.camera = root.read("camera", camera::read)?;
+        scenario.source = source;
+        Ok(scenario)
     }
 }
 
-fn scenario(text: &str, path: Option<&Path>) -> Result<Scenario> {
-    let mut source = Source { path: path.map(Path::to_owned), ..Source::default() };
-    let document = document(text, (Kind::Scenario, MINIMUM), &mut source)?;
-    let root = Section::open(&document, "", &source, &TABLES)?;
-    let mut scenario = of_root(&root, requirement)?;
-    scenario.camera = root.read("camera", camera::read)?;
-    scenario.source = source;
-    Ok(scenario)
+/// The command that answers a file, if there is one for its kind.
+///
+/// # Errors
+/// What is no TOML.
+pub fn command_for(written: &Written) -> Result<Option<&'static str>> {
+    Ok(Kind::command_for(&parse(&written.text, &written.source())?))
 }
 
 /// The tables of a file that is of a kind and has its least in it, whose lines `source` then knows.
 pub(super) fn document<'t>(
-    text: &'t str,
+    written: &'t Written,
     (kind, minimum): (Kind, &str),
     source: &mut Source,
 ) -> Result<DeTable<'t>> {
+    let text = written.text.as_str();
     if text.trim().is_empty() {
         return Err(Error::malformed("the file is empty", minimum).at(source.place("")));
     }
-    let document = parse(text, source)?;
+    let mut document = parse(text, source)?;
     source.note_lines(text, &document);
     kind.check(&document, source)?;
+    for setting in &written.settings {
+        setting.put(&mut document)?;
+        source.note_setting(setting);
+    }
     Ok(document)
 }
 

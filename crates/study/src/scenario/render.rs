@@ -8,9 +8,10 @@ use super::entries::{Document, Part, entries, text};
 use super::kind::Kind;
 use super::paths::Paths;
 use super::range::{Stereo, read::stereo_of_scene, write::stereo};
-use super::read::{document, text_of};
+use super::read::document;
 use super::scene::{SceneSpec, objects_written, scene_of, scene_written};
 use super::section::Section;
+use super::written::Written;
 use super::{BandsSpec, CameraSpec, Source, camera};
 use hadar::error::{Error, Place, Result};
 use serde::{Serialize, Serializer};
@@ -45,7 +46,7 @@ impl RenderScenario {
     /// # Errors
     /// The first thing that is wrong, in one line with file, line and key, as [`crate::scenario::Scenario::from_file`].
     pub fn from_file(path: &Path) -> Result<Self> {
-        Self::from_toml(&text_of(path)?, Some(path))
+        Self::from_written(&Written::from_file(path)?)
     }
 
     /// Reads it from text; `path` as in [`crate::scenario::Scenario::from_toml`].
@@ -73,8 +74,16 @@ impl RenderScenario {
     /// # Ok::<(), hadar::Error>(())
     /// ```
     pub fn from_toml(text: &str, path: Option<&Path>) -> Result<Self> {
-        let mut source = Source { path: path.map(Path::to_owned), ..Source::default() };
-        let document = document(text, (Kind::Range, MINIMUM), &mut source)?;
+        Self::from_written(&Written::of(text, path))
+    }
+
+    /// Reads it with values in the place of its own.
+    ///
+    /// # Errors
+    /// As [`Self::from_toml`].
+    pub fn from_written(written: &Written) -> Result<Self> {
+        let mut source = written.source();
+        let document = document(written, (Kind::Range, MINIMUM), &mut source)?;
         let root = Section::open(&document, "", &source, TABLES)?;
         let missing = |key: &str| root.fail(key, Error::malformed("the table is missing", MINIMUM));
         let entry = root.get("scene").ok_or_else(|| missing("scene"))?;

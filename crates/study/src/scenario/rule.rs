@@ -23,13 +23,14 @@ pub use stand_in::StandInSpec;
 pub use stop::StopSpec;
 pub use test::{RuleTest, Verdict};
 
+use super::Scenario;
 use super::camera::written;
 use super::entries::{self, Document, Entries, Part};
 use super::kind::Kind;
 use super::paths::Paths;
-use super::read::{MINIMUM, TABLES, document, text_of};
+use super::read::{MINIMUM, TABLES, document};
 use super::section::{Entry, Section};
-use super::{Scenario, Source};
+use super::written::Written;
 use hadar::allowed::ABOVE_ZERO;
 use hadar::error::{Error, Place, Result};
 use serde::{Serialize, Serializer};
@@ -96,7 +97,7 @@ impl Rule {
     /// # Errors
     /// As [`Scenario::from_file`]; no camera at all.
     pub fn from_file(path: &Path) -> Result<Self> {
-        Self::from_toml(&text_of(path)?, Some(path))
+        Self::from_written(&Written::from_file(path)?)
     }
 
     /// Reads a rule from text, of the file `path` if it is from one.
@@ -121,8 +122,16 @@ impl Rule {
     /// # Ok::<(), hadar::Error>(())
     /// ```
     pub fn from_toml(text: &str, path: Option<&Path>) -> Result<Self> {
-        let mut source = Source { path: path.map(Path::to_owned), ..Source::default() };
-        let document = document(text, (Kind::Rule, MINIMUM), &mut source)?;
+        Self::from_written(&Written::of(text, path))
+    }
+
+    /// Reads it with values in the place of its own.
+    ///
+    /// # Errors
+    /// As [`Self::from_toml`].
+    pub fn from_written(written: &Written) -> Result<Self> {
+        let mut source = written.source();
+        let document = document(written, (Kind::Rule, MINIMUM), &mut source)?;
         let known = [
             &TABLES[..],
             &["rule", "cameras", "stop", "clause", "source", "test", "uncertainty", "stand_in"],
@@ -153,7 +162,7 @@ impl Rule {
             cameras,
             sources,
             tests,
-            text: text.to_owned(),
+            text: written.text.clone(),
         })
     }
 

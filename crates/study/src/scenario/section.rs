@@ -48,8 +48,11 @@ impl<'a> Section<'a> {
         match unknown.min_by_key(|key| key.span().start) {
             None => Ok(Self { table, name: name.to_owned(), source, beneath: None }),
             Some(key) => {
-                let line = source.place(&dotted(name, key.get_ref())).line;
-                let place = Place { line, ..source.place(name) };
+                let own = dotted(name, key.get_ref());
+                let place = match source.setting(&own) {
+                    Some(setting) => setting.place(&own),
+                    None => Place { line: source.place(&own).line, ..source.place(name) },
+                };
                 Err(unknown_key(key.get_ref(), known).at(place))
             }
         }

@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 
 use toml::de::{DeTable, DeValue};
 
+use super::setting::Setting;
+pub(super) use super::setting::dotted;
 use hadar::error::Place;
 
 /// Longest name of a table or list whose entries are noted, bytes. No scenario needs as much, and names of entries
@@ -23,6 +25,8 @@ pub struct Source {
     pub lines: BTreeMap<String, usize>,
     /// Short texts, among them all quantities, as they were written, e.g. `37 degC` at `target.temperature`.
     pub texts: BTreeMap<String, String>,
+    /// What stands in the place of its own values.
+    pub settings: Vec<Setting>,
 }
 
 impl Source {
@@ -35,6 +39,9 @@ impl Source {
     /// Where `key` stands; see [`super::Scenario::place`].
     #[must_use]
     pub fn place(&self, key: &str) -> Place {
+        if let Some(setting) = self.setting(key) {
+            return setting.place(key);
+        }
         let mut known = key;
         let line = loop {
             match self.lines.get(known) {
@@ -49,6 +56,11 @@ impl Source {
         Place { path: self.path.clone(), line, key }
     }
 
+    /// What stands at `key` in the place of what was written.
+    pub(super) fn setting(&self, key: &str) -> Option<&Setting> {
+        self.settings.iter().rev().find(|setting| setting.covers(key))
+    }
+
     /// The short text at `key` as it was written.
     #[must_use]
     pub fn written(&self, key: &str) -> Option<&str> {
@@ -58,18 +70,31 @@ impl Source {
     /// Notes the line of every key and list item of a parsed `text`.
     pub(super) fn note_lines(&mut self, text: &str, root: &DeTable<'_>) {
         let starts = LineStarts::of(text);
-        self.note_table(&starts, "", root);
+        self.note_table(Some(&starts), "", root);
     }
 
-    fn note_table(&mut self, starts: &LineStarts, name: &str, table: &DeTable<'_>) {
+    /// Notes the texts of a value that stands in the place of one of the file, whose lines and texts hold no more.
+    pub(super) fn note_setting(&mut self, setting: &Setting) {
+        self.lines.retain(|key, _| !setting.covers(key));
+        self.texts.retain(|key, _| !setting.covers(key));
+        self.note_value(None, &setting.key, &setting.toml());
+    }
+
+    fn note_table(&mut self, starts: Option<&LineStarts>, name: &str, table: &DeTable<'_>) {
         for (key, value) in table {
             let full = dotted(name, key.get_ref());
-            self.lines.insert(full.clone(), starts.line(key.span().start));
+            self.note_line(starts, &full, key.span().start);
             self.note_value(starts, &full, value.get_ref());
         }
     }
 
-    fn note_value(&mut self, starts: &LineStarts, name: &str, value: &DeValue<'_>) {
+    fn note_line(&mut self, starts: Option<&LineStarts>, name: &str, offset: usize) {
+        if let Some(starts) = starts {
+            self.lines.insert(name.to_owned(), starts.line(offset));
+        }
+    }
+
+    fn note_value(&mut self, starts: Option<&LineStarts>, name: &str, value: &DeValue<'_>) {
         match value {
             _ if name.len() > LONGEST_NAME => {}
             DeValue::String(text) if text.len() <= LONGEST_TEXT => {
@@ -79,18 +104,13 @@ impl Source {
             DeValue::Array(items) => {
                 for (index, item) in items.iter().enumerate() {
                     let full = format!("{name}[{index}]");
-                    self.lines.insert(full.clone(), starts.line(item.span().start));
+                    self.note_line(starts, &full, item.span().start);
                     self.note_value(starts, &full, item.get_ref());
                 }
             }
             _ => {}
         }
     }
-}
-
-/// `table.key`, or the key alone at the root.
-pub(super) fn dotted(table: &str, key: &str) -> String {
-    if table.is_empty() { key.to_owned() } else { format!("{table}.{key}") }
 }
 
 /// The byte at which each line of a text begins.

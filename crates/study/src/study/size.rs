@@ -36,9 +36,9 @@ pub struct Sizing {
     pub requirement: RequirementResult,
     /// What this camera delivers; `None` without a camera.
     pub camera: Option<CameraResult>,
-    /// Each hardware quantity with the others held, for the limiting alternative; `None` without a camera.
+    /// Each hardware quantity with the others held, for the limiting alternative; `None` without a camera, or where it was not asked for.
     pub solve_for: Option<Solutions>,
-    /// What the verdict hangs on; `None` without a camera.
+    /// What the verdict hangs on; `None` without a camera, or where it was not asked for.
     pub sensitivity: Option<Sensitivity>,
     /// Two quantities at a time, where they were asked for ([`Study::trade_offs`]).
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -73,6 +73,21 @@ pub struct VerdictAlone {
     pub not_told_from: Option<String>,
     /// What it took.
     pub stats: Work,
+}
+
+/// Parts of a sizing beside its verdict; all of them where nobody says otherwise.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SizeAsked {
+    /// Every quantity of the camera solved for.
+    pub solutions: bool,
+    /// What the verdict hangs on.
+    pub sensitivity: bool,
+}
+
+impl Default for SizeAsked {
+    fn default() -> Self {
+        Self { solutions: true, sensitivity: true }
+    }
 }
 
 /// Yes or no.
@@ -221,6 +236,14 @@ impl Study {
     /// # Errors
     /// As [`Study::identify`].
     pub fn size(&self) -> Result<Sizing> {
+        self.size_with(SizeAsked::default())
+    }
+
+    /// The same with those parts alone that are asked for.
+    ///
+    /// # Errors
+    /// As [`Study::identify`].
+    pub fn size_with(&self, asked: SizeAsked) -> Result<Sizing> {
         let identification = self.identify()?;
         let ledger = Ledger::open();
         demand::add(&identification.stats);
@@ -239,12 +262,12 @@ impl Study {
         let requirement = own.requirement(pair, index, photon_radiance);
         let camera = own.camera_result(photon_radiance);
         let solve_for = match &own.camera {
-            Some(camera) => Some(own.solutions(camera, surface)?),
-            None => None,
+            Some(camera) if asked.solutions => Some(own.solutions(camera, surface)?),
+            _ => None,
         };
         let sensitivity = match &own.camera {
-            Some(camera) => Some(own.sensitivity(camera, surface, index)?),
-            None => None,
+            Some(camera) if asked.sensitivity => Some(own.sensitivity(camera, surface, index)?),
+            _ => None,
         };
         if let Some(camera) = &camera {
             warnings.extend(own.camera_result_warnings(camera, pair));

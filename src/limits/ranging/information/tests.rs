@@ -1,6 +1,6 @@
 use super::decide::decide;
 use super::*;
-use crate::cube::{MemoryCube, Shape};
+use crate::cube::{Cube, MemoryCube, Shape};
 use crate::ranging::derivative::{Derivative, Differentiator};
 use crate::ranging::noise::{Joined, NoiseVariance};
 use proptest::prelude::*;

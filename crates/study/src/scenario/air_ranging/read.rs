@@ -1,8 +1,9 @@
 //! Reads a scenario of ranging by air: every key checked, every error one line with file, line and key.
 
 use super::super::kind::Kind;
-use super::super::read::{document, environment, prior, target, text_of};
+use super::super::read::{document, environment, prior, target};
 use super::super::section::{Entry, Section, without_repetition};
+use super::super::written::Written;
 use super::super::{
     Alternatives, AtmosphereSpec, BandsSpec, Nuisance, RangeScenario, Requirement, Scenario, Source, Unknown,
     camera,
@@ -47,19 +48,27 @@ impl RangingScenario {
     /// # Errors
     /// The first thing that is wrong, in one line with file, line and key, as [`Scenario::from_file`].
     pub fn from_file(path: &Path) -> Result<Self> {
-        Self::from_toml(&text_of(path)?, Some(path))
+        Self::from_written(&Written::from_file(path)?)
     }
 
-    /// Reads a ranging scenario of either kind from text; `path` as in [`Scenario::from_toml`].
+    /// Reads a ranging scenario of either kind from text; `path` as in [`crate::scenario::Scenario::from_toml`].
     ///
     /// # Errors
     /// As [`RangingScenario::from_file`], except those of the file itself.
     pub fn from_toml(text: &str, path: Option<&Path>) -> Result<Self> {
-        let (parsed, _) = toml::de::DeTable::parse_recoverable(text);
+        Self::from_written(&Written::of(text, path))
+    }
+
+    /// Reads it with values in the place of its own.
+    ///
+    /// # Errors
+    /// As [`RangingScenario::from_file`], except those of the file itself.
+    pub fn from_written(written: &Written) -> Result<Self> {
+        let (parsed, _) = toml::de::DeTable::parse_recoverable(&written.text);
         if parsed.get_ref().contains_key("signal") {
-            return AirRangingScenario::from_toml(text, path).map(|air| Self::Air(Box::new(air)));
+            return AirRangingScenario::from_written(written).map(|air| Self::Air(Box::new(air)));
         }
-        RangeScenario::from_toml(text, path).map(|stereo| Self::Stereo(Box::new(stereo)))
+        RangeScenario::from_written(written).map(|stereo| Self::Stereo(Box::new(stereo)))
     }
 }
 
@@ -89,8 +98,16 @@ impl AirRangingScenario {
     /// # Ok::<(), hadar::Error>(())
     /// ```
     pub fn from_toml(text: &str, path: Option<&Path>) -> Result<Self> {
-        let mut source = Source { path: path.map(Path::to_owned), ..Source::default() };
-        let document = document(text, (Kind::Range, MINIMUM), &mut source)?;
+        Self::from_written(&Written::of(text, path))
+    }
+
+    /// Reads it with values in the place of its own.
+    ///
+    /// # Errors
+    /// As [`Self::from_toml`].
+    pub fn from_written(written: &Written) -> Result<Self> {
+        let mut source = written.source();
+        let document = document(written, (Kind::Range, MINIMUM), &mut source)?;
         let root = Section::open(&document, "", &source, TABLES)?;
         root.require("signal", "\"air\"")?.choice(&[("air", ())])?;
         let missing = |key: &str, instead: &str| {

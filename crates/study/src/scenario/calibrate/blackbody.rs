@@ -3,8 +3,9 @@
 use super::super::entries::{Document, Entries, Part, entries, text};
 use super::super::kind::Kind;
 use super::super::paths::Paths;
-use super::super::read::{document, text_of};
+use super::super::read::document;
 use super::super::section::Section;
+use super::super::written::Written;
 use super::super::{BandsSpec, Source};
 use super::blackbodies::{BlackbodySpec, CubeFile, blackbodies, noise};
 use hadar::error::{Error, Result};
@@ -47,7 +48,7 @@ impl BlackbodyScenario {
     /// # Errors
     /// The first thing that is wrong, in one line with file, line and key.
     pub fn from_file(path: &Path) -> Result<Self> {
-        Self::from_toml(&text_of(path)?, Some(path))
+        Self::from_written(&Written::from_file(path)?)
     }
 
     /// Reads it from text; `path` as in [`crate::scenario::Scenario::from_toml`].
@@ -77,8 +78,16 @@ impl BlackbodyScenario {
     /// # Ok::<(), hadar::Error>(())
     /// ```
     pub fn from_toml(text: &str, path: Option<&Path>) -> Result<Self> {
-        let mut source = Source { path: path.map(Path::to_owned), ..Source::default() };
-        let document = document(text, (Kind::Calibrate, MINIMUM), &mut source)?;
+        Self::from_written(&Written::of(text, path))
+    }
+
+    /// Reads it with values in the place of its own.
+    ///
+    /// # Errors
+    /// As [`Self::from_toml`].
+    pub fn from_written(written: &Written) -> Result<Self> {
+        let mut source = written.source();
+        let document = document(written, (Kind::Calibrate, MINIMUM), &mut source)?;
         let root = Section::open(&document, "", &source, &["title", "bands", "blackbody", "noise", "scene"])?;
         let missing = |key: &str| root.fail(key, Error::malformed("the table is missing", MINIMUM));
         let scenario = Self {

@@ -3,9 +3,10 @@
 use super::super::entries::{Document, Entries, Part, entries, text};
 use super::super::kind::Kind;
 use super::super::paths::Paths;
-use super::super::read::{document, text_of};
+use super::super::read::document;
 use super::super::section::{Entry, Section};
 use super::super::source::Source;
+use super::super::written::Written;
 use super::frames::Frames;
 use hadar::allowed::{ABOVE_ZERO, Allowed};
 use hadar::error::{Error, Result};
@@ -57,7 +58,7 @@ impl NoiseScenario {
     /// # Errors
     /// The first thing that is wrong, in one line with file, line and key.
     pub fn from_file(path: &Path) -> Result<Self> {
-        Self::from_toml(&text_of(path)?, Some(path))
+        Self::from_written(&Written::from_file(path)?)
     }
 
     /// Reads it from text; `path` as in [`crate::scenario::Scenario::from_toml`].
@@ -65,8 +66,16 @@ impl NoiseScenario {
     /// # Errors
     /// As [`NoiseScenario::from_file`], except those of the file itself.
     pub fn from_toml(text: &str, path: Option<&Path>) -> Result<Self> {
-        let mut source = Source { path: path.map(Path::to_owned), ..Source::default() };
-        let document = document(text, (Kind::Calibrate, MINIMUM), &mut source)?;
+        Self::from_written(&Written::of(text, path))
+    }
+
+    /// Reads it with values in the place of its own.
+    ///
+    /// # Errors
+    /// As [`Self::from_toml`].
+    pub fn from_written(written: &Written) -> Result<Self> {
+        let mut source = written.source();
+        let document = document(written, (Kind::Calibrate, MINIMUM), &mut source)?;
         let root = Section::open(&document, "", &source, &["title", "cube", "noise"])?;
         let missing = |key: &str| root.fail(key, Error::malformed("the table is missing", MINIMUM));
         let scenario = Self {

@@ -5,8 +5,9 @@ use super::super::Source;
 use super::super::entries::{Document, Entries, Part, entries, text};
 use super::super::kind::Kind;
 use super::super::paths::{Paths, file};
-use super::super::read::{document, text_of};
+use super::super::read::document;
 use super::super::section::{Entry, Section};
+use super::super::written::Written;
 use super::blackbodies::{BlackbodySpec, CubeFile, blackbodies, noise};
 use hadar::allowed::{ABOVE_ZERO, ABSOLUTE_TEMPERATURE, FROM_ZERO};
 use hadar::calibration::determined::CurveSmoothness;
@@ -81,7 +82,7 @@ impl ResponseScenario {
     /// # Errors
     /// The first thing that is wrong, in one line with file, line and key.
     pub fn from_file(path: &Path) -> Result<Self> {
-        Self::from_toml(&text_of(path)?, Some(path))
+        Self::from_written(&Written::from_file(path)?)
     }
 
     /// Reads it from text; `path` as in [`crate::scenario::Scenario::from_toml`].
@@ -89,8 +90,16 @@ impl ResponseScenario {
     /// # Errors
     /// As [`ResponseScenario::from_file`], except those of the file itself.
     pub fn from_toml(text: &str, path: Option<&Path>) -> Result<Self> {
-        let mut source = Source { path: path.map(Path::to_owned), ..Source::default() };
-        let document = document(text, (Kind::Calibrate, MINIMUM), &mut source)?;
+        Self::from_written(&Written::of(text, path))
+    }
+
+    /// Reads it with values in the place of its own.
+    ///
+    /// # Errors
+    /// As [`Self::from_toml`].
+    pub fn from_written(written: &Written) -> Result<Self> {
+        let mut source = written.source();
+        let document = document(written, (Kind::Calibrate, MINIMUM), &mut source)?;
         let root =
             Section::open(&document, "", &source, &["title", "response", "blackbody", "noise", "scene"])?;
         let missing = |key: &str| root.fail(key, Error::malformed("the table is missing", MINIMUM));

@@ -2,8 +2,9 @@
 
 use super::super::kind::Kind;
 use super::super::paths::{axes, file, is_path, material, variable};
-use super::super::read::{document, text_of};
+use super::super::read::document;
 use super::super::section::{Entry, Section};
+use super::super::written::Written;
 use super::super::{BandsSpec, Source, camera, class};
 use super::category::{Told, categories, segmentation};
 use super::image::{spatial, vision};
@@ -47,7 +48,7 @@ impl DecomposeScenario {
     /// # Errors
     /// The first thing that is wrong, in one line with file, line and key, as [`crate::scenario::Scenario::from_file`].
     pub fn from_file(path: &Path) -> Result<Self> {
-        Self::from_toml(&text_of(path)?, Some(path))
+        Self::from_written(&Written::from_file(path)?)
     }
 
     /// Reads a decomposition scenario from text; `path` as in [`crate::scenario::Scenario::from_toml`].
@@ -77,8 +78,16 @@ impl DecomposeScenario {
     /// # Ok::<(), hadar::Error>(())
     /// ```
     pub fn from_toml(text: &str, path: Option<&Path>) -> Result<Self> {
-        let mut source = Source { path: path.map(Path::to_owned), ..Source::default() };
-        let document = document(text, (Kind::Decompose, MINIMUM), &mut source)?;
+        Self::from_written(&Written::of(text, path))
+    }
+
+    /// Reads it with values in the place of its own.
+    ///
+    /// # Errors
+    /// As [`Self::from_toml`].
+    pub fn from_written(written: &Written) -> Result<Self> {
+        let mut source = written.source();
+        let document = document(written, (Kind::Decompose, MINIMUM), &mut source)?;
         let root = Section::open(&document, "", &source, TABLES)?;
         let missing = |key: &str| root.fail(key, Error::malformed("the table is missing", MINIMUM));
         let camera = root.read("camera", camera::read)?;

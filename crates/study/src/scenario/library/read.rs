@@ -4,8 +4,9 @@ use super::super::decompose::PixelUnknown;
 use super::super::decompose::read::{TRUTH, heat_cube, light, truth, unknown};
 use super::super::kind::Kind;
 use super::super::paths::is_cube;
-use super::super::read::{document, text_of};
+use super::super::read::document;
 use super::super::section::{Entry, Section};
+use super::super::written::Written;
 use super::super::{BandsSpec, Source, camera};
 use super::{ClustersSpec, EMISSIVITY, LibraryScenario};
 use hadar::allowed::{ABOVE_ZERO, Allowed, SHARE};
@@ -41,7 +42,7 @@ impl LibraryScenario {
             );
             return Err(Error::malformed(found, instead).in_file(path));
         }
-        Self::from_toml(&text_of(path)?, Some(path))
+        Self::from_written(&Written::from_file(path)?)
     }
 
     /// Reads it from text; `path` as in [`crate::scenario::Scenario::from_toml`].
@@ -71,8 +72,16 @@ impl LibraryScenario {
     /// # Ok::<(), hadar::Error>(())
     /// ```
     pub fn from_toml(text: &str, path: Option<&Path>) -> Result<Self> {
-        let mut source = Source { path: path.map(Path::to_owned), ..Source::default() };
-        let document = document(text, (Kind::Library, MINIMUM), &mut source)?;
+        Self::from_written(&Written::of(text, path))
+    }
+
+    /// Reads it with values in the place of its own.
+    ///
+    /// # Errors
+    /// As [`Self::from_toml`].
+    pub fn from_written(written: &Written) -> Result<Self> {
+        let mut source = written.source();
+        let document = document(written, (Kind::Library, MINIMUM), &mut source)?;
         let root = Section::open(&document, "", &source, TABLES)?;
         let missing = |key: &str| root.fail(key, Error::malformed("the table is missing", MINIMUM));
         let camera = root.read("camera", camera::read)?;

@@ -2,9 +2,10 @@
 
 use super::super::kind::Kind as FileKind;
 use super::super::paths::{axes, file, is_cube, variable};
-use super::super::read::{document, text_of};
+use super::super::read::document;
 use super::super::scene::scene_of;
 use super::super::section::{Entry, Section};
+use super::super::written::Written;
 use super::super::{BandsSpec, Source, camera};
 use super::{
     CubeSpec, Demand, DepthRequirement, DepthSource, Diffraction, NoiseSource, RangeScenario, Stereo, Subject,
@@ -31,7 +32,7 @@ impl RangeScenario {
     /// # Errors
     /// The first thing that is wrong, in one line with file, line and key, as [`crate::scenario::Scenario::from_file`].
     pub fn from_file(path: &Path) -> Result<Self> {
-        Self::from_toml(&text_of(path)?, Some(path))
+        Self::from_written(&Written::from_file(path)?)
     }
 
     /// Reads a ranging scenario from text; `path` as in [`crate::scenario::Scenario::from_toml`].
@@ -56,13 +57,21 @@ impl RangeScenario {
     /// # Ok::<(), hadar::Error>(())
     /// ```
     pub fn from_toml(text: &str, path: Option<&Path>) -> Result<Self> {
-        scenario(text, path)
+        Self::from_written(&Written::of(text, path))
+    }
+
+    /// Reads it with values in the place of its own.
+    ///
+    /// # Errors
+    /// As [`Self::from_toml`].
+    pub fn from_written(written: &Written) -> Result<Self> {
+        scenario(written)
     }
 }
 
-fn scenario(text: &str, path: Option<&Path>) -> Result<RangeScenario> {
-    let mut source = Source { path: path.map(Path::to_owned), ..Source::default() };
-    let document = document(text, (FileKind::Range, MINIMUM), &mut source)?;
+fn scenario(written: &Written) -> Result<RangeScenario> {
+    let mut source = written.source();
+    let document = document(written, (FileKind::Range, MINIMUM), &mut source)?;
     let root = Section::open(&document, "", &source, TABLES)?;
     root.at_most_one(&["scene", "cube"])?;
     let subject = match (root.get("scene"), root.get("cube")) {

@@ -184,7 +184,7 @@ fn relaid(source: &Source, key: &str) -> Source {
         let kept = of.iter().filter(|(full, _)| !replaced.contains(&head(full)));
         kept.map(|(full, value)| (full.clone(), value.clone())).chain(own).collect()
     }
-    Source { path: source.path.clone(), lines: lay(&source.lines, key), texts: lay(&source.texts, key) }
+    Source { lines: lay(&source.lines, key), texts: lay(&source.texts, key), ..source.clone() }
 }
 
 /// The scenario of things that must not be taken for the rule's target.

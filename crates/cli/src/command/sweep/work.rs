@@ -1,0 +1,54 @@
+//! Rows worked off by as many threads as there are, each row on one of them.
+
+use hadar::error::{Error, Result};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+/// Does `count` jobs, each on a thread of its own; fewer jobs than threads share these out among themselves. `done` is told how many.
+///
+/// # Errors
+/// The first that a job gives, which ends the work.
+pub(super) fn each(
+    count: usize,
+    job: &(dyn Fn(usize) -> Result<()> + Sync),
+    done: &(dyn Fn(usize, usize) + Sync),
+) -> Result<()> {
+    let threads = rayon::current_num_threads();
+    let workers = threads.min(count).max(1);
+    let (next, finished, stopped) = (AtomicUsize::new(0), AtomicUsize::new(0), AtomicBool::new(false));
+    let failure = Mutex::new(None);
+    let fail = |error: Error| {
+        stopped.store(true, Ordering::Relaxed);
+        if let Ok(mut failure) = failure.lock() {
+            failure.get_or_insert(error);
+        }
+    };
+    let work = || {
+        while !stopped.load(Ordering::Relaxed) {
+            let index = next.fetch_add(1, Ordering::Relaxed);
+            if index >= count {
+                return;
+            }
+            match job(index) {
+                Ok(()) => done(finished.fetch_add(1, Ordering::Relaxed) + 1, count),
+                Err(error) => fail(error),
+            }
+        }
+    };
+    // A pool of its own keeps a row on its worker, so that no thread takes up another row while it waits for parts of its own.
+    let worker = || match rayon::ThreadPoolBuilder::new().num_threads((threads / workers).max(1)).build() {
+        Ok(pool) => pool.install(work),
+        Err(_) => work(),
+    };
+    std::thread::scope(|scope| {
+        let started: Vec<_> = (1..workers)
+            .filter_map(|_| std::thread::Builder::new().spawn_scoped(scope, worker).ok())
+            .collect();
+        worker();
+        drop(started);
+    });
+    match failure.into_inner() {
+        Ok(Some(error)) => Err(error),
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,370 @@
+//! Sweeps: rows against the single commands, what is done again and what is not, shards, mistakes, tables that others read.
+
+use crate::support::folder::{Folder, SCENARIO};
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+const GRID: [&str; 6] = [
+    "--vary",
+    "camera.exposure=1 ms, 4 ms",
+    "--vary",
+    "target.temperature=30 degC..40 degC:2",
+    "--columns",
+    "verdict",
+];
+
+fn sweep<'a>(folder: &Folder, more: &[&'a str]) -> Value {
+    folder.json(&[&["sweep", "a.toml", "--out", "out"], more].concat())
+}
+
+/// Rows of a table by the heads of its columns.
+fn rows(path: &Path) -> Vec<BTreeMap<String, String>> {
+    let mut reader = csv::Reader::from_path(path).unwrap();
+    reader.deserialize().map(Result::unwrap).collect()
+}
+
+fn number(row: &BTreeMap<String, String>, column: &str) -> f64 {
+    row[column].parse().unwrap_or_else(|_| panic!("{column} in {row:?}"))
+}
+
+/// Every row says what the command says of a file in which its values are written.
+#[test]
+fn a_row_is_the_answer_of_the_command() {
+    let folder = Folder::with(SCENARIO);
+    let said = sweep(&folder, &GRID);
+    assert_eq!((&said["rows"], &said["answered"], &said["computed"]), (&4.into(), &4.into(), &4.into()));
+    let table = rows(&folder.path().join("out/sweep.csv"));
+    assert_eq!(table.len(), 4);
+    for (row, (exposure, temperature)) in
+        table.iter().zip([("1", "30"), ("1", "40"), ("4", "30"), ("4", "40")])
+    {
+        assert_eq!(
+            (number(row, "camera.exposure_ms"), number(row, "target.temperature_degC")),
+            (exposure.parse().unwrap(), temperature.parse().unwrap())
+        );
+        let text = SCENARIO.replace("37 degC", &format!("{temperature} degC"));
+        folder.file("b.toml", &format!("{text}exposure = \"{exposure} ms\"\n"));
+        let alone = folder.json(&["size", "b.toml"]);
+        let margin = alone["verdict"]["margin"].as_f64().unwrap();
+        assert_eq!(number(row, "verdict.margin"), margin, "{exposure} ms, {temperature} degC");
+        assert_eq!(row["verdict.sentence"], alone["verdict"]["sentence"].as_str().unwrap());
+        assert_eq!(row["status"], "ok");
+    }
+    for name in
+        ["map_verdict_margin.svg", "map_verdict_margin.csv", "sweep.parquet", "report.html", "hadar.json"]
+    {
+        assert!(folder.path().join("out").join(name).is_file(), "{name}");
+    }
+    // The picture's numbers are those of the table.
+    let map = rows(&folder.path().join("out/map_verdict_margin.csv"));
+    assert_eq!(number(&map[1], "verdict.margin"), number(&table[2], "verdict.margin"));
+    let manifest = fs::read_to_string(folder.path().join("out/hadar.json")).unwrap();
+    assert!(manifest.contains("built-in: material skin") && manifest.contains("a.toml"), "{manifest}");
+}
+
+#[test]
+fn what_is_done_is_not_done_again_unless_something_it_read_has_changed() {
+    let folder = Folder::with(&SCENARIO.replace("\"aluminium\"", "\"./own.csv\""));
+    folder.file("own.csv", "wavenumber_cm1,emissivity\n500,0.5\n2000,0.6\n");
+    let vary = |values: &str| {
+        ["--vary".to_owned(), format!("target.distance={values}"), "--columns".into(), "verdict".into()]
+    };
+    let done = |values: &str| {
+        let vary = vary(values);
+        let said = sweep(&folder, &vary.each_ref().map(String::as_str));
+        (
+            said["computed"].as_u64().unwrap(),
+            said["kept"].as_u64().unwrap(),
+            said["answered"].as_u64().unwrap(),
+        )
+    };
+    assert_eq!(done("5 m,6 m,7 m"), (3, 0, 3));
+    let table = folder.path().join("out/sweep.csv");
+    let first = fs::read(&table).unwrap();
+    assert_eq!(done("5 m,6 m,7 m"), (0, 3, 3));
+    assert_eq!(fs::read(&table).unwrap(), first);
+    // More values: the others stay.
+    assert_eq!(done("4 m,5 m,6 m,7 m"), (1, 3, 4));
+    // Killed within a line: that row alone is lost.
+    let journal = folder.path().join("out/.sweep/1-of-1.jsonl");
+    let text = fs::read(&journal).unwrap();
+    fs::write(&journal, &text[..text.len() - 40]).unwrap();
+    assert_eq!(done("4 m,5 m,6 m,7 m"), (1, 3, 4));
+    assert_eq!(done("4 m,5 m,6 m,7 m"), (0, 4, 4));
+    folder.file("own.csv", "wavenumber_cm1,emissivity\n500,0.5\n2000,0.7\n");
+    assert_eq!(done("5 m,6 m,7 m"), (3, 0, 3));
+    assert_ne!(fs::read(&table).unwrap(), first);
+    folder.file("a.toml", &SCENARIO.replace("37 degC", "36 degC"));
+    assert_eq!(done("5 m,6 m,7 m"), (3, 0, 3));
+}
+
+#[test]
+fn a_bad_row_has_its_message_and_the_others_their_answers() {
+    let folder = Folder::with(SCENARIO);
+    let said = sweep(
+        &folder,
+        &["--vary", "target.material=skin,wood-that-is-none,pmma", "--columns", "verdict.margin"],
+    );
+    assert_eq!((&said["answered"], &said["failed"]), (&2.into(), &1.into()));
+    let table = rows(&folder.path().join("out/sweep.csv"));
+    assert_eq!(table[1]["status"], "error");
+    let message = &table[1]["message"];
+    assert!(
+        message.starts_with("--vary target.material: there is no material `wood-that-is-none`"),
+        "{message}"
+    );
+    assert!(table[1]["verdict.margin"].is_empty() && number(&table[2], "verdict.margin") > 0.0);
+    // Where nothing goes well the code says so.
+    let lost = folder.run(&["sweep", "a.toml", "--out", "lost", "--vary", "target.material=none-1,none-2"]);
+    assert_eq!(lost.code, 1, "{}", lost.stdout);
+    assert!(lost.stdout.contains("2 failed"), "{}", lost.stdout);
+}
+
+#[test]
+fn shards_and_threads_make_the_table_of_one_run() {
+    let folder = Folder::with(SCENARIO);
+    sweep(&folder, &[&GRID[..], &["--threads", "1"]].concat());
+    let of = |out: &str, more: &[&str]| {
+        folder.json(&[&["sweep", "a.toml", "--out", out], &GRID[..], more].concat())
+    };
+    let first = of("shards", &["--shard", "1/3"]);
+    assert_eq!(
+        (&first["computed"], &first["to_go"], &first["files"]),
+        (&2.into(), &2.into(), &Value::Array(vec![]))
+    );
+    assert!(!folder.path().join("shards/sweep.csv").exists());
+    let merged = of("shards", &["--merge"]);
+    assert_eq!(
+        (&merged["computed"], &merged["answered"], &merged["to_go"]),
+        (&0.into(), &2.into(), &2.into())
+    );
+    assert_eq!(rows(&folder.path().join("shards/sweep.csv")).len(), 2);
+    of("shards", &["--shard", "3/3", "--threads", "3"]);
+    assert_eq!(of("shards", &["--shard", "2/3"])["to_go"], 0);
+    for name in ["sweep.csv", "sweep.parquet", "hadar.json", "report.html"] {
+        let read = |out: &str| fs::read(folder.path().join(out).join(name)).unwrap();
+        assert_eq!(read("shards"), read("out"), "{name}");
+    }
+}
+
+#[test]
+fn cases_go_together_and_an_empty_cell_leaves_what_the_file_says() {
+    let folder = Folder::with(SCENARIO);
+    folder.file("cases.csv", "target.temperature,camera.preset\n30 degC,ideal-pnrd\n,\n");
+    sweep(
+        &folder,
+        &[
+            "--cases",
+            "cases.csv",
+            "--vary",
+            "alternatives.materials=[\"aluminium\"]",
+            "--columns",
+            "verdict.margin,camera.name",
+        ],
+    );
+    let table = rows(&folder.path().join("out/sweep.csv"));
+    assert_eq!(table.len(), 2);
+    assert_eq!(
+        (number(&table[0], "target.temperature_degC"), table[1]["target.temperature_degC"].as_str()),
+        (30.0, "")
+    );
+    let alone = folder.json(&["size", "a.toml"]);
+    assert_eq!(number(&table[1], "verdict.margin"), alone["verdict"]["margin"].as_f64().unwrap());
+    assert_eq!(table[0]["camera.name"], "ideal-pnrd");
+}
+
+/// One line, nothing written, before any work.
+#[test]
+fn mistakes_are_refused_before_any_work() {
+    let folder = Folder::with(SCENARIO);
+    folder.file("short.csv", "target.temperature,target.distance\n30 degC,5 m\n31 degC\n");
+    folder.file("unknown.csv", "target.temprature\n30 degC\n");
+    folder.file("twice.csv", "target.distance,target.distance\n5 m,6 m\n");
+    let refused =
+        |arguments: &[&str]| folder.refusal(&[&["sweep", "a.toml", "--out", "out"], arguments].concat());
+    for (vary, said) in [
+        (
+            "camera.expsure=1 ms..5 ms:3",
+            "--vary camera.expsure: there is no key `expsure`; did you mean `exposure`",
+        ),
+        ("camera.exposure=1 m..5 m:3", "--vary camera.exposure: `m` is not a unit of time"),
+        ("camera.exposure=1..5:3", "--vary camera.exposure: `1` is a number without a unit"),
+        ("camera.exposure=5 ms..5 ms:3", "--vary camera.exposure: the range goes from 5 ms to 5 ms"),
+        ("camera.exposure=9 ms..5 ms:3", "--vary camera.exposure: the range goes from 9 ms to 5 ms"),
+        (
+            "camera.exposure=1 us..5 ms:3",
+            "--vary camera.exposure: the range goes from `1 us` to `5 ms`, in two units",
+        ),
+        ("camera.exposure=0 ms..5 ms:3:log", "--vary camera.exposure: `0 ms` on a logarithmic scale"),
+        (
+            "camera.exposure=1 ms..5 ms:3:lin",
+            "--vary camera.exposure: `1 ms..5 ms:3:lin` ends in something unknown",
+        ),
+        ("camera.exposure=1 ms..5 ms", "--vary camera.exposure: `1 ms..5 ms` does not say how many"),
+        ("camera.exposure=1 ms..5 ms:0", "--vary camera.exposure: `0` values of a range"),
+        ("camera.exposure=1 ms..5 ms:1", "--vary camera.exposure: `1` values of a range"),
+        (
+            "camera.exposure=1 ms..5 ms:99999999999999999999",
+            "--vary camera.exposure: `99999999999999999999` values",
+        ),
+        (
+            "target.temperature=1 degC..9 degC:3:log",
+            "--vary target.temperature: degrees of degC on a logarithmic",
+        ),
+        ("camera.exposure", "`camera.exposure` is no key with values"),
+        ("camera.exposure=", "`camera.exposure=` is no key with values"),
+        ("target.material=skin,,pmma", "--vary target.material: the list has nothing at place 2"),
+        ("target.material=skin,skin", "--vary target.material: `skin` stands there twice"),
+        ("environment[3].lighting=0.1,0.2", "--vary environment[3].lighting: there is no environment[3]"),
+        ("environment.lighting=0.1,0.2", "--vary environment.lighting: environment is a list"),
+        ("target.material.x=1,2", "--vary target.material.x: target.material is a value and no table"),
+        ("a..b=1,2", "--vary a..b: this is no key"),
+    ] {
+        let message = refused(&["--vary", vary]);
+        assert!(message.starts_with(said), "{vary}: {message}");
+    }
+    let big = "camera.exposure=1 ms..5 ms:1000000";
+    for (arguments, said) in [
+        (&["--vary", big, "--vary", "target.distance=1 m..9 m:1000000"][..], "1000000 x 1000000 rows"),
+        (
+            &["--vary", "target.distance=5 m,6 m", "--vary", "target.distance=7 m,8 m"],
+            "`target.distance` is varied twice",
+        ),
+        (&["--vary", "target.distance=5 m,6 m", "--shard", "3/2"], "--shard: `3/2` is no shard"),
+        (&["--vary", "target.distance=5 m,6 m", "--shard", "0/2"], "--shard: `0/2` is no shard"),
+        (
+            &["--vary", "target.distance=5 m,6 m", "--command", "sizes"],
+            "--command: there is no command for rows `sizes`",
+        ),
+        (&["--cases", "short.csv"], "short.csv:3: 1 cells where the header has 2"),
+        (&["--cases", "unknown.csv"], "--cases target.temprature: there is no key `temprature`"),
+        (&["--cases", "twice.csv"], "twice.csv:1: two columns of the key `target.distance`"),
+        (&["--cases", "none.csv"], "none.csv: cannot read the cases: there is no such file"),
+        (&[], "nothing is varied"),
+    ] {
+        let message = refused(arguments);
+        assert!(message.starts_with(said), "{arguments:?}: {message}");
+    }
+    assert!(
+        folder
+            .refusal(&["sweep", "a.toml", "--vary", "target.distance=5 m,6 m"])
+            .starts_with("there is no folder")
+    );
+    // Files of others in the folder.
+    fs::create_dir(folder.path().join("mine")).unwrap();
+    folder.file("mine/notes.txt", "x");
+    let message = folder.refusal(&["sweep", "a.toml", "--vary", "target.distance=5 m,6 m", "--out", "mine"]);
+    assert!(message.contains("it holds `notes.txt`"), "{message}");
+}
+
+#[test]
+fn a_column_that_is_none_is_refused_with_those_that_are_like_it_and_no_row_is_lost() {
+    let folder = Folder::with(SCENARIO);
+    let arguments = ["sweep", "a.toml", "--out", "out", "--vary", "target.distance=5 m,6 m", "--columns"];
+    let outcome = folder.run(&[&arguments[..], &["verdict.margn"]].concat());
+    assert_eq!(outcome.code, 1);
+    assert!(
+        outcome
+            .stderr
+            .contains("--columns: there is no column `verdict.margn`; did you mean `verdict.margin`"),
+        "{}",
+        outcome.stderr
+    );
+    let said = folder.json(&[&arguments[..], &["verdict.margin"]].concat());
+    assert_eq!(said["computed"], 0, "{said}");
+}
+
+#[test]
+fn two_processes_do_not_work_on_the_same_rows() {
+    let folder = Folder::with(SCENARIO);
+    fs::create_dir_all(folder.path().join("out/.sweep")).unwrap();
+    let held = fs::File::create(folder.path().join("out/.sweep/1-of-1.jsonl")).unwrap();
+    held.lock().unwrap();
+    let arguments =
+        ["sweep", "a.toml", "--out", "out", "--vary", "target.distance=5 m,6 m", "--columns", "verdict"];
+    let message = folder.refusal(&arguments);
+    assert!(message.contains("another process works on the same rows"), "{message}");
+    drop(held);
+    assert_eq!(folder.json(&arguments)["answered"], 2);
+}
+
+/// Other commands answer rows as well; the air's scenario through `range`, a list of cameras through `rule`.
+#[test]
+fn every_kind_of_file_is_asked_by_its_command() {
+    let folder = Folder::with(SCENARIO);
+    let said = sweep(
+        &folder,
+        &[
+            "--command",
+            "identify",
+            "--vary",
+            "target.temperature=30 degC,35 degC",
+            "--columns",
+            "identifiability,pairs[0].alternative",
+        ],
+    );
+    assert_eq!(said["command"], "identify");
+    let table = rows(&folder.path().join("out/sweep.csv"));
+    assert_eq!(table[0]["pairs[0].alternative"], "aluminium");
+    let alone = folder.json(&["identify", "a.toml"]);
+    folder.json(&[
+        "sweep",
+        "a.toml",
+        "--command",
+        "identify",
+        "--out",
+        "same",
+        "--vary",
+        "target.temperature=37 degC,38 degC",
+    ]);
+    let same = rows(&folder.path().join("same/sweep.csv"));
+    let least = alone["identifiability"]["distance_minimum"].as_f64().unwrap();
+    assert_eq!(number(&same[0], "identifiability.distance_minimum"), least);
+}
+
+/// pandas and polars read the types and values that were written.
+#[test]
+fn pandas_and_polars_read_the_tables() {
+    const READ: &str = r#"
+import sys, csv, pandas, polars
+out = sys.argv[1]
+rows = list(csv.DictReader(open(out + "/sweep.csv")))
+for frame in (pandas.read_parquet(out + "/sweep.parquet"), polars.read_parquet(out + "/sweep.parquet")):
+    types = {name: str(kind).lower() for name, kind in zip(frame.columns, frame.dtypes)}
+    assert types["row"] == "int64" and types["verdict.margin"] == "float64", types
+    assert types["camera.exposure_ms"] == "int64", types
+    assert types["status"] in ("object", "str", "string") and types["verdict.met"] in ("bool", "boolean"), types
+    assert list(frame["verdict.margin"]) == [float(row["verdict.margin"]) for row in rows]
+    assert list(frame["verdict.sentence"]) == [row["verdict.sentence"] for row in rows]
+    assert list(frame.columns) == list(rows[0]), frame.columns
+frame = polars.read_parquet(out + "/warnings.parquet") if len(sys.argv) > 2 else None
+print("read", len(rows))
+"#;
+    let python = std::env::var("PYTHON").unwrap_or_else(|_| "python3".into());
+    let there = Command::new(&python).args(["-c", "import pandas, pyarrow, polars"]).output();
+    if !there.is_ok_and(|output| output.status.success()) {
+        println!("skipped: no Python with pandas, pyarrow and polars; PYTHON names one that has them");
+        return;
+    }
+    let folder = Folder::with(SCENARIO);
+    sweep(&folder, &GRID);
+    let output = Command::new(&python).args(["-c", READ]).arg(folder.path().join("out")).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!(String::from_utf8_lossy(&output.stdout).trim(), "read 4");
+}
+
+#[test]
+fn tables_of_a_report_are_parquet_too_where_that_is_asked_for() {
+    let folder = Folder::with(SCENARIO);
+    folder.json(&["identify", "a.toml", "--out", "plain"]);
+    folder.json(&["identify", "a.toml", "--out", "out", "--format", "parquet"]);
+    let bytes = fs::read(folder.path().join("out/pairs.parquet")).unwrap();
+    assert!(bytes.starts_with(b"PAR1") && bytes.ends_with(b"PAR1"));
+    let csv = |out: &str| fs::read(folder.path().join(out).join("pairs.csv")).unwrap();
+    assert_eq!(csv("out"), csv("plain"));
+    let outcome = folder.run(&["identify", "a.toml", "--format", "parquet"]);
+    assert_eq!(outcome.code, 2, "{}", outcome.stderr);
+}

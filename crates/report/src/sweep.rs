@@ -1,0 +1,54 @@
+//! A sweep: one table of all rows, what is said of it, pictures over one or two of its keys.
+
+mod figures;
+mod gathered;
+mod text;
+
+pub use gathered::Gathered;
+pub use text::text;
+
+use crate::bundle::Bundle;
+use crate::parquet::{self, Column};
+use crate::table::Table;
+use hadar::error::Result;
+use hadar_study::sweep::Question;
+
+/// A sweep with what is there of its rows.
+#[derive(Debug)]
+pub struct Swept {
+    /// What was asked of every row.
+    pub question: Question,
+    /// The columns: `row`, what was varied, `status`, `message`, then those of the answers.
+    pub gathered: Gathered,
+    /// Columns of answers that were chosen, in their order; all where empty.
+    pub chosen: Vec<String>,
+}
+
+/// The table and the pictures of a sweep.
+///
+/// # Errors
+/// A chosen column that no row has; a figure that cannot be drawn.
+pub fn bundle(swept: &Swept, title: &str) -> Result<Bundle> {
+    let columns = swept.gathered.columns(&swept.chosen)?;
+    let mut bundle = Bundle::about(Some(title));
+    bundle.add("sweep.csv", csv(&columns)?);
+    if cfg!(feature = "parquet") {
+        bundle.add("sweep.parquet", parquet::file(&columns)?);
+    }
+    bundle.add_plots(&figures::plots(swept))?;
+    Ok(bundle)
+}
+
+fn csv(columns: &[Column]) -> Result<String> {
+    let mut table = Table::new(columns.iter().map(|column| column.name.as_str()));
+    let rows = columns.first().map_or(0, |column| column.cells.len());
+    for row in 0..rows {
+        table.push(
+            columns
+                .iter()
+                .map(|column| column.cells.get(row).map_or_else(String::new, parquet::text))
+                .collect(),
+        );
+    }
+    table.to_csv()
+}

@@ -1,0 +1,213 @@
+//! A key and the values that it takes: `camera.exposure=1 ms..100 ms:40:log`, or `target.material=skin,aluminium`.
+//!
+//! Of a range of n values from a to b the i-th (from 0) is a + i (b − a)/(n − 1), and a (b/a)^(i/(n − 1)) of a logarithmic one; its ends
+//! are a and b to the last bit.
+
+use super::cell::Cell;
+use hadar::error::{Error, Result};
+use hadar::units::{decimal_comma, parts};
+
+/// Values of a key at most; more are no table that anybody reads.
+pub(super) const MOST_VALUES: usize = 1_000_000;
+const EXAMPLE: &str = "write KEY=FROM..TO:COUNT, as in camera.exposure=\"1 ms..100 ms:40:log\", or KEY=A,B,C";
+
+/// A key and the values that it takes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Axis {
+    /// The key, e.g. `camera.exposure`.
+    pub key: String,
+    /// The values, as they would be written into the file.
+    pub values: Vec<String>,
+    /// Whether they are spread logarithmically.
+    pub logarithmic: bool,
+}
+
+impl Axis {
+    /// Reads a flag's text.
+    ///
+    /// # Errors
+    /// No key, no value, a range without its number of values or with ends that do not differ, one from zero or below on a
+    /// logarithmic scale, ends of different units.
+    ///
+    /// ```
+    /// use hadar_study::sweep::Axis;
+    /// assert_eq!(Axis::parse("target.distance=10 m..30 m:3")?.values, ["10 m", "20 m", "30 m"]);
+    /// assert_eq!(Axis::parse("camera.exposure=1 ms..100 ms:3:log")?.values, ["1 ms", "10 ms", "100 ms"]);
+    /// assert_eq!(Axis::parse("target.material=skin, pmma")?.values, ["skin", "pmma"]);
+    /// # Ok::<(), hadar::Error>(())
+    /// ```
+    pub fn parse(text: &str) -> Result<Self> {
+        let refused = || Error::malformed(format!("`{text}` is no key with values"), EXAMPLE);
+        let (key, values) = text.split_once('=').ok_or_else(refused)?;
+        let (key, values) = (key.trim().to_owned(), values.trim());
+        if key.is_empty() || values.is_empty() {
+            return Err(refused());
+        }
+        let named = |error: Error| error.for_key(format!("--vary {key}"));
+        let (values, logarithmic) = match range(values).map_err(named)? {
+            Some(range) => range,
+            None => (listed(values).map_err(named)?, false),
+        };
+        Ok(Self { key, values, logarithmic })
+    }
+}
+
+/// Number and unit at an end of a range.
+type End<'t> = (f64, &'t str);
+
+/// The values of a range; none of what begins as none does.
+fn range(text: &str) -> Result<Option<(Vec<String>, bool)>> {
+    let Some((from, rest)) = text.split_once("..").filter(|(from, rest)| is_number(from) && is_number(rest))
+    else {
+        return Ok(None);
+    };
+    let mut rest = rest.split(':');
+    let (to, count, scale, more) = (rest.next().unwrap_or_default(), rest.next(), rest.next(), rest.next());
+    let logarithmic = match scale.map(str::trim) {
+        None => false,
+        Some("log") if more.is_none() => true,
+        Some(_) => {
+            let found = format!("`{text}` ends in something unknown");
+            return Err(Error::malformed(found, "write FROM..TO:COUNT or FROM..TO:COUNT:log"));
+        }
+    };
+    let Some(count) = count.map(str::trim) else {
+        let found = format!("`{text}` does not say how many values");
+        return Err(Error::malformed(found, format!("write it, as in \"{text}:20\"")));
+    };
+    let allowed = |count: &usize| (2..=MOST_VALUES).contains(count);
+    let Some(count) = count.parse::<usize>().ok().filter(allowed) else {
+        let found = format!("`{count}` values of a range");
+        return Err(Error::malformed(found, format!("write a whole number from 2 to {MOST_VALUES}")));
+    };
+    let ((low, unit), (high, unit_of_end)) = (end(from)?, end(to)?);
+    if unit != unit_of_end {
+        let found = format!("the range goes from `{}` to `{}`, in two units", from.trim(), to.trim());
+        return Err(Error::malformed(found, "write both ends with the same unit"));
+    }
+    if low >= high {
+        let found = format!("the range goes from {} to {}", from.trim(), to.trim());
+        return Err(Error::malformed(found, "write the lower end first, and two that differ"));
+    }
+    if logarithmic && low <= 0.0 {
+        let found = format!("`{}` on a logarithmic scale", from.trim());
+        return Err(Error::malformed(found, "begin above 0, or leave :log out"));
+    }
+    if ["degC", "°C", "degF", "°F"].contains(&unit) && logarithmic {
+        let found = format!("degrees of {unit} on a logarithmic scale, whose zero is arbitrary");
+        return Err(Error::malformed(found, "write both ends in K, or leave :log out"));
+    }
+    let last = (count - 1) as f64;
+    let value = |i: usize| {
+        let share = i as f64 / last;
+        match (i, logarithmic) {
+            (0, _) => low,
+            (i, _) if i + 1 == count => high,
+            (_, true) => low * (high / low).powf(share),
+            (i, false) => (low * (last - i as f64) + high * i as f64) / last,
+        }
+    };
+    let written = |i: usize| match unit {
+        "" => value(i).to_string(),
+        unit => format!("{} {unit}", value(i)),
+    };
+    // Whole numbers stay such, so that a count may be varied.
+    Ok(Some(((0..count).map(written).collect(), logarithmic)))
+}
+
+/// Whether a text begins as a number does.
+fn is_number(text: &str) -> bool {
+    text.trim_start().trim_start_matches(['-', '+', '.']).starts_with(|first: char| first.is_ascii_digit())
+}
+
+fn end(text: &str) -> Result<End<'_>> {
+    if let Some(error) = decimal_comma(text) {
+        return Err(error);
+    }
+    let (number, unit) = parts(text.trim());
+    match number.parse::<f64>() {
+        Ok(number) if number.is_finite() => Ok((number, unit)),
+        _ => {
+            Err(Error::malformed(format!("`{}` is no end of a range", text.trim()), "write a finite number"))
+        }
+    }
+}
+
+/// The values of a list; commas within quotes, brackets and braces do not part it.
+fn listed(text: &str) -> Result<Vec<String>> {
+    let (mut values, mut value, mut quote, mut depth) = (Vec::new(), String::new(), None, 0_usize);
+    for char in text.chars() {
+        match char {
+            ',' if quote.is_none() && depth == 0 => values.push(std::mem::take(&mut value)),
+            _ => {
+                match (char, quote) {
+                    ('"' | '\'', None) => quote = Some(char),
+                    (char, Some(open)) if char == open => quote = None,
+                    ('[' | '{', None) => depth += 1,
+                    (']' | '}', None) => depth = depth.saturating_sub(1),
+                    _ => {}
+                }
+                value.push(char);
+            }
+        }
+    }
+    values.push(value);
+    let values: Vec<String> = values.iter().map(|value| value.trim().to_owned()).collect();
+    if let Some(place) = values.iter().position(String::is_empty) {
+        let found = format!("the list has nothing at place {}", place + 1);
+        return Err(Error::malformed(found, "write values between commas, as in skin,aluminium"));
+    }
+    // 37,5 is a number with a decimal comma as often as it is two.
+    if let Some(twice) = (1..values.len()).find(|i| values[..*i].contains(&values[*i])) {
+        return Err(Error::malformed(format!("`{}` stands there twice", values[twice]), "write it once"));
+    }
+    Ok(values)
+}
+
+/// Values as cells of one column: numbers with their unit where all have one and the same, else the texts.
+pub(super) fn column<'v>(values: impl Iterator<Item = &'v str> + Clone) -> (String, Vec<Cell>) {
+    let read = |text: &'v str| {
+        let (number, unit) = parts(text.trim());
+        number.parse::<f64>().ok().filter(|number| number.is_finite()).map(|number| (number, unit))
+    };
+    let mut given = values.clone().filter(|text| !text.is_empty());
+    let first = given.next().and_then(read);
+    let same = |text: &'v str| read(text).zip(first).is_some_and(|((_, unit), (_, own))| unit == own);
+    match first {
+        Some((_, unit)) if given.all(same) => {
+            let cells = values.map(|text| match read(text) {
+                Some((number, _)) if number.fract() == 0.0 && unit.is_empty() && number.abs() < 1e15 => {
+                    Cell::Integer(number as i64)
+                }
+                Some((number, _)) => Cell::Number(number),
+                None => Cell::Empty,
+            });
+            (unit.to_owned(), cells.collect())
+        }
+        _ => {
+            let cells = values.map(|text| match text {
+                "" => Cell::Empty,
+                text => Cell::Text(text.to_owned()),
+            });
+            (String::new(), cells.collect())
+        }
+    }
+}
+
+/// The head of a column as the program writes units: `camera.exposure_ms`, `requirement.speed_m_s`, `bands.step_cm1`.
+pub(super) fn with_unit(key: &str, unit: &str) -> String {
+    let mut name = key.to_owned();
+    if !unit.is_empty() {
+        name.push('_');
+    }
+    for char in unit.chars() {
+        match char {
+            'µ' => name.push('u'),
+            '°' => name.push_str("deg"),
+            '/' | ' ' => name.push('_'),
+            char if char.is_alphanumeric() || char == '.' => name.push(char),
+            _ => {}
+        }
+    }
+    name
+}

@@ -1,0 +1,245 @@
+//! A row answered as the command of a name answers its file.
+
+use super::record::{Record, record};
+use crate::scenario::{
+    DecomposeScenario, DistanceKind, RangingScenario, Rule, Scenario, Written, command_for,
+};
+use crate::study::air_ranging::{AirPlan, AirRangingStudy};
+use crate::study::decompose::DecomposeStudy;
+use crate::study::range::{RangePlan, RangeStudy};
+use crate::study::{PhotonLaw, RuleAsked, RuleStudy, SimulationPlan, SizeAsked, Study};
+use hadar::decompose::Method;
+use hadar::demand::{Skipping, Work};
+use hadar::error::{Error, Result};
+use hadar::material::Library;
+use hadar::simulate::classifier;
+use hadar::simulate::experiment::Design;
+use serde::Serialize;
+
+/// Spectra of a class where a classifier is judged and nobody says how many.
+pub const SPECTRA: usize = 5000;
+
+/// What is asked of every row.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Question {
+    /// The verdict on a camera.
+    Size,
+    /// Distances to every alternative.
+    Identify,
+    /// Spectra drawn and classifiers judged.
+    Simulate,
+    /// Which cameras meet a rule.
+    Rule,
+    /// How well depth can be measured.
+    Range,
+    /// A heat cube taken apart.
+    Decompose,
+}
+
+/// How every row is asked.
+#[derive(Debug, Clone, Copy)]
+pub struct Asking<'a> {
+    /// The materials.
+    pub library: &'a Library,
+    /// The distance that decides, instead of the scenario's.
+    pub by: Option<DistanceKind>,
+    /// Whether alternatives that do not cover the bands are left out.
+    pub skip_uncovered: bool,
+    /// Whether proofs may spare work.
+    pub skipping: Skipping,
+    /// Seed of random numbers.
+    pub seed: u64,
+    /// The columns that are wanted; all but items of lists where there are none.
+    pub columns: &'a [String],
+}
+
+/// What a row says, and what it took.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Answer {
+    /// Its values.
+    pub record: Record,
+    /// What was computed.
+    pub work: Work,
+}
+
+impl Asking<'_> {
+    /// Whether anything of a part of the answer is wanted.
+    #[must_use]
+    pub fn wants(&self, part: &str) -> bool {
+        let within =
+            |column: &String| column.strip_prefix(part).is_some_and(|rest| rest.starts_with(['.', '[']));
+        self.columns.is_empty() || self.columns.iter().any(|column| column == part || within(column))
+    }
+
+    /// Items of lists that are wanted.
+    pub fn items(&self) -> impl Iterator<Item = &String> {
+        self.columns.iter().filter(|column| column.contains('['))
+    }
+}
+
+impl Question {
+    /// All of them.
+    pub const ALL: [Self; 6] =
+        [Self::Size, Self::Identify, Self::Simulate, Self::Rule, Self::Range, Self::Decompose];
+
+    /// The command that answers it.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Size => "size",
+            Self::Identify => "identify",
+            Self::Simulate => "simulate",
+            Self::Rule => "rule",
+            Self::Range => "range",
+            Self::Decompose => "decompose",
+        }
+    }
+
+    /// The question of a command's name.
+    ///
+    /// # Errors
+    /// Another name.
+    pub fn named(name: &str) -> Result<Self> {
+        let unknown = || Error::unknown_name("command for rows", name, Self::ALL.map(Self::name));
+        Self::ALL.into_iter().find(|question| question.name() == name).ok_or_else(unknown)
+    }
+
+    /// The question that a file asks.
+    ///
+    /// # Errors
+    /// A file of another kind.
+    pub fn of(file: &Written) -> Result<Self> {
+        match command_for(file)? {
+            Some(command) => Self::named(command),
+            None => {
+                let found = "this file is no question about a scene";
+                let error = Error::malformed(found, "name a scenario, or say which with --command size");
+                Err(file.path.as_ref().map_or_else(|| error.clone(), |path| error.clone().in_file(path)))
+            }
+        }
+    }
+
+    /// What is drawn of it where nobody says, the first that is there.
+    #[must_use]
+    pub const fn headline(self) -> &'static [&'static str] {
+        match self {
+            Self::Size => &["verdict.margin", "requirement.photons"],
+            Self::Identify => {
+                &["identifiability.detection_probability_minimum", "identifiability.distance_minimum"]
+            }
+            Self::Simulate => &["points[0].limit_accuracy", "points[0].statistical_distance"],
+            Self::Rule => &["cameras[0].margin"],
+            Self::Range => &["verdict.share", "verdict.distance_error_m", "objects[0].signals[0].median_m"],
+            Self::Decompose => &["pixels"],
+        }
+    }
+
+    /// Lists whose first item belongs to a row, since they are what is asked for.
+    const fn lists(self) -> &'static [&'static str] {
+        match self {
+            Self::Size | Self::Identify | Self::Decompose => &[],
+            Self::Simulate => &["points[0]"],
+            Self::Rule => &["cameras[0]"],
+            Self::Range => &["objects[0]"],
+        }
+    }
+
+    /// Reads a row's file, and nothing that it names.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn read(self, written: &Written) -> Result<()> {
+        match self {
+            Self::Size | Self::Identify | Self::Simulate => Scenario::from_written(written).map(drop),
+            Self::Rule => Rule::from_written(written).map(drop),
+            Self::Range => RangingScenario::from_written(written).map(drop),
+            Self::Decompose => DecomposeScenario::from_written(written).map(drop),
+        }
+    }
+
+    /// Answers a row.
+    ///
+    /// # Errors
+    /// Those of the command.
+    pub fn answer(self, written: &Written, asking: &Asking<'_>) -> Result<Answer> {
+        let library = asking.library;
+        match self {
+            Self::Size => {
+                let study = study(written, asking)?;
+                let asked = SizeAsked {
+                    solutions: asking.wants("solve_for"),
+                    sensitivity: asking.wants("sensitivity"),
+                };
+                let found = study.size_with(asked)?;
+                self.told(&found, &found.stats, asking)
+            }
+            Self::Identify => {
+                let found = study(written, asking)?.identify()?;
+                self.told(&found, &found.stats, asking)
+            }
+            Self::Simulate => {
+                let plan = SimulationPlan {
+                    photons: Vec::new(),
+                    law: PhotonLaw::Poisson,
+                    camera_noise: true,
+                    against: Vec::new(),
+                    design: Design {
+                        per_class: SPECTRA,
+                        methods: classifier::Method::ALL.to_vec(),
+                        seed: asking.seed,
+                        level: 0.95,
+                        skip_spectra: false,
+                    },
+                    models: Vec::new(),
+                };
+                let (found, _) = study(written, asking)?.simulate(&plan, &|_, _| ())?;
+                self.told(&found, &found.stats, asking)
+            }
+            Self::Rule => {
+                let mut rule = Rule::from_written(written)?;
+                rule.skip_uncovered(asking.skip_uncovered);
+                let asked =
+                    RuleAsked { skipping: asking.skipping, seed: asking.seed, ..RuleAsked::default() };
+                let found = RuleStudy::new(&rule, library)?.answer(&asked, &|_, _| ())?;
+                self.told(&found, &found.stats, asking)
+            }
+            Self::Range => match RangingScenario::from_written(written)? {
+                RangingScenario::Stereo(scenario) => {
+                    let plan =
+                        RangePlan { seed: asking.seed, skipping: asking.skipping, ..RangePlan::default() };
+                    let found = RangeStudy::new(&scenario, library)?.range(&plan, &|_, _| ())?;
+                    self.told(&found, &found.stats, asking)
+                }
+                RangingScenario::Air(scenario) => {
+                    let plan = AirPlan { trials: 0, seed: asking.seed, bands: None };
+                    let found = AirRangingStudy::new(&scenario, library)?.range(&plan, &|_, _| ())?;
+                    self.told(&found, &found.stats, asking)
+                }
+            },
+            Self::Decompose => {
+                let scenario = DecomposeScenario::from_written(written)?;
+                let study = DecomposeStudy::new(&scenario, library)?;
+                let found = study.decompose(Method::Ml, asking.skipping, &|_, _| ())?;
+                self.told(&found, &found.stats, asking)
+            }
+        }
+    }
+
+    fn told(self, found: &impl Serialize, work: &Work, asking: &Asking<'_>) -> Result<Answer> {
+        let json = serde_json::to_value(found)
+            .map_err(|error| Error::malformed(error.to_string(), "report this as a bug"))?;
+        let items: Vec<String> =
+            asking.items().cloned().chain(self.lists().iter().map(|list| (*list).to_owned())).collect();
+        Ok(Answer { record: record(&json, &items), work: work.clone() })
+    }
+}
+
+/// A row's scenario looked up.
+fn study(written: &Written, asking: &Asking<'_>) -> Result<Study> {
+    let mut scenario = Scenario::from_written(written)?;
+    if let Some(by) = asking.by {
+        scenario.requirement.by = by;
+    }
+    scenario.alternatives.skip_uncovered |= asking.skip_uncovered;
+    Study::new_skipping(&scenario, asking.library, asking.skipping)
+}
