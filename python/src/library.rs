@@ -13,7 +13,10 @@ pub(crate) fn materials() -> PyResult<Vec<String>> {
     Ok(Library::embedded().map_err(raised)?.names().map(str::to_owned).collect())
 }
 
-/// Emissivity of a built-in material, or of a file, at wavenumbers.
+/// Emissivity (nu,) of a material at wavenumbers.
+///
+/// material : a name of :func:`materials`, or the path of a CSV or ECOSTRESS file
+/// nu : wavenumbers, cm⁻¹, within those of its data
 #[pyfunction]
 pub(crate) fn emissivity<'py>(
     material: &Bound<'py, PyAny>,

@@ -12,7 +12,8 @@ use hadar::identifiability::{Status, detection};
 use numpy::PyArrayDyn;
 use pyo3::prelude::*;
 
-/// See `_hadar.pyi`.
+/// What :func:`local` finds: ``distance`` d₀ per √photon (``per_photon``) or d, ``distance_no_nuisance`` the same with nothing
+/// unknown, ``relative_error`` of the distance by rounding, ``status`` "ok", "equilibrium", "blind" or "identical".
 #[pyclass(frozen, get_all, module = "hadar")]
 #[derive(Debug)]
 pub(crate) struct Local {
@@ -23,7 +24,8 @@ pub(crate) struct Local {
     per_photon: bool,
 }
 
-/// See `_hadar.pyi`.
+/// What :func:`nearest` finds: ``distance``, ``lower`` below which it is proved that no state is (0: not proved), ``relative_error``
+/// by rounding, ``converged``, and the nearest state: ``temperature`` (K), ``lighting`` (surroundings,), ``gain``.
 #[pyclass(frozen, get_all, module = "hadar")]
 #[derive(Debug)]
 pub(crate) struct Nearest {
@@ -71,7 +73,13 @@ fn unit(per_photon: bool) -> &'static str {
     if per_photon { "per root of a photon" } else { "statistical" }
 }
 
-/// The distance at the target's own state.
+/// The paper's semantic distance d₀ = 1/(2σ₀) of two materials at the target's own state, with the scene's unknowns.
+///
+/// target, alternative : (nodes,) emissivities at ``scene.nodes``
+/// scene : Scene
+///
+/// Per √photon, or the statistical distance d where the scene has counts. The tangent of :func:`nearest`: for finite separations it
+/// can err either way. Source: paper S24–S30, Algorithm 2.
 #[pyfunction]
 pub(crate) fn local(
     target: &Bound<'_, PyAny>,
@@ -101,7 +109,13 @@ pub(crate) fn local(
     })
 }
 
-/// The distance to the nearest state of the alternative.
+/// Half the separation of the target from the nearest state of the alternative: no test is right more often than Φ(d).
+///
+/// target, alternative : (nodes,) emissivities at ``scene.nodes``
+/// scene : Scene
+/// prove : to what share of itself the distance is proved, or None for a search without proof
+///
+/// Per √photon, or the statistical distance d where the scene has counts.
 #[pyfunction]
 #[pyo3(signature = (target, alternative, scene, *, prove=1e-6))]
 pub(crate) fn nearest(
@@ -140,7 +154,15 @@ pub(crate) fn nearest(
     })
 }
 
-/// Distances of every material (row) from every other one (column).
+/// Distances of every material as the target (row) from every other one (column): (materials, materials), 0 on the diagonal.
+///
+/// emissivities : (materials, nodes) at ``scene.nodes``
+/// scene : Scene; all targets are in its state
+/// by : "local" or "nearest"
+/// prove : share of a nearest distance to which it is proved; not proved where silent
+/// threads : all cores where silent; the answer does not depend on it
+///
+/// Source: paper S32–S34, Algorithm 3.
 #[pyfunction]
 #[pyo3(signature = (emissivities, scene, *, by="local", prove=None, threads=None))]
 pub(crate) fn matrix<'py>(

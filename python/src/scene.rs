@@ -11,7 +11,22 @@ use numpy::{PyArray1, PyUntypedArrayMethods as _};
 use pyo3::prelude::*;
 use std::collections::BTreeMap;
 
-/// See `_hadar.pyi`.
+/// A target in its surroundings: S = e·B(T) + (1 − e)·Σ V_k ε_k B(T_k), what of it is unknown, and how it is counted.
+///
+/// bands : (bands,) ascending centres, or (bands, 2) lower and upper ends, cm⁻¹
+/// temperature : of the target, K
+/// lighting : (surroundings,) thermal lighting factors V ≥ 0, of a sum of at most 1; the rest is deep space
+/// environment : (surroundings,) temperatures of the surroundings, K
+/// environment_emissivity : (surroundings, nodes); blackbodies where silent
+/// unknown : of "temperature", "lighting" (these two where silent), "gain", "environment-temperature"
+/// priors : {unknown: deviation}, K or dimensionless
+/// lighting_total : ΣV where it is known
+/// temperature_range, lighting_range : (low, high) of the alternative's state; all that physics allows where silent
+/// counts_per_radiance : étendue × efficiency × time, m² sr s. With it distances are statistical, d; without it they are per
+///     √photon, in the limit of shot noise
+/// var_added : number or (bands,), variance of noise besides, counts²
+///
+/// Source: paper S2, S3, S27–S30, S48.
 #[pyclass(frozen, module = "hadar")]
 #[derive(Debug)]
 pub(crate) struct Scene {
@@ -123,13 +138,13 @@ impl Scene {
         make().map_err(raised)
     }
 
-    /// Where emissivities are asked for, cm⁻¹.
+    /// Wavenumbers at which emissivities are asked for, cm⁻¹: the centres of bands that are given by them, else more.
     #[getter]
     fn nodes<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         flat(py, self.bands.nodes_cm1().to_vec())
     }
 
-    /// Signal of an emissivity at the nodes, photons s⁻¹ m⁻² sr⁻¹ of each band.
+    /// Signal ∫S dν of every band (bands,), photons s⁻¹ m⁻² sr⁻¹, of a target of an emissivity (nodes,).
     fn signal<'py>(&self, emissivity: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let spectrum = self.emissivity(emissivity, "emissivity")?;
         Ok(flat(emissivity.py(), self.bands.weigh(&self.surroundings.signal(&spectrum, &self.state))))

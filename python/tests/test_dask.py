@@ -1,0 +1,144 @@
+"""Sweeps and cubes on a cluster of several processes give what one process gives, also when a worker is killed."""
+
+import os
+import signal
+import time
+
+import numpy as np
+import pytest
+
+import hadar
+
+pytest.importorskip("distributed")
+pytest.importorskip("xarray")
+
+import dask.array
+import xarray
+from distributed import Client, LocalCluster
+
+import hadar.dask
+from hadar.dask import Axis
+
+NU = np.arange(800.0, 1201.0, 10.0)
+T = (NU - 1000) / 200
+LIBRARY = np.stack([0.97 - 0.02 * T**2, 0.6 + 0.2 * T, 0.85 - 0.1 * np.cos(3 * T)])
+LIGHT = hadar.planck(NU, [[290.0], [250.0]])
+OPTIONS = dict(counts_per_radiance=3e-15)
+SCENARIO = {
+    "target": {"material": "skin", "temperature": "37 degC"},
+    "environment": [{"temperature": "20 degC", "lighting": 0.5}],
+    "alternatives": {"materials": ["aluminium"]},
+    "bands": {"start": "800 cm^-1", "stop": "1200 cm^-1", "step": "20 cm^-1"},
+}
+AXES = {
+    "temperature": Axis("target.temperature", np.array([300.0, 310.0, 320.0]), "K"),
+    "lighting": Axis("environment.0.lighting", [0.2, 0.5, 0.8, 0.9]),
+}
+READ = {"distance": ("pairs.0.distance_nearest", "photon^-1/2"), "rival": ("limiting", "")}
+
+
+def cube(rows=40, columns=30):
+    random = np.random.default_rng(5)
+    e = LIBRARY[random.integers(0, 3, (rows, columns))]
+    s = e * hadar.planck(NU, random.uniform(295, 320, (rows, columns, 1))) + (1 - e) * 0.6 * LIGHT[0]
+    return random.poisson(3e-15 * 10 * s).astype("f4")
+
+
+@pytest.fixture(scope="module")
+def client():
+    with LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None) as cluster:
+        with Client(cluster) as client:
+            yield client
+
+
+def test_a_sweep_is_its_questions(client):
+    sweep = hadar.dask.sweep(hadar.identify, SCENARIO, AXES, READ, batch=5)
+    assert len(sweep.tasks) == 3 and sweep.shape == (3, 4)
+    found = sweep.compute()
+    assert found.distance.dims == ("temperature", "lighting")
+    assert found.distance.units == "photon^-1/2" and found.temperature.units == "K" and found.hadar == hadar.__version__
+    scenario = SCENARIO | {
+        "target": {"material": "skin", "temperature": "310 K"},
+        "environment": [{"temperature": "20 degC", "lighting": 0.8}],
+    }
+    alone = hadar.identify(scenario)
+    assert float(found.distance.sel(temperature=310, lighting=0.8)) == alone.pairs[0].distance_nearest
+    assert set(found.rival.values.ravel()) == {"aluminium"}
+    points = sweep.to_bag().compute()
+    assert [point["distance"] for point in points] == list(found.distance.values.ravel())
+
+
+def test_mistakes_of_a_sweep_are_told():
+    wrong = hadar.dask.sweep(hadar.identify, SCENARIO, AXES, {"distance": ("pairs.0.distanc", "")})
+    with pytest.raises(hadar.HadarError, match="pairs.0.distanc: there is no `distanc`"):
+        wrong.compute(scheduler="synchronous")
+    with pytest.raises(hadar.HadarError, match="at least 1"):
+        hadar.dask.sweep(hadar.identify, SCENARIO, AXES, READ, batch=0)
+
+
+def test_a_cube_in_chunks_is_the_whole_cube(client):
+    counts = cube()
+    expected = hadar.decompose(counts, LIBRARY, LIGHT, NU, **OPTIONS).to_dict()
+    chunked = dask.array.from_array(counts, chunks=(16, 11, 20))
+    lines = xarray.DataArray(counts, dims=("line", "sample", "wave"), coords={"line": np.arange(40) * 2.0}).chunk(line=10)
+    for given, dims in [(chunked, ("y", "x", "band")), (lines, ("line", "sample", "wave")), (counts, ("y", "x", "band"))]:
+        maps = hadar.dask.decompose(given, LIBRARY, LIGHT, NU, dims=dims, names=["a", "b", "c"], **OPTIONS)
+        assert maps.temperature_k.units == "K" and maps.materials == ["a", "b", "c"]
+        maps = maps.compute()
+        for name, values in expected.items():
+            assert maps[name].dtype == values.dtype
+            # Where fits start is laid out for the mean of a chunk.
+            tolerance = 2e-6 if values.dtype == np.float32 else 0
+            np.testing.assert_allclose(maps[name], values, rtol=tolerance, err_msg=name)
+    assert list(maps.lighting.dims) == ["y", "x", "surroundings"]
+    with pytest.raises(hadar.HadarError, match="name its rows, columns and bands"):
+        hadar.dask.decompose(lines, LIBRARY, LIGHT, NU, **OPTIONS)
+
+
+def test_priors_over_the_image_see_over_the_edges(client):
+    random = np.random.default_rng(3)
+    e = LIBRARY[(np.indices((40, 30)).sum(0) // 20) % 3]
+    s = e * hadar.planck(NU, 305.0) + (1 - e) * 0.6 * LIGHT[0]
+    counts = random.poisson(3e-19 * 10 * s).astype("f4")
+    potts = dict(counts_per_radiance=3e-19, potts=(1.0, 0.5))
+    expected = hadar.decompose(counts, LIBRARY, LIGHT, NU, **potts)
+    chunked = dask.array.from_array(counts, chunks=(20, 15, -1))
+    found = hadar.dask.decompose(chunked, LIBRARY, LIGHT, NU, overlap=15, **potts).compute()
+    apart = hadar.decompose(counts, LIBRARY, LIGHT, NU, counts_per_radiance=3e-19)
+    assert (apart.material != expected.material).mean() > 0.05
+    assert (found.material.values != expected.material).mean() < 0.01
+    assert found.lighting.shape == (40, 30, 2)
+    with pytest.raises(hadar.HadarError, match="without its step"):
+        hadar.dask.decompose(chunked, LIBRARY, LIGHT, NU, potts=(1.0, None), **OPTIONS)
+
+
+@pytest.mark.parametrize("derivative", ["central", "simoncelli", "fourier"])
+def test_windows_of_chunks_are_those_of_the_cube(client, derivative):
+    counts = 100 + cube().astype(float)
+    cells = ["full", "spectral"]
+    expected = hadar.window_information(counts, (5, 3), cells=cells, derivative=derivative, var_added=4.0)
+    chunked = dask.array.from_array(counts, chunks=(13, 12, 9))
+    found = hadar.dask.window_information(chunked, (5, 3), cells=cells, derivative=derivative, var_added=4.0)
+    assert found.full.units == "pixel^-2"
+    for name in [*cells, "photons"]:
+        np.testing.assert_allclose(found[name].values, expected.to_dict()[name], rtol=1e-12, err_msg=name)
+
+
+def _slow(block, pause):
+    time.sleep(pause)
+    return block
+
+
+def test_a_worker_that_is_killed_loses_nothing(client):
+    counts = cube()
+    chunked = dask.array.from_array(counts, chunks=(4, 15, -1)).map_blocks(_slow, 0.15, dtype=counts.dtype)
+    maps = hadar.dask.decompose(chunked, LIBRARY, LIGHT, NU, **OPTIONS)
+    expected = maps.compute(scheduler="synchronous")
+    kept = maps.persist()
+    time.sleep(0.7)
+    workers = client.run(os.getpid)
+    os.kill(next(iter(workers.values())), signal.SIGKILL)
+    found = kept.compute()
+    np.testing.assert_array_equal(found.material, expected.material)
+    np.testing.assert_array_equal(found.temperature_k, expected.temperature_k)
+    assert set(client.run(os.getpid).values()) != set(workers.values())
