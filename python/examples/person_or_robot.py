@@ -67,8 +67,8 @@ truth[:, 40:] = 1
 temperature = 303.15 + 6 * np.linspace(0, 1, 60)[:, None] * np.ones((60, 80))
 e = library[truth]
 radiance = e * hadar.planck(bands, temperature[..., None]) + (1 - e) * 0.5 * light[0]
-counts = np.random.default_rng(1).poisson(2e-16 * 10.0 * radiance).astype(np.float32)
-maps = hadar.decompose(counts, library, light, bands, counts_per_radiance=2e-16)
+counts = np.random.default_rng(1).poisson(2e-15 * 10.0 * radiance).astype(np.float32)
+maps = hadar.decompose(counts, library, light, bands, counts_per_radiance=2e-15)
 known = maps.candidates == 1
 print(f"{known.mean():.1%} of the pixels are decided, {(maps.material == truth)[known].mean():.1%} of these rightly")
 
@@ -84,6 +84,6 @@ image = axes[1, 0].imshow(maps.temperature_k - 273.15, cmap="inferno")
 axes[1, 0].set_title("Temperature found (°C)")
 figure.colorbar(image, ax=axes[1, 0])
 axes[1, 1].imshow(np.where(known, maps.material, np.nan), cmap="coolwarm", vmin=0, vmax=1)
-axes[1, 1].set_title("Material found: skin, aluminium; white: undecided")
+axes[1, 1].set_title("Material found (white: undecided)")
 figure.savefig(out / "person_or_robot.png", dpi=120)
 print(f"wrote {out / 'person_or_robot.png'}")

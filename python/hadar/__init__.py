@@ -3,7 +3,7 @@
 Questions about a camera and a scene, as the command ``hadar`` answers them, with the same numbers to the last bit:
 :func:`size`, :func:`identify`, :func:`rule`, :func:`range_`, :func:`simulate`. A scenario is a path, TOML text or a dict.
 
-Functions on arrays: :func:`planck`, :func:`local`, :func:`nearest`, :func:`matrix` in a :class:`Scene`, and
+Functions on arrays: :func:`planck`, :func:`local`, :func:`nearest`, :func:`matrix`, :func:`over_states` in a :class:`Scene`, and
 :func:`decompose` and :func:`window_information` of heat cubes. Wavenumbers are in cm⁻¹, temperatures in K, radiances in
 photons s⁻¹ m⁻² sr⁻¹ per cm⁻¹, cubes ``[row][column][band]`` in counts.
 
@@ -30,6 +30,7 @@ from hadar._hadar import (
     materials,
     matrix,
     nearest,
+    over_states,
     planck,
     planck_slope,
 )
@@ -62,6 +63,7 @@ __all__ = [
     "materials",
     "matrix",
     "nearest",
+    "over_states",
     "planck",
     "planck_slope",
     "range_",

@@ -92,6 +92,17 @@ def matrix(
     prove: float | None = None,
     threads: int | None = None,
 ) -> NDArray[np.float64]: ...
+def over_states(
+    target: ArrayLike,
+    alternative: ArrayLike,
+    scene: Scene,
+    temperature: ArrayLike,
+    lighting: ArrayLike,
+    *,
+    by: Literal["local", "nearest"] = "local",
+    prove: float | None = None,
+    threads: int | None = None,
+) -> NDArray[np.float64]: ...
 def materials() -> list[str]: ...
 def emissivity(material: str | PathLike[str], nu: ArrayLike) -> NDArray[np.float64]: ...
 def decompose(

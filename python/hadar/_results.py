@@ -5,7 +5,7 @@ from __future__ import annotations
 import html
 import json
 from collections.abc import Iterator, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 
 def _read(value: Any) -> Any:
@@ -64,8 +64,8 @@ class Result(Record):
 
     __slots__ = ("_answer", "_json", "_text", "_pictures")
 
-    #: The list that :meth:`to_pandas` makes a table of.
-    _rows = "pairs"
+    #: The lists that :meth:`to_pandas` makes a table of: the first that is there.
+    _rows: tuple[str, ...] = ("pairs",)
 
     def __init__(self, answer: Any):
         super().__init__(json.loads(answer.json))
@@ -81,8 +81,9 @@ class Result(Record):
 
     @property
     def sentence(self) -> str:
-        """Its first line: the verdict."""
-        return self._text.strip().split("\n", 1)[0]
+        """The verdict."""
+        verdict = self._data.get("verdict", self._data)
+        return verdict.get("sentence") or self._text.strip().split("\n", 1)[0]
 
     def to_json(self) -> str:
         """The JSON that the command prints with ``--json``, to the last byte."""
@@ -101,7 +102,8 @@ class Result(Record):
         """
         import pandas
 
-        return pandas.json_normalize(self.to_dict()[rows or self._rows])
+        rows = rows or next(name for name in self._rows if name in self)
+        return pandas.json_normalize(self.to_dict()[rows])
 
     def __str__(self) -> str:
         return self._text
@@ -138,30 +140,81 @@ class Sizing(Result):
     """Answer of :func:`hadar.size`."""
 
     __slots__ = ()
+    if TYPE_CHECKING:
+        scenario: Record
+        verdict: Record
+        requirement: Record
+        camera: Record | None
+        solve_for: Record | None
+        sensitivity: Record | None
+        trade_offs: list[Record]
+        photon_radiance: float
+        pairs: list[Record]
+        limiting: str
+        warnings: list[Record]
+        stats: Record
 
 
 class Identification(Result):
-    """Answer of :func:`hadar.identify`."""
+    """Answer of :func:`hadar.identify`; the last five where they were asked for."""
 
     __slots__ = ()
+    if TYPE_CHECKING:
+        scenario: Record
+        photon_radiance: float
+        pairs: list[Record]
+        limiting: str
+        identifiability: Record
+        prior_average: Record | None
+        warnings: list[Record]
+        stats: Record
+        matrix: Record
+        apart: Record
+        scaling: Record
+        bands_that_matter: Record
+        exact: Record
 
 
 class RuleAnswer(Result):
     """Answer of :func:`hadar.rule`."""
 
     __slots__ = ()
-    _rows = "cameras"
+    _rows = ("cameras",)
+    if TYPE_CHECKING:
+        rule: Record
+        stop: Record | None
+        requirement: Record
+        envelope: Record
+        cameras: list[Record]
+        not_identifiable: Record | None
+        companions: list[Record]
+        warnings: list[Record]
+        stats: Record
+        inputs: list[Record]
 
 
 class Ranging(Result):
-    """Answer of :func:`hadar.range_`."""
+    """Answer of :func:`hadar.range_`: ``objects`` and ``cells`` of two views, ``curve`` and ``bands`` of the air on the path."""
 
     __slots__ = ()
-    _rows = "bounds"
+    _rows = ("curve", "objects")
+    if TYPE_CHECKING:
+        scenario: Record
+        verdict: Record
+        objects: list[Record]
+        curve: list[Record]
+        warnings: list[Record]
+        stats: Record
 
 
 class Simulation(Result):
-    """Answer of :func:`hadar.simulate`."""
+    """Answer of :func:`hadar.simulate`: ``points`` of classifiers, ``rows`` of thermometry."""
 
     __slots__ = ()
-    _rows = "points"
+    _rows = ("points", "rows")
+    if TYPE_CHECKING:
+        points: list[Record]
+        rows: list[Record]
+        limit_holds: bool
+        warnings: list[Record]
+        stats: Record

@@ -5,7 +5,7 @@
 
 use crate::error::raised;
 use hadar::Error;
-use numpy::ndarray::{ArrayD, IxDyn};
+use numpy::ndarray::{ArrayD, IxDyn, arr0};
 use numpy::{
     Element, IntoPyArray as _, PyArray, PyArrayDyn, PyArrayMethods as _, PyReadonlyArrayDyn, PyUntypedArray,
     PyUntypedArrayMethods as _,
@@ -13,6 +13,7 @@ use numpy::{
 use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::type_object::PyTypeInfo as _;
+use pyo3::types::{PyFloat, PyInt};
 
 /// Numbers as they lie, of type `T` if they are, else converted.
 pub(crate) fn numbers<'py, T: Element>(
@@ -23,6 +24,12 @@ pub(crate) fn numbers<'py, T: Element>(
         return Ok(array);
     }
     let py = given.py();
+    if given.is_exact_instance_of::<PyFloat>() || given.is_exact_instance_of::<PyInt>() {
+        let one = PyArrayDyn::from_owned_array(py, arr0(given.extract::<f64>()?).into_dyn());
+        if let Some(array) = as_it_lies(one.as_any())? {
+            return Ok(array);
+        }
+    }
     let numpy = py.import(intern!(py, "numpy"))?;
     let refused = |found: &str, instead: &str| raised(Error::malformed(format!("{what}: {found}"), instead));
     if given.is_instance(&numpy.getattr("ma")?.getattr("MaskedArray")?)? {

@@ -13,6 +13,7 @@ mod pairs;
 mod planck;
 mod question;
 mod scene;
+mod states;
 mod threads;
 mod windows;
 
@@ -33,6 +34,8 @@ mod _hadar {
     use crate::planck::{brightness_temperature, planck, planck_slope};
     #[pymodule_export]
     use crate::scene::Scene;
+    #[pymodule_export]
+    use crate::states::over_states;
     #[pymodule_export]
     use crate::windows::window_information;
 

@@ -12,6 +12,9 @@ use hadar::identifiability::{Status, detection};
 use numpy::PyArrayDyn;
 use pyo3::prelude::*;
 
+/// Distances by name; whether to the nearest state.
+pub(crate) const DISTANCES: [(bool, &str); 2] = [(false, "local"), (true, "nearest")];
+
 /// What :func:`local` finds: ``distance`` d₀ per √photon (``per_photon``) or d, ``distance_no_nuisance`` the same with nothing
 /// unknown, ``relative_error`` of the distance by rounding, ``status`` "ok", "equilibrium", "blind" or "identical".
 #[pyclass(frozen, get_all, module = "hadar")]
@@ -174,8 +177,7 @@ pub(crate) fn matrix<'py>(
     threads: Option<usize>,
 ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
     let scene = scene.get();
-    let by_nearest = named("distance", by, &[false, true], |near| if near { "nearest" } else { "local" });
-    let by_nearest = by_nearest.map_err(raised)?;
+    let by_nearest = named("distance", by, &DISTANCES, |by| by.1).map_err(raised)?.0;
     let spectra = rows(emissivities, "emissivities")?;
     for (row, spectrum) in spectra.iter().enumerate() {
         let checked = hadar::scene::check_emissivity(spectrum, scene.bands.nodes_cm1().len());
@@ -203,7 +205,7 @@ pub(crate) fn matrix<'py>(
 }
 
 /// To what share of itself a distance is proved.
-fn share(prove: Option<f64>) -> PyResult<Option<f64>> {
+pub(crate) fn share(prove: Option<f64>) -> PyResult<Option<f64>> {
     let Some(share) = prove else { return Ok(None) };
     check::positive("prove", share, "").map_err(raised)?;
     if share >= 1.0 {

@@ -121,6 +121,21 @@ def test_a_matrix_is_its_pairs():
     assert np.array_equal(local, hadar.matrix(np.asfortranarray(library), SCENE, threads=1))
 
 
+def test_a_map_of_states_is_its_pairs():
+    t, v = np.meshgrid([290.0, 310.15, 330.0], [0.1, 0.5], indexing="ij")
+    for by, one in [("local", hadar.local), ("nearest", hadar.nearest)]:
+        found = hadar.over_states(SKIN, METAL, SCENE, t, v, by=by, prove=1e-6)
+        assert found.shape == (3, 2)
+        for i, j in np.ndindex(3, 2):
+            alone = one(SKIN, METAL, hadar.Scene(NU, t[i, j], [v[i, j]], [293.15]))
+            assert found[i, j] == pytest.approx(alone.distance, rel=1e-6)
+    two = hadar.Scene(NU, 310.15, [0.5, 0.2], [293.15, 250.0])
+    found = hadar.over_states(SKIN, METAL, two, [310.15], [[0.5, 0.2]])
+    assert found[0] == pytest.approx(hadar.local(SKIN, METAL, two).distance, rel=1e-12)
+    with pytest.raises(hadar.HadarError, match="broadcast both to one shape"):
+        hadar.over_states(SKIN, METAL, SCENE, t[:, :1], v)
+
+
 def test_counts_make_statistical_distances():
     s = signal(SKIN, 310.15, 0.5)
     scene = hadar.Scene(NU, 310.15, [0.5], [293.15], counts_per_radiance=1e6 / s.sum())
