@@ -14,6 +14,8 @@ pub struct Column {
     pub name: String,
     /// Its values, row by row.
     pub cells: Vec<Cell>,
+    /// Whether it is of texts, even where it has none.
+    pub is_text: bool,
 }
 
 /// A value as text, numbers with all digits; empty where there is none.
@@ -36,8 +38,10 @@ pub fn of_csv(text: &str) -> Result<Vec<Column>> {
     let failed = |error: csv::Error| Error::malformed(error.to_string(), "report this as a bug");
     let mut reader = csv::Reader::from_reader(text.as_bytes());
     let header = reader.headers().map_err(failed)?.clone();
-    let mut columns: Vec<Column> =
-        header.iter().map(|name| Column { name: name.to_owned(), cells: Vec::new() }).collect();
+    let mut columns: Vec<Column> = header
+        .iter()
+        .map(|name| Column { name: name.to_owned(), cells: Vec::new(), is_text: false })
+        .collect();
     for record in reader.records() {
         let record = record.map_err(failed)?;
         for (column, cell) in columns.iter_mut().zip(record.iter()) {

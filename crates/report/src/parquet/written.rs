@@ -21,7 +21,11 @@ enum Kind {
 }
 
 impl Kind {
-    fn of(cells: &[Cell]) -> Self {
+    fn of(column: &Column) -> Self {
+        if column.is_text { Self::Text } else { Self::of_cells(&column.cells) }
+    }
+
+    fn of_cells(cells: &[Cell]) -> Self {
         let kinds = cells.iter().filter_map(|cell| match cell {
             Cell::Empty => None,
             Cell::Boolean(_) => Some(Self::Boolean),
@@ -102,7 +106,7 @@ pub fn file(columns: &[Column]) -> Result<Vec<u8>> {
 }
 
 fn bytes(columns: &[Column]) -> std::result::Result<Vec<u8>, ParquetError> {
-    let kinds: Vec<Kind> = columns.iter().map(|column| Kind::of(&column.cells)).collect();
+    let kinds: Vec<Kind> = columns.iter().map(Kind::of).collect();
     let fields = columns.iter().zip(&kinds).map(|(column, kind)| kind.field(&column.name));
     let fields = fields.collect::<std::result::Result<Vec<_>, _>>()?;
     let schema = Arc::new(Type::group_type_builder("table").with_fields(fields).build()?);
@@ -129,15 +133,16 @@ mod tests {
     #[test]
     fn a_column_has_the_type_of_its_values() {
         let number = Cell::Number(0.5);
-        assert_eq!(Kind::of(&[Cell::Empty]), Kind::Number);
-        assert_eq!(Kind::of(&[Cell::Integer(1), Cell::Empty]), Kind::Integer);
-        assert_eq!(Kind::of(&[Cell::Integer(1), number.clone()]), Kind::Number);
-        assert_eq!(Kind::of(&[Cell::Boolean(true), number]), Kind::Text);
+        assert_eq!(Kind::of_cells(&[Cell::Empty]), Kind::Number);
+        assert_eq!(Kind::of_cells(&[Cell::Integer(1), Cell::Empty]), Kind::Integer);
+        assert_eq!(Kind::of_cells(&[Cell::Integer(1), number.clone()]), Kind::Number);
+        assert_eq!(Kind::of_cells(&[Cell::Boolean(true), number]), Kind::Text);
     }
 
     #[test]
     fn what_is_written_is_read_again() {
-        let column = |name: &str, cells: &[Cell]| Column { name: name.into(), cells: cells.to_vec() };
+        let column =
+            |name: &str, cells: &[Cell]| Column { name: name.into(), cells: cells.to_vec(), is_text: false };
         let columns = [
             column("n", &[Cell::Integer(1 << 60), Cell::Empty]),
             column("x_m", &[Cell::Number(0.1), Cell::Integer(2)]),

@@ -54,7 +54,11 @@ pub(super) fn plots(swept: &Swept) -> Vec<Plot> {
     let values = drawn.iter().filter_map(|name| {
         let cells = gathered.values(name)?;
         let numbers: Vec<f64> = cells.iter().map(|cell| cell.number().unwrap_or(f64::NAN)).collect();
-        numbers.iter().any(|number| number.is_finite()).then_some((*name, numbers))
+        // What is the same in all rows is no picture.
+        let mut finite = numbers.iter().filter(|number| number.is_finite());
+        let first = finite.next()?;
+        let changes = finite.any(|number| number != first);
+        changes.then_some((*name, numbers))
     });
     let values = values.take(MOST_PICTURES);
     match axes.as_slice() {
@@ -81,9 +85,15 @@ fn positions(input: &Input) -> Vec<(usize, f64)> {
 fn axis(input: &Input) -> Axis {
     let title = match input.unit.as_str() {
         "" => input.key.clone(),
+        "degC" => format!("{} (°C)", input.key),
         unit => format!("{} ({unit})", input.key),
     };
-    if input.logarithmic { Axis::log(title) } else { Axis::linear(title) }
+    let axis = if input.logarithmic { Axis::log(title) } else { Axis::linear(title) };
+    // Nothing is known beyond the first and the last value.
+    match positions(input).as_slice() {
+        [(_, first), .., (_, last)] => axis.range(*first, *last),
+        _ => axis,
+    }
 }
 
 /// The scale of a result, logarithmic where it spreads over orders of magnitude.

@@ -112,6 +112,7 @@ impl Gathered {
         let column = |name: &str, cell: &dyn Fn(usize) -> Cell| Column {
             name: name.to_owned(),
             cells: rows.iter().map(|row| cell(*row)).collect(),
+            is_text: ["status", "message", "warnings"].contains(&name),
         };
         let mut columns = vec![column("row", &|row| i64::try_from(row).map_or(Cell::Empty, Cell::Integer))];
         columns.extend(self.inputs.iter().map(|input| column(&input.name, &|row| input.cell(row))));
