@@ -8,7 +8,7 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use hadar::cube::{Cube, MemoryCube, Shape, write_npy};
 use hadar::ranging::derivative::Derivative;
 use hadar::ranging::information::decide::decide;
-use hadar::ranging::information::{Cell, Request, Window, information};
+use hadar::ranging::information::{Cell, Request, Window, information, information_by_rows};
 use hadar::ranging::noise::{Joined, NoiseVariance};
 use std::hint::black_box;
 use std::ops::Range;
@@ -96,6 +96,15 @@ fn from_a_file(criterion: &mut Criterion) {
     let cube = Cube::open(&path, None).expect("the file just written");
     group.bench_function("all cells, from a file", |bencher| {
         bencher.iter(|| information(black_box(&cube), &request(5, &noise, &Cell::ALL)));
+    });
+    group.bench_function("all cells, from a file, by rows", |bencher| {
+        let request = request(5, &noise, &Cell::ALL);
+        bencher.iter(|| {
+            information_by_rows(black_box(&cube), &request, &|map| {
+                black_box(map);
+                Ok(())
+            })
+        });
     });
     group.finish();
 }

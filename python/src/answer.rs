@@ -289,11 +289,11 @@ pub(crate) fn range_(
                 let study = RangeStudy::new(&scenario, &library()?)?;
                 let (seed, skipping) = (common.seed, common.skipping());
                 let plan = RangePlan { trials, seed, skipping, verdict_alone: false };
-                let mut result = study.range(&plan, &|_, _| ())?;
+                let mut result = study.range(&plan, None, &|_, _| ())?;
                 let text = range::text(&result);
                 result.stats.add(&no_report());
                 let json = answer_json(&result)?;
-                Ok(Found { json, text, draw: Box::new(move || range::bundle(&result, Path::new(""))) })
+                Ok(Found { json, text, draw: Box::new(move || range::bundle(&result, Path::new(""), None)) })
             }
         }
     })

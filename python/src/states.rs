@@ -52,7 +52,8 @@ pub(crate) fn over_states<'py>(
         return Err(raised(Error::malformed(found, instead)));
     }
     let lit: Vec<f64> = lit.as_array().iter().copied().collect();
-    let states = temperatures.as_array().iter().enumerate().map(|(i, temperature_k)| {
+    let temperatures = temperatures.as_array();
+    let states = temperatures.iter().enumerate().map(|(i, temperature_k)| {
         scene.surroundings.state(*temperature_k, lit.get(i * objects..(i + 1) * objects).unwrap_or_default())
     });
     let states: Vec<State> = states.collect::<hadar::Result<_>>().map_err(raised)?;

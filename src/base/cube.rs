@@ -3,7 +3,7 @@
 //! A cube is only ever asked for whole rows, in any order and by many threads at once: one that is larger than
 //! memory costs no more than the rows that are in work. Samples are `f32` or `f64`, and stay so.
 //!
-//! From a file: [`Cube::open`]; to one: [`write_npy`]. [`first_invalid`] names the sample that is no count,
+//! From a file: [`Cube::open`]; to one: [`write_npy`], or by rows [`NpyRows`]. [`first_invalid`] names the sample that is no count,
 //! [`panchromatic`] adds the bands.
 
 #[cfg(feature = "cubes")]
@@ -25,6 +25,8 @@ mod invalid;
 mod mat;
 #[cfg(feature = "cubes")]
 mod npy;
+#[cfg(feature = "cubes")]
+mod npy_rows;
 #[cfg(feature = "cubes")]
 mod npz;
 #[cfg(feature = "cubes")]
@@ -48,6 +50,8 @@ pub use invalid::first_invalid;
 pub use mat::mat_file;
 #[cfg(feature = "cubes")]
 pub use npy::{Value, npy_map, write_npy, write_npy_to};
+#[cfg(feature = "cubes")]
+pub use npy_rows::NpyRows;
 #[cfg(feature = "cubes")]
 pub(crate) use open::is_cube;
 

@@ -3,7 +3,7 @@
 //! Figures are drawn only as they are written, and all files appear together or not at all ([`Folder`]).
 
 use super::figures::Plot;
-use super::folder::Folder;
+use super::folder::{Folder, Held};
 use super::html;
 use super::manifest::Provenance;
 use super::parquet;
@@ -32,7 +32,7 @@ pub struct Bundle {
 /// What a file holds.
 #[derive(Debug, Clone)]
 enum Content {
-    Bytes(Vec<u8>),
+    Held(Held),
     /// Of a figure.
     Svg(usize),
     Png(usize),
@@ -64,7 +64,12 @@ impl Bundle {
 
     /// Adds a file.
     pub fn add(&mut self, name: impl Into<String>, content: impl Into<Vec<u8>>) {
-        self.files.push((name.into(), Content::Bytes(content.into())));
+        self.files.push((name.into(), Content::Held(content.into().into())));
+    }
+
+    /// Adds a file that is too large to be kept: what one in a [`Scratch`](super::folder::Scratch) holds.
+    pub fn add_file(&mut self, name: impl Into<String>, path: impl Into<PathBuf>) {
+        self.files.push((name.into(), Content::Held(Held::File(path.into()))));
     }
 
     /// Adds what was asked, as a file that asks it again.
@@ -116,11 +121,13 @@ impl Bundle {
     pub fn add_parquet(&mut self) -> Result<()> {
         let mut made = Vec::new();
         for (name, content) in &self.files {
-            let (Some(stem), Content::Bytes(bytes)) = (name.strip_suffix(".csv"), content) else { continue };
+            let (Some(stem), Content::Held(Held::Bytes(bytes))) = (name.strip_suffix(".csv"), content) else {
+                continue;
+            };
             let name = format!("{stem}.parquet");
             if self.names().all(|known| known != name) {
                 let columns = parquet::of_csv(&String::from_utf8_lossy(bytes))?;
-                made.push((name, Content::Bytes(parquet::file(&columns)?)));
+                made.push((name, Content::Held(parquet::file(&columns)?.into())));
             }
         }
         self.files.extend(made);
@@ -157,7 +164,10 @@ impl Bundle {
     /// A figure that cannot be drawn; a folder that cannot be written to. Then none of the files is there.
     pub fn write_report(&self, folder: &Folder, about: &About<'_>) -> Result<usize> {
         let mut files = self.drawn()?;
-        let svgs = files.iter().filter(|(name, _)| name.ends_with(".svg"));
+        let svgs = files.iter().filter_map(|(name, held)| match held {
+            Held::Bytes(svg) if name.ends_with(".svg") => Some((name, svg)),
+            _ => None,
+        });
         let drawings = svgs.zip(&self.figures).map(|((name, svg), figure)| html::Drawing {
             name: name.trim_end_matches(".svg"),
             svg: String::from_utf8_lossy(svg),
@@ -173,9 +183,9 @@ impl Bundle {
             provenance: about.provenance,
         });
         if self.names().all(|name| name != ANSWER) {
-            files.push((ANSWER.into(), format!("{}\n", about.answer.trim_end()).into_bytes()));
+            files.push((ANSWER.into(), format!("{}\n", about.answer.trim_end()).into_bytes().into()));
         }
-        files.push(("report.html".into(), page.into_bytes()));
+        files.push(("report.html".into(), page.into_bytes().into()));
         folder.write(&files, about.provenance, about.inputs)?;
         Ok(files.len() + 1)
     }
@@ -191,16 +201,16 @@ impl Bundle {
     }
 
     /// Every file with its content.
-    fn drawn(&self) -> Result<Vec<(String, Vec<u8>)>> {
+    fn drawn(&self) -> Result<Vec<(String, Held)>> {
         let drawn: Vec<(Vec<u8>, Vec<u8>)> = self
             .figures
             .par_iter()
             .map(|figure| render(figure).map(|(svg, png)| (svg.into_bytes(), png)))
             .collect::<Result<_>>()?;
         let content = |content: &Content| match content {
-            Content::Bytes(bytes) => bytes.clone(),
-            Content::Svg(figure) => drawn[*figure].0.clone(),
-            Content::Png(figure) => drawn[*figure].1.clone(),
+            Content::Held(held) => held.clone(),
+            Content::Svg(figure) => drawn[*figure].0.clone().into(),
+            Content::Png(figure) => drawn[*figure].1.clone().into(),
         };
         Ok(self.files.iter().map(|(name, kind)| (name.clone(), content(kind))).collect())
     }

@@ -18,6 +18,7 @@ use hadar::error::{Error, Result};
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// What to do about files in the folder that are not the report's own.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -27,6 +28,52 @@ pub enum Strangers {
     Refuse,
     /// Leave them alone, but those whose names the report takes.
     KeepBesides,
+}
+
+/// What a file of a report holds.
+#[derive(Debug, Clone)]
+pub enum Held {
+    /// These bytes.
+    Bytes(Arc<Vec<u8>>),
+    /// What another file holds, one of a [`Scratch`].
+    File(PathBuf),
+}
+
+impl From<Vec<u8>> for Held {
+    fn from(bytes: Vec<u8>) -> Self {
+        Self::Bytes(Arc::new(bytes))
+    }
+}
+
+impl Held {
+    fn sha256(&self) -> io::Result<String> {
+        match self {
+            Self::Bytes(bytes) => Ok(manifest::sha256(bytes)),
+            Self::File(path) => {
+                manifest::sha256_of_file(path)?.ok_or_else(|| io::ErrorKind::InvalidInput.into())
+            }
+        }
+    }
+
+    /// Files on the same disk take no room twice.
+    fn write(&self, path: &Path) -> io::Result<()> {
+        match self {
+            Self::Bytes(bytes) => fs::write(path, &**bytes),
+            Self::File(own) => fs::hard_link(own, path).or_else(|_| fs::copy(own, path).map(drop)),
+        }
+    }
+}
+
+/// Room for files of a report that are too large to be kept until it is written. It goes with what is left in it.
+#[derive(Debug)]
+pub struct Scratch(Staging);
+
+impl Scratch {
+    /// A folder for them.
+    #[must_use]
+    pub fn place(&self) -> PathBuf {
+        self.0.new_report()
+    }
 }
 
 /// A folder to be written to.
@@ -75,6 +122,20 @@ impl Folder {
         Staging::in_folder(&home).map(drop).map_err(|error| self.refused(&error))
     }
 
+    /// Room for large files, on the disk of the report if it may be written to: beside its folder, else in it.
+    ///
+    /// # Errors
+    /// As [`Folder::check`].
+    pub fn scratch(&self) -> Result<Scratch> {
+        let place = self.place()?;
+        let homes = [place.parent().and_then(nearest_folder), nearest_folder(&place)];
+        let mut made = Err(io::ErrorKind::NotFound.into());
+        for home in homes.into_iter().flatten() {
+            made = made.or_else(|_: io::Error| Staging::in_folder(&home));
+        }
+        made.map(Scratch).map_err(|error| self.refused(&error))
+    }
+
     /// Makes sure that none of the `inputs` is where the report, or what it replaces, has a file of these names.
     ///
     /// # Errors
@@ -112,12 +173,7 @@ impl Folder {
     ///
     /// # Errors
     /// As [`Folder::check`] and [`Folder::check_inputs`]; a disk that is full. Then what was there is there unchanged.
-    pub fn write(
-        &self,
-        files: &[(String, Vec<u8>)],
-        provenance: &Provenance,
-        inputs: &[PathBuf],
-    ) -> Result<()> {
+    pub fn write(&self, files: &[(String, Held)], provenance: &Provenance, inputs: &[PathBuf]) -> Result<()> {
         let place = self.place()?;
         self.recover(&place)?;
         let content = self.content(&place)?;
@@ -128,13 +184,14 @@ impl Folder {
             let reason = format!("its `{name}` is a folder, which no file may replace; name another folder");
             return Err(Error::file("write the report", &self.named, reason));
         }
-        let manifest =
-            Manifest::of(provenance, files.iter().map(|(name, bytes)| (name.as_str(), bytes.as_slice())));
+        let hashes = files.iter().map(|(name, held)| Ok((name.as_str(), held.sha256()?)));
+        let hashes: io::Result<Vec<_>> = hashes.collect();
+        let manifest = Manifest::of(provenance, hashes.map_err(|error| self.refused(&error))?);
         let fill = |report: &Path| -> io::Result<()> {
-            files.iter().try_for_each(|(name, bytes)| {
+            files.iter().try_for_each(|(name, held)| {
                 let path = report.join(name);
                 path.parent().map_or(Ok(()), fs::create_dir_all)?;
-                fs::write(path, bytes)
+                held.write(&path)
             })?;
             fs::write(report.join(manifest::NAME), manifest.to_json().map_err(io::Error::other)?)
         };

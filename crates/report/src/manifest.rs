@@ -116,10 +116,12 @@ impl Provenance {
 }
 
 impl Manifest {
-    /// That of files with their content.
-    pub(crate) fn of<'a>(provenance: &Provenance, files: impl Iterator<Item = (&'a str, &'a [u8])>) -> Self {
-        let files = files.map(|(name, content)| Written { name: name.into(), sha256: sha256(content) });
-        let files = files.collect();
+    /// That of files with the hashes of their content.
+    pub(crate) fn of<'a>(
+        provenance: &Provenance,
+        files: impl IntoIterator<Item = (&'a str, String)>,
+    ) -> Self {
+        let files = files.into_iter().map(|(name, sha256)| Written { name: name.into(), sha256 }).collect();
         Self { hadar: VERSION.into(), schema: SCHEMA, provenance: provenance.clone(), files }
     }
 
@@ -250,7 +252,7 @@ mod tests {
         for (name, good) in
             [("a.csv", true), ("../a.csv", false), ("/etc/a.csv", false), ("..", false), ("", false)]
         {
-            let mut manifest = Manifest::of(&Provenance::default(), [("x", b"1".as_slice())].into_iter());
+            let mut manifest = Manifest::of(&Provenance::default(), [("x", sha256(b"1"))]);
             manifest.files[0].name = name.into();
             std::fs::write(folder.path().join(NAME), manifest.to_json().unwrap()).unwrap();
             assert_eq!(Manifest::in_folder(folder.path()).is_some(), good, "{name}");

@@ -1,23 +1,27 @@
 //! A ranging study as files: bounds as tables and maps, pictures of the view, lines with their witnesses.
 
 mod figures;
+mod maps;
 mod text;
 
 pub use figures::{bound_maps, derivative_errors, lines, matched_maps, picture_plot, views};
+pub use maps::MapFiles;
 pub use text::text;
+
+use self::maps::add_maps;
 
 use crate::bundle::Bundle;
 use crate::table::{Table, number, optional};
-use hadar::cube::{Shape, write_npy_to};
 use hadar::error::Result;
 use hadar_study::study::range::{Line, Ranging};
 use std::path::Path;
 
-/// All files; paths in the scenario are written relative to `out` where they lie below it.
+/// All files; paths in the scenario are written relative to `out` where they lie below it. `large` has the maps that the result does
+/// not.
 ///
 /// # Errors
 /// A figure that cannot be drawn.
-pub fn bundle(result: &Ranging, out: &Path) -> Result<Bundle> {
+pub fn bundle(result: &Ranging, out: &Path, large: Option<&MapFiles>) -> Result<Bundle> {
     let mut bundle = Bundle::about(result.scenario.title.as_deref());
     bundle.add_asked("scenario.toml", result.scenario.to_toml_beside(out));
     bundle.add_table("bounds.csv", bounds(result))?;
@@ -25,14 +29,7 @@ pub fn bundle(result: &Ranging, out: &Path) -> Result<Bundle> {
         bundle.add_table("cells.csv", cells)?;
     }
     bundle.add_warnings(&result.warnings)?;
-    let maps = &result.maps;
-    if let Ok(shape) = Shape::new(maps.rows.len(), maps.columns.len(), 1) {
-        for (signal, values) in &maps.disparity_error_px {
-            let mut file = Vec::new();
-            write_npy_to(&mut file, shape, values)?;
-            bundle.add(format!("disparity_error_px_{}.npy", signal.key()), file);
-        }
-    }
+    add_maps(&mut bundle, result, large)?;
     let plots: Vec<_> = [views(result), bound_maps(result), matched_maps(result)]
         .into_iter()
         .flatten()

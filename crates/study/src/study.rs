@@ -21,6 +21,7 @@ mod heat_cube;
 mod identify;
 pub mod library;
 mod looked_up;
+mod memory;
 pub mod range;
 pub mod render;
 mod resolve;

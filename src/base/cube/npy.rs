@@ -240,6 +240,10 @@ impl Value for f32 {
     const NAME: &'static str = "f4";
 }
 
+impl Value for f64 {
+    const NAME: &'static str = "f8";
+}
+
 /// A map of such dimensions, the last one running fastest, as an NPY file (version 1).
 ///
 /// # Errors
@@ -263,7 +267,7 @@ pub fn npy_map<V: Value>(dimensions: &[usize], values: &[V]) -> Result<Vec<u8>> 
     Ok(file)
 }
 
-fn array<V: bytemuck::Pod>(
+pub(super) fn array<V: bytemuck::Pod>(
     writer: &mut impl Write,
     name: &str,
     dimensions: &[usize],

@@ -4,7 +4,7 @@
 
 use super::library_error::{LibraryError, Modes};
 use super::model::{MOST_SURROUNDINGS, Model, Setting};
-use super::pixel::{NO_MATERIAL, Pixel, Spared, Task, flag};
+use super::pixel::{NO_MATERIAL, Pixel, Room, Spared, Task, flag};
 use super::screen::Screen;
 use super::spatial::{Kept, KeptRow, Spatial, SpatialPrior};
 use crate::cube::{CubeRef, Rows, Sample};
@@ -92,9 +92,8 @@ fn whole<S: Sample>(
     let signed = is_signed(&model);
     let task = Task::new(model, setting, options, &mean)?;
     let by_rows = ByRows { cube, signed, done };
-    let rows = by_rows.all(
-        || task.room(),
-        |room, sample: &[S], same, spared, kept: &mut KeptRow| {
+    let pixel =
+        |room: &mut Room, sample: &[S], same: Option<Pixel>, spared: &mut Spared, kept: &mut KeptRow| {
             if let Some(same) = same.filter(|_| task.skip && options.spatial.is_none()) {
                 spared.equal += setting.library.len() as u64;
                 return same;
@@ -105,18 +104,19 @@ fn whole<S: Sample>(
                 task.keep(&pixel, room, kept);
             }
             pixel
-        },
-    )?;
-    let mut spared = rows.iter().fold(Spared::default(), |sum, (_, spared, _)| sum + *spared);
+        };
+    let surroundings = setting.surroundings.len();
+    let Some(prior) = &options.spatial else {
+        let rows = by_rows.all(|| task.room(), pixel, |pixels| Maps::of(&pixels, surroundings))?;
+        return Ok(Maps::joined(rows));
+    };
+    let rows = by_rows.all(|| task.room(), pixel, |pixels| pixels)?;
+    let spared = rows.iter().fold(Spared::default(), |sum, (_, spared, _)| sum + *spared);
     let (pixels, kept): (Vec<Vec<Pixel>>, Vec<KeptRow>) =
         rows.into_iter().map(|(pixels, _, kept)| (pixels, kept)).unzip();
-    let (mut pixels, mut spatial) = (pixels.concat(), None);
-    if let Some(prior) = &options.spatial {
-        let kept = Kept::of_rows(kept);
-        let (more, about) = prior.apply(&task, &kept, &mut pixels, (cube, per_unit))?;
-        (spared, spatial) = (spared + more, Some(about));
-    }
-    Ok(Maps { spared, spatial, ..Maps::of(&pixels, setting.surroundings.len()) })
+    let (mut pixels, kept) = (pixels.concat(), Kept::of_rows(kept));
+    let (more, about) = prior.apply(&task, &kept, &mut pixels, (cube, per_unit))?;
+    Ok(Maps { spared: spared + more, spatial: Some(about), ..Maps::of(&pixels, surroundings) })
 }
 
 /// Whether all bands have noise added, so that samples may come out below 0.
@@ -133,17 +133,19 @@ pub(super) struct ByRows<'a, S> {
     pub(super) done: &'a (dyn Fn(usize) + Sync),
 }
 
-/// Pixels of a row, what was spared in it, and what is kept of it besides.
-pub(super) type Row<K> = (Vec<Pixel>, Spared, K);
+/// What is kept of the pixels of a row, what was spared in it, and what is kept of it besides.
+pub(super) type Row<P, K> = (P, Spared, K);
 
 impl<S: Sample> ByRows<'_, S> {
     /// What `pixel` makes of the samples of every pixel, with room of its own for each thread. It is given the pixel before in the
-    /// row where that has the same samples: dead, dark and saturated regions do.
-    pub(super) fn all<R, K: Default + Send>(
+    /// row where that has the same samples: dead, dark and saturated regions do. Of a row that is done, only what `keep` makes of
+    /// it is kept.
+    pub(super) fn all<R, P: Send, K: Default + Send>(
         &self,
         room: impl Fn() -> R + Sync,
         pixel: impl Fn(&mut R, &[S], Option<Pixel>, &mut Spared, &mut K) -> Pixel + Sync,
-    ) -> Result<Vec<Row<K>>> {
+        keep: impl Fn(Vec<Pixel>) -> P + Sync,
+    ) -> Result<Vec<Row<P, K>>> {
         let shape = self.cube.shape();
         let is_count = |n: f64| n >= 0.0 || n.is_nan();
         let of_row = |(room, buffer): &mut (R, Vec<S>), row: usize| {
@@ -164,7 +166,7 @@ impl<S: Sample> ByRows<'_, S> {
                 before = Some(sample);
             }
             (self.done)(1);
-            Ok((pixels, spared, kept))
+            Ok((keep(pixels), spared, kept))
         };
         (0..shape.rows()).into_par_iter().map_init(|| (room(), Vec::new()), of_row).collect()
     }
@@ -243,6 +245,23 @@ impl Maps {
         let one =
             |(material, flags): (&u16, &u8)| if flags & flag::NO_FIT == 0 { *material } else { NO_MATERIAL };
         self.material.iter().zip(&self.flags).map(one).collect()
+    }
+
+    /// The maps of rows, one below the other.
+    pub(super) fn joined<K>(rows: Vec<Row<Self, K>>) -> Self {
+        let mut all = Self::default();
+        for (row, spared, _) in rows {
+            all.material.extend(row.material);
+            all.temperature_k.extend(row.temperature_k);
+            all.temperature_sigma_k.extend(row.temperature_sigma_k);
+            all.lighting.extend(row.lighting);
+            all.p_value.extend(row.p_value);
+            all.posterior.extend(row.posterior);
+            all.candidates.extend(row.candidates);
+            all.flags.extend(row.flags);
+            all.spared = all.spared + spared;
+        }
+        all
     }
 
     pub(super) fn of(pixels: &[Pixel], surroundings: usize) -> Self {

@@ -113,13 +113,14 @@ fn compared<S: Sample>(
         }));
         room.iter().all(|n| n.is_finite())
     };
-    let all = |pixel: &(dyn Fn(&[f64]) -> Pixel + Sync)| -> Result<Vec<Row<()>>> {
-        by_rows.all(Vec::new, |room, sample, _, _, ()| match counts(room, sample) {
+    let all = |pixel: &(dyn Fn(&[f64]) -> Pixel + Sync)| -> Result<Vec<Row<Maps, ()>>> {
+        let own = |room: &mut Vec<f64>, sample: &[S], _, _: &mut _, (): &mut ()| match counts(room, sample) {
             true => pixel(room),
             false => Pixel::SKIPPED,
-        })
+        };
+        by_rows.all(Vec::new, own, |pixels| Maps::of(&pixels, setting.surroundings.len()))
     };
-    let found = match method {
+    let rows = match method {
         Method::GreyBody => {
             let grey = GreyBody::new(setting, &used);
             all(&|counts| grey.pixel(counts))
@@ -129,6 +130,5 @@ fn compared<S: Sample>(
             all(&|counts| inverse.pixel(counts))
         }
     }?;
-    let pixels: Vec<Pixel> = found.into_iter().flat_map(|(pixels, ..)| pixels).collect();
-    Ok(Maps::of(&pixels, setting.surroundings.len()))
+    Ok(Maps::joined(rows))
 }

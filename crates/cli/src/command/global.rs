@@ -11,7 +11,7 @@ use hadar::inputs;
 use hadar::material::Library;
 use hadar::units::decimal_comma;
 use hadar_report::bundle::{About, Bundle};
-use hadar_report::folder::{Folder, Strangers};
+use hadar_report::folder::{Folder, Scratch, Strangers};
 use hadar_report::manifest::{Provenance, answer_json};
 use hadar_report::text;
 use hadar_study::scenario::Scenario;
@@ -107,6 +107,11 @@ impl Global {
             Some(out) => self.folder(out).check_inputs(&inputs::so_far().files, &provenance::USUAL_NAMES),
             None => Ok(()),
         }
+    }
+
+    /// Room for what is too large to be kept until the report is written, where there will be one.
+    pub(super) fn scratch(&self) -> Result<Option<Scratch>> {
+        self.out.as_ref().map(|out| self.folder(out).scratch()).transpose()
     }
 
     /// Refuses a folder for what writes nothing.

@@ -3,11 +3,12 @@
 use super::global::Global;
 use clap::Args;
 use hadar::error::{Error, Result};
+use hadar_report::range::MapFiles;
 use hadar_report::{air_ranging, range};
 use hadar_study::scenario::range::Subject;
 use hadar_study::scenario::{AirRangingScenario, RangeScenario, RangingScenario};
 use hadar_study::study::air_ranging::{AirPlan, AirRangingStudy};
-use hadar_study::study::range::{RangePlan, RangeStudy};
+use hadar_study::study::range::{MapSink, RangePlan, RangeStudy};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -71,13 +72,15 @@ fn by_stereo(args: &RangeArgs, global: &Global, scenario: &RangeScenario) -> Res
         return Err(found.at(scenario.place("cube.depth")));
     }
     let bar = global.progress("rows and draws");
-    let mut result = study.range(&plan, &|done, total| bar.set(done, total))?;
+    let maps = global.scratch()?.map(MapFiles::new);
+    let sink = maps.as_ref().map(|maps| maps as &dyn MapSink);
+    let mut result = study.range(&plan, sink, &|done, total| bar.set(done, total))?;
     bar.finish();
     let text = match plan.verdict_alone {
         true => result.verdict.sentence.to_string(),
         false => range::text(&result),
     };
-    result.stats.add(&global.report(&text, |out| range::bundle(&result, out))?);
+    result.stats.add(&global.report(&text, |out| range::bundle(&result, out, maps.as_ref()))?);
     global.answer(&result, &text, &result.stats)?;
     let failed = args.check && result.verdict.met != Some(true);
     Ok(if failed { ExitCode::from(3) } else { ExitCode::SUCCESS })

@@ -35,9 +35,9 @@ pub(super) fn study(toml: &str) -> Result<RangeStudy> {
 
 pub(super) fn make(order: Order, out: &Path, progress: Progress<'_>) -> Result<Made> {
     let plan = RangePlan { trials: TRIALS, seed: order.seed, skipping: Skipping::On, verdict_alone: false };
-    let paper = study(STREET_AT_ONE_TEMPERATURE)?.range(&plan, progress)?;
-    let night = study(STREET)?.range(&RangePlan { trials: 0, ..plan }, progress)?;
-    let dim = study(&dimmer())?.range(&plan, progress)?;
+    let paper = study(STREET_AT_ONE_TEMPERATURE)?.range(&plan, None, progress)?;
+    let night = study(STREET)?.range(&RangePlan { trials: 0, ..plan }, None, progress)?;
+    let dim = study(&dimmer())?.range(&plan, None, progress)?;
     let mut bundle = Bundle::default();
     bundle.add_asked("scenario.toml", paper.scenario.to_toml_beside(out));
     bundle.add_table("bounds.csv", range::bounds(&paper))?;
@@ -114,7 +114,7 @@ fn dependence() -> Result<(Table, String)> {
         ("100 times the exposure", "\"12 ms\"", "\"1.2 s\""),
         ("noise of 1e4 counts", "noise_electrons = 0", "noise_electrons = 10000"),
     ] {
-        let result = study(&coarse.replace(from, to))?.range(&RangePlan::default(), &|_, _| ())?;
+        let result = study(&coarse.replace(from, to))?.range(&RangePlan::default(), None, &|_, _| ())?;
         let error = |signal: Signal| {
             of(&result, "ground", signal)
                 .and_then(|found| found.depth_error_m)
@@ -260,7 +260,7 @@ fn ledger(paper: &Ranging, night: &Ranging, dim: &Ranging, locking: &[(&str, f64
 
 /// Fisher information, standard deviation and entropy side by side.
 pub(super) fn textures(order: Order) -> Result<Made> {
-    let paper = study(STREET_AT_ONE_TEMPERATURE)?.range(&RangePlan::default(), &|_, _| ())?;
+    let paper = study(STREET_AT_ONE_TEMPERATURE)?.range(&RangePlan::default(), None, &|_, _| ())?;
     let columns = paper.shape.columns();
     let picture = |kind: PictureKind| {
         paper.maps.pictures.iter().find(|(found, _)| *found == kind).map(|(_, values)| values)

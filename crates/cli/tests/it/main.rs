@@ -21,6 +21,7 @@ mod identify_libraries;
 mod identify_mistakes;
 mod identify_sections;
 mod identify_words;
+mod large_cubes;
 mod library;
 mod messages;
 mod nearest;

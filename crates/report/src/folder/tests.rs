@@ -17,8 +17,8 @@ pub(super) fn rename(from: impl AsRef<Path>, to: impl AsRef<Path>) -> io::Result
     fs::rename(from, to)
 }
 
-fn files(names: &[&str], content: &str) -> Vec<(String, Vec<u8>)> {
-    names.iter().map(|name| ((*name).to_owned(), format!("{name} {content}").into_bytes())).collect()
+fn files(names: &[&str], content: &str) -> Vec<(String, Held)> {
+    names.iter().map(|name| ((*name).to_owned(), format!("{name} {content}").into_bytes().into())).collect()
 }
 
 fn write(folder: &Folder, names: &[&str], content: &str) -> Result<()> {
@@ -195,4 +195,29 @@ fn folders_of_the_dead_are_cleared_and_those_of_the_living_are_not() {
         write(&Folder::new(&place, Strangers::Refuse), &["x.csv"], "2").unwrap();
         assert_eq!(mode(&place), 0o750);
     }
+}
+
+#[test]
+fn a_large_file_is_taken_from_where_it_was_made() {
+    let home = tempfile::tempdir().unwrap();
+    for (place, strangers) in
+        [("new", Strangers::Refuse), ("new", Strangers::Refuse), ("kept", Strangers::KeepBesides)]
+    {
+        let place = home.path().join(place);
+        if strangers == Strangers::KeepBesides {
+            fs::create_dir(&place).unwrap();
+            fs::write(place.join("mine"), "mine").unwrap();
+        }
+        let folder = Folder::new(&place, strangers);
+        let scratch = folder.scratch().unwrap();
+        let large = scratch.place().join("large");
+        fs::write(&large, "a.npy 1").unwrap();
+        folder.write(&[("a.npy".into(), Held::File(large))], &Provenance::default(), &[]).unwrap();
+        drop(scratch);
+        assert_eq!(content(&place)["a.npy"], "a.npy 1");
+        let manifest = Manifest::in_folder(&place).unwrap();
+        assert!(manifest.owns(&place, "a.npy"));
+    }
+    let left = fs::read_dir(home.path()).unwrap().count();
+    assert_eq!(left, 2, "nothing is left beside the reports");
 }

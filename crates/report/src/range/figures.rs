@@ -76,7 +76,7 @@ pub fn views(result: &Ranging) -> Option<Plot> {
     let figure = |pictures| {
         Pictures::new("What the left camera sees", pictures).subtitle(subtitle.clone()).no_value("sky")
     };
-    plot("views", figure, pictures, [0, 0])
+    plot("views", figure, pictures, ([0, 0], 1))
 }
 
 /// The value that all of them have but for rounding, if there is one.
@@ -122,7 +122,7 @@ pub fn bound_maps(result: &Ranging) -> Option<Plot> {
             let axis = Axis::log(unit).range(low, high);
             let key = format!("{suffix}_{}", signal.key());
             let title = format!("Bound, {}", signal.name());
-            let picture = Picture::new(title, axis, maps.columns.len(), values.clone());
+            let picture = Picture::new(title, axis, maps.columns.len().div_ceil(maps.step), values.clone());
             let over = |(error, depth): (&f64, &f64)| (error / demand.at(*depth)).ln();
             let beyond: Vec<f64> = values.iter().zip(&maps.depth_m).map(over).collect();
             (key, if with_depth { picture.boundary(beyond) } else { picture })
@@ -150,7 +150,7 @@ pub fn bound_maps(result: &Ranging) -> Option<Plot> {
             .boundary_meaning(meaning.clone())
             .no_value("sky, not seen by both cameras, or no texture at all")
     };
-    plot("bounds_map", figure, pictures, [maps.rows.start, maps.columns.start])
+    plot("bounds_map", figure, pictures, ([maps.rows.start, maps.columns.start], maps.step))
 }
 
 /// A demand in words.
@@ -195,7 +195,7 @@ pub fn matched_maps(result: &Ranging) -> Option<Plot> {
             .subtitle("Block matching of one noisy pair.")
             .no_value("sky, or no match")
     };
-    plot("matched", figure, pictures, [0, 0])
+    plot("matched", figure, pictures, ([0, 0], 1))
 }
 
 /// Bounds along each line, and how matching does beside them.
@@ -345,12 +345,13 @@ fn clipped(axis: Axis, values: &[f64]) -> Axis {
     if high - low > FLAT * high.abs() { axis.range(low, high) } else { axis }
 }
 
-/// Pictures with a table of some of their pixels; `first` is the pixel at their upper left corner.
+/// Pictures with a table of some of their pixels; `first` is the pixel at their upper left corner, and every so many rows and
+/// columns of the view are in them.
 fn plot(
     name: &'static str,
     figure: impl Fn(Vec<Picture>) -> Pictures,
     pictures: Vec<(String, Picture)>,
-    first: [usize; 2],
+    (first, thinned): ([usize; 2], usize),
 ) -> Option<Plot> {
     let columns = pictures.first()?.1.columns;
     let rows = pictures.first()?.1.values.len().checked_div(columns)?;
@@ -360,7 +361,9 @@ fn plot(
     );
     for row in (0..rows).step_by(step) {
         for column in (0..columns).step_by(step) {
-            let mut cells = vec![(row + first[0]).to_string(), (column + first[1]).to_string()];
+            let place = [row, column].into_iter().zip(first);
+            let mut cells: Vec<String> =
+                place.map(|(at, first)| (first + at * thinned).to_string()).collect();
             let at = row * columns + column;
             cells.extend(
                 pictures.iter().map(|(_, picture)| {
@@ -371,7 +374,12 @@ fn plot(
         }
     }
     let mut figure = figure(pictures.into_iter().map(|(_, picture)| picture).collect());
+    if thinned > 1 {
+        let _ =
+            write!(figure.subtitle, " One in {thinned} rows and columns is shown; all are in the NPY files.");
+    }
     if step > 1 {
+        let step = step * thinned;
         let _ = write!(figure.subtitle, " The table beside holds one in {step} rows and columns.");
     }
     Some(Plot { name: name.into(), figure: figure.into(), table })
@@ -390,5 +398,5 @@ pub fn picture_plot(
     subtitle: String,
     pictures: Vec<(String, Picture)>,
 ) -> Option<Plot> {
-    plot(name, |pictures| Pictures::new(title, pictures).subtitle(subtitle.clone()), pictures, [0, 0])
+    plot(name, |pictures| Pictures::new(title, pictures).subtitle(subtitle.clone()), pictures, ([0, 0], 1))
 }

@@ -280,6 +280,13 @@ fn assumptions(result: &Ranging) -> String {
         "  bounds of unbiased estimates: a matcher with a bias (smoothing, a prior) can have a smaller error; derivative along x: {}",
         stereo.derivative.name()
     );
+    if let Some(error) = result.quantile_error {
+        let _ = writeln!(
+            out,
+            "  too many windows to keep: medians and quantiles are counted in steps, to within {} of their value; shares and maps are exact",
+            significant(error, 2)
+        );
+    }
     match stereo.diffraction {
         Diffraction::None => out.push_str("  diffraction is in the image already, none is added\n"),
         Diffraction::Airy | Diffraction::Gaussian(_) => {

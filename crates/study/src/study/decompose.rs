@@ -16,13 +16,18 @@ pub(super) use truth::Truth;
 pub use vision::{DistilledTexture, Vision, hues_deg};
 
 use self::results::summary;
-use super::Warning;
+use super::{Warning, memory};
 use hadar::decompose::{LibraryError, Method, Options, Setting, decompose_by, widen};
 use hadar::demand::Skipping;
 use hadar::error::{Error, Result};
 
 /// Length over which errors of emissivities are correlated where nothing is said, cm⁻¹.
 pub const CORRELATION_CM1: f64 = 50.0;
+
+/// Bytes of a pixel that are kept, and for each of the surroundings; with a prior over the image, at least.
+const KEPT: u64 = 90;
+const KEPT_LIGHT: u64 = 12;
+const KEPT_BESIDE_OTHERS: u64 = 400;
 
 impl DecomposeStudy {
     /// Decomposes the cube by a method; `done` is told how many rows are finished, of how many.
@@ -55,6 +60,14 @@ impl DecomposeStudy {
             let error = Error::malformed(found, "leave vision.sky out, or take --method ml");
             return Err(error.at(self.scenario.place("vision.sky")));
         }
+        let shape = self.cube.shape();
+        let per_pixel = match &self.scenario.spatial {
+            None => KEPT + KEPT_LIGHT * self.lights.len() as u64,
+            Some(_) => KEPT_BESIDE_OTHERS,
+        };
+        let bytes = per_pixel * (shape.rows() * shape.columns()) as u64;
+        memory::check(bytes, "the maps of all pixels", "cut the cube into parts of fewer rows")
+            .map_err(|error| error.at(self.scenario.place("cube.data")))?;
         let start = std::time::Instant::now();
         let unknown = self.scenario.unknown;
         let setting = Setting {

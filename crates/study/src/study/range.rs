@@ -1,11 +1,13 @@
 //! A ranging scenario answered: bounds of every window by each signal, what would have to change, witnesses.
 
 mod bounds;
+mod distribution;
 mod looked_up;
 mod resolve;
 mod results;
 mod signals;
 mod solve;
+mod streamed;
 mod subject;
 mod verdict;
 mod witness;
@@ -24,9 +26,9 @@ use self::bounds::Ground;
 use self::looked_up::SECTIONS;
 use self::signals::SignalMap;
 use self::subject::{Resolved, Truth, nothing_to_see};
-use super::Warning;
+use super::{Warning, memory};
 use crate::scenario::RangeScenario;
-use hadar::cube::{Cube, Shape};
+use hadar::cube::{Cube, Found, Shape};
 use hadar::demand::{self, Ledger, Skipping, Thing};
 use hadar::error::Result;
 use hadar::ranging::depth::StereoGeometry;
@@ -36,6 +38,10 @@ use hadar::ranging::noise::NoiseVariance;
 use hadar::render::{Part, StereoPair};
 use hadar::spectrum::Bands;
 use rayon::prelude::*;
+
+/// Bytes of a pixel that are kept of cubes, beside those of the file; measured.
+const ONE_VIEW: u64 = 320;
+const TWO_VIEWS: u64 = 430;
 
 /// How a study is to be answered.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -52,6 +58,21 @@ pub struct RangePlan {
 
 /// Is told how much of how much is done.
 pub type Progress<'a> = &'a (dyn Fn(usize, usize) + Sync);
+
+/// Takes the maps of what is too large to be kept, as their rows are made.
+pub trait MapSink: Sync {
+    /// Maps of the least disparity error of these signals will come, of so many rows and columns.
+    ///
+    /// # Errors
+    /// No room for them.
+    fn begin(&self, signals: &[Signal], rows: usize, columns: usize) -> Result<()>;
+
+    /// Whole rows of one of them, pixels, from row `first` on; in any order, by several threads.
+    ///
+    /// # Errors
+    /// No room for them.
+    fn put(&self, signal: Signal, first: usize, disparity_error_px: &[f64]) -> Result<()>;
+}
 
 /// Information of every window in both views.
 struct Informed {
@@ -86,6 +107,14 @@ impl RangeStudy {
         }
     }
 
+    /// What the file of the left view was read as.
+    fn read(&self) -> Option<Found> {
+        match &self.subject {
+            Resolved::Cube(cube) => Some(cube.read.clone()),
+            Resolved::Scene(_) => None,
+        }
+    }
+
     /// Expected counts of the left view of a scene, and their noise; `None` of cubes, which are there.
     ///
     /// # Errors
@@ -106,13 +135,21 @@ impl RangeStudy {
     ///
     /// # Errors
     /// Counts that are negative or no numbers, a window that does not fit into the view, files that cannot be read.
-    pub fn range(&self, plan: &RangePlan, progress: Progress<'_>) -> Result<Ranging> {
+    pub fn range(
+        &self,
+        plan: &RangePlan,
+        sink: Option<&dyn MapSink>,
+        progress: Progress<'_>,
+    ) -> Result<Ranging> {
         let shape = self.shape()?;
         if plan.verdict_alone
             && plan.skipping == Skipping::On
             && let Some(result) = self.verdict_alone(shape)?
         {
             return Ok(result);
+        }
+        if let Some(cube) = self.too_large_to_keep(shape) {
+            return self.streamed(cube, sink, progress);
         }
         let informed = self.informed(shape, progress)?;
         let ground = self.ground(&informed.truth, shape)?;
@@ -155,10 +192,7 @@ impl RangeStudy {
         let mut result = Ranging {
             scenario: self.scenario.clone(),
             verdict: self.verdict(objects.first())?,
-            read: match &self.subject {
-                Resolved::Cube(cube) => Some(cube.read.clone()),
-                Resolved::Scene(_) => None,
-            },
+            read: self.read(),
             shape,
             geometry: self.geometry(ground.var_diffraction_px2)?,
             cells: self.cell_medians(&informed, &windows)?,
@@ -166,6 +200,7 @@ impl RangeStudy {
             solve_for,
             lines,
             matched: matched.unwrap_or_default(),
+            quantile_error: None,
             stats: ledger.close(),
             warnings: Vec::new(),
             maps,
@@ -203,16 +238,14 @@ impl RangeStudy {
             }
             (Resolved::Scene(_), None) => Err(nothing_to_see()),
             (Resolved::Cube(cube), _) => {
-                // A unit of g photons: J(N, σ²) = g J(n, σ²/g) for counts n = N/g.
+                let per_pixel = if cube.right.is_some() { TWO_VIEWS } else { ONE_VIEW };
+                let pixels = (shape.rows() * shape.columns()) as u64;
+                let instead =
+                    "give one view and one depth, which is worked on by rows, or cut the cubes into parts";
+                memory::check(per_pixel * pixels, "two views or a depth of every pixel", instead)
+                    .map_err(|error| error.at(self.scenario.place("cube")))?;
                 let noise = cube.noise_per_unit()?;
-                let joined = self.scenario.stereo.joined;
-                let of = |cells: &InformationMap| {
-                    let both = [
-                        SignalMap::thermal(cells, joined, shape.bands()),
-                        SignalMap::of(Signal::HeatCube, Cell::Full, cells),
-                    ];
-                    both.map(|map| map.scaled(cube.photons_per_unit)).to_vec()
-                };
+                let of = |cells: &InformationMap| cube.signals(cells, self.scenario.stereo.joined);
                 let place = |key: &'static str| move |error: hadar::Error| error.at(self.scenario.place(key));
                 let noise = noise.as_ref().unwrap_or(&cube.noise);
                 let cells = information(&cube.left, &self.request(noise, &Cell::ALL, shape))
@@ -275,6 +308,14 @@ impl RangeStudy {
         }))
     }
 
+    /// Another derivative than that asked for.
+    const fn other_scheme(&self) -> Derivative {
+        match self.scenario.stereo.derivative {
+            Derivative::Central => Derivative::CubicSpline,
+            _ => Derivative::Central,
+        }
+    }
+
     /// J of the heat cube by another derivative over that asked for, medians; the windows are those of the map that has fewer.
     fn other_derivative(
         &self,
@@ -282,11 +323,7 @@ impl RangeStudy {
         windows: &[(usize, usize)],
         own: f64,
     ) -> Result<Option<f64>> {
-        let shape = self.shape()?;
-        let derivative = match self.scenario.stereo.derivative {
-            Derivative::Central => Derivative::CubicSpline,
-            _ => Derivative::Central,
-        };
+        let (shape, derivative) = (self.shape()?, self.other_scheme());
         let noise;
         let (cube, noise): (&Cube, &NoiseVariance) = match (&self.subject, &informed.counts) {
             (Resolved::Scene(scene), Some(counts)) => (counts, &scene.noise),

@@ -207,7 +207,7 @@ impl Question {
                 RangingScenario::Stereo(scenario) => {
                     let plan =
                         RangePlan { seed: asking.seed, skipping: asking.skipping, ..RangePlan::default() };
-                    let found = RangeStudy::new(&scenario, library)?.range(&plan, &|_, _| ())?;
+                    let found = RangeStudy::new(&scenario, library)?.range(&plan, None, &|_, _| ())?;
                     self.told(&found, &found.stats, asking)
                 }
                 RangingScenario::Air(scenario) => {

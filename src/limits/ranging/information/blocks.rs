@@ -21,10 +21,13 @@ const NEAR: usize = 1 << 11;
 const KEPT: usize = 1 << 18;
 
 /// Rows of windows of a block.
-const BLOCK_ROWS: usize = 32;
+const BLOCK_ROWS: usize = 64;
+
+/// Samples of the rows that a thread reads at a time, which are to stay in the cache that cores share.
+const READ: usize = 1 << 21;
 
 /// A request that fits its cube.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Plan<'a> {
     pub(super) request: &'a Request<'a>,
     pub(super) shape: Shape,
@@ -85,6 +88,11 @@ impl<'a> Plan<'a> {
         let pixels = plan.pixels();
         plan.var_window = padded(&plan.var_band, bands, stride, pixels * plan.share(pixels));
         Ok(plan)
+    }
+
+    /// The same for some of the windows, whose first rows are given.
+    pub(super) fn part(&self, tops: Range<usize>) -> Self {
+        Self { tops, ..self.clone() }
     }
 
     /// Whether a cell is asked for.
@@ -148,13 +156,18 @@ impl<'a> Plan<'a> {
         inner.start + half..inner.end - half
     }
 
-    /// Rows of windows that a thread takes at a time: enough that the rows that blocks have in common count for little,
-    /// and as many blocks for every thread.
+    /// Rows of windows that a thread takes at a time: enough that the rows that blocks have in common count for little, and
+    /// as many blocks for every thread.
     pub(super) fn block_rows(&self) -> usize {
         let least = BLOCK_ROWS.max(4 * (self.request.window.rows() - 1));
         let threads = rayon::current_num_threads();
         let blocks = self.tops.len().div_ceil(least).next_multiple_of(threads);
         self.tops.len().div_ceil(blocks.max(1)).max(1)
+    }
+
+    /// Rows of windows whose rows are read at a time: beside them, as many as windows are high are read again.
+    pub(super) fn read_rows(&self) -> usize {
+        (READ / self.shape.row_len()).max(3 * (self.request.window.rows() - 1)).max(1)
     }
 
     /// Strips from left to right.

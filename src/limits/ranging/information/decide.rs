@@ -16,15 +16,19 @@ mod tests;
 
 use super::blocks::{Plan, Strip, run};
 use super::boxes::{Image, window_sums};
+use super::parts::Part;
 use super::samples::{BandSums, Room, bounds_of_row, pixels_of_row};
-use super::{Cell, Request, Window, pixels};
+use super::{Cell, InformationMap, Request, Window, pixels};
 use crate::cube::{Cube, CubeRef};
 use crate::demand::{Reason, Thing, Work};
-use crate::error::{Error, Result, check};
+use crate::error::{Result, check};
 use std::ops::Range;
 
 /// Columns that are evaluated or left out together.
 const TILE: usize = 64;
+
+/// Pixels that are worked on at once.
+const AT_ONCE: usize = 1 << 21;
 
 /// Rows of windows that a thread sums at a time.
 const BLOCK: usize = 32;
@@ -84,20 +88,51 @@ impl Stats {
 /// # Errors
 /// Those of [`super::information`]; a requirement that is not a positive number.
 pub fn decide(cube: &Cube, request: &Request<'_>, required_per_pixel2: f64) -> Result<Decision> {
+    in_parts(cube, request, required_per_pixel2, AT_ONCE)
+}
+
+/// The same in parts of some `pixels`, but no lower than a window.
+pub(super) fn in_parts(
+    cube: &Cube,
+    request: &Request<'_>,
+    required_per_pixel2: f64,
+    pixels: usize,
+) -> Result<Decision> {
     check::positive("required information", required_per_pixel2, "pixel^-2")?;
     let request = Request { cells: &[Cell::Full], ..request.clone() };
     let plan = Plan::new(cube.shape(), &request)?;
-    let (rows, inner) = (plan.rows(), plan.inner());
+    let (height, end) = ((pixels / plan.shape.columns()).max(request.window.rows()), plan.tops.end);
+    let (mut above, mut stats) =
+        (Vec::with_capacity(plan.tops.len() * plan.centres().len()), Stats::default());
+    for start in plan.tops.clone().step_by(height) {
+        let part = plan.part(start..end.min(start + height));
+        // Rows that the next part looks at again are counted there.
+        let owned = if part.tops.end == end { part.rows().len() } else { part.tops.len() };
+        above.extend(decide_part(cube, &part, required_per_pixel2, owned, &mut stats)?);
+    }
+    let half = request.window.half_rows();
+    Ok(Decision { above, rows: plan.tops.start + half..end + half, columns: plan.centres(), stats })
+}
+
+/// The windows of a part; what it took is added for the first `owned` of its rows.
+fn decide_part(
+    cube: &Cube,
+    plan: &Plan<'_>,
+    required_per_pixel2: f64,
+    owned: usize,
+    stats: &mut Stats,
+) -> Result<Vec<bool>> {
+    let (rows, inner, window) = (plan.rows(), plan.inner(), plan.request.window);
     let mut state = State {
         strips: plan.strips_of(TILE),
         quotients: vec![0.0; rows.len() * inner.len()],
         evaluated: Vec::new(),
-        plan: &plan,
+        plan,
         cube: cube.into(),
     };
     state.evaluated = vec![false; rows.len() * state.strips.len()];
 
-    let height = request.window.rows();
+    let height = window.rows();
     let mut wanted = vec![false; state.evaluated.len()];
     for (row, wanted) in wanted.chunks_mut(state.strips.len()).enumerate() {
         // A single row cannot be left out of a window of one row.
@@ -115,7 +150,7 @@ pub fn decide(cube: &Cube, request: &Request<'_>, required_per_pixel2: f64) -> R
         let not_tried: Vec<bool> = first.iter().map(|j| hopeful * j >= required_per_pixel2).collect();
         drop(first);
         if plan.central() && not_tried.contains(&false) {
-            let bounds = state.bounds(&state.open(&not_tried, request.window))?;
+            let bounds = state.bounds(&state.open(&not_tried, window))?;
             let limit = (1.0 - MARGIN) * required_per_pixel2;
             for ((done, bound), not_tried) in done.iter_mut().zip(bounds).zip(not_tried) {
                 if !not_tried && bound < limit {
@@ -125,7 +160,7 @@ pub fn decide(cube: &Cube, request: &Request<'_>, required_per_pixel2: f64) -> R
             }
         }
         if done.contains(&false) {
-            let wanted = state.open(&done, request.window);
+            let wanted = state.open(&done, window);
             state.evaluate(&wanted)?;
             let windows = state.windows()?;
             for ((above, j), done) in above.iter_mut().zip(windows).zip(done) {
@@ -135,20 +170,14 @@ pub fn decide(cube: &Cube, request: &Request<'_>, required_per_pixel2: f64) -> R
     }
 
     let samples = |columns: usize| columns * plan.shape.bands();
-    let evaluated = state.evaluated.chunks(state.strips.len()).flat_map(|row| row.iter().zip(&state.strips));
-    let stats = Stats {
-        windows_proved_above: proved_above,
-        windows_proved_below: proved_below,
-        windows_computed: above.len() - proved_above - proved_below,
-        samples_evaluated: evaluated
-            .filter(|(done, _)| **done)
-            .map(|(_, s)| samples(s.quotients.len()))
-            .sum(),
-        samples_total: samples(inner.len()) * rows.len(),
-    };
-    let half = request.window.half_rows();
-    let rows = plan.tops.start + half..plan.tops.end + half;
-    Ok(Decision { above, rows, columns: plan.centres(), stats })
+    let evaluated = state.evaluated.chunks(state.strips.len()).take(owned);
+    let evaluated = evaluated.flat_map(|row| row.iter().zip(&state.strips)).filter(|(done, _)| **done);
+    stats.windows_proved_above += proved_above;
+    stats.windows_proved_below += proved_below;
+    stats.windows_computed += above.len() - proved_above - proved_below;
+    stats.samples_evaluated += evaluated.map(|(_, strip)| samples(strip.quotients.len())).sum::<usize>();
+    stats.samples_total += samples(inner.len()) * owned;
+    Ok(above)
 }
 
 struct State<'a> {
@@ -223,20 +252,18 @@ impl State<'_> {
         if self.plan.small_windows() {
             return self.sums();
         }
-        let zeros = self.plan.rows().len() * self.plan.shape.columns();
+        let (plan, pixels) = (self.plan, self.plan.rows().len() * self.plan.shape.columns());
         let sums = BandSums {
             quotients: std::mem::take(&mut self.quotients),
-            counts: vec![0.0; zeros],
-            variances: vec![0.0; if self.plan.var_band.is_empty() { zeros } else { 0 }],
-            spectral: Vec::new(),
+            counts: vec![0.0; pixels],
+            variances: vec![0.0; if plan.var_band.is_empty() { pixels } else { 0 }],
         };
-        let map = pixels::windows(self.plan, &sums)?;
+        let mut map = InformationMap::default();
+        let mut all = Part::all(&mut map, plan);
+        run(all.cut(BLOCK), |mut part, room: &mut _| pixels::windows(plan, &sums, &mut part, room))?;
         self.quotients = sums.quotients;
         let [_, _, _, full] = map.information;
-        if full.len() == self.plan.tops.len() * self.plan.centres().len() {
-            return Ok(full);
-        }
-        Err(Error::malformed("a map of another size", "report this"))
+        Ok(full)
     }
 
     /// Tiles that windows still open need, [row][strip].

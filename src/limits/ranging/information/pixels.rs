@@ -10,11 +10,12 @@
 //! Small windows are summed quantity by quantity, row by row and then column by column; larger ones in two levels
 //! ([`super::boxes`]), all quantities of a pixel side by side in one vector, a record.
 
-use super::blocks::{Plan, run};
+use super::blocks::Plan;
 use super::boxes::{Along, Image, Stack, along, window_sums};
-use super::request::{Cell, InformationMap};
+use super::parts::Part;
+use super::request::Cell;
 use super::samples::BandSums;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::ranging::derivative::Differentiator;
 use crate::simd::{Aligned, Chunk, LANES};
 use std::ops::Range;
@@ -22,22 +23,12 @@ use std::ops::Range;
 /// Doubles of a pixel: Σ_b (∂N)²/(N + σ²), (Σ_b ∂N)²/Σ_b (N + σ²), Σ_b ∂N, Σ_b N, Σ_b σ², and none.
 const RECORD: usize = LANES;
 
-/// Rows of windows of a block.
+/// Rows of windows that are summed at a time.
 const BLOCK: usize = 16;
 
-/// Rows of the results that are made together.
-struct Block<'a> {
-    tops: Range<usize>,
-    total: &'a mut [f64],
-    spatial: &'a mut [f64],
-    full: &'a mut [f64],
-    photons: &'a mut [f64],
-    var: &'a mut [f64],
-}
-
-/// What a thread keeps from block to block.
+/// What a thread keeps from part to part.
 #[derive(Default)]
-struct Room {
+pub(super) struct Room {
     slopes: Option<Differentiator>,
     stack: Stack,
     slope: Vec<f64>,
@@ -48,60 +39,12 @@ struct Room {
     windows: Aligned,
 }
 
-/// The second pass.
-pub(super) fn windows(plan: &Plan<'_>, sums: &BandSums) -> Result<InformationMap> {
-    let (columns, half) = (plan.centres(), plan.request.window.half_rows());
-    let rows = plan.tops.start + half..plan.tops.end + half;
-    let len = rows.len() * columns.len();
-    let room = |wanted: bool| vec![0.0; if wanted { len } else { 0 }];
-    let [mut total, mut spatial, mut full] =
-        [Cell::Total, Cell::Spatial, Cell::Full].map(|cell| room(plan.wants(cell)));
-    let (mut photons, mut var) = (room(true), room(true));
-    let per_block = (BLOCK * columns.len()).max(1);
-    {
-        fn parts(values: &mut [f64], len: usize) -> impl Iterator<Item = &mut [f64]> {
-            values.chunks_mut(len).chain(std::iter::repeat_with(<&mut [f64]>::default))
-        }
-        let (mut total, mut spatial) = (parts(&mut total, per_block), parts(&mut spatial, per_block));
-        let (mut full, mut var) = (parts(&mut full, per_block), parts(&mut var, per_block));
-        let mut photons = parts(&mut photons, per_block);
-        let blocks: Vec<Block<'_>> = plan
-            .tops
-            .clone()
-            .step_by(BLOCK)
-            .map(|start| Block {
-                tops: start..plan.tops.end.min(start + BLOCK),
-                total: total.next().unwrap_or_default(),
-                spatial: spatial.next().unwrap_or_default(),
-                full: full.next().unwrap_or_default(),
-                photons: photons.next().unwrap_or_default(),
-                var: var.next().unwrap_or_default(),
-            })
-            .collect();
-        run(blocks, |block, room: &mut Room| block.work(plan, sums, room))?;
-    }
-    Ok(InformationMap {
-        rows,
-        columns,
-        information: [total, spatial, Vec::new(), full],
-        photons,
-        var_added: var,
+/// The second pass, over a part of a plan; `sums` are of all its rows.
+pub(super) fn windows(plan: &Plan<'_>, sums: &BandSums, part: &mut Part<'_>, room: &mut Room) -> Result<()> {
+    part.cut(BLOCK).into_iter().try_for_each(|part| match plan.small_windows() {
+        true => part.small(plan, sums, room),
+        false => part.large(plan, sums, room),
     })
-}
-
-/// A map without an infinity: counts at the ends of what is allowed side by side.
-pub(super) fn finite(map: InformationMap) -> Result<InformationMap> {
-    // A sum of terms that are not negative is finite only if all of them are.
-    let sums = map.information.iter().map(|cell| crate::sum::sum(cell));
-    match sums.into_iter().find(|sum| !sum.is_finite()) {
-        None => Ok(map),
-        Some(sum) => Err(Error::out_of_range(
-            "the information of a window",
-            sum,
-            "pixel^-2",
-            "finite; the counts of neighbouring pixels are too far apart",
-        )),
-    }
 }
 
 impl Room {
@@ -173,11 +116,7 @@ impl Room {
     }
 }
 
-impl Block<'_> {
-    fn work(self, plan: &Plan<'_>, sums: &BandSums, room: &mut Room) -> Result<()> {
-        if plan.small_windows() { self.small(plan, sums, room) } else { self.large(plan, sums, room) }
-    }
-
+impl Part<'_> {
     /// Sums over small windows, one quantity after the other.
     fn small(self, plan: &Plan<'_>, sums: &BandSums, room: &mut Room) -> Result<()> {
         let (window, inner, columns) = (plan.request.window, plan.inner(), plan.shape.columns());

@@ -96,7 +96,7 @@ pub struct Request<'a> {
 }
 
 /// J of every window, as far as it was asked for.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct InformationMap {
     /// Rows of the centres.
     pub rows: Range<usize>,

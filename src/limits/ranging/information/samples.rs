@@ -6,12 +6,12 @@
 //! | pixels | Σ_b (∂N)²/(N + σ²) | both resolutions |
 //! | windows | Σ_b (Σ_p ∂N)²/Σ_p (N + σ²) | spectral alone |
 //!
-//! Blocks of rows are shared out to threads. A block owns the rows of pixels from its first to that of the next block, and
-//! reads on to the end of its last window; it is worked on in strips of columns, so that what is kept of the last rows
-//! (as many as a window has) stays in cache ([`super::strips`]; for the sums over windows see [`super::boxes`]).
+//! Some rows are read at a time, on to the end of their last window, and worked on in strips of columns, so that what is kept of
+//! the last rows (as many as a window has) stays in cache ([`super::strips`]; for the sums over windows see [`super::boxes`]).
 
-use super::blocks::{Plan, Strip, run};
+use super::blocks::{Plan, Strip};
 use super::checks::Checked;
+use super::parts::fit;
 use super::request::Cell;
 use super::rows::Buffer;
 use super::strips::{StripRoom, StripRow};
@@ -20,7 +20,7 @@ use crate::error::Result;
 use crate::ranging::noise::NoiseVariance;
 use std::ops::Range;
 
-/// Sums over the bands of pixels and of windows.
+/// Sums over the bands of pixels.
 #[derive(Debug, Default)]
 pub(super) struct BandSums {
     /// Σ_b (∂N)²/(N + σ²), `[row][column]` of the pixels in windows with a derivative; empty unless asked for.
@@ -29,59 +29,32 @@ pub(super) struct BandSums {
     pub(super) counts: Vec<f64>,
     /// Σ_b σ², likewise; empty unless every sample has its own.
     pub(super) variances: Vec<f64>,
-    /// Σ_b (Σ_p ∂N)²/Σ_p (N + σ²), `[row][column]` of the windows; empty unless asked for.
-    pub(super) spectral: Vec<f64>,
 }
 
-/// Rows of the results that a block makes.
-struct Block<'a> {
-    /// First rows of its windows, and the rows of pixels that it and no other block makes.
-    tops: Range<usize>,
-    owned: Range<usize>,
-    quotients: &'a mut [f64],
-    counts: &'a mut [f64],
-    variances: &'a mut [f64],
-    spectral: &'a mut [f64],
-}
-
-/// Takes the first `len` values off a slice.
-fn take<'a>(rest: &mut &'a mut [f64], len: usize) -> &'a mut [f64] {
-    let len = len.min(rest.len());
-    let (taken, left) = std::mem::take(rest).split_at_mut(len);
-    *rest = left;
-    taken
-}
-
-/// The first pass.
-pub(super) fn band_sums(cube: CubeRef<'_>, plan: &Plan<'_>, block_rows: usize) -> Result<BandSums> {
-    let (rows, inner) = (plan.rows(), plan.inner().len());
-    let room = |wanted: bool, rows: usize, columns: usize| vec![0.0; if wanted { rows * columns } else { 0 }];
-    let mut sums = BandSums {
-        quotients: room(plan.wants(Cell::Full), rows.len(), inner),
-        counts: room(true, rows.len(), plan.shape.columns()),
-        variances: room(plan.var_band.is_empty(), rows.len(), plan.shape.columns()),
-        spectral: room(plan.wants(Cell::Spectral), plan.tops.len(), plan.centres().len()),
-    };
-    let mut blocks = Vec::new();
-    let (mut quotients, mut counts) = (&mut sums.quotients[..], &mut sums.counts[..]);
-    let (mut variances, mut spectral) = (&mut sums.variances[..], &mut sums.spectral[..]);
-    let mut start = plan.tops.start;
+/// The first pass over all rows of a plan: the sums over bands, and Σ_b (Σ_p ∂N)²/Σ_p (N + σ²), `[row][column]` of the windows,
+/// where there is room for it.
+pub(super) fn band_sums(
+    cube: CubeRef<'_>,
+    plan: &Plan<'_>,
+    room: &mut Room,
+    sums: &mut BandSums,
+    spectral: &mut [f64],
+) -> Result<()> {
+    let (rows, inner, columns) = (plan.rows(), plan.inner().len(), plan.shape.columns());
+    fit(&mut sums.quotients, if plan.wants(Cell::Full) { rows.len() * inner } else { 0 });
+    fit(&mut sums.counts, rows.len() * columns);
+    fit(&mut sums.variances, if plan.var_band.is_empty() { rows.len() * columns } else { 0 });
+    let (mut start, strips) = (plan.tops.start, plan.strips());
     while start < plan.tops.end {
-        let end = plan.tops.end.min(start + block_rows);
+        let end = plan.tops.end.min(start + plan.read_rows());
         let owned = start..if end == plan.tops.end { rows.end } else { end };
-        blocks.push(Block {
-            tops: start..end,
-            quotients: take(&mut quotients, owned.len() * inner),
-            counts: take(&mut counts, owned.len() * plan.shape.columns()),
-            variances: take(&mut variances, owned.len() * plan.shape.columns()),
-            spectral: take(&mut spectral, (end - start) * plan.centres().len()),
-            owned,
-        });
+        let last = if plan.wants(Cell::Spectral) { end + plan.request.window.rows() - 1 } else { 0 };
+        let read = owned.start..owned.end.max(last);
+        let mut to = Results { tops: start..end, owned, first: plan.tops.start, sums, spectral };
+        to.take_rows(cube, plan, &strips, read, room)?;
         start = end;
     }
-    let strips = plan.strips();
-    run(blocks, |block, room: &mut Room| block.work(cube, plan, &strips, room))?;
-    Ok(sums)
+    Ok(())
 }
 
 /// The quotients of one row of pixels, in some of the strips of a plan for [`Cell::Full`] alone; `to` is for all
@@ -142,11 +115,26 @@ pub(super) struct Room {
     strip: StripRoom,
 }
 
-impl Block<'_> {
-    fn work(mut self, cube: CubeRef<'_>, plan: &Plan<'_>, strips: &[Strip], room: &mut Room) -> Result<()> {
-        let last =
-            if plan.wants(Cell::Spectral) { self.tops.end + plan.request.window.rows() - 1 } else { 0 };
-        let read = self.owned.start..self.owned.end.max(last);
+/// Where the results of rows are put.
+struct Results<'a> {
+    /// First rows of the windows, and the rows of pixels that are made now.
+    tops: Range<usize>,
+    owned: Range<usize>,
+    /// The row that the results begin with.
+    first: usize,
+    sums: &'a mut BandSums,
+    spectral: &'a mut [f64],
+}
+
+impl Results<'_> {
+    fn take_rows(
+        &mut self,
+        cube: CubeRef<'_>,
+        plan: &Plan<'_>,
+        strips: &[Strip],
+        read: Range<usize>,
+        room: &mut Room,
+    ) -> Result<()> {
         let counts = room.counts.read(cube, read.clone())?;
         let variances = match plan.request.noise {
             NoiseVariance::PerSample(cube) => Some(room.variances.read(cube.into(), read.clone())?),
@@ -182,7 +170,7 @@ impl Block<'_> {
     fn pixels(&mut self, row: StripRow<'_>, room: &mut StripRoom) -> Result<()> {
         let StripRow { y, plan, strip, .. } = row;
         let (columns, inner) = (plan.shape.columns(), plan.inner().len());
-        let own = y - self.owned.start;
+        let own = y - self.first;
         let to_totals = own * columns + strip.totals.start..own * columns + strip.totals.end;
         let to_ratios = if plan.wants(Cell::Full) {
             let [from, to] = [strip.quotients.start, strip.quotients.end].map(|x| x - plan.margin);
@@ -191,14 +179,14 @@ impl Block<'_> {
             0..0
         };
         if plan.direct() {
-            let (to_totals, to) = (&mut self.counts[to_totals], &mut self.quotients[to_ratios]);
+            let (to_totals, to) = (&mut self.sums.counts[to_totals], &mut self.sums.quotients[to_ratios]);
             return room.direct_pixels(row, Some(to_totals), to);
         }
         room.widen(row)?;
         let to_variances = if row.variances() { to_totals.clone() } else { 0..0 };
-        room.band_sums(row, &mut self.counts[to_totals], &mut self.variances[to_variances]);
+        room.band_sums(row, &mut self.sums.counts[to_totals], &mut self.sums.variances[to_variances]);
         if plan.wants(Cell::Full) {
-            room.quotients(row, &mut self.quotients[to_ratios])?;
+            room.quotients(row, &mut self.sums.quotients[to_ratios])?;
         }
         Ok(())
     }
@@ -209,7 +197,7 @@ impl Block<'_> {
         let top = (y + 1).checked_sub(plan.request.window.rows()).filter(|top| self.tops.contains(top));
         let to = top.map(|top| {
             let centres = plan.centres();
-            let own = (top - self.tops.start) * centres.len();
+            let own = (top - self.first) * centres.len();
             let [start, end] = [strip.centres.start, strip.centres.end].map(|x| x - centres.start);
             &mut self.spectral[own + start..own + end]
         });

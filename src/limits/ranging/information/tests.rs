@@ -1,4 +1,4 @@
-use super::decide::decide;
+use super::decide::{self, decide};
 use super::*;
 use crate::cube::{Cube, MemoryCube, Shape};
 use crate::ranging::derivative::{Derivative, Differentiator};
@@ -127,8 +127,20 @@ proptest! {
 
         // The same bits in blocks of other heights, for part of the rows, and in the decision.
         let plan = blocks::Plan::new(shape, &request).unwrap();
-        let other = samples::band_sums((&cube(shape, &counts)).into(), &plan, 1 + seed as usize % 5).unwrap();
-        prop_assert_eq!(&other.spectral, &map.information[2]);
+        prop_assert_eq!(&whole((&cube(shape, &counts)).into(), &plan, 1 + seed as usize % 5).unwrap(), &map);
+        let parts = std::sync::Mutex::new(Vec::new());
+        information_by_rows(&cube(shape, &counts), &request, &|part| {
+            parts.lock().unwrap().push(part.clone());
+            Ok(())
+        }).unwrap();
+        let mut parts = parts.into_inner().unwrap();
+        parts.sort_by_key(|part| part.rows.start);
+        let joined = |of: &dyn Fn(&InformationMap) -> Vec<f64>| parts.iter().flat_map(of).collect::<Vec<_>>();
+        for cell in Cell::ALL {
+            prop_assert_eq!(&joined(&|part| part.cell(cell).to_vec()), map.cell(cell));
+        }
+        prop_assert_eq!(joined(&|part| part.photons.clone()), map.photons.clone());
+        prop_assert_eq!(joined(&|part| part.var_added.clone()), map.var_added.clone());
         let part = Request { centres: map.rows.start + map.rows.len() / 2..rows, ..request.clone() };
         let part = information(&cube(shape, &counts), &part).unwrap();
         for cell in Cell::ALL {
@@ -138,6 +150,9 @@ proptest! {
         let required = full[seed as usize % full.len()];
         let decision = decide(&cube(shape, &counts), &request, required).unwrap();
         let expected: Vec<bool> = full.iter().map(|full| *full >= required).collect();
+        let parts = decide::in_parts(&cube(shape, &counts), &request, required, 1).unwrap();
+        prop_assert_eq!((&parts.above, &parts.rows), (&expected, &decision.rows));
+        prop_assert_eq!(parts.stats.samples_total, decision.stats.samples_total);
         prop_assert_eq!(decision.above, expected);
         let stats = decision.stats;
         let windows = stats.windows_proved_above + stats.windows_proved_below + stats.windows_computed;

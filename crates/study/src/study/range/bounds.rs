@@ -176,7 +176,7 @@ impl Ground<'_> {
     }
 
     /// The depth at which a window of this disparity error would just reach the demand, its image as it is.
-    fn largest_depth_m(&self, disparity_error_px: f64) -> f64 {
+    pub(super) fn largest_depth_m(&self, disparity_error_px: f64) -> f64 {
         // δz = c δd z².
         let slope = self.geometry.metres_per_pixel(1.0) * disparity_error_px;
         match self.requirement.error {
@@ -208,7 +208,7 @@ impl Ground<'_> {
         let depth_m = centres.map(|at| self.truth.depth_m.get(at).copied().unwrap_or(f64::NAN)).collect();
         let disparity_error_px: Vec<(Signal, Vec<f64>)> =
             maps.par_iter().zip(variances).map(|(map, var)| (map.signal, spread(var))).collect();
-        BoundMaps { rows, columns, disparity_error_px, depth_m, brightest: None, pictures: Vec::new() }
+        BoundMaps { rows, columns, disparity_error_px, depth_m, ..BoundMaps::default() }
     }
 }
 

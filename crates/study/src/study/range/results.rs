@@ -86,6 +86,9 @@ pub struct Ranging {
     pub lines: Vec<Line>,
     /// Matching of whole views, where it was asked for.
     pub matched: Vec<Matched>,
+    /// Relative error of medians and quantiles, at most, where there are too many windows to keep them all; none where exact.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub quantile_error: Option<f64>,
     /// What was computed and what was skipped.
     pub stats: Work,
     /// What the reader must know.
@@ -274,12 +277,14 @@ pub struct Matched {
 }
 
 /// Maps over the windows' centres in the left view.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub struct BoundMaps {
     /// Rows of the centres.
     pub rows: Range<usize>,
     /// Columns of the centres.
     pub columns: Range<usize>,
+    /// From a row and column that is here to the next: 1 for all of them. The others were given to the [`MapSink`](super::MapSink).
+    pub step: usize,
     /// Least disparity error of each signal, pixels; NaN where there is none.
     pub disparity_error_px: Vec<(Signal, Vec<f64>)>,
     /// Depth at the centres, m.
@@ -288,6 +293,20 @@ pub struct BoundMaps {
     pub brightest: Option<f64>,
     /// Pictures of the left view, `[row][column]`.
     pub pictures: Vec<(PictureKind, Vec<f64>)>,
+}
+
+impl Default for BoundMaps {
+    fn default() -> Self {
+        Self {
+            rows: 0..0,
+            columns: 0..0,
+            step: 1,
+            disparity_error_px: Vec::new(),
+            depth_m: Vec::new(),
+            brightest: None,
+            pictures: Vec::new(),
+        }
+    }
 }
 
 /// What a picture of the left view shows.

@@ -1,7 +1,7 @@
 //! Information of every window by each signal, in one view.
 
 use super::results::Signal;
-use super::subject::{Rendered, nothing_to_see};
+use super::subject::{Measured, Rendered, nothing_to_see};
 use hadar::cube::{Cube, Rows as _, Shape};
 use hadar::error::Result;
 use hadar::ranging::depth::WindowInformation;
@@ -64,6 +64,19 @@ impl SignalMap {
     pub(super) fn at(&self, row: usize, column: usize) -> Option<usize> {
         let inside = self.rows.contains(&row) && self.columns.contains(&column);
         inside.then(|| (row - self.rows.start) * self.columns.len() + column - self.columns.start)
+    }
+}
+
+impl Measured {
+    /// What the thermal image and the heat cube tell, of the cells of the counts as they are in the file.
+    ///
+    /// A unit of g photons: J(N, σ²) = g J(n, σ²/g) for counts n = N/g.
+    pub(super) fn signals(&self, cells: &InformationMap, joined: Joined) -> Vec<SignalMap> {
+        let both = [
+            SignalMap::thermal(cells, joined, self.left.shape().bands()),
+            SignalMap::of(Signal::HeatCube, Cell::Full, cells),
+        ];
+        both.map(|map| map.scaled(self.photons_per_unit)).to_vec()
     }
 }
 

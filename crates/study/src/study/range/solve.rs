@@ -12,11 +12,17 @@ use hadar::ranging::depth::{DepthTask, ExposureNoise, Image, WindowSamples};
 use hadar::ranging::derivative::Differentiator;
 use hadar::ranging::noise::NoiseVariance;
 use hadar::ranging::psf::{PointSpread, bands_var_m2};
-use hadar::render::{Part, View};
+use hadar::render::{Part, StereoPair, View};
 use std::ops::Range;
 
 /// A share of a number of windows that is whole but for rounding.
 const RANK_ROUNDING: f64 = 1e-9;
+
+/// The place, among so many windows in their order, of the first that leaves fewer than a share before it.
+pub(super) fn rank(share: f64, windows: usize) -> usize {
+    let reached = (share * windows as f64 - RANK_ROUNDING).ceil() as usize;
+    reached.saturating_sub(1).min(windows.saturating_sub(1))
+}
 
 /// Rows of counts of a view, in photons, with σ² of a sample of band b.
 struct Counts {
@@ -40,16 +46,31 @@ impl RangeStudy {
         else {
             return Ok(None);
         };
+        self.solved(informed.pair.as_ref(), (row, column), depth_m, ground.var_diffraction_px2)
+    }
+
+    /// Each quantity for the heat cube's window at a row and column, seen in a rendered pair or in cubes.
+    pub(super) fn solved(
+        &self,
+        pair: Option<&StereoPair>,
+        (row, column): (usize, usize),
+        depth_m: f64,
+        var_diffraction_px2: f64,
+    ) -> Result<Option<DepthSolutions>> {
         let disparity = self.geometry.disparity_px(depth_m)?;
         let partner = (column as f64 - disparity).round();
-        let left = self.samples(informed, true, row, column)?;
-        let right = match self.has_right(informed) && partner >= 0.0 {
-            true => self.samples(informed, false, row, partner as usize)?,
+        let left = self.samples(pair, true, row, column)?;
+        let has_right = match &self.subject {
+            Resolved::Scene(_) => true,
+            Resolved::Cube(cube) => cube.right.is_some(),
+        };
+        let right = match has_right && partner >= 0.0 {
+            true => self.samples(pair, false, row, partner as usize)?,
             false => left.clone(),
         };
         let (Some(left), Some(right)) = (left, right) else { return Ok(None) };
         let pitch = self.geometry.pitch_m();
-        let image = match ground.var_diffraction_px2 {
+        let image = match var_diffraction_px2 {
             0.0 => Image::Measured,
             var => Image::Ideal { var_diffraction_m2: var * pitch * pitch },
         };
@@ -98,26 +119,19 @@ impl RangeStudy {
                 ranked.push((error / self.scenario.requirement.error.at(depth_m), *window, depth_m));
             }
         }
-        let last = ranked.len().saturating_sub(1);
-        // The first that leaves fewer than the demanded share before it.
-        let rank = ((self.scenario.requirement.share * ranked.len() as f64 - RANK_ROUNDING).ceil() as usize)
-            .saturating_sub(1);
         if ranked.is_empty() {
             return Ok(None);
         }
+        let rank = rank(self.scenario.requirement.share, ranked.len());
         let (_, (ratio, window, depth_m), _) =
-            ranked.select_nth_unstable_by(rank.min(last), |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+            ranked.select_nth_unstable_by(rank, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         Ok(ratio.is_finite().then_some((*window, *depth_m)))
-    }
-
-    fn has_right(&self, informed: &Informed) -> bool {
-        !informed.right.is_empty()
     }
 
     /// Samples of a window of one view; `None` where it does not fit in.
     fn samples(
         &self,
-        informed: &Informed,
+        pair: Option<&StereoPair>,
         left: bool,
         row: usize,
         column: usize,
@@ -129,7 +143,7 @@ impl RangeStudy {
         if column < half_columns + margin || column + half_columns + margin >= shape.columns() {
             return Ok(None);
         }
-        let counts = self.counts(informed, left, row - half_rows..row + half_rows + 1)?;
+        let counts = self.counts(pair, left, row - half_rows..row + half_rows + 1)?;
         let bands = shape.bands();
         let columns = column - half_columns..column + half_columns + 1;
         let mut differentiator = Differentiator::new(stereo.derivative, shape.columns())?;
@@ -155,9 +169,9 @@ impl RangeStudy {
         WindowSamples::new(n, slope, var).map(Some)
     }
 
-    fn counts(&self, informed: &Informed, left: bool, rows: Range<usize>) -> Result<Counts> {
+    fn counts(&self, pair: Option<&StereoPair>, left: bool, rows: Range<usize>) -> Result<Counts> {
         let first = rows.start;
-        match (&self.subject, &informed.pair) {
+        match (&self.subject, pair) {
             (Resolved::Scene(scene), Some(pair)) => {
                 let view: &View = if left { &pair.left } else { &pair.right };
                 let mut counts = Vec::new();

@@ -69,6 +69,7 @@ impl RangeStudy {
             solve_for: None,
             lines: Vec::new(),
             matched: Vec::new(),
+            quantile_error: None,
             stats,
             warnings: {
                 let unseen = self.unseen(&decision.stats, shape, required * cube.photons_per_unit);

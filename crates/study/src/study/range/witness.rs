@@ -45,6 +45,14 @@ impl RangeStudy {
         }
     }
 
+    /// Whether lines are among the rows that have whole windows.
+    pub(super) fn check_lines(&self, lines: &[usize], rows: &Range<usize>) -> Result<()> {
+        let Some(row) = lines.iter().find(|row| !rows.contains(row)) else { return Ok(()) };
+        let found = format!("row {row} has no whole window");
+        let instead = format!("choose rows from {} to {}", rows.start, rows.end.saturating_sub(1));
+        Err(Error::malformed(found, instead).at(self.scenario.place("stereo.lines")))
+    }
+
     /// Bounds along the lines of the scenario, with matches beside them where trials are asked for. The maps are those with
     /// diffraction and those without.
     pub(super) fn lines(
@@ -59,14 +67,7 @@ impl RangeStudy {
             return Ok(lines);
         }
         let rows = self.line_rows(&maps.rows);
-        for row in &rows {
-            if !maps.rows.contains(row) {
-                let found = format!("row {row} has no whole window");
-                let instead =
-                    format!("choose rows from {} to {}", maps.rows.start, maps.rows.end.saturating_sub(1));
-                return Err(Error::malformed(found, instead).at(self.scenario.place("stereo.lines")));
-            }
-        }
+        self.check_lines(&rows, &maps.rows)?;
         let one_band = self.shape()?.bands() == 1;
         let jobs = rows.len() * maps.disparity_error_px.len();
         for (i, &row) in rows.iter().enumerate() {
@@ -92,7 +93,7 @@ impl RangeStudy {
         Ok(lines)
     }
 
-    fn bound_line(
+    pub(super) fn bound_line(
         &self,
         row: usize,
         signal: Signal,

@@ -126,7 +126,7 @@ impl DepthClause {
 
     /// What is found from one distance.
     fn seen(&self, distance_m: f64, study: &RangeStudy) -> Result<Seen> {
-        let found = study.range(&RangePlan::default(), &|_, _| ())?;
+        let found = study.range(&RangePlan::default(), None, &|_, _| ())?;
         let object = found.objects.iter().find(|object| object.name == self.demand.object.name());
         let by = |signal: Signal| {
             object.and_then(|object| object.signals.iter().find(|bounds| bounds.signal == signal))
