@@ -130,23 +130,19 @@ fn bands(header: &EnviHeader, bands: usize) -> Result<Option<(Vec<f64>, Option<V
     };
     positive("wavelength", &centres)?;
     let widths = header.numbers_for("fwhm", bands, "bands")?;
-    let widths = match widths {
-        None => None,
-        Some(widths) => {
-            positive("fwhm", &widths)?;
-            let width = |(centre, width): (&f64, &f64)| {
-                let [a, b] = [-0.5, 0.5].map(|half| unit.wavenumber_cm1(centre + half * width));
-                (a - b).abs()
-            };
-            if let Some((centre, _)) =
-                centres.iter().zip(&widths).find(|(centre, width)| **width >= 2.0 * **centre)
-            {
-                let found = format!("a band at {centre} {} that reaches below 0", unit.name());
-                return Err(header
-                    .wrong("fwhm", Error::malformed(found, "give the widths in the unit of wavelength")));
-            }
-            Some(centres.iter().zip(&widths).map(width).collect())
-        }
+    positive("fwhm", widths.as_deref().unwrap_or_default())?;
+    let width = |(centre, width): (&f64, &f64)| {
+        let [a, b] = [-0.5, 0.5].map(|half| unit.wavenumber_cm1(centre + half * width));
+        (a - b).abs()
     };
-    Ok(Some((centres.iter().map(|centre| unit.wavenumber_cm1(*centre)).collect(), widths)))
+    let widths_cm1: Option<Vec<f64>> = widths.as_ref().map(|widths| centres.iter().zip(widths).map(width).collect());
+    let centres_cm1: Vec<f64> = centres.iter().map(|centre| unit.wavenumber_cm1(*centre)).collect();
+    // Such as bands that reach below 0, or beyond what numbers can tell apart.
+    let sound = |list: &[f64]| list.iter().all(|value| value.is_finite() && *value > 0.0);
+    let reach = |widths: &Vec<f64>| centres.iter().zip(widths).all(|(centre, width)| *width < 2.0 * centre);
+    if !sound(&centres_cm1) || !widths_cm1.as_deref().is_none_or(sound) || !widths.as_ref().is_none_or(reach) {
+        let found = Error::malformed("these are no bands", "give wavelength and fwhm in the unit that is named");
+        return Err(header.wrong("wavelength", found));
+    }
+    Ok(Some((centres_cm1, widths_cm1)))
 }

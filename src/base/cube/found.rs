@@ -81,10 +81,11 @@ impl Found {
 impl fmt::Display for Found {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (rows, columns, bands) = (self.shape.rows(), self.shape.columns(), self.shape.bands());
-        write!(f, "{rows} rows x {columns} columns x {bands} bands, {}, {}", self.stored, self.file)?;
+        let file = self.file.escape_debug();
+        write!(f, "{rows} rows x {columns} columns x {bands} bands, {}, {file}", self.stored)?;
         let mut more = vec![self.format.to_owned()];
         if let Some(variable) = &self.variable {
-            more.push(format!("variable {variable}"));
+            more.push(format!("variable {}", variable.escape_debug()));
         }
         if let Some(axes) = &self.axes {
             more.push(format!("axes {axes}"));

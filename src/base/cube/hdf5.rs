@@ -7,8 +7,10 @@
 
 mod array;
 mod packed;
+mod sound;
 
 use self::array::{Array, listed, wavelengths};
+use self::sound::{damaged, sound};
 use super::arrange;
 use super::axes::Axes;
 use super::found::{Found, Opened};
@@ -17,7 +19,6 @@ use super::{MemoryCube, Sample, Shape};
 use crate::error::{Error, Result};
 use hdf5_pure::Layout;
 use std::fs::File;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
 /// Most that one byte of a packed chunk can stand for (RFC 1951: 258 bytes in two bits).
@@ -32,17 +33,6 @@ pub(super) fn open(file: File, path: &Path, name: Option<&str>, axes: Option<Axe
     let bands = opened.found.shape.bands();
     let centres_cm1 = sound(|| Ok(wavelengths(&source, &name, bands)))?;
     Ok(Opened { found: Found { variable: Some(name), centres_cm1, ..opened.found }, ..opened })
-}
-
-/// What the reader of the format does, without its panics: there are files that it was not made for, and a user's is only
-/// refused.
-fn sound<T>(work: impl FnOnce() -> Result<T>) -> Result<T> {
-    catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|_| Err(damaged("its parts do not fit together")))
-}
-
-fn damaged(error: impl std::fmt::Display) -> Error {
-    let instead = "write or copy it again, or write the cube with np.save('cube.npy', a)";
-    Error::malformed(format!("the HDF5 file cannot be read: {error}"), instead)
 }
 
 /// The array of this name, or the only one that can be meant.

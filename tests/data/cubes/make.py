@@ -129,3 +129,5 @@ with netCDF4.Dataset("netcdf.nc", "w") as f:
     data[3, 1, 2] = np.ma.masked
     v[:] = data
     f.createVariable("never", "f4", ("y", "x", "wavelength"))
+    partly = f.createVariable("partly", "f4", ("y", "x", "wavelength"), chunksizes=(1, COLUMNS, BANDS))
+    partly[0] = CUBE[0]

@@ -5,7 +5,7 @@ use hadar::cube::{Shape, npy_map, write_npy};
 use hadar::planck::photon_radiance;
 use std::fs;
 
-const SCENARIO: &str = r#"title = "Wall and pane"
+pub(crate) const SCENARIO: &str = r#"title = "Wall and pane"
 [cube]
 data = "counts.npy"
 counts_per_photon_radiance = 1e-13
@@ -57,7 +57,7 @@ fn pixel(i: usize) -> (Vec<f64>, usize, f64, f64) {
     (radiance.collect(), material, temperature_k, v)
 }
 
-fn with(scenario: &str) -> Folder {
+pub(crate) fn with(scenario: &str) -> Folder {
     let folder = Folder::with(scenario);
     let tables: Vec<[String; 2]> = (0..BANDS)
         .map(|w| {

@@ -11,6 +11,7 @@ mod classes;
 mod cli;
 mod cli_mistakes;
 mod companion;
+mod cubes;
 mod decompose;
 mod decompose_image;
 mod demand;

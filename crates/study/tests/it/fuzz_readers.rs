@@ -95,7 +95,7 @@ macro_rules! readers {
 
 readers! {
     material, library, manifest, optical_constants, band_rows, filters, scenario, range_scenario, quantity, npy, mat,
-    noise, model,
+    npz, envi, hdf5, noise, model,
 }
 
 /// Files that are long, wide or deep, which no change of a seed makes.

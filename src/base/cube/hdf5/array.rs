@@ -1,6 +1,6 @@
 //! Arrays of an HDF5 file: their type, their dimensions, what their attributes say.
 
-use super::{damaged, sound};
+use super::sound::{damaged, sound};
 use crate::cube::Sample;
 use crate::cube::stored::{Stored, decode};
 use crate::cube::values::Values;

@@ -6,7 +6,7 @@
 //! refuses, it must refuse in one short line. Time and memory are watched by whoever runs this.
 
 use hadar::Error;
-use hadar::cube::{Cube, Rows, Sample, Shape, first_invalid, panchromatic};
+use hadar::cube::{Axes, Cube, Rows, Sample, Shape, first_invalid, panchromatic};
 use hadar::material::{Library, Material, read};
 use hadar::ranging::noise::NoiseVariance;
 use hadar::simulate::classifier::{Classifier, SavedModel};
@@ -34,6 +34,9 @@ pub(crate) const READERS: &[Reader] = &[
     Reader { name: "quantity", check: quantity },
     Reader { name: "npy", check: npy },
     Reader { name: "mat", check: mat },
+    Reader { name: "npz", check: npz },
+    Reader { name: "envi", check: envi },
+    Reader { name: "hdf5", check: hdf5 },
     Reader { name: "noise", check: noise },
     Reader { name: "model", check: model },
 ];
@@ -310,6 +313,47 @@ fn mat(folder: &Folder, bytes: &[u8]) {
         if let Some(cube) = accepted(Cube::open(&path, variable)) {
             sound_cube(&cube);
         }
+    }
+}
+
+/// A file that is told by its first bytes, with its axes in two orders and an array by name.
+fn arrays(folder: &Folder, name: &str, bytes: &[u8]) {
+    let path = folder.put(name, bytes);
+    let images = Axes::named("bands,rows,columns").expect("three axes");
+    for (variable, axes) in
+        [(None, None), (Some("S"), None), (None, Some(images)), (Some("night/images"), Some(images))]
+    {
+        if let Some(opened) = accepted(Cube::open_as(&path, variable, axes)) {
+            one_line(&opened.found.to_string());
+            assert_eq!(opened.found.shape, opened.cube.shape());
+            sound_cube(&opened.cube);
+        }
+    }
+}
+
+fn npz(folder: &Folder, bytes: &[u8]) {
+    arrays(folder, "a.npz", bytes);
+}
+
+fn hdf5(folder: &Folder, bytes: &[u8]) {
+    arrays(folder, "a.h5", bytes);
+}
+
+/// A header, beside data of 240 bytes: 3 x 4 x 5 samples of 32 bits, and what else there is of that size.
+fn envi(folder: &Folder, bytes: &[u8]) {
+    folder.put("a.img", &[0x41; 240]);
+    let path = folder.put("a.hdr", bytes);
+    if let Some(opened) = accepted(Cube::open_as(&path, None, None)) {
+        one_line(&opened.found.to_string());
+        let bands = opened.cube.shape().bands();
+        for list in [&opened.found.centres_cm1, &opened.found.widths_cm1].into_iter().flatten() {
+            assert!(
+                list.len() == bands && list.iter().all(|value| *value > 0.0 && value.is_finite()),
+                "{list:?}"
+            );
+        }
+        assert!(opened.found.bad_bands.iter().all(|band| *band < bands));
+        sound_cube(&opened.cube);
     }
 }
 

@@ -1,0 +1,142 @@
+//! Cubes of several formats and orders as their user has them: one scene comes out the same of all.
+
+use crate::decompose::{SCENARIO, with};
+use crate::support::folder::Folder;
+use hadar::cube::{Cube, Shape, write_npy};
+use std::fs;
+
+const BANDS: &str = "[bands]\nstart = \"800 cm^-1\"\nstop = \"1200 cm^-1\"\nstep = \"20 cm^-1\"\n";
+
+/// The counts of the scene, `[pixel][band]` of 2 x 3 pixels and 21 bands.
+fn counts(folder: &Folder) -> Vec<f64> {
+    let Cube::F64(cube) = Cube::open(&folder.path().join("counts.npy"), None).unwrap() else { panic!("f64") };
+    cube.read(0..2, &mut Vec::new()).unwrap().to_vec()
+}
+
+/// An ENVI file of rising wavelength, which is falling wavenumber, `[band][row][column]`.
+fn envi(folder: &Folder, more: &str, change: impl Fn(usize, usize, f64) -> f64) {
+    let counts = counts(folder);
+    let lambda: Vec<String> =
+        (0..21).rev().map(|band| (1e4 / (800.0 + 20.0 * f64::from(band))).to_string()).collect();
+    let header = format!(
+        "ENVI\nsamples = 3\nlines = 2\nbands = 21\ndata type = 5\ninterleave = bsq\nbyte order = 1\n\
+         wavelength units = Micrometers\nwavelength = {{{}}}\n{more}",
+        lambda.join(", ")
+    );
+    folder.file("scene.hdr", &header);
+    let value = |band: usize, pixel: usize| change(band, pixel, counts[pixel * 21 + 20 - band]);
+    let data: Vec<u8> = (0..21)
+        .flat_map(|band| (0..6).flat_map(move |pixel| [(band, pixel)]))
+        .flat_map(|(b, p)| value(b, p).to_be_bytes())
+        .collect();
+    fs::write(folder.path().join("scene.img"), data).unwrap();
+}
+
+fn rmse(found: &serde_json::Value) -> f64 {
+    assert_eq!(found["truth"]["right_material"].as_f64(), Some(1.0), "{found}");
+    found["truth"]["temperature_rmse_k"].as_f64().unwrap()
+}
+
+#[test]
+fn an_envi_file_says_its_bands_in_any_order() {
+    let own = SCENARIO.replace("counts.npy", "scene.hdr").replace(BANDS, "");
+    let folder = with(&own);
+    envi(&folder, "", |_, _, count| count);
+    let found = folder.json(&["decompose", "a.toml", "--out", "out"]);
+    assert!(rmse(&found) < 1e-4);
+    assert_eq!((&found["read"]["format"], &found["read"]["stored"]), (&"ENVI BSQ".into(), &"f64".into()));
+    // The scenario that was written means the same.
+    assert!(rmse(&folder.json(&["decompose", "out/scenario.toml"])) < 1e-4);
+    // With [bands] too, by header or by data; the text says what was read.
+    folder.file("b.toml", &SCENARIO.replace("counts.npy", "scene.img"));
+    assert!(rmse(&folder.json(&["decompose", "b.toml"])) < 1e-4);
+    let said = folder.run(&["decompose", "b.toml"]).stdout;
+    assert!(said.contains("\nCube: 2 rows x 3 columns x 21 bands, f64, scene.img (ENVI BSQ)\n"), "{said}");
+    // Bands that are not those of the file are refused, and a file that says none needs them.
+    folder.file(
+        "c.toml",
+        &SCENARIO
+            .replace("counts.npy", "scene.img")
+            .replace("800 cm", "840 cm")
+            .replace("1200 cm", "1240 cm"),
+    );
+    let refused = folder.refusal(&["decompose", "c.toml"]);
+    assert!(
+        refused
+            .contains("band 20 of the cube is at 800 cm^-1 by its file, but at 840 cm^-1 in [bands]; leave"),
+        "{refused}"
+    );
+    folder.file("d.toml", &SCENARIO.replace(BANDS, ""));
+    let refused = folder.refusal(&["decompose", "d.toml"]);
+    assert!(
+        refused.contains("d.toml: bands: the table is missing, and the cube's file does not say"),
+        "{refused}"
+    );
+}
+
+/// A band that is bad by the list of the file, or by the scenario in the order of the file, and a pixel that was not measured.
+#[test]
+fn bad_bands_and_missing_samples_of_a_file_are_left_out() {
+    let own = SCENARIO.replace("counts.npy", "scene.hdr").replace(BANDS, "");
+    let folder = with(&own.replace("1e-13\n", "1e-13\nbad_bands = [19]\n"));
+    let list: Vec<String> = (0..21).map(|band| u8::from(band != 2).to_string()).collect();
+    let more = format!("bbl = {{{}}}\ndata ignore value = -1\n", list.join(", "));
+    envi(&folder, &more, |band, pixel, count| match (band, pixel) {
+        (2 | 19, _) => 7.0 * count,
+        (5, 3) => -1.0,
+        _ => count,
+    });
+    let found = folder.json(&["decompose", "a.toml"]);
+    assert!(found["truth"]["temperature_rmse_k"].as_f64().unwrap() < 1e-4, "{found}");
+    assert_eq!((found["skipped"].as_u64(), found["decided"].as_u64()), (Some(1), Some(5)));
+    assert_eq!(found["read"]["bad_bands"], serde_json::json!([2]));
+    let said = folder.run(&["decompose", "a.toml"]).stdout;
+    assert!(said.contains("scene.hdr (ENVI BSQ; -1 taken as missing; bands 2 bad by its list)"), "{said}");
+}
+
+#[test]
+fn axes_are_as_the_scenario_says() {
+    let folder = with(&SCENARIO.replace("1e-13\n", "1e-13\naxes = \"bands,rows,columns\"\n"));
+    let counts = counts(&folder);
+    let images: Vec<f64> =
+        (0..21).flat_map(|band| (0..6).map(move |pixel| pixel * 21 + band)).map(|i| counts[i]).collect();
+    write_npy(&folder.path().join("counts.npy"), Shape::new(21, 2, 3).unwrap(), &images).unwrap();
+    let found = folder.json(&["decompose", "a.toml", "--out", "out"]);
+    assert!(rmse(&found) < 1e-4);
+    assert_eq!(found["read"]["axes"], "bands,rows,columns");
+    assert!(rmse(&folder.json(&["decompose", "out/scenario.toml"])) < 1e-4);
+    folder.file("a.toml", SCENARIO);
+    let refused = folder.refusal(&["decompose", "a.toml"]);
+    assert!(
+        refused.contains("its first axis seems to be the bands: write axes = \"bands,rows,columns\""),
+        "{refused}"
+    );
+    folder.file("a.toml", &SCENARIO.replace("1e-13\n", "1e-13\naxes = \"bands,lines,samples\"\n"));
+    let refused = folder.refusal(&["decompose", "a.toml"]);
+    assert!(
+        refused.contains("a.toml:5: cube.axes: `bands,lines,samples` are no axes of a cube"),
+        "{refused}"
+    );
+}
+
+/// Bands as wavelengths of a file that says none, and a first axis that may be the bands: nothing is refused, both are said.
+#[test]
+fn what_cannot_be_known_is_warned_of() {
+    let codes = |found: &serde_json::Value| -> Vec<String> {
+        let all = found["warnings"].as_array().unwrap().iter();
+        all.map(|warning| warning["code"].as_str().unwrap().to_owned()).collect()
+    };
+    let grid = "[bands]\nstart = \"8.33 um\"\nstop = \"12.33 um\"\nstep = \"0.2 um\"\n";
+    let folder = with(&SCENARIO.replace(BANDS, grid));
+    assert!(codes(&folder.json(&["decompose", "a.toml"])).contains(&"band-order-taken".to_owned()));
+    let mut state = 1_u64;
+    let noise = (0..8 * 40 * 40).map(|_| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        1000.0 + (state >> 40) as f32 / 1e6
+    });
+    write_npy(&folder.path().join("a.npy"), Shape::new(8, 40, 40).unwrap(), &noise.collect::<Vec<f32>>())
+        .unwrap();
+    let found = folder.json(&["calibrate", "stripes", "a.npy"]);
+    assert!(codes(&found).contains(&"axes-in-doubt".to_owned()), "{:?}", codes(&found));
+    assert_eq!(found["read"]["rows"].as_u64(), Some(8));
+}
