@@ -17,7 +17,7 @@ use hadar_study::scenario::{DistanceKind, RangingScenario, Rule, Scenario, day};
 use hadar_study::study::air_ranging::{AirPlan, AirRangingStudy};
 use hadar_study::study::range::{RangePlan, RangeStudy};
 use hadar_study::study::{
-    Asked, Extent, Law, PhotonLaw, RuleAsked, RuleStudy, SimulationAsked, Study, Trial, Watch,
+    Asked, Extent, Law, PhotonLaw, RuleAsked, RuleStudy, SimulationAsked, Study, Trial, Warning, Watch,
 };
 use pyo3::prelude::*;
 use std::path::{Path, PathBuf};
@@ -95,18 +95,14 @@ impl Common {
         &self,
         py: Python<'_>,
         question: &Question,
-        find: impl FnOnce(&Noting, &mut dyn FnMut() -> Result<Library>) -> Result<Found> + Send,
+        find: impl FnOnce(&Noting, &mut Reading<'_>) -> Result<Found> + Send,
     ) -> PyResult<Answer> {
         with_threads(py, self.threads, || {
             let noting = Noting::open();
-            let mut library_warnings = Vec::new();
-            let mut read = || {
-                let library = self.library()?;
-                library_warnings = library.warnings().to_vec();
-                Ok(library)
-            };
-            let found = find(&noting, &mut read).map_err(|error| question.told(error))?;
+            let mut reading = Reading { common: self, said: Vec::new() };
+            let found = find(&noting, &mut reading).map_err(|error| question.told(error))?;
             let Found { json, text, draw } = found;
+            let library_warnings = reading.said.iter().map(|warning| warning.to_string()).collect();
             Ok(Answer { json, text, library_warnings, draw })
         })
     }
@@ -115,14 +111,33 @@ impl Common {
         &self,
         question: &Question,
         by: Option<DistanceKind>,
-        library: &mut dyn FnMut() -> Result<Library>,
+        reading: &mut Reading<'_>,
     ) -> Result<Study> {
         let mut scenario = question.read(Scenario::from_file, Scenario::from_toml)?;
         if let Some(by) = by {
             scenario.requirement.by = by;
         }
         scenario.alternatives.skip_uncovered |= self.skip_uncovered;
-        Study::new_skipping(&scenario, &library()?, self.skipping())
+        Study::new_skipping(&scenario, &reading.library()?, self.skipping())
+    }
+}
+
+/// The library as a question reads it, with what is to be said of it.
+struct Reading<'a> {
+    common: &'a Common,
+    said: Vec<Warning>,
+}
+
+impl Reading<'_> {
+    fn library(&mut self) -> Result<Library> {
+        let library = self.common.library()?;
+        self.said =
+            library.warnings().iter().map(|remark| Warning::Library { remark: remark.clone() }).collect();
+        Ok(library)
+    }
+
+    fn json(&self, answer: &impl serde::Serialize) -> Result<String> {
+        answer_json(answer, &self.said)
     }
 }
 
@@ -147,15 +162,15 @@ pub(crate) fn size(
     common: Common,
 ) -> PyResult<Answer> {
     let (question, by) = (Question::of(scenario)?, by_name(by)?);
-    common.answer(py, &question, |_, library| {
-        let study = common.study(&question, by, library)?;
+    common.answer(py, &question, |_, reading| {
+        let study = common.study(&question, by, reading)?;
         let mut result = study.size()?;
         let (trade_offs, work) = ledger_of(|| study.trade_offs(&result))?;
         result.trade_offs = Some(trade_offs);
         result.stats.add(&work);
         let text = size_report::text(&result, &study);
         result.stats.add(&no_report());
-        let json = answer_json(&result)?;
+        let json = reading.json(&result)?;
         Ok(Found { json, text, draw: Box::new(move || size_report::bundle(&study, &result, Path::new(""))) })
     })
 }
@@ -204,8 +219,8 @@ pub(crate) fn identify(
     let (question, by) = (Question::of(scenario)?, by_name(by)?);
     let law = more.statistics.as_deref().map(|law| named("statistics", law, &LAWS, |law| law.1));
     let law = law.transpose().map_err(raised)?.map(|law| law.0);
-    common.answer(py, &question, |_, library| {
-        let mut study = common.study(&question, by, library)?;
+    common.answer(py, &question, |_, reading| {
+        let mut study = common.study(&question, by, reading)?;
         if let Some(share) = more.prove {
             study = study.proving(share)?;
         }
@@ -224,7 +239,7 @@ pub(crate) fn identify(
         let mut answers = study.answer(&asked, &watch)?;
         let text = identify_report::text(&answers, &study);
         answers.identification.stats.add(&no_report());
-        let (json, seed) = (answer_json(&answers)?, common.seed);
+        let (json, seed) = (reading.json(&answers)?, common.seed);
         Ok(Found {
             json,
             text,
@@ -247,16 +262,16 @@ pub(crate) fn rule(
             .ok_or_else(|| raised(Error::malformed(format!("on: `{on}` is no day"), "write \"2029-09-01\"")))
     });
     let on = on.transpose()?;
-    common.answer(py, &question, |noting, library| {
+    common.answer(py, &question, |noting, reading| {
         let mut rule_read = question.read(Rule::from_file, Rule::from_toml)?;
         rule_read.skip_uncovered(common.skip_uncovered);
-        let study = RuleStudy::new(&rule_read, &library()?)?;
+        let study = RuleStudy::new(&rule_read, &reading.library()?)?;
         let (extent, skipping, seed) = (Extent::Everything, common.skipping(), common.seed);
         let mut answer = study.answer(&RuleAsked { extent, skipping, seed, on }, &|_, _| ())?;
         let text = rule_report::text(&answer, &study);
         answer.stats.add(&no_report());
         let provenance = Provenance::of("unknown", Vec::new(), seed, &noting.so_far())?;
-        let json = answer_json(&rule_report::Output { answer: &answer, inputs: &provenance.inputs })?;
+        let json = reading.json(&rule_report::Output { answer: &answer, inputs: &provenance.inputs })?;
         let draw = move || rule_report::bundle(&study, &answer, &provenance, Path::new(""));
         Ok(Found { json, text, draw: Box::new(draw) })
     })
@@ -272,27 +287,27 @@ pub(crate) fn range_(
     common: Common,
 ) -> PyResult<Answer> {
     let question = Question::of(scenario)?;
-    common.answer(py, &question, |_, library| {
+    common.answer(py, &question, |_, reading| {
         let scenario = question.read(RangingScenario::from_file, RangingScenario::from_toml)?;
         scenario.check_asked(trials, bands)?;
         match scenario {
             RangingScenario::Air(scenario) => {
-                let study = AirRangingStudy::new(&scenario, &library()?)?;
+                let study = AirRangingStudy::new(&scenario, &reading.library()?)?;
                 let plan = AirPlan { trials, seed: common.seed, bands };
                 let mut result = study.range(&plan, &|_, _| ())?;
                 let text = air_ranging::text(&result);
                 result.stats.add(&no_report());
-                let json = answer_json(&result)?;
+                let json = reading.json(&result)?;
                 Ok(Found { json, text, draw: Box::new(move || air_ranging::bundle(&result, Path::new(""))) })
             }
             RangingScenario::Stereo(scenario) => {
-                let study = RangeStudy::new(&scenario, &library()?)?;
+                let study = RangeStudy::new(&scenario, &reading.library()?)?;
                 let (seed, skipping) = (common.seed, common.skipping());
                 let plan = RangePlan { trials, seed, skipping, verdict_alone: false };
                 let mut result = study.range(&plan, None, &|_, _| ())?;
                 let text = range::text(&result);
                 result.stats.add(&no_report());
-                let json = answer_json(&result)?;
+                let json = reading.json(&result)?;
                 Ok(Found { json, text, draw: Box::new(move || range::bundle(&result, Path::new(""), None)) })
             }
         }
@@ -342,14 +357,14 @@ pub(crate) fn simulate(
 ) -> PyResult<Answer> {
     let question = Question::of(scenario)?;
     let law = named("statistics", &more.statistics, &PHOTON_LAWS, |law| law.1).map_err(raised)?.0;
-    common.answer(py, &question, |_, library| {
-        let study = common.study(&question, None, library)?;
+    common.answer(py, &question, |_, reading| {
+        let study = common.study(&question, None, reading)?;
         if let Some(range) = &more.thermometry {
             let temperatures = hadar_study::study::true_temperatures(range, more.temperatures)?;
             let mut result = study.thermometry(&temperatures, more.spectra, common.seed, &|_, _| ())?;
             let text = simulate_report::thermometry::text(&result);
             result.stats.add(&no_report());
-            let json = answer_json(&result)?;
+            let json = reading.json(&result)?;
             let draw = move || simulate_report::thermometry::bundle(&study, &result, Path::new(""));
             return Ok(Found { json, text, draw: Box::new(draw) });
         }
@@ -369,7 +384,7 @@ pub(crate) fn simulate(
         let (mut result, _) = study.simulate(&plan, &|_, _| ())?;
         let text = simulate_report::text(&result, &study);
         result.stats.add(&planning.and(&no_report()));
-        let json = answer_json(&result)?;
+        let json = reading.json(&result)?;
         let draw = move || simulate_report::bundle(&study, &result, None, Path::new(""));
         Ok(Found { json, text, draw: Box::new(draw) })
     })

@@ -152,6 +152,18 @@ impl EnviHeader {
         self.text(key).map(read).transpose()
     }
 
+    /// The `data ignore value`, which samples that are missing have; none where nothing is said or it is NaN, which no number is.
+    ///
+    /// # Errors
+    /// Another text.
+    pub fn ignored(&self) -> Result<Option<f64>> {
+        const KEY: &str = "data ignore value";
+        match self.text(KEY) {
+            Some(text) if text.eq_ignore_ascii_case("nan") => Ok(None),
+            _ => self.number(KEY),
+        }
+    }
+
     /// A list of as many finite numbers as there are `count` of `what` (bands, channels).
     ///
     /// # Errors

@@ -88,6 +88,10 @@ pub struct Material {
     model: Arc<Model>,
     extrapolation: Option<Extrapolation>,
     warnings: Vec<String>,
+    /// As what the columns of its file were read; empty for what was not read from one.
+    read_as: String,
+    /// The number of the measured sample, in kebab-case; empty where none is known.
+    sample: String,
 }
 
 impl Material {
@@ -122,7 +126,28 @@ impl Material {
     }
 
     pub(in crate::physics::material) fn of(name: String, provenance: Provenance, model: Model) -> Self {
-        Self { name, provenance, model: Arc::new(model), extrapolation: None, warnings: Vec::new() }
+        let (read_as, sample) = (String::new(), String::new());
+        Self {
+            name,
+            provenance,
+            model: Arc::new(model),
+            extrapolation: None,
+            warnings: Vec::new(),
+            read_as,
+            sample,
+        }
+    }
+
+    /// Says as what its file was read.
+    fn reading(mut self, read_as: impl Into<String>) -> Self {
+        self.read_as = read_as.into();
+        self
+    }
+
+    /// Says of which sample it is.
+    fn of_sample(mut self, sample: String) -> Self {
+        self.sample = sample;
+        self
     }
 
     pub(in crate::physics::material) fn warn(mut self, warnings: impl IntoIterator<Item = String>) -> Self {

@@ -28,6 +28,7 @@ mod ranging_reference;
 mod segmentation;
 mod selection;
 mod separation;
+mod spectra;
 
 mod support {
     pub(crate) mod scenes;

@@ -23,6 +23,8 @@ pub enum Warning {
     /// One that concerns some cameras of several.
     OfCameras { who: String, warning: Box<Self> },
 
+    /// What was passed over or replaced while files of a library were read.
+    Library { remark: String },
     /// What the entry of a material says.
     Material { material: String, remark: String },
     /// The target was named among its alternatives.
@@ -259,6 +261,7 @@ impl Warning {
     pub fn code(&self) -> Code {
         match self {
             Self::OfPair { warning, .. } | Self::OfCameras { warning, .. } => warning.code(),
+            Self::Library { .. } => Code::Library,
             Self::Material { .. } => Code::Material,
             Self::TargetAmongAlternatives { .. } => Code::TargetAmongAlternatives,
             Self::MaterialSkipped { .. } => Code::MaterialSkipped,

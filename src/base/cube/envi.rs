@@ -135,13 +135,16 @@ fn bands(header: &EnviHeader, bands: usize) -> Result<Option<(Vec<f64>, Option<V
         let [a, b] = [-0.5, 0.5].map(|half| unit.wavenumber_cm1(centre + half * width));
         (a - b).abs()
     };
-    let widths_cm1: Option<Vec<f64>> = widths.as_ref().map(|widths| centres.iter().zip(widths).map(width).collect());
+    let widths_cm1: Option<Vec<f64>> =
+        widths.as_ref().map(|widths| centres.iter().zip(widths).map(width).collect());
     let centres_cm1: Vec<f64> = centres.iter().map(|centre| unit.wavenumber_cm1(*centre)).collect();
     // Such as bands that reach below 0, or beyond what numbers can tell apart.
     let sound = |list: &[f64]| list.iter().all(|value| value.is_finite() && *value > 0.0);
     let reach = |widths: &Vec<f64>| centres.iter().zip(widths).all(|(centre, width)| *width < 2.0 * centre);
-    if !sound(&centres_cm1) || !widths_cm1.as_deref().is_none_or(sound) || !widths.as_ref().is_none_or(reach) {
-        let found = Error::malformed("these are no bands", "give wavelength and fwhm in the unit that is named");
+    if !sound(&centres_cm1) || !widths_cm1.as_deref().is_none_or(sound) || !widths.as_ref().is_none_or(reach)
+    {
+        let found =
+            Error::malformed("these are no bands", "give wavelength and fwhm in the unit that is named");
         return Err(header.wrong("wavelength", found));
     }
     Ok(Some((centres_cm1, widths_cm1)))

@@ -23,7 +23,11 @@ fn a_header_is_read() {
     assert_eq!(header.numbers("wavelength"), Ok(Some(vec![8000.0, 9000.5])));
     assert_eq!(header.numbers_for("fwhm", 2, "bands"), Ok(Some(vec![10.0, 12.0])));
     assert_eq!(header.good_bands(2), Ok(Some(vec![true, false])));
-    assert_eq!(header.number("data ignore value"), Ok(Some(-9999.0)));
+    assert_eq!(header.ignored(), Ok(Some(-9999.0)));
+    assert_eq!(
+        EnviHeader::parse("ENVI\ndata ignore value = NaN\n").map(|header| header.ignored()),
+        Ok(Ok(None))
+    );
     assert_eq!(header.number("reflectance scale factor"), Ok(None));
     assert_eq!(header.text("sensor type"), None);
     assert_eq!(header.text("description"), Some("a cube, {of} mine"));

@@ -11,11 +11,11 @@ use super::Material;
 use super::class::ClassSpec;
 #[cfg(feature = "library")]
 use super::manifest::Deferred;
-use super::read::{self, Content};
+use super::read::{self, Origin, qualified};
 use crate::demand::{Reason, Thing, Work};
 use crate::error::{Error, Result};
-use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
 #[cfg(feature = "library")]
 use std::sync::Arc;
 
@@ -38,6 +38,7 @@ pub struct Library {
     ambiguous: BTreeMap<String, Vec<String>>,
     classes: BTreeMap<String, ClassSpec>,
     warnings: Vec<String>,
+    strict: bool,
 }
 
 /// A material, or where it can be made.
@@ -73,27 +74,46 @@ impl Library {
         Self::default()
     }
 
+    /// The same library, which from now on refuses a folder for any file in it that is no spectrum, and does not pass it over.
+    #[must_use]
+    pub fn strict(mut self, strict: bool) -> Self {
+        self.strict = strict;
+        self
+    }
+
+    /// Whether a folder is refused for any file in it that is no spectrum.
+    pub(super) fn is_strict(&self) -> bool {
+        self.strict
+    }
+
     /// Adds the materials of a directory: those of its `manifest.toml` if it has one, else those of all its
-    /// `.csv` and `.txt` files. Files that hold no emissivity (transmittance, notes) are passed over with a warning.
+    /// files of spectra ([`read::is_spectra`]). Of these, what cannot be read or holds no emissivity is passed over with a warning,
+    /// unless the library is [`strict`](Self::strict).
     ///
     /// # Errors
-    /// A directory that cannot be read or holds no material; a file that is wrong (see [`read::from_file`]).
+    /// A directory that cannot be read or holds no material; in a strict library a file that is wrong (see [`read::from_file`]).
     pub fn add_directory(&mut self, directory: &Path) -> Result<()> {
         let path = directory.join(MANIFEST);
         if path.is_file() {
             return self.add_manifest(&path, directory);
         }
-        let mut sources = Vec::new();
-        for file in spectra_in(directory)? {
-            match read::content_of_file(&file)? {
-                Content::Materials(materials) => sources.push((read::stem(&file), materials)),
-                Content::NoEmissivity(reason) => self.warnings.push(format!("passed over: {reason}")),
+        let (mut sources, mut passed_over) = (Vec::new(), Vec::new());
+        for file in read::spectra_in(directory)? {
+            match read::from_file(&file) {
+                Ok(materials) => sources.push((read::stem(&file), materials)),
+                Err(error) if self.strict => return Err(error),
+                Err(error) => passed_over.push(error),
             }
         }
         if sources.is_empty() {
-            let instead = "put .csv or .txt spectra or a manifest.toml into it";
-            return Err(Error::malformed("the directory holds no spectra", instead).in_file(directory));
+            let found = match passed_over.first() {
+                None => "the directory holds no spectra".to_owned(),
+                Some(first) => format!("none of its {} files is a spectrum: {first}", passed_over.len()),
+            };
+            let instead = "put .csv, .txt, .jdx or .sli spectra or a manifest.toml into it";
+            return Err(Error::malformed(found, instead).in_file(directory));
         }
+        self.warnings.extend(passed_over.iter().map(|error| format!("passed over: {error}")));
         self.add_sources(sources).map_err(|error| error.in_file(directory))
     }
 
@@ -199,40 +219,30 @@ impl Library {
         &self.warnings
     }
 
-    /// Adds the materials of files; names that more than one of them defines are qualified with the file's.
+    /// Adds the materials of files; names that several of them define are qualified with what tells them apart.
     fn add_sources(&mut self, sources: Vec<(String, Vec<Material>)>) -> Result<()> {
-        let mut files_of: BTreeMap<String, Vec<String>> = BTreeMap::new();
-        for (stem, materials) in &sources {
-            for material in materials {
-                files_of.entry(material.name().to_owned()).or_default().push(stem.clone());
+        let of = |(stem, materials): (String, Vec<Material>)| {
+            materials.into_iter().map(move |material| {
+                let (name, sample) = (material.name.clone(), material.sample.clone());
+                (material, Origin { name, sample, stem: stem.clone() })
+            })
+        };
+        let (materials, origins): (Vec<Material>, Vec<Origin>) = sources.into_iter().flat_map(of).unzip();
+        let names = qualified(&origins);
+        let mut ambiguous: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+        for (origin, name) in origins.iter().zip(&names).filter(|(origin, name)| origin.name != **name) {
+            if !ambiguous.entry(origin.name.clone()).or_default().insert(name.clone()) {
+                return Err(Error::malformed(
+                    format!("two files called `{}` define the material `{}`", origin.stem, origin.name),
+                    "rename one of them",
+                ));
             }
         }
-        files_of.retain(|_, files| files.len() > 1);
-        for (name, files) in &mut files_of {
-            files.sort();
-            for pair in files.windows(2) {
-                if let [a, b] = pair
-                    && a == b
-                {
-                    return Err(Error::malformed(
-                        format!("two files called `{a}` define the material `{name}`"),
-                        "rename one of them",
-                    ));
-                }
-            }
+        for (material, name) in materials.into_iter().zip(names) {
+            self.add(material.with_name(name));
         }
-        for (stem, materials) in sources {
-            for material in materials {
-                if files_of.contains_key(material.name()) {
-                    let qualified = format!("{}@{stem}", material.name());
-                    self.add(material.with_name(qualified));
-                } else {
-                    self.add(material);
-                }
-            }
-        }
-        for (name, files) in files_of {
-            let qualified = files.iter().map(|stem| format!("{name}@{stem}")).collect::<Vec<_>>();
+        for (name, qualified) in ambiguous {
+            let qualified: Vec<String> = qualified.into_iter().collect();
             if self.materials.remove(&name).is_some() {
                 let listed = qualified.join("`, `");
                 self.warnings.push(format!("the material `{name}` is replaced by `{listed}`"));
@@ -249,26 +259,4 @@ impl Library {
         let instead = "build the crate with its feature `library`, or name the spectra themselves";
         Err(Error::malformed("this build reads no manifests", instead).in_file(path))
     }
-}
-
-/// The `.csv` and `.txt` files of a directory, in the order of their names.
-pub(super) fn spectra_in(directory: &Path) -> Result<Vec<PathBuf>> {
-    let failed = |error: std::io::Error| match error.kind() {
-        std::io::ErrorKind::NotFound => {
-            Error::file("read the library", directory, "there is no such directory; check the name")
-        }
-        _ => Error::file("read the library", directory, error),
-    };
-    let mut files = Vec::new();
-    for entry in std::fs::read_dir(directory).map_err(failed)? {
-        let path = entry.map_err(failed)?.path();
-        let known = |extension: &std::ffi::OsStr| {
-            extension.eq_ignore_ascii_case("csv") || extension.eq_ignore_ascii_case("txt")
-        };
-        if path.is_file() && path.extension().is_some_and(known) {
-            files.push(path);
-        }
-    }
-    files.sort();
-    Ok(files)
 }

@@ -255,6 +255,8 @@ fn build(entry: Entry, around: &Around<'_>) -> Result<Material> {
         model,
         extrapolation: None,
         warnings: Vec::new(),
+        read_as: String::new(),
+        sample: String::new(),
     })
 }
 

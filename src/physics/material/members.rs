@@ -3,7 +3,7 @@
 //! Names are unique in a class: where several files define the same, it is told by what tells the files' names apart.
 
 use super::class::{ClassSpec, MaterialRef, Spread};
-use super::read::{self, Content};
+use super::read;
 use super::{Library, Material};
 use crate::error::{Error, Result, check};
 use std::collections::{BTreeMap, BTreeSet};
@@ -23,7 +23,7 @@ pub struct Member {
 pub struct Class {
     /// Its members; at least one.
     pub members: Vec<Member>,
-    /// Files that were passed over since they hold no emissivity, and why.
+    /// Files of folders that were passed over since they hold no emissivity, and why.
     pub passed_over: Vec<String>,
 }
 
@@ -76,13 +76,13 @@ impl ClassSpec {
                             let found = format!("`{}` is in the class twice", file.display());
                             return Err(Error::malformed(found, "name every spectrum once"));
                         }
-                        match read::content_of_file(&file)? {
-                            Content::Materials(all) => {
-                                own.extend(all.into_iter().map(|material| (material, Some(file.clone()))));
+                        match read::from_file(&file) {
+                            Ok(all) => {
+                                own.extend(all.into_iter().map(|material| (material, Some(file.clone()))))
                             }
                             // A file that was named itself must hold a spectrum.
-                            Content::NoEmissivity(reason) if file == *path => return Err(reason),
-                            Content::NoEmissivity(reason) => passed_over.push(reason.to_string()),
+                            Err(error) if file == *path || library.is_strict() => return Err(error),
+                            Err(error) => passed_over.push(error.to_string()),
                         }
                     }
                 }
@@ -125,14 +125,14 @@ impl ClassSpec {
 /// The files of a path: of a folder all its spectra, of a pattern those that match, else the one.
 fn files(path: &Path) -> Result<Vec<PathBuf>> {
     if path.is_dir() {
-        return some(super::library::spectra_in(path)?, path);
+        return some(read::spectra_in(path)?, path);
     }
     let pattern = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     if !pattern.contains(['*', '?']) {
         return Ok(vec![path.to_owned()]);
     }
     let folder = path.parent().unwrap_or(Path::new(""));
-    let matching = super::library::spectra_in(folder)?.into_iter().filter(|file| {
+    let matching = read::spectra_in(folder)?.into_iter().filter(|file| {
         file.file_name().is_some_and(|name| matches(pattern.as_bytes(), name.to_string_lossy().as_bytes()))
     });
     some(matching.collect(), path)
@@ -140,7 +140,7 @@ fn files(path: &Path) -> Result<Vec<PathBuf>> {
 
 fn some(files: Vec<PathBuf>, path: &Path) -> Result<Vec<PathBuf>> {
     if files.is_empty() {
-        let found = "no .csv or .txt file is here";
+        let found = "no file of spectra is here";
         return Err(Error::malformed(found, "correct the path or the pattern").in_file(path));
     }
     Ok(files)
@@ -188,20 +188,10 @@ fn unique_names(found: &[(Material, Option<PathBuf>, f64)]) -> Result<Vec<String
             let (material, file, _) = &found[*i];
             own(material).1.or_else(|| file.as_deref().map(read::stem)).unwrap_or_default()
         };
-        let stems: Vec<Vec<String>> = same.iter().map(|i| parts(&stem(i))).collect();
-        let at_end = |from_end: bool| {
-            let part = |stem: &Vec<String>, k: usize| match from_end {
-                true => stem.len().checked_sub(k + 1).and_then(|at| stem.get(at)).cloned(),
-                false => stem.get(k).cloned(),
-            };
-            let shortest = stems.iter().map(Vec::len).min().unwrap_or(0);
-            let same = |k: &usize| stems.windows(2).all(|pair| part(&pair[0], *k) == part(&pair[1], *k));
-            (0..shortest).take_while(same).count()
-        };
-        let (first, last) = (at_end(false), at_end(true));
-        for (i, stem) in same.iter().zip(&stems) {
-            let own = stem.get(first..stem.len().saturating_sub(last).max(first)).unwrap_or_default();
-            names[*i] = format!("{}@{}", names[*i], own.join("-")).trim_end_matches('@').to_owned();
+        let stems: Vec<String> = same.iter().map(stem).collect();
+        let tags = read::differing(&stems.iter().map(String::as_str).collect::<Vec<_>>());
+        for (i, tag) in same.iter().zip(tags) {
+            names[*i] = format!("{}@{tag}", names[*i]).trim_end_matches('@').to_owned();
         }
     }
     let mut seen = BTreeSet::new();
@@ -211,11 +201,6 @@ fn unique_names(found: &[(Material, Option<PathBuf>, f64)]) -> Result<Vec<String
             Err(Error::malformed(format!("`{twice}` is in the class twice"), "name every spectrum once"))
         }
     }
-}
-
-/// What the name of a file is put together of.
-fn parts(stem: &str) -> Vec<String> {
-    stem.split('-').filter(|part| !part.is_empty()).map(str::to_owned).collect()
 }
 
 #[cfg(test)]

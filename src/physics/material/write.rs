@@ -16,6 +16,9 @@ pub struct Summary {
     pub rows: usize,
     /// Wavenumbers between which it is known, cm⁻¹; `None` is everywhere.
     pub range_cm1: Option<(f64, f64)>,
+    /// As what the columns of its file were read, units and all.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub read_as: String,
     /// What a user should know before trusting it.
     pub warnings: Vec<String>,
 }
@@ -29,6 +32,7 @@ impl Material {
             provenance: self.provenance.clone(),
             rows: self.rows(),
             range_cm1: self.range_cm1(),
+            read_as: self.read_as.clone(),
             warnings: self.warnings.clone(),
         }
     }

@@ -16,9 +16,11 @@ use hadar_report::manifest::{Provenance, answer_json};
 use hadar_report::text;
 use hadar_study::scenario::Scenario;
 use hadar_study::study::Study;
+use hadar_study::warning::Warning;
 use std::borrow::Cow;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 /// Options of every command.
 #[derive(Debug, Args)]
@@ -42,6 +44,9 @@ pub(super) struct Global {
     /// Use the materials of --library alone, not the built-in ones
     #[arg(long, global = true)]
     pub(super) only_library: bool,
+    /// Refuse a folder of spectra for any file in it that cannot be used, instead of passing it over with a warning
+    #[arg(long, global = true)]
+    pub(super) strict: bool,
     /// Leave out alternatives whose spectra do not cover the bands, with a warning
     #[arg(long, global = true)]
     pub(super) skip_uncovered: bool,
@@ -60,22 +65,32 @@ pub(super) struct Global {
     /// Print nothing on stderr but errors
     #[arg(short, long, global = true)]
     pub(super) quiet: bool,
+    /// What was said of the library, for JSON.
+    #[arg(skip)]
+    said_of_library: OnceLock<Vec<Warning>>,
 }
 
 impl Global {
-    /// The embedded library with the user's own materials, and what is to be said about them.
+    /// The embedded library with the user's own materials.
     pub(super) fn library(&self) -> Result<Library> {
-        let mut library = if self.only_library { Library::empty() } else { Library::embedded()? };
-        for path in &self.library {
-            library.add_path(path)?;
-        }
+        let library = if self.only_library { Library::empty() } else { Library::embedded()? };
+        let library = self.with_own(library)?;
         if library.is_empty() {
             let instead = "add spectra with --library DIR, or leave out --only-library";
             return Err(Error::malformed("the library is empty", instead));
         }
+        Ok(library)
+    }
+
+    /// A library with the user's own materials; what is to be said about them is said, and goes into the JSON.
+    pub(super) fn with_own(&self, library: Library) -> Result<Library> {
+        let mut library = library.strict(self.strict);
+        self.library.iter().try_for_each(|path| library.add_path(path))?;
         for warning in library.warnings() {
-            self.note(&Stream::Err.message("warning:", &warning.to_string()));
+            self.note(&Stream::Err.message("warning:", warning));
         }
+        let said = library.warnings().iter().map(|remark| Warning::Library { remark: remark.clone() });
+        self.said_of_library.get_or_init(|| said.collect());
         Ok(library)
     }
 
@@ -156,7 +171,9 @@ impl Global {
 
     /// Prints a result: JSON with `--json`, with the version of the program and of its form, else the text.
     pub(super) fn print(&self, json: &impl serde::Serialize, text: &str) -> Result<()> {
-        let text = if self.json { answer_json(json)? } else { Stream::Out.answer(text.trim_end()) };
+        let of_library = self.said_of_library.get().map_or(&[][..], Vec::as_slice);
+        let text =
+            if self.json { answer_json(json, of_library)? } else { Stream::Out.answer(text.trim_end()) };
         match writeln!(std::io::stdout(), "{text}") {
             // A reader that has seen enough (`| head`) is no error.
             Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {

@@ -1,8 +1,10 @@
 //! `hadar materials`: the library.
 
+mod import;
+
 use super::global::{Global, as_json};
 use clap::{Args, Subcommand};
-use hadar::demand::{Reason, Thing, Work};
+use hadar::demand::Thing;
 use hadar::error::{Error, Result};
 use hadar::material::{Library, Material, MaterialRef, Summary, read};
 use hadar_report::bundle::Bundle;
@@ -11,7 +13,7 @@ use hadar_report::text::significant;
 use hadar_study::study::Surface;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// Where materials are drawn and shown: the paper's bands, cm⁻¹.
@@ -29,21 +31,59 @@ enum Action {
     List,
     /// One material: what it is, how it is known, its emissivity
     Show {
-        /// Name of the material
+        /// Name of the material, or a file of one
         name: String,
+        #[command(flatten)]
+        columns: Columns,
     },
     /// Draw emissivities into the folder given by --out
     Plot {
-        /// Names of the materials
+        /// Names of the materials, or files of one each
         #[arg(required = true)]
         names: Vec<String>,
+        #[command(flatten)]
+        columns: Columns,
     },
-    /// Read spectra from files, say what they hold, and with --out write them as two-column CSV
+    /// Read spectra from files, say what they hold and as what they were read, and with --out write them as two-column CSV
     Import {
-        /// CSV or ECOSTRESS files
+        /// Files (tables of any layout, ECOSTRESS, JCAMP-DX, ENVI spectral libraries) or folders of them
         #[arg(required = true)]
         files: Vec<PathBuf>,
+        #[command(flatten)]
+        columns: Columns,
     },
+}
+
+/// What columns are called in files without a header.
+#[derive(Debug, Args)]
+struct Columns {
+    /// What the columns of files without a header are, as their header would say: wavelength_um,emissivity
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    columns: Vec<String>,
+}
+
+impl Columns {
+    /// All materials of a file.
+    fn read(&self, file: &Path) -> Result<Vec<Material>> {
+        if self.columns.is_empty() {
+            read::from_file(file)
+        } else {
+            read::from_file_with_columns(file, &self.columns)
+        }
+    }
+
+    /// The material of a name, or the one of a file.
+    fn find(&self, library: &Library, name: &str) -> Result<Material> {
+        if library.contains(name)
+            || !(name.contains(['/', '\\']) || read::is_spectra(name) || Path::new(name).is_file())
+        {
+            return library.get(name).cloned();
+        }
+        match self.columns.is_empty() {
+            true => Material::from_file(Path::new(name)),
+            false => Material::the_one(self.read(Path::new(name))?, Path::new(name)),
+        }
+    }
 }
 
 pub(super) fn run(args: &MaterialsArgs, global: &Global) -> Result<ExitCode> {
@@ -52,9 +92,12 @@ pub(super) fn run(args: &MaterialsArgs, global: &Global) -> Result<ExitCode> {
     }
     match &args.action {
         Action::List => list(&global.library()?, global)?,
-        Action::Show { name } => show(&global.library()?, name, global)?,
-        Action::Plot { names } => plot(&global.library()?, names, global)?,
-        Action::Import { files } => import(files, global)?,
+        Action::Show { name, columns } => {
+            let library = global.library()?;
+            show(&columns.find(&library, name)?, &library, global)?;
+        }
+        Action::Plot { names, columns } => plot(&global.library()?, names, columns, global)?,
+        Action::Import { files, columns } => import::run(files, columns, global)?,
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -101,8 +144,7 @@ struct Shown {
     emissivity: Vec<f64>,
 }
 
-fn show(library: &Library, name: &str, global: &Global) -> Result<()> {
-    let material = library.get(name)?;
+fn show(material: &Material, library: &Library, global: &Global) -> Result<()> {
     let summary = material.summary();
     let (wavenumber_cm1, emissivity) = sampled(material)?;
     let mut out = format!("{}: {}\n\n", summary.name, summary.provenance.description);
@@ -117,6 +159,7 @@ fn show(library: &Library, name: &str, global: &Global) -> Result<()> {
         ("source", provenance.source.clone()),
         ("licence", provenance.licence.clone()),
         ("note", provenance.note.clone()),
+        ("read as", summary.read_as.clone()),
         ("range", range),
     ] {
         if !value.is_empty() {
@@ -150,11 +193,11 @@ fn sampled(material: &Material) -> Result<(Vec<f64>, Vec<f64>)> {
     Ok((nodes, emissivity))
 }
 
-fn plot(library: &Library, names: &[String], global: &Global) -> Result<()> {
+fn plot(library: &Library, names: &[String], columns: &Columns, global: &Global) -> Result<()> {
     let Some(out) = &global.out else {
         return Err(Error::malformed("there is no folder to draw into", "add --out DIR"));
     };
-    let materials = names.iter().map(|name| library.get(name)).collect::<Result<Vec<_>>>()?;
+    let materials = names.iter().map(|name| columns.find(library, name)).collect::<Result<Vec<_>>>()?;
     let nodes: Vec<f64> =
         (0..=(SHOWN_CM1.1 - SHOWN_CM1.0) as u32).map(|i| SHOWN_CM1.0 + f64::from(i)).collect();
     let surfaces =
@@ -168,52 +211,4 @@ fn plot(library: &Library, names: &[String], global: &Global) -> Result<()> {
     let mut work = library.work();
     work.compute(Thing::Figures, bundle.figures() as u64);
     global.answer_with(serde_json::json!({ "materials": drawn }), &text, &work)
-}
-
-fn import(files: &[PathBuf], global: &Global) -> Result<()> {
-    let mut bundle = Bundle::default();
-    let mut summaries = Vec::new();
-    let mut out = String::new();
-    for file in files {
-        for material in read::from_file(file)? {
-            let summary = material.summary();
-            let range = summary.range_cm1.map_or_else(String::new, |(low, high)| {
-                format!(", {} to {} cm^-1", significant(low, 5), significant(high, 5))
-            });
-            let _ = writeln!(out, "{}: {} rows{range}", summary.name, summary.rows);
-            for warning in &summary.warnings {
-                let _ = writeln!(out, "  warning: {warning}");
-            }
-            if global.out.is_some() {
-                bundle.add(format!("{}.csv", summary.name), material.to_csv(&rows(&material))?);
-            }
-            summaries.push(summary);
-        }
-    }
-    let mut work = Work::default();
-    work.compute(Thing::LibrarySpectra, summaries.len() as u64);
-    if let Some(directory) = &global.out {
-        // Spectra imported before stay: a library grows.
-        for (name, content) in global.folder(directory).own_files()? {
-            if bundle.names().all(|known| known != name) {
-                bundle.add(name, content);
-            }
-        }
-        global.write(&bundle, directory, None)?;
-        let _ = writeln!(out, "use them with --library {}", directory.display());
-        work.compute(Thing::Reports, 1);
-    } else {
-        work.spare(Thing::Reports, Reason::NotAsked, 1);
-    }
-    global.answer_with(serde_json::json!({ "materials": summaries }), &out, &work)
-}
-
-/// The material's own rows: its ends and every kink between.
-fn rows(material: &Material) -> Vec<f64> {
-    let (low, high) = material.range_cm1().unwrap_or(SHOWN_CM1);
-    let mut rows = vec![low, high];
-    rows.extend(material.breakpoints_cm1(low, high));
-    rows.sort_by(f64::total_cmp);
-    rows.dedup();
-    rows
 }

@@ -179,9 +179,7 @@ fn library(items: &[Item], studies: &[FurtherStudy], global: &Global) -> Result<
         return Err(Error::malformed(found, "leave out --library and --only-library"));
     }
     let adds = studies.contains(&FurtherStudy::PersonOrRobot);
-    let mut library = if own && !adds { Library::empty() } else { Library::embedded()? };
-    global.library.iter().try_for_each(|path| library.add_path(path))?;
-    Ok(library)
+    global.with_own(if own && !adds { Library::empty() } else { Library::embedded()? })
 }
 
 fn counts(ledger: &[Line]) -> String {

@@ -183,8 +183,8 @@ fn every_mistake_about_classes_is_one_line() {
             vec![],
             "class.robot.materials: the class has no members; write",
         ),
-        (with("\"robots/\"", "\"none/\""), vec![], "no .csv or .txt file is here"),
-        (with("\"robots/\"", "\"robots/*.txt\""), vec![], "no .csv or .txt file is here"),
+        (with("\"robots/\"", "\"none/\""), vec![], "no file of spectra is here"),
+        (with("\"robots/\"", "\"robots/*.txt\""), vec![], "no file of spectra is here"),
         (
             with("\"cloth.csv\"", "\"short.csv\""),
             vec![],

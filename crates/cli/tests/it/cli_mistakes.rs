@@ -171,10 +171,7 @@ fn files_that_are_not_there_or_are_folders_are_named() {
             vec!["materials", "import", "none.csv"],
             "none.csv: cannot read the spectrum: there is no such file",
         ),
-        (
-            vec!["materials", "import", "."],
-            ".: cannot read the spectrum: this is a directory; name a file, or give it to --library",
-        ),
+        (vec!["materials", "import", "a.toml"], "a.toml:1: this is not the header of a spectrum"),
         (vec!["materials", "list", "--library", "none"], "none: cannot read"),
         (
             vec!["materials", "show", "aluminum"],

@@ -37,6 +37,7 @@ mod rule_mistakes;
 mod rule_uncertainty;
 mod segmentation;
 mod simulate;
+mod spectra;
 mod stand_in;
 mod sweep;
 mod written;

@@ -6,6 +6,7 @@ use super::MaterialRef;
 use super::section::{Entry, Section};
 use hadar::cube::Axes;
 use hadar::error::{Error, Result};
+use hadar::material::read::is_spectra;
 
 /// How file paths are written.
 #[derive(Clone, Copy)]
@@ -36,8 +37,7 @@ pub(super) fn material(entry: &Entry<'_>) -> Result<MaterialRef> {
 
 /// A path has a separator in it, or the ending of a data file; a name has neither.
 pub(super) fn is_path(text: &str) -> bool {
-    let lower = text.to_lowercase();
-    text.contains(['/', '\\']) || lower.ends_with(".csv") || lower.ends_with(".txt")
+    text.contains(['/', '\\']) || is_spectra(text)
 }
 
 /// The name of an array in a file of several (`variable`).

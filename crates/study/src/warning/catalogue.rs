@@ -42,6 +42,8 @@ macro_rules! catalogue {
 }
 
 catalogue! {
+    /// A file of a folder of spectra was passed over, or a material or class was replaced by one of the files.
+    Library = "library", "Correct or remove the file; --strict makes it an error.";
     /// The file or library entry of a material says something that whoever uses it must know.
     Material = "material", "Read the entry; use another spectrum if it does not fit your surface.";
     /// The target's own material was named among the alternatives, from which it cannot be told.

@@ -13,6 +13,7 @@ impl Display for Warning {
                 write!(f, "{target} against {alternative}: {warning}")
             }
             Self::OfCameras { who, warning } => write!(f, "{who}: {warning}"),
+            Self::Library { remark } => f.write_str(remark),
             Self::Material { material, remark } => write!(f, "{material}: {remark}"),
             Self::TargetAmongAlternatives { target } => {
                 write!(f, "{target} is left out of the alternatives: it is the target")

@@ -94,7 +94,7 @@ macro_rules! readers {
 }
 
 readers! {
-    material, library, manifest, optical_constants, band_rows, filters, scenario, range_scenario, quantity, npy, mat,
+    material, library, manifest, optical_constants, spectral_library, band_rows, filters, scenario, range_scenario, quantity, npy, mat,
     npz, envi, hdf5, noise, model,
 }
 
@@ -126,6 +126,13 @@ fn long_wide_and_deep_files_take_neither_long_nor_much() {
             format!("wavenumber_cm1{columns}\n800{cells}\n900{cells}\n")
         },
         format!("wavenumber_cm1,emissivity\n{}", rows(1, &|i| format!("{i},0.5\n"))),
+        format!("wavelength;emissivity\n{}", rows(1, &|i| format!("{i},5;0,5\n"))),
+        format!(
+            "##TITLE= a\n##XUNITS= 1/CM\n##YUNITS= %R\n##FIRSTX= 1\n##LASTX= 9\n##XYDATA= (X++(Y..Y))\n1A{}\n",
+            times("Z99%")
+        ),
+        format!("##TITLE= a\n{}", times("##TITLE= a\n##XYDATA=\n")),
+        format!("ENVI\nfile type = ENVI Spectral Library\nwavelength = {}\n", times("{1,")),
         format!("wavelength_um,n,k\n{}", rows(1, &|i| format!("{i},1.5,0\n"))),
         format!("wavelength_um,{}\n1,1\n2,1\n", times("x")),
         format!("{}: a\n", times("Name")),

@@ -53,8 +53,7 @@ impl ClassEntry {
             return Err(Error::malformed(found, "write small letters, digits and hyphens"));
         }
         let reference = |text: String| {
-            let lower = text.to_lowercase();
-            let is_path = text.contains(['/', '\\']) || lower.ends_with(".csv") || lower.ends_with(".txt");
+            let is_path = text.contains(['/', '\\']) || read::is_spectra(&text);
             if is_path { MaterialRef::File(directory.join(text)) } else { MaterialRef::Name(text) }
         };
         Ok(ClassSpec {

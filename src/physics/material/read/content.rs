@@ -1,8 +1,14 @@
 //! What the readers of all formats share: what a file holds, and how names are written.
 
-use crate::error::Error;
+use crate::error::{Error, Result};
 use crate::material::Material;
+use crate::material::table::Table;
 use std::path::Path;
+
+/// The part of the long-wave infrared that most cameras see, cm⁻¹ (13 to 8 µm).
+const LONG_WAVE_CM1: (f64, f64) = (770.0, 1250.0);
+/// Characters of a name that was made of a title, which may be a sentence.
+const LONGEST_NAME: usize = 40;
 
 /// What a file turned out to hold.
 pub(in crate::physics::material) enum Content {
@@ -10,6 +16,16 @@ pub(in crate::physics::material) enum Content {
     Materials(Vec<Material>),
     /// A file of a known format that has no emissivity in it, and why.
     NoEmissivity(Error),
+}
+
+impl Content {
+    /// The materials, or why there are none as an error.
+    pub(super) fn materials(self) -> Result<Vec<Material>> {
+        match self {
+            Self::Materials(materials) => Ok(materials),
+            Self::NoEmissivity(reason) => Err(reason),
+        }
+    }
 }
 
 /// A name in kebab-case: `tilePavement` → `tile-pavement`, `Fused silica` → `fused-silica`. Qualified
@@ -45,4 +61,46 @@ pub(in crate::physics::material) fn one_line(text: &str) -> String {
 pub(in crate::physics::material) fn stem(path: &Path) -> String {
     let stem = path.file_stem().map(|stem| kebab_case(&stem.to_string_lossy())).unwrap_or_default();
     if stem.is_empty() { "unnamed".to_owned() } else { stem }
+}
+
+/// A name without the words at its end that make it longer than a name should be.
+pub(super) fn short_name(name: &str) -> String {
+    let mut short = String::new();
+    for word in name.split('-') {
+        if !short.is_empty() {
+            if short.chars().count() + word.chars().count() >= LONGEST_NAME {
+                break;
+            }
+            short.push('-');
+        }
+        short.extend(word.chars().take(LONGEST_NAME));
+    }
+    short
+}
+
+/// What is to be said of rows outside 0 to 1, and of a range that is short.
+pub(super) fn warnings(table: &Table<1>) -> Vec<String> {
+    let mut warnings = Vec::new();
+    let beyond = |e: f64| (e - 1.0).max(-e);
+    let outside: Vec<(f64, f64)> =
+        table.rows().map(|(wavenumber, [e])| (wavenumber, e)).filter(|&(_, e)| beyond(e) > 0.0).collect();
+    if let Some(&(worst_cm1, worst)) = outside.iter().max_by(|a, b| beyond(a.1).total_cmp(&beyond(b.1))) {
+        let (low, high) =
+            outside.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), &(x, _)| (low.min(x), high.max(x)));
+        warnings.push(format!(
+            "{} rows from {low:.1} to {high:.1} cm^-1 have a reflectance outside 0 to 100 percent (at worst {:.3} percent \
+             at {worst_cm1:.1} cm^-1); bands that use them are an error",
+            outside.len(),
+            100.0 * (1.0 - worst),
+        ));
+    }
+    if let Some((low, high)) = table.range_cm1()
+        && (low > LONG_WAVE_CM1.0 || high < LONG_WAVE_CM1.1)
+    {
+        warnings.push(format!(
+            "the rows go from {low:.1} to {high:.1} cm^-1 and so do not cover the long-wave infrared of 8 to 13 um ({} to {} cm^-1)",
+            LONG_WAVE_CM1.0, LONG_WAVE_CM1.1
+        ));
+    }
+    warnings
 }

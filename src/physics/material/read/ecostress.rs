@@ -10,7 +10,7 @@
 //! Source: Meerdink et al., Remote Sens. Environ. 230, 111196 (2019), doi:10.1016/j.rse.2019.05.015; Baldridge et al.,
 //! Remote Sens. Environ. 113, 711 (2009), doi:10.1016/j.rse.2008.11.007. Layout from the files themselves.
 
-use super::content::{Content, kebab_case, one_line, stem};
+use super::content::{Content, kebab_case, one_line, short_name, stem, warnings};
 use crate::error::{Error, Result, check};
 use crate::grid;
 use crate::material::Material;
@@ -19,9 +19,6 @@ use crate::material::provenance::{Basis, Provenance};
 use crate::material::table::{Fault, Table, ascending};
 use std::collections::BTreeMap;
 use std::path::Path;
-
-/// The part of the long-wave infrared that most cameras see, cm⁻¹ (13 to 8 µm).
-const LONG_WAVE_CM1: (f64, f64) = (770.0, 1250.0);
 
 /// Whether the text looks like one: its first line is `Name: …`.
 pub(super) fn is_one(text: &str) -> bool {
@@ -75,7 +72,8 @@ pub(super) fn parse(text: &str, source: &Path) -> Result<Content> {
     let table = table(&parts.rows)?;
     let warnings = warnings(&table);
     let title = value("name");
-    let name = if kebab_case(title).is_empty() { stem(source) } else { kebab_case(title) };
+    let own = short_name(&kebab_case(title));
+    let name = if own.is_empty() { stem(source) } else { own };
     let provenance = Provenance {
         description: joined(&[title, value("description")], "; "),
         category: one_line(&value("type").to_lowercase()),
@@ -87,7 +85,10 @@ pub(super) fn parse(text: &str, source: &Path) -> Result<Content> {
             "; ",
         ),
     };
-    Ok(Content::Materials(vec![Material::of(name, provenance, Model::Table(table)).warn(warnings)]))
+    let material = Material::of(name, provenance, Model::Table(table)).warn(warnings);
+    let sample = kebab_case(value("sample no."));
+    let read_as = "ECOSTRESS, wavelength in um, reflectance in percent";
+    Ok(Content::Materials(vec![material.reading(read_as).of_sample(sample)]))
 }
 
 /// Non-empty parts without doubled blanks.
@@ -150,30 +151,4 @@ fn table(rows: &[(usize, f64, f64)]) -> Result<Table<1>> {
         .map(|(wavenumber, (_, _, percent))| (wavenumber, [1.0 - percent / 100.0]))
         .collect();
     Table::new(&emissivities)
-}
-
-fn warnings(table: &Table<1>) -> Vec<String> {
-    let mut warnings = Vec::new();
-    let beyond = |e: f64| (e - 1.0).max(-e);
-    let outside: Vec<(f64, f64)> =
-        table.rows().map(|(wavenumber, [e])| (wavenumber, e)).filter(|&(_, e)| beyond(e) > 0.0).collect();
-    if let Some(&(worst_cm1, worst)) = outside.iter().max_by(|a, b| beyond(a.1).total_cmp(&beyond(b.1))) {
-        let (low, high) =
-            outside.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), &(x, _)| (low.min(x), high.max(x)));
-        warnings.push(format!(
-            "{} rows from {low:.1} to {high:.1} cm^-1 have a reflectance outside 0 to 100 percent (at worst {:.3} percent \
-             at {worst_cm1:.1} cm^-1); bands that use them are an error",
-            outside.len(),
-            100.0 * (1.0 - worst),
-        ));
-    }
-    if let Some((low, high)) = table.range_cm1()
-        && (low > LONG_WAVE_CM1.0 || high < LONG_WAVE_CM1.1)
-    {
-        warnings.push(format!(
-            "the rows go from {low:.1} to {high:.1} cm^-1 and so do not cover the long-wave infrared of 8 to 13 um ({} to {} cm^-1)",
-            LONG_WAVE_CM1.0, LONG_WAVE_CM1.1
-        ));
-    }
-    warnings
 }

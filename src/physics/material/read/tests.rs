@@ -79,16 +79,62 @@ fn each_bad_input_says_where_and_what_to_write_instead() {
         ),
         (
             "wavelength_um,reflectance\n10,5\n11,6\n".into(),
-            &["a.csv:2: reflectance: reflectance is 5", "divide percent by 100"],
+            &[
+                "a.csv:2: reflectance: reflectance is 5",
+                "if it is percent, write the header wavelength_um,reflectance (%)",
+            ],
         ),
         (
-            "wavelength_um,reflectance_percent\n10,5\n11,6\n".into(),
-            &["a.csv:1: reflectance_percent", "emissivity or reflectance"],
+            "wavelength_um,reflectance_percent\n10,5\n11,106\n".into(),
+            &["a.csv:3: reflectance_percent: reflectance is 106 percent", "between 0 and 100 percent"],
         ),
-        ("wavelength_nm,emissivity\n1,0.5\n2,0.5\n".into(), &["a.csv:1: wavelength_nm", "wavelength_um"]),
-        ("wavelength_um,transmittance\n1,0.5\n2,0.5\n".into(), &["`transmittance`", "reflectance"]),
+        // Nothing says what the numbers are.
+        (
+            "wavelength_um,paint\n10,5\n11,6\n".into(),
+            &[
+                "a.csv:1: paint: ",
+                "whether it is emissivity or reflectance",
+                "such as wavelength_um,reflectance_percent",
+            ],
+        ),
+        ("x,y\n1000,0.9\n1200,0.8\n".into(), &["a.csv:1: ", "such as wavenumber_cm1,emissivity"]),
+        (
+            "wavelength,emissivity\n400,0.9\n900,0.8\n".into(),
+            &["a.csv:1: wavelength", "without its unit", "such as wavelength_nm,emissivity"],
+        ),
+        (
+            "wavelength (cm-1),emissivity\n700,0.9\n900,0.8\n".into(),
+            &["a.csv:1: wavelength (cm-1)", "write wavenumber_cm1"],
+        ),
+        (
+            "wavelength_um,emissivity\n8,5,0,95\n9,5,0,96\n".into(),
+            &["a.csv:2: 4 cells where the header has 2", "decimal point", "semicolons"],
+        ),
+        (
+            "wavelength_nm;emissivity\n8,000;1\n9,000;1\n".into(),
+            &["a.csv:2: `8,000` may be 8.000 or 8000", "decimal points"],
+        ),
+        (
+            "wavelength_um,wavenumber_cm1,emissivity\n8,1250,0.5\n10,900,0.5\n".into(),
+            &["a.csv:3: ", "1000.00 cm^-1 by one column and at 900.00"],
+        ),
+        (
+            "wavelength_um,transmittance\n1,0.5\n2,0.5\n".into(),
+            &["`transmittance`", "no emissivity follows", "reflectance"],
+        ),
+        (
+            "wavelength_um,specular reflectance\n1,0.5\n2,0.5\n".into(),
+            &["a.csv:1: specular reflectance: ", "hemispherical reflectance"],
+        ),
+        (
+            "wavelength_um,emissivity,reflectance\n1,0.5,0.5\n2,0.5,0.5\n".into(),
+            &["a.csv:1: emissivity: ", "name each column after its material"],
+        ),
         ("700,0.5\n800,0.6\n".into(), &["a.csv:1: there is no header", "wavenumber_cm1,emissivity"]),
-        ("wavenumber_cm1;emissivity\n700;0,5\n".into(), &["a.csv:1", "commas"]),
+        (
+            "wavenumber_cm1;emissivity\n700;0,5\n800;0.5\n900;0,5\n".into(),
+            &["a.csv:3: emissivity: `0.5` has a decimal point where other numbers have commas"],
+        ),
         (
             "wavenumber_cm1,tireA,tire-a\n700,0.5,0.5\n800,0.5,0.5\n".into(),
             &["a.csv:1: two columns", "tire-a"],

@@ -27,6 +27,7 @@ pub(crate) const READERS: &[Reader] = &[
     Reader { name: "library", check: library },
     Reader { name: "manifest", check: manifest },
     Reader { name: "optical_constants", check: optical_constants },
+    Reader { name: "spectral_library", check: spectral_library },
     Reader { name: "band_rows", check: band_rows },
     Reader { name: "filters", check: filters },
     Reader { name: "scenario", check: scenario },
@@ -127,7 +128,18 @@ fn sound(material: &Material) {
 }
 
 fn material(folder: &Folder, bytes: &[u8]) {
-    let Some(materials) = accepted(read::from_file(&folder.put("a.csv", bytes))) else { return };
+    sound_materials(&folder.put("a.csv", bytes));
+}
+
+/// The header of a spectral library of two spectra in eleven channels.
+fn spectral_library(folder: &Folder, bytes: &[u8]) {
+    let samples: Vec<u8> = (0..22_u8).flat_map(|i| (f32::from(i) / 32.0).to_le_bytes()).collect();
+    folder.put("spectra.sli", &samples);
+    sound_materials(&folder.put("spectra.hdr", bytes));
+}
+
+fn sound_materials(path: &Path) {
+    let Some(materials) = accepted(read::from_file(path)) else { return };
     assert!(!materials.is_empty());
     for (index, material) in materials.iter().take(100).enumerate() {
         sound(material);

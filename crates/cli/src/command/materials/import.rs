@@ -1,0 +1,132 @@
+//! `hadar materials import`: files of any layout as two-column CSV.
+//!
+//! A file among several that is no spectrum is passed over with its reason, or all are refused with `--strict`; the only file that is named must be one.
+//! Spectra imported before stay: one of the same name from another file gets a name beside it.
+
+use super::super::global::Global;
+use super::{Columns, SHOWN_CM1};
+use hadar::demand::{Reason, Thing, Work};
+use hadar::error::{Error, Result};
+use hadar::material::{Material, Summary, read};
+use hadar_report::bundle::Bundle;
+use hadar_report::text::significant;
+use hadar_study::study::Warning;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+/// What was read: materials with their files, and why others were not.
+struct Found {
+    materials: Vec<(Material, PathBuf)>,
+    passed_over: Vec<Error>,
+}
+
+pub(super) fn run(named: &[PathBuf], columns: &Columns, global: &Global) -> Result<()> {
+    let mut found = read_all(named, columns, global)?;
+    let mut bundle = Bundle::default();
+    let own = match &global.out {
+        Some(directory) => global.folder(directory).own_files()?,
+        None => Vec::new(),
+    };
+    let of: Vec<(&Material, &Path)> =
+        found.materials.iter().map(|(material, file)| (material, file.as_path())).collect();
+    let names = read::unique_names(&of)?;
+    let mut summaries = Vec::new();
+    let mut out = String::new();
+    for ((material, file), name) in found.materials.iter().zip(names) {
+        let source = &material.provenance().source;
+        let is_anothers = |(known, content): &(String, Vec<u8>)| {
+            *known == format!("{name}.csv") && !holds_line(content, &format!("# source: {source}"))
+        };
+        let name = if own.iter().any(is_anothers) { read::tagged_name(material, file) } else { name };
+        let material = material.clone().with_name(name);
+        if global.out.is_some() {
+            match material.to_csv(&rows(&material)) {
+                Ok(csv) => bundle.add(format!("{}.csv", material.name()), csv),
+                Err(error) if global.strict || found.materials.len() == 1 => return Err(error.in_file(file)),
+                Err(error) => {
+                    found.passed_over.push(error.in_file(file));
+                    continue;
+                }
+            }
+        }
+        let summary = material.summary();
+        say(&summary, &mut out);
+        summaries.push(summary);
+    }
+    let warnings: Vec<Warning> = found
+        .passed_over
+        .iter()
+        .map(|error| Warning::Library { remark: format!("passed over: {error}") })
+        .collect();
+    for warning in &warnings {
+        let _ = writeln!(out, "{warning}");
+    }
+    let mut work = Work::default();
+    work.compute(Thing::LibrarySpectra, summaries.len() as u64);
+    if let Some(directory) = &global.out {
+        for (name, content) in own {
+            if bundle.names().all(|known| known != name) {
+                bundle.add(name, content);
+            }
+        }
+        global.write(&bundle, directory, None)?;
+        let _ = writeln!(out, "use them with --library {}", directory.display());
+        work.compute(Thing::Reports, 1);
+    } else {
+        work.spare(Thing::Reports, Reason::NotAsked, 1);
+    }
+    global.answer_with(serde_json::json!({ "materials": summaries, "warnings": warnings }), &out, &work)
+}
+
+fn read_all(named: &[PathBuf], columns: &Columns, global: &Global) -> Result<Found> {
+    let mut files = Vec::new();
+    for path in named {
+        if path.is_dir() { files.extend(read::spectra_in(path)?) } else { files.push(path.clone()) }
+    }
+    let mut found = Found { materials: Vec::new(), passed_over: Vec::new() };
+    for file in &files {
+        match columns.read(file) {
+            Ok(materials) => {
+                found.materials.extend(materials.into_iter().map(|material| (material, file.clone())));
+            }
+            Err(error) if global.strict || files.len() == 1 => return Err(error),
+            Err(error) => found.passed_over.push(error),
+        }
+    }
+    if !found.materials.is_empty() {
+        return Ok(found);
+    }
+    let said = match found.passed_over.first() {
+        None => "there is no file of spectra".to_owned(),
+        Some(first) => format!("none of {} files is a spectrum: {first}", found.passed_over.len()),
+    };
+    Err(Error::malformed(said, "name files of emissivity or reflectance"))
+}
+
+fn say(summary: &Summary, out: &mut String) {
+    let range = summary.range_cm1.map_or_else(String::new, |(low, high)| {
+        format!(", {} to {} cm^-1", significant(low, 5), significant(high, 5))
+    });
+    let _ = writeln!(out, "{}: {} rows{range}", summary.name, summary.rows);
+    if !summary.read_as.is_empty() {
+        let _ = writeln!(out, "  read as {}", summary.read_as);
+    }
+    for warning in &summary.warnings {
+        let _ = writeln!(out, "  warning: {warning}");
+    }
+}
+
+/// Whether a text file has this line.
+fn holds_line(content: &[u8], line: &str) -> bool {
+    content.split(|&byte| byte == b'\n').any(|one| one == line.as_bytes())
+}
+
+/// The material's own rows: its ends and every kink between.
+fn rows(material: &Material) -> Vec<f64> {
+    let (low, high) = material.range_cm1().unwrap_or(SHOWN_CM1);
+    let mut rows = vec![low, high];
+    rows.extend(material.breakpoints_cm1(low, high));
+    rows.sort_by(f64::total_cmp);
+    rows.dedup();
+    rows
+}

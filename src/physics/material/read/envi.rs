@@ -1,0 +1,234 @@
+//! ENVI spectral libraries: a header (`.hdr`) and a file of samples (`.sli`), a line of them for each spectrum.
+//!
+//! The header's `wavelength`, `wavelength units` and `spectra names` say what they are; whether emissivity or reflectance, the second of
+//! `z plot titles` (`{Wavelength, Emissivity}`), or `reflectance scale factor`, by which samples are divided. Where nothing does it
+//! is asked for. Channels that are bad (`bbl`) or not known (`data ignore value`) are no number: an error once a band needs
+//! them, as values below 0 or above 1 are.
+
+use super::content::{Content, kebab_case, one_line, stem, warnings};
+use super::header::{self, Axis, Meaning, Quantity, Values};
+use crate::envi_header::{EnviHeader, data_of, header_of};
+use crate::error::{Error, Result, check};
+use crate::file;
+use crate::grid::READ_SPECTRUM;
+use crate::material::Material;
+use crate::material::model::Model;
+use crate::material::provenance::{Basis, Provenance};
+use crate::material::table::Table;
+use crate::spectral_unit::SpectralUnit;
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+/// The longest file of samples, bytes.
+const LONGEST: u64 = 1 << 28;
+/// Endings of spectral libraries, whose header must be there.
+const LIBRARIES: [&str; 2] = ["sli", "sc"];
+/// The keys that say what the samples are.
+const TITLES: &str = "z plot titles";
+const SCALE: &str = "reflectance scale factor";
+
+/// Header and data, if the path is one of the two of a spectral library.
+///
+/// # Errors
+/// A header without data, a spectral library without its header.
+pub(super) fn files(path: &Path) -> Result<Option<(PathBuf, PathBuf)>> {
+    let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
+    if !path.is_file() {
+        return Ok(None);
+    }
+    if ending == "hdr" {
+        return Ok(Some((path.to_owned(), data_of(path)?)));
+    }
+    match header_of(path) {
+        Some(header) if LIBRARIES.contains(&ending.as_str()) => Ok(Some((header, path.to_owned()))),
+        None if LIBRARIES.contains(&ending.as_str()) => {
+            let found = "the header of this spectral library is not beside it";
+            Err(Error::malformed(found, "put it there under the same name with .hdr").in_file(path))
+        }
+        _ => Ok(None),
+    }
+}
+
+/// All spectra of a library. `columns` say what the samples are where the header does not.
+pub(super) fn read(header_path: &Path, data: &Path, columns: Option<&[String]>) -> Result<Content> {
+    let header = EnviHeader::from_file(header_path)?;
+    if !header.is_spectral_library() {
+        let found = "this is the header of an image, which has no spectra of materials";
+        let instead = "name a file of type `ENVI Spectral Library`";
+        return Ok(Content::NoEmissivity(Error::malformed(found, instead).in_file(header_path)));
+    }
+    let layout = header.layout().map_err(|error| error.in_file(header_path))?;
+    let bytes = file::bytes(data, READ_SPECTRUM, LONGEST)?;
+    if layout.bands != 1 || layout.bytes() != Some(bytes.len() as u64) {
+        let due = layout.bytes().map_or_else(|| "more".to_owned(), |due| due.to_string());
+        let found =
+            format!("{} bytes where the header announces {due} in {} bands", bytes.len(), layout.bands);
+        let instead = "keep header and data together: samples are channels, lines are spectra, in one band";
+        return Err(Error::malformed(found, instead).in_file(data));
+    }
+    let offset = usize::try_from(layout.header_offset).unwrap_or(usize::MAX);
+    let samples = layout.data_type.samples(bytes.get(offset..).unwrap_or_default(), layout.byte_order);
+    of(&header, &samples, layout.samples, data, columns).map_err(|error| error.in_file(header_path))
+}
+
+fn of(
+    header: &EnviHeader,
+    samples: &[f64],
+    channels: usize,
+    source: &Path,
+    columns: Option<&[String]>,
+) -> Result<Content> {
+    let Some(axis) = header.numbers_for("wavelength", channels, "channels")? else {
+        return Err(Error::malformed(
+            "the header has no `wavelength`",
+            "write wavelength = {…} and wavelength units",
+        ));
+    };
+    let unit = unit(header, &axis, columns)?;
+    let (quantity, scale) = match quantity(header, columns)? {
+        Ok(known) => known,
+        Err(other) => return Ok(Content::NoEmissivity(other)),
+    };
+    let ignored = header.ignored()?;
+    let good = header.good_bands(channels)?;
+    let wavenumbers = axis
+        .iter()
+        .map(|&value| {
+            check::positive("wavelength", value, unit.name())
+                .and_then(|value| check::positive("wavenumber", unit.wavenumber_cm1(value), "cm^-1"))
+                .map_err(|error| header.wrong("wavelength", error))
+        })
+        .collect::<Result<Vec<f64>>>()?;
+    let spectra: Vec<&[f64]> = samples.chunks_exact(channels).collect();
+    let names = names(header, spectra.len(), source)?;
+    let known = |(channel, sample): (usize, &f64)| {
+        let is_good = good.as_ref().is_none_or(|good| good.get(channel).copied().unwrap_or(false));
+        is_good && ignored != Some(*sample) && sample.is_finite()
+    };
+    let mut materials = Vec::with_capacity(spectra.len());
+    for (name, spectrum) in names.iter().zip(spectra) {
+        let fractions =
+            || spectrum.iter().enumerate().map(|one| if known(one) { one.1 / scale } else { f64::NAN });
+        let (beyond, most) = fractions()
+            .fold((0, 0.0_f64), |(count, most), value| (count + usize::from(value > 1.5), most.max(value)));
+        // Noise goes beyond 1, percent and integers do nearly everywhere.
+        if 2 * beyond > channels {
+            let found =
+                format!("{} of `{}` up to {most} where 1 is all there is", quantity.name(), one_line(name));
+            let instead =
+                format!("write `{SCALE} = 100` where samples are percent, or the factor that is true");
+            return Err(header.wrong(SCALE, Error::malformed(found, instead)));
+        }
+        let rows: Vec<(f64, [f64; 1])> = wavenumbers
+            .iter()
+            .zip(fractions())
+            .map(|(&wavenumber, value)| (wavenumber, [quantity.emissivity(value)]))
+            .collect();
+        let table = Table::new(&rows).map_err(|error| header.wrong("wavelength", error))?;
+        let mut said = warnings(&table);
+        let missing = channels - spectrum.iter().enumerate().filter(|one| known(*one)).count();
+        if missing > 0 {
+            said.push(format!(
+                "{missing} of {channels} channels are bad or not known; bands that use them are an error"
+            ));
+        }
+        let share = if scale == 1.0 { String::new() } else { format!(" times {scale}") };
+        let read_as = format!(
+            "ENVI spectral library, {} in {}, {}{share}",
+            unit.quantity(),
+            unit.name(),
+            quantity.name()
+        );
+        let provenance = Provenance {
+            description: one_line(name),
+            category: "user".to_owned(),
+            basis: Basis::UserFile,
+            source: source.display().to_string(),
+            licence: String::new(),
+            note: match quantity {
+                Quantity::Emissivity => String::new(),
+                Quantity::Reflectance => {
+                    "emissivity = 1 - reflectance (Kirchhoff), taken as opaque".to_owned()
+                }
+            },
+        };
+        materials.push(
+            Material::of(kebab_case(name), provenance, Model::Table(table)).reading(read_as).warn(said),
+        );
+    }
+    Ok(Content::Materials(materials))
+}
+
+fn unit(header: &EnviHeader, axis: &[f64], columns: Option<&[String]>) -> Result<SpectralUnit> {
+    if let Some(unit) = header.wavelength_unit()? {
+        return Ok(unit);
+    }
+    if let Some(Axis { unit: Some(unit), .. }) =
+        columns.and_then(|columns| columns.first()).map(|cell| header::axis(cell)).transpose()?.flatten()
+    {
+        return Ok(unit);
+    }
+    let range = axis
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &value| (low.min(value), high.max(value)));
+    header::unit_of_range("wavelength", range).ok_or_else(|| {
+        let found = "nothing says in which unit the wavelengths are, and more than one is possible";
+        let instead = "write `wavelength units = Micrometers`, Nanometers or Wavenumber, whichever is true";
+        header.wrong("wavelength units", Error::malformed(found, instead))
+    })
+}
+
+/// What the samples are and what they are to be divided by; or why there is no emissivity in them.
+fn quantity(
+    header: &EnviHeader,
+    columns: Option<&[String]>,
+) -> Result<std::result::Result<(Quantity, f64), Error>> {
+    let factor = header.number(SCALE)?;
+    if let Some(factor) = factor.filter(|factor| *factor <= 0.0) {
+        let error =
+            Error::malformed(format!("a factor of {factor}"), "write what samples are to be divided by");
+        return Err(header.wrong(SCALE, error));
+    }
+    let titles = header.list(TITLES);
+    let title = columns.and_then(|columns| columns.get(1)).map(String::as_str);
+    let title = title.or_else(|| titles.as_ref().and_then(|titles| titles.get(1).copied()));
+    let scale = |percent: bool| factor.unwrap_or(if percent { 100.0 } else { 1.0 });
+    match title.map(header::values) {
+        Some(Meaning::Values(Values { quantity: Some(quantity), percent, .. })) => {
+            Ok(Ok((quantity, scale(percent))))
+        }
+        Some(Meaning::Other) => {
+            let found = format!("`{}`, from which no emissivity follows", title.unwrap_or_default());
+            let instead = "use emissivity, or the hemispherical reflectance of opaque samples";
+            Ok(Err(header.wrong(TITLES, Error::malformed(found, instead))))
+        }
+        _ if factor.is_some() => Ok(Ok((Quantity::Reflectance, scale(false)))),
+        _ => {
+            let found = "nothing says whether the samples are emissivity or reflectance";
+            let instead = "write `z plot titles = {Wavelength, Emissivity}` or `{Wavelength, Reflectance}` into the header";
+            Err(header.wrong(TITLES, Error::malformed(found, instead)))
+        }
+    }
+}
+
+/// A name for every spectrum, each only once in kebab-case.
+fn names(header: &EnviHeader, count: usize, source: &Path) -> Result<Vec<String>> {
+    const KEY: &str = "spectra names";
+    let wrong = |found: String| {
+        let instead = format!("write {KEY} = {{…}} with a name of its own for each spectrum");
+        Err(header.wrong(KEY, Error::malformed(found, instead)))
+    };
+    let names: Vec<String> = match header.list(KEY) {
+        None if count == 1 => return Ok(vec![stem(source)]),
+        None => return wrong(format!("{count} spectra without names")),
+        Some(names) => names.into_iter().map(str::to_owned).collect(),
+    };
+    if names.len() != count {
+        return wrong(format!("{} names for {count} spectra", names.len()));
+    }
+    let mut seen = BTreeSet::new();
+    match names.iter().find(|name| kebab_case(name).is_empty() || !seen.insert(kebab_case(name))) {
+        Some(name) => wrong(format!("`{}` is there twice or no name", one_line(name))),
+        None => Ok(names),
+    }
+}

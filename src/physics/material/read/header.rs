@@ -1,0 +1,422 @@
+//! What the header of a column says: the unit of the axis, and emissivity or reflectance, as a fraction or in percent.
+//!
+//! `wavelength (um)`, `Wavelength [µm]`, `nm`, `wavenumber_cm1`, `cm-1`, `λ / µm`, `frequency (THz)`; `emissivity`, `Reflectance (%)`,
+//! `%R`, `skin_reflectance`. What is not stated is taken only where nothing else is possible ([`unit_of_range`]).
+
+use super::content::kebab_case;
+use crate::error::{Error, Result};
+use crate::spectral_unit::SpectralUnit;
+
+/// Names of an axis and what they count, without blanks and signs.
+const AXES: &[(&str, &[&str])] = &[
+    (
+        "wavelength",
+        &[
+            "wavelength",
+            "wavelengths",
+            "lambda",
+            "λ",
+            "wl",
+            "wvl",
+            "wave",
+            "centerwavelength",
+            "centrewavelength",
+            "wellenlänge",
+            "wellenlaenge",
+        ],
+    ),
+    ("wavenumber", &["wavenumber", "wavenumbers", "wn", "nu", "ν", "ν̃", "wellenzahl"]),
+    ("frequency", &["frequency", "freq", "f", "frequenz"]),
+    ("", &["", "x"]),
+];
+const EMISSIVITY: &[&str] =
+    &["emissivity", "emissivities", "emittance", "emiss", "emis", "epsilon", "eps", "emissionsgrad"];
+const REFLECTANCE: &[&str] =
+    &["reflectance", "reflectances", "reflectivity", "reflection", "refl", "rho", "reflexionsgrad"];
+const OTHER: &[&str] = &[
+    "transmittance",
+    "transmission",
+    "transmissivity",
+    "absorbance",
+    "absorption",
+    "absorptance",
+    "absorptivity",
+    "radiance",
+    "intensity",
+    "counts",
+    "munk",
+];
+/// Names of one letter, which stand alone.
+const LETTERS: &[(&str, Option<Quantity>)] = &[
+    ("e", Some(Quantity::Emissivity)),
+    ("ε", Some(Quantity::Emissivity)),
+    ("r", Some(Quantity::Reflectance)),
+    ("ρ", Some(Quantity::Reflectance)),
+    ("t", None),
+    ("τ", None),
+    ("a", None),
+];
+const PERCENT: &[&str] = &["percent", "pct", "prozent", "percentage"];
+/// Words beside a quantity that change nothing of it.
+const IDLE: &[&str] = &[
+    "spectral",
+    "total",
+    "hemispherical",
+    "directional",
+    "normal",
+    "fraction",
+    "fractional",
+    "unitless",
+    "dimensionless",
+    "ratio",
+    "in",
+    "of",
+    "0",
+    "1",
+];
+/// Words that make a part of the reflectance of it, from which no emissivity follows.
+const PART: &[&str] =
+    &["specular", "diffuse", "bidirectional", "biconical", "brdf", "brf", "atr", "relative"];
+const DEVIATION: &[&str] = &[
+    "std",
+    "stdev",
+    "sd",
+    "sigma",
+    "σ",
+    "error",
+    "err",
+    "uncertainty",
+    "unc",
+    "deviation",
+    "variance",
+    "var",
+];
+
+/// What emissivities are made of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Quantity {
+    /// Emissivity itself.
+    Emissivity,
+    /// Reflectance of an opaque surface, e = 1 − R.
+    Reflectance,
+}
+
+impl Quantity {
+    pub(super) const fn name(self) -> &'static str {
+        match self {
+            Self::Emissivity => "emissivity",
+            Self::Reflectance => "reflectance",
+        }
+    }
+
+    /// The emissivity of a fraction.
+    pub(super) fn emissivity(self, fraction: f64) -> f64 {
+        match self {
+            Self::Emissivity => fraction,
+            Self::Reflectance => 1.0 - fraction,
+        }
+    }
+}
+
+/// A column of values.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Values {
+    /// What is said to be in it; none where only a name is.
+    pub(super) quantity: Option<Quantity>,
+    pub(super) percent: bool,
+    /// The material's name in kebab-case; may be empty.
+    pub(super) name: String,
+}
+
+/// What a column holds.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum Meaning {
+    Values(Values),
+    /// Errors of another column.
+    Deviation,
+    /// Something from which no emissivity follows.
+    Other,
+}
+
+/// The axis of a header: its unit, if that is said, and what is counted, if that is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Axis {
+    pub(super) unit: Option<SpectralUnit>,
+    pub(super) quantity: &'static str,
+}
+
+/// The axis that a header names; none where it names none.
+///
+/// # Errors
+/// A unit of something else, as in `wavelength (cm-1)`.
+pub(super) fn axis(cell: &str) -> Result<Option<Axis>> {
+    let cell = cell.trim();
+    if cell.len() > LONGEST {
+        return Ok(None);
+    }
+    if let Some(quantity) = axis_named(cell).filter(|quantity| !quantity.is_empty()) {
+        return Ok(Some(Axis { unit: None, quantity }));
+    }
+    // The longest end that is a unit: `(1/cm)` before `cm)`.
+    for (at, _) in cell.char_indices().filter(|&(at, char)| at == 0 || !char.is_alphanumeric()) {
+        let after =
+            cell.get(at..).and_then(|rest| rest.chars().next()).map_or(at, |char| at + char.len_utf8());
+        for split in [at, after] {
+            let (Some(name), Some(rest)) = (cell.get(..split), cell.get(split..)) else { continue };
+            let (Some(unit), Some(quantity)) = (SpectralUnit::spelt(rest), axis_named(name)) else {
+                continue;
+            };
+            let fits = quantity.is_empty()
+                || quantity == unit.quantity()
+                || quantity == "frequency" && unit.quantity() == "wavenumber";
+            if fits {
+                return Ok(Some(Axis { unit: Some(unit), quantity: unit.quantity() }));
+            }
+            let found = format!("a {quantity} in {} is none", unit.name());
+            let instead = format!("write {}, or the unit that is true", named_axis(unit));
+            return Err(Error::malformed(found, instead));
+        }
+    }
+    Ok(None)
+}
+
+/// The longest header that is looked at, bytes.
+const LONGEST: usize = 80;
+
+/// What a name of an axis counts, `""` for a name that may count anything.
+fn axis_named(name: &str) -> Option<&'static str> {
+    let lower = name.to_lowercase();
+    let plain: String = lower.chars().filter(|char| char.is_alphanumeric() || *char == '\u{303}').collect();
+    let plain = plain.strip_suffix("in").filter(|plain| !plain.is_empty()).unwrap_or(&plain);
+    AXES.iter().find(|(_, names)| names.contains(&plain)).map(|(quantity, _)| *quantity)
+}
+
+/// What a column of values holds.
+pub(super) fn values(cell: &str) -> Meaning {
+    let lower = cell.to_lowercase();
+    let kebab = kebab_case(cell);
+    let mut words: Vec<&str> = kebab.split('-').filter(|word| !word.is_empty()).collect();
+    let percent = cell.contains('%') || words.iter().any(|word| PERCENT.contains(word));
+    words.retain(|word| !PERCENT.contains(word));
+    let name = words.join("-");
+    if lower.contains("a.u.") {
+        return Meaning::Other;
+    }
+    let of = |quantity, name| Meaning::Values(Values { quantity, percent, name });
+    // `Reflectance (fraction)`, `emissivity, unitless`.
+    let end = words.iter().rposition(|word| !IDLE.contains(word)).map_or(0, |last| last + 1);
+    let Some((last, before)) = words.get(..end).and_then(<[&str]>::split_last) else { return of(None, name) };
+    let before: Vec<&str> = before.iter().copied().filter(|word| !IDLE.contains(word)).collect();
+    if DEVIATION.contains(last) {
+        return Meaning::Deviation;
+    }
+    let quantity = match LETTERS.iter().find(|(letter, _)| before.is_empty() && letter == last) {
+        Some((_, None)) => return Meaning::Other,
+        Some((_, quantity)) => *quantity,
+        None if EMISSIVITY.contains(last) => Some(Quantity::Emissivity),
+        None if REFLECTANCE.contains(last) => Some(Quantity::Reflectance),
+        None if OTHER.contains(last) => return Meaning::Other,
+        // A name, whatever words are in it.
+        None => return of(None, name),
+    };
+    if before.iter().any(|word| DEVIATION.contains(word)) {
+        return Meaning::Deviation;
+    }
+    if quantity == Some(Quantity::Reflectance) && before.iter().any(|word| PART.contains(word)) {
+        return Meaning::Other;
+    }
+    of(quantity, before.join("-"))
+}
+
+/// Wavelengths of emissivities, µm: 0.2 µm to 1 mm.
+const WAVELENGTHS_UM: (f64, f64) = (0.2, 1000.0);
+/// Wavenumbers of them, cm⁻¹.
+const WAVENUMBERS_CM1: (f64, f64) = (10.0, 5e4);
+
+/// The unit of an axis that states none, where only one is possible from the lowest to the highest of its numbers: a wavelength in µm or
+/// nm, a wavenumber in cm⁻¹.
+pub(super) fn unit_of_range(quantity: &str, (low, high): (f64, f64)) -> Option<SpectralUnit> {
+    let inside = |(from, to): (f64, f64), factor: f64| factor * from <= low && high <= factor * to;
+    match quantity {
+        "wavenumber" if inside(WAVENUMBERS_CM1, 1.0) => Some(SpectralUnit::PerCentimetre),
+        "wavelength" => match (inside(WAVELENGTHS_UM, 1.0), inside(WAVELENGTHS_UM, 1e3)) {
+            (true, false) => Some(SpectralUnit::Micrometre),
+            (false, true) => Some(SpectralUnit::Nanometre),
+            _ => None,
+        },
+        _ => None,
+    }
+}
+
+/// The header of a column with this unit.
+pub(super) const fn named_axis(unit: SpectralUnit) -> &'static str {
+    match unit {
+        SpectralUnit::Micrometre => "wavelength_um",
+        SpectralUnit::Nanometre => "wavelength_nm",
+        SpectralUnit::Angstrom => "wavelength_angstrom",
+        SpectralUnit::Millimetre => "wavelength_mm",
+        SpectralUnit::Metre => "wavelength_m",
+        SpectralUnit::PerCentimetre => "wavenumber_cm1",
+        SpectralUnit::PerMetre => "wavenumber_m1",
+        SpectralUnit::Terahertz => "frequency_THz",
+        SpectralUnit::Gigahertz => "frequency_GHz",
+        SpectralUnit::Hertz => "frequency_Hz",
+    }
+}
+
+/// The header to write above columns of these ranges: what it says already is kept, the rest is what the numbers look like.
+pub(super) fn suggested(header: &[String], ranges: &[(f64, f64)]) -> String {
+    /// Columns that are shown of many.
+    const SHOWN: usize = 4;
+    let count = ranges.len().max(header.len()).max(2);
+    let range = |column: usize| ranges.get(column).copied();
+    let mut cells: Vec<String> = Vec::new();
+    for column in 0..count.min(SHOWN) {
+        let said = header.get(column).map_or("", |cell| cell.trim()).to_owned();
+        let kept = match (column, axis(&said)) {
+            (0, Ok(Some(Axis { unit: Some(_), .. }))) => Some(said.clone()),
+            (0, _) => None,
+            _ if count == 2 => match values(&said) {
+                Meaning::Values(Values { quantity: Some(_), percent, .. })
+                    if percent || range(column).is_none_or(|(_, high)| high <= 1.0) =>
+                {
+                    Some(said.clone())
+                }
+                _ => None,
+            },
+            _ => (!said.is_empty()).then(|| said.clone()),
+        };
+        let meant = |column: usize| match (column, range(column)) {
+            (0, None) => "wavenumber_cm1",
+            (0, Some((low, high))) => {
+                let quantity = axis(&said).ok().flatten().map_or("", |axis| axis.quantity);
+                match (quantity, low, high) {
+                    ("wavelength", _, high) if high <= 100.0 => "wavelength_um",
+                    ("wavelength", ..) => "wavelength_nm",
+                    ("wavenumber", ..) => "wavenumber_cm1",
+                    ("frequency", ..) => "frequency_THz",
+                    (_, _, high) if high <= 100.0 => "wavelength_um",
+                    (_, _, high) if high <= 5000.0 => "wavenumber_cm1",
+                    _ => "wavelength_nm",
+                }
+            }
+            _ if count > 2 => "name of the material",
+            (_, Some((_, high))) if high > 1.0 => "reflectance_percent",
+            _ => "emissivity",
+        };
+        cells.push(kept.filter(|cell| !cell.contains(',')).unwrap_or_else(|| meant(column).to_owned()));
+    }
+    if count > SHOWN {
+        cells.push("…".to_owned());
+    }
+    cells.join(",")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_axis_is_told_by_its_header() {
+        use SpectralUnit::{Micrometre, Nanometre, PerCentimetre, Terahertz};
+        for (unit, headers) in [
+            (
+                Micrometre,
+                &[
+                    "wavelength_um",
+                    "wavelength (um)",
+                    "Wavelength [µm]",
+                    "µm",
+                    "λ / µm",
+                    "Wavelength, microns",
+                    "wavelength (micrometers)",
+                    "lambda_um",
+                    "Wellenlänge [µm]",
+                    "x (um)",
+                    "Wavelength in um",
+                ][..],
+            ),
+            (Nanometre, &["nm", "Wavelength (nm)", "wl_nm", "WAVELENGTH_NM", "wavelength nm"]),
+            (
+                PerCentimetre,
+                &[
+                    "wavenumber_cm1",
+                    "wavenumber [cm^-1]",
+                    "cm-1",
+                    "Wavenumbers (cm-1)",
+                    "wavenumber (1/cm)",
+                    "ν [cm⁻¹]",
+                    "frequency (cm-1)",
+                    "wavenumber_cm-1",
+                    "1/cm",
+                    "Wavenumber (cm⁻¹)",
+                ],
+            ),
+            (Terahertz, &["THz", "frequency (THz)", "frequency_THz", "f [THz]"]),
+        ] {
+            for header in headers {
+                let axis = axis(header).unwrap_or_else(|error| panic!("{header}: {error}"));
+                assert_eq!(axis.and_then(|axis| axis.unit), Some(unit), "{header}");
+            }
+        }
+        assert_eq!(axis("wavelength"), Ok(Some(Axis { unit: None, quantity: "wavelength" })));
+        assert_eq!(axis("Wavenumber"), Ok(Some(Axis { unit: None, quantity: "wavenumber" })));
+        for other in ["", "emissivity", "thickness (um)", "skin", "temperature [K]", "x", "time (s)", "8.5"] {
+            assert_eq!(axis(other), Ok(None), "{other}");
+        }
+        assert!(axis("wavelength (cm-1)").unwrap_err().to_string().contains("write wavenumber_cm1"));
+        assert!(axis("wavenumber_um").unwrap_err().to_string().contains("write wavelength_um"));
+        for unit in
+            [Micrometre, Nanometre, PerCentimetre, Terahertz, SpectralUnit::Metre, SpectralUnit::Gigahertz]
+        {
+            assert_eq!(axis(named_axis(unit)).unwrap().and_then(|axis| axis.unit), Some(unit));
+        }
+    }
+
+    #[test]
+    fn values_are_told_by_their_header() {
+        let of = |quantity, percent, name: &str| {
+            Meaning::Values(Values { quantity: Some(quantity), percent, name: name.to_owned() })
+        };
+        use Quantity::{Emissivity, Reflectance};
+        for (header, meaning) in [
+            ("emissivity", of(Emissivity, false, "")),
+            ("Emissivity (%)", of(Emissivity, true, "")),
+            ("spectral emissivity [-]", of(Emissivity, false, "")),
+            ("ε", of(Emissivity, false, "")),
+            ("%R", of(Reflectance, true, "")),
+            ("R [%]", of(Reflectance, true, "")),
+            ("reflectance_percent", of(Reflectance, true, "")),
+            ("Reflectance (fraction)", of(Reflectance, false, "")),
+            ("Directional Hemispherical Reflectance", of(Reflectance, false, "")),
+            ("skin_reflectance", of(Reflectance, false, "skin")),
+            ("Roof tile emissivity (%)", of(Emissivity, true, "roof-tile")),
+            ("emissivity_std", Meaning::Deviation),
+            ("sigma_emissivity", Meaning::Deviation),
+            ("uncertainty", Meaning::Deviation),
+            ("Transmittance (%)", Meaning::Other),
+            ("absorbance", Meaning::Other),
+            ("specular reflectance", Meaning::Other),
+            ("reflectance (a.u.)", Meaning::Other),
+            ("%T", Meaning::Other),
+        ] {
+            assert_eq!(values(header), meaning, "{header}");
+        }
+        // Words of a name are no quantity.
+        let named =
+            |name: &str, percent| Meaning::Values(Values { quantity: None, percent, name: name.to_owned() });
+        assert_eq!(values("white reflectance panel"), named("white-reflectance-panel", false));
+        assert_eq!(values("al2o3"), named("al2o3", false));
+        assert_eq!(values("skin (%)"), named("skin", true));
+    }
+
+    #[test]
+    fn a_unit_that_is_not_stated_is_taken_only_where_it_is_the_only_one() {
+        assert_eq!(unit_of_range("wavelength", (7.5, 14.0)), Some(SpectralUnit::Micrometre));
+        assert_eq!(unit_of_range("wavelength", (350.0, 2500.0)), Some(SpectralUnit::Nanometre));
+        assert_eq!(unit_of_range("wavelength", (400.0, 900.0)), None);
+        assert_eq!(unit_of_range("wavenumber", (700.0, 1300.0)), Some(SpectralUnit::PerCentimetre));
+        assert_eq!(unit_of_range("wavenumber", (7e4, 1.3e5)), None);
+        assert_eq!(unit_of_range("frequency", (20.0, 40.0)), None);
+    }
+}
