@@ -52,8 +52,7 @@ pub(crate) fn over_states<'py>(
         return Err(raised(Error::malformed(found, instead)));
     }
     let lit: Vec<f64> = lit.as_array().iter().copied().collect();
-    let temperatures = temperatures.as_array();
-    let states = temperatures.iter().enumerate().map(|(i, temperature_k)| {
+    let states = temperatures.as_array().into_iter().enumerate().map(|(i, temperature_k)| {
         scene.surroundings.state(*temperature_k, lit.get(i * objects..(i + 1) * objects).unwrap_or_default())
     });
     let states: Vec<State> = states.collect::<hadar::Result<_>>().map_err(raised)?;

@@ -59,8 +59,8 @@ def test_the_bytes_are_those_of_the_command(name, scenario, options, flags, monk
 
 
 MISTAKES = [
-    ("size", EXAMPLE.read_text().replace('"37 degC"', '"37"', 1)),
-    ("size", EXAMPLE.read_text().replace('"skin"', '"skn"', 1)),
+    ("size", EXAMPLE.read_text().replace('temperature = "37 degC"', 'temperature = "37"', 1)),
+    ("size", EXAMPLE.read_text().replace('material = "skin"', 'material = "skn"', 1)),
     ("range", EXAMPLE.read_text()),
     ("rule", EXAMPLE.read_text()),
 ]
