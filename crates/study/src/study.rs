@@ -22,7 +22,9 @@ mod identify;
 pub mod library;
 mod looked_up;
 mod memory;
+mod per_photon;
 pub mod range;
+mod remembered;
 pub mod render;
 mod resolve;
 mod rule;
@@ -43,6 +45,7 @@ pub use identify::{
     Passband, Prediction, PriorAverage, Reached, Rows, SampleSpectra, Scaling, TargetVerdict, Trial, Watch,
 };
 pub use looked_up::Study;
+pub use remembered::Remembered;
 pub use rule::{
     ApartAnswer, ApproachResult, BudgetLine, CameraAnswer, CameraVerdict, Certified, ClauseAnswer, Drawn,
     EmissivityError, EnvelopeResult, Extent, Fixes, Found, Grade, IdealCamera, LightTime, LimitingScene,

@@ -14,6 +14,7 @@ use hadar_report::bundle::About;
 use hadar_report::manifest::{Input, VERSION, sha256, sha256_of_file};
 use hadar_report::sweep::{self, Gathered, Swept};
 use hadar_study::scenario::Written;
+use hadar_study::study::Remembered;
 use hadar_study::sweep::{Asking, Axis, Cases, Plan, Question};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -81,8 +82,10 @@ pub(super) fn run(args: &SweepArgs, global: &Global) -> Result<ExitCode> {
     plan.check(&file, &|written| question.read(written))?;
     let library = global.library()?;
     let columns: Vec<String> = args.columns.iter().map(|name| name.trim().to_owned()).collect();
+    let remembered = Remembered::default();
     let asking = Asking {
         library: &library,
+        remembered: &remembered,
         by: args.by.map(Into::into),
         skip_uncovered: global.skip_uncovered,
         skipping: global.skipping(),

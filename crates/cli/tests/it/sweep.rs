@@ -13,10 +13,10 @@ const GRID: [&str; 6] = [
     "--vary",
     "target.temperature=30 degC..40 degC:2",
     "--columns",
-    "verdict",
+    "verdict,requirement.photons,pairs[0].distance_return,pairs[0].relative_error",
 ];
 
-fn sweep<'a>(folder: &Folder, more: &[&'a str]) -> Value {
+fn sweep(folder: &Folder, more: &[&str]) -> Value {
     folder.json(&[&["sweep", "a.toml", "--out", "out"], more].concat())
 }
 
@@ -50,6 +50,13 @@ fn a_row_is_the_answer_of_the_command() {
         let alone = folder.json(&["size", "b.toml"]);
         let margin = alone["verdict"]["margin"].as_f64().unwrap();
         assert_eq!(number(row, "verdict.margin"), margin, "{exposure} ms, {temperature} degC");
+        // Rows of one temperature share what does not depend on the exposure, to the last bit.
+        let photons = alone["requirement"]["photons"].as_f64().unwrap();
+        assert_eq!(number(row, "requirement.photons"), photons, "{exposure} ms, {temperature} degC");
+        for name in ["distance_return", "relative_error"] {
+            let own = alone["pairs"][0][name].as_f64().unwrap();
+            assert_eq!(number(row, &format!("pairs[0].{name}")), own, "{name}");
+        }
         assert_eq!(row["verdict.sentence"], alone["verdict"]["sentence"].as_str().unwrap());
         assert_eq!(row["status"], "ok");
     }

@@ -24,6 +24,7 @@ pub(super) use scaling::quantile;
 pub use scaling::{BandNumber, LibrarySize, Scaling};
 
 use super::classes::MixtureAnswer;
+use super::remembered::PerPhoton;
 use super::{Study, Surface, Warning, warn};
 use crate::scenario::DistanceKind;
 use hadar::demand::{self, Ledger};
@@ -151,16 +152,14 @@ impl Study {
             None
         };
         let photons = camera_photons.or(with_priors.and_then(|by| by.of(kind))).unwrap_or(f64::INFINITY);
-        let local = self.local(self.unknowns.clone(), alternative, photons)?;
-        let nearest = self.nearest(alternative, photons)?;
-        let unknown_gain = self.local_unknown_gain(alternative, photons)?;
+        let PerPhoton { local, local_unknown_gain: unknown_gain, nearest, back } =
+            self.per_photon(alternative, photons)?;
         let required = |distance: f64| policy::photons_required(self.required, distance);
         let required_by = with_priors.unwrap_or_else(|| PhotonsRequired {
             nearest: required(nearest.distance),
             local: required(local.distance),
             local_unknown_gain: required(unknown_gain.distance),
         });
-        let back = self.return_distance(alternative, &nearest)?;
         let statistical =
             counting.as_ref().map(|counting| self.statistical(kind, alternative, counting)).transpose()?;
         // What is proved of all mixtures may not suffice where the worst that was found does.

@@ -3,6 +3,7 @@
 use super::Warning;
 use super::air::{Air, Behind};
 use super::classes::{ClassAnswer, Members};
+use super::remembered::Remembered;
 use super::surface::Surface;
 use crate::scenario::{Scenario, Units};
 use hadar::demand::Work;
@@ -48,6 +49,8 @@ pub struct Study {
     pub(super) warnings: Vec<Warning>,
     /// What it took to look everything up.
     pub(super) looked_up: Work,
+    /// What it shares with others.
+    pub(super) remembered: Option<Remembered>,
 }
 
 impl Study {

@@ -180,6 +180,7 @@ impl Study {
             skies,
             warnings,
             looked_up: library.work(),
+            remembered: None,
         };
         study.check_sight()?;
         (study.bands, study.air) = study.received(study.camera.as_ref(), study.scenario.target.distance_m)?;

@@ -7,7 +7,7 @@ use crate::scenario::{
 use crate::study::air_ranging::{AirPlan, AirRangingStudy};
 use crate::study::decompose::DecomposeStudy;
 use crate::study::range::{RangePlan, RangeStudy};
-use crate::study::{PhotonLaw, RuleAsked, RuleStudy, SimulationPlan, SizeAsked, Study};
+use crate::study::{PhotonLaw, Remembered, RuleAsked, RuleStudy, SimulationPlan, SizeAsked, Study};
 use hadar::decompose::Method;
 use hadar::demand::{Skipping, Work};
 use hadar::error::{Error, Result};
@@ -49,6 +49,8 @@ pub struct Asking<'a> {
     pub skipping: Skipping,
     /// Seed of random numbers.
     pub seed: u64,
+    /// What rows share.
+    pub remembered: &'a Remembered,
     /// The columns that are wanted; all but items of lists where there are none.
     pub columns: &'a [String],
 }
@@ -129,8 +131,8 @@ impl Question {
             }
             Self::Simulate => &["points[0].limit_accuracy", "points[0].statistical_distance"],
             Self::Rule => &["cameras[0].margin"],
-            Self::Range => &["verdict.share", "verdict.distance_error_m", "objects[0].signals[0].median_m"],
-            Self::Decompose => &["pixels"],
+            Self::Range => &["verdict.share", "at.sigma_m"],
+            Self::Decompose => &["undecided"],
         }
     }
 
@@ -241,5 +243,5 @@ fn study(written: &Written, asking: &Asking<'_>) -> Result<Study> {
         scenario.requirement.by = by;
     }
     scenario.alternatives.skip_uncovered |= asking.skip_uncovered;
-    Study::new_skipping(&scenario, asking.library, asking.skipping)
+    Ok(Study::new_skipping(&scenario, asking.library, asking.skipping)?.remembering(asking.remembered))
 }

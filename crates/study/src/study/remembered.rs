@@ -1,0 +1,80 @@
+//! Distances per √photon of a pair, computed once for all scenarios in which they are the same: whatever the exposure, the noise or,
+//! without air, the distance. They are found again by all that they depend on, bit by bit. Priors compete with the photons of the
+//! camera, so that nothing is remembered with them.
+
+use hadar::error::Result;
+use hadar::fisher::Unknowns;
+use hadar::identifiability::local::LocalDistance;
+use hadar::identifiability::nearest::{NearestDistance, StateRange};
+use hadar::scene::{State, Surroundings};
+use hadar::spectrum::Bands;
+use std::sync::{Arc, Mutex};
+
+/// Pairs that are kept at most; looking through more would take longer than computing one.
+const MOST: usize = 1000;
+
+/// Distances of pairs that scenarios share.
+#[derive(Debug, Clone, Default)]
+pub struct Remembered(Arc<Mutex<Vec<Arc<Known>>>>);
+
+/// A pair and what is known of it; whoever needs it first computes it, and others wait.
+#[derive(Debug)]
+struct Known {
+    scene: Scene,
+    found: Mutex<Option<PerPhoton>>,
+}
+
+/// All that the distances depend on.
+#[derive(Debug, PartialEq)]
+pub(super) struct Scene {
+    pub(super) state: State,
+    pub(super) tolerance: f64,
+    pub(super) range: StateRange,
+    pub(super) unknowns: Unknowns,
+    pub(super) target: Vec<f64>,
+    pub(super) alternative: Vec<f64>,
+    pub(super) surroundings: Surroundings,
+    pub(super) bands: Bands,
+}
+
+/// Distances of a pair per √photon.
+#[derive(Debug, Clone)]
+pub(super) struct PerPhoton {
+    pub(super) local: LocalDistance,
+    pub(super) local_unknown_gain: LocalDistance,
+    pub(super) nearest: NearestDistance,
+    /// From the nearest state back to the target.
+    pub(super) back: NearestDistance,
+}
+
+impl Remembered {
+    /// Distances of a scene: remembered, or computed.
+    pub(super) fn or_compute(
+        &self,
+        scene: Scene,
+        compute: impl FnOnce() -> Result<PerPhoton>,
+    ) -> Result<PerPhoton> {
+        let Some(known) = self.of(scene) else { return compute() };
+        let Ok(mut found) = known.found.lock() else { return compute() };
+        if let Some(found) = found.as_ref() {
+            return Ok(found.clone());
+        }
+        let new = compute()?;
+        *found = Some(new.clone());
+        Ok(new)
+    }
+
+    /// What is known of a scene, or a place for it; none where there are too many.
+    fn of(&self, scene: Scene) -> Option<Arc<Known>> {
+        let mut known = self.0.lock().ok()?;
+        if let Some(found) = known.iter().rev().find(|known| known.scene == scene) {
+            return Some(Arc::clone(found));
+        }
+        if known.len() >= MOST {
+            return None;
+        }
+        let new = Arc::new(Known { scene, found: Mutex::new(None) });
+        known.push(Arc::clone(&new));
+        Some(new)
+    }
+}
