@@ -108,6 +108,8 @@ mod tests {
     }
 
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(32))]
+
         #[test]
         fn quantiles_are_those_of_the_sorted_values(
             logs in proptest::collection::vec(-20.0..20.0_f64, 1..300), part in 0.0..=1.0_f64,
