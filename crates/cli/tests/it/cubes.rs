@@ -62,8 +62,9 @@ fn an_envi_file_says_its_bands_in_any_order() {
     );
     let refused = folder.refusal(&["decompose", "c.toml"]);
     assert!(
-        refused
-            .contains("band 20 of the cube is at 800 cm^-1 by its file, but at 840 cm^-1 in [bands]; leave"),
+        refused.contains(
+            "band 20 of the cube is at 800.000 cm^-1 by its file, but at 840.000 cm^-1 in [bands]; leave"
+        ),
         "{refused}"
     );
     folder.file("d.toml", &SCENARIO.replace(BANDS, ""));
@@ -126,7 +127,7 @@ fn what_cannot_be_known_is_warned_of() {
         let all = found["warnings"].as_array().unwrap().iter();
         all.map(|warning| warning["code"].as_str().unwrap().to_owned()).collect()
     };
-    let grid = "[bands]\nstart = \"8.33 um\"\nstop = \"12.33 um\"\nstep = \"0.2 um\"\n";
+    let grid = "[bands]\nstart = \"8.34 um\"\nstop = \"12.34 um\"\nstep = \"0.2 um\"\n";
     let folder = with(&SCENARIO.replace(BANDS, grid));
     assert!(codes(&folder.json(&["decompose", "a.toml"])).contains(&"band-order-taken".to_owned()));
     let mut state = 1_u64;
