@@ -65,10 +65,7 @@ pub(super) fn open(file: File, path: &Path, header_path: &Path, axes: Option<Axe
         values,
     };
     let cube = raw.cube();
-    let (centres_cm1, widths_cm1) = match bands(&header, shape.bands()).map_err(in_header)? {
-        Some((centres, widths)) => (Some(centres), widths),
-        None => (None, None),
-    };
+    let [centres_cm1, widths_cm1] = bands(&header, shape.bands()).map_err(in_header)?;
     let good = header.good_bands(shape.bands()).map_err(in_header)?.unwrap_or_default();
     let bad_bands = good.iter().enumerate().filter(|(_, good)| !**good).map(|(band, _)| band).collect();
     // The header says which axis is which: there is no side to wonder about.
@@ -118,11 +115,11 @@ fn values(header: &EnviHeader, bands: usize) -> Result<Option<Values>> {
 }
 
 /// Centres and widths of the bands, cm⁻¹; none without a unit, which is not guessed.
-fn bands(header: &EnviHeader, bands: usize) -> Result<Option<(Vec<f64>, Option<Vec<f64>>)>> {
+fn bands(header: &EnviHeader, bands: usize) -> Result<[Option<Vec<f64>>; 2]> {
     let (Some(unit), Some(centres)) =
         (header.wavelength_unit()?, header.numbers_for("wavelength", bands, "bands")?)
     else {
-        return Ok(None);
+        return Ok([None, None]);
     };
     let positive = |key: &str, numbers: &[f64]| match numbers.iter().find(|number| **number <= 0.0) {
         None => Ok(()),
@@ -147,5 +144,5 @@ fn bands(header: &EnviHeader, bands: usize) -> Result<Option<(Vec<f64>, Option<V
             Error::malformed("these are no bands", "give wavelength and fwhm in the unit that is named");
         return Err(header.wrong("wavelength", found));
     }
-    Ok(Some((centres_cm1, widths_cm1)))
+    Ok([Some(centres_cm1), widths_cm1])
 }

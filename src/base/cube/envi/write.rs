@@ -66,7 +66,7 @@ pub fn envi_files<S: Sample>(
             let _ = writeln!(header, "{key} = {{{}}}", numbers.join(",\n "));
         }
     }
-    let mut data = Vec::with_capacity(samples.len() * size_of::<S>());
+    let mut data = Vec::with_capacity(size_of_val(samples));
     let mut put = |sample: &S| {
         let value: f64 = (*sample).into();
         match single {
