@@ -28,6 +28,7 @@ fn the_first_ordinate_after_differences_is_a_check() {
     let (values, starts) = ordinates::read(&[(1, "100B0J0%"), (2, "103C0J0J0")]).unwrap();
     assert_eq!(values, [20.0, 30.0, 30.0, 40.0, 50.0]);
     assert_eq!(starts.iter().map(|start| start.index).collect::<Vec<_>>(), [0, 2]);
+    assert_eq!(ordinates::read(&[(1, "100B0J0%"), (2, "103@")]).unwrap().0, [20.0, 30.0, 30.0]);
     let message = ordinates::read(&[(1, "100B0J0%"), (2, "103C1J0J0")]).unwrap_err().to_string();
     assert!(
         message.contains("line 2: the check at the begin of the line is 31 where the ordinate before is 30"),
