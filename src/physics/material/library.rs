@@ -44,7 +44,7 @@ pub struct Library {
 /// A material, or where it can be made.
 #[derive(Debug, Clone)]
 enum Stored {
-    Read(Material),
+    Read(Box<Material>),
     #[cfg(feature = "library")]
     Embedded(Arc<Deferred>, usize),
 }
@@ -149,7 +149,7 @@ impl Library {
             let source = &material.provenance().source;
             self.warnings.push(format!("the class `{name}` is replaced by the material of {source}"));
         }
-        self.materials.insert(name, Stored::Read(material));
+        self.materials.insert(name, Stored::Read(Box::new(material)));
     }
 
     /// The material of a name.

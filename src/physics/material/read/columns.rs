@@ -226,7 +226,8 @@ impl<'a> Columns<'a> {
                 .map_err(|error| error.for_key(key).on_line(*line))?;
             for &(column, unit) in &self.twins {
                 let again = unit.wavenumber_cm1(value(cells, column));
-                if !((again - wavenumber).abs() <= ROUNDED * wavenumber) {
+                let agrees = (again - wavenumber).abs() <= ROUNDED * wavenumber;
+                if !agrees {
                     let found = format!(
                         "this row is at {wavenumber:.2} cm^-1 by one column and at {again:.2} by another"
                     );

@@ -296,8 +296,9 @@ impl Block<'_> {
         if let (Some(announced), Some(value)) = (self.number("FIRSTY")?, values.first()) {
             let found = value * y_factor;
             // As many digits as headers usually have.
-            if !((found - announced).abs() <= ROUNDED * announced.abs().max(found.abs()).max(y_factor.abs()))
-            {
+            let largest = announced.abs().max(found.abs()).max(y_factor.abs());
+            let agrees = (found - announced).abs() <= ROUNDED * largest;
+            if !agrees {
                 let error = Error::malformed(
                     format!("the first ordinate is {found} where FIRSTY is {announced}"),
                     "correct YFACTOR or FIRSTY, or fetch the file again",
@@ -322,7 +323,8 @@ impl Block<'_> {
             let (found, due) = (start.x * factor, first + step * start.index as f64);
             // Some writers state the x of the line's check value, some that of the next one; most round it.
             let rounding = factor.abs() * start.last_digit;
-            if !((found - due).abs() <= 1.5 * step.abs() + rounding) {
+            let agrees = (found - due).abs() <= 1.5 * step.abs() + rounding;
+            if !agrees {
                 let error = Error::malformed(
                     format!("this line begins at x = {found} where its first ordinate is at {due}"),
                     "fetch the file again: a line is lost or damaged",

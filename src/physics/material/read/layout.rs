@@ -158,16 +158,19 @@ fn is_excel_hint(line: &str) -> bool {
     line.get(..4).is_some_and(|start| start.eq_ignore_ascii_case("sep=")) && line.len() < 8
 }
 
+/// The numbers of the lines that are tried, where they are numbers.
+type Tried = Vec<Option<Vec<f64>>>;
+
 /// The form by which most lines are numbers.
 fn form(table: &[(usize, &str)]) -> Result<Form> {
     let middle = table.len() / 2;
     let tried = table.iter().take(TRIED).chain(table.iter().skip(middle.max(TRIED)).take(TRIED));
     let tried: Vec<(usize, &str)> = tried.copied().collect();
-    let mut best: Option<(usize, Form, Vec<Option<Vec<f64>>>)> = None;
+    let mut best: Option<(usize, Form, Tried)> = None;
     for (delimiter, _) in DELIMITERS {
         for decimal in ['.', ','] {
             let form = Form { delimiter, decimal };
-            let read: Vec<Option<Vec<f64>>> = tried.iter().map(|(_, line)| form.numbers(line)).collect();
+            let read: Tried = tried.iter().map(|(_, line)| form.numbers(line)).collect();
             let count = read.iter().flatten().count();
             match &best {
                 Some((most, _, numbers)) if count == *most && count > 0 => {
