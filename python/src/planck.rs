@@ -23,7 +23,7 @@ pub(crate) fn planck<'py>(
     nu: &Bound<'py, PyAny>,
     temperature: &Bound<'py, PyAny>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    broadcast(nu, temperature, |nu, temperature_k, out| law::photon_radiance_into(nu, temperature_k, out))
+    broadcast(nu, temperature, law::photon_radiance_into)
 }
 
 /// ∂B/∂T of :func:`planck`, photons s⁻¹ m⁻² sr⁻¹ per cm⁻¹ per K; arguments as there.
@@ -64,7 +64,7 @@ pub(crate) fn brightness_temperature<'py>(
 fn broadcast<'py>(
     nu: &Bound<'py, PyAny>,
     temperature: &Bound<'py, PyAny>,
-    law: impl Fn(&[f64], f64, &mut [f64]) + Send + Sync,
+    law: impl for<'a> Fn(&'a [f64], f64, &'a mut [f64]) + Send + Sync,
 ) -> PyResult<Bound<'py, PyAny>> {
     let py = nu.py();
     let (nu, temperature) = (numbers::<f64>(nu, "nu")?, numbers::<f64>(temperature, "temperature")?);
@@ -88,7 +88,7 @@ fn broadcast<'py>(
 fn spectra(
     nu: ArrayViewD<'_, f64>,
     temperature: ArrayViewD<'_, f64>,
-    law: &impl Fn(&[f64], f64, &mut [f64]),
+    law: &impl for<'a> Fn(&'a [f64], f64, &'a mut [f64]),
     out: &mut [f64],
 ) {
     let of = |nu: &[f64], temperature_k: f64, out: &mut [f64]| match temperature_k.is_nan() {
