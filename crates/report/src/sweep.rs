@@ -2,27 +2,17 @@
 
 mod figures;
 mod gathered;
+mod swept;
 mod text;
 
 pub use gathered::Gathered;
+pub use swept::Swept;
 pub use text::text;
 
 use crate::bundle::Bundle;
 use crate::parquet::{self, Column};
 use crate::table::Table;
 use hadar::error::Result;
-use hadar_study::sweep::Question;
-
-/// A sweep with what is there of its rows.
-#[derive(Debug)]
-pub struct Swept {
-    /// What was asked of every row.
-    pub question: Question,
-    /// The columns: `row`, what was varied, `status`, `message`, then those of the answers.
-    pub gathered: Gathered,
-    /// Columns of answers that were chosen, in their order; all where empty.
-    pub chosen: Vec<String>,
-}
 
 /// The table and the pictures of a sweep.
 ///

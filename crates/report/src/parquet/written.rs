@@ -1,14 +1,14 @@
 //! Columns written as a file.
 
 use super::{Column, text};
-use ::parquet::basic::{Compression, LogicalType, Repetition, Type as Physical};
-use ::parquet::data_type::{BoolType, ByteArray, ByteArrayType, DataType, DoubleType, Int64Type};
-use ::parquet::errors::ParquetError;
-use ::parquet::file::properties::WriterProperties;
-use ::parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
-use ::parquet::schema::types::{Type, TypePtr};
 use hadar::error::{Error, Result};
 use hadar_study::sweep::Cell;
+use parquet::basic::{Compression, LogicalType, Repetition, Type as Physical};
+use parquet::data_type::{BoolType, ByteArray, ByteArrayType, DataType, DoubleType, Int64Type};
+use parquet::errors::ParquetError;
+use parquet::file::properties::WriterProperties;
+use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
+use parquet::schema::types::{Type, TypePtr};
 use std::sync::Arc;
 
 /// What the values of a column are.
@@ -128,7 +128,7 @@ fn bytes(columns: &[Column]) -> std::result::Result<Vec<u8>, ParquetError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use ::parquet::file::reader::{FileReader as _, SerializedFileReader};
+    use parquet::file::reader::{FileReader as _, SerializedFileReader};
 
     #[test]
     fn a_column_has_the_type_of_its_values() {

@@ -1,6 +1,6 @@
 //! Pictures of a sweep: a curve over one key, a heat map over two.
 
-use super::Swept;
+use super::swept::Swept;
 use crate::figures::Plot;
 use crate::plot::{Axis, HeatMap, LineFigure, Series, Style};
 use crate::table::Table;
@@ -28,21 +28,6 @@ const UNITS: [(&str, &str); 14] = [
     ("_m", "m"),
     ("_s", "s"),
 ];
-
-impl Swept {
-    /// Columns that are told of and drawn: those that were chosen, else what the question is about.
-    pub(super) fn drawn(&self) -> Vec<&str> {
-        if !self.chosen.is_empty() {
-            return self.gathered.names(&self.chosen).unwrap_or_default();
-        }
-        let is_there = |name: &&str| {
-            self.gathered.values(name).is_some_and(|cells| cells.iter().any(|cell| cell.number().is_some()))
-        };
-        let headline = self.question.headline().iter().copied().find(is_there);
-        let met = self.gathered.values("verdict.met").map(|_| "verdict.met");
-        headline.into_iter().chain(met).collect()
-    }
-}
 
 /// The pictures of a sweep over one or two keys of numbers, one for each column of numbers that is drawn.
 pub(super) fn plots(swept: &Swept) -> Vec<Plot> {

@@ -1,6 +1,6 @@
 //! What is printed of a sweep.
 
-use super::Swept;
+use super::swept::Swept;
 use crate::text::significant;
 use hadar_study::sweep::Cell;
 use std::fmt::Write as _;
