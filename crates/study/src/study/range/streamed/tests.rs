@@ -6,7 +6,10 @@ use hadar::material::Library;
 
 /// Takes maps into memory.
 #[derive(Default)]
-struct Kept(Mutex<(usize, BTreeMap<(u8, usize), Vec<f64>>)>);
+struct Kept(Mutex<(usize, MapRows)>);
+
+/// Rows of maps, by map and row.
+type MapRows = BTreeMap<(u8, usize), Vec<f64>>;
 
 impl MapSink for Kept {
     fn begin(&self, signals: &[Signal], _rows: usize, columns: usize) -> Result<()> {
