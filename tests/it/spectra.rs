@@ -141,7 +141,7 @@ fn twenty_two_customary_layouts_are_read() {
         let materials =
             read::from_text(text, Path::new("My tile.csv")).unwrap_or_else(|error| panic!("{error}: {text}"));
         assert_eq!((materials.len(), materials[0].name()), (1, "my-tile"), "{text}");
-        let emissivity = materials[0].emissivity(&[1249.999999, 1000.0, 800.000001]).unwrap();
+        let emissivity = materials[0].emissivity(&[1_249.999_999, 1000.0, 800.000_001]).unwrap();
         for (found, due) in emissivity.iter().zip([0.9, 0.8, 0.7]) {
             assert!((found - due).abs() < 1e-8, "{text}: {emissivity:?}");
         }

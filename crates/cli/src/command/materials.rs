@@ -1,23 +1,22 @@
 //! `hadar materials`: the library.
 
+mod files;
 mod import;
 
 use super::global::{Global, as_json};
 use clap::{Args, Subcommand};
+use files::{Columns, SHOWN_CM1};
 use hadar::demand::Thing;
 use hadar::error::{Error, Result};
-use hadar::material::{Library, Material, MaterialRef, Summary, read};
+use hadar::material::{Library, Material, MaterialRef, Summary};
 use hadar_report::bundle::Bundle;
 use hadar_report::size::figures;
 use hadar_report::text::significant;
 use hadar_study::study::Surface;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
-
-/// Where materials are drawn and shown: the paper's bands, cm⁻¹.
-const SHOWN_CM1: (f64, f64) = (715.0, 1250.0);
 
 #[derive(Debug, Args)]
 pub(super) struct MaterialsArgs {
@@ -52,38 +51,6 @@ enum Action {
         #[command(flatten)]
         columns: Columns,
     },
-}
-
-/// What columns are called in files without a header.
-#[derive(Debug, Args)]
-struct Columns {
-    /// What the columns of files without a header are, as their header would say: wavelength_um,emissivity
-    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
-    columns: Vec<String>,
-}
-
-impl Columns {
-    /// All materials of a file.
-    fn read(&self, file: &Path) -> Result<Vec<Material>> {
-        if self.columns.is_empty() {
-            read::from_file(file)
-        } else {
-            read::from_file_with_columns(file, &self.columns)
-        }
-    }
-
-    /// The material of a name, or the one of a file.
-    fn find(&self, library: &Library, name: &str) -> Result<Material> {
-        if library.contains(name)
-            || !(name.contains(['/', '\\']) || read::is_spectra(name) || Path::new(name).is_file())
-        {
-            return library.get(name).cloned();
-        }
-        match self.columns.is_empty() {
-            true => Material::from_file(Path::new(name)),
-            false => Material::the_one(self.read(Path::new(name))?, Path::new(name)),
-        }
-    }
 }
 
 pub(super) fn run(args: &MaterialsArgs, global: &Global) -> Result<ExitCode> {

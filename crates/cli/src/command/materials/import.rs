@@ -4,7 +4,7 @@
 //! Spectra imported before stay: one of the same name from another file gets a name beside it.
 
 use super::super::global::Global;
-use super::{Columns, SHOWN_CM1};
+use super::files::{Columns, SHOWN_CM1};
 use hadar::demand::{Reason, Thing, Work};
 use hadar::error::{Error, Result};
 use hadar::material::{Material, Summary, read};
