@@ -159,7 +159,7 @@ impl Error {
         let lower = if comparable { name.to_lowercase() } else { String::new() };
         let mut ranked: Vec<(f64, &str)> = known
             .into_iter()
-            .filter(|candidate| comparable && candidate.len() <= LONGEST_NAME)
+            .filter(|name| comparable && name.len() <= LONGEST_NAME && !name.contains(char::is_control))
             .map(|candidate| {
                 // A part of a name, in whatever case, is meant for it; of several the most alike comes first.
                 let part = lower.len() > 2 && candidate.to_lowercase().contains(&lower);

@@ -24,9 +24,10 @@ use hadar::error::{Error, Result};
 /// Length over which errors of emissivities are correlated where nothing is said, cm⁻¹.
 pub const CORRELATION_CM1: f64 = 50.0;
 
-/// Bytes of a pixel that are kept, and for each of the surroundings; with a prior over the image, at least.
-const KEPT: u64 = 90;
-const KEPT_LIGHT: u64 = 12;
+/// Bytes of a pixel that are kept, and for each of the surroundings, measured with a report (200 with four; without one, half as
+/// many); with a prior over the image, at least.
+const KEPT: u64 = 150;
+const KEPT_LIGHT: u64 = 14;
 const KEPT_BESIDE_OTHERS: u64 = 400;
 
 impl DecomposeStudy {

@@ -118,10 +118,8 @@ fn values(attributes: &HashMap<String, AttrValue>, stored: Stored) -> Result<Opt
         _ => Err(wrong(key, "not one finite number")),
     };
     let mut missing = [numbers("_FillValue")?, numbers("missing_value")?].concat();
-    if missing.is_empty()
-        && attributes.contains_key("DIMENSION_LIST")
-        && matches!(stored, Stored::F32 | Stored::F64)
-    {
+    // Whether NetCDF wrote the file is not asked: no reading is of that value.
+    if missing.is_empty() && matches!(stored, Stored::F32 | Stored::F64) {
         missing.push(NETCDF_FILL);
     }
     missing.retain(|value| !value.is_nan());

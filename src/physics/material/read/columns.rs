@@ -67,6 +67,13 @@ pub(super) fn materials(sheet: &Sheet, source: &Path) -> Result<Vec<Material>> {
         match header::values(header) {
             Meaning::Values(values) => told.push((column, header, values)),
             Meaning::Deviation => left_out.push(header),
+            Meaning::Unclear => {
+                let found =
+                    format!("a column `{0}`, which may be what its numbers are or a name", one_line(header));
+                let instead =
+                    "end its header with what they are, as in `panel 2 reflectance` or `panel 2 emissivity`";
+                return Err(at(Error::malformed(found, instead), header));
+            }
             Meaning::Other => {
                 let found = format!("a column `{}`, from which no emissivity follows", one_line(header));
                 let instead = "use emissivity, or the hemispherical reflectance of an opaque sample, or delete the column";
@@ -167,7 +174,12 @@ impl<'a> Columns<'a> {
                 numbers.map(|(row, (_, cells))| cells.get(column).is_some_and(|cell| *cell == row as f64));
             !grid.rows.is_empty() && numbers.all(|counts| counts)
         };
-        let axis = usize::from(is_index(at(0)) && counts(0));
+        let start = usize::from(is_index(at(0)) && counts(0));
+        // Where the first column is none, one that says so in full.
+        let is_axis = |column: &usize| !matches!(header::axis(at(*column)), Ok(None));
+        let in_full = |column: &usize| header::says_in_full(at(*column));
+        let axis =
+            Some(start).filter(is_axis).or_else(|| (start..grid.header.len()).find(in_full)).unwrap_or(start);
         let first = at(axis);
         let on_header = |error: Error| {
             let named = first.len() <= LONGEST_AXIS && first.to_lowercase().starts_with("wave");
@@ -176,8 +188,8 @@ impl<'a> Columns<'a> {
         };
         let suggested = || {
             let line = header::suggested(
-                grid.header.get(axis..).unwrap_or_default(),
-                sheet.ranges.get(axis..).unwrap_or_default(),
+                grid.header.get(start..).unwrap_or_default(),
+                sheet.ranges.get(start..).unwrap_or_default(),
             );
             format!("write the header that is true of this file, such as {line}")
         };
@@ -200,14 +212,9 @@ impl<'a> Columns<'a> {
             }
         };
         let (mut values, mut twins) = (Vec::new(), Vec::new());
-        for column in axis + 1..grid.header.len() {
+        for column in (start..grid.header.len()).filter(|column| *column != axis) {
             match header::axis(at(column)) {
-                // A unit alone may be a material's name.
-                Ok(Some(Axis { unit: Some(unit), quantity }))
-                    if at(column).to_lowercase().starts_with(quantity) =>
-                {
-                    twins.push((column, unit));
-                }
+                Ok(Some(Axis { unit: Some(unit), .. })) if in_full(&column) => twins.push((column, unit)),
                 _ => values.push((column, at(column))),
             }
         }

@@ -71,12 +71,32 @@ const IDLE: &[&str] = &[
     "ratio",
     "in",
     "of",
-    "0",
-    "1",
 ];
-/// Words that make a part of the reflectance of it, from which no emissivity follows.
-const PART: &[&str] =
-    &["specular", "diffuse", "bidirectional", "biconical", "brdf", "brf", "atr", "relative"];
+/// Words that make of a quantity something from which no emissivity follows: a part of the reflectance, another scale.
+const CHANGED: &[&str] = &[
+    "specular",
+    "diffuse",
+    "bidirectional",
+    "biconical",
+    "brdf",
+    "brf",
+    "atr",
+    "relative",
+    "log",
+    "log10",
+    "ln",
+    "minus",
+    "non",
+    "inverse",
+    "delta",
+    "derivative",
+    "normalized",
+    "normalised",
+    "continuum",
+    "difference",
+    "change",
+    "arb",
+];
 const DEVIATION: &[&str] = &[
     "std",
     "stdev",
@@ -136,6 +156,8 @@ pub(super) enum Meaning {
     Deviation,
     /// Something from which no emissivity follows.
     Other,
+    /// A reflectance, or a name in which the word is.
+    Unclear,
 }
 
 /// The axis of a header: its unit, if that is said, and what is counted, if that is.
@@ -180,6 +202,12 @@ pub(super) fn axis(cell: &str) -> Result<Option<Axis>> {
     Ok(None)
 }
 
+/// Whether a header says both what is counted and in which unit, as no material's name does.
+pub(super) fn says_in_full(cell: &str) -> bool {
+    let Ok(Some(Axis { unit: Some(_), quantity })) = axis(cell) else { return false };
+    cell.to_lowercase().starts_with(quantity)
+}
+
 /// The longest header that is looked at, bytes.
 const LONGEST: usize = 80;
 
@@ -193,39 +221,51 @@ fn axis_named(name: &str) -> Option<&'static str> {
 
 /// What a column of values holds.
 pub(super) fn values(cell: &str) -> Meaning {
-    let lower = cell.to_lowercase();
     let kebab = kebab_case(cell);
     let mut words: Vec<&str> = kebab.split('-').filter(|word| !word.is_empty()).collect();
     let percent = cell.contains('%') || words.iter().any(|word| PERCENT.contains(word));
     words.retain(|word| !PERCENT.contains(word));
     let name = words.join("-");
-    if lower.contains("a.u.") {
-        return Meaning::Other;
-    }
     let of = |quantity, name| Meaning::Values(Values { quantity, percent, name });
-    // `Reflectance (fraction)`, `emissivity, unitless`.
+    // `Reflectance (0-1)`, `emissivity, unitless`.
+    let words = words.strip_suffix(&["0", "1"]).unwrap_or(&words);
     let end = words.iter().rposition(|word| !IDLE.contains(word)).map_or(0, |last| last + 1);
     let Some((last, before)) = words.get(..end).and_then(<[&str]>::split_last) else { return of(None, name) };
     let before: Vec<&str> = before.iter().copied().filter(|word| !IDLE.contains(word)).collect();
-    if DEVIATION.contains(last) {
+    let any = |list: &[&str]| list.contains(last) || before.iter().any(|word| list.contains(word));
+    let is_said = any(EMISSIVITY) || any(REFLECTANCE) || any(OTHER);
+    if DEVIATION.contains(last) || is_said && any(DEVIATION) {
         return Meaning::Deviation;
     }
-    let quantity = match LETTERS.iter().find(|(letter, _)| before.is_empty() && letter == last) {
-        Some((_, None)) => return Meaning::Other,
-        Some((_, quantity)) => *quantity,
-        None if EMISSIVITY.contains(last) => Some(Quantity::Emissivity),
-        None if REFLECTANCE.contains(last) => Some(Quantity::Reflectance),
-        None if OTHER.contains(last) => return Meaning::Other,
-        // A name, whatever words are in it.
-        None => return of(None, name),
-    };
-    if before.iter().any(|word| DEVIATION.contains(word)) {
-        return Meaning::Deviation;
-    }
-    if quantity == Some(Quantity::Reflectance) && before.iter().any(|word| PART.contains(word)) {
+    // `1 - emissivity` is none.
+    if cell.to_lowercase().contains("a.u.")
+        || is_said && (any(CHANGED) || matches!(before[..], ["1" | "one"]))
+    {
         return Meaning::Other;
     }
-    of(quantity, before.join("-"))
+    match LETTERS.iter().find(|(letter, _)| letter == before.first().unwrap_or(last)) {
+        Some((_, Some(quantity))) if before.is_empty() => return of(Some(*quantity), String::new()),
+        Some((_, None)) if before.is_empty() => return Meaning::Other,
+        // `R 1` may be the reflectance of a sample.
+        Some(_) if before.len() == 1 && last.bytes().all(|byte| byte.is_ascii_digit()) => {
+            return Meaning::Unclear;
+        }
+        _ => {}
+    }
+    if EMISSIVITY.contains(last) {
+        return of(Some(Quantity::Emissivity), before.join("-"));
+    }
+    if REFLECTANCE.contains(last) {
+        return of(Some(Quantity::Reflectance), before.join("-"));
+    }
+    match (any(OTHER), any(REFLECTANCE), any(EMISSIVITY)) {
+        _ if OTHER.contains(last) => Meaning::Other,
+        // `reflectance 2`, `white reflectance panel`: what the numbers are, or a part of a name.
+        (true, ..) | (_, true, _) => Meaning::Unclear,
+        (.., true) => of(Some(Quantity::Emissivity), name),
+        // A name, in which nothing of a quantity is.
+        _ => of(None, name),
+    }
 }
 
 /// Wavelengths of emissivities, µm: 0.2 µm to 1 mm.
@@ -293,6 +333,7 @@ pub(super) fn suggested(header: &[String], ranges: &[(f64, f64)]) -> String {
                 match (quantity, low, high) {
                     ("wavelength", _, high) if high <= 100.0 => "wavelength_um",
                     ("wavelength", ..) => "wavelength_nm",
+                    ("wavenumber", _, high) if high > 5e4 => "wavenumber_m1",
                     ("wavenumber", ..) => "wavenumber_cm1",
                     ("frequency", ..) => "frequency_THz",
                     (_, _, high) if high <= 100.0 => "wavelength_um",
@@ -399,13 +440,21 @@ mod tests {
             ("specular reflectance", Meaning::Other),
             ("reflectance (a.u.)", Meaning::Other),
             ("%T", Meaning::Other),
+            ("1-emissivity", Meaning::Other),
+            ("1 - Reflectance (%)", Meaning::Other),
+            ("log reflectance", Meaning::Other),
+            ("emissivity difference", Meaning::Other),
+            ("reflectance 2", Meaning::Unclear),
+            ("white reflectance panel", Meaning::Unclear),
+            ("transmittance_300K", Meaning::Unclear),
+            ("R 2", Meaning::Unclear),
+            ("Reflectance (0-1)", of(Reflectance, false, "")),
+            ("emissivity_300K", of(Emissivity, false, "emissivity-300k")),
         ] {
             assert_eq!(values(header), meaning, "{header}");
         }
-        // Words of a name are no quantity.
         let named =
             |name: &str, percent| Meaning::Values(Values { quantity: None, percent, name: name.to_owned() });
-        assert_eq!(values("white reflectance panel"), named("white-reflectance-panel", false));
         assert_eq!(values("al2o3"), named("al2o3", false));
         assert_eq!(values("skin (%)"), named("skin", true));
     }

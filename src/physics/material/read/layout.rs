@@ -243,10 +243,12 @@ fn ranges_of<'a>(rows: impl Iterator<Item = &'a [f64]>) -> Vec<(f64, f64)> {
     ranges
 }
 
-/// Whether cells begin with an axis, or with an index and an axis.
+/// Whether cells begin with an axis, or with an index and an axis, or have one that is said in full.
 fn names_an_axis(cells: &[String]) -> bool {
     let axis = |at: usize| cells.get(at).is_some_and(|cell| !matches!(header::axis(cell), Ok(None)));
-    axis(0) || cells.first().is_some_and(|cell| is_index(cell)) && axis(1)
+    axis(0)
+        || cells.first().is_some_and(|cell| is_index(cell)) && axis(1)
+        || cells.iter().any(|cell| header::says_in_full(cell))
 }
 
 /// Whether a header is that of row numbers.
