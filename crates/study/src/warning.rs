@@ -42,6 +42,8 @@ pub enum Warning {
     AxesInDoubt { rows: usize, columns: usize, bands: usize },
     /// Bands said as wavelengths, of a cube whose file does not say their order.
     BandOrderTaken,
+    /// The file of a cube lists wavelengths without a unit.
+    WavelengthsUnused,
     /// Pixels with a missing sample.
     PixelsSkipped { pixels: usize, of: usize },
     /// Pixels that no material explains.
@@ -270,6 +272,7 @@ impl Warning {
             Self::SolvedForOnePair { .. } => Code::SolvedForOnePair,
             Self::AxesInDoubt { .. } => Code::AxesInDoubt,
             Self::BandOrderTaken => Code::BandOrderTaken,
+            Self::WavelengthsUnused => Code::WavelengthsUnused,
             Self::PixelsSkipped { .. } => Code::PixelsSkipped,
             Self::LibraryDoesNotFit { .. } => Code::LibraryDoesNotFit,
             Self::NoRelativeEmissivity { .. } => Code::NoRelativeEmissivity,

@@ -70,7 +70,9 @@ pub(super) fn open(file: File, path: &Path, header_path: &Path, axes: Option<Axe
     let bad_bands = good.iter().enumerate().filter(|(_, good)| !**good).map(|(band, _)| band).collect();
     // The header says which axis is which: there is no side to wonder about.
     let found = Found::array(format, shape, stored.name(), &[]);
-    Ok(Opened { found: Found { missing, bad_bands, centres_cm1, widths_cm1, ..found }, cube })
+    let axis_without_unit = centres_cm1.is_none() && header.text("wavelength").is_some();
+    let found = Found { missing, bad_bands, centres_cm1, widths_cm1, axis_without_unit, ..found };
+    Ok(Opened { found, cube })
 }
 
 const fn stored(data_type: DataType) -> Stored {

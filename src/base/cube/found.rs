@@ -44,6 +44,8 @@ pub struct Found {
     /// Widths of the bands, cm⁻¹, where it says them.
     #[serde(skip)]
     pub widths_cm1: Option<Vec<f64>>,
+    /// Whether the file lists wavelengths or wavenumbers without their unit, so that they are not used.
+    pub axis_without_unit: bool,
     /// Sides of the array as the file has them.
     #[serde(skip)]
     pub(super) sides: Vec<usize>,
@@ -64,6 +66,7 @@ impl Found {
             bad_bands: Vec::new(),
             centres_cm1: None,
             widths_cm1: None,
+            axis_without_unit: false,
             sides: sides.to_vec(),
         }
     }

@@ -31,8 +31,9 @@ pub(super) fn open(file: File, path: &Path, name: Option<&str>, axes: Option<Axe
     let (name, array) = sound(|| chosen(&source, name))?;
     let opened = of_array(file, path, len, array, axes).map_err(|error| error.for_key(name.clone()))?;
     let bands = opened.found.shape.bands();
-    let centres_cm1 = sound(|| Ok(wavelengths(&source, &name, bands)))?;
-    Ok(Opened { found: Found { variable: Some(name), centres_cm1, ..opened.found }, ..opened })
+    let (centres_cm1, axis_without_unit) = sound(|| Ok(wavelengths(&source, &name, bands)))?;
+    let found = Found { variable: Some(name), centres_cm1, axis_without_unit, ..opened.found };
+    Ok(Opened { found, ..opened })
 }
 
 /// The array of this name, or the only one that can be meant.

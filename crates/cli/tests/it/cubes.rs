@@ -75,6 +75,67 @@ fn an_envi_file_says_its_bands_in_any_order() {
     );
 }
 
+/// A grid that is off by more than half a band, wavelengths without a unit, and widths that only distances tell where a band is left out.
+#[test]
+fn widths_and_units_are_not_guessed() {
+    let folder = with(&SCENARIO.replace("counts.npy", "scene.hdr"));
+    envi(&folder, "", |_, _, count| count);
+    for (start, stop, refused) in [(811, 1211, true), (809, 1209, false)] {
+        let own = SCENARIO.replace("counts.npy", "scene.hdr");
+        let own =
+            own.replace("\"800 cm", &format!("\"{start} cm")).replace("\"1200 cm", &format!("\"{stop} cm"));
+        folder.file("b.toml", &own);
+        let said = folder.run(&["decompose", "b.toml"]).stderr;
+        assert_eq!(said.contains("by its file, but at"), refused, "{start}: {said}");
+    }
+    let header = fs::read_to_string(folder.path().join("scene.hdr")).unwrap();
+    folder.file("scene.hdr", &header.replace("wavelength units = Micrometers\n", ""));
+    let found = folder.json(&["decompose", "a.toml"]);
+    let codes: Vec<&str> =
+        found["warnings"].as_array().unwrap().iter().map(|w| w["code"].as_str().unwrap()).collect();
+    assert!(codes.contains(&"wavelengths-unused"), "{codes:?}");
+    folder.file("c.toml", &SCENARIO.replace("counts.npy", "scene.hdr").replace(BANDS, ""));
+    let refused = folder.refusal(&["decompose", "c.toml"]);
+    assert!(refused.contains("lists its wavelengths without a unit"), "{refused}");
+    // The tenth band of 21 moved away from its place.
+    let moved = format!("{}", 1e4 / 1000.0);
+    assert!(header.contains(&moved));
+    folder.file("scene.hdr", &header.replace(&format!(" {moved},"), " 10.06,"));
+    let refused = folder.refusal(&["decompose", "c.toml"]);
+    assert!(refused.contains("which does not say how wide they are; write their widths"), "{refused}");
+}
+
+/// What is written without wavelengths is in rising wavenumber, whatever the order of the file was.
+#[test]
+fn destriped_cubes_are_in_rising_wavenumber() {
+    let folder = with(SCENARIO);
+    let (rows, columns, bands) = (40, 40, 8);
+    let count = |row: usize, column: usize, band: usize| {
+        1000.0 * (band + 1) as f64 + ((row * 7919 + column * 104_729 + band * 31) % 1013) as f64 / 50.0
+    };
+    let lambda: Vec<String> = (0..bands).map(|band| (8.0 + 0.5 * band as f64).to_string()).collect();
+    folder.file(
+        "a.hdr",
+        &format!(
+            "ENVI\nsamples = {columns}\nlines = {rows}\nbands = {bands}\ndata type = 5\ninterleave = bip\nbyte order = 0\n\
+             wavelength units = Micrometers\nwavelength = {{{}}}\n",
+            lambda.join(", ")
+        ),
+    );
+    let places = (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column)));
+    let data: Vec<u8> = places
+        .flat_map(|(row, column)| (0..bands).map(move |band| count(row, column, band)))
+        .flat_map(f64::to_le_bytes)
+        .collect();
+    fs::write(folder.path().join("a.img"), data).unwrap();
+    folder.json(&["calibrate", "stripes", "a.hdr", "--out", "out"]);
+    let first = |path: &str| match Cube::open(&folder.path().join(path), None).unwrap() {
+        Cube::F32(cube) => f64::from(cube.read(0..1, &mut Vec::new()).unwrap()[0]),
+        Cube::F64(cube) => cube.read(0..1, &mut Vec::new()).unwrap()[0],
+    };
+    assert!((first("out/destriped.npy") / count(0, 0, bands - 1) - 1.0).abs() < 0.02);
+}
+
 /// A band that is bad by the list of the file, or by the scenario in the order of the file, and a pixel that was not measured.
 #[test]
 fn bad_bands_and_missing_samples_of_a_file_are_left_out() {

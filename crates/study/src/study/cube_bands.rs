@@ -10,6 +10,9 @@ use hadar::spectrum::Bands;
 use hadar::words::significant;
 use std::path::Path;
 
+/// Neighbouring distances of bands that differ by more than this factor are no widths.
+const UNEVEN: f64 = 1.4;
+
 /// A cube with its bands in rising wavenumber.
 #[derive(Debug)]
 pub(super) struct InOrder {
@@ -55,7 +58,14 @@ impl InOrder {
             (Some(centres), Some(widths)) => {
                 Bands::from_rows(centres.iter().copied().zip(widths.iter().copied()))
             }
-            (Some(centres), None) => Bands::from_centers(centres),
+            (Some(centres), None) => {
+                evenly_spaced(&self.rising(centres))?;
+                Bands::from_centers(centres)
+            }
+            (None, _) if self.found.axis_without_unit => Err(Error::malformed(
+                "the table is missing, and the cube's file lists its wavelengths without a unit",
+                "write the unit into the file (ENVI: wavelength units = Micrometers), or write [bands]",
+            )),
             (None, _) => Err(Error::malformed(
                 "the table is missing, and the cube's file does not say its bands",
                 "write [bands] with start, stop and step, or rows = \"bands.csv\"",
@@ -66,7 +76,7 @@ impl InOrder {
     /// Refuses bands that are not those of the cube.
     ///
     /// # Errors
-    /// Another number of bands, or one that the file has elsewhere by more than its width.
+    /// Another number of bands, or one that the file has elsewhere by more than half its width.
     pub(super) fn check(&self, bands: &Bands) -> Result<()> {
         check_count(&self.cube, bands)?;
         let Some(centres) = &self.found.centres_cm1 else { return Ok(()) };
@@ -75,8 +85,8 @@ impl InOrder {
             bands.bands().iter().zip(self.rising(centres)).zip(widths).enumerate()
         {
             // One node stands for its band; a filter reaches over its rows.
-            let width = width.max(band.high_cm1 - band.low_cm1);
-            if (band.center_cm1 - own).abs() > width {
+            let half = 0.5 * width.max(band.high_cm1 - band.low_cm1);
+            if (band.center_cm1 - own).abs() > half {
                 let place = self.order.get(i).copied().unwrap_or(i);
                 let found = format!(
                     "band {place} of the cube is at {} cm^-1 by its file, but at {} cm^-1 in [bands]",
@@ -89,6 +99,23 @@ impl InOrder {
         }
         Ok(())
     }
+}
+
+/// Refuses bands whose widths cannot be told from their distances, as where some are left out.
+fn evenly_spaced(centres_cm1: &[f64]) -> Result<()> {
+    let apart: Vec<f64> = centres_cm1.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let uneven = |pair: &[f64]| pair[0].max(pair[1]) > UNEVEN * pair[0].min(pair[1]);
+    let Some(place) = apart.windows(2).position(uneven) else { return Ok(()) };
+    let around: Vec<String> =
+        centres_cm1.iter().skip(place).take(3).map(|nu| significant(*nu, 6).to_string()).collect();
+    let found = format!(
+        "bands at {} cm^-1 by the cube's file, which does not say how wide they are",
+        around.join(", ")
+    );
+    Err(Error::malformed(
+        found,
+        "write their widths into the file (fwhm), or [bands] with rows = \"bands.csv\"",
+    ))
 }
 
 /// What is not sure of the axes of a cube, beside the bands that were asked for.

@@ -84,6 +84,9 @@ impl Said<'_> {
         if asked.is_in_wavelength() && opened.found.centres_cm1.is_none() && bands.len() > 1 {
             warnings.push(Warning::BandOrderTaken);
         }
+        if opened.found.axis_without_unit {
+            warnings.push(Warning::WavelengthsUnused);
+        }
         if let (Some(camera), Some(spec)) = (&camera, self.camera) {
             camera_bands::check(camera, spec, &asked, &bands, &|key| self.source.place(key))?;
             bands = camera.received(&bands);

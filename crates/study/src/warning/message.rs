@@ -26,6 +26,10 @@ impl Display for Warning {
                 "the bands are written as wavelengths, but the cube's file does not say them: its first band was taken as that of the \
                  longest wavelength",
             ),
+            Self::WavelengthsUnused => f.write_str(
+                "the cube's file lists its wavelengths or wavenumbers without a unit, so that they were not used: its first band was taken \
+                 as that of the longest wavelength; write the unit into the file",
+            ),
             Self::PixelsSkipped { pixels, of } => {
                 write!(f, "{pixels} of {of} pixels have a sample that is no number; they were left out")
             }

@@ -103,7 +103,11 @@ fn values(attributes: &HashMap<String, AttrValue>, stored: Stored) -> Result<Opt
     let wrong = |key: &str, found: &str| {
         Error::malformed(format!("the attribute is {found}"), "write it as one number").for_key(key)
     };
-    let numbers = |key: &str| match attributes.get(key) {
+    // Some write them with other capitals.
+    let of_name = |key: &str| {
+        attributes.iter().find(|(name, _)| name.eq_ignore_ascii_case(key)).map(|(_, value)| value)
+    };
+    let numbers = |key: &str| match of_name(key) {
         None => Ok(Vec::new()),
         Some(value) => {
             let signed = || value.to_i64s().map(|all| all.iter().map(|one| *one as f64).collect());
@@ -153,18 +157,22 @@ fn within(group: &Group, path: &str, depth: usize, found: &mut Vec<(String, Data
     }
 }
 
-/// Centres of the bands, cm⁻¹, of an axis of so many numbers beside the array that says its unit.
-pub(super) fn wavelengths(source: &File, array: &str, bands: usize) -> Option<Vec<f64>> {
+/// Centres of the bands, cm⁻¹, of an axis of so many numbers beside the array that says its unit; and whether there is only one that
+/// does not.
+pub(super) fn wavelengths(source: &File, array: &str, bands: usize) -> (Option<Vec<f64>>, bool) {
     let folder = array.rsplit_once('/').map_or("", |(folder, _)| folder);
-    AXIS.iter().find_map(|name| {
+    let of_bands = |name: &&str| {
         let path = if folder.is_empty() { (*name).to_owned() } else { format!("{folder}/{name}") };
-        let axis = source.dataset(&path).ok()?;
-        if axis.shape().ok()? != [bands as u64] {
-            return None;
-        }
+        source.dataset(&path).ok().filter(|axis| axis.shape().is_ok_and(|shape| shape == [bands as u64]))
+    };
+    let centres = |axis: &Dataset| {
         let unit = SpectralUnit::spelt(axis.attrs().ok()?.get("units")?.as_str()?)?;
         let centres: Vec<f64> =
             axis.read_f64().ok()?.into_iter().map(|value| unit.wavenumber_cm1(value)).collect();
         centres.iter().all(|centre| *centre > 0.0 && centre.is_finite()).then_some(centres)
-    })
+    };
+    let listed: Vec<Dataset> = AXIS.iter().filter_map(of_bands).collect();
+    let found = listed.iter().find_map(centres);
+    let unused = found.is_none() && !listed.is_empty();
+    (found, unused)
 }

@@ -1,7 +1,7 @@
 //! Variances of electronic noise from a file.
 //!
 //! A CSV file has a column `variance_counts2` and, if wanted, `band` (in steps of 1) or `wavenumber_cm1` (rising or
-//! falling); one row per band, in the order of the cube. An NPY or MATLAB file has one variance per sample.
+//! falling, and then turned round); one row per band, bands counted in rising wavenumber. An NPY or MATLAB file has one variance per sample.
 
 use super::NoiseVariance;
 use crate::cube::Shape;
@@ -52,14 +52,18 @@ fn per_band(text: &str, shape: Shape) -> Result<NoiseVariance> {
     let alone = !header.contains(',');
     let doubled = |line: &str| if alone && is_row(line) { format!("{line},{line}") } else { line.to_owned() };
     let grid = Grid::parse(&text.lines().map(doubled).collect::<Vec<_>>().join("\n"))?;
-    let mut variances = Vec::new();
+    let (mut variances, mut falling) = (Vec::new(), false);
     for (column, name) in grid.header.iter().enumerate() {
         let cells =
             grid.rows.iter().map(|(line, cells)| (*line, cells.get(column).copied().unwrap_or(f64::NAN)));
         match name.as_str() {
             VARIANCE => variances = cells.map(variance).collect::<Result<_>>()?,
             "band" => in_order(name, cells, |step, _| step == 1.0)?,
-            "wavenumber_cm1" => in_order(name, cells, |step, first| step * first > 0.0)?,
+            "wavenumber_cm1" => {
+                let mut ends = cells.clone().map(|(_, nu)| nu);
+                falling = ends.next().zip(ends.next()).is_some_and(|(first, second)| second < first);
+                in_order(name, cells, |step, first| step * first > 0.0)?;
+            }
             other => {
                 return Err(Error::malformed(
                     format!("a column `{other}`"),
@@ -69,6 +73,9 @@ fn per_band(text: &str, shape: Shape) -> Result<NoiseVariance> {
                 .on_line(grid.header_line));
             }
         }
+    }
+    if falling {
+        variances.reverse();
     }
     let noise = NoiseVariance::PerBand(variances);
     noise.check(shape)?;
@@ -121,7 +128,7 @@ mod tests {
         assert_eq!(of("# read noise\nband,variance_counts2\n1,4\n2,9\n", 2).unwrap(), [4.0, 9.0]);
         assert_eq!(
             of("\u{feff}variance_counts2, wavenumber_cm1\n4,900\n9,880\n1,800", 3).unwrap(),
-            [4.0, 9.0, 1.0]
+            [1.0, 9.0, 4.0]
         );
     }
 

@@ -3,8 +3,8 @@
 use crate::scenario::Source;
 use crate::scenario::calibrate::Frames;
 use crate::study::Warning;
-use crate::study::cube_bands::axes_in_doubt;
-use hadar::cube::{Cube, Found, Opened};
+use crate::study::cube_bands::{InOrder, axes_in_doubt};
+use hadar::cube::{Cube, Found};
 use hadar::error::{Error, Result};
 
 /// Cubes that are open.
@@ -21,14 +21,14 @@ impl Measured {
         let many = frames.data.len() > 1;
         let open = |(i, path): (usize, &std::path::PathBuf)| {
             let key = if many { format!("cube.data[{i}]") } else { "cube.data".to_owned() };
-            let opened = Cube::open_as(path, frames.variable.as_deref(), frames.axes);
+            let opened = InOrder::open(path, frames.variable.as_deref(), frames.axes);
             opened.map_err(|error| match (&error, &source.path) {
                 (Error::At { place, .. }, Some(_)) if place.path.is_some() => error.for_key(key),
                 (_, Some(_)) => error.at(source.place(&key)),
                 (_, None) => error,
             })
         };
-        let opened = frames.data.iter().enumerate().map(open).collect::<Result<Vec<Opened>>>()?;
+        let opened = frames.data.iter().enumerate().map(open).collect::<Result<Vec<InOrder>>>()?;
         let (cubes, read) = opened.into_iter().map(|opened| (opened.cube, opened.found)).unzip();
         Ok(Self { cubes, read })
     }

@@ -109,17 +109,13 @@ fn cube(
             _ => error.at(scenario.place(key)),
         }
     };
-    // The camera's noise is that of its bands in rising wavenumber; stated noise has the order of the file.
     let by_band = bands.filter(|_| spec.noise.is_none() && camera.is_some());
     let open = |key: &'static str, path: &std::path::Path| {
         let variable = spec.variable.as_deref();
-        let opened = match by_band {
-            None => Cube::open_as(path, variable, spec.axes),
-            Some(bands) => InOrder::open(path, variable, spec.axes).and_then(|opened| {
-                opened.check(bands)?;
-                Ok(Opened { cube: opened.cube, found: opened.found })
-            }),
-        };
+        let opened = InOrder::open(path, variable, spec.axes).and_then(|opened| {
+            by_band.map_or(Ok(()), |bands| opened.check(bands))?;
+            Ok(Opened { cube: opened.cube, found: opened.found })
+        });
         opened.map_err(at(key))
     };
     let Opened { cube: left, found: read } = open("cube.left", &spec.left)?;
