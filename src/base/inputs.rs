@@ -18,6 +18,8 @@ thread_local! {
 pub struct Inputs {
     /// Files, in the order they were first read, as they were named.
     pub files: Vec<PathBuf>,
+    /// Folders whose files were looked for, as they were named: a file more there is another answer.
+    pub folders: Vec<PathBuf>,
     /// Content of what is built in, by kind and name (`material`, `skin`).
     pub built_in: BTreeMap<(&'static str, String), Vec<u8>>,
 }
@@ -63,6 +65,7 @@ pub fn inputs_of<T>(job: impl FnOnce() -> T) -> (T, Inputs) {
 /// What another list has was read.
 pub fn add(other: &Inputs) {
     other.files.iter().for_each(|path| file(path));
+    other.folders.iter().for_each(|path| folder(path));
     OPEN.with_borrow_mut(|open| {
         if let Some(inputs) = open {
             for (name, content) in &other.built_in {
@@ -79,6 +82,17 @@ pub fn file(path: &Path) {
             && !inputs.files.iter().any(|known| known == path)
         {
             inputs.files.push(path.to_owned());
+        }
+    });
+}
+
+/// The files of a folder were looked for.
+pub(crate) fn folder(path: &Path) {
+    OPEN.with_borrow_mut(|open| {
+        if let Some(inputs) = open
+            && !inputs.folders.iter().any(|known| known == path)
+        {
+            inputs.folders.push(path.to_owned());
         }
     });
 }

@@ -29,6 +29,7 @@ use super::Material;
 use super::dielectric::OpticalConstants;
 use crate::error::{Error, Result};
 use crate::grid::text_of_file;
+use crate::inputs;
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
@@ -53,6 +54,7 @@ pub fn spectra_in(directory: &Path) -> Result<Vec<PathBuf>> {
         }
         _ => Error::file("read the library", directory, error),
     };
+    inputs::folder(directory);
     let mut files = Vec::new();
     for entry in std::fs::read_dir(directory).map_err(failed)? {
         let path = entry.map_err(failed)?.path();

@@ -149,6 +149,13 @@ fn answered(
     let failures: Vec<(usize, &str)> = gathered.failed().collect();
     let (rows, answered, failed) = (gathered.rows(), gathered.answered(), failures.len());
     let to_go = rows - answered - failed;
+    // A table that is there is not replaced by one of nothing.
+    if args.merge && to_go == rows {
+        let found = format!(
+            "none of the {rows} rows is there: what there is was asked of other files, flags or values"
+        );
+        return Err(Error::malformed(found, "run the sweep without --merge"));
+    }
     let text = sweep::text(swept);
     let mut files = Vec::new();
     if let Some(out) = global.out.as_ref().filter(|_| to_go == 0 || args.merge) {

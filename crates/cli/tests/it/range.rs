@@ -408,3 +408,15 @@ fn samples_of_nothing_have_no_bound_and_that_is_said() {
     write_npy(&folder.path().join("left.npy"), shape(), &counts).unwrap();
     assert!(folder.refusal(&["range", "a.toml"]).contains("give a noise variance above 0"));
 }
+
+/// Windows are those whose centre has a depth.
+#[test]
+fn depths_that_are_not_known_are_no_windows() {
+    let folder = with_cube(&CUBE.replace("\"10 m\"", "\"depth.npy\""));
+    let mut depths = vec![f64::NAN; ROWS * COLUMNS];
+    for (row, column) in [(5, 7), (5, 8), (6, 20)] {
+        depths[row * COLUMNS + column] = 10.0;
+    }
+    write_npy(&folder.path().join("depth.npy"), Shape::new(ROWS, COLUMNS, 1).unwrap(), &depths).unwrap();
+    assert_eq!(folder.json(&["range", "a.toml"])["objects"][0]["windows"], 3);
+}

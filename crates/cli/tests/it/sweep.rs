@@ -374,3 +374,26 @@ fn tables_of_a_report_are_parquet_too_where_that_is_asked_for() {
     let outcome = folder.run(&["identify", "a.toml", "--format", "parquet"]);
     assert_eq!(outcome.code, 2, "{}", outcome.stderr);
 }
+
+/// A spectrum more in the folder of a class is another answer; so a table of nothing does not take the place of one that is there.
+#[test]
+fn a_file_more_in_a_folder_is_noticed() {
+    let flat = |e: f64| format!("wavenumber_cm1,emissivity\n600,{e}\n1500,{}\n", e - 0.02);
+    let own = "[class.thing]\nmaterials = [\"things/\"]\n";
+    let folder = Folder::with(&format!(
+        "{}{own}",
+        SCENARIO.replace("materials = [\"aluminium\"]", "classes = [\"thing\"]")
+    ));
+    fs::create_dir(folder.path().join("things")).unwrap();
+    folder.file("things/a.csv", &flat(0.6));
+    let asked = ["--vary", "target.temperature=30 degC,37 degC", "--columns", "verdict.margin"];
+    let before = sweep(&folder, &asked);
+    assert_eq!(before["computed"], 2, "{before}");
+    assert_eq!(sweep(&folder, &asked)["computed"], 0);
+    folder.file("things/b.csv", &flat(0.9));
+    let merged = folder.run(&[&["sweep", "a.toml", "--out", "out", "--merge"][..], &asked].concat());
+    assert_eq!(merged.code, 1, "{}", merged.stdout);
+    assert!(merged.stderr.contains("none of the 2 rows is there"), "{}", merged.stderr);
+    assert_eq!(rows(&folder.path().join("out/sweep.csv")).len(), 2);
+    assert_eq!(sweep(&folder, &asked)["computed"], 2);
+}

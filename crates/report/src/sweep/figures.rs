@@ -120,7 +120,10 @@ fn map(name: &str, values: &[f64], x: &Input, y: &Input) -> Option<Plot> {
     );
     // A margin of 1 is what is demanded.
     let contours = if name.ends_with("margin") { vec![1.0] } else { Vec::new() };
-    let figure = figure.no_value("no value, or the row failed").contours(contours);
+    let figure = figure
+        .subtitle(format!("{} x {} values; colours between them are interpolated", columns.len(), rows.len()))
+        .no_value("no value, or the row failed")
+        .contours(contours);
     Some(Plot { name: file_name("map", name).into(), figure: figure.into(), table })
 }
 

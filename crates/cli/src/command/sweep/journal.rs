@@ -7,10 +7,11 @@
 use super::super::global::as_json;
 use hadar::error::{Error, Result};
 use hadar::inputs::Inputs;
+use hadar::material::read::is_spectra;
 use hadar_report::manifest::{Input, sha256, sha256_of_file};
 use hadar_study::sweep::{Cell, Record};
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{BufRead as _, BufReader, Read as _, Seek as _, SeekFrom, Write as _};
 use std::path::{Path, PathBuf};
@@ -24,7 +25,7 @@ const ENDING: &str = "jsonl";
 pub(super) struct Entry {
     /// What was asked of whom.
     pub(super) key: String,
-    /// Files that were read, with their SHA-256.
+    /// Files that were read, with their SHA-256, and folders in which files were looked for, with that of the names in them.
     files: Vec<(PathBuf, Option<String>)>,
     /// What is built in and was used.
     pub(super) built_in: Vec<Input>,
@@ -41,7 +42,7 @@ impl Entry {
         outcome: std::result::Result<Record, String>,
         hashes: &Hashes,
     ) -> Self {
-        let files = read.files.iter().map(|path| {
+        let files = read.files.iter().chain(&read.folders).map(|path| {
             let path = std::path::absolute(path).unwrap_or_else(|_| path.clone());
             let hash = hashes.of(&path);
             (path, hash)
@@ -65,7 +66,7 @@ impl Entry {
 
     /// Files that were read.
     pub(super) fn files(&self) -> impl Iterator<Item = &Path> {
-        self.files.iter().map(|(path, _)| path.as_path())
+        self.files.iter().map(|(path, _)| path.as_path()).filter(|path| !path.is_dir())
     }
 
     /// What it says.
@@ -85,16 +86,25 @@ impl Entry {
 pub(super) struct Hashes(Mutex<BTreeMap<PathBuf, Option<String>>>);
 
 impl Hashes {
-    /// That of a file; none where it cannot be read, or only once.
+    /// That of a file, or of the names in a folder; none where it cannot be read, or only once.
     pub(super) fn of(&self, path: &Path) -> Option<String> {
         let Ok(mut known) = self.0.lock() else { return None };
         if let Some(hash) = known.get(path) {
             return hash.clone();
         }
-        let hash = sha256_of_file(path).ok().flatten();
+        let hash = if path.is_dir() { names_in(path) } else { sha256_of_file(path).ok().flatten() };
         known.insert(path.to_owned(), hash.clone());
         hash
     }
+}
+
+/// The hash of the names of the files in a folder that are called as spectra are.
+fn names_in(folder: &Path) -> Option<String> {
+    let entries = fs::read_dir(folder).ok()?;
+    let names: BTreeSet<_> = entries.map(|entry| Some(entry.ok()?.file_name())).collect::<Option<_>>()?;
+    let names: Vec<_> =
+        names.iter().map(|name| name.to_string_lossy()).filter(|name| is_spectra(name)).collect();
+    Some(sha256(names.join("\0").as_bytes()))
 }
 
 /// What is done, and where more is written.

@@ -30,20 +30,26 @@ struct Bound {
 }
 
 impl Ground<'_> {
-    /// Windows of the left view whose pixels the right camera sees too: row, column, depth, column in the right view.
+    /// Windows of the left view whose pixels the right camera sees too, by row and column; where depths are known at all, those
+    /// whose centre has one.
     pub(super) fn windows(&self, map: &SignalMap, half: [usize; 2]) -> Vec<(usize, usize)> {
         let [half_rows, half_columns] = half;
+        let mapped = self.truth.depth_m.par_iter().any(|depth_m| depth_m.is_finite());
+        let has_depth = |row: usize, column: usize| {
+            !mapped || self.truth.depth_m.get(row * self.columns + column).is_some_and(|z| z.is_finite())
+        };
         let whole = |row: usize, column: usize| {
-            (row - half_rows..=row + half_rows).all(|y| {
-                let pixels =
-                    y * self.columns + column - half_columns..=y * self.columns + column + half_columns;
-                // The sky is infinitely far: it has no depth, and no texture of its own.
-                self.truth
-                    .depth_m
-                    .get(pixels.clone())
-                    .is_some_and(|depths| depths.iter().all(|z| !z.is_infinite()))
-                    && self.truth.seen.get(pixels).is_some_and(|seen| seen.iter().all(|seen| *seen))
-            })
+            has_depth(row, column)
+                && (row - half_rows..=row + half_rows).all(|y| {
+                    let pixels =
+                        y * self.columns + column - half_columns..=y * self.columns + column + half_columns;
+                    // The sky is infinitely far: it has no depth, and no texture of its own.
+                    self.truth
+                        .depth_m
+                        .get(pixels.clone())
+                        .is_some_and(|depths| depths.iter().all(|z| !z.is_infinite()))
+                        && self.truth.seen.get(pixels).is_some_and(|seen| seen.iter().all(|seen| *seen))
+                })
         };
         let centres = |row: usize| {
             map.columns.clone().map(move |column| (row, column)).filter(|&(y, x)| whole(y, x)).collect()
