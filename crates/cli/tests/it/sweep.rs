@@ -382,7 +382,7 @@ fn a_file_more_in_a_folder_is_noticed() {
     let own = "[class.thing]\nmaterials = [\"things/\"]\n";
     let folder = Folder::with(&format!(
         "{}{own}",
-        SCENARIO.replace("materials = [\"aluminium\"]", "classes = [\"thing\"]")
+        SCENARIO.replace("materials = [\"aluminium\"]", "materials = [\"thing\"]")
     ));
     fs::create_dir(folder.path().join("things")).unwrap();
     folder.file("things/a.csv", &flat(0.6));
