@@ -56,7 +56,8 @@ pub(super) fn parse(text: &str, source: &Path) -> Result<Content> {
     }
     if !(quantity.starts_with("reflect") && quantity.contains("percent")) {
         let found = format!("`{}` is not reflectance in percent", value("y units"));
-        return Err(at(Error::malformed(found, "write `Y Units: Reflectance (percent)`"), "y units"));
+        let instead = "give the file of reflectance in percent, or its rows as a table that begins with wavelength_um,emissivity";
+        return Err(at(Error::malformed(found, instead), "y units"));
     }
     if !value("x units").to_lowercase().contains("micromet") {
         let found = format!("`{}` is not a wavelength in micrometers", value("x units"));
@@ -70,7 +71,14 @@ pub(super) fn parse(text: &str, source: &Path) -> Result<Content> {
     }
 
     let table = table(&parts.rows)?;
-    let warnings = warnings(&table);
+    let mut warnings = warnings(&table);
+    let measurement = value("measurement");
+    if !measurement.is_empty() && !measurement.to_lowercase().contains("hemispherical") {
+        warnings.push(format!(
+            "measured as `{}`: emissivity is 1 - reflectance of hemispherical reflectance alone, so these values may be wrong",
+            one_line(measurement)
+        ));
+    }
     let title = value("name");
     let own = short_name(&kebab_case(title));
     let name = if own.is_empty() { stem(source) } else { own };

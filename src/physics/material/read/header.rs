@@ -68,7 +68,6 @@ const IDLE: &[&str] = &[
     "fractional",
     "unitless",
     "dimensionless",
-    "ratio",
     "in",
     "of",
 ];
@@ -96,6 +95,22 @@ const CHANGED: &[&str] = &[
     "difference",
     "change",
     "arb",
+    "apparent",
+    "ratio",
+    "residual",
+    "scaled",
+    "raw",
+    "uncorrected",
+    "radiance",
+    "min",
+    "max",
+    "minimum",
+    "maximum",
+    "d",
+    "first",
+    "second",
+    "1st",
+    "2nd",
 ];
 const DEVIATION: &[&str] = &[
     "std",
@@ -251,6 +266,9 @@ pub(super) fn values(cell: &str) -> Meaning {
             return Meaning::Unclear;
         }
         _ => {}
+    }
+    if before.iter().any(|word| OTHER.contains(word)) && !OTHER.contains(last) {
+        return Meaning::Unclear;
     }
     if EMISSIVITY.contains(last) {
         return of(Some(Quantity::Emissivity), before.join("-"));
@@ -443,6 +461,10 @@ mod tests {
             ("1-emissivity", Meaning::Other),
             ("1 - Reflectance (%)", Meaning::Other),
             ("log reflectance", Meaning::Other),
+            ("apparent reflectance", Meaning::Other),
+            ("emissivity ratio", Meaning::Other),
+            ("max emissivity", Meaning::Other),
+            ("absorbance reflectance", Meaning::Unclear),
             ("emissivity difference", Meaning::Other),
             ("reflectance 2", Meaning::Unclear),
             ("white reflectance panel", Meaning::Unclear),
