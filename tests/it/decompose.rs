@@ -7,7 +7,9 @@ use hadar::fisher::precision::PrecisionSolver;
 use hadar::fisher::{Counting, Nuisance, Unknowns};
 use hadar::planck::photon_radiance;
 use hadar::scene::{EnvironmentObject, Parameter, Surroundings};
+use hadar::simulate::draws::generator;
 use hadar::spectrum::Bands;
+use rand_distr::{Distribution, StandardNormal};
 use serde_json::Value;
 use std::path::PathBuf;
 
@@ -254,6 +256,70 @@ fn counts_without_noise_are_taken_apart_again() {
                 maps.temperature_k[0]
             );
         }
+    }
+}
+
+/// A mirror of surroundings that are known exactly has no errors worth the name, so that ln det C speaks for it. However much better
+/// the library is than its user says, a material is not decided wrongly, nor is one that fits given up for it.
+#[test]
+fn a_mirror_of_what_is_around_does_not_win_over_a_library_better_than_is_said() {
+    let bands = Bands::uniform(720.0, 1250.0, 10.0).unwrap();
+    let nu = bands.nodes_cm1().to_vec();
+    let road: Vec<f64> = nu.iter().map(|nu| 0.95 + 0.02 * (nu / 55.0).sin()).collect();
+    let mirror: Vec<f64> = nu.iter().map(|nu| 0.12 + 0.01 * (nu / 90.0).cos()).collect();
+    let sky: Vec<f64> =
+        nu.iter().map(|nu| (0.5 + 0.3 * (nu / 70.0).sin()) * photon_radiance(*nu, 270.0)).collect();
+    let scale = 1e5 / photon_radiance(900.0, 285.0);
+    let sent = |e: &[f64], temperature_k: f64, light: &dyn Fn(usize) -> f64| -> Vec<f64> {
+        let each = |w: usize| e[w] * photon_radiance(nu[w], temperature_k) + (1.0 - e[w]) * light(w);
+        (0..nu.len()).map(each).collect()
+    };
+    // What the road sends on the whole, with a slope of its own that no mirror of it has at another temperature.
+    let around = sent(&road, 285.0, &|w| 0.6 * sky[w]);
+    let library = [road.clone(), mirror.clone()];
+    let mut random = generator(11, 0);
+    let mut normal = || -> f64 { StandardNormal.sample(&mut random) };
+    // Of what is said, how much the library is off.
+    for share in [0.0, 0.2, 1.0] {
+        let (mut pixels, mut truth) = (Vec::new(), Vec::new());
+        for i in 0..120 {
+            let (own, temperature_k) = (i % 2, 285.0 + 0.5 * normal());
+            // Smooth over some 80 cm^-1: two waves of random size.
+            let (a, b) = (0.02 * share * normal(), 0.02 * share * normal());
+            let e: Vec<f64> = (0..nu.len())
+                .map(|w| library[own][w] * (1.0 + a * (nu[w] / 30.0).sin() + b * (nu[w] / 30.0).cos()))
+                .collect();
+            let mean = sent(&e, temperature_k, &|w| 0.5 * sky[w] + 0.3 * around[w]);
+            pixels.extend(mean.iter().map(|s| {
+                let n = scale * s;
+                (n + n.sqrt() * normal()).round()
+            }));
+            truth.push(own as u16);
+        }
+        let cube = MemoryCube::new(Shape::new(1, 120, nu.len()).unwrap(), pixels).unwrap();
+        let error = LibraryError { relative: 0.02, correlation_cm1: 50.0 };
+        let setting = Setting {
+            bands: &bands,
+            library: &library,
+            surroundings: &[Light::Radiance(sky.clone()), Light::Radiance(around.clone())],
+            counts_per_radiance: &vec![scale / 10.0; nu.len()],
+            var_added: &[],
+            units_per_count: 1.0,
+            temperature_k: [250.0, 340.0],
+            lighting_total: None,
+            gain: false,
+            bad_bands: &[],
+        };
+        let by = |skipping| {
+            let options = Options { library_error: Some(error), skipping, ..Options::default() };
+            decompose(&setting, &options, &Cube::F64(Box::new(cube.clone())), &|_| ()).unwrap()
+        };
+        let maps = by(Skipping::On);
+        let decided: Vec<usize> = (0..truth.len()).filter(|i| maps.is_decided(*i)).collect();
+        let wrong = decided.iter().filter(|i| maps.material[**i] != truth[**i]).count();
+        assert!(wrong == 0 && decided.len() >= 60, "{share}: {} decided, {wrong} wrong", decided.len());
+        let all = by(Skipping::Off);
+        assert_eq!(Maps { spared: all.spared, ..maps }, all, "{share}");
     }
 }
 

@@ -23,6 +23,8 @@ const NOTABLE: f64 = 0.05;
 pub(super) struct Fit {
     pub(super) state: State,
     pub(super) deviance: f64,
+    /// Pearson's χ², with the errors of the library where they are stated.
+    pub(super) chi_square: f64,
 }
 
 impl State {
@@ -65,14 +67,16 @@ pub(super) fn fit(
             state = from.halfway(&state, model.vertices);
             last = None;
             if from.is_near(&state) {
-                return (Fit { state: from, deviance }, looks);
+                return (Fit { state: from, deviance, chi_square: at.chi_square }, looks);
             }
             continue;
         }
         let mut next = state;
         let step = next.step(at, &limits);
         if step.square.is_nan() || step.square < short || looks >= MOST_LOOKS {
-            return (Fit { state: next, deviance: at.deviance - step.square.max(0.0) }, looks);
+            let less = step.square.max(0.0);
+            let (deviance, chi_square) = (at.deviance - less, at.chi_square - less);
+            return (Fit { state: next, deviance, chi_square }, looks);
         }
         let share = last.and_then(|last| step.share_of(&last, at, limits.unknowns)).unwrap_or(0.0);
         if share.abs() > NOTABLE {

@@ -9,6 +9,11 @@
 //! Σ_vw = s² e_v e_w (1 + x + x²/3) e⁻ˣ, x = 3.55 |ν_v − ν_w|/ℓ (Matérn, 5/2): errors of laboratory spectra are smooth, but not
 //! without an end. s: root mean square error as a share of the emissivity e, ℓ: where the correlation has fallen to a quarter.
 //!
+//! What is stated of s is the most that a spectrum is off; one material's may be better than another's. Among materials each is
+//! therefore worth what its cost is at the best s between 0 and the stated one ([`LADDER`]): else a library that is better than its user
+//! says would lose, by ln det C, against a mirror of surroundings that are taken for exact. Temperature, deviations and χ² are those at
+//! the stated s.
+//!
 //! Assumptions: the errors of the materials are Gaussian and independent of each other; each pixel is taken for itself, so that what
 //! pixels of one material share of an error does not average out in them.
 
@@ -23,6 +28,12 @@ use nalgebra::{DMatrix, SymmetricEigen};
 
 /// Modes smaller than this share of the largest go to the diagonal.
 const SMALL_MODE: f64 = 1e-3;
+/// Shares of the stated error at which materials are compared, besides all of it and none.
+const LADDER: [f64; 4] = [0.5, 0.25, 0.125, 0.0625];
+/// Cost beyond the best one at which a first look is the last: a step may promise less than many of them bring.
+const HOPELESS: f64 = 200.0;
+/// Cost beyond the best one from which on the share of the errors is no matter: more than what counts ([`super::pixel::CUT`]).
+const BESIDE: f64 = 30.0;
 /// Fewest counts of a model.
 const FEWEST: f64 = 1e-6;
 
@@ -36,7 +47,7 @@ pub struct LibraryError {
 }
 
 /// Σ of a [`LibraryError`] in the bands that count.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Modes {
     /// √eigenvalue × eigenvector, one after the other, as wide as the model.
     modes: Vec<Vec<f64>>,
@@ -69,12 +80,40 @@ impl Modes {
         }
         Ok(Self { modes, rest })
     }
+
+    /// Of a share of the error.
+    fn smaller(&self, share: f64) -> Self {
+        let of = |mode: &Vec<f64>| mode.iter().map(|x| share * x).collect();
+        Self {
+            modes: self.modes.iter().filter(|_| share > 0.0).map(of).collect(),
+            rest: self.rest.iter().map(|var| share * share * var).collect(),
+        }
+    }
+}
+
+/// The stated errors, and the smaller ones at which materials are compared.
+#[derive(Debug)]
+pub(super) struct Errors {
+    pub(super) stated: Modes,
+    smaller: Vec<Modes>,
+    none: Modes,
+}
+
+impl Errors {
+    pub(super) fn new(model: &Model, error: LibraryError) -> Result<Self> {
+        let stated = Modes::new(model, error)?;
+        let smaller = LADDER.iter().map(|share| stated.smaller(*share)).collect();
+        let none = stated.smaller(0.0);
+        Ok(Self { stated, smaller, none })
+    }
 }
 
 /// Room for one pixel's work.
 #[derive(Debug, Default)]
 pub(super) struct Workplace {
     mean: Vec<f64>,
+    /// Σ ln of the counts: ln det C were there no errors.
+    least_logarithm: f64,
     /// 1/V.
     weight: Vec<f64>,
     /// r, then the columns.
@@ -127,6 +166,7 @@ impl Workplace {
         self.vectors.resize_with(count + 1, Vec::new);
         self.vectors.iter_mut().for_each(|vector| vector.resize(width, 0.0));
         let mut deviance = 0.0;
+        self.least_logarithm = 0.0;
         let mut reach = vec![0.0; width];
         for w in 0..used {
             let mix = |[a, b, c, d]: [f64; 4]| factor[w] * (a * v0[w] + b * s0[w] + c * v1[w] + d * s1[w]);
@@ -146,6 +186,7 @@ impl Workplace {
             self.vectors[0][w] = shifted[w] - mean;
             self.weight[w] = 1.0 / variance;
             deviance += libm::log(variance);
+            self.least_logarithm += libm::log(mean);
         }
         let rank = modes.modes.len();
         self.scaled.resize_with(rank, Vec::new);
@@ -198,8 +239,41 @@ impl Workplace {
             - dot(&self.images[a], &self.images[b], usize::MAX)
     }
 
+    /// The best state of a material with the stated errors from one that is best without any; its `deviance` is the cost at the
+    /// best share of the errors. Not looked for to the end where it cannot come near `best`, the cost of another material.
+    pub(super) fn compared(
+        &mut self,
+        model: &Model,
+        errors: &Errors,
+        m: usize,
+        shifted: &[f64],
+        (start, best): (State, f64),
+        to: &mut Sums,
+    ) -> (Fit, usize) {
+        let (mut found, mut looks) =
+            self.fit(model, &errors.stated, m, shifted, (start, best + HOPELESS), to);
+        // χ² is least with all of the errors, ln det C without any.
+        if found.chi_square + self.least_logarithm > best + BESIDE {
+            return (found, looks);
+        }
+        let (exact, more) = self.fit(model, &errors.none, m, shifted, (start, f64::INFINITY), to);
+        looks += more;
+        let (mut before, mut state) = (found.deviance, found.state);
+        for modes in &errors.smaller {
+            let (less, more) = self.fit(model, modes, m, shifted, (state, f64::INFINITY), to);
+            looks += more;
+            found.deviance = found.deviance.min(less.deviance);
+            if less.deviance > before {
+                break;
+            }
+            (before, state) = (less.deviance, less.state);
+        }
+        found.deviance = found.deviance.min(exact.deviance);
+        (found, looks)
+    }
+
     /// The best state of a material from a start, or the first one where even the best that a step promises costs more than
-    /// `hopeless`; its `deviance` is the cost. The sums are those before the last step.
+    /// `hopeless` whatever the share of the errors; its `deviance` is the cost. The sums are those before the last step.
     pub(super) fn fit(
         &mut self,
         model: &Model,
@@ -218,13 +292,16 @@ impl Workplace {
             looks += 1;
             let mut next = state;
             let step = next.step(to, &limits);
-            let here = Fit { state: next, deviance: to.deviance - step.square.max(0.0) };
-            let short = step.square.is_nan() || step.square < 0.01 * COMPARED || here.deviance > hopeless;
+            let less = step.square.max(0.0);
+            let (deviance, chi_square) = (to.deviance - less, to.chi_square - less);
+            let here = Fit { state: next, deviance, chi_square };
+            let is_hopeless = chi_square + self.least_logarithm > hopeless;
+            let short = step.square.is_nan() || step.square < 0.01 * COMPARED || is_hopeless;
             if short || looks >= MOST_LOOKS || best.is_some_and(|best| to.deviance > best.deviance + 1.0) {
                 // C is that of the state at hand: where a step raises the cost, what was found before it stays.
                 return (best.filter(|best| best.deviance < here.deviance).unwrap_or(here), looks);
             }
-            best = Some(Fit { state, deviance: to.deviance });
+            best = Some(Fit { state, deviance: to.deviance, chi_square: to.chi_square });
             state = next;
         }
     }

@@ -2,7 +2,7 @@
 //!
 //! Every pixel is for itself, but for a prior over the image ([`super::spatial`]), so the maps are the same for any number of threads, and only the rows that are in work are in memory.
 
-use super::library_error::{LibraryError, Modes};
+use super::library_error::{Errors, LibraryError};
 use super::model::{MOST_SURROUNDINGS, Model, Setting};
 use super::pixel::{NO_MATERIAL, Pixel, Room, Spared, Task, flag};
 use super::screen::Screen;
@@ -207,8 +207,8 @@ impl Task {
         let most = prior.iter().copied().fold(0.0, f64::max);
         let handicap = kinds.iter().map(|&m| -2.0 * libm::log(prior[m] / most)).collect();
         let screen = (!model.gain).then(|| Screen::new(&model, &kinds, mean));
-        let modes = options.library_error.map(|error| Modes::new(&model, error)).transpose()?;
-        Ok(Self { modes, model, screen, kinds, alike, handicap, skip: options.skipping.skips() })
+        let errors = options.library_error.map(|error| Errors::new(&model, error)).transpose()?;
+        Ok(Self { errors, model, screen, kinds, alike, handicap, skip: options.skipping.skips() })
     }
 }
 

@@ -8,7 +8,7 @@
 
 use super::fit::{COMPARED, Fit, MOST_LOOKS, TOLD, fit};
 use super::kernel::{Asked, Sums, contrast, sums};
-use super::library_error::{Modes, Workplace};
+use super::library_error::{Errors, Workplace};
 use super::model::{MOST_SURROUNDINGS, Model};
 use super::screen::{MOST_STARTS, Screen, Screened};
 use super::step::State;
@@ -19,8 +19,6 @@ use statrs::function::gamma::gamma_ur;
 
 /// Deviance beyond the best one at which a material no longer counts: its posterior is e⁻¹² of the best one's.
 pub(super) const CUT: f64 = 24.0;
-/// Cost beyond the best one at which a first look is the last, where the library has errors.
-const HOPELESS: f64 = 200.0;
 /// Share of the posterior that the candidates hold.
 pub const CANDIDATE_SHARE: f64 = 0.95;
 /// Below this p-value no material of the library fits.
@@ -154,7 +152,7 @@ pub(super) struct Task {
     /// −2 ln π of each kind, from the most probable of its materials.
     pub(super) handicap: Vec<f64>,
     /// Errors of the library.
-    pub(super) modes: Option<Modes>,
+    pub(super) errors: Option<Errors>,
     /// Whether bounds exclude materials.
     pub(super) skip: bool,
 }
@@ -211,9 +209,18 @@ impl Task {
             *to = (n + var).max(0.0);
         }
         self.fit_all(room, spared);
+        if self.errors.is_some() {
+            self.doubt_misfits(&mut room.fits);
+        }
         let best = room.fits.iter().map(|(_, fit)| fit.deviance).fold(f64::INFINITY, f64::min);
         room.fits.retain(|(_, fit)| fit.deviance <= best + CUT);
-        room.fits.sort_by(|a, b| a.1.deviance.total_cmp(&b.1.deviance).then(a.0.cmp(&b.0)));
+        let order = |a: &(usize, Fit), b: &(usize, Fit)| {
+            a.1.deviance
+                .total_cmp(&b.1.deviance)
+                .then(a.1.chi_square.total_cmp(&b.1.chi_square))
+                .then(a.0.cmp(&b.0))
+        };
+        room.fits.sort_by(order);
         let asked = room.fits.iter().find(|(one, _)| Some(*one) == kind);
         let Some(&(kind, fit)) = asked.or(room.fits.first()) else { return Pixel::SKIPPED };
         self.described(kind, fit, room, spared)
@@ -226,13 +233,12 @@ impl Task {
         bounds.clear();
         let mut best = f64::INFINITY;
         let mut starts = [State::at(self.model.range_k[0]); MOST_STARTS];
-        // A step with errors of the library may promise less than many of them bring: far more than what counts is left.
-        let hopeless = |best: f64| if self.skip { best + HOPELESS } else { f64::INFINITY };
+        let beside = |best: f64| if self.skip { best } else { f64::INFINITY };
         if let (Some(screen), Some(seen)) = (&self.screen, screened.as_mut()) {
             screen.look(counts, shifted, seen);
             bounds.extend((0..self.kinds.len()).map(|kind| (screen.outside(kind, seen), kind)));
             screen.nearest_first(bounds, seen);
-            let skips = self.skip && self.modes.is_none();
+            let skips = self.skip && self.errors.is_none();
             // Without what the prior takes off: farther than need be.
             let mut reach = f64::INFINITY;
             let mut place = 0;
@@ -252,7 +258,7 @@ impl Task {
                     kind,
                     &starts[..count],
                     shifted,
-                    (&mut *sums, &mut *workplace, hopeless(best)),
+                    (&mut *sums, &mut *workplace, beside(best)),
                     spared,
                 );
                 fits.push((kind, found));
@@ -292,7 +298,7 @@ impl Task {
         kind: usize,
         starts: &[State],
         shifted: &[f64],
-        (sums, workplace, hopeless): (&mut Sums, &mut Workplace, f64),
+        (sums, workplace, beside): (&mut Sums, &mut Workplace, f64),
         spared: &mut Spared,
     ) -> Fit {
         spared.fitted += 1;
@@ -300,9 +306,9 @@ impl Task {
         for start in starts {
             let (model, m) = (&self.model, self.kinds[kind]);
             let (mut found, mut looks) = fit(model, m, shifted, *start, COMPARED, sums);
-            if let Some(modes) = &self.modes {
+            if let Some(errors) = &self.errors {
                 let more;
-                (found, more) = workplace.fit(model, modes, m, shifted, (found.state, hopeless), sums);
+                (found, more) = workplace.compared(model, errors, m, shifted, (found.state, beside), sums);
                 looks += more;
             }
             spared.looks += looks as u64;
@@ -311,8 +317,11 @@ impl Task {
                 best = Some(found);
             }
         }
-        let mut best =
-            best.unwrap_or_else(|| Fit { state: State::at(self.model.range_k[0]), deviance: f64::INFINITY });
+        let mut best = best.unwrap_or_else(|| Fit {
+            state: State::at(self.model.range_k[0]),
+            deviance: f64::INFINITY,
+            chi_square: f64::INFINITY,
+        });
         best.deviance += self.handicap[kind];
         best
     }
@@ -341,6 +350,28 @@ impl Task {
         best.1
     }
 
+    /// Probability of a larger residual; NaN where as many unknowns as bands fit everything, which says nothing.
+    fn p_value(&self, state: &State, chi_square: f64) -> f64 {
+        let model = &self.model;
+        let free = (0..model.vertices).filter(|&j| state.free[j]).count();
+        let unknowns = usize::from(!state.held) + free - usize::from(!model.gain).min(free);
+        let freedom = model.used.len() as f64 - unknowns as f64;
+        if freedom > 0.0 { gamma_ur(0.5 * freedom, 0.5 * chi_square.clamp(0.0, 1e6)) } else { f64::NAN }
+    }
+
+    /// With errors of the library a material that does not fit may cost less than one that does, as ln det C of what is scattered is
+    /// smaller: it never counts for more.
+    fn doubt_misfits(&self, fits: &mut [(usize, Fit)]) {
+        let is_misfit = |fit: &Fit| self.p_value(&fit.state, fit.chi_square) < NO_FIT;
+        let fitting = |(_, fit): &&(usize, Fit)| fit.deviance.is_finite() && !is_misfit(fit);
+        let least = fits.iter().filter(fitting).map(|(_, fit)| fit.deviance).fold(f64::INFINITY, f64::min);
+        if least.is_finite() {
+            for (_, fit) in fits.iter_mut().filter(|(_, fit)| fit.deviance <= least) {
+                fit.deviance = least;
+            }
+        }
+    }
+
     fn described(&self, kind: usize, fit: Fit, room: &mut Room, spared: &mut Spared) -> Pixel {
         let model = &self.model;
         let weight = |one: &Fit, best: &Fit| libm::exp(-0.5 * (one.deviance - best.deviance));
@@ -358,11 +389,16 @@ impl Task {
             last = each;
         }
         let m = self.kinds[kind];
-        let (fit, looks) = match &self.modes {
+        let (fit, looks) = match &self.errors {
             None => self::fit(model, m, &room.shifted, fit.state, TOLD, &mut room.sums),
-            Some(modes) => {
-                room.workplace.fit(model, modes, m, &room.shifted, (fit.state, f64::INFINITY), &mut room.sums)
-            }
+            Some(errors) => room.workplace.fit(
+                model,
+                &errors.stated,
+                m,
+                &room.shifted,
+                (fit.state, f64::INFINITY),
+                &mut room.sums,
+            ),
         };
         spared.looks += looks as u64;
         let sums = &room.sums;
@@ -382,11 +418,7 @@ impl Task {
                 || deviations.weights[..model.vertices].iter().any(|s| s.is_nan() || *s >= any_lighting));
         let asked = Asked { m, shifted: &room.shifted, temperature_k: fit.state.temperature_k, mixture };
         let no_information = contrast(model, asked, &mut room.mean) < CONTRAST;
-        let unknowns = usize::from(!at_limit) + free - calibrated.min(free);
-        let freedom = model.used.len() as f64 - unknowns as f64;
-        // As many unknowns as bands fit everything, which says nothing.
-        let p_value =
-            if freedom > 0.0 { gamma_ur(0.5 * freedom, 0.5 * sums.chi_square.min(1e6)) } else { f64::NAN };
+        let p_value = self.p_value(&fit.state, sums.chi_square);
         raise(at_limit, flag::TEMPERATURE_AT_LIMIT);
         raise(lit_at_limit && !no_lighting, flag::LIGHTING_AT_LIMIT);
         raise(no_information, flag::NO_INFORMATION);

@@ -62,16 +62,17 @@ impl Task {
         let (one_by_one, others) = room.fits.split_at(room.fits.len().min(MOST_KEPT));
         for (kind, fit) in one_by_one {
             let (m, mut state) = (self.kinds[*kind], fit.state);
-            match &self.modes {
+            match &self.errors {
                 None => {
                     let mixture = &state.mixture[..model.vertices];
                     let asked =
                         Asked { m, shifted: &room.shifted, temperature_k: state.temperature_k, mixture };
                     sums(model, asked, &mut room.sums);
                 }
-                Some(modes) => {
+                Some(errors) => {
                     let start = (state, f64::INFINITY);
-                    let (fit, _) = room.workplace.fit(model, modes, m, &room.shifted, start, &mut room.sums);
+                    let (fit, _) =
+                        room.workplace.fit(model, &errors.stated, m, &room.shifted, start, &mut room.sums);
                     state = fit.state;
                 }
             }
