@@ -2,7 +2,7 @@
 //!
 //! Wavelength λ and frequency f become ν = 1/λ and ν = f/c, in cm⁻¹; wavelengths are those in vacuum.
 
-use crate::units::SPEED_OF_LIGHT_M_S;
+use crate::units::{SPEED_OF_LIGHT_M_S, with_plain_micro};
 
 /// What the numbers of a spectral axis are counted in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -127,10 +127,9 @@ fn plain(text: &str) -> Option<String> {
     if text.len() > LONGEST {
         return None;
     }
-    // A micro sign that was written as UTF-8 and read as Latin-1 has a capital A before it.
-    let text = text.to_lowercase().replace("âµ", "u");
+    // What was written as UTF-8 and read as Latin-1: the micro sign, and the Greek letter.
+    let text = with_plain_micro(text).to_lowercase().replace("âu", "u").replace("î¼", "u");
     let chars = text.chars().filter_map(|char| match char {
-        'µ' | 'μ' => Some('u'),
         '⁻' | '−' | '–' => Some('-'),
         '¹' => Some('1'),
         '^' | '*' | '(' | ')' | '[' | ']' | '{' | '}' | '$' | '.' | '_' => None,
@@ -147,7 +146,10 @@ mod tests {
     #[test]
     fn a_unit_is_told_by_any_customary_spelling() {
         for (unit, spellings) in [
-            (Micrometre, &["um", "(um)", "[µm]", "μm", "Âµm", "Micrometers", "microns", "MICROMETRES"][..]),
+            (
+                Micrometre,
+                &["um", "(um)", "[µm]", "μm", "Âµm", "Î¼m", "Micrometers", "microns", "MICROMETRES"][..],
+            ),
             (Nanometre, &["nm", "Nanometers", "(NM)"]),
             (
                 PerCentimetre,

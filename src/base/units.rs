@@ -7,6 +7,7 @@
 //! Source of the constants: SI Brochure, 9th edition (2019), where h, k and c are exact.
 
 use crate::error::{Error, Result, check};
+use std::borrow::Cow;
 
 /// Speed of light in vacuum, m s⁻¹ (exact).
 pub const SPEED_OF_LIGHT_M_S: f64 = 299_792_458.0;
@@ -18,6 +19,9 @@ pub const BOLTZMANN_J_K: f64 = 1.380_649e-23;
 pub const SECOND_RADIATION_CM_K: f64 = 1.438_776_877_503_933_8;
 /// What [`SECOND_RADIATION_CM_K`] leaves of hc/k, cm K: the sum of the two is good to 32 digits.
 pub const SECOND_RADIATION_REST_CM_K: f64 = 8.967_968_474_929_929e-18;
+
+/// The micro sign and the Greek letter mu.
+const MICRO: [char; 2] = ['\u{b5}', '\u{3bc}'];
 
 /// What a number measures; fixes which units are accepted and which one is used inside.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -52,7 +56,7 @@ pub enum Dimension {
     Wavelength,
 }
 
-/// One accepted unit: spelling, factor and offset to the unit used inside.
+/// One accepted unit: spelling with `u` for micro, factor and offset to the unit used inside.
 struct Unit {
     spelling: &'static str,
     factor: f64,
@@ -79,7 +83,6 @@ const LENGTH: &[Unit] = &[
     unit("cm", 1e-2),
     unit("mm", 1e-3),
     unit("um", 1e-6),
-    unit("µm", 1e-6),
     unit("nm", 1e-9),
     unit("ft", 0.3048),
     unit("in", 0.0254),
@@ -88,7 +91,6 @@ const TIME: &[Unit] = &[
     unit("s", 1.0),
     unit("ms", 1e-3),
     unit("us", 1e-6),
-    unit("µs", 1e-6),
     unit("ns", 1e-9),
     unit("min", 60.0),
     unit("h", 3600.0),
@@ -110,9 +112,9 @@ const NOISE_EQUIVALENT_POWER: &[Unit] = &[
     unit("fW/Hz^0.5", 1e-15),
     unit("aW/Hz^0.5", 1e-18),
 ];
-const SPECTRAL_RADIANCE: &[Unit] = &[unit("uflick", 1.0), unit("µflick", 1.0), unit("flick", 1e6)];
+const SPECTRAL_RADIANCE: &[Unit] = &[unit("uflick", 1.0), unit("flick", 1e6)];
 const WAVENUMBER: &[Unit] = &[unit("cm^-1", 1.0), unit("cm-1", 1.0), unit("1/cm", 1.0), unit("m^-1", 1e-2)];
-const WAVELENGTH: &[Unit] = &[unit("um", 1.0), unit("µm", 1.0), unit("nm", 1e-3), unit("mm", 1e3)];
+const WAVELENGTH: &[Unit] = &[unit("um", 1.0), unit("nm", 1e-3), unit("mm", 1e3)];
 
 impl Dimension {
     const fn units(self) -> &'static [Unit] {
@@ -206,7 +208,7 @@ impl Dimension {
         format!("{value} {}", self.unit())
     }
 
-    /// The unit of a quantity as its author wrote it, e.g. `mph` of `"30 mph"`; none of another dimension.
+    /// The unit of a quantity that its author wrote, e.g. `mph` of `"30 mph"`, with `u` for micro; none of another dimension.
     #[must_use]
     pub fn unit_in(self, text: &str) -> Option<&'static str> {
         self.unit_spelt(parts(text.trim()).1).map(|unit| unit.spelling)
@@ -219,6 +221,7 @@ impl Dimension {
     }
 
     fn unit_spelt(self, spelling: &str) -> Option<&'static Unit> {
+        let spelling = with_plain_micro(spelling);
         self.units().iter().find(|unit| unit.spelling == spelling)
     }
 
@@ -259,8 +262,7 @@ impl Spectral {
     /// # Errors
     /// As [`Dimension::parse`].
     pub fn parse(text: &str) -> Result<Self> {
-        let wavelength = WAVELENGTH.iter().any(|unit| text.trim().ends_with(unit.spelling));
-        if wavelength && !text.contains("m^-1") {
+        if Dimension::Wavelength.unit_in(text).is_some() {
             Dimension::Wavelength.parse(text).map(Self::Wavelength)
         } else {
             Dimension::Wavenumber.parse(text).map(Self::Wavenumber)
@@ -300,6 +302,20 @@ impl Spectral {
             Self::Wavenumber(value) => value,
             Self::Wavelength(value) => 1e4 / value,
         }
+    }
+}
+
+/// A spelling of a unit with `u` for micro, whose sign (U+00B5) and Greek letter (U+03BC) look the same.
+///
+/// ```
+/// use hadar::units::with_plain_micro;
+/// assert_eq!(["µs", "μs", "us"].map(with_plain_micro), ["us"; 3]);
+/// ```
+#[must_use]
+pub fn with_plain_micro(spelling: &str) -> Cow<'_, str> {
+    match spelling.contains(MICRO) {
+        true => Cow::Owned(spelling.replace(MICRO, "u")),
+        false => Cow::Borrowed(spelling),
     }
 }
 
@@ -411,6 +427,26 @@ mod tests {
             let parsed = dimension.parse(text).unwrap();
             assert!((parsed / value - 1.0).abs() < 4e-16, "{text}: {parsed}");
             assert_eq!(dimension.parse(&dimension.format(parsed)).unwrap(), parsed);
+        }
+    }
+
+    #[test]
+    fn a_micro_sign_and_a_greek_mu_are_the_same() {
+        for micro in ["u", "\u{b5}", "\u{3bc}"] {
+            for (dimension, unit, value) in [
+                (Dimension::Length, "m", 12e-6),
+                (Dimension::Time, "s", 12e-6),
+                (Dimension::TemperatureDifference, "K", 12e-6),
+                (Dimension::NoiseEquivalentPower, "W/Hz^0.5", 12e-6),
+                (Dimension::SpectralRadiance, "flick", 12.0),
+                (Dimension::Wavelength, "m", 12.0),
+            ] {
+                let text = format!("12 {micro}{unit}");
+                assert!((dimension.parse(&text).unwrap() / value - 1.0).abs() < 4e-16, "{text}");
+                assert_eq!(dimension.unit_in(&text), Some(format!("u{unit}").as_str()), "{text}");
+            }
+            let text = format!("8 {micro}m");
+            assert_eq!(Spectral::parse(&text).unwrap(), Spectral::Wavelength(8.0), "{text}");
         }
     }
 

@@ -109,6 +109,76 @@ fn squeezed_files_of_spectrometers_hold_what_another_reader_finds() {
     }
 }
 
+/// A spectral library of two spectra of six channels, as 32-bit floats.
+fn library_of(header: &str, spectra: [[f32; 6]; 2]) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let samples = spectra.as_flattened().iter().flat_map(|value| value.to_le_bytes());
+    std::fs::write(folder.path().join("a.sli"), samples.collect::<Vec<u8>>()).unwrap();
+    let text = format!(
+        "ENVI\nfile type = ENVI Spectral Library\nsamples = 6\nlines = 2\ndata type = 4\nbyte order = 0\n\
+         wavelength units = Micrometers\nwavelength = {{8, 9, 10, 11, 12, 12.5}}\nspectra names = {{one, two}}\n\
+         z plot titles = {{Wavelength, Emissivity}}\n{header}\n"
+    );
+    std::fs::write(folder.path().join("a.hdr"), text).unwrap();
+    folder
+}
+
+/// Numbers that stand for nothing are told as the file holds them, in 32 bits: the usual -1.23e34 is another number in 64.
+#[test]
+fn channels_that_are_bad_or_not_known_are_left_out() {
+    let nothing = -1.23e34_f32;
+    let spectra = [[nothing, 0.9, nothing, 0.8, 0.7, 0.6], [0.1, 0.2, 0.3, 0.4, 0.5, 0.6]];
+    let header = "bbl = {1, 1, 1, 1, 1, 0}\ndata ignore value = -1.2300000e+034";
+    let folder = library_of(header, spectra);
+    let read = read::from_file(&folder.path().join("a.sli")).unwrap();
+    let [one, two] = read.as_slice() else { panic!("{read:?}") };
+    // At the ends they are outside of the range.
+    assert_eq!(one.range_cm1(), Some((1e4 / 12.0, 1e4 / 9.0)));
+    assert_eq!((two.range_cm1(), two.rows()), (Some((1e4 / 12.0, 1250.0)), 5));
+    assert!(
+        one.warnings().iter().any(|said| said.starts_with("3 of 6 channels are bad")),
+        "{:?}",
+        one.warnings()
+    );
+    // Between others they are known to be unknown.
+    let message = one.emissivity(&[1050.0]).unwrap_err().to_string();
+    assert!(message.contains("row at 1000 cm^-1 is bad or missing"), "{message}");
+    for (material, wavelengths, due) in [(one, [9.0, 11.0, 11.5, 12.0], [0.9, 0.8, 0.75, 0.7])] {
+        let found = material.emissivity(&wavelengths.map(|um| 1e4 / um)).unwrap();
+        for (um, (found, due)) in wavelengths.iter().zip(found.iter().zip(due)) {
+            assert!((found - due).abs() < 2e-3, "{um} um: {found}");
+        }
+    }
+    let nowhere = library_of(header, [[nothing; 6], spectra[1]]);
+    let read = read::from_file(&nowhere.path().join("a.sli")).unwrap();
+    assert_eq!(read.iter().map(Material::name).collect::<Vec<_>>(), ["two"]);
+    assert!(read[0].warnings().iter().any(|said| said.contains("left out of the same file: of `one`")));
+    let nowhere = library_of("bbl = {0, 0, 0, 0, 0, 1}", spectra);
+    let message = read::from_file(&nowhere.path().join("a.sli")).unwrap_err().to_string();
+    assert!(message.contains("of `one`, `two` less than 2 channels"), "{message}");
+}
+
+/// Files that are called alike are told apart by what else their paths have, in whatever order.
+#[test]
+fn names_are_unique_where_names_of_files_are_not() {
+    let paint = |percent: f64| Material::from_table("a", &[(700.0, percent), (1300.0, percent)]).unwrap();
+    let (one, two, three) = (paint(0.1), paint(0.2), paint(0.3));
+    for (files, due) in [
+        (["lib/a.csv", "lib/a.txt"], ["a@csv", "a@txt"]),
+        (["x/a.csv", "y/a.csv"], ["a@x", "a@y"]),
+        (["lib/a.csv", "lib/b.csv"], ["a@a", "a@b"]),
+    ] {
+        let of = [(&one, Path::new(files[0])), (&two, Path::new(files[1]))];
+        assert_eq!(read::unique_names(&of), due);
+        let backwards = [of[1], of[0]];
+        assert_eq!(read::unique_names(&backwards), [due[1], due[0]]);
+    }
+    // A name that another one has by itself.
+    let own = three.clone().with_name("a@csv");
+    let of = [(&one, Path::new("lib/a.csv")), (&two, Path::new("lib/a.txt")), (&own, Path::new("lib/c.csv"))];
+    assert_eq!(read::unique_names(&of), ["a@csv", "a@txt", "a@csv-2"]);
+}
+
 /// Customary layouts as people write them by hand, each with three rows of the same spectrum.
 #[test]
 fn twenty_two_customary_layouts_are_read() {
@@ -161,7 +231,7 @@ fn measured_samples_have_short_names_of_their_own() {
             files.into_iter().filter_map(|file| Some((Material::from_file(&file).ok()?, file))).collect();
         let of: Vec<(&Material, &Path)> =
             all.iter().map(|(material, file)| (material, file.as_path())).collect();
-        let mut names = read::unique_names(&of).unwrap();
+        let mut names = read::unique_names(&of);
         names.sort();
         names
     };
@@ -189,7 +259,7 @@ proptest! {
         delimiter in prop::sample::select(vec![",", ";", "\t", "  ", " ", " , ", "|"]),
         comma in any::<bool>(),
         unit in prop::sample::select(vec![
-            ("wavelength (um)", 0), ("Wavelength [µm]", 0), ("wavelength_um", 0), ("nm", 1), ("Wavelength (nm)", 1),
+            ("wavelength (um)", 0), ("Wavelength [µm]", 0), ("wavelength_um", 0), ("nm", 1), ("Wavelength (nm)", 1), ("wavelength (\u{3bc}m)", 0), ("wavelength (A)", 4),
             ("wavenumber [cm^-1]", 2), ("cm-1", 2), ("wavenumber_cm1", 2), ("Frequency (THz)", 3),
         ]),
         quantity in prop::sample::select(vec![
@@ -203,7 +273,7 @@ proptest! {
         let mut text = format!("{comment}{}{delimiter}{}{newline}", unit.0, quantity.0);
         for (&nu, &e) in &rows {
             let nu = f64::from(nu);
-            let x = match unit.1 { 0 => 1e4 / nu, 1 => 1e7 / nu, 2 => nu, _ => nu * 0.029_979_245_8 };
+            let x = match unit.1 { 0 => 1e4 / nu, 1 => 1e7 / nu, 4 => 1e8 / nu, 2 => nu, _ => nu * 0.029_979_245_8 };
             let y = match quantity.1 { 0 => e, 1 => 100.0 * e, 2 => 1.0 - e, _ => 100.0 * (1.0 - e) };
             text.push_str(&format!("{}{delimiter}{}{newline}", written(x, decimal), written(y, decimal)));
         }

@@ -49,6 +49,15 @@ impl DataType {
         }
     }
 
+    /// The number as a sample holds it: a float of 32 bits has of -1.23e34 not all digits that a header has.
+    #[must_use]
+    pub fn stored(self, value: f64) -> f64 {
+        match self {
+            Self::F32 => f64::from(value as f32),
+            _ => value,
+        }
+    }
+
     /// The samples of bytes, each the nearest `f64`; bytes that are left over make none.
     #[must_use]
     pub fn samples(self, bytes: &[u8], order: ByteOrder) -> Vec<f64> {

@@ -15,7 +15,7 @@ use super::read::{self, Origin, qualified};
 use crate::demand::{Reason, Thing, Work};
 use crate::error::{Error, Result};
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 #[cfg(feature = "library")]
 use std::sync::Arc;
 
@@ -100,7 +100,7 @@ impl Library {
         let (mut sources, mut passed_over) = (Vec::new(), Vec::new());
         for file in read::spectra_in(directory)? {
             match read::from_file(&file) {
-                Ok(materials) => sources.push((read::stem(&file), materials)),
+                Ok(materials) => sources.push((file, materials)),
                 Err(error) if self.strict => return Err(error),
                 Err(error) => passed_over.push(error),
             }
@@ -114,7 +114,8 @@ impl Library {
             return Err(Error::malformed(found, instead).in_file(directory));
         }
         self.warnings.extend(passed_over.iter().map(|error| format!("passed over: {error}")));
-        self.add_sources(sources).map_err(|error| error.in_file(directory))
+        self.add_sources(sources);
+        Ok(())
     }
 
     /// Adds the materials of one file: a spectrum, a table of materials, or a manifest (`.toml`).
@@ -126,7 +127,8 @@ impl Library {
             return self.add_manifest(path, path.parent().unwrap_or(Path::new("")));
         }
         let materials = read::from_file(path)?;
-        self.add_sources(vec![(read::stem(path), materials)]).map_err(|error| error.in_file(path))
+        self.add_sources(vec![(path.to_owned(), materials)]);
+        Ok(())
     }
 
     /// Adds a directory or a file, whichever it is.
@@ -220,25 +222,20 @@ impl Library {
     }
 
     /// Adds the materials of files; names that several of them define are qualified with what tells them apart.
-    fn add_sources(&mut self, sources: Vec<(String, Vec<Material>)>) -> Result<()> {
-        let of = |(stem, materials): (String, Vec<Material>)| {
+    fn add_sources(&mut self, sources: Vec<(PathBuf, Vec<Material>)>) {
+        let of = |(file, materials): (PathBuf, Vec<Material>)| {
             materials.into_iter().map(move |material| {
                 let (name, sample) = (material.name.clone(), material.sample.clone());
-                (material, Origin { name, sample, stem: stem.clone() })
+                (material, Origin { name, sample, file: file.clone() })
             })
         };
         let (materials, origins): (Vec<Material>, Vec<Origin>) = sources.into_iter().flat_map(of).unzip();
         let names = qualified(&origins);
         let mut ambiguous: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
-        for (origin, name) in origins.iter().zip(&names).filter(|(origin, name)| origin.name != **name) {
-            if !ambiguous.entry(origin.name.clone()).or_default().insert(name.clone()) {
-                return Err(Error::malformed(
-                    format!("two files called `{}` define the material `{}`", origin.stem, origin.name),
-                    "rename one of them",
-                ));
+        for ((material, origin), name) in materials.into_iter().zip(&origins).zip(names) {
+            if origin.name != name {
+                ambiguous.entry(origin.name.clone()).or_default().insert(name.clone());
             }
-        }
-        for (material, name) in materials.into_iter().zip(names) {
             self.add(material.with_name(name));
         }
         for (name, qualified) in ambiguous {
@@ -249,7 +246,6 @@ impl Library {
             }
             self.ambiguous.insert(name, qualified);
         }
-        Ok(())
     }
 }
 

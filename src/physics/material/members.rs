@@ -189,7 +189,7 @@ fn unique_names(found: &[(Material, Option<PathBuf>, f64)]) -> Result<Vec<String
             own(material).1.or_else(|| file.as_deref().map(read::stem)).unwrap_or_default()
         };
         let stems: Vec<String> = same.iter().map(stem).collect();
-        let tags = read::differing(&stems.iter().map(String::as_str).collect::<Vec<_>>());
+        let tags = read::differing(&stems);
         for (i, tag) in same.iter().zip(tags) {
             names[*i] = format!("{}@{tag}", names[*i]).trim_end_matches('@').to_owned();
         }

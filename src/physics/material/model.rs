@@ -228,6 +228,11 @@ fn in_unit_interval(emissivity: f64, name: impl Fn() -> String) -> Result<f64> {
     if (0.0..=1.0).contains(&emissivity) {
         return Ok(emissivity);
     }
+    if emissivity.is_nan() {
+        let found = format!("{} is bad or missing in its file", name());
+        let instead = "narrow the bands to where it is known, or use a file without this row if a straight line may stand for it";
+        return Err(Error::malformed(found, instead));
+    }
     check::unit_interval(&name(), emissivity)
 }
 

@@ -34,13 +34,14 @@ use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 /// Endings of files of spectra.
-const ENDINGS: [&str; 11] = ["csv", "txt", "tsv", "asc", "dpt", "xy", "jdx", "dx", "jcm", "jcamp", "sli"];
+pub const ENDINGS: [&str; 11] =
+    [".csv", ".txt", ".tsv", ".asc", ".dpt", ".xy", ".jdx", ".dx", ".jcm", ".jcamp", ".sli"];
 
-/// Whether a file is called as files of spectra are: `.csv`, `.txt`, `.tsv`, `.asc`, `.dpt`, `.xy`, `.jdx`, `.dx`, `.jcm`, `.jcamp`, `.sli`.
+/// Whether a file is called as files of spectra are ([`ENDINGS`], in any case).
 #[must_use]
 pub fn is_spectra(name: &str) -> bool {
-    name.rsplit_once('.')
-        .is_some_and(|(_, ending)| ENDINGS.iter().any(|known| ending.eq_ignore_ascii_case(known)))
+    let ending = name.rfind('.').and_then(|dot| name.get(dot..));
+    ending.is_some_and(|ending| ENDINGS.iter().any(|known| ending.eq_ignore_ascii_case(known)))
 }
 
 /// The files of a directory that are called as spectra are ([`is_spectra`]), in the order of their names.
@@ -109,7 +110,7 @@ fn content_of_file(path: &Path) -> Result<Content> {
 
 fn content_with_columns(path: &Path, columns: Option<&[String]>) -> Result<Content> {
     match envi::files(path)? {
-        Some((header, data)) => envi::read(&header, &data, columns),
+        Some((header, data)) => envi::read(&header, &data, columns).map(Content::noticed),
         None => content(&text_of_file(path, crate::grid::READ_SPECTRUM)?, path, columns),
     }
 }
@@ -127,7 +128,7 @@ fn content(text: &str, source: &Path, columns: Option<&[String]>) -> Result<Cont
     };
     match content {
         Ok(Content::NoEmissivity(error)) => Ok(Content::NoEmissivity(error.in_file(source))),
-        other => other.map_err(|error| error.in_file(source)),
+        other => other.map(Content::noticed).map_err(|error| error.in_file(source)),
     }
 }
 

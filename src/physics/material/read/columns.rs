@@ -1,6 +1,6 @@
 //! What the columns of a table are: axis, then emissivity, reflectance, n and k, or materials.
 
-use super::content::{one_line, stem};
+use super::content::{of_all, one_line, stem};
 use super::header::{self, Axis, Meaning, Quantity, Values};
 use super::layout::{Sheet, is_index};
 use crate::error::{Error, Result, check};
@@ -82,6 +82,10 @@ pub(super) fn materials(sheet: &Sheet, source: &Path) -> Result<Vec<Material>> {
         }
     }
     let alone = told.len() == 1;
+    let has = |quantity: Quantity| {
+        told.iter().any(|(_, _, values)| values.quantity == Some(quantity) && values.name.is_empty())
+    };
+    let both = has(Quantity::Emissivity) && has(Quantity::Reflectance);
     let mut names = BTreeSet::new();
     let mut materials = Vec::with_capacity(told.len());
     for (column, header, values) in told {
@@ -103,8 +107,16 @@ pub(super) fn materials(sheet: &Sheet, source: &Path) -> Result<Vec<Material>> {
         };
         let name = if alone && values.name.is_empty() { own.clone() } else { values.name.clone() };
         if name.is_empty() {
-            let found = format!("a column `{}` in a table of materials", one_line(header));
-            let instead = "name each column after its material, as in skin or skin_reflectance";
+            let (found, instead) = match both {
+                true => (
+                    "columns of emissivity and of reflectance without the name of a material".to_owned(),
+                    "delete one of them if they are of one surface; else name each column after its material, as in skin_emissivity",
+                ),
+                false => (
+                    format!("a column `{}` in a table of materials", one_line(header)),
+                    "name each column after its material, as in skin or skin_reflectance",
+                ),
+            };
             return Err(at(Error::malformed(found, instead), header));
         }
         if !names.insert(name.clone()) {
@@ -124,12 +136,8 @@ pub(super) fn materials(sheet: &Sheet, source: &Path) -> Result<Vec<Material>> {
         let mut warnings = Vec::new();
         if let Some((_, high)) = sheet.ranges.get(column)
             && values.percent
-            && *high <= 1.0
         {
-            warnings.push(format!(
-                "the {} is at most {high} percent, as its header says; as a fraction it would be another",
-                quantity.name()
-            ));
+            warnings.extend(of_all(quantity.name(), *high, 100.0));
         }
         if let [column, ..] = left_out.as_slice() {
             warnings.push(format!("the errors in the column `{}` are not used", one_line(column)));

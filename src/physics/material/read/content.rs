@@ -3,10 +3,13 @@
 use crate::error::{Error, Result};
 use crate::material::Material;
 use crate::material::table::Table;
+use crate::words::significant;
 use std::path::Path;
 
 /// The part of the long-wave infrared that most cameras see, cm⁻¹ (13 to 8 µm).
 const LONG_WAVE_CM1: (f64, f64) = (770.0, 1250.0);
+/// The thermal infrared, cm⁻¹ (20 to 3 µm): beyond it nothing is seen by heat at the temperatures around us.
+const THERMAL_CM1: (f64, f64) = (500.0, 1e4 / 3.0);
 /// Characters of a name that was made of a title, which may be a sentence.
 const LONGEST_NAME: usize = 40;
 
@@ -19,6 +22,29 @@ pub(in crate::physics::material) enum Content {
 }
 
 impl Content {
+    /// The same, materials that say nothing of the thermal infrared with a warning: the unit of their axis may be another.
+    pub(super) fn noticed(self) -> Self {
+        let noticed = |material: Material| match material.range_cm1().filter(|range| is_elsewhere(*range)) {
+            None => material,
+            Some((low, high)) => {
+                let remark = format!(
+                    "all its rows lie outside the thermal infrared of 3 to 20 um: they go from {} to {} um ({} to {} cm^-1), \
+                     read as {}; if they were measured elsewhere, correct the unit in the file",
+                    significant(1e4 / high, 3),
+                    significant(1e4 / low, 3),
+                    significant(low, 3),
+                    significant(high, 3),
+                    material.read_as,
+                );
+                material.warn([remark])
+            }
+        };
+        match self {
+            Self::Materials(materials) => Self::Materials(materials.into_iter().map(noticed).collect()),
+            other => other,
+        }
+    }
+
     /// The materials, or why there are none as an error.
     pub(super) fn materials(self) -> Result<Vec<Material>> {
         match self {
@@ -78,6 +104,22 @@ pub(super) fn short_name(name: &str) -> String {
     short
 }
 
+/// Whether a range of wavenumbers, cm⁻¹, has nothing of the thermal infrared.
+fn is_elsewhere((low, high): (f64, f64)) -> bool {
+    high < THERMAL_CM1.0 || low > THERMAL_CM1.1
+}
+
+/// What is to be said of numbers that are fractions by their size, and parts of a larger `whole` by their header.
+pub(super) fn of_all(quantity: &str, most: f64, whole: f64) -> Option<String> {
+    let unit = if whole == 100.0 { "percent".to_owned() } else { format!("of {whole}") };
+    (whole > 1.0 && most <= 1.0).then(|| {
+        format!(
+            "the {quantity} is at most {} {unit}, as its header says; as a fraction it would be another",
+            significant(most, 3)
+        )
+    })
+}
+
 /// What is to be said of rows outside 0 to 1, and of a range that is short.
 pub(super) fn warnings(table: &Table<1>) -> Vec<String> {
     let mut warnings = Vec::new();
@@ -95,6 +137,7 @@ pub(super) fn warnings(table: &Table<1>) -> Vec<String> {
         ));
     }
     if let Some((low, high)) = table.range_cm1()
+        && !is_elsewhere((low, high))
         && (low > LONG_WAVE_CM1.0 || high < LONG_WAVE_CM1.1)
     {
         warnings.push(format!(

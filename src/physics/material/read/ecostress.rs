@@ -10,7 +10,7 @@
 //! Source: Meerdink et al., Remote Sens. Environ. 230, 111196 (2019), doi:10.1016/j.rse.2019.05.015; Baldridge et al.,
 //! Remote Sens. Environ. 113, 711 (2009), doi:10.1016/j.rse.2008.11.007. Layout from the files themselves.
 
-use super::content::{Content, kebab_case, one_line, short_name, stem, warnings};
+use super::content::{Content, kebab_case, of_all, one_line, short_name, stem, warnings};
 use crate::error::{Error, Result, check};
 use crate::grid;
 use crate::material::Material;
@@ -72,6 +72,8 @@ pub(super) fn parse(text: &str, source: &Path) -> Result<Content> {
 
     let table = table(&parts.rows)?;
     let mut warnings = warnings(&table);
+    let most = parts.rows.iter().map(|(.., percent)| *percent).fold(f64::NEG_INFINITY, f64::max);
+    warnings.extend(of_all("reflectance", most, 100.0));
     let measurement = value("measurement");
     if !measurement.is_empty() && !measurement.to_lowercase().contains("hemispherical") {
         warnings.push(format!(

@@ -2,12 +2,12 @@
 //!
 //! The header's `wavelength`, `wavelength units` and `spectra names` say what they are; whether emissivity or reflectance, the second of
 //! `z plot titles` (`{Wavelength, Emissivity}`), or `reflectance scale factor`, by which samples are divided. Where nothing does it
-//! is asked for. Channels that are bad (`bbl`) or not known (`data ignore value`) are no number: an error once a band needs
-//! them, as values below 0 or above 1 are.
+//! is asked for. Channels that are bad (`bbl`) or not known (`data ignore value`) are left out at the ends of a spectrum; between
+//! others they are no number: an error once a band needs them, as values below 0 or above 1 are.
 
-use super::content::{Content, kebab_case, one_line, stem, warnings};
+use super::content::{Content, kebab_case, of_all, one_line, stem, warnings};
 use super::header::{self, Axis, Meaning, Quantity, Values};
-use crate::envi_header::{EnviHeader, data_of, header_of};
+use crate::envi_header::{EnviHeader, Layout, data_of, header_of};
 use crate::error::{Error, Result, check};
 use crate::file;
 use crate::grid::READ_SPECTRUM;
@@ -68,16 +68,17 @@ pub(super) fn read(header_path: &Path, data: &Path, columns: Option<&[String]>) 
     }
     let offset = usize::try_from(layout.header_offset).unwrap_or(usize::MAX);
     let samples = layout.data_type.samples(bytes.get(offset..).unwrap_or_default(), layout.byte_order);
-    of(&header, &samples, layout.samples, data, columns).map_err(|error| error.in_file(header_path))
+    of(&header, &samples, &layout, data, columns).map_err(|error| error.in_file(header_path))
 }
 
 fn of(
     header: &EnviHeader,
     samples: &[f64],
-    channels: usize,
+    layout: &Layout,
     source: &Path,
     columns: Option<&[String]>,
 ) -> Result<Content> {
+    let channels = layout.samples;
     let Some(axis) = header.numbers_for("wavelength", channels, "channels")? else {
         return Err(Error::malformed(
             "the header has no `wavelength`",
@@ -89,7 +90,7 @@ fn of(
         Ok(known) => known,
         Err(other) => return Ok(Content::NoEmissivity(other)),
     };
-    let ignored = header.ignored()?;
+    let ignored = header.ignored()?.map(|value| layout.data_type.stored(value));
     let good = header.good_bands(channels)?;
     let wavenumbers = axis
         .iter()
@@ -106,6 +107,7 @@ fn of(
         is_good && ignored != Some(*sample) && sample.is_finite()
     };
     let mut materials = Vec::with_capacity(spectra.len());
+    let mut unknown = Vec::new();
     for (name, spectrum) in names.iter().zip(spectra) {
         let fractions =
             || spectrum.iter().enumerate().map(|one| if known(one) { one.1 / scale } else { f64::NAN });
@@ -119,19 +121,34 @@ fn of(
                 format!("write `{SCALE} = 100` where samples are percent, or the factor that is true");
             return Err(header.wrong(SCALE, Error::malformed(found, instead)));
         }
-        let rows: Vec<(f64, [f64; 1])> = wavenumbers
+        let mut rows: Vec<(f64, [f64; 1])> = wavenumbers
             .iter()
             .zip(fractions())
             .map(|(&wavenumber, value)| (wavenumber, [quantity.emissivity(value)]))
             .collect();
-        let table = Table::new(&rows).map_err(|error| header.wrong("wavelength", error))?;
+        let usable = rows.iter().filter(|(_, [e])| !e.is_nan()).count();
+        if usable < 2 && usable < channels {
+            unknown.push(format!("`{}`", one_line(name)));
+            continue;
+        }
+        let table = |rows: &[_]| Table::new(rows).map_err(|error| header.wrong("wavelength", error));
+        // All of them first, so that a channel that is there twice is found wherever it is.
+        let all = table(&rows)?;
+        let good_cm1 = |(wavenumber, [e]): (f64, [f64; 1])| (!e.is_nan()).then_some(wavenumber);
+        let (low, high) = all
+            .rows()
+            .filter_map(good_cm1)
+            .fold((f64::INFINITY, 0.0_f64), |(low, high), x| (low.min(x), high.max(x)));
+        rows.retain(|(wavenumber, _)| (low..=high).contains(wavenumber));
+        let table = table(&rows)?;
         let mut said = warnings(&table);
-        let missing = channels - spectrum.iter().enumerate().filter(|one| known(*one)).count();
-        if missing > 0 {
+        if usable < channels {
             said.push(format!(
-                "{missing} of {channels} channels are bad or not known; bands that use them are an error"
+                "{} of {channels} channels are bad or not known; bands that use them are an error",
+                channels - usable
             ));
         }
+        said.extend(of_all(quantity.name(), most * scale, scale));
         let share = if scale == 1.0 { String::new() } else { format!(" times {scale}") };
         let read_as = format!(
             "ENVI spectral library, {} in {}, {}{share}",
@@ -156,7 +173,16 @@ fn of(
             Material::of(kebab_case(name), provenance, Model::Table(table)).reading(read_as).warn(said),
         );
     }
-    Ok(Content::Materials(materials))
+    if unknown.is_empty() {
+        return Ok(Content::Materials(materials));
+    }
+    let unknown = format!("of {} less than 2 channels are good and known", unknown.join(", "));
+    if materials.is_empty() {
+        let instead = "correct `bbl` and `data ignore value`, or use another library";
+        return Err(Error::malformed(unknown, instead));
+    }
+    let left_out = |material: Material| material.warn([format!("left out of the same file: {unknown}")]);
+    Ok(Content::Materials(materials.into_iter().map(left_out).collect()))
 }
 
 fn unit(header: &EnviHeader, axis: &[f64], columns: Option<&[String]>) -> Result<SpectralUnit> {

@@ -200,9 +200,8 @@ pub(super) fn axis(cell: &str) -> Result<Option<Axis>> {
             cell.get(at..).and_then(|rest| rest.chars().next()).map_or(at, |char| at + char.len_utf8());
         for split in [at, after] {
             let (Some(name), Some(rest)) = (cell.get(..split), cell.get(split..)) else { continue };
-            let (Some(unit), Some(quantity)) = (SpectralUnit::spelt(rest), axis_named(name)) else {
-                continue;
-            };
+            let Some(quantity) = axis_named(name) else { continue };
+            let Some(unit) = SpectralUnit::spelt(rest).or_else(|| angstrom(quantity, rest)) else { continue };
             let fits = quantity.is_empty()
                 || quantity == unit.quantity()
                 || quantity == "frequency" && unit.quantity() == "wavenumber";
@@ -215,6 +214,12 @@ pub(super) fn axis(cell: &str) -> Result<Option<Axis>> {
         }
     }
     Ok(None)
+}
+
+/// The unit `A` of a wavelength, which elsewhere is the letter of a material or of absorbance.
+fn angstrom(quantity: &str, unit: &str) -> Option<SpectralUnit> {
+    let letter = unit.trim_matches(|char: char| "()[] _/".contains(char));
+    (quantity == "wavelength" && letter == "A").then_some(SpectralUnit::Angstrom)
 }
 
 /// Whether a header says both what is counted and in which unit, as no material's name does.
@@ -411,6 +416,10 @@ mod tests {
                     "Wavenumber (cm⁻¹)",
                 ],
             ),
+            (
+                SpectralUnit::Angstrom,
+                &["wavelength (A)", "Wavelength [Å]", "wavelength_A", "lambda (angstrom)"],
+            ),
             (Terahertz, &["THz", "frequency (THz)", "frequency_THz", "f [THz]"]),
         ] {
             for header in headers {
@@ -420,7 +429,19 @@ mod tests {
         }
         assert_eq!(axis("wavelength"), Ok(Some(Axis { unit: None, quantity: "wavelength" })));
         assert_eq!(axis("Wavenumber"), Ok(Some(Axis { unit: None, quantity: "wavenumber" })));
-        for other in ["", "emissivity", "thickness (um)", "skin", "temperature [K]", "x", "time (s)", "8.5"] {
+        for other in [
+            "",
+            "emissivity",
+            "thickness (um)",
+            "skin",
+            "A",
+            "x (A)",
+            "wavelength a",
+            "temperature [K]",
+            "x",
+            "time (s)",
+            "8.5",
+        ] {
             assert_eq!(axis(other), Ok(None), "{other}");
         }
         assert!(axis("wavelength (cm-1)").unwrap_err().to_string().contains("write wavenumber_cm1"));

@@ -12,7 +12,7 @@
 
 mod ordinates;
 
-use super::content::{Content, kebab_case, one_line, short_name, stem, warnings};
+use super::content::{Content, kebab_case, of_all, one_line, short_name, stem, warnings};
 use super::header::{self, Meaning, Values};
 use crate::error::{Error, Result, check};
 use crate::grid::number;
@@ -208,7 +208,8 @@ impl Block<'_> {
             rows.push((wavenumber, [quantity.emissivity(y / scale)]));
         }
         let table = Table::new(&rows)?;
-        let warnings = warnings(&table);
+        let mut warnings = warnings(&table);
+        warnings.extend(of_all(quantity.name(), most * scale, scale));
         let title = self.value("TITLE");
         let own = short_name(&kebab_case(title));
         let name = match (own.is_empty(), many) {

@@ -374,12 +374,24 @@ fn wrong_count(found: usize, due: usize) -> Error {
     Error::malformed(found_text, instead)
 }
 
+/// A row in which one number has a decimal point and another a comma: neither may be changed alone.
+fn mixed_signs(cells: &[&str]) -> Option<Error> {
+    let with = |own: char, other: char| {
+        let mut cells = cells.iter().filter(|cell| cell.starts_with(|char: char| char.is_ascii_digit()));
+        cells.find(|cell| cell.contains(own) && !cell.contains(other))
+    };
+    let (point, comma) = (with('.', ',')?, with(',', '.')?);
+    let found = format!("`{point}` has a point and `{comma}` a comma");
+    Some(Error::malformed(found, "write decimal points in all numbers, and nothing between thousands"))
+}
+
 fn numbers(form: Form, row: &str, header: &[String]) -> Result<Vec<f64>> {
     let mut cells = form.cells(row);
     while cells.len() > header.len() && cells.pop_if(|cell| cell.is_empty()).is_some() {}
     if cells.len() != header.len() {
         return Err(wrong_count(cells.len(), header.len()));
     }
+    let mixed = mixed_signs(&cells);
     let read = |(cell, column): (&str, &String)| {
         if form.decimal == ',' && cell.contains('.') {
             let found = format!("`{cell}` has a decimal point where other numbers have commas");
@@ -387,7 +399,7 @@ fn numbers(form: Form, row: &str, header: &[String]) -> Result<Vec<f64>> {
                 Error::malformed(found, "write the same sign in all numbers").for_key(column.as_str())
             );
         }
-        form.number(cell).map_err(|error| error.for_key(column.as_str()))
+        form.number(cell).map_err(|error| mixed.clone().unwrap_or(error).for_key(column.as_str()))
     };
     cells.into_iter().zip(header).map(read).collect()
 }

@@ -1,13 +1,12 @@
 //! Names that no two materials of several files share: their own where that will do, else `NAME@TAG`.
 //!
-//! The tag is the number of the measured sample; where that is missing or the same, what the file's name has that the others' have not. It depends on
-//! which files share the name, not on their order.
+//! The tag is the number of the measured sample; where that is missing or the same, what the file's name has that the others' have not;
+//! where that is the same too, what its path has. It depends on which files share the name, not on their order.
 
-use super::content::stem;
-use crate::error::{Error, Result};
+use super::content::{kebab_case, stem};
 use crate::material::Material;
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Stems of files that are short enough to tell whole.
 const SHORT: usize = 24;
@@ -19,14 +18,11 @@ pub(in crate::physics::material) struct Origin {
     pub(in crate::physics::material) name: String,
     /// Number of the sample, if there is one.
     pub(in crate::physics::material) sample: String,
-    /// Name of its file, in kebab-case.
-    pub(in crate::physics::material) stem: String,
+    /// Its file.
+    pub(in crate::physics::material) file: PathBuf,
 }
 
-/// Names of materials with the files they were read from.
-///
-/// # Errors
-/// Materials of one name and sample in files that are called alike.
+/// Names of materials with the files they were read from, each only once.
 ///
 /// ```
 /// use hadar::material::read::{from_text, unique_names};
@@ -39,29 +35,18 @@ pub(in crate::physics::material) struct Origin {
 ///     from_text(&text, Path::new("paint.txt")).map(|mut read| read.remove(0))
 /// };
 /// let materials = [file("0402UUU")?, file("0403UUU")?];
-/// let names = unique_names(&materials.each_ref().map(|material| (material, Path::new("paint.txt"))))?;
+/// let names = unique_names(&materials.each_ref().map(|material| (material, Path::new("paint.txt"))));
 /// assert_eq!(names, ["black-paint@0402uuu", "black-paint@0403uuu"]);
 /// # Ok::<(), hadar::Error>(())
 /// ```
-pub fn unique_names(materials: &[(&Material, &Path)]) -> Result<Vec<String>> {
+#[must_use]
+pub fn unique_names(materials: &[(&Material, &Path)]) -> Vec<String> {
     let origin = |(material, file): &(&Material, &Path)| Origin {
         name: material.name.clone(),
         sample: material.sample.clone(),
-        stem: stem(file),
+        file: file.to_path_buf(),
     };
-    let origins: Vec<Origin> = materials.iter().map(origin).collect();
-    let names = qualified(&origins);
-    let mut seen: BTreeMap<&str, usize> = BTreeMap::new();
-    for (at, name) in names.iter().enumerate() {
-        if let Some(before) = seen.insert(name, at) {
-            let shown = |at: usize| {
-                materials.get(at).map_or_else(String::new, |(_, file)| file.display().to_string())
-            };
-            let found = format!("`{name}` is defined by {} and by {}", shown(before), shown(at));
-            return Err(Error::malformed(found, "rename one of the files, or leave one out"));
-        }
-    }
-    Ok(names)
+    qualified(&materials.iter().map(origin).collect::<Vec<_>>())
 }
 
 /// The name of a material that stands beside others of its name, `NAME@TAG`; the tag is its sample's number, else its file's name.
@@ -71,7 +56,7 @@ pub fn tagged_name(material: &Material, file: &Path) -> String {
     format!("{}@{tag}", material.name)
 }
 
-/// The names, those that several have with what tells them apart; the same name twice where nothing does.
+/// The names, those that several have with what tells them apart; a number does where nothing else does.
 pub(in crate::physics::material) fn qualified(origins: &[Origin]) -> Vec<String> {
     let mut places: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
     for (at, origin) in origins.iter().enumerate() {
@@ -80,13 +65,17 @@ pub(in crate::physics::material) fn qualified(origins: &[Origin]) -> Vec<String>
     let mut names: Vec<String> = origins.iter().map(|origin| origin.name.clone()).collect();
     for same in places.values().filter(|same| same.len() > 1) {
         let group: Vec<&Origin> = same.iter().filter_map(|at| origins.get(*at)).collect();
-        let samples: BTreeSet<&str> = group.iter().map(|origin| origin.sample.as_str()).collect();
-        let tags = if samples.len() == group.len() && !samples.contains("") {
-            group.iter().map(|origin| origin.sample.clone()).collect()
-        } else if group.iter().all(|origin| origin.stem.chars().count() <= SHORT) {
-            group.iter().map(|origin| origin.stem.clone()).collect()
+        let samples: Vec<String> = group.iter().map(|origin| origin.sample.clone()).collect();
+        let stems: Vec<String> = group.iter().map(|origin| stem(&origin.file)).collect();
+        let tags = if all_differ(&samples) && samples.iter().all(|sample| !sample.is_empty()) {
+            samples
+        } else if !all_differ(&stems) {
+            let paths = group.iter().map(|origin| kebab_case(&origin.file.to_string_lossy()));
+            differing(&paths.collect::<Vec<_>>())
+        } else if stems.iter().all(|stem| stem.chars().count() <= SHORT) {
+            stems
         } else {
-            differing(&group.iter().map(|origin| origin.stem.as_str()).collect::<Vec<_>>())
+            differing(&stems)
         };
         for (at, tag) in same.iter().zip(tags) {
             if let Some(name) = names.get_mut(*at) {
@@ -94,11 +83,27 @@ pub(in crate::physics::material) fn qualified(origins: &[Origin]) -> Vec<String>
             }
         }
     }
+    let mut in_order: Vec<usize> = (0..origins.len()).collect();
+    in_order.sort_by_key(|at| origins.get(*at).map(|origin| &origin.file));
+    let mut taken = BTreeSet::new();
+    for at in in_order {
+        let Some(name) = names.get_mut(at) else { continue };
+        let own = name.clone();
+        let mut number = 1_usize;
+        while !taken.insert(name.clone()) {
+            number += 1;
+            *name = format!("{own}-{number}");
+        }
+    }
     names
 }
 
+fn all_differ(texts: &[String]) -> bool {
+    texts.iter().collect::<BTreeSet<_>>().len() == texts.len()
+}
+
 /// What each stem has between the parts that all begin and end with.
-pub(in crate::physics::material) fn differing(stems: &[&str]) -> Vec<String> {
+pub(in crate::physics::material) fn differing(stems: &[String]) -> Vec<String> {
     let parts: Vec<Vec<&str>> =
         stems.iter().map(|stem| stem.split('-').filter(|part| !part.is_empty()).collect()).collect();
     let shortest = parts.iter().map(Vec::len).min().unwrap_or(0);

@@ -128,12 +128,20 @@ fn each_bad_input_says_where_and_what_to_write_instead() {
         ),
         (
             "wavelength_um,emissivity,reflectance\n1,0.5,0.5\n2,0.5,0.5\n".into(),
-            &["a.csv:1: emissivity: ", "name each column after its material"],
+            &[
+                "a.csv:1: emissivity: ",
+                "of emissivity and of reflectance",
+                "name each column after its material",
+            ],
         ),
         ("700,0.5\n800,0.6\n".into(), &["a.csv:1: there is no header", "wavenumber_cm1,emissivity"]),
         (
             "wavenumber_cm1;emissivity\n700;0,5\n800;0.5\n900;0,5\n".into(),
             &["a.csv:3: emissivity: `0.5` has a decimal point where other numbers have commas"],
+        ),
+        (
+            "wavelength_nm;emissivity\n8.000;0,9\n9.000;0,8\n".into(),
+            &["a.csv:2: ", "`8.000` has a point and `0,9` a comma", "nothing between thousands"],
         ),
         (
             "wavenumber_cm1,tireA,tire-a\n700,0.5,0.5\n800,0.5,0.5\n".into(),
@@ -197,11 +205,51 @@ fn reflectance_beyond_0_to_100_percent_is_a_warning_and_then_an_error() {
 fn a_spectrum_without_long_wave_rows_is_warned_about_and_fails_in_use() {
     let material = read_one(&format!("{HEADER}0.4\t5\n1.0\t10\n2.5\t20\n")).unwrap();
     assert!(
-        material.warnings()[0].contains("do not cover the long-wave infrared"),
+        material.warnings()[0]
+            .contains("0.400 to 2.50 um (4000 to 25000 cm^-1), read as ECOSTRESS, wavelength in um"),
         "{:?}",
         material.warnings()
     );
     assert!(matches!(material.emissivity(&[1000.0]), Err(Error::OutsideSpectrum { .. })));
+}
+
+/// The unit of an axis that is wrong, or that of sunlight, leaves nothing in the thermal infrared.
+#[test]
+fn a_spectrum_from_elsewhere_is_warned_about_with_its_range_and_unit() {
+    let jcamp = "##TITLE= x\n##XUNITS= NANOMETERS\n##YUNITS= REFLECTANCE\n##XYPOINTS= (XY..XY)\n8,0.1 13,0.2\n##END=\n";
+    for (text, parts) in [
+        ("wavelength_um,emissivity\n8000,0.9\n13000,0.8\n", ["8000 to 13000 um", "read as wavelength in um"]),
+        ("nm,emissivity\n8,0.9\n13,0.8\n", ["0.00800 to 0.0130 um", "read as wavelength in nm"]),
+        ("wavelength_um,roof,wall\n700,0.9,0.5\n1300,0.8,0.5\n", ["7.69 to 14.3 cm^-1", "wavelength in um"]),
+        ("wavelength_um,n,k\n0.4,1.5,0\n2.5,1.5,0\n", ["0.400 to 2.50 um", "n and k"]),
+        (jcamp, ["0.00800 to 0.0130 um", "wavelength in nm"]),
+    ] {
+        for material in from_text(text, Path::new("a")).unwrap() {
+            let [warning] = material.warnings() else { panic!("{text}: {:?}", material.warnings()) };
+            assert!(parts.iter().all(|part| warning.contains(part)), "{warning}");
+        }
+    }
+    for text in ["wavelength_um,emissivity\n0.4,0.9\n3.1,0.8\n", "cm-1,emissivity\n100,0.9\n501,0.8\n"] {
+        assert_eq!(read_one(text).unwrap().warnings(), [] as [String; 0], "{text}");
+    }
+}
+
+#[test]
+fn percent_that_are_fractions_by_their_size_are_warned_about() {
+    let jcamp = |percent: f64| {
+        format!(
+            "##TITLE= x\n##XUNITS= 1/CM\n##YUNITS= %R\n##XYPOINTS= (XY..XY)\n700,0.1 1300,{percent}\n##END=\n"
+        )
+    };
+    let ecostress = |percent: f64| format!("{HEADER}7\t0.1\n10\t{percent}\n14\t0.2\n");
+    let table = |percent: f64| format!("cm-1,%R\n700,0.1\n1300,{percent}\n");
+    for text in [&jcamp as &dyn Fn(f64) -> String, &ecostress, &table] {
+        let warned = |percent: f64| {
+            let warnings = read_one(&text(percent)).unwrap().warnings().to_vec();
+            warnings.iter().any(|warning| warning.contains("as a fraction it would be another"))
+        };
+        assert!(warned(0.95) && !warned(1.05), "{}", text(0.95));
+    }
 }
 
 #[test]

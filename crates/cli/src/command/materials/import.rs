@@ -11,8 +11,12 @@ use hadar::material::{Material, Summary, read};
 use hadar_report::bundle::Bundle;
 use hadar_report::text::significant;
 use hadar_study::study::Warning;
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
+
+/// Files that are named where nothing could be taken, beside the first with its reason.
+const OTHERS: usize = 4;
 
 /// What was read: materials with their files, and why others were not.
 struct Found {
@@ -29,16 +33,21 @@ pub(super) fn run(named: &[PathBuf], columns: &Columns, global: &Global) -> Resu
     };
     let of: Vec<(&Material, &Path)> =
         found.materials.iter().map(|(material, file)| (material, file.as_path())).collect();
-    let names = read::unique_names(&of)?;
+    let names = read::unique_names(&of);
     let mut summaries = Vec::new();
     let mut out = String::new();
     for ((material, file), name) in found.materials.iter().zip(names) {
-        let source = &material.provenance().source;
-        let is_anothers = |(known, content): &(String, Vec<u8>)| {
-            *known == format!("{name}.csv") && !holds_line(content, &format!("# source: {source}"))
+        let source = format!("# source: {}", material.provenance().source);
+        let is_anothers = |name: &str| {
+            let csv = format!("{name}.csv");
+            let of_another =
+                |(known, content): &(String, Vec<u8>)| *known == csv && !holds_line(content, &source);
+            bundle.names().any(|known| known == csv) || own.iter().any(of_another)
         };
-        let name = if own.iter().any(is_anothers) { read::tagged_name(material, file) } else { name };
-        let material = material.clone().with_name(name);
+        let tagged = read::tagged_name(material, file);
+        let numbered = (2_usize..).map(|number| format!("{tagged}-{number}"));
+        let mut names = [name, tagged.clone()].into_iter().chain(numbered);
+        let material = material.clone().with_name(names.find(|name| !is_anothers(name)).unwrap_or(tagged));
         if global.out.is_some() {
             match material.to_csv(&rows(&material)) {
                 Ok(csv) => bundle.add(format!("{}.csv", material.name()), csv),
@@ -52,6 +61,10 @@ pub(super) fn run(named: &[PathBuf], columns: &Columns, global: &Global) -> Resu
         let summary = material.summary();
         say(&summary, &mut out);
         summaries.push(summary);
+    }
+    // What could be read may be known nowhere, or not everywhere, so that nothing is left to write.
+    if summaries.is_empty() {
+        return Err(nothing(named, &found.passed_over));
     }
     let warnings: Vec<Warning> = found
         .passed_over
@@ -83,6 +96,9 @@ fn read_all(named: &[PathBuf], columns: &Columns, global: &Global) -> Result<Fou
     for path in named {
         if path.is_dir() { files.extend(read::spectra_in(path)?) } else { files.push(path.clone()) }
     }
+    // One that is named twice, or itself and with its folder, is one.
+    let mut seen = BTreeSet::new();
+    files.retain(|file| seen.insert(std::path::absolute(file).unwrap_or_else(|_| file.clone())));
     let mut found = Found { materials: Vec::new(), passed_over: Vec::new() };
     for file in &files {
         match columns.read(file) {
@@ -93,14 +109,36 @@ fn read_all(named: &[PathBuf], columns: &Columns, global: &Global) -> Result<Fou
             Err(error) => found.passed_over.push(error),
         }
     }
-    if !found.materials.is_empty() {
-        return Ok(found);
+    if found.materials.is_empty() { Err(nothing(named, &found.passed_over)) } else { Ok(found) }
+}
+
+/// Why nothing was taken.
+fn nothing(named: &[PathBuf], passed_over: &[Error]) -> Error {
+    const INSTEAD: &str = "name files of emissivity or reflectance";
+    match passed_over {
+        [] => {
+            let folders: Vec<String> = named.iter().map(|path| path.display().to_string()).collect();
+            let found = format!("there is no file of spectra in {}", folders.join(", "));
+            Error::malformed(found, format!("{INSTEAD}, or folders that hold {}", read::ENDINGS.join(", ")))
+        }
+        [first, others @ ..] => {
+            let found = format!("none of {} files is a spectrum: {first}", passed_over.len());
+            let mut also: Vec<String> = others.iter().take(OTHERS).filter_map(file_of).collect();
+            if others.len() > OTHERS {
+                also.push(format!("{} more", others.len() - OTHERS));
+            }
+            let told = if also.is_empty() { "" } else { "; name one alone for its reason, as of " };
+            Error::malformed(found, format!("{INSTEAD}{told}{}", also.join(", ")))
+        }
     }
-    let said = match found.passed_over.first() {
-        None => "there is no file of spectra".to_owned(),
-        Some(first) => format!("none of {} files is a spectrum: {first}", found.passed_over.len()),
-    };
-    Err(Error::malformed(said, "name files of emissivity or reflectance"))
+}
+
+/// The file that an error is about.
+fn file_of(error: &Error) -> Option<String> {
+    match error {
+        Error::At { place, .. } => place.path.as_ref().map(|path| path.display().to_string()),
+        _ => None,
+    }
 }
 
 fn say(summary: &Summary, out: &mut String) {
