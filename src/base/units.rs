@@ -117,6 +117,24 @@ const WAVENUMBER: &[Unit] = &[unit("cm^-1", 1.0), unit("cm-1", 1.0), unit("1/cm"
 const WAVELENGTH: &[Unit] = &[unit("um", 1.0), unit("nm", 1e-3), unit("mm", 1e3)];
 
 impl Dimension {
+    /// All of them.
+    pub const ALL: [Self; 14] = [
+        Self::Temperature,
+        Self::TemperatureDifference,
+        Self::Length,
+        Self::Time,
+        Self::Speed,
+        Self::Acceleration,
+        Self::Angle,
+        Self::Detectivity,
+        Self::Frequency,
+        Self::Rate,
+        Self::NoiseEquivalentPower,
+        Self::SpectralRadiance,
+        Self::Wavenumber,
+        Self::Wavelength,
+    ];
+
     const fn units(self) -> &'static [Unit] {
         match self {
             Self::Temperature => TEMPERATURE,

@@ -143,12 +143,8 @@ fn channels_that_are_bad_or_not_known_are_left_out() {
     // Between others they are known to be unknown.
     let message = one.emissivity(&[1050.0]).unwrap_err().to_string();
     assert!(message.contains("row at 1000 cm^-1 is bad or missing"), "{message}");
-    for (material, wavelengths, due) in [(one, [9.0, 11.0, 11.5, 12.0], [0.9, 0.8, 0.75, 0.7])] {
-        let found = material.emissivity(&wavelengths.map(|um| 1e4 / um)).unwrap();
-        for (um, (found, due)) in wavelengths.iter().zip(found.iter().zip(due)) {
-            assert!((found - due).abs() < 2e-3, "{um} um: {found}");
-        }
-    }
+    let known = one.emissivity(&[9.0, 11.0, 12.0].map(|um| 1e4 / um)).unwrap();
+    assert!(known.iter().zip([0.9, 0.8, 0.7]).all(|(found, due)| (found - due).abs() < 1e-6), "{known:?}");
     let nowhere = library_of(header, [[nothing; 6], spectra[1]]);
     let read = read::from_file(&nowhere.path().join("a.sli")).unwrap();
     assert_eq!(read.iter().map(Material::name).collect::<Vec<_>>(), ["two"]);

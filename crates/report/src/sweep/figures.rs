@@ -5,6 +5,7 @@ use crate::figures::Plot;
 use crate::plot::{Axis, HeatMap, LineFigure, Series, Style};
 use crate::table::Table;
 use hadar_study::sweep::{Cell, Input};
+use std::collections::BTreeSet;
 
 /// Most pictures, and most curves in one.
 const MOST_PICTURES: usize = 12;
@@ -29,12 +30,60 @@ const UNITS: [(&str, &str); 14] = [
     ("_s", "s"),
 ];
 
-/// The pictures of a sweep over one or two keys of numbers, one for each column of numbers that is drawn.
+/// Over what pictures are drawn.
+enum Over<'a> {
+    /// A curve.
+    One(&'a Input),
+    /// A curve for each value of the second.
+    OneForEach(&'a Input, &'a Input),
+    /// A map.
+    Two(&'a Input, &'a Input),
+}
+
+/// Over what pictures of a sweep can be drawn, or why there are none.
+fn over(swept: &Swept) -> Result<Over<'_>, String> {
+    let rows = swept.gathered.rows();
+    let varied: Vec<&Input> = swept.gathered.inputs.iter().filter(|input| input.cells.len() > 1).collect();
+    if varied.is_empty() || varied.len() > 2 {
+        return Err(format!("{} keys vary, and pictures are over one or two", varied.len()));
+    }
+    let mut places = BTreeSet::new();
+    let apart =
+        (0..rows).all(|row| places.insert(varied.iter().map(|input| input.index(row)).collect::<Vec<_>>()));
+    if !apart || varied.iter().map(|input| input.cells.len()).product::<usize>() != rows {
+        return Err(
+            "the cases are no grid, which has every value of one key with every value of the other once"
+                .into(),
+        );
+    }
+    let is_number = |input: &&Input| input.cells.iter().all(|cell| cell.number().is_some());
+    let few = |input: &Input| match input.cells.len() {
+        count if count > MOST_CURVES => {
+            Err(format!("`{}` has {count} values, and a picture {MOST_CURVES} curves at most", input.key))
+        }
+        _ => Ok(()),
+    };
+    match varied.as_slice() {
+        [x] if is_number(x) => Ok(Over::One(x)),
+        [x, y] => match (is_number(x), is_number(y)) {
+            (true, true) => Ok(Over::Two(x, y)),
+            (true, false) => few(y).map(|()| Over::OneForEach(x, y)),
+            (false, true) => few(x).map(|()| Over::OneForEach(y, x)),
+            (false, false) => Err("the values of neither key are numbers in one unit".into()),
+        },
+        _ => Err("the values of the key are no numbers in one unit".into()),
+    }
+}
+
+/// Why a sweep of several rows has no pictures.
+pub(super) fn none(swept: &Swept) -> Option<String> {
+    over(swept).err().filter(|_| swept.gathered.rows() > 1)
+}
+
+/// The pictures of a sweep over one or two keys, one for each column of numbers that is drawn.
 pub(super) fn plots(swept: &Swept) -> Vec<Plot> {
     let gathered = &swept.gathered;
-    let varied: Vec<&Input> = gathered.inputs.iter().filter(|input| input.cells.len() > 1).collect();
-    let numeric = |input: &&&Input| input.cells.iter().all(|cell| cell.number().is_some()) && input.is_axis;
-    let axes: Vec<&Input> = varied.iter().filter(numeric).copied().collect();
+    let Ok(over) = over(swept) else { return Vec::new() };
     let drawn = swept.drawn();
     let values = drawn.iter().filter_map(|name| {
         let cells = gathered.values(name)?;
@@ -45,18 +94,12 @@ pub(super) fn plots(swept: &Swept) -> Vec<Plot> {
         let changes = finite.any(|number| number != first);
         changes.then_some((*name, numbers))
     });
-    let values = values.take(MOST_PICTURES);
-    match axes.as_slice() {
-        [x, y] if varied.len() == 2 => values.filter_map(|(name, values)| map(name, &values, x, y)).collect(),
-        [x] if varied.len() == 1 => {
-            values.filter_map(|(name, values)| curves(name, &values, x, None)).collect()
-        }
-        [x] if varied.len() == 2 => {
-            let other = varied.iter().copied().find(|input| !std::ptr::eq(*input, *x));
-            values.filter_map(|(name, values)| curves(name, &values, x, other)).collect()
-        }
-        _ => Vec::new(),
-    }
+    let plot = |(name, values): (&str, Vec<f64>)| match over {
+        Over::One(x) => curves(name, &values, x, None),
+        Over::OneForEach(x, other) => curves(name, &values, x, Some(other)),
+        Over::Two(x, y) => map(name, &values, x, y),
+    };
+    values.take(MOST_PICTURES).filter_map(plot).collect()
 }
 
 /// Positions along an axis and the index of each, rising.
@@ -130,9 +173,6 @@ fn map(name: &str, values: &[f64], x: &Input, y: &Input) -> Option<Plot> {
 /// A result over one key, a curve for each value of another one.
 fn curves(name: &str, values: &[f64], x: &Input, other: Option<&Input>) -> Option<Plot> {
     let count = other.map_or(1, |input| input.cells.len());
-    if count > MOST_CURVES {
-        return None;
-    }
     let along = positions(x);
     let heads = [Some(x.name.as_str()), other.map(|input| input.name.as_str()), Some(name)];
     let mut table = Table::new(heads.into_iter().flatten());

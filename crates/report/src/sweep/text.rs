@@ -1,5 +1,6 @@
 //! What is printed of a sweep.
 
+use super::figures;
 use super::swept::Swept;
 use crate::text::significant;
 use hadar_study::sweep::Cell;
@@ -36,6 +37,9 @@ pub fn text(swept: &Swept) -> String {
     }
     for (name, said) in lines {
         let _ = writeln!(text, "{name:width$}  {said}");
+    }
+    if let Some(reason) = figures::none(swept) {
+        let _ = writeln!(text, "\nNo picture is drawn: {reason}.");
     }
     if failed > 0 {
         text.push_str("\nRows that failed\n");

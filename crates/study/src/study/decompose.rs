@@ -67,8 +67,9 @@ impl DecomposeStudy {
             Some(_) => KEPT_BESIDE_OTHERS,
         };
         let bytes = per_pixel * (shape.rows() * shape.columns()) as u64;
-        memory::check(bytes, "the maps of all pixels", "cut the cube into parts of fewer rows")
-            .map_err(|error| error.at(self.scenario.place("cube.data")))?;
+        let _memory =
+            memory::promise(bytes, "the maps of all pixels", "cut the cube into parts of fewer rows")
+                .map_err(|error| error.at(self.scenario.place("cube.data")))?;
         let start = std::time::Instant::now();
         let unknown = self.scenario.unknown;
         let setting = Setting {

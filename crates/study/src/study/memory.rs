@@ -1,10 +1,46 @@
 //! Work that keeps something of every pixel, refused where the machine has no memory for it.
 
 use hadar::error::{Error, Result};
+use std::sync::{Condvar, Mutex, PoisonError};
 
-/// Refuses what takes more bytes than are free, where the system says how many there are (Linux does).
-pub(super) fn check(bytes: u64, what: &str, instead: &str) -> Result<()> {
-    within(bytes, free().unwrap_or(u64::MAX), what, instead)
+/// Bytes that works under way have been promised.
+static PROMISED: Mutex<u64> = Mutex::new(0);
+static RETURNED: Condvar = Condvar::new();
+
+/// Memory that a work may take until this is dropped.
+#[derive(Debug)]
+pub(super) struct Promised(u64);
+
+impl Drop for Promised {
+    fn drop(&mut self) {
+        let mut promised = PROMISED.lock().unwrap_or_else(PoisonError::into_inner);
+        *promised = promised.saturating_sub(self.0);
+        RETURNED.notify_all();
+    }
+}
+
+/// Promises so many bytes, where the system says how many are free (Linux does). What others of this process have been promised
+/// may not be taken yet, so that it counts as not free; who does not fit beside them waits for them. A work asks only once, and never
+/// while it holds a promise.
+///
+/// # Errors
+/// More bytes than are free where nobody else is at work.
+pub(super) fn promise(bytes: u64, what: &str, instead: &str) -> Result<Promised> {
+    let mut promised = PROMISED.lock().unwrap_or_else(PoisonError::into_inner);
+    loop {
+        let free = free().unwrap_or(u64::MAX);
+        if fits_beside(*promised, bytes, free) {
+            within(bytes, free, what, instead)?;
+            *promised += bytes;
+            return Ok(Promised(bytes));
+        }
+        promised = RETURNED.wait(promised).unwrap_or_else(PoisonError::into_inner);
+    }
+}
+
+/// Whether there is nobody to wait for, or room for all.
+fn fits_beside(promised: u64, bytes: u64, free: u64) -> bool {
+    promised == 0 || promised.checked_add(bytes).is_some_and(|all| all <= free)
 }
 
 fn within(bytes: u64, free: u64, what: &str, instead: &str) -> Result<()> {
@@ -26,13 +62,35 @@ fn free() -> Option<u64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
     #[test]
     fn what_fits_is_not_refused() {
         assert!(within(1 << 30, 1 << 31, "this", "that").is_ok());
         let message = within(3 << 30, 1 << 31, "this", "give less").unwrap_err().to_string();
         assert!(message.contains("this takes 3.2 GB of memory, and 2.1 GB are free"), "{message}");
+        assert!(fits_beside(0, 5, 3), "alone it is refused, and does not wait");
+        assert!(fits_beside(2, 3, 5) && !fits_beside(2, 4, 5) && !fits_beside(1, u64::MAX, u64::MAX));
         #[cfg(target_os = "linux")]
         assert!(free().is_some_and(|free| free > 1 << 20));
+    }
+
+    #[test]
+    fn works_that_do_not_fit_together_wait_for_each_other() {
+        let Some(free) = free() else { return };
+        let (at_work, most) = (AtomicUsize::new(0), AtomicUsize::new(0));
+        let work = || {
+            let held = promise(free / 10 * 6, "this", "that").unwrap();
+            most.fetch_max(at_work.fetch_add(1, Relaxed) + 1, Relaxed);
+            std::thread::sleep(std::time::Duration::from_millis(30));
+            at_work.fetch_sub(1, Relaxed);
+            drop(held);
+        };
+        std::thread::scope(|scope| {
+            for _ in 0..3 {
+                scope.spawn(work);
+            }
+        });
+        assert_eq!(most.into_inner(), 1);
     }
 }

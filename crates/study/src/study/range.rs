@@ -242,8 +242,9 @@ impl RangeStudy {
                 let pixels = (shape.rows() * shape.columns()) as u64;
                 let instead =
                     "give one view and one depth, which is worked on by rows, or cut the cubes into parts";
-                memory::check(per_pixel * pixels, "two views or a depth of every pixel", instead)
-                    .map_err(|error| error.at(self.scenario.place("cube")))?;
+                let _memory =
+                    memory::promise(per_pixel * pixels, "two views or a depth of every pixel", instead)
+                        .map_err(|error| error.at(self.scenario.place("cube")))?;
                 let noise = cube.noise_per_unit()?;
                 let of = |cells: &InformationMap| cube.signals(cells, self.scenario.stereo.joined);
                 let place = |key: &'static str| move |error: hadar::Error| error.at(self.scenario.place(key));

@@ -1,11 +1,11 @@
 //! A key and the values that it takes: `camera.exposure=1 ms..100 ms:40:log`, or `target.material=skin,aluminium`.
 //!
 //! Of a range of n values from a to b the i-th (from 0) is a + i (b − a)/(n − 1), and a (b/a)^(i/(n − 1)) of a logarithmic one; its ends
-//! are a and b to the last bit.
+//! are a and b to the last bit, the others have 15 digits, so that 0.3 is 0.3.
 
 use super::cell::Cell;
 use hadar::error::{Error, Result};
-use hadar::units::{decimal_comma, parts};
+use hadar::units::{Dimension, decimal_comma, parts, with_plain_micro};
 
 /// Values of a key at most; more are no table that anybody reads.
 pub(super) const MOST_VALUES: usize = 1_000_000;
@@ -81,7 +81,7 @@ fn range(text: &str) -> Result<Option<(Vec<String>, bool)>> {
         return Err(Error::malformed(found, format!("write a whole number from 2 to {MOST_VALUES}")));
     };
     let ((low, unit), (high, unit_of_end)) = (end(from)?, end(to)?);
-    if unit != unit_of_end {
+    if with_plain_micro(unit) != with_plain_micro(unit_of_end) {
         let found = format!("the range goes from `{}` to `{}`, in two units", from.trim(), to.trim());
         return Err(Error::malformed(found, "write both ends with the same unit"));
     }
@@ -103,8 +103,13 @@ fn range(text: &str) -> Result<Option<(Vec<String>, bool)>> {
         match (i, logarithmic) {
             (0, _) => low,
             (i, _) if i + 1 == count => high,
-            (_, true) => low * (high / low).powf(share),
-            (i, false) => (low * (last - i as f64) + high * i as f64) / last,
+            (_, true) => {
+                let value = low * (high / low).powf(share);
+                rounded(value, value)
+            }
+            (i, false) => {
+                rounded((low * (last - i as f64) + high * i as f64) / last, low.abs().max(high.abs()))
+            }
         }
     };
     let written = |i: usize| match unit {
@@ -113,6 +118,19 @@ fn range(text: &str) -> Result<Option<(Vec<String>, bool)>> {
     };
     // Whole numbers stay such, so that a count may be varied.
     Ok(Some(((0..count).map(written).collect(), logarithmic)))
+}
+
+/// A number without what rounding has added to its digits: 15 of them, counted from the first of `size`.
+fn rounded(value: f64, size: f64) -> f64 {
+    const DIGITS: i32 = 15;
+    let decimals = (DIGITS - 1).saturating_sub(size.abs().log10().floor() as i32);
+    // Beyond the decimals that a number can have, or without any, it stays as it is.
+    match usize::try_from(decimals) {
+        Ok(decimals) if (1..300).contains(&decimals) => {
+            format!("{value:.decimals$}").parse().map_or(value, |value: f64| value + 0.0)
+        }
+        _ => value,
+    }
 }
 
 /// Whether a text begins as a number does.
@@ -164,34 +182,63 @@ fn listed(text: &str) -> Result<Vec<String>> {
     Ok(values)
 }
 
-/// Values as cells of one column: numbers with their unit where all have one and the same, else the texts.
-pub(super) fn column<'v>(values: impl Iterator<Item = &'v str> + Clone) -> (String, Vec<Cell>) {
+/// Values as cells of one column: numbers with their unit where all have one and the same, or can be said in that of the first;
+/// else the texts.
+pub(super) fn column<'v>(key: &str, values: impl Iterator<Item = &'v str> + Clone) -> (String, Vec<Cell>) {
     let read = |text: &'v str| {
         let (number, unit) = parts(text.trim());
         number.parse::<f64>().ok().filter(|number| number.is_finite()).map(|number| (number, unit))
     };
-    let mut given = values.clone().filter(|text| !text.is_empty());
-    let first = given.next().and_then(read);
-    let same = |text: &'v str| read(text).zip(first).is_some_and(|((_, unit), (_, own))| unit == own);
-    match first {
-        Some((_, unit)) if given.all(same) => {
-            let cells = values.map(|text| match read(text) {
-                Some((number, _)) if number.fract() == 0.0 && unit.is_empty() && number.abs() < 1e15 => {
-                    Cell::Integer(number as i64)
-                }
-                Some((number, _)) => Cell::Number(number),
-                None => Cell::Empty,
-            });
-            (unit.to_owned(), cells.collect())
+    let given = values.clone().filter(|text| !text.is_empty());
+    let unit = given.clone().next().and_then(read).map_or("", |(_, unit)| unit);
+    let same =
+        |text: &'v str| read(text).is_some_and(|(_, own)| with_plain_micro(own) == with_plain_micro(unit));
+    let plain = |text: &'v str| match read(text) {
+        Some((number, _)) if number.fract() == 0.0 && unit.is_empty() && number.abs() < 1e15 => {
+            Cell::Integer(number as i64)
         }
-        _ => {
-            let cells = values.map(|text| match text {
-                "" => Cell::Empty,
-                text => Cell::Text(text.to_owned()),
-            });
-            (String::new(), cells.collect())
+        Some((number, _)) => Cell::Number(number),
+        None => Cell::Empty,
+    };
+    let text = |text: &'v str| match text {
+        "" => Cell::Empty,
+        text => Cell::Text(text.to_owned()),
+    };
+    if given.clone().next().is_some() && given.clone().all(same) {
+        return (unit.to_owned(), values.map(plain).collect());
+    }
+    match dimension(key, unit, given) {
+        None => (String::new(), values.map(text).collect()),
+        Some(dimension) => {
+            let cell = |text: &'v str| match (text, dimension.parse(text)) {
+                (text, _) if same(text) => plain(text),
+                (_, Ok(value)) => dimension
+                    .in_unit(value, unit)
+                    .map_or(Cell::Empty, |number| Cell::Number(rounded(number, number))),
+                (_, Err(_)) => Cell::Empty,
+            };
+            (unit.to_owned(), values.map(cell).collect())
         }
     }
+}
+
+/// What values of several units measure; none where some are no quantity, or where it matters which of several they are: 20 degC
+/// may be a temperature or a difference.
+fn dimension<'v>(key: &str, unit: &str, values: impl Iterator<Item = &'v str> + Clone) -> Option<Dimension> {
+    let fits = |dimension: &Dimension| values.clone().all(|text| dimension.parse(text).is_ok());
+    let fitting: Vec<Dimension> = Dimension::ALL.into_iter().filter(fits).collect();
+    let (first, others) = fitting.split_first()?;
+    let in_unit = |dimension: &Dimension, text: &str| dimension.in_unit(dimension.parse(text).ok()?, unit);
+    let agree = |other: &Dimension| {
+        values.clone().all(|text| match (in_unit(first, text), in_unit(other, text)) {
+            (Some(a), Some(b)) => (a - b).abs() <= 1e-9 * a.abs().max(b.abs()),
+            _ => false,
+        })
+    };
+    if others.iter().all(agree) {
+        return Some(*first);
+    }
+    fitting.into_iter().find(|known| *known == Dimension::Temperature && key.ends_with("temperature"))
 }
 
 /// The head of a column as the program writes units: `camera.exposure_ms`, `requirement.speed_m_s`, `bands.step_cm1`.
@@ -200,9 +247,8 @@ pub(super) fn with_unit(key: &str, unit: &str) -> String {
     if !unit.is_empty() {
         name.push('_');
     }
-    for char in unit.chars() {
+    for char in with_plain_micro(unit).chars() {
         match char {
-            'µ' => name.push('u'),
             '°' => name.push_str("deg"),
             '/' | ' ' => name.push('_'),
             char if char.is_alphanumeric() || char == '.' => name.push(char),

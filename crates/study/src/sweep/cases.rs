@@ -1,4 +1,6 @@
 //! Cases: a CSV table whose header names keys and whose rows are values that go together.
+//!
+//! Commas stand between cells; where the header has none, semicolons or tabs, as spreadsheets write them in some languages.
 
 use hadar::error::{Error, Result};
 use hadar::file;
@@ -38,6 +40,7 @@ impl Cases {
     /// use hadar_study::sweep::Cases;
     /// let cases = Cases::parse("target.material,target.distance\nskin,5 m\npmma,\n")?;
     /// assert_eq!(cases.rows[1], ["pmma", ""]);
+    /// assert_eq!(Cases::parse("target.material;target.distance\nskin;5 m\npmma;\n")?, cases);
     /// # Ok::<(), hadar::Error>(())
     /// ```
     pub fn parse(text: &str) -> Result<Self> {
@@ -46,6 +49,7 @@ impl Cases {
             .trim(csv::Trim::All)
             .comment(Some(b'#'))
             .flexible(true)
+            .delimiter(delimiter(text))
             .from_reader(text.as_bytes());
         let refused = |error: csv::Error| {
             Error::malformed(format!("this is no CSV table: {error}"), "write commas between the cells")
@@ -78,4 +82,11 @@ impl Cases {
         }
         Ok(Self { keys, rows })
     }
+}
+
+/// What stands between the cells of the header: keys have neither commas nor semicolons nor tabs.
+fn delimiter(text: &str) -> u8 {
+    let is_header = |line: &&str| !line.trim().is_empty() && !line.starts_with('#');
+    let header = text.lines().find(is_header).unwrap_or_default();
+    [b',', b';', b'\t'].into_iter().find(|sign| header.as_bytes().contains(sign)).unwrap_or(b',')
 }

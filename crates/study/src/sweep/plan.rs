@@ -5,6 +5,7 @@ use super::cases::Cases;
 use super::cell::Cell;
 use crate::scenario::{Setting, Written};
 use hadar::error::{Error, Result};
+use std::collections::BTreeMap;
 
 /// The rows of a sweep.
 #[derive(Debug, Clone, PartialEq)]
@@ -14,7 +15,7 @@ pub struct Plan {
     rows: usize,
 }
 
-/// What is varied, as a column: a cell for each of its values.
+/// What is varied, as a column: a cell for each of its values that differ.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Input {
     /// The key.
@@ -27,9 +28,9 @@ pub struct Input {
     pub cells: Vec<Cell>,
     /// Whether the values are spread logarithmically.
     pub logarithmic: bool,
-    /// Whether it is an axis of its own; columns of cases are not.
-    pub is_axis: bool,
-    /// Rows until the value changes.
+    /// Which of them each case, or each place of the axis, has.
+    places: Vec<usize>,
+    /// Rows until the next place.
     stride: usize,
 }
 
@@ -37,7 +38,8 @@ impl Input {
     /// Index of its value in a row.
     #[must_use]
     pub fn index(&self, row: usize) -> usize {
-        row / self.stride % self.cells.len().max(1)
+        let place = row / self.stride.max(1) % self.places.len().max(1);
+        self.places.get(place).copied().unwrap_or(0)
     }
 
     /// What it is in a row.
@@ -121,7 +123,7 @@ impl Plan {
         for axis in &self.axes {
             stride /= axis.values.len().max(1);
             let input = input(&axis.key, axis.values.iter().map(String::as_str));
-            inputs.push(Input { logarithmic: axis.logarithmic, is_axis: true, stride, ..input });
+            inputs.push(Input { logarithmic: axis.logarithmic, stride, ..input });
         }
         inputs
     }
@@ -164,14 +166,23 @@ impl Plan {
 }
 
 fn input<'v>(key: &str, values: impl Iterator<Item = &'v str> + Clone) -> Input {
-    let (unit, cells) = column(values);
+    let (unit, of_places) = column(key, values);
+    let (mut cells, mut known) = (Vec::new(), BTreeMap::new());
+    let mut place = |cell: Cell| {
+        // Numbers have no order of their own; each text gives its number back.
+        *known.entry(format!("{cell:?}")).or_insert_with(|| {
+            cells.push(cell);
+            cells.len() - 1
+        })
+    };
+    let places = of_places.into_iter().map(&mut place).collect();
     Input {
         key: key.to_owned(),
         name: with_unit(key, &unit),
         unit,
         cells,
         logarithmic: false,
-        is_axis: false,
+        places,
         stride: 1,
     }
 }
