@@ -10,6 +10,8 @@
 mod arrange;
 #[cfg(feature = "cubes")]
 mod axes;
+#[cfg(feature = "cubes")]
+mod band_list;
 mod band_order;
 mod band_sum;
 #[cfg(feature = "cubes")]

@@ -308,3 +308,23 @@ fn netcdf_says_what_its_numbers_stand_for() {
     check("netcdf.nc", Some("partly"), None, "f32", |r, c, b| if r == 0 { plain(r, c, b) } else { f64::NAN });
     assert!(refusal("netcdf.nc", Some("never"), None).contains("the array was never written"));
 }
+
+/// Lists of NumPy and SciPy say where the bands are, if their names have a unit.
+#[test]
+fn a_list_beside_the_cube_says_its_bands() {
+    for name in ["numpy_listed.npz", "numpy_listed_packed.npz", "scipy_listed.mat", "scipy_listed_packed.mat"]
+    {
+        let stored = if name.ends_with("mat") { "double" } else { "f32" };
+        check(name, None, None, stored, plain);
+        let found = open(name, None, None).unwrap().found;
+        let centres = found.centres_cm1.unwrap_or_else(|| panic!("{name}"));
+        for (band, centre) in centres.iter().enumerate() {
+            assert!((centre * (8.0 + band as f64) / 1e4 - 1.0).abs() < 1e-6, "{name}: {centres:?}");
+        }
+        assert!(centres.len() == 5 && !found.axis_without_unit, "{name}");
+    }
+    for name in ["numpy_listed_without_unit.npz", "scipy_listed_without_unit.mat"] {
+        let found = open(name, None, None).unwrap().found;
+        assert!(found.axis_without_unit && found.centres_cm1.is_none(), "{name}");
+    }
+}

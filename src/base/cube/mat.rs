@@ -2,7 +2,8 @@
 //!
 //! A file is a header of 128 bytes and then elements, each a tag (type and bytes) and its content; an array is an
 //! element of subelements (flags, dimensions, name, numbers), or a zlib stream of one. Only the array that is asked
-//! for is read. Nothing in the file is believed before it fits into the element that holds it.
+//! for is read, and lists of wavelengths or wavenumbers of its bands. Nothing in the file is believed before it fits into the element
+//! that holds it.
 //!
 //! Source: MathWorks, 'MAT-File Format' (R2025a), level 5.
 
@@ -13,6 +14,7 @@ pub use write::mat_file;
 
 use self::element::{COMPRESSED, Class, Element, Head, MATRIX};
 use super::axes::Axes;
+use super::band_list;
 use super::found::{Found, Opened};
 use super::{Cube, MemoryCube, Sample, Shape, arrange};
 use crate::error::{Error, Result};
@@ -63,10 +65,14 @@ pub(super) fn open(
     }
     .map_err(of_variable)?;
     let bytes = shape.len() as u64 * if class.is_double() { 8 } else { 4 };
+    let (centres_cm1, axis_without_unit) =
+        band_list::centres(&lists(&file, &variables, shape.bands(), little_endian))?;
     let found = Found {
         variable: Some(head.name.clone()),
         memory_bytes: Some(bytes),
         axes,
+        centres_cm1,
+        axis_without_unit,
         ..Found::array("MATLAB 5", shape, class.name(), &sides)
     };
     Ok(Opened { cube, found })
@@ -77,6 +83,25 @@ fn samples<S: Sample>(element: &mut Element<impl Read>, shape: Shape, order: Axe
     let samples = arrange::whole(shape, order, |slices: &mut [S]| element.fill(stored, slices))?;
     element.finish()?;
     MemoryCube::new(shape, samples)
+}
+
+/// Lists of wavelengths or wavenumbers of so many bands.
+fn lists(file: &File, variables: &[Variable], bands: usize, little_endian: bool) -> Vec<(String, Vec<f64>)> {
+    let list = |variable: &Variable| {
+        let head = &variable.head;
+        band_list::unit_of(&head.name)?;
+        let is_list = head.dimensions.iter().any(|side| *side as usize == bands)
+            && head.dimensions.iter().filter(|side| **side != 1).count() <= 1;
+        numeric(head).ok().filter(|_| is_list)?;
+        let content = content(file, variable).ok()?;
+        let mut element = Element::of(content, variable.compressed, variable.len, little_endian).ok()?;
+        element.head().ok()?;
+        let stored = element.numbers(bands as u64).ok()?;
+        let mut numbers = vec![0.0_f64; bands];
+        element.fill(stored, &mut numbers).ok()?;
+        Some((head.name.clone(), numbers))
+    };
+    variables.iter().filter_map(list).collect()
 }
 
 fn content<'a>(mut file: &'a File, variable: &Variable) -> Result<impl Read + use<'a>> {

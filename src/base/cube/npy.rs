@@ -5,7 +5,7 @@
 use super::axes::Axes;
 use super::found::{Found, Opened};
 use super::raw::Raw;
-use super::stored::Stored;
+use super::stored::{Stored, decode_next};
 use super::{READ_CUBE, Sample, Shape};
 use crate::error::{Error, Result};
 use npyz::{DType, Endianness, NpyHeader, Order, TypeChar};
@@ -68,6 +68,22 @@ impl Array {
         let little_endian = order == Endianness::Little;
         Ok(Self { shape, sides, order: order_of_axes, stored, little_endian, start })
     }
+}
+
+/// The numbers of a list, if an array of `len` bytes in all is one of `count` numbers.
+pub(super) fn list(file: &mut impl Read, len: u64, count: usize) -> Option<Vec<f64>> {
+    let (header, start) = header(file, len).ok()?;
+    let (stored, order) = sample_type(&header.dtype()).ok()?;
+    let sides = header.shape();
+    let bytes = (count as u64).checked_mul(stored.size() as u64)?;
+    let is_list = sides.contains(&(count as u64)) && sides.iter().filter(|side| **side != 1).count() <= 1;
+    if !is_list || len.checked_sub(start) != Some(bytes) {
+        return None;
+    }
+    let mut numbers = vec![0.0_f64; count];
+    let exact = |bytes: &mut [u8]| file.read_exact(bytes).map_err(|error| truncated(error.to_string()));
+    decode_next(exact, stored, order == Endianness::Little, &mut numbers).ok()?;
+    Some(numbers)
 }
 
 /// The header, and how many bytes it takes.

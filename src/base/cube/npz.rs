@@ -1,11 +1,12 @@
 //! NPZ files: ZIP archives of NPY files, each an array by its name.
 //!
 //! An array that is only stored in the archive is read by rows at its place, as one of its own file; a packed one is unpacked
-//! whole.
+//! whole. A list of wavelengths or wavenumbers beside the cube says its bands, if its name has their unit.
 //!
 //! Source: NumPy, `numpy.savez` and `numpy.savez_compressed`.
 
 use super::axes::Axes;
+use super::band_list;
 use super::found::{Found, Opened};
 use super::npy::{self, Array};
 use super::stored::decode_next;
@@ -30,7 +31,7 @@ pub(super) fn open(file: File, path: &Path, name: Option<&str>, axes: Option<Axe
     let source = file.try_clone().map_err(|error| Error::file(READ_CUBE, path, error))?;
     let mut archive = ZipArchive::new(BufReader::new(source)).map_err(damaged)?;
     let place = choose(&mut archive, name)?;
-    let mut entry = archive.by_index(place).map_err(damaged)?;
+    let entry = archive.by_index(place).map_err(damaged)?;
     let variable = array_name(entry.name());
     let of_variable = |error: Error| error.for_key(variable.clone());
     let (bytes, packed) = (entry.size(), entry.compressed_size());
@@ -45,6 +46,7 @@ pub(super) fn open(file: File, path: &Path, name: Option<&str>, axes: Option<Axe
         drop(entry);
         npy::open(file, path, (start, bytes), axes, FORMAT).map_err(of_variable)?
     } else {
+        let mut entry = entry;
         let array = Array::read(&mut entry, bytes, axes).map_err(of_variable)?;
         let cube = match array.stored.is_double() {
             true => unpacked::<f64>(&mut entry, &array).map(Cube::from),
@@ -55,7 +57,22 @@ pub(super) fn open(file: File, path: &Path, name: Option<&str>, axes: Option<Axe
         let found = Found::array(FORMAT, array.shape, array.stored.name(), &array.sides);
         Opened { cube, found: Found { axes, memory_bytes: Some(memory), ..found } }
     };
-    Ok(Opened { found: Found { variable: Some(variable), ..opened.found }, ..opened })
+    let (centres_cm1, axis_without_unit) =
+        band_list::centres(&lists(&mut archive, opened.found.shape.bands()))?;
+    let found = Found { variable: Some(variable), centres_cm1, axis_without_unit, ..opened.found };
+    Ok(Opened { found, ..opened })
+}
+
+/// Lists of wavelengths or wavenumbers of so many bands.
+fn lists(archive: &mut ZipArchive<BufReader<File>>, bands: usize) -> Vec<(String, Vec<f64>)> {
+    let count = archive.len().min(MOST);
+    let list = |place: usize| {
+        let mut entry = archive.by_index(place).ok()?;
+        let (len, name) = (entry.size(), array_name(entry.name()));
+        band_list::unit_of(&name)?;
+        Some((name, npy::list(&mut entry, len, bands)?))
+    };
+    (0..count).filter_map(list).collect()
 }
 
 fn unpacked<S: Sample>(entry: &mut impl Read, array: &Array) -> Result<MemoryCube<S>> {

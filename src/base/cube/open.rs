@@ -70,7 +70,8 @@ impl Cube {
     /// * NPY (versions 1 to 3, either order) and NPZ of NumPy;
     /// * ENVI (BSQ, BIL, BIP), by its header or by the data beside one: numbers to be ignored become NaN, gains and offsets
     ///   are applied, the bands' wavelengths and the list of bad ones are read;
-    /// * MATLAB of version 5 (`save` with `-v6` or `-v7`);
+    /// * MATLAB of version 5 (`save` with `-v6` or `-v7`); in NPZ and MATLAB a list `wavelengths_um`, `wavenumbers_cm1` or in another
+    ///   unit, of as many numbers as there are bands, says where they are;
     /// * with the feature `hdf5`, HDF5, NetCDF-4 and MATLAB of version 7.3: `_FillValue`, `scale_factor` and `add_offset` are
     ///   applied.
     ///

@@ -32,6 +32,10 @@ np.save("numpy_columns_first.npy", np.moveaxis(CUBE, 0, 1).astype("<f4"))
 np.save("numpy_complex.npy", CUBE.astype("<c8"))
 np.savez("numpy_stored.npz", cube=CUBE.astype("<f4"), label=np.arange(3.0), names=np.array(["a"]))
 np.savez_compressed("numpy_packed.npz", cube=CUBE.astype(">i2"), flat=np.zeros((2, 2)))
+LISTED_UM = np.linspace(8.0, 12.0, BANDS)
+np.savez("numpy_listed.npz", cube=CUBE.astype("<f4"), wavelengths_um=LISTED_UM.astype(">f4"))
+np.savez_compressed("numpy_listed_packed.npz", cube=CUBE.astype("<f4"), wavenumber_cm1=1e4 / LISTED_UM, wavelength_nm=np.zeros(9))
+np.savez("numpy_listed_without_unit.npz", cube=CUBE.astype("<f4"), wavelength=LISTED_UM)
 np.savez_compressed("numpy_two.npz", left=np.asfortranarray(CUBE), right=-CUBE)
 
 # spectral: interleaves, types, orders of bytes
@@ -93,6 +97,9 @@ envi.save_image(
 # SciPy: version 5 of MATLAB
 scipy.io.savemat("scipy_plain.mat", {"S": CUBE})
 scipy.io.savemat("scipy_packed.mat", {"HSI": CUBE.astype("u2"), "map": CUBE[:, :, 0]}, do_compression=True)
+scipy.io.savemat("scipy_listed.mat", {"wavelengths_nm": (1000 * LISTED_UM).astype("u2"), "S": CUBE})
+scipy.io.savemat("scipy_listed_packed.mat", {"S": CUBE, "wavelength_um": LISTED_UM[:, None]}, do_compression=True)
+scipy.io.savemat("scipy_listed_without_unit.mat", {"S": CUBE, "wavelengths": LISTED_UM})
 scipy.io.savemat("scipy_bands_first.mat", {"S": IMAGES.astype("f4")})
 
 # h5py: HDF5

@@ -130,3 +130,63 @@ fn samples_of_one_name_are_imported_under_names_of_their_own() {
     let listed = folder.json(&["materials", "list", "--library", "grown", "--only-library"]);
     assert_eq!(names(&listed), ["black-gloss-paint", "black-gloss-paint@0405uuupnt"]);
 }
+
+/// Where nothing is taken, for whatever reason, it is an error that says why.
+#[test]
+fn an_import_of_nothing_is_an_error() {
+    let folder = Folder::with("");
+    for name in ["empty", "other", "lab"] {
+        fs::create_dir(folder.path().join(name)).unwrap();
+    }
+    folder.file("other/notes.md", "no spectrum");
+    let said = folder.refusal(&["materials", "import", "empty", "other"]);
+    assert!(
+        said.starts_with("there is no file of spectra in empty, other; ") && said.contains(".csv, .txt"),
+        "{said}"
+    );
+    // They can be read, but what they hold cannot be written.
+    folder.file("lab/a.txt", &paint("1", -5.0));
+    folder.file("lab/b.txt", &paint("2", 105.0));
+    let said = folder.refusal(&["materials", "import", "lab", "--out", "mine"]);
+    assert!(
+        said.contains("none of 2 files is a spectrum: lab/a.txt: ") && said.ends_with("lab/b.txt"),
+        "{said}"
+    );
+}
+
+/// Files of one name but for their endings or folders are all there, under names of their own.
+#[test]
+fn names_that_clash_are_told_apart() {
+    let folder = Folder::with("");
+    for name in ["lab", "lab2"] {
+        fs::create_dir(folder.path().join(name)).unwrap();
+    }
+    let table = |e: f64| format!("wavenumber_cm1,emissivity\n700,{e}\n1300,{e}\n");
+    folder.file("lab/a.csv", &table(0.1));
+    folder.file("lab/a.txt", &table(0.2));
+    folder.file("lab2/a.csv", &table(0.3));
+    let names = |answer: &Value| -> Vec<String> {
+        let materials = answer["materials"].as_array().unwrap().iter();
+        materials.map(|one| one["name"].as_str().unwrap().to_owned()).collect()
+    };
+    for strict in [&[][..], &["--strict"]] {
+        let listed =
+            folder.json(&[&["materials", "list", "--library", "lab", "--only-library"], strict].concat());
+        assert_eq!(names(&listed), ["a@csv", "a@txt"]);
+        let imported = folder.json(&[&["materials", "import", "lab", "lab/a.csv"], strict].concat());
+        assert_eq!(names(&imported), ["a@csv", "a@txt"]);
+    }
+    // One by one into the same folder, none replaces another.
+    for (file, name) in
+        [("lab/a.csv", "a"), ("lab/a.txt", "a@a"), ("lab2/a.csv", "a@a-2"), ("lab/a.txt", "a@a")]
+    {
+        assert_eq!(names(&folder.json(&["materials", "import", file, "--out", "mine"])), [name], "{file}");
+    }
+    assert_eq!(
+        fs::read_dir(folder.path().join("mine"))
+            .unwrap()
+            .filter(|file| { file.as_ref().unwrap().file_name().to_string_lossy().ends_with(".csv") })
+            .count(),
+        3
+    );
+}

@@ -183,6 +183,41 @@ fn cases_go_together_and_an_empty_cell_leaves_what_the_file_says() {
     assert_eq!(table[0]["camera.name"], "ideal-pnrd");
 }
 
+/// Times in two units are numbers in that of the first; cases that are a grid are drawn as axes are, in any order.
+#[test]
+fn cases_that_are_a_grid_are_drawn_and_others_say_why_not() {
+    let folder = Folder::with(SCENARIO);
+    let of = |out: &str, more: &[&str]| {
+        folder.run(&[&["sweep", "a.toml", "--out", out, "--columns", "verdict.margin"], more].concat())
+    };
+    folder.file(
+        "grid.csv",
+        "camera.exposure;target.temperature\n0.001 s;30 degC\n4 ms;40 degC\n1 ms;40 degC\n4000 \u{3bc}s;30 degC\n",
+    );
+    let drawn = of("grid", &["--cases", "grid.csv"]);
+    assert!(drawn.code == 0 && !drawn.stdout.contains("No picture"), "{}{}", drawn.stdout, drawn.stderr);
+    let table = rows(&folder.path().join("grid/sweep.csv"));
+    let exposures: Vec<f64> = table.iter().map(|row| number(row, "camera.exposure_s")).collect();
+    assert_eq!(exposures, [0.001, 0.004, 0.001, 0.004]);
+    let map = |out: &str| {
+        let mut map: Vec<Vec<String>> = rows(&folder.path().join(out).join("map_verdict_margin.csv"))
+            .iter()
+            .map(|row| ["target.temperature_degC", "verdict.margin"].map(|name| row[name].clone()).into())
+            .collect();
+        map.sort();
+        map
+    };
+    of("axes", &["--vary", "camera.exposure=1 ms,4 ms", "--vary", "target.temperature=30 degC..40 degC:2"]);
+    assert_eq!(map("grid"), map("axes"));
+    folder.file("none.csv", "camera.exposure,target.temperature\n1 ms,30 degC\n4 ms,40 degC\n");
+    let none = of("none", &["--cases", "none.csv"]);
+    assert!(none.stdout.contains("No picture is drawn: the cases are no grid"), "{}", none.stdout);
+    assert!(!folder.path().join("none/map_verdict_margin.csv").exists());
+    let three = "--vary|camera.exposure=1 ms,4 ms|--vary|target.distance=5 m,6 m|--vary|target.temperature=30 degC,31 degC";
+    let three = of("three", &three.split('|').collect::<Vec<_>>());
+    assert!(three.stdout.contains("No picture is drawn: 3 keys vary"), "{}", three.stdout);
+}
+
 /// One line, nothing written, before any work.
 #[test]
 fn mistakes_are_refused_before_any_work() {

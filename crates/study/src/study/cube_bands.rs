@@ -64,7 +64,7 @@ impl InOrder {
             }
             (None, _) if self.found.axis_without_unit => Err(Error::malformed(
                 "the table is missing, and the cube's file lists its wavelengths without a unit",
-                "write the unit into the file (ENVI: wavelength units = Micrometers), or write [bands]",
+                "write the unit into the file (ENVI: wavelength units = Micrometers; NPZ, MATLAB: call the list wavelengths_um), or write [bands]",
             )),
             (None, _) => Err(Error::malformed(
                 "the table is missing, and the cube's file does not say its bands",

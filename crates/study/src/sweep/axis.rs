@@ -257,3 +257,45 @@ pub(super) fn with_unit(key: &str, unit: &str) -> String {
     }
     name
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn values(text: &str) -> Vec<String> {
+        Axis::parse(&format!("key={text}")).unwrap().values
+    }
+
+    #[test]
+    fn round_values_are_round_and_ends_exact() {
+        let tenths: Vec<String> = (1..10).map(|tenth| format!("0.{tenth}")).collect();
+        assert_eq!(values("0.1..0.9:9"), tenths);
+        assert_eq!(values("-0.1..0.3:5"), ["-0.1", "0", "0.1", "0.2", "0.3"]);
+        assert_eq!(values("0.01..10:4:log"), ["0.01", "0.1", "1", "10"]);
+        assert_eq!(values("1 \u{b5}s..3 \u{3bc}s:3"), ["1 \u{b5}s", "2 \u{b5}s", "3 \u{b5}s"]);
+        assert_eq!(values("0..1:4")[1].parse::<f64>().unwrap(), 0.333_333_333_333_33);
+        for text in ["0.1234567890123456789..1e300:3", "1e-320..2e-320:3", "-1e308..1e308:3"] {
+            let found = values(text);
+            let (from, to) = text.trim_end_matches(":3").split_once("..").unwrap();
+            assert_eq!(found[0].parse::<f64>(), from.parse(), "{text}");
+            assert_eq!(found[2].parse::<f64>(), to.parse(), "{text}");
+        }
+    }
+
+    #[test]
+    fn units_that_measure_the_same_make_one_column() {
+        let of = |key: &str, values: &[&str]| column(key, values.iter().copied());
+        let numbers = |values: &[f64]| values.iter().map(|value| Cell::Number(*value)).collect::<Vec<_>>();
+        let texts =
+            |values: &[&str]| values.iter().map(|text| Cell::Text((*text).into())).collect::<Vec<_>>();
+        assert_eq!(of("t", &["1 ms", "0.003 s", "7 \u{3bc}s"]), ("ms".into(), numbers(&[1.0, 3.0, 0.007])));
+        assert_eq!(of("l", &["8 um", "9000 nm"]), ("um".into(), numbers(&[8.0, 9.0])));
+        assert_eq!(of("a.temperature", &["20 degC", "300 K"]), ("degC".into(), numbers(&[20.0, 26.85])));
+        // What matters is not guessed, nor what is no quantity at all.
+        for mixed in [&["20 degC", "300 K"][..], &["1 ms", "2 m"], &["1 ms", "skin"], &["1", "2 m"]] {
+            assert_eq!(of("a.other", mixed), (String::new(), texts(mixed)));
+        }
+        let gap = of("t", &["1 ms", "", "1 s"]);
+        assert_eq!(gap.1, [Cell::Number(1.0), Cell::Empty, Cell::Number(1000.0)]);
+    }
+}
