@@ -64,7 +64,7 @@ catalogue! {
     BandOrderTaken = "band-order-taken",
         "Write the cube with its wavelengths, as an ENVI file, or turn its bands round if they begin with the shortest.";
     /// The file of a cube lists wavelengths or wavenumbers without a unit, which are not used.
-    WavelengthsUnused = "wavelengths-unused", "Write the unit into the file, as `wavelength units = Micrometers` in an ENVI header.";
+    WavelengthsUnused = "wavelengths-unused", "Write the unit into the file, as `wavelength units = Micrometers` in an ENVI header; in NPZ and MATLAB call the list `wavelengths_um`.";
     /// Pixels of a cube were left out since a sample of them is missing.
     PixelsSkipped = "pixels-skipped", "Nothing; or name bands that are always missing in cube.bad_bands.";
     /// Pixels of a cube are explained by no material of the library.
