@@ -36,6 +36,8 @@ mod open;
 #[cfg(feature = "cubes")]
 mod raw;
 #[cfg(feature = "cubes")]
+mod sample_unit;
+#[cfg(feature = "cubes")]
 mod stored;
 #[cfg(feature = "cubes")]
 mod values;
@@ -56,6 +58,8 @@ pub use npy::{Value, npy_map, write_npy, write_npy_to};
 pub use npy_rows::NpyRows;
 #[cfg(feature = "cubes")]
 pub(crate) use open::is_cube;
+#[cfg(feature = "cubes")]
+pub use sample_unit::SampleUnit;
 
 use crate::error::{Error, Result};
 use std::fmt::Debug;

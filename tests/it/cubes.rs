@@ -86,7 +86,10 @@ fn numpy_writes_any_type_in_any_order() {
         check(&format!("numpy_{name}.npy"), None, None, stored, plain);
     }
     check("numpy_i1.npy", None, None, "i8", |r, c, b| plain(r, c, b) - 120.0);
-    check("numpy_bool.npy", None, None, "u8", |r, c, b| plain(r, c, b) % 2.0);
+    assert!(
+        refusal("numpy_bool.npy", None, None)
+            .contains("the samples are truth values; write what was counted")
+    );
     assert!(refusal("numpy_complex.npy", None, None).contains("complex numbers; write one of its parts"));
 }
 
@@ -270,7 +273,7 @@ fn hdf5_in_any_layout_and_type() {
     check("h5py.h5", Some("half"), None, "f16", plain);
     check("h5py.h5", Some("night/images"), Some("bands,rows,columns"), "u32", plain);
     check("h5py.h5", Some("night/lines"), Some("rows,bands,columns"), "f64", plain);
-    check("h5py.h5", Some("truth"), None, "i8", |r, c, b| plain(r, c, b) % 2.0);
+    assert!(refusal("h5py.h5", Some("truth"), None).contains("truth: the samples are truth values"));
     check("h5py_new.h5", None, None, "f64", plain);
     let memory = |name| open("h5py.h5", Some(name), None).unwrap().found.memory_bytes;
     assert_eq!((memory("plain"), memory("packed"), memory("night/lines")), (None, None, None));
@@ -278,7 +281,7 @@ fn hdf5_in_any_layout_and_type() {
     assert_eq!(images.found.memory_bytes, Some(480));
     let several = refusal("h5py.h5", None, None);
     assert!(
-        several.contains("6 arrays that may be meant") && several.contains("`night/images` (5 x 3 x 4 u32)"),
+        several.contains("5 arrays that may be meant") && several.contains("`night/images` (5 x 3 x 4 u32)"),
         "{several}"
     );
     assert!(refusal("h5py.h5", Some("complex"), None).contains("complex: the samples are complex numbers"));
@@ -307,6 +310,68 @@ fn netcdf_says_what_its_numbers_stand_for() {
     // What nobody has written is what NetCDF fills it with.
     check("netcdf.nc", Some("partly"), None, "f32", |r, c, b| if r == 0 { plain(r, c, b) } else { f64::NAN });
     assert!(refusal("netcdf.nc", Some("never"), None).contains("the array was never written"));
+    let said = open("netcdf.nc", Some("radiance"), None).unwrap().found.to_string();
+    assert!(
+        said.ends_with("axes bands,rows,columns; -1 taken as missing; gain 0.5 applied; offset -3 applied; whole in memory, 0.0 MB)"),
+        "{said}"
+    );
+}
+
+#[cfg(feature = "hdf5")]
+#[test]
+fn attributes_say_which_samples_are_valid_and_what_they_are() {
+    let within = |r: usize, c: usize, b: usize| (10.0..=220.0).contains(&plain(r, c, b));
+    let valid = |scale: f64, offset: f64| {
+        move |r, c, b| if within(r, c, b) { scale * plain(r, c, b) + offset } else { f64::NAN }
+    };
+    let below = |r, c, b| if plain(r, c, b) <= 220.0 { plain(r, c, b) } else { f64::NAN };
+    check("h5py_said.h5", Some("valid_max/cube"), None, "i16", below);
+    // In what is stored, and in what it stands for.
+    check("h5py_said.h5", Some("valid_range/cube"), None, "i16", valid(0.5, 2.0));
+    check("h5py_said.h5", Some("valid_unpacked/cube"), None, "i16", valid(0.5, 2.0));
+    let said = open("h5py_said.h5", Some("valid_range/cube"), None).unwrap().found.to_string();
+    assert!(
+        said.contains("below 10 and above 220 taken as missing; gain 0.5 applied; offset 2 applied"),
+        "{said}"
+    );
+    let kelvin = open("h5py_said.h5", Some("kelvin/cube"), None).unwrap().found;
+    assert_eq!((kelvin.unit.as_deref(), kelvin.valid), (Some("K"), None));
+    for (name, message) in [
+        ("scale_text", "scale_factor: the attribute is the text `0.1`; write it as a number"),
+        ("scale_list", "scale_factor: the attribute is a list of 3 numbers; write one number"),
+        (
+            "range_of_one",
+            "valid_range: the attribute is a list of 1 numbers; write the least and the largest",
+        ),
+    ] {
+        let refused = refusal("h5py_said.h5", Some(&format!("{name}/cube")), None);
+        assert!(refused.contains(message), "{refused}");
+    }
+    // The only array of a file is meant, whatever is wrong with it.
+    let refused = refusal("h5py_scale_text.h5", None, None);
+    assert!(refused.contains("scale_factor: the attribute is the text `0.1`"), "{refused}");
+}
+
+#[cfg(feature = "hdf5")]
+#[test]
+fn dimensions_of_netcdf_are_read_by_name() {
+    for (name, axes) in [
+        ("a", "bands,rows,columns"),
+        ("b", "rows,bands,columns"),
+        ("c", "rows,columns,bands"),
+        ("d", "columns,rows,bands"),
+        ("e", "bands,columns,rows"),
+    ] {
+        check("netcdf_dimensions.nc", Some(name), None, "u16", plain);
+        let found = open("netcdf_dimensions.nc", Some(name), None).unwrap().found;
+        assert_eq!(found.axes.unwrap().to_string(), axes);
+        assert_eq!(found.centres_cm1.unwrap().len(), 5);
+    }
+    // What is said counts, and what may be either is as it would be without names.
+    let said = open("netcdf_dimensions.nc", Some("a"), Some("rows,columns,bands")).unwrap();
+    assert_eq!(said.cube.shape(), Shape::new(5, 3, 4).unwrap());
+    let square = open("netcdf_dimensions.nc", Some("square/s"), None).unwrap();
+    assert_eq!((square.cube.shape(), square.found.axes), (Shape::new(4, 4, 7).unwrap(), None));
 }
 
 /// Lists of NumPy and SciPy say where the bands are, if their names have a unit.

@@ -12,6 +12,30 @@ pub(super) enum Axis {
     Bands,
 }
 
+/// What dimensions are called, in lower case.
+#[cfg(feature = "hdf5")]
+const NAMES: [(Axis, &[&str]); 3] = [
+    (
+        Axis::Bands,
+        &[
+            "band",
+            "bands",
+            "wavelength",
+            "wavelengths",
+            "wavenumber",
+            "wavenumbers",
+            "lambda",
+            "wl",
+            "nu",
+            "channel",
+            "channels",
+            "spectral",
+        ],
+    ),
+    (Axis::Rows, &["row", "rows", "y", "line", "lines", "lat", "latitude"]),
+    (Axis::Columns, &["column", "columns", "x", "sample", "samples", "lon", "longitude"]),
+];
+
 impl Axis {
     const ALL: [Self; 3] = [Self::Rows, Self::Columns, Self::Bands];
 
@@ -68,6 +92,38 @@ impl Axes {
                 "write \"rows,columns,bands\", \"bands,rows,columns\" or another order of the three",
             )),
         }
+    }
+
+    /// Axes from what their dimensions are called, outermost first, each by one name or by several that it may have: one of them
+    /// has to be that of the bands; rows come before columns unless their names say otherwise.
+    #[cfg(feature = "hdf5")]
+    pub(super) fn of_dimensions(names: [&[String]; 3]) -> Option<Self> {
+        let axis = |names: &&[String]| {
+            let of = |name: &String| {
+                NAMES.iter().find(|(_, own)| own.contains(&name.as_str())).map(|(axis, _)| *axis)
+            };
+            let first = names.first().and_then(of)?;
+            names.iter().all(|name| of(name) == Some(first)).then_some(first)
+        };
+        let found = names.each_ref().map(axis);
+        let bands = found.iter().position(|axis| *axis == Some(Axis::Bands))?;
+        let mut others = found.iter().enumerate().filter(|(place, _)| *place != bands).map(|(_, axis)| *axis);
+        let turned = match (others.next().flatten(), others.next().flatten()) {
+            // Two axes of bands, or of rows.
+            (Some(a), Some(b)) if a == b => return None,
+            (Some(Axis::Bands), _) | (_, Some(Axis::Bands)) => return None,
+            (Some(Axis::Columns), _) | (_, Some(Axis::Rows)) => true,
+            _ => false,
+        };
+        let mut others =
+            if turned { [Axis::Columns, Axis::Rows] } else { [Axis::Rows, Axis::Columns] }.into_iter();
+        let mut axes = [Axis::Bands; 3];
+        for (place, axis) in axes.iter_mut().enumerate() {
+            if place != bands {
+                *axis = others.next()?;
+            }
+        }
+        Some(Self(axes))
     }
 
     /// The shape of an array of these dimensions; one of two has no axis of bands.

@@ -13,7 +13,7 @@ use super::axes::Axes;
 use super::found::{Found, Opened};
 use super::raw::Raw;
 use super::stored::Stored;
-use super::values::Values;
+use super::values::{ALL_VALID, Values};
 use super::{READ_CUBE, Shape};
 use crate::envi_header::{ByteOrder, DataType, EnviHeader, Interleave};
 use crate::error::{Error, Result};
@@ -24,6 +24,7 @@ const SCALE: &str = "reflectance scale factor";
 const GAINS: &str = "data gain values";
 const OFFSETS: &str = "data offset values";
 const IGNORED: &str = "data ignore value";
+const UNITS: [&str; 4] = ["data units", "data unit", "units", "unit"];
 
 /// Opens the data at a path by their header.
 pub(super) fn open(file: File, path: &Path, header_path: &Path, axes: Option<Axes>) -> Result<Opened> {
@@ -47,7 +48,7 @@ pub(super) fn open(file: File, path: &Path, header_path: &Path, axes: Option<Axe
         }
     }
     let values = values(&header, shape.bands()).map_err(in_header)?;
-    let missing = values.as_ref().map_or_else(Vec::new, |values| values.missing().to_vec());
+    let told = values.clone();
     let (order, format) = match layout.interleave {
         Interleave::Bsq => (Axes::IMAGES, "ENVI BSQ"),
         Interleave::Bil => (Axes::LINES, "ENVI BIL"),
@@ -71,7 +72,9 @@ pub(super) fn open(file: File, path: &Path, header_path: &Path, axes: Option<Axe
     // The header says which axis is which: there is no side to wonder about.
     let found = Found::array(format, shape, stored.name(), &[]);
     let axis_without_unit = centres_cm1.is_none() && header.text("wavelength").is_some();
-    let found = Found { missing, bad_bands, centres_cm1, widths_cm1, axis_without_unit, ..found };
+    let mut found =
+        Found { bad_bands, centres_cm1, widths_cm1, axis_without_unit, unit: unit(&header), ..found };
+    told.iter().for_each(|values| values.tell(&mut found));
     Ok(Opened { found, cube })
 }
 
@@ -113,7 +116,13 @@ fn values(header: &EnviHeader, bands: usize) -> Result<Option<Values>> {
         Some(text) if is_nan(text) => None,
         _ => header.number(IGNORED)?,
     };
-    Ok(Values::new(gain, offsets, missing.into_iter().collect()))
+    Ok(Values::new(gain, offsets, missing.into_iter().collect(), ALL_VALID))
+}
+
+/// The unit of the samples, which has no key of its own in the format: as other programs write it.
+fn unit(header: &EnviHeader) -> Option<String> {
+    let said = UNITS.iter().find_map(|key| header.text(key)).filter(|unit| !unit.is_empty());
+    said.or_else(|| header.text(SCALE).map(|_| "reflectance")).map(str::to_owned)
 }
 
 /// Centres and widths of the bands, cm⁻¹; none without a unit, which is not guessed.

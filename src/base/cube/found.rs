@@ -36,6 +36,14 @@ pub struct Found {
     pub memory_bytes: Option<u64>,
     /// Stored numbers that were read as nothing measured.
     pub missing: Vec<f64>,
+    /// Least and largest stored number that means something, where the file says them; others are missing too.
+    pub valid: Option<[f64; 2]>,
+    /// What stored numbers were multiplied by, one number for all bands or one for each in the order of the file; empty where by nothing.
+    pub gain: Vec<f64>,
+    /// What was added to them then, likewise.
+    pub offset: Vec<f64>,
+    /// The unit of the samples, or what they are, as the file says it.
+    pub unit: Option<String>,
     /// Bands that the file says are bad, counted from 0 in its order.
     pub bad_bands: Vec<usize>,
     /// Centres of the bands in the order of the file, cm⁻¹, where it says them.
@@ -63,6 +71,10 @@ impl Found {
             axes: None,
             memory_bytes: None,
             missing: Vec::new(),
+            valid: None,
+            gain: Vec::new(),
+            offset: Vec::new(),
+            unit: None,
             bad_bands: Vec::new(),
             centres_cm1: None,
             widths_cm1: None,
@@ -96,6 +108,27 @@ impl fmt::Display for Found {
         if !self.missing.is_empty() {
             let numbers: Vec<String> = self.missing.iter().map(f64::to_string).collect();
             more.push(format!("{} taken as missing", numbers.join(" and ")));
+        }
+        if let Some([least, most]) = self.valid {
+            more.push(match (least.is_finite(), most.is_finite()) {
+                (true, true) => format!("below {least} and above {most} taken as missing"),
+                (true, false) => format!("below {least} taken as missing"),
+                _ => format!("above {most} taken as missing"),
+            });
+        }
+        for (what, list) in [("gain", &self.gain), ("offset", &self.offset)] {
+            more.extend(match list.as_slice() {
+                [] => None,
+                [one] => Some(format!("{what} {one} applied")),
+                many => {
+                    let least = many.iter().copied().fold(f64::INFINITY, f64::min);
+                    let most = many.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+                    Some(format!("{what}s {least} to {most} by band applied"))
+                }
+            });
+        }
+        if let Some(unit) = &self.unit {
+            more.push(format!("in {}", unit.escape_debug()));
         }
         if !self.bad_bands.is_empty() {
             let bands: Vec<String> = self.bad_bands.iter().map(usize::to_string).collect();

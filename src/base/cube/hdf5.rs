@@ -6,6 +6,7 @@
 //! Sources: The HDF Group, HDF5 File Format Specification 3.0; NetCDF Users Guide, Attribute Conventions.
 
 mod array;
+mod dimensions;
 mod packed;
 mod sound;
 
@@ -29,6 +30,7 @@ pub(super) fn open(file: File, path: &Path, name: Option<&str>, axes: Option<Axe
     let len = file.metadata().map_err(damaged)?.len();
     let source = sound(|| hdf5_pure::File::open_streaming(path).map_err(damaged))?;
     let (name, array) = sound(|| chosen(&source, name))?;
+    let axes = axes.or_else(|| sound(|| Ok(dimensions::axes(&source, &name, &array))).ok().flatten());
     let opened = of_array(file, path, len, array, axes).map_err(|error| error.for_key(name.clone()))?;
     let bands = opened.found.shape.bands();
     let (centres_cm1, axis_without_unit) = sound(|| Ok(wavelengths(&source, &name, bands)))?;
@@ -43,7 +45,8 @@ fn chosen(source: &hdf5_pure::File, name: Option<&str>) -> Result<(String, Array
             let names: Vec<String> = listed(source).into_iter().map(|(name, _)| name).collect();
             return Err(Error::unknown_name("variable", name, names.iter().map(String::as_str)));
         };
-        return Array::of(dataset).map(|array| (name.to_owned(), array)).map_err(|error| error.for_key(name));
+        let array = Array::of(dataset).and_then(Array::with_values);
+        return array.map(|array| (name.to_owned(), array)).map_err(|error| error.for_key(name));
     }
     let arrays: Vec<(String, Array)> = listed(source)
         .into_iter()
@@ -61,7 +64,10 @@ fn chosen(source: &hdf5_pure::File, name: Option<&str>) -> Result<(String, Array
     let several = arrays.len();
     let mut meant = arrays.into_iter().filter(|(_, array)| deep == 0 || array.sides.len() == 3);
     match (meant.next(), meant.next()) {
-        (Some(only), None) => Ok(only),
+        (Some((name, array)), None) => {
+            let array = array.with_values().map_err(|error| error.for_key(name.clone()))?;
+            Ok((name, array))
+        }
         (None, _) => Err(Error::malformed(
             "the file has no array of numbers in two or three dimensions",
             "write the cube as one of floats or whole numbers",
@@ -123,8 +129,10 @@ fn of_array(file: File, path: &Path, len: u64, array: Array, axes: Option<Axes>)
 
 fn found(array: &Array, shape: Shape, axes: Option<Axes>, sides: &[usize]) -> Found {
     let format = if array.matlab { "MATLAB 7.3" } else { "HDF5" };
-    let missing = array.values.as_ref().map_or_else(Vec::new, |values| values.missing().to_vec());
-    Found { axes, missing, ..Found::array(format, shape, array.stored.name(), sides) }
+    let unit = array.unit.clone();
+    let mut found = Found { axes, unit, ..Found::array(format, shape, array.stored.name(), sides) };
+    array.values.iter().for_each(|values| values.tell(&mut found));
+    found
 }
 
 fn whole<S: Sample>(array: &Array, shape: Shape, order: Axes) -> Result<MemoryCube<S>> {

@@ -155,11 +155,15 @@ fn sample_type(dtype: &DType) -> Result<(Stored, Endianness)> {
             TypeChar::Float => Stored::float(plain.size_field()),
             TypeChar::Uint => Stored::whole(false, plain.size_field()),
             TypeChar::Int => Stored::whole(true, plain.size_field()),
-            TypeChar::Bool => Some(Stored::U8),
             _ => None,
         };
         if let Some(stored) = stored {
             return Ok((stored, plain.endianness()));
+        }
+        if plain.type_char() == TypeChar::Bool {
+            let instead =
+                "write what was counted, or np.save(path, a.astype(np.uint8)) if 0 and 1 are counts";
+            return Err(Error::malformed("the samples are truth values", instead));
         }
         if plain.type_char() == TypeChar::Complex {
             let instead = "write one of its parts, as np.save(path, np.abs(a).astype(np.float32))";

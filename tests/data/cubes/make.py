@@ -138,3 +138,37 @@ with netCDF4.Dataset("netcdf.nc", "w") as f:
     f.createVariable("never", "f4", ("y", "x", "wavelength"))
     partly = f.createVariable("partly", "f4", ("y", "x", "wavelength"), chunksizes=(1, COLUMNS, BANDS))
     partly[0] = CUBE[0]
+
+# What attributes say of samples: ranges that are valid, units, and texts and lists where one number is due.
+with h5py.File("h5py_said.h5", "w") as f:
+    said = {
+        "valid_max": {"valid_max": np.int16(220)},
+        "valid_range": {"valid_range": np.array([10, 220], "i2"), "scale_factor": 0.5, "add_offset": 2.0},
+        "valid_unpacked": {"valid_range": np.array([7.0, 112.0]), "scale_factor": 0.5, "add_offset": 2.0},
+        "kelvin": {"units": "K"},
+        "scale_text": {"scale_factor": "0.1"},
+        "scale_list": {"scale_factor": np.array([1.0, 2.0, 3.0])},
+        "range_of_one": {"valid_range": np.array([10], "i2")},
+    }
+    for name, attributes in said.items():
+        f.create_dataset(f"{name}/cube", data=CUBE.astype("<i2"))
+        f[f"{name}/cube"].attrs.update(attributes)
+with h5py.File("h5py_scale_text.h5", "w") as f:
+    f["S"] = CUBE.astype("<i2")
+    f["S"].attrs["scale_factor"] = "0.1"
+
+# Dimensions by name, in every order that has one; images as wide as high, and as many bands as rows.
+with netCDF4.Dataset("netcdf_dimensions.nc", "w") as f:
+    for name, size in [("lambda", BANDS), ("y", ROWS), ("x", COLUMNS)]:
+        f.createDimension(name, size)
+    for name, order in [("a", (2, 0, 1)), ("b", (0, 2, 1)), ("c", (0, 1, 2)), ("d", (1, 0, 2)), ("e", (2, 1, 0))]:
+        v = f.createVariable(name, "u2", [("y", "x", "lambda")[axis] for axis in order])
+        v[:] = np.transpose(CUBE, order)
+    axis = f.createVariable("lambda", "f8", ("lambda",))
+    axis.units = "um"
+    axis[:] = META["wavelength"]
+    square = f.createGroup("square")
+    square.createDimension("side_a", 4)
+    square.createDimension("bands", 4)
+    square.createDimension("columns", 7)
+    square.createVariable("s", "f4", ("bands", "side_a", "columns"))[:] = np.ones((4, 4, 7))
