@@ -13,6 +13,9 @@
 //!
 //! The information of one photon is J⁰ = J (1 + γ)/N with the window's photons N = ΣΣN and γ = ΣΣσ²/N; σ_c² = 1/J⁰.
 //!
+//! A count that is missing is NaN. So is then the information of every window that it lies in or whose derivative is taken of it: one or two
+//! more columns on either side by differences ([`Derivative::margin`](crate::ranging::derivative::Derivative::margin)), the whole row by splines and Fourier.
+//!
 //! Assumptions: the counts are expectations (no noise of their own: noise in N adds texture that is not there); pixels
 //! and bands independent.
 //!
@@ -46,8 +49,8 @@ use std::ops::Range;
 /// J of every window whose centre lies in the rows asked for.
 ///
 /// # Errors
-/// A window or derivative that does not fit into the image; noise that does not fit the cube; a count or variance that is
-/// negative, NaN, infinite or beyond 1e27; a count below 1e-27 without electronic noise; a cube that cannot be read.
+/// A window or derivative that does not fit into the image; noise that does not fit the cube; a count that is negative, infinite or
+/// beyond 1e27; a variance that is so, or NaN beside a count that is not; a count below 1e-27 without electronic noise; a cube that cannot be read.
 pub fn information<'c>(cube: impl Into<CubeRef<'c>>, request: &Request<'_>) -> Result<InformationMap> {
     let cube = cube.into();
     let plan = Plan::new(cube.shape(), request)?;

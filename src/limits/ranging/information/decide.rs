@@ -86,7 +86,7 @@ impl Stats {
 /// The same as comparing the map of [`super::information`]. Samples that need not be looked at are not checked.
 ///
 /// # Errors
-/// Those of [`super::information`]; a requirement that is not a positive number.
+/// Those of [`super::information`]; a count that is NaN; a requirement that is not a positive number.
 pub fn decide(cube: &Cube, request: &Request<'_>, required_per_pixel2: f64) -> Result<Decision> {
     in_parts(cube, request, required_per_pixel2, AT_ONCE)
 }

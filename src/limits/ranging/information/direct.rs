@@ -68,15 +68,16 @@ fn repeated<S: Sample>(own: &[S]) -> [S; LANES] {
     std::array::from_fn(|i| own[i.min(own.len() - 1)])
 }
 
-/// 1 for the bands of the last vector, 0 behind them.
+/// Which lanes of the last vector are bands.
 #[inline(always)]
-fn keep(bands: usize) -> Chunk {
-    std::array::from_fn(|i| if i < bands % LANES { 1.0 } else { 0.0 })
+fn keep(bands: usize) -> [bool; LANES] {
+    std::array::from_fn(|i| i < bands % LANES)
 }
 
 #[inline(always)]
-fn kept(x: Chunk, keep: Chunk) -> Chunk {
-    std::array::from_fn(|i| x[i] * keep[i])
+fn kept(x: Chunk, keep: [bool; LANES]) -> Chunk {
+    // No product: NaN of the next column would stay.
+    std::array::from_fn(|i| if keep[i] { x[i] } else { 0.0 })
 }
 
 #[inline(always)]

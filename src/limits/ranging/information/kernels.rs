@@ -47,8 +47,8 @@ macro_rules! stored {
                     most = std::array::from_fn(|i| high[i].max(bits[i]));
                 };
                 let tail = bands % LANES;
-                // Of the next column, which is looked at here too: no product is NaN if it is sound.
-                let keep: Chunk = std::array::from_fn(|i| if i < tail { 1.0 } else { 0.0 });
+                // The others are of the next column, which is looked at here too.
+                let keep: [bool; LANES] = std::array::from_fn(|i| i < tail);
                 let columns = to.chunks_exact_mut(stride(bands));
                 for (column, to) in columns.enumerate() {
                     let from = &samples[column * bands..];
@@ -62,7 +62,7 @@ macro_rules! stored {
                         let start = bands - tail;
                         if let Some(from) = from[start..].first_chunk::<LANES>() {
                             see(*from);
-                            *to = std::array::from_fn(|i| f64::from(from[i]) * keep[i]);
+                            *to = std::array::from_fn(|i| if keep[i] { f64::from(from[i]) } else { 0.0 });
                         } else {
                             let from = &from[start..bands];
                             see(std::array::from_fn(|i| from[i.min(tail - 1)]));

@@ -68,13 +68,14 @@ impl<'a> Part<'a> {
 
     /// No infinity: counts at the ends of what is allowed side by side.
     pub(super) fn finite(&self) -> Result<()> {
-        // A sum of terms that are not negative is finite only if all of them are.
         let cells = [&*self.total, self.spatial, self.spectral, self.full];
-        match cells.into_iter().map(crate::sum::sum).find(|sum| !sum.is_finite()) {
-            None => Ok(()),
-            Some(sum) => Err(Error::out_of_range(
+        // NaN is what has a missing count in it.
+        let infinite = |cell: &[f64]| cell.iter().fold(false, |any, j| any | (*j == f64::INFINITY));
+        match cells.into_iter().any(infinite) {
+            false => Ok(()),
+            true => Err(Error::out_of_range(
                 "the information of a window",
-                sum,
+                f64::INFINITY,
                 "pixel^-2",
                 "finite; the counts of neighbouring pixels are too far apart",
             )),

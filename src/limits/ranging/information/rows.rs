@@ -3,6 +3,7 @@
 use super::bounds::Bounded;
 use super::direct::{Direct, Pixels, Stretch};
 use super::kernels::{Seen, Stored};
+use super::limits::MOST;
 use crate::cube::{CubeRef, Rows};
 use crate::error::Result;
 use crate::simd::Chunk;
@@ -53,6 +54,21 @@ impl Raw<'_> {
         match self {
             Raw::F32(samples) => samples.get(at).map_or(f64::NAN, |sample| f64::from(*sample)),
             Raw::F64(samples) => samples.get(at).copied().unwrap_or(f64::NAN),
+        }
+    }
+
+    /// Whether all of some samples are counts that can be used, or NaN.
+    pub(super) fn all_counts_or_missing(self, samples: Range<usize>) -> bool {
+        fn all<S: Stored>(samples: Option<&[S]>) -> bool {
+            let is_one = |sample: S| -> bool {
+                let value: f64 = sample.into();
+                value.is_nan() | (0.0..=MOST).contains(&value)
+            };
+            samples.is_some_and(|samples| samples.iter().fold(true, |all, sample| all & is_one(*sample)))
+        }
+        match self {
+            Raw::F32(own) => all(own.get(samples)),
+            Raw::F64(own) => all(own.get(samples)),
         }
     }
 

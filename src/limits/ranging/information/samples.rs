@@ -72,7 +72,7 @@ pub(super) fn pixels_of_row(
         NoiseVariance::PerSample(cube) => Some(room.variances.read(cube.into(), y..y + 1)?),
         _ => None,
     };
-    let checked = Checked::new(plan, (y, y + 1), counts, variances);
+    let checked = Checked::new(plan, (y, y + 1), counts, variances).complete();
     room.strip.prepare(plan)?;
     for strip in strips {
         let to = &mut to[strip.quotients.start - plan.margin..strip.quotients.end - plan.margin];

@@ -101,7 +101,7 @@ impl StripRoom {
         let start = checked.at(y, strip.read.start);
         let seen = checked.counts.widen(start, bands, self.counts.row(y));
         let seen_var = checked.variances.map(|raw| raw.widen(start, bands, self.variances.row(y)));
-        checked.look(seen, seen_var)
+        checked.look((y, strip.read.clone()), seen, seen_var)
     }
 
     /// Takes a widened row into the sums over rows, before the windows that end with it are summed.
@@ -143,7 +143,7 @@ impl StripRoom {
         let start = checked.at(y, own.start);
         let to =
             Pixels { var: &plan.var_sample, wide, totals: &mut self.totals, ratios, lanes: &mut self.direct };
-        checked.look(checked.counts.pixels(start, plan.shape.bands(), to), None)?;
+        checked.look((y, own.clone()), checked.counts.pixels(start, plan.shape.bands(), to), None)?;
         if let Some(to) = to_totals {
             to.copy_from_slice(&self.totals[strip.totals.start - own.start..strip.totals.end - own.start]);
         }

@@ -206,13 +206,76 @@ fn any_number_of_threads_gives_the_same_bits() {
     assert_eq!(maps[0], maps[2]);
 }
 
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+
+    /// Windows with a missing count are missing, all others keep their bits.
+    #[test]
+    fn missing_counts_are_those_of_their_windows_alone(
+        (rows, columns, bands) in (9usize..40, 20usize..60, prop_oneof![1usize..20, Just(54)]),
+        (half_rows, half_columns) in (0usize..5, 0usize..6),
+        (kind, scheme, narrow, seed) in (0usize..4, 0usize..4, any::<bool>(), any::<u64>()),
+        places in proptest::collection::vec(any::<proptest::sample::Index>(), 1..4),
+    ) {
+        let shape = Shape::new(rows, columns, bands).unwrap();
+        let window = Window::new(2 * half_rows.min((rows - 1) / 2) + 1, 2 * half_columns + 1).unwrap();
+        let counts = counts(shape, seed);
+        let mut missing = counts.clone();
+        let places: Vec<usize> = places.iter().map(|place| place.index(shape.len())).collect();
+        places.iter().for_each(|place| missing[*place] = f64::NAN);
+        let of = |samples: &[f64]| -> Cube {
+            match narrow {
+                true => MemoryCube::new(shape, samples.iter().map(|n| *n as f32).collect()).unwrap().into(),
+                false => cube(shape, samples),
+            }
+        };
+        let noise = match kind {
+            0 => NoiseVariance::None,
+            1 => NoiseVariance::Uniform(50.0),
+            2 => NoiseVariance::PerBand((0..bands).map(|band| band as f64).collect()),
+            // A variance is not looked at where there is no count.
+            _ => NoiseVariance::PerSample(of(&missing)),
+        };
+        let derivative = Derivative::ALL[scheme];
+        let joined = Joined::SumOfReadings;
+        let request =
+            |noise| Request { window, derivative, noise, joined, cells: &Cell::ALL, centres: 0..rows };
+        let complete = match kind {
+            3 => NoiseVariance::PerSample(of(&counts)),
+            _ => NoiseVariance::None,
+        };
+        let whole = information(&of(&counts), &request(if kind == 3 { &complete } else { &noise })).unwrap();
+        let map = information(&of(&missing), &request(&noise)).unwrap();
+        let beside = match derivative {
+            Derivative::Central | Derivative::Simoncelli => window.half_columns() + derivative.margin(),
+            _ => columns,
+        };
+        let pixels: Vec<(usize, usize)> =
+            places.iter().map(|place| (place / bands / columns, place / bands % columns)).collect();
+        let holds = |y: usize, x: usize| {
+            pixels.iter().any(|(row, column)| row.abs_diff(y) <= window.half_rows() && column.abs_diff(x) <= beside)
+        };
+        let mut index = 0;
+        for y in map.rows.clone() {
+            for x in map.columns.clone() {
+                for (own, exact) in map.information.iter().zip(&whole.information) {
+                    match holds(y, x) {
+                        true => prop_assert!(own[index].is_nan(), "{} {}", y, x),
+                        false => prop_assert_eq!(own[index], exact[index], "{} {}", y, x),
+                    }
+                }
+                index += 1;
+            }
+        }
+    }
+}
+
 #[test]
 fn a_bad_sample_is_named() {
     let shape = Shape::new(8, 30, 11).unwrap();
     let (none, some) = (NoiseVariance::None, NoiseVariance::Uniform(1.0));
     for (value, says) in [
-        (f64::NAN, "is NaN; it must be a number of photons"),
-        (f64::INFINITY, "is inf;"),
+        (f64::INFINITY, "is inf; it must be a number of photons"),
         (-1.0, "is -1;"),
         (0.0, "give a noise variance above 0"),
     ] {
