@@ -33,6 +33,7 @@ mod read;
 pub mod render;
 pub mod rule;
 pub mod scene;
+mod scene_folder;
 mod section;
 pub mod sensitivity;
 mod setting;

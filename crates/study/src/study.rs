@@ -15,6 +15,7 @@ mod classes;
 pub mod companion;
 mod cube_bands;
 mod cube_noise;
+mod cube_unit;
 pub mod decompose;
 mod distances;
 mod heat_cube;

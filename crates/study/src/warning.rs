@@ -44,6 +44,12 @@ pub enum Warning {
     BandOrderTaken,
     /// The file of a cube lists wavelengths without a unit.
     WavelengthsUnused,
+    /// Pixels that are 0 in all bands, of so many that were looked at.
+    CubeDark { view: &'static str, pixels: usize, of: usize },
+    /// Pixels with a sample at the largest value of all, of so many that were looked at; and whether it is the largest that the file's type has.
+    CubeSaturated { view: &'static str, pixels: usize, of: usize, value: f64, largest: bool },
+    /// Windows with a missing sample.
+    WindowsMissing { windows: usize, of: usize },
     /// Pixels with a missing sample.
     PixelsSkipped { pixels: usize, of: usize },
     /// Pixels that no material explains.
@@ -273,6 +279,9 @@ impl Warning {
             Self::AxesInDoubt { .. } => Code::AxesInDoubt,
             Self::BandOrderTaken => Code::BandOrderTaken,
             Self::WavelengthsUnused => Code::WavelengthsUnused,
+            Self::CubeDark { .. } => Code::CubeDark,
+            Self::CubeSaturated { .. } => Code::CubeSaturated,
+            Self::WindowsMissing { .. } => Code::WindowsMissing,
             Self::PixelsSkipped { .. } => Code::PixelsSkipped,
             Self::LibraryDoesNotFit { .. } => Code::LibraryDoesNotFit,
             Self::NoRelativeEmissivity { .. } => Code::NoRelativeEmissivity,

@@ -10,7 +10,7 @@ use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Memory of all blocks that are kept.
-const KEPT_BYTES: usize = 1 << 28;
+const KEPT_BYTES: usize = 1 << 27;
 
 /// The blocks that were gathered last, the newest in front.
 #[derive(Debug)]

@@ -83,6 +83,25 @@ impl Found {
         }
     }
 
+    /// The sample that the largest number of the stored type stands for, of whole numbers that were not changed by bands.
+    #[must_use]
+    pub fn largest_stored(&self) -> Option<f64> {
+        let bits = match self.stored {
+            "u8" | "uint8" => 8,
+            "u16" | "uint16" => 16,
+            "u32" | "uint32" => 32,
+            "i8" | "int8" => 7,
+            "i16" | "int16" => 15,
+            "i32" | "int32" => 31,
+            _ => return None,
+        };
+        let largest = 2.0_f64.powi(bits) - 1.0;
+        match (self.gain.as_slice(), self.offset.as_slice()) {
+            ([], []) => Some(largest),
+            _ => None,
+        }
+    }
+
     /// Whether nobody has said what the axes are and the first is so short that it may be the bands.
     #[must_use]
     pub fn may_begin_with_bands(&self) -> bool {

@@ -200,6 +200,50 @@ fn every_layout_is_taken_apart_to_the_same() {
     }
 }
 
+/// A scene of the database by its folder: the left view, and its maps where they are asked for.
+#[test]
+fn a_folder_of_the_database_is_a_cube_and_its_truth() {
+    let folder = Folder::with(
+        &(SCENARIO.replace("size = [48, 64]", "size = [12, 16]") + "[stereo]\nbaseline = \"0.2 m\"\n"),
+    );
+    folder.json(&["render", "a.toml", "--out", "Scene1", "--layout", "hadar"]);
+    let own = folder.json(&["decompose", "Scene1/decompose.toml"]);
+    let text = fs::read_to_string(folder.path().join("Scene1/decompose.toml")).unwrap();
+    let (head, truth) = text.split_once("[truth]\n").unwrap();
+    let rest = truth.split_once("\n\n").map_or("", |(_, rest)| rest);
+    let data = head.lines().find(|line| line.starts_with("data = ")).unwrap().to_owned();
+    let head = head.replace(&data, "data = \"../Scene1\"").replace("variable = \"S\"\n", "");
+    folder.file("Scene1/b.toml", &format!("{head}[truth]\nscene = \"../Scene1\"\n\n{rest}"));
+    let found = folder.json(&["decompose", "Scene1/b.toml"]);
+    assert_eq!(found["read"]["file"], "L_0001_heatcube.mat");
+    assert_eq!(found["truth"], own["truth"]);
+    folder.file(
+        "Scene1/c.toml",
+        &format!("{head}[truth]\nscene = \"../Scene1\"\ntemperature = \"a.npy\"\n\n{rest}"),
+    );
+    assert!(folder.refusal(&["decompose", "Scene1/c.toml"]).contains("truth"));
+    // Several views of one side are not guessed among.
+    let cubes = folder.path().join("Scene1/HeatCubes");
+    fs::copy(cubes.join("L_0001_heatcube.mat"), cubes.join("L_0002_heatcube.mat")).unwrap();
+    let refused = folder.refusal(&["decompose", "Scene1/b.toml"]);
+    assert!(
+        refused
+            .contains("holds L_0001_heatcube.mat, L_0002_heatcube.mat, R_0001_heatcube.mat; name the file"),
+        "{refused}"
+    );
+    fs::remove_file(cubes.join("L_0002_heatcube.mat")).unwrap();
+    folder.file(
+        "range.toml",
+        "[cube]\nleft = \"Scene1\"\nright = \"Scene1\"\ndepth = \"10 m\"\nnoise_variance = 10.0\n[stereo]\nbaseline = \"1 mm\"\n\
+         focal_length = \"14 mm\"\npixel = \"12 um\"\n",
+    );
+    let found = folder.json(&["range", "range.toml"]);
+    assert!(found["scenario"]["cube"]["right"].as_str().unwrap().ends_with("HeatCubes/R_0001_heatcube.mat"));
+    fs::create_dir(folder.path().join("none")).unwrap();
+    folder.file("d.toml", "[cube]\nleft = \"none\"\n[stereo]\nbaseline = \"1 mm\"\nfocal_length = \"14 mm\"\npixel = \"12 um\"\n");
+    assert!(folder.refusal(&["range", "d.toml"]).contains("has no HeatCubes; name the file of a cube"));
+}
+
 /// A sky of a spectrum is that of the material that it was written from; a pair of cameras gives two views.
 #[test]
 fn skies_and_views_are_what_is_said() {

@@ -287,6 +287,12 @@ fn assumptions(result: &Ranging) -> String {
             significant(error, 2)
         );
     }
+    if let Some([row, column]) = result.maps_begin_at {
+        let _ = writeln!(
+            out,
+            "  maps have a value for every centre of a whole window: their first is at row {row}, column {column} of the view, counted from 0"
+        );
+    }
     match stereo.diffraction {
         Diffraction::None => out.push_str("  diffraction is in the image already, none is added\n"),
         Diffraction::Airy | Diffraction::Gaussian(_) => {

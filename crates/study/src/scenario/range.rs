@@ -54,8 +54,8 @@ pub struct CubeSpec {
     pub variable: Option<String>,
     /// Which dimension of both views is which.
     pub axes: Option<Axes>,
-    /// Photons that one unit of the file stands for.
-    pub photons_per_unit: f64,
+    /// Photons that one unit of the file stands for; 1 if silent, of a file that does not say otherwise.
+    pub photons_per_unit: Option<f64>,
     /// Variance of the electronic noise; the camera's if silent.
     pub noise: Option<NoiseSource>,
     /// Depth; windows have bounds on their disparity alone if silent.

@@ -2,6 +2,7 @@
 
 use super::cube_bands::{InOrder, axes_in_doubt};
 use super::cube_noise::{NoiseOfBands, of_bands};
+use super::cube_unit::check_light;
 use super::{Warning, bands, camera, camera_bands};
 use crate::scenario::decompose::{CubeUnit, HeatCube, LightSource};
 use crate::scenario::{BandSource, BandsSpec, CameraSpec, MaterialRef, Source};
@@ -78,7 +79,7 @@ impl Said<'_> {
             }
             None => (BandSource::Rows(path.clone()), opened.bands().map_err(at("bands"))?),
         };
-        opened.check(&bands).map_err(at("cube.data"))?;
+        check_light(&opened.found).and_then(|()| opened.check(&bands)).map_err(at("cube.data"))?;
         let doubt = axes_in_doubt(&opened.found, self.bands.map(|_| &bands));
         let mut warnings: Vec<Warning> = doubt.into_iter().collect();
         if asked.is_in_wavelength() && opened.found.centres_cm1.is_none() && bands.len() > 1 {

@@ -10,6 +10,7 @@ mod solve;
 mod streamed;
 mod subject;
 mod verdict;
+mod watched;
 mod witness;
 mod wording;
 
@@ -25,7 +26,7 @@ pub(super) use resolve::camera_noise;
 use self::bounds::Ground;
 use self::looked_up::SECTIONS;
 use self::signals::SignalMap;
-use self::subject::{Resolved, Truth, nothing_to_see};
+use self::subject::{Resolved, Truth, nothing_left, nothing_to_see};
 use super::{Warning, memory};
 use crate::scenario::RangeScenario;
 use hadar::cube::{Cube, Found, Shape};
@@ -162,8 +163,13 @@ impl RangeStudy {
         };
         let variances = of_all(&ground, &windows);
         let objects = ground.objects(&windows, &informed.left, &variances)?;
+        let is_missing = |map: &SignalMap| map.information.iter().filter(|j| j.is_nan()).count();
+        let missing_windows = match &self.subject {
+            Resolved::Cube(_) => informed.left.first().map_or(0, is_missing),
+            Resolved::Scene(_) => 0,
+        };
         if objects.first().is_none_or(|all| all.windows == 0) {
-            return Err(nothing_to_see());
+            return Err(nothing_left(missing_windows));
         }
         let mut maps = ground.maps(&windows, &informed.left, &variances);
         if let Some(pair) = &informed.pair {
@@ -201,15 +207,13 @@ impl RangeStudy {
             lines,
             matched: matched.unwrap_or_default(),
             quantile_error: None,
+            missing_windows,
+            maps_begin_at: Some([maps.rows.start, maps.columns.start]),
             stats: ledger.close(),
             warnings: Vec::new(),
             maps,
         };
-        if let Resolved::Cube(cube) = &self.subject {
-            result.warnings.clone_from(&cube.warnings);
-        }
-        let more = self.warnings(&result);
-        result.warnings.extend(more);
+        result.warnings = self.warnings(&result);
         Ok(result)
     }
 
@@ -293,7 +297,7 @@ impl RangeStudy {
         let of = |map: &InformationMap, cell: Cell, scale: f64| {
             let values = map.cell(cell);
             let at = |&(row, column): &(usize, usize)| values.get(first.at(row, column)?).map(|j| j * scale);
-            median(&windows.iter().filter_map(at).collect::<Vec<_>>())
+            median(&windows.iter().filter_map(at).filter(|j| !j.is_nan()).collect::<Vec<_>>())
         };
         let scale = match &self.subject {
             Resolved::Scene(_) => 1.0,
@@ -338,8 +342,8 @@ impl RangeStudy {
         let Ok(map) = information(cube, &request) else { return Ok(None) };
         let map = SignalMap::of(Signal::HeatCube, Cell::Full, &map);
         let at = |&(row, column): &(usize, usize)| map.information.get(map.at(row, column)?).copied();
-        let other = median(&windows.iter().filter_map(at).collect::<Vec<_>>());
-        Ok((own > 0.0).then(|| other / own))
+        let other = median(&windows.iter().filter_map(at).filter(|j| !j.is_nan()).collect::<Vec<_>>());
+        Ok((own > 0.0).then(|| other / own).filter(|ratio| !ratio.is_nan()))
     }
 
     /// Photons of the brightest sample of a frame.

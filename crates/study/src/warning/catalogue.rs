@@ -65,6 +65,12 @@ catalogue! {
         "Write the cube with its wavelengths, as an ENVI file, or turn its bands round if they begin with the shortest.";
     /// The file of a cube lists wavelengths or wavenumbers without a unit, which are not used.
     WavelengthsUnused = "wavelengths-unused", "Write the unit into the file, as `wavelength units = Micrometers` in an ENVI header; in NPZ and MATLAB call the list `wavelengths_um`.";
+    /// Pixels of a cube are 0 in all bands: nothing was measured there.
+    CubeDark = "cube-dark", "Check the file and what was read of it; write NaN where nothing was measured.";
+    /// Many pixels of a cube have a sample at one and the same value, the largest of all: readings that were cut off there.
+    CubeSaturated = "cube-saturated", "Shorten the exposure, or write NaN where readings are cut off.";
+    /// Windows with a missing sample have no bound, and NaN in the maps.
+    WindowsMissing = "windows-missing", "Nothing; or fill missing samples, or make the window smaller.";
     /// Pixels of a cube were left out since a sample of them is missing.
     PixelsSkipped = "pixels-skipped", "Nothing; or name bands that are always missing in cube.bad_bands.";
     /// Pixels of a cube are explained by no material of the library.

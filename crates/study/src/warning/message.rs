@@ -30,6 +30,23 @@ impl Display for Warning {
                 "the cube's file lists its wavelengths or wavenumbers without a unit, so that they were not used: its first band was taken \
                  as that of the longest wavelength; write the unit into the file",
             ),
+            Self::CubeDark { view, pixels, of } if pixels == of => {
+                write!(f, "all samples of the {view} view are 0: it is empty")
+            }
+            Self::CubeDark { view, pixels, of } => {
+                write!(f, "{pixels} of {of} pixels of the {view} view that were looked at are 0 in all bands")
+            }
+            Self::CubeSaturated { view, pixels, of, value, largest } => write!(
+                f,
+                "{pixels} of {of} pixels of the {view} view that were looked at have a sample at {}, the largest value of all{}: where \
+                 readings are cut off their texture is gone, and edges are there that are none",
+                short(*value),
+                if *largest { " and of the file's type" } else { "" }
+            ),
+            Self::WindowsMissing { windows, of } => write!(
+                f,
+                "{windows} of {of} windows hold a sample that is missing: they have no bound, and NaN in the maps"
+            ),
             Self::PixelsSkipped { pixels, of } => {
                 write!(f, "{pixels} of {of} pixels have a sample that is no number; they were left out")
             }
@@ -448,6 +465,13 @@ impl Display for Warning {
                  expected counts",
                 short(*floor_per_px2),
                 short(*demanded_per_px2)
+            ),
+            Self::NoiseOfFound { floor_per_px2, found_per_px2 } if floor_per_px2 > found_per_px2 => write!(
+                f,
+                "the noise of single readings would make an information of {} pixel^-2, more than the {} that were found (median): \
+                 if these counts are averages of readings, what was found may be their noise; give expected counts",
+                short(*floor_per_px2),
+                short(*found_per_px2)
             ),
             Self::NoiseOfFound { floor_per_px2, found_per_px2 } => write!(
                 f,

@@ -23,6 +23,9 @@ const KEPT: usize = 1 << 18;
 /// Rows of windows of a block.
 const BLOCK_ROWS: usize = 64;
 
+/// Windows of the blocks of all threads, some 60 bytes each.
+const KEPT_WINDOWS: usize = 1 << 21;
+
 /// Samples of the rows that a thread reads at a time, which are to stay in the cache that cores share.
 const READ: usize = 1 << 21;
 
@@ -156,11 +159,12 @@ impl<'a> Plan<'a> {
         inner.start + half..inner.end - half
     }
 
-    /// Rows of windows that a thread takes at a time: enough that the rows that blocks have in common count for little, and
-    /// as many blocks for every thread.
+    /// Rows of windows that a thread takes at a time: enough that the rows that blocks have in common count for little, not so many
+    /// that what all threads keep of wide ones is too much, and as many blocks for every thread.
     pub(super) fn block_rows(&self) -> usize {
-        let least = BLOCK_ROWS.max(4 * (self.request.window.rows() - 1));
         let threads = rayon::current_num_threads();
+        let kept = KEPT_WINDOWS / threads / self.centres().len().max(1);
+        let least = BLOCK_ROWS.min(kept).max(4 * (self.request.window.rows() - 1)).max(1);
         let blocks = self.tops.len().div_ceil(least).next_multiple_of(threads);
         self.tops.len().div_ceil(blocks.max(1)).max(1)
     }

@@ -3,6 +3,7 @@
 use super::super::kind::Kind;
 use super::super::paths::{axes, file, is_path, material, variable};
 use super::super::read::document;
+use super::super::scene_folder::{self, LEFT, cube_file};
 use super::super::section::{Entry, Section};
 use super::super::written::Written;
 use super::super::{BandsSpec, Source, camera, class};
@@ -33,7 +34,7 @@ const TABLES: &[&str] = &[
 ];
 /// Maps of the truth that every heat cube may have.
 pub(in crate::scenario) const TRUTH: &[&str] =
-    &["material", "material_list", "temperature", "temperature_unit", "lighting"];
+    &["scene", "material", "material_list", "temperature", "temperature_unit", "lighting"];
 const MINIMUM: &str =
     "write [cube] with data = \"counts.npy\", [bands], and [library] with path = \"library.csv\"";
 /// Temperatures of a scene where nothing is said, K.
@@ -93,9 +94,11 @@ impl DecomposeScenario {
         let camera = root.read("camera", camera::read)?;
         let cube = root.get("cube").ok_or_else(|| missing("cube"))?;
         let unknown = root.read("unknown", unknown)?.unwrap_or_default();
+        let cube = heat_cube(&cube, camera.is_some())?;
+        let data = cube.data.clone();
         let scenario = Self {
             title: root.read("title", |entry| Ok(entry.text("\"What is in this street?\"")?.to_owned()))?,
-            cube: heat_cube(&cube, camera.is_some())?,
+            cube,
             bands: root.read("bands", BandsSpec::read)?,
             camera,
             environment: root
@@ -108,7 +111,7 @@ impl DecomposeScenario {
             vision: root.read("vision", vision)?.unwrap_or_default(),
             categories: root.read("category", |entry| categories(entry, Told::ByLabels))?.unwrap_or_default(),
             segmentation: root.read("segmentation", segmentation)?.unwrap_or_default(),
-            truth: root.read("truth", |entry| truth(entry, &[TRUTH, &["category"]].concat()))?,
+            truth: root.read("truth", |entry| truth(entry, &[TRUTH, &["category"]].concat(), &data))?,
             source: Source::default(),
         };
         if scenario.categories.is_empty()
@@ -172,7 +175,7 @@ pub(in crate::scenario) fn heat_cube(entry: &Entry<'_>, camera: bool) -> Result<
         }
     };
     Ok(HeatCube {
-        data: file(&section.require("data", "\"counts.npy\"")?)?,
+        data: cube_file(&section.require("data", "\"counts.npy\"")?, LEFT)?,
         variable: variable(&section)?,
         axes: axes(&section)?,
         unit,
@@ -272,8 +275,16 @@ pub(in crate::scenario) fn unknown(entry: &Entry<'_>) -> Result<PixelUnknown> {
     })
 }
 
-pub(in crate::scenario) fn truth(entry: &Entry<'_>, keys: &[&str]) -> Result<TruthSpec> {
+/// The truth of a cube.
+pub(in crate::scenario) fn truth(entry: &Entry<'_>, keys: &[&str], cube: &Path) -> Result<TruthSpec> {
     let section = entry.section(keys)?;
+    if let Some(scene) = section.get("scene") {
+        for key in TRUTH.iter().skip(1) {
+            section.at_most_one(&["scene", key])?;
+        }
+        let category = section.read("category", file)?;
+        return Ok(TruthSpec { category, ..scene_folder::truth(&scene, cube)? });
+    }
     for (key, of) in [("material_list", "material"), ("temperature_unit", "temperature")] {
         if section.get(key).is_some() && section.get(of).is_none() {
             let found =

@@ -101,16 +101,18 @@ impl LibraryScenario {
             let found = Error::malformed("a total of no lighting", "write [[environment]], or leave it out");
             return Err(found.at(source.place("unknown.lighting_total")));
         }
+        let cube = heat_cube(&cube, camera.is_some())?;
+        let data = cube.data.clone();
         let scenario = Self {
             title: root.read("title", |entry| Ok(entry.text("\"What is in this street?\"")?.to_owned()))?,
-            cube: heat_cube(&cube, camera.is_some())?,
+            cube,
             bands: root.read("bands", BandsSpec::read)?,
             camera,
             environment,
             clusters: root.read("clusters", clusters)?.ok_or_else(|| missing("clusters"))?,
             emissivity: root.read("emissivity", emissivity)?.unwrap_or(EMISSIVITY),
             unknown,
-            truth: root.read("truth", |entry| truth(entry, TRUTH))?,
+            truth: root.read("truth", |entry| truth(entry, TRUTH, &data))?,
             source: Source::default(),
         };
         Ok(Self { source, ..scenario })

@@ -4,6 +4,7 @@ use super::super::kind::Kind as FileKind;
 use super::super::paths::{axes, file, is_cube, variable};
 use super::super::read::document;
 use super::super::scene::scene_of;
+use super::super::scene_folder::{LEFT, RIGHT, cube_file};
 use super::super::section::{Entry, Section};
 use super::super::written::Written;
 use super::super::{BandsSpec, Source, camera};
@@ -128,11 +129,11 @@ fn cube(entry: &Entry<'_>) -> Result<CubeSpec> {
         "depth",
     ])?;
     Ok(CubeSpec {
-        left: file(&section.require("left", "\"left.npy\"")?)?,
-        right: section.read("right", file)?,
+        left: cube_file(&section.require("left", "\"left.npy\"")?, LEFT)?,
+        right: section.read("right", |entry| cube_file(entry, RIGHT))?,
         variable: variable(&section)?,
         axes: axes(&section)?,
-        photons_per_unit: section.number("photons_per_unit", "1.0", ABOVE_ZERO)?.unwrap_or(1.0),
+        photons_per_unit: section.number("photons_per_unit", "1.0", ABOVE_ZERO)?,
         noise: section.read("noise_variance", |entry| match entry.text("\"noise.csv\"") {
             Ok(_) => file(entry).map(NoiseSource::File),
             Err(_) => entry.number("50.0", FROM_ZERO).map(NoiseSource::Uniform),

@@ -2,9 +2,11 @@
 
 use super::RangeStudy;
 use super::subject::{Depth, Measured, Rendered, Resolved};
+use super::watched::Watch;
 use crate::scenario::range::{CubeSpec, DepthSource, NoiseSource, Subject};
 use crate::scenario::{RangeScenario, SceneSpec};
 use crate::study::cube_bands::{InOrder, axes_in_doubt};
+use crate::study::cube_unit::check_counts;
 use crate::study::{bands, camera, camera_bands, stage};
 use hadar::cube::{Cube, Opened, Shape};
 use hadar::error::{Error, Result};
@@ -114,6 +116,7 @@ fn cube(
         let variable = spec.variable.as_deref();
         let opened = InOrder::open(path, variable, spec.axes).and_then(|opened| {
             by_band.map_or(Ok(()), |bands| opened.check(bands))?;
+            check_counts(&opened.found, spec.photons_per_unit.is_some())?;
             Ok(Opened { cube: opened.cube, found: opened.found })
         });
         opened.map_err(at(key))
@@ -165,7 +168,15 @@ fn cube(
             Some(Depth::Map(depth_map(&depth, shape).map_err(at("cube.depth"))?))
         }
     };
-    Ok(Measured { left, read, warnings, right, noise, photons_per_unit: spec.photons_per_unit, depth })
+    let (left, watch) = Watch::over(left);
+    let mut watches = vec![watch];
+    let right = right.map(|right| {
+        let (right, watch) = Watch::over(right);
+        watches.push(watch);
+        right
+    });
+    let photons_per_unit = spec.photons_per_unit.unwrap_or(1.0);
+    Ok(Measured { left, read, warnings, right, watches, noise, photons_per_unit, depth })
 }
 
 fn depth_map(depth: &Cube, shape: Shape) -> Result<Vec<f64>> {

@@ -89,6 +89,12 @@ pub struct Ranging {
     /// Relative error of medians and quantiles, at most, where there are too many windows to keep them all; none where exact.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub quantile_error: Option<f64>,
+    /// Windows that hold a missing sample, and have no bound; none where there are none.
+    #[serde(skip_serializing_if = "is_none")]
+    pub missing_windows: usize,
+    /// Row and column of the view, from 0, that the first value of the maps stands for: the centre of the first window.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub maps_begin_at: Option<[usize; 2]>,
     /// What was computed and what was skipped.
     pub stats: Work,
     /// What the reader must know.
@@ -96,6 +102,11 @@ pub struct Ranging {
     /// Bounds of every window, for pictures and tables.
     #[serde(skip)]
     pub maps: BoundMaps,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "as serde asks")]
+const fn is_none(count: &usize) -> bool {
+    *count == 0
 }
 
 /// Yes or no.

@@ -14,7 +14,7 @@ use super::results::{
 };
 use super::signals::SignalMap;
 use super::solve::rank;
-use super::subject::{Depth, Measured, Resolved, Truth, nothing_to_see};
+use super::subject::{Depth, Measured, Resolved, Truth, nothing_left, nothing_to_see};
 use super::{MapSink, Progress};
 use hadar::cube::Shape;
 use hadar::demand::{self, Ledger, Reason, Thing};
@@ -28,6 +28,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Windows of a cube that are kept, some 250 bytes each.
 const KEPT: usize = 1 << 20;
+
+/// Windows that are counted at a time by a thread, at most but for one row.
+const AT_ONCE: usize = 1 << 16;
 
 /// Signals of a cube.
 const SIGNALS: [Signal; 2] = [Signal::ThermalImage, Signal::HeatCube];
@@ -55,6 +58,8 @@ struct Counted {
     lines: Mutex<BTreeMap<usize, [[Vec<f64>; 2]; 2]>>,
     /// Errors of both signals in the rows that are shown.
     shown: Mutex<BTreeMap<usize, [Vec<f64>; 2]>>,
+    /// Windows that hold a missing sample.
+    missing: AtomicUsize,
 }
 
 /// What all rows have in common.
@@ -127,8 +132,9 @@ impl RangeStudy {
         })
         .map_err(place)?;
         let all = setting.bounds(&counted)?;
+        let missing_windows = counted.missing.load(Ordering::Relaxed);
         if all.windows == 0 {
-            return Err(nothing_to_see());
+            return Err(nothing_left(missing_windows));
         }
         let cells = setting.cells(&counted, &request)?;
         let solve_for = setting.solutions(&counted)?;
@@ -150,6 +156,8 @@ impl RangeStudy {
             lines: setting.lines(&counted)?,
             matched: Vec::new(),
             quantile_error: Some(QUANTILE_ERROR),
+            missing_windows,
+            maps_begin_at: Some([setting.rows.start, setting.columns.start]),
             stats: ledger.close(),
             warnings: Vec::new(),
             maps: setting.maps(&counted),
@@ -165,19 +173,28 @@ fn step(rows: usize, columns: usize) -> usize {
 }
 
 impl Setting<'_> {
-    /// Takes some rows of windows into what is counted, and hands them on.
+    /// Takes some rows of windows into what is counted, and hands them on: a few at a time, whatever their width.
     fn take(&self, cells: &InformationMap, counted: &Counted, sink: Option<&dyn MapSink>) -> Result<()> {
+        let height = (AT_ONCE / self.columns.len()).max(1);
+        let parts = cells.rows.clone().step_by(height).map(|start| start..cells.rows.end.min(start + height));
+        let mut part = InformationMap::default();
+        for rows in parts {
+            rows_of(cells, rows, &mut part);
+            self.take_few(&part, counted, sink)?;
+        }
+        Ok(())
+    }
+
+    fn take_few(&self, cells: &InformationMap, counted: &Counted, sink: Option<&dyn MapSink>) -> Result<()> {
         let maps = self.cube.signals(cells, self.study.scenario.stereo.joined);
         let first = ((cells.rows.start - self.rows.start) * self.columns.len()) as u64;
         let errors = self.var_diffraction_px2.map(|var| [0, 1].map(|i| disparity_errors(maps.get(i), var)));
         let [with, _] = &errors;
+        // A window counts if every signal has a bound of it.
+        let [a, b] = with;
+        let chosen = || (0..a.len().min(b.len())).filter(|i| !(a[*i].is_nan() || b[*i].is_nan()));
+        let place = |i: usize| first + i as u64;
         for ((map, of), own) in maps.iter().zip(&counted.signals).zip(with) {
-            // A window counts if every signal has a bound of it.
-            let [a, b] = with;
-            let is_counted =
-                |i: usize| !(a.get(i).is_none_or(|x| x.is_nan()) || b.get(i).is_none_or(|x| x.is_nan()));
-            let chosen = || (0..own.len()).filter(|i| is_counted(*i));
-            let place = |i: usize| first + i as u64;
             let correspondence: Vec<(u64, f64)> =
                 chosen().filter_map(|i| Some((place(i), map.window(i)?.var_content_px2().sqrt()))).collect();
             locked(&of.correspondence_px).count(correspondence.into_iter());
@@ -195,10 +212,13 @@ impl Setting<'_> {
             of.windows.fetch_add(chosen().count(), Ordering::Relaxed);
         }
         if let Some(map) = maps.first() {
-            locked(&counted.photons).count(placed(first, &map.photons));
+            let missing = map.information.iter().filter(|j| j.is_nan()).count();
+            counted.missing.fetch_add(missing, Ordering::Relaxed);
+            locked(&counted.photons).count(chosen().filter_map(|i| Some((place(i), *map.photons.get(i)?))));
         }
         if let Some(map) = maps.last() {
-            locked(&counted.var_added).count(placed(first, &map.var_added));
+            locked(&counted.var_added)
+                .count(chosen().filter_map(|i| Some((place(i), *map.var_added.get(i)?))));
         }
         let scaled = |cell: Cell| -> Vec<f64> {
             cells.cell(cell).iter().map(|j| j * self.cube.photons_per_unit).collect()
@@ -308,7 +328,7 @@ impl Setting<'_> {
             spatial,
             spectral: locked(&counted.spectral).quantile(0.5),
             full,
-            other_derivative: other.filter(|_| full > 0.0),
+            other_derivative: other.filter(|other| full > 0.0 && !other.is_nan()),
         })
     }
 
@@ -360,6 +380,20 @@ impl Setting<'_> {
             ..BoundMaps::default()
         }
     }
+}
+
+/// Some rows of a map.
+fn rows_of(map: &InformationMap, rows: Range<usize>, part: &mut InformationMap) {
+    let width = map.columns.len();
+    let own = (rows.start - map.rows.start) * width..(rows.end - map.rows.start) * width;
+    let copy = |from: &Vec<f64>, to: &mut Vec<f64>| {
+        to.clear();
+        to.extend_from_slice(from.get(own.clone()).unwrap_or_default());
+    };
+    map.information.iter().zip(&mut part.information).for_each(|(from, to)| copy(from, to));
+    copy(&map.photons, &mut part.photons);
+    copy(&map.var_added, &mut part.var_added);
+    (part.rows, part.columns) = (rows, map.columns.clone());
 }
 
 /// Values with their places, of which the first is given.

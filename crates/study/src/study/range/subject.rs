@@ -1,11 +1,13 @@
 //! What a ranging study looks at: a rendered pair with all its truth, or measured cubes.
 
+use super::watched::Watch;
 use crate::study::Warning;
 use hadar::cube::{Cube, Found, Shape};
 use hadar::error::{Error, Result};
 use hadar::fisher::Counting;
 use hadar::ranging::noise::NoiseVariance;
 use hadar::render::{Options, Part, Rig, Scene, View};
+use std::sync::Arc;
 
 /// The subject with its names looked up.
 #[derive(Debug)]
@@ -32,6 +34,8 @@ pub(super) struct Measured {
     pub(super) read: Found,
     pub(super) warnings: Vec<Warning>,
     pub(super) right: Option<Cube>,
+    /// What is seen of both views as they are read.
+    pub(super) watches: Vec<Arc<Watch>>,
     pub(super) noise: NoiseVariance,
     pub(super) photons_per_unit: f64,
     pub(super) depth: Option<Depth>,
@@ -94,6 +98,17 @@ pub(super) fn nothing_to_see() -> Error {
     Error::malformed(
         "no window has all of its pixels in both views",
         "make the window smaller or the view wider, lower the baseline, or move things away",
+    )
+}
+
+/// The same where so many windows hold a missing sample.
+pub(super) fn nothing_left(missing: usize) -> Error {
+    if missing == 0 {
+        return nothing_to_see();
+    }
+    Error::malformed(
+        format!("{missing} windows hold a missing sample, and no other has all of its pixels in both views"),
+        "fill missing samples, or make the window smaller; where every row misses some, write derivative = \"central\"",
     )
 }
 

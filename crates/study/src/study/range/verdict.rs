@@ -2,7 +2,8 @@
 
 use super::looked_up::{RangeStudy, SECTIONS};
 use super::results::{BoundMaps, DepthFinding, DepthVerdict, ObjectBounds, Ranging, Signal, SignalBounds};
-use super::subject::{Depth, Resolved};
+use super::subject::{Depth, Measured, Resolved};
+use super::watched::Tally;
 use crate::study::Warning;
 use hadar::cube::Shape;
 use hadar::demand::{Reason, Thing};
@@ -43,8 +44,8 @@ impl RangeStudy {
         let request = self.request(noise.as_ref().unwrap_or(&cube.noise), &[Cell::Full], shape);
         // δd² = 2/J ≤ allowed².
         let required = 2.0 / (allowed_px * allowed_px) / cube.photons_per_unit;
-        let decision = decide(&cube.left, &request, required)
-            .map_err(|error| error.at(self.scenario.place("cube.left")))?;
+        // Where a count is missing, or worse, all windows are looked at: they say what is wrong, if anything is.
+        let Ok(decision) = decide(&cube.left, &request, required) else { return Ok(None) };
         let windows = decision.above.len();
         let share = decision.above.iter().filter(|above| **above).count() as f64 / windows.max(1) as f64;
         let met = share >= requirement.share;
@@ -70,10 +71,12 @@ impl RangeStudy {
             lines: Vec::new(),
             matched: Vec::new(),
             quantile_error: None,
+            missing_windows: 0,
+            maps_begin_at: None,
             stats,
             warnings: {
                 let unseen = self.unseen(&decision.stats, shape, required * cube.photons_per_unit);
-                cube.warnings.iter().cloned().chain(unseen).collect()
+                cube.said().into_iter().chain(unseen).collect()
             },
             maps: BoundMaps::default(),
         }))
@@ -131,7 +134,14 @@ impl RangeStudy {
 
 /// What the reader must know.
 pub(super) fn warnings(study: &RangeStudy, result: &Ranging) -> Vec<Warning> {
-    let mut warnings = Vec::new();
+    let mut warnings = match &study.subject {
+        Resolved::Cube(cube) => cube.said(),
+        Resolved::Scene(_) => Vec::new(),
+    };
+    if result.missing_windows > 0 {
+        let of = [result.maps.rows.len(), result.maps.columns.len()].iter().product();
+        warnings.push(Warning::WindowsMissing { windows: result.missing_windows, of });
+    }
     let Some(all) = result.objects.first() else { return warnings };
     let by = |signal: Signal| all.signals.iter().find(|found| found.signal == signal);
     if let (Some(cube), Some(alone)) = (by(Signal::HeatCube), by(Signal::ScatteredAsMeasured))
@@ -155,7 +165,8 @@ pub(super) fn warnings(study: &RangeStudy, result: &Ranging) -> Vec<Warning> {
     {
         let floor_per_px2 = noise_floor(study, result.shape);
         let found_per_px2 = cube.information_per_px2;
-        if floor_per_px2 > 0.02 * found_per_px2 {
+        // Without texture there is no noise in the counts either.
+        if found_per_px2 > 0.0 && floor_per_px2 > 0.02 * found_per_px2 {
             warnings.push(Warning::NoiseOfFound { floor_per_px2, found_per_px2 });
         }
         if result.objects.iter().all(|object| object.depth_m.is_none()) {
@@ -172,6 +183,30 @@ pub(super) fn warnings(study: &RangeStudy, result: &Ranging) -> Vec<Warning> {
         warnings.push(Warning::FewBands { bands });
     }
     warnings
+}
+
+/// Share of the pixels at one value, and their number, from which on it is no accident.
+const MANY: (f64, usize) = (1e-3, 10);
+/// Share of the pixels that are dark from which on it is said.
+const DARK: f64 = 0.01;
+
+impl Measured {
+    /// What the files say that is in doubt, and what was seen of their samples.
+    fn said(&self) -> Vec<Warning> {
+        let mut said = self.warnings.clone();
+        for (view, watch) in ["left", "right"].into_iter().zip(&self.watches) {
+            let Tally { pixels, most, at_most, dark } = watch.tally();
+            if dark > 0 && dark as f64 >= DARK * pixels as f64 {
+                said.push(Warning::CubeDark { view, pixels: dark, of: pixels });
+            }
+            let (share, number) = MANY;
+            if most > 0.0 && at_most >= number && at_most as f64 >= share * pixels as f64 {
+                let largest = (view == "left").then(|| self.read.largest_stored()).flatten() == Some(most);
+                said.push(Warning::CubeSaturated { view, pixels: at_most, of: pixels, value: most, largest });
+            }
+        }
+        said
+    }
 }
 
 /// Information that noise of N + σ² in each sample would make, pixel⁻²: Σ of the squared taps for every sample.
