@@ -6,7 +6,7 @@
 //!
 //! * [`Setting`], [`Options`]: what is known; [`decompose()`]: a cube to [`Maps`];
 //! * [`widen`]: what an error that all bands and pixels have in common adds to the deviations;
-//! * [`Method`], [`decompose_by`]: methods that it is compared with; [`inverse_error`]: by how much one of them errs;
+//! * [`Method`], [`decompose_by`]: methods that it is compared with; [`decompose_by_rows`]: maps that are too large to be kept; [`inverse_error`]: by how much one of them errs;
 //! * [`SpatialPrior`]: what neighbours tell about a pixel, where it is asked for;
 //! * [`distil()`]: what of the light on a surface is the sky's; [`texture_information()`]: what cube and textures tell of a place;
 //! * [`Pixel`], [`flag`]: what is found of a pixel, and what is said of it.
@@ -40,8 +40,8 @@ mod together;
 pub use distil::{Distilled, Residue, Sky, distil};
 pub use inverse_error::{InverseError, inverse_error};
 pub use library_error::LibraryError;
-pub use maps::{Maps, Options, decompose};
-pub use method::{Method, decompose_by};
+pub use maps::{Maps, Options};
+pub use method::{Method, decompose, decompose_by, decompose_by_rows};
 pub use model::{Light, MOST_SURROUNDINGS, Setting};
 pub use pixel::{CANDIDATE_SHARE, NO_FIT, NO_MATERIAL, Pixel, Spared, flag};
 pub use spatial::{Spatial, SpatialPrior};

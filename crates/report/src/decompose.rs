@@ -6,24 +6,28 @@ mod segmented;
 mod text;
 mod vision;
 
-pub use equalise::{Clahe, Curves};
-pub use figures::maps;
+pub use equalise::{Clahe, Curves, Tiles};
 pub use text::text;
+use vision::Brush;
 pub use vision::{DARKEST, Vision, brightness, saturation};
 
 use crate::bundle::Bundle;
-use crate::plot::image_png;
 use crate::table::{Table, number};
 use hadar::cube::npy_map;
-use hadar::error::Result;
-use hadar_study::study::decompose::{Decomposed, TruthFound};
+use hadar::error::{Error, Result};
+use hadar_study::study::decompose::{Block, Decomposed, Kept, TruthFound};
+use std::fs::File;
+use std::io::BufWriter;
 use std::path::Path;
 
-/// All files; paths in the scenario are written relative to `out` where they lie below it.
+/// The picture, a pixel each.
+const IMAGE: &str = "tex_vision_image.png";
+
+/// All files; paths in the scenario are written relative to `out` where they lie below it. What is too large to be kept is made in `room`.
 ///
 /// # Errors
-/// A figure that cannot be drawn.
-pub fn bundle(result: &Decomposed, out: &Path) -> Result<Bundle> {
+/// A figure that cannot be drawn; maps that cannot be read.
+pub fn bundle(result: &Decomposed, out: &Path, room: Option<&Path>) -> Result<Bundle> {
     let mut bundle = Bundle::about(result.scenario.title.as_deref());
     bundle.add_asked("scenario.toml", result.scenario.to_toml_beside(out));
     bundle.add_table("materials.csv", materials(result))?;
@@ -33,7 +37,49 @@ pub fn bundle(result: &Decomposed, out: &Path) -> Result<Bundle> {
         bundle.add_table("confusion.csv", confusion(result, truth))?;
     }
     bundle.add_warnings(&result.warnings)?;
-    let (maps, size) = (&result.maps, [result.shape.rows(), result.shape.columns()]);
+    let size = [result.shape.rows(), result.shape.columns()];
+    match &result.kept {
+        Kept::InMemory(block) => add_maps(&mut bundle, block, size)?,
+        Kept::InFiles(files) => {
+            for path in files.paths() {
+                let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
+                bundle.add_file(name.unwrap_or_default(), path);
+            }
+        }
+    }
+    let stride = figures::stride(result.shape);
+    let shown = result.kept.every(stride, result.shape)?;
+    if let Some(found) = &result.segmentation {
+        bundle.add("segmentation.npy", npy_map(&size, &found.map)?);
+        bundle.add_table("categories.csv", segmented::categories(found))?;
+        bundle.add_table("objects.csv", segmented::objects(found))?;
+        bundle.add_plots(&[segmented::plot(result, found, &shown, stride)])?;
+    }
+    if let Some(of_sky) = &result.vision.distilled {
+        bundle.add("distilled_texture.npy", npy_map(&size, &of_sky.texture)?);
+        bundle.add("distilled_texture_sigma.npy", npy_map(&size, &of_sky.sigma)?);
+    }
+    let brush = Brush::of(result)?;
+    match room {
+        None => {
+            let mut image = Vec::new();
+            brush.image(&mut image)?;
+            bundle.add(IMAGE, image);
+        }
+        Some(room) => {
+            let path = room.join(IMAGE);
+            let file = File::create(&path).map_err(|error| Error::file("write the picture", &path, error))?;
+            brush.image(BufWriter::new(file))?;
+            bundle.add_file(IMAGE, path);
+        }
+    }
+    bundle.add_plots(&[vision::plot(&brush, &shown, stride), figures::maps(result, &shown, stride)])?;
+    Ok(bundle)
+}
+
+/// The maps of all pixels.
+fn add_maps(bundle: &mut Bundle, block: &Block, size: [usize; 2]) -> Result<()> {
+    let Block { maps, texture, thermal, .. } = block;
     let lights = maps.lighting.len() / maps.material.len().max(1);
     bundle.add("material.npy", npy_map(&size, &maps.material)?);
     bundle.add("temperature_k.npy", npy_map(&size, &maps.temperature_k)?);
@@ -43,23 +89,9 @@ pub fn bundle(result: &Decomposed, out: &Path) -> Result<Bundle> {
     bundle.add("posterior.npy", npy_map(&size, &maps.posterior)?);
     bundle.add("candidates.npy", npy_map(&size, &maps.candidates)?);
     bundle.add("flags.npy", npy_map(&size, &maps.flags)?);
-    bundle.add("texture.npy", npy_map(&size, &result.vision.texture)?);
-    bundle.add("thermal.npy", npy_map(&size, &result.vision.thermal)?);
-    if let Some(found) = &result.segmentation {
-        bundle.add("segmentation.npy", npy_map(&size, &found.map)?);
-        bundle.add_table("categories.csv", segmented::categories(found))?;
-        bundle.add_table("objects.csv", segmented::objects(found))?;
-        bundle.add_plots(&[segmented::plot(result, found, figures::stride(result.shape))])?;
-    }
-    if let Some(of_sky) = &result.vision.distilled {
-        bundle.add("distilled_texture.npy", npy_map(&size, &of_sky.texture)?);
-        bundle.add("distilled_texture_sigma.npy", npy_map(&size, &of_sky.sigma)?);
-    }
-    let vision = Vision::of(result);
-    bundle.add("tex_vision_image.png", image_png(&vision.pixels(), size[1])?);
-    let stride = figures::stride(result.shape);
-    bundle.add_plots(&[vision::plot(result, &vision, stride), figures::maps(result)])?;
-    Ok(bundle)
+    bundle.add("texture.npy", npy_map(&size, texture)?);
+    bundle.add("thermal.npy", npy_map(&size, thermal)?);
+    Ok(())
 }
 
 /// What was found, a row for every material.

@@ -69,6 +69,19 @@ impl Held {
 pub struct Scratch(Staging);
 
 impl Scratch {
+    /// Where temporary files of this machine are, for work without a report.
+    ///
+    /// # Errors
+    /// A folder that cannot be written to.
+    pub fn temporary() -> Result<Self> {
+        let home = std::env::temp_dir();
+        let made = clear(&home, &|_| Ok(())).and_then(|()| Staging::in_folder(&home));
+        made.map(Self).map_err(|error| {
+            let reason = format!("{error}; name another folder by TMPDIR, or a report by --out");
+            Error::file("keep the maps in", &home, reason)
+        })
+    }
+
     /// A folder for them.
     #[must_use]
     pub fn place(&self) -> PathBuf {

@@ -142,12 +142,16 @@ pub fn render_png(figure: &Figure) -> Result<Vec<u8>> {
     png::paint(&scene(figure)?)
 }
 
-/// A bare image of so many columns as a PNG file, a pixel each.
+/// An image of so many rows and columns as a PNG file, whose pixels `paint` hands on row after row, whole rows at a time.
 ///
 /// # Errors
-/// An image without a pixel.
-pub fn image_png(pixels: &[Rgb], columns: usize) -> Result<Vec<u8>> {
-    png::raster(pixels, columns)
+/// An image of no pixels; more or fewer pixels than it has; what `paint` meets.
+pub fn image_png(
+    to: impl std::io::Write,
+    size: [usize; 2],
+    paint: &mut dyn FnMut(&mut dyn FnMut(&[Rgb]) -> Result<()>) -> Result<()>,
+) -> Result<()> {
+    png::by_rows(to, size, paint)
 }
 
 /// Both, laid out once.

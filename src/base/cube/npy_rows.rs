@@ -1,10 +1,11 @@
-//! NPY files written by rows, in any order and by several threads: maps that are larger than memory.
+//! NPY files written and read again by rows, in any order and by several threads: maps that are larger than memory.
 
 use super::npy::{Value, array};
 use crate::error::{Error, Result};
 use std::fs::File;
-use std::io::{Seek, SeekFrom, Write};
+use std::io::{Read, Seek, SeekFrom, Write};
 use std::marker::PhantomData;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
@@ -17,6 +18,7 @@ use std::sync::{Mutex, PoisonError};
 /// let file = NpyRows::<u16>::create(&path, &[3, 2])?;
 /// file.write(1, &[3, 4, 5, 6])?;
 /// file.write(0, &[1, 2])?;
+/// assert_eq!(file.read(1..3)?, [3, 4, 5, 6]);
 /// assert_eq!(std::fs::read(&path)?, npy_map::<u16>(&[3, 2], &[1, 2, 3, 4, 5, 6])?);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -42,7 +44,7 @@ impl<V: Value> NpyRows<V> {
         let rows = dimensions.first().copied().unwrap_or(0);
         let width: usize = dimensions.iter().skip(1).product();
         let begin = || -> std::io::Result<(File, u64)> {
-            let mut file = File::create(path)?;
+            let mut file = File::options().read(true).write(true).create(true).truncate(true).open(path)?;
             array::<V>(&mut file, V::NAME, dimensions, &[])?;
             let start = file.stream_position()?;
             file.set_len(start + (rows * width * size_of::<V>()) as u64)?;
@@ -72,6 +74,24 @@ impl<V: Value> NpyRows<V> {
             .map_err(|error| Error::file("write the map", &self.path, error))
     }
 
+    /// The values of whole rows, as they were written.
+    ///
+    /// # Errors
+    /// Rows that are none; a file that cannot be read.
+    pub fn read(&self, rows: Range<usize>) -> Result<Vec<V>> {
+        if rows.start > rows.end || rows.end > self.rows {
+            let found = format!("rows {} to {} of a map", rows.start, rows.end);
+            return Err(Error::malformed(found, format!("the map has {} rows", self.rows)));
+        }
+        let mut values = vec![V::zeroed(); rows.len() * self.width];
+        let place = self.start + (rows.start * self.width * size_of::<V>()) as u64;
+        let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
+        file.seek(SeekFrom::Start(place))
+            .and_then(|_| file.read_exact(bytemuck::cast_slice_mut(&mut values)))
+            .map_err(|error| Error::file("read the map", &self.path, error))?;
+        Ok(values)
+    }
+
     /// Where it is.
     #[must_use]
     pub fn path(&self) -> &Path {
@@ -91,6 +111,8 @@ mod tests {
             assert!(file.write(first, &vec![1.0; len]).is_err(), "{first} {len}");
         }
         file.write(1, &[1.0; 3]).unwrap();
+        assert_eq!(file.read(0..2).unwrap(), [0.0, 0.0, 0.0, 1.0, 1.0, 1.0]);
+        assert!(file.read(1..3).is_err());
         assert_eq!(std::fs::metadata(file.path()).unwrap().len(), 128 + 24);
         assert!(NpyRows::<f32>::create(&folder.path().join("none/a.npy"), &[2, 3]).is_err());
     }

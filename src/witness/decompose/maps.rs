@@ -1,6 +1,7 @@
 //! A whole cube: rows in parallel, each read, decomposed and put into the maps.
 //!
-//! Every pixel is for itself, but for a prior over the image ([`super::spatial`]), so the maps are the same for any number of threads, and only the rows that are in work are in memory.
+//! Every pixel is for itself, but for a prior over the image ([`super::spatial`]), so the maps are the same for any number of threads
+//! and of rows that are worked at once, and only these are in memory.
 
 use super::library_error::{Errors, LibraryError};
 use super::model::{MOST_SURROUNDINGS, Model, Setting};
@@ -11,6 +12,7 @@ use crate::cube::{CubeRef, Rows, Sample};
 use crate::demand::Skipping;
 use crate::error::{Error, Result};
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Rows whose mean the bounds are laid out for.
 const SAMPLED_ROWS: usize = 16;
@@ -53,21 +55,21 @@ pub struct Maps {
     pub spatial: Option<Spatial>,
 }
 
-/// Decomposes a cube of counts; `done` is told how many rows are finished.
-///
-/// # Errors
-/// A setting that is impossible or of another number of bands than the cube; a cube that cannot be read.
-pub fn decompose<'c>(
+/// How many rows are worked at once, and who is given their maps, with the first of the rows: one block after the other.
+pub(super) type Blocks<'a> = (usize, &'a mut dyn FnMut(usize, Maps) -> Result<()>);
+
+/// By maximum likelihood.
+pub(super) fn likeliest(
     setting: &Setting<'_>,
     options: &Options,
-    cube: impl Into<CubeRef<'c>>,
+    cube: CubeRef<'_>,
+    blocks: Blocks<'_>,
     done: &(dyn Fn(usize) + Sync),
-) -> Result<Maps> {
-    let cube = cube.into();
+) -> Result<()> {
     check_bands(setting, cube)?;
     match cube {
-        CubeRef::F32(rows) => whole(setting, options, rows, done),
-        CubeRef::F64(rows) => whole(setting, options, rows, done),
+        CubeRef::F32(rows) => whole(setting, options, rows, blocks, done),
+        CubeRef::F64(rows) => whole(setting, options, rows, blocks, done),
     }
 }
 
@@ -83,8 +85,9 @@ fn whole<S: Sample>(
     setting: &Setting<'_>,
     options: &Options,
     cube: &dyn Rows<S>,
+    blocks: Blocks<'_>,
     done: &(dyn Fn(usize) + Sync),
-) -> Result<Maps> {
+) -> Result<()> {
     options.spatial.as_ref().map_or(Ok(()), |prior| prior.check(options.library_error.is_some()))?;
     let model = Model::new(setting)?;
     let per_unit = 1.0 / setting.units_per_count;
@@ -107,16 +110,15 @@ fn whole<S: Sample>(
         };
     let surroundings = setting.surroundings.len();
     let Some(prior) = &options.spatial else {
-        let rows = by_rows.all(|| task.room(), pixel, |pixels| Maps::of(&pixels, surroundings))?;
-        return Ok(Maps::joined(rows));
+        return by_rows.in_blocks(blocks, || task.room(), pixel, surroundings);
     };
-    let rows = by_rows.all(|| task.room(), pixel, |pixels| pixels)?;
+    let rows = by_rows.rows(0..cube.shape().rows(), &|| task.room(), &pixel, &|pixels| pixels)?;
     let spared = rows.iter().fold(Spared::default(), |sum, (_, spared, _)| sum + *spared);
     let (pixels, kept): (Vec<Vec<Pixel>>, Vec<KeptRow>) =
         rows.into_iter().map(|(pixels, _, kept)| (pixels, kept)).unzip();
     let (mut pixels, kept) = (pixels.concat(), Kept::of_rows(kept));
     let (more, about) = prior.apply(&task, &kept, &mut pixels, (cube, per_unit))?;
-    Ok(Maps { spared: spared + more, spatial: Some(about), ..Maps::of(&pixels, surroundings) })
+    blocks.1(0, Maps { spared: spared + more, spatial: Some(about), ..Maps::of(&pixels, surroundings) })
 }
 
 /// Whether all bands have noise added, so that samples may come out below 0.
@@ -134,18 +136,37 @@ pub(super) struct ByRows<'a, S> {
 }
 
 /// What is kept of the pixels of a row, what was spared in it, and what is kept of it besides.
-pub(super) type Row<P, K> = (P, Spared, K);
+type Row<P> = (P, Spared, KeptRow);
 
 impl<S: Sample> ByRows<'_, S> {
-    /// What `pixel` makes of the samples of every pixel, with room of its own for each thread. It is given the pixel before in the
+    /// The maps of what `pixel` makes of every pixel ([`Self::rows`]), some rows at a time.
+    pub(super) fn in_blocks<R>(
+        &self,
+        (height, take): Blocks<'_>,
+        room: impl Fn() -> R + Sync,
+        pixel: impl Fn(&mut R, &[S], Option<Pixel>, &mut Spared, &mut KeptRow) -> Pixel + Sync,
+        surroundings: usize,
+    ) -> Result<()> {
+        let rows = self.cube.shape().rows();
+        let height = height.clamp(1, rows);
+        for first in (0..rows).step_by(height) {
+            let block = first..rows.min(first + height);
+            let block = self.rows(block, &room, &pixel, &|pixels| Maps::of(&pixels, surroundings))?;
+            take(first, Maps::joined(block))?;
+        }
+        Ok(())
+    }
+
+    /// What `pixel` makes of the samples of every pixel of some rows, with room of its own for each thread. It is given the pixel before in the
     /// row where that has the same samples: dead, dark and saturated regions do. Of a row that is done, only what `keep` makes of
     /// it is kept.
-    pub(super) fn all<R, P: Send, K: Default + Send>(
+    fn rows<R, P: Send>(
         &self,
-        room: impl Fn() -> R + Sync,
-        pixel: impl Fn(&mut R, &[S], Option<Pixel>, &mut Spared, &mut K) -> Pixel + Sync,
-        keep: impl Fn(Vec<Pixel>) -> P + Sync,
-    ) -> Result<Vec<Row<P, K>>> {
+        rows: Range<usize>,
+        room: &(impl Fn() -> R + Sync),
+        pixel: &(impl Fn(&mut R, &[S], Option<Pixel>, &mut Spared, &mut KeptRow) -> Pixel + Sync),
+        keep: &(impl Fn(Vec<Pixel>) -> P + Sync),
+    ) -> Result<Vec<Row<P>>> {
         let shape = self.cube.shape();
         let is_count = |n: f64| n >= 0.0 || n.is_nan();
         let of_row = |(room, buffer): &mut (R, Vec<S>), row: usize| {
@@ -157,7 +178,7 @@ impl<S: Sample> ByRows<'_, S> {
                 let place = (row, at / shape.bands(), at % shape.bands());
                 return Err(negative(samples[at].into(), place));
             }
-            let (mut spared, mut kept) = (Spared::default(), K::default());
+            let (mut spared, mut kept) = (Spared::default(), KeptRow::default());
             let mut pixels: Vec<Pixel> = Vec::with_capacity(shape.columns());
             let mut before = None;
             for sample in samples.chunks(shape.bands()) {
@@ -168,7 +189,7 @@ impl<S: Sample> ByRows<'_, S> {
             (self.done)(1);
             Ok((keep(pixels), spared, kept))
         };
-        (0..shape.rows()).into_par_iter().map_init(|| (room(), Vec::new()), of_row).collect()
+        rows.into_par_iter().map_init(|| (room(), Vec::new()), of_row).collect()
     }
 }
 
@@ -248,7 +269,7 @@ impl Maps {
     }
 
     /// The maps of rows, one below the other.
-    pub(super) fn joined<K>(rows: Vec<Row<Self, K>>) -> Self {
+    fn joined(rows: Vec<Row<Self>>) -> Self {
         let mut all = Self::default();
         for (row, spared, _) in rows {
             all.material.extend(row.material);
@@ -264,7 +285,7 @@ impl Maps {
         all
     }
 
-    pub(super) fn of(pixels: &[Pixel], surroundings: usize) -> Self {
+    fn of(pixels: &[Pixel], surroundings: usize) -> Self {
         let all = || pixels.iter();
         let mut lighting = Vec::with_capacity(pixels.len() * surroundings);
         all().for_each(|p| {

@@ -15,7 +15,7 @@
 
 use super::grey_body::GreyBody;
 use super::inverse::Inverse;
-use super::maps::{ByRows, Maps, Options, Row, check_bands, decompose, is_signed};
+use super::maps::{Blocks, ByRows, Maps, Options, check_bands, is_signed, likeliest};
 use super::model::{Model, Setting};
 use super::pixel::Pixel;
 use crate::cube::{CubeRef, Rows, Sample};
@@ -64,6 +64,19 @@ impl Method {
     }
 }
 
+/// Decomposes a cube of counts; `done` is told how many rows are finished.
+///
+/// # Errors
+/// A setting that is impossible or of another number of bands than the cube; a cube that cannot be read.
+pub fn decompose<'c>(
+    setting: &Setting<'_>,
+    options: &Options,
+    cube: impl Into<CubeRef<'c>>,
+    done: &(dyn Fn(usize) + Sync),
+) -> Result<Maps> {
+    decompose_by(Method::Ml, setting, options, cube, done)
+}
+
 /// Decomposes a cube by a method, as [`decompose`] does by maximum likelihood. Priors and errors of the library are those of the
 /// methods with a likelihood.
 ///
@@ -76,30 +89,54 @@ pub fn decompose_by<'c>(
     cube: impl Into<CubeRef<'c>>,
     done: &(dyn Fn(usize) + Sync),
 ) -> Result<Maps> {
+    let mut all = Maps::default();
+    let take = &mut |_: usize, maps: Maps| {
+        all = maps;
+        Ok(())
+    };
+    decompose_by_rows(method, setting, options, cube, (usize::MAX, take), done)?;
+    Ok(all)
+}
+
+/// [`decompose_by`] for maps that are too large to be kept: so many rows at once, whose maps `take` is given with the first of the rows,
+/// one block after the other. With a prior over the image all rows are one block.
+///
+/// # Errors
+/// As [`decompose_by`], and what `take` refuses.
+pub fn decompose_by_rows<'c>(
+    method: Method,
+    setting: &Setting<'_>,
+    options: &Options,
+    cube: impl Into<CubeRef<'c>>,
+    (height, take): (usize, &mut dyn FnMut(usize, Maps) -> Result<()>),
+    done: &(dyn Fn(usize) + Sync),
+) -> Result<()> {
     if !method.has_likelihood() && setting.gain {
         let found = format!("an unknown gain and the method {}", method.name());
         return Err(Error::malformed(found, "calibrate the camera, or take the method ml or te"));
     }
     match (method, cube.into()) {
-        (Method::Ml, cube) => decompose(setting, options, cube, done),
+        (Method::Ml, cube) => likeliest(setting, options, cube, (height, take), done),
         (Method::Te, cube) => {
             let dark = Setting { surroundings: &[], lighting_total: None, ..*setting };
-            let mut maps = decompose(&dark, options, cube, done)?;
-            maps.lighting = vec![f32::NAN; maps.material.len() * setting.surroundings.len()];
-            Ok(maps)
+            let mut unlit = |first: usize, mut maps: Maps| {
+                maps.lighting = vec![f32::NAN; maps.material.len() * setting.surroundings.len()];
+                take(first, maps)
+            };
+            likeliest(&dark, options, cube, (height, &mut unlit), done)
         }
-        (_, cube @ CubeRef::F32(rows)) => compared(method, setting, rows, cube, done),
-        (_, cube @ CubeRef::F64(rows)) => compared(method, setting, rows, cube, done),
+        (_, cube @ CubeRef::F32(rows)) => compared(method, setting, (rows, cube), (height, take), done),
+        (_, cube @ CubeRef::F64(rows)) => compared(method, setting, (rows, cube), (height, take), done),
     }
 }
 
 fn compared<S: Sample>(
     method: Method,
     setting: &Setting<'_>,
-    rows: &dyn Rows<S>,
-    cube: CubeRef<'_>,
+    (rows, cube): (&dyn Rows<S>, CubeRef<'_>),
+    (height, take): Blocks<'_>,
     done: &(dyn Fn(usize) + Sync),
-) -> Result<Maps> {
+) -> Result<()> {
     check_bands(setting, cube)?;
     let signed = is_signed(&Model::new(setting)?);
     let by_rows = ByRows { cube: rows, signed, done };
@@ -113,14 +150,14 @@ fn compared<S: Sample>(
         }));
         room.iter().all(|n| n.is_finite())
     };
-    let all = |pixel: &(dyn Fn(&[f64]) -> Pixel + Sync)| -> Result<Vec<Row<Maps, ()>>> {
-        let own = |room: &mut Vec<f64>, sample: &[S], _, _: &mut _, (): &mut ()| match counts(room, sample) {
+    let mut all = |pixel: &(dyn Fn(&[f64]) -> Pixel + Sync)| {
+        let own = |room: &mut Vec<f64>, sample: &[S], _, _: &mut _, _: &mut _| match counts(room, sample) {
             true => pixel(room),
             false => Pixel::SKIPPED,
         };
-        by_rows.all(Vec::new, own, |pixels| Maps::of(&pixels, setting.surroundings.len()))
+        by_rows.in_blocks((height, &mut *take), Vec::new, own, setting.surroundings.len())
     };
-    let rows = match method {
+    match method {
         Method::GreyBody => {
             let grey = GreyBody::new(setting, &used);
             all(&|counts| grey.pixel(counts))
@@ -129,6 +166,5 @@ fn compared<S: Sample>(
             let inverse = Inverse::new(setting)?;
             all(&|counts| inverse.pixel(counts))
         }
-    }?;
-    Ok(Maps::joined(rows))
+    }
 }

@@ -5,8 +5,9 @@ use clap::Args;
 use hadar::decompose::Method;
 use hadar::error::Result;
 use hadar_report::decompose;
+use hadar_report::folder::Scratch;
 use hadar_study::scenario::DecomposeScenario;
-use hadar_study::study::decompose::DecomposeStudy;
+use hadar_study::study::decompose::{DecomposeStudy, Keep};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -47,12 +48,18 @@ pub(super) fn run(args: &DecomposeArgs, global: &Global) -> Result<ExitCode> {
     let scenario = DecomposeScenario::from_file(&args.scenario)?;
     let study = DecomposeStudy::new(&scenario, &global.library()?)?;
     global.inputs_are_safe()?;
+    let scratch = match study.wants_files() {
+        true => Some(global.scratch()?.map_or_else(Scratch::temporary, Ok)?),
+        false => None,
+    };
+    let room = scratch.as_ref().map(Scratch::place);
+    let keep = room.as_deref().map_or(Keep::InMemory, |room| Keep::in_files(room, study.shape()));
     let bar = global.progress("rows");
     let mut result =
-        study.decompose(args.method.into(), global.skipping(), &|done, total| bar.set(done, total))?;
+        study.decompose(args.method.into(), global.skipping(), keep, &|done, total| bar.set(done, total))?;
     bar.finish();
     let text = decompose::text(&result);
-    result.stats.add(&global.report(&text, |out| decompose::bundle(&result, out))?);
+    result.stats.add(&global.report(&text, |out| decompose::bundle(&result, out, room.as_deref()))?);
     global.answer(&result, &text, &result.stats)?;
     Ok(ExitCode::SUCCESS)
 }

@@ -31,18 +31,18 @@ lighting = "lighting.npy"
 
 const ROWS: usize = 2;
 const COLUMNS: usize = 3;
-const BANDS: usize = 21;
+pub(crate) const BANDS: usize = 21;
 
-fn wavenumber(band: usize) -> f64 {
+pub(crate) fn wavenumber(band: usize) -> f64 {
     800.0 + 20.0 * band as f64
 }
 
-fn emissivity(material: usize, band: usize) -> f64 {
+pub(crate) fn emissivity(material: usize, band: usize) -> f64 {
     let nu = wavenumber(band);
     [0.9 + 0.05 * (nu / 30.0).sin(), 0.5 + 0.3 * (-((nu - 1000.0) / 50.0).powi(2)).exp()][material]
 }
 
-fn sky(band: usize) -> f64 {
+pub(crate) fn sky(band: usize) -> f64 {
     photon_radiance(wavenumber(band), 260.0) * (0.7 + 0.2 * (wavenumber(band) / 45.0).cos())
 }
 

@@ -13,6 +13,7 @@ mod cli_mistakes;
 mod companion;
 mod cubes;
 mod decompose;
+mod decompose_by_rows;
 mod decompose_image;
 mod demand;
 mod extremes;

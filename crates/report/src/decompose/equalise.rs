@@ -117,24 +117,21 @@ impl Clahe {
     /// The maps that equalise an image `[row][column]`.
     #[must_use]
     pub fn curves(self, values: &[f64], columns: usize) -> Curves {
-        let rows = values.len().checked_div(columns).unwrap_or(0);
         let finite = values.iter().copied().filter(|value| value.is_finite());
-        let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
+        let ends = finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], x| [l.min(x), h.max(x)]);
+        let mut tiles = self.tiles(values.len().checked_div(columns).unwrap_or(0), columns, ends);
+        tiles.count(0, values.iter().copied());
+        tiles.curves()
+    }
+
+    /// Counts an image of so many rows and columns, whose values lie between `ends`, part by part.
+    #[must_use]
+    pub fn tiles(self, rows: usize, columns: usize, ends: [f64; 2]) -> Tiles {
         let [down, across] = self.tiles.map(|count| count.max(1));
-        let mut curves =
-            Curves { rows, columns, tiles: [down, across], ends: [low, high], shares: Vec::new() };
-        if low >= high {
-            return curves;
-        }
-        let mut tiles = vec![vec![0.0; BINS]; down * across];
-        for (i, value) in values.iter().enumerate().filter(|(_, value)| value.is_finite()) {
-            let (row, column) = (i / columns * down / rows, i % columns * across / columns);
-            let bin = (curves.place(*value) as usize).min(BINS - 1);
-            let count = tiles.get_mut(row * across + column).and_then(|tile| tile.get_mut(bin));
-            count.into_iter().for_each(|count| *count += 1.0);
-        }
-        curves.shares = tiles.into_iter().map(|tile| self.below(tile)).collect();
-        curves
+        let [low, high] = ends;
+        let counts = if low < high { vec![vec![0.0; BINS]; down * across] } else { Vec::new() };
+        let curves = Curves { rows, columns, tiles: [down, across], ends, shares: Vec::new() };
+        Tiles { clahe: self, curves, counts }
     }
 
     /// Shares of a histogram below each edge of its bins, once it is limited; nothing of an empty one.
@@ -155,6 +152,35 @@ impl Clahe {
             Some(*sum / total)
         });
         std::iter::once(0.0).chain(sums).collect()
+    }
+}
+
+/// The histograms of the tiles of an image.
+#[derive(Debug, Clone)]
+pub struct Tiles {
+    clahe: Clahe,
+    curves: Curves,
+    /// `[tile][bin]`; empty for an image of one value.
+    counts: Vec<Vec<f64>>,
+}
+
+impl Tiles {
+    /// Counts values from the pixel `first` on, counted row after row.
+    pub fn count(&mut self, first: usize, values: impl Iterator<Item = f64>) {
+        let Curves { rows, columns, tiles: [down, across], .. } = self.curves;
+        for (i, value) in (first..).zip(values).filter(|(_, value)| value.is_finite()) {
+            let (row, column) = (i / columns * down / rows, i % columns * across / columns);
+            let bin = (self.curves.place(value) as usize).min(BINS - 1);
+            let count = self.counts.get_mut(row * across + column).and_then(|tile| tile.get_mut(bin));
+            count.into_iter().for_each(|count| *count += 1.0);
+        }
+    }
+
+    /// The maps that equalise the image.
+    #[must_use]
+    pub fn curves(self) -> Curves {
+        let shares = self.counts.into_iter().map(|tile| self.clahe.below(tile)).collect();
+        Curves { shares, ..self.curves }
     }
 }
 

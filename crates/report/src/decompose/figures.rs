@@ -4,7 +4,7 @@ use crate::figures::Plot;
 use crate::plot::{Axis, Picture, Pictures};
 use crate::table::{Table, number};
 use hadar::cube::Shape;
-use hadar_study::study::decompose::Decomposed;
+use hadar_study::study::decompose::{Block, Decomposed};
 
 /// Widest picture, pixels: of larger cubes every second, third… row and column is shown.
 const WIDEST: usize = 320;
@@ -14,52 +14,46 @@ pub(super) fn stride(shape: Shape) -> usize {
     shape.columns().max(shape.rows()).div_ceil(WIDEST)
 }
 
-/// The maps.
+/// Row, column and place, counted row after row, of every pixel that is shown, and how many are side by side.
+pub(super) fn places(shape: Shape, stride: usize) -> (Vec<[usize; 3]>, usize) {
+    let (rows, columns) = (shape.rows(), shape.columns());
+    let of_row =
+        |row: usize| (0..columns).step_by(stride).map(move |column| [row, column, row * columns + column]);
+    ((0..rows).step_by(stride).flat_map(of_row).collect(), columns.div_ceil(stride))
+}
+
+/// The maps, of the pixels that are shown.
 #[must_use]
-pub fn maps(result: &Decomposed) -> Plot {
+pub(super) fn maps(result: &Decomposed, shown: &Block, stride: usize) -> Plot {
     let (rows, columns) = (result.shape.rows(), result.shape.columns());
-    let stride = stride(result.shape);
-    let shown: Vec<(usize, usize)> = (0..rows)
-        .step_by(stride)
-        .flat_map(|row| (0..columns).step_by(stride).map(move |column| (row, column)))
-        .collect();
-    let take = |value: &dyn Fn(usize) -> f64| -> Vec<f64> {
-        shown.iter().map(|(row, column)| value(row * columns + column)).collect()
-    };
-    let maps = &result.maps;
+    let (places, wide) = places(result.shape, stride);
+    let maps = &shown.maps;
     let none = |x: f64| if x.is_finite() { x } else { f64::NAN };
-    let layers = [
+    let whole = |of: &[u16], nothing: u16| -> Vec<f64> {
+        of.iter().map(|x| if *x == nothing { f64::NAN } else { f64::from(*x) }).collect()
+    };
+    let layers: [(&str, &str, Axis, Vec<f64>); 4] = [
         (
             "temperature_k",
             "Temperature",
             Axis::linear("temperature (K)"),
-            take(&|i| none(maps.temperature_k[i].into())),
+            maps.temperature_k.iter().map(|t| none(f64::from(*t))).collect(),
         ),
         (
             "temperature_sigma_k",
             "Its deviation",
             Axis::log("standard deviation (K)"),
-            take(&|i| none(maps.temperature_sigma_k[i].into())),
+            maps.temperature_sigma_k.iter().map(|sigma| none(f64::from(*sigma))).collect(),
         ),
-        (
-            "material",
-            "Material",
-            Axis::linear("index in the library"),
-            take(&|i| if maps.material[i] == u16::MAX { f64::NAN } else { maps.material[i].into() }),
-        ),
-        (
-            "candidates",
-            "Materials that 95 % leave",
-            Axis::linear("materials"),
-            take(&|i| if maps.candidates[i] == 0 { f64::NAN } else { maps.candidates[i].into() }),
-        ),
+        ("material", "Material", Axis::linear("index in the library"), whole(&maps.material, u16::MAX)),
+        ("candidates", "Materials that 95 % leave", Axis::linear("materials"), whole(&maps.candidates, 0)),
     ];
     let mut table = Table::new(["row", "column"].into_iter().chain(layers.iter().map(|layer| layer.0)));
-    for (i, (row, column)) in shown.iter().enumerate() {
-        let values = layers.iter().map(|layer| number(layer.3[i]));
+    for (i, [row, column, _]) in places.iter().enumerate() {
+        let values =
+            layers.iter().map(|layer| layer.3.get(i).map_or_else(String::new, |value| number(*value)));
         table.push([row.to_string(), column.to_string()].into_iter().chain(values).collect());
     }
-    let wide = columns.div_ceil(stride);
     let pictures =
         layers.into_iter().map(|(_, title, axis, values)| Picture::new(title, axis, wide, values)).collect();
     let every = match stride {

@@ -1,11 +1,12 @@
 //! A segmented cube: categories and objects in words, tables and a picture.
 
+use super::figures::places;
 use crate::figures::Plot;
 use crate::plot::{Axis, Painted, Picture, Pictures, categorical};
 use crate::table::{Table, number};
 use hadar::segmentation::{Agreement, Rule};
 use hadar::words::{share, significant, whole};
-use hadar_study::study::decompose::{Decomposed, Segmented};
+use hadar_study::study::decompose::{Block, Decomposed, Segmented};
 use std::fmt::Write as _;
 
 /// 0 degC, K.
@@ -147,32 +148,21 @@ pub(super) fn objects(found: &Segmented) -> Table {
     table
 }
 
-/// The map of categories beside the thermal image, every `stride`th row and column of them.
-pub(super) fn plot(result: &Decomposed, found: &Segmented, stride: usize) -> Plot {
-    let (rows, columns) = (result.shape.rows(), result.shape.columns());
-    let shown: Vec<usize> = (0..rows)
-        .step_by(stride)
-        .flat_map(|row| (0..columns).step_by(stride).map(move |column| row * columns + column))
-        .collect();
+/// The map of categories beside the thermal image, of the pixels that are shown: every `stride`th row and column.
+pub(super) fn plot(result: &Decomposed, found: &Segmented, shown: &Block, stride: usize) -> Plot {
+    let (places, wide) = places(result.shape, stride);
     let colour = |category: u8| match usize::from(category) {
         place if place < found.categories.len() => categorical(place),
         _ => NONE,
     };
-    let of = |i: &usize| found.map.get(*i).copied().unwrap_or(u8::MAX);
-    let pixels = shown.iter().map(|i| colour(of(i))).collect();
-    let thermal: Vec<f64> =
-        shown.iter().map(|i| result.vision.thermal.get(*i).map_or(f64::NAN, |x| f64::from(*x))).collect();
+    let of = |at: &usize| found.map.get(*at).copied().unwrap_or(u8::MAX);
+    let pixels = places.iter().map(|[_, _, at]| colour(of(at))).collect();
+    let thermal: Vec<f64> = shown.thermal.iter().map(|x| f64::from(*x)).collect();
     let mut table = Table::new(["row", "column", "category", "thermal_photons_s1_m2_sr1"]);
-    for (i, thermal) in shown.iter().zip(&thermal) {
-        let name = found.categories.get(usize::from(of(i))).map_or("", |row| row.category.as_str());
-        table.push(vec![
-            (i / columns).to_string(),
-            (i % columns).to_string(),
-            name.to_owned(),
-            number(*thermal),
-        ]);
+    for ([row, column, at], thermal) in places.iter().zip(&thermal) {
+        let name = found.categories.get(usize::from(of(at))).map_or("", |row| row.category.as_str());
+        table.push(vec![row.to_string(), column.to_string(), name.to_owned(), number(*thermal)]);
     }
-    let wide = columns.div_ceil(stride);
     let pictures = vec![
         Picture::painted("Categories", Axis::linear(""), wide, Painted { pixels, ramp: None }),
         Picture::new(

@@ -4,12 +4,16 @@
 //! grey; grey is what is undecided. Brightness goes from [`DARKEST`] to 1 over the logarithm of the texture X, equalised
 //! ([`super::equalise`]), so that hues are seen in the shade too; where the lighting is unknown it is in the middle.
 
-use super::equalise::{Clahe, LIMIT};
+use super::equalise::{Clahe, Curves, LIMIT};
+use super::figures::places;
 use crate::figures::Plot;
-use crate::plot::{Axis, Painted, Picture, Pictures};
+use crate::plot::{Axis, Painted, Picture, Pictures, Rgb, image_png};
 use crate::table::{Table, number};
+use hadar::error::Result;
 use hadar_study::scenario::decompose::Brightness;
-use hadar_study::study::decompose::Decomposed;
+use hadar_study::study::decompose::{Block, Decomposed, ranked};
+use rayon::prelude::*;
+use std::io::Write;
 
 /// Saturation at the lower limit of the temperature; the paper has 0, which is also that of nothing known.
 const PALEST: f64 = 0.25;
@@ -34,10 +38,39 @@ pub struct Vision {
 }
 
 impl Vision {
-    /// Of a decomposed cube.
+    /// Colours of the pixels, red, green and blue.
     #[must_use]
-    pub fn of(result: &Decomposed) -> Self {
-        let (maps, asked) = (&result.maps, &result.vision);
+    pub fn pixels(&self) -> Vec<Rgb> {
+        let each = self.hue_deg.iter().zip(self.saturation.iter().zip(&self.brightness));
+        each.map(|(hue, (s, v))| rgb(hue.unwrap_or(0.0), *s, *v)).collect()
+    }
+}
+
+/// What pixels of a decomposed cube are painted with.
+#[derive(Debug)]
+pub(super) struct Brush<'a> {
+    result: &'a Decomposed,
+    tones: Tones,
+}
+
+impl<'a> Brush<'a> {
+    /// Laid out by the textures of all pixels.
+    pub(super) fn of(result: &'a Decomposed) -> Result<Self> {
+        let [rows, columns] = [result.shape.rows(), result.shape.columns()];
+        let tones = Tones::of(rows, columns, &mut |take| {
+            result.kept.each(&mut |block| {
+                let first = block.first * columns;
+                let of_block = first..first + block.texture.len();
+                take(first, of_sky(result).and_then(|all| all.get(of_block)).unwrap_or(&block.texture));
+                Ok(())
+            })
+        })?;
+        Ok(Self { result, tones })
+    }
+
+    /// Hue, saturation and brightness of the pixels of a block, which are at these `places`, counted row after row.
+    pub(super) fn vision(&self, block: &Block, places: impl Iterator<Item = usize>) -> Vision {
+        let (maps, asked) = (&block.maps, &self.result.vision);
         let hue = |i: usize| {
             let material = maps.material.get(i).filter(|_| maps.is_decided(i))?;
             asked.hues_deg.get(usize::from(*material)).copied()
@@ -49,17 +82,78 @@ impl Vision {
             None => 0.0,
         });
         let saturation = saturations.collect();
-        let is_of_sky = result.scenario.vision.brightness == Brightness::Distilled;
-        let of_sky = asked.distilled.as_ref().filter(|_| is_of_sky);
-        let texture = of_sky.map_or(&asked.texture, |of_sky| &of_sky.texture);
-        Self { hue_deg, saturation, brightness: brightness(texture, result.shape.columns()) }
+        let of_sky = of_sky(self.result);
+        let lit: Vec<(usize, f32)> = places
+            .zip(&block.texture)
+            .map(|(at, own)| (at, of_sky.and_then(|all| all.get(at)).copied().unwrap_or(*own)))
+            .collect();
+        let brightness =
+            lit.into_par_iter().map(|(at, texture)| self.tones.brightness(at, texture)).collect();
+        Vision { hue_deg, saturation, brightness }
     }
 
-    /// Colours of the pixels, red, green and blue.
-    #[must_use]
-    pub fn pixels(&self) -> Vec<(u8, u8, u8)> {
-        let each = self.hue_deg.iter().zip(self.saturation.iter().zip(&self.brightness));
-        each.map(|(hue, (s, v))| rgb(hue.unwrap_or(0.0), *s, *v)).collect()
+    /// The picture, a pixel each.
+    pub(super) fn image(&self, to: impl Write) -> Result<()> {
+        let shape = self.result.shape;
+        image_png(to, [shape.rows(), shape.columns()], &mut |put| {
+            self.result
+                .kept
+                .each(&mut |block| put(&self.vision(block, block.first * shape.columns()..).pixels()))
+        })
+    }
+}
+
+/// The texture of the sky's light, if brightness is to be that.
+fn of_sky(result: &Decomposed) -> Option<&[f32]> {
+    let is_asked = result.scenario.vision.brightness == Brightness::Distilled;
+    result.vision.distilled.as_ref().filter(|_| is_asked).map(|of_sky| of_sky.texture.as_slice())
+}
+
+/// How textures become brightness: their logarithms, equalised; those of the darkest and the brightest few at the ends of the others.
+#[derive(Debug)]
+struct Tones {
+    /// The least and the most texture that are told from what is beyond; none without any.
+    ends: Option<[f32; 2]>,
+    curves: Curves,
+}
+
+/// Hands on textures, with the place of the first of them.
+type Take<'a> = dyn FnMut(usize, &[f32]) + 'a;
+
+impl Tones {
+    /// Of an image whose textures `pass` hands on, all of them each time.
+    fn of(rows: usize, columns: usize, pass: &mut dyn FnMut(&mut Take<'_>) -> Result<()>) -> Result<Self> {
+        let rank = |share: f64, count: u64| (share * (count.max(1) - 1) as f64) as u64;
+        let found = ranked(&[&[BEYOND, 1.0 - BEYOND]], rank, &mut |count| {
+            pass(&mut |_, textures| {
+                textures.iter().filter(|x| **x > 0.0 && x.is_finite()).for_each(|x| count(0, *x));
+            })
+        })?;
+        let ends = match found.first().map(Vec::as_slice) {
+            Some([Some(low), Some(high)]) => Some([*low, *high]),
+            _ => None,
+        };
+        let span = ends.map_or([f64::NAN; 2], |ends| ends.map(|x| f64::from(x).ln()));
+        let mut tiles = Clahe::of(rows, columns).tiles(rows, columns, span);
+        if ends.is_some() {
+            pass(&mut |first, textures| {
+                tiles.count(first, textures.iter().map(|x| logarithm(*x, ends)));
+            })?;
+        }
+        Ok(Self { ends, curves: tiles.curves() })
+    }
+
+    /// Brightness of a pixel; in the middle where it has no texture.
+    fn brightness(&self, at: usize, texture: f32) -> f64 {
+        let x = self.curves.at(at, logarithm(texture, self.ends));
+        DARKEST + (1.0 - DARKEST) * if x.is_finite() { x } else { 0.5 }
+    }
+}
+
+fn logarithm(texture: f32, ends: Option<[f32; 2]>) -> f64 {
+    match ends {
+        Some([low, high]) if !texture.is_nan() => f64::from(texture.clamp(low, high)).ln(),
+        _ => f64::NAN,
     }
 }
 
@@ -67,9 +161,13 @@ impl Vision {
 #[must_use]
 pub fn brightness(textures: &[f32], columns: usize) -> Vec<f64> {
     let rows = textures.len().checked_div(columns).unwrap_or(0);
-    let equalised = Clahe::of(rows, columns).equalised(&logarithms(textures), columns);
-    let bright = |x: f64| DARKEST + (1.0 - DARKEST) * if x.is_finite() { x } else { 0.5 };
-    equalised.into_iter().map(bright).collect()
+    let tones = Tones::of(rows, columns, &mut |take| {
+        take(0, textures);
+        Ok(())
+    });
+    // What is in memory can be read.
+    let Ok(tones) = tones else { return vec![0.5 * (DARKEST + 1.0); textures.len()] };
+    textures.iter().enumerate().map(|(at, texture)| tones.brightness(at, *texture)).collect()
 }
 
 /// Saturation of a temperature between limits.
@@ -78,18 +176,8 @@ pub fn saturation(temperature_k: f64, [low, high]: [f64; 2]) -> f64 {
     PALEST + (1.0 - PALEST) * ((temperature_k - low) / (high - low)).clamp(0.0, 1.0)
 }
 
-/// Logarithms, those of the darkest and the brightest few at the ends of the others.
-fn logarithms(textures: &[f32]) -> Vec<f64> {
-    let mut known: Vec<f64> = textures.iter().filter(|x| **x > 0.0).map(|x| f64::from(*x)).collect();
-    known.sort_by(f64::total_cmp);
-    let at = |share: f64| known.get((share * (known.len().max(1) - 1) as f64) as usize).copied();
-    let Some((low, high)) = at(BEYOND).zip(at(1.0 - BEYOND)) else { return vec![f64::NAN; textures.len()] };
-    let one = |x: &f32| if x.is_nan() { f64::NAN } else { f64::from(*x).clamp(low, high).ln() };
-    textures.iter().map(one).collect()
-}
-
 /// A colour of hue (degrees), saturation and brightness.
-fn rgb(hue_deg: f64, saturation: f64, brightness: f64) -> (u8, u8, u8) {
+fn rgb(hue_deg: f64, saturation: f64, brightness: f64) -> Rgb {
     let part = |n: f64| {
         let k = (n + hue_deg / 60.0).rem_euclid(6.0);
         let least = k.min(4.0 - k).clamp(0.0, 1.0);
@@ -98,28 +186,20 @@ fn rgb(hue_deg: f64, saturation: f64, brightness: f64) -> (u8, u8, u8) {
     (part(5.0), part(3.0), part(1.0))
 }
 
-/// The picture beside the thermal image, the material alone and the texture alone, every `stride`th row and column of them.
+/// The picture beside the thermal image, the material alone and the texture alone, of the pixels that are shown: every `stride`th row and
+/// column.
 #[must_use]
-pub(super) fn plot(result: &Decomposed, vision: &Vision, stride: usize) -> Plot {
-    let (rows, columns) = (result.shape.rows(), result.shape.columns());
-    let shown: Vec<(usize, usize)> = (0..rows)
-        .step_by(stride)
-        .flat_map(|row| (0..columns).step_by(stride).map(move |column| (row, column)))
-        .collect();
-    let wide = columns.div_ceil(stride);
+pub(super) fn plot(brush: &Brush<'_>, shown: &Block, stride: usize) -> Plot {
+    let result = brush.result;
+    let (places, wide) = places(result.shape, stride);
     let asked = &result.vision;
-    let pick = |all: &[(u8, u8, u8)]| -> Vec<(u8, u8, u8)> {
-        shown.iter().filter_map(|(row, column)| all.get(row * columns + column).copied()).collect()
-    };
+    let vision = brush.vision(shown, places.iter().map(|[_, _, at]| *at));
     let take = |all: &[f32], is_shown: fn(f32) -> bool| -> Vec<f64> {
-        let one = |(row, column): &(usize, usize)| {
-            all.get(row * columns + column).filter(|x| is_shown(**x)).map_or(f64::NAN, |x| f64::from(*x))
-        };
-        shown.iter().map(one).collect()
+        all.iter().map(|x| if is_shown(*x) { f64::from(*x) } else { f64::NAN }).collect()
     };
     let plain =
         |hue: &Option<f64>| rgb(hue.unwrap_or(0.0), if hue.is_some() { PLAIN[0] } else { 0.0 }, PLAIN[1]);
-    let materials: Vec<(u8, u8, u8)> = vision.hue_deg.iter().map(plain).collect();
+    let materials: Vec<Rgb> = vision.hue_deg.iter().map(plain).collect();
     let [low, high] = asked.temperature_k;
     let ramp_hue = result
         .found
@@ -129,14 +209,14 @@ pub(super) fn plot(result: &Decomposed, vision: &Vision, stride: usize) -> Plot 
         .unwrap_or(0.0);
     let ramp = [PALEST, 1.0].map(|saturation| rgb(ramp_hue, saturation, 1.0));
     let unit = "(photons s⁻¹ m⁻² sr⁻¹)";
-    let thermal = take(&asked.thermal, f32::is_finite);
-    let texture = take(&asked.texture, |x| x > 0.0);
+    let thermal = take(&shown.thermal, f32::is_finite);
+    let texture = take(&shown.texture, |x| x > 0.0);
     let mut pictures = vec![
         Picture::painted(
             "TeX vision: hue the material, saturation the temperature, brightness the texture",
             Axis::linear("temperature (K)").range(low, high),
             wide,
-            Painted { pixels: pick(&vision.pixels()), ramp: Some(ramp) },
+            Painted { pixels: vision.pixels(), ramp: Some(ramp) },
         ),
         Picture::new(
             "Thermal image, all bands together",
@@ -148,7 +228,7 @@ pub(super) fn plot(result: &Decomposed, vision: &Vision, stride: usize) -> Plot 
             "Material, where one is left",
             Axis::linear(""),
             wide,
-            Painted { pixels: pick(&materials), ramp: None },
+            Painted { pixels: materials, ramp: None },
         ),
         Picture::new(
             "Texture: what the surfaces see around them",
@@ -158,20 +238,22 @@ pub(super) fn plot(result: &Decomposed, vision: &Vision, stride: usize) -> Plot 
         ),
     ];
     if let Some(of_sky) = &asked.distilled {
+        let of_shown: Vec<f32> =
+            places.iter().filter_map(|[_, _, at]| of_sky.texture.get(*at).copied()).collect();
         pictures.push(Picture::new(
             "Distilled texture: what they see of the sky's light",
             Axis::log(format!("incident radiance {unit}")),
             wide,
-            take(&of_sky.texture, |x| x > 0.0),
+            take(&of_shown, |x| x > 0.0),
         ));
     }
-    let mut keys: Vec<((u8, u8, u8), String)> = Vec::new();
+    let mut keys: Vec<(Rgb, String)> = Vec::new();
     for row in result.found.iter().filter(|row| row.decided > 0).take(LISTED) {
         let place = result.materials.iter().position(|name| *name == row.material);
         let hue = place.and_then(|place| asked.hues_deg.get(place).copied());
         keys.push((plain(&hue), row.material.clone()));
     }
-    if vision.hue_deg.iter().any(Option::is_none) {
+    if result.decided < result.pixels {
         keys.push((plain(&None), "undecided, or not told".to_owned()));
     }
     let mut table = Table::new([
@@ -183,15 +265,14 @@ pub(super) fn plot(result: &Decomposed, vision: &Vision, stride: usize) -> Plot 
         "texture_photons_s1_m2_sr1",
         "thermal_photons_s1_m2_sr1",
     ]);
-    for (i, (row, column)) in shown.iter().enumerate() {
-        let at = row * columns + column;
+    for (i, [row, column, _]) in places.iter().enumerate() {
         let of = |values: &[f64], i: usize| values.get(i).map_or_else(String::new, |x| number(*x));
         table.push(vec![
             row.to_string(),
             column.to_string(),
-            vision.hue_deg.get(at).copied().flatten().map_or_else(String::new, number),
-            of(&vision.saturation, at),
-            of(&vision.brightness, at),
+            vision.hue_deg.get(i).copied().flatten().map_or_else(String::new, number),
+            of(&vision.saturation, i),
+            of(&vision.brightness, i),
             of(&texture, i),
             of(&thermal, i),
         ]);

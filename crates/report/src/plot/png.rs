@@ -9,6 +9,7 @@ use super::mask::Mask;
 use super::scene::{Anchor, Mark, Point, Rect, Scene};
 use super::text;
 use hadar::Result;
+use std::io::Write;
 
 const SCALE: f64 = 3.0;
 
@@ -30,20 +31,13 @@ pub(super) fn raster(pixels: &[(u8, u8, u8)], columns: usize) -> Result<Vec<u8>>
     let mut palette: Vec<(u8, u8, u8)> = pixels.to_vec();
     palette.sort_unstable();
     palette.dedup();
-    let flat =
-        |colours: &[(u8, u8, u8)]| colours.iter().flat_map(|&(r, g, b)| [r, g, b]).collect::<Vec<u8>>();
     let mut file = Vec::new();
-    let mut encoder = ::png::Encoder::new(&mut file, columns as u32, rows as u32);
-    encoder.set_depth(::png::BitDepth::Eight);
-    // The best is a hundredth smaller, and takes up to ten times as long.
-    encoder.set_compression(::png::Compression::Default);
-    encoder.set_filter(::png::FilterType::NoFilter);
+    let mut encoder = encoder(&mut file, columns as u32, rows as u32);
     let data = if palette.len() <= 256 {
         encoder.set_color(::png::ColorType::Indexed);
         encoder.set_palette(flat(&palette));
         pixels.iter().map(|colour| palette.binary_search(colour).unwrap_or(0) as u8).collect()
     } else {
-        encoder.set_color(::png::ColorType::Rgb);
         flat(pixels)
     };
     let mut writer = encoder.write_header().map_err(failure)?;
@@ -52,18 +46,42 @@ pub(super) fn raster(pixels: &[(u8, u8, u8)], columns: usize) -> Result<Vec<u8>>
     Ok(file)
 }
 
+/// An image whose pixels come row after row.
+pub(super) fn by_rows(
+    to: impl Write,
+    [rows, columns]: [usize; 2],
+    paint: &mut dyn FnMut(&mut dyn FnMut(&[(u8, u8, u8)]) -> Result<()>) -> Result<()>,
+) -> Result<()> {
+    let side = |side: usize| u32::try_from(side).map_err(failure);
+    let mut writer = encoder(to, side(columns)?, side(rows)?).write_header().map_err(failure)?;
+    let mut stream = writer.stream_writer().map_err(failure)?;
+    paint(&mut |pixels| stream.write_all(&flat(pixels)).map_err(failure))?;
+    stream.finish().map_err(failure)?;
+    writer.finish().map_err(failure)
+}
+
 fn encode(pixels: &[u8], width: u32, height: u32) -> std::result::Result<Vec<u8>, ::png::EncodingError> {
     let mut file = Vec::new();
-    let mut encoder = ::png::Encoder::new(&mut file, width, height);
-    encoder.set_color(::png::ColorType::Rgb);
-    encoder.set_depth(::png::BitDepth::Eight);
-    // White ground and flat colours: whole rows repeat, which a filter would hide from the compressor.
-    encoder.set_compression(::png::Compression::Default);
-    encoder.set_filter(::png::FilterType::NoFilter);
-    let mut writer = encoder.write_header()?;
+    let mut writer = encoder(&mut file, width, height).write_header()?;
     writer.write_image_data(pixels)?;
     writer.finish()?;
     Ok(file)
+}
+
+/// Of 8 bits a channel and three of them.
+fn encoder<'a, W: Write + 'a>(to: W, width: u32, height: u32) -> ::png::Encoder<'a, W> {
+    let mut encoder = ::png::Encoder::new(to, width, height);
+    encoder.set_color(::png::ColorType::Rgb);
+    encoder.set_depth(::png::BitDepth::Eight);
+    // The best is a hundredth smaller, and takes up to ten times as long.
+    encoder.set_compression(::png::Compression::Default);
+    // White ground and flat colours: whole rows repeat, which a filter would hide from the compressor.
+    encoder.set_filter(::png::FilterType::NoFilter);
+    encoder
+}
+
+fn flat(colours: &[(u8, u8, u8)]) -> Vec<u8> {
+    colours.iter().flat_map(|&(r, g, b)| [r, g, b]).collect()
 }
 
 fn draw(backend: &mut BitMapBackend<'_>, mask: &mut Mask, mark: &Mark) -> Result<()> {

@@ -94,7 +94,8 @@ impl LibraryStudy {
             }
             _ => error.in_file(&scenario.cube.data),
         })?;
-        let truth = self.truth.as_ref().map(|truth| results::against(truth, &found.maps));
+        let truth = self.truth.as_ref().map(|truth| Ok(results::against(&truth.all()?, &found.maps)));
+        let truth = truth.transpose()?;
         let mut warnings = measured.warnings.clone();
         if clusters.count == [1, 1] {
             warnings.push(Warning::OneCluster);

@@ -5,7 +5,7 @@ use crate::scenario::{
     DecomposeScenario, DistanceKind, RangingScenario, Rule, Scenario, Written, command_for,
 };
 use crate::study::air_ranging::{AirPlan, AirRangingStudy};
-use crate::study::decompose::DecomposeStudy;
+use crate::study::decompose::{DecomposeStudy, Keep};
 use crate::study::range::{RangePlan, RangeStudy};
 use crate::study::{PhotonLaw, Remembered, RuleAsked, RuleStudy, SimulationPlan, SizeAsked, Study};
 use hadar::decompose::Method;
@@ -221,7 +221,7 @@ impl Question {
             Self::Decompose => {
                 let scenario = DecomposeScenario::from_written(written)?;
                 let study = DecomposeStudy::new(&scenario, library)?;
-                let found = study.decompose(Method::Ml, asking.skipping, &|_, _| ())?;
+                let found = study.decompose(Method::Ml, asking.skipping, Keep::InMemory, &|_, _| ())?;
                 self.told(&found, &found.stats, asking)
             }
         }

@@ -1,15 +1,19 @@
 //! What is said of a decomposed cube: how many pixels are decided, what each material has, what was spared.
 
 use super::DecomposeStudy;
+use super::kept::Kept;
+use super::ranks::ranked;
 use super::segmented::Segmented;
-use super::vision::Vision;
+use super::vision::{DRAWN, Vision, apart};
 pub use super::worth::TruthFound;
 use crate::scenario::DecomposeScenario;
 use crate::study::Warning;
 use hadar::cube::{Found, Shape};
-use hadar::decompose::{Maps, Method, Spatial, flag};
+use hadar::decompose::{Maps, Method, Spared, Spatial, flag};
 use hadar::demand::Work;
+use hadar::error::Result;
 use serde::Serialize;
+use std::collections::BTreeMap;
 
 /// A cube decomposed.
 #[derive(Debug, Clone, Serialize)]
@@ -56,7 +60,7 @@ pub struct Decomposed {
     pub warnings: Vec<Warning>,
     /// The maps.
     #[serde(skip)]
-    pub maps: Maps,
+    pub kept: Kept,
 }
 
 /// What was found of one material.
@@ -98,52 +102,149 @@ pub struct FlagCount {
     pub pixels: usize,
 }
 
-pub(super) fn summary(
+/// What is counted of the maps, row after row.
+#[derive(Debug, Default)]
+pub(super) struct Counted {
+    pixels: usize,
+    decided: usize,
+    /// Pixels of each bit of the flags.
+    flags: [usize; 8],
+    /// Pixels of each material that was found, and those of them that are decided.
+    materials: BTreeMap<u16, [usize; 2]>,
+    spared: Spared,
+    spatial: Option<Spatial>,
+}
+
+impl Counted {
+    pub(super) fn take(&mut self, maps: &Maps) {
+        for (i, (material, flags)) in maps.material.iter().zip(&maps.flags).enumerate() {
+            let is_decided = maps.is_decided(i);
+            self.decided += usize::from(is_decided);
+            for (bit, count) in self.flags.iter_mut().enumerate() {
+                *count += usize::from(flags >> bit & 1);
+            }
+            let [pixels, decided] = self.materials.entry(*material).or_default();
+            *pixels += 1;
+            *decided += usize::from(is_decided);
+        }
+        self.pixels += maps.material.len();
+        self.spared = self.spared + maps.spared;
+        self.spatial = maps.spatial;
+    }
+
+    fn has(&self, flag: u8) -> usize {
+        self.flags.get(flag.trailing_zeros() as usize).copied().unwrap_or(0)
+    }
+
+    fn of(&self, material: usize) -> [usize; 2] {
+        let found = u16::try_from(material).ok().and_then(|material| self.materials.get(&material));
+        found.copied().unwrap_or_default()
+    }
+
+    /// How many pixels have each flag, and what the reader must know of them.
+    fn flags(&self, warnings: &mut Vec<Warning>) -> Vec<FlagCount> {
+        let (pixels, skipped) = (self.pixels, self.has(flag::SKIPPED));
+        let flags: Vec<FlagCount> = flag::NAMES
+            .iter()
+            .map(|(bit, flag)| FlagCount { flag, bit: *bit, pixels: self.has(*bit) })
+            .filter(|count| count.pixels > 0)
+            .collect();
+        if self.spared.unfinished > 0 {
+            warnings.push(Warning::UnconvergedFits { fits: self.spared.unfinished as usize });
+        }
+        if skipped > 0 {
+            warnings.push(Warning::PixelsSkipped { pixels: skipped, of: pixels });
+        }
+        if let Some(Spatial { changed, settled, .. }) = self.spatial {
+            warnings.push(Warning::SpatialPrior { changed, pixels, settled });
+        }
+        let unfit = self.has(flag::NO_FIT);
+        if unfit as f64 > 0.01 * (pixels - skipped) as f64 {
+            warnings.push(Warning::LibraryDoesNotFit { pixels: unfit, of: pixels - skipped });
+        }
+        flags
+    }
+}
+
+/// How many pixels of maps have each flag, and what the reader must know of them.
+pub(in crate::study) fn flags(maps: &Maps, warnings: &mut Vec<Warning>) -> Vec<FlagCount> {
+    let mut counted = Counted::default();
+    counted.take(maps);
+    counted.flags(warnings)
+}
+
+/// Shares of the temperatures of a material, and of their deviations, that are said.
+const TEMPERATURES: &[f64] = &[0.5, 0.1, 0.9];
+const DEVIATIONS: &[f64] = &[0.5];
+
+/// The temperatures of every material with pixels, and those between which a picture is drawn.
+pub(super) fn rows(
     study: &DecomposeStudy,
-    method: Method,
-    maps: Maps,
-    (truth, vision, segmentation): (Option<TruthFound>, Vision, Option<Segmented>),
-    seconds: f64,
-    mut warnings: Vec<Warning>,
-) -> Decomposed {
-    let pixels = maps.material.len();
-    let has = |bit: u8| maps.flags.iter().filter(|flags| **flags & bit != 0).count();
-    let skipped = has(flag::SKIPPED);
-    let decided = (0..pixels).filter(|i| maps.is_decided(*i)).count();
+    counted: &Counted,
+    kept: &Kept,
+) -> Result<(Vec<MaterialRow>, [f64; 2])> {
+    let names = study.names.len();
+    let mut shares: Vec<&[f64]> = vec![TEMPERATURES; names];
+    shares.extend(vec![DEVIATIONS; names]);
+    shares.push(&DRAWN);
+    let rank = |share: f64, count: u64| (share * count as f64) as u64;
+    let found = ranked(&shares, rank, &mut |count| {
+        kept.each(&mut |block| {
+            let maps = &block.maps;
+            let each = maps.material.iter().zip(maps.temperature_k.iter().zip(&maps.temperature_sigma_k));
+            for (i, (material, (temperature_k, sigma_k))) in each.enumerate() {
+                let material = usize::from(*material);
+                if material < names && temperature_k.is_finite() {
+                    count(material, *temperature_k);
+                }
+                if material < names && sigma_k.is_finite() {
+                    count(names + material, *sigma_k);
+                }
+                if temperature_k.is_finite() && maps.is_decided(i) {
+                    count(2 * names, *temperature_k);
+                }
+            }
+            Ok(())
+        })
+    })?;
+    let at = |group: usize, i: usize| {
+        found.get(group).and_then(|own| own.get(i).copied().flatten()).map(f64::from)
+    };
+    let kelvin = |group: usize, i: usize| at(group, i).unwrap_or(f64::NAN);
     let mut rows = Vec::new();
     for (place, material) in study.names.iter().enumerate() {
-        let own: Vec<usize> = (0..pixels).filter(|i| usize::from(maps.material[*i]) == place).collect();
-        let sorted = |of: &[f32]| {
-            let mut values: Vec<f64> =
-                own.iter().map(|i| f64::from(of[*i])).filter(|value| value.is_finite()).collect();
-            values.sort_by(f64::total_cmp);
-            values
-        };
-        let at = |values: &[f64], share: f64| {
-            let place = (share * values.len() as f64) as usize;
-            values.get(place.min(values.len().saturating_sub(1))).copied().unwrap_or(f64::NAN)
-        };
-        if own.is_empty() {
-            continue;
+        let [pixels, decided] = counted.of(place);
+        if pixels > 0 {
+            rows.push(MaterialRow {
+                material: material.clone(),
+                pixels,
+                decided,
+                temperature_median_k: kelvin(place, 0),
+                temperature_tenths_k: [kelvin(place, 1), kelvin(place, 2)],
+                temperature_sigma_median_k: kelvin(names + place, 0),
+            });
         }
-        let temperatures = sorted(&maps.temperature_k);
-        rows.push(MaterialRow {
-            material: material.clone(),
-            pixels: own.len(),
-            decided: own.iter().filter(|i| maps.is_decided(**i)).count(),
-            temperature_median_k: at(&temperatures, 0.5),
-            temperature_tenths_k: [at(&temperatures, 0.1), at(&temperatures, 0.9)],
-            temperature_sigma_median_k: at(&sorted(&maps.temperature_sigma_k), 0.5),
-        });
     }
     rows.sort_by(|a, b| b.pixels.cmp(&a.pixels).then_with(|| a.material.cmp(&b.material)));
+    Ok((rows, apart([0, 1].map(|i| at(2 * names, i).unwrap_or(293.15)))))
+}
+
+/// What was found, put together.
+pub(super) fn summary(
+    study: &DecomposeStudy,
+    (method, seconds): (Method, f64),
+    (counted, found): (&Counted, Vec<MaterialRow>),
+    (truth, vision, segmentation): (Option<TruthFound>, Vision, Option<Segmented>),
+    mut warnings: Vec<Warning>,
+    kept: Kept,
+) -> Decomposed {
+    let (pixels, decided, skipped) = (counted.pixels, counted.decided, counted.has(flag::SKIPPED));
     let classes = study.classes.iter().map(|(class, members)| ClassRow {
         class: class.clone(),
         spectra: members.len(),
-        pixels: (0..pixels).filter(|i| members.contains(&usize::from(maps.material[*i]))).count(),
+        pixels: members.iter().map(|member| counted.of(*member)[0]).sum(),
     });
-    let classes = classes.collect();
-    let flags = flags(&maps, &mut warnings);
+    let flags = counted.flags(&mut warnings);
     if let Some(found) = &segmentation {
         let guessed = found.objects.iter().filter(|object| 2 * object.decided < object.pixels).count();
         if guessed > 0 {
@@ -160,42 +261,16 @@ pub(super) fn summary(
         decided,
         undecided: pixels - decided - skipped,
         skipped,
-        found: rows,
-        classes,
+        found,
+        classes: classes.collect(),
         flags,
-        spatial: maps.spatial,
+        spatial: counted.spatial,
         vision,
         segmentation,
         truth,
         seconds,
-        stats: maps.spared.work(),
+        stats: counted.spared.work(),
         warnings,
-        maps,
+        kept,
     }
-}
-
-/// How many pixels have each flag, and what the reader must know of them.
-pub(in crate::study) fn flags(maps: &Maps, warnings: &mut Vec<Warning>) -> Vec<FlagCount> {
-    let pixels = maps.material.len();
-    let has = |bit: u8| maps.flags.iter().filter(|flags| **flags & bit != 0).count();
-    let skipped = has(flag::SKIPPED);
-    let flags: Vec<FlagCount> = flag::NAMES
-        .iter()
-        .map(|(bit, flag)| FlagCount { flag, bit: *bit, pixels: has(*bit) })
-        .filter(|count| count.pixels > 0)
-        .collect();
-    if maps.spared.unfinished > 0 {
-        warnings.push(Warning::UnconvergedFits { fits: maps.spared.unfinished as usize });
-    }
-    if skipped > 0 {
-        warnings.push(Warning::PixelsSkipped { pixels: skipped, of: pixels });
-    }
-    if let Some(Spatial { changed, settled, .. }) = maps.spatial {
-        warnings.push(Warning::SpatialPrior { changed, pixels, settled });
-    }
-    let unfit = has(flag::NO_FIT);
-    if unfit as f64 > 0.01 * (pixels - skipped) as f64 {
-        warnings.push(Warning::LibraryDoesNotFit { pixels: unfit, of: pixels - skipped });
-    }
-    flags
 }

@@ -1,7 +1,8 @@
 //! What is there by categories: a map of materials segmented, the objects in it, and how it agrees with the truth.
 
 use super::DecomposeStudy;
-use super::vision::Vision;
+use super::kept::Block;
+use super::truth::Truth;
 use crate::scenario::decompose::CategorySpec;
 use hadar::decompose::Maps;
 use hadar::error::Result;
@@ -70,12 +71,13 @@ pub struct ObjectRow {
 }
 
 impl Segmented {
-    /// Of the maps of a study; nothing without categories.
-    pub(super) fn of(study: &DecomposeStudy, maps: &Maps, vision: &Vision) -> Result<Option<Self>> {
+    /// Of the maps of all pixels of a study; nothing without categories.
+    pub(super) fn of(study: &DecomposeStudy, block: &Block) -> Result<Option<Self>> {
         let (specs, spec) = (&study.scenario.categories, study.scenario.segmentation);
         if specs.is_empty() {
             return Ok(None);
         }
+        let Block { maps, thermal, .. } = block;
         let start = std::time::Instant::now();
         let columns = study.cube.shape().columns();
         let last = |map: Vec<u8>| if spec.smoothing { smoothed(&map, columns) } else { Ok(map) };
@@ -114,11 +116,12 @@ impl Segmented {
             }
         }
         let (mut agreement, mut agreement_by_brightness) = (None, None);
-        if let Some(labels) = study.truth.as_ref().and_then(|truth| truth.category.as_ref()) {
+        let there = study.truth.as_ref().map(Truth::all).transpose()?;
+        if let Some(labels) = there.and_then(|there| there.category) {
             let truth: Vec<Option<u8>> = labels.iter().map(|label| of_label(specs, *label)).collect();
             agreement = Some(Agreement::of(&map, truth.iter().copied(), specs.len()));
             let known: Vec<u8> = truth.iter().map(|one| one.unwrap_or(NO_CATEGORY)).collect();
-            let thermal = last(ByBrightness::learned(&vision.thermal, &known).of(&vision.thermal))?;
+            let thermal = last(ByBrightness::learned(thermal, &known).of(thermal))?;
             agreement_by_brightness = Some(Agreement::of(&thermal, truth, specs.len()));
         }
         Ok(Some(Self {

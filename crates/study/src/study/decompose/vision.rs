@@ -1,4 +1,4 @@
-//! What is drawn of a decomposed cube beside its maps: hues of the materials, limits of the temperature, texture, thermal image.
+//! What is drawn of a decomposed cube: hues of the materials, limits of the temperature, texture, thermal image.
 //!
 //! * Texture X = Σₖ Vₖ ∫Sₖ dν over the bands that count: what is around, as a surface sees it from its place, photons s⁻¹ m⁻² sr⁻¹.
 //! * Thermal image ∫S dν over the same bands, photons s⁻¹ m⁻² sr⁻¹: what a camera without bands sees.
@@ -9,6 +9,7 @@
 //! Source: paper, supplement SIII C.
 
 use super::DecomposeStudy;
+use super::kept::Block;
 use crate::scenario::MaterialRef;
 use crate::scenario::decompose::LightSource;
 use hadar::cube::{Cube, Rows, Sample};
@@ -16,6 +17,7 @@ use hadar::decompose::{Light, Maps, Residue, Setting, Sky, distil};
 use hadar::error::Result;
 use rayon::prelude::*;
 use serde::Serialize;
+use std::ops::Range;
 
 /// Hues of the first materials, degrees: blue, amber, pink, bluish green, vermillion, violet, lime, cyan.
 const HUES_DEG: [f64; 8] = [210.0, 45.0, 330.0, 165.0, 15.0, 270.0, 75.0, 190.0];
@@ -23,8 +25,8 @@ const HUES_DEG: [f64; 8] = [210.0, 45.0, 330.0, 165.0, 15.0, 270.0, 75.0, 190.0]
 const APART_DEG: f64 = 15.0;
 /// Hues of the paper, of 255.
 const NAMED: [(&str, f64); 3] = [("vegetation", 90.0), ("water", 160.0), ("sand", 40.0)];
-/// Shares of the decided pixels that are colder and hotter than the limits.
-const TENTH: f64 = 0.1;
+/// Shares of the decided pixels that are colder than the limits.
+pub(super) const DRAWN: [f64; 2] = [0.1, 0.9];
 
 /// What is drawn.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -33,12 +35,6 @@ pub struct Vision {
     pub hues_deg: Vec<f64>,
     /// Temperatures of the palest and the fullest colour, K.
     pub temperature_k: [f64; 2],
-    /// Texture X of every pixel, photons s⁻¹ m⁻² sr⁻¹; NaN where the lighting is unknown.
-    #[serde(skip)]
-    pub texture: Vec<f32>,
-    /// Thermal image, photons s⁻¹ m⁻² sr⁻¹; NaN where a sample is missing.
-    #[serde(skip)]
-    pub thermal: Vec<f32>,
     /// Texture of the sky's light alone, where a sky is named.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub distilled: Option<DistilledTexture>,
@@ -62,19 +58,44 @@ pub struct DistilledTexture {
 }
 
 impl Vision {
+    /// With the limits of the temperature that the scenario states, or else these; `maps` are all of them where a sky is named.
+    ///
     /// # Errors
     /// A cube that cannot be read.
-    pub(super) fn of(study: &DecomposeStudy, setting: &Setting<'_>, maps: &Maps) -> Result<Self> {
+    pub(super) fn of(
+        study: &DecomposeStudy,
+        setting: &Setting<'_>,
+        temperature_k: [f64; 2],
+        maps: Option<&Maps>,
+    ) -> Result<Self> {
         let spec = &study.scenario.vision;
         Ok(Self {
             hues_deg: hues_deg(&study.names, |name| spec.hues_deg.get(name).copied()),
-            temperature_k: spec.temperature_k.unwrap_or_else(|| tenths_k(maps)),
-            texture: texture(study, maps),
+            temperature_k: spec.temperature_k.unwrap_or(temperature_k),
+            distilled: spec
+                .sky
+                .zip(maps)
+                .map(|(sky, maps)| distilled(study, setting, maps, sky))
+                .transpose()?,
+        })
+    }
+}
+
+impl Block {
+    /// Maps from row `first` on with their texture and thermal image.
+    ///
+    /// # Errors
+    /// A cube that cannot be read.
+    pub(super) fn of(study: &DecomposeStudy, first: usize, maps: Maps) -> Result<Self> {
+        let rows = first..first + maps.material.len() / study.cube.shape().columns();
+        Ok(Self {
+            first,
+            texture: texture(study, &maps),
             thermal: match &study.cube {
-                Cube::F32(rows) => thermal(study, rows.as_ref()),
-                Cube::F64(rows) => thermal(study, rows.as_ref()),
+                Cube::F32(cube) => thermal(study, cube.as_ref(), rows),
+                Cube::F64(cube) => thermal(study, cube.as_ref(), rows),
             }?,
-            distilled: spec.sky.map(|sky| distilled(study, setting, maps, sky)).transpose()?,
+            maps,
         })
     }
 }
@@ -147,16 +168,8 @@ fn middle_of_widest_gap(hues: &mut [f64]) -> f64 {
     widest.1 % 360.0
 }
 
-/// Between a tenth and nine tenths of the temperatures of the decided pixels, at least a kelvin apart.
-fn tenths_k(maps: &Maps) -> [f64; 2] {
-    let decided = maps.temperature_k.iter().enumerate().filter(|(i, t)| t.is_finite() && maps.is_decided(*i));
-    let mut values: Vec<f64> = decided.map(|(_, t)| f64::from(*t)).collect();
-    values.sort_by(f64::total_cmp);
-    let at = |share: f64| {
-        let place = (share * values.len() as f64) as usize;
-        values.get(place.min(values.len().saturating_sub(1))).copied().unwrap_or(293.15)
-    };
-    let (low, high) = (at(TENTH), at(1.0 - TENTH));
+/// Limits of the temperature that are at least a kelvin apart.
+pub(super) fn apart([low, high]: [f64; 2]) -> [f64; 2] {
     let short = (1.0 - (high - low)).max(0.0);
     [low - 0.5 * short, high + 0.5 * short]
 }
@@ -188,7 +201,7 @@ fn texture(study: &DecomposeStudy, maps: &Maps) -> Vec<f32> {
     maps.lighting.chunks(lights.len()).map(sum).collect()
 }
 
-fn thermal<S: Sample>(study: &DecomposeStudy, cube: &dyn Rows<S>) -> Result<Vec<f32>> {
+fn thermal<S: Sample>(study: &DecomposeStudy, cube: &dyn Rows<S>, rows: Range<usize>) -> Result<Vec<f32>> {
     let used = used(study);
     let scale: Vec<f64> =
         study.counts_per_radiance.iter().map(|k| 1.0 / (k * study.units_per_count)).collect();
@@ -197,7 +210,7 @@ fn thermal<S: Sample>(study: &DecomposeStudy, cube: &dyn Rows<S>) -> Result<Vec<
         used.iter().filter_map(of).sum::<f64>() as f32
     };
     let shape = cube.shape();
-    let rows = (0..shape.rows()).into_par_iter().map_init(Vec::new, |buffer, row| {
+    let rows = rows.into_par_iter().map_init(Vec::new, |buffer, row| {
         Ok(cube.read(row..row + 1, buffer)?.chunks(shape.bands()).map(sum).collect::<Vec<f32>>())
     });
     Ok(rows.collect::<Result<Vec<_>>>()?.concat())

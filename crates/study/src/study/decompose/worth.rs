@@ -7,7 +7,7 @@
 //!   that it says; one without deviations has neither.
 
 use super::DecomposeStudy;
-use super::truth::Truth;
+use super::truth::{There, Truth};
 use hadar::decompose::{Light, Maps, Method, flag};
 use hadar::error::Result;
 use hadar::fisher::{Counting, Nuisance, Unknowns};
@@ -48,64 +48,132 @@ pub struct TruthFound {
     pub confusion: Vec<Vec<usize>>,
 }
 
-impl Truth {
-    /// Holds the maps against what is there.
-    pub(super) fn found(&self, study: &DecomposeStudy, method: Method, maps: &Maps) -> Result<TruthFound> {
-        let mut found = TruthFound::default();
-        let pixels = maps.material.len();
-        let share = |count: usize, of: usize| (of > 0).then(|| count as f64 / of as f64);
-        if let Some(material) = self.material.as_ref().filter(|_| method.names_materials()) {
-            let known = |i: &usize| material[*i] < study.names.len();
-            let right = |i: &usize| usize::from(maps.material[*i]) == material[*i];
-            let all: Vec<usize> = (0..pixels).filter(known).collect();
-            found.right_material = share(all.iter().filter(|i| right(i)).count(), all.len());
-            let decided: Vec<usize> = all.iter().copied().filter(|i| maps.is_decided(*i)).collect();
-            found.right_where_decided = share(decided.iter().filter(|i| right(i)).count(), decided.len());
-            found.confusion = vec![vec![0; study.names.len() + 1]; study.names.len()];
-            for i in &all {
-                let column = usize::from(maps.material[*i]).min(study.names.len());
-                found.confusion[material[*i]][column] += 1;
+/// A mean square, value by value.
+#[derive(Debug, Default)]
+struct MeanSquare {
+    sum: f64,
+    count: usize,
+}
+
+impl MeanSquare {
+    fn add(&mut self, x: f64) {
+        (self.sum, self.count) = (x.mul_add(x, self.sum), self.count + 1);
+    }
+
+    fn root(&self) -> Option<f64> {
+        (self.count > 0).then(|| (self.sum / self.count as f64).sqrt())
+    }
+}
+
+/// What is counted of pixels whose truth is known, row after row.
+#[derive(Debug, Default)]
+pub(super) struct Held {
+    known: usize,
+    right: usize,
+    decided: usize,
+    right_where_decided: usize,
+    confusion: Vec<Vec<usize>>,
+    /// Material and state of the pixels whose limit is computed.
+    chosen: Vec<(usize, f64, Vec<f64>)>,
+    off_k: MeanSquare,
+    over: MeanSquare,
+    covered: usize,
+    any: usize,
+    any_covered: usize,
+}
+
+impl Held {
+    pub(super) fn new(study: &DecomposeStudy, method: Method) -> Self {
+        let is_compared = method.names_materials() && study.truth.as_ref().is_some_and(Truth::has_materials);
+        let materials = if is_compared { study.names.len() } else { 0 };
+        Self { confusion: vec![vec![0; materials + 1]; materials], ..Self::default() }
+    }
+
+    /// Holds the maps of some rows against what is there.
+    pub(super) fn take(&mut self, study: &DecomposeStudy, method: Method, maps: &Maps, there: &There) {
+        if let Some(material) = there.material.as_ref().filter(|_| method.names_materials()) {
+            self.materials(study, maps, there, material);
+        }
+        if let Some(temperature_k) = &there.temperature_k {
+            self.temperatures(method, maps, there, temperature_k);
+        }
+    }
+
+    fn materials(&mut self, study: &DecomposeStudy, maps: &Maps, there: &There, material: &[usize]) {
+        let truth = study.truth.as_ref();
+        let count = study.lights.len();
+        let every =
+            truth.filter(|truth| truth.has_states()).map(|truth| truth.known.div_ceil(sampled(count)).max(1));
+        for (i, (there_is, own)) in material.iter().zip(&maps.material).enumerate() {
+            let own = usize::from(*own);
+            let Some(row) = self.confusion.get_mut(*there_is) else { continue };
+            let column = own.min(row.len().saturating_sub(1));
+            row.get_mut(column).into_iter().for_each(|count| *count += 1);
+            let (is_right, is_decided) = (own == *there_is, maps.is_decided(i));
+            if let (Some(every), Some(temperature_k), Some(lighting)) =
+                (every, &there.temperature_k, &there.lighting)
+                && self.known.is_multiple_of(every)
+                && let (Some(temperature_k), Some(lighting)) =
+                    (temperature_k.get(i), lighting.get(i * count..(i + 1) * count))
+            {
+                self.chosen.push((*there_is, *temperature_k, lighting.to_vec()));
             }
-            if let (Some(temperature_k), Some(lighting)) = (&self.temperature_k, &self.lighting) {
-                let chosen: Vec<usize> = all
-                    .iter()
-                    .copied()
-                    .step_by(all.len().div_ceil(sampled(study.lights.len())).max(1))
-                    .collect();
-                let limits = limits(study, material, temperature_k, lighting, &chosen)?;
-                found.right_material_limit_pixels = limits.len();
-                if !limits.is_empty() {
-                    let count = limits.len() as f64;
-                    let mean = limits.iter().sum::<f64>() / count;
-                    let square = limits.iter().map(|p| (p - mean).powi(2)).sum::<f64>();
-                    found.right_material_limit = Some(mean);
-                    found.right_material_limit_error =
-                        (count > 1.0).then(|| (square / (count * (count - 1.0))).sqrt());
-                }
+            self.known += 1;
+            self.right += usize::from(is_right);
+            self.decided += usize::from(is_decided);
+            self.right_where_decided += usize::from(is_right && is_decided);
+        }
+    }
+
+    fn temperatures(&mut self, method: Method, maps: &Maps, there: &There, temperature_k: &[f64]) {
+        let each = maps.temperature_k.iter().zip(temperature_k);
+        let each = each.map(|(own, there)| f64::from(*own) - there);
+        let states = maps.temperature_sigma_k.iter().zip(maps.material.iter().zip(&maps.flags));
+        let closed =
+            flag::LIGHTING_AT_LIMIT | flag::TEMPERATURE_AT_LIMIT | flag::TEMPERATURE_UNKNOWN | flag::SKIPPED;
+        for (i, (off, (sigma_k, (material, flags)))) in each.zip(states).enumerate() {
+            if off.is_finite() {
+                self.off_k.add(off);
+            }
+            let over = off / f64::from(*sigma_k);
+            if !method.has_likelihood() || over.is_nan() {
+                continue;
+            }
+            let is_covered = over.abs() <= NINETY_FIVE;
+            self.any += 1;
+            self.any_covered += usize::from(is_covered);
+            let is_right =
+                there.material.as_ref().is_none_or(|there| there.get(i) == Some(&usize::from(*material)));
+            if is_right && flags & closed == 0 {
+                self.over.add(over);
+                self.covered += usize::from(is_covered);
             }
         }
-        if let Some(truth) = &self.temperature_k {
-            let error = |i: usize| f64::from(maps.temperature_k[i]) - truth[i];
-            found.temperature_rmse_k = rms((0..pixels).map(error).filter(|error| error.is_finite()));
-            if !method.has_likelihood() {
-                return Ok(found);
-            }
-            let is_open = |i: &usize| {
-                let held = flag::LIGHTING_AT_LIMIT | flag::TEMPERATURE_AT_LIMIT | flag::TEMPERATURE_UNKNOWN;
-                let right = self.material.as_ref().is_none_or(|m| m[*i] == usize::from(maps.material[*i]));
-                right && maps.flags[*i] & (held | flag::SKIPPED) == 0
-            };
-            let over: Vec<f64> = (0..pixels)
-                .filter(is_open)
-                .map(|i| error(i) / f64::from(maps.temperature_sigma_k[i]))
-                .filter(|over| !over.is_nan())
-                .collect();
-            found.coverage_pixels = over.len();
-            found.coverage_95 = share(over.iter().filter(|x| x.abs() <= NINETY_FIVE).count(), over.len());
-            found.temperature_error_over_bound_rms = rms(over.iter().copied());
-            let any = (0..pixels).map(|i| error(i) / f64::from(maps.temperature_sigma_k[i]));
-            let any: Vec<f64> = any.filter(|ratio| !ratio.is_nan()).collect();
-            found.coverage_95_all = share(any.iter().filter(|x| x.abs() <= NINETY_FIVE).count(), any.len());
+    }
+
+    /// How good the maps are.
+    pub(super) fn found(self, study: &DecomposeStudy) -> Result<TruthFound> {
+        let share = |count: usize, of: usize| (of > 0).then(|| count as f64 / of as f64);
+        let limits = limits(study, &self.chosen)?;
+        let mut found = TruthFound {
+            right_material: share(self.right, self.known),
+            right_material_limit_pixels: limits.len(),
+            right_where_decided: share(self.right_where_decided, self.decided),
+            temperature_error_over_bound_rms: self.over.root(),
+            coverage_95: share(self.covered, self.over.count),
+            coverage_pixels: self.over.count,
+            coverage_95_all: share(self.any_covered, self.any),
+            temperature_rmse_k: self.off_k.root(),
+            confusion: self.confusion,
+            ..TruthFound::default()
+        };
+        if !limits.is_empty() {
+            let count = limits.len() as f64;
+            let mean = limits.iter().sum::<f64>() / count;
+            let square = limits.iter().map(|p| (p - mean).powi(2)).sum::<f64>();
+            found.right_material_limit = Some(mean);
+            found.right_material_limit_error =
+                (count > 1.0).then(|| (square / (count * (count - 1.0))).sqrt());
         }
         Ok(found)
     }
@@ -116,22 +184,11 @@ fn sampled(lights: usize) -> usize {
     LIMITS >> lights.saturating_sub(3).min(4)
 }
 
-fn rms(values: impl Iterator<Item = f64>) -> Option<f64> {
-    let (square, count) = values.fold((0.0, 0), |(sum, count), x| (x.mul_add(x, sum), count + 1));
-    (count > 0).then(|| (square / f64::from(count)).sqrt())
-}
-
 /// Φ(d) to the nearest of the other materials for some pixels.
-fn limits(
-    study: &DecomposeStudy,
-    material: &[usize],
-    temperature_k: &[f64],
-    lighting: &[f64],
-    chosen: &[usize],
-) -> Result<Vec<f64>> {
+fn limits(study: &DecomposeStudy, chosen: &[(usize, f64, Vec<f64>)]) -> Result<Vec<f64>> {
     let scale = study.counts_per_radiance[0];
     let uniform = study.counts_per_radiance.iter().all(|k| (k / scale - 1.0).abs() < 1e-9);
-    if !uniform || study.library.len() < 2 {
+    if !uniform || study.library.len() < 2 || chosen.is_empty() {
         return Ok(Vec::new());
     }
     let surroundings = surroundings(study)?;
@@ -145,22 +202,21 @@ fn limits(
         ..StateRange::default()
     };
     let counting = Counting { counts_per_radiance: scale, var_added: study.var_added.clone() };
-    let count = study.lights.len();
-    let limit = |solver: &mut NearestSolver<'_>, i: &usize| {
+    let limit = |solver: &mut NearestSolver<'_>, (own, temperature_k, lighting): &(usize, f64, Vec<f64>)| {
         let state = State {
-            temperature_k: temperature_k[*i],
-            lighting: lighting[i * count..][..count].to_vec(),
+            temperature_k: *temperature_k,
+            lighting: lighting.clone(),
             gain: 1.0,
             environment_k: surroundings.objects().iter().map(|object| object.temperature_k).collect(),
         };
-        let own = &study.library[material[*i]];
+        let emissivity = &study.library[*own];
         let mut nearest = f64::INFINITY;
-        for (_, other) in study.library.iter().enumerate().filter(|(place, _)| *place != material[*i]) {
+        for (_, other) in study.library.iter().enumerate().filter(|(place, _)| place != own) {
             // Between two equal ones any test guesses.
-            let distance = if other == own {
+            let distance = if other == emissivity {
                 0.0
             } else {
-                solver.with_counting(own, other, &state, &counting)?.distance
+                solver.with_counting(emissivity, other, &state, &counting)?.distance
             };
             nearest = nearest.min(distance);
         }

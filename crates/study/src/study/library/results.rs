@@ -2,7 +2,7 @@
 
 use crate::scenario::LibraryScenario;
 use crate::study::Warning;
-use crate::study::decompose::{FlagCount, Truth, flags};
+use crate::study::decompose::{FlagCount, There, flags};
 use crate::study::heat_cube::Measured;
 use hadar::cube::Shape;
 use hadar::decompose::{Maps, NO_MATERIAL};
@@ -94,7 +94,7 @@ fn median(mut values: Vec<f64>) -> Option<f64> {
     values.get(values.len() / 2).copied()
 }
 
-pub(super) fn against(truth: &Truth, maps: &Maps) -> TruthOfClusters {
+pub(super) fn against(truth: &There, maps: &Maps) -> TruthOfClusters {
     let mut found = TruthOfClusters::default();
     if let Some(material) = &truth.material {
         let mut table: BTreeMap<u16, BTreeMap<usize, usize>> = BTreeMap::new();
