@@ -3,6 +3,7 @@
 mod equalise;
 mod figures;
 mod segmented;
+mod shown;
 mod text;
 mod vision;
 
@@ -47,13 +48,13 @@ pub fn bundle(result: &Decomposed, out: &Path, room: Option<&Path>) -> Result<Bu
             }
         }
     }
-    let stride = figures::stride(result.shape);
-    let shown = result.kept.every(stride, result.shape)?;
+    let stride = shown::stride(result.shape);
+    let pixels = result.kept.every(stride, result.shape)?;
     if let Some(found) = &result.segmentation {
         bundle.add("segmentation.npy", npy_map(&size, &found.map)?);
         bundle.add_table("categories.csv", segmented::categories(found))?;
         bundle.add_table("objects.csv", segmented::objects(found))?;
-        bundle.add_plots(&[segmented::plot(result, found, &shown, stride)])?;
+        bundle.add_plots(&[segmented::plot(result, found, &pixels, stride)])?;
     }
     if let Some(of_sky) = &result.vision.distilled {
         bundle.add("distilled_texture.npy", npy_map(&size, &of_sky.texture)?);
@@ -73,7 +74,7 @@ pub fn bundle(result: &Decomposed, out: &Path, room: Option<&Path>) -> Result<Bu
             bundle.add_file(IMAGE, path);
         }
     }
-    bundle.add_plots(&[vision::plot(&brush, &shown, stride), figures::maps(result, &shown, stride)])?;
+    bundle.add_plots(&[vision::plot(&brush, &pixels, stride), figures::maps(result, &pixels, stride)])?;
     Ok(bundle)
 }
 

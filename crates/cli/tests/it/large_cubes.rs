@@ -1,5 +1,6 @@
 //! Cubes whose pixels are too many to be kept: what memory the program takes, where the system can limit it (Linux).
 
+use crate::decompose;
 use crate::support::folder::Folder;
 use hadar::cube::{Cube, Shape, write_npy};
 use std::fs::OpenOptions;
@@ -16,27 +17,22 @@ const SCENARIO: &str = "[cube]\nleft = \"left.npy\"\ndepth = \"10 m\"\nnoise_var
 /// kB of address space: the pixels alone would take 700 MB if they were kept, the file has 1.15 GB.
 const LIMIT_KB: usize = 560_000;
 
-/// A file of zeros that takes no room: `header` and so many bytes.
-fn sparse(folder: &Folder) {
-    let text = format!("{{'descr': '<f4', 'fortran_order': False, 'shape': ({ROWS}, {COLUMNS}, {BANDS}), }}");
+/// A file of zeros that takes no room: a header and so many bytes.
+fn sparse(folder: &Folder, name: &str, [rows, columns, bands]: [usize; 3]) {
+    let text = format!("{{'descr': '<f4', 'fortran_order': False, 'shape': ({rows}, {columns}, {bands}), }}");
     let header = [b"\x93NUMPY\x01\x00\x76\x00".as_slice(), format!("{text:<117}\n").as_bytes()].concat();
     assert_eq!(header.len(), 128);
-    let path = folder.path().join("left.npy");
+    let path = folder.path().join(name);
     std::fs::write(&path, header).unwrap();
     let file = OpenOptions::new().write(true).open(path).unwrap();
-    file.set_len((128 + ROWS * COLUMNS * BANDS * 4) as u64).unwrap();
+    file.set_len((128 + rows * columns * bands * 4) as u64).unwrap();
 }
 
-#[test]
-fn a_cube_is_ranged_in_less_memory_than_its_pixels_would_take() {
-    if cfg!(debug_assertions) || !cfg!(target_os = "linux") {
-        println!("skipped: only with optimisation, on Linux");
-        return;
-    }
-    let folder = Folder::with(SCENARIO);
-    sparse(&folder);
+/// The answer of a command that may not take more address space than so many kB.
+fn limited(folder: &Folder, command: &str) -> serde_json::Value {
     let program = assert_cmd::cargo::cargo_bin!("hadar").display().to_string();
-    let limited = format!("ulimit -v {LIMIT_KB}; exec '{program}' range a.toml --threads 2 --out out --json");
+    let limited =
+        format!("ulimit -v {LIMIT_KB}; exec '{program}' {command} a.toml --threads 2 --out out --json");
     let output = Command::new("sh")
         .args(["-c", &limited])
         .current_dir(folder.path())
@@ -46,7 +42,18 @@ fn a_cube_is_ranged_in_less_memory_than_its_pixels_would_take() {
         .unwrap();
     let error = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{error}");
-    let result: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+#[test]
+fn a_cube_is_ranged_in_less_memory_than_its_pixels_would_take() {
+    if cfg!(debug_assertions) || !cfg!(target_os = "linux") {
+        println!("skipped: only with optimisation, on Linux");
+        return;
+    }
+    let folder = Folder::with(SCENARIO);
+    sparse(&folder, "left.npy", [ROWS, COLUMNS, BANDS]);
+    let result = limited(&folder, "range");
     let all = &result["objects"][0];
     assert_eq!(all["windows"], (ROWS - 4) * (COLUMNS - 6));
     // Without texture nothing tells the distance, and 0 is exact.
@@ -62,6 +69,25 @@ fn a_cube_is_ranged_in_less_memory_than_its_pixels_would_take() {
     }
     let left = std::fs::read_dir(folder.path()).unwrap().count();
     assert_eq!(left, 3, "nothing is left beside the report");
+}
+
+/// Maps in memory would take 860 MB with their report.
+#[test]
+fn a_cube_is_decomposed_in_less_memory_than_its_maps_would_take() {
+    const SIDE: usize = 2200;
+    if cfg!(debug_assertions) || !cfg!(target_os = "linux") {
+        println!("skipped: only with optimisation, on Linux");
+        return;
+    }
+    let folder = decompose::with(decompose::SCENARIO.split("[truth]").next().unwrap());
+    let before = std::fs::read_dir(folder.path()).unwrap().count();
+    sparse(&folder, "counts.npy", [SIDE, SIDE, decompose::BANDS]);
+    let result = limited(&folder, "decompose");
+    assert_eq!(result["pixels"], SIDE * SIDE);
+    let map = Cube::open(&folder.path().join("out/temperature_k.npy"), None).unwrap();
+    assert_eq!((map.shape().rows(), map.shape().columns()), (SIDE, SIDE));
+    let left = std::fs::read_dir(folder.path()).unwrap().count();
+    assert_eq!(left, before + 1, "nothing is left beside the report");
 }
 
 /// A cube whose windows are kept has no error of its medians to state.

@@ -1,26 +1,10 @@
 //! Pictures of a decomposed cube: temperature, its deviation, material, how many are left.
 
+use super::shown::places;
 use crate::figures::Plot;
 use crate::plot::{Axis, Picture, Pictures};
 use crate::table::{Table, number};
-use hadar::cube::Shape;
 use hadar_study::study::decompose::{Block, Decomposed};
-
-/// Widest picture, pixels: of larger cubes every second, third… row and column is shown.
-const WIDEST: usize = 320;
-
-/// From a row and column that is shown to the next.
-pub(super) fn stride(shape: Shape) -> usize {
-    shape.columns().max(shape.rows()).div_ceil(WIDEST)
-}
-
-/// Row, column and place, counted row after row, of every pixel that is shown, and how many are side by side.
-pub(super) fn places(shape: Shape, stride: usize) -> (Vec<[usize; 3]>, usize) {
-    let (rows, columns) = (shape.rows(), shape.columns());
-    let of_row =
-        |row: usize| (0..columns).step_by(stride).map(move |column| [row, column, row * columns + column]);
-    ((0..rows).step_by(stride).flat_map(of_row).collect(), columns.div_ceil(stride))
-}
 
 /// The maps, of the pixels that are shown.
 #[must_use]

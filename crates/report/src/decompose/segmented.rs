@@ -1,6 +1,6 @@
 //! A segmented cube: categories and objects in words, tables and a picture.
 
-use super::figures::places;
+use super::shown::places;
 use crate::figures::Plot;
 use crate::plot::{Axis, Painted, Picture, Pictures, categorical};
 use crate::table::{Table, number};

@@ -5,7 +5,7 @@
 //! ([`super::equalise`]), so that hues are seen in the shade too; where the lighting is unknown it is in the middle.
 
 use super::equalise::{Clahe, Curves, LIMIT};
-use super::figures::places;
+use super::shown::places;
 use crate::figures::Plot;
 use crate::plot::{Axis, Painted, Picture, Pictures, Rgb, image_png};
 use crate::table::{Table, number};

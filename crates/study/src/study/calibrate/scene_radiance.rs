@@ -3,7 +3,7 @@
 //! S = B̄ + (C − C̄)/R of every sample, W m⁻² sr⁻¹ per cm⁻¹, R and C̄ of the band or of each pixel for itself; the errors of
 //! [`hadar::calibration::blackbody`], whose variance is a parabola in the radiance.
 
-use super::whole::{at, beside, pairs, shown};
+use super::whole::{at, beside, check_memory, pairs, shown};
 use crate::scenario::Source;
 use hadar::calibrate::spectrometer::Calibration;
 use hadar::calibration::blackbody::Blackbodies;
@@ -17,6 +17,9 @@ use serde::Serialize;
 pub(super) const DEAD: f64 = 5.0;
 /// Samples of which the typical errors of a scene are taken.
 const LOOKED_AT: usize = 20_000;
+/// Bytes of a sample: radiance and errors, once more in the files of the report.
+const KEPT: u64 = 16;
+const KEPT_OF_EACH: u64 = 24;
 
 /// A calibrated scene, W m⁻² sr⁻¹ per cm⁻¹.
 #[derive(Debug, Clone, Serialize)]
@@ -70,6 +73,8 @@ impl Spectrometer<'_> {
 
     /// With one response of each band for all pixels.
     pub(super) fn radiance(&self, cube: &Cube) -> Result<SceneFound> {
+        check_memory(cube.shape(), KEPT, "the radiances of all samples")
+            .map_err(at(self.source, "scene.data"))?;
         let (found, of) = (self.found, &self.found.blackbodies);
         // The variance of a radiance is a parabola: by three of its values.
         let lines: Vec<[f64; 6]> = (0..self.wavenumbers_cm1.len())
@@ -117,6 +122,8 @@ impl Spectrometer<'_> {
     pub(super) fn radiance_of_each(&self, cube: &Cube) -> Result<SceneFound> {
         let (found, source, noise) = (self.found, self.source, self.noise);
         let shape = cube.shape();
+        check_memory(shape, KEPT_OF_EACH, "the radiances of all samples")
+            .map_err(at(source, "scene.data"))?;
         for (k, other) in self.cubes.iter().enumerate() {
             if other.shape() != shape {
                 let sizes =

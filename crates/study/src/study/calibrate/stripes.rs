@@ -1,6 +1,7 @@
 //! A cube without its stripes.
 
 use super::opened::Measured;
+use super::whole::check_memory;
 use crate::scenario::calibrate::StripesScenario;
 use crate::study::Warning;
 use hadar::calibrate::{Destriped, Why, find_stripes};
@@ -91,6 +92,9 @@ impl StripesStudy {
             (_, None, Some(path)) => error.in_file(path),
             _ => error,
         };
+        // The samples without their stripes, once more in the file of the report.
+        let bytes = if matches!(self.cube, Cube::F32(_)) { 8 } else { 16 };
+        check_memory(self.cube.shape(), bytes, "the cube without its stripes").map_err(place)?;
         let sought = &self.scenario.stripes;
         let destriped = match &self.cube {
             Cube::F32(cube) => find_stripes(cube.as_ref(), sought),

@@ -1,7 +1,8 @@
-//! Cubes of a calibration read whole, every sample a number.
+//! Cubes of a calibration, every sample a number: read whole, or by rows where sums are all that is wanted.
 
 use crate::scenario::Source;
 use crate::scenario::calibrate::blackbodies::CubeFile;
+use crate::study::memory;
 use hadar::cube::{Cube, Rows, Sample, Shape};
 use hadar::error::{Error, Result};
 use rayon::prelude::*;
@@ -59,9 +60,16 @@ fn rows<S: Sample, T: Send>(
     })
 }
 
+/// What takes so many bytes for each sample of a cube is refused where the machine has no memory for it.
+pub(super) fn check_memory(shape: Shape, bytes: u64, what: &str) -> Result<()> {
+    let all = bytes.saturating_mul(shape.len() as u64);
+    memory::check(all, what, "cut the cube into parts of fewer rows")
+}
+
 /// All samples.
 pub(super) fn samples(cube: &Cube) -> Result<Vec<f64>> {
     let shape = cube.shape();
+    check_memory(shape, 8, "all samples of the cube")?;
     let mut out = vec![0.0; shape.len()];
     match cube {
         Cube::F32(cube) => rows(cube.as_ref(), &mut out, shape.row_len(), false, copied),
@@ -102,16 +110,23 @@ pub(super) fn pairs(cube: &Cube, of: impl Fn(usize, f64) -> [f32; 2] + Sync) -> 
 
 /// Mean of every band over all pixels, and the deviation of a pixel from it.
 pub(super) fn means(cube: &Cube) -> Result<(Vec<f64>, Vec<f64>)> {
-    let (shape, samples) = (cube.shape(), samples(cube)?);
+    let shape = cube.shape();
     let bands = shape.bands();
     let pixels = (shape.rows() * shape.columns()) as f64;
     let (mut sum, mut square) = (vec![0.0; bands], vec![0.0; bands]);
-    let first: Vec<f64> = samples[..bands].to_vec();
-    for pixel in samples.chunks(bands) {
-        for (band, sample) in pixel.iter().enumerate() {
-            let off = sample - first[band];
-            sum[band] += off;
-            square[band] += off * off;
+    let (mut first, mut samples) = (Vec::new(), Vec::new());
+    for row in 0..shape.rows() {
+        row_of(cube, row, false, &mut samples)?;
+        if first.is_empty() {
+            first.extend(samples.iter().take(bands).copied());
+        }
+        for pixel in samples.chunks(bands) {
+            let sums = sum.iter_mut().zip(&mut square);
+            for ((sample, first), (sum, square)) in pixel.iter().zip(&first).zip(sums) {
+                let off = sample - first;
+                *sum += off;
+                *square += off * off;
+            }
         }
     }
     let scatter = |(sum, square): (&f64, &f64)| {
