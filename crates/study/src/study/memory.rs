@@ -38,6 +38,11 @@ pub(super) fn promise(bytes: u64, what: &str, instead: &str) -> Result<Promised>
     }
 }
 
+/// Refuses what takes more bytes than are free, of works that are never several at a time.
+pub(super) fn check(bytes: u64, what: &str, instead: &str) -> Result<()> {
+    within(bytes, free().unwrap_or(u64::MAX), what, instead)
+}
+
 /// Whether there is nobody to wait for, or room for all.
 fn fits_beside(promised: u64, bytes: u64, free: u64) -> bool {
     promised == 0 || promised.checked_add(bytes).is_some_and(|all| all <= free)
