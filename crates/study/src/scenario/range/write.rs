@@ -73,7 +73,7 @@ fn cube(spec: &CubeSpec, paths: Paths<'_>) -> Entries {
         .put_if("right", spec.right.as_ref().map(|path| paths.file(path)))
         .put_if("variable", spec.variable.as_deref())
         .put_if("axes", spec.axes.map(|axes| axes.to_string()))
-        .put("photons_per_unit", spec.photons_per_unit.unwrap_or(1.0));
+        .put_if("photons_per_unit", spec.photons_per_unit);
     let entries = match &spec.noise {
         None => entries,
         Some(NoiseSource::Uniform(var)) => entries.put("noise_variance", *var),
