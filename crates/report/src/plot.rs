@@ -142,6 +142,9 @@ pub fn render_png(figure: &Figure) -> Result<Vec<u8>> {
     png::paint(&scene(figure)?)
 }
 
+/// Takes the pixels of whole rows.
+pub type PutRows<'a> = dyn FnMut(&[Rgb]) -> Result<()> + 'a;
+
 /// An image of so many rows and columns as a PNG file, whose pixels `paint` hands on row after row, whole rows at a time.
 ///
 /// # Errors
@@ -149,7 +152,7 @@ pub fn render_png(figure: &Figure) -> Result<Vec<u8>> {
 pub fn image_png(
     to: impl std::io::Write,
     size: [usize; 2],
-    paint: &mut dyn FnMut(&mut dyn FnMut(&[Rgb]) -> Result<()>) -> Result<()>,
+    paint: &mut dyn FnMut(&mut PutRows<'_>) -> Result<()>,
 ) -> Result<()> {
     png::by_rows(to, size, paint)
 }

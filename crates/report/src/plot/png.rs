@@ -3,6 +3,7 @@
 use plotters::backend::{BitMapBackend, DrawingBackend};
 use plotters::style::Color;
 
+use super::PutRows;
 use super::backend::{failure, rgba};
 use super::colour::Colour;
 use super::mask::Mask;
@@ -50,7 +51,7 @@ pub(super) fn raster(pixels: &[(u8, u8, u8)], columns: usize) -> Result<Vec<u8>>
 pub(super) fn by_rows(
     to: impl Write,
     [rows, columns]: [usize; 2],
-    paint: &mut dyn FnMut(&mut dyn FnMut(&[(u8, u8, u8)]) -> Result<()>) -> Result<()>,
+    paint: &mut dyn FnMut(&mut PutRows<'_>) -> Result<()>,
 ) -> Result<()> {
     let side = |side: usize| u32::try_from(side).map_err(failure);
     let mut writer = encoder(to, side(columns)?, side(rows)?).write_header().map_err(failure)?;
