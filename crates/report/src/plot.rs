@@ -52,6 +52,7 @@ pub use heatmap::HeatMap;
 pub use matrix::{Matrix, Threshold};
 pub use named::{NamedSeries, NamedValues};
 pub use pictures::{Painted, Picture, Pictures, Rgb};
+pub use png::PutRows;
 
 use hadar::Result;
 
@@ -141,9 +142,6 @@ pub fn render_svg(figure: &Figure) -> Result<String> {
 pub fn render_png(figure: &Figure) -> Result<Vec<u8>> {
     png::paint(&scene(figure)?)
 }
-
-/// Takes the pixels of whole rows.
-pub type PutRows<'a> = dyn FnMut(&[Rgb]) -> Result<()> + 'a;
 
 /// An image of so many rows and columns as a PNG file, whose pixels `paint` hands on row after row, whole rows at a time.
 ///

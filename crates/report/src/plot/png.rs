@@ -3,7 +3,6 @@
 use plotters::backend::{BitMapBackend, DrawingBackend};
 use plotters::style::Color;
 
-use super::PutRows;
 use super::backend::{failure, rgba};
 use super::colour::Colour;
 use super::mask::Mask;
@@ -13,6 +12,9 @@ use hadar::Result;
 use std::io::Write;
 
 const SCALE: f64 = 3.0;
+
+/// Takes the pixels of whole rows, red, green and blue.
+pub type PutRows<'a> = dyn FnMut(&[(u8, u8, u8)]) -> Result<()> + 'a;
 
 /// The file.
 pub(super) fn paint(scene: &Scene) -> Result<Vec<u8>> {
