@@ -14,6 +14,7 @@
 //! # Ok::<(), hadar::Error>(())
 //! ```
 
+mod proviso;
 pub mod scenario;
 pub mod study;
 pub mod sweep;

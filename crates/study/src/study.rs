@@ -37,6 +37,7 @@ mod stage;
 mod surface;
 mod warn;
 
+pub use crate::proviso::Proviso;
 pub use crate::warning::{Warning, WorstBlackbody};
 pub use classes::{ClassAnswer, ClassSide, LeftOut, MixtureAnswer};
 pub use companion::Companion;
@@ -51,7 +52,7 @@ pub use rule::{
     ApartAnswer, ApproachResult, BudgetLine, CameraAnswer, CameraVerdict, Certified, ClauseAnswer, Drawn,
     EmissivityError, EnvelopeResult, Extent, Fixes, Found, Grade, IdealCamera, LightTime, LimitingScene,
     Line, MarginUncertainty, Measure, MeasuredAnswer, MeasuredScene, MeasuredVerdict, Neighbourhood,
-    NotIdentifiable, Proof, Proviso, Quotable, RuleAnswer, RuleAsked, RuleRequirement, RuleStudy, StandIn,
+    NotIdentifiable, Proof, Quotable, RuleAnswer, RuleAsked, RuleRequirement, RuleStudy, StandIn,
     StandInAnswer, StandInScene, StopResult, TestCheck, TestResult, Told, WhoMeets, WithoutPlaceholders,
 };
 pub use shortfall::Shortfall;

@@ -7,6 +7,7 @@ mod message;
 
 pub use catalogue::Code;
 
+use crate::proviso::Proviso;
 use hadar::instrument::Readout;
 use hadar::scene::Parameter;
 use hadar::simulate::classifier::Method;
@@ -204,8 +205,8 @@ pub enum Warning {
     NotProved,
     /// Noise of the brightest scene.
     BrightestNoise,
-    /// Time of all frames, and the way that is driven in it.
-    FramesInMotion { frames: u32, time_s: f64, way_m: f64 },
+    /// Frames that take time while something moves.
+    FramesInMotion(Proviso),
 
     /// Samples of a cube that were looked at.
     SamplesNotChecked { evaluated: usize, samples: usize },
@@ -352,7 +353,7 @@ impl Warning {
             Self::EmissivityErrorsLeftOut => Code::EmissivityErrorsLeftOut,
             Self::NotProved => Code::NotProved,
             Self::BrightestNoise => Code::BrightestNoise,
-            Self::FramesInMotion { .. } => Code::FramesInMotion,
+            Self::FramesInMotion(_) => Code::FramesInMotion,
             Self::SamplesNotChecked { .. } => Code::SamplesNotChecked,
             Self::NoiseOfDemanded { .. } | Self::NoiseOfFound { .. } => Code::NoiseInCounts,
             Self::DarkSamples { .. } => Code::DarkSamples,
@@ -436,7 +437,7 @@ mod tests {
              (temperature, lighting of environment[1]); the range decides the answer\"}"
         );
         // Digits that are not shown make no second warning.
-        let moving = |time_s| Warning::FramesInMotion { frames: 60, time_s, way_m: 1.7 };
+        let moving = |time_s| Warning::FramesInMotion(Proviso { frames: 60, time_s, way_m: 1.7 });
         assert!(moving(1.0).says_as(&moving(1.0 + 1e-9)) && !moving(1.0).says_as(&moving(1.2)));
     }
 }

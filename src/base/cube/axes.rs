@@ -68,6 +68,15 @@ impl Axes {
     /// `[row][band][column]`.
     pub(super) const LINES: Self = Self([Axis::Rows, Axis::Bands, Axis::Columns]);
 
+    /// With the bands on one of the dimensions, the rows before the columns.
+    pub(super) const fn with_bands_on(dimension: usize) -> Self {
+        match dimension {
+            0 => Self::IMAGES,
+            1 => Self::LINES,
+            _ => Self(Axis::ALL),
+        }
+    }
+
     /// Axes from their names.
     ///
     /// # Errors

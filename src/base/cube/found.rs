@@ -102,6 +102,16 @@ impl Found {
         }
     }
 
+    /// The axes by which the array has so many bands, where one of its sides alone is so long.
+    #[must_use]
+    pub fn axes_of_bands(&self, bands: usize) -> Option<Axes> {
+        let mut places = self.sides.iter().enumerate().filter(|(_, side)| **side == bands);
+        match (self.sides.len(), places.next(), places.next()) {
+            (3, Some((dimension, _)), None) => Some(Axes::with_bands_on(dimension)),
+            _ => None,
+        }
+    }
+
     /// Whether nobody has said what the axes are and the first is so short that it may be the bands.
     #[must_use]
     pub fn may_begin_with_bands(&self) -> bool {

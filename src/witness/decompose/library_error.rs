@@ -47,7 +47,7 @@ pub struct LibraryError {
 }
 
 /// Σ of a [`LibraryError`] in the bands that count.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Modes {
     /// √eigenvalue × eigenvector, one after the other, as wide as the model.
     modes: Vec<Vec<f64>>,
@@ -81,7 +81,7 @@ impl Modes {
         Ok(Self { modes, rest })
     }
 
-    /// Of a share of the error.
+    /// Of a share of the error; of none, what costs next to nothing.
     fn smaller(&self, share: f64) -> Self {
         let of = |mode: &Vec<f64>| mode.iter().map(|x| share * x).collect();
         Self {

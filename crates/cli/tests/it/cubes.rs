@@ -170,9 +170,13 @@ fn axes_are_as_the_scenario_says() {
     folder.file("a.toml", SCENARIO);
     let refused = folder.refusal(&["decompose", "a.toml"]);
     assert!(
-        refused.contains("its first axis seems to be the bands: write axes = \"bands,rows,columns\""),
+        refused.contains("if these are the bands of its file, write axes = \"bands,rows,columns\""),
         "{refused}"
     );
+    // What is said to write holds of the file, whatever was said before.
+    folder.file("a.toml", &SCENARIO.replace("1e-13\n", "1e-13\naxes = \"rows,bands,columns\"\n"));
+    let refused = folder.refusal(&["decompose", "a.toml"]);
+    assert!(refused.contains("write axes = \"bands,rows,columns\""), "{refused}");
     folder.file("a.toml", &SCENARIO.replace("1e-13\n", "1e-13\naxes = \"bands,lines,samples\"\n"));
     let refused = folder.refusal(&["decompose", "a.toml"]);
     assert!(

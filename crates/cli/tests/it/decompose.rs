@@ -172,7 +172,7 @@ fn mistakes_are_one_line_with_what_to_write() {
     let cases = [
         (
             SCENARIO.replace("counts.npy", "turned.npy"),
-            "its first axis seems to be the bands: write axes = \"bands,rows,columns\"",
+            "if these are the bands of its file, write axes = \"bands,rows,columns\"",
         ),
         (
             SCENARIO.replace("1200 cm^-1", "1180 cm^-1"),

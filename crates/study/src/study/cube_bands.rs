@@ -78,7 +78,7 @@ impl InOrder {
     /// # Errors
     /// Another number of bands, or one that the file has elsewhere by more than half its width.
     pub(super) fn check(&self, bands: &Bands) -> Result<()> {
-        check_count(&self.cube, bands)?;
+        check_count(&self.found, bands)?;
         let Some(centres) = &self.found.centres_cm1 else { return Ok(()) };
         let widths = bands.widths_cm1();
         for (i, ((band, own), width)) in
@@ -126,11 +126,15 @@ pub(super) fn axes_in_doubt(found: &Found, said: Option<&Bands>) -> Option<Warni
     (found.may_begin_with_bands() && !sure).then_some(Warning::AxesInDoubt { rows, columns, bands })
 }
 
-fn check_count(cube: &Cube, bands: &Bands) -> Result<()> {
-    let shape = cube.shape();
+fn check_count(found: &Found, bands: &Bands) -> Result<()> {
+    let shape = found.shape;
     if shape.bands() == bands.len() {
         return Ok(());
     }
+    let instead = match found.axes_of_bands(bands.len()) {
+        Some(axes) => format!("if these are the bands of its file, write axes = \"{axes}\""),
+        None => "make [bands] those of the cube".into(),
+    };
     let found = format!(
         "the cube is {} x {} x {} (rows, columns, bands), but [bands] are {}",
         shape.rows(),
@@ -138,10 +142,5 @@ fn check_count(cube: &Cube, bands: &Bands) -> Result<()> {
         shape.bands(),
         bands.len()
     );
-    let instead = match (shape.rows() == bands.len(), shape.columns() == bands.len()) {
-        (true, _) => "its first axis seems to be the bands: write axes = \"bands,rows,columns\"",
-        (_, true) => "its second axis seems to be the bands: write axes = \"rows,bands,columns\"",
-        _ => "make [bands] those of the cube",
-    };
     Err(Error::malformed(found, instead))
 }

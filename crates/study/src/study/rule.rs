@@ -30,8 +30,8 @@ pub use clauses::{
 pub use expected::{TestCheck, TestResult, Told};
 pub use results::{
     ApproachResult, CameraVerdict, Certified, EmissivityError, EnvelopeResult, Fixes, Grade, IdealCamera,
-    LightTime, LimitingScene, Neighbourhood, NotIdentifiable, Proof, Proviso, Quotable, RuleRequirement,
-    StopResult, WhoMeets, WithoutPlaceholders,
+    LightTime, LimitingScene, Neighbourhood, NotIdentifiable, Proof, Quotable, RuleRequirement, StopResult,
+    WhoMeets, WithoutPlaceholders,
 };
 pub use stand_in::{StandIn, StandInAnswer, StandInScene};
 pub use uncertainty::{BudgetLine, Drawn, MarginUncertainty};
@@ -41,6 +41,7 @@ use self::depth::DepthClause;
 use self::resolution::Resolution;
 use self::temperature::TemperatureClause;
 use super::{Study, Warning};
+use crate::proviso::Proviso;
 use crate::scenario::rule::{Clause, Demand, StopSpec, Verdict};
 use crate::scenario::{Date, Rule};
 use hadar::demand::{self, Ledger, Work};

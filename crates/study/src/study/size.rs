@@ -2,6 +2,7 @@
 
 use super::identify::{PairResult, PhotonsRequired};
 use super::{Check, ClassAnswer, Companion, Shortfall, Study, Surface, Warning};
+use crate::proviso::Proviso;
 use crate::scenario::{DistanceKind, Scenario};
 use hadar::demand::{self, Ledger, Skipping, Work};
 use hadar::error::Result;
@@ -98,6 +99,8 @@ pub struct Verdict {
     pub met: Option<bool>,
     /// What it is not met by; empty if it is met or there is no camera.
     pub fails_by: Vec<Shortfall>,
+    /// What a 'yes' hangs on: frames that are added up at the demanded speed. In JSON it completes 'yes, if '.
+    pub provided: Option<Proviso>,
     /// The answer, in JSON a sentence.
     pub sentence: Finding,
     /// Statistical distance that the camera reaches against the limiting alternative.
@@ -129,6 +132,8 @@ pub struct Finding {
     pub placeholders: Option<[f64; 2]>,
     /// Where target or alternative is a class, what its members say together.
     pub classes: Option<Box<ClassAnswer>>,
+    /// What a 'yes' hangs on.
+    pub provided: Option<Proviso>,
 }
 
 /// What was found.
@@ -334,9 +339,12 @@ impl Study {
             placeholders: alternative.as_deref().and_then(|name| self.one_numbers(name)),
             classes: index.and_then(|index| self.classes.get(index)).cloned().map(Box::new),
             alternative,
+            provided: self.proviso(),
         };
+        let met = check.identifiable && spoiled.is_empty();
         let verdict = Verdict {
-            met: Some(check.identifiable && spoiled.is_empty()),
+            met: Some(met),
+            provided: sentence.provided.filter(|_| met),
             fails_by: (!check.identifiable)
                 .then_some(Shortfall::Distance)
                 .into_iter()
@@ -490,9 +498,11 @@ impl Study {
             answer,
             placeholders: self.one_numbers(&pair.alternative),
             classes: self.classes.get(index).cloned().map(Box::new),
+            provided: self.proviso(),
         };
         Verdict {
             met,
+            provided: sentence.provided.filter(|_| met == Some(true)),
             fails_by,
             sentence,
             statistical_distance: reached,
@@ -517,12 +527,19 @@ impl Study {
         })
     }
 
+    /// Frames that must be registered at the demanded speed.
+    pub(super) fn proviso(&self) -> Option<Proviso> {
+        Proviso::of(self.camera.as_ref()?, self.bands.len(), self.scenario.requirement.speed_m_s?)
+    }
+
     /// What spoils the camera's image whatever the distance: the demanded speed, the full well.
     fn spoiled(&self, camera: Option<&CameraResult>) -> Vec<Shortfall> {
         let Some(camera) = camera else { return Vec::new() };
         let mut spoiled = Vec::new();
-        if camera.motion_blur_pixels.is_some_and(|blur| blur >= 1.0) {
-            spoiled.push(Shortfall::MotionBlur);
+        match (self.scenario.requirement.speed_m_s, camera.motion_blur_pixels) {
+            (Some(_), None) => spoiled.push(Shortfall::MotionUnknown),
+            (_, Some(blur)) if blur >= 1.0 => spoiled.push(Shortfall::MotionBlur),
+            _ => {}
         }
         // Of a class every member must fit into the well.
         let brightest = self.brightest_member(&camera.camera).max(camera.brightest_reading);

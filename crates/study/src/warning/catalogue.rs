@@ -228,8 +228,7 @@ catalogue! {
     NotProved = "not-proved", "Narrow the envelope, so that the search can prove it.";
     /// Noise that depends on the scene is taken where it is largest, so that the distance is a lower bound.
     BrightestNoise = "brightest-noise", "Nothing; the verdict is on the safe side.";
-    /// With air on the path the worst distance is assumed to be at an end of its range.
-    /// The frames of a camera take so long that the vehicle moves meanwhile.
+    /// The frames of a camera are added up while something moves: motion blur takes them to be laid over each other.
     FramesInMotion = "frames-in-motion", "Lay the frames over each other, or take fewer.";
 
     /// A yes or no was decided by some samples of the cube, and the others were not looked at.

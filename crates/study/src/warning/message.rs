@@ -1,6 +1,7 @@
 //! The message of every warning, made of its data.
 
 use super::Warning;
+use crate::proviso::Proviso;
 use hadar::instrument::Readout;
 use hadar::scene::Parameter;
 use hadar::words::{length, quantity, significant};
@@ -447,10 +448,10 @@ impl Display for Warning {
                 "noise that depends on the scene is taken in the brightest scene, so the distance is a lower bound; \
                  what would fix the camera is computed in the limiting scene itself",
             ),
-            Self::FramesInMotion { frames, time_s, way_m } => write!(
+            Self::FramesInMotion(Proviso { frames, time_s, way_m }) => write!(
                 f,
-                "its {frames} frames take {} s, in which the vehicle drives {} m: they must be laid over each other, and the \
-                 scene must not change",
+                "its {frames} frames take {} s, at the demanded speed a way of {} m: they must be laid over each other, and the \
+                 scene must not change; motion blur counts each by itself",
                 short(*time_s),
                 short(*way_m)
             ),

@@ -5,7 +5,7 @@ use hadar::policy::elasticity::Lever;
 use hadar::policy::trade_off::POINTS;
 use hadar::policy::{CapCode, Quantity, Solution};
 use hadar_study::scenario::Scenario;
-use hadar_study::study::{Sizing, Study};
+use hadar_study::study::{Shortfall, Sizing, Study};
 use hadar_study::warning::Code;
 use std::sync::OnceLock;
 
@@ -308,4 +308,32 @@ fn assumptions_that_fail_are_warned_of() {
     let hot = size(&SCENE.replace("37 degC", "400 degC").replace("netd =", "photon_bunching = true\nnetd ="));
     let warning = hot.warnings.iter().find(|warning| warning.code() == Code::Bunching).unwrap();
     assert!(warning.to_string().contains("is included"), "{warning}");
+}
+
+/// At 60 Hz four frames of 12 ms take 12 ms + 3/60 s, in which 30 mph (13.4112 m/s) go 0.83 m; motion that is not known is not met.
+#[test]
+fn a_yes_says_what_it_hangs_on_at_a_speed() {
+    let easy = SCENE.replace("distance = 1.0", "distance = 0.01");
+    let both = |text: &str| {
+        let study = study(text);
+        [study.size().unwrap().verdict, study.verdict_alone().unwrap().unwrap().verdict]
+    };
+    for verdict in both(&easy.replace("netd =", "frames = 4\nframe_rate = \"60 Hz\"\nnetd =")) {
+        let said = verdict.sentence.to_string();
+        assert!(said.starts_with("Yes, if its 4 frames can be registered ("), "{said}");
+        let provided = verdict.provided.unwrap();
+        assert!((provided.time_s / 0.062 - 1.0).abs() < 1e-12, "{provided:?}");
+        assert!((provided.way_m / 0.831_494_4 - 1.0).abs() < 1e-9, "{provided:?}");
+    }
+    let at_rest = easy.replace("speed = \"30 mph\"\n", "").replace("netd =", "frames = 4\nnetd =");
+    for verdict in both(&easy).into_iter().chain(both(&at_rest)) {
+        assert!(verdict.sentence.to_string().starts_with("Yes: ") && verdict.provided.is_none());
+    }
+    let nowhere =
+        easy.replace("distance = \"30 m\"\nsize = \"0.3 m\"\n[background]\ntemperature = \"15 degC\"\n", "");
+    for verdict in both(&nowhere) {
+        let said = verdict.sentence.to_string();
+        assert!(said.starts_with("No: ") && said.contains("without target.distance"), "{said}");
+        assert_eq!((verdict.met, verdict.fails_by), (Some(false), vec![Shortfall::MotionUnknown]));
+    }
 }

@@ -1,10 +1,11 @@
 //! What comes of the clauses of a rule, as data.
 
 use super::results::{
-    ApproachResult, CameraVerdict, EnvelopeResult, Grade, NotIdentifiable, Proviso, RuleRequirement,
-    StopResult, WhoMeets,
+    ApproachResult, CameraVerdict, EnvelopeResult, Grade, NotIdentifiable, RuleRequirement, StopResult,
+    WhoMeets,
 };
 use super::uncertainty::MarginUncertainty;
+use crate::proviso::Proviso;
 use crate::scenario::rule::Verdict;
 use crate::scenario::{Date, Rule};
 use crate::study::companion::Companion;

@@ -1,6 +1,7 @@
 //! What comes of a rule, as data.
 
 use super::uncertainty::MarginUncertainty;
+use crate::proviso::Proviso;
 use crate::scenario::Units;
 use crate::scenario::rule::Verdict;
 use crate::study::size::Solutions;
@@ -29,25 +30,6 @@ pub struct WhoMeets {
     pub idle: Option<Warning>,
     /// Pairs that limit a camera though each of the two is entered as one number, with the numbers.
     pub placeholders: Vec<(String, String, [f64; 2])>,
-}
-
-/// What a 'yes' hangs on. Its `Display` completes 'yes, if '.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Proviso {
-    /// Frames that must be laid over each other.
-    pub frames: u32,
-    /// Time until all are read, s.
-    pub time_s: f64,
-    /// Way of the vehicle meanwhile, m.
-    pub way_m: f64,
-}
-
-impl Proviso {
-    /// Whether it hangs on more: a longer way, or more time for the same.
-    pub(super) fn is_harder_than(&self, other: &Self) -> bool {
-        let hard = |one: &Self| (one.way_m, one.time_s, one.frames);
-        hard(self) > hard(other)
-    }
 }
 
 /// A camera over the pairs of which more than one number is known of one of the two.

@@ -8,8 +8,9 @@ use super::super::{NearestState, Shortfall, Study, Surface, Warning, warn};
 use super::apart::{Candidate, TellApart};
 use super::approach::{contradiction, spoiled};
 use super::envelope::{Estimate, Sighted, brightest};
-use super::results::{CameraVerdict, Certified, Fixes, Grade, LimitingScene, Proviso, WithoutPlaceholders};
+use super::results::{CameraVerdict, Certified, Fixes, Grade, LimitingScene, WithoutPlaceholders};
 use super::uncertainty::{self, Judged};
+use crate::proviso::Proviso;
 use crate::scenario::rule::{StopSpec, Verdict};
 use hadar::demand::{self, Reason, Thing};
 use hadar::error::{Error, Result};
@@ -162,7 +163,7 @@ impl TellApart {
             }
         }
         let frames = warnings.iter().find_map(|warning| match *warning {
-            Warning::FramesInMotion { frames, time_s, way_m } => Some(Proviso { frames, time_s, way_m }),
+            Warning::FramesInMotion(proviso) => Some(proviso),
             _ => None,
         });
         let bands = at.bands.len();
@@ -233,11 +234,8 @@ impl TellApart {
         let state =
             near.ranges(&self.envelope).map_or_else(|_| near.state.clone(), |ranges| brightest(&ranges));
         let mut warnings = Study { state, ..near.clone() }.camera_warnings();
-        if let (Some(speed), 2..) = (self.pace_m_s(), camera.frames) {
-            let time_s = camera.acquisition_s(near.bands.len());
-            let (frames, way_m) = (camera.frames, time_s * speed);
-            warnings.push(Warning::FramesInMotion { frames, time_s, way_m });
-        }
+        let frames = self.pace_m_s().and_then(|speed| Proviso::of(camera, near.bands.len(), speed));
+        warnings.extend(frames.map(Warning::FramesInMotion));
         let farthest_m = candidate.distance_m.map(|[_, most]| most);
         warnings.extend(near.size_unknown(camera, farthest_m));
         let assumed = camera.assumed.iter().cloned();

@@ -1,12 +1,12 @@
 //! What comes of a rule in sentences.
 
 use super::results::{
-    Certified, EmissivityError, EnvelopeResult, IdealCamera, LightTime, Proof, Proviso, Quotable, StopResult,
-    WhoMeets,
+    Certified, EmissivityError, EnvelopeResult, IdealCamera, LightTime, Proof, Quotable, StopResult, WhoMeets,
 };
+use crate::proviso::Proviso;
 use crate::scenario::{Units, interval};
 use crate::words::demanded;
-use hadar::words::{length, quantity, significant};
+use hadar::words::{quantity, significant};
 use serde::ser::{Serialize, SerializeStruct, Serializer};
 use std::fmt::{self, Display, Formatter};
 
@@ -67,24 +67,6 @@ impl Display for WhoMeets {
                  says nothing of real surfaces."
             )
         })
-    }
-}
-
-impl Display for Proviso {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        write!(
-            f,
-            "its {} frames can be registered ({}, in which the vehicle drives {})",
-            self.frames,
-            quantity(self.time_s, "s"),
-            length(self.way_m)
-        )
-    }
-}
-
-impl Serialize for Proviso {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_str(self)
     }
 }
 

@@ -53,6 +53,10 @@ impl Display for Finding {
 }
 
 impl Finding {
+    fn yes(&self) -> String {
+        self.provided.map_or_else(|| "Yes".into(), |proviso| format!("Yes, if {proviso}"))
+    }
+
     fn answered(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let Self { camera, target, .. } = self;
         let other = self.alternative.as_deref().unwrap_or("every alternative");
@@ -88,9 +92,9 @@ impl Finding {
             ),
             Answer::Judged { enough, spoiled, reached, .. } => {
                 let (yes, can) = match (enough, spoiled.is_empty()) {
-                    (true, true) => ("Yes", "can"),
-                    (true, false) => ("No", "could"),
-                    (false, _) => ("No", "cannot"),
+                    (true, true) => (self.yes(), "can"),
+                    (true, false) => ("No".into(), "could"),
+                    (false, _) => ("No".into(), "cannot"),
                 };
                 write!(f, "{yes}: {camera} {can} tell {target} from {other} with {wanted} reliability")?;
                 match reached {
@@ -151,9 +155,9 @@ impl Finding {
             }
             Answer::Judged { enough, spoiled, reached, limit } => {
                 let (yes, tells) = match (enough, spoiled.is_empty()) {
-                    (true, true) => ("Yes", "tells"),
-                    (true, false) => ("No", "would tell"),
-                    (false, _) => ("No", "does not tell"),
+                    (true, true) => (self.yes(), "tells"),
+                    (true, false) => ("No".into(), "would tell"),
+                    (false, _) => ("No".into(), "does not tell"),
                 };
                 write!(f, "{yes}: {camera} {tells} {target} from {other} with {wanted} reliability")?;
                 if *enough && !spoiled.is_empty() {
@@ -186,6 +190,9 @@ fn together(unknowns: &[Nuisance]) -> (String, &'static str) {
 fn in_words(spoiled: &[Shortfall]) -> String {
     let words = spoiled.iter().map(|by| match by {
         Shortfall::MotionBlur => "the target moves by a pixel or more while all bands are exposed",
+        Shortfall::MotionUnknown => {
+            "whether the target moves by a pixel while all bands are exposed is not known without target.distance"
+        }
         _ => "a reading does not fit into the full well",
     });
     words.collect::<Vec<_>>().join(", and ")

@@ -24,6 +24,7 @@ impl Study {
         let found = [
             shortcut(pair),
             self.motion(result),
+            self.proviso().map(Warning::FramesInMotion),
             full_well(result),
             self.small_target(camera),
             self.size_unknown(camera, self.scenario.target.distance_m),
