@@ -92,9 +92,18 @@ impl Provenance {
     /// # Errors
     /// A file that can no longer be read.
     pub fn of(commit: &str, command: Vec<String>, seed: u64, inputs: &Inputs) -> Result<Self> {
-        let home = inputs.files.first().and_then(|file| std::path::absolute(file).ok());
+        // What is no file names others from the current directory.
+        let first = match inputs.streams.first() {
+            Some((name, _)) => Some(Path::new(name)),
+            None => inputs.files.first().map(PathBuf::as_path),
+        };
+        let home = first.and_then(|file| std::path::absolute(file).ok());
         let home = home.as_deref().and_then(Path::parent);
-        let mut listed = Vec::with_capacity(inputs.files.len() + inputs.built_in.len());
+        let mut listed: Vec<Input> = inputs
+            .streams
+            .iter()
+            .map(|(name, content)| Input { path: name.clone(), sha256: Some(sha256(content)) })
+            .collect();
         for file in &inputs.files {
             let beside = home.and_then(|home| from(home, file));
             let sha256 =

@@ -59,7 +59,7 @@ pub use setting::Setting;
 pub use source::Source;
 pub use units::Units;
 pub(crate) use units::interval;
-pub use written::Written;
+pub use written::{STDIN, Written};
 
 /// Everything a scenario file says, defaults filled in.
 ///

@@ -14,7 +14,7 @@ use hadar_report::bundle::{About, Bundle};
 use hadar_report::folder::{Folder, Scratch, Strangers};
 use hadar_report::manifest::{Provenance, answer_json};
 use hadar_report::text;
-use hadar_study::scenario::Scenario;
+use hadar_study::scenario::{Scenario, Written};
 use hadar_study::study::Study;
 use hadar_study::warning::Warning;
 use std::borrow::Cow;
@@ -92,6 +92,14 @@ impl Global {
         let said = library.warnings().iter().map(|remark| Warning::Library { remark: remark.clone() });
         self.said_of_library.get_or_init(|| said.collect());
         Ok(library)
+    }
+
+    /// A file of a question as it is to be read; `-` is standard input.
+    pub(super) fn written(&self, path: &Path) -> Result<Written> {
+        match path.as_os_str() == "-" {
+            true => Written::from_stdin(std::io::stdin().lock()),
+            false => Written::from_file(path),
+        }
     }
 
     /// A bar on stderr for long work; nothing where stderr is no terminal, or quiet.
@@ -188,7 +196,7 @@ impl Global {
         path: &Path,
         by: Option<hadar_study::scenario::DistanceKind>,
     ) -> Result<Study> {
-        let mut scenario = Scenario::from_file(path)?;
+        let mut scenario = Scenario::from_written(&self.written(path)?)?;
         if let Some(by) = by {
             scenario.requirement.by = by;
         }

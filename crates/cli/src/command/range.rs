@@ -29,7 +29,7 @@ pub(super) struct RangeArgs {
 }
 
 pub(super) fn run(args: &RangeArgs, global: &Global) -> Result<ExitCode> {
-    let scenario = RangingScenario::from_file(&args.scenario)?;
+    let scenario = RangingScenario::from_written(&global.written(&args.scenario)?)?;
     scenario.check_asked(args.trials, args.bands)?;
     match scenario {
         RangingScenario::Stereo(scenario) => by_stereo(args, global, &scenario),

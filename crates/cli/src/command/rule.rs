@@ -60,7 +60,7 @@ pub(super) fn run(args: &RuleArgs, global: &Global) -> Result<ExitCode> {
         // The parser asks for one of the two.
         (None, None) => Path::new(""),
     };
-    let mut rule_read = Rule::from_file(file)?;
+    let mut rule_read = Rule::from_written(&global.written(file)?)?;
     rule_read.skip_uncovered(global.skip_uncovered);
     if args.sources {
         return sources(&rule_read, global);

@@ -72,7 +72,7 @@ pub(super) fn run(args: &SweepArgs, global: &Global) -> Result<ExitCode> {
         return Err(Error::malformed("there is no folder for the rows", "name one with --out DIR"));
     };
     let shard = shard(&args.shard)?;
-    let file = Written::from_file(&args.scenario)?;
+    let file = global.written(&args.scenario)?;
     let question = match &args.command {
         Some(name) => Question::named(name.trim()).map_err(|error| error.for_key("--command"))?,
         None => Question::of(&file)?,

@@ -4,10 +4,15 @@ use super::setting::Setting;
 use super::source::Source;
 use hadar::error::{Error, Result};
 use hadar::file;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 /// The longest file taken for a scenario, bytes.
 const LONGEST_FILE: u64 = 1 << 20;
+const ACTION: &str = "read the scenario";
+
+/// What stands for the file of a text from standard input.
+pub const STDIN: &str = "<stdin>";
 
 /// A file as it is to be read.
 #[derive(Debug, Clone, Default)]
@@ -26,11 +31,21 @@ impl Written {
     /// # Errors
     /// A file that is missing, a directory, too long, or not UTF-8.
     pub fn from_file(path: &Path) -> Result<Self> {
-        let action = "read the scenario";
         if path.is_dir() {
-            return Err(Error::file(action, path, "it is a directory; name the .toml file inside it"));
+            return Err(Error::file(ACTION, path, "it is a directory; name the .toml file inside it"));
         }
-        let bytes = file::bytes(path, action, LONGEST_FILE)?;
+        Self::of_bytes(file::bytes(path, ACTION, LONGEST_FILE)?, path)
+    }
+
+    /// The text of standard input; paths in it start from the current directory.
+    ///
+    /// # Errors
+    /// What cannot be read, is too long, or not UTF-8.
+    pub fn from_stdin(stdin: impl Read) -> Result<Self> {
+        Self::of_bytes(file::stream(stdin, STDIN, ACTION, LONGEST_FILE)?, Path::new(STDIN))
+    }
+
+    fn of_bytes(bytes: Vec<u8>, path: &Path) -> Result<Self> {
         let text = String::from_utf8(bytes).map_err(|error| {
             let valid = error.utf8_error().valid_up_to();
             let line = 1 + error.as_bytes().iter().take(valid).filter(|byte| **byte == b'\n').count();

@@ -18,7 +18,7 @@ pub(super) struct NoiseArgs {
 
 pub(super) fn run(args: &NoiseArgs, global: &Global) -> Result<ExitCode> {
     let scenario = match args.files.as_slice() {
-        [one] if !Frames::is_bare(one) => NoiseScenario::from_file(one)?,
+        [one] if !Frames::is_bare(one) => NoiseScenario::from_written(&global.written(one)?)?,
         files => match files.iter().find(|file| !Frames::is_bare(file)) {
             Some(other) => {
                 let instead = "name frames (.npy, .mat) or one scenario with [cube] data = [\"frame_1.npy\", \"frame_2.npy\"]";
