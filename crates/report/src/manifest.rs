@@ -5,6 +5,7 @@
 
 use hadar::error::{Error, Result};
 use hadar::inputs::Inputs;
+use hadar_study::scenario::Setting;
 use hadar_study::warning::Warning;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -22,22 +23,29 @@ pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 /// added without.
 pub const SCHEMA: u32 = 1;
 
-/// A result as a program reads it: its keys behind the version of this program, the number of its form and what is said of the
-/// library, where there is something to say.
+/// A result as a program reads it: its keys behind the version of this program, the number of its form, what is said of the
+/// library and what stands in the place of the file's own values, where there is something to say.
 ///
 /// # Errors
 /// A result that is no JSON, which would be a bug.
-pub fn answer_json(answer: &impl Serialize, library_warnings: &[Warning]) -> Result<String> {
+pub fn answer_json(
+    answer: &impl Serialize,
+    library_warnings: &[Warning],
+    settings: &[Setting],
+) -> Result<String> {
     #[derive(Serialize)]
     struct Versioned<'a, T> {
         hadar: &'static str,
         schema: u32,
         #[serde(skip_serializing_if = "<[Warning]>::is_empty")]
         library_warnings: &'a [Warning],
+        #[serde(skip_serializing_if = "<[Setting]>::is_empty")]
+        set: &'a [Setting],
         #[serde(flatten)]
         answer: &'a T,
     }
-    serde_json::to_string_pretty(&Versioned { hadar: VERSION, schema: SCHEMA, library_warnings, answer })
+    let versioned = Versioned { hadar: VERSION, schema: SCHEMA, library_warnings, set: settings, answer };
+    serde_json::to_string_pretty(&versioned)
         .map_err(|error| Error::malformed(error.to_string(), "report this as a bug"))
 }
 

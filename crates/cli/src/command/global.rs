@@ -13,8 +13,8 @@ use hadar::units::decimal_comma;
 use hadar_report::bundle::{About, Bundle};
 use hadar_report::folder::{Folder, Scratch, Strangers};
 use hadar_report::manifest::{Provenance, answer_json};
-use hadar_report::text;
-use hadar_study::scenario::{Scenario, Written};
+use hadar_report::text::{self, with_settings};
+use hadar_study::scenario::{Scenario, Setting, Written};
 use hadar_study::study::Study;
 use hadar_study::warning::Warning;
 use std::borrow::Cow;
@@ -38,6 +38,10 @@ pub(super) struct Global {
     /// replaced, the others stay
     #[arg(long, global = true)]
     pub(super) force: bool,
+    /// Put a value in the place of the file's own, as in camera.exposure="5 ms" or environment[0].lighting=0.3; may be given several
+    /// times
+    #[arg(long, global = true, value_name = "KEY=VALUE", value_parser = setting)]
+    pub(super) set: Vec<Setting>,
     /// Materials of your own, a folder or a file; may be given several times
     #[arg(long, global = true, value_name = "DIR")]
     pub(super) library: Vec<PathBuf>,
@@ -94,11 +98,29 @@ impl Global {
         Ok(library)
     }
 
-    /// A file of a question as it is to be read; `-` is standard input.
+    /// A file of a question as it is to be read, with what was set; `-` is standard input.
     pub(super) fn written(&self, path: &Path) -> Result<Written> {
-        match path.as_os_str() == "-" {
+        let written = match path.as_os_str() == "-" {
             true => Written::from_stdin(std::io::stdin().lock()),
             false => Written::from_file(path),
+        }?;
+        for (index, one) in self.set.iter().enumerate() {
+            if self.set.iter().skip(index + 1).any(|other| other.key == one.key) {
+                let found = Error::malformed("it is set twice", "name it once");
+                return Err(found.for_key(format!("--set {}", one.key)));
+            }
+        }
+        Ok(written.with(self.set.iter().cloned()))
+    }
+
+    /// Refuses values for what has no keys.
+    pub(super) fn sets_nothing(&self, what: &str) -> Result<()> {
+        match self.set.first() {
+            Some(one) => {
+                let found = Error::malformed(format!("{what} has no keys"), "leave out --set");
+                Err(found.for_key(format!("--set {}", one.key)))
+            }
+            None => Ok(()),
         }
     }
 
@@ -155,7 +177,7 @@ impl Global {
             return Ok(work);
         };
         let bundle = make(out)?;
-        self.write(&bundle, out, Some(answer))?;
+        self.write(&bundle, out, Some(&with_settings(answer, &self.set)))?;
         work.compute(Thing::Reports, 1);
         work.compute(Thing::Figures, bundle.figures() as u64);
         Ok(work)
@@ -181,7 +203,7 @@ impl Global {
     pub(super) fn print(&self, json: &impl serde::Serialize, text: &str) -> Result<()> {
         let of_library = self.said_of_library.get().map_or(&[][..], Vec::as_slice);
         let text =
-            if self.json { answer_json(json, of_library)? } else { Stream::Out.answer(text.trim_end()) };
+            if self.json { answer_json(json, of_library, &self.set)? } else { Stream::Out.answer(with_settings(text, &self.set).trim_end()) };
         match writeln!(std::io::stdout(), "{text}") {
             // A reader that has seen enough (`| head`) is no error.
             Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
@@ -240,6 +262,11 @@ impl Global {
 /// Anything as JSON.
 pub(super) fn as_json(value: &impl serde::Serialize) -> Result<serde_json::Value> {
     serde_json::to_value(value).map_err(|error| Error::malformed(error.to_string(), "report this as a bug"))
+}
+
+/// A value given to --set.
+fn setting(text: &str) -> std::result::Result<Setting, String> {
+    Setting::parse(text, "--set").map_err(|error| error.to_string())
 }
 
 /// A number given to a flag.

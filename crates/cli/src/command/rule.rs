@@ -8,7 +8,7 @@ use hadar::material::Library;
 use hadar_report::manifest::{Input, sha256_of_file};
 use hadar_report::rule;
 use hadar_study::scenario::rule::{Citation, Figure};
-use hadar_study::scenario::{Date, Rule, day};
+use hadar_study::scenario::{Date, Rule, STDIN, Setting, Written, day};
 use hadar_study::study::{Extent, RuleAnswer, RuleAsked, RuleStudy, TestResult, Warning};
 use serde_json::Value;
 use std::fs::File;
@@ -98,9 +98,17 @@ pub(super) fn run(args: &RuleArgs, global: &Global) -> Result<ExitCode> {
     Ok(code(args, &answer))
 }
 
+/// A value in the place of the rule's own, as a certificate has it.
+#[derive(serde::Deserialize)]
+struct Set {
+    key: String,
+    value: String,
+}
+
 /// Whether a certificate says what is found now.
 fn verify(certificate: &Path, global: &Global) -> Result<ExitCode> {
     global.writes_nothing("--verify")?;
+    global.sets_nothing("a certificate")?;
     let action = "read the certificate";
     let told = |found: String| {
         let instead = "name the certificate.json of a report by hadar rule";
@@ -117,6 +125,16 @@ fn verify(certificate: &Path, global: &Global) -> Result<ExitCode> {
     let Some(path) = of(&of(&before, "rule"), "path").as_str().map(PathBuf::from) else {
         return Err(told("this is no certificate of a rule".into()));
     };
+    if path == Path::new(STDIN) {
+        let instead = "check the rule.toml beside it: hadar rule rule.toml";
+        let found = Error::malformed("its rule was read from standard input, and is no file", instead);
+        return Err(found.in_file(certificate));
+    }
+    let set: Vec<Set> = serde_json::from_value(match of(&of(&before, "rule"), "set") {
+        Value::Null => Value::Array(Vec::new()),
+        set => set,
+    })
+    .map_err(|error| told(format!("what it set is not readable: {error}")))?;
     let on = of(&before, "on").as_str().and_then(day);
     let inputs: Vec<Input> = serde_json::from_value(of(&before, "inputs"))
         .map_err(|error| told(format!("its inputs are none: {error}")))?;
@@ -136,7 +154,8 @@ fn verify(certificate: &Path, global: &Global) -> Result<ExitCode> {
             return Err(Error::malformed(found, "check the rule again: hadar rule").in_file(&file));
         }
     }
-    let mut rule_read = Rule::from_file(&path)?;
+    let set = set.into_iter().map(|Set { key, value }| Setting { key, value, by: "the certificate" });
+    let mut rule_read = Rule::from_written(&Written::from_file(&path)?.with(set))?;
     rule_read.skip_uncovered(global.skip_uncovered);
     let study = RuleStudy::new(&rule_read, &global.library()?)?;
     let bar = global.progress("pairs");

@@ -24,7 +24,10 @@ pub(super) fn run(args: &NoiseArgs, global: &Global) -> Result<ExitCode> {
                 let instead = "name frames (.npy, .mat) or one scenario with [cube] data = [\"frame_1.npy\", \"frame_2.npy\"]";
                 return Err(Error::malformed("a scenario among several files", instead).in_file(other));
             }
-            None => NoiseScenario::bare(files),
+            None => {
+                global.sets_nothing("a cube")?;
+                NoiseScenario::bare(files)
+            }
         },
     };
     let study = NoiseStudy::new(&scenario)?;
