@@ -33,7 +33,6 @@ enum Action {
 }
 
 pub(super) fn run(args: &CamerasArgs, global: &Global) -> Result<ExitCode> {
-    global.writes_nothing("a list on the terminal")?;
     let all = presets::all()?;
     let known = all.len();
     match &args.action {

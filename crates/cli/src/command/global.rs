@@ -4,7 +4,7 @@ use super::progress::Bar;
 use super::provenance;
 use super::stderr::say;
 use super::terminal::Stream;
-use clap::Args;
+use clap::{ArgMatches, Args};
 use hadar::demand::{Reason, Skipping, Thing, Work};
 use hadar::error::{Error, Result};
 use hadar::inputs;
@@ -22,52 +22,52 @@ use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-/// Options of every command.
+/// Flags that several commands have; which of them a command takes is said in one table.
 #[derive(Debug, Args)]
 pub(super) struct Global {
     /// Print one JSON object on stdout and nothing else
-    #[arg(long, global = true)]
+    #[arg(long)]
     pub(super) json: bool,
     /// Write a report into this folder: one page, the answer, scenario, tables and plots
-    #[arg(long, global = true, value_name = "DIR")]
+    #[arg(long, value_name = "DIR")]
     pub(super) out: Option<PathBuf>,
     /// Write the tables of a report as Parquet too, beside the CSV
-    #[arg(long, global = true, value_name = "FORMAT", requires = "out")]
+    #[arg(long, value_name = "FORMAT", requires = "out")]
     pub(super) format: Option<Format>,
     /// Take an --out folder although it holds files that hadar did not write, or that were changed: those in the way are
     /// replaced, the others stay
-    #[arg(long, global = true)]
+    #[arg(long)]
     pub(super) force: bool,
     /// Put a value in the place of the file's own, as in camera.exposure="5 ms" or environment[0].lighting=0.3; may be given several
     /// times
-    #[arg(long, global = true, value_name = "KEY=VALUE", value_parser = setting)]
+    #[arg(long, value_name = "KEY=VALUE", value_parser = setting)]
     pub(super) set: Vec<Setting>,
     /// Materials of your own, a folder or a file; may be given several times
-    #[arg(long, global = true, value_name = "DIR")]
+    #[arg(long, value_name = "DIR")]
     pub(super) library: Vec<PathBuf>,
     /// Use the materials of --library alone, not the built-in ones
-    #[arg(long, global = true)]
+    #[arg(long)]
     pub(super) only_library: bool,
     /// Refuse a folder of spectra for any file in it that cannot be used, instead of passing it over with a warning
-    #[arg(long, global = true)]
+    #[arg(long)]
     pub(super) strict: bool,
     /// Leave out alternatives whose spectra do not cover the bands, with a warning
-    #[arg(long, global = true)]
+    #[arg(long)]
     pub(super) skip_uncovered: bool,
     /// Seed of random numbers; the same seed gives the same result, for any number of threads
-    #[arg(long, global = true, value_name = "N", default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1)]
     pub(super) seed: u64,
     /// Number of threads (default: all cores); the result does not depend on it
-    #[arg(long, global = true, value_name = "N")]
+    #[arg(long, value_name = "N")]
     pub(super) threads: Option<usize>,
     /// Say on stderr what was computed, what was not, and why (with --json always under `stats`)
-    #[arg(long, global = true)]
+    #[arg(long)]
     pub(super) stats: bool,
     /// Compute in full what a proof would spare; the answer is the same
-    #[arg(long, global = true)]
+    #[arg(long)]
     pub(super) no_skip: bool,
     /// Print nothing on stderr but errors
-    #[arg(short, long, global = true)]
+    #[arg(short, long)]
     pub(super) quiet: bool,
     /// What was said of the library, for JSON.
     #[arg(skip)]
@@ -75,6 +75,27 @@ pub(super) struct Global {
 }
 
 impl Global {
+    /// What was given, in the first of the places in which it is; else its default.
+    pub(super) fn of(places: [&ArgMatches; 2]) -> Self {
+        Self {
+            json: yes(places, "json"),
+            out: one(places, "out"),
+            format: one(places, "format"),
+            force: yes(places, "force"),
+            set: many(places, "set"),
+            library: many(places, "library"),
+            only_library: yes(places, "only_library"),
+            strict: yes(places, "strict"),
+            skip_uncovered: yes(places, "skip_uncovered"),
+            seed: one(places, "seed").unwrap_or(1),
+            threads: one(places, "threads"),
+            stats: yes(places, "stats"),
+            no_skip: yes(places, "no_skip"),
+            quiet: yes(places, "quiet"),
+            said_of_library: OnceLock::new(),
+        }
+    }
+
     /// The embedded library with the user's own materials.
     pub(super) fn library(&self) -> Result<Library> {
         let library = if self.only_library { Library::empty() } else { Library::embedded()? };
@@ -262,6 +283,22 @@ impl Global {
 /// Anything as JSON.
 pub(super) fn as_json(value: &impl serde::Serialize) -> Result<serde_json::Value> {
     serde_json::to_value(value).map_err(|error| Error::malformed(error.to_string(), "report this as a bug"))
+}
+
+type Places<'a> = [&'a ArgMatches; 2];
+
+/// The value of a flag, where a command has it and it was given.
+fn one<T: Clone + Send + Sync + 'static>(places: Places<'_>, id: &str) -> Option<T> {
+    places.iter().find_map(|place| place.try_get_one::<T>(id).ok().flatten().cloned())
+}
+
+fn many<T: Clone + Send + Sync + 'static>(places: Places<'_>, id: &str) -> Vec<T> {
+    let values = places.iter().find_map(|place| place.try_get_many::<T>(id).ok().flatten());
+    values.into_iter().flatten().cloned().collect()
+}
+
+fn yes(places: Places<'_>, id: &str) -> bool {
+    places.iter().any(|place| place.try_get_one::<bool>(id).ok().flatten() == Some(&true))
 }
 
 /// A value given to --set.
