@@ -19,6 +19,7 @@ mod range;
 mod render;
 mod reproduce;
 mod rule;
+mod several;
 mod simulate;
 mod size;
 mod stderr;

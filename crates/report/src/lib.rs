@@ -24,6 +24,7 @@ pub mod plot;
 pub mod range;
 pub mod render;
 pub mod rule;
+pub mod several;
 pub mod simulate;
 pub mod size;
 pub mod sweep;

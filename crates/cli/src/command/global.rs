@@ -20,10 +20,11 @@ use hadar_study::warning::Warning;
 use std::borrow::Cow;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
-use std::sync::OnceLock;
+use serde_json::Value;
+use std::sync::{Arc, Mutex, OnceLock};
 
 /// Flags that several commands have; which of them a command takes is said in one table.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub(super) struct Global {
     /// Print one JSON object on stdout and nothing else
     #[arg(long)]
@@ -71,7 +72,13 @@ pub(super) struct Global {
     pub(super) quiet: bool,
     /// What was said of the library, for JSON.
     #[arg(skip)]
-    said_of_library: OnceLock<Vec<Warning>>,
+    said_of_library: Arc<OnceLock<Vec<Warning>>>,
+    /// Of one of several scenarios: its answer, which is kept and not printed.
+    #[arg(skip)]
+    kept: Option<Arc<Mutex<Option<Value>>>>,
+    /// Words of the command that are of other scenarios.
+    #[arg(skip)]
+    of_others: Vec<String>,
 }
 
 impl Global {
@@ -92,7 +99,9 @@ impl Global {
             stats: yes(places, "stats"),
             no_skip: yes(places, "no_skip"),
             quiet: yes(places, "quiet"),
-            said_of_library: OnceLock::new(),
+            said_of_library: Arc::default(),
+            kept: None,
+            of_others: Vec::new(),
         }
     }
 
@@ -111,11 +120,12 @@ impl Global {
     pub(super) fn with_own(&self, library: Library) -> Result<Library> {
         let mut library = library.strict(self.strict);
         self.library.iter().try_for_each(|path| library.add_path(path))?;
-        for warning in library.warnings() {
-            self.note(&Stream::Err.message("warning:", warning));
-        }
-        let said = library.warnings().iter().map(|remark| Warning::Library { remark: remark.clone() });
-        self.said_of_library.get_or_init(|| said.collect());
+        self.said_of_library.get_or_init(|| {
+            for warning in library.warnings() {
+                self.note(&Stream::Err.message("warning:", warning));
+            }
+            library.warnings().iter().map(|remark| Warning::Library { remark: remark.clone() }).collect()
+        });
         Ok(library)
     }
 
@@ -143,6 +153,17 @@ impl Global {
             }
             None => Ok(()),
         }
+    }
+
+    /// For one of several scenarios: its report in a folder of its own, its answer kept.
+    pub(super) fn of_several(&self, folder: &str, others: impl Iterator<Item = String>) -> Self {
+        let out = self.out.as_ref().map(|out| out.join(folder));
+        Self { out, kept: Some(Arc::default()), of_others: others.collect(), ..self.clone() }
+    }
+
+    /// The answer that was kept.
+    pub(super) fn kept(&self) -> Option<Value> {
+        self.kept.as_ref()?.lock().ok()?.take()
     }
 
     /// A bar on stderr for long work; nothing where stderr is no terminal, or quiet.
@@ -223,6 +244,15 @@ impl Global {
     /// Prints a result: JSON with `--json`, with the version of the program and of its form, else the text.
     pub(super) fn print(&self, json: &impl serde::Serialize, text: &str) -> Result<()> {
         let of_library = self.said_of_library.get().map_or(&[][..], Vec::as_slice);
+        if let Some(kept) = &self.kept {
+            let answer = answer_json(json, of_library, &self.set)?;
+            let answer = serde_json::from_str(&answer)
+                .map_err(|error| Error::malformed(error.to_string(), "report this as a bug"))?;
+            if let Ok(mut kept) = kept.lock() {
+                *kept = Some(answer);
+            }
+            return Ok(());
+        }
         let text =
             if self.json { answer_json(json, of_library, &self.set)? } else { Stream::Out.answer(with_settings(text, &self.set).trim_end()) };
         match writeln!(std::io::stdout(), "{text}") {
@@ -260,7 +290,7 @@ impl Global {
 
     /// Who makes the report of what.
     pub(super) fn provenance(&self) -> Result<Provenance> {
-        provenance::of_this_run(self.seed)
+        provenance::of_this_run(self.seed, &self.of_others)
     }
 
     /// Writes the files, with the answer and a page of all where there is an answer, and says where.

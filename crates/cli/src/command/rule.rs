@@ -1,6 +1,7 @@
 //! `hadar rule`: which cameras meet a rule.
 
 use super::global::Global;
+use super::several;
 use clap::Args;
 use hadar::demand::Work;
 use hadar::error::{Error, Result};
@@ -10,6 +11,7 @@ use hadar_report::rule;
 use hadar_study::scenario::rule::{Citation, Figure};
 use hadar_study::scenario::{Date, Rule, STDIN, Setting, Written, day};
 use hadar_study::study::{Extent, RuleAnswer, RuleAsked, RuleStudy, TestResult, Warning};
+use hadar_study::sweep::Question;
 use serde_json::Value;
 use std::fs::File;
 use std::io::Read as _;
@@ -22,9 +24,10 @@ const LONGEST_CERTIFICATE: u64 = 1 << 26;
 
 #[derive(Debug, Args)]
 pub(super) struct RuleArgs {
-    /// The rule file (TOML): a scenario with [envelope], cameras = [...] or [[camera]] tables, and [rule]
-    #[arg(required_unless_present = "verify")]
-    rule: Option<PathBuf>,
+    /// Rule files (TOML), `-` for standard input: scenarios with [envelope], cameras = [...] or [[camera]] tables, and [rule]; of
+    /// several one table, a row for each
+    #[arg(required_unless_present = "verify", value_name = "RULE")]
+    rules: Vec<PathBuf>,
     /// Exit with code 3 unless every camera meets the rule; without --out a line a camera, each decided by the first scene that
     /// does
     #[arg(long)]
@@ -42,7 +45,7 @@ pub(super) struct RuleArgs {
     #[arg(long, conflicts_with_all = ["check", "test", "sources"])]
     stand_in: bool,
     /// Compute a certificate again, certificate.json of a report, and say whether all that it rests on and all that it says is the same
-    #[arg(long, value_name = "CERTIFICATE", conflicts_with_all = ["rule", "check", "test", "sources", "stand_in", "on"])]
+    #[arg(long, value_name = "CERTIFICATE", conflicts_with_all = ["rules", "check", "test", "sources", "stand_in", "on"])]
     verify: Option<PathBuf>,
     /// Ask about a day: a rule that does not hold on it says so
     #[arg(long, value_name = "YYYY-MM-DD", value_parser = on)]
@@ -54,12 +57,18 @@ fn on(text: &str) -> std::result::Result<Date, String> {
 }
 
 pub(super) fn run(args: &RuleArgs, global: &Global) -> Result<ExitCode> {
-    let file = match (&args.rule, &args.verify) {
-        (_, Some(certificate)) => return verify(certificate, global),
-        (Some(file), None) => file,
-        // The parser asks for one of the two.
-        (None, None) => Path::new(""),
-    };
+    if let Some(certificate) = &args.verify {
+        return verify(certificate, global);
+    }
+    let alone = [(args.test, "--test"), (args.sources, "--sources"), (args.stand_in, "--stand-in")];
+    if let Some((_, flag)) = alone.into_iter().find(|(asked, _)| *asked && args.rules.len() > 1) {
+        let found = format!("{flag} is asked of {} rules at once", args.rules.len());
+        return Err(Error::malformed(found, "name one rule"));
+    }
+    several::each(Question::Rule, &args.rules, global, |path, global| one(path, args, global))
+}
+
+fn one(file: &Path, args: &RuleArgs, global: &Global) -> Result<u8> {
     let mut rule_read = Rule::from_written(&global.written(file)?)?;
     rule_read.skip_uncovered(global.skip_uncovered);
     if args.sources {
@@ -192,18 +201,18 @@ fn found_again(path: PathBuf, certificate: &Path, rule_read: Option<&Input>) -> 
 }
 
 /// How exact a stand-in must be.
-fn stand_in(study: &RuleStudy, library: &Library, on: Option<Date>, global: &Global) -> Result<ExitCode> {
+fn stand_in(study: &RuleStudy, library: &Library, on: Option<Date>, global: &Global) -> Result<u8> {
     let bar = global.progress("stand-ins");
     let answer = study.stand_in(library, on, &|done, all| bar.set(done, all))?;
     bar.finish();
     let text = rule::stand_in(&answer);
     let work = global.report(&text, |_| rule::stand_in_bundle(&answer))?;
     global.answer(&answer, &text, &work)?;
-    Ok(ExitCode::SUCCESS)
+    Ok(0)
 }
 
 /// The tests of a rule.
-fn tested(answer: &RuleAnswer, global: &Global) -> Result<ExitCode> {
+fn tested(answer: &RuleAnswer, global: &Global) -> Result<u8> {
     #[derive(serde::Serialize)]
     struct Output {
         tests: Vec<TestResult>,
@@ -216,11 +225,11 @@ fn tested(answer: &RuleAnswer, global: &Global) -> Result<ExitCode> {
     let idle: String = warnings.iter().map(|warning| format!("{warning}\n")).collect();
     let text = idle + &rule::tests(&tests);
     global.answer(&Output { tests, warnings }, &text, &answer.stats)?;
-    Ok(if all { ExitCode::SUCCESS } else { ExitCode::from(3) })
+    Ok(if all { 0 } else { 3 })
 }
 
 /// The sources of a rule.
-fn sources(rule_read: &Rule, global: &Global) -> Result<ExitCode> {
+fn sources(rule_read: &Rule, global: &Global) -> Result<u8> {
     global.writes_nothing("--sources")?;
     #[derive(serde::Serialize)]
     struct Output<'a> {
@@ -235,11 +244,11 @@ fn sources(rule_read: &Rule, global: &Global) -> Result<ExitCode> {
     }
     let output = Output { figures: rule_read.figures(), sources: &rule_read.sources };
     global.answer(&output, &rule::sources(rule_read), &Work::default())?;
-    Ok(ExitCode::SUCCESS)
+    Ok(0)
 }
 
-fn code(args: &RuleArgs, answer: &RuleAnswer) -> ExitCode {
+fn code(args: &RuleArgs, answer: &RuleAnswer) -> u8 {
     let mut met = answer.cameras.iter().map(|camera| camera.passes);
     let enough = if args.any { met.any(|passes| passes) } else { met.all(|passes| passes) };
-    if args.check && !enough { ExitCode::from(3) } else { ExitCode::SUCCESS }
+    if args.check && !enough { 3 } else { 0 }
 }
