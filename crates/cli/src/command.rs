@@ -8,6 +8,7 @@ mod calibrate;
 mod cameras;
 mod cube_format;
 mod decompose;
+mod diff;
 mod flags;
 mod global;
 mod identify;
@@ -20,6 +21,7 @@ mod render;
 mod reproduce;
 mod rule;
 mod several;
+mod shell;
 mod simulate;
 mod size;
 mod stderr;
@@ -78,6 +80,13 @@ enum Command {
     Materials(materials::MaterialsArgs),
     /// The known cameras: list, show, compare
     Cameras(cameras::CamerasArgs),
+    /// Two reports or two answers held against each other: what was asked, the verdict, figures that moved, warnings; exit code 0
+    /// where they are the same, 1 where they differ, 2 where one cannot be read
+    Diff(diff::DiffArgs),
+    /// What a shell needs to complete commands and flags; to be sourced, or written where it looks for it
+    Completions(shell::CompletionsArgs),
+    /// The manual page; with --out one for each command
+    Man(shell::ManArgs),
 }
 
 /// Runs the command line of this process.
@@ -143,5 +152,8 @@ fn run(command: &Command, global: &Global) -> Result<ExitCode> {
         Command::Accuracy(args) => accuracy::run(args, global),
         Command::Materials(args) => materials::run(args, global),
         Command::Cameras(args) => cameras::run(args, global),
+        Command::Diff(args) => Ok(diff::run(args, global)),
+        Command::Completions(args) => shell::completions(args, line()),
+        Command::Man(_) => shell::man(line(), global),
     }
 }

@@ -13,6 +13,7 @@ pub mod classes;
 pub mod companion;
 pub mod cube_format;
 pub mod decompose;
+pub mod diff;
 pub mod figures;
 pub mod folder;
 mod html;

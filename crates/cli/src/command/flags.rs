@@ -44,6 +44,9 @@ const TAKEN: &[(&str, &[Flags])] = &[
     ("cameras list", &[PRINTED]),
     ("cameras show", &[PRINTED]),
     ("cameras compare", &[PRINTED]),
+    ("diff", &[&["json", "quiet"]]),
+    ("completions", &[]),
+    ("man", &[FOLDER, &["quiet"]]),
 ];
 
 fn taken(path: &str) -> impl Iterator<Item = &'static str> {

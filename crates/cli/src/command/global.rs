@@ -255,13 +255,7 @@ impl Global {
         }
         let text =
             if self.json { answer_json(json, of_library, &self.set)? } else { Stream::Out.answer(with_settings(text, &self.set).trim_end()) };
-        match writeln!(std::io::stdout(), "{text}") {
-            // A reader that has seen enough (`| head`) is no error.
-            Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
-                Err(Error::file("print the result", Path::new("stdout"), error))
-            }
-            _ => Ok(()),
-        }
+        put(&text)
     }
 
     pub(super) fn study(
@@ -307,6 +301,17 @@ impl Global {
         let look = answer.map_or_else(String::new, |_| format!("; {} shows them all", page.display()));
         self.note(&format!("wrote {count} files to {}{look}", out.display()));
         Ok(())
+    }
+}
+
+/// Prints a text and ends its last line.
+pub(super) fn put(text: &str) -> Result<()> {
+    match writeln!(std::io::stdout(), "{text}") {
+        // A reader that has seen enough (`| head`) is no error.
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+            Err(Error::file("print the result", Path::new("stdout"), error))
+        }
+        _ => Ok(()),
     }
 }
 
