@@ -15,6 +15,7 @@ pub(super) const PRINTED: Flags = &["json", "stats", "threads", "quiet"];
 const REPORT: Flags = &["out", "format", "force"];
 const FOLDER: Flags = &["out", "force"];
 const MATERIALS: Flags = &["library", "only_library", "strict"];
+const CAMERAS: Flags = &["cameras"];
 const UNCOVERED: Flags = &["skip_uncovered"];
 const SEED: Flags = &["seed"];
 const SKIP: Flags = &["no_skip"];
@@ -22,28 +23,28 @@ const SET: Flags = &["set"];
 
 /// Every command that does something, by the words that name it, with the flags that it takes beside its own.
 const TAKEN: &[(&str, &[Flags])] = &[
-    ("size", &[PRINTED, REPORT, SET, MATERIALS, UNCOVERED, SKIP]),
-    ("identify", &[PRINTED, REPORT, SET, MATERIALS, UNCOVERED, SEED, SKIP]),
-    ("rule", &[PRINTED, REPORT, SET, MATERIALS, UNCOVERED, SEED, SKIP]),
-    ("range", &[PRINTED, REPORT, SET, MATERIALS, SEED, SKIP]),
-    ("decompose", &[PRINTED, REPORT, SET, MATERIALS, SKIP]),
-    ("library", &[PRINTED, REPORT, SET, MATERIALS, SEED]),
+    ("size", &[PRINTED, REPORT, SET, MATERIALS, CAMERAS, UNCOVERED, SKIP]),
+    ("identify", &[PRINTED, REPORT, SET, MATERIALS, CAMERAS, UNCOVERED, SEED, SKIP]),
+    ("rule", &[PRINTED, REPORT, SET, MATERIALS, CAMERAS, UNCOVERED, SEED, SKIP]),
+    ("range", &[PRINTED, REPORT, SET, MATERIALS, CAMERAS, SEED, SKIP]),
+    ("decompose", &[PRINTED, REPORT, SET, MATERIALS, CAMERAS, SKIP]),
+    ("library", &[PRINTED, REPORT, SET, MATERIALS, CAMERAS, SEED]),
     ("calibrate blackbody", &[PRINTED, REPORT, SET]),
     ("calibrate response", &[PRINTED, REPORT, SET]),
     ("calibrate noise", &[PRINTED, REPORT, SET]),
     ("calibrate stripes", &[PRINTED, REPORT, SET]),
-    ("render", &[PRINTED, REPORT, SET, MATERIALS, SEED]),
-    ("simulate", &[PRINTED, REPORT, SET, MATERIALS, UNCOVERED, SEED, SKIP]),
-    ("sweep", &[PRINTED, REPORT, SET, MATERIALS, UNCOVERED, SEED, SKIP]),
+    ("render", &[PRINTED, REPORT, SET, MATERIALS, CAMERAS, SEED]),
+    ("simulate", &[PRINTED, REPORT, SET, MATERIALS, CAMERAS, UNCOVERED, SEED, SKIP]),
+    ("sweep", &[PRINTED, REPORT, SET, MATERIALS, CAMERAS, UNCOVERED, SEED, SKIP]),
     ("reproduce", &[PRINTED, REPORT, &["library", "strict"], SEED]),
     ("accuracy", &[PRINTED, REPORT, SEED]),
     ("materials list", &[PRINTED, MATERIALS]),
     ("materials show", &[PRINTED, MATERIALS]),
     ("materials plot", &[PRINTED, REPORT, MATERIALS]),
     ("materials import", &[PRINTED, FOLDER, &["strict"]]),
-    ("cameras list", &[PRINTED]),
-    ("cameras show", &[PRINTED]),
-    ("cameras compare", &[PRINTED]),
+    ("cameras list", &[PRINTED, CAMERAS]),
+    ("cameras show", &[PRINTED, CAMERAS]),
+    ("cameras compare", &[PRINTED, CAMERAS]),
     ("diff", &[&["json", "quiet"]]),
     ("completions", &[]),
     ("man", &[FOLDER, &["quiet"]]),

@@ -15,7 +15,7 @@ use hadar_report::folder::{Folder, Scratch, Strangers};
 use hadar_report::manifest::{Provenance, answer_json};
 use hadar_report::text::{self, with_settings};
 use hadar_study::scenario::{Scenario, Setting, Written};
-use hadar_study::study::Study;
+use hadar_study::study::{OwnCameras, Study};
 use hadar_study::warning::Warning;
 use std::borrow::Cow;
 use std::io::Write as _;
@@ -52,6 +52,9 @@ pub(super) struct Global {
     /// Refuse a folder of spectra for any file in it that cannot be used, instead of passing it over with a warning
     #[arg(long)]
     pub(super) strict: bool,
+    /// Cameras of your own that a file may name, [[camera]] tables with a name and the keys of [camera]; may be given several times
+    #[arg(long, value_name = "FILE")]
+    pub(super) cameras: Vec<PathBuf>,
     /// Leave out alternatives whose spectra do not cover the bands, with a warning
     #[arg(long)]
     pub(super) skip_uncovered: bool,
@@ -93,6 +96,7 @@ impl Global {
             library: many(places, "library"),
             only_library: yes(places, "only_library"),
             strict: yes(places, "strict"),
+            cameras: many(places, "cameras"),
             skip_uncovered: yes(places, "skip_uncovered"),
             seed: one(places, "seed").unwrap_or(1),
             threads: one(places, "threads"),
@@ -141,7 +145,7 @@ impl Global {
                 return Err(found.for_key(format!("--set {}", one.key)));
             }
         }
-        Ok(written.with(self.set.iter().cloned()))
+        Ok(written.with(self.set.iter().cloned()).with_cameras(OwnCameras::from_files(&self.cameras)?.stated.into()))
     }
 
     /// Refuses values for what has no keys.

@@ -10,7 +10,7 @@ use hadar_report::manifest::{Input, sha256_of_file};
 use hadar_report::rule;
 use hadar_study::scenario::rule::{Citation, Figure};
 use hadar_study::scenario::{Date, Rule, STDIN, Setting, Written, day};
-use hadar_study::study::{Extent, RuleAnswer, RuleAsked, RuleStudy, TestResult, Warning};
+use hadar_study::study::{Extent, OwnCameras, RuleAnswer, RuleAsked, RuleStudy, TestResult, Warning};
 use hadar_study::sweep::Question;
 use serde_json::Value;
 use std::fs::File;
@@ -164,7 +164,11 @@ fn verify(certificate: &Path, global: &Global) -> Result<ExitCode> {
         }
     }
     let set = set.into_iter().map(|Set { key, value }| Setting { key, value, by: "the certificate" });
-    let mut rule_read = Rule::from_written(&Written::from_file(&path)?.with(set))?;
+    let mut rule_read = Rule::from_written(
+        &Written::from_file(&path)?
+            .with(set)
+            .with_cameras(OwnCameras::from_files(&global.cameras)?.stated.into()),
+    )?;
     rule_read.skip_uncovered(global.skip_uncovered);
     let study = RuleStudy::new(&rule_read, &global.library()?)?;
     let bar = global.progress("pairs");

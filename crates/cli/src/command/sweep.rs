@@ -253,6 +253,7 @@ fn common(file: &Written, question: Question, asking: &Asking<'_>, global: &Glob
     }
     parts.push(global.only_library.to_string());
     parts.push(format!("{:?}", file.settings));
+    parts.push(format!("{:?}", file.cameras));
     // The scenario and the cases are read as text above and row by row.
     let read = inputs::so_far().files;
     let libraries = read.iter().filter(|path| global.library.iter().any(|library| path.starts_with(library)));

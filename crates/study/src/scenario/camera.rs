@@ -64,6 +64,7 @@ pub(super) fn read_beside(
             }
         }
     }
+    stated.own = stated.preset.as_deref().and_then(|name| entry.source().own_camera(name));
     Ok(stated)
 }
 

@@ -2,10 +2,12 @@
 
 use super::setting::Setting;
 use super::source::Source;
+use super::stated_camera::StatedCamera;
 use hadar::error::{Error, Result};
 use hadar::file;
 use std::io::Read;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// The longest file taken for a scenario, bytes.
 const LONGEST_FILE: u64 = 1 << 20;
@@ -23,6 +25,8 @@ pub struct Written {
     pub path: Option<PathBuf>,
     /// What stands in the place of its own values, the last one of a key.
     pub settings: Vec<Setting>,
+    /// Cameras of the user's own, which it may name.
+    pub cameras: Arc<[StatedCamera]>,
 }
 
 impl Written {
@@ -59,7 +63,7 @@ impl Written {
     /// A text, of the file `path` if it is from one.
     #[must_use]
     pub fn of(text: &str, path: Option<&Path>) -> Self {
-        Self { text: text.to_owned(), path: path.map(Path::to_owned), settings: Vec::new() }
+        Self { text: text.to_owned(), path: path.map(Path::to_owned), ..Self::default() }
     }
 
     /// The same with values in the place of its own.
@@ -81,8 +85,15 @@ impl Written {
         Self { settings, ..self.clone() }
     }
 
+    /// The same with cameras of the user's own that it may name.
+    #[must_use]
+    pub fn with_cameras(self, cameras: Arc<[StatedCamera]>) -> Self {
+        Self { cameras, ..self }
+    }
+
     /// Where it is read from, before anything is read.
     pub(super) fn source(&self) -> Source {
-        Source { path: self.path.clone(), settings: self.settings.clone(), ..Source::default() }
+        let (path, settings, cameras) = (self.path.clone(), self.settings.clone(), Arc::clone(&self.cameras));
+        Source { path, settings, cameras, ..Source::default() }
     }
 }

@@ -45,7 +45,8 @@ pub(super) fn presets(entry: &Entry<'_>) -> Result<Vec<RuleCamera>> {
     let mut cameras: Vec<RuleCamera> = Vec::with_capacity(items.len());
     for (index, item) in items.iter().enumerate() {
         let name = item.text("\"flir-a325sc\"")?.trim().to_owned();
-        let spec = CameraSpec { preset: Some(name), ..CameraSpec::default() };
+        let own = item.source().own_camera(&name);
+        let spec = CameraSpec { preset: Some(name), own, ..CameraSpec::default() };
         if cameras.iter().any(|camera| camera.spec == spec) {
             return Err(item.fail(Error::malformed("the same is already in the list", "name it once")));
         }
