@@ -67,9 +67,9 @@ fn cells(question: Question, answer: &Value) -> Vec<Value> {
         _ => answer,
     };
     let found = |paths: &[&str]| paths.iter().find_map(|path| answer.pointer(path)).cloned();
-    let meets: Vec<bool> = answer["cameras"].as_array().map_or_else(Vec::new, |cameras| {
-        cameras.iter().map(|camera| camera["passes"] == true).collect()
-    });
+    let meets: Vec<bool> = answer["cameras"]
+        .as_array()
+        .map_or_else(Vec::new, |cameras| cameras.iter().map(|camera| camera["passes"] == true).collect());
     let of = |(head, paths): &(&str, &[&str])| match (question, *head) {
         (Question::Rule, "verdict") => meets.iter().all(|meets| *meets).into(),
         (Question::Rule, "meet it") => {
@@ -184,7 +184,8 @@ mod tests {
 
     #[test]
     fn the_best_camera_of_a_rule_speaks_for_it() {
-        let camera = |name: &str, margin: f64| json!({ "name": name, "margin": margin, "passes": margin > 1.0 });
+        let camera =
+            |name: &str, margin: f64| json!({ "name": name, "margin": margin, "passes": margin > 1.0 });
         let answer = json!({ "cameras": [camera("a", 0.5), camera("b", 2.0)] });
         let cells: Vec<String> = cells(Question::Rule, &answer).iter().map(shown).collect();
         assert_eq!(cells, ["no", "1 of 2", "b", "2.000", "-"]);

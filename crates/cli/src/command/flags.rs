@@ -114,7 +114,9 @@ fn refused(command: &Command, flag: &str, path: &str) -> Error {
     let takers = takers(command, "", flag);
     let said = match path {
         "" => format!("`{flag}` stands behind the command that takes it: {}", takers.join(", ")),
-        _ if takers.iter().any(|taker| taker == path) => format!("write `{flag}` behind `hadar {path}`, not before"),
+        _ if takers.iter().any(|taker| taker == path) => {
+            format!("write `{flag}` behind `hadar {path}`, not before")
+        }
         _ => format!("`hadar {path}` takes no `{flag}`; what takes it: {}", takers.join(", ")),
     };
     Error::raw(ErrorKind::UnknownArgument, format!("{said}\n")).with_cmd(command)

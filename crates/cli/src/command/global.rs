@@ -17,10 +17,10 @@ use hadar_report::text::{self, with_settings};
 use hadar_study::scenario::{Scenario, Setting, Written};
 use hadar_study::study::{OwnCameras, Study};
 use hadar_study::warning::Warning;
+use serde_json::Value;
 use std::borrow::Cow;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
-use serde_json::Value;
 use std::sync::{Arc, Mutex, OnceLock};
 
 /// Flags that several commands have; which of them a command takes is said in one table.
@@ -145,7 +145,9 @@ impl Global {
                 return Err(found.for_key(format!("--set {}", one.key)));
             }
         }
-        Ok(written.with(self.set.iter().cloned()).with_cameras(OwnCameras::from_files(&self.cameras)?.stated.into()))
+        Ok(written
+            .with(self.set.iter().cloned())
+            .with_cameras(OwnCameras::from_files(&self.cameras)?.stated.into()))
     }
 
     /// Refuses values for what has no keys.
@@ -257,8 +259,11 @@ impl Global {
             }
             return Ok(());
         }
-        let text =
-            if self.json { answer_json(json, of_library, &self.set)? } else { Stream::Out.answer(with_settings(text, &self.set).trim_end()) };
+        let text = if self.json {
+            answer_json(json, of_library, &self.set)?
+        } else {
+            Stream::Out.answer(with_settings(text, &self.set).trim_end())
+        };
         put(&text)
     }
 

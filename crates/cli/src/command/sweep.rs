@@ -79,7 +79,9 @@ pub(super) fn run(args: &SweepArgs, global: &Global) -> Result<ExitCode> {
     };
     let axes = args.vary.iter().map(|text| Axis::parse(text)).collect::<Result<_>>()?;
     let plan = Plan::new(axes, args.cases.as_deref().map(Cases::from_file).transpose()?)?;
-    if let Some(set) = file.settings.iter().find(|set| plan.inputs().iter().any(|varied| varied.key == set.key)) {
+    if let Some(set) =
+        file.settings.iter().find(|set| plan.inputs().iter().any(|varied| varied.key == set.key))
+    {
         let found = Error::malformed("it is varied too", "leave out one of the two");
         return Err(found.for_key(format!("--set {}", set.key)));
     }

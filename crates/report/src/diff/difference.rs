@@ -235,11 +235,20 @@ mod tests {
 
     #[test]
     fn a_figure_moves_within_its_error_or_beyond() {
-        let before = side(&[("a", 1.0, Some(0.01)), ("b", 2.0, Some(0.01)), ("c", 0.0, None), ("d", 5.0, None)], "No: x");
-        let after = side(&[("a", 1.015, Some(0.01)), ("b", 2.1, Some(0.01)), ("c", 1.0, None), ("d", 5.0, None)], "No: y");
+        let before = side(
+            &[("a", 1.0, Some(0.01)), ("b", 2.0, Some(0.01)), ("c", 0.0, None), ("d", 5.0, None)],
+            "No: x",
+        );
+        let after = side(
+            &[("a", 1.015, Some(0.01)), ("b", 2.1, Some(0.01)), ("c", 1.0, None), ("d", 5.0, None)],
+            "No: y",
+        );
         let found = Difference::between(&before, &after).unwrap();
         let of = |name: &str| found.figures.iter().find(|moved| moved.figure == name).unwrap();
-        assert_eq!((of("a").within_error, of("b").within_error, of("c").within_error), (Some(true), Some(false), None));
+        assert_eq!(
+            (of("a").within_error, of("b").within_error, of("c").within_error),
+            (Some(true), Some(false), None)
+        );
         assert!((of("b").relative_change.unwrap() - 0.05).abs() < 1e-12 && of("c").relative_change.is_none());
         assert_eq!((found.figures.len(), found.figures[0].figure.as_str()), (3, "b"));
         assert!(!found.same && !found.verdict_changed && found.verdict.is_some());

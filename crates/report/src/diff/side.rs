@@ -102,8 +102,11 @@ impl Side {
                 }
                 _ => {
                     let asked: Value = toml::from_str(&text).map_err(|error| {
-                        Error::malformed(format!("this is not TOML: {}", error.message()), "make the report again")
-                            .in_file(&path)
+                        Error::malformed(
+                            format!("this is not TOML: {}", error.message()),
+                            "make the report again",
+                        )
+                        .in_file(&path)
                     })?;
                     side.asked(&asked);
                 }
@@ -116,20 +119,26 @@ impl Side {
         let bytes = file::bytes(path, ACTION, LONGEST)?;
         let instead = "name a folder that --out made, or a file with what --json printed";
         let told = |found: String| Error::malformed(found, instead).in_file(path);
-        let answer: Map<String, Value> =
-            serde_json::from_slice(&bytes).map_err(|error| told(format!("this is no JSON of an answer: {error}")))?;
+        let answer: Map<String, Value> = serde_json::from_slice(&bytes)
+            .map_err(|error| told(format!("this is no JSON of an answer: {error}")))?;
         let Some(version) = answer.get("hadar").and_then(Value::as_str) else {
             return Err(told("this is no answer: it has no `hadar`".into()));
         };
         let mut side = Self { made_by: vec![format!("hadar {version}")], ..Self::default() };
-        let at = |pointer: &[&str]| pointer.iter().try_fold(None, |found: Option<&Value>, key| {
-            found.map_or_else(|| answer.get(*key), |value| value.get(key)).map(Some)
-        });
-        side.verdict = match (at(&["verdict", "sentence"]), at(&["sentence"]), at(&["identifiability", "identifiable"])) {
-            (Some(Some(Value::String(sentence))), ..) | (_, Some(Some(Value::String(sentence))), _) => sentence.clone(),
-            (.., Some(Some(Value::Bool(yes)))) => (if *yes { "Yes" } else { "No" }).to_owned(),
-            _ => String::new(),
+        let at = |pointer: &[&str]| {
+            pointer.iter().try_fold(None, |found: Option<&Value>, key| {
+                found.map_or_else(|| answer.get(*key), |value| value.get(key)).map(Some)
+            })
         };
+        side.verdict =
+            match (at(&["verdict", "sentence"]), at(&["sentence"]), at(&["identifiability", "identifiable"]))
+            {
+                (Some(Some(Value::String(sentence))), ..) | (_, Some(Some(Value::String(sentence))), _) => {
+                    sentence.clone()
+                }
+                (.., Some(Some(Value::Bool(yes)))) => (if *yes { "Yes" } else { "No" }).to_owned(),
+                _ => String::new(),
+            };
         for (key, value) in &answer {
             match key.as_str() {
                 "hadar" | "schema" | "stats" | "set" | "sentence" => {}
@@ -223,7 +232,8 @@ fn named(items: &[Value]) -> Option<Vec<String>> {
 /// The error that stands beside a number: relative, of its own unit, or half an interval.
 fn stated(beside: &Map<String, Value>, key: &str, value: &Value) -> Option<f64> {
     let number = value.as_f64()?;
-    let reading = key.strip_prefix("distance_").map(|rest| rest.strip_suffix("_per_sqrt_photon").unwrap_or(rest));
+    let reading =
+        key.strip_prefix("distance_").map(|rest| rest.strip_suffix("_per_sqrt_photon").unwrap_or(rest));
     let of = |name: String| beside.get(&name).and_then(Value::as_f64);
     let relative = reading.and_then(|reading| {
         let plain = (reading == "local").then(|| of("relative_error".into())).flatten();
@@ -239,8 +249,10 @@ fn stated(beside: &Map<String, Value>, key: &str, value: &Value) -> Option<f64> 
 }
 
 fn rows(text: &str) -> Result<(Vec<String>, Vec<Vec<String>>)> {
-    let failed = |error: csv::Error| Error::malformed(format!("this is no table: {error}"), "make the report again");
-    let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).flexible(true).from_reader(text.as_bytes());
+    let failed =
+        |error: csv::Error| Error::malformed(format!("this is no table: {error}"), "make the report again");
+    let mut reader =
+        csv::ReaderBuilder::new().comment(Some(b'#')).flexible(true).from_reader(text.as_bytes());
     let own = |record: &csv::StringRecord| record.iter().map(str::to_owned).collect::<Vec<_>>();
     let head = own(reader.headers().map_err(failed)?);
     let rows = reader.records().map(|row| row.map(|row| own(&row)).map_err(failed));
@@ -250,14 +262,16 @@ fn rows(text: &str) -> Result<(Vec<String>, Vec<Vec<String>>)> {
 /// The cells of a table by row and column.
 fn table(text: &str, name: &str, is_curve: bool) -> Result<BTreeMap<String, Figure>> {
     let (head, rows) = rows(text)?;
-    let key = |row: &Vec<String>, columns: usize| row.iter().take(columns).cloned().collect::<Vec<_>>().join(" ");
+    let key =
+        |row: &Vec<String>, columns: usize| row.iter().take(columns).cloned().collect::<Vec<_>>().join(" ");
     let tells = |columns: &usize| {
         rows.iter().map(|row| key(row, *columns)).collect::<BTreeSet<_>>().len() == rows.len()
     };
     let columns = (1..=NAMING.min(head.len())).find(tells);
     let mut found = BTreeMap::new();
     for (index, row) in rows.iter().enumerate() {
-        let cells: Map<String, Value> = head.iter().cloned().zip(row.iter().map(|cell| cell_of(cell))).collect();
+        let cells: Map<String, Value> =
+            head.iter().cloned().zip(row.iter().map(|cell| cell_of(cell))).collect();
         let row = columns.map_or_else(|| index.to_string(), |columns| key(row, columns));
         for (column, value) in &cells {
             if !value.is_null() {
@@ -294,7 +308,13 @@ mod tests {
         assert_eq!(found["pairs[b].distance_nearest"].error, Some(2e-3));
         assert!(!found.contains_key("pairs[b].none") && found["pairs[a].distance_nearest"].curve.is_none());
         let mut found = BTreeMap::new();
-        flatten(&json!({ "p": 0.5, "p_interval": [0.4, 0.7], "curve": [1, 2, 3, 4, 5, 6, 7, 8, 9] }), "", None, None, &mut found);
+        flatten(
+            &json!({ "p": 0.5, "p_interval": [0.4, 0.7], "curve": [1, 2, 3, 4, 5, 6, 7, 8, 9] }),
+            "",
+            None,
+            None,
+            &mut found,
+        );
         assert!((found["p"].error.unwrap() - 0.15).abs() < 1e-12);
         assert_eq!(found["curve[8]"].curve.as_deref(), Some("curve"));
     }

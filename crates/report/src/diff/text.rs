@@ -38,7 +38,11 @@ pub fn text(found: &Difference) -> String {
         let _ = write!(out, "\nVerdict\n  {}\n  {}\n", side(&verdict.before), side(&verdict.after));
     }
     section(&mut out, "What was asked", found.question.iter().map(changed).collect());
-    section(&mut out, "Files that were read", found.inputs.iter().map(|one| hashed(one, "content")).collect());
+    section(
+        &mut out,
+        "Files that were read",
+        found.inputs.iter().map(|one| hashed(one, "content")).collect(),
+    );
     let mut figures: Vec<String> = found.figures.iter().take(LISTED).map(moved).collect();
     if found.figures.len() > LISTED {
         figures.push(format!("and {} more, see --json", found.figures.len() - LISTED));
@@ -94,9 +98,9 @@ fn moved(one: &Moved) -> String {
 }
 
 fn curve(one: &Curve) -> String {
-    let largest = one.largest_relative_change.map_or_else(String::new, |change| {
-        format!(", at most by {}", percent(change))
-    });
+    let largest = one
+        .largest_relative_change
+        .map_or_else(String::new, |change| format!(", at most by {}", percent(change)));
     format!("{}: {} of {} values{largest}", one.curve, one.moved, one.values)
 }
 

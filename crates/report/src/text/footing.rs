@@ -175,7 +175,10 @@ mod tests {
         let set = [Setting { key: "camera.exposure".into(), value: "5 ms".into(), by: "--set" }];
         let line = "Assumptions\n  in the place of the file's values: camera.exposure = 5 ms\n";
         for (text, expected) in [
-            ("No.\n\nAssumptions\n  air\nWarnings\n  [x] y\n", format!("No.\n\n{line}  air\nWarnings\n  [x] y\n")),
+            (
+                "No.\n\nAssumptions\n  air\nWarnings\n  [x] y\n",
+                format!("No.\n\n{line}  air\nWarnings\n  [x] y\n"),
+            ),
             ("No.\n\na\nWarnings\n  [x] y\n", format!("No.\n\na\n{line}Warnings\n  [x] y\n")),
             ("No.\n\na\n", format!("No.\n\na\n\n{line}")),
             ("No.\n", "No.\n".into()),

@@ -32,7 +32,8 @@ impl StatedCameras {
         let mut source = written.source();
         let document = document(written, (Kind::Cameras, MINIMUM), &mut source)?;
         let root = Section::open(&document, "", &source, &["camera"])?;
-        let items = root.require("camera", "[[camera]]")?.items("each camera as [[camera]], in double brackets")?;
+        let items =
+            root.require("camera", "[[camera]]")?.items("each camera as [[camera]], in double brackets")?;
         let cameras = items.iter().map(camera).collect::<Result<_>>()?;
         Ok(Self { cameras, source })
     }

@@ -7,8 +7,8 @@ use std::sync::Arc;
 use toml::de::{DeTable, DeValue};
 
 use super::setting::Setting;
-use super::stated_camera::StatedCamera;
 pub(super) use super::setting::dotted;
+use super::stated_camera::StatedCamera;
 use hadar::error::Place;
 use hadar::instrument::CameraSpec;
 

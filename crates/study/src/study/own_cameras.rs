@@ -1,8 +1,8 @@
 //! Cameras of one's own, looked up by name as those of the program are.
 
 use super::camera;
-use crate::scenario::{StatedCamera, Written};
 use crate::scenario::cameras::StatedCameras;
+use crate::scenario::{StatedCamera, Written};
 use hadar::error::{Error, Result};
 use hadar::instrument::presets::{self, Preset};
 use std::path::{Path, PathBuf};
