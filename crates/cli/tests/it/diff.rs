@@ -21,7 +21,7 @@ fn two_reports_differ_in_what_was_changed() {
     assert!(same.code == 0 && same.stdout.starts_with("Same: "), "{}{}", same.stdout, same.stderr);
     let other = folder.run(&["diff", "a", "c"]);
     assert!(
-        other.code == 1 && other.stdout.contains("camera.exposure: - -> 3 ms"),
+        other.code == 1 && other.stdout.contains("camera.exposure: 0.012 s -> 3 ms"),
         "{}{}",
         other.stdout,
         other.stderr

@@ -63,7 +63,7 @@ fn mistakes_are_told_by_file_line_and_key() {
         ("\"ours\"", "\"ideal-pnrd\"", "my.toml:2: camera[0].name: the program has a camera `ideal-pnrd`"),
         ("\"bare\"", "\"ours\"", "my.toml:8: camera[1].name: another camera is called `ours` too"),
         ("\"5 ms\"", "5", "my.toml:5: camera[0].exposure: `5` is a number without a unit"),
-        ("pixel", "pixl", "my.toml:9: camera[1].pixl: there is no key `pixl`"),
+        ("pixel", "pixl", "my.toml:9: camera[1]: there is no key `pixl`"),
         ("[[camera]]\nname = \"bare\"", "[target]\nmaterial = \"skin\"", "my.toml"),
     ] {
         folder.file("my.toml", &MINE.replace(old, new));

@@ -267,7 +267,9 @@ fn table(text: &str, name: &str, is_curve: bool) -> Result<BTreeMap<String, Figu
     let tells = |columns: &usize| {
         rows.iter().map(|row| key(row, *columns)).collect::<BTreeSet<_>>().len() == rows.len()
     };
-    let columns = (1..=NAMING.min(head.len())).find(tells);
+    // A pair goes by both of its materials, whichever others there are.
+    let first = if head.first().is_some_and(|column| column == "target") { 2 } else { 1 };
+    let columns = (first..=NAMING.min(head.len())).find(tells);
     let mut found = BTreeMap::new();
     for (index, row) in rows.iter().enumerate() {
         let cells: Map<String, Value> =

@@ -79,7 +79,7 @@ mod tests {
         for (old, new, said) in [
             ("\"bare\"", "\"flir-a325sc\"", ":6: camera[1].name: the program has a camera `flir-a325sc`"),
             ("\"bare\"", "\"ours\"", ":6: camera[1].name: another camera is called `ours` too"),
-            ("pixel =", "pixl =", ":7: camera[1].pixl: there is no key `pixl`"),
+            ("pixel =", "pixl =", ":7: camera[1]: there is no key `pixl`"),
             ("\"12 um\"", "12", ":7: camera[1].pixel: `12` is a number without a unit"),
             ("\"flir-a325sc\"", "\"flir-a325s\"", ":3: camera[0].preset: there is no camera `flir-a325s`"),
             ("name = \"bare\"\n", "", "camera[1].name"),
