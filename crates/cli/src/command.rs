@@ -9,9 +9,11 @@ mod cameras;
 mod cube_format;
 mod decompose;
 mod diff;
+mod explain;
 mod flags;
 mod global;
 mod identify;
+mod init;
 mod library;
 mod materials;
 mod progress;
@@ -87,6 +89,12 @@ enum Command {
     Completions(shell::CompletionsArgs),
     /// The manual page; with --out one for each command
     Man(shell::ManArgs),
+    /// What a key of a file, a warning, a key of the JSON or a command means
+    Explain(explain::ExplainArgs),
+    /// The keys of files as a JSON schema, by which editors complete and check them
+    Schema(explain::SchemaArgs),
+    /// Write a commented file to begin with, that runs as it is
+    Init(init::InitArgs),
 }
 
 /// Runs the command line of this process.
@@ -155,5 +163,8 @@ fn run(command: &Command, global: &Global) -> Result<ExitCode> {
         Command::Diff(args) => Ok(diff::run(args, global)),
         Command::Completions(args) => shell::completions(args, line()),
         Command::Man(_) => shell::man(line(), global),
+        Command::Explain(args) => explain::run(args, global, &line()),
+        Command::Schema(args) => explain::schema(args),
+        Command::Init(args) => init::run(args, global),
     }
 }

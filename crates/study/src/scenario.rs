@@ -26,6 +26,7 @@ pub mod decompose;
 mod entries;
 pub mod envelope;
 pub mod examples;
+pub mod keys;
 mod kind;
 pub mod library;
 mod paths;

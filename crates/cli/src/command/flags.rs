@@ -48,6 +48,9 @@ const TAKEN: &[(&str, &[Flags])] = &[
     ("diff", &[&["json", "quiet"]]),
     ("completions", &[]),
     ("man", &[FOLDER, &["quiet"]]),
+    ("explain", &[&["json"]]),
+    ("schema", &[]),
+    ("init", &[&["json"]]),
 ];
 
 fn taken(path: &str) -> impl Iterator<Item = &'static str> {

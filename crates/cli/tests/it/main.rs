@@ -18,6 +18,7 @@ mod decompose_by_rows;
 mod decompose_image;
 mod demand;
 mod diff;
+mod explain;
 mod extremes;
 mod fuzz;
 mod identify;
@@ -49,6 +50,7 @@ mod written;
 
 mod support {
     pub(crate) mod answers;
+    pub(crate) mod documented;
     pub(crate) mod folder;
     #[path = "../../../../study/tests/it/support/mutation.rs"]
     pub(crate) mod mutation;

@@ -3,7 +3,8 @@
 //! `description`, `document` and `provenance = ["…"]` say where its figures are from; `preset` lays it over a known camera. What is left
 //! out is asked for where nothing can stand for it, as of a camera of the program.
 
-use super::camera::read_beside;
+use super::camera::read;
+use super::keys::files;
 use super::kind::Kind;
 use super::read::document;
 use super::section::{Entry, Section};
@@ -12,7 +13,6 @@ use super::{Source, Written};
 use hadar::error::{Place, Result};
 
 const MINIMUM: &str = "write [[camera]] with name = \"ours\" and the keys of [camera] of a scenario";
-const ABOUT: [&str; 4] = ["name", "description", "document", "provenance"];
 
 /// The cameras of a file.
 #[derive(Debug, Clone)]
@@ -31,9 +31,8 @@ impl StatedCameras {
     pub fn from_written(written: &Written) -> Result<Self> {
         let mut source = written.source();
         let document = document(written, (Kind::Cameras, MINIMUM), &mut source)?;
-        let root = Section::open(&document, "", &source, &["camera"])?;
-        let items =
-            root.require("camera", "[[camera]]")?.items("each camera as [[camera]], in double brackets")?;
+        let root = Section::open(&document, "", &source, &files::CAMERAS)?;
+        let items = root.require("camera")?.items("each camera as [[camera]], in double brackets")?;
         let cameras = items.iter().map(camera).collect::<Result<_>>()?;
         Ok(Self { cameras, source })
     }
@@ -46,14 +45,14 @@ impl StatedCameras {
 }
 
 fn camera(item: &Entry<'_>) -> Result<StatedCamera> {
-    let spec = read_beside(item, &ABOUT, &mut |_, _| Ok(false))?;
+    let spec = read(item)?;
     let section = item.table()?;
     let text = |entry: &Entry<'_>| Ok(entry.text("\"…\"")?.trim().to_owned());
     let provenance = section.read("provenance", |entry| {
         entry.items("provenance = [\"data sheet of 2024\"]")?.iter().map(text).collect::<Result<Vec<_>>>()
     })?;
     Ok(StatedCamera {
-        name: section.require("name", "\"ours\"")?.text("\"ours\"")?.trim().to_owned(),
+        name: section.require("name")?.text("\"ours\"")?.trim().to_owned(),
         description: section.read("description", text)?.unwrap_or_default(),
         document: section.read("document", text)?,
         provenance: provenance.unwrap_or_default(),

@@ -1,7 +1,8 @@
 //! The cameras of a rule: known ones by name (`cameras`), others as tables (`[[camera]]`).
 
 use crate::scenario::CameraSpec;
-use crate::scenario::camera::read_beside;
+use crate::scenario::camera::read_with;
+use crate::scenario::keys::rule::UNCERTAIN;
 use crate::scenario::section::Entry;
 use hadar::allowed::FROM_ZERO;
 use hadar::error::{Error, Result};
@@ -64,8 +65,7 @@ pub(super) fn tables(entry: &Entry<'_>) -> Result<Vec<RuleCamera>> {
         .enumerate()
         .map(|(index, item)| {
             let mut uncertainty = BTreeMap::new();
-            let spec =
-                read_beside(item, &["name"], &mut |row, entry| uncertain(row, entry, &mut uncertainty))?;
+            let spec = read_with(item, &mut |row, entry| uncertain(row, entry, &mut uncertainty))?;
             let section = item.table()?;
             let name = section.read("name", |entry| Ok(entry.text("\"ours\"")?.trim().to_owned()))?;
             Ok(RuleCamera { name, spec, uncertainty, key: format!("camera[{index}]") })
@@ -78,15 +78,15 @@ fn uncertain(row: &'static Row, entry: &Entry<'_>, noted: &mut BTreeMap<&'static
     if !entry.is_table() {
         return Ok(false);
     }
-    let section = entry.section(&["value", "u"])?;
-    let u = section.require("u", "\"5 mK\"")?;
+    let section = entry.section_of(&UNCERTAIN)?;
+    let u = section.require("u")?;
     let sigma = match row.kind {
         // Of a difference of temperatures, not of a temperature.
         Kind::Quantity(Dimension::Temperature, ..) => {
-            u.quantity(Dimension::TemperatureDifference, FROM_ZERO)?
+            u.quantity_as(Dimension::TemperatureDifference, FROM_ZERO)?
         }
-        Kind::Quantity(dimension, ..) => u.quantity(dimension, FROM_ZERO)?,
-        Kind::Number(..) | Kind::Efficiency(..) => u.number("0.01", FROM_ZERO)?,
+        Kind::Quantity(dimension, ..) => u.quantity_as(dimension, FROM_ZERO)?,
+        Kind::Number(..) | Kind::Efficiency(..) => u.number_as("0.01", FROM_ZERO)?,
         _ => {
             let found = format!("an uncertainty of {}, which is no measured number", row.key);
             return Err(entry.fail(Error::malformed(found, format!("write {} = {}", row.key, row.example))));
