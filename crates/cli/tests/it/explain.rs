@@ -83,7 +83,8 @@ fn every_key_of_real_answers_is_explained() {
     see(&["render", "scene.toml", "--out", "scene"]);
     see(&["decompose", "decompose.toml"]);
     see(&["library", "library.toml"]);
-    see(&["calibrate", "noise", "scene/counts.npy"]);
+    see(&["render", "scene.toml", "--out", "again", "--seed", "2"]);
+    see(&["calibrate", "noise", "scene/counts.npy", "again/counts.npy"]);
     see(&["calibrate", "stripes", "scene/counts.npy"]);
     let known: BTreeSet<&str> = explain::results().map(|one| one.key).collect();
     let unknown: Vec<_> = found.iter().filter(|(key, _)| !known.contains(key.as_str())).collect();

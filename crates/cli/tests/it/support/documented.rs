@@ -60,7 +60,8 @@ fn of_source(text: &str, ledger: bool, rows: &mut BTreeSet<[String; 3]>) {
         } else if let Some(variant) = line.strip_suffix(',').filter(|_| ledger && !doc.is_empty()) {
             rows.insert([snake_case(variant), of.clone(), plain(&doc)]);
         }
-        (doc.clear(), attributes.clear());
+        doc.clear();
+        attributes.clear();
     }
 }
 
