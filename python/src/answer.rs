@@ -137,7 +137,7 @@ impl Reading<'_> {
     }
 
     fn json(&self, answer: &impl serde::Serialize) -> Result<String> {
-        answer_json(answer, &self.said)
+        answer_json(answer, &self.said, &[])
     }
 }
 

@@ -34,8 +34,22 @@ pub fn open(path: &Path, action: &str) -> Result<File> {
 /// # Errors
 /// As [`open`]; a file of more than `most` bytes.
 pub fn bytes(path: &Path, action: &str, most: u64) -> Result<Vec<u8>> {
+    read(open(path, action)?, path, action, most)
+}
+
+/// All bytes of what can be read only once, such as standard input, and notes that it was read; `name` stands for a path.
+///
+/// # Errors
+/// What cannot be read; more than `most` bytes.
+pub fn stream(from: impl Read, name: &str, action: &str, most: u64) -> Result<Vec<u8>> {
+    let bytes = read(from, Path::new(name), action, most)?;
+    inputs::stream(name, &bytes);
+    Ok(bytes)
+}
+
+fn read(from: impl Read, path: &Path, action: &str, most: u64) -> Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    let read = open(path, action)?.take(most + 1).read_to_end(&mut bytes);
+    let read = from.take(most + 1).read_to_end(&mut bytes);
     read.map_err(|error| Error::file(action, path, format!("{}; check that it may be read", error.kind())))?;
     if bytes.len() as u64 > most {
         let mebibytes = most >> 20;

@@ -20,6 +20,8 @@ pub struct Inputs {
     pub files: Vec<PathBuf>,
     /// Folders whose files were looked for, as they were named: a file more there is another answer.
     pub folders: Vec<PathBuf>,
+    /// What can be read only once, such as standard input: what it is called, and its content.
+    pub streams: Vec<(String, Vec<u8>)>,
     /// Content of what is built in, by kind and name (`material`, `skin`).
     pub built_in: BTreeMap<(&'static str, String), Vec<u8>>,
 }
@@ -66,6 +68,7 @@ pub fn inputs_of<T>(job: impl FnOnce() -> T) -> (T, Inputs) {
 pub fn add(other: &Inputs) {
     other.files.iter().for_each(|path| file(path));
     other.folders.iter().for_each(|path| folder(path));
+    other.streams.iter().for_each(|(name, content)| stream(name, content));
     OPEN.with_borrow_mut(|open| {
         if let Some(inputs) = open {
             for (name, content) in &other.built_in {
@@ -82,6 +85,15 @@ pub fn file(path: &Path) {
             && !inputs.files.iter().any(|known| known == path)
         {
             inputs.files.push(path.to_owned());
+        }
+    });
+}
+
+/// Something that can be read only once was read.
+pub fn stream(name: &str, content: &[u8]) {
+    OPEN.with_borrow_mut(|open| {
+        if let Some(inputs) = open {
+            inputs.streams.push((name.to_owned(), content.to_vec()));
         }
     });
 }

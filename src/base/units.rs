@@ -160,6 +160,11 @@ impl Dimension {
         self.units()[0].spelling
     }
 
+    /// All units that it may be written with, that used inside first.
+    pub fn spellings(self) -> impl Iterator<Item = &'static str> {
+        self.units().iter().map(|unit| unit.spelling)
+    }
+
     const fn example(self) -> &'static str {
         match self {
             Self::Temperature => "\"37 degC\" or \"310.15 K\"",

@@ -23,6 +23,7 @@ impl Preset {
     pub fn camera(&self) -> Result<Camera, Missing> {
         let CameraSpec {
             preset: _,
+            own: _,
             exposure_s,
             frame_rate_hz,
             pixel_m,
@@ -216,6 +217,7 @@ impl CameraSpec {
         } = *camera;
         Self {
             preset: None,
+            own: None,
             exposure_s: Some(exposure_s),
             frame_rate_hz,
             pixel_m: Some(pixel_m),

@@ -44,6 +44,9 @@ pub struct Preset {
     /// What is stated of it.
     #[serde(flatten)]
     pub figures: CameraSpec,
+    /// The file that it is of; none of one of the program's own.
+    #[serde(skip_deserializing, skip_serializing_if = "Option::is_none")]
+    pub file: Option<String>,
     /// Efficiencies over wavenumber, read from the files of the figures.
     #[serde(skip)]
     pub efficiency_curves: Vec<EfficiencyCurve>,

@@ -8,8 +8,12 @@ mod calibrate;
 mod cameras;
 mod cube_format;
 mod decompose;
+mod diff;
+mod explain;
+mod flags;
 mod global;
 mod identify;
+mod init;
 mod library;
 mod materials;
 mod progress;
@@ -18,6 +22,8 @@ mod range;
 mod render;
 mod reproduce;
 mod rule;
+mod several;
+mod shell;
 mod simulate;
 mod size;
 mod stderr;
@@ -28,7 +34,7 @@ mod threads;
 use self::global::Global;
 use self::stderr::say;
 use self::terminal::Stream;
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
 use hadar::error::{Error, Result};
 use hadar::inputs::Noting;
 use std::io::ErrorKind;
@@ -41,8 +47,6 @@ use std::process::ExitCode;
 struct Cli {
     #[command(subcommand)]
     command: Command,
-    #[command(flatten)]
-    global: Global,
 }
 
 #[derive(Debug, Subcommand)]
@@ -78,6 +82,19 @@ enum Command {
     Materials(materials::MaterialsArgs),
     /// The known cameras: list, show, compare
     Cameras(cameras::CamerasArgs),
+    /// Two reports or two answers held against each other: what was asked, the verdict, figures that moved, warnings; exit code 0
+    /// where they are the same, 1 where they differ, 2 where one cannot be read
+    Diff(diff::DiffArgs),
+    /// What a shell needs to complete commands and flags; to be sourced, or written where it looks for it
+    Completions(shell::CompletionsArgs),
+    /// The manual page; with --out one for each command
+    Man(shell::ManArgs),
+    /// What a key of a file, a warning, a key of the JSON or a command means
+    Explain(explain::ExplainArgs),
+    /// The keys of files as a JSON schema, by which editors complete and check them
+    Schema(explain::SchemaArgs),
+    /// Write a commented file to begin with, that runs as it is
+    Init(init::InitArgs),
 }
 
 /// Runs the command line of this process.
@@ -87,8 +104,8 @@ pub(crate) fn main() -> ExitCode {
         say(&Stream::Err.message("error:", &error.to_string()));
         ExitCode::from(1)
     };
-    match Cli::try_parse() {
-        Ok(cli) => run(&cli).unwrap_or_else(failed),
+    match parsed() {
+        Ok((command, global)) => run(&command, &global).unwrap_or_else(failed),
         // What is wrong goes to stderr, where nobody need listen; what was asked for, such as --help, does not.
         Err(usage) => match usage.print() {
             Err(error) if !usage.use_stderr() && error.kind() != ErrorKind::BrokenPipe => {
@@ -99,33 +116,55 @@ pub(crate) fn main() -> ExitCode {
     }
 }
 
-fn run(cli: &Cli) -> Result<ExitCode> {
-    if let Some(threads) = cli.global.threads.filter(|threads| *threads > threads::MOST) {
+/// The whole command line.
+fn line() -> clap::Command {
+    flags::added(Cli::command())
+}
+
+fn parsed() -> std::result::Result<(Command, Global), clap::Error> {
+    let (line, words) = (line(), std::env::args_os().collect::<Vec<_>>());
+    let found = line.clone().try_get_matches_from(&words).map_err(|error| {
+        let words: Vec<String> =
+            words.iter().skip(1).map(|word| word.to_string_lossy().into_owned()).collect();
+        flags::explained(&line, error, &words)
+    })?;
+    let global = flags::given(&line, &found)?;
+    Ok((Cli::from_arg_matches(&found)?.command, global))
+}
+
+fn run(command: &Command, global: &Global) -> Result<ExitCode> {
+    if let Some(threads) = global.threads.filter(|threads| *threads > threads::MOST) {
         let expected = format!("at most {}, or 0 for all cores", threads::MOST);
         return Err(Error::out_of_range("--threads", threads as f64, "", expected));
     }
-    threads::start(cli.global.threads, cli.global.quiet);
+    threads::start(global.threads, global.quiet);
     let _noting = Noting::open();
     // Figures of the paper have a folder each, which their command looks at.
-    if let Some(out) = &cli.global.out
-        && !matches!(cli.command, Command::Reproduce(_))
+    if let Some(out) = &global.out
+        && !matches!(command, Command::Reproduce(_))
     {
-        cli.global.folder(out).check()?;
+        global.folder(out).check()?;
     }
-    match &cli.command {
-        Command::Size(args) => size::run(args, &cli.global),
-        Command::Identify(args) => identify::run(args, &cli.global),
-        Command::Rule(args) => rule::run(args, &cli.global),
-        Command::Range(args) => range::run(args, &cli.global),
-        Command::Decompose(args) => decompose::run(args, &cli.global),
-        Command::Library(args) => library::run(args, &cli.global),
-        Command::Calibrate(args) => calibrate::run(args, &cli.global),
-        Command::Render(args) => render::run(args, &cli.global),
-        Command::Simulate(args) => simulate::run(args, &cli.global),
-        Command::Sweep(args) => sweep::run(args, &cli.global),
-        Command::Reproduce(args) => reproduce::run(args, &cli.global),
-        Command::Accuracy(args) => accuracy::run(args, &cli.global),
-        Command::Materials(args) => materials::run(args, &cli.global),
-        Command::Cameras(args) => cameras::run(args, &cli.global),
+    match command {
+        Command::Size(args) => size::run(args, global),
+        Command::Identify(args) => identify::run(args, global),
+        Command::Rule(args) => rule::run(args, global),
+        Command::Range(args) => range::run(args, global),
+        Command::Decompose(args) => decompose::run(args, global),
+        Command::Library(args) => library::run(args, global),
+        Command::Calibrate(args) => calibrate::run(args, global),
+        Command::Render(args) => render::run(args, global),
+        Command::Simulate(args) => simulate::run(args, global),
+        Command::Sweep(args) => sweep::run(args, global),
+        Command::Reproduce(args) => reproduce::run(args, global),
+        Command::Accuracy(args) => accuracy::run(args, global),
+        Command::Materials(args) => materials::run(args, global),
+        Command::Cameras(args) => cameras::run(args, global),
+        Command::Diff(args) => Ok(diff::run(args, global)),
+        Command::Completions(args) => shell::completions(args, line()),
+        Command::Man(_) => shell::man(line(), global),
+        Command::Explain(args) => explain::run(args, global, &line()),
+        Command::Schema(args) => explain::schema(args),
+        Command::Init(args) => init::run(args, global),
     }
 }

@@ -5,6 +5,7 @@
 
 use hadar::error::{Error, Result};
 use hadar::inputs::Inputs;
+use hadar_study::scenario::Setting;
 use hadar_study::warning::Warning;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -22,22 +23,29 @@ pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 /// added without.
 pub const SCHEMA: u32 = 1;
 
-/// A result as a program reads it: its keys behind the version of this program, the number of its form and what is said of the
-/// library, where there is something to say.
+/// A result as a program reads it: its keys behind the version of this program, the number of its form, what is said of the
+/// library and what stands in the place of the file's own values, where there is something to say.
 ///
 /// # Errors
 /// A result that is no JSON, which would be a bug.
-pub fn answer_json(answer: &impl Serialize, library_warnings: &[Warning]) -> Result<String> {
+pub fn answer_json(
+    answer: &impl Serialize,
+    library_warnings: &[Warning],
+    settings: &[Setting],
+) -> Result<String> {
     #[derive(Serialize)]
     struct Versioned<'a, T> {
         hadar: &'static str,
         schema: u32,
         #[serde(skip_serializing_if = "<[Warning]>::is_empty")]
         library_warnings: &'a [Warning],
+        #[serde(skip_serializing_if = "<[Setting]>::is_empty")]
+        set: &'a [Setting],
         #[serde(flatten)]
         answer: &'a T,
     }
-    serde_json::to_string_pretty(&Versioned { hadar: VERSION, schema: SCHEMA, library_warnings, answer })
+    let versioned = Versioned { hadar: VERSION, schema: SCHEMA, library_warnings, set: settings, answer };
+    serde_json::to_string_pretty(&versioned)
         .map_err(|error| Error::malformed(error.to_string(), "report this as a bug"))
 }
 
@@ -92,9 +100,18 @@ impl Provenance {
     /// # Errors
     /// A file that can no longer be read.
     pub fn of(commit: &str, command: Vec<String>, seed: u64, inputs: &Inputs) -> Result<Self> {
-        let home = inputs.files.first().and_then(|file| std::path::absolute(file).ok());
+        // What is no file names others from the current directory.
+        let first = match inputs.streams.first() {
+            Some((name, _)) => Some(Path::new(name)),
+            None => inputs.files.first().map(PathBuf::as_path),
+        };
+        let home = first.and_then(|file| std::path::absolute(file).ok());
         let home = home.as_deref().and_then(Path::parent);
-        let mut listed = Vec::with_capacity(inputs.files.len() + inputs.built_in.len());
+        let mut listed: Vec<Input> = inputs
+            .streams
+            .iter()
+            .map(|(name, content)| Input { path: name.clone(), sha256: Some(sha256(content)) })
+            .collect();
         for file in &inputs.files {
             let beside = home.and_then(|home| from(home, file));
             let sha256 =

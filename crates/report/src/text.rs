@@ -6,5 +6,6 @@ pub(crate) mod pairs;
 pub(crate) mod shortfalls;
 mod stats;
 
+pub use footing::with_settings;
 pub use numbers::{quantity, significant};
 pub use stats::stats;

@@ -2,6 +2,7 @@
 //!
 //! * [`scenario`]: what a file says, checked, in one unit per dimension; errors name file, line and key.
 //! * [`study`]: a scenario with its materials, bands, surroundings and camera looked up, and what follows: a folder a command.
+//! * [`explain`]: what a key, a warning and a part of an answer mean.
 //! * [`sweep`]: one question about many scenes or cameras, a row of a table for each.
 //!
 //! ```
@@ -14,6 +15,7 @@
 //! # Ok::<(), hadar::Error>(())
 //! ```
 
+pub mod explain;
 mod proviso;
 pub mod scenario;
 pub mod study;

@@ -20,11 +20,13 @@ pub mod atmosphere;
 pub mod bands;
 pub mod calibrate;
 mod camera;
+pub mod cameras;
 mod class;
 pub mod decompose;
 mod entries;
 pub mod envelope;
 pub mod examples;
+pub mod keys;
 mod kind;
 pub mod library;
 mod paths;
@@ -38,6 +40,7 @@ mod section;
 pub mod sensitivity;
 mod setting;
 pub mod source;
+mod stated_camera;
 mod units;
 mod write;
 mod written;
@@ -57,9 +60,10 @@ pub use section::{Date, day};
 pub use sensitivity::SensitivitySpec;
 pub use setting::Setting;
 pub use source::Source;
+pub use stated_camera::StatedCamera;
 pub use units::Units;
 pub(crate) use units::interval;
-pub use written::Written;
+pub use written::{STDIN, Written};
 
 /// Everything a scenario file says, defaults filled in.
 ///

@@ -23,6 +23,7 @@ mod identify;
 pub mod library;
 mod looked_up;
 mod memory;
+mod own_cameras;
 mod per_photon;
 pub mod range;
 mod remembered;
@@ -47,6 +48,7 @@ pub use identify::{
     Passband, Prediction, PriorAverage, Reached, Rows, SampleSpectra, Scaling, TargetVerdict, Trial, Watch,
 };
 pub use looked_up::Study;
+pub use own_cameras::OwnCameras;
 pub use remembered::Remembered;
 pub use rule::{
     ApartAnswer, ApproachResult, BudgetLine, CameraAnswer, CameraVerdict, Certified, ClauseAnswer, Drawn,

@@ -91,6 +91,8 @@ pub struct Row {
     pub line: Line,
     /// What it means and what its absence means, in a sentence.
     pub meaning: &'static str,
+    /// Where it enters: an equation of the paper, or what is done with it.
+    pub enters: &'static str,
 }
 
 /// The same expression for a slot of any type.

@@ -3,6 +3,7 @@
 use super::noise::NoiseFigures;
 use crate::instrument::Readout;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// An efficiency as written: the same at all wavenumbers, or a file of rows.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -32,6 +33,9 @@ pub struct CameraSpec {
     /// Name of a known camera, whose figures hold where the others are silent.
     #[serde(skip)]
     pub preset: Option<String>,
+    /// What is stated of that camera, where it is one of the user's own.
+    #[serde(skip)]
+    pub own: Option<Arc<CameraSpec>>,
     /// Exposure of one frame, s.
     pub exposure_s: Option<f64>,
     /// Frames per second, Hz.

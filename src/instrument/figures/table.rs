@@ -31,8 +31,9 @@ const fn row(
     kind: Kind,
     example: &'static str,
     meaning: &'static str,
+    enters: &'static str,
 ) -> Row {
-    Row { key, label, kind, example, part: Part::Own, line: Line::IfStated, meaning }
+    Row { key, label, kind, example, part: Part::Own, line: Line::IfStated, meaning, enters }
 }
 
 impl Row {
@@ -61,6 +62,7 @@ pub const TABLE: &[Row] = &[
         Kind::Name(slot!(preset)),
         "\"flir-a325sc\"",
         "A known camera, whose figures hold where the other keys are silent (`hadar cameras list`).",
+        "its figures where the other keys are silent",
     )
     .elsewhere(),
     row(
@@ -69,6 +71,7 @@ pub const TABLE: &[Row] = &[
         Kind::Quantity(Dimension::Time, ABOVE_ZERO, slot!(exposure_s)),
         "\"12 ms\"",
         "Exposure of a frame; the whole frame where only a frame rate is known.",
+        "counts = etendue x exposure x efficiencies x S (S7)",
     )
     .always_shown(),
     row(
@@ -77,6 +80,7 @@ pub const TABLE: &[Row] = &[
         Kind::Quantity(Dimension::Length, ABOVE_ZERO, slot!(pixel_m)),
         "\"12 um\"",
         "Side of a square pixel.",
+        "etendue A_p/((1 + gamma)F^2) of a pixel (S7, SII E)",
     )
     .always_shown(),
     row(
@@ -85,6 +89,7 @@ pub const TABLE: &[Row] = &[
         Kind::Number(F_NUMBER, slot!(f_number)),
         "1.3",
         "f-number of the lens.",
+        "etendue A_p/((1 + gamma)F^2) of a pixel (S7, SII E)",
     )
     .always_shown(),
     row(
@@ -93,6 +98,7 @@ pub const TABLE: &[Row] = &[
         Kind::Quantity(Dimension::Length, ABOVE_ZERO, slot!(focal_length_m)),
         "\"18 mm\"",
         "Focal length of the lens.",
+        "footprint p z/f, disparity f b/z (S35)",
     )
     .always_shown(),
     row(
@@ -101,6 +107,7 @@ pub const TABLE: &[Row] = &[
         Kind::Efficiency(EFFICIENCY, slot!(optics_efficiency)),
         "0.9",
         "Share of the photons that the optics let through; 1 where it is not stated.",
+        "counts = etendue x exposure x efficiencies x S (S7)",
     )
     .always_shown(),
     row(
@@ -109,6 +116,7 @@ pub const TABLE: &[Row] = &[
         Kind::Efficiency(EFFICIENCY, slot!(quantum_efficiency)),
         "0.9",
         "Share of the photons on the detector that are counted; 1 where it is not stated.",
+        "counts = etendue x exposure x efficiencies x S (S7)",
     )
     .always_shown(),
     row(
@@ -117,6 +125,7 @@ pub const TABLE: &[Row] = &[
         Kind::Quantity(Dimension::TemperatureDifference, ABOVE_ZERO, slot!(noise.netd_k)),
         "\"50 mK\"",
         "Noise-equivalent temperature difference of one frame.",
+        "electronic noise of a reading (S10, Table S2)",
     )
     .noise(),
     row(
@@ -125,6 +134,7 @@ pub const TABLE: &[Row] = &[
         Kind::Quantity(Dimension::Temperature, ABSOLUTE_TEMPERATURE, slot!(noise.netd_temperature_k)),
         "\"30 degC\"",
         "Temperature of the blackbody at which the NETD is stated; 30 degC where it is not stated.",
+        "electronic noise of a reading from NETD (Table S2)",
     )
     .condition_of(&["netd"]),
     row(
@@ -133,6 +143,7 @@ pub const TABLE: &[Row] = &[
         Kind::Number(F_NUMBER, slot!(noise.netd_f_number)),
         "1.0",
         "f-number at which the NETD is stated; that of the lens where it is not stated.",
+        "electronic noise of a reading from NETD (Table S2)",
     )
     .condition_of(&["netd"]),
     row(
@@ -141,6 +152,7 @@ pub const TABLE: &[Row] = &[
         Kind::Quantity(Dimension::Length, ABOVE_ZERO, slot!(noise.netd_pixel_m)),
         "\"12 um\"",
         "Side of the pixel for which the NETD is stated; the camera's own where it is not stated.",
+        "electronic noise of a reading from NETD (Table S2)",
     )
     .condition_of(&["netd"]),
     row(
@@ -149,6 +161,7 @@ pub const TABLE: &[Row] = &[
         Kind::Quantity(Dimension::Detectivity, ABOVE_ZERO, slot!(noise.detectivity_cm_hz05_w)),
         "\"4.7e10 cm Hz^0.5/W\"",
         "Specific detectivity D*, with a noise_bandwidth or the noise_exposure that it follows from.",
+        "electronic noise of a reading (S10, Table S2)",
     )
     .noise(),
     row(
@@ -157,6 +170,7 @@ pub const TABLE: &[Row] = &[
         Kind::Quantity(Dimension::NoiseEquivalentPower, ABOVE_ZERO, slot!(noise.nep_w_hz05)),
         "\"1e-12 W/Hz^0.5\"",
         "Noise-equivalent power of 1 Hz, with a noise_bandwidth or the noise_exposure that it follows from.",
+        "electronic noise of a reading (S10, Table S2)",
     )
     .noise(),
     row(
@@ -165,6 +179,7 @@ pub const TABLE: &[Row] = &[
         Kind::Quantity(Dimension::SpectralRadiance, ABOVE_ZERO, slot!(noise.nesr_microflick)),
         "\"1 uflick\"",
         "Noise-equivalent spectral radiance in front of the optics.",
+        "electronic noise of a reading (S10, Table S2)",
     )
     .noise(),
     row(
@@ -173,6 +188,7 @@ pub const TABLE: &[Row] = &[
         Kind::Number(FROM_ZERO, slot!(noise.electrons)),
         "1000",
         "Standard deviation of a band reading's electronic noise, in counts.",
+        "electronic noise of a reading (S14 to S16)",
     )
     .noise(),
     row(
@@ -181,6 +197,7 @@ pub const TABLE: &[Row] = &[
         Kind::File(slot!(noise.table)),
         "\"noise.csv\"",
         "Standard deviation of a band reading over wavenumber: CSV with the columns wavenumber_cm1,sigma_counts.",
+        "electronic noise of a reading (S14 to S16)",
     )
     .noise(),
     row(
@@ -189,6 +206,7 @@ pub const TABLE: &[Row] = &[
         Kind::Quantity(Dimension::Frequency, ABOVE_ZERO, slot!(noise.bandwidth_hz)),
         "\"175 kHz\"",
         "Bandwidth for which D* or NEP is taken; 1/(2 x noise_exposure) where it is not stated.",
+        "noise power NEP sqrt(bandwidth) (Table S2)",
     )
     .condition_of(&["detectivity", "nep"]),
     row(
@@ -197,6 +215,7 @@ pub const TABLE: &[Row] = &[
         Kind::Quantity(Dimension::Time, ABOVE_ZERO, slot!(noise_exposure_s)),
         "\"12 ms\"",
         "Exposure for which the noise is stated; that of the frame where it is not stated.",
+        "scaling of the noise from its exposure to the camera's",
     )
     .condition_of(&NOISES),
     row(
@@ -206,6 +225,7 @@ pub const TABLE: &[Row] = &[
         "0.5",
         "Share of the electronic noise variance at noise_exposure that is flicker, which frames do not average out; 0 where \
          it is not stated.",
+        "share of the variance that frames do not average",
     )
     .always_shown(),
     row(
@@ -214,6 +234,7 @@ pub const TABLE: &[Row] = &[
         Kind::Quantity(Dimension::Rate, FROM_ZERO, slot!(dark_rate_per_s)),
         "\"1000 1/s\"",
         "Counts per second without light; 0 where it is not stated.",
+        "dark counts in the noise budget (S14 to S16)",
     ),
     row(
         "read_noise",
@@ -221,6 +242,7 @@ pub const TABLE: &[Row] = &[
         Kind::Number(FROM_ZERO, slot!(read_noise_counts)),
         "100",
         "Standard deviation that every reading adds whatever its exposure, in counts; 0 where it is not stated.",
+        "read noise in the noise budget (S14 to S16)",
     ),
     row(
         "quantisation_bits",
@@ -228,6 +250,7 @@ pub const TABLE: &[Row] = &[
         Kind::Count(slot!(quantisation_bits)),
         "14",
         "Bits of the converter, which divide the full_well into steps.",
+        "quantisation in the noise budget: step^2/12",
     )
     .always_shown(),
     row(
@@ -236,6 +259,7 @@ pub const TABLE: &[Row] = &[
         Kind::Number(ABOVE_ZERO, slot!(full_well)),
         "1e7",
         "Counts at which a pixel is full; never where it is not stated.",
+        "longest exposure; step of the quantisation",
     )
     .always_shown(),
     row(
@@ -244,6 +268,7 @@ pub const TABLE: &[Row] = &[
         Kind::Flag(slot!(photon_bunching)),
         "true",
         "Whether the bunching of thermal photons adds its noise; false where it is not stated.",
+        "variance n + n^2/modes (S11 to S13)",
     )
     .elsewhere(),
     row(
@@ -252,6 +277,7 @@ pub const TABLE: &[Row] = &[
         Kind::Readout(slot!(readout)),
         "\"sequential\"",
         "Whether all bands are read in one exposure or one after the other; simultaneous where it is not stated.",
+        "exposures until all bands are known; light of filters (S8, S9)",
     )
     .elsewhere(),
     row(
@@ -261,6 +287,7 @@ pub const TABLE: &[Row] = &[
         "1",
         "Bands that the camera has of its own: with 1 a spectrum takes filters, one after the other; as many as the scenario \
          asks for where it is not stated.",
+        "whether filters must make the other bands",
     )
     .elsewhere(),
     row(
@@ -269,6 +296,7 @@ pub const TABLE: &[Row] = &[
         Kind::Count(slot!(frames)),
         "16",
         "Number of frames that are averaged; 1 where it is not stated.",
+        "counts and variance of all frames together",
     )
     .elsewhere(),
     row(
@@ -277,6 +305,7 @@ pub const TABLE: &[Row] = &[
         Kind::Quantity(Dimension::Frequency, ABOVE_ZERO, slot!(frame_rate_hz)),
         "\"60 Hz\"",
         "Frames per second: an exposure is no longer than a frame.",
+        "time until all frames and bands are known",
     )
     .always_shown(),
     row(
@@ -285,6 +314,7 @@ pub const TABLE: &[Row] = &[
         Kind::Quantity(Dimension::Temperature, ABSOLUTE_TEMPERATURE, slot!(sensor_temperature_k)),
         "\"30 degC\"",
         "Temperature of the sensor, whose light filters throw back onto it; no such light where it is not stated.",
+        "light of the sensor (S8, S9)",
     ),
     row(
         "filter_temperature",
@@ -292,6 +322,7 @@ pub const TABLE: &[Row] = &[
         Kind::Quantity(Dimension::Temperature, ABSOLUTE_TEMPERATURE, slot!(filter_temperature_k)),
         "\"30 degC\"",
         "Temperature of the filters; that of the sensor where it is not stated.",
+        "light of the filters (S8, S9)",
     ),
     row(
         "field_of_view",
@@ -299,6 +330,7 @@ pub const TABLE: &[Row] = &[
         Kind::Quantity(Dimension::Angle, FIELD_OF_VIEW, slot!(field_of_view_rad)),
         "\"25 deg\"",
         "Full field of view across.",
+        "footprint of a pixel; ranges of sizing practice",
     )
     .always_shown(),
     row(
@@ -307,6 +339,7 @@ pub const TABLE: &[Row] = &[
         Kind::Count(slot!(pixels)),
         "320",
         "Pixels across the field of view.",
+        "footprint of a pixel; ranges of sizing practice",
     )
     .elsewhere(),
 ];

@@ -4,8 +4,9 @@ use super::global::Global;
 use clap::{Args, Subcommand};
 use hadar::demand::{Reason, Thing, Work};
 use hadar::error::Result;
-use hadar::instrument::presets;
+use hadar::instrument::presets::{self, Preset};
 use hadar_report::cameras::{self, Sheet, SideBySide};
+use hadar_study::study::OwnCameras;
 use std::process::ExitCode;
 
 #[derive(Debug, Args)]
@@ -33,8 +34,12 @@ enum Action {
 }
 
 pub(super) fn run(args: &CamerasArgs, global: &Global) -> Result<ExitCode> {
-    global.writes_nothing("a list on the terminal")?;
-    let all = presets::all()?;
+    let all: Vec<Preset> =
+        presets::all()?.iter().cloned().chain(OwnCameras::from_files(&global.cameras)?.presets).collect();
+    let find = |name: &String| {
+        let own = all.iter().find(|camera| camera.file.is_some() && camera.name == *name);
+        own.map_or_else(|| presets::find(name), |own| Ok(own.clone()))
+    };
     let known = all.len();
     match &args.action {
         Action::List => {
@@ -43,12 +48,12 @@ pub(super) fn run(args: &CamerasArgs, global: &Global) -> Result<ExitCode> {
             global.answer_with(json, &cameras::list(&sheets), &work(0, known))?;
         }
         Action::Show { name } => {
-            let sheet = Sheet::of(presets::find(name)?)?;
+            let sheet = Sheet::of(find(name)?)?;
             let work = work(usize::from(sheet.worked.is_some()), known);
             global.answer_with(sheet.json()?.into(), &cameras::text(&sheet), &work)?;
         }
         Action::Compare { a, b } => {
-            let (a, b) = (presets::find(a)?, presets::find(b)?);
+            let (a, b) = (find(a)?, find(b)?);
             let asked = if a.name == b.name { 1 } else { 2 };
             let both = SideBySide::of(Sheet::of(a)?, Sheet::of(b)?)?;
             let shown = [&both.a, &both.b].iter().take(asked).filter(|sheet| sheet.worked.is_some()).count();

@@ -45,7 +45,7 @@ impl From<By> for Method {
 }
 
 pub(super) fn run(args: &DecomposeArgs, global: &Global) -> Result<ExitCode> {
-    let scenario = DecomposeScenario::from_file(&args.scenario)?;
+    let scenario = DecomposeScenario::from_written(&global.written(&args.scenario)?)?;
     let study = DecomposeStudy::new(&scenario, &global.library()?)?;
     global.inputs_are_safe()?;
     let scratch = match study.wants_files() {

@@ -4,7 +4,7 @@ use super::progress::Bar;
 use super::provenance;
 use super::stderr::say;
 use super::terminal::Stream;
-use clap::Args;
+use clap::{ArgMatches, Args};
 use hadar::demand::{Reason, Skipping, Thing, Work};
 use hadar::error::{Error, Result};
 use hadar::inputs;
@@ -13,64 +13,102 @@ use hadar::units::decimal_comma;
 use hadar_report::bundle::{About, Bundle};
 use hadar_report::folder::{Folder, Scratch, Strangers};
 use hadar_report::manifest::{Provenance, answer_json};
-use hadar_report::text;
-use hadar_study::scenario::Scenario;
-use hadar_study::study::Study;
+use hadar_report::text::{self, with_settings};
+use hadar_study::scenario::{Scenario, Setting, Written};
+use hadar_study::study::{OwnCameras, Study};
 use hadar_study::warning::Warning;
+use serde_json::Value;
 use std::borrow::Cow;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
-use std::sync::OnceLock;
+use std::sync::{Arc, Mutex, OnceLock};
 
-/// Options of every command.
-#[derive(Debug, Args)]
+/// Flags that several commands have; which of them a command takes is said in one table.
+#[derive(Debug, Clone, Args)]
 pub(super) struct Global {
     /// Print one JSON object on stdout and nothing else
-    #[arg(long, global = true)]
+    #[arg(long)]
     pub(super) json: bool,
     /// Write a report into this folder: one page, the answer, scenario, tables and plots
-    #[arg(long, global = true, value_name = "DIR")]
+    #[arg(long, value_name = "DIR")]
     pub(super) out: Option<PathBuf>,
     /// Write the tables of a report as Parquet too, beside the CSV
-    #[arg(long, global = true, value_name = "FORMAT", requires = "out")]
+    #[arg(long, value_name = "FORMAT", requires = "out")]
     pub(super) format: Option<Format>,
     /// Take an --out folder although it holds files that hadar did not write, or that were changed: those in the way are
     /// replaced, the others stay
-    #[arg(long, global = true)]
+    #[arg(long)]
     pub(super) force: bool,
+    /// Put a value in the place of the file's own, as in camera.exposure="5 ms" or environment[0].lighting=0.3; may be given several
+    /// times
+    #[arg(long, value_name = "KEY=VALUE", value_parser = setting)]
+    pub(super) set: Vec<Setting>,
     /// Materials of your own, a folder or a file; may be given several times
-    #[arg(long, global = true, value_name = "DIR")]
+    #[arg(long, value_name = "DIR")]
     pub(super) library: Vec<PathBuf>,
     /// Use the materials of --library alone, not the built-in ones
-    #[arg(long, global = true)]
+    #[arg(long)]
     pub(super) only_library: bool,
     /// Refuse a folder of spectra for any file in it that cannot be used, instead of passing it over with a warning
-    #[arg(long, global = true)]
+    #[arg(long)]
     pub(super) strict: bool,
+    /// Cameras of your own that a file may name, [[camera]] tables with a name and the keys of [camera]; may be given several times
+    #[arg(long, value_name = "FILE")]
+    pub(super) cameras: Vec<PathBuf>,
     /// Leave out alternatives whose spectra do not cover the bands, with a warning
-    #[arg(long, global = true)]
+    #[arg(long)]
     pub(super) skip_uncovered: bool,
     /// Seed of random numbers; the same seed gives the same result, for any number of threads
-    #[arg(long, global = true, value_name = "N", default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1)]
     pub(super) seed: u64,
     /// Number of threads (default: all cores); the result does not depend on it
-    #[arg(long, global = true, value_name = "N")]
+    #[arg(long, value_name = "N")]
     pub(super) threads: Option<usize>,
     /// Say on stderr what was computed, what was not, and why (with --json always under `stats`)
-    #[arg(long, global = true)]
+    #[arg(long)]
     pub(super) stats: bool,
     /// Compute in full what a proof would spare; the answer is the same
-    #[arg(long, global = true)]
+    #[arg(long)]
     pub(super) no_skip: bool,
     /// Print nothing on stderr but errors
-    #[arg(short, long, global = true)]
+    #[arg(short, long)]
     pub(super) quiet: bool,
     /// What was said of the library, for JSON.
     #[arg(skip)]
-    said_of_library: OnceLock<Vec<Warning>>,
+    said_of_library: Arc<OnceLock<Vec<Warning>>>,
+    /// Of one of several scenarios: its answer, which is kept and not printed.
+    #[arg(skip)]
+    kept: Option<Arc<Mutex<Option<Value>>>>,
+    /// Words of the command that are of other scenarios.
+    #[arg(skip)]
+    of_others: Vec<String>,
 }
 
 impl Global {
+    /// What was given, in the first of the places in which it is; else its default.
+    pub(super) fn of(places: [&ArgMatches; 2]) -> Self {
+        Self {
+            json: yes(places, "json"),
+            out: one(places, "out"),
+            format: one(places, "format"),
+            force: yes(places, "force"),
+            set: many(places, "set"),
+            library: many(places, "library"),
+            only_library: yes(places, "only_library"),
+            strict: yes(places, "strict"),
+            cameras: many(places, "cameras"),
+            skip_uncovered: yes(places, "skip_uncovered"),
+            seed: one(places, "seed").unwrap_or(1),
+            threads: one(places, "threads"),
+            stats: yes(places, "stats"),
+            no_skip: yes(places, "no_skip"),
+            quiet: yes(places, "quiet"),
+            said_of_library: Arc::default(),
+            kept: None,
+            of_others: Vec::new(),
+        }
+    }
+
     /// The embedded library with the user's own materials.
     pub(super) fn library(&self) -> Result<Library> {
         let library = if self.only_library { Library::empty() } else { Library::embedded()? };
@@ -86,12 +124,52 @@ impl Global {
     pub(super) fn with_own(&self, library: Library) -> Result<Library> {
         let mut library = library.strict(self.strict);
         self.library.iter().try_for_each(|path| library.add_path(path))?;
-        for warning in library.warnings() {
-            self.note(&Stream::Err.message("warning:", warning));
-        }
-        let said = library.warnings().iter().map(|remark| Warning::Library { remark: remark.clone() });
-        self.said_of_library.get_or_init(|| said.collect());
+        self.said_of_library.get_or_init(|| {
+            for warning in library.warnings() {
+                self.note(&Stream::Err.message("warning:", warning));
+            }
+            library.warnings().iter().map(|remark| Warning::Library { remark: remark.clone() }).collect()
+        });
         Ok(library)
+    }
+
+    /// A file of a question as it is to be read, with what was set; `-` is standard input.
+    pub(super) fn written(&self, path: &Path) -> Result<Written> {
+        let written = match path.as_os_str() == "-" {
+            true => Written::from_stdin(std::io::stdin().lock()),
+            false => Written::from_file(path),
+        }?;
+        for (index, one) in self.set.iter().enumerate() {
+            if self.set.iter().skip(index + 1).any(|other| other.key == one.key) {
+                let found = Error::malformed("it is set twice", "name it once");
+                return Err(found.for_key(format!("--set {}", one.key)));
+            }
+        }
+        Ok(written
+            .with(self.set.iter().cloned())
+            .with_cameras(OwnCameras::from_files(&self.cameras)?.stated.into()))
+    }
+
+    /// Refuses values for what has no keys.
+    pub(super) fn sets_nothing(&self, what: &str) -> Result<()> {
+        match self.set.first() {
+            Some(one) => {
+                let found = Error::malformed(format!("{what} has no keys"), "leave out --set");
+                Err(found.for_key(format!("--set {}", one.key)))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// For one of several scenarios: its report in a folder of its own, its answer kept.
+    pub(super) fn of_several(&self, folder: &str, others: impl Iterator<Item = String>) -> Self {
+        let out = self.out.as_ref().map(|out| out.join(folder));
+        Self { out, kept: Some(Arc::default()), of_others: others.collect(), ..self.clone() }
+    }
+
+    /// The answer that was kept.
+    pub(super) fn kept(&self) -> Option<Value> {
+        self.kept.as_ref()?.lock().ok()?.take()
     }
 
     /// A bar on stderr for long work; nothing where stderr is no terminal, or quiet.
@@ -147,7 +225,7 @@ impl Global {
             return Ok(work);
         };
         let bundle = make(out)?;
-        self.write(&bundle, out, Some(answer))?;
+        self.write(&bundle, out, Some(&with_settings(answer, &self.set)))?;
         work.compute(Thing::Reports, 1);
         work.compute(Thing::Figures, bundle.figures() as u64);
         Ok(work)
@@ -172,15 +250,21 @@ impl Global {
     /// Prints a result: JSON with `--json`, with the version of the program and of its form, else the text.
     pub(super) fn print(&self, json: &impl serde::Serialize, text: &str) -> Result<()> {
         let of_library = self.said_of_library.get().map_or(&[][..], Vec::as_slice);
-        let text =
-            if self.json { answer_json(json, of_library)? } else { Stream::Out.answer(text.trim_end()) };
-        match writeln!(std::io::stdout(), "{text}") {
-            // A reader that has seen enough (`| head`) is no error.
-            Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
-                Err(Error::file("print the result", Path::new("stdout"), error))
+        if let Some(kept) = &self.kept {
+            let answer = answer_json(json, of_library, &self.set)?;
+            let answer = serde_json::from_str(&answer)
+                .map_err(|error| Error::malformed(error.to_string(), "report this as a bug"))?;
+            if let Ok(mut kept) = kept.lock() {
+                *kept = Some(answer);
             }
-            _ => Ok(()),
+            return Ok(());
         }
+        let text = if self.json {
+            answer_json(json, of_library, &self.set)?
+        } else {
+            Stream::Out.answer(with_settings(text, &self.set).trim_end())
+        };
+        put(&text)
     }
 
     pub(super) fn study(
@@ -188,7 +272,7 @@ impl Global {
         path: &Path,
         by: Option<hadar_study::scenario::DistanceKind>,
     ) -> Result<Study> {
-        let mut scenario = Scenario::from_file(path)?;
+        let mut scenario = Scenario::from_written(&self.written(path)?)?;
         if let Some(by) = by {
             scenario.requirement.by = by;
         }
@@ -209,7 +293,7 @@ impl Global {
 
     /// Who makes the report of what.
     pub(super) fn provenance(&self) -> Result<Provenance> {
-        provenance::of_this_run(self.seed)
+        provenance::of_this_run(self.seed, &self.of_others)
     }
 
     /// Writes the files, with the answer and a page of all where there is an answer, and says where.
@@ -229,9 +313,41 @@ impl Global {
     }
 }
 
+/// Prints a text and ends its last line.
+pub(super) fn put(text: &str) -> Result<()> {
+    match writeln!(std::io::stdout(), "{text}") {
+        // A reader that has seen enough (`| head`) is no error.
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+            Err(Error::file("print the result", Path::new("stdout"), error))
+        }
+        _ => Ok(()),
+    }
+}
+
 /// Anything as JSON.
 pub(super) fn as_json(value: &impl serde::Serialize) -> Result<serde_json::Value> {
     serde_json::to_value(value).map_err(|error| Error::malformed(error.to_string(), "report this as a bug"))
+}
+
+type Places<'a> = [&'a ArgMatches; 2];
+
+/// The value of a flag, where a command has it and it was given.
+fn one<T: Clone + Send + Sync + 'static>(places: Places<'_>, id: &str) -> Option<T> {
+    places.iter().find_map(|place| place.try_get_one::<T>(id).ok().flatten().cloned())
+}
+
+fn many<T: Clone + Send + Sync + 'static>(places: Places<'_>, id: &str) -> Vec<T> {
+    let values = places.iter().find_map(|place| place.try_get_many::<T>(id).ok().flatten());
+    values.into_iter().flatten().cloned().collect()
+}
+
+fn yes(places: Places<'_>, id: &str) -> bool {
+    places.iter().any(|place| place.try_get_one::<bool>(id).ok().flatten() == Some(&true))
+}
+
+/// A value given to --set.
+fn setting(text: &str) -> std::result::Result<Setting, String> {
+    Setting::parse(text, "--set").map_err(|error| error.to_string())
 }
 
 /// A number given to a flag.

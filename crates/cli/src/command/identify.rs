@@ -2,11 +2,13 @@
 
 use super::global::{By, Global, plain_number};
 use super::progress::Bar;
+use super::several;
 use clap::Args;
 use hadar::error::Result;
 use hadar_report::identify;
 use hadar_study::study::{Asked, Law, Study, Trial, Watch};
-use std::path::PathBuf;
+use hadar_study::sweep::Question;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 const ALL: &str = "All against all";
@@ -15,8 +17,9 @@ const EXACT: &str = "Simulated decisions";
 
 #[derive(Debug, Args)]
 pub(super) struct IdentifyArgs {
-    /// The scenario file (TOML)
-    scenario: PathBuf,
+    /// Scenario files (TOML), `-` for standard input; of several one table, a row for each
+    #[arg(required = true, value_name = "SCENARIO")]
+    scenarios: Vec<PathBuf>,
     /// The distance that decides, instead of the scenario's
     #[arg(long)]
     by: Option<By>,
@@ -62,7 +65,11 @@ pub(super) struct IdentifyArgs {
 }
 
 pub(super) fn run(args: &IdentifyArgs, global: &Global) -> Result<ExitCode> {
-    let mut study = global.study(&args.scenario, args.by.map(Into::into))?;
+    several::each(Question::Identify, &args.scenarios, global, |path, global| one(path, args, global))
+}
+
+fn one(scenario: &Path, args: &IdentifyArgs, global: &Global) -> Result<u8> {
+    let mut study = global.study(scenario, args.by.map(Into::into))?;
     if let Some(share) = args.prove {
         study = study.proving(share)?;
     }
@@ -89,7 +96,7 @@ pub(super) fn run(args: &IdentifyArgs, global: &Global) -> Result<ExitCode> {
     let report = global.report(&text, |out| identify::bundle(&study, &answers, global.seed, out))?;
     answers.identification.stats.add(&report);
     global.answer(&answers, &text, &answers.identification.stats)?;
-    Ok(ExitCode::SUCCESS)
+    Ok(0)
 }
 
 /// Laws of counting, as a flag.
@@ -113,9 +120,9 @@ fn trial(args: &IdentifyArgs, global: &Global) -> Result<Trial> {
 }
 
 /// The answer to one question, at the first proof.
-fn only_check(study: &Study, global: &Global) -> Result<ExitCode> {
+fn only_check(study: &Study, global: &Global) -> Result<u8> {
     global.writes_nothing("--check, which answers yes or no,")?;
     let result = study.check(global.skipping())?;
     global.answer(&result, &identify::check(&result, study), &result.stats)?;
-    Ok(if result.identifiable { ExitCode::SUCCESS } else { ExitCode::from(3) })
+    Ok(if result.identifiable { 0 } else { 3 })
 }

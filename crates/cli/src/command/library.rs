@@ -16,7 +16,7 @@ pub(super) struct LibraryArgs {
 }
 
 pub(super) fn run(args: &LibraryArgs, global: &Global) -> Result<ExitCode> {
-    let scenario = LibraryScenario::from_file(&args.scenario)?;
+    let scenario = LibraryScenario::from_written(&global.written(&args.scenario)?)?;
     let study = LibraryStudy::new(&scenario, &global.library()?)?;
     global.inputs_are_safe()?;
     let bar = global.progress("rows");

@@ -54,9 +54,6 @@ enum Action {
 }
 
 pub(super) fn run(args: &MaterialsArgs, global: &Global) -> Result<ExitCode> {
-    if matches!(args.action, Action::List | Action::Show { .. }) {
-        global.writes_nothing("a list on the terminal")?;
-    }
     match &args.action {
         Action::List => list(&global.library()?, global)?,
         Action::Show { name, columns } => {

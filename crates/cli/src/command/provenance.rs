@@ -15,9 +15,10 @@ const SILENT_WITH_VALUE: [&str; 3] = ["--out", "--threads", "--shard"];
 pub(super) const USUAL_NAMES: [&str; 7] =
     ["answer.txt", "report.html", "scenario.toml", "rule.toml", "pairs.csv", "warnings.csv", "README.md"];
 
-/// That of this process, with what it has read so far.
-pub(super) fn of_this_run(seed: u64) -> Result<Provenance> {
+/// That of this process, with what it has read so far, without the words that are of other scenarios.
+pub(super) fn of_this_run(seed: u64, of_others: &[String]) -> Result<Provenance> {
     let typed = std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned());
+    let typed = typed.filter(|word| !of_others.contains(word));
     Provenance::of(COMMIT, command(typed), seed, &inputs::so_far())
 }
 

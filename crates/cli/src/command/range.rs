@@ -1,6 +1,7 @@
 //! `hadar range`: bounds of passive ranging: by stereo from a scene or a heat cube, or by the air on the path (`signal = "air"`).
 
 use super::global::Global;
+use super::several;
 use clap::Args;
 use hadar::error::{Error, Result};
 use hadar_report::range::MapFiles;
@@ -9,13 +10,15 @@ use hadar_study::scenario::range::Subject;
 use hadar_study::scenario::{AirRangingScenario, RangeScenario, RangingScenario};
 use hadar_study::study::air_ranging::{AirPlan, AirRangingStudy};
 use hadar_study::study::range::{MapSink, RangePlan, RangeStudy};
-use std::path::PathBuf;
+use hadar_study::sweep::Question;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 #[derive(Debug, Args)]
 pub(super) struct RangeArgs {
-    /// The ranging scenario (TOML)
-    scenario: PathBuf,
+    /// Ranging scenarios (TOML), `-` for standard input; of several one table, a row for each
+    #[arg(required = true, value_name = "SCENARIO")]
+    scenarios: Vec<PathBuf>,
     /// Match noisy views N times along the scenario's lines, and whole views once: do matchers reach the bound? By air: fit N spectra
     /// at each of some distances
     #[arg(long, value_name = "N", default_value_t = 0)]
@@ -29,7 +32,11 @@ pub(super) struct RangeArgs {
 }
 
 pub(super) fn run(args: &RangeArgs, global: &Global) -> Result<ExitCode> {
-    let scenario = RangingScenario::from_file(&args.scenario)?;
+    several::each(Question::Range, &args.scenarios, global, |path, global| one(path, args, global))
+}
+
+fn one(scenario: &Path, args: &RangeArgs, global: &Global) -> Result<u8> {
+    let scenario = RangingScenario::from_written(&global.written(scenario)?)?;
     scenario.check_asked(args.trials, args.bands)?;
     match scenario {
         RangingScenario::Stereo(scenario) => by_stereo(args, global, &scenario),
@@ -37,7 +44,7 @@ pub(super) fn run(args: &RangeArgs, global: &Global) -> Result<ExitCode> {
     }
 }
 
-fn by_air(args: &RangeArgs, global: &Global, scenario: &AirRangingScenario) -> Result<ExitCode> {
+fn by_air(args: &RangeArgs, global: &Global, scenario: &AirRangingScenario) -> Result<u8> {
     if args.check && scenario.requirement.is_none() {
         let instead = "write [requirement] with distance_error = \"5 m\" or relative_distance_error = 0.05";
         let found = Error::malformed("--check, but nothing is demanded", instead);
@@ -53,10 +60,10 @@ fn by_air(args: &RangeArgs, global: &Global, scenario: &AirRangingScenario) -> R
     result.stats.add(&global.report(&text, |out| air_ranging::bundle(&result, out))?);
     global.answer(&result, &text, &result.stats)?;
     let failed = args.check && result.verdict.met != Some(true);
-    Ok(if failed { ExitCode::from(3) } else { ExitCode::SUCCESS })
+    Ok(if failed { 3 } else { 0 })
 }
 
-fn by_stereo(args: &RangeArgs, global: &Global, scenario: &RangeScenario) -> Result<ExitCode> {
+fn by_stereo(args: &RangeArgs, global: &Global, scenario: &RangeScenario) -> Result<u8> {
     let study = RangeStudy::new(scenario, &global.library()?)?;
     global.inputs_are_safe()?;
     let plan = RangePlan {
@@ -83,5 +90,5 @@ fn by_stereo(args: &RangeArgs, global: &Global, scenario: &RangeScenario) -> Res
     result.stats.add(&global.report(&text, |out| range::bundle(&result, out, maps.as_ref()))?);
     global.answer(&result, &text, &result.stats)?;
     let failed = args.check && result.verdict.met != Some(true);
-    Ok(if failed { ExitCode::from(3) } else { ExitCode::SUCCESS })
+    Ok(if failed { 3 } else { 0 })
 }

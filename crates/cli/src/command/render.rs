@@ -46,7 +46,7 @@ pub(super) fn run(args: &RenderArgs, global: &Global) -> Result<ExitCode> {
             return Err(Error::malformed(found, "leave --cube-format or --layout out"));
         }
     };
-    let scenario = RenderScenario::from_file(&args.scenario)?;
+    let scenario = RenderScenario::from_written(&global.written(&args.scenario)?)?;
     let study = RenderStudy::new(&scenario, &global.library()?)?;
     global.inputs_are_safe()?;
     let bar = global.progress("rows");

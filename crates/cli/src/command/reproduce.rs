@@ -174,9 +174,9 @@ fn library(items: &[Item], studies: &[FurtherStudy], global: &Global) -> Result<
         return Err(Error::malformed(format!("{name} {what}"), instead));
     }
     let own = own.is_some();
-    if !own && (global.only_library || !global.library.is_empty()) {
+    if !own && !global.library.is_empty() {
         let found = "the paper's figures are made with the built-in library";
-        return Err(Error::malformed(found, "leave out --library and --only-library"));
+        return Err(Error::malformed(found, "leave out --library"));
     }
     let adds = studies.contains(&FurtherStudy::PersonOrRobot);
     global.with_own(if own && !adds { Library::empty() } else { Library::embedded()? })

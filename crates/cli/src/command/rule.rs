@@ -1,6 +1,7 @@
 //! `hadar rule`: which cameras meet a rule.
 
 use super::global::Global;
+use super::several;
 use clap::Args;
 use hadar::demand::Work;
 use hadar::error::{Error, Result};
@@ -8,8 +9,9 @@ use hadar::material::Library;
 use hadar_report::manifest::{Input, sha256_of_file};
 use hadar_report::rule;
 use hadar_study::scenario::rule::{Citation, Figure};
-use hadar_study::scenario::{Date, Rule, day};
-use hadar_study::study::{Extent, RuleAnswer, RuleAsked, RuleStudy, TestResult, Warning};
+use hadar_study::scenario::{Date, Rule, STDIN, Setting, Written, day};
+use hadar_study::study::{Extent, OwnCameras, RuleAnswer, RuleAsked, RuleStudy, TestResult, Warning};
+use hadar_study::sweep::Question;
 use serde_json::Value;
 use std::fs::File;
 use std::io::Read as _;
@@ -22,9 +24,10 @@ const LONGEST_CERTIFICATE: u64 = 1 << 26;
 
 #[derive(Debug, Args)]
 pub(super) struct RuleArgs {
-    /// The rule file (TOML): a scenario with [envelope], cameras = [...] or [[camera]] tables, and [rule]
-    #[arg(required_unless_present = "verify")]
-    rule: Option<PathBuf>,
+    /// Rule files (TOML), `-` for standard input: scenarios with [envelope], cameras = [...] or [[camera]] tables, and [rule]; of
+    /// several one table, a row for each
+    #[arg(required_unless_present = "verify", value_name = "RULE")]
+    rules: Vec<PathBuf>,
     /// Exit with code 3 unless every camera meets the rule; without --out a line a camera, each decided by the first scene that
     /// does
     #[arg(long)]
@@ -42,7 +45,7 @@ pub(super) struct RuleArgs {
     #[arg(long, conflicts_with_all = ["check", "test", "sources"])]
     stand_in: bool,
     /// Compute a certificate again, certificate.json of a report, and say whether all that it rests on and all that it says is the same
-    #[arg(long, value_name = "CERTIFICATE", conflicts_with_all = ["rule", "check", "test", "sources", "stand_in", "on"])]
+    #[arg(long, value_name = "CERTIFICATE", conflicts_with_all = ["rules", "check", "test", "sources", "stand_in", "on"])]
     verify: Option<PathBuf>,
     /// Ask about a day: a rule that does not hold on it says so
     #[arg(long, value_name = "YYYY-MM-DD", value_parser = on)]
@@ -54,13 +57,19 @@ fn on(text: &str) -> std::result::Result<Date, String> {
 }
 
 pub(super) fn run(args: &RuleArgs, global: &Global) -> Result<ExitCode> {
-    let file = match (&args.rule, &args.verify) {
-        (_, Some(certificate)) => return verify(certificate, global),
-        (Some(file), None) => file,
-        // The parser asks for one of the two.
-        (None, None) => Path::new(""),
-    };
-    let mut rule_read = Rule::from_file(file)?;
+    if let Some(certificate) = &args.verify {
+        return verify(certificate, global);
+    }
+    let alone = [(args.test, "--test"), (args.sources, "--sources"), (args.stand_in, "--stand-in")];
+    if let Some((_, flag)) = alone.into_iter().find(|(asked, _)| *asked && args.rules.len() > 1) {
+        let found = format!("{flag} is asked of {} rules at once", args.rules.len());
+        return Err(Error::malformed(found, "name one rule"));
+    }
+    several::each(Question::Rule, &args.rules, global, |path, global| one(path, args, global))
+}
+
+fn one(file: &Path, args: &RuleArgs, global: &Global) -> Result<u8> {
+    let mut rule_read = Rule::from_written(&global.written(file)?)?;
     rule_read.skip_uncovered(global.skip_uncovered);
     if args.sources {
         return sources(&rule_read, global);
@@ -98,9 +107,17 @@ pub(super) fn run(args: &RuleArgs, global: &Global) -> Result<ExitCode> {
     Ok(code(args, &answer))
 }
 
+/// A value in the place of the rule's own, as a certificate has it.
+#[derive(serde::Deserialize)]
+struct Set {
+    key: String,
+    value: String,
+}
+
 /// Whether a certificate says what is found now.
 fn verify(certificate: &Path, global: &Global) -> Result<ExitCode> {
     global.writes_nothing("--verify")?;
+    global.sets_nothing("a certificate")?;
     let action = "read the certificate";
     let told = |found: String| {
         let instead = "name the certificate.json of a report by hadar rule";
@@ -117,6 +134,16 @@ fn verify(certificate: &Path, global: &Global) -> Result<ExitCode> {
     let Some(path) = of(&of(&before, "rule"), "path").as_str().map(PathBuf::from) else {
         return Err(told("this is no certificate of a rule".into()));
     };
+    if path == Path::new(STDIN) {
+        let instead = "check the rule.toml beside it: hadar rule rule.toml";
+        let found = Error::malformed("its rule was read from standard input, and is no file", instead);
+        return Err(found.in_file(certificate));
+    }
+    let set: Vec<Set> = serde_json::from_value(match of(&of(&before, "rule"), "set") {
+        Value::Null => Value::Array(Vec::new()),
+        set => set,
+    })
+    .map_err(|error| told(format!("what it set is not readable: {error}")))?;
     let on = of(&before, "on").as_str().and_then(day);
     let inputs: Vec<Input> = serde_json::from_value(of(&before, "inputs"))
         .map_err(|error| told(format!("its inputs are none: {error}")))?;
@@ -136,7 +163,12 @@ fn verify(certificate: &Path, global: &Global) -> Result<ExitCode> {
             return Err(Error::malformed(found, "check the rule again: hadar rule").in_file(&file));
         }
     }
-    let mut rule_read = Rule::from_file(&path)?;
+    let set = set.into_iter().map(|Set { key, value }| Setting { key, value, by: "the certificate" });
+    let mut rule_read = Rule::from_written(
+        &Written::from_file(&path)?
+            .with(set)
+            .with_cameras(OwnCameras::from_files(&global.cameras)?.stated.into()),
+    )?;
     rule_read.skip_uncovered(global.skip_uncovered);
     let study = RuleStudy::new(&rule_read, &global.library()?)?;
     let bar = global.progress("pairs");
@@ -173,18 +205,18 @@ fn found_again(path: PathBuf, certificate: &Path, rule_read: Option<&Input>) -> 
 }
 
 /// How exact a stand-in must be.
-fn stand_in(study: &RuleStudy, library: &Library, on: Option<Date>, global: &Global) -> Result<ExitCode> {
+fn stand_in(study: &RuleStudy, library: &Library, on: Option<Date>, global: &Global) -> Result<u8> {
     let bar = global.progress("stand-ins");
     let answer = study.stand_in(library, on, &|done, all| bar.set(done, all))?;
     bar.finish();
     let text = rule::stand_in(&answer);
     let work = global.report(&text, |_| rule::stand_in_bundle(&answer))?;
     global.answer(&answer, &text, &work)?;
-    Ok(ExitCode::SUCCESS)
+    Ok(0)
 }
 
 /// The tests of a rule.
-fn tested(answer: &RuleAnswer, global: &Global) -> Result<ExitCode> {
+fn tested(answer: &RuleAnswer, global: &Global) -> Result<u8> {
     #[derive(serde::Serialize)]
     struct Output {
         tests: Vec<TestResult>,
@@ -197,11 +229,11 @@ fn tested(answer: &RuleAnswer, global: &Global) -> Result<ExitCode> {
     let idle: String = warnings.iter().map(|warning| format!("{warning}\n")).collect();
     let text = idle + &rule::tests(&tests);
     global.answer(&Output { tests, warnings }, &text, &answer.stats)?;
-    Ok(if all { ExitCode::SUCCESS } else { ExitCode::from(3) })
+    Ok(if all { 0 } else { 3 })
 }
 
 /// The sources of a rule.
-fn sources(rule_read: &Rule, global: &Global) -> Result<ExitCode> {
+fn sources(rule_read: &Rule, global: &Global) -> Result<u8> {
     global.writes_nothing("--sources")?;
     #[derive(serde::Serialize)]
     struct Output<'a> {
@@ -216,11 +248,11 @@ fn sources(rule_read: &Rule, global: &Global) -> Result<ExitCode> {
     }
     let output = Output { figures: rule_read.figures(), sources: &rule_read.sources };
     global.answer(&output, &rule::sources(rule_read), &Work::default())?;
-    Ok(ExitCode::SUCCESS)
+    Ok(0)
 }
 
-fn code(args: &RuleArgs, answer: &RuleAnswer) -> ExitCode {
+fn code(args: &RuleArgs, answer: &RuleAnswer) -> u8 {
     let mut met = answer.cameras.iter().map(|camera| camera.passes);
     let enough = if args.any { met.any(|passes| passes) } else { met.all(|passes| passes) };
-    if args.check && !enough { ExitCode::from(3) } else { ExitCode::SUCCESS }
+    if args.check && !enough { 3 } else { 0 }
 }

@@ -1,19 +1,22 @@
 //! `hadar size`: the verdict on a camera.
 
 use super::global::{By, Global};
+use super::several;
 use clap::Args;
 use hadar::demand::{Skipping, ledger_of};
 use hadar::error::Result;
 use hadar_report::size;
 use hadar_study::study::Verdict;
+use hadar_study::sweep::Question;
 use std::io::IsTerminal as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 #[derive(Debug, Args)]
 pub(super) struct SizeArgs {
-    /// The scenario file (TOML)
-    scenario: PathBuf,
+    /// Scenario files (TOML), `-` for standard input; of several one table, a row for each
+    #[arg(required = true, value_name = "SCENARIO")]
+    scenarios: Vec<PathBuf>,
     /// Exit with code 3 if the requirement is not met; without --out the answer alone, by the cheapest proofs
     #[arg(long)]
     check: bool,
@@ -23,7 +26,11 @@ pub(super) struct SizeArgs {
 }
 
 pub(super) fn run(args: &SizeArgs, global: &Global) -> Result<ExitCode> {
-    let study = global.study(&args.scenario, args.by.map(Into::into))?;
+    several::each(Question::Size, &args.scenarios, global, |path, global| one(path, args, global))
+}
+
+fn one(scenario: &Path, args: &SizeArgs, global: &Global) -> Result<u8> {
+    let study = global.study(scenario, args.by.map(Into::into))?;
     if args.check
         && global.out.is_none()
         && global.skipping() == Skipping::On
@@ -48,6 +55,6 @@ pub(super) fn run(args: &SizeArgs, global: &Global) -> Result<ExitCode> {
     Ok(code(args, &result.verdict))
 }
 
-fn code(args: &SizeArgs, verdict: &Verdict) -> ExitCode {
-    if args.check && verdict.met != Some(true) { ExitCode::from(3) } else { ExitCode::SUCCESS }
+fn code(args: &SizeArgs, verdict: &Verdict) -> u8 {
+    if args.check && verdict.met != Some(true) { 3 } else { 0 }
 }

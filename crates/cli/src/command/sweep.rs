@@ -72,13 +72,19 @@ pub(super) fn run(args: &SweepArgs, global: &Global) -> Result<ExitCode> {
         return Err(Error::malformed("there is no folder for the rows", "name one with --out DIR"));
     };
     let shard = shard(&args.shard)?;
-    let file = Written::from_file(&args.scenario)?;
+    let file = global.written(&args.scenario)?;
     let question = match &args.command {
         Some(name) => Question::named(name.trim()).map_err(|error| error.for_key("--command"))?,
         None => Question::of(&file)?,
     };
     let axes = args.vary.iter().map(|text| Axis::parse(text)).collect::<Result<_>>()?;
     let plan = Plan::new(axes, args.cases.as_deref().map(Cases::from_file).transpose()?)?;
+    if let Some(set) =
+        file.settings.iter().find(|set| plan.inputs().iter().any(|varied| varied.key == set.key))
+    {
+        let found = Error::malformed("it is varied too", "leave out one of the two");
+        return Err(found.for_key(format!("--set {}", set.key)));
+    }
     plan.check(&file, &|written| question.read(written))?;
     let library = global.library()?;
     let columns: Vec<String> = args.columns.iter().map(|name| name.trim().to_owned()).collect();
@@ -248,6 +254,8 @@ fn common(file: &Written, question: Question, asking: &Asking<'_>, global: &Glob
         parts.push(format!("{}", path.display()));
     }
     parts.push(global.only_library.to_string());
+    parts.push(format!("{:?}", file.settings));
+    parts.push(format!("{:?}", file.cameras));
     // The scenario and the cases are read as text above and row by row.
     let read = inputs::so_far().files;
     let libraries = read.iter().filter(|path| global.library.iter().any(|library| path.starts_with(library)));

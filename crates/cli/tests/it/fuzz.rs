@@ -249,9 +249,11 @@ const COMMANDS: &[(&[&str], &[&str])] = &[
 ];
 
 /// The flags that a command says it has.
-fn flags(command: &str) -> Vec<String> {
+fn flags(command: &[&str]) -> Vec<String> {
+    let depth = if ["materials", "cameras", "calibrate"].contains(&command[0]) { 2 } else { 1 };
     let program = assert_cmd::cargo::cargo_bin!("hadar");
-    let said = std::process::Command::new(program).args([command, "--help"]).output().unwrap().stdout;
+    let said =
+        std::process::Command::new(program).args(&command[..depth]).arg("--help").output().unwrap().stdout;
     let said = String::from_utf8(said).unwrap();
     let named = said.split_whitespace().filter(|word| word.starts_with("--") && word.len() > 3);
     let mut named: Vec<String> =
@@ -266,7 +268,7 @@ fn flags(command: &str) -> Vec<String> {
 /// One case: what is changed in which file, or which flags are added.
 fn case(seed: u64, number: u64) -> Option<String> {
     static FLAGS: OnceLock<Vec<Vec<String>>> = OnceLock::new();
-    let known = FLAGS.get_or_init(|| COMMANDS.iter().map(|(arguments, _)| flags(arguments[0])).collect());
+    let known = FLAGS.get_or_init(|| COMMANDS.iter().map(|(arguments, _)| flags(arguments)).collect());
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     rng.set_stream(number);
     let which = rng.random_range(0..COMMANDS.len());

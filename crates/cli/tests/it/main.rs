@@ -3,6 +3,7 @@
 mod accuracy;
 mod air_ranging;
 mod arrows;
+mod asked;
 mod calibrate;
 mod calibrate_blackbodies;
 mod cameras;
@@ -16,6 +17,8 @@ mod decompose;
 mod decompose_by_rows;
 mod decompose_image;
 mod demand;
+mod diff;
+mod explain;
 mod extremes;
 mod fuzz;
 mod identify;
@@ -27,6 +30,7 @@ mod large_cubes;
 mod library;
 mod messages;
 mod nearest;
+mod own_cameras;
 mod packs;
 mod range;
 mod render;
@@ -37,6 +41,7 @@ mod rule_clauses;
 mod rule_mistakes;
 mod rule_uncertainty;
 mod segmentation;
+mod shell;
 mod simulate;
 mod spectra;
 mod stand_in;
@@ -45,6 +50,7 @@ mod written;
 
 mod support {
     pub(crate) mod answers;
+    pub(crate) mod documented;
     pub(crate) mod folder;
     #[path = "../../../../study/tests/it/support/mutation.rs"]
     pub(crate) mod mutation;

@@ -2,18 +2,13 @@
 
 use crate::support::folder::{Folder, SCENARIO};
 use crate::support::page::{Element, elements};
+use crate::support::rules::rule;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Duration;
-
-/// A rule of one camera.
-fn rule(camera: &str) -> String {
-    let scenario = SCENARIO.replace("[camera]\npreset = \"flir-a325sc\"\n", "");
-    format!("cameras = [\"{camera}\"]\n{scenario}[envelope]\ntemperature = [\"30 degC\", \"37 degC\"]\n")
-}
 
 fn bytes(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap());

@@ -16,13 +16,23 @@ pub fn list(sheets: &[Sheet]) -> String {
         sheets.len()
     );
     let name = sheets.iter().map(|sheet| sheet.preset.name.len()).max().unwrap_or(0);
-    for (title, of_paper) in [("As the paper models them", true), ("From public documents", false)] {
+    let origins = ["As the paper models them", "From public documents", "Of your own"];
+    let origin = |preset: &Preset| match (&preset.file, &preset.document) {
+        (Some(_), _) => 2,
+        (None, Some(_)) => 1,
+        (None, None) => 0,
+    };
+    for (at, title) in origins.iter().enumerate() {
+        let of_origin = |sheet: &&Sheet| origin(&sheet.preset) == at;
+        if at == 2 && !sheets.iter().any(|sheet| of_origin(&sheet)) {
+            continue;
+        }
         let _ = writeln!(
             out,
             "\n{title}\n{:<name$} {:>8} {:>6}  {:<18} {:<15} give",
             "name", "pixel", "f/#", "noise", "bands"
         );
-        for sheet in sheets.iter().filter(|sheet| sheet.preset.document.is_none() == of_paper) {
+        for sheet in sheets.iter().filter(of_origin) {
             let preset = &sheet.preset;
             let give: Vec<&str> = sheet.missing.0.iter().map(|key| short(key)).collect();
             let line = format!(
@@ -34,7 +44,8 @@ pub fn list(sheets: &[Sheet]) -> String {
                 bands(preset),
                 give.join(", ")
             );
-            let _ = writeln!(out, "{}", line.trim_end());
+            let file = preset.file.as_ref().map_or_else(String::new, |file| format!("  ({file})"));
+            let _ = writeln!(out, "{}{file}", line.trim_end());
         }
     }
     out.push_str(

@@ -40,7 +40,8 @@ pub fn record(study: &RuleStudy, answer: &RuleAnswer, provenance: &Provenance) -
             "provided": camera.provided.map(|proviso| proviso.to_string()),
         })
     });
-    Ok(json!({
+    let set = &study.rule().scenario.source.settings;
+    let mut record = json!({
         "hadar": VERSION,
         "schema": SCHEMA,
         "on": answer.on.map(|day| day.to_string()),
@@ -61,7 +62,11 @@ pub fn record(study: &RuleStudy, answer: &RuleAnswer, provenance: &Provenance) -
         "clauses": clauses,
         "warnings": as_value(&super::text::together(answer))?,
         "inputs": as_value(&provenance.inputs)?,
-    }))
+    });
+    if let Some(rule) = record.get_mut("rule").and_then(Value::as_object_mut).filter(|_| !set.is_empty()) {
+        rule.insert("set".into(), as_value(set)?);
+    }
+    Ok(record)
 }
 
 fn of_clause(clause: &ClauseAnswer) -> Result<Value> {

@@ -3,7 +3,7 @@
 use super::numbers::listed;
 use hadar::cube::Found;
 use hadar::instrument::Readout;
-use hadar_study::scenario::{AtmosphereSource, DistanceKind, Nuisance, Scenario};
+use hadar_study::scenario::{AtmosphereSource, DistanceKind, Nuisance, Scenario, Setting};
 use hadar_study::study::{Identification, Study, Warning};
 use std::fmt::Write as _;
 
@@ -14,6 +14,25 @@ pub(crate) const WARNINGS: &str = "Warnings";
 /// What the file of a cube was read as, on a line.
 pub(crate) fn read_as(found: &Found) -> String {
     format!("Cube: {found}\n\n")
+}
+
+/// An answer of several paragraphs that says first among its assumptions what stands in the place of the file's own values. One line
+/// alone answers a question and tells nothing of it.
+#[must_use]
+pub fn with_settings(answer: &str, settings: &[Setting]) -> String {
+    if settings.is_empty() || !answer.trim().contains("\n\n") {
+        return answer.to_owned();
+    }
+    let set: Vec<String> = settings.iter().map(|one| format!("{} = {}", one.key, one.value)).collect();
+    let line = format!("{ASSUMPTIONS}\n  in the place of the file's values: {}\n", set.join("; "));
+    let heading = format!("\n{ASSUMPTIONS}\n");
+    match answer.split_once(&heading) {
+        Some((before, after)) => format!("{before}\n{line}{after}"),
+        None => match answer.split_once(&format!("\n{WARNINGS}\n")) {
+            Some((before, after)) => format!("{before}\n{line}{WARNINGS}\n{after}"),
+            None => format!("{}\n\n{line}", answer.trim_end()),
+        },
+    }
 }
 
 /// What results rest on, and what the reader must know.
@@ -145,4 +164,27 @@ pub(crate) fn warnings(warnings: &[Warning]) -> String {
         let _ = writeln!(out, "  [{}] {warning}{rest}", warning.code().name());
     }
     out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_set_is_the_first_assumption() {
+        let set = [Setting { key: "camera.exposure".into(), value: "5 ms".into(), by: "--set" }];
+        let line = "Assumptions\n  in the place of the file's values: camera.exposure = 5 ms\n";
+        for (text, expected) in [
+            (
+                "No.\n\nAssumptions\n  air\nWarnings\n  [x] y\n",
+                format!("No.\n\n{line}  air\nWarnings\n  [x] y\n"),
+            ),
+            ("No.\n\na\nWarnings\n  [x] y\n", format!("No.\n\na\n{line}Warnings\n  [x] y\n")),
+            ("No.\n\na\n", format!("No.\n\na\n\n{line}")),
+            ("No.\n", "No.\n".into()),
+        ] {
+            assert_eq!(with_settings(text, &set), expected);
+            assert_eq!(with_settings(text, &[]), text);
+        }
+    }
 }

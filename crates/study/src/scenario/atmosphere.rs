@@ -5,7 +5,6 @@ use std::path::PathBuf;
 use super::entries::Entries;
 use super::paths::{Paths, file};
 use super::section::Entry;
-use hadar::allowed::ABSOLUTE_TEMPERATURE;
 use hadar::error::{Error, Result};
 use hadar::units::Dimension;
 
@@ -29,9 +28,9 @@ pub enum AtmosphereSource {
 
 impl AtmosphereSpec {
     pub(super) fn read(entry: &Entry<'_>) -> Result<Self> {
-        let section = entry.section(&["model", "table", "temperature"])?;
+        let section = entry.section()?;
         section.at_most_one(&["model", "table"])?;
-        let temperature_k = section.quantity("temperature", Dimension::Temperature, ABSOLUTE_TEMPERATURE)?;
+        let temperature_k = section.quantity("temperature")?;
         let model = section.read("model", |entry| Ok(entry.text("\"us-standard\"")?.trim().to_owned()))?;
         let source = match (model, section.read("table", file)?) {
             (Some(name), _) => AtmosphereSource::Model(name),

@@ -5,7 +5,6 @@ use std::path::PathBuf;
 use super::entries::Entries;
 use super::paths::{Paths, file};
 use super::section::{Entry, Section};
-use hadar::allowed::Allowed;
 use hadar::error::{Error, Result};
 use hadar::units::{Dimension, Spectral};
 
@@ -13,9 +12,6 @@ use hadar::units::{Dimension, Spectral};
 const PAPERS_GRID: [f64; 3] = [715.0, 1250.0, 1.0];
 /// The most bands a grid may have.
 const MOST_BANDS: f64 = 1e6;
-
-const TOLERANCE: Allowed =
-    Allowed { holds: |value| (1e-14..=0.1).contains(&value), expected: "between 1e-14 and 0.1" };
 
 /// The spectral bands and how a band is evaluated (`[bands]`).
 #[derive(Debug, Clone, PartialEq)]
@@ -79,16 +75,7 @@ impl BandSource {
 
 impl BandsSpec {
     pub(super) fn read(entry: &Entry<'_>) -> Result<Self> {
-        let section = entry.section(&[
-            "start",
-            "stop",
-            "step",
-            "filters",
-            "rows",
-            "ranges",
-            "integrate",
-            "tolerance",
-        ])?;
+        let section = entry.section()?;
         for grid in ["start", "stop", "step"] {
             section.at_most_one(&[grid, "filters", "rows", "ranges"])?;
         }
@@ -102,7 +89,7 @@ impl BandsSpec {
         Ok(Self {
             source: source.unwrap_or(default.source),
             integrate: section.read("integrate", Entry::boolean)?.unwrap_or(default.integrate),
-            tolerance: section.number("tolerance", "1e-9", TOLERANCE)?.unwrap_or(default.tolerance),
+            tolerance: section.number("tolerance")?.unwrap_or(default.tolerance),
         })
     }
 

@@ -1,6 +1,7 @@
 //! The `[camera]` of a scenario: a preset, and the figures that override it, read and written by the table of figures.
 
 use super::entries::Entries;
+use super::keys::rule::UNCERTAIN;
 use super::paths::{Paths, file};
 use super::section::Entry;
 use hadar::error::Result;
@@ -9,17 +10,15 @@ use hadar::instrument::figures::{CameraSpec, Efficiency, Kind, NOISES, Row, TABL
 use toml::Value;
 
 pub(super) fn read(entry: &Entry<'_>) -> Result<CameraSpec> {
-    read_beside(entry, &[], &mut |_, _| Ok(false))
+    read_with(entry, &mut |_, _| Ok(false))
 }
 
-/// The same in a table that may hold `other` keys too. What `uncertain` takes, a figure with its uncertainty, is not read.
-pub(super) fn read_beside(
+/// The same; what `uncertain` takes, a figure with its uncertainty, is not read.
+pub(super) fn read_with(
     entry: &Entry<'_>,
-    other: &[&str],
     uncertain: &mut dyn FnMut(&'static Row, &Entry<'_>) -> Result<bool>,
 ) -> Result<CameraSpec> {
-    let keys: Vec<&str> = other.iter().copied().chain(TABLE.iter().map(|row| row.key)).collect();
-    let section = entry.section(&keys)?;
+    let section = entry.section()?;
     section.at_most_one(&NOISES)?;
     let mut stated = CameraSpec::default();
     let spec = &mut stated;
@@ -29,11 +28,11 @@ pub(super) fn read_beside(
             && uncertain(row, &entry)?
         {
             // Its value alone, if it has one of its own.
-            if let Some(value) = entry.table()?.get("value") {
+            if let Some(value) = entry.section_of(&UNCERTAIN)?.get("value") {
                 let number = match row.kind {
-                    Kind::Quantity(dimension, allowed, _) => value.quantity(dimension, allowed)?,
+                    Kind::Quantity(dimension, allowed, _) => value.quantity_as(dimension, allowed)?,
                     Kind::Number(allowed, _) | Kind::Efficiency(allowed, _) => {
-                        value.number(example, allowed)?
+                        value.number_as(example, allowed)?
                     }
                     _ => continue,
                 };
@@ -42,14 +41,12 @@ pub(super) fn read_beside(
             continue;
         }
         match row.kind {
-            Kind::Quantity(dimension, allowed, slot) => {
-                *(slot.at)(spec) = section.quantity(key, dimension, allowed)?;
-            }
-            Kind::Number(allowed, slot) => *(slot.at)(spec) = section.number(key, example, allowed)?,
-            Kind::Efficiency(allowed, slot) => {
+            Kind::Quantity(_, _, slot) => *(slot.at)(spec) = section.quantity(key)?,
+            Kind::Number(_, slot) => *(slot.at)(spec) = section.number(key)?,
+            Kind::Efficiency(_, slot) => {
                 *(slot.at)(spec) = section.read(key, |entry| match entry.is_text() {
                     true => file(entry).map(Efficiency::File),
-                    false => entry.number(example, allowed).map(Efficiency::Number),
+                    false => entry.number(example).map(Efficiency::Number),
                 })?;
             }
             Kind::Count(slot) => *(slot.at)(spec) = section.read(key, |entry| entry.count(example))?,
@@ -64,6 +61,7 @@ pub(super) fn read_beside(
             }
         }
     }
+    stated.own = stated.preset.as_deref().and_then(|name| entry.source().own_camera(name));
     Ok(stated)
 }
 

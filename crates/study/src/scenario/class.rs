@@ -7,12 +7,10 @@ use super::entries::Entries;
 use super::paths::{Paths, file, is_path};
 use super::section::{Entry, Section, without_repetition};
 use super::{ClassSpec, MaterialRef, Spread};
-use hadar::allowed::{ABOVE_ZERO, FROM_ZERO, SHARE};
 use hadar::error::{Error, Result};
 use hadar::units::Dimension;
 use std::collections::BTreeMap;
 
-const KEYS: &[&str] = &["materials", "weights", "mixtures", "covariance", "emissivity_error", "correlation"];
 const EXAMPLE: &str = "materials = [\"my_skin.csv\", \"skins/\", \"ecostress/*paint*\"]";
 
 /// The classes of a scenario by name.
@@ -33,8 +31,8 @@ pub(super) fn read(root: &Section<'_>) -> Result<BTreeMap<String, ClassSpec>> {
 }
 
 fn one(entry: &Entry<'_>) -> Result<ClassSpec> {
-    let section = entry.section(KEYS)?;
-    let listed = section.require("materials", "[\"my_skin.csv\", \"skins/\"]")?;
+    let section = entry.section()?;
+    let listed = section.require("materials")?;
     let items = listed.items(EXAMPLE)?;
     if items.is_empty() {
         return Err(listed.fail(Error::malformed("the class has no members", format!("write {EXAMPLE}"))));
@@ -46,11 +44,11 @@ fn one(entry: &Entry<'_>) -> Result<ClassSpec> {
             let found = format!("{} weights for {} materials", weights.len(), materials.len());
             return Err(entry.fail(Error::malformed(found, "write one for each")));
         }
-        weights.iter().map(|weight| weight.number("1.0", FROM_ZERO)).collect::<Result<Vec<f64>>>()
+        weights.iter().map(|weight| weight.number("1.0")).collect::<Result<Vec<f64>>>()
     })?;
     let sample = section.choice("covariance", &[("sample", ())])?.is_some();
-    let error = section.number("emissivity_error", "0.01", SHARE)?;
-    let length = section.quantity("correlation", Dimension::Wavenumber, ABOVE_ZERO)?;
+    let error = section.number("emissivity_error")?;
+    let length = section.quantity("correlation")?;
     let spread = Spread::stated(sample, error, length).map_err(|error| entry.fail(error))?;
     let mixtures = section.read("mixtures", Entry::boolean)?.unwrap_or(false);
     Ok(ClassSpec { materials, weights, mixtures, spread })

@@ -7,15 +7,11 @@ use super::entries::Entries;
 use super::paths::{Paths, material};
 use super::section::{Entry, Section, without_repetition};
 use super::{MaterialRef, Scenario};
-use hadar::allowed::{ABOVE_ZERO, ABSOLUTE_TEMPERATURE, SHARE};
 use hadar::error::{Error, Result};
 use hadar::units::Dimension;
 
 /// Lighting factors that should add up to a value may miss it by this: rounding, not meaning.
 pub(super) const LIGHTING_ROUNDING: f64 = 1e-12;
-
-/// The keys of `[envelope]`.
-const KEYS: &[&str] = &["temperature", "lighting", "surroundings", "distance", "materials"];
 
 /// Ranges of scenes (`[envelope]`), lower end first.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -35,9 +31,9 @@ pub struct Envelope {
 impl Envelope {
     /// Reads the table, for a scenario with so many environment objects.
     pub(super) fn read(entry: &Entry<'_>, objects: usize) -> Result<Self> {
-        let section = entry.section(KEYS)?;
-        let kelvin = |end: &Entry<'_>| end.quantity(Dimension::Temperature, ABSOLUTE_TEMPERATURE);
-        let share = |end: &Entry<'_>| end.number("0.5", SHARE);
+        let section = entry.section()?;
+        let kelvin = |end: &Entry<'_>| end.quantity();
+        let share = |end: &Entry<'_>| end.number("0.5");
         let envelope = Self {
             temperature_k: section
                 .read("temperature", |entry| closed(entry, "[\"30 degC\", \"40 degC\"]", kelvin))?,
@@ -49,9 +45,8 @@ impl Envelope {
                 "[\"-10 degC\", \"30 degC\"]",
                 kelvin,
             )?,
-            distance_m: section.read("distance", |entry| {
-                closed(entry, "[\"5 m\", \"30 m\"]", |end| end.quantity(Dimension::Length, ABOVE_ZERO))
-            })?,
+            distance_m: section
+                .read("distance", |entry| closed(entry, "[\"5 m\", \"30 m\"]", |end| end.quantity()))?,
             materials: section.read("materials", |entry| {
                 let items = entry.items("materials = [\"skin\", \"fabric\"]")?;
                 if items.is_empty() {

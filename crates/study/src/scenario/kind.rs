@@ -3,7 +3,9 @@
 use toml::de::{DeTable, DeValue};
 
 use super::source::Source;
+use super::written::STDIN;
 use hadar::error::{Error, Result};
+use std::path::Path;
 
 /// A kind of file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -129,7 +131,11 @@ impl Kind {
         {
             return Ok(());
         }
-        let file = source.path.as_ref().map_or_else(|| "FILE".into(), |path| path.display().to_string());
+        let file = match &source.path {
+            None => "FILE".into(),
+            Some(path) if path == Path::new(STDIN) => "-".into(),
+            Some(path) => path.display().to_string(),
+        };
         let (name, instead) = match kind {
             Kind::Scenario if self == Kind::Rule => (
                 row.name,

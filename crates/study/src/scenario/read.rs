@@ -6,6 +6,7 @@ use std::path::Path;
 use toml::de::DeTable;
 
 use super::envelope::LIGHTING_ROUNDING;
+use super::keys::files;
 use super::kind::Kind;
 use super::paths::material;
 use super::section::{Entry, Section, without_repetition};
@@ -16,26 +17,10 @@ use super::{
     Written,
 };
 use super::{camera, class};
-use hadar::allowed::{ABOVE_ZERO, ABSOLUTE_TEMPERATURE, Allowed, SHARE};
 use hadar::error::{Error, Result};
 use hadar::instrument::figures::BLANK;
-use hadar::units::{Dimension, decimal_comma};
+use hadar::units::decimal_comma;
 
-pub(super) const TABLES: [&str; 13] = [
-    "title",
-    "class",
-    "target",
-    "background",
-    "environment",
-    "alternatives",
-    "atmosphere",
-    "bands",
-    "unknown",
-    "camera",
-    "requirement",
-    "envelope",
-    "sensitivity",
-];
 pub(super) const MINIMUM: &str = "write [target] with material = \"skin\" and temperature = \"37 degC\"";
 
 impl Scenario {
@@ -83,7 +68,7 @@ impl Scenario {
     pub fn from_written(written: &Written) -> Result<Self> {
         let mut source = written.source();
         let document = document(written, (Kind::Scenario, MINIMUM), &mut source)?;
-        let root = Section::open(&document, "", &source, &TABLES)?;
+        let root = Section::open(&document, "", &source, &files::SCENARIO)?;
         let mut scenario = of_root(&root, requirement)?;
         scenario.camera = root.read("camera", camera::read)?;
         scenario.source = source;
@@ -178,24 +163,20 @@ fn parse<'t>(text: &'t str, source: &Source) -> Result<DeTable<'t>> {
 }
 
 pub(super) fn target(entry: &Entry<'_>) -> Result<Target> {
-    let section = entry.section(&["material", "temperature", "distance", "size", "extrapolate"])?;
+    let section = entry.section()?;
     Ok(Target {
-        material: material(&section.require("material", "\"skin\"")?)?,
-        temperature_k: section
-            .require("temperature", "\"37 degC\"")?
-            .quantity(Dimension::Temperature, ABSOLUTE_TEMPERATURE)?,
-        distance_m: section.quantity("distance", Dimension::Length, ABOVE_ZERO)?,
-        size_m: section.quantity("size", Dimension::Length, ABOVE_ZERO)?,
+        material: material(&section.require("material")?)?,
+        temperature_k: section.require("temperature")?.quantity()?,
+        distance_m: section.quantity("distance")?,
+        size_m: section.quantity("size")?,
         extrapolate: extrapolation(&section)?,
     })
 }
 
 fn background(entry: &Entry<'_>) -> Result<Background> {
-    let section = entry.section(&["temperature", "material", "extrapolate"])?;
+    let section = entry.section()?;
     Ok(Background {
-        temperature_k: section
-            .require("temperature", "\"15 degC\"")?
-            .quantity(Dimension::Temperature, ABSOLUTE_TEMPERATURE)?,
+        temperature_k: section.require("temperature")?.quantity()?,
         material: section.read("material", material)?,
         extrapolate: extrapolation(&section)?,
     })
@@ -211,15 +192,15 @@ pub(super) fn environment(root: &Section<'_>, total: Option<f64>) -> Result<Vec<
     let mut objects = Vec::with_capacity(items.len());
     let mut sum = 0.0;
     for (index, item) in items.iter().enumerate() {
-        let section = item.section(&["temperature", "lighting", "material", "extrapolate"])?;
-        let written = section.number("lighting", "0.5", SHARE)?;
+        let section = item.section()?;
+        let written = section.number("lighting")?;
         let lighting = match total {
             Some(total) if index + 1 == items.len() => {
                 rest_of_lighting(total, sum, written).map_err(|error| section.fail("lighting", error))?
             }
             _ => match written {
                 Some(lighting) => lighting,
-                None => section.require("lighting", "0.5")?.number("0.5", SHARE)?,
+                None => section.require("lighting")?.number("0.5")?,
             },
         };
         sum += lighting;
@@ -229,9 +210,7 @@ pub(super) fn environment(root: &Section<'_>, total: Option<f64>) -> Result<Vec<
             return Err(section.fail("lighting", Error::malformed(found, instead)));
         }
         objects.push(EnvironmentObject {
-            temperature_k: section
-                .require("temperature", "\"20 degC\"")?
-                .quantity(Dimension::Temperature, ABSOLUTE_TEMPERATURE)?,
+            temperature_k: section.require("temperature")?.quantity()?,
             lighting,
             material: section.read("material", material)?,
             extrapolate: extrapolation(&section)?,
@@ -264,8 +243,7 @@ fn rounded(sum: f64) -> f64 {
 }
 
 fn alternatives(entry: &Entry<'_>) -> Result<Alternatives> {
-    let section =
-        entry.section(&["materials", "temperature", "lighting", "extrapolate", "skip_uncovered"])?;
+    let section = entry.section()?;
     let materials = section.read("materials", |entry| {
         let items = entry.items("materials = [\"aluminium\"]")?;
         if items.is_empty() {
@@ -277,11 +255,11 @@ fn alternatives(entry: &Entry<'_>) -> Result<Alternatives> {
     Ok(Alternatives {
         materials,
         temperature_range_k: section.read("temperature", |entry| {
-            let kelvin = |end: &Entry<'_>| end.quantity(Dimension::Temperature, ABSOLUTE_TEMPERATURE);
+            let kelvin = |end: &Entry<'_>| end.quantity();
             entry.wide_range("[\"0 degC\", \"120 degC\"]", kelvin, |kelvin| kelvin)
         })?,
         lighting_range: section.read("lighting", |entry| {
-            entry.wide_range("[0.0, 1.0]", |end| end.number("0.5", SHARE), |share| share)
+            entry.wide_range("[0.0, 1.0]", |end| end.number("0.5"), |share| share)
         })?,
         extrapolate: extrapolation(&section)?,
         skip_uncovered: section.read("skip_uncovered", Entry::boolean)?.unwrap_or(false),
@@ -289,7 +267,7 @@ fn alternatives(entry: &Entry<'_>) -> Result<Alternatives> {
 }
 
 fn unknown(entry: &Entry<'_>) -> Result<Unknown> {
-    let section = entry.section(&["nuisances", "priors", "lighting_total"])?;
+    let section = entry.section()?;
     let choices = Nuisance::ALL.map(|nuisance| (nuisance.name(), nuisance));
     let nuisances = section
         .read("nuisances", |entry| {
@@ -298,11 +276,11 @@ fn unknown(entry: &Entry<'_>) -> Result<Unknown> {
         })?
         .unwrap_or_else(|| Unknown::default().nuisances);
     let priors = section.read("priors", |entry| priors(entry, &nuisances))?.unwrap_or_default();
-    Ok(Unknown { priors, lighting_total: section.number("lighting_total", "1.0", SHARE)?, nuisances })
+    Ok(Unknown { priors, lighting_total: section.number("lighting_total")?, nuisances })
 }
 
 fn priors(entry: &Entry<'_>, nuisances: &[Nuisance]) -> Result<BTreeMap<Nuisance, f64>> {
-    let section = entry.section(&Nuisance::ALL.map(Nuisance::name))?;
+    let section = entry.section()?;
     let mut priors = BTreeMap::new();
     for nuisance in Nuisance::ALL {
         let Some(sigma) = section.get(nuisance.name()) else { continue };
@@ -317,30 +295,18 @@ fn priors(entry: &Entry<'_>, nuisances: &[Nuisance]) -> Result<BTreeMap<Nuisance
 
 /// Deviation of the prior on an unknown.
 pub(super) fn prior(entry: &Entry<'_>, nuisance: Nuisance) -> Result<f64> {
-    let rule = Allowed {
-        expected: "above 0 (what is known exactly is left out of unknown.nuisances)",
-        ..ABOVE_ZERO
-    };
     match nuisance {
-        Nuisance::Temperature | Nuisance::EnvironmentTemperature => {
-            entry.quantity(Dimension::TemperatureDifference, rule)
-        }
-        Nuisance::Lighting | Nuisance::Gain => entry.number("0.1", rule),
+        Nuisance::Temperature | Nuisance::EnvironmentTemperature => entry.quantity(),
+        Nuisance::Lighting | Nuisance::Gain => entry.number("0.1"),
     }
 }
 
 pub(super) fn requirement(entry: &Entry<'_>) -> Result<Requirement> {
-    let section =
-        entry.section(&["detection_probability", "false_alarm_probability", "distance", "by", "speed"])?;
-    let probability = Allowed {
-        holds: |value| value > 0.5 && value < 1.0,
-        expected: "above 0.5 (tossing a coin) and below 1 (never wrong)",
-    };
+    let section = entry.section()?;
     section.at_most_one(&["detection_probability", "distance"])?;
-    let detection = section.number("detection_probability", "0.8413", probability)?;
-    let below_half = Allowed { holds: |value| value > 0.0 && value < 0.5, expected: "above 0 and below 0.5" };
-    let false_alarm = section.number("false_alarm_probability", "0.001", below_half)?;
-    let distance = section.number("distance", "1.0", ABOVE_ZERO)?;
+    let detection = section.number("detection_probability")?;
+    let false_alarm = section.number("false_alarm_probability")?;
+    let distance = section.number("distance")?;
     let default = Requirement::default();
     Ok(Requirement {
         reliability: match (detection, false_alarm, distance) {
@@ -355,7 +321,7 @@ pub(super) fn requirement(entry: &Entry<'_>) -> Result<Requirement> {
             (None, None, None) => default.reliability,
         },
         by: section.choice("by", &DistanceKind::ALL.map(|kind| (kind.name(), kind)))?.unwrap_or(default.by),
-        speed_m_s: section.quantity("speed", Dimension::Speed, ABOVE_ZERO)?,
+        speed_m_s: section.quantity("speed")?,
     })
 }
 

@@ -5,6 +5,7 @@
 use super::decompose::CategorySpec;
 use super::decompose::category::{Told, categories, category_written};
 use super::entries::{Document, Part, entries, text};
+use super::keys::files;
 use super::kind::Kind;
 use super::paths::Paths;
 use super::range::{Stereo, read::stereo_of_scene, write::stereo};
@@ -17,7 +18,6 @@ use hadar::error::{Error, Place, Result};
 use serde::{Serialize, Serializer};
 use std::path::Path;
 
-const TABLES: &[&str] = &["title", "scene", "object", "bands", "camera", "stereo", "requirement", "category"];
 const MINIMUM: &str =
     "write [scene], [camera] with preset = \"flir-a325sc\", and an [[object]] for all that stands there";
 
@@ -84,7 +84,7 @@ impl RenderScenario {
     pub fn from_written(written: &Written) -> Result<Self> {
         let mut source = written.source();
         let document = document(written, (Kind::Range, MINIMUM), &mut source)?;
-        let root = Section::open(&document, "", &source, TABLES)?;
+        let root = Section::open(&document, "", &source, &files::RENDER)?;
         let missing = |key: &str| root.fail(key, Error::malformed("the table is missing", MINIMUM));
         let entry = root.get("scene").ok_or_else(|| missing("scene"))?;
         let scenario = Self {

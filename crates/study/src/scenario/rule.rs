@@ -26,12 +26,12 @@ pub use test::{RuleTest, Verdict};
 use super::Scenario;
 use super::camera::written;
 use super::entries::{self, Document, Entries, Part};
+use super::keys::files;
 use super::kind::Kind;
 use super::paths::Paths;
-use super::read::{MINIMUM, TABLES, document};
+use super::read::{MINIMUM, document};
 use super::section::{Entry, Section};
 use super::written::Written;
-use hadar::allowed::ABOVE_ZERO;
 use hadar::error::{Error, Place, Result};
 use serde::{Serialize, Serializer};
 use std::path::Path;
@@ -132,16 +132,9 @@ impl Rule {
     pub fn from_written(written: &Written) -> Result<Self> {
         let mut source = written.source();
         let document = document(written, (Kind::Rule, MINIMUM), &mut source)?;
-        let known = [
-            &TABLES[..],
-            &["rule", "cameras", "stop", "clause", "source", "test", "uncertainty", "stand_in"],
-        ]
-        .concat();
-        let root = Section::open(&document, "", &source, &known)?;
+        let root = Section::open(&document, "", &source, &files::RULE)?;
         let about = root.read("rule", about)?.unwrap_or_default();
-        let coverage_factor = root.read("uncertainty", |entry| {
-            entry.section(&["coverage_factor"])?.number("coverage_factor", "2", ABOVE_ZERO)
-        })?;
+        let coverage_factor = root.read("uncertainty", |entry| entry.section()?.number("coverage_factor"))?;
         let coverage_factor = coverage_factor.flatten().unwrap_or(COVERAGE_FACTOR);
         let mut cameras = root.read("cameras", camera::presets)?.unwrap_or_default();
         cameras.extend(root.read("camera", camera::tables)?.unwrap_or_default());
@@ -294,7 +287,7 @@ impl Serialize for Rule {
 }
 
 fn about(entry: &Entry<'_>) -> Result<About> {
-    let section = entry.section(&["name", "text", "authority", "version", "status", "from", "until"])?;
+    let section = entry.section()?;
     let text = |key, example: &str| section.read(key, |entry| Ok(entry.text(example)?.trim().to_owned()));
     let from = section.read("from", Entry::date)?;
     let until = section.read("until", Entry::date)?;

@@ -6,6 +6,7 @@ use toml::de::{DeTable, DeValue};
 pub use toml::value::Date;
 use toml::value::Datetime;
 
+use super::keys::{Key, More, Table, Value};
 use super::source::{Source, dotted};
 use hadar::allowed::Allowed;
 use hadar::error::{Error, Place, Result};
@@ -23,37 +24,50 @@ pub fn day(text: &str) -> Option<Date> {
 #[derive(Clone)]
 pub(super) struct Section<'a> {
     table: &'a DeTable<'a>,
+    known: Known,
     name: String,
     source: &'a Source,
     /// Where a key that is silent here is looked for.
     beneath: Option<Box<Section<'a>>>,
 }
 
-/// One value, with the full key it was written under.
+/// What may stand in a table.
+#[derive(Clone, Copy)]
+enum Known {
+    /// These keys.
+    Keys(&'static Table),
+    /// Names of the author's own, each with such a value.
+    Names(Value),
+}
+
+/// One value, with the full key it was written under and what may be written there.
 pub(super) struct Entry<'a> {
     value: &'a DeValue<'a>,
+    allowed: Value,
     key: String,
     source: &'a Source,
 }
 
 impl<'a> Section<'a> {
-    /// Opens a table in which only the `known` keys may stand.
+    /// Opens a table in which only its known keys may stand.
     pub(super) fn open(
         table: &'a DeTable<'a>,
         name: &str,
         source: &'a Source,
-        known: &[&str],
+        known: &'static Table,
     ) -> Result<Self> {
-        let unknown = table.keys().filter(|key| !known.contains(&key.get_ref().as_ref()));
+        let (section, names) = (Known::Keys(known), known.keys().map(|key| key.name).collect::<Vec<_>>());
+        let is_known = |key: &str| matches!(known.more, More::Names(_)) || names.contains(&key);
+        let unknown = table.keys().filter(|key| !is_known(key.get_ref().as_ref()));
         match unknown.min_by_key(|key| key.span().start) {
-            None => Ok(Self { table, name: name.to_owned(), source, beneath: None }),
+            None => Ok(Self { table, known: section, name: name.to_owned(), source, beneath: None }),
             Some(key) => {
                 let own = dotted(name, key.get_ref());
                 let place = match source.setting(&own) {
                     Some(setting) => setting.place(&own),
                     None => Place { line: source.place(&own).line, ..source.place(name) },
                 };
-                Err(unknown_key(key.get_ref(), known).at(place))
+                Err(unknown_key(key.get_ref(), &names).at(place))
             }
         }
     }
@@ -63,13 +77,30 @@ impl<'a> Section<'a> {
         Self { beneath: Some(Box::new(beneath.clone())), ..self }
     }
 
+    /// What stands at a key; nothing at one that the table has no row for.
     pub(super) fn get(&self, key: &str) -> Option<Entry<'a>> {
-        match self.table.get(key) {
-            Some(value) => {
-                Some(Entry { value: value.get_ref(), key: dotted(&self.name, key), source: self.source })
-            }
+        let allowed = match self.known {
+            Known::Keys(table) => table.value(key),
+            Known::Names(value) => Some(value),
+        };
+        match self.table.get(key).zip(allowed) {
+            Some((value, allowed)) => Some(Entry {
+                value: value.get_ref(),
+                allowed,
+                key: dotted(&self.name, key),
+                source: self.source,
+            }),
             None => self.beneath.as_ref()?.get(key),
         }
+    }
+
+    /// The row of a key.
+    fn row(&self, key: &str) -> Result<Key> {
+        let row = match self.known {
+            Known::Keys(table) => table.key(key),
+            Known::Names(_) => None,
+        };
+        row.ok_or_else(|| self.fail(key, no_row()))
     }
 
     /// The keys of the table itself.
@@ -82,11 +113,15 @@ impl<'a> Section<'a> {
         self.table.contains_key(key)
     }
 
-    /// A key that must be there; `example` is a value to write.
-    pub(super) fn require(&self, key: &str, example: &str) -> Result<Entry<'a>> {
-        self.get(key).ok_or_else(|| {
-            self.fail(key, Error::malformed("the key is missing", format!("write {key} = {example}")))
-        })
+    /// A key that must be there.
+    pub(super) fn require(&self, key: &str) -> Result<Entry<'a>> {
+        match self.get(key) {
+            Some(entry) => Ok(entry),
+            None => {
+                let instead = format!("write {key} = {}", self.row(key)?.example);
+                Err(self.fail(key, Error::malformed("the key is missing", instead)))
+            }
+        }
     }
 
     /// The value of `key` as `read` takes it, if the key is there.
@@ -95,13 +130,15 @@ impl<'a> Section<'a> {
     }
 
     /// A quantity with its unit.
-    pub(super) fn quantity(&self, key: &str, dimension: Dimension, allowed: Allowed) -> Result<Option<f64>> {
-        self.read(key, |entry| entry.quantity(dimension, allowed))
+    pub(super) fn quantity(&self, key: &str) -> Result<Option<f64>> {
+        self.row(key)?;
+        self.read(key, Entry::quantity)
     }
 
-    /// A plain number; `example` is one to write.
-    pub(super) fn number(&self, key: &str, example: &str, allowed: Allowed) -> Result<Option<f64>> {
-        self.read(key, |entry| entry.number(example, allowed))
+    /// A plain number.
+    pub(super) fn number(&self, key: &str) -> Result<Option<f64>> {
+        let row = self.row(key)?;
+        self.read(key, |entry| entry.number(row.example))
     }
 
     /// One of a few words.
@@ -151,17 +188,26 @@ impl<'a> Entry<'a> {
         if self.key.ends_with(']') { example.to_owned() } else { format!("{} = {example}", self.leaf()) }
     }
 
-    /// A table with these keys, under its header `[name]`.
-    pub(super) fn section(&self, known: &[&str]) -> Result<Section<'a>> {
+    /// A table, under its header `[name]`.
+    pub(super) fn section(&self) -> Result<Section<'a>> {
+        self.section_of(self.allowed.table().ok_or_else(|| self.fail(no_row()))?)
+    }
+
+    /// One of several tables that may stand here.
+    pub(super) fn section_of(&self, known: &'static Table) -> Result<Section<'a>> {
         let Section { table, name, source, .. } = self.table()?;
         Section::open(table, &name, source, known)
     }
 
     /// A table whose keys were checked before.
     pub(super) fn table(&self) -> Result<Section<'a>> {
+        let known = match self.allowed {
+            Value::Named(table) => Known::Names(Value::Table(table)),
+            ref other => other.table().map_or(Known::Names(self.allowed), Known::Keys),
+        };
         match self.value {
             DeValue::Table(table) => {
-                Ok(Section { table, name: self.key.clone(), source: self.source, beneath: None })
+                Ok(Section { table, known, name: self.key.clone(), source: self.source, beneath: None })
             }
             _ => Err(self.wrong_type(format!("write the table as [{}], once", self.key))),
         }
@@ -172,8 +218,11 @@ impl<'a> Entry<'a> {
         let DeValue::Array(items) = self.value else {
             return Err(self.wrong_type(format!("write {example}")));
         };
+        let of_lists = matches!(items.first().map(|item| item.get_ref()), Some(DeValue::Array(_)));
+        let allowed = self.allowed.item(of_lists).ok_or_else(|| self.fail(no_row()))?;
         let entry = |(index, value): (usize, &'a toml::Spanned<DeValue<'a>>)| Entry {
             value: value.get_ref(),
+            allowed,
             key: format!("{}[{index}]", self.key),
             source: self.source,
         };
@@ -264,7 +313,20 @@ impl<'a> Entry<'a> {
     }
 
     /// A quantity with its unit, in the unit used inside.
-    pub(super) fn quantity(&self, dimension: Dimension, allowed: Allowed) -> Result<f64> {
+    pub(super) fn quantity(&self) -> Result<f64> {
+        let (dimension, allowed) = self.allowed.quantity(None).ok_or_else(|| self.fail(no_row()))?;
+        self.quantity_as(dimension, allowed)
+    }
+
+    /// The one of several quantities that is of a dimension.
+    pub(super) fn quantity_of(&self, dimension: Dimension) -> Result<f64> {
+        let (dimension, allowed) =
+            self.allowed.quantity(Some(dimension)).ok_or_else(|| self.fail(no_row()))?;
+        self.quantity_as(dimension, allowed)
+    }
+
+    /// A quantity whose dimension hangs on another key.
+    pub(super) fn quantity_as(&self, dimension: Dimension, allowed: Allowed) -> Result<f64> {
         let text = self.quantity_text()?;
         let value = dimension.parse(&text).map_err(|error| self.fail(error))?;
         if allowed.allows(value) {
@@ -278,7 +340,12 @@ impl<'a> Entry<'a> {
     }
 
     /// A finite plain number, whole or not; `example` is one to write.
-    pub(super) fn number(&self, example: &str, allowed: Allowed) -> Result<f64> {
+    pub(super) fn number(&self, example: &str) -> Result<f64> {
+        self.number_as(example, self.allowed.number().ok_or_else(|| self.fail(no_row()))?)
+    }
+
+    /// A number whose range hangs on another key.
+    pub(super) fn number_as(&self, example: &str, allowed: Allowed) -> Result<f64> {
         let value = match self.value {
             DeValue::Integer(digits) if digits.radix() == 10 => digits.as_str().parse().ok(),
             // The digits alone, without 0x, 0o or 0b before them.
@@ -303,14 +370,9 @@ impl<'a> Entry<'a> {
         Err(self.fail(Error::out_of_range(self.leaf(), value, "", allowed.expected)))
     }
 
-    /// A whole number of at least 1.
+    /// A whole number; `example` is one to write.
     pub(super) fn count(&self, example: &str) -> Result<u32> {
-        self.count_within([1, u32::MAX], example)
-    }
-
-    /// A whole number from the first to the second of `within`.
-    pub(super) fn count_within(&self, within: [u32; 2], example: &str) -> Result<u32> {
-        let [least, most] = within;
+        let [least, most] = self.allowed.count().ok_or_else(|| self.fail(no_row()))?;
         let whole = match self.value {
             DeValue::Integer(digits) => u32::from_str_radix(digits.as_str(), digits.radix()).ok(),
             _ => None,
@@ -363,6 +425,10 @@ impl<'a> Entry<'a> {
 
     /// One of a few words.
     pub(super) fn choice<T: Copy>(&self, choices: &[(&str, T)]) -> Result<T> {
+        let known = self.allowed.choices().unwrap_or_default();
+        if !known.iter().eq(choices.iter().map(|(name, _)| name)) {
+            return Err(self.fail(no_row()));
+        }
         let names: Vec<String> = choices.iter().map(|(name, _)| format!("\"{name}\"")).collect();
         let listed = listing(&names, " or ");
         let text = match self.value {
@@ -401,6 +467,11 @@ fn listing(names: &[String], last: &str) -> String {
         [one] => one.clone(),
         [first @ .., end] => format!("{}{last}{end}", first.join(", ")),
     }
+}
+
+/// A reader that asks for something else than the row of its key says, which no file is to blame for.
+fn no_row() -> Error {
+    Error::malformed("the program reads this otherwise than its table of keys says", "report this as a bug")
 }
 
 fn unknown_key(key: &str, known: &[&str]) -> Error {

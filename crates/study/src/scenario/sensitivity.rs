@@ -7,7 +7,6 @@
 
 use super::entries::Entries;
 use super::section::Entry;
-use hadar::allowed::{ABOVE_ZERO, SHARE};
 use hadar::error::Result;
 use hadar::units::Dimension;
 
@@ -28,10 +27,10 @@ impl Default for SensitivitySpec {
 
 impl SensitivitySpec {
     pub(super) fn read(entry: &Entry<'_>) -> Result<Self> {
-        let section = entry.section(&["emissivity_error", "correlation"])?;
+        let section = entry.section()?;
         let default = Self::default();
-        let emissivity_error = section.number("emissivity_error", "0.005", SHARE)?;
-        let correlation_cm1 = section.quantity("correlation", Dimension::Wavenumber, ABOVE_ZERO)?;
+        let emissivity_error = section.number("emissivity_error")?;
+        let correlation_cm1 = section.quantity("correlation")?;
         Ok(Self {
             emissivity_error: emissivity_error.unwrap_or(default.emissivity_error),
             correlation_cm1: correlation_cm1.unwrap_or(default.correlation_cm1),

@@ -13,17 +13,41 @@ use toml::de::{DeTable, DeValue};
 const LONGEST_KEY: usize = 200;
 
 /// A value in the place of that of a file.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
 pub struct Setting {
     /// Where it stands.
     pub key: String,
     /// What stands there.
     pub value: String,
     /// What set it, for messages, e.g. `--vary`.
+    #[serde(skip)]
     pub by: &'static str,
 }
 
 impl Setting {
+    /// That of `KEY=VALUE`, as a flag such as `by` has it.
+    ///
+    /// # Errors
+    /// Text without a key or a value.
+    ///
+    /// ```
+    /// use hadar_study::scenario::Setting;
+    /// let setting = Setting::parse("camera.exposure=5 ms", "--set")?;
+    /// assert_eq!((&*setting.key, &*setting.value), ("camera.exposure", "5 ms"));
+    /// assert!(Setting::parse("camera.exposure", "--set").is_err());
+    /// # Ok::<(), hadar::Error>(())
+    /// ```
+    pub fn parse(text: &str, by: &'static str) -> Result<Self> {
+        let parts = text.split_once('=').map(|(key, value)| (key.trim(), value.trim()));
+        match parts.filter(|(key, value)| !key.is_empty() && !value.is_empty()) {
+            Some((key, value)) => Ok(Self { key: key.to_owned(), value: value.to_owned(), by }),
+            None => {
+                let instead = "write a key and its value, as in camera.exposure=\"5 ms\"";
+                Err(Error::malformed(format!("`{text}` sets nothing"), instead))
+            }
+        }
+    }
+
     /// Whether it is what stands at a key.
     pub(super) fn covers(&self, key: &str) -> bool {
         key.strip_prefix(self.key.as_str())

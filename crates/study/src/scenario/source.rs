@@ -2,12 +2,15 @@
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use toml::de::{DeTable, DeValue};
 
 use super::setting::Setting;
 pub(super) use super::setting::dotted;
+use super::stated_camera::StatedCamera;
 use hadar::error::Place;
+use hadar::instrument::CameraSpec;
 
 /// Longest name of a table or list whose entries are noted, bytes. No scenario needs as much, and names of entries
 /// repeat it: a long one with a long list would fill the memory.
@@ -27,6 +30,8 @@ pub struct Source {
     pub texts: BTreeMap<String, String>,
     /// What stands in the place of its own values.
     pub settings: Vec<Setting>,
+    /// Cameras of the user's own, which it may name.
+    pub cameras: Arc<[StatedCamera]>,
 }
 
 impl Source {
@@ -54,6 +59,11 @@ impl Source {
         };
         let key = (!key.is_empty()).then(|| key.to_owned());
         Place { path: self.path.clone(), line, key }
+    }
+
+    /// What is stated of the user's own camera of a name.
+    pub(super) fn own_camera(&self, name: &str) -> Option<Arc<CameraSpec>> {
+        self.cameras.iter().find(|camera| camera.name == name).map(|camera| Arc::new(camera.spec.clone()))
     }
 
     /// What stands at `key` in the place of what was written.

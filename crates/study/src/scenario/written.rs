@@ -2,12 +2,19 @@
 
 use super::setting::Setting;
 use super::source::Source;
+use super::stated_camera::StatedCamera;
 use hadar::error::{Error, Result};
 use hadar::file;
+use std::io::Read;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// The longest file taken for a scenario, bytes.
 const LONGEST_FILE: u64 = 1 << 20;
+const ACTION: &str = "read the scenario";
+
+/// What stands for the file of a text from standard input.
+pub const STDIN: &str = "<stdin>";
 
 /// A file as it is to be read.
 #[derive(Debug, Clone, Default)]
@@ -18,6 +25,8 @@ pub struct Written {
     pub path: Option<PathBuf>,
     /// What stands in the place of its own values, the last one of a key.
     pub settings: Vec<Setting>,
+    /// Cameras of the user's own, which it may name.
+    pub cameras: Arc<[StatedCamera]>,
 }
 
 impl Written {
@@ -26,11 +35,21 @@ impl Written {
     /// # Errors
     /// A file that is missing, a directory, too long, or not UTF-8.
     pub fn from_file(path: &Path) -> Result<Self> {
-        let action = "read the scenario";
         if path.is_dir() {
-            return Err(Error::file(action, path, "it is a directory; name the .toml file inside it"));
+            return Err(Error::file(ACTION, path, "it is a directory; name the .toml file inside it"));
         }
-        let bytes = file::bytes(path, action, LONGEST_FILE)?;
+        Self::of_bytes(file::bytes(path, ACTION, LONGEST_FILE)?, path)
+    }
+
+    /// The text of standard input; paths in it start from the current directory.
+    ///
+    /// # Errors
+    /// What cannot be read, is too long, or not UTF-8.
+    pub fn from_stdin(stdin: impl Read) -> Result<Self> {
+        Self::of_bytes(file::stream(stdin, STDIN, ACTION, LONGEST_FILE)?, Path::new(STDIN))
+    }
+
+    fn of_bytes(bytes: Vec<u8>, path: &Path) -> Result<Self> {
         let text = String::from_utf8(bytes).map_err(|error| {
             let valid = error.utf8_error().valid_up_to();
             let line = 1 + error.as_bytes().iter().take(valid).filter(|byte| **byte == b'\n').count();
@@ -44,7 +63,7 @@ impl Written {
     /// A text, of the file `path` if it is from one.
     #[must_use]
     pub fn of(text: &str, path: Option<&Path>) -> Self {
-        Self { text: text.to_owned(), path: path.map(Path::to_owned), settings: Vec::new() }
+        Self { text: text.to_owned(), path: path.map(Path::to_owned), ..Self::default() }
     }
 
     /// The same with values in the place of its own.
@@ -66,8 +85,15 @@ impl Written {
         Self { settings, ..self.clone() }
     }
 
+    /// The same with cameras of the user's own that it may name.
+    #[must_use]
+    pub fn with_cameras(self, cameras: Arc<[StatedCamera]>) -> Self {
+        Self { cameras, ..self }
+    }
+
     /// Where it is read from, before anything is read.
     pub(super) fn source(&self) -> Source {
-        Source { path: self.path.clone(), settings: self.settings.clone(), ..Source::default() }
+        let (path, settings, cameras) = (self.path.clone(), self.settings.clone(), Arc::clone(&self.cameras));
+        Source { path, settings, cameras, ..Source::default() }
     }
 }

@@ -18,14 +18,22 @@ pub(super) fn called(camera: &Camera, spec: &CameraSpec) -> String {
     spec.preset.clone().unwrap_or_else(|| camera.name.clone())
 }
 
+/// What is known of the camera that a spec names, one of the user's own or of the program's; nothing where it names none.
+pub(super) fn known(spec: &CameraSpec) -> Result<Option<Preset>> {
+    match (&spec.own, &spec.preset) {
+        (Some(own), name) => {
+            let stated = overridden(own, known(own)?.unwrap_or_default())?;
+            Ok(Some(Preset { name: name.clone().unwrap_or_default(), ..stated }))
+        }
+        (None, Some(name)) => presets::find(name).map(Some),
+        (None, None) => Ok(None),
+    }
+}
+
 /// The same for a camera whose keys stand where `place` says.
 pub(super) fn resolved_at(spec: &CameraSpec, place: &dyn Fn(&str) -> Place) -> Result<Camera> {
-    let preset = match &spec.preset {
-        Some(name) => Some(presets::find(name).map_err(|error| error.at(place("preset")))?),
-        None => None,
-    };
-    check_conditions(spec, preset.as_ref(), place)?;
-    let stated = overridden(spec, preset.clone().unwrap_or_default())?;
+    let preset = known(spec).map_err(|error| error.at(place("preset")))?;
+    let stated = stated_at(spec, place)?;
     let camera = |preset: &Preset| {
         preset.camera().map_err(|missing| {
             missing.error(&preset.name).at(place(missing.0.first().copied().unwrap_or("preset")))
@@ -43,7 +51,19 @@ pub(super) fn resolved_at(spec: &CameraSpec, place: &dyn Fn(&str) -> Place) -> R
         },
         _ => "the camera".into(),
     };
-    camera_made.checked().map_err(|error| {
+    checked_at(camera_made, place)
+}
+
+/// All that is stated of a camera, by what it lies over and by its own keys, which stand where `place` says.
+pub(super) fn stated_at(spec: &CameraSpec, place: &dyn Fn(&str) -> Place) -> Result<Preset> {
+    let preset = known(spec).map_err(|error| error.at(place("preset")))?;
+    check_conditions(spec, preset.as_ref(), place)?;
+    overridden(spec, preset.unwrap_or_default())
+}
+
+/// A camera whose figures make one; a mistake is told where its key stands.
+pub(super) fn checked_at(camera: Camera, place: &dyn Fn(&str) -> Place) -> Result<Camera> {
+    camera.checked().map_err(|error| {
         // The figure at fault, where a scenario has a key of its name.
         let key = match &error {
             Error::OutOfRange { quantity, .. } if !quantity.contains(' ') => quantity.clone(),
@@ -100,7 +120,7 @@ fn under_own_conditions(figures: &mut CameraSpec) {
 
 /// The same camera with its preset's noise as one of its own, under the preset's conditions, so that it can be changed alone.
 pub(super) fn with_own_noise(spec: &CameraSpec) -> CameraSpec {
-    let preset = spec.preset.as_ref().and_then(|name| presets::find(name).ok());
+    let preset = known(spec).ok().flatten();
     match preset {
         Some(Preset { mut figures, .. }) if !spec.states_noise() => {
             under_own_conditions(&mut figures);

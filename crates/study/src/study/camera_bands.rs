@@ -6,7 +6,7 @@
 use super::{Warning, camera};
 use crate::scenario::{BandSource, CameraSpec};
 use hadar::error::{Error, Place, Result};
-use hadar::instrument::{Camera, Readout, presets};
+use hadar::instrument::{Camera, Readout};
 use hadar::spectrum::{Band, Bands};
 use hadar::units::Spectral;
 
@@ -30,7 +30,7 @@ pub(super) fn asked(source: &BandSource, camera: Option<(&Camera, &CameraSpec)>)
 
 /// What the entry of a known camera says; nothing of a camera of one's own.
 fn documented(spec: &CameraSpec) -> CameraSpec {
-    let entry = spec.preset.as_ref().and_then(|name| presets::find(name).ok());
+    let entry = camera::known(spec).ok().flatten();
     entry.map(|preset| preset.figures).unwrap_or_default()
 }
 

@@ -78,7 +78,7 @@ fn each_mistake_is_one_line() {
             "[unknown]\nnuisances = []\npriors = { air-temperature = \"1 K\" }\n",
             "line 12: unknown.priors.air-temperature: `air-temperature` is not among unknown.nuisances",
         ),
-        ("[distances]\nfrom = \"10 m\"\n", "line 10: distances.to: the key is missing; write to = \"15 m\""),
+        ("[distances]\nfrom = \"10 m\"\n", "line 10: distances.to: the key is missing; write to = \"150 m\""),
         ("[distances]\nlist = []\n", "line 11: distances.list: the list is empty"),
         ("[distances]\nlist = [\"nan m\"]\n", "line 11: distances.list[0]: `nan m`"),
         ("[stereo]\nbaseline = \"0 m\"\ntexture = 0.1\n", "line 11: stereo.baseline: `0 m` is out of range"),

@@ -4,6 +4,7 @@ mod air_ranging;
 mod camera_bands;
 mod companion;
 mod fuzz_readers;
+mod keys;
 mod published;
 mod rule_air;
 mod scenario;

@@ -20,7 +20,7 @@ pub(super) struct BlackbodyArgs {
 }
 
 pub(super) fn run(args: &BlackbodyArgs, global: &Global) -> Result<ExitCode> {
-    let scenario = BlackbodyScenario::from_file(&args.file)?;
+    let scenario = BlackbodyScenario::from_written(&global.written(&args.file)?)?;
     let study = BlackbodyStudy::new(&scenario)?;
     global.inputs_are_safe()?;
     let mut result = study.calibrate()?;

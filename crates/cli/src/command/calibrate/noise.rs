@@ -18,13 +18,16 @@ pub(super) struct NoiseArgs {
 
 pub(super) fn run(args: &NoiseArgs, global: &Global) -> Result<ExitCode> {
     let scenario = match args.files.as_slice() {
-        [one] if !Frames::is_bare(one) => NoiseScenario::from_file(one)?,
+        [one] if !Frames::is_bare(one) => NoiseScenario::from_written(&global.written(one)?)?,
         files => match files.iter().find(|file| !Frames::is_bare(file)) {
             Some(other) => {
                 let instead = "name frames (.npy, .mat) or one scenario with [cube] data = [\"frame_1.npy\", \"frame_2.npy\"]";
                 return Err(Error::malformed("a scenario among several files", instead).in_file(other));
             }
-            None => NoiseScenario::bare(files),
+            None => {
+                global.sets_nothing("a cube")?;
+                NoiseScenario::bare(files)
+            }
         },
     };
     let study = NoiseStudy::new(&scenario)?;

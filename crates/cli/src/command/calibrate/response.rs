@@ -17,7 +17,7 @@ pub(super) struct ResponseArgs {
 }
 
 pub(super) fn run(args: &ResponseArgs, global: &Global) -> Result<ExitCode> {
-    let scenario = ResponseScenario::from_file(&args.file)?;
+    let scenario = ResponseScenario::from_written(&global.written(&args.file)?)?;
     let study = ResponseStudy::new(&scenario)?;
     global.inputs_are_safe()?;
     let mut result = study.calibrate()?;

@@ -21,8 +21,11 @@ pub(super) struct StripesArgs {
 
 pub(super) fn run(args: &StripesArgs, global: &Global) -> Result<ExitCode> {
     let scenario = match Frames::is_bare(&args.file) {
-        true => StripesScenario::bare(&args.file),
-        false => StripesScenario::from_file(&args.file)?,
+        true => {
+            global.sets_nothing("a cube")?;
+            StripesScenario::bare(&args.file)
+        }
+        false => StripesScenario::from_written(&global.written(&args.file)?)?,
     };
     let study = StripesStudy::new(&scenario)?;
     global.inputs_are_safe()?;

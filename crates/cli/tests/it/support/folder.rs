@@ -31,6 +31,17 @@ pub(crate) struct Outcome {
     pub stderr: String,
 }
 
+impl Outcome {
+    fn of(command: &mut Command) -> Self {
+        let output = command.output().unwrap();
+        Self {
+            code: output.status.code().unwrap_or(-1),
+            stdout: String::from_utf8(output.stdout).unwrap(),
+            stderr: String::from_utf8(output.stderr).unwrap(),
+        }
+    }
+}
+
 impl Folder {
     pub(crate) fn with(scenario: &str) -> Self {
         let folder = Self(tempfile::tempdir().unwrap());
@@ -49,16 +60,14 @@ impl Folder {
     }
 
     pub(crate) fn run(&self, arguments: &[&str]) -> Outcome {
-        let output = Command::new(assert_cmd::cargo::cargo_bin!("hadar"))
-            .current_dir(self.path())
-            .args(arguments)
-            .output()
-            .unwrap();
-        Outcome {
-            code: output.status.code().unwrap_or(-1),
-            stdout: String::from_utf8(output.stdout).unwrap(),
-            stderr: String::from_utf8(output.stderr).unwrap(),
-        }
+        let mut command = Command::new(assert_cmd::cargo::cargo_bin!("hadar"));
+        Outcome::of(command.current_dir(self.path()).args(arguments))
+    }
+
+    /// The same with a text on standard input.
+    pub(crate) fn fed(&self, stdin: &str, arguments: &[&str]) -> Outcome {
+        let mut command = Command::new(assert_cmd::cargo::cargo_bin!("hadar"));
+        Outcome::of(command.current_dir(self.path()).args(arguments).write_stdin(stdin))
     }
 
     pub(crate) fn json(&self, arguments: &[&str]) -> Value {

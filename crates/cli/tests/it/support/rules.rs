@@ -1,5 +1,6 @@
 //! Rules in memory and what is said of them, for the tests of what rules ask.
 
+use super::folder::SCENARIO;
 use hadar::material::Library;
 use hadar_study::scenario::Rule;
 use hadar_study::study::{CameraVerdict, Extent, Found, MeasuredVerdict, RuleAnswer, RuleAsked, RuleStudy};
@@ -54,4 +55,10 @@ pub(crate) fn measured(text: &str) -> MeasuredVerdict {
 
 pub(crate) fn close(a: f64, b: f64, relative: f64) -> bool {
     (a - b).abs() <= relative * b.abs()
+}
+
+/// A rule of one camera.
+pub(crate) fn rule(camera: &str) -> String {
+    let scenario = SCENARIO.replace("[camera]\npreset = \"flir-a325sc\"\n", "");
+    format!("cameras = [\"{camera}\"]\n{scenario}[envelope]\ntemperature = [\"30 degC\", \"37 degC\"]\n")
 }

@@ -1,5 +1,6 @@
 //! Reads a scenario of ranging by air: every key checked, every error one line with file, line and key.
 
+use super::super::keys::files;
 use super::super::kind::Kind;
 use super::super::read::{document, environment, prior, target};
 use super::super::section::{Entry, Section, without_repetition};
@@ -9,25 +10,10 @@ use super::super::{
     camera,
 };
 use super::{AirRangingScenario, AirStereo, AirUnknown, Demand, RangingScenario, SmoothEmissivity};
-use hadar::allowed::{ABOVE_ZERO, Allowed, SHARE};
 use hadar::error::{Error, Result};
-use hadar::units::Dimension;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-const TABLES: &[&str] = &[
-    "title",
-    "signal",
-    "target",
-    "environment",
-    "atmosphere",
-    "bands",
-    "unknown",
-    "camera",
-    "distances",
-    "stereo",
-    "requirement",
-];
 const MINIMUM: &str = "write signal = \"air\", [target] with material, temperature and distance, [atmosphere] with model = \
                        \"us-standard\", and [camera]";
 /// Distances where nothing is said: so many from a tenth of the target's to three times it.
@@ -108,8 +94,8 @@ impl AirRangingScenario {
     pub fn from_written(written: &Written) -> Result<Self> {
         let mut source = written.source();
         let document = document(written, (Kind::Range, MINIMUM), &mut source)?;
-        let root = Section::open(&document, "", &source, TABLES)?;
-        root.require("signal", "\"air\"")?.choice(&[("air", ())])?;
+        let root = Section::open(&document, "", &source, &files::AIR_RANGING)?;
+        root.require("signal")?.choice(&[("air", ())])?;
         let missing = |key: &str, instead: &str| {
             root.fail(key, Error::malformed("the table is missing", format!("write [{key}] with {instead}")))
         };
@@ -189,11 +175,11 @@ fn spaced([from, to]: [f64; 2], points: u32) -> Vec<f64> {
 }
 
 fn distances(entry: &Entry<'_>) -> Result<Vec<f64>> {
-    let section = entry.section(&["list", "from", "to", "points"])?;
+    let section = entry.section()?;
     for key in ["from", "to", "points"] {
         section.at_most_one(&["list", key])?;
     }
-    let length = |entry: &Entry<'_>| entry.quantity(Dimension::Length, ABOVE_ZERO);
+    let length = |entry: &Entry<'_>| entry.quantity();
     if let Some(list) = section.get("list") {
         let mut lengths =
             list.items("list = [\"15 m\", \"150 m\"]")?.iter().map(length).collect::<Result<Vec<f64>>>()?;
@@ -206,8 +192,7 @@ fn distances(entry: &Entry<'_>) -> Result<Vec<f64>> {
         lengths.dedup();
         return Ok(lengths);
     }
-    let [from, to] =
-        ["from", "to"].map(|key| section.require(key, "\"15 m\"").and_then(|entry| length(&entry)));
+    let [from, to] = ["from", "to"].map(|key| section.require(key).and_then(|entry| length(&entry)));
     let (from, to) = (from?, to?);
     if to <= from {
         let found = format!("to ({to} m) is not above from ({from} m)");
@@ -222,13 +207,7 @@ fn distances(entry: &Entry<'_>) -> Result<Vec<f64>> {
 }
 
 fn unknown(entry: &Entry<'_>) -> Result<(Unknown, AirUnknown)> {
-    let section = entry.section(&[
-        "nuisances",
-        "priors",
-        "lighting_total",
-        "emissivity_error",
-        "emissivity_correlation",
-    ])?;
+    let section = entry.section()?;
     let names: Vec<&str> =
         Nuisance::ALL.into_iter().map(Nuisance::name).chain([AIR_TEMPERATURE, EMISSIVITY]).collect();
     let choices: Vec<(&str, &str)> = names.iter().map(|name| (*name, *name)).collect();
@@ -245,7 +224,7 @@ fn unknown(entry: &Entry<'_>) -> Result<(Unknown, AirUnknown)> {
     let mut priors = BTreeMap::new();
     let mut air_prior_k = None;
     if let Some(entry) = section.get("priors") {
-        let table = entry.section(&names[..names.len() - 1])?;
+        let table = entry.section()?;
         for name in &names[..names.len() - 1] {
             let Some(sigma) = table.get(name) else { continue };
             if !named.contains(name) {
@@ -258,9 +237,8 @@ fn unknown(entry: &Entry<'_>) -> Result<(Unknown, AirUnknown)> {
             }
         }
     }
-    let share = Allowed { holds: |value| value > 0.0 && value <= 1.0, expected: "above 0, at most 1" };
-    let error = section.number("emissivity_error", "0.01", share)?;
-    let correlation = section.quantity("emissivity_correlation", Dimension::Wavenumber, ABOVE_ZERO)?;
+    let error = section.number("emissivity_error")?;
+    let correlation = section.quantity("emissivity_correlation")?;
     let is_unknown = named.contains(&EMISSIVITY);
     for (key, given) in [("emissivity_error", error), ("emissivity_correlation", correlation)] {
         if given.is_some() && !is_unknown {
@@ -274,14 +252,13 @@ fn unknown(entry: &Entry<'_>) -> Result<(Unknown, AirUnknown)> {
         sigma: error.unwrap_or(SMOOTH.sigma),
         correlation_cm1: correlation.unwrap_or(SMOOTH.correlation_cm1),
     });
-    let lighting_total = section.number("lighting_total", "1.0", SHARE)?;
+    let lighting_total = section.number("lighting_total")?;
     let air_temperature = named.contains(&AIR_TEMPERATURE).then_some(air_prior_k);
     Ok((Unknown { nuisances, priors, lighting_total }, AirUnknown { air_temperature, emissivity }))
 }
 
 fn stereo(entry: &Entry<'_>) -> Result<AirStereo> {
-    let section = entry.section(&["baseline", "window", "texture"])?;
-    let share = Allowed { holds: |value| value > 0.0 && value <= 1.0, expected: "above 0, at most 1" };
+    let section = entry.section()?;
     let window = section.read("window", |entry| {
         let [rows, columns] = entry.pair("[5, 5]")?;
         let side = |end: &Entry<'_>| {
@@ -300,17 +277,17 @@ fn stereo(entry: &Entry<'_>) -> Result<AirStereo> {
         Ok([side(&rows)?, side(&columns)?])
     })?;
     Ok(AirStereo {
-        baseline_m: section.require("baseline", "\"0.2 m\"")?.quantity(Dimension::Length, ABOVE_ZERO)?,
+        baseline_m: section.require("baseline")?.quantity()?,
         window: window.unwrap_or(WINDOW),
-        texture: section.require("texture", "0.01")?.number("0.01", share)?,
+        texture: section.require("texture")?.number("0.01")?,
     })
 }
 
 fn requirement(entry: &Entry<'_>) -> Result<Demand> {
-    let section = entry.section(&["distance_error", "relative_distance_error"])?;
+    let section = entry.section()?;
     section.at_most_one(&["distance_error", "relative_distance_error"])?;
-    let absolute = section.quantity("distance_error", Dimension::Length, ABOVE_ZERO)?;
-    let relative = section.number("relative_distance_error", "0.05", ABOVE_ZERO)?;
+    let absolute = section.quantity("distance_error")?;
+    let relative = section.number("relative_distance_error")?;
     match (absolute, relative) {
         (Some(error_m), _) => Ok(Demand::Absolute(error_m)),
         (None, Some(share)) => Ok(Demand::Relative(share)),

@@ -3,7 +3,6 @@
 use super::super::entries::Entries;
 use super::super::paths::{Paths, axes, file, variable};
 use super::super::section::{Entry, Section};
-use hadar::allowed::{ABOVE_ZERO, ABSOLUTE_TEMPERATURE, FROM_ZERO};
 use hadar::cube::Axes;
 use hadar::error::{Error, Result};
 use hadar::units::Dimension;
@@ -40,9 +39,9 @@ pub struct CubeFile {
 }
 
 impl CubeFile {
-    pub(super) fn read(section: &Section<'_>, example: &str) -> Result<Self> {
+    pub(super) fn read(section: &Section<'_>) -> Result<Self> {
         Ok(Self {
-            path: file(&section.require("data", example)?)?,
+            path: file(&section.require("data")?)?,
             variable: variable(section)?,
             axes: axes(section)?,
         })
@@ -58,13 +57,13 @@ impl CubeFile {
 
 impl BlackbodySpec {
     fn read(entry: &Entry<'_>) -> Result<Self> {
-        let section = entry.section(&["temperature", "uncertainty", "data", "variable", "axes"])?;
-        let temperature = section.require("temperature", "\"10 degC\"")?;
-        let uncertainty = section.quantity("uncertainty", Dimension::TemperatureDifference, FROM_ZERO)?;
+        let section = entry.section()?;
+        let temperature = section.require("temperature")?;
+        let uncertainty = section.quantity("uncertainty")?;
         Ok(Self {
-            temperature_k: temperature.quantity(Dimension::Temperature, ABSOLUTE_TEMPERATURE)?,
+            temperature_k: temperature.quantity()?,
             uncertainty_k: uncertainty,
-            data: CubeFile::read(&section, "\"cold.npy\"")?,
+            data: CubeFile::read(&section)?,
         })
     }
 
@@ -131,8 +130,8 @@ fn apart(specs: &[BlackbodySpec]) -> Result<()> {
 pub(super) fn noise(root: &Section<'_>) -> Result<f64> {
     const INSTEAD: &str = "write [noise] with sample = 1.5, the deviation of one sample in the unit of the cubes (hadar calibrate noise finds it)";
     let stated = root.read("noise", |entry| {
-        let section = entry.section(&["sample"])?;
-        let sample = section.number("sample", "1.5", ABOVE_ZERO)?;
+        let section = entry.section()?;
+        let sample = section.number("sample")?;
         if let Some(value) = sample.filter(|value| !(RANGE[0]..=RANGE[1]).contains(value)) {
             let error = Error::out_of_range(
                 "noise of a sample",

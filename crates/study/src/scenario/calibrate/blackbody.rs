@@ -1,6 +1,7 @@
 //! A spectrometer before blackbodies (`hadar calibrate blackbody`): its channels, the blackbodies, the noise, a cube to be calibrated.
 
 use super::super::entries::{Document, Entries, Part, entries, text};
+use super::super::keys::files;
 use super::super::kind::Kind;
 use super::super::paths::Paths;
 use super::super::read::document;
@@ -88,7 +89,7 @@ impl BlackbodyScenario {
     pub fn from_written(written: &Written) -> Result<Self> {
         let mut source = written.source();
         let document = document(written, (Kind::Calibrate, MINIMUM), &mut source)?;
-        let root = Section::open(&document, "", &source, &["title", "bands", "blackbody", "noise", "scene"])?;
+        let root = Section::open(&document, "", &source, &files::BLACKBODY)?;
         let missing = |key: &str| root.fail(key, Error::malformed("the table is missing", MINIMUM));
         let scenario = Self {
             title: root.read("title", |entry| Ok(entry.text("\"FTIR of today\"")?.to_owned()))?,
@@ -96,9 +97,9 @@ impl BlackbodyScenario {
             blackbodies: blackbodies(&root)?,
             noise: noise(&root)?,
             scene: root.read("scene", |entry| {
-                let section = entry.section(&["data", "variable", "axes", "response"])?;
+                let section = entry.section()?;
                 Ok(SpectralScene {
-                    data: CubeFile::read(&section, "\"scene.npy\"")?,
+                    data: CubeFile::read(&section)?,
                     each_pixel: section.choice("response", &RESPONSES)?.unwrap_or(false),
                 })
             })?,

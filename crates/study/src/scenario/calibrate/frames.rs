@@ -35,8 +35,8 @@ impl Frames {
 
     /// `data`, one or a list, and `variable`.
     pub(in crate::scenario) fn read(entry: &Entry<'_>) -> Result<Self> {
-        let section = entry.section(&["data", "variable", "axes"])?;
-        let data = section.require("data", "\"counts.npy\"")?;
+        let section = entry.section()?;
+        let data = section.require("data")?;
         Ok(Self {
             data: match data.is_list() {
                 true => data

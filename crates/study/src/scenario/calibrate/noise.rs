@@ -1,6 +1,7 @@
 //! Which noise is asked for (`hadar calibrate noise`): frames, and what is known of the camera (`[noise]`).
 
 use super::super::entries::{Document, Entries, Part, entries, text};
+use super::super::keys::files;
 use super::super::kind::Kind;
 use super::super::paths::Paths;
 use super::super::read::document;
@@ -8,14 +9,12 @@ use super::super::section::{Entry, Section};
 use super::super::source::Source;
 use super::super::written::Written;
 use super::frames::Frames;
-use hadar::allowed::{ABOVE_ZERO, Allowed};
 use hadar::error::{Error, Result};
 use hadar::units::Dimension;
 use serde::{Serialize, Serializer};
 use std::path::Path;
 
 const MINIMUM: &str = "write [cube] with data = [\"frame_1.npy\", \"frame_2.npy\"], and [noise]";
-const FINITE: Allowed = Allowed { holds: f64::is_finite, expected: "a finite number" };
 
 /// Everything that the file says.
 #[derive(Debug, Clone)]
@@ -76,7 +75,7 @@ impl NoiseScenario {
     pub fn from_written(written: &Written) -> Result<Self> {
         let mut source = written.source();
         let document = document(written, (Kind::Calibrate, MINIMUM), &mut source)?;
-        let root = Section::open(&document, "", &source, &["title", "cube", "noise"])?;
+        let root = Section::open(&document, "", &source, &files::NOISE)?;
         let missing = |key: &str| root.fail(key, Error::malformed("the table is missing", MINIMUM));
         let scenario = Self {
             title: root.read("title", |entry| Ok(entry.text("\"Noise of the camera\"")?.to_owned()))?,
@@ -110,11 +109,11 @@ impl NoiseScenario {
 }
 
 fn noise(entry: &Entry<'_>) -> Result<NoiseSpec> {
-    let section = entry.section(&["dark_level", "gain_spread", "exposure"])?;
+    let section = entry.section()?;
     Ok(NoiseSpec {
-        dark_level: section.number("dark_level", "0.0", FINITE)?.unwrap_or(0.0),
+        dark_level: section.number("dark_level")?.unwrap_or(0.0),
         gain_spread: section.read("gain_spread", Entry::boolean)?.unwrap_or(false),
-        exposure_s: section.quantity("exposure", Dimension::Time, ABOVE_ZERO)?,
+        exposure_s: section.quantity("exposure")?,
     })
 }
 

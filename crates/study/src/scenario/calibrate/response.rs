@@ -3,13 +3,13 @@
 
 use super::super::Source;
 use super::super::entries::{Document, Entries, Part, entries, text};
+use super::super::keys::files;
 use super::super::kind::Kind;
 use super::super::paths::{Paths, file};
 use super::super::read::document;
 use super::super::section::{Entry, Section};
 use super::super::written::Written;
 use super::blackbodies::{BlackbodySpec, CubeFile, blackbodies, noise};
-use hadar::allowed::{ABOVE_ZERO, ABSOLUTE_TEMPERATURE, FROM_ZERO};
 use hadar::calibration::determined::CurveSmoothness;
 use hadar::error::{Error, Result};
 use hadar::units::Dimension;
@@ -22,8 +22,6 @@ const MINIMUM: &str = "write [response] with filters = \"filters.csv\", [[blackb
 const START_CM1: f64 = 595.0;
 const STOP_CM1: f64 = 1340.0;
 const VALUES: u32 = 30;
-/// Most values of a response.
-const MOST: u32 = 200;
 /// A scale that is free, a shape that is not.
 const KNOWN: CurveSmoothness = CurveSmoothness { scale: 0.5, shape: 0.15, correlation_cm1: 100.0 };
 /// Rows and columns about the centre on each side of it.
@@ -100,8 +98,7 @@ impl ResponseScenario {
     pub fn from_written(written: &Written) -> Result<Self> {
         let mut source = written.source();
         let document = document(written, (Kind::Calibrate, MINIMUM), &mut source)?;
-        let root =
-            Section::open(&document, "", &source, &["title", "response", "blackbody", "noise", "scene"])?;
+        let root = Section::open(&document, "", &source, &files::RESPONSE)?;
         let missing = |key: &str| root.fail(key, Error::malformed("the table is missing", MINIMUM));
         let scenario = Self {
             title: root.read("title", |entry| Ok(entry.text("\"Response of the camera\"")?.to_owned()))?,
@@ -157,36 +154,24 @@ impl ResponseScenario {
 }
 
 fn response(entry: &Entry<'_>) -> Result<ResponseSpec> {
-    let section = entry.section(&[
-        "filters",
-        "start",
-        "stop",
-        "values",
-        "typical",
-        "scale_error",
-        "shape_error",
-        "correlation",
-        "centre_half",
-    ])?;
-    let nu = |key: &str| section.quantity(key, Dimension::Wavenumber, ABOVE_ZERO);
+    let section = entry.section()?;
+    let nu = |key: &str| section.quantity(key);
     let range_cm1 = [nu("start")?.unwrap_or(START_CM1), nu("stop")?.unwrap_or(STOP_CM1)];
     if range_cm1[0] >= range_cm1[1] {
         let found = format!("values from {} to {} cm^-1", range_cm1[0], range_cm1[1]);
         let error = Error::malformed(found, "write start = \"595 cm^-1\" and stop = \"1340 cm^-1\"");
         return Err(section.fail("stop", error));
     }
-    let values = section.read("values", |entry| entry.count_within([2, MOST], "30"))?.unwrap_or(VALUES);
-    let number = |key: &str, example: &str, silent: f64| -> Result<f64> {
-        Ok(section.number(key, example, ABOVE_ZERO)?.unwrap_or(silent))
-    };
+    let values = section.read("values", |entry| entry.count("30"))?.unwrap_or(VALUES);
+    let number = |key: &str, silent: f64| -> Result<f64> { Ok(section.number(key)?.unwrap_or(silent)) };
     Ok(ResponseSpec {
-        filters: file(&section.require("filters", "\"filters.csv\"")?)?,
+        filters: file(&section.require("filters")?)?,
         range_cm1,
         values: values as usize,
         typical: section.read("typical", file)?,
         known: CurveSmoothness {
-            scale: number("scale_error", "0.5", KNOWN.scale)?,
-            shape: number("shape_error", "0.15", KNOWN.shape)?,
+            scale: number("scale_error", KNOWN.scale)?,
+            shape: number("shape_error", KNOWN.shape)?,
             correlation_cm1: nu("correlation")?.unwrap_or(KNOWN.correlation_cm1),
         },
         centre_half: section.read("centre_half", |entry| entry.count("10"))?.unwrap_or(HALF) as usize,
@@ -194,22 +179,13 @@ fn response(entry: &Entry<'_>) -> Result<ResponseSpec> {
 }
 
 fn scene(entry: &Entry<'_>) -> Result<SceneSpec> {
-    let section = entry.section(&[
-        "data",
-        "variable",
-        "axes",
-        "reference",
-        "reference_temperature",
-        "reference_uncertainty",
-    ])?;
-    let reference_k = section.require("reference_temperature", "\"20 degC\"")?;
+    let section = entry.section()?;
+    let reference_k = section.require("reference_temperature")?;
     Ok(SceneSpec {
-        data: CubeFile::read(&section, "\"scene.npy\"")?,
-        reference: file(&section.require("reference", "\"reference.npy\"")?)?,
-        reference_k: reference_k.quantity(Dimension::Temperature, ABSOLUTE_TEMPERATURE)?,
-        reference_error_k: section
-            .quantity("reference_uncertainty", Dimension::TemperatureDifference, FROM_ZERO)?
-            .unwrap_or(0.0),
+        data: CubeFile::read(&section)?,
+        reference: file(&section.require("reference")?)?,
+        reference_k: reference_k.quantity()?,
+        reference_error_k: section.quantity("reference_uncertainty")?.unwrap_or(0.0),
     })
 }
 

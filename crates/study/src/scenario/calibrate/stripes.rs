@@ -1,6 +1,7 @@
 //! Which stripes are to be taken out of a cube (`hadar calibrate stripes`): the cube, and how they lie (`[stripes]`).
 
 use super::super::entries::{Document, Entries, Part, entries, text};
+use super::super::keys::files;
 use super::super::kind::Kind;
 use super::super::paths::Paths;
 use super::super::read::document;
@@ -8,7 +9,6 @@ use super::super::section::{Entry, Section};
 use super::super::source::Source;
 use super::super::written::Written;
 use super::frames::Frames;
-use hadar::allowed::ABOVE_ZERO;
 use hadar::calibrate::{Axis, Sought};
 use hadar::error::{Error, Result};
 use serde::{Serialize, Serializer};
@@ -63,7 +63,7 @@ impl StripesScenario {
     pub fn from_written(written: &Written) -> Result<Self> {
         let mut source = written.source();
         let document = document(written, (Kind::Calibrate, MINIMUM), &mut source)?;
-        let root = Section::open(&document, "", &source, &["title", "cube", "stripes"])?;
+        let root = Section::open(&document, "", &source, &files::STRIPES)?;
         let missing = |key: &str| root.fail(key, Error::malformed("the table is missing", MINIMUM));
         let scenario = Self {
             title: root.read("title", |entry| Ok(entry.text("\"A striped cube\"")?.to_owned()))?,
@@ -101,11 +101,11 @@ impl StripesScenario {
 }
 
 fn stripes(entry: &Entry<'_>) -> Result<Sought> {
-    let section = entry.section(&["axis", "gain_deviation", "in_all_bands"])?;
+    let section = entry.section()?;
     let axes = [Axis::Rows, Axis::Columns].map(|axis| (axis.name(), axis));
     Ok(Sought {
         axis: section.choice("axis", &axes)?.unwrap_or(SOUGHT.axis),
-        gain_deviation: section.number("gain_deviation", "0.1", ABOVE_ZERO)?.unwrap_or(SOUGHT.gain_deviation),
+        gain_deviation: section.number("gain_deviation")?.unwrap_or(SOUGHT.gain_deviation),
         in_all_bands: section.read("in_all_bands", Entry::boolean)?.unwrap_or(SOUGHT.in_all_bands),
     })
 }

@@ -2,7 +2,6 @@
 
 use super::super::entries::Entries;
 use super::super::section::{Entry, Section, without_repetition};
-use hadar::allowed::Allowed;
 use hadar::error::{Error, Result};
 use hadar::segmentation::Rule;
 
@@ -37,10 +36,6 @@ impl Told {
             Self::BySurfaces => "surfaces",
         }
     }
-
-    fn keys(self) -> [&'static str; 4] {
-        ["name", "materials", "enclosed", self.key()]
-    }
 }
 
 /// How pixels get a category.
@@ -62,21 +57,13 @@ impl Default for SegmentationSpec {
 
 const RULES: [(&str, Rule); 2] = [("regions", Rule::Regions), ("raster", Rule::Raster)];
 const EXAMPLE: &str = "materials = [\"pmma\", \"rubber-tyre\", \"soda-lime-glass\"]";
-const WHOLE: Allowed = Allowed {
-    holds: |value| value >= 0.0 && value.fract() == 0.0 && value <= 1e9,
-    expected: "a whole number from 0",
-};
-const PIXELS: Allowed = Allowed {
-    holds: |value| value >= 1.0 && value.fract() == 0.0 && value <= 1e9,
-    expected: "a whole number from 1",
-};
 
 /// All categories in their order.
 pub(in crate::scenario) fn categories(entry: &Entry<'_>, told: Told) -> Result<Vec<CategorySpec>> {
     let items = entry.items("[[category]]")?;
     let mut all: Vec<CategorySpec> = Vec::with_capacity(items.len());
     for item in &items {
-        let section = item.section(&told.keys())?;
+        let section = item.section()?;
         let category = category(&section)?;
         let fail = |key: &str, found: String, instead: &str| {
             Err(section.fail(key, Error::malformed(found, instead)))
@@ -109,13 +96,13 @@ pub(in crate::scenario) fn categories(entry: &Entry<'_>, told: Told) -> Result<V
 }
 
 fn category(section: &Section<'_>) -> Result<CategorySpec> {
-    let name = section.require("name", "\"car\"")?.text("\"car\"")?.trim().to_owned();
+    let name = section.require("name")?.text("\"car\"")?.trim().to_owned();
     if name.is_empty() || name.eq_ignore_ascii_case("none") {
         let found = format!("`{name}`, which says that a pixel has no category");
         return Err(section.fail("name", Error::malformed(found, "give it another name")));
     }
     let text = |item: &Entry<'_>| Ok(item.text("\"pmma\"")?.trim().to_owned());
-    let listed = section.require("materials", "[\"pmma\"]")?;
+    let listed = section.require("materials")?;
     let items = listed.items(EXAMPLE)?;
     if items.is_empty() {
         let found = format!("the category `{name}` has no materials");
@@ -135,7 +122,7 @@ fn category(section: &Section<'_>) -> Result<CategorySpec> {
     })?;
     let labels = section.read("labels", |entry| {
         let items = entry.items("labels = [4, 5]")?;
-        let label = |item: &Entry<'_>| Ok(item.number("4", WHOLE)? as usize);
+        let label = |item: &Entry<'_>| Ok(item.number("4")? as usize);
         without_repetition(&items, label)
     })?;
     let surfaces = section.read("surfaces", |entry| {
@@ -151,13 +138,13 @@ fn category(section: &Section<'_>) -> Result<CategorySpec> {
 }
 
 pub(super) fn segmentation(entry: &Entry<'_>) -> Result<SegmentationSpec> {
-    let section = entry.section(&["rule", "smoothing", "smallest_object"])?;
+    let section = entry.section()?;
     let default = SegmentationSpec::default();
     Ok(SegmentationSpec {
         rule: section.choice("rule", &RULES)?.unwrap_or(default.rule),
         smoothing: section.read("smoothing", Entry::boolean)?.unwrap_or(default.smoothing),
         smallest_object: section
-            .number("smallest_object", "25", PIXELS)?
+            .number("smallest_object")?
             .map_or(default.smallest_object, |pixels| pixels as usize),
     })
 }

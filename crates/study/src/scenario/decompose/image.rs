@@ -3,7 +3,6 @@
 use super::super::entries::Entries;
 use super::super::section::Entry;
 use super::{Brightness, VisionSpec};
-use hadar::allowed::{ABOVE_ZERO, ABSOLUTE_TEMPERATURE, Allowed};
 use hadar::decompose::SpatialPrior;
 use hadar::error::{Error, Result};
 use hadar::units::Dimension;
@@ -12,25 +11,16 @@ use hadar::units::Dimension;
 const POTTS_WEIGHT: f64 = 1.0;
 /// The paper's p.
 const TEX_SGD_WEIGHT: f64 = 0.1;
-const WEIGHT: Allowed =
-    Allowed { holds: |value| value > 0.0 && value <= 10.0, expected: "above 0, at most 10" };
-const HUE: Allowed =
-    Allowed { holds: |value| (0.0..360.0).contains(&value), expected: "from 0, below 360 degrees" };
-const PLACE: Allowed = Allowed {
-    holds: |value| value >= 0.0 && value.fract() == 0.0 && value <= 1e6,
-    expected: "a whole number from 0",
-};
 const BRIGHTNESS: [(&str, Brightness); 2] =
     [("texture", Brightness::Texture), ("distilled", Brightness::Distilled)];
 const POTTS: &str = "potts";
 const TEX_SGD: &str = "tex-sgd";
 
 pub(super) fn spatial(entry: &Entry<'_>) -> Result<SpatialPrior> {
-    let section = entry.section(&["prior", "weight", "temperature_step"])?;
-    let is_potts = section.require("prior", "\"potts\"")?.choice(&[(POTTS, true), (TEX_SGD, false)])?;
-    let weight = section.number("weight", if is_potts { "1.0" } else { "0.1" }, WEIGHT)?;
-    let temperature_step_k =
-        section.quantity("temperature_step", Dimension::TemperatureDifference, ABOVE_ZERO)?;
+    let section = entry.section()?;
+    let is_potts = section.require("prior")?.choice(&[(POTTS, true), (TEX_SGD, false)])?;
+    let weight = section.number("weight")?;
+    let temperature_step_k = section.quantity("temperature_step")?;
     match (is_potts, temperature_step_k) {
         (true, _) => Ok(SpatialPrior::Potts { weight: weight.unwrap_or(POTTS_WEIGHT), temperature_step_k }),
         (false, None) => Ok(SpatialPrior::TexSgd { weight: weight.unwrap_or(TEX_SGD_WEIGHT) }),
@@ -53,14 +43,14 @@ pub(super) fn spatial_written(prior: &SpatialPrior) -> Entries {
 }
 
 pub(super) fn vision(entry: &Entry<'_>) -> Result<VisionSpec> {
-    let section = entry.section(&["hues", "temperature", "sky", "brightness"])?;
-    let temperature = |end: &Entry<'_>| end.quantity(Dimension::Temperature, ABSOLUTE_TEMPERATURE);
+    let section = entry.section()?;
+    let temperature = |end: &Entry<'_>| end.quantity();
     let hues = section.read("hues", |entry| {
         let table = entry.table()?;
-        let hue = |name: &str| Ok((name.to_owned(), table.require(name, "210")?.number("210", HUE)?));
-        table.keys().map(hue).collect()
+        let hue = |name: &str| Some((name.to_owned(), table.get(name)?.number("210")));
+        table.keys().filter_map(hue).map(|(name, hue)| Ok((name, hue?))).collect()
     })?;
-    let sky = section.number("sky", "0", PLACE)?.map(|place| place as usize);
+    let sky = section.number("sky")?.map(|place| place as usize);
     let brightness = section.choice("brightness", &BRIGHTNESS)?.unwrap_or_default();
     if sky.is_none() && brightness == Brightness::Distilled {
         let found = "a distilled texture without a sky";

@@ -1,5 +1,6 @@
 //! Reads a decomposition scenario: every key checked, every error one line with file, line and key.
 
+use super::super::keys::files;
 use super::super::kind::Kind;
 use super::super::paths::{axes, file, is_path, material, variable};
 use super::super::read::document;
@@ -12,35 +13,15 @@ use super::image::{spatial, vision};
 use super::{
     CubeNoise, CubeUnit, DecomposeScenario, HeatCube, LibrarySpec, LightSource, PixelUnknown, TruthSpec,
 };
-use hadar::allowed::{ABOVE_ZERO, ABSOLUTE_TEMPERATURE, Allowed, SHARE};
 use hadar::error::{Error, Result};
-use hadar::units::Dimension;
 use std::path::Path;
 
-const TABLES: &[&str] = &[
-    "title",
-    "class",
-    "cube",
-    "bands",
-    "camera",
-    "environment",
-    "library",
-    "unknown",
-    "spatial",
-    "vision",
-    "category",
-    "segmentation",
-    "truth",
-];
-/// Maps of the truth that every heat cube may have.
-pub(in crate::scenario) const TRUTH: &[&str] =
-    &["scene", "material", "material_list", "temperature", "temperature_unit", "lighting"];
+/// Maps of the truth in files of their own.
+const MAPS: [&str; 5] = ["material", "material_list", "temperature", "temperature_unit", "lighting"];
 const MINIMUM: &str =
     "write [cube] with data = \"counts.npy\", [bands], and [library] with path = \"library.csv\"";
 /// Temperatures of a scene where nothing is said, K.
 const TEMPERATURES_K: [f64; 2] = [200.0, 400.0];
-/// Rows or bands of a cube at most.
-const MOST_PLACES: f64 = 1e9;
 const RADIANCE: &str = "W m^-2 sr^-1 per cm^-1";
 
 impl DecomposeScenario {
@@ -89,7 +70,7 @@ impl DecomposeScenario {
     pub fn from_written(written: &Written) -> Result<Self> {
         let mut source = written.source();
         let document = document(written, (Kind::Decompose, MINIMUM), &mut source)?;
-        let root = Section::open(&document, "", &source, TABLES)?;
+        let root = Section::open(&document, "", &source, &files::DECOMPOSE)?;
         let missing = |key: &str| root.fail(key, Error::malformed("the table is missing", MINIMUM));
         let camera = root.read("camera", camera::read)?;
         let cube = root.get("cube").ok_or_else(|| missing("cube"))?;
@@ -111,7 +92,7 @@ impl DecomposeScenario {
             vision: root.read("vision", vision)?.unwrap_or_default(),
             categories: root.read("category", |entry| categories(entry, Told::ByLabels))?.unwrap_or_default(),
             segmentation: root.read("segmentation", segmentation)?.unwrap_or_default(),
-            truth: root.read("truth", |entry| truth(entry, &[TRUTH, &["category"]].concat(), &data))?,
+            truth: root.read("truth", |entry| truth(entry, &data))?,
             source: Source::default(),
         };
         if scenario.categories.is_empty()
@@ -137,21 +118,13 @@ impl Default for PixelUnknown {
 }
 
 pub(in crate::scenario) fn heat_cube(entry: &Entry<'_>, camera: bool) -> Result<HeatCube> {
-    let section = entry.section(&[
-        "data",
-        "variable",
-        "axes",
-        "counts_per_photon_radiance",
-        "unit",
-        "noise",
-        "bad_bands",
-    ])?;
+    let section = entry.section()?;
     section.at_most_one(&["counts_per_photon_radiance", "unit"])?;
-    let counts = section.number("counts_per_photon_radiance", "2.2e-14", ABOVE_ZERO)?;
+    let counts = section.number("counts_per_photon_radiance")?;
     let radiance = section.choice("unit", &[(RADIANCE, ())])?.is_some();
     let noise = section.read("noise", |entry| match entry.text("\"noise.csv\"") {
         Ok(text) if is_path(text) => file(entry).map(CubeNoise::File),
-        _ => entry.number("1e-4", ABOVE_ZERO).map(CubeNoise::Uniform),
+        _ => entry.number("1e-4").map(CubeNoise::Uniform),
     })?;
     let unit = match (counts, radiance, camera) {
         (Some(_), _, true) | (_, true, true) => {
@@ -175,7 +148,7 @@ pub(in crate::scenario) fn heat_cube(entry: &Entry<'_>, camera: bool) -> Result<
         }
     };
     Ok(HeatCube {
-        data: cube_file(&section.require("data", "\"counts.npy\"")?, LEFT)?,
+        data: cube_file(&section.require("data")?, LEFT)?,
         variable: variable(&section)?,
         axes: axes(&section)?,
         unit,
@@ -191,24 +164,20 @@ pub(in crate::scenario) fn heat_cube(entry: &Entry<'_>, camera: bool) -> Result<
 
 /// A place in a list that is counted from 0.
 pub(in crate::scenario) fn place(entry: &Entry<'_>, example: &str) -> Result<usize> {
-    let allowed = Allowed {
-        holds: |value| value >= 0.0 && value.fract() == 0.0 && value <= MOST_PLACES,
-        expected: "a whole number from 0",
-    };
-    entry.number(example, allowed).map(|place| place as usize)
+    entry.number(example).map(|place| place as usize)
 }
 
 pub(in crate::scenario) fn light(entry: &Entry<'_>) -> Result<LightSource> {
-    let section = entry.section(&["spectrum", "column", "material", "temperature", "rows"])?;
+    let section = entry.section()?;
     let kinds = ["spectrum", "rows", "temperature"];
     let instead = "write temperature = \"-10 degC\", spectrum = \"light.csv\" with column = \"sky\", or rows = [0, 540]";
     match section.at_most_one(&kinds)? {
         Some("spectrum") => Ok(LightSource::Spectrum {
-            path: file(&section.require("spectrum", "\"light.csv\"")?)?,
-            column: section.require("column", "\"sky\"")?.text("\"sky\"")?.trim().to_owned(),
+            path: file(&section.require("spectrum")?)?,
+            column: section.require("column")?.text("\"sky\"")?.trim().to_owned(),
         }),
         Some("rows") => {
-            let [first, last] = section.require("rows", "[0, 540]")?.pair("[0, 540]")?;
+            let [first, last] = section.require("rows")?.pair("[0, 540]")?;
             let [first, last] = [place(&first, "0")?, place(&last, "540")?];
             if first < last {
                 return Ok(LightSource::Rows([first, last]));
@@ -219,31 +188,24 @@ pub(in crate::scenario) fn light(entry: &Entry<'_>) -> Result<LightSource> {
         }
         Some(_) => Ok(LightSource::Surface {
             material: section.read("material", material)?,
-            temperature_k: section
-                .require("temperature", "\"-10 degC\"")?
-                .quantity(Dimension::Temperature, ABSOLUTE_TEMPERATURE)?,
+            temperature_k: section.require("temperature")?.quantity()?,
         }),
         None => Err(entry.fail(Error::malformed("nothing says what these surroundings send", instead))),
     }
 }
 
 fn library(entry: &Entry<'_>) -> Result<LibrarySpec> {
-    let section =
-        entry.section(&["path", "materials", "prior", "emissivity_error", "emissivity_correlation"])?;
+    let section = entry.section()?;
     let spec = LibrarySpec {
         path: section.read("path", file)?,
         materials: section.read("materials", |entry| {
             entry.items("materials = [\"skin\", \"aluminium\"]")?.iter().map(material).collect()
         })?,
         prior: section.read("prior", |entry| {
-            entry.items("prior = [1.0, 0.2]")?.iter().map(|item| item.number("1.0", ABOVE_ZERO)).collect()
+            entry.items("prior = [1.0, 0.2]")?.iter().map(|item| item.number("1.0")).collect()
         })?,
-        emissivity_error: section.number("emissivity_error", "0.01", SHARE)?,
-        emissivity_correlation_cm1: section.quantity(
-            "emissivity_correlation",
-            Dimension::Wavenumber,
-            ABOVE_ZERO,
-        )?,
+        emissivity_error: section.number("emissivity_error")?,
+        emissivity_correlation_cm1: section.quantity("emissivity_correlation")?,
     };
     if spec.path.is_none() && spec.materials.is_none() {
         let instead = "write path = \"library.csv\" or materials = [\"skin\", \"aluminium\"]";
@@ -257,8 +219,8 @@ fn library(entry: &Entry<'_>) -> Result<LibrarySpec> {
 }
 
 pub(in crate::scenario) fn unknown(entry: &Entry<'_>) -> Result<PixelUnknown> {
-    let section = entry.section(&["temperature", "lighting_total", "gain"])?;
-    let temperature = |end: &Entry<'_>| end.quantity(Dimension::Temperature, ABSOLUTE_TEMPERATURE);
+    let section = entry.section()?;
+    let temperature = |end: &Entry<'_>| end.quantity();
     let default = PixelUnknown::default();
     Ok(PixelUnknown {
         temperature_k: section
@@ -270,16 +232,16 @@ pub(in crate::scenario) fn unknown(entry: &Entry<'_>) -> Result<PixelUnknown> {
                 Err(entry.fail(Error::malformed("a range of one temperature", "write two that differ")))
             })?
             .unwrap_or(default.temperature_k),
-        lighting_total: section.number("lighting_total", "1.0", SHARE)?,
+        lighting_total: section.number("lighting_total")?,
         gain: section.read("gain", Entry::boolean)?.unwrap_or(default.gain),
     })
 }
 
 /// The truth of a cube.
-pub(in crate::scenario) fn truth(entry: &Entry<'_>, keys: &[&str], cube: &Path) -> Result<TruthSpec> {
-    let section = entry.section(keys)?;
+pub(in crate::scenario) fn truth(entry: &Entry<'_>, cube: &Path) -> Result<TruthSpec> {
+    let section = entry.section()?;
     if let Some(scene) = section.get("scene") {
-        for key in TRUTH.iter().skip(1) {
+        for key in MAPS {
             section.at_most_one(&["scene", key])?;
         }
         let category = section.read("category", file)?;

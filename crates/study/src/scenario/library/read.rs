@@ -1,7 +1,8 @@
 //! Reads what a library is to be made from: every key checked, every error one line with file, line and key.
 
 use super::super::decompose::PixelUnknown;
-use super::super::decompose::read::{TRUTH, heat_cube, light, truth, unknown};
+use super::super::decompose::read::{heat_cube, light, truth, unknown};
+use super::super::keys::files;
 use super::super::kind::Kind;
 use super::super::paths::is_cube;
 use super::super::read::document;
@@ -9,22 +10,13 @@ use super::super::section::{Entry, Section};
 use super::super::written::Written;
 use super::super::{BandsSpec, Source, camera};
 use super::{ClustersSpec, EMISSIVITY, LibraryScenario};
-use hadar::allowed::{ABOVE_ZERO, Allowed, SHARE};
 use hadar::error::{Error, Result};
 use hadar::fisher::emissivity::Smoothness;
-use hadar::units::Dimension;
 use std::path::Path;
 
-const TABLES: &[&str] =
-    &["title", "cube", "bands", "camera", "environment", "clusters", "emissivity", "unknown", "truth"];
 const MINIMUM: &str =
     "write [cube] with data = \"counts.npy\", [bands], [[environment]], and [clusters] with count = 6";
-/// Most groups.
-const MOST: u32 = 200;
-const COUNT: &str = "count = 6 or count = [2, 12]";
 const MAX_EMISSIVITY: f64 = 0.99;
-const POSITIVE_SHARE: Allowed =
-    Allowed { holds: |value| value > 0.0 && value <= 1.0, expected: "above 0, at most 1" };
 
 impl LibraryScenario {
     /// Reads the file. Relative paths in it start from its directory.
@@ -82,7 +74,7 @@ impl LibraryScenario {
     pub fn from_written(written: &Written) -> Result<Self> {
         let mut source = written.source();
         let document = document(written, (Kind::Library, MINIMUM), &mut source)?;
-        let root = Section::open(&document, "", &source, TABLES)?;
+        let root = Section::open(&document, "", &source, &files::LIBRARY)?;
         let missing = |key: &str| root.fail(key, Error::malformed("the table is missing", MINIMUM));
         let camera = root.read("camera", camera::read)?;
         let cube = root.get("cube").ok_or_else(|| missing("cube"))?;
@@ -112,7 +104,7 @@ impl LibraryScenario {
             clusters: root.read("clusters", clusters)?.ok_or_else(|| missing("clusters"))?,
             emissivity: root.read("emissivity", emissivity)?.unwrap_or(EMISSIVITY),
             unknown,
-            truth: root.read("truth", |entry| truth(entry, TRUTH, &data))?,
+            truth: root.read("truth", |entry| truth(entry, &data))?,
             source: Source::default(),
         };
         Ok(Self { source, ..scenario })
@@ -120,12 +112,9 @@ impl LibraryScenario {
 }
 
 fn clusters(entry: &Entry<'_>) -> Result<ClustersSpec> {
-    let section = entry.section(&["count", "max_emissivity"])?;
-    let count = section.require("count", "6")?;
-    let one = |entry: &Entry<'_>| match entry.count("6")? {
-        count if count <= MOST => Ok(count as usize),
-        count => Err(entry.fail(Error::out_of_range("count", f64::from(count), "", "at most 200"))),
-    };
+    let section = entry.section()?;
+    let count = section.require("count")?;
+    let one = |entry: &Entry<'_>| entry.count("6").map(|count| count as usize);
     let count = match count.is_list() {
         true => {
             let [low, high] = count.pair("[2, 12]")?;
@@ -136,26 +125,18 @@ fn clusters(entry: &Entry<'_>) -> Result<ClustersSpec> {
             }
             [low, high]
         }
-        false => {
-            let count = one(&count).map_err(|error| match error {
-                Error::At { .. } => error,
-                _ => count.fail(Error::malformed("no count", format!("write {COUNT}"))),
-            })?;
-            [count; 2]
-        }
+        false => [one(&count)?; 2],
     };
-    let max_emissivity = section.number("max_emissivity", "0.99", POSITIVE_SHARE)?;
+    let max_emissivity = section.number("max_emissivity")?;
     Ok(ClustersSpec { count, max_emissivity: max_emissivity.unwrap_or(MAX_EMISSIVITY) })
 }
 
 fn emissivity(entry: &Entry<'_>) -> Result<Smoothness> {
-    let section = entry.section(&["mean", "magnitude_error", "shape_error", "correlation"])?;
+    let section = entry.section()?;
     Ok(Smoothness {
-        mean: section.number("mean", "0.9", SHARE)?.unwrap_or(EMISSIVITY.mean),
-        magnitude: section.number("magnitude_error", "0.3", POSITIVE_SHARE)?.unwrap_or(EMISSIVITY.magnitude),
-        shape: section.number("shape_error", "0.1", POSITIVE_SHARE)?.unwrap_or(EMISSIVITY.shape),
-        correlation_cm1: section
-            .quantity("correlation", Dimension::Wavenumber, ABOVE_ZERO)?
-            .unwrap_or(EMISSIVITY.correlation_cm1),
+        mean: section.number("mean")?.unwrap_or(EMISSIVITY.mean),
+        magnitude: section.number("magnitude_error")?.unwrap_or(EMISSIVITY.magnitude),
+        shape: section.number("shape_error")?.unwrap_or(EMISSIVITY.shape),
+        correlation_cm1: section.quantity("correlation")?.unwrap_or(EMISSIVITY.correlation_cm1),
     })
 }

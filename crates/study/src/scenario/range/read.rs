@@ -1,5 +1,6 @@
 //! Reads a ranging scenario: every key checked, every error one line with file, line and key.
 
+use super::super::keys::files;
 use super::super::kind::Kind as FileKind;
 use super::super::paths::{axes, file, is_cube, variable};
 use super::super::read::document;
@@ -11,17 +12,12 @@ use super::super::{BandsSpec, Source, camera};
 use super::{
     CubeSpec, Demand, DepthRequirement, DepthSource, Diffraction, NoiseSource, RangeScenario, Stereo, Subject,
 };
-use hadar::allowed::{ABOVE_ZERO, Allowed, FROM_ZERO};
 use hadar::error::{Error, Result};
 use hadar::ranging::derivative::Derivative;
 use hadar::ranging::information::Window;
 use hadar::ranging::noise::Joined;
-use hadar::units::Dimension;
 use std::path::Path;
 
-/// `category` is for `hadar render`: one file serves both.
-const TABLES: &[&str] =
-    &["title", "scene", "object", "cube", "bands", "camera", "stereo", "requirement", "category"];
 const MINIMUM: &str = "write [scene] for the built-in street or [cube] with left = \"left.npy\", \
                        and [stereo] with baseline = \"0.2 m\"";
 /// δz/z that is demanded where nothing is said.
@@ -73,7 +69,7 @@ impl RangeScenario {
 fn scenario(written: &Written) -> Result<RangeScenario> {
     let mut source = written.source();
     let document = document(written, (FileKind::Range, MINIMUM), &mut source)?;
-    let root = Section::open(&document, "", &source, TABLES)?;
+    let root = Section::open(&document, "", &source, &files::RANGE)?;
     root.at_most_one(&["scene", "cube"])?;
     let subject = match (root.get("scene"), root.get("cube")) {
         (Some(entry), _) => Subject::Scene(Box::new(scene_of(&root, &entry)?)),
@@ -119,31 +115,23 @@ impl Default for DepthRequirement {
 }
 
 fn cube(entry: &Entry<'_>) -> Result<CubeSpec> {
-    let section = entry.section(&[
-        "left",
-        "right",
-        "variable",
-        "axes",
-        "photons_per_unit",
-        "noise_variance",
-        "depth",
-    ])?;
+    let section = entry.section()?;
     Ok(CubeSpec {
-        left: cube_file(&section.require("left", "\"left.npy\"")?, LEFT)?,
+        left: cube_file(&section.require("left")?, LEFT)?,
         right: section.read("right", |entry| cube_file(entry, RIGHT))?,
         variable: variable(&section)?,
         axes: axes(&section)?,
-        photons_per_unit: section.number("photons_per_unit", "1.0", ABOVE_ZERO)?,
+        photons_per_unit: section.number("photons_per_unit")?,
         noise: section.read("noise_variance", |entry| match entry.text("\"noise.csv\"") {
             Ok(_) => file(entry).map(NoiseSource::File),
-            Err(_) => entry.number("50.0", FROM_ZERO).map(NoiseSource::Uniform),
+            Err(_) => entry.number("50.0").map(NoiseSource::Uniform),
         })?,
         depth: section.read("depth", |entry| {
             let text = entry.text("\"12 m\" or \"depth.npy\"")?.trim();
             if is_cube(Path::new(text)) {
                 return file(entry).map(DepthSource::File);
             }
-            entry.quantity(Dimension::Length, ABOVE_ZERO).map(DepthSource::Uniform)
+            entry.quantity().map(DepthSource::Uniform)
         })?,
     })
 }
@@ -154,18 +142,8 @@ pub(in crate::scenario) fn stereo_of_scene(entry: &Entry<'_>) -> Result<Stereo> 
 }
 
 fn stereo(entry: &Entry<'_>, camera: bool, rendered: bool) -> Result<Stereo> {
-    let section = entry.section(&[
-        "baseline",
-        "focal_length",
-        "pixel",
-        "window",
-        "derivative",
-        "joined",
-        "lines",
-        "diffraction",
-        "psf_sigma",
-    ])?;
-    let length = |key| section.quantity(key, Dimension::Length, ABOVE_ZERO);
+    let section = entry.section()?;
+    let length = |key| section.quantity(key);
     let (focal_length_m, pixel_m) = (length("focal_length")?, length("pixel")?);
     for (key, given, example) in
         [("focal_length", focal_length_m, "\"1.4 cm\""), ("pixel", pixel_m, "\"12 um\"")]
@@ -204,7 +182,7 @@ fn stereo(entry: &Entry<'_>, camera: bool, rendered: bool) -> Result<Stereo> {
     let schemes = Derivative::ALL.map(|scheme| (scheme.name(), scheme));
     let joined = Joined::ALL.map(|joined| (joined.name(), joined));
     Ok(Stereo {
-        baseline_m: section.require("baseline", "\"0.2 m\"")?.quantity(Dimension::Length, BASELINE)?,
+        baseline_m: section.require("baseline")?.quantity()?,
         focal_length_m,
         pixel_m,
         window: section.read("window", window)?.map_or_else(|| Window::new(5, 5), Ok)?,
@@ -225,11 +203,6 @@ fn stereo(entry: &Entry<'_>, camera: bool, rendered: bool) -> Result<Stereo> {
     })
 }
 
-const BASELINE: Allowed = Allowed {
-    expected: "above 0: cameras at one place see no depth (cameras that turn towards each other are not treated)",
-    ..ABOVE_ZERO
-};
-
 #[derive(Clone, Copy)]
 enum Kind {
     None,
@@ -243,24 +216,18 @@ fn window(entry: &Entry<'_>) -> Result<Window> {
     Window::new(rows as usize, columns as usize).map_err(|error| entry.fail(error))
 }
 
-fn requirement(entry: &Entry<'_>) -> Result<DepthRequirement> {
-    requirement_beside(entry, &[])
-}
-
-/// The same in a table that may hold `other` keys too.
-pub(in crate::scenario) fn requirement_beside(entry: &Entry<'_>, other: &[&str]) -> Result<DepthRequirement> {
-    let section = entry.section(&[other, &["depth_error", "relative_depth_error", "share"]].concat())?;
+pub(in crate::scenario) fn requirement(entry: &Entry<'_>) -> Result<DepthRequirement> {
+    let section = entry.section()?;
     section.at_most_one(&["depth_error", "relative_depth_error"])?;
-    let share = Allowed { holds: |value| value > 0.0 && value <= 1.0, expected: "above 0, at most 1" };
     let default = DepthRequirement::default();
-    let absolute = section.quantity("depth_error", Dimension::Length, ABOVE_ZERO)?;
-    let relative = section.number("relative_depth_error", "0.05", ABOVE_ZERO)?;
+    let absolute = section.quantity("depth_error")?;
+    let relative = section.number("relative_depth_error")?;
     Ok(DepthRequirement {
         error: match (absolute, relative) {
             (Some(error_m), _) => Demand::Absolute(error_m),
             (None, Some(share)) => Demand::Relative(share),
             (None, None) => default.error,
         },
-        share: section.number("share", "0.5", share)?.unwrap_or(default.share),
+        share: section.number("share")?.unwrap_or(default.share),
     })
 }

@@ -1,7 +1,8 @@
 //! The cameras of a rule: known ones by name (`cameras`), others as tables (`[[camera]]`).
 
 use crate::scenario::CameraSpec;
-use crate::scenario::camera::read_beside;
+use crate::scenario::camera::read_with;
+use crate::scenario::keys::rule::UNCERTAIN;
 use crate::scenario::section::Entry;
 use hadar::allowed::FROM_ZERO;
 use hadar::error::{Error, Result};
@@ -45,7 +46,8 @@ pub(super) fn presets(entry: &Entry<'_>) -> Result<Vec<RuleCamera>> {
     let mut cameras: Vec<RuleCamera> = Vec::with_capacity(items.len());
     for (index, item) in items.iter().enumerate() {
         let name = item.text("\"flir-a325sc\"")?.trim().to_owned();
-        let spec = CameraSpec { preset: Some(name), ..CameraSpec::default() };
+        let own = item.source().own_camera(&name);
+        let spec = CameraSpec { preset: Some(name), own, ..CameraSpec::default() };
         if cameras.iter().any(|camera| camera.spec == spec) {
             return Err(item.fail(Error::malformed("the same is already in the list", "name it once")));
         }
@@ -63,8 +65,7 @@ pub(super) fn tables(entry: &Entry<'_>) -> Result<Vec<RuleCamera>> {
         .enumerate()
         .map(|(index, item)| {
             let mut uncertainty = BTreeMap::new();
-            let spec =
-                read_beside(item, &["name"], &mut |row, entry| uncertain(row, entry, &mut uncertainty))?;
+            let spec = read_with(item, &mut |row, entry| uncertain(row, entry, &mut uncertainty))?;
             let section = item.table()?;
             let name = section.read("name", |entry| Ok(entry.text("\"ours\"")?.trim().to_owned()))?;
             Ok(RuleCamera { name, spec, uncertainty, key: format!("camera[{index}]") })
@@ -77,15 +78,15 @@ fn uncertain(row: &'static Row, entry: &Entry<'_>, noted: &mut BTreeMap<&'static
     if !entry.is_table() {
         return Ok(false);
     }
-    let section = entry.section(&["value", "u"])?;
-    let u = section.require("u", "\"5 mK\"")?;
+    let section = entry.section_of(&UNCERTAIN)?;
+    let u = section.require("u")?;
     let sigma = match row.kind {
         // Of a difference of temperatures, not of a temperature.
         Kind::Quantity(Dimension::Temperature, ..) => {
-            u.quantity(Dimension::TemperatureDifference, FROM_ZERO)?
+            u.quantity_as(Dimension::TemperatureDifference, FROM_ZERO)?
         }
-        Kind::Quantity(dimension, ..) => u.quantity(dimension, FROM_ZERO)?,
-        Kind::Number(..) | Kind::Efficiency(..) => u.number("0.01", FROM_ZERO)?,
+        Kind::Quantity(dimension, ..) => u.quantity_as(dimension, FROM_ZERO)?,
+        Kind::Number(..) | Kind::Efficiency(..) => u.number_as("0.01", FROM_ZERO)?,
         _ => {
             let found = format!("an uncertainty of {}, which is no measured number", row.key);
             return Err(entry.fail(Error::malformed(found, format!("write {} = {}", row.key, row.example))));

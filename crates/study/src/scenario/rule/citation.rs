@@ -129,9 +129,9 @@ pub(super) fn read(root: &Section<'_>, document: &DeTable<'_>, source: &Source) 
 }
 
 fn one(item: &Entry<'_>, source: &Source) -> Result<Citation> {
-    let section = item.section(&["keys", "document", "clause", "quote", "date", "mark", "choice"])?;
+    let section = item.section()?;
     let example = "[\"stop.latency\"]";
-    let keys = section.require("keys", example)?;
+    let keys = section.require("keys")?;
     let items = keys.items(&format!("keys = {example}"))?;
     if items.is_empty() {
         return Err(keys.fail(Error::malformed("the list is empty", format!("write keys = {example}"))));
@@ -153,14 +153,14 @@ fn one(item: &Entry<'_>, source: &Source) -> Result<Citation> {
     if let Some(reason) = section.read("choice", |entry| said(entry, "\"why\""))? {
         return Ok(Citation { keys, ground: Ground::Choice(reason) });
     }
-    let text = |key, example| said(&section.require(key, example)?, example);
+    let text = |key, example| said(&section.require(key)?, example);
     let marks = Mark::ALL.map(|mark| (mark.name(), mark));
     let ground = Ground::Document {
         document: text("document", "\"49 CFR 571.127\"")?,
         clause: text("clause", "\"S8.2\"")?,
         quote: text("quote", "\"its own words\"")?,
-        date: section.require("date", "\"2024-05-09\"")?.date()?,
-        mark: section.require("mark", "\"seen\"")?.choice(&marks)?,
+        date: section.require("date")?.date()?,
+        mark: section.require("mark")?.choice(&marks)?,
     };
     Ok(Citation { keys, ground })
 }

@@ -15,6 +15,7 @@ use super::demand::{Demand, depth_error, resolution, temperature_error};
 use super::stop::StopSpec;
 use crate::scenario::entries::{Document, Entries, Part};
 use crate::scenario::envelope::LIGHTING_ROUNDING;
+use crate::scenario::keys::rule as keys;
 use crate::scenario::paths::{Paths, material};
 use crate::scenario::read::{of_root, requirement};
 use crate::scenario::section::{Entry, Section, without_repetition};
@@ -114,12 +115,13 @@ pub(super) fn read(root: &Section<'_>, source: &Source) -> Result<(Scenario, Vec
 fn one(item: &Entry<'_>, root: &Section<'_>, rule: &Scenario, key: String) -> Result<Clause> {
     // What is of one kind alone is not known in the others.
     let kind = item.table()?.choice("kind", &KINDS)?.unwrap_or(Kind::TellApart);
-    let own: &[&str] = match kind {
-        Kind::FalseAlarm => &["name", "kind", "text", "things"],
-        Kind::DepthError => &["name", "kind", "text", "scene", "stereo"],
-        _ => &["name", "kind", "text"],
-    };
-    let plain = item.section(&[own, TABLES].concat())?;
+    let plain = item.section_of(match kind {
+        Kind::TellApart => &keys::CLAUSE_TELL_APART,
+        Kind::FalseAlarm => &keys::CLAUSE_FALSE_ALARM,
+        Kind::Resolution => &keys::CLAUSE_RESOLUTION,
+        Kind::TemperatureError => &keys::CLAUSE_TEMPERATURE,
+        Kind::DepthError => &keys::CLAUSE_DEPTH,
+    })?;
     let text = |key, example: &str| plain.read(key, |entry| Ok(entry.text(example)?.trim().to_owned()));
     let name = match text("name", "\"crossing at night\"")? {
         Some(name) => name,
@@ -190,7 +192,7 @@ fn relaid(source: &Source, key: &str) -> Source {
 /// The scenario of things that must not be taken for the rule's target.
 fn false_alarm(section: &Section<'_>, plain: &Section<'_>, rule: &Scenario) -> Result<Scenario> {
     let example = "[\"steel-rough\"]";
-    let things = plain.require("things", example)?;
+    let things = plain.require("things")?;
     let items = things.items(&format!("things = {example}"))?;
     let things: Vec<MaterialRef> = match items.is_empty() {
         true => {

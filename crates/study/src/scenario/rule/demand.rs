@@ -5,7 +5,6 @@ use crate::scenario::paths::Paths;
 use crate::scenario::range::{DepthRequirement, Stereo, read as depth, write as depth_written};
 use crate::scenario::scene::{SceneSpec, scene, scene_written};
 use crate::scenario::section::Section;
-use hadar::allowed::ABOVE_ZERO;
 use hadar::error::{Error, Result};
 use hadar::units::Dimension;
 
@@ -125,29 +124,29 @@ impl Demand {
 }
 
 pub(super) fn resolution(plain: &Section<'_>) -> Result<Demand> {
-    let requirement = plain.require("requirement", "{ pixels = 6, size = \"0.5 m\" }")?;
-    let requirement = requirement.section(&["pixels", "size"])?;
+    let requirement = plain.require("requirement")?;
+    let requirement = requirement.section()?;
     Ok(Demand::Resolution {
-        pixels: requirement.require("pixels", "6")?.number("6", ABOVE_ZERO)?,
-        size_m: requirement.require("size", "\"0.5 m\"")?.quantity(Dimension::Length, ABOVE_ZERO)?,
+        pixels: requirement.require("pixels")?.number("6")?,
+        size_m: requirement.require("size")?.quantity()?,
     })
 }
 
 pub(super) fn temperature_error(plain: &Section<'_>) -> Result<Demand> {
-    let requirement = plain.require("requirement", "{ temperature_error = \"0.5 K\" }")?;
-    let requirement = requirement.section(&["temperature_error", "coverage_factor"])?;
-    let error = requirement.require("temperature_error", "\"0.5 K\"")?;
+    let requirement = plain.require("requirement")?;
+    let requirement = requirement.section()?;
+    let error = requirement.require("temperature_error")?;
     Ok(Demand::TemperatureError {
-        error_k: error.quantity(Dimension::TemperatureDifference, ABOVE_ZERO)?,
-        coverage_factor: requirement.number("coverage_factor", "2", ABOVE_ZERO)?.unwrap_or(COVERAGE_FACTOR),
+        error_k: error.quantity()?,
+        coverage_factor: requirement.number("coverage_factor")?.unwrap_or(COVERAGE_FACTOR),
     })
 }
 
 pub(super) fn depth_error(plain: &Section<'_>, stops: bool) -> Result<Demand> {
     let objects = DepthObject::ALL.map(|object| (object.name(), object));
-    let entry = plain.require("requirement", "{ depth_error = \"1 m\" }")?;
+    let entry = plain.require("requirement")?;
     let object = entry.table()?.choice("object", &objects)?.unwrap_or(DepthObject::Person);
-    let requirement = depth::requirement_beside(&entry, &["object"])?;
+    let requirement = depth::requirement(&entry)?;
     let scene = match plain.get("scene") {
         Some(entry) => scene(&entry)?,
         None => SceneSpec::default(),
@@ -160,6 +159,6 @@ pub(super) fn depth_error(plain: &Section<'_>, stops: bool) -> Result<Demand> {
         let found = "a distance beside [stop], from which it follows";
         return Err(plain.fail(own.0, Error::malformed(found, "leave it out")));
     }
-    let stereo = depth::stereo_of_scene(&plain.require("stereo", "{ baseline = \"0.2 m\" }")?)?;
+    let stereo = depth::stereo_of_scene(&plain.require("stereo")?)?;
     Ok(Demand::DepthError(Box::new(DepthDemand { scene, stereo, requirement, object })))
 }

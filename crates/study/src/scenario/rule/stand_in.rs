@@ -7,7 +7,6 @@ use crate::scenario::MaterialRef;
 use crate::scenario::entries::Entries;
 use crate::scenario::paths::{Paths, material};
 use crate::scenario::section::{Entry, without_repetition};
-use hadar::allowed::{ABSOLUTE_TEMPERATURE, Allowed};
 use hadar::error::{Error, Result};
 use hadar::units::Dimension;
 
@@ -37,7 +36,7 @@ impl Default for StandInSpec {
 
 impl StandInSpec {
     pub(super) fn read(entry: &Entry<'_>) -> Result<Self> {
-        let section = entry.section(&["clause", "materials", "temperature", "emissivity"])?;
+        let section = entry.section()?;
         let clause = section.read("clause", |entry| Ok(entry.text("\"crossing\"")?.trim().to_owned()))?;
         let materials = section.read("materials", |entry| {
             let items = entry.items("materials = [\"skin\"]")?;
@@ -47,7 +46,6 @@ impl StandInSpec {
             }
             without_repetition(&items, material)
         })?;
-        let below_one = Allowed { holds: |value| (0.0..1.0).contains(&value), expected: "from 0 to below 1" };
         let emissivity = section.read("emissivity", |entry| {
             let example = "emissivity = [0.0, 0.01, 0.02]";
             let items = entry.items(example)?;
@@ -57,8 +55,7 @@ impl StandInSpec {
                     entry.fail(Error::malformed(found, format!("write 1 to {MOST}, as in {example}")))
                 );
             }
-            let mut values =
-                items.iter().map(|item| item.number("0.01", below_one)).collect::<Result<Vec<f64>>>()?;
+            let mut values = items.iter().map(|item| item.number("0.01")).collect::<Result<Vec<f64>>>()?;
             values.sort_by(f64::total_cmp);
             values.dedup();
             Ok(values)
@@ -66,7 +63,7 @@ impl StandInSpec {
         Ok(Self {
             clause,
             materials,
-            temperature_k: section.quantity("temperature", Dimension::Temperature, ABSOLUTE_TEMPERATURE)?,
+            temperature_k: section.quantity("temperature")?,
             emissivity: emissivity.unwrap_or_else(|| EMISSIVITY.to_vec()),
         })
     }

@@ -5,14 +5,9 @@
 
 use crate::scenario::entries::Entries;
 use crate::scenario::section::{Entry, Section};
-use hadar::allowed::{ABOVE_ZERO, Allowed, FROM_ZERO};
 use hadar::error::{Error, Result};
 use hadar::policy::stop::{Start, Stop, StopFigures};
 use hadar::units::Dimension;
-
-/// The keys of `[stop]`.
-const KEYS: &[&str] =
-    &["speed", "latency", "deceleration", "margin", "start", "target_speed", "closing_speed"];
 
 /// How a vehicle comes to a stop before the target (`[stop]`).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -35,33 +30,30 @@ impl StopSpec {
     }
 
     pub(super) fn read(entry: &Entry<'_>) -> Result<Self> {
-        let section = entry.section(KEYS)?;
-        let anything = Allowed { holds: |_| true, expected: "a finite number" };
-        let speed = section.require("speed", "\"60 km/h\" or [\"10 km/h\", \"60 km/h\"]")?;
-        let one = |entry: &Entry<'_>| entry.quantity(Dimension::Speed, ABOVE_ZERO);
+        let section = entry.section()?;
+        let speed = section.require("speed")?;
+        let one = |entry: &Entry<'_>| entry.quantity();
         let speeds_m_s = match speed.is_list() {
             true => speed.range("[\"10 km/h\", \"60 km/h\"]", one, |speed| speed)?,
             false => [one(&speed)?; 2],
         };
         section.at_most_one(&["target_speed", "closing_speed"])?;
-        let target_m_s = match section.quantity("closing_speed", Dimension::Speed, ABOVE_ZERO)? {
+        let target_m_s = match section.quantity("closing_speed")? {
             Some(_) if speeds_m_s[0] != speeds_m_s[1] => {
                 let found = "one closing speed for a range of speeds";
                 let instead = "write target_speed = \"5 km/h\", the target's own speed along the way";
                 return Err(section.fail("closing_speed", Error::malformed(found, instead)));
             }
             Some(closing_m_s) => speeds_m_s[0] - closing_m_s,
-            None => section.quantity("target_speed", Dimension::Speed, anything)?.unwrap_or(0.0),
+            None => section.quantity("target_speed")?.unwrap_or(0.0),
         };
-        let required = |key, example, dimension, allowed| -> Result<f64> {
-            section.require(key, example)?.quantity(dimension, allowed)
-        };
+        let required = |key| -> Result<f64> { section.require(key)?.quantity() };
         let figures = StopFigures {
             speeds_m_s,
             target_m_s,
-            latency_s: required("latency", "\"0.5 s\"", Dimension::Time, FROM_ZERO)?,
-            deceleration_m_s2: required("deceleration", "\"5 m/s^2\"", Dimension::Acceleration, ABOVE_ZERO)?,
-            margin_m: section.quantity("margin", Dimension::Length, FROM_ZERO)?.unwrap_or(0.0),
+            latency_s: required("latency")?,
+            deceleration_m_s2: required("deceleration")?,
+            margin_m: section.quantity("margin")?.unwrap_or(0.0),
             start: section.read("start", start)?,
         };
         let stop = Stop::new(figures).map_err(|error| misfit(&section, error))?;
@@ -96,10 +88,10 @@ impl StopSpec {
 fn start(entry: &Entry<'_>) -> Result<Start> {
     let text = entry.quantity_text()?;
     if Dimension::Time.unit_in(&text).is_some() {
-        return entry.quantity(Dimension::Time, ABOVE_ZERO).map(Start::TimeToContact);
+        return entry.quantity_of(Dimension::Time).map(Start::TimeToContact);
     }
     if Dimension::Length.unit_in(&text).is_some() {
-        return entry.quantity(Dimension::Length, ABOVE_ZERO).map(Start::Distance);
+        return entry.quantity_of(Dimension::Length).map(Start::Distance);
     }
     let found = format!("`{}` is neither a time before contact nor a distance", text.trim());
     Err(entry.fail(Error::malformed(found, "write start = \"4 s\" or start = \"60 m\"")))

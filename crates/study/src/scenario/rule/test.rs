@@ -4,15 +4,11 @@ use super::camera::RuleCamera;
 use super::clause::Clause;
 use crate::scenario::entries::Entries;
 use crate::scenario::section::{Entry, Section};
-use hadar::allowed::{ABOVE_ZERO, Allowed, FROM_ZERO};
 use hadar::error::{Error, Result};
 use hadar::units::Dimension;
 
 /// Share of itself by which a margin may miss what is expected, where nothing is said.
 const TOLERANCE: f64 = 0.01;
-
-const KEYS: &[&str] =
-    &["camera", "clause", "verdict", "margin", "decision_distance", "decision_time", "frames", "tolerance"];
 
 /// What is expected of one camera (`[[test]]`).
 #[derive(Debug, Clone, PartialEq)]
@@ -85,8 +81,8 @@ pub(super) fn read(root: &Section<'_>, cameras: &[RuleCamera], clauses: &[Clause
 }
 
 fn one(item: &Entry<'_>, cameras: &[RuleCamera], clauses: &[Clause]) -> Result<RuleTest> {
-    let section = item.section(KEYS)?;
-    let camera = section.require("camera", "\"flir-a325sc\"")?;
+    let section = item.section()?;
+    let camera = section.require("camera")?;
     let names = || cameras.iter().map(RuleCamera::called);
     let name = camera.text("\"flir-a325sc\"")?.trim();
     let index = names().position(|known| known == name);
@@ -98,17 +94,15 @@ fn one(item: &Entry<'_>, cameras: &[RuleCamera], clauses: &[Clause]) -> Result<R
         let found = clauses.iter().position(|clause| clause.name.as_deref() == Some(name));
         found.ok_or_else(|| entry.fail(Error::unknown_name("clause of this rule", name, names())))
     })?;
-    let at_most_whole =
-        Allowed { holds: |value| value > 0.0 && value < 1.0, expected: "above 0 and below 1" };
     let test = RuleTest {
         camera: index,
         clause,
         verdict: section.choice("verdict", &Verdict::ALL.map(|verdict| (verdict.name(), verdict)))?,
-        margin: section.number("margin", "1.23", FROM_ZERO)?,
-        decision_distance_m: section.quantity("decision_distance", Dimension::Length, ABOVE_ZERO)?,
-        decision_time_s: section.quantity("decision_time", Dimension::Time, ABOVE_ZERO)?,
+        margin: section.number("margin")?,
+        decision_distance_m: section.quantity("decision_distance")?,
+        decision_time_s: section.quantity("decision_time")?,
         frames: section.read("frames", |entry| entry.count("60"))?,
-        tolerance: section.number("tolerance", "0.01", at_most_whole)?.unwrap_or(TOLERANCE),
+        tolerance: section.number("tolerance")?.unwrap_or(TOLERANCE),
     };
     let RuleTest { verdict, margin, decision_distance_m, decision_time_s, frames, .. } = &test;
     let numbers = margin.is_some() || decision_distance_m.is_some() || decision_time_s.is_some();

@@ -4,7 +4,7 @@ use crate::scenario::rule::RuleCamera;
 use crate::scenario::{CameraSpec, Rule, Scenario};
 use crate::study::{bands, camera, camera_bands};
 use hadar::error::{Error, Result};
-use hadar::instrument::{Camera, presets};
+use hadar::instrument::Camera;
 use std::collections::BTreeMap;
 
 /// A camera with the name that the rule's answer has for it.
@@ -50,9 +50,9 @@ pub(super) fn of(rule: &Rule) -> Result<Vec<Named>> {
 }
 
 /// Refuses a known camera, named alone, of which no document states all that is needed.
-fn complete(camera: &RuleCamera) -> Result<()> {
-    let Some(name) = &camera.spec.preset else { return Ok(()) };
-    let Err(missing) = presets::find(name)?.camera() else { return Ok(()) };
+fn complete(own: &RuleCamera) -> Result<()> {
+    let Some(known) = camera::known(&own.spec)? else { return Ok(()) };
+    let (name, Err(missing)) = (&known.name, known.camera()) else { return Ok(()) };
     let found = format!("no document that was read states {} of {name}", missing.0.join(", "));
     let instead = "write it as a table of its own, with what the camera has in place of the dots:".into();
     let head = [String::from("[[camera]]"), format!("preset = {name:?}")];

@@ -1,0 +1,322 @@
+//! `hadar explain`: what a key of a file, a warning, a key of an answer or a command means; `hadar schema`: the keys for editors.
+
+use super::global::Global;
+use clap::Args;
+use hadar::error::{Error, Result};
+use hadar_study::explain::{self, ResultKey};
+use hadar_study::scenario::keys::{self, FILES, FileKind, Key, Place, Silent, Value};
+use hadar_study::warning::Code;
+use serde::Serialize;
+use std::fmt::Write as _;
+use std::io::Write as _;
+use std::process::ExitCode;
+
+/// Keys of files that are told in full; of more their meanings alone.
+const IN_FULL: usize = 3;
+/// Keys of an answer that are told; of more it is said how many.
+const MOST_RESULTS: usize = 12;
+
+#[derive(Debug, Args)]
+pub(super) struct ExplainArgs {
+    /// A key of a file (`target.temperature`, `noise_bandwidth`), a table (`envelope`), the code of a warning, a key of the JSON, a command; silent: what there is
+    word: Option<String>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct SchemaArgs {
+    /// A command whose files it is for, such as `rule`; silent: all of them
+    command: Option<String>,
+}
+
+/// What a word means.
+#[derive(Debug, Serialize)]
+struct Explained {
+    /// The word.
+    word: String,
+    /// Keys of files that are called so.
+    keys: Vec<ExplainedKey>,
+    /// The warning of this code.
+    warning: Option<ExplainedCode>,
+    /// Keys of answers that are called so.
+    results: Vec<ResultKey>,
+    /// The command of this name.
+    command: Option<ExplainedCommand>,
+}
+
+/// A key of a file.
+#[derive(Debug, Serialize)]
+struct ExplainedKey {
+    /// Where it may stand, the shortest path first.
+    paths: Vec<String>,
+    /// What it means.
+    meaning: &'static str,
+    /// What may be written: kind, units, range.
+    value: String,
+    /// Whether it must be there.
+    required: bool,
+    /// What it means that nothing is written; none where it must be.
+    default: Option<&'static str>,
+    /// A line to write; none of a table.
+    example: Option<String>,
+    /// Where it enters: an equation of the paper, or what is done with it.
+    enters: &'static str,
+    /// Commands that read it.
+    commands: Vec<&'static str>,
+    /// Of a table, its keys.
+    inside: Vec<&'static str>,
+}
+
+/// The code of a warning.
+#[derive(Debug, Serialize)]
+struct ExplainedCode {
+    /// The code.
+    code: &'static str,
+    /// What it means.
+    meaning: String,
+    /// What to do about it.
+    remedy: &'static str,
+}
+
+/// A command.
+#[derive(Debug, Serialize)]
+struct ExplainedCommand {
+    /// Its name.
+    name: String,
+    /// What it answers.
+    about: String,
+    /// Tables of the files that it reads.
+    tables: Vec<&'static str>,
+}
+
+pub(super) fn run(args: &ExplainArgs, global: &Global, cli: &clap::Command) -> Result<ExitCode> {
+    let Some(word) = args.word.as_deref().map(str::trim) else {
+        let (json, text) = sections();
+        global.print(&json, &text)?;
+        return Ok(ExitCode::SUCCESS);
+    };
+    let places = explain::key(word);
+    let explained = Explained {
+        word: word.to_owned(),
+        keys: places.iter().map(key_json).collect(),
+        warning: explain::code(word).map(code_json),
+        results: explain::result(word),
+        command: command(word, cli),
+    };
+    if explained.keys.is_empty()
+        && explained.results.is_empty()
+        && explained.warning.is_none()
+        && explained.command.is_none()
+    {
+        let words = explain::words();
+        let commands = cli.get_subcommands().map(clap::Command::get_name);
+        return Err(Error::unknown_name(
+            "key, warning or command",
+            word,
+            commands.chain(words.iter().map(String::as_str)),
+        ));
+    }
+    global.print(&explained, &text(&explained, &places))?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Prints the schema of the files of a command, or of all.
+pub(super) fn schema(args: &SchemaArgs) -> Result<ExitCode> {
+    let kinds: Vec<&FileKind> = match &args.command {
+        None => FILES.iter().collect(),
+        Some(word) => keys::kinds_of(word),
+    };
+    if let Some(word) = args.command.as_deref().filter(|_| kinds.is_empty()) {
+        let known = FILES.iter().flat_map(|kind| kind.commands.iter().copied().chain([kind.name]));
+        return Err(Error::unknown_name("command with a file", word, known));
+    }
+    let schema = serde_json::to_string_pretty(&keys::schema(kinds))
+        .map_err(|error| Error::malformed(error.to_string(), "report this as a bug"))?;
+    match writeln!(std::io::stdout(), "{schema}") {
+        // A reader that has seen enough is no error.
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+            Err(Error::file("print the schema", std::path::Path::new("stdout"), error))
+        }
+        _ => Ok(ExitCode::SUCCESS),
+    }
+}
+
+fn key_json(place: &Place) -> ExplainedKey {
+    let key = place.key;
+    ExplainedKey {
+        paths: place.paths.clone(),
+        meaning: key.meaning,
+        value: key.value.words(),
+        required: key.silent == Silent::Refused,
+        default: match key.silent {
+            Silent::Refused => None,
+            Silent::Is(text) | Silent::Means(text) => Some(text),
+        },
+        example: (!is_table(&key)).then(|| format!("{} = {}", key.name, key.example)),
+        enters: key.enters,
+        commands: place.commands.clone(),
+        inside: inside(&key),
+    }
+}
+
+/// Whether a key is written as a `[table]`.
+fn is_table(key: &Key) -> bool {
+    matches!(key.value, Value::Tables(_) | Value::Named(_)) || key.example == "a table"
+}
+
+fn inside(key: &Key) -> Vec<&'static str> {
+    key.value.table().map(|table| table.keys().map(|key| key.name).collect()).unwrap_or_default()
+}
+
+fn code_json(code: Code) -> ExplainedCode {
+    ExplainedCode { code: code.name(), meaning: code.meaning().to_owned(), remedy: code.remedy() }
+}
+
+fn command(word: &str, cli: &clap::Command) -> Option<ExplainedCommand> {
+    let name = word.strip_prefix("hadar ").unwrap_or(word);
+    let found = name.split_whitespace().try_fold(cli, |above, name| above.find_subcommand(name))?;
+    let about = found.get_about().map(ToString::to_string).unwrap_or_default();
+    let files = FILES.iter().filter(|kind| kind.commands.contains(&name));
+    let mut tables: Vec<&str> = files.flat_map(|kind| kind.root.keys().map(|key| key.name)).collect();
+    tables.sort_unstable();
+    tables.dedup();
+    (!name.is_empty()).then(|| ExplainedCommand { name: name.to_owned(), about, tables })
+}
+
+fn text(explained: &Explained, places: &[Place]) -> String {
+    let mut text = String::new();
+    if let Some(ExplainedCommand { name, about, tables }) = &explained.command {
+        let _ = writeln!(text, "hadar {name}: {about}");
+        if !tables.is_empty() {
+            let _ = writeln!(text, "  its file   {}", tables.join(", "));
+        }
+        let _ = writeln!(text, "  flags      hadar {name} --help\n");
+    }
+    if let Some(ExplainedCode { code, meaning, remedy }) = &explained.warning {
+        let _ = writeln!(text, "warning [{code}]\n  means      {meaning}\n  do         {remedy}\n");
+    }
+    if places.len() > IN_FULL {
+        let _ = writeln!(
+            text,
+            "key `{}` of {} tables; one of them in full: hadar explain PATH",
+            explained.word,
+            places.len()
+        );
+        let width = places.iter().filter_map(|place| place.paths.first()).map(String::len).max().unwrap_or(0);
+        for place in places {
+            let path = place.paths.first().map_or("", String::as_str);
+            let _ = writeln!(text, "  {path:<width$}  {}", place.key.meaning);
+        }
+        text.push('\n');
+    } else {
+        for place in places {
+            in_full(place, &mut text);
+        }
+    }
+    if !explained.results.is_empty() {
+        let _ = writeln!(text, "in JSON");
+        for ResultKey { key, of, meaning } in explained.results.iter().take(MOST_RESULTS) {
+            let _ = writeln!(text, "  {key}, of: {}\n    {meaning}", lower(of));
+        }
+        let more = explained.results.len().saturating_sub(MOST_RESULTS);
+        if more > 0 {
+            let _ = writeln!(text, "  and {more} more (--json)");
+        }
+    }
+    text
+}
+
+/// A phrase within a sentence.
+fn lower(phrase: &str) -> String {
+    let mut letters = phrase.chars();
+    let second_is_small = phrase.chars().nth(1).is_none_or(|letter| !letter.is_uppercase());
+    match letters.next() {
+        Some(first) if second_is_small => first.to_lowercase().chain(letters).collect(),
+        _ => phrase.to_owned(),
+    }
+}
+
+fn in_full(place: &Place, text: &mut String) {
+    let key = place.key;
+    let told = key_json(place);
+    let Some((path, also)) = place.paths.split_first() else { return };
+    let _ = writeln!(text, "{path}\n  means      {}", told.meaning);
+    let _ = writeln!(text, "  written    {}", told.value);
+    let silent = match key.silent {
+        Silent::Refused => "refused: it must be there".to_owned(),
+        Silent::Is(value) => format!("{} = {value}", key.name),
+        Silent::Means(words) => words.to_owned(),
+    };
+    let _ = writeln!(text, "  silent     {silent}");
+    if let Some(example) = &told.example {
+        let _ = writeln!(text, "  example    {example}");
+    }
+    if !is_table(&key) {
+        let _ = writeln!(text, "  enters     {}", told.enters);
+    }
+    let _ = writeln!(text, "  read by    hadar {}", told.commands.join(", "));
+    if !also.is_empty() {
+        let _ = writeln!(text, "  also       {}", also.join(", "));
+    }
+    if let Some(table) = key.value.table() {
+        let width = table.keys().map(|key| key.name.len()).max().unwrap_or(0);
+        let _ = writeln!(text, "  keys");
+        for key in table.keys() {
+            let _ = writeln!(text, "    {:<width$}  {}", key.name, key.meaning);
+        }
+    }
+    text.push('\n');
+}
+
+/// All that there is to be explained.
+#[derive(Debug, Serialize)]
+struct Sections {
+    /// Kinds of files, with their tables.
+    files: Vec<SectionsOfFile>,
+    /// Codes of warnings.
+    warnings: Vec<&'static str>,
+    /// How many keys of answers are known.
+    result_keys: usize,
+}
+
+/// A kind of file.
+#[derive(Debug, Serialize)]
+struct SectionsOfFile {
+    /// What it is.
+    meaning: &'static str,
+    /// Commands that read it.
+    commands: &'static [&'static str],
+    /// Its tables and the keys above them.
+    tables: Vec<&'static str>,
+}
+
+fn sections() -> (Sections, String) {
+    let of_file = |kind: &FileKind| SectionsOfFile {
+        meaning: kind.root.meaning,
+        commands: kind.commands,
+        tables: kind.root.keys().map(|key| key.name).collect(),
+    };
+    let sections = Sections {
+        files: FILES.iter().map(of_file).collect(),
+        warnings: Code::ALL.iter().map(|code| code.name()).collect(),
+        result_keys: explain::results().count(),
+    };
+    let mut text =
+        String::from("hadar explain WORD tells what a word means. Files, and the tables in them:\n\n");
+    for file in &sections.files {
+        let _ = writeln!(
+            text,
+            "{} (hadar {})\n  {}",
+            file.meaning.trim_end_matches('.'),
+            file.commands.join(", "),
+            file.tables.join(", ")
+        );
+    }
+    let _ = write!(
+        text,
+        "\n{} codes of warnings, such as {}; {} keys of the JSON; every command.\n`hadar explain TABLE` lists its keys, `hadar init` writes a file to begin with.",
+        sections.warnings.len(),
+        sections.warnings.first().copied().unwrap_or_default(),
+        sections.result_keys
+    );
+    (sections, text)
+}

@@ -1,0 +1,193 @@
+//! Several scenarios asked the same: a row of a table for each, with the verdict and the figures that matter, or why there is no answer.
+
+use crate::bundle::Bundle;
+use crate::table::{Table, number};
+use crate::text::significant;
+use hadar::error::Result;
+use hadar_study::sweep::Question;
+use serde::Serialize;
+use serde_json::Value;
+use std::fmt::Write as _;
+
+/// Digits that a person compares by.
+const DIGITS: usize = 4;
+
+/// What came of one scenario.
+#[derive(Debug, Clone, Serialize)]
+pub struct Row {
+    /// Its file as it was named.
+    pub scenario: String,
+    /// The code that the command ends with for it alone.
+    pub exit_code: u8,
+    /// Why there is no answer.
+    pub error: Option<String>,
+    /// The answer as the command prints it for it alone.
+    pub answer: Option<Value>,
+}
+
+/// Heads of the columns behind the scenario, and where each stands in the answer, the first that is there.
+const fn columns(question: Question) -> &'static [(&'static str, &'static [&'static str])] {
+    match question {
+        Question::Identify => &[
+            ("verdict", &["/identifiability/identifiable", "/identifiable"]),
+            ("told from", &["/identifiability/told_from"]),
+            ("nearest", &["/limiting", "/not_told_from"]),
+            ("distance", &["/identifiability/distance_minimum"]),
+            ("reaches", &["/identifiability/statistical_distance_minimum"]),
+            ("probability", &["/identifiability/detection_probability_minimum"]),
+        ],
+        Question::Rule => &[
+            ("verdict", &[]),
+            ("meet it", &[]),
+            ("best", &["/cameras/0/name"]),
+            ("margin", &["/cameras/0/margin"]),
+            ("limited by", &["/cameras/0/limiting_clause"]),
+        ],
+        Question::Range => &[
+            ("verdict", &["/verdict/met"]),
+            ("signal", &["/verdict/signal"]),
+            ("share", &["/verdict/share"]),
+            ("demanded", &["/verdict/required_share"]),
+            ("error [m]", &["/at/sigma_m"]),
+        ],
+        Question::Size | Question::Simulate | Question::Decompose => &[
+            ("verdict", &["/verdict/met"]),
+            ("limited by", &["/limiting", "/not_told_from"]),
+            ("reaches", &["/verdict/statistical_distance"]),
+            ("demanded", &["/verdict/required_distance"]),
+            ("margin", &["/verdict/margin"]),
+            ("photons it takes", &["/requirement/photons"]),
+        ],
+    }
+}
+
+fn cells(question: Question, answer: &Value) -> Vec<Value> {
+    let answer = match question {
+        Question::Rule => &best_first(answer),
+        _ => answer,
+    };
+    let found = |paths: &[&str]| paths.iter().find_map(|path| answer.pointer(path)).cloned();
+    let meets: Vec<bool> = answer["cameras"]
+        .as_array()
+        .map_or_else(Vec::new, |cameras| cameras.iter().map(|camera| camera["passes"] == true).collect());
+    let of = |(head, paths): &(&str, &[&str])| match (question, *head) {
+        (Question::Rule, "verdict") => meets.iter().all(|meets| *meets).into(),
+        (Question::Rule, "meet it") => {
+            format!("{} of {}", meets.iter().filter(|meets| **meets).count(), meets.len()).into()
+        }
+        _ => found(paths).unwrap_or_default(),
+    };
+    columns(question).iter().map(of).collect()
+}
+
+/// The answer about a rule with the camera of the largest margin first.
+fn best_first(answer: &Value) -> Value {
+    let mut answer = answer.clone();
+    if let Some(cameras) = answer.get_mut("cameras").and_then(Value::as_array_mut) {
+        let margin = |camera: &Value| camera["margin"].as_f64().unwrap_or(f64::NEG_INFINITY);
+        cameras.sort_by(|a, b| margin(b).total_cmp(&margin(a)));
+    }
+    answer
+}
+
+fn shown(cell: &Value) -> String {
+    match cell {
+        Value::Null => "-".into(),
+        Value::Bool(true) => "yes".into(),
+        Value::Bool(false) => "no".into(),
+        Value::Number(number) if number.is_f64() => significant(number.as_f64().unwrap_or(f64::NAN), DIGITS),
+        Value::String(text) => text.clone(),
+        other => other.to_string(),
+    }
+}
+
+/// The table as it is printed; an error stands in its row.
+#[must_use]
+pub fn text(question: Question, rows: &[Row]) -> String {
+    let heads = columns(question).iter().map(|(head, _)| (*head).to_owned());
+    let mut lines = vec![std::iter::once("scenario".to_owned()).chain(heads).collect::<Vec<_>>()];
+    for row in rows {
+        let mut line = vec![row.scenario.clone()];
+        match (&row.answer, &row.error) {
+            (Some(answer), _) => line.extend(cells(question, answer).iter().map(shown)),
+            (None, error) => line.push(format!("error: {}", error.clone().unwrap_or_default())),
+        }
+        lines.push(line);
+    }
+    let last = lines.first().map_or(0, Vec::len);
+    let whole = |line: &&Vec<String>| line.len() == last;
+    // What went wrong is as long as it is.
+    let width = |at: usize| {
+        let cells = lines.iter().filter(|line| at == 0 || whole(line)).filter_map(|line| line.get(at));
+        cells.map(|cell| cell.chars().count()).max().unwrap_or(0)
+    };
+    let widths: Vec<usize> = (0..last).map(width).collect();
+    let mut out = String::new();
+    for line in &lines {
+        let padded = line.iter().zip(&widths).map(|(cell, width)| format!("{cell:<width$}"));
+        let _ = writeln!(out, "{}", padded.collect::<Vec<_>>().join("  ").trim_end());
+    }
+    let failed = rows.iter().filter(|row| row.answer.is_none()).count();
+    if failed > 0 {
+        let _ = writeln!(out, "\n{failed} of {} scenarios have no answer.", rows.len());
+    }
+    out
+}
+
+/// The table as a file, beside the reports of the scenarios.
+///
+/// # Errors
+/// A table that cannot be written.
+pub fn bundle(question: Question, rows: &[Row]) -> Result<Bundle> {
+    let heads = columns(question).iter().map(|(head, _)| head.replace(' ', "_"));
+    let mut table = Table::new(["scenario".to_owned()].into_iter().chain(heads).chain(["error".to_owned()]));
+    for row in rows {
+        let plain = |cell: &Value| match cell.as_f64() {
+            Some(value) => number(value),
+            None if cell.is_null() => String::new(),
+            None => shown(cell),
+        };
+        let cells = match &row.answer {
+            Some(answer) => cells(question, answer).iter().map(plain).collect(),
+            None => vec![String::new(); columns(question).len()],
+        };
+        let error = row.error.clone().unwrap_or_default();
+        table.push([row.scenario.clone()].into_iter().chain(cells).chain([error]).collect());
+    }
+    let mut bundle = Bundle::about(Some(&format!("{} of {} scenarios", question.name(), rows.len())));
+    bundle.add_table("scenarios.csv", table)?;
+    Ok(bundle)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn a_row_has_what_the_answer_says_or_what_went_wrong() {
+        let row = |scenario: &str, answer: Option<Value>, error: Option<&str>| Row {
+            scenario: scenario.into(),
+            exit_code: u8::from(error.is_some()),
+            error: error.map(str::to_owned),
+            answer,
+        };
+        let answer = json!({ "verdict": { "met": false, "margin": 0.05, "required_distance": 1.0 }, "limiting": "aluminium" });
+        let rows = [row("a.toml", Some(answer), None), row("longer.toml", None, Some("line 3: it is wrong"))];
+        let expected = "scenario     verdict  limited by  reaches  demanded  margin   photons it takes\n\
+                        a.toml       no       aluminium   -        1.000     0.05000  -\n\
+                        longer.toml  error: line 3: it is wrong\n\n1 of 2 scenarios have no answer.\n";
+        assert_eq!(text(Question::Size, &rows), expected);
+        let csv = bundle(Question::Size, &rows).unwrap();
+        assert_eq!(csv.names().collect::<Vec<_>>(), ["scenarios.csv"]);
+    }
+
+    #[test]
+    fn the_best_camera_of_a_rule_speaks_for_it() {
+        let camera =
+            |name: &str, margin: f64| json!({ "name": name, "margin": margin, "passes": margin > 1.0 });
+        let answer = json!({ "cameras": [camera("a", 0.5), camera("b", 2.0)] });
+        let cells: Vec<String> = cells(Question::Rule, &answer).iter().map(shown).collect();
+        assert_eq!(cells, ["no", "1 of 2", "b", "2.000", "-"]);
+    }
+}
