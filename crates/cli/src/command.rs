@@ -22,6 +22,7 @@ mod range;
 mod render;
 mod reproduce;
 mod rule;
+mod serve;
 mod several;
 mod shell;
 mod simulate;
@@ -85,6 +86,8 @@ enum Command {
     /// Two reports or two answers held against each other: what was asked, the verdict, figures that moved, warnings; exit code 0
     /// where they are the same, 1 where they differ, 2 where one cannot be read
     Diff(diff::DiffArgs),
+    /// The main job as a page in the browser of this machine: a form, the verdict, pictures that follow a slider
+    Serve(serve::ServeArgs),
     /// What a shell needs to complete commands and flags; to be sourced, or written where it looks for it
     Completions(shell::CompletionsArgs),
     /// The manual page; with --out one for each command
@@ -161,6 +164,7 @@ fn run(command: &Command, global: &Global) -> Result<ExitCode> {
         Command::Materials(args) => materials::run(args, global),
         Command::Cameras(args) => cameras::run(args, global),
         Command::Diff(args) => Ok(diff::run(args, global)),
+        Command::Serve(args) => serve::run(args, global),
         Command::Completions(args) => shell::completions(args, line()),
         Command::Man(_) => shell::man(line(), global),
         Command::Explain(args) => explain::run(args, global, &line()),

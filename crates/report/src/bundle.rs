@@ -13,6 +13,7 @@ use super::tables;
 use hadar::error::Result;
 use hadar_study::study::Warning;
 use rayon::prelude::*;
+use std::borrow::Cow;
 use std::path::PathBuf;
 
 const ANSWER: &str = "answer.txt";
@@ -165,15 +166,35 @@ impl Bundle {
     pub fn write_report(&self, folder: &Folder, about: &About<'_>) -> Result<usize> {
         let mut files = self.drawn()?;
         let svgs = files.iter().filter_map(|(name, held)| match held {
-            Held::Bytes(svg) if name.ends_with(".svg") => Some((name, svg)),
+            Held::Bytes(svg) if name.ends_with(".svg") => Some((name.as_str(), String::from_utf8_lossy(svg))),
             _ => None,
         });
+        let page = self.page_of(svgs, about);
+        if self.names().all(|name| name != ANSWER) {
+            files.push((ANSWER.into(), format!("{}\n", about.answer.trim_end()).into_bytes().into()));
+        }
+        files.push(("report.html".into(), page.into_bytes().into()));
+        folder.write(&files, about.provenance, about.inputs)?;
+        Ok(files.len() + 1)
+    }
+
+    /// Everything on one page, without the files.
+    ///
+    /// # Errors
+    /// A figure that cannot be drawn.
+    pub fn page(&self, about: &About<'_>) -> Result<String> {
+        let drawn = self.drawings()?;
+        let svgs = drawn.iter().map(|(name, svg)| (name.as_str(), Cow::Borrowed(svg.as_str())));
+        Ok(self.page_of(svgs, about))
+    }
+
+    fn page_of<'a>(&self, svgs: impl Iterator<Item = (&'a str, Cow<'a, str>)>, about: &About<'_>) -> String {
         let drawings = svgs.zip(&self.figures).map(|((name, svg), figure)| html::Drawing {
             name: name.trim_end_matches(".svg"),
-            svg: String::from_utf8_lossy(svg),
+            svg,
             said: figure.subtitle(),
         });
-        let page = html::page(&html::Page {
+        html::page(&html::Page {
             title: self.title.as_deref(),
             answer: about.answer,
             drawings: drawings.collect(),
@@ -181,13 +202,7 @@ impl Bundle {
             warnings: &self.warnings,
             asked: self.asked.as_ref().map(|(name, text)| (*name, text.as_str())),
             provenance: about.provenance,
-        });
-        if self.names().all(|name| name != ANSWER) {
-            files.push((ANSWER.into(), format!("{}\n", about.answer.trim_end()).into_bytes().into()));
-        }
-        files.push(("report.html".into(), page.into_bytes().into()));
-        folder.write(&files, about.provenance, about.inputs)?;
-        Ok(files.len() + 1)
+        })
     }
 
     /// Writes the files alone, without an answer and a page; how many there are.

@@ -1,7 +1,8 @@
 //! The files of the main job: scenario, tables, the four plots of the limiting pair, and the trade-offs.
 
 pub mod figures;
-pub(crate) mod text;
+pub mod rows;
+mod text;
 mod trade_off;
 
 pub use text::text;
@@ -14,7 +15,8 @@ use crate::tables;
 use crate::{classes, companion};
 use hadar::error::Result;
 use hadar::identifiability::detection;
-use hadar_study::study::{PairResult, Sensitivity, Sizing, Study};
+use hadar::policy::TradeOff;
+use hadar_study::study::{PairResult, Sensitivity, Sizing, Study, Surface};
 use std::path::Path;
 
 /// Most alternatives that are drawn into one plot.
@@ -77,6 +79,45 @@ pub(crate) fn pictures_of_pairs(study: &Study, pairs: &[PairResult], limiting: &
     Ok(drawn)
 }
 
+/// The two pictures that change with every figure of the camera: information against photons, and one trade-off.
+///
+/// # Errors
+/// A scene without photons.
+pub fn followed(study: &Study, result: &Sizing, trade_off: Option<&TradeOff>) -> Result<Bundle> {
+    let mut bundle = Bundle::default();
+    if let (Some(pair), Some(surface)) = (rows::limiting(result), study.alternative(&result.limiting)) {
+        bundle.add_plots(
+            &[identifiability(study, result, pair, surface)?].into_iter().flatten().collect::<Vec<_>>(),
+        )?;
+    }
+    bundle.add_plots(
+        &trade_off.map(|curve| trade_off::trade_off(curve, result)).into_iter().collect::<Vec<_>>(),
+    )?;
+    Ok(bundle)
+}
+
+/// Information against photons; nothing where no photons suffice.
+fn identifiability(
+    study: &Study,
+    result: &Sizing,
+    pair: &PairResult,
+    surface: &Surface,
+) -> Result<Option<Plot>> {
+    if result.requirement.photons.is_none() {
+        return Ok(None);
+    }
+    let marks = InformationMarks {
+        camera: match (&result.camera, pair.information_bits) {
+            (Some(camera), Some(bits)) => Some((camera.camera.name.clone(), camera.photons, bits)),
+            _ => None,
+        },
+        required_bits: detection::information_bits(study.required_distance()),
+        required_distance: study.required_distance(),
+    };
+    let curves = study.information_curves(surface, pair.distance_nearest, pair.distance_local)?;
+    Ok(Some(figures::identifiability(&curves, &pair.target, &pair.alternative, &marks)))
+}
+
 /// The four plots of the limiting pair; what it takes is left out where nothing suffices.
 fn drawn(study: &Study, result: &Sizing) -> Result<Vec<Plot>> {
     let mut drawn = pictures_of_pairs(study, &result.pairs, &result.limiting)?;
@@ -84,18 +125,7 @@ fn drawn(study: &Study, result: &Sizing) -> Result<Vec<Plot>> {
         result.pairs.iter().zip(study.alternatives()).find(|(pair, _)| pair.alternative == result.limiting);
     let Some((pair, surface)) = limiting else { return Ok(drawn) };
     let (target, other) = (pair.target.as_str(), pair.alternative.as_str());
-    if result.requirement.photons.is_some() {
-        let marks = InformationMarks {
-            camera: match (&result.camera, pair.information_bits) {
-                (Some(camera), Some(bits)) => Some((camera.camera.name.clone(), camera.photons, bits)),
-                _ => None,
-            },
-            required_bits: detection::information_bits(study.required_distance()),
-            required_distance: study.required_distance(),
-        };
-        let curves = study.information_curves(surface, pair.distance_nearest, pair.distance_local)?;
-        drawn.push(figures::identifiability(&curves, target, other, &marks));
-    }
+    drawn.extend(identifiability(study, result, pair, surface)?);
     if let Some(map) = study.photon_map(surface)? {
         let state = study.state();
         let here = (state.temperature_k, state.lighting.first().copied().unwrap_or(0.0));
@@ -120,7 +150,7 @@ fn collected(result: &Sizing, pair: &PairResult) -> Option<Collected> {
 fn requirement(result: &Sizing) -> Table {
     let mut table =
         Table::new(["reading", "distance_per_sqrt_photon", "photons", "hardware_m2_s", "decides"]);
-    let pair = result.pairs.iter().find(|pair| pair.alternative == result.limiting);
+    let pair = rows::limiting(result);
     let (n, h) = (result.requirement.photons_by, result.requirement.hardware_by_m2_s);
     let distances = pair.map_or([0.0; 3], |pair| {
         [pair.distance_nearest, pair.distance_local, pair.distance_local_unknown_gain]

@@ -45,6 +45,7 @@ const TAKEN: &[(&str, &[Flags])] = &[
     ("cameras list", &[PRINTED, CAMERAS]),
     ("cameras show", &[PRINTED, CAMERAS]),
     ("cameras compare", &[PRINTED, CAMERAS]),
+    ("serve", &[MATERIALS, CAMERAS, &["threads", "quiet"]]),
     ("diff", &[&["json", "quiet"]]),
     ("completions", &[]),
     ("man", &[FOLDER, &["quiet"]]),

@@ -67,6 +67,11 @@ impl For {
     }
 }
 
+/// The commented file of the main job.
+pub(super) fn size() -> String {
+    commented(For::Size.template().0)
+}
+
 /// What was written, and what to do with it.
 #[derive(Debug, Serialize)]
 struct Written {

@@ -3,7 +3,7 @@
 use super::global::{By, Global};
 use super::several;
 use clap::Args;
-use hadar::demand::{Skipping, ledger_of};
+use hadar::demand::Skipping;
 use hadar::error::Result;
 use hadar_report::size;
 use hadar_study::study::Verdict;
@@ -39,13 +39,9 @@ fn one(scenario: &Path, args: &SizeArgs, global: &Global) -> Result<u8> {
         global.answer(&result, &result.verdict.sentence.to_string(), &result.stats)?;
         return Ok(code(args, &result.verdict));
     }
-    let mut result = study.size()?;
     // Curves are for files and programs: nobody reads them off a terminal.
-    if global.out.is_some() || global.json {
-        let (trade_offs, work) = ledger_of(|| study.trade_offs(&result))?;
-        result.trade_offs = Some(trade_offs);
-        result.stats.add(&work);
-    }
+    let mut result =
+        if global.out.is_some() || global.json { study.size_with_curves() } else { study.size() }?;
     let text = size::text(&result, &study);
     result.stats.add(&global.report(&text, |out| size::bundle(&study, &result, out))?);
     global.answer(&result, &text, &result.stats)?;

@@ -4,7 +4,7 @@ use super::measured::{of_measured, uncertainty, undecided};
 use super::stop::{approach, decisions};
 use super::words::{columns, in_words, in_words_of_kind};
 use crate::companion;
-use crate::size::text::in_unit;
+use crate::size::rows::in_unit;
 use crate::text::footing::{gaussian, of_scene, warnings};
 use crate::text::numbers::{numbers, quantity, significant};
 use hadar::instrument::Readout;

@@ -1,14 +1,14 @@
 //! The main job as text: the verdict first, then the numbers, what would do, and what it hangs on.
 
+use super::rows;
 use crate::text::footing::{assumptions, gaussian, warnings};
-use crate::text::numbers::{numbers, photons, quantity, significant};
+use crate::text::numbers::{numbers, photons, significant};
 use crate::text::pairs::pair_table;
 use crate::{classes, companion};
-use hadar::policy::{Quantity, Solution};
 use hadar::words::share;
 use hadar_study::scenario::Units;
-use hadar_study::study::{PairResult, Sizing, Study, no_limit};
-use hadar_study::words::{demanded_probability, probability};
+use hadar_study::study::{PairResult, Sizing, Study};
+use hadar_study::words::demanded_probability;
 use std::fmt::Write as _;
 
 /// Share of the draws that settles a question, and how many times the distance of the entries half of them must exceed to say
@@ -21,66 +21,18 @@ const DROWNED: f64 = 2.0;
 pub fn text(result: &Sizing, study: &Study) -> String {
     let mut out = String::new();
     let _ = writeln!(out, "{}\n", result.verdict.sentence);
-    let limiting = result.pairs.iter().find(|pair| pair.alternative == result.limiting);
+    let limiting = rows::limiting(result);
     if let Some(pair) = limiting {
         out.push_str(&readings(pair, result, study));
     }
-    if let (Some(camera), Some(pair)) = (&result.camera, limiting) {
-        let name = if study.scenario().camera.as_ref().is_some_and(|spec| spec.preset.is_some()) {
-            format!("Camera {}", camera.camera.name)
-        } else {
-            "The camera".to_owned()
+    if result.camera.is_some() && limiting.is_some() {
+        let name = match (&result.camera, study.scenario().camera.as_ref()) {
+            (Some(camera), Some(spec)) if spec.preset.is_some() => format!("Camera {}", camera.camera.name),
+            _ => "The camera".to_owned(),
         };
         let _ = writeln!(out, "{name} in this scene");
-        let mut line = |label: &str, text: String| {
-            let _ = writeln!(out, "  {label:<34} {text}");
-        };
-        line("photons at the detector, all bands", significant(camera.photons, 4));
-        let of_band = match camera.camera.frames {
-            1 => "electronic noise of a band reading",
-            _ => "electronic noise of a band",
-        };
-        line(of_band, format!("{} counts", significant(camera.noise_counts, 4)));
-        line("gamma, noise / photons of a band", significant(camera.gamma_per_band, 3));
-        line("t A_p / ((1+gamma) F^2)", format!("{} m^2 s", significant(camera.hardware_m2_s, 4)));
-        let by_local = no_limit(study.scenario().requirement.by).is_some();
-        if let Some(d) = pair.statistical_distance {
-            line(
-                if by_local { "statistical distance, local" } else { "statistical distance reached" },
-                format!(
-                    "{} (required {})",
-                    significant(d, 3),
-                    significant(result.verdict.required_distance, 4)
-                ),
-            );
-        }
-        if let (Some(d), Some(miss), Some(bits)) =
-            (pair.statistical_distance, pair.miss_probability, pair.information_bits)
-        {
-            line(
-                if by_local { "probability by it, no limit" } else { "detection probability at most" },
-                match miss {
-                    0.0 => format!("{} (error below 1e-300)", probability(d, 4)),
-                    miss => format!("{} (error {})", probability(d, 4), significant(miss, 3)),
-                },
-            );
-            line("information log2 2P", format!("{} bit", significant(bits, 3)));
-        }
-        if let (true, Some(d)) = (by_local, pair.statistical_distance_nearest) {
-            let limit = format!("{} (probability {})", significant(d, 3), probability(d, 4));
-            line("the limit, by the nearest distance", limit);
-        }
-        line(
-            "least distance it resolves",
-            format!("{} per sqrt(photon)", significant(camera.least_distance, 3)),
-        );
-        if let Some(footprint) = camera.footprint_m {
-            line("pixel footprint at the target", study.units().length(footprint));
-        }
-        if let Some(blur) = camera.motion_blur_pixels {
-            let of_bands = camera.camera.readout.exposures(study.bands().len()) > 1;
-            let label = if of_bands { "motion while bands are exposed" } else { "motion during an exposure" };
-            line(label, format!("up to {} pixel", significant(blur, 2)));
+        for row in rows::of_camera(result, study) {
+            let _ = writeln!(out, "  {:<34} {}", row.label, row.value);
         }
         out.push('\n');
     }
@@ -145,79 +97,32 @@ fn readings(pair: &PairResult, result: &Sizing, study: &Study) -> String {
 
 /// What would do, quantity by quantity, and what stands against it.
 fn solutions(result: &Sizing, units: Units) -> String {
-    let Some(solutions) = &result.solve_for else { return String::new() };
+    if result.solve_for.is_none() {
+        return String::new();
+    }
     let head = match result.verdict.met {
         Some(true) => "How far each figure may go, with the rest of the camera as it is",
         _ => "What would meet the requirement, each with the rest of the camera as it is",
     };
     let mut out = format!("{head}\n");
-    // Where nothing helps for one and the same reason, that is all there is to say.
-    let hopeless = |solution: &Solution| solution.value.is_none() && solution.statistical_distance == 0.0;
-    if solutions.0.iter().all(|(_, solution)| hopeless(solution))
-        && let Some(reason) = solutions.0.iter().find_map(|(_, solution)| solution.reason.as_ref())
-    {
-        let _ = writeln!(out, "  nothing: {reason}\n");
+    let solved = rows::solved(result, units);
+    if let [rows::Solved { label: "", value, .. }] = solved.as_slice() {
+        let _ = writeln!(out, "  {value}\n");
         return out;
     }
-    for (solved, solution) in &solutions.0 {
-        // A speed that was not asked for and cannot be worked out is of no interest.
-        if *solved == Quantity::Speed && solution.camera.is_nan() {
-            continue;
-        }
-        let now = if solution.camera.is_finite() {
-            // The noise of bands may differ: what is solved for is a factor of them all.
-            let factor = match (*solved, solution.value) {
-                (Quantity::Noise, Some(value)) if solution.camera > 0.0 => {
-                    format!(", times {}", significant(value / solution.camera, 3))
-                }
-                _ => String::new(),
-            };
-            format!("(now {}{factor})", in_unit(*solved, solution.camera, units))
-        } else {
-            String::new()
+    for row in solved {
+        let now = if row.now.is_empty() { String::new() } else { format!("({})", row.now) };
+        let answer = match row.found {
+            true => format!("{:<18} {now}{}", row.value, row.remark),
+            false => row.value,
         };
-        let answer = match (solution.value, &solution.reason) {
-            (Some(value), None) => format!("{:<18} {now}", in_unit(*solved, value, units)),
-            (Some(value), Some(reason)) => format!("{:<18} {now}; {reason}", in_unit(*solved, value, units)),
-            (None, Some(reason)) if solution.statistical_distance >= result.requirement.distance => {
-                format!("any: {reason}")
-            }
-            (None, Some(reason)) => format!(
-                "none suffices: {reason} (reaches d = {})",
-                significant(solution.statistical_distance, 2)
-            ),
-            (None, None) => "none suffices".into(),
-        };
-        let name = match solved {
-            Quantity::Speed => "speed, at the exposure it takes",
-            other => other.name(),
-        };
-        let _ = writeln!(out, "  {name:<34} {}", answer.trim_end());
-        for cap in &solution.caps {
-            let side = if cap.blocks { "but" } else { "better" };
-            let bound = match (cap.blocks, solved.is_least()) {
-                (true, true) | (false, false) => "no more than",
-                (true, false) | (false, true) => "no less than",
-            };
-            let limit = in_unit(*solved, cap.limit, units);
-            let _ =
-                writeln!(out, "  {:<34} [{}] {side} {bound} {limit}: {}", "", cap.code.name(), cap.reason);
+        let _ = writeln!(out, "  {:<34} {}", row.label, answer.trim_end());
+        for cap in row.caps {
+            let _ = writeln!(out, "  {:<34} {cap}", "");
         }
     }
     out.push('\n');
     out
-}
-
-pub(crate) fn in_unit(solved: Quantity, value: f64, units: Units) -> String {
-    match solved {
-        Quantity::Exposure => quantity(value, "s"),
-        Quantity::Pixel => quantity(value, "m"),
-        Quantity::FNumber => format!("f/{}", significant(value, 3)),
-        Quantity::Noise => format!("{} counts", significant(value, 3)),
-        Quantity::Frames => format!("{value:.0}"),
-        Quantity::Distance => units.length(value),
-        Quantity::Speed => units.speed(value),
-    }
 }
 
 /// What the verdict hangs on, in a few lines.

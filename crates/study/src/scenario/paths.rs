@@ -65,6 +65,11 @@ pub(super) fn is_cube(path: &Path) -> bool {
 /// A path, from the scenario's directory, made absolute.
 pub(super) fn file(entry: &Entry<'_>) -> Result<PathBuf> {
     let text = entry.text("\"my_data.csv\"")?.trim();
+    if entry.source().files_refused {
+        let found = format!("`{text}` is a file, and no files are read here");
+        let instead = "name a material or write a number; files are read by the command on your own machine";
+        return Err(entry.fail(Error::malformed(found, instead)));
+    }
     let path = entry.source().directory().join(text);
     let path = std::path::absolute(&path).map_err(|error| {
         entry

@@ -32,6 +32,8 @@ pub struct Source {
     pub settings: Vec<Setting>,
     /// Cameras of the user's own, which it may name.
     pub cameras: Arc<[StatedCamera]>,
+    /// Whether it may name files.
+    pub files_refused: bool,
 }
 
 impl Source {

@@ -27,6 +27,8 @@ pub struct Written {
     pub settings: Vec<Setting>,
     /// Cameras of the user's own, which it may name.
     pub cameras: Arc<[StatedCamera]>,
+    /// Whether it may name files: a text of a stranger may not.
+    pub files_refused: bool,
 }
 
 impl Written {
@@ -91,9 +93,22 @@ impl Written {
         Self { cameras, ..self }
     }
 
+    /// The same, which may name no file of this machine: one that does is refused before anything is looked for.
+    ///
+    /// ```
+    /// use hadar_study::scenario::{Scenario, Written};
+    /// let text = "[target]\nmaterial = \"/etc/skin.csv\"\ntemperature = \"37 degC\"";
+    /// let error = Scenario::from_written(&Written::of(text, None).refusing_files()).unwrap_err();
+    /// assert!(error.to_string().contains("no files are read here"), "{error}");
+    /// ```
+    #[must_use]
+    pub fn refusing_files(self) -> Self {
+        Self { files_refused: true, ..self }
+    }
+
     /// Where it is read from, before anything is read.
     pub(super) fn source(&self) -> Source {
         let (path, settings, cameras) = (self.path.clone(), self.settings.clone(), Arc::clone(&self.cameras));
-        Source { path, settings, cameras, ..Source::default() }
+        Source { path, settings, cameras, files_refused: self.files_refused, ..Source::default() }
     }
 }

@@ -244,6 +244,18 @@ impl Study {
         self.size_with(SizeAsked::default())
     }
 
+    /// The same with its trade-offs.
+    ///
+    /// # Errors
+    /// As [`Study::identify`].
+    pub fn size_with_curves(&self) -> Result<Sizing> {
+        let mut result = self.size()?;
+        let (trade_offs, work) = demand::ledger_of(|| self.trade_offs(&result))?;
+        result.trade_offs = Some(trade_offs);
+        result.stats.add(&work);
+        Ok(result)
+    }
+
     /// The same with those parts alone that are asked for.
     ///
     /// # Errors

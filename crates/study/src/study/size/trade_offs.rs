@@ -18,33 +18,45 @@ impl Study {
     /// # Errors
     /// As [`Study::size`].
     pub fn trade_offs(&self, result: &Sizing) -> Result<Vec<TradeOff>> {
-        let (Some(camera), Some(alternative)) = (&self.camera, self.alternative(&result.limiting)) else {
-            return Ok(Vec::new());
-        };
+        let pairs = self.traded_off().into_par_iter();
+        let curves = demand::gathered(pairs.map(|pair| demand::ledger_of(|| self.trade_off(result, pair))))?;
+        Ok(curves.into_iter().flatten().collect())
+    }
+
+    /// The pairs of quantities that are traded off in this scenario, the second solved for along the first.
+    #[must_use]
+    pub fn traded_off(&self) -> Vec<(Quantity, Quantity)> {
+        let Some(camera) = &self.camera else { return Vec::new() };
         let task = self.task(camera);
-        let as_now = result.verdict.statistical_distance.unwrap_or(0.0);
-        let known = |pair: &&(Quantity, Quantity)| match pair.1 {
+        let known = |pair: &(Quantity, Quantity)| match pair.1 {
             Quantity::Speed => Motion::of(camera, task.distance_m).is_some(),
             Quantity::Noise => task.value(Quantity::Noise) > 0.0,
             // Else distance does not matter.
             Quantity::Frames => task.size_m.is_some() || self.scenario.atmosphere.is_some(),
             _ => true,
         };
-        let solved = result.solve_for.iter().flat_map(|solutions| &solutions.0);
-        let pairs: Vec<_> = PAIRS.iter().filter(known).collect();
-        let traced = |pair| {
-            let brightest = |trial: &Trial| self.brightest(trial);
-            let speed_m_s = self.scenario.requirement.speed_m_s;
-            let given = Circumstances { bands: &self.bands, speed_m_s, brightest: &brightest };
-            let mut reach = Reach::new(self, alternative);
-            let alone =
-                |x| solved.clone().find(|(quantity, _)| *quantity == x).and_then(|(_, found)| found.value);
-            trade_off::trace(&task, pair, as_now, alone(pair.0), &given, &mut |task, quantity| {
-                reach.solve(task, quantity)
-            })
+        PAIRS.into_iter().filter(known).collect()
+    }
+
+    /// One of the curves of [`Study::trade_offs`]; none where nothing along it suffices, or without a camera.
+    ///
+    /// # Errors
+    /// As [`Study::size`].
+    pub fn trade_off(&self, result: &Sizing, pair: (Quantity, Quantity)) -> Result<Option<TradeOff>> {
+        let (Some(camera), Some(alternative)) = (&self.camera, self.alternative(&result.limiting)) else {
+            return Ok(None);
         };
-        let curves: Vec<TradeOff> =
-            demand::gathered(pairs.into_par_iter().map(|pair| demand::ledger_of(|| traced(*pair))))?;
-        Ok(curves.into_iter().filter(TradeOff::has_solution).collect())
+        let brightest = |trial: &Trial| self.brightest(trial);
+        let speed_m_s = self.scenario.requirement.speed_m_s;
+        let given = Circumstances { bands: &self.bands, speed_m_s, brightest: &brightest };
+        let mut solved = result.solve_for.iter().flat_map(|solutions| &solutions.0);
+        let alone = solved.find(|(quantity, _)| *quantity == pair.0).and_then(|(_, found)| found.value);
+        let as_now = result.verdict.statistical_distance.unwrap_or(0.0);
+        let mut reach = Reach::new(self, alternative);
+        let curve =
+            trade_off::trace(&self.task(camera), pair, as_now, alone, &given, &mut |task, quantity| {
+                reach.solve(task, quantity)
+            })?;
+        Ok(Some(curve).filter(TradeOff::has_solution))
     }
 }

@@ -1,0 +1,43 @@
+//! `hadar serve`: the main job as a page in the browser of this machine.
+
+use super::global::{Global, put};
+use super::{init, provenance};
+use clap::Args;
+use hadar::error::{Error, Result};
+use hadar_serve::Engine;
+use hadar_study::study::OwnCameras;
+use std::net::{Ipv4Addr, TcpListener};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+#[derive(Debug, Args)]
+pub(super) struct ServeArgs {
+    /// The scenario that the page begins with, `-` for standard input; silent: that of `hadar init size`
+    scenario: Option<PathBuf>,
+    /// Port on 127.0.0.1; 0 takes any that is free
+    #[arg(long, value_name = "PORT", default_value_t = 8731)]
+    port: u16,
+}
+
+pub(super) fn run(args: &ServeArgs, global: &Global) -> Result<ExitCode> {
+    let begin = match &args.scenario {
+        Some(path) => global.written(path)?.text,
+        None => init::size(),
+    };
+    let engine = Engine {
+        library: global.library()?,
+        cameras: OwnCameras::from_files(&global.cameras)?,
+        begin,
+        commit: provenance::COMMIT.to_owned(),
+    };
+    let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, args.port)).map_err(|error| {
+        let found = format!("port {} of 127.0.0.1 cannot be taken ({})", args.port, error.kind());
+        Error::malformed(found, "name another --port, or 0 for any that is free")
+    })?;
+    let address =
+        listener.local_addr().map_err(|error| Error::malformed(error.to_string(), "name another --port"))?;
+    put(&format!("http://{address}/"))?;
+    global.note("open it in a browser of this machine; Ctrl-C ends it");
+    hadar_serve::serve(engine, listener)?;
+    Ok(ExitCode::SUCCESS)
+}

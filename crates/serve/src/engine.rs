@@ -1,0 +1,262 @@
+//! The answer to a scenario: that of `hadar size`, with what a page shows of it one by one.
+
+use crate::edit::{self, Edit};
+use crate::form::{self, Form};
+use hadar::demand::{Reason, Thing, Work};
+use hadar::error::{Error, Result};
+use hadar::inputs::inputs_of;
+use hadar::instrument::presets::{self, Preset};
+use hadar::material::Library;
+use hadar_report::bundle::About;
+use hadar_report::manifest::{Provenance, VERSION, answer_json};
+use hadar_report::size::{self, rows};
+use hadar_report::text::significant;
+use hadar_study::scenario::{Scenario, Written};
+use hadar_study::study::{OwnCameras, PairResult, SizeAsked, Sizing, Study};
+use hadar_study::warning::Warning;
+use hadar_study::words::probability;
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+
+/// Bands times alternatives that are computed for a page: some seconds of work. Larger questions are for the command.
+const MOST_SPECTRAL_VALUES: usize = 100_000;
+/// What a scenario of the page is called in its report.
+const NAME: &str = "scenario.toml";
+
+/// What scenarios of the page are answered with.
+#[derive(Debug)]
+pub struct Engine {
+    /// Materials that they may name.
+    pub library: Library,
+    /// Cameras of the user's own that they may name.
+    pub cameras: OwnCameras,
+    /// The scenario that the page begins with.
+    pub begin: String,
+    /// Commit of the program's source, for reports.
+    pub commit: String,
+}
+
+/// A question of the page.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Ask {
+    /// The text of the scenario.
+    pub(crate) scenario: String,
+    /// What is to be changed in it first.
+    #[serde(default)]
+    pub(crate) edits: Vec<Edit>,
+    /// The trade-off that is drawn, by the quantity solved for; silent: the first.
+    #[serde(default)]
+    pub(crate) trade_off: Option<String>,
+    /// Whether what does not follow a slider is asked for too: what the verdict hangs on, and the answer as text.
+    #[serde(default)]
+    pub(crate) full: bool,
+}
+
+/// What the page gets.
+#[derive(Debug, Serialize)]
+struct Answered {
+    /// The text after the changes.
+    scenario: String,
+    /// The same as fields; none where the text is no TOML.
+    form: Option<Form>,
+    /// The answer; none where there is an error.
+    answer: Option<Answer>,
+    /// What is wrong.
+    error: Option<Told>,
+}
+
+/// What is wrong with a scenario, and where.
+#[derive(Debug, Serialize)]
+struct Told {
+    message: String,
+    line: Option<usize>,
+    key: Option<String>,
+}
+
+/// An answer as it is shown.
+#[derive(Debug, Serialize)]
+struct Answer {
+    /// Whether the requirement is met; none without a camera.
+    met: Option<bool>,
+    /// Whether a 'yes' hangs on something.
+    provided: bool,
+    sentence: String,
+    numbers: Vec<rows::Row>,
+    solved: Vec<rows::Solved>,
+    pairs: Vec<Pair>,
+    warnings: Vec<Said>,
+    /// Names and drawings (SVG).
+    pictures: Vec<(String, String)>,
+    /// Quantities that a trade-off can be drawn of, by name, and which one is.
+    trade_offs: Vec<String>,
+    trade_off: Option<String>,
+    /// The whole answer as the command prints it; none while a slider moves.
+    text: Option<String>,
+}
+
+/// An alternative as it is shown.
+#[derive(Debug, Serialize)]
+struct Pair {
+    alternative: String,
+    distance_nearest: String,
+    photons_required: String,
+    statistical_distance: Option<String>,
+    detection_probability: Option<String>,
+    told_apart: Option<bool>,
+}
+
+/// A warning as it is shown.
+#[derive(Debug, Serialize)]
+struct Said {
+    code: &'static str,
+    message: String,
+    remedy: &'static str,
+}
+
+impl Engine {
+    /// What the page begins with: a scenario, and names that it may use.
+    pub(crate) fn start(&self) -> Result<String> {
+        #[derive(Serialize)]
+        struct Named<'a> {
+            name: &'a str,
+            about: &'a str,
+        }
+        #[derive(Serialize)]
+        struct Start<'a> {
+            version: &'static str,
+            scenario: &'a str,
+            materials: Vec<Named<'a>>,
+            cameras: Vec<Named<'a>>,
+            library_warnings: &'a [String],
+        }
+        let of_material = |material| {
+            let material: &hadar::material::Material = material;
+            Named { name: material.name(), about: &material.provenance().category }
+        };
+        let classes = self.library.classes().map(|(name, _)| Named { name, about: "class" });
+        let of_camera = |camera| {
+            let camera: &Preset = camera;
+            Named { name: &camera.name, about: &camera.description }
+        };
+        json(&Start {
+            version: VERSION,
+            scenario: &self.begin,
+            materials: self.library.iter().map(of_material).chain(classes).collect(),
+            cameras: presets::all()?.iter().chain(&self.cameras.presets).map(of_camera).collect(),
+            library_warnings: self.library.warnings(),
+        })
+    }
+
+    /// A scenario with its changes as text, fields and answer.
+    pub(crate) fn answer(&self, ask: &Ask) -> Result<String> {
+        let (scenario, changed) = match edit::applied(&ask.scenario, &ask.edits) {
+            Ok(text) => (text, Ok(())),
+            Err(error) => (ask.scenario.clone(), Err(error)),
+        };
+        let answered = changed.and_then(|()| self.shown(&scenario, ask));
+        let (answer, error) = match answered {
+            Ok(answer) => (Some(answer), None),
+            Err(error) => (None, Some(told(&error))),
+        };
+        json(&Answered { form: form::of(&scenario, self), scenario, answer, error })
+    }
+
+    fn shown(&self, text: &str, ask: &Ask) -> Result<Answer> {
+        let study = self.study(text)?;
+        let result = study.size_with(SizeAsked { solutions: true, sensitivity: ask.full })?;
+        let pairs = study.traded_off();
+        let wanted = |pair: &&(_, hadar::policy::Quantity)| Some(pair.1.key()) == ask.trade_off.as_deref();
+        let pair = pairs.iter().find(wanted).or(pairs.first());
+        let curve = pair.map(|pair| study.trade_off(&result, *pair)).transpose()?.flatten();
+        let met = result.verdict.met;
+        Ok(Answer {
+            met,
+            provided: result.verdict.provided.is_some(),
+            sentence: result.verdict.sentence.to_string(),
+            numbers: rows::of_camera(&result, &study),
+            solved: rows::solved(&result, study.units()),
+            pairs: result.pairs.iter().map(pair_shown).collect(),
+            warnings: result.warnings.iter().map(said).collect(),
+            pictures: size::followed(&study, &result, curve.as_ref())?.drawings()?,
+            trade_offs: pairs.iter().map(|pair| pair.1.key().to_owned()).collect(),
+            trade_off: pair.map(|pair| pair.1.key().to_owned()),
+            text: ask.full.then(|| size::text(&result, &study)),
+        })
+    }
+
+    /// The answer as `hadar size --json` prints it.
+    pub(crate) fn json(&self, ask: &Ask) -> Result<String> {
+        let study = self.study(&edit::applied(&ask.scenario, &ask.edits)?)?;
+        let mut result = study.size_with_curves()?;
+        let mut no_report = Work::default();
+        no_report.spare(Thing::Reports, Reason::NotAsked, 1);
+        result.stats.add(&no_report);
+        answer_json(&result, &self.library_warnings(), &[]).map(|text| text + "\n")
+    }
+
+    /// The report of `hadar size --out`, on its one page.
+    pub(crate) fn report(&self, ask: &Ask) -> Result<String> {
+        let text = edit::applied(&ask.scenario, &ask.edits)?;
+        let (sized, mut read) = inputs_of(|| -> Result<(Study, Sizing)> {
+            let study = self.study(&text)?;
+            let result = study.size_with_curves()?;
+            Ok((study, result))
+        });
+        let (study, result) = sized?;
+        read.streams.insert(0, (NAME.to_owned(), text.into_bytes()));
+        let command = ["hadar", "size", NAME].map(str::to_owned).to_vec();
+        let provenance = Provenance::of(&self.commit, command, 1, &read)?;
+        let about = About { answer: &size::text(&result, &study), provenance: &provenance, inputs: &[] };
+        size::bundle(&study, &result, Path::new(""))?.page(&about)
+    }
+
+    fn study(&self, text: &str) -> Result<Study> {
+        let written =
+            Written::of(text, None).with_cameras(self.cameras.stated.clone().into()).refusing_files();
+        let study = Study::new(&Scenario::from_written(&written)?, &self.library)?;
+        let (bands, alternatives) = (study.bands().len(), study.alternatives().len());
+        if bands.saturating_mul(alternatives) > MOST_SPECTRAL_VALUES {
+            let found =
+                format!("{bands} bands of {alternatives} alternatives are more than this page computes");
+            return Err(Error::malformed(
+                found,
+                "take fewer, or ask `hadar size` with the scenario of this page",
+            ));
+        }
+        Ok(study)
+    }
+
+    fn library_warnings(&self) -> Vec<Warning> {
+        self.library.warnings().iter().map(|remark| Warning::Library { remark: remark.clone() }).collect()
+    }
+}
+
+fn pair_shown(pair: &PairResult) -> Pair {
+    Pair {
+        alternative: pair.alternative.clone(),
+        distance_nearest: significant(pair.distance_nearest, 3),
+        photons_required: pair.photons_required.map_or("no number suffices".into(), |n| significant(n, 3)),
+        statistical_distance: pair.statistical_distance.map(|d| significant(d, 3)),
+        detection_probability: pair.statistical_distance.map(|d| probability(d, 4)),
+        told_apart: pair.told_apart,
+    }
+}
+
+fn said(warning: &Warning) -> Said {
+    let code = warning.code();
+    Said { code: code.name(), message: warning.to_string(), remedy: code.remedy() }
+}
+
+/// An error with its place apart.
+fn told(error: &Error) -> Told {
+    let place = match error {
+        Error::At { place, .. } => place.clone(),
+        _ => Default::default(),
+    };
+    Told { message: error.to_string(), line: place.line, key: place.key }
+}
+
+fn json(value: &impl Serialize) -> Result<String> {
+    serde_json::to_string(value).map_err(|error| Error::malformed(error.to_string(), "report this as a bug"))
+}

@@ -1,0 +1,391 @@
+//! A scenario as fields: the tables and keys that its text has, and those that it could have, from the table of keys.
+
+use crate::engine::Engine;
+use hadar::atmosphere::Atmosphere;
+use hadar::instrument::presets;
+use hadar::units::Dimension;
+use hadar_study::scenario::keys::{FILES, Key, Silent, Table, Value};
+use serde::Serialize;
+use toml_edit::{DocumentMut, Item, TableLike};
+
+/// The fields of a scenario.
+#[derive(Debug, Serialize)]
+pub(crate) struct Form {
+    /// Tables in the order of the table of keys; keys above all tables stand in the first.
+    sections: Vec<Section>,
+    /// Tables that it could have: its path, what it is called and what it means.
+    absent: Vec<Absent>,
+}
+
+/// A table.
+#[derive(Debug, Serialize)]
+struct Section {
+    path: String,
+    /// The same without the place in a list, by which it is explained.
+    word: String,
+    meaning: &'static str,
+    /// Whether there may be more of it.
+    many: bool,
+    /// Whether the scenario can do without it.
+    removable: bool,
+    fields: Vec<Field>,
+    absent: Vec<Absent>,
+}
+
+/// A key that is not written.
+#[derive(Debug, Serialize)]
+struct Absent {
+    path: String,
+    name: String,
+    meaning: &'static str,
+}
+
+/// A key that is written.
+#[derive(Debug, Serialize)]
+struct Field {
+    path: String,
+    word: String,
+    name: String,
+    meaning: &'static str,
+    /// How it is shown: `quantity`, `number`, `choice`, `flag`, `material`, `materials`, `text` or `toml`.
+    kind: &'static str,
+    /// What is written, quotes of a text left out.
+    value: String,
+    /// Items of a list of materials.
+    items: Vec<String>,
+    choices: Vec<String>,
+    slider: Option<Slider>,
+    removable: bool,
+}
+
+/// A range that a slider covers, in the unit that is written.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+struct Slider {
+    number: f64,
+    unit: String,
+    /// `linear`, `log`, or `nines`: logarithmic towards 1.
+    scale: &'static str,
+    low: f64,
+    high: f64,
+    whole: bool,
+}
+
+/// The root of the kind of file that `hadar size` reads.
+fn root() -> Option<&'static Table> {
+    FILES.iter().find(|kind| kind.commands.contains(&"size")).map(|kind| kind.root)
+}
+
+/// The fields of a text; none where it is no TOML.
+pub(crate) fn of(text: &str, engine: &Engine) -> Option<Form> {
+    let document: DocumentMut = text.parse().ok()?;
+    let root = root()?;
+    let mut form = Form { sections: Vec::new(), absent: Vec::new() };
+    let plain = |key: &Key| key.value.table().is_none();
+    form.sections.push(Section {
+        path: String::new(),
+        word: String::new(),
+        meaning: "",
+        many: false,
+        removable: false,
+        fields: fields(root, document.as_table(), "", engine, plain),
+        absent: absent(root, document.as_table(), "", plain),
+    });
+    for key in root.keys().filter(|key| !plain(key)) {
+        let (Some(table), name) = (key.value.table(), key.name) else { continue };
+        let item = document.get(name);
+        let mut add = |path: String, table_like: &dyn TableLike| {
+            form.sections.push(Section {
+                word: word(&path),
+                meaning: key.meaning,
+                many: matches!(key.value, Value::Tables(_)),
+                removable: key.silent != Silent::Refused,
+                fields: fields(table, table_like, &path, engine, |_| true),
+                absent: absent(table, table_like, &path, |_| true),
+                path,
+            });
+        };
+        match (key.value, item) {
+            (Value::Table(_), Some(item)) => {
+                if let Some(found) = item.as_table_like() {
+                    add(name.to_owned(), found);
+                }
+            }
+            (Value::Tables(_), Some(item)) => {
+                let items = (0..).map_while(|index| item.get(index));
+                for (index, found) in items.filter_map(Item::as_table_like).enumerate() {
+                    add(format!("{name}[{index}]"), found);
+                }
+            }
+            (Value::Named(_), Some(item)) => {
+                for (own, found) in item.as_table_like().into_iter().flat_map(TableLike::iter) {
+                    if let Some(found) = found.as_table_like() {
+                        add(format!("{name}.{own}"), found);
+                    }
+                }
+            }
+            _ => {}
+        }
+        if matches!(key.value, Value::Tables(_)) || (item.is_none() && matches!(key.value, Value::Table(_))) {
+            form.absent.push(Absent { path: name.to_owned(), name: name.to_owned(), meaning: key.meaning });
+        }
+    }
+    Some(form)
+}
+
+fn fields(
+    table: &Table,
+    written: &dyn TableLike,
+    above: &str,
+    engine: &Engine,
+    wanted: impl Fn(&Key) -> bool,
+) -> Vec<Field> {
+    let there = |key: &Key| written.get(key.name).and_then(Item::as_value).is_some();
+    table
+        .keys()
+        .filter(|key| wanted(key) && there(key))
+        .filter_map(|key| Some(field(&key, written.get(key.name)?.as_value()?, above, engine)))
+        .collect()
+}
+
+fn field(key: &Key, value: &toml_edit::Value, above: &str, engine: &Engine) -> Field {
+    let path = join(above, key.name);
+    let text = match value.as_str() {
+        Some(text) => text.to_owned(),
+        None => value.clone().decorated("", "").to_string(),
+    };
+    let items = value.as_array().into_iter().flatten().filter_map(|item| item.as_str().map(str::to_owned));
+    let choices = choices(key, &path, engine);
+    let kind = match key.value {
+        _ if !choices.is_empty() => "choice",
+        Value::Quantity(..) | Value::Spectral => "quantity",
+        Value::Number(_) | Value::NumberOrFile(_) | Value::Count(_) => "number",
+        Value::Flag => "flag",
+        Value::Material => "material",
+        Value::List(Value::Material) => "materials",
+        Value::Text | Value::Date | Value::File | Value::Choice(_) => "text",
+        _ => "toml",
+    };
+    Field {
+        word: word(&path),
+        name: key.name.replace('_', " "),
+        meaning: key.meaning,
+        slider: slider(key, &text),
+        removable: key.silent != Silent::Refused,
+        items: items.collect(),
+        value: text,
+        path,
+        kind,
+        choices,
+    }
+}
+
+/// The words that may stand at a key, where they are few.
+fn choices(key: &Key, path: &str, engine: &Engine) -> Vec<String> {
+    let names = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect();
+    match (key.value, path) {
+        (Value::Choice(words), _) => names(words),
+        (_, "atmosphere.model") => names(Atmosphere::names()),
+        (_, "camera.preset") => {
+            let known = presets::all().unwrap_or_default().iter().chain(&engine.cameras.presets);
+            known.map(|camera| camera.name.clone()).collect()
+        }
+        _ => Vec::new(),
+    }
+}
+
+fn absent(table: &Table, written: &dyn TableLike, above: &str, wanted: impl Fn(&Key) -> bool) -> Vec<Absent> {
+    let is_absent = |key: &Key| wanted(key) && written.get(key.name).is_none_or(Item::is_none);
+    let absent = table.keys().filter(is_absent);
+    // Files are read by the command alone.
+    let absent = absent.filter(|key| !matches!(key.value, Value::File));
+    absent
+        .map(|key| Absent {
+            path: join(above, key.name),
+            name: key.name.replace('_', " "),
+            meaning: key.meaning,
+        })
+        .collect()
+}
+
+fn join(above: &str, name: &str) -> String {
+    if above.is_empty() { name.to_owned() } else { format!("{above}.{name}") }
+}
+
+/// A path without places in lists.
+fn word(path: &str) -> String {
+    let parts = path.split('.').map(|part| part.split('[').next().unwrap_or(part));
+    parts.collect::<Vec<_>>().join(".")
+}
+
+/// The range about a number that is written: of a share all of it, of a temperature 40 K, else a decade on either side.
+fn slider(key: &Key, text: &str) -> Option<Slider> {
+    let (number, unit) = parts(text)?;
+    let (dimension, allowed, whole) = match key.value {
+        Value::Quantity(dimension, allowed) => (Some(dimension), Some(allowed), false),
+        Value::Number(allowed) | Value::NumberOrFile(allowed) => (None, Some(allowed), false),
+        Value::Count(_) => (None, None, true),
+        _ => return None,
+    };
+    let is_share = allowed.is_some_and(|allowed| {
+        allowed.allows(0.5) && allowed.allows(1.0 - 1e-9) && !allowed.allows(1.0 + 1e-6)
+    });
+    let (scale, low, high) = match dimension {
+        _ if key.name == "detection_probability" => ("nines", 0.5, 0.999_999),
+        Some(Dimension::Temperature) => {
+            let half = if unit.ends_with('F') { 72.0 } else { 40.0 };
+            let kelvin = |number: f64| {
+                Dimension::Temperature.parse(&format!("{number} {unit}")).is_ok_and(|t| t > 0.0)
+            };
+            if unit == "mK" || !kelvin(number - half) {
+                return None;
+            }
+            ("linear", number - half, number + half)
+        }
+        None if is_share => ("linear", 0.0, 1.0),
+        _ if whole => ("log", 1.0, (10.0 * number).max(100.0)),
+        _ => ("log", number / 10.0, number * 10.0),
+    };
+    let sound = number >= low && number <= high && low.is_finite() && high.is_finite() && low < high;
+    (sound && (scale != "log" || low > 0.0)).then(|| Slider {
+        number,
+        unit: unit.to_owned(),
+        scale,
+        low,
+        high,
+        whole,
+    })
+}
+
+/// A number and the unit behind it, as they are written.
+fn parts(text: &str) -> Option<(f64, &str)> {
+    let text = text.trim();
+    let is_number = |end: &usize| text.get(..*end).is_some_and(|part| part.trim().parse::<f64>().is_ok());
+    let ends = text.char_indices().map(|(at, _)| at).chain([text.len()]).skip(1);
+    let end = ends.filter(is_number).last()?;
+    let number: f64 = text.get(..end)?.trim().parse().ok()?;
+    number.is_finite().then(|| (number, text.get(end..).unwrap_or_default().trim()))
+}
+
+/// What may stand at a path of a scenario.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct At(Option<Value>);
+
+/// What may stand at a path.
+pub(crate) fn value_at(path: &str) -> At {
+    At(find(path).map(|(value, _)| value))
+}
+
+impl At {
+    /// What is typed into a field, as it is written: a text where a text is due, else TOML where it is some.
+    pub(crate) fn parsed(self, typed: &str) -> toml_edit::Value {
+        let is_text = matches!(
+            self.0,
+            Some(
+                Value::Quantity(..)
+                    | Value::Spectral
+                    | Value::Text
+                    | Value::Date
+                    | Value::Choice(_)
+                    | Value::Material
+                    | Value::File
+            )
+        );
+        let toml = (!is_text).then(|| typed.trim().parse::<toml_edit::Value>().ok()).flatten();
+        toml.unwrap_or_else(|| typed.into())
+    }
+}
+
+/// What is written where nothing was.
+#[derive(Debug)]
+pub(crate) enum Written {
+    /// A value.
+    Value(toml_edit::Value),
+    /// A table.
+    Table(toml_edit::Table),
+    /// One entry of a list of tables.
+    Entry(toml_edit::Table),
+}
+
+/// What is written at a path where nothing was: the value of its example, or a table of the keys that it must have.
+pub(crate) fn new_at(path: &str) -> Option<Written> {
+    let (value, example) = find(path)?;
+    let filled = |table: &Table| {
+        let mut new = toml_edit::Table::new();
+        let due = |key: &Key| key.silent == Silent::Refused || DUE.contains(&key.name);
+        for key in table.keys().filter(due) {
+            if let Ok(value) = key.example.parse::<toml_edit::Value>() {
+                new.insert(key.name, Item::Value(value));
+            }
+        }
+        new
+    };
+    match value {
+        Value::Table(table) => Some(Written::Table(filled(table))),
+        Value::Tables(table) => Some(Written::Entry(filled(table))),
+        _ => example.parse().ok().map(Written::Value),
+    }
+}
+
+/// Keys that a new table begins with although it may be silent about them.
+const DUE: [&str; 3] = ["lighting", "model", "preset"];
+
+/// What may stand at a path, and its example.
+fn find(path: &str) -> Option<(Value, &'static str)> {
+    let mut table = root()?;
+    let mut found = None;
+    let mut names = path.split('.').map(|part| part.split('[').next().unwrap_or(part));
+    while let Some(name) = names.next() {
+        let key = table.key(name)?;
+        found = Some((key.value, key.example));
+        if let Some(inner) = key.value.table() {
+            table = inner;
+            if matches!(key.value, Value::Named(_)) && names.next().is_none() {
+                return found;
+            }
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_told_from_their_units() {
+        for (text, expected) in [
+            ("10 ms", Some((10.0, "ms"))),
+            ("-3.5e-1 degC", Some((-0.35, "degC"))),
+            ("0.6", Some((0.6, ""))),
+            ("12um", Some((12.0, "um"))),
+            ("1e3m", Some((1000.0, "m"))),
+            ("warm", None),
+            ("", None),
+            ("nan K", None),
+        ] {
+            assert_eq!(parts(text), expected, "{text}");
+        }
+    }
+
+    #[test]
+    fn every_key_of_a_scenario_has_something_to_begin_with_and_is_read_back() {
+        let root = root().unwrap();
+        let mut seen = 0;
+        for section in root.keys() {
+            let Some(table) = section.value.table() else { continue };
+            let above = match section.value {
+                Value::Named(_) => format!("{}.own", section.name),
+                _ => section.name.to_owned(),
+            };
+            for key in table.keys() {
+                let path = join(&above, key.name);
+                let Some(Written::Value(value)) = new_at(&path) else { panic!("{path}") };
+                let text = value.as_str().map_or_else(|| value.to_string(), str::to_owned);
+                let again = value_at(&path).parsed(&text);
+                assert_eq!(again.to_string().trim(), value.to_string().trim(), "{path}");
+                seen += 1;
+            }
+        }
+        assert!(seen > 60, "{seen}");
+    }
+}

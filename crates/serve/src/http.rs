@@ -1,0 +1,177 @@
+//! Connections: how many, how long, how large; each question on a thread of its own, as many at once as there are cores.
+//!
+//! Whoever is too slow, too long or too many is refused, and nobody else waits for him but for the work itself.
+
+use crate::engine::Engine;
+use crate::guard::{self, Refusal};
+use crate::route::{self, Reply};
+use hadar::error::{Error, Result};
+use http_body_util::{BodyExt as _, Full, Limited};
+use hyper::body::{Bytes, Incoming};
+use hyper::header::{ALLOW, CACHE_CONTROL, CONTENT_TYPE, HeaderValue};
+use hyper::server::conn::http1;
+use hyper::service::service_fn;
+use hyper::{Method, Request, Response, StatusCode};
+use hyper_util::rt::{TokioIo, TokioTimer};
+use std::convert::Infallible;
+use std::net::TcpListener;
+use std::sync::Arc;
+use std::time::Duration;
+use tokio::sync::Semaphore;
+use tokio::time::timeout;
+
+/// Connections at once; a browser opens six.
+const CONNECTIONS: usize = 512;
+/// Questions that wait for their turn; further ones are told to come again.
+const WAITING: usize = 256;
+/// Time for the head of a request, and for its body.
+const PATIENCE: Duration = Duration::from_secs(10);
+/// Longest connection.
+const LONGEST: Duration = Duration::from_secs(600);
+/// Longest head of a request, bytes.
+const LONGEST_HEAD: usize = 16 << 10;
+/// Longest body of a request, bytes: a scenario and what is changed in it.
+const LONGEST_BODY: usize = 256 << 10;
+
+/// What all connections share.
+struct Shared {
+    engine: Engine,
+    port: u16,
+    /// Questions that are computed.
+    working: Semaphore,
+    /// Questions that are computed or wait.
+    taken: Semaphore,
+}
+
+/// Answers on a listener until the process ends.
+///
+/// # Errors
+/// A listener that is no loopback address, or that the system takes away.
+pub fn serve(engine: Engine, listener: TcpListener) -> Result<()> {
+    let failed =
+        |error: std::io::Error| Error::malformed(format!("cannot listen ({error})"), "try another --port");
+    let address = listener.local_addr().map_err(failed)?;
+    if !address.ip().is_loopback() {
+        return Err(Error::malformed(
+            format!("{address} can be reached from other machines"),
+            "listen on 127.0.0.1",
+        ));
+    }
+    listener.set_nonblocking(true).map_err(failed)?;
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let shared = Arc::new(Shared {
+        engine,
+        port: address.port(),
+        working: Semaphore::new(cores),
+        taken: Semaphore::new(WAITING),
+    });
+    let runtime = tokio::runtime::Builder::new_current_thread()
+        .enable_io()
+        .enable_time()
+        .max_blocking_threads(cores)
+        .build()
+        .map_err(failed)?;
+    runtime.block_on(accept(shared, tokio::net::TcpListener::from_std(listener).map_err(failed)?))
+}
+
+async fn accept(shared: Arc<Shared>, listener: tokio::net::TcpListener) -> Result<()> {
+    let room = Arc::new(Semaphore::new(CONNECTIONS));
+    loop {
+        let Ok(permit) = Arc::clone(&room).acquire_owned().await else { return Ok(()) };
+        let stream = match listener.accept().await {
+            Ok((stream, _)) => stream,
+            // Too many open files, or a client that is gone: later.
+            Err(_) => {
+                tokio::time::sleep(Duration::from_millis(50)).await;
+                continue;
+            }
+        };
+        let shared = Arc::clone(&shared);
+        tokio::spawn(async move {
+            let _permit = permit;
+            let service = service_fn(move |request| answer(Arc::clone(&shared), request));
+            let connection = http1::Builder::new()
+                .timer(TokioTimer::new())
+                .header_read_timeout(PATIENCE)
+                .max_buf_size(LONGEST_HEAD)
+                .serve_connection(TokioIo::new(stream), service);
+            // What goes wrong on a connection is that client's own affair.
+            let _ = timeout(LONGEST, connection).await;
+        });
+    }
+}
+
+async fn answer(
+    shared: Arc<Shared>,
+    request: Request<Incoming>,
+) -> std::result::Result<Response<Full<Bytes>>, Infallible> {
+    let (head, body) = request.into_parts();
+    let reply = match guard::check(shared.port, &head.method, &head.headers) {
+        Err(refusal) => Reply::refused(refusal),
+        Ok(()) => match head.method {
+            Method::GET | Method::HEAD => route::get(head.uri.path(), &shared.engine),
+            Method::POST => match read(body).await {
+                Ok(body) => compute(shared, head.uri.path().to_owned(), body).await,
+                Err(refusal) => Reply::refused(refusal),
+            },
+            _ => Reply::refused(Refusal(StatusCode::METHOD_NOT_ALLOWED, "GET or POST")),
+        },
+    };
+    Ok(response(reply))
+}
+
+async fn read(body: Incoming) -> std::result::Result<Bytes, Refusal> {
+    match timeout(PATIENCE, Limited::new(body, LONGEST_BODY).collect()).await {
+        Ok(Ok(body)) => Ok(body.to_bytes()),
+        Ok(Err(error)) if error.is::<http_body_util::LengthLimitError>() => {
+            Err(Refusal(StatusCode::PAYLOAD_TOO_LARGE, "a scenario has at most 256 KiB here"))
+        }
+        Ok(Err(_)) => Err(Refusal(StatusCode::BAD_REQUEST, "the request broke off")),
+        Err(_) => Err(Refusal(StatusCode::REQUEST_TIMEOUT, "the request took too long")),
+    }
+}
+
+/// Computes an answer in its turn; a client that goes away before has asked nothing.
+async fn compute(shared: Arc<Shared>, path: String, body: Bytes) -> Reply {
+    let Ok(_taken) = shared.taken.try_acquire() else {
+        return Reply::refused(Refusal(StatusCode::SERVICE_UNAVAILABLE, "too many questions at once"));
+    };
+    let Ok(_working) = shared.working.acquire().await else {
+        return Reply::refused(Refusal(StatusCode::SERVICE_UNAVAILABLE, "it is ending"));
+    };
+    let own = Arc::clone(&shared);
+    let computed = tokio::task::spawn_blocking(move || route::post(&path, &body, &own.engine)).await;
+    computed.unwrap_or_else(|_| {
+        Reply::refused(Refusal(
+            StatusCode::INTERNAL_SERVER_ERROR,
+            "this is a bug; report it with the scenario",
+        ))
+    })
+}
+
+/// A reply with what keeps browsers from doing more with it than showing it here.
+fn response(reply: Reply) -> Response<Full<Bytes>> {
+    let mut response = Response::new(Full::new(reply.body));
+    *response.status_mut() = reply.status;
+    let headers = response.headers_mut();
+    if reply.status == StatusCode::METHOD_NOT_ALLOWED {
+        headers.insert(ALLOW, HeaderValue::from_static("GET, HEAD, POST"));
+    }
+    headers.insert(CONTENT_TYPE, HeaderValue::from_static(reply.kind));
+    headers.insert(CACHE_CONTROL, HeaderValue::from_static("no-store"));
+    let fixed = [
+        (
+            "content-security-policy",
+            "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; \
+             connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
+        ),
+        ("x-content-type-options", "nosniff"),
+        ("referrer-policy", "no-referrer"),
+        ("cross-origin-resource-policy", "same-origin"),
+        ("cross-origin-opener-policy", "same-origin"),
+    ];
+    for (name, value) in fixed {
+        headers.insert(name, HeaderValue::from_static(value));
+    }
+    response
+}

@@ -1,0 +1,27 @@
+//! `hadar` as a page in the browser: a form and the text of a scenario, two views of one thing, and what the engine says of it.
+//!
+//! Nothing leaves this machine and nothing of it is read: the page listens on a loopback address, takes requests of its own page
+//! alone ([`guard`]), bounds their size and number ([`http`]), and reads scenarios that name no files
+//! ([`Written::refusing_files`](hadar_study::scenario::Written::refusing_files)). The answers are those of `hadar size`.
+//!
+//! | file | what is there |
+//! |---|---|
+//! | `http` | connections: how many, how long, how large |
+//! | `guard` | who may ask |
+//! | `route` | which question is asked where |
+//! | `engine` | the answer to a scenario |
+//! | `form` | a scenario as fields |
+//! | `edit` | fields changed in the text of a scenario |
+//! | `meaning` | what a word means, as a page |
+//! | `page/` | what the browser shows |
+
+mod edit;
+mod engine;
+mod form;
+mod guard;
+mod http;
+mod meaning;
+mod route;
+
+pub use engine::Engine;
+pub use http::serve;

@@ -1,0 +1,438 @@
+// The page of `hadar serve`. The text of the scenario is the only state: the form shows it, and changes it by its keys.
+"use strict";
+
+const at = (id) => document.getElementById(id);
+const STEPS = 200;
+const REST_MS = 250;
+const OWN_CAMERA =
+  'exposure = "10 ms"\npixel = "12 um"\nf_number = 1.0\nfocal_length = "24 mm"\nnetd = "30 mK"\nnetd_temperature = "30 degC"\n';
+
+let text = "";
+let begin = "";
+let named = { materials: [], cameras: [] };
+let tradeOff = null;
+// What waits to be asked: changes of the form, a text that was typed, all of the answer.
+let changes = [];
+let typed = false;
+let whole = true;
+let busy = false;
+let revision = 0;
+let resting = 0;
+let signature = "";
+const ranges = new Map();
+
+const element = (name, attributes = {}, ...children) => {
+  const made = document.createElement(name);
+  for (const [key, value] of Object.entries(attributes)) {
+    if (key in made && key !== "list") made[key] = value;
+    else made.setAttribute(key, value);
+  }
+  made.append(...children);
+  return made;
+};
+
+// Asking: one question at a time, the newest state next.
+
+const post = (path, body) =>
+  fetch(path, { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(body) });
+
+function change(...edits) {
+  for (const edit of edits) {
+    const last = changes.at(-1);
+    if (edit.do === "set" && last?.do === "set" && last.key === edit.key) changes.pop();
+    changes.push(edit);
+  }
+  ask();
+}
+
+async function ask() {
+  if (busy) return;
+  busy = true;
+  while (changes.length > 0 || typed || whole) {
+    const question = { scenario: text, edits: changes, trade_off: tradeOff, full: whole };
+    const asked = revision;
+    changes = [];
+    typed = whole = false;
+    try {
+      const reply = await post("/ask", question);
+      if (!reply.ok) failed(`The program says: ${await reply.text()}`);
+      else {
+        const answered = await reply.json();
+        // A text that was typed meanwhile is newer than this answer.
+        if (asked === revision) show(answered, question.full);
+      }
+    } catch {
+      failed("The program does not answer. Start `hadar serve` again, then change something here.");
+    }
+    if (!question.full) {
+      clearTimeout(resting);
+      resting = setTimeout(() => { whole = true; ask(); }, REST_MS);
+    }
+  }
+  busy = false;
+}
+
+function failed(message, place = null) {
+  at("answer").hidden = true;
+  document.title = "hadar";
+  at("sentence").textContent = "No answer: the scenario cannot be computed as it stands.";
+  at("sentence").className = "";
+  at("error").textContent = message;
+  at("error").hidden = false;
+  document.querySelectorAll("[aria-invalid]").forEach((old) => old.removeAttribute("aria-invalid"));
+  if (!place) return;
+  const field = place.key && document.querySelector(`[data-path="${CSS.escape(place.key)}"]`);
+  if (field) field.setAttribute("aria-invalid", "true");
+  if (place.line) at("scenario").setAttribute("aria-invalid", "true");
+}
+
+// Showing an answer.
+
+function show({ scenario, form, answer, error }, full) {
+  text = scenario;
+  if (at("scenario").value !== text) at("scenario").value = text;
+  if (form) showForm(form);
+  if (error) return failed(error.message, error);
+  document.querySelectorAll("[aria-invalid]").forEach((old) => old.removeAttribute("aria-invalid"));
+  at("error").hidden = true;
+  at("answer").hidden = false;
+  if (at("sentence").textContent !== answer.sentence) at("sentence").textContent = answer.sentence;
+  at("sentence").className = answer.met === null ? "" : answer.met ? "yes" : "no";
+  document.title = `${answer.met === null ? "" : answer.met ? "Yes: " : "No: "}hadar`;
+  at("solved").hidden = answer.solved.length === 0;
+  at("solved-heading").textContent = answer.met
+    ? "How far each figure may go, with the rest as it is"
+    : "What would meet it, each with the rest as it is";
+  at("solved-rows").replaceChildren(...answer.solved.map((one) => row(one, solvedCells(one))));
+  at("numbers").hidden = answer.numbers.length === 0;
+  at("number-rows").replaceChildren(...answer.numbers.map((one) => row(one, [cell(one.value, "number")])));
+  at("pair-rows").replaceChildren(...answer.pairs.map(pairRow));
+  at("warnings").hidden = answer.warnings.length === 0;
+  at("warning-rows").replaceChildren(...answer.warnings.map(warningItem));
+  showPictures(answer);
+  if (full) {
+    at("text").textContent = answer.text;
+    history.replaceState(null, "", link());
+  }
+}
+
+const cell = (value, className = "") => element("td", { className }, value ?? "-");
+const means = (word, label, hint = "") =>
+  element("a", { href: `/explain/${word}`, target: "_blank", rel: "noopener", title: hint }, label);
+const row = (one, cells) =>
+  element("tr", {}, element("th", { scope: "row" }, one.label ? means(one.key, one.label) : ""), ...cells);
+
+function solvedCells(one) {
+  const value = cell(one.value + one.remark, "number");
+  value.append(...one.caps.map((cap) => element("small", {}, cap)));
+  return [value, cell(one.now)];
+}
+
+function pairRow(pair) {
+  const verdict = pair.told_apart === null ? "-" : pair.told_apart ? "yes" : "no";
+  const numbers = [pair.distance_nearest, pair.photons_required, pair.statistical_distance, pair.detection_probability];
+  return element(
+    "tr", {},
+    element("th", { scope: "row" }, pair.alternative),
+    ...numbers.map((value) => cell(value, "number")), cell(verdict),
+  );
+}
+
+const warningItem = (warning) =>
+  element("li", {}, means(warning.code, `[${warning.code}]`), ` ${warning.message} `, element("small", {}, `(${warning.remedy})`));
+
+function showPictures(answer) {
+  const drawn = answer.pictures.map(([name, svg]) => {
+    const parsed = new DOMParser().parseFromString(svg, "image/svg+xml").documentElement;
+    const title = parsed.querySelector("title")?.textContent ?? name;
+    parsed.setAttribute("role", "img");
+    parsed.setAttribute("aria-label", title);
+    return element("figure", { className: "picture" }, document.importNode(parsed, true));
+  });
+  at("pictures").replaceChildren(...drawn);
+  at("pick").hidden = answer.trade_offs.length < 2;
+  const known = [...at("trade-off").options].map((option) => option.value).join();
+  if (known !== answer.trade_offs.join()) {
+    const options = answer.trade_offs.map((name) => element("option", { value: name }, NAMES[name] ?? name));
+    at("trade-off").replaceChildren(...options);
+  }
+  at("trade-off").value = answer.trade_off ?? "";
+}
+
+const NAMES = {
+  exposure_s: "exposure over f-number", noise_counts: "noise over pixel", frames: "frames over distance",
+  speed_m_s: "speed over exposure",
+};
+
+// The form.
+
+function showForm(form) {
+  const shape = JSON.stringify([
+    form.sections.map((section) => [
+      section.path, section.absent.map((one) => one.path),
+      section.fields.map((field) => [field.path, field.kind, field.choices, field.items.length, !!field.slider]),
+    ]),
+    form.absent.map((one) => one.path),
+  ]);
+  if (shape === signature) {
+    form.sections.flatMap((section) => section.fields).forEach(refresh);
+    return;
+  }
+  signature = shape;
+  const focused = document.activeElement?.id;
+  const sections = form.sections.map(sectionElement);
+  at("form").replaceChildren(...sections, adder("Add to the scenario", form.absent));
+  if (focused) at(focused)?.focus();
+}
+
+const idOf = (path, what) => `${what}:${path}`;
+
+function sectionElement(section) {
+  const name = section.path === "" ? "Title" : section.path.replace(/\[(\d+)\]/, (_, index) => ` ${Number(index) + 1}`);
+  const legend = element("legend", {}, section.word ? means(section.word, name, section.meaning) : name);
+  const parts = [legend];
+  if (section.meaning) parts.push(element("p", {}, section.meaning));
+  if (section.path === "camera") parts.push(cameraPicker(section));
+  parts.push(...section.fields.map(fieldElement));
+  const more = section.absent.length > 0 ? adder(`Add to ${name}`, section.absent) : element("div", { className: "more" });
+  if (section.removable) {
+    const remove = element("button", { type: "button", id: idOf(section.path, "take") }, `Remove ${name}`);
+    remove.addEventListener("click", () => change({ do: "remove", key: section.path }));
+    more.append(remove);
+  }
+  return element("fieldset", { "data-section": section.path }, ...parts, more);
+}
+
+function cameraPicker(section) {
+  const id = idOf(section.path, "pick");
+  const preset = section.fields.find((field) => field.name === "preset")?.value ?? "";
+  const options = [element("option", { value: "" }, "figures of its own")];
+  options.push(...named.cameras.map((camera) => element("option", { value: camera.name, title: camera.about }, camera.name)));
+  const select = element("select", { id }, ...options);
+  select.value = preset;
+  select.addEventListener("change", () => {
+    const toml = select.value === "" ? OWN_CAMERA : `preset = ${JSON.stringify(select.value)}\n`;
+    change({ do: "table", key: section.path, toml });
+  });
+  return element("div", { className: "field" }, element("label", { htmlFor: id }, "take a known camera"), select);
+}
+
+function adder(label, absent) {
+  const id = idOf(label, "add");
+  const options = absent.map((one) => element("option", { value: one.path, title: one.meaning }, one.name));
+  const select = element("select", { id }, element("option", { value: "" }, "…"), ...options);
+  select.addEventListener("change", () => {
+    if (select.value) change({ do: "add", key: select.value });
+    select.value = "";
+  });
+  return element("div", { className: "more" }, element("label", { htmlFor: id }, label), select);
+}
+
+function fieldElement(field) {
+  const id = idOf(field.path, "field");
+  const control = controlOf(field, id);
+  const about = element("span", {}, means(field.word, "?", field.meaning));
+  about.firstChild.className = "means";
+  about.firstChild.setAttribute("aria-label", `what ${field.name} means`);
+  if (field.removable) {
+    const remove = element("button", { type: "button", className: "small", "aria-label": `remove ${field.name}` }, "×");
+    remove.addEventListener("click", () => change({ do: "remove", key: field.path }));
+    about.append(" ", remove);
+  }
+  const label = element("label", { htmlFor: id, title: field.meaning }, field.name);
+  const parts = [label, control, about];
+  if (field.kind === "materials") parts.push(chips(field));
+  const range = rangeOf(field);
+  if (range) parts.push(sliderElement(field, range));
+  return element("div", { className: "field" }, ...parts);
+}
+
+function controlOf(field, id) {
+  const set = (value) => change({ do: "set", key: field.path, value });
+  const choose = (choices) => {
+    const all = choices.includes(field.value) ? choices : [field.value, ...choices];
+    const select = element("select", { id, "data-path": field.path }, ...all.map((one) => element("option", { value: one }, one)));
+    select.value = field.value;
+    select.addEventListener("change", () => set(select.value));
+    return select;
+  };
+  const materials = named.materials.map((one) => one.name);
+  if (field.kind === "choice") return choose(field.choices);
+  if (field.kind === "flag") return choose(["true", "false"]);
+  if (field.kind === "material") return choose(materials);
+  if (field.kind === "materials") {
+    const others = materials.filter((name) => !field.items.includes(name));
+    const options = others.map((name) => element("option", { value: name }, name));
+    const select = element("select", { id, "data-path": field.path }, element("option", { value: "" }, "one more…"), ...options);
+    select.addEventListener("change", () => select.value && set(JSON.stringify([...field.items, select.value])));
+    return select;
+  }
+  const input = element("input", { id, type: "text", value: field.value, "data-path": field.path, spellcheck: false });
+  input.addEventListener("change", () => set(input.value));
+  // Enter takes the value; the form itself is sent nowhere.
+  input.addEventListener("keydown", (event) => {
+    if (event.key === "Enter") { event.preventDefault(); set(input.value); }
+  });
+  return input;
+}
+
+function chips(field) {
+  const chip = (name, index) => {
+    const remove = element("button", { type: "button", className: "small", "aria-label": `remove ${name}` }, `${name} ×`);
+    remove.addEventListener("click", () =>
+      change({ do: "set", key: field.path, value: JSON.stringify(field.items.filter((_, other) => other !== index)) }));
+    return remove;
+  };
+  return element("div", { className: "items" }, ...field.items.map(chip));
+}
+
+// A slider keeps its range while the number stays within it.
+function rangeOf(field) {
+  if (!field.slider) return null;
+  const kept = ranges.get(field.path);
+  const { number, unit } = field.slider;
+  if (kept && kept.unit === unit && number >= kept.low && number <= kept.high) return { ...kept, number };
+  ranges.set(field.path, field.slider);
+  return field.slider;
+}
+
+const towards = {
+  linear: [(x) => x, (x) => x],
+  log: [Math.log, Math.exp],
+  nines: [(x) => -Math.log10(1 - x), (x) => 1 - 10 ** -x],
+};
+
+function positionOf(range) {
+  const [there] = towards[range.scale];
+  const [low, high] = [there(range.low), there(range.high)];
+  return Math.round((STEPS * (there(range.number) - low)) / (high - low));
+}
+
+function numberAt(range, position) {
+  const [there, back] = towards[range.scale];
+  const [low, high] = [there(range.low), there(range.high)];
+  const number = back(low + ((high - low) * position) / STEPS);
+  if (range.whole) return String(Math.round(number));
+  if (range.scale === "nines") return String(1 - Number((1 - number).toPrecision(2))).slice(0, 9);
+  if (range.scale === "linear") return String(Number(number.toFixed(range.high - range.low > 2 ? 1 : 3)));
+  return String(Number(number.toPrecision(3)));
+}
+
+const written = (range, number) => (range.unit ? `${number} ${range.unit}` : number);
+
+function sliderElement(field, range) {
+  const id = idOf(field.path, "slider");
+  const slider = element("input", {
+    id, type: "range", min: 0, max: STEPS, step: 1, value: positionOf(range), "aria-label": field.name,
+    "aria-valuetext": field.value,
+  });
+  slider.addEventListener("input", () => {
+    const value = written(ranges.get(field.path), numberAt(ranges.get(field.path), slider.valueAsNumber));
+    at(idOf(field.path, "field")).value = value;
+    slider.setAttribute("aria-valuetext", value);
+    change({ do: "set", key: field.path, value });
+  });
+  return slider;
+}
+
+// The same fields with other values; what is being used is left alone.
+function refresh(field) {
+  const control = at(idOf(field.path, "field"));
+  if (!control) return;
+  const slider = at(idOf(field.path, "slider"));
+  const moving = document.activeElement === slider;
+  if (field.kind === "materials") control.parentElement.replaceWith(fieldElement(field));
+  else if (document.activeElement !== control && !moving) control.value = field.value;
+  const range = rangeOf(field);
+  if (slider && range && !moving) {
+    slider.value = positionOf(range);
+    slider.setAttribute("aria-valuetext", field.value);
+  }
+}
+
+// Files and links.
+
+const encoded = (string) => {
+  const bytes = new TextEncoder().encode(string);
+  let binary = "";
+  bytes.forEach((byte) => { binary += String.fromCharCode(byte); });
+  return btoa(binary).replaceAll("+", "-").replaceAll("/", "_").replace(/=+$/, "");
+};
+const decoded = (string) => {
+  const binary = atob(string.replaceAll("-", "+").replaceAll("_", "/"));
+  return new TextDecoder("utf-8", { fatal: true }).decode(Uint8Array.from(binary, (char) => char.charCodeAt(0)));
+};
+const link = () => `#s=${encoded(text)}`;
+
+function restored() {
+  const found = /^#s=([\w-]+)$/.exec(location.hash);
+  try {
+    return found && decoded(found[1]);
+  } catch {
+    return null;
+  }
+}
+
+function save(name, kind, content) {
+  const url = URL.createObjectURL(new Blob([content], { type: kind }));
+  element("a", { href: url, download: name }).click();
+  setTimeout(() => URL.revokeObjectURL(url), 10000);
+  at("done").textContent = `${name} is in your downloads.`;
+}
+
+async function fetched(path, name, kind) {
+  at("done").textContent = "One moment.";
+  const reply = await post(path, { scenario: text }).catch(() => null);
+  const content = await reply?.text().catch(() => null);
+  if (reply?.ok) save(name, kind, content);
+  else at("done").textContent = `There is no ${name}: ${content ?? "the program does not answer"}`;
+}
+
+function take(scenario) {
+  text = scenario;
+  revision += 1;
+  changes = [];
+  typed = whole = true;
+  ranges.clear();
+  ask();
+}
+
+at("form").addEventListener("submit", (event) => event.preventDefault());
+let typing = 0;
+at("scenario").addEventListener("input", () => {
+  text = at("scenario").value;
+  revision += 1;
+  changes = [];
+  at("sentence").classList.add("stale");
+  clearTimeout(typing);
+  typing = setTimeout(() => { typed = whole = true; ask(); }, REST_MS);
+});
+at("trade-off").addEventListener("change", () => { tradeOff = at("trade-off").value; typed = true; ask(); });
+at("save-scenario").addEventListener("click", () => save("scenario.toml", "text/plain", text));
+at("save-report").addEventListener("click", () => fetched("/report", "report.html", "text/html"));
+at("save-json").addEventListener("click", () => fetched("/json", "hadar.json", "application/json"));
+at("print").addEventListener("click", () => print());
+at("reset").addEventListener("click", () => take(begin));
+at("link").addEventListener("click", async () => {
+  history.replaceState(null, "", link());
+  try {
+    await navigator.clipboard.writeText(location.href);
+    at("done").textContent = "The link is in your clipboard.";
+  } catch {
+    at("done").textContent = "The link is in the address line.";
+  }
+});
+addEventListener("beforeprint", () => { at("printed").textContent = text; });
+addEventListener("hashchange", () => { const scenario = restored(); if (scenario !== null) take(scenario); });
+
+(async () => {
+  try {
+    const start = await (await fetch("/start")).json();
+    begin = start.scenario;
+    named = start;
+    at("version").textContent = start.version;
+  } catch {
+    return failed("The program does not answer. Start `hadar serve` again, then load this page anew.");
+  }
+  take(restored() ?? begin);
+})();
