@@ -71,7 +71,11 @@ pub fn serve(engine: Engine, listener: TcpListener) -> Result<()> {
         .max_blocking_threads(cores)
         .build()
         .map_err(failed)?;
-    runtime.block_on(accept(shared, tokio::net::TcpListener::from_std(listener).map_err(failed)?))
+    // Taken over within the runtime, by which it is waited for.
+    runtime.block_on(async {
+        let listener = tokio::net::TcpListener::from_std(listener).map_err(failed)?;
+        accept(shared, listener).await
+    })
 }
 
 async fn accept(shared: Arc<Shared>, listener: tokio::net::TcpListener) -> Result<()> {
