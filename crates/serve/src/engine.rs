@@ -7,6 +7,7 @@ use hadar::error::{Error, Result};
 use hadar::inputs::inputs_of;
 use hadar::instrument::presets::{self, Preset};
 use hadar::material::Library;
+use hadar::policy::trade_off::POINTS;
 use hadar_report::bundle::About;
 use hadar_report::manifest::{Provenance, VERSION, answer_json};
 use hadar_report::size::{self, rows};
@@ -20,6 +21,8 @@ use std::path::Path;
 
 /// Bands times alternatives that are computed for a page: some seconds of work. Larger questions are for the command.
 const MOST_SPECTRAL_VALUES: usize = 100_000;
+/// Points of a trade-off while a slider moves; when it rests there are [`POINTS`].
+const MOVING_POINTS: usize = 11;
 /// What a scenario of the page is called in its report.
 const NAME: &str = "scenario.toml";
 
@@ -168,7 +171,8 @@ impl Engine {
         let pairs = study.traded_off();
         let wanted = |pair: &&(_, hadar::policy::Quantity)| Some(pair.1.key()) == ask.trade_off.as_deref();
         let pair = pairs.iter().find(wanted).or(pairs.first());
-        let curve = pair.map(|pair| study.trade_off(&result, *pair)).transpose()?.flatten();
+        let points = if ask.full { POINTS } else { MOVING_POINTS };
+        let curve = pair.map(|pair| study.trade_off(&result, *pair, points)).transpose()?.flatten();
         let met = result.verdict.met;
         Ok(Answer {
             met,

@@ -132,7 +132,8 @@ fn range(task: &CameraTask<'_>, quantity: Quantity, alone: Option<f64>) -> [f64;
     }
 }
 
-/// Traces a curve. `solve` solves a task for a quantity; `as_now` is the statistical distance of the camera as it is,
+/// Traces a curve of so many points between its boundaries. `solve` solves a task for a quantity; `as_now` is the statistical distance
+/// of the camera as it is,
 /// `alone` the value of the first quantity that alone meets the demand.
 ///
 /// # Errors
@@ -143,6 +144,7 @@ pub fn trace(
     as_now: f64,
     alone: Option<f64>,
     given: &Circumstances<'_>,
+    points: usize,
     solve: &mut dyn FnMut(&CameraTask<'_>, Quantity) -> Result<Solution>,
 ) -> Result<TradeOff> {
     let (x, y) = pair;
@@ -150,8 +152,9 @@ pub fn trace(
     let of_x = limits(x, &task.own(), given)?;
     let exact = of_x.iter().map(|limit| limit.value).chain(alone).chain([task.value(x)]);
     let exact: Vec<f64> = exact.filter(|value| (low..=high).contains(value)).collect();
-    let last = (POINTS - 1) as f64;
-    let even = (0..POINTS).map(|i| (low.ln() + (high / low).ln() * i as f64 / last).exp());
+    let points = points.max(2);
+    let last = (points - 1) as f64;
+    let even = (0..points).map(|i| (low.ln() + (high / low).ln() * i as f64 / last).exp());
     let near = |a: f64, b: f64| (a / b - 1.0).abs() < SAME;
     let mut places: Vec<f64> = even.filter(|at| !exact.iter().any(|one| near(*one, *at))).collect();
     places.extend(&exact);
@@ -332,7 +335,7 @@ mod tests {
         };
         let given = Circumstances { bands: &bands, speed_m_s: Some(10.0), brightest: &|_| Ok(0.0) };
         let alone = task.solve(x, shot).unwrap().value;
-        trace(&task, (x, y), shot(&task.own()).unwrap(), alone, &given, &mut |task, quantity| {
+        trace(&task, (x, y), shot(&task.own()).unwrap(), alone, &given, POINTS, &mut |task, quantity| {
             task.solve(quantity, shot)
         })
         .unwrap()

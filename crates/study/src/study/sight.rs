@@ -78,8 +78,19 @@ impl Study {
     /// A distance of which the air's table says nothing.
     pub fn sight_at(&self, camera: &Camera, distance_m: Option<f64>) -> Result<Sight> {
         let (bands, air) = self.received(Some(camera), distance_m)?;
-        let view = self.view(camera, [Seen { bands: &bands, distance_m, air: &air }; 2]);
+        let view = self.view_through(camera, &bands, distance_m, &air);
         Ok(Sight { bands, view })
+    }
+
+    /// What a pixel of `camera` sees from `distance_m`, through bands and air that were received from there.
+    pub(super) fn view_through(
+        &self,
+        camera: &Camera,
+        bands: &Bands,
+        distance_m: Option<f64>,
+        air: &[f64],
+    ) -> View {
+        self.view(camera, [Seen { bands, distance_m, air }; 2])
     }
 
     /// What `camera` sees from anywhere along a stretch of distances, m.

@@ -443,6 +443,10 @@ impl Study {
 
     /// Counts of the fullest reading of a trial.
     pub(super) fn brightest(&self, trial: &Trial) -> Result<f64> {
+        // From its own distance the bands are those of the scene.
+        if trial.distance_m == self.scenario.target.distance_m {
+            return Ok(self.brightest_member(&trial.camera));
+        }
         let sight = self.sight_at(&trial.camera, trial.distance_m)?;
         let reading = |surface: &Surface| {
             let signal = sight.bands.weigh(&self.surroundings.signal(&surface.emissivity, &self.state));

@@ -70,13 +70,15 @@ pub(in crate::study) struct Reach<'a> {
     alternative: &'a Surface,
     /// Of the scenario's own distance, where the bands are always the same.
     own: Solvers<'a>,
+    /// Of another distance, the last one: bands as they are received from there, and what the path emits.
+    elsewhere: Option<(Option<f64>, Bands, Vec<f64>)>,
     state: Option<State>,
 }
 
 impl<'a> Reach<'a> {
     pub(in crate::study) fn new(study: &'a Study, alternative: &'a Surface) -> Self {
         let own = Solvers::new(study, &study.bands);
-        Self { study, alternative, own, state: None }
+        Self { study, alternative, own, elsewhere: None, state: None }
     }
 
     /// The statistical distance of a trial, its nearest state followed from the trial before.
@@ -98,9 +100,17 @@ impl<'a> Reach<'a> {
             let counting = study.counting_of(&trial.camera);
             self.own.reached(study, pair, &counting, start)?
         } else {
-            let sight = study.sight_at(&trial.camera, trial.distance_m)?;
-            let counting = trial.camera.counting(&sight.bands, &sight.view);
-            Solvers::new(study, &sight.bands).reached(study, pair, &counting, start)?
+            let there = match self.elsewhere.take().filter(|(from, ..)| *from == trial.distance_m) {
+                Some(there) => there,
+                None => {
+                    let (bands, air) = study.received(Some(&trial.camera), trial.distance_m)?;
+                    (trial.distance_m, bands, air)
+                }
+            };
+            let (distance_m, bands, air) = self.elsewhere.insert(there);
+            let counting =
+                trial.camera.counting(bands, &study.view_through(&trial.camera, bands, *distance_m, air));
+            Solvers::new(study, bands).reached(study, pair, &counting, start)?
         };
         self.state = state;
         Ok(distance)

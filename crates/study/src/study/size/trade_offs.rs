@@ -5,7 +5,7 @@ use crate::study::size::{Reach, Sizing};
 use hadar::demand;
 use hadar::error::Result;
 use hadar::policy::caps::Circumstances;
-use hadar::policy::trade_off::{self, PAIRS, TradeOff};
+use hadar::policy::trade_off::{self, PAIRS, POINTS, TradeOff};
 use hadar::policy::{Motion, Quantity, Trial};
 use rayon::prelude::*;
 
@@ -19,7 +19,8 @@ impl Study {
     /// As [`Study::size`].
     pub fn trade_offs(&self, result: &Sizing) -> Result<Vec<TradeOff>> {
         let pairs = self.traded_off().into_par_iter();
-        let curves = demand::gathered(pairs.map(|pair| demand::ledger_of(|| self.trade_off(result, pair))))?;
+        let curves =
+            demand::gathered(pairs.map(|pair| demand::ledger_of(|| self.trade_off(result, pair, POINTS))))?;
         Ok(curves.into_iter().flatten().collect())
     }
 
@@ -38,11 +39,17 @@ impl Study {
         PAIRS.into_iter().filter(known).collect()
     }
 
-    /// One of the curves of [`Study::trade_offs`]; none where nothing along it suffices, or without a camera.
+    /// One of the curves of [`Study::trade_offs`], of so many points between its boundaries; none where nothing along it suffices, or
+    /// without a camera.
     ///
     /// # Errors
     /// As [`Study::size`].
-    pub fn trade_off(&self, result: &Sizing, pair: (Quantity, Quantity)) -> Result<Option<TradeOff>> {
+    pub fn trade_off(
+        &self,
+        result: &Sizing,
+        pair: (Quantity, Quantity),
+        points: usize,
+    ) -> Result<Option<TradeOff>> {
         let (Some(camera), Some(alternative)) = (&self.camera, self.alternative(&result.limiting)) else {
             return Ok(None);
         };
@@ -53,10 +60,15 @@ impl Study {
         let alone = solved.find(|(quantity, _)| *quantity == pair.0).and_then(|(_, found)| found.value);
         let as_now = result.verdict.statistical_distance.unwrap_or(0.0);
         let mut reach = Reach::new(self, alternative);
-        let curve =
-            trade_off::trace(&self.task(camera), pair, as_now, alone, &given, &mut |task, quantity| {
-                reach.solve(task, quantity)
-            })?;
+        let curve = trade_off::trace(
+            &self.task(camera),
+            pair,
+            as_now,
+            alone,
+            &given,
+            points,
+            &mut |task, quantity| reach.solve(task, quantity),
+        )?;
         Ok(Some(curve).filter(TradeOff::has_solution))
     }
 }
