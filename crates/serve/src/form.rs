@@ -79,72 +79,60 @@ fn root() -> Option<&'static Table> {
 pub(crate) fn of(text: &str, engine: &Engine) -> Option<Form> {
     let document: DocumentMut = text.parse().ok()?;
     let root = root()?;
-    let mut form = Form { sections: Vec::new(), absent: Vec::new() };
-    let plain = |key: &Key| key.value.table().is_none();
-    form.sections.push(Section {
+    let (table, mut sections) = (document.as_table(), Vec::new());
+    sections.push(Section {
         path: String::new(),
         word: String::new(),
         meaning: "",
         many: false,
         removable: false,
-        fields: fields(root, document.as_table(), "", engine, plain),
-        absent: absent(root, document.as_table(), "", plain),
+        fields: fields(root, table, "", engine),
+        absent: absent(root, table, "")
+            .filter(|(key, _)| key.value.table().is_none())
+            .map(|(_, one)| one)
+            .collect(),
     });
-    for key in root.keys().filter(|key| !plain(key)) {
-        let (Some(table), name) = (key.value.table(), key.name) else { continue };
-        let item = document.get(name);
-        let mut add = |path: String, table_like: &dyn TableLike| {
-            form.sections.push(Section {
+    below(root, table, "", engine, &mut sections);
+    let more = absent(root, table, "").filter(|(key, _)| key.value.table().is_some());
+    Some(Form { absent: more.map(|(_, one)| one).collect(), sections })
+}
+
+/// The tables within a table.
+fn below(table: &Table, written: &dyn TableLike, above: &str, engine: &Engine, sections: &mut Vec<Section>) {
+    for key in table.keys() {
+        let (Some(inner), Some(item)) = (key.value.table(), written.get(key.name)) else { continue };
+        let path = join(above, key.name);
+        let mut add = |path: String, item: &Item| {
+            let Some(found) = item.as_table_like() else { return };
+            sections.push(Section {
                 word: word(&path),
                 meaning: key.meaning,
                 many: matches!(key.value, Value::Tables(_)),
                 removable: key.silent != Silent::Refused,
-                fields: fields(table, table_like, &path, engine, |_| true),
-                absent: absent(table, table_like, &path, |_| true),
-                path,
+                fields: fields(inner, found, &path, engine),
+                absent: absent(inner, found, &path).map(|(_, one)| one).collect(),
+                path: path.clone(),
             });
+            below(inner, found, &path, engine, sections);
         };
-        match (key.value, item) {
-            (Value::Table(_), Some(item)) => {
-                if let Some(found) = item.as_table_like() {
-                    add(name.to_owned(), found);
-                }
-            }
-            (Value::Tables(_), Some(item)) => {
+        match key.value {
+            Value::Tables(_) => {
                 let items = (0..).map_while(|index| item.get(index));
-                for (index, found) in items.filter_map(Item::as_table_like).enumerate() {
-                    add(format!("{name}[{index}]"), found);
-                }
+                items.enumerate().for_each(|(index, item)| add(format!("{path}[{index}]"), item));
             }
-            (Value::Named(_), Some(item)) => {
-                for (own, found) in item.as_table_like().into_iter().flat_map(TableLike::iter) {
-                    if let Some(found) = found.as_table_like() {
-                        add(format!("{name}.{own}"), found);
-                    }
-                }
+            Value::Named(_) => {
+                let own = item.as_table_like().into_iter().flat_map(TableLike::iter);
+                own.for_each(|(name, item)| add(join(&path, name), item));
             }
-            _ => {}
-        }
-        if matches!(key.value, Value::Tables(_)) || (item.is_none() && matches!(key.value, Value::Table(_))) {
-            form.absent.push(Absent { path: name.to_owned(), name: name.to_owned(), meaning: key.meaning });
+            _ => add(path, item),
         }
     }
-    Some(form)
 }
 
-fn fields(
-    table: &Table,
-    written: &dyn TableLike,
-    above: &str,
-    engine: &Engine,
-    wanted: impl Fn(&Key) -> bool,
-) -> Vec<Field> {
-    let there = |key: &Key| written.get(key.name).and_then(Item::as_value).is_some();
-    table
-        .keys()
-        .filter(|key| wanted(key) && there(key))
-        .filter_map(|key| Some(field(&key, written.get(key.name)?.as_value()?, above, engine)))
-        .collect()
+fn fields(table: &Table, written: &dyn TableLike, above: &str, engine: &Engine) -> Vec<Field> {
+    let value =
+        |key: &Key| written.get(key.name).and_then(Item::as_value).filter(|_| key.value.table().is_none());
+    table.keys().filter_map(|key| Some(field(&key, value(&key)?, above, engine))).collect()
 }
 
 fn field(key: &Key, value: &toml_edit::Value, above: &str, engine: &Engine) -> Field {
@@ -193,18 +181,24 @@ fn choices(key: &Key, path: &str, engine: &Engine) -> Vec<String> {
     }
 }
 
-fn absent(table: &Table, written: &dyn TableLike, above: &str, wanted: impl Fn(&Key) -> bool) -> Vec<Absent> {
-    let is_absent = |key: &Key| wanted(key) && written.get(key.name).is_none_or(Item::is_none);
-    let absent = table.keys().filter(is_absent);
-    // Files are read by the command alone.
-    let absent = absent.filter(|key| !matches!(key.value, Value::File));
-    absent
-        .map(|key| Absent {
-            path: join(above, key.name),
-            name: key.name.replace('_', " "),
-            meaning: key.meaning,
-        })
-        .collect()
+/// The keys that are not written, those of lists of tables always: there may be one more. Tables of the author's own names are
+/// named in the text.
+fn absent<'a>(
+    table: &'a Table,
+    written: &'a dyn TableLike,
+    above: &'a str,
+) -> impl Iterator<Item = (Key, Absent)> + 'a {
+    let could_be = |key: &Key| match key.value {
+        // Files are read by the command alone.
+        Value::File | Value::Named(_) => false,
+        Value::Tables(_) => true,
+        _ => written.get(key.name).is_none_or(Item::is_none),
+    };
+    table.keys().filter(could_be).map(move |key| {
+        let one =
+            Absent { path: join(above, key.name), name: key.name.replace('_', " "), meaning: key.meaning };
+        (key, one)
+    })
 }
 
 fn join(above: &str, name: &str) -> String {
@@ -379,6 +373,10 @@ mod tests {
             };
             for key in table.keys() {
                 let path = join(&above, key.name);
+                if key.value.table().is_some() {
+                    assert!(matches!(new_at(&path), Some(Written::Table(_))), "{path}");
+                    continue;
+                }
                 let Some(Written::Value(value)) = new_at(&path) else { panic!("{path}") };
                 let text = value.as_str().map_or_else(|| value.to_string(), str::to_owned);
                 let again = value_at(&path).parsed(&text);

@@ -16,6 +16,7 @@ pub(super) struct LibraryArgs {
 }
 
 pub(super) fn run(args: &LibraryArgs, global: &Global) -> Result<ExitCode> {
+    LibraryScenario::check_path(&args.scenario)?;
     let scenario = LibraryScenario::from_written(&global.written(&args.scenario)?)?;
     let study = LibraryStudy::new(&scenario, &global.library()?)?;
     global.inputs_are_safe()?;

@@ -286,10 +286,12 @@ fn case(seed: u64, number: u64) -> Option<String> {
     }
     for _ in 0..rng.random_range(0..=if changed.is_some() { 1 } else { 3 }) {
         let own = &known[which];
-        arguments.push(own[rng.random_range(0..own.len())].clone());
-        if rng.random_bool(0.6) {
-            arguments.push(VALUES[rng.random_range(0..VALUES.len())].to_owned());
-        }
+        let flag = &own[rng.random_range(0..own.len())];
+        // Joined: a value behind a flag that takes none would be another scenario, whose error stands in a table of answers.
+        arguments.push(match rng.random_bool(0.6) {
+            true => format!("{flag}={}", VALUES[rng.random_range(0..VALUES.len())]),
+            false => flag.clone(),
+        });
     }
     if rng.random_bool(0.7) {
         arguments.push("--json".to_owned());

@@ -283,7 +283,7 @@ fn every_mistake_is_one_line() {
             SCENE.replace("size", "person = \"skinn\"\nsize"),
             "there is no material `skinn`",
         ),
-        ("bounces", SCENE.replace("size", "bounces = 1000\nsize"), "1000 is too many"),
+        ("bounces", SCENE.replace("size", "bounces = 1000\nsize"), "write a whole number from 1 to 64"),
         (
             "airy without camera",
             CUBE.replace("[requirement]", "diffraction = \"airy\"\n[requirement]"),

@@ -175,7 +175,6 @@ fn every_mistake_is_one_line() {
     let folder = Folder::with(SCENARIO);
     for (items, said) in [
         (vec!["fig9"], "unknown figure or table `fig9`; choose among tabs2, tabs5, policy"),
-        (vec!["tabs2", "--only-library"], "made with the built-in library"),
         (vec!["library-figures"], "give it with --library FILE"),
         (vec!["priors", "library-figures", "--library", "a.csv"], "ask for it alone"),
         (vec!["all", "fig3b"], "`all` beside other names; write `all` alone"),

@@ -224,11 +224,17 @@ fn what_writes_nothing_takes_no_folder() {
         &["cameras", "list"],
         &["cameras", "show", "ideal-pnrd"],
         &["cameras", "compare", "ideal-pnrd", "flir-a325sc"],
-        &["identify", "a.toml", "--check"],
     ] {
-        let said = folder.refusal(&[arguments, &["--out", "out"]].concat());
-        assert!(said.contains("has nothing to write into --out"), "{said}");
+        let outcome = folder.run(&[arguments, &["--out", "out"]].concat());
+        assert_eq!(outcome.code, 2, "{arguments:?}");
+        assert!(
+            outcome.stderr.contains("takes no `--out`; what takes it: size, identify"),
+            "{}",
+            outcome.stderr
+        );
     }
+    let said = folder.refusal(&["identify", "a.toml", "--check", "--out", "out"]);
+    assert!(said.contains("has nothing to write into --out"), "{said}");
 }
 
 #[test]

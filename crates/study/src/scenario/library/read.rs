@@ -24,7 +24,15 @@ impl LibraryScenario {
     /// # Errors
     /// The first thing that is wrong, in one line with file, line and key; a bare cube, with what to write instead.
     pub fn from_file(path: &Path) -> Result<Self> {
-        // A cube without what a library needs besides.
+        Self::check_path(path)?;
+        Self::from_written(&Written::from_file(path)?)
+    }
+
+    /// Refuses a bare cube, which is without what a library needs besides.
+    ///
+    /// # Errors
+    /// A path that names a cube, with what to write instead.
+    pub fn check_path(path: &Path) -> Result<()> {
         if is_cube(path) {
             let found = "a cube alone says nothing of its bands, its surroundings and its noise";
             let name = path.file_name().map_or_else(|| "counts.npy".into(), |name| name.to_string_lossy());
@@ -34,7 +42,7 @@ impl LibraryScenario {
             );
             return Err(Error::malformed(found, instead).in_file(path));
         }
-        Self::from_written(&Written::from_file(path)?)
+        Ok(())
     }
 
     /// Reads it from text; `path` as in [`crate::scenario::Scenario::from_toml`].

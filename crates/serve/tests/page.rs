@@ -1,0 +1,311 @@
+//! The page as a client sees it, byte by byte: its own requests are answered as by the engine, all others are refused, and nothing
+//! that is sent brings it down.
+
+use hadar::material::Library;
+use hadar_serve::Engine;
+use hadar_study::scenario::Scenario;
+use hadar_study::scenario::keys::{FILES, Table, Value};
+use hadar_study::study::Study;
+use serde_json::{Value as Json, json};
+use std::io::{Read, Write};
+use std::net::{SocketAddr, TcpListener, TcpStream};
+use std::sync::OnceLock;
+use std::time::{Duration, Instant};
+
+const SCENARIO: &str = "[target]\nmaterial = \"skin\"\ntemperature = \"37 degC\"\n\
+    [[environment]]\ntemperature = \"20 degC\"\nlighting = 0.5\n\
+    [alternatives]\nmaterials = [\"aluminium\"]\n[bands]\nstep = \"20 cm^-1\"\n\
+    [camera]\npreset = \"flir-a325sc\"\n";
+
+/// A server of this process.
+fn server() -> SocketAddr {
+    static SERVER: OnceLock<SocketAddr> = OnceLock::new();
+    *SERVER.get_or_init(|| {
+        let engine = Engine {
+            library: Library::embedded().unwrap(),
+            cameras: Default::default(),
+            begin: SCENARIO.to_owned(),
+            commit: "test".to_owned(),
+        };
+        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+        let address = listener.local_addr().unwrap();
+        std::thread::spawn(move || hadar_serve::serve(engine, listener));
+        address
+    })
+}
+
+/// What comes back for some bytes, as its status and all of it.
+fn sent(bytes: &[u8]) -> (u16, String) {
+    let mut stream = TcpStream::connect(server()).unwrap();
+    stream.set_read_timeout(Some(Duration::from_secs(60))).unwrap();
+    // It may be refused before it is read to its end.
+    let _ = stream.write_all(bytes);
+    let mut answer = Vec::new();
+    let _ = stream.read_to_end(&mut answer);
+    let answer = String::from_utf8_lossy(&answer).into_owned();
+    (answer.split(' ').nth(1).and_then(|status| status.parse().ok()).unwrap_or(0), answer)
+}
+
+fn get(path: &str) -> (u16, String) {
+    sent(format!("GET {path} HTTP/1.1\r\nHost: {}\r\nConnection: close\r\n\r\n", server()).as_bytes())
+}
+
+fn post_with(path: &str, headers: &str, body: &str) -> (u16, String) {
+    let head = format!(
+        "POST {path} HTTP/1.1\r\nContent-Length: {}\r\nConnection: close\r\n{headers}\r\n",
+        body.len()
+    );
+    let (status, answer) = sent(format!("{head}{body}").as_bytes());
+    (status, answer.split_once("\r\n\r\n").map_or_else(String::new, |(_, body)| body.to_owned()))
+}
+
+fn post(path: &str, body: &Json) -> (u16, String) {
+    let headers = format!("Host: {}\r\nContent-Type: application/json\r\n", server());
+    post_with(path, &headers, &body.to_string())
+}
+
+fn asked(body: &Json) -> Json {
+    let (status, answer) = post("/ask", body);
+    assert_eq!(status, 200, "{answer}");
+    serde_json::from_str(&answer).unwrap()
+}
+
+#[test]
+fn the_answer_is_that_of_the_engine() {
+    let (status, answer) = post("/json", &json!({ "scenario": SCENARIO }));
+    assert_eq!(status, 200, "{answer}");
+    let answer: Json = serde_json::from_str(&answer).unwrap();
+    let library = Library::embedded().unwrap();
+    let study = Study::new(&Scenario::from_toml(SCENARIO, None).unwrap(), &library).unwrap();
+    let own = serde_json::to_value(study.size_with_curves().unwrap()).unwrap();
+    for key in ["verdict", "requirement", "camera", "pairs", "solve_for", "trade_offs", "sensitivity"] {
+        assert_eq!(answer[key], own[key], "{key}");
+    }
+    let shown = asked(&json!({ "scenario": SCENARIO, "full": true }));
+    assert_eq!(shown["answer"]["sentence"], own["verdict"]["sentence"]);
+    assert_eq!(shown["answer"]["met"], own["verdict"]["met"]);
+    // What follows a slider has the same verdict without the rest.
+    let moving = asked(&json!({ "scenario": SCENARIO }));
+    for key in ["met", "sentence", "numbers", "solved", "pairs"] {
+        assert_eq!(moving["answer"][key], shown["answer"][key], "{key}");
+    }
+    let (status, report) = post("/report", &json!({ "scenario": SCENARIO }));
+    assert_eq!(status, 200);
+    assert!(report.starts_with("<!DOCTYPE html>") && report.contains("scenario.toml"), "{}", report.len());
+    assert!(report.matches("<figure>").count() >= 4);
+}
+
+#[test]
+fn a_field_that_is_set_is_in_the_text_and_in_the_answer() {
+    let set = |value: &str| json!([{ "do": "set", "key": "camera.netd", "value": value }]);
+    let moved = asked(&json!({ "scenario": SCENARIO, "edits": set("20 mK") }));
+    let text = moved["scenario"].as_str().unwrap();
+    assert_eq!(text, format!("{SCENARIO}netd = \"20 mK\"\n"));
+    assert_eq!(asked(&json!({ "scenario": text }))["answer"], moved["answer"]);
+    // What is wrong is told with its key; there is no answer beside it.
+    let wrong = asked(&json!({ "scenario": SCENARIO, "edits": set("20 kg") }));
+    assert_eq!(wrong["error"]["key"], "camera.netd");
+    assert!(wrong["answer"].is_null() && wrong["form"].is_object());
+    let broken = asked(&json!({ "scenario": "[target" }));
+    assert!(
+        broken["answer"].is_null() && broken["form"].is_null() && broken["error"]["line"] == 1,
+        "{broken}"
+    );
+}
+
+/// The paths of all keys of a scenario at which a file may be named, with what to write there.
+fn paths_of_files(table: &Table, above: &str, found: &mut Vec<(String, bool)>) {
+    fn names_files(value: &Value) -> Option<bool> {
+        match value {
+            Value::File | Value::Material | Value::NumberOrFile(_) => Some(false),
+            Value::List(of) | Value::Pair(of) => names_files(of).map(|_| true),
+            Value::Either(kinds) => kinds.iter().find_map(names_files),
+            _ => None,
+        }
+    }
+    for key in table.keys() {
+        let path = format!("{above}{}", key.name);
+        if let Some(list) = names_files(&key.value) {
+            found.push((path.clone(), list));
+        }
+        match (key.value.table(), key.value) {
+            (Some(inner), Value::Tables(_)) => paths_of_files(inner, &format!("{path}[0]."), found),
+            (Some(inner), Value::Named(_)) => paths_of_files(inner, &format!("{path}.own."), found),
+            (Some(inner), _) => paths_of_files(inner, &format!("{path}."), found),
+            _ => {}
+        }
+    }
+}
+
+/// Whether a file is there or not, readable or not, cannot be told from outside: no key of a scenario reaches one.
+#[test]
+fn no_key_reads_a_file() {
+    let root = FILES.iter().find(|kind| kind.commands.contains(&"size")).unwrap().root;
+    let mut keys = Vec::new();
+    paths_of_files(root, "", &mut keys);
+    assert!(keys.len() >= 12, "{keys:?}");
+    let there = std::env::current_exe().unwrap().display().to_string();
+    let begin = SCENARIO.replace("step = \"20 cm^-1\"\n", "")
+        + "[background]\ntemperature = \"5 degC\"\n[class.own]\nmaterials = [\"skin\"]\n\
+           [envelope]\ntemperature = [\"30 degC\", \"40 degC\"]\n[atmosphere]\nmodel = \"us-standard\"\n";
+    for (key, list) in keys {
+        let said = [there.as_str(), "/nowhere/at-all.csv", "../Cargo.toml", "C:\\x.csv"].map(|path| {
+            let value = if list { json!([path]).to_string() } else { path.to_owned() };
+            let set = json!({ "do": "set", "key": key, "value": value });
+            // A table stands in the place of a model.
+            let edits = match key.as_str() {
+                "atmosphere.table" => json!([{ "do": "remove", "key": "atmosphere.model" }, set]),
+                _ => json!([set]),
+            };
+            let answered = asked(&json!({ "scenario": begin, "edits": edits }));
+            let message = answered["error"]["message"].as_str().unwrap_or("an answer").to_owned();
+            assert!(message.contains("no files are read here"), "{key} = {path}: {message}");
+            message.replace(path, "PATH")
+        });
+        assert!(said.iter().all(|one| *one == said[0]), "{key}: {said:?}");
+    }
+}
+
+#[test]
+fn strangers_are_refused() {
+    let body = json!({ "scenario": SCENARIO }).to_string();
+    let here = format!("Host: {}\r\n", server());
+    let json = "Content-Type: application/json\r\n";
+    for (headers, status) in [
+        (format!("{here}{json}Origin: http://{}\r\n", server()), 200),
+        (format!("{here}{json}Origin: https://evil.example\r\n"), 403),
+        (format!("{here}{json}Origin: null\r\n"), 403),
+        (format!("{here}{json}Sec-Fetch-Site: cross-site\r\n"), 403),
+        (format!("Host: evil.example\r\n{json}"), 403),
+        (format!("{here}{here}{json}"), 400),
+        (json.to_owned(), 400),
+        (format!("{here}Content-Type: text/plain\r\n"), 415),
+        (here.clone(), 415),
+    ] {
+        let (found, answer) = post_with("/ask", &headers, &body);
+        assert_eq!(found, status, "{headers}: {answer}");
+        assert_eq!(answer.contains("sentence"), status == 200, "{headers}");
+    }
+    // What the page may do in a browser is said with every answer.
+    let (_, page) = get("/");
+    for header in [
+        "content-security-policy: default-src 'none'",
+        "x-content-type-options: nosniff",
+        "cross-origin-resource-policy: same-origin",
+        "frame-ancestors 'none'",
+    ] {
+        assert!(page.contains(header), "{header}");
+    }
+    assert!(!page.to_lowercase().contains("access-control-allow"));
+}
+
+#[test]
+fn there_is_nothing_but_the_page() {
+    for path in ["/", "/page.js", "/page.css", "/start", "/explain/camera.netd", "/explain/diffraction"] {
+        assert_eq!(get(path).0, 200, "{path}");
+    }
+    for path in [
+        "/etc/passwd",
+        "/../Cargo.toml",
+        "/%2e%2e/Cargo.toml",
+        "/explain/",
+        "/explain/../page.js",
+        "/explain/%3Cb%3E",
+        "//x",
+        "/ask",
+    ] {
+        assert_eq!(get(path).0, 404, "{path}");
+    }
+    assert_eq!(post("/elsewhere", &json!({ "scenario": "" })).0, 404);
+    let host = server();
+    for (method, status) in [("DELETE", 405), ("PUT", 405), ("OPTIONS", 405), ("HEAD", 200)] {
+        let asked = format!("{method} / HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n");
+        assert_eq!(sent(asked.as_bytes()).0, status, "{method}");
+    }
+}
+
+#[test]
+fn what_is_malformed_or_too_large_is_refused_and_the_next_one_answered() {
+    let host = server();
+    let refused: [Vec<u8>; 8] = [
+        b"\r\n\r\n\r\n".to_vec(),
+        b"GET\r\n\r\n".to_vec(),
+        b"\x16\x03\x01\x02\x00\x01\x00\x01".to_vec(),
+        vec![0xff; 4096],
+        format!("GET / HTTP/9.9\r\nHost: {host}\r\n\r\n").into_bytes(),
+        format!("GET / HTTP/1.1\r\nHost: {host}\r\nX: {}\r\n\r\n", "a".repeat(1 << 20)).into_bytes(),
+        format!("GET /{} HTTP/1.1\r\nHost: {host}\r\n\r\n", "a".repeat(1 << 20)).into_bytes(),
+        format!("POST /ask HTTP/1.1\r\nHost: {host}\r\nContent-Length: -1\r\n\r\n").into_bytes(),
+    ];
+    for bytes in refused {
+        let (status, answer) = sent(&bytes);
+        assert!(status == 0 || (400..=505).contains(&status), "{status}: {answer}");
+    }
+    let long = json!({ "scenario": "#".repeat(300 << 10) });
+    assert_eq!(post("/ask", &long).0, 413);
+    for body in ["", "[]", "{}", "{\"scenario\": 1}", "{\"scenario\": \"\", \"other\": 1}", "\u{0}"] {
+        let headers = format!("Host: {host}\r\nContent-Type: application/json\r\n");
+        assert_eq!(post_with("/ask", &headers, body).0, 400, "{body}");
+    }
+    // Questions without an answer have a message.
+    for scenario in ["", "[target]", "\u{feff}", "a = 1", &"[".repeat(5000), &"a.".repeat(5000)] {
+        assert!(asked(&json!({ "scenario": scenario }))["error"]["message"].is_string(), "{scenario:.20}");
+    }
+    let many = "[bands]\nstep = \"0.001 cm^-1\"\n";
+    let heavy = SCENARIO.replace("[bands]\nstep = \"20 cm^-1\"\n", many);
+    let answered = asked(&json!({ "scenario": heavy }));
+    assert!(
+        answered["error"]["message"].as_str().unwrap().contains("more than this page computes"),
+        "{answered}"
+    );
+    assert_eq!(get("/").0, 200);
+}
+
+#[test]
+fn a_hundred_at_once_are_answered_beside_clients_that_never_finish() {
+    let idle: Vec<TcpStream> = (0..50)
+        .map(|_| {
+            let mut stream = TcpStream::connect(server()).unwrap();
+            stream.write_all(b"POST /ask HTTP/1.1\r\nHost: x\r\nContent-").unwrap();
+            stream
+        })
+        .collect();
+    let begun = Instant::now();
+    let expected = asked(&json!({ "scenario": SCENARIO }))["answer"]["sentence"].clone();
+    std::thread::scope(|scope| {
+        for number in 0..100 {
+            let expected = &expected;
+            scope.spawn(move || {
+                // Some go away before they are answered.
+                if number % 10 == 9 {
+                    let body = json!({ "scenario": SCENARIO }).to_string();
+                    let head = format!(
+                        "POST /ask HTTP/1.1\r\nHost: {}\r\nContent-Type: application/json\r\n",
+                        server()
+                    );
+                    let mut stream = TcpStream::connect(server()).unwrap();
+                    let _ = write!(stream, "{head}Content-Length: {}\r\n\r\n{body}", body.len());
+                    return;
+                }
+                assert_eq!(asked(&json!({ "scenario": SCENARIO }))["answer"]["sentence"], *expected);
+            });
+        }
+    });
+    println!("100 at once: {:.1} s", begun.elapsed().as_secs_f64());
+    drop(idle);
+}
+
+#[test]
+fn only_this_machine_is_listened_to() {
+    let engine = Engine {
+        library: Library::empty(),
+        cameras: Default::default(),
+        begin: String::new(),
+        commit: String::new(),
+    };
+    let Ok(listener) = TcpListener::bind("0.0.0.0:0") else {
+        return println!("skipped: no address but this machine's own");
+    };
+    let error = hadar_serve::serve(engine, listener).unwrap_err().to_string();
+    assert!(error.contains("can be reached from other machines"), "{error}");
+}
