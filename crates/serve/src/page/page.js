@@ -110,8 +110,9 @@ function show({ scenario, form, answer, error }, full) {
   at("warnings").hidden = answer.warnings.length === 0;
   at("warning-rows").replaceChildren(...answer.warnings.map(warningItem));
   showPictures(answer);
+  // Of a state that is passing there is no text: none of an older one stands beside its numbers.
+  at("text").textContent = full ? answer.text : "";
   if (full) {
-    at("text").textContent = answer.text;
     history.replaceState(null, "", link());
   }
 }
