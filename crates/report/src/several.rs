@@ -52,6 +52,7 @@ const fn columns(question: Question) -> &'static [(&'static str, &'static [&'sta
         ],
         Question::Size | Question::Simulate | Question::Decompose => &[
             ("verdict", &["/verdict/met"]),
+            ("provided", &["/verdict/provided"]),
             ("limited by", &["/limiting", "/not_told_from"]),
             ("reaches", &["/verdict/statistical_distance"]),
             ("demanded", &["/verdict/required_distance"]),
@@ -75,6 +76,8 @@ fn cells(question: Question, answer: &Value) -> Vec<Value> {
         (Question::Rule, "meet it") => {
             format!("{} of {}", meets.iter().filter(|meets| **meets).count(), meets.len()).into()
         }
+        // A 'yes' that hangs on something is none by itself.
+        (_, "verdict") if !answer["verdict"]["provided"].is_null() => "yes, if".into(),
         _ => found(paths).unwrap_or_default(),
     };
     columns(question).iter().map(of).collect()
@@ -173,10 +176,16 @@ mod tests {
             answer,
         };
         let answer = json!({ "verdict": { "met": false, "margin": 0.05, "required_distance": 1.0 }, "limiting": "aluminium" });
-        let rows = [row("a.toml", Some(answer), None), row("longer.toml", None, Some("line 3: it is wrong"))];
-        let expected = "scenario     verdict  limited by  reaches  demanded  margin   photons it takes\n\
-                        a.toml       no       aluminium   -        1.000     0.05000  -\n\
-                        longer.toml  error: line 3: it is wrong\n\n1 of 2 scenarios have no answer.\n";
+        let hangs = json!({ "verdict": { "met": true, "provided": "its 4 frames can be registered", "margin": 2.0 } });
+        let rows = [
+            row("a.toml", Some(answer), None),
+            row("b.toml", Some(hangs), None),
+            row("longer.toml", None, Some("line 3: it is wrong")),
+        ];
+        let expected = "scenario     verdict  provided                        limited by  reaches  demanded  margin   photons it takes\n\
+                        a.toml       no       -                               aluminium   -        1.000     0.05000  -\n\
+                        b.toml       yes, if  its 4 frames can be registered  -           -        -         2.000    -\n\
+                        longer.toml  error: line 3: it is wrong\n\n1 of 3 scenarios have no answer.\n";
         assert_eq!(text(Question::Size, &rows), expected);
         let csv = bundle(Question::Size, &rows).unwrap();
         assert_eq!(csv.names().collect::<Vec<_>>(), ["scenarios.csv"]);

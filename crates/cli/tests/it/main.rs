@@ -41,6 +41,7 @@ mod rule_clauses;
 mod rule_mistakes;
 mod rule_uncertainty;
 mod segmentation;
+mod serve;
 mod shell;
 mod simulate;
 mod spectra;

@@ -97,7 +97,8 @@ function show({ scenario, form, answer, error }, full) {
   at("error").hidden = true;
   at("answer").hidden = false;
   if (at("sentence").textContent !== answer.sentence) at("sentence").textContent = answer.sentence;
-  at("sentence").className = answer.met === null ? "" : answer.met ? "yes" : "no";
+  // A 'yes' that hangs on something does not look like one.
+  at("sentence").className = answer.met === null || answer.provided ? "" : answer.met ? "yes" : "no";
   document.title = `${answer.met === null ? "" : answer.met ? "Yes: " : "No: "}hadar`;
   at("solved").hidden = answer.solved.length === 0;
   at("solved-heading").textContent = answer.met
