@@ -3,8 +3,8 @@
 use super::global::Global;
 use clap::Args;
 use hadar::error::{Error, Result};
-use hadar_study::explain::{self, ResultKey};
-use hadar_study::scenario::keys::{self, FILES, FileKind, Key, Place, Silent, Value};
+use hadar_study::explain::{self, ExplainedCode, ExplainedKey, Reference, ResultKey};
+use hadar_study::scenario::keys::{self, FILES, FileKind, Place, Silent};
 use hadar_study::warning::Code;
 use serde::Serialize;
 use std::fmt::Write as _;
@@ -20,6 +20,9 @@ const MOST_RESULTS: usize = 12;
 pub(super) struct ExplainArgs {
     /// A key of a file (`target.temperature`, `noise_bandwidth`), a table (`envelope`), the code of a warning, a key of the JSON, a command; silent: what there is
     word: Option<String>,
+    /// All keys of files, warnings and keys of the JSON: a long text
+    #[arg(long, conflicts_with = "word")]
+    all: bool,
 }
 
 #[derive(Debug, Args)]
@@ -43,40 +46,6 @@ struct Explained {
     command: Option<ExplainedCommand>,
 }
 
-/// A key of a file.
-#[derive(Debug, Serialize)]
-struct ExplainedKey {
-    /// Where it may stand, the shortest path first.
-    paths: Vec<String>,
-    /// What it means.
-    meaning: &'static str,
-    /// What may be written: kind, units, range.
-    value: String,
-    /// Whether it must be there.
-    required: bool,
-    /// What it means that nothing is written; none where it must be.
-    default: Option<&'static str>,
-    /// A line to write; none of a table.
-    example: Option<String>,
-    /// Where it enters: an equation of the paper, or what is done with it.
-    enters: &'static str,
-    /// Commands that read it.
-    commands: Vec<&'static str>,
-    /// Of a table, its keys.
-    inside: Vec<&'static str>,
-}
-
-/// The code of a warning.
-#[derive(Debug, Serialize)]
-struct ExplainedCode {
-    /// The code.
-    code: &'static str,
-    /// What it means.
-    meaning: String,
-    /// What to do about it.
-    remedy: &'static str,
-}
-
 /// A command.
 #[derive(Debug, Serialize)]
 struct ExplainedCommand {
@@ -89,6 +58,11 @@ struct ExplainedCommand {
 }
 
 pub(super) fn run(args: &ExplainArgs, global: &Global, cli: &clap::Command) -> Result<ExitCode> {
+    if args.all {
+        let reference = explain::all();
+        global.print(&reference, &reference_text(&reference))?;
+        return Ok(ExitCode::SUCCESS);
+    }
     let Some(word) = args.word.as_deref().map(str::trim) else {
         let (json, text) = sections();
         global.print(&json, &text)?;
@@ -97,8 +71,8 @@ pub(super) fn run(args: &ExplainArgs, global: &Global, cli: &clap::Command) -> R
     let places = explain::key(word);
     let explained = Explained {
         word: word.to_owned(),
-        keys: places.iter().map(key_json).collect(),
-        warning: explain::code(word).map(code_json),
+        keys: places.iter().map(ExplainedKey::from).collect(),
+        warning: explain::code(word).map(ExplainedCode::from),
         results: explain::result(word),
         command: command(word, cli),
     };
@@ -140,37 +114,6 @@ pub(super) fn schema(args: &SchemaArgs) -> Result<ExitCode> {
     }
 }
 
-fn key_json(place: &Place) -> ExplainedKey {
-    let key = place.key;
-    ExplainedKey {
-        paths: place.paths.clone(),
-        meaning: key.meaning,
-        value: key.value.words(),
-        required: key.silent == Silent::Refused,
-        default: match key.silent {
-            Silent::Refused => None,
-            Silent::Is(text) | Silent::Means(text) => Some(text),
-        },
-        example: (!is_table(&key)).then(|| format!("{} = {}", key.name, key.example)),
-        enters: key.enters,
-        commands: place.commands.clone(),
-        inside: inside(&key),
-    }
-}
-
-/// Whether a key is written as a `[table]`.
-fn is_table(key: &Key) -> bool {
-    matches!(key.value, Value::Tables(_) | Value::Named(_)) || key.example == "a table"
-}
-
-fn inside(key: &Key) -> Vec<&'static str> {
-    key.value.table().map(|table| table.keys().map(|key| key.name).collect()).unwrap_or_default()
-}
-
-fn code_json(code: Code) -> ExplainedCode {
-    ExplainedCode { code: code.name(), meaning: code.meaning().to_owned(), remedy: code.remedy() }
-}
-
 fn command(word: &str, cli: &clap::Command) -> Option<ExplainedCommand> {
     let name = word.strip_prefix("hadar ").unwrap_or(word);
     let found = name.split_whitespace().try_fold(cli, |above, name| above.find_subcommand(name))?;
@@ -191,8 +134,8 @@ fn text(explained: &Explained, places: &[Place]) -> String {
         }
         let _ = writeln!(text, "  flags      hadar {name} --help\n");
     }
-    if let Some(ExplainedCode { code, meaning, remedy }) = &explained.warning {
-        let _ = writeln!(text, "warning [{code}]\n  means      {meaning}\n  do         {remedy}\n");
+    if let Some(warning) = explained.warning {
+        of_warning(warning, &mut text);
     }
     if places.len() > IN_FULL {
         let _ = writeln!(
@@ -214,15 +157,32 @@ fn text(explained: &Explained, places: &[Place]) -> String {
     }
     if !explained.results.is_empty() {
         let _ = writeln!(text, "in JSON");
-        for ResultKey { key, of, meaning } in explained.results.iter().take(MOST_RESULTS) {
-            let _ = writeln!(text, "  {key}, of: {}\n    {meaning}", lower(of));
-        }
+        explained.results.iter().take(MOST_RESULTS).for_each(|one| of_result(*one, &mut text));
         let more = explained.results.len().saturating_sub(MOST_RESULTS);
         if more > 0 {
             let _ = writeln!(text, "  and {more} more (--json)");
         }
     }
     text
+}
+
+/// All of it, one after the other.
+fn reference_text(reference: &Reference) -> String {
+    let mut text = String::from("KEYS OF FILES\n\n");
+    keys::all().iter().for_each(|place| in_full(place, &mut text));
+    text.push_str("WARNINGS\n\n");
+    reference.warnings.iter().for_each(|one| of_warning(*one, &mut text));
+    text.push_str("KEYS OF THE JSON\n\n");
+    reference.results.iter().for_each(|one| of_result(*one, &mut text));
+    text
+}
+
+fn of_warning(ExplainedCode { code, meaning, remedy }: ExplainedCode, text: &mut String) {
+    let _ = writeln!(text, "warning [{code}]\n  means      {meaning}\n  do         {remedy}\n");
+}
+
+fn of_result(ResultKey { key, of, meaning }: ResultKey, text: &mut String) {
+    let _ = writeln!(text, "  {key}, of: {}\n    {meaning}", lower(of));
 }
 
 /// A phrase within a sentence.
@@ -237,7 +197,7 @@ fn lower(phrase: &str) -> String {
 
 fn in_full(place: &Place, text: &mut String) {
     let key = place.key;
-    let told = key_json(place);
+    let told = ExplainedKey::from(place);
     let Some((path, also)) = place.paths.split_first() else { return };
     let _ = writeln!(text, "{path}\n  means      {}", told.meaning);
     let _ = writeln!(text, "  written    {}", told.value);
@@ -250,7 +210,7 @@ fn in_full(place: &Place, text: &mut String) {
     if let Some(example) = &told.example {
         let _ = writeln!(text, "  example    {example}");
     }
-    if !is_table(&key) {
+    if !key.is_table() {
         let _ = writeln!(text, "  enters     {}", told.enters);
     }
     let _ = writeln!(text, "  read by    hadar {}", told.commands.join(", "));

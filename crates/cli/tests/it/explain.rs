@@ -126,6 +126,36 @@ fn every_word_is_explained() {
 }
 
 #[test]
+fn all_of_it_is_what_is_said_of_each() {
+    let folder = Folder::with(SCENARIO);
+    let (reference, text) = (folder.json(&["explain", "--all"]), folder.run(&["explain", "--all"]).stdout);
+    let items = |part: &str| reference[part].as_array().unwrap().clone();
+    assert_eq!(items("keys").len(), keys::all().len());
+    assert_eq!(items("warnings").len(), Code::ALL.len());
+    assert_eq!(items("results").len(), explain::results().count());
+    for (key, word) in items("keys").iter().step_by(29).map(|key| (key, key["paths"][0].as_str().unwrap())) {
+        let alone = folder.json(&["explain", word]);
+        assert!(alone["keys"].as_array().unwrap().contains(key), "{word}");
+        assert!(text.contains(&format!("\n{word}\n  means      {}\n", key["meaning"].as_str().unwrap())));
+    }
+    for part in ["keys", "warnings", "results"] {
+        let told = items(part).iter().all(|item| {
+            let meaning = item["meaning"].as_str().unwrap();
+            text.contains(meaning)
+        });
+        assert!(told, "{part}");
+    }
+    let silent = |path: &str| {
+        let key = items("keys").into_iter().find(|key| key["paths"][0] == path).unwrap();
+        [key["required"].clone(), key["default"].clone(), key["silent"].clone()]
+    };
+    assert_eq!(silent("target.temperature"), [true.into(), Json::Null, Json::Null]);
+    assert_eq!(silent("title"), [false.into(), Json::Null, "no heading".into()]);
+    let outcome = folder.run(&["explain", "--all", "skin"]);
+    assert_eq!(outcome.code, 2, "{}", outcome.stderr);
+}
+
+#[test]
 fn explanations_in_words() {
     let folder = Folder::with(SCENARIO);
     for (name, word) in [("key", "target.temperature"), ("table", "envelope"), ("code", "nearest-at-edge")] {

@@ -131,6 +131,12 @@ impl Table {
 }
 
 impl Key {
+    /// Whether it is written as a `[table]`.
+    #[must_use]
+    pub fn is_table(&self) -> bool {
+        matches!(self.value, Value::Tables(_) | Value::Named(_)) || self.example == "a table"
+    }
+
     /// The key of a camera's figure.
     fn of_figure(row: &Row) -> Self {
         let value = match row.kind {
