@@ -129,7 +129,7 @@ pub fn text(question: Question, rows: &[Row]) -> String {
     }
     let failed = rows.iter().filter(|row| row.answer.is_none()).count();
     if failed > 0 {
-        let _ = writeln!(out, "\n{failed} of {} scenarios have no answer.", rows.len());
+        let _ = writeln!(out, "\n{failed} of {} scenarios without an answer.", rows.len());
     }
     out
 }
@@ -176,7 +176,7 @@ mod tests {
         let rows = [row("a.toml", Some(answer), None), row("longer.toml", None, Some("line 3: it is wrong"))];
         let expected = "scenario     verdict  limited by  reaches  demanded  margin   photons it takes\n\
                         a.toml       no       aluminium   -        1.000     0.05000  -\n\
-                        longer.toml  error: line 3: it is wrong\n\n1 of 2 scenarios have no answer.\n";
+                        longer.toml  error: line 3: it is wrong\n\n1 of 2 scenarios without an answer.\n";
         assert_eq!(text(Question::Size, &rows), expected);
         let csv = bundle(Question::Size, &rows).unwrap();
         assert_eq!(csv.names().collect::<Vec<_>>(), ["scenarios.csv"]);

@@ -77,7 +77,6 @@ impl From<&Place> for ExplainedKey {
             Silent::Is(value) => (Some(value), None),
             Silent::Means(words) => (None, Some(words)),
         };
-        let inside = key.value.table().into_iter().flat_map(|table| table.keys());
         Self {
             paths: place.paths.clone(),
             meaning: key.meaning,
@@ -88,7 +87,7 @@ impl From<&Place> for ExplainedKey {
             example: (!key.is_table()).then(|| format!("{} = {}", key.name, key.example)),
             enters: key.enters,
             commands: place.commands.clone(),
-            inside: inside.map(|key| key.name).collect(),
+            inside: key.value.keys_inside().iter().map(|key| key.name).collect(),
         }
     }
 }

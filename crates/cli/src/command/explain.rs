@@ -1,14 +1,14 @@
 //! `hadar explain`: what a key of a file, a warning, a key of an answer or a command means; `hadar schema`: the keys for editors.
 
-use super::global::Global;
+use super::global::{Global, put};
 use clap::Args;
+use clap::builder::PossibleValuesParser;
 use hadar::error::{Error, Result};
 use hadar_study::explain::{self, ExplainedCode, ExplainedKey, Reference, ResultKey};
 use hadar_study::scenario::keys::{self, FILES, FileKind, Place, Silent};
 use hadar_study::warning::Code;
 use serde::Serialize;
 use std::fmt::Write as _;
-use std::io::Write as _;
 use std::process::ExitCode;
 
 /// Keys of files that are told in full; of more their meanings alone.
@@ -27,7 +27,8 @@ pub(super) struct ExplainArgs {
 
 #[derive(Debug, Args)]
 pub(super) struct SchemaArgs {
-    /// A command whose files it is for, such as `rule`; silent: all of them
+    /// A command whose files it is for, or a kind of file; silent: all of them
+    #[arg(value_parser = kinds())]
     command: Option<String>,
 }
 
@@ -81,16 +82,25 @@ pub(super) fn run(args: &ExplainArgs, global: &Global, cli: &clap::Command) -> R
         && explained.warning.is_none()
         && explained.command.is_none()
     {
-        let words = explain::words();
-        let commands = cli.get_subcommands().map(clap::Command::get_name);
-        return Err(Error::unknown_name(
-            "key, warning or command",
-            word,
-            commands.chain(words.iter().map(String::as_str)),
-        ));
+        return Err(unknown(word, cli));
     }
     global.print(&explained, &text(&explained, &places))?;
     Ok(ExitCode::SUCCESS)
+}
+
+fn unknown(word: &str, cli: &clap::Command) -> Error {
+    let words = explain::words();
+    let is_new = |name: &&str| words.iter().all(|word| word != name);
+    let commands = cli.get_subcommands().map(clap::Command::get_name).filter(is_new);
+    let all = commands.chain(words.iter().map(String::as_str));
+    let error = Error::unknown_name("key, warning or command", word, all);
+    match &error {
+        Error::UnknownName { nearest, .. } if nearest.is_empty() => Error::malformed(
+            error.to_string(),
+            "`hadar explain` says what there is, `hadar explain --all` all of it",
+        ),
+        _ => error,
+    }
 }
 
 /// Prints the schema of the files of a command, or of all.
@@ -99,19 +109,22 @@ pub(super) fn schema(args: &SchemaArgs) -> Result<ExitCode> {
         None => FILES.iter().collect(),
         Some(word) => keys::kinds_of(word),
     };
-    if let Some(word) = args.command.as_deref().filter(|_| kinds.is_empty()) {
-        let known = FILES.iter().flat_map(|kind| kind.commands.iter().copied().chain([kind.name]));
-        return Err(Error::unknown_name("command with a file", word, known));
-    }
     let schema = serde_json::to_string_pretty(&keys::schema(kinds))
         .map_err(|error| Error::malformed(error.to_string(), "report this as a bug"))?;
-    match writeln!(std::io::stdout(), "{schema}") {
-        // A reader that has seen enough is no error.
-        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
-            Err(Error::file("print the schema", std::path::Path::new("stdout"), error))
+    put(&schema)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The words by which files are known: their commands, and kinds that have other names.
+fn kinds() -> PossibleValuesParser {
+    let all = FILES.iter().flat_map(|kind| kind.commands.iter().copied().chain([kind.name]));
+    let mut words: Vec<&str> = Vec::new();
+    all.for_each(|word| {
+        if !words.contains(&word) {
+            words.push(word);
         }
-        _ => Ok(ExitCode::SUCCESS),
-    }
+    });
+    PossibleValuesParser::new(words)
 }
 
 fn command(word: &str, cli: &clap::Command) -> Option<ExplainedCommand> {
@@ -217,10 +230,10 @@ fn in_full(place: &Place, text: &mut String) {
     if !also.is_empty() {
         let _ = writeln!(text, "  also       {}", also.join(", "));
     }
-    if let Some(table) = key.value.table() {
-        let width = table.keys().map(|key| key.name.len()).max().unwrap_or(0);
+    let inside = key.value.keys_inside();
+    if let Some(width) = inside.iter().map(|key| key.name.len()).max() {
         let _ = writeln!(text, "  keys");
-        for key in table.keys() {
+        for key in inside {
             let _ = writeln!(text, "    {:<width$}  {}", key.name, key.meaning);
         }
     }
