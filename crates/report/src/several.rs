@@ -135,7 +135,7 @@ pub fn text(question: Question, rows: &[Row]) -> String {
     }
     let failed = rows.iter().filter(|row| row.answer.is_none()).count();
     if failed > 0 {
-        let _ = writeln!(out, "\n{failed} of {} scenarios have no answer.", rows.len());
+        let _ = writeln!(out, "\n{failed} of {} scenarios without an answer.", rows.len());
     }
     out
 }
@@ -188,7 +188,7 @@ mod tests {
         let expected = "scenario     verdict  provided                        limited by  reaches  demanded  margin   photons it takes\n\
                         a.toml       no       -                               aluminium   -        1.000     0.05000  -\n\
                         b.toml       yes, if  its 4 frames can be registered  -           -        -         2.000    -\n\
-                        longer.toml  error: line 3: it is wrong\n\n1 of 3 scenarios have no answer.\n";
+                        longer.toml  error: line 3: it is wrong\n\n1 of 3 scenarios without an answer.\n";
         assert_eq!(text(Question::Size, &rows), expected);
         let csv = bundle(Question::Size, &rows).unwrap();
         assert_eq!(csv.names().collect::<Vec<_>>(), ["scenarios.csv"]);

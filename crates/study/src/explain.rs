@@ -4,12 +4,59 @@
 //! told by the documentation of the fields that they are made of: `results.tsv` is collected from the sources by a test, which
 //! fails where it is not what the sources say; `named.tsv` has those that are no fields.
 
-use crate::scenario::keys::{self, Place};
+use crate::scenario::keys::{self, Place, Silent};
 use crate::warning::Code;
 use serde::Serialize;
 
 const RESULTS: &str = include_str!("explain/results.tsv");
 const NAMED: &str = include_str!("explain/named.tsv");
+
+/// All that is explained.
+#[derive(Debug, Clone, Serialize)]
+pub struct Reference {
+    /// Keys of files, by their tables.
+    pub keys: Vec<ExplainedKey>,
+    /// Codes of warnings.
+    pub warnings: Vec<ExplainedCode>,
+    /// Keys of answers.
+    pub results: Vec<ResultKey>,
+}
+
+/// A key of a file.
+#[derive(Debug, Clone, Serialize)]
+pub struct ExplainedKey {
+    /// Where it may stand, the shortest path first.
+    pub paths: Vec<String>,
+    /// What it means.
+    pub meaning: &'static str,
+    /// What may be written: kind, units, range.
+    pub value: String,
+    /// Whether it must be there.
+    pub required: bool,
+    /// What it is where nothing is written, as it would be written; none where that takes words.
+    pub default: Option<&'static str>,
+    /// What it means that nothing is written; none where it must be, or has a default.
+    pub silent: Option<&'static str>,
+    /// A line to write; none of a table.
+    pub example: Option<String>,
+    /// Where it enters: an equation of the paper, or what is done with it.
+    pub enters: &'static str,
+    /// Commands that read it.
+    pub commands: Vec<&'static str>,
+    /// Of a table, its keys.
+    pub inside: Vec<&'static str>,
+}
+
+/// The code of a warning.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct ExplainedCode {
+    /// The code.
+    pub code: &'static str,
+    /// What it means.
+    pub meaning: &'static str,
+    /// What to do about it.
+    pub remedy: &'static str,
+}
 
 /// A key of an answer in JSON.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -20,6 +67,51 @@ pub struct ResultKey {
     pub of: &'static str,
     /// What it means, with its unit.
     pub meaning: &'static str,
+}
+
+impl From<&Place> for ExplainedKey {
+    fn from(place: &Place) -> Self {
+        let key = place.key;
+        let (default, silent) = match key.silent {
+            Silent::Refused => (None, None),
+            Silent::Is(value) => (Some(value), None),
+            Silent::Means(words) => (None, Some(words)),
+        };
+        Self {
+            paths: place.paths.clone(),
+            meaning: key.meaning,
+            value: key.value.words(),
+            required: key.silent == Silent::Refused,
+            default,
+            silent,
+            example: (!key.is_table()).then(|| format!("{} = {}", key.name, key.example)),
+            enters: key.enters,
+            commands: place.commands.clone(),
+            inside: key.value.keys_inside().iter().map(|key| key.name).collect(),
+        }
+    }
+}
+
+impl From<Code> for ExplainedCode {
+    fn from(code: Code) -> Self {
+        Self { code: code.name(), meaning: code.meaning(), remedy: code.remedy() }
+    }
+}
+
+/// All that is explained: what `hadar explain --all` prints, and a page or a guide is made of.
+///
+/// ```
+/// let reference = hadar_study::explain::all();
+/// assert!(reference.keys.iter().any(|key| key.paths.iter().any(|path| path == "camera.exposure")));
+/// assert!(reference.warnings.iter().any(|warning| warning.code == "nearest-at-edge"));
+/// ```
+#[must_use]
+pub fn all() -> Reference {
+    Reference {
+        keys: keys::all().iter().map(ExplainedKey::from).collect(),
+        warnings: Code::ALL.iter().copied().map(ExplainedCode::from).collect(),
+        results: results().collect(),
+    }
 }
 
 /// All keys of answers.

@@ -1,14 +1,14 @@
 //! `hadar explain`: what a key of a file, a warning, a key of an answer or a command means; `hadar schema`: the keys for editors.
 
-use super::global::Global;
+use super::global::{Global, put};
 use clap::Args;
+use clap::builder::PossibleValuesParser;
 use hadar::error::{Error, Result};
-use hadar_study::explain::{self, ResultKey};
-use hadar_study::scenario::keys::{self, FILES, FileKind, Key, Place, Silent, Value};
+use hadar_study::explain::{self, ExplainedCode, ExplainedKey, Reference, ResultKey};
+use hadar_study::scenario::keys::{self, FILES, FileKind, Place, Silent};
 use hadar_study::warning::Code;
 use serde::Serialize;
 use std::fmt::Write as _;
-use std::io::Write as _;
 use std::process::ExitCode;
 
 /// Keys of files that are told in full; of more their meanings alone.
@@ -20,11 +20,15 @@ const MOST_RESULTS: usize = 12;
 pub(super) struct ExplainArgs {
     /// A key of a file (`target.temperature`, `noise_bandwidth`), a table (`envelope`), the code of a warning, a key of the JSON, a command; silent: what there is
     word: Option<String>,
+    /// All keys of files, warnings and keys of the JSON: a long text
+    #[arg(long, conflicts_with = "word")]
+    all: bool,
 }
 
 #[derive(Debug, Args)]
 pub(super) struct SchemaArgs {
-    /// A command whose files it is for, such as `rule`; silent: all of them
+    /// A command whose files it is for, or a kind of file; silent: all of them
+    #[arg(value_parser = kinds())]
     command: Option<String>,
 }
 
@@ -43,40 +47,6 @@ struct Explained {
     command: Option<ExplainedCommand>,
 }
 
-/// A key of a file.
-#[derive(Debug, Serialize)]
-struct ExplainedKey {
-    /// Where it may stand, the shortest path first.
-    paths: Vec<String>,
-    /// What it means.
-    meaning: &'static str,
-    /// What may be written: kind, units, range.
-    value: String,
-    /// Whether it must be there.
-    required: bool,
-    /// What it means that nothing is written; none where it must be.
-    default: Option<&'static str>,
-    /// A line to write; none of a table.
-    example: Option<String>,
-    /// Where it enters: an equation of the paper, or what is done with it.
-    enters: &'static str,
-    /// Commands that read it.
-    commands: Vec<&'static str>,
-    /// Of a table, its keys.
-    inside: Vec<&'static str>,
-}
-
-/// The code of a warning.
-#[derive(Debug, Serialize)]
-struct ExplainedCode {
-    /// The code.
-    code: &'static str,
-    /// What it means.
-    meaning: String,
-    /// What to do about it.
-    remedy: &'static str,
-}
-
 /// A command.
 #[derive(Debug, Serialize)]
 struct ExplainedCommand {
@@ -89,6 +59,11 @@ struct ExplainedCommand {
 }
 
 pub(super) fn run(args: &ExplainArgs, global: &Global, cli: &clap::Command) -> Result<ExitCode> {
+    if args.all {
+        let reference = explain::all();
+        global.print(&reference, &reference_text(&reference))?;
+        return Ok(ExitCode::SUCCESS);
+    }
     let Some(word) = args.word.as_deref().map(str::trim) else {
         let (json, text) = sections();
         global.print(&json, &text)?;
@@ -97,8 +72,8 @@ pub(super) fn run(args: &ExplainArgs, global: &Global, cli: &clap::Command) -> R
     let places = explain::key(word);
     let explained = Explained {
         word: word.to_owned(),
-        keys: places.iter().map(key_json).collect(),
-        warning: explain::code(word).map(code_json),
+        keys: places.iter().map(ExplainedKey::from).collect(),
+        warning: explain::code(word).map(ExplainedCode::from),
         results: explain::result(word),
         command: command(word, cli),
     };
@@ -107,16 +82,25 @@ pub(super) fn run(args: &ExplainArgs, global: &Global, cli: &clap::Command) -> R
         && explained.warning.is_none()
         && explained.command.is_none()
     {
-        let words = explain::words();
-        let commands = cli.get_subcommands().map(clap::Command::get_name);
-        return Err(Error::unknown_name(
-            "key, warning or command",
-            word,
-            commands.chain(words.iter().map(String::as_str)),
-        ));
+        return Err(unknown(word, cli));
     }
     global.print(&explained, &text(&explained, &places))?;
     Ok(ExitCode::SUCCESS)
+}
+
+fn unknown(word: &str, cli: &clap::Command) -> Error {
+    let words = explain::words();
+    let is_new = |name: &&str| words.iter().all(|word| word != name);
+    let commands = cli.get_subcommands().map(clap::Command::get_name).filter(is_new);
+    let all = commands.chain(words.iter().map(String::as_str));
+    let error = Error::unknown_name("key, warning or command", word, all);
+    match &error {
+        Error::UnknownName { nearest, .. } if nearest.is_empty() => Error::malformed(
+            error.to_string(),
+            "`hadar explain` says what there is, `hadar explain --all` all of it",
+        ),
+        _ => error,
+    }
 }
 
 /// Prints the schema of the files of a command, or of all.
@@ -125,50 +109,22 @@ pub(super) fn schema(args: &SchemaArgs) -> Result<ExitCode> {
         None => FILES.iter().collect(),
         Some(word) => keys::kinds_of(word),
     };
-    if let Some(word) = args.command.as_deref().filter(|_| kinds.is_empty()) {
-        let known = FILES.iter().flat_map(|kind| kind.commands.iter().copied().chain([kind.name]));
-        return Err(Error::unknown_name("command with a file", word, known));
-    }
     let schema = serde_json::to_string_pretty(&keys::schema(kinds))
         .map_err(|error| Error::malformed(error.to_string(), "report this as a bug"))?;
-    match writeln!(std::io::stdout(), "{schema}") {
-        // A reader that has seen enough is no error.
-        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
-            Err(Error::file("print the schema", std::path::Path::new("stdout"), error))
+    put(&schema)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The words by which files are known: their commands, and kinds that have other names.
+fn kinds() -> PossibleValuesParser {
+    let all = FILES.iter().flat_map(|kind| kind.commands.iter().copied().chain([kind.name]));
+    let mut words: Vec<&str> = Vec::new();
+    all.for_each(|word| {
+        if !words.contains(&word) {
+            words.push(word);
         }
-        _ => Ok(ExitCode::SUCCESS),
-    }
-}
-
-fn key_json(place: &Place) -> ExplainedKey {
-    let key = place.key;
-    ExplainedKey {
-        paths: place.paths.clone(),
-        meaning: key.meaning,
-        value: key.value.words(),
-        required: key.silent == Silent::Refused,
-        default: match key.silent {
-            Silent::Refused => None,
-            Silent::Is(text) | Silent::Means(text) => Some(text),
-        },
-        example: (!is_table(&key)).then(|| format!("{} = {}", key.name, key.example)),
-        enters: key.enters,
-        commands: place.commands.clone(),
-        inside: inside(&key),
-    }
-}
-
-/// Whether a key is written as a `[table]`.
-fn is_table(key: &Key) -> bool {
-    matches!(key.value, Value::Tables(_) | Value::Named(_)) || key.example == "a table"
-}
-
-fn inside(key: &Key) -> Vec<&'static str> {
-    key.value.table().map(|table| table.keys().map(|key| key.name).collect()).unwrap_or_default()
-}
-
-fn code_json(code: Code) -> ExplainedCode {
-    ExplainedCode { code: code.name(), meaning: code.meaning().to_owned(), remedy: code.remedy() }
+    });
+    PossibleValuesParser::new(words)
 }
 
 fn command(word: &str, cli: &clap::Command) -> Option<ExplainedCommand> {
@@ -191,8 +147,8 @@ fn text(explained: &Explained, places: &[Place]) -> String {
         }
         let _ = writeln!(text, "  flags      hadar {name} --help\n");
     }
-    if let Some(ExplainedCode { code, meaning, remedy }) = &explained.warning {
-        let _ = writeln!(text, "warning [{code}]\n  means      {meaning}\n  do         {remedy}\n");
+    if let Some(warning) = explained.warning {
+        of_warning(warning, &mut text);
     }
     if places.len() > IN_FULL {
         let _ = writeln!(
@@ -214,15 +170,32 @@ fn text(explained: &Explained, places: &[Place]) -> String {
     }
     if !explained.results.is_empty() {
         let _ = writeln!(text, "in JSON");
-        for ResultKey { key, of, meaning } in explained.results.iter().take(MOST_RESULTS) {
-            let _ = writeln!(text, "  {key}, of: {}\n    {meaning}", lower(of));
-        }
+        explained.results.iter().take(MOST_RESULTS).for_each(|one| of_result(*one, &mut text));
         let more = explained.results.len().saturating_sub(MOST_RESULTS);
         if more > 0 {
             let _ = writeln!(text, "  and {more} more (--json)");
         }
     }
     text
+}
+
+/// All of it, one after the other.
+fn reference_text(reference: &Reference) -> String {
+    let mut text = String::from("KEYS OF FILES\n\n");
+    keys::all().iter().for_each(|place| in_full(place, &mut text));
+    text.push_str("WARNINGS\n\n");
+    reference.warnings.iter().for_each(|one| of_warning(*one, &mut text));
+    text.push_str("KEYS OF THE JSON\n\n");
+    reference.results.iter().for_each(|one| of_result(*one, &mut text));
+    text
+}
+
+fn of_warning(ExplainedCode { code, meaning, remedy }: ExplainedCode, text: &mut String) {
+    let _ = writeln!(text, "warning [{code}]\n  means      {meaning}\n  do         {remedy}\n");
+}
+
+fn of_result(ResultKey { key, of, meaning }: ResultKey, text: &mut String) {
+    let _ = writeln!(text, "  {key}, of: {}\n    {meaning}", lower(of));
 }
 
 /// A phrase within a sentence.
@@ -237,7 +210,7 @@ fn lower(phrase: &str) -> String {
 
 fn in_full(place: &Place, text: &mut String) {
     let key = place.key;
-    let told = key_json(place);
+    let told = ExplainedKey::from(place);
     let Some((path, also)) = place.paths.split_first() else { return };
     let _ = writeln!(text, "{path}\n  means      {}", told.meaning);
     let _ = writeln!(text, "  written    {}", told.value);
@@ -250,17 +223,17 @@ fn in_full(place: &Place, text: &mut String) {
     if let Some(example) = &told.example {
         let _ = writeln!(text, "  example    {example}");
     }
-    if !is_table(&key) {
+    if !key.is_table() {
         let _ = writeln!(text, "  enters     {}", told.enters);
     }
     let _ = writeln!(text, "  read by    hadar {}", told.commands.join(", "));
     if !also.is_empty() {
         let _ = writeln!(text, "  also       {}", also.join(", "));
     }
-    if let Some(table) = key.value.table() {
-        let width = table.keys().map(|key| key.name.len()).max().unwrap_or(0);
+    let inside = key.value.keys_inside();
+    if let Some(width) = inside.iter().map(|key| key.name.len()).max() {
         let _ = writeln!(text, "  keys");
-        for key in table.keys() {
+        for key in inside {
             let _ = writeln!(text, "    {:<width$}  {}", key.name, key.meaning);
         }
     }

@@ -78,6 +78,11 @@ fn what_is_set_is_as_if_the_file_said_it() {
         ("target.temperature=5", "--set target.temperature: `5` is a number without a unit"),
         ("target.temprature=5 K", "--set target.temprature: there is no key `temprature`"),
         ("environment[3].lighting=0.1", "--set environment[3].lighting: there is no environment[3]"),
+        ("clouds.height=3 m", "--set clouds.height: there is no key `clouds`"),
+        (
+            "object[0].height=3 m",
+            "--set object[0].height: there is no object[0]; write it into the file first",
+        ),
     ] {
         let refused = folder.refusal(&["identify", "a.toml", "--set", set]);
         assert!(refused.starts_with(said), "{refused}");

@@ -81,11 +81,23 @@ fn what_cannot_be_compared_is_trouble() {
     let folder = Folder::with(SCENARIO);
     folder.file("a.json", "{}");
     assert_eq!(folder.run(&["identify", "a.toml", "--out", "out"]).code, 0);
+    folder.json(&["init", "air"]);
+    assert_eq!(folder.run(&["range", "air.toml", "--out", "air"]).code, 0);
+    let print = |name: &str, arguments: &[&str]| {
+        let outcome = folder.run(&[arguments, &["--json"]].concat());
+        folder.file(name, &outcome.stdout);
+    };
+    print("size.json", &["size", "a.toml"]);
+    print("check.json", &["size", "a.toml", "--check"]);
+    print("air.json", &["range", "air.toml"]);
+    assert_eq!(folder.run(&["diff", "size.json", "check.json"]).code, 1);
     for (pair, said) in [
         (["a.json", "out"], "this is no answer"),
         (["out", "nowhere"], "there is no such file"),
         (["a.toml", "out"], "this is no JSON of an answer"),
         (["out", "."], "there is no report in this folder"),
+        (["out", "air"], "answers to different questions"),
+        (["size.json", "air.json"], "answers to different questions"),
     ] {
         let outcome = folder.run(&["diff", pair[0], pair[1]]);
         assert_eq!((outcome.code, outcome.stdout.as_str()), (2, ""), "{pair:?}");

@@ -121,8 +121,45 @@ fn every_word_is_explained() {
     assert_eq!(shown["keys"][0]["example"], "noise_bandwidth = \"175 kHz\"");
     let line = folder.refusal(&["explain", "noise_bandwith"]);
     assert!(line.contains("`noise_bandwidth`"), "{line}");
+    let line = folder.refusal(&["explain", "size.toml"]);
+    assert_eq!(line.matches("`size`").count(), 1, "{line}");
+    let line = folder.refusal(&["explain", "123"]);
+    assert!(line.contains("`hadar explain` says what there is"), "{line}");
+    let demand = folder.json(&["explain", "clause.requirement"]);
+    let inside = demand["keys"][0]["inside"].to_string();
+    assert!(inside.contains("detection_probability") && inside.contains("depth_error"), "{inside}");
     let all = folder.run(&["explain"]).stdout;
     assert!(all.contains("hadar size, identify, simulate") && all.contains("stand_in"), "{all}");
+}
+
+#[test]
+fn all_of_it_is_what_is_said_of_each() {
+    let folder = Folder::with(SCENARIO);
+    let (reference, text) = (folder.json(&["explain", "--all"]), folder.run(&["explain", "--all"]).stdout);
+    let items = |part: &str| reference[part].as_array().unwrap().clone();
+    assert_eq!(items("keys").len(), keys::all().len());
+    assert_eq!(items("warnings").len(), Code::ALL.len());
+    assert_eq!(items("results").len(), explain::results().count());
+    for (key, word) in items("keys").iter().step_by(29).map(|key| (key, key["paths"][0].as_str().unwrap())) {
+        let alone = folder.json(&["explain", word]);
+        assert!(alone["keys"].as_array().unwrap().contains(key), "{word}");
+        assert!(text.contains(&format!("\n{word}\n  means      {}\n", key["meaning"].as_str().unwrap())));
+    }
+    for part in ["keys", "warnings", "results"] {
+        let told = items(part).iter().all(|item| {
+            let meaning = item["meaning"].as_str().unwrap();
+            text.contains(meaning)
+        });
+        assert!(told, "{part}");
+    }
+    let silent = |path: &str| {
+        let key = items("keys").into_iter().find(|key| key["paths"][0] == path).unwrap();
+        [key["required"].clone(), key["default"].clone(), key["silent"].clone()]
+    };
+    assert_eq!(silent("target.temperature"), [true.into(), Json::Null, Json::Null]);
+    assert_eq!(silent("title"), [false.into(), Json::Null, "no heading".into()]);
+    let outcome = folder.run(&["explain", "--all", "skin"]);
+    assert_eq!(outcome.code, 2, "{}", outcome.stderr);
 }
 
 #[test]
@@ -198,6 +235,7 @@ fn the_schema_holds_for_all_files_there_are_and_not_for_wrong_ones() {
     let wrong: Vec<PathBuf> = [
         SCENARIO.replace("temperature = \"37 degC\"", "temperatur = \"37 degC\""),
         SCENARIO.replace("\"37 degC\"", "\"37 kg\""),
+        format!("{SCENARIO}pixel = \"12 xm\"\n"),
         SCENARIO.replace("\"37 degC\"", "37"),
         SCENARIO.replace("0.5", "1.5"),
         SCENARIO.replace("0.5", "\"0.5\""),
@@ -217,6 +255,10 @@ fn the_schema_holds_for_all_files_there_are_and_not_for_wrong_ones() {
         folder.file(&format!("wrong_{index}.toml"), text)
     })
     .collect();
+    // Whatever looks like micro.
+    files.extend(["12 um", "12\u{b5}m", "12 \u{3bc}m"].iter().enumerate().map(|(index, pixel)| {
+        folder.file(&format!("micro_{index}.toml"), &format!("{SCENARIO}pixel = \"{pixel}\"\n"))
+    }));
     is_valid(&schema, &files, &wrong);
     let of_rules = folder.file("rule.json", &folder.run(&["schema", "rule"]).stdout);
     let mut rules = Vec::new();
@@ -229,7 +271,12 @@ fn the_schema_holds_for_all_files_there_are_and_not_for_wrong_ones() {
             folder.file("other.toml", &format!("cube = 1\n{text}"))
         }),
     );
-    assert!(folder.refusal(&["schema", "sizes"]).contains("`size`"));
+    let outcome = folder.run(&["schema", "sizes"]);
+    assert!(
+        outcome.code == 2 && outcome.stderr.contains("similar value exists: 'size'"),
+        "{}",
+        outcome.stderr
+    );
 }
 
 /// The words that a choice takes are read; a quantity and a number that are written as the example are.

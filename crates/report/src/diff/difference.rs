@@ -94,11 +94,15 @@ impl Difference {
     /// What differs between two sides.
     ///
     /// # Errors
-    /// A folder and a JSON, which have their figures under other names.
+    /// A folder and a JSON, which have their figures under other names; answers of two kinds.
     pub fn between(before: &Side, after: &Side) -> Result<Self> {
         if before.is_folder != after.is_folder {
             let found = "one is the folder of a report, the other an answer as JSON";
             return Err(Error::malformed(found, "name two folders or two files"));
+        }
+        if !before.is_like(after) {
+            let found = "these are answers to different questions, with hardly a figure in common";
+            return Err(Error::malformed(found, "name two answers of one command"));
         }
         let (figures, curves) = figures(before, after);
         let mut found = Self {

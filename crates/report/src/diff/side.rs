@@ -40,6 +40,8 @@ pub(super) struct Figure {
 pub struct Side {
     pub(super) is_folder: bool,
     pub(super) made_by: Vec<String>,
+    /// What answers of its kind consist of: keys of the JSON, tables of the folder.
+    pub(super) parts: BTreeSet<String>,
     pub(super) verdict: String,
     pub(super) question: BTreeMap<String, String>,
     pub(super) inputs: BTreeMap<String, String>,
@@ -93,13 +95,14 @@ impl Side {
             }
             let text = String::from_utf8_lossy(&bytes);
             match name {
-                "answer.txt" => side.verdict = first_sentence(&text),
-                "warnings.csv" => side.warned(&text).map_err(|error| error.in_file(&path))?,
-                _ if end == "csv" => {
+                _ if end == "csv" && name != "warnings.csv" => {
                     let drawn = names.contains(name.replace(".csv", ".svg").as_str());
                     let table = table(&text, name, drawn).map_err(|error| error.in_file(&path))?;
                     side.figures.extend(table);
+                    side.parts.insert(name.to_owned());
                 }
+                "answer.txt" => side.verdict = first_sentence(&text),
+                "warnings.csv" => side.warned(&text).map_err(|error| error.in_file(&path))?,
                 _ => {
                     let asked: Value = toml::from_str(&text).map_err(|error| {
                         Error::malformed(
@@ -155,11 +158,19 @@ impl Side {
                         side.inputs.insert(part("path"), part("sha256"));
                     }
                 }
-                _ => flatten(value, key, None, None, &mut side.figures),
+                _ => {
+                    flatten(value, key, None, None, &mut side.figures);
+                    side.parts.insert(key.clone());
+                }
             }
         }
         side.figures.remove("verdict.sentence");
         Ok(side)
+    }
+
+    /// Whether two are answers of one kind: most parts of the one that has fewer are parts of both.
+    pub(super) fn is_like(&self, other: &Self) -> bool {
+        2 * self.parts.intersection(&other.parts).count() >= self.parts.len().min(other.parts.len())
     }
 
     fn asked(&mut self, question: &Value) {

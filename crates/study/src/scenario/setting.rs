@@ -7,7 +7,7 @@
 use hadar::error::{Error, Place, Result};
 use std::borrow::Cow;
 use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+use toml::de::{DeArray, DeTable, DeValue};
 
 /// The longest key of a setting, bytes.
 const LONGEST_KEY: usize = 200;
@@ -52,6 +52,11 @@ impl Setting {
     pub(super) fn covers(&self, key: &str) -> bool {
         key.strip_prefix(self.key.as_str())
             .is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
+    }
+
+    /// Whether it stands in what stands at a key.
+    pub(super) fn is_in(&self, key: &str) -> bool {
+        !key.is_empty() && self.key.strip_prefix(key).is_some_and(|rest| rest.starts_with(['.', '[']))
     }
 
     /// Where it was set, for a message about `key`.
@@ -107,7 +112,11 @@ fn put<'t>(table: &mut DeTable<'t>, name: &str, path: &[Step], value: DeValue<'t
     let [Step::Name(key), rest @ ..] = path else { return Err(no_key()) };
     let full = dotted(name, key);
     if !table.contains_key(key.as_str()) {
-        let made = if rest.is_empty() { value.clone() } else { DeValue::Table(DeTable::new()) };
+        let made = match rest {
+            [] => value.clone(),
+            [Step::Name(_), ..] => DeValue::Table(DeTable::new()),
+            [Step::Item(_), ..] => DeValue::Array(DeArray::new()),
+        };
         table.insert(Spanned::new(0..0, Cow::Owned(key.clone())), Spanned::new(0..0, made));
     }
     match table.get_mut(key.as_str()) {
@@ -130,7 +139,7 @@ fn put_value<'t>(slot: &mut DeValue<'t>, name: &str, path: &[Step], value: DeVal
                 None => {
                     let found = format!("there is no {name}[{index}]");
                     let instead = match count {
-                        0 => format!("write it into the file first; its {name} is empty"),
+                        0 => "write it into the file first, which has none".to_owned(),
                         count => format!("count from 0 to {}, as the file has {count}", count - 1),
                     };
                     Err(Error::malformed(found, instead))

@@ -49,6 +49,11 @@ impl Source {
         if let Some(setting) = self.setting(key) {
             return setting.place(key);
         }
+        // A table that is not in the file was made by a setting of a key of it.
+        let made = || self.settings.iter().find(|setting| setting.is_in(key));
+        if let Some(setting) = made().filter(|_| !self.lines.contains_key(key)) {
+            return setting.place(&setting.key);
+        }
         let mut known = key;
         let line = loop {
             match self.lines.get(known) {

@@ -254,6 +254,9 @@ impl Study {
     fn simulation_warnings(&self, plan: &SimulationPlan, points: &[SimulatedPoint]) -> Vec<Warning> {
         let mut warnings = Vec::new();
         warnings.extend(self.worst_members_alone(&plan.against));
+        if self.scenario.envelope.is_some() {
+            warnings.push(Warning::EnvelopeNotSearched);
+        }
         let bands = self.bands.len() as f64;
         let fewest = points.iter().map(|point| point.photons).fold(f64::INFINITY, f64::min);
         let most = points.iter().map(|point| point.photons).fold(0.0, f64::max);

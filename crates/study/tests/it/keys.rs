@@ -211,6 +211,47 @@ fn same(value: Value, a: &toml::Value, b: &toml::Value) -> bool {
     }
 }
 
+/// Takes a key out of a file.
+fn without(table: &toml::Table, path: &str) -> Option<toml::Table> {
+    fn take(table: &mut toml::Table, path: &str) -> Option<()> {
+        let Some((first, rest)) = path.split_once('.') else { return table.remove(path).map(drop) };
+        let value = match first.strip_suffix("[0]") {
+            Some(list) => table.get_mut(list)?.as_array_mut()?.first_mut()?,
+            None => table.get_mut(first)?,
+        };
+        take(value.as_table_mut()?, rest)
+    }
+    let mut less = table.clone();
+    take(&mut less, path).map(|()| less)
+}
+
+#[test]
+fn what_must_be_there_is_missed_and_nothing_else() {
+    let (mut missed, mut amiss) = (0, Vec::new());
+    for kind in FILES {
+        let text: toml::Table = base(kind.name).parse().unwrap();
+        let mut all = Vec::new();
+        paths(kind.root, "", &mut all);
+        for (path, key) in all {
+            let Some(less) = without(&text, &path) else { continue };
+            let told = key.silent == Silent::Refused;
+            let hangs_on_more = matches!(key.silent, Silent::Means(words) if words.contains("must be there"));
+            match read(kind.name, &Written::of(&less.to_string(), None)).map_err(|error| error.to_string()) {
+                Ok(_) if told => amiss.push(format!("{} {path} need not be there", kind.name)),
+                Err(error) if error.contains("missing") && error.contains(&format!("{path}: ")) => {
+                    missed += 1;
+                    if !told && !hangs_on_more {
+                        amiss.push(format!("{} {path} is missed: {error}", kind.name));
+                    }
+                }
+                _ => {}
+            }
+        }
+    }
+    assert!(amiss.is_empty(), "{}", amiss.join("\n"));
+    assert!(missed > 30, "{missed}");
+}
+
 #[test]
 fn what_silence_means_is_what_is_filled_in() {
     let mut compared = Vec::new();

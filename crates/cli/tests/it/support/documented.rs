@@ -82,9 +82,15 @@ fn field(line: &str) -> Option<&str> {
     is_name.then_some(name)
 }
 
-/// Documentation as text: links are their words.
+/// Documentation as text: links are their words, and what an answer leaves out or has as null is none.
 fn plain(doc: &str) -> String {
-    doc.trim().replace("[`", "`").replace("`]", "`").replace('\t', " ")
+    let doc = doc.trim().replace("[`", "`").replace("`None`", "none").replace('\t', " ");
+    let mut links = doc.split("`]");
+    let first = links.next().unwrap_or_default().to_owned();
+    links.fold(first, |text, rest| {
+        let target = rest.strip_prefix('(').and_then(|inner| inner.split_once(')'));
+        format!("{text}`{}", target.map_or(rest, |(_, rest)| rest))
+    })
 }
 
 fn snake_case(name: &str) -> String {

@@ -84,7 +84,7 @@ const LIGHT_KEYS: &[Key] = &[
     Key::row(
         "column",
         Value::Text,
-        Means("refused beside spectrum"),
+        Means("must be there beside spectrum"),
         "\"sky\"",
         "The column of that table.",
         "S_k in X = sum of V_k S_k (S2)",

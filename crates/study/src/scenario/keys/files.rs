@@ -15,7 +15,7 @@ pub struct FileKind {
     pub root: &'static Table,
 }
 
-const NOT_THERE: super::Silent = Means("nothing is said of it");
+const NOT_THERE: super::Silent = Means("what it means that each of its keys is");
 
 /// A table of a file.
 const fn table(name: &'static str, table: &'static Table) -> Key {
@@ -34,6 +34,11 @@ const fn tables(name: &'static str, table: &'static Table) -> Key {
     )
 }
 
+/// The same with other words for its silence.
+const fn silent(words: &'static str, key: Key) -> Key {
+    Key { silent: Means(words), ..key }
+}
+
 /// The same that must be there.
 const fn needed(key: Key) -> Key {
     Key { silent: Refused, ..key }
@@ -42,25 +47,27 @@ const fn needed(key: Key) -> Key {
 const CLASSES: Key = Key::row(
     "class",
     Value::Named(&task::CLASS),
-    NOT_THERE,
+    Means("the classes of the library alone"),
     "a table [class.NAME]",
     task::CLASS.meaning,
     "see its keys",
 );
-const BANDS: Key = table("bands", &task::BANDS);
-const CAMERA: Key = table("camera", &task::CAMERA);
+const BANDS: Key = silent("the band of a camera that has one, else the grid", table("bands", &task::BANDS));
+const CAMERA: Key = silent("no camera", table("camera", &task::CAMERA));
+const ENVIRONMENT: Key =
+    silent("no surroundings: nothing but its own light is seen", tables("environment", &task::ENVIRONMENT));
 const TASK: &[Key] = &[
     TITLE,
     CLASSES,
     needed(table("target", &task::TARGET)),
-    table("background", &task::BACKGROUND),
-    tables("environment", &task::ENVIRONMENT),
+    silent("must be there behind a target smaller than its pixel", table("background", &task::BACKGROUND)),
+    ENVIRONMENT,
     table("alternatives", &task::ALTERNATIVES),
-    table("atmosphere", &task::ATMOSPHERE),
+    silent("no air on the path", table("atmosphere", &task::ATMOSPHERE)),
     BANDS,
     table("unknown", &task::UNKNOWN),
     table("requirement", &task::REQUIREMENT),
-    table("envelope", &task::ENVELOPE),
+    silent("the scene as it is", table("envelope", &task::ENVELOPE)),
     table("sensitivity", &task::SENSITIVITY),
 ];
 /// A task.
@@ -83,11 +90,11 @@ pub(in crate::scenario) static RULE: Table = Table::of(
         &[
             table("rule", &rule::ABOUT),
             PRESETS,
-            tables("camera", &rule::CAMERA),
-            table("stop", &rule::STOP),
-            tables("clause", &rule::CLAUSE),
-            tables("source", &rule::SOURCE),
-            tables("test", &rule::TEST),
+            silent("those of cameras", tables("camera", &rule::CAMERA)),
+            silent("distances are as they are written", table("stop", &rule::STOP)),
+            silent("the rule is one demand", tables("clause", &rule::CLAUSE)),
+            silent("no figure has a source", tables("source", &rule::SOURCE)),
+            silent("nothing is tested", tables("test", &rule::TEST)),
             table("uncertainty", &rule::UNCERTAINTY),
             table("stand_in", &rule::STAND_IN),
         ],
@@ -96,11 +103,10 @@ pub(in crate::scenario) static RULE: Table = Table::of(
 
 const STREET: &[Key] = &[
     TITLE,
-    tables("object", &scene::OBJECT),
+    silent("the built-in car and person", tables("object", &scene::OBJECT)),
     BANDS,
-    CAMERA,
     table("requirement", &scene::DEPTH),
-    tables("category", &cube::CATEGORY_OF_SCENE),
+    silent("none", tables("category", &cube::CATEGORY_OF_SCENE)),
 ];
 /// Two views of a street or in a cube.
 pub(in crate::scenario) static RANGE: Table = Table::of(
@@ -108,8 +114,9 @@ pub(in crate::scenario) static RANGE: Table = Table::of(
     &[
         STREET,
         &[
-            table("scene", &scene::SCENE),
-            table("cube", &scene::VIEWS),
+            silent("a [cube] must be there", table("scene", &scene::SCENE)),
+            silent("a [scene] must be there", table("cube", &scene::VIEWS)),
+            CAMERA,
             needed(table("stereo", &scene::STEREO)),
         ],
     ],
@@ -117,7 +124,14 @@ pub(in crate::scenario) static RANGE: Table = Table::of(
 /// A scene to be rendered.
 pub(in crate::scenario) static RENDER: Table = Table::of(
     "A scene that is rendered.",
-    &[STREET, &[needed(table("scene", &scene::SCENE)), table("stereo", &scene::STEREO)]],
+    &[
+        STREET,
+        &[
+            needed(table("scene", &scene::SCENE)),
+            needed(CAMERA),
+            silent("one view", table("stereo", &scene::STEREO)),
+        ],
+    ],
 );
 
 const SIGNAL: Key = Key::row(
@@ -135,14 +149,14 @@ pub(in crate::scenario) static AIR_RANGING: Table = Table::of(
         TITLE,
         SIGNAL,
         needed(table("target", &task::TARGET)),
-        tables("environment", &task::ENVIRONMENT),
+        ENVIRONMENT,
         needed(table("atmosphere", &task::ATMOSPHERE)),
         BANDS,
         table("unknown", &scene::AIR_UNKNOWN),
         needed(CAMERA),
         table("distances", &scene::DISTANCES),
-        table("stereo", &scene::AIR_STEREO),
-        table("requirement", &scene::AIR_REQUIREMENT),
+        silent("no comparison", table("stereo", &scene::AIR_STEREO)),
+        silent("nothing is demanded", table("requirement", &scene::AIR_REQUIREMENT)),
     ]],
 );
 
@@ -158,11 +172,11 @@ pub(in crate::scenario) static DECOMPOSE: Table = Table::of(
         tables("environment", &cube::LIGHT),
         needed(table("library", &cube::LIBRARY)),
         table("unknown", &cube::UNKNOWN),
-        table("spatial", &cube::SPATIAL),
+        silent("each pixel is for itself", table("spatial", &cube::SPATIAL)),
         table("vision", &cube::VISION),
-        tables("category", &cube::CATEGORY),
+        silent("no categories", tables("category", &cube::CATEGORY)),
         table("segmentation", &cube::SEGMENTATION),
-        table("truth", &cube::TRUTH),
+        silent("nothing is compared", table("truth", &cube::TRUTH)),
     ]],
 );
 /// A heat cube to make a library of.
@@ -177,7 +191,7 @@ pub(in crate::scenario) static LIBRARY: Table = Table::of(
         needed(table("clusters", &cube::CLUSTERS)),
         table("emissivity", &cube::EMISSIVITY),
         table("unknown", &cube::UNKNOWN),
-        table("truth", &cube::TRUTH_OF_LIBRARY),
+        silent("nothing is compared", table("truth", &cube::TRUTH_OF_LIBRARY)),
     ]],
 );
 
@@ -186,12 +200,21 @@ const BLACKBODIES: &[Key] =
 /// A camera behind filters before blackbodies.
 pub(in crate::scenario) static RESPONSE: Table = Table::of(
     "A camera behind filters that was held before blackbodies.",
-    &[BLACKBODIES, &[needed(table("response", &calibrate::RESPONSE)), table("scene", &calibrate::SCENE)]],
+    &[
+        BLACKBODIES,
+        &[
+            needed(table("response", &calibrate::RESPONSE)),
+            silent("no cube is calibrated", table("scene", &calibrate::SCENE)),
+        ],
+    ],
 );
 /// A spectrometer before blackbodies.
 pub(in crate::scenario) static BLACKBODY: Table = Table::of(
     "A spectrometer that was held before blackbodies.",
-    &[BLACKBODIES, &[needed(BANDS), table("scene", &calibrate::SPECTRAL_SCENE)]],
+    &[
+        BLACKBODIES,
+        &[needed(BANDS), silent("no cube is calibrated", table("scene", &calibrate::SPECTRAL_SCENE))],
+    ],
 );
 /// Frames whose noise is sought.
 pub(in crate::scenario) static NOISE: Table = Table::of(

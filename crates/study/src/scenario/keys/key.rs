@@ -131,6 +131,12 @@ impl Table {
 }
 
 impl Key {
+    /// Whether it is written as a `[table]`.
+    #[must_use]
+    pub fn is_table(&self) -> bool {
+        matches!(self.value, Value::Tables(_) | Value::Named(_)) || self.example == "a table"
+    }
+
     /// The key of a camera's figure.
     fn of_figure(row: &Row) -> Self {
         let value = match row.kind {
@@ -146,7 +152,10 @@ impl Key {
         Self {
             name: row.key,
             value,
-            silent: Silent::Means("that of the preset, if there is one"),
+            silent: Silent::Means(match row.kind {
+                figures::Kind::Name(_) => "no preset: what the other keys say",
+                _ => "that of the preset, if there is one",
+            }),
             example: row.example,
             meaning: row.meaning,
             enters: row.enters,
@@ -178,6 +187,9 @@ impl Value {
             Self::Spectral => {
                 "wavenumber (cm^-1) or wavelength (um, nm) in quotes with its unit, above 0".into()
             }
+            Self::Number(Allowed { expected, .. }) if expected.contains("number") => {
+                expected.trim_start_matches("a ").into()
+            }
             Self::Number(allowed) => format!("number, {}", allowed.expected),
             Self::NumberOrFile(allowed) => format!("number, {}, or a file of rows", allowed.expected),
             Self::Count([least, u32::MAX]) => format!("whole number, at least {least}"),
@@ -195,7 +207,11 @@ impl Value {
             Self::Pair(of) => format!("list of two: {}", of.words()),
             Self::Triple(of) => format!("list of three: {}", of.words()),
             Self::List(of) => format!("list: {}", of.words()),
-            Self::Either(kinds) => kinds.iter().map(Self::words).collect::<Vec<_>>().join("; or "),
+            Self::Either(kinds) => {
+                let mut words: Vec<_> = kinds.iter().map(Self::words).collect();
+                words.dedup();
+                words.join("; or ")
+            }
             Self::Figure => "as the key of the camera itself takes it".into(),
             Self::Table(_) => "table".into(),
             Self::Tables(_) => "tables in double brackets, one for each".into(),
@@ -253,6 +269,22 @@ impl Value {
             }
             _ => None,
         }
+    }
+
+    /// Keys of the tables that may stand here, each once.
+    #[must_use]
+    pub fn keys_inside(&self) -> Vec<Key> {
+        let mut found: Vec<Key> = Vec::new();
+        let kinds = match self {
+            Self::Either(kinds) => kinds,
+            one => std::slice::from_ref(one),
+        };
+        for key in kinds.iter().filter_map(Self::table).flat_map(Table::keys) {
+            if found.iter().all(|other| other.name != key.name) {
+                found.push(key);
+            }
+        }
+        found
     }
 
     /// The table that may stand here.

@@ -269,7 +269,7 @@ const SOURCE_KEYS: &[Key] = &[
     Key::row(
         "document",
         Value::Text,
-        Means("refused, but beside choice"),
+        Means("must be there, unless there is a choice"),
         "\"49 CFR 571.127\"",
         "What says so.",
         "`hadar rule --sources`",
@@ -277,7 +277,7 @@ const SOURCE_KEYS: &[Key] = &[
     Key::row(
         "clause",
         Value::Text,
-        Means("refused, but beside choice"),
+        Means("must be there, unless there is a choice"),
         "\"S8.2\"",
         "Where in it.",
         "`hadar rule --sources`",
@@ -285,7 +285,7 @@ const SOURCE_KEYS: &[Key] = &[
     Key::row(
         "quote",
         Value::Text,
-        Means("refused, but beside choice"),
+        Means("must be there, unless there is a choice"),
         "\"its own words\"",
         "In its own words.",
         "`hadar rule --sources`",
@@ -293,7 +293,7 @@ const SOURCE_KEYS: &[Key] = &[
     Key::row(
         "date",
         Value::Date,
-        Means("refused, but beside choice"),
+        Means("must be there, unless there is a choice"),
         "\"2024-05-09\"",
         "Its date.",
         "`hadar rule --sources`",
@@ -301,7 +301,7 @@ const SOURCE_KEYS: &[Key] = &[
     Key::row(
         "mark",
         Value::Choice(&["seen", "excerpt", "copy", "recalled", "computed"]),
-        Means("refused, but beside choice"),
+        Means("must be there, unless there is a choice"),
         "\"seen\"",
         "How the document was read.",
         "`hadar rule --sources`",
@@ -468,7 +468,7 @@ const CLAUSE_KEYS: &[Key] = &[
 const THINGS: Key = Key::row(
     "things",
     MATERIALS,
-    Means("refused of a clause of kind false-alarm"),
+    Means("must be there in a clause of kind false-alarm"),
     "[\"steel-rough\"]",
     "What must not be taken for the rule's target, of a clause of kind false-alarm.",
     "they are the target of this clause, and the rule's target its alternatives",
@@ -484,7 +484,7 @@ const SCENE_OF_CLAUSE: Key = Key::row(
 const STEREO_OF_CLAUSE: Key = Key::row(
     "stereo",
     Value::Table(&STEREO),
-    Means("refused of a clause of kind depth-error"),
+    Means("must be there in a clause of kind depth-error"),
     "{ baseline = \"0.2 m\" }",
     "The pair of cameras, of a clause of kind depth-error.",
     "depth from disparity (S35, S36)",
@@ -532,8 +532,10 @@ const DEMANDS: &[Value] = &[
     Value::Table(&TEMPERATURE),
     Value::Table(&DEPTH),
 ];
-const REQUIREMENT_OF_ANY: &[Key] =
-    &[own!("requirement", Value::Either(DEMANDS), "What is demanded, in terms of the clause's kind.")];
+const REQUIREMENT_OF_ANY: &[Key] = &[Key {
+    silent: Means("that of the rule; of kinds that tell nothing apart it must be there"),
+    ..own!("requirement", Value::Either(DEMANDS), "What is demanded, in terms of the clause's kind.")
+}];
 const WHAT: &str = "One demand, with the tables in which its scenes differ from the rule's.";
 /// `[[clause]]`, whatever its kind.
 pub(in crate::scenario) static CLAUSE: Table = Table::of(

@@ -26,7 +26,7 @@ const SKY_KEYS: &[Key] = &[
     Key::row(
         "column",
         Value::Text,
-        Means("refused beside spectrum"),
+        Means("must be there beside spectrum"),
         "\"sky\"",
         "The column of that table.",
         "light of the sky in X (S2)",
@@ -42,7 +42,7 @@ const SKY_KEYS: &[Key] = &[
     Key::row(
         "temperature",
         KELVIN,
-        Means("refused, but beside spectrum"),
+        Means("must be there, unless there is a spectrum"),
         "\"-15 degC\"",
         "Its temperature.",
         "light of the sky in X (S2)",
@@ -261,7 +261,7 @@ const OBJECT_KEYS: &[Key] = &[
     Key::row(
         "height",
         LENGTH,
-        Means("a usual one; refused of a post"),
+        Means("a usual one; of a post it must be there"),
         "\"3 m\"",
         "Height of a person, robot or post.",
         "what the rays of the pixels hit",
@@ -269,7 +269,7 @@ const OBJECT_KEYS: &[Key] = &[
     Key::row(
         "size",
         Value::Triple(&LENGTH),
-        Means("a usual one of a car; refused of a block and a ball"),
+        Means("a usual one of a car; of a block and a ball it must be there"),
         "[\"4.2 m\", \"1.8 m\", \"1.45 m\"]",
         "Length, width and height of a car, block or ball.",
         "what the rays of the pixels hit",
@@ -277,7 +277,7 @@ const OBJECT_KEYS: &[Key] = &[
     Key::row(
         "radius",
         LENGTH,
-        Means("refused of a post"),
+        Means("of a post it must be there"),
         "\"10 cm\"",
         "Radius of a post.",
         "what the rays of the pixels hit",
@@ -377,7 +377,7 @@ const STEREO_KEYS: &[Key] = &[
     Key::row(
         "psf_sigma",
         LENGTH,
-        Means("refused beside diffraction = \"gaussian\""),
+        Means("must be there beside diffraction = \"gaussian\""),
         "\"5 um\"",
         "Deviation of a Gaussian blur on the detector.",
         "S41 to S43",

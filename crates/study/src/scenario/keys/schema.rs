@@ -187,14 +187,15 @@ fn quantity(dimensions: &[Dimension]) -> Json {
     json!({ "type": "string", "pattern": format!("{NUMBER}({})\\s*$", units.join("|")) })
 }
 
-/// A unit inside a pattern.
+/// A unit inside a pattern; `u` may be written as any micro.
 fn escaped(unit: &str) -> String {
     let mut escaped = String::new();
     for letter in unit.chars() {
-        if matches!(letter, '^' | '.' | '/' | '-' | '+') {
-            escaped.push('\\');
+        match letter {
+            'u' => escaped.push_str("[u\u{b5}\u{3bc}]"),
+            '^' | '.' | '/' | '-' | '+' => escaped.extend(['\\', letter]),
+            _ => escaped.push(letter),
         }
-        escaped.push(letter);
     }
     escaped
 }

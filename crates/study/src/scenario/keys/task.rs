@@ -34,7 +34,9 @@ const TARGET_KEYS: &[Key] = &[
     Key::row(
         "distance",
         LENGTH,
-        Means("no air on the path, no motion blur, no footprint of a pixel"),
+        Means(
+            "no air on the path, no motion blur, no footprint of a pixel; of signal = \"air\" it must be there",
+        ),
         "\"30 m\"",
         "Distance of the target from the camera.",
         "path through the air; footprint of a pixel and motion blur (SII E)",
@@ -89,7 +91,9 @@ const ENVIRONMENT_KEYS: &[Key] = &[
     Key::row(
         "lighting",
         A_SHARE,
-        Means("refused, but of the last object where unknown.lighting_total is given: what the others leave"),
+        Means(
+            "must be there; but of the last object, where unknown.lighting_total is given, what the others leave",
+        ),
         "0.5",
         "Thermal lighting factor V: share of the hemisphere above the target that the object fills; they add up to at most 1.",
         "V_k in X = sum of V_k S_k (S2, S5)",
@@ -193,7 +197,7 @@ const CLASS_KEYS: &[Key] = &[
     Key::row(
         "correlation",
         WAVENUMBER,
-        Means("refused beside emissivity_error"),
+        Means("must be there beside emissivity_error"),
         "\"50 cm^-1\"",
         "Difference of wavenumbers over which that scatter loses its correlation.",
         "covariance of the emissivity, s^2 exp(-|dnu|/l)",
@@ -374,8 +378,10 @@ const ENVELOPE_KEYS: &[Key] = &[
     ),
 ];
 /// `[envelope]`.
-pub(in crate::scenario) static ENVELOPE: Table =
-    Table::of("Ranges of scenes in all of which the requirement must hold.", &[ENVELOPE_KEYS]);
+pub(in crate::scenario) static ENVELOPE: Table = Table::of(
+    "Ranges of scenes in all of which the requirement must hold; hadar rule alone searches them.",
+    &[ENVELOPE_KEYS],
+);
 
 const SENSITIVITY_KEYS: &[Key] = &[
     Key::row(
@@ -419,7 +425,7 @@ const ATMOSPHERE_KEYS: &[Key] = &[
     Key::row(
         "temperature",
         KELVIN,
-        Means("that of the model; refused beside a table"),
+        Means("that of the model; beside a table it must be there"),
         "\"15 degC\"",
         "Temperature of the air.",
         "its emission (1 - tau) B(T_air)",
