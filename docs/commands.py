@@ -1,0 +1,112 @@
+"""Runs every command of the guide and compares what it prints with what the guide says it does.
+
+A block ```` ```console ```` has commands after `$ ` and what they print. `...` alone on a line stands for any lines, `[...]`
+for the rest of one (seconds, commits). A block ```` ```toml file=NAME ```` writes that file. The blocks of a page run one after
+the other in an empty folder of its own, `hadar` on the path; stdout and stderr are one.
+
+    python3 docs/commands.py HADAR             compare; exit code 1 if anything differs
+    python3 docs/commands.py HADAR --update    write what is printed into the pages, dots kept
+"""
+
+import difflib
+import os
+import re
+import subprocess
+import sys
+import tempfile
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+SRC = Path(__file__).resolve().parent / "src"
+BLOCK = re.compile(r"^```(?:(console)|\w+ file=(\S+))\n(.*?)^```$", re.M | re.S)
+DOTS = "..."
+SECONDS = 300
+
+
+def matches(expected, printed):
+    pattern = ""
+    for line in expected.splitlines():
+        pattern += r"(?:.*\n)*?" if line == DOTS else ".*".join(map(re.escape, line.split("[...]"))) + "\n"
+    return re.fullmatch(pattern, printed) is not None
+
+
+def updated(expected, printed):
+    """What was printed, shortened where `expected` is."""
+    old, new = expected.splitlines(), printed.splitlines()
+    kept = []
+    for kind, i1, i2, j1, j2 in difflib.SequenceMatcher(None, old, new, autojunk=False).get_opcodes():
+        there, here = old[i1:i2], new[j1:j2]
+        masked = len(there) == len(here) and all(matches(a + "\n", b + "\n") for a, b in zip(there, here))
+        if kind == "equal" or masked:
+            kept += there
+        elif DOTS in there:
+            first = there.index(DOTS)
+            rest = len(there) - first - 1
+            kept += here[:first] + [DOTS] + (here[-rest:] if rest else [])
+        elif kind != "insert" or not (DOTS in old[max(i1 - 1, 0) : i1 + 1]):
+            kept += here
+    return "".join(line + "\n" for line in kept)
+
+
+def commands(block):
+    """Pairs of a command, with its continued lines, and what it is said to print."""
+    pairs = []
+    for line in block.splitlines(keepends=True):
+        if line.startswith("$ "):
+            pairs.append([line[2:], ""])
+        elif pairs and pairs[-1][0].endswith("\\\n") and not pairs[-1][1]:
+            pairs[-1][0] += line
+        elif pairs:
+            pairs[-1][1] += line
+        else:
+            raise ValueError(f"a block begins without a command: {line}")
+    return pairs
+
+
+def run_page(path, program, update):
+    """Runs a page; returns how many commands ran, and what differs."""
+    text, done, differs = path.read_text(), [], []
+    with tempfile.TemporaryDirectory() as scratch:
+        tools, folder = Path(scratch, "bin"), Path(scratch, "page")
+        tools.mkdir()
+        folder.mkdir()
+        (tools / "hadar").symlink_to(program)
+        environment = os.environ | {"PATH": f"{tools}:{os.environ['PATH']}", "LC_ALL": "C.UTF-8"}
+
+        def run(found):
+            console, name, content = found.groups()
+            if not console:
+                Path(folder, name).write_text(content)
+                return found[0]
+            for command, expected in commands(content):
+                ran = subprocess.run(
+                    ["bash", "-c", command], cwd=folder, env=environment, timeout=SECONDS, text=True,
+                    stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                )  # fmt: skip
+                printed = ran.stdout if not ran.stdout or ran.stdout.endswith("\n") else ran.stdout + "\n"
+                done.append(command)
+                if not matches(expected, printed):
+                    difference = difflib.unified_diff(expected.splitlines(), printed.splitlines(), "guide", "program", lineterm="")
+                    differs.append(f"{path.name}: $ {command}" + "\n".join(difference))
+                    content = content.replace(command + expected, command + updated(expected, printed), 1)
+            return f"```console\n{content}```"
+
+        new = BLOCK.sub(run, text)
+    if update and new != text:
+        path.write_text(new)
+    return len(done), differs
+
+
+def main():
+    program, update = Path(sys.argv[1]).resolve(), "--update" in sys.argv[2:]
+    only = [word for word in sys.argv[2:] if not word.startswith("-")]
+    pages = [path for path in sorted(SRC.rglob("*.md")) if not only or path.stem in only]
+    with ThreadPoolExecutor(2) as workers:
+        results = list(workers.map(lambda path: run_page(path, program, update), pages))
+    differs = [text for _, texts in results for text in texts]
+    print("\n\n".join(differs) + "\n" * bool(differs) + f"{sum(n for n, _ in results)} commands of {len(pages)} pages, {len(differs)} differ")
+    sys.exit(1 if differs and not update else 0)
+
+
+if __name__ == "__main__":
+    main()
