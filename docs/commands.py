@@ -49,12 +49,12 @@ def updated(expected, printed):
 
 
 def commands(block):
-    """Pairs of a command, with its continued lines, and what it is said to print."""
+    """Pairs of a command as it is written, over several lines where one ends in a backslash, and what it is said to print."""
     pairs = []
     for line in block.splitlines(keepends=True):
         if line.startswith("$ "):
-            pairs.append([line[2:], ""])
-        elif pairs and pairs[-1][0].endswith("\\\n") and not pairs[-1][1]:
+            pairs.append([line, ""])
+        elif pairs and pairs[-1][0].endswith("\\\n") and line.startswith("> "):
             pairs[-1][0] += line
         elif pairs:
             pairs[-1][1] += line
@@ -78,7 +78,8 @@ def run_page(path, program, update):
             if not console:
                 Path(folder, name).write_text(content)
                 return found[0]
-            for command, expected in commands(content):
+            for written, expected in commands(content):
+                command = re.sub("^[$>] ", "", written, flags=re.M)
                 ran = subprocess.run(
                     ["bash", "-c", command], cwd=folder, env=environment, timeout=SECONDS, text=True,
                     stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
@@ -87,8 +88,8 @@ def run_page(path, program, update):
                 done.append(command)
                 if not matches(expected, printed):
                     difference = difflib.unified_diff(expected.splitlines(), printed.splitlines(), "guide", "program", lineterm="")
-                    differs.append(f"{path.name}: $ {command}" + "\n".join(difference))
-                    content = content.replace(command + expected, command + updated(expected, printed), 1)
+                    differs.append(f"{path.name}: {written}" + "\n".join(difference))
+                    content = content.replace(written + expected, written + updated(expected, printed), 1)
             return f"```console\n{content}```"
 
         new = BLOCK.sub(run, text)
