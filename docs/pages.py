@@ -23,7 +23,7 @@ ROOT = DOCS.parent
 REPORTS = ROOT / "reports"
 
 # Code is left as it is: a block between fences, or a word between backticks.
-PARTS = re.compile(r"(^```.*?^```[^\S\n]*$|`[^`\n]+`)|\$\$(.+?)\$\$|(?<!\\)\$([^$\n]+?)\$", re.S | re.M)
+PARTS = re.compile(r"(^```.*?^```[^\S\n]*$|`[^`\n]+`)|\$\$(.+?)\$\$|\$((?:[^$\n]|\n(?!\n))+)\$|(\$)", re.S | re.M)
 LINK = re.compile(r"(!?)\[([^\]]*)\]\(([^)\s]+)\)")
 FENCE = re.compile(r"^```(\w+) file=(\S+)$", re.M)
 MADE = re.compile(r"<!-- made: (\w+) -->")
@@ -49,6 +49,9 @@ def mathml(tex, display):
     made = convert(tex.strip(), display="block" if display else "inline")
     if "<merror" in made or "\\" in re.sub(r"<[^>]*>", "", made):
         raise ValueError(f"not understood as an equation: {tex}")
+    # A prime is a part of its letter: as an exponent it stands too high wherever there is no mathematical font.
+    made = re.sub(r"<msup><mi>([^<]*)</mi><mi>&#x02032;</mi></msup>", r"<mi>\1</mi><mtext>&#x02032;</mtext>", made)
+    made = re.sub(r"<msubsup><mi>([^<]*)</mi>(<mi>[^<]*</mi>)<mi>&#x02032;</mi></msubsup>", r"<msub><mrow><mi>\1</mi><mtext>&#x02032;</mtext></mrow>\2</msub>", made)
     # What Markdown would take for its own signs.
     made = re.sub(r">([^<]*)<", lambda text: ">" + re.sub(r"[*_\[\]`|~]", lambda c: f"&#{ord(c[0])};", text[1]) + "<", made)
     return f'\n<div class="equation">{made}{number}</div>\n' if display else made
@@ -56,7 +59,9 @@ def mathml(tex, display):
 
 def equations(text):
     def part(found):
-        code, display, inline = found.groups()
+        code, display, inline, alone = found.groups()
+        if alone:
+            raise ValueError(f"a dollar without its other one: {text[found.start() :][:60]}")
         return code if code is not None else mathml(display or inline, display is not None)
 
     return PARTS.sub(part, text)
@@ -85,8 +90,8 @@ def cell(text):
 
 
 def table(head, rows):
-    lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
-    return "\n".join(lines + ["| " + " | ".join(map(cell, row)) + " |" for row in rows])
+    lines = ['<div class="made">\n', "| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
+    return "\n".join(lines + ["| " + " | ".join(map(cell, row)) + " |" for row in rows] + ["\n</div>"])
 
 
 def ledger():
