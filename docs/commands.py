@@ -30,21 +30,39 @@ def matches(expected, printed):
     return re.fullmatch(pattern, printed) is not None
 
 
+def likeness(said, line):
+    if said == DOTS:
+        return 0.0
+    if matches(said + "\n", line + "\n"):
+        return 1.0
+    ratio = difflib.SequenceMatcher(None, said, line, autojunk=False).ratio()
+    return ratio if ratio > 0.5 else 0.0
+
+
 def updated(expected, printed):
-    """What was printed, shortened where `expected` is."""
+    """What was printed, shortened where `expected` is: lines are paired in their order, as like each other as may be."""
     old, new = expected.splitlines(), printed.splitlines()
-    kept = []
-    for kind, i1, i2, j1, j2 in difflib.SequenceMatcher(None, old, new, autojunk=False).get_opcodes():
-        there, here = old[i1:i2], new[j1:j2]
-        masked = len(there) == len(here) and all(matches(a + "\n", b + "\n") for a, b in zip(there, here))
-        if kind == "equal" or masked:
-            kept += there
-        elif DOTS in there:
-            first = there.index(DOTS)
-            rest = len(there) - first - 1
-            kept += here[:first] + [DOTS] + (here[-rest:] if rest else [])
-        elif kind != "insert" or not (DOTS in old[max(i1 - 1, 0) : i1 + 1]):
-            kept += here
+    alike = [[likeness(said, line) for line in new] for said in old]
+    best = [[0.0] * (len(new) + 1) for _ in range(len(old) + 1)]
+    for i, row in enumerate(alike):
+        for j, value in enumerate(row):
+            best[i + 1][j + 1] = max(best[i][j + 1], best[i + 1][j], best[i][j] + value)
+    pairs, i, j = [(len(old), len(new))], len(old), len(new)
+    while i and j:
+        if best[i][j] == best[i - 1][j]:
+            i -= 1
+        elif best[i][j] == best[i][j - 1]:
+            j -= 1
+        else:
+            i, j = i - 1, j - 1
+            pairs.append((i, j))
+    kept, i, j = [], 0, 0
+    for said, line in reversed(pairs):
+        # Between two pairs: dots where there were some, else every line.
+        kept += [DOTS] if DOTS in old[i:said] else new[j:line]
+        if line < len(new):
+            kept.append(old[said] if alike[said][line] == 1.0 else new[line])
+        i, j = said + 1, line + 1
     return "".join(line + "\n" for line in kept)
 
 
