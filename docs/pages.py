@@ -26,6 +26,8 @@ REPORTS = ROOT / "reports"
 PARTS = re.compile(r"(^```.*?^```[^\S\n]*$|`[^`\n]+`)|\$\$(.+?)\$\$|\$((?:[^$\n]|\n(?!\n))+)\$|(\$)", re.S | re.M)
 LINK = re.compile(r"(!?)\[([^\]]*)\]\(([^)\s]+)\)")
 FENCE = re.compile(r"^```(\w+) file=(\S+)$", re.M)
+# What Markdown and HTML would take for their own signs.
+SIGNS = re.compile(r"[*_`~|<>&\[\]]")
 MADE = re.compile(r"<!-- made: (\w+) -->")
 
 # Worst first: what does not come out again is what a reader looks for.
@@ -89,9 +91,15 @@ def cell(text):
     return html.escape(text, quote=False).replace("|", "&#124;").replace("\n", " ") or "-"
 
 
+def code(text):
+    """Code in a cell, as it is written, with what Markdown would take for its own signs."""
+    escaped = SIGNS.sub(lambda sign: f"&#{ord(sign[0])};", text or "")
+    return f"<code>{escaped}</code>" if escaped else "-"
+
+
 def table(head, rows):
     lines = ['<div class="made">\n', "| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
-    return "\n".join(lines + ["| " + " | ".join(map(cell, row)) + " |" for row in rows] + ["\n</div>"])
+    return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows] + ["\n</div>"])
 
 
 def ledger():
@@ -111,12 +119,12 @@ def ledger():
     for verdict, title in VERDICTS:
         chosen = [
             (
-                row["place"],
-                row["quantity"],
-                row["paper"],
-                row["ours"] + (f" (within {row['tolerance']})" if row["tolerance"] and verdict == "reproduced" else ""),
-                row["why"],
-                folders.get((row["place"], row["quantity"]), ""),
+                cell(row["place"]),
+                cell(row["quantity"]),
+                cell(row["paper"]),
+                cell(row["ours"] + (f" (within {row['tolerance']})" if row["tolerance"] and verdict == "reproduced" else "")),
+                cell(row["why"]),
+                code(folders.get((row["place"], row["quantity"]), "")),
             )
             for row in rows
             if row["verdict"] == verdict
@@ -135,30 +143,45 @@ def explained():
         return None
 
 
+def explained_keys(keys):
+    """A table of keys for each table of a file, under its own meaning."""
+    meanings = {path: key["meaning"] for key in keys if key["inside"] for path in key["paths"]}
+    groups = {}
+    for key in keys:
+        if key["inside"]:
+            continue
+        first, *others = key["paths"]
+        place, _, name = first.rpartition(".")
+        row = (
+            code(name),
+            cell(key["meaning"]) + (f" Also {', '.join(map(code, others))}." if others else ""),
+            cell(key["value"]),
+            "must be there" if key["required"] else cell(key["default"] or ""),
+            code(key["example"]),
+            cell(key["enters"]),
+            cell(", ".join(key["commands"])),
+        )
+        groups.setdefault(place, []).append(row)
+    head = ["key", "means", "what may be written", "where nothing is written", "example", "enters", "read by"]
+    parts = []
+    for place, rows in sorted(groups.items()):
+        title = f"`[{place}]`" if place else "Outside of any table"
+        parts += [f"## {title}", meanings.get(place, ""), table(head, rows)]
+    return "\n\n".join(parts)
+
+
 def explained_table(part):
     said = explained()
     if said is None:
         return "*This table is made by the program, `hadar explain`, which was not there when the book was built.*"
     if part == "keys":
-        head = ["key", "means", "what may be written", "where nothing is written", "example", "enters", "read by"]
-        rows = [
-            (
-                ", ".join(key["paths"]),
-                key["meaning"],
-                key["value"],
-                "must be there" if key["required"] else key["default"] or "",
-                key["example"] or "",
-                key["enters"],
-                ", ".join(key["commands"]),
-            )
-            for key in said["keys"]
-        ]
-    elif part == "warnings":
+        return explained_keys(said["keys"])
+    if part == "warnings":
         head = ["code", "means", "what to do"]
-        rows = [(one["code"], one["meaning"], one["remedy"]) for one in said["warnings"]]
+        rows = [(code(one["code"]), cell(one["meaning"]), cell(one["remedy"])) for one in said["warnings"]]
     else:
         head = ["key", "part of", "means"]
-        rows = [(one["key"], one["of"], one["meaning"]) for one in said["results"]]
+        rows = [(code(one["key"]), cell(one["of"]), cell(one["meaning"])) for one in said["results"]]
     return table(head, rows)
 
 
