@@ -90,6 +90,8 @@ def run_page(path, program, update):
         folder.mkdir()
         (tools / "hadar").symlink_to(program)
         environment = os.environ | {"PATH": f"{tools}:{os.environ['PATH']}", "LC_ALL": "C.UTF-8"}
+        streams = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.STDOUT}
+        alone = {"cwd": folder, "env": environment, "text": True} | streams
 
         def run(found):
             console, name, content = found.groups()
@@ -98,10 +100,7 @@ def run_page(path, program, update):
                 return found[0]
             for written, expected in commands(content):
                 command = re.sub("^[$>] ", "", written, flags=re.M)
-                ran = subprocess.run(
-                    ["bash", "-c", command], cwd=folder, env=environment, timeout=SECONDS, text=True,
-                    stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                )  # fmt: skip
+                ran = subprocess.run(["bash", "-c", command], timeout=SECONDS, **alone)
                 printed = ran.stdout if not ran.stdout or ran.stdout.endswith("\n") else ran.stdout + "\n"
                 done.append(command)
                 if not matches(expected, printed):
