@@ -2,10 +2,10 @@
 
 * `$...$` and `$$...$$` become MathML, which browsers show without fonts, scripts or network; `\\tag{S27}` is the number in the paper.
 * Pictures of the repository, `../../reports/...`, are put into the page.
-* `<!-- made: ledger -->`, `keys`, `warnings` and `results` are replaced by tables of reports/ledger.csv and of what `hadar explain` says.
+* `<!-- made: ledger -->`, `keys`, `warnings` and `results` are replaced by tables of reports/ledger.csv and of what `hadar explain --all` says.
 * A link to a file that is not there fails the build.
 
-mdBook hands over `[context, book]` as JSON and takes the book back. Needs Python 3.11 and latex2mathml.
+mdBook hands over `[context, book]` as JSON and takes the book back. `pages.py check` does the same to all pages without mdBook. Needs Python 3.11 and latex2mathml.
 """
 
 import base64
@@ -134,71 +134,57 @@ def ledger():
 
 
 def explained():
-    """What `hadar explain --all --json` says, or nothing where there is no such command."""
     program = os.environ.get("HADAR") or str(ROOT / "target/release/hadar")
-    try:
-        done = subprocess.run([program, "explain", "--all", "--json"], capture_output=True, text=True, check=True)
-        return json.loads(done.stdout)
-    except (OSError, subprocess.CalledProcessError, ValueError):
-        return None
+    return json.loads(subprocess.run([program, "explain", "--all", "--json"], stdout=subprocess.PIPE, text=True, check=True).stdout)
 
 
-def explained_keys(keys):
-    """A table of keys for each table of a file, under its own meaning."""
-    meanings = {path: key["meaning"] for key in keys if key["inside"] for path in key["paths"]}
-    groups = {}
-    for key in keys:
-        if key["inside"]:
-            continue
-        first, *others = key["paths"]
-        place, _, name = first.rpartition(".")
-        row = (
-            code(name),
-            cell(key["meaning"]) + (f" Also {', '.join(map(code, others))}." if others else ""),
-            cell(key["value"]),
-            "must be there" if key["required"] else cell(key["default"] or ""),
-            code(key["example"]),
-            cell(key["enters"]),
-            cell(", ".join(key["commands"])),
+def keys():
+    """Keys of files by the table that they stand in, with a heading for each table."""
+    tables = {}
+    for key in explained()["keys"]:
+        top = key["paths"][0].split(".")[0]
+        tables.setdefault(top, []).append(
+            (
+                ", ".join(key["paths"]),
+                key["meaning"],
+                key["value"],
+                "must be there" if key["required"] else key["default"] or key["silent"] or "",
+                key["example"] or "",
+                key["enters"],
+                ", ".join(key["commands"]),
+            )
         )
-        groups.setdefault(place, []).append(row)
     head = ["key", "means", "what may be written", "where nothing is written", "example", "enters", "read by"]
-    parts = []
-    for place, rows in sorted(groups.items()):
-        title = f"`[{place}]`" if place else "Outside of any table"
-        parts += [f"## {title}", meanings.get(place, ""), table(head, rows)]
+    alone = [row for rows in tables.values() if len(rows) == 1 for row in rows]
+    parts = ["## Above all tables", table(head, alone)]
+    for top, rows in tables.items():
+        if len(rows) > 1:
+            parts += [f"## {top}", table(head, rows)]
     return "\n\n".join(parts)
 
 
-def explained_table(part):
-    said = explained()
-    if said is None:
-        return "*This table is made by the program, `hadar explain`, which was not there when the book was built.*"
-    if part == "keys":
-        return explained_keys(said["keys"])
-    if part == "warnings":
-        head = ["code", "means", "what to do"]
-        rows = [(code(one["code"]), cell(one["meaning"]), cell(one["remedy"])) for one in said["warnings"]]
-    else:
-        head = ["key", "part of", "means"]
-        rows = [(code(one["key"]), cell(one["of"]), cell(one["meaning"])) for one in said["results"]]
-    return table(head, rows)
+def warnings():
+    return table(["code", "means", "what to do"], [(one["code"], one["meaning"], one["remedy"]) for one in explained()["warnings"]])
 
 
-def made(found):
-    part = found[1]
-    if part == "ledger":
-        return ledger()
-    if part in ("keys", "warnings", "results"):
-        return explained_table(part)
-    raise ValueError(f"nothing makes {part}")
+def results():
+    """Keys of the JSON by their first letter; one of several objects is named once."""
+    letters, before = {}, None
+    for one in explained()["results"]:
+        name = " " if one["key"] == before else one["key"]
+        before = one["key"]
+        letters.setdefault(before[0].upper(), []).append((name, one["of"], one["meaning"]))
+    return "\n\n".join(f"## {letter}\n\n{table(['key', 'part of', 'means'], rows)}" for letter, rows in letters.items())
+
+
+TABLES = {"ledger": ledger, "keys": keys, "warnings": warnings, "results": results}
 
 
 def page(text, folder):
     text = equations(links(text, folder))
     text = FENCE.sub(lambda found: f'<p class="file">{html.escape(found[2])}</p>\n\n```{found[1]}', text)
     # Last: what others wrote is no mathematics.
-    return MADE.sub(made, text)
+    return MADE.sub(lambda found: TABLES[found[1]](), text)
 
 
 def walk(items):
@@ -212,6 +198,12 @@ def walk(items):
 def main():
     if sys.argv[1:2] == ["supports"]:
         sys.exit(0)
+    if sys.argv[1:2] == ["check"]:
+        sources = sorted((DOCS / "src").rglob("*.md"))
+        for path in sources:
+            page(path.read_text(), path.parent)
+        print(f"{len(sources)} pages: equations are understood, links have their files")
+        return
     _, book = json.load(sys.stdin)
     walk(book.get("items") or book.get("sections"))
     json.dump(book, sys.stdout)
