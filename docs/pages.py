@@ -139,41 +139,46 @@ def explained():
 
 
 def keys():
-    """Keys of files by the table that they stand in, with a heading for each table."""
-    tables = {}
-    for key in explained()["keys"]:
-        top = key["paths"][0].split(".")[0]
-        tables.setdefault(top, []).append(
-            (
-                ", ".join(key["paths"]),
-                key["meaning"],
-                key["value"],
-                "must be there" if key["required"] else key["default"] or key["silent"] or "",
-                key["example"] or "",
-                key["enters"],
-                ", ".join(key["commands"]),
-            )
+    """Keys of files, a table for each table of a file, under its own meaning."""
+    said = explained()["keys"]
+    meanings = {path: key["meaning"] for key in said if key["inside"] for path in key["paths"]}
+    groups = {}
+    for key in said:
+        if key["inside"]:
+            continue
+        first, *others = key["paths"]
+        place, _, name = first.rpartition(".")
+        row = (
+            code(name),
+            cell(key["meaning"]) + (f" Also {', '.join(map(code, others))}." if others else ""),
+            cell(key["value"]),
+            "must be there" if key["required"] else cell(key["default"] or key["silent"] or ""),
+            code(key["example"]),
+            cell(key["enters"]),
+            cell(", ".join(key["commands"])),
         )
+        groups.setdefault(place, []).append(row)
     head = ["key", "means", "what may be written", "where nothing is written", "example", "enters", "read by"]
-    alone = [row for rows in tables.values() if len(rows) == 1 for row in rows]
-    parts = ["## Above all tables", table(head, alone)]
-    for top, rows in tables.items():
-        if len(rows) > 1:
-            parts += [f"## {top}", table(head, rows)]
+    parts = []
+    for place, rows in groups.items():
+        title = f"`[{place}]`" if place else "Above all tables"
+        parts += [f"## {title}", meanings.get(place, ""), table(head, rows)]
     return "\n\n".join(parts)
 
 
 def warnings():
-    return table(["code", "means", "what to do"], [(one["code"], one["meaning"], one["remedy"]) for one in explained()["warnings"]])
+    rows = [(code(one["code"]), cell(one["meaning"]), cell(one["remedy"])) for one in explained()["warnings"]]
+    return table(["code", "means", "what to do"], rows)
 
 
 def results():
-    """Keys of the JSON by their first letter; one of several objects is named once."""
+    """Keys of the JSON by their first letter; one that several objects have is named once."""
     letters, before = {}, None
     for one in explained()["results"]:
-        name = " " if one["key"] == before else one["key"]
-        before = one["key"]
-        letters.setdefault(before[0].upper(), []).append((name, one["of"], one["meaning"]))
+        key = one["key"]
+        row = ("" if key == before else code(key), cell(one["of"]), cell(one["meaning"]))
+        letters.setdefault(key[:1].upper(), []).append(row)
+        before = key
     return "\n\n".join(f"## {letter}\n\n{table(['key', 'part of', 'means'], rows)}" for letter, rows in letters.items())
 
 
