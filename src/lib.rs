@@ -56,6 +56,7 @@
 //! # Where an equation is computed
 //!
 //! Numbers are those of Bao et al., *Heat-assisted detection and ranging*, Nature 619, 743 (2023), [doi:10.1038/s41586-023-06174-6].
+//! They are written with Unicode signs here; the guide, `docs/` of the repository, has the main ones set as a book does.
 //!
 //! | equation | what | where |
 //! |---|---|---|
