@@ -1,7 +1,6 @@
 //! What a word means, as a page of its own: keys of the scenario, warnings, keys of the answer.
 
-use hadar_study::explain;
-use hadar_study::scenario::keys::Silent;
+use hadar_study::explain::{self, ExplainedCode, ExplainedKey};
 use std::fmt::Write as _;
 
 /// The page of a word; none where it means nothing.
@@ -10,33 +9,30 @@ pub(crate) fn page(word: &str) -> Option<String> {
     if word.is_empty() || word.len() > 100 || !word.chars().all(plain) {
         return None;
     }
-    let (keys, code, results) = (explain::key(word), explain::code(word), explain::result(word));
     let mut body = String::new();
     let row = |body: &mut String, name: &str, text: &str| {
         let _ = writeln!(body, "<dt>{name}</dt><dd>{}</dd>", escaped(text));
     };
-    for place in &keys {
-        let key = &place.key;
-        let _ = writeln!(body, "<h2>{}</h2>\n<p>{}</p>\n<dl>", place.paths.join(", "), escaped(key.meaning));
-        row(&mut body, "written", &key.value.words());
-        let silent = match key.silent {
-            Silent::Refused => "refused: it must be there".to_owned(),
-            Silent::Is(value) => format!("{} = {value}", key.name),
-            Silent::Means(words) => words.to_owned(),
-        };
-        row(&mut body, "silent", &silent);
-        if key.value.table().is_none() {
-            row(&mut body, "example", &format!("{} = {}", key.name, key.example));
+    for key in explain::key(word).iter().map(ExplainedKey::from) {
+        let _ = writeln!(body, "<h2>{}</h2>\n<p>{}</p>\n<dl>", key.paths.join(", "), escaped(key.meaning));
+        row(&mut body, "written", &key.value);
+        match (key.required, key.default, key.silent) {
+            (true, ..) => row(&mut body, "silent", "refused: it must be there"),
+            (_, Some(text), _) | (_, None, Some(text)) => row(&mut body, "silent", text),
+            _ => {}
+        }
+        if let Some(example) = &key.example {
+            row(&mut body, "example", example);
             row(&mut body, "enters", key.enters);
         }
         body.push_str("</dl>\n");
     }
-    if let Some(code) = code {
-        let _ =
-            writeln!(body, "<h2>Warning [{}]</h2>\n<p>{}</p>\n<dl>", code.name(), escaped(code.meaning()));
-        row(&mut body, "do", code.remedy());
+    if let Some(told) = explain::code(word).map(ExplainedCode::from) {
+        let _ = writeln!(body, "<h2>Warning [{}]</h2>\n<p>{}</p>\n<dl>", told.code, escaped(told.meaning));
+        row(&mut body, "do", told.remedy);
         body.push_str("</dl>\n");
     }
+    let results = explain::result(word);
     if !results.is_empty() {
         body.push_str("<h2>In the answer</h2>\n<dl>\n");
         for one in &results {
