@@ -11,6 +11,21 @@ use std::io;
 use std::path::Path;
 use std::process::ExitCode;
 
+/// In bash, flags are offered from `-` on alone: where files may stand, they would be in the place of their names.
+const NO_FLAGS_UNASKED: &str = r#"
+_hadar_words() {
+    _hadar "$@"
+    [[ ${COMP_WORDS[COMP_CWORD]} == -* ]] && return 0
+    local word words=()
+    for word in "${COMPREPLY[@]}"; do
+        [[ ${word} == -* ]] || words+=("${word}")
+    done
+    COMPREPLY=("${words[@]}")
+}
+complete -F _hadar_words -o nosort -o bashdefault -o default hadar 2>/dev/null ||
+    complete -F _hadar_words -o bashdefault -o default hadar
+"#;
+
 #[derive(Debug, Args)]
 pub(super) struct CompletionsArgs {
     /// The shell
@@ -24,6 +39,9 @@ pub(super) struct ManArgs {}
 pub(super) fn completions(args: &CompletionsArgs, mut line: Command) -> Result<ExitCode> {
     let mut script = Vec::new();
     clap_complete::generate(args.shell, &mut line, "hadar", &mut script);
+    if args.shell == Shell::Bash {
+        script.extend_from_slice(NO_FLAGS_UNASKED.as_bytes());
+    }
     put(String::from_utf8_lossy(&script).trim_end())?;
     Ok(ExitCode::SUCCESS)
 }

@@ -22,7 +22,7 @@ fn bash_completes_commands_and_their_flags() {
         let count = words.split(' ').count();
         let script = format!(
             "source ./hadar.bash; complete -p hadar >/dev/null || exit 1; COMP_WORDS=({words}); COMP_CWORD={}; \
-             _hadar hadar \"${{COMP_WORDS[{}]}}\" \"${{COMP_WORDS[{}]}}\"; printf '%s\\n' \"${{COMPREPLY[@]}}\"",
+             _hadar_words hadar \"${{COMP_WORDS[{}]}}\" \"${{COMP_WORDS[{}]}}\"; printf '%s\\n' \"${{COMPREPLY[@]}}\"",
             count - 1,
             count - 1,
             count - 2,
@@ -34,6 +34,11 @@ fn bash_completes_commands_and_their_flags() {
     assert_eq!(completed("hadar identify a.toml --mat").unwrap().trim(), "--matrix");
     assert_eq!(completed("hadar identify a.toml --see").unwrap().trim(), "--seed");
     assert_eq!(completed("hadar size a.toml --see").unwrap().trim(), "", "size takes no seed");
+    // Nothing of ours: bash offers files.
+    assert_eq!(completed("hadar size ''").unwrap().trim(), "");
+    assert!(completed("hadar size -").unwrap().contains("--check"));
+    assert!(completed("hadar init ''").unwrap().starts_with("size\nidentify\n"));
+    assert!(completed("hadar schema ru").unwrap().starts_with("rule"));
 }
 
 #[test]

@@ -63,8 +63,8 @@ impl<'a> Section<'a> {
             None => Ok(Self { table, known: section, name: name.to_owned(), source, beneath: None }),
             Some(key) => {
                 let own = dotted(name, key.get_ref());
-                let place = match source.setting(&own) {
-                    Some(setting) => setting.place(&own),
+                let place = match source.set_at(&own) {
+                    Some(place) => place,
                     None => Place { line: source.place(&own).line, ..source.place(name) },
                 };
                 Err(unknown_key(key.get_ref(), &names).at(place))

@@ -46,13 +46,8 @@ impl Source {
     /// Where `key` stands; see [`super::Scenario::place`].
     #[must_use]
     pub fn place(&self, key: &str) -> Place {
-        if let Some(setting) = self.setting(key) {
-            return setting.place(key);
-        }
-        // A table that is not in the file was made by a setting of a key of it.
-        let made = || self.settings.iter().find(|setting| setting.is_in(key));
-        if let Some(setting) = made().filter(|_| !self.lines.contains_key(key)) {
-            return setting.place(&setting.key);
+        if let Some(place) = self.set_at(key) {
+            return place;
         }
         let mut known = key;
         let line = loop {
@@ -76,6 +71,16 @@ impl Source {
     /// What stands at `key` in the place of what was written.
     pub(super) fn setting(&self, key: &str) -> Option<&Setting> {
         self.settings.iter().rev().find(|setting| setting.covers(key))
+    }
+
+    /// Where it was set what stands at `key`; a table that the file has not was made by the setting of a key in it.
+    pub(super) fn set_at(&self, key: &str) -> Option<Place> {
+        let made = || self.settings.iter().find(|setting| setting.is_in(key));
+        match self.setting(key) {
+            Some(setting) => Some(setting.place(key)),
+            None if self.lines.contains_key(key) => None,
+            None => made().map(|setting| setting.place(&setting.key)),
+        }
     }
 
     /// The short text at `key` as it was written.
