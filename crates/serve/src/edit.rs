@@ -59,6 +59,7 @@ fn apply(root: &mut Item, edit: &Edit) -> Result<()> {
     match edit {
         Edit::Set { key, value } => {
             let (table, name) = table_of(root, key)?;
+            keep_conditions(table, key, &name);
             put(table, &name, form::value_at(key).parsed(value));
         }
         Edit::Remove { key } => match last(key)? {
@@ -117,6 +118,27 @@ fn apply(root: &mut Item, edit: &Edit) -> Result<()> {
         }
     }
     Ok(())
+}
+
+/// Figures of a camera, where what is stated of its noise says for which value of them, and the noises that take it.
+const CONDITIONS: [(&str, &str, &[&str]); 3] = [
+    ("exposure", "noise_exposure", &["netd", "detectivity", "nep", "nesr", "noise_electrons"]),
+    ("f_number", "netd_f_number", &["netd"]),
+    ("pixel", "netd_pixel", &["netd"]),
+];
+
+/// Writes down for which value of a figure the noise is stated, before that figure changes: whoever turns it turns a camera whose noise
+/// is known, and states no other noise.
+fn keep_conditions(table: &mut dyn TableLike, key: &str, name: &str) {
+    let of_camera =
+        CONDITIONS.iter().filter(|(figure, ..)| *figure == name && key == format!("camera.{name}"));
+    for (_, condition, noises) in of_camera {
+        let stated = noises.iter().any(|noise| table.contains_key(noise));
+        let Some(value) = table.get(name).and_then(Item::as_value).cloned() else { continue };
+        if stated && !table.contains_key(condition) {
+            put(table, condition, value.decorated(" ", ""));
+        }
+    }
 }
 
 /// Puts a value at a key; what is written around it stays.
@@ -191,6 +213,21 @@ mod tests {
         assert!(applied(TEXT, &[set("camera.frames", "8")]).unwrap().contains("frames = 8\n"));
         let new = applied(TEXT, &[set("target.distance", "30 m")]).unwrap();
         assert_eq!(new, TEXT.replace("33 degC\"\n", "33 degC\"\ndistance = \"30 m\"\n"));
+    }
+
+    #[test]
+    fn whoever_turns_a_figure_states_no_other_noise() {
+        let stated = TEXT.to_owned() + "netd = \"30 mK\"\nf_number = 1.0\n";
+        let turned =
+            applied(&stated, &[set("camera.exposure", "3 ms"), set("camera.exposure", "4 ms")]).unwrap();
+        assert!(
+            turned.contains("exposure = \"4 ms\"\n") && turned.ends_with("noise_exposure = \"10 ms\"\n"),
+            "{turned}"
+        );
+        let turned = applied(&turned, &[set("camera.f_number", "1.4"), set("camera.frames", "9")]).unwrap();
+        assert!(turned.ends_with("noise_exposure = \"10 ms\"\nnetd_f_number = 1.0\n"), "{turned}");
+        // A camera without a noise of its own, or one that says it, has nothing to be kept.
+        assert!(!applied(TEXT, &[set("camera.exposure", "3 ms")]).unwrap().contains("noise_exposure"));
     }
 
     #[test]

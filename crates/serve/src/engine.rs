@@ -146,7 +146,7 @@ impl Engine {
             version: VERSION,
             scenario: &self.begin,
             materials: self.library.iter().map(of_material).chain(classes).collect(),
-            cameras: presets::all()?.iter().chain(&self.cameras.presets).map(of_camera).collect(),
+            cameras: self.presets()?.map(of_camera).collect(),
             library_warnings: self.library.warnings(),
         })
     }
@@ -162,7 +162,8 @@ impl Engine {
             Ok(answer) => (Some(answer), None),
             Err(error) => (None, Some(told(&error))),
         };
-        json(&Answered { form: form::of(&scenario, self), scenario, answer, error })
+        let presets: Vec<String> = self.presets()?.map(|camera| camera.name.clone()).collect();
+        json(&Answered { form: form::of(&scenario, &presets), scenario, answer, error })
     }
 
     fn shown(&self, text: &str, ask: &Ask) -> Result<Answer> {
@@ -229,6 +230,11 @@ impl Engine {
             ));
         }
         Ok(study)
+    }
+
+    /// The cameras that a scenario may name.
+    fn presets(&self) -> Result<impl Iterator<Item = &Preset>> {
+        Ok(presets::all()?.iter().chain(&self.cameras.presets))
     }
 
     fn library_warnings(&self) -> Vec<Warning> {

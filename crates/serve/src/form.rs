@@ -1,8 +1,6 @@
 //! A scenario as fields: the tables and keys that its text has, and those that it could have, from the table of keys.
 
-use crate::engine::Engine;
 use hadar::atmosphere::Atmosphere;
-use hadar::instrument::presets;
 use hadar::units::Dimension;
 use hadar_study::scenario::keys::{FILES, Key, Silent, Table, Value};
 use serde::Serialize;
@@ -75,8 +73,8 @@ fn root() -> Option<&'static Table> {
     FILES.iter().find(|kind| kind.commands.contains(&"size")).map(|kind| kind.root)
 }
 
-/// The fields of a text; none where it is no TOML.
-pub(crate) fn of(text: &str, engine: &Engine) -> Option<Form> {
+/// The fields of a text that may name these cameras; none where it is no TOML.
+pub(crate) fn of(text: &str, presets: &[String]) -> Option<Form> {
     let document: DocumentMut = text.parse().ok()?;
     let root = root()?;
     let (table, mut sections) = (document.as_table(), Vec::new());
@@ -86,19 +84,25 @@ pub(crate) fn of(text: &str, engine: &Engine) -> Option<Form> {
         meaning: "",
         many: false,
         removable: false,
-        fields: fields(root, table, "", engine),
+        fields: fields(root, table, "", presets),
         absent: absent(root, table, "")
             .filter(|(key, _)| key.value.table().is_none())
             .map(|(_, one)| one)
             .collect(),
     });
-    below(root, table, "", engine, &mut sections);
+    below(root, table, "", presets, &mut sections);
     let more = absent(root, table, "").filter(|(key, _)| key.value.table().is_some());
     Some(Form { absent: more.map(|(_, one)| one).collect(), sections })
 }
 
 /// The tables within a table.
-fn below(table: &Table, written: &dyn TableLike, above: &str, engine: &Engine, sections: &mut Vec<Section>) {
+fn below(
+    table: &Table,
+    written: &dyn TableLike,
+    above: &str,
+    presets: &[String],
+    sections: &mut Vec<Section>,
+) {
     for key in table.keys() {
         let (Some(inner), Some(item)) = (key.value.table(), written.get(key.name)) else { continue };
         let path = join(above, key.name);
@@ -109,11 +113,11 @@ fn below(table: &Table, written: &dyn TableLike, above: &str, engine: &Engine, s
                 meaning: key.meaning,
                 many: matches!(key.value, Value::Tables(_)),
                 removable: key.silent != Silent::Refused,
-                fields: fields(inner, found, &path, engine),
+                fields: fields(inner, found, &path, presets),
                 absent: absent(inner, found, &path).map(|(_, one)| one).collect(),
                 path: path.clone(),
             });
-            below(inner, found, &path, engine, sections);
+            below(inner, found, &path, presets, sections);
         };
         match key.value {
             Value::Tables(_) => {
@@ -129,20 +133,20 @@ fn below(table: &Table, written: &dyn TableLike, above: &str, engine: &Engine, s
     }
 }
 
-fn fields(table: &Table, written: &dyn TableLike, above: &str, engine: &Engine) -> Vec<Field> {
+fn fields(table: &Table, written: &dyn TableLike, above: &str, presets: &[String]) -> Vec<Field> {
     let value =
         |key: &Key| written.get(key.name).and_then(Item::as_value).filter(|_| key.value.table().is_none());
-    table.keys().filter_map(|key| Some(field(&key, value(&key)?, above, engine))).collect()
+    table.keys().filter_map(|key| Some(field(&key, value(&key)?, above, presets))).collect()
 }
 
-fn field(key: &Key, value: &toml_edit::Value, above: &str, engine: &Engine) -> Field {
+fn field(key: &Key, value: &toml_edit::Value, above: &str, presets: &[String]) -> Field {
     let path = join(above, key.name);
     let text = match value.as_str() {
         Some(text) => text.to_owned(),
         None => value.clone().decorated("", "").to_string(),
     };
     let items = value.as_array().into_iter().flatten().filter_map(|item| item.as_str().map(str::to_owned));
-    let choices = choices(key, &path, engine);
+    let choices = choices(key, &path, presets);
     let kind = match key.value {
         _ if !choices.is_empty() => "choice",
         Value::Quantity(..) | Value::Spectral => "quantity",
@@ -168,15 +172,12 @@ fn field(key: &Key, value: &toml_edit::Value, above: &str, engine: &Engine) -> F
 }
 
 /// The words that may stand at a key, where they are few.
-fn choices(key: &Key, path: &str, engine: &Engine) -> Vec<String> {
+fn choices(key: &Key, path: &str, presets: &[String]) -> Vec<String> {
     let names = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect();
     match (key.value, path) {
         (Value::Choice(words), _) => names(words),
         (_, "atmosphere.model") => names(Atmosphere::names()),
-        (_, "camera.preset") => {
-            let known = presets::all().unwrap_or_default().iter().chain(&engine.cameras.presets);
-            known.map(|camera| camera.name.clone()).collect()
-        }
+        (_, "camera.preset") => presets.to_vec(),
         _ => Vec::new(),
     }
 }

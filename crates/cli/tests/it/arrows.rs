@@ -9,11 +9,12 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// Packages and storeys from the ground up; each uses only those before it.
-const PACKAGES: [(&str, &str); 5] = [
+const PACKAGES: [(&str, &str); 6] = [
     ("hadar", "."),
     ("hadar-study", "crates/study"),
     ("hadar-proof", "crates/proof"),
     ("hadar-report", "crates/report"),
+    ("hadar-serve", "crates/serve"),
     ("hadar-cli", "crates/cli"),
 ];
 const STOREYS: [&str; 5] = ["base", "physics", "instrument", "limits", "witness"];

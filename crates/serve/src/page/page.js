@@ -5,7 +5,8 @@ const at = (id) => document.getElementById(id);
 const STEPS = 200;
 const REST_MS = 250;
 const OWN_CAMERA =
-  'exposure = "10 ms"\npixel = "12 um"\nf_number = 1.0\nfocal_length = "24 mm"\nnetd = "30 mK"\nnetd_temperature = "30 degC"\n';
+  'exposure = "10 ms"\npixel = "12 um"\nf_number = 1.0\nfocal_length = "24 mm"\nnetd = "30 mK"\nnetd_temperature = "30 degC"\n' +
+  'netd_f_number = 1.0\nnetd_pixel = "12 um"\nnoise_exposure = "10 ms"\n';
 
 let text = "";
 let begin = "";
