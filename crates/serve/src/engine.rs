@@ -23,6 +23,8 @@ use std::path::Path;
 const MOST_SPECTRAL_VALUES: usize = 100_000;
 /// Points of a trade-off while a slider moves; when it rests there are [`POINTS`].
 const MOVING_POINTS: usize = 11;
+/// Objects of the surroundings: the search over their lighting grows steeply with them.
+const MOST_SURROUNDINGS: usize = 8;
 /// What a scenario of the page is called in its report.
 const NAME: &str = "scenario.toml";
 
@@ -219,15 +221,22 @@ impl Engine {
     fn study(&self, text: &str) -> Result<Study> {
         let written =
             Written::of(text, None).with_cameras(self.cameras.stated.clone().into()).refusing_files();
-        let study = Study::new(&Scenario::from_written(&written)?, &self.library)?;
+        let scenario = Scenario::from_written(&written)?;
+        let too_large = |found: String| {
+            Error::malformed(found, "take fewer, or ask `hadar size` with the scenario of this page")
+        };
+        let surroundings = scenario.environment.len();
+        if surroundings > MOST_SURROUNDINGS {
+            return Err(too_large(format!(
+                "{surroundings} objects of the surroundings are more than this page computes"
+            )));
+        }
+        let study = Study::new(&scenario, &self.library)?;
         let (bands, alternatives) = (study.bands().len(), study.alternatives().len());
         if bands.saturating_mul(alternatives) > MOST_SPECTRAL_VALUES {
-            let found =
-                format!("{bands} bands of {alternatives} alternatives are more than this page computes");
-            return Err(Error::malformed(
-                found,
-                "take fewer, or ask `hadar size` with the scenario of this page",
-            ));
+            return Err(too_large(format!(
+                "{bands} bands of {alternatives} alternatives are more than this page computes"
+            )));
         }
         Ok(study)
     }

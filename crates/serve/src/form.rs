@@ -228,18 +228,21 @@ fn slider(key: &Key, text: &str) -> Option<Slider> {
         _ if key.name == "detection_probability" => ("nines", 0.5, 0.999_999),
         Some(Dimension::Temperature) => {
             let half = if unit.ends_with('F') { 72.0 } else { 40.0 };
-            let kelvin = |number: f64| {
-                Dimension::Temperature.parse(&format!("{number} {unit}")).is_ok_and(|t| t > 0.0)
-            };
-            if unit == "mK" || !kelvin(number - half) {
-                return None;
-            }
             ("linear", number - half, number + half)
         }
         None if is_share => ("linear", 0.0, 1.0),
         _ if whole => ("log", 1.0, (10.0 * number).max(100.0)),
         _ => ("log", number / 10.0, number * 10.0),
     };
+    // No end that is refused.
+    let is_allowed = |value: f64| match (dimension, allowed) {
+        (Some(dimension), Some(allowed)) => {
+            dimension.parse(&format!("{value} {unit}")).is_ok_and(|value| allowed.allows(value))
+        }
+        (None, Some(allowed)) => allowed.allows(value),
+        _ => true,
+    };
+    let [low, high] = [low, high].map(|end| nearest_allowed(number, end, is_allowed));
     let sound = number >= low && number <= high && low.is_finite() && high.is_finite() && low < high;
     (sound && (scale != "log" || low > 0.0)).then(|| Slider {
         number,
@@ -249,6 +252,21 @@ fn slider(key: &Key, text: &str) -> Option<Slider> {
         high,
         whole,
     })
+}
+
+/// Halvings between an end of a slider that is refused and a number that is not.
+const HALVINGS: usize = 40;
+
+/// The end itself where it is allowed, else the last number towards it that is.
+fn nearest_allowed(number: f64, end: f64, is_allowed: impl Fn(f64) -> bool) -> f64 {
+    if is_allowed(end) || !is_allowed(number) {
+        return end;
+    }
+    let halved = |(inside, outside): (f64, f64), _| {
+        let middle = 0.5 * (inside + outside);
+        if is_allowed(middle) { (middle, outside) } else { (inside, middle) }
+    };
+    (0..HALVINGS).fold((number, end), halved).0
 }
 
 /// A number and the unit behind it, as they are written.
@@ -360,6 +378,30 @@ mod tests {
         ] {
             assert_eq!(parts(text), expected, "{text}");
         }
+    }
+
+    #[test]
+    fn a_slider_ends_where_values_are_refused() {
+        let slider_at = |path: &str, text: &str| {
+            let mut table = root().unwrap();
+            let mut found = None;
+            for name in path.split('.') {
+                let key = table.key(name).unwrap();
+                found = Some(key);
+                table = key.value.table().unwrap_or(table);
+            }
+            slider(&found.unwrap(), text)
+        };
+        let ends = |path: &str, text: &str| slider_at(path, text).map(|slider| (slider.low, slider.high));
+        assert_eq!(ends("camera.exposure", "10 ms"), Some((1.0, 100.0)));
+        assert_eq!(ends("environment.lighting", "0.6"), Some((0.0, 1.0)));
+        assert_eq!(ends("target.temperature", "33 degC"), Some((-7.0, 73.0)));
+        let (low, high) = ends("camera.field_of_view", "50 deg").unwrap();
+        assert!(low == 5.0 && high < 180.0 && high > 179.9, "{low} {high}");
+        let (low, high) = ends("camera.f_number", "1.0").unwrap();
+        assert!((low - 0.5).abs() < 1e-9 && high == 10.0, "{low} {high}");
+        assert!(ends("target.temperature", "10 K").unwrap().0 > 0.0);
+        assert_eq!(slider_at("camera.netd", "warm"), None);
     }
 
     #[test]

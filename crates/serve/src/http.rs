@@ -26,6 +26,8 @@ const CONNECTIONS: usize = 512;
 const WAITING: usize = 256;
 /// Time for the head of a request, and for its body.
 const PATIENCE: Duration = Duration::from_secs(10);
+/// Time for an answer.
+const LONGEST_ANSWER: Duration = Duration::from_secs(60);
 /// Longest connection.
 const LONGEST: Duration = Duration::from_secs(600);
 /// Longest head of a request, bytes.
@@ -38,7 +40,7 @@ struct Shared {
     engine: Engine,
     port: u16,
     /// Questions that are computed.
-    working: Semaphore,
+    working: Arc<Semaphore>,
     /// Questions that are computed or wait.
     taken: Semaphore,
 }
@@ -62,7 +64,7 @@ pub fn serve(engine: Engine, listener: TcpListener) -> Result<()> {
     let shared = Arc::new(Shared {
         engine,
         port: address.port(),
-        working: Semaphore::new(cores),
+        working: Arc::new(Semaphore::new(cores)),
         taken: Semaphore::new(WAITING),
     });
     let runtime = tokio::runtime::Builder::new_current_thread()
@@ -140,17 +142,29 @@ async fn compute(shared: Arc<Shared>, path: String, body: Bytes) -> Reply {
     let Ok(_taken) = shared.taken.try_acquire() else {
         return Reply::refused(Refusal(StatusCode::SERVICE_UNAVAILABLE, "too many questions at once"));
     };
-    let Ok(_working) = shared.working.acquire().await else {
-        return Reply::refused(Refusal(StatusCode::SERVICE_UNAVAILABLE, "it is ending"));
+    let busy = || {
+        Reply::refused(Refusal(StatusCode::SERVICE_UNAVAILABLE, "it is still computing a larger question"))
+    };
+    let Ok(Ok(working)) = timeout(LONGEST_ANSWER, Arc::clone(&shared.working).acquire_owned()).await else {
+        return busy();
     };
     let own = Arc::clone(&shared);
-    let computed = tokio::task::spawn_blocking(move || route::post(&path, &body, &own.engine)).await;
-    computed.unwrap_or_else(|_| {
-        Reply::refused(Refusal(
+    let computed = tokio::task::spawn_blocking(move || {
+        // Kept until the work is done, whether or not anybody still waits for it.
+        let _working = working;
+        route::post(&path, &body, &own.engine)
+    });
+    match timeout(LONGEST_ANSWER, computed).await {
+        Ok(Ok(reply)) => reply,
+        Ok(Err(_)) => Reply::refused(Refusal(
             StatusCode::INTERNAL_SERVER_ERROR,
             "this is a bug; report it with the scenario",
-        ))
-    })
+        )),
+        Err(_) => Reply::refused(Refusal(
+            StatusCode::SERVICE_UNAVAILABLE,
+            "this question takes longer than a page waits; ask `hadar size` with the scenario of this page",
+        )),
+    }
 }
 
 /// A reply with what keeps browsers from doing more with it than showing it here.

@@ -4,6 +4,7 @@
 const at = (id) => document.getElementById(id);
 const STEPS = 200;
 const REST_MS = 250;
+const PATIENCE_MS = 300;
 const OWN_CAMERA =
   'exposure = "10 ms"\npixel = "12 um"\nf_number = 1.0\nfocal_length = "24 mm"\nnetd = "30 mK"\nnetd_temperature = "30 degC"\n' +
   'netd_f_number = 1.0\nnetd_pixel = "12 um"\nnoise_exposure = "10 ms"\n';
@@ -19,6 +20,7 @@ let whole = true;
 let busy = false;
 let revision = 0;
 let resting = 0;
+let typing = 0;
 let signature = "";
 const ranges = new Map();
 
@@ -46,12 +48,21 @@ function change(...edits) {
   ask();
 }
 
+// What is shown is of an older state from now on: it does not look like an answer.
+function pass() {
+  at("sentence").textContent = "Computing what you changed.";
+  at("sentence").className = "";
+  at("answer").classList.add("passing");
+  document.title = "hadar";
+}
+
 async function ask() {
   if (busy) return;
   busy = true;
   while (changes.length > 0 || typed || whole) {
     const question = { scenario: text, edits: changes, trade_off: tradeOff, full: whole };
     const asked = revision;
+    const waiting = setTimeout(pass, changes.length > 0 || typed ? PATIENCE_MS : 10000);
     changes = [];
     typed = whole = false;
     try {
@@ -65,6 +76,7 @@ async function ask() {
     } catch {
       failed("The program does not answer. Start `hadar serve` again, then change something here.");
     }
+    clearTimeout(waiting);
     if (!question.full) {
       clearTimeout(resting);
       resting = setTimeout(() => { whole = true; ask(); }, REST_MS);
@@ -97,6 +109,7 @@ function show({ scenario, form, answer, error }, full) {
   document.querySelectorAll("[aria-invalid]").forEach((old) => old.removeAttribute("aria-invalid"));
   at("error").hidden = true;
   at("answer").hidden = false;
+  at("answer").classList.remove("passing");
   if (at("sentence").textContent !== answer.sentence) at("sentence").textContent = answer.sentence;
   // A 'yes' that hangs on something does not look like one.
   at("sentence").className = answer.met === null || answer.provided ? "" : answer.met ? "yes" : "no";
@@ -178,7 +191,10 @@ function showForm(form) {
     form.absent.map((one) => one.path),
   ]);
   if (shape === signature) {
-    form.sections.flatMap((section) => section.fields).forEach(refresh);
+    const fields = form.sections.flatMap((section) => section.fields);
+    fields.forEach(refresh);
+    const picked = at("pick:camera");
+    if (picked) chosen(picked, fields.find((field) => field.path === "camera.preset")?.value ?? "");
     return;
   }
   signature = shape;
@@ -212,12 +228,18 @@ function cameraPicker(section) {
   const options = [element("option", { value: "" }, "figures of its own")];
   options.push(...named.cameras.map((camera) => element("option", { value: camera.name, title: camera.about }, camera.name)));
   const select = element("select", { id }, ...options);
-  select.value = preset;
+  chosen(select, preset);
   select.addEventListener("change", () => {
     const toml = select.value === "" ? OWN_CAMERA : `preset = ${JSON.stringify(select.value)}\n`;
     change({ do: "table", key: section.path, toml });
   });
   return element("div", { className: "field" }, element("label", { htmlFor: id }, "take a known camera"), select);
+}
+
+// Shows a value, which may be none of the known ones.
+function chosen(select, value) {
+  if (![...select.options].some((option) => option.value === value)) select.prepend(element("option", { value }, value));
+  select.value = value;
 }
 
 function adder(label, absent) {
@@ -253,9 +275,8 @@ function fieldElement(field) {
 function controlOf(field, id) {
   const set = (value) => change({ do: "set", key: field.path, value });
   const choose = (choices) => {
-    const all = choices.includes(field.value) ? choices : [field.value, ...choices];
-    const select = element("select", { id, "data-path": field.path }, ...all.map((one) => element("option", { value: one }, one)));
-    select.value = field.value;
+    const select = element("select", { id, "data-path": field.path }, ...choices.map((one) => element("option", { value: one }, one)));
+    chosen(select, field.value);
     select.addEventListener("change", () => set(select.value));
     return select;
   };
@@ -271,11 +292,13 @@ function controlOf(field, id) {
     return select;
   }
   const input = element("input", { id, type: "text", value: field.value, "data-path": field.path, spellcheck: false });
-  input.addEventListener("change", () => set(input.value));
-  // Enter takes the value; the form itself is sent nowhere.
-  input.addEventListener("keydown", (event) => {
-    if (event.key === "Enter") { event.preventDefault(); set(input.value); }
+  // What is typed counts as it stands, after a moment: no verdict of another value stays beside it.
+  input.addEventListener("input", () => {
+    pass();
+    clearTimeout(typing);
+    typing = setTimeout(() => set(input.value), REST_MS);
   });
+  input.addEventListener("change", () => { clearTimeout(typing); set(input.value); });
   return input;
 }
 
@@ -345,7 +368,10 @@ function refresh(field) {
   const slider = at(idOf(field.path, "slider"));
   const moving = document.activeElement === slider;
   if (field.kind === "materials") control.parentElement.replaceWith(fieldElement(field));
-  else if (document.activeElement !== control && !moving) control.value = field.value;
+  else if (document.activeElement !== control && !moving) {
+    if (control.tagName === "SELECT") chosen(control, field.value);
+    else control.value = field.value;
+  }
   const range = rangeOf(field);
   if (slider && range && !moving) {
     slider.value = positionOf(range);
@@ -392,6 +418,9 @@ async function fetched(path, name, kind) {
 }
 
 function take(scenario) {
+  document.activeElement?.blur();
+  clearTimeout(typing);
+  pass();
   text = scenario;
   revision += 1;
   changes = [];
@@ -401,12 +430,11 @@ function take(scenario) {
 }
 
 at("form").addEventListener("submit", (event) => event.preventDefault());
-let typing = 0;
 at("scenario").addEventListener("input", () => {
   text = at("scenario").value;
   revision += 1;
   changes = [];
-  at("sentence").classList.add("stale");
+  pass();
   clearTimeout(typing);
   typing = setTimeout(() => { typed = whole = true; ask(); }, REST_MS);
 });
