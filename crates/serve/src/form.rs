@@ -214,24 +214,27 @@ fn word(path: &str) -> String {
 
 /// The range about a number that is written: of a share all of it, of a temperature 40 K, else a decade on either side.
 fn slider(key: &Key, text: &str) -> Option<Slider> {
-    let (number, unit) = parts(text)?;
     let (dimension, allowed, whole) = match key.value {
         Value::Quantity(dimension, allowed) => (Some(dimension), Some(allowed), false),
         Value::Number(allowed) | Value::NumberOrFile(allowed) => (None, Some(allowed), false),
         Value::Count(_) => (None, None, true),
         _ => return None,
     };
+    let (number, unit) = parts(text).filter(|_| text.len() <= LONGEST_NUMBER)?;
+    if dimension.is_some_and(|dimension| dimension.parse(text).is_err()) {
+        return None;
+    }
     let is_share = allowed.is_some_and(|allowed| {
         allowed.allows(0.5) && allowed.allows(1.0 - 1e-9) && !allowed.allows(1.0 + 1e-6)
     });
     let (scale, low, high) = match dimension {
-        _ if key.name == "detection_probability" => ("nines", 0.5, 0.999_999),
+        _ if key.name == "detection_probability" => ("nines", 0.501, 0.999_999),
         Some(Dimension::Temperature) => {
             let half = if unit.ends_with('F') { 72.0 } else { 40.0 };
             ("linear", number - half, number + half)
         }
         None if is_share => ("linear", 0.0, 1.0),
-        _ if whole => ("log", 1.0, (10.0 * number).max(100.0)),
+        _ if whole => ("log", 1.0, (10.0 * number).clamp(100.0, 1e6)),
         _ => ("log", number / 10.0, number * 10.0),
     };
     // No end that is refused.
@@ -254,6 +257,8 @@ fn slider(key: &Key, text: &str) -> Option<Slider> {
     })
 }
 
+/// Longest text that is taken for a number with its unit, bytes.
+const LONGEST_NUMBER: usize = 64;
 /// Halvings between an end of a slider that is refused and a number that is not.
 const HALVINGS: usize = 40;
 
@@ -324,7 +329,8 @@ pub(crate) fn new_at(path: &str) -> Option<Written> {
     let (value, example) = find(path)?;
     let filled = |table: &Table| {
         let mut new = toml_edit::Table::new();
-        let due = |key: &Key| key.silent == Silent::Refused || DUE.contains(&key.name);
+        let due =
+            |key: &Key| key.silent == Silent::Refused || DUE.contains(&join(&word(path), key.name).as_str());
         for key in table.keys().filter(due) {
             if let Ok(value) = key.example.parse::<toml_edit::Value>() {
                 new.insert(key.name, Item::Value(value));
@@ -340,7 +346,7 @@ pub(crate) fn new_at(path: &str) -> Option<Written> {
 }
 
 /// Keys that a new table begins with although it may be silent about them.
-const DUE: [&str; 3] = ["lighting", "model", "preset"];
+const DUE: [&str; 3] = ["environment.lighting", "atmosphere.model", "camera.preset"];
 
 /// What may stand at a path, and its example.
 fn find(path: &str) -> Option<(Value, &'static str)> {

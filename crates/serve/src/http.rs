@@ -99,6 +99,7 @@ async fn accept(shared: Arc<Shared>, listener: tokio::net::TcpListener) -> Resul
             let connection = http1::Builder::new()
                 .timer(TokioTimer::new())
                 .header_read_timeout(PATIENCE)
+                .half_close(true)
                 .max_buf_size(LONGEST_HEAD)
                 .serve_connection(TokioIo::new(stream), service);
             // What goes wrong on a connection is that client's own affair.
@@ -112,7 +113,12 @@ async fn answer(
     request: Request<Incoming>,
 ) -> std::result::Result<Response<Full<Bytes>>, Infallible> {
     let (head, body) = request.into_parts();
-    let reply = match guard::check(shared.port, &head.method, &head.headers) {
+    // A whole address in the place of a path is for proxies.
+    let asked = match head.uri.authority() {
+        Some(_) => Err(Refusal(StatusCode::BAD_REQUEST, "ask for a path of this page")),
+        None => guard::check(shared.port, &head.method, &head.headers),
+    };
+    let reply = match asked {
         Err(refusal) => Reply::refused(refusal),
         Ok(()) => match head.method {
             Method::GET | Method::HEAD => route::get(head.uri.path(), &shared.engine),

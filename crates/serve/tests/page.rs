@@ -227,7 +227,9 @@ fn there_is_nothing_but_the_page() {
 #[test]
 fn what_is_malformed_or_too_large_is_refused_and_the_next_one_answered() {
     let host = server();
-    let refused: [Vec<u8>; 8] = [
+    let refused: [Vec<u8>; 9] = [
+        format!("GET http://evil.example/ HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n")
+            .into_bytes(),
         b"\r\n\r\n\r\n".to_vec(),
         b"GET\r\n\r\n".to_vec(),
         b"\x16\x03\x01\x02\x00\x01\x00\x01".to_vec(),

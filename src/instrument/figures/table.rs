@@ -11,6 +11,10 @@ const F_NUMBER: Allowed = Allowed {
     holds: |value| value >= FASTEST_F_NUMBER,
     expected: "at least 0.5, the fastest that a lens in air can be",
 };
+/// Of the blackbody of a NETD. Colder or hotter ones than are built change counts by so little, or so much, per K that no digit is
+/// left of a noise, which a verdict would then not see.
+const BLACKBODY: Allowed =
+    Allowed { holds: |value| (50.0..=5000.0).contains(&value), expected: "from 50 K to 5000 K" };
 const EFFICIENCY: Allowed =
     Allowed { holds: |value| value > 0.0 && value <= 1.0, expected: "above 0, at most 1" };
 const FIELD_OF_VIEW: Allowed = Allowed {
@@ -131,7 +135,7 @@ pub const TABLE: &[Row] = &[
     row(
         "netd_temperature",
         "temperature of the NETD",
-        Kind::Quantity(Dimension::Temperature, ABSOLUTE_TEMPERATURE, slot!(noise.netd_temperature_k)),
+        Kind::Quantity(Dimension::Temperature, BLACKBODY, slot!(noise.netd_temperature_k)),
         "\"30 degC\"",
         "Temperature of the blackbody at which the NETD is stated; 30 degC where it is not stated.",
         "electronic noise of a reading from NETD (Table S2)",

@@ -5,6 +5,7 @@ const at = (id) => document.getElementById(id);
 const STEPS = 200;
 const REST_MS = 250;
 const PATIENCE_MS = 300;
+const LONGEST_MS = 150000;
 const OWN_CAMERA =
   'exposure = "10 ms"\npixel = "12 um"\nf_number = 1.0\nfocal_length = "24 mm"\nnetd = "30 mK"\nnetd_temperature = "30 degC"\n' +
   'netd_f_number = 1.0\nnetd_pixel = "12 um"\nnoise_exposure = "10 ms"\n';
@@ -21,6 +22,7 @@ let busy = false;
 let revision = 0;
 let resting = 0;
 let typing = 0;
+let refocus = null;
 let signature = "";
 const ranges = new Map();
 
@@ -37,7 +39,7 @@ const element = (name, attributes = {}, ...children) => {
 // Asking: one question at a time, the newest state next.
 
 const post = (path, body) =>
-  fetch(path, { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(body) });
+  fetch(path, { method: "POST", signal: AbortSignal.timeout(LONGEST_MS), headers: { "Content-Type": "application/json" }, body: JSON.stringify(body) });
 
 function change(...edits) {
   for (const edit of edits) {
@@ -46,6 +48,23 @@ function change(...edits) {
     changes.push(edit);
   }
   ask();
+}
+
+// A change after which the form has other fields: until it has, nothing else in it can be used.
+function restructure(edit) {
+  const focused = document.activeElement;
+  refocus = { id: focused?.id, section: focused?.closest("[data-section]")?.dataset.section };
+  at("form").inert = true;
+  change(edit);
+}
+
+function usable() {
+  at("form").inert = false;
+  if (!refocus) return;
+  const within = refocus.section === undefined ? null : `[data-section="${CSS.escape(refocus.section)}"]`;
+  const target = (refocus.id && at(refocus.id)) || (within && document.querySelector(`${within} select, ${within} input`));
+  (target || at("form").querySelector("input, select"))?.focus();
+  refocus = null;
 }
 
 // What is shown is of an older state from now on: it does not look like an answer.
@@ -65,22 +84,29 @@ async function ask() {
     const waiting = setTimeout(pass, changes.length > 0 || typed ? PATIENCE_MS : 10000);
     changes = [];
     typed = whole = false;
+    let trouble = null;
     try {
       const reply = await post("/ask", question);
-      if (!reply.ok) failed(`The program says: ${await reply.text()}`);
+      if (!reply.ok) trouble = `The program says: ${await reply.text()}`;
       else {
         const answered = await reply.json();
         // A text that was typed meanwhile is newer than this answer.
-        if (asked === revision) show(answered, question.full);
+        if (asked === revision) show(answered, question);
       }
     } catch {
-      failed("The program does not answer. Start `hadar serve` again, then change something here.");
+      trouble = "The program does not answer. Start `hadar serve` again, then change something here.";
     }
     clearTimeout(waiting);
-    if (!question.full) {
-      clearTimeout(resting);
-      resting = setTimeout(() => { whole = true; ask(); }, REST_MS);
+    clearTimeout(resting);
+    usable();
+    if (trouble) {
+      // Nothing is lost: it is asked again with the next change.
+      if (asked === revision) changes = [...question.edits, ...changes];
+      typed = true;
+      failed(trouble);
+      break;
     }
+    if (!question.full) resting = setTimeout(() => { whole = true; ask(); }, REST_MS);
   }
   busy = false;
 }
@@ -101,10 +127,13 @@ function failed(message, place = null) {
 
 // Showing an answer.
 
-function show({ scenario, form, answer, error }, full) {
+function show({ scenario, form, answer, error }, { scenario: before, edits, full }) {
+  // A change that is refused leaves the text: what was typed for it is taken back.
+  if (edits.length > 0 && error && scenario === before) signature = "";
   text = scenario;
   if (at("scenario").value !== text) at("scenario").value = text;
   if (form) showForm(form);
+  if (full || error) history.replaceState(null, "", link());
   if (error) return failed(error.message, error);
   document.querySelectorAll("[aria-invalid]").forEach((old) => old.removeAttribute("aria-invalid"));
   at("error").hidden = true;
@@ -113,7 +142,8 @@ function show({ scenario, form, answer, error }, full) {
   if (at("sentence").textContent !== answer.sentence) at("sentence").textContent = answer.sentence;
   // A 'yes' that hangs on something does not look like one.
   at("sentence").className = answer.met === null || answer.provided ? "" : answer.met ? "yes" : "no";
-  document.title = `${answer.met === null ? "" : answer.met ? "Yes: " : "No: "}hadar`;
+  const said = { true: answer.provided ? "Yes, if: " : "Yes: ", false: "No: ", null: "" };
+  document.title = `${said[answer.met]}hadar`;
   at("solved").hidden = answer.solved.length === 0;
   at("solved-heading").textContent = answer.met
     ? "How far each figure may go, with the rest as it is"
@@ -127,9 +157,6 @@ function show({ scenario, form, answer, error }, full) {
   showPictures(answer);
   // Of a state that is passing there is no text: none of an older one stands beside its numbers.
   at("text").textContent = full ? answer.text : "";
-  if (full) {
-    history.replaceState(null, "", link());
-  }
 }
 
 const cell = (value, className = "") => element("td", { className }, value ?? "-");
@@ -207,7 +234,7 @@ function showForm(form) {
 const idOf = (path, what) => `${what}:${path}`;
 
 function sectionElement(section) {
-  const name = section.path === "" ? "Title" : section.path.replace(/\[(\d+)\]/, (_, index) => ` ${Number(index) + 1}`);
+  const name = section.path === "" ? "Title" : counted(section.path);
   const legend = element("legend", {}, section.word ? means(section.word, name, section.meaning) : name);
   const parts = [legend];
   if (section.meaning) parts.push(element("p", {}, section.meaning));
@@ -215,9 +242,8 @@ function sectionElement(section) {
   parts.push(...section.fields.map(fieldElement));
   const more = section.absent.length > 0 ? adder(`Add to ${name}`, section.absent) : element("div", { className: "more" });
   if (section.removable) {
-    const remove = element("button", { type: "button", id: idOf(section.path, "take") }, `Remove ${name}`);
-    remove.addEventListener("click", () => change({ do: "remove", key: section.path }));
-    more.append(remove);
+    const attributes = { id: idOf(section.path, "take") };
+    more.append(button(`Remove ${name}`, () => restructure({ do: "remove", key: section.path }), attributes));
   }
   return element("fieldset", { "data-section": section.path }, ...parts, more);
 }
@@ -229,12 +255,19 @@ function cameraPicker(section) {
   options.push(...named.cameras.map((camera) => element("option", { value: camera.name, title: camera.about }, camera.name)));
   const select = element("select", { id }, ...options);
   chosen(select, preset);
-  select.addEventListener("change", () => {
+  const take = button("Take", () => {
     const toml = select.value === "" ? OWN_CAMERA : `preset = ${JSON.stringify(select.value)}\n`;
-    change({ do: "table", key: section.path, toml });
+    restructure({ do: "table", key: section.path, toml });
   });
-  return element("div", { className: "field" }, element("label", { htmlFor: id }, "take a known camera"), select);
+  const pick = element("div", { className: "pick" }, select, take);
+  return element("div", { className: "field" }, element("label", { htmlFor: id }, "a known camera"), pick);
 }
+
+const button = (label, pressed, attributes = {}) => {
+  const made = element("button", { type: "button", ...attributes }, label);
+  made.addEventListener("click", pressed);
+  return made;
+};
 
 // Shows a value, which may be none of the known ones.
 function chosen(select, value) {
@@ -246,23 +279,23 @@ function adder(label, absent) {
   const id = idOf(label, "add");
   const options = absent.map((one) => element("option", { value: one.path, title: one.meaning }, one.name));
   const select = element("select", { id }, element("option", { value: "" }, "…"), ...options);
-  select.addEventListener("change", () => {
-    if (select.value) change({ do: "add", key: select.value });
-    select.value = "";
-  });
-  return element("div", { className: "more" }, element("label", { htmlFor: id }, label), select);
+  const add = button("Add", () => select.value && restructure({ do: "add", key: select.value }), { "aria-label": label });
+  return element("div", { className: "more" }, element("label", { htmlFor: id }, label), select, add);
 }
+
+// A field as it is read out: many have the same name.
+const spoken = (field) => [...field.path.split(".").slice(0, -1).map(counted), field.name].join(", ");
+const counted = (part) => part.replace(/\[(\d+)\]/, (_, index) => ` ${Number(index) + 1}`);
 
 function fieldElement(field) {
   const id = idOf(field.path, "field");
   const control = controlOf(field, id);
   const about = element("span", {}, means(field.word, "?", field.meaning));
   about.firstChild.className = "means";
-  about.firstChild.setAttribute("aria-label", `what ${field.name} means`);
+  about.firstChild.setAttribute("aria-label", `what ${spoken(field)} means`);
   if (field.removable) {
-    const remove = element("button", { type: "button", className: "small", "aria-label": `remove ${field.name}` }, "×");
-    remove.addEventListener("click", () => change({ do: "remove", key: field.path }));
-    about.append(" ", remove);
+    const attributes = { className: "small", "aria-label": `remove ${spoken(field)}` };
+    about.append(" ", button("×", () => restructure({ do: "remove", key: field.path }), attributes));
   }
   const label = element("label", { htmlFor: id, title: field.meaning }, field.name);
   const parts = [label, control, about];
@@ -275,7 +308,7 @@ function fieldElement(field) {
 function controlOf(field, id) {
   const set = (value) => change({ do: "set", key: field.path, value });
   const choose = (choices) => {
-    const select = element("select", { id, "data-path": field.path }, ...choices.map((one) => element("option", { value: one }, one)));
+    const select = element("select", { id, "data-path": field.path, "aria-label": spoken(field) }, ...choices.map((one) => element("option", { value: one }, one)));
     chosen(select, field.value);
     select.addEventListener("change", () => set(select.value));
     return select;
@@ -287,11 +320,12 @@ function controlOf(field, id) {
   if (field.kind === "materials") {
     const others = materials.filter((name) => !field.items.includes(name));
     const options = others.map((name) => element("option", { value: name }, name));
-    const select = element("select", { id, "data-path": field.path }, element("option", { value: "" }, "one more…"), ...options);
-    select.addEventListener("change", () => select.value && set(JSON.stringify([...field.items, select.value])));
-    return select;
+    const select = element("select", { id, "data-path": field.path, "aria-label": spoken(field) }, element("option", { value: "" }, "one more…"), ...options);
+    const list = () => JSON.stringify([...field.items, select.value]);
+    const add = () => select.value && restructure({ do: "set", key: field.path, value: list() });
+    return element("div", { className: "pick" }, select, button("Add", add, { "aria-label": `add to ${spoken(field)}` }));
   }
-  const input = element("input", { id, type: "text", value: field.value, "data-path": field.path, spellcheck: false });
+  const input = element("input", { id, type: "text", value: field.value, "data-path": field.path, "aria-label": spoken(field), spellcheck: false });
   // What is typed counts as it stands, after a moment: no verdict of another value stays beside it.
   input.addEventListener("input", () => {
     pass();
@@ -304,10 +338,9 @@ function controlOf(field, id) {
 
 function chips(field) {
   const chip = (name, index) => {
-    const remove = element("button", { type: "button", className: "small", "aria-label": `remove ${name}` }, `${name} ×`);
-    remove.addEventListener("click", () =>
-      change({ do: "set", key: field.path, value: JSON.stringify(field.items.filter((_, other) => other !== index)) }));
-    return remove;
+    const rest = () => JSON.stringify(field.items.filter((_, other) => other !== index));
+    const drop = () => restructure({ do: "set", key: field.path, value: rest() });
+    return button(`${name} ×`, drop, { className: "small", "aria-label": `remove ${name}` });
   };
   return element("div", { className: "items" }, ...field.items.map(chip));
 }
@@ -317,7 +350,8 @@ function rangeOf(field) {
   if (!field.slider) return null;
   const kept = ranges.get(field.path);
   const { number, unit } = field.slider;
-  if (kept && kept.unit === unit && number >= kept.low && number <= kept.high) return { ...kept, number };
+  const held = document.activeElement === at(idOf(field.path, "slider"));
+  if (kept && kept.unit === unit && (held || (number >= kept.low && number <= kept.high))) return { ...kept, number };
   ranges.set(field.path, field.slider);
   return field.slider;
 }
@@ -338,10 +372,15 @@ function numberAt(range, position) {
   const [there, back] = towards[range.scale];
   const [low, high] = [there(range.low), there(range.high)];
   const number = back(low + ((high - low) * position) / STEPS);
-  if (range.whole) return String(Math.round(number));
-  if (range.scale === "nines") return String(1 - Number((1 - number).toPrecision(2))).slice(0, 9);
-  if (range.scale === "linear") return String(Number(number.toFixed(range.high - range.low > 2 ? 1 : 3)));
-  return String(Number(number.toPrecision(3)));
+  // Rounding leaves no end of the range.
+  const rounded = (digits) => Math.min(Math.max(Number(digits), range.low), range.high);
+  if (range.whole) return String(rounded(Math.round(number)));
+  if (range.scale === "nines") {
+    const places = Math.ceil(-Math.log10(1 - number)) + 1;
+    return String(rounded(number.toFixed(places)));
+  }
+  if (range.scale === "linear") return String(rounded(number.toFixed(range.high - range.low > 2 ? 1 : 3)));
+  return String(rounded(number.toPrecision(3)));
 }
 
 const written = (range, number) => (range.unit ? `${number} ${range.unit}` : number);
@@ -349,7 +388,7 @@ const written = (range, number) => (range.unit ? `${number} ${range.unit}` : num
 function sliderElement(field, range) {
   const id = idOf(field.path, "slider");
   const slider = element("input", {
-    id, type: "range", min: 0, max: STEPS, step: 1, value: positionOf(range), "aria-label": field.name,
+    id, type: "range", min: 0, max: STEPS, step: 1, value: positionOf(range), "aria-label": `${spoken(field)}, slider`,
     "aria-valuetext": field.value,
   });
   slider.addEventListener("input", () => {
@@ -367,7 +406,7 @@ function refresh(field) {
   if (!control) return;
   const slider = at(idOf(field.path, "slider"));
   const moving = document.activeElement === slider;
-  if (field.kind === "materials") control.parentElement.replaceWith(fieldElement(field));
+  if (field.kind === "materials") control.closest(".field").replaceWith(fieldElement(field));
   else if (document.activeElement !== control && !moving) {
     if (control.tagName === "SELECT") chosen(control, field.value);
     else control.value = field.value;
@@ -391,15 +430,24 @@ const decoded = (string) => {
   const binary = atob(string.replaceAll("-", "+").replaceAll("_", "/"));
   return new TextDecoder("utf-8", { fatal: true }).decode(Uint8Array.from(binary, (char) => char.charCodeAt(0)));
 };
-const link = () => `#s=${encoded(text)}`;
+// With the number of letters, by which one that was cut off is told.
+const link = () => { const letters = encoded(text); return `#s=${letters.length}.${letters}`; };
 
+// The scenario of the address; null where it has none, undefined where it is broken.
 function restored() {
-  const found = /^#s=([\w-]+)$/.exec(location.hash);
+  if (location.hash.length < 2) return null;
+  const found = /^#s=(\d+)\.([\w-]*)$/.exec(location.hash);
   try {
-    return found && decoded(found[1]);
+    return found && Number(found[1]) === found[2].length ? decoded(found[2]) : undefined;
   } catch {
-    return null;
+    return undefined;
   }
+}
+
+function open(otherwise) {
+  const scenario = restored();
+  if (scenario === undefined) failed("This link is broken or cut off; ask for it again, or begin again below.");
+  else take(scenario ?? otherwise);
 }
 
 function save(name, kind, content) {
@@ -453,8 +501,8 @@ at("link").addEventListener("click", async () => {
     at("done").textContent = "The link is in the address line.";
   }
 });
-addEventListener("beforeprint", () => { at("printed").textContent = text; });
-addEventListener("hashchange", () => { const scenario = restored(); if (scenario !== null) take(scenario); });
+addEventListener("beforeprint", () => { at("printed").textContent = at("scenario").value; });
+addEventListener("hashchange", () => open(text));
 
 (async () => {
   try {
@@ -465,5 +513,5 @@ addEventListener("hashchange", () => { const scenario = restored(); if (scenario
   } catch {
     return failed("The program does not answer. Start `hadar serve` again, then load this page anew.");
   }
-  take(restored() ?? begin);
+  open(begin);
 })();

@@ -1,7 +1,7 @@
 //! Every key of every file, once: what it means, what may be written, what silence means, an example, where it enters.
 //!
 //! The readers open a table of a file with its [`Table`] here and take from it which keys may stand there, in which unit and in
-//! which range ([`super::section`]); `hadar explain`, `hadar schema` and `hadar init` say what it says. So a key that has no row
+//! which range (`section`); `hadar explain`, `hadar schema` and `hadar init` say what it says. So a key that has no row
 //! here cannot be written, and one that has a row cannot mean another range than the row says.
 //!
 //! | file | what is there |
