@@ -1,7 +1,7 @@
 //! `hadar` as a page in the browser: a form and the text of a scenario, two views of one thing, and what the engine says of it.
 //!
 //! Nothing leaves this machine and nothing of it is read: the page listens on a loopback address, takes requests of its own page
-//! alone ([`guard`]), bounds their size and number ([`http`]), and reads scenarios that name no files
+//! alone (`guard`), bounds their size and number (`http`), and reads scenarios that name no files
 //! ([`Written::refusing_files`](hadar_study::scenario::Written::refusing_files)). The answers are those of `hadar size`.
 //!
 //! | file | what is there |
