@@ -207,6 +207,8 @@ pub enum Warning {
     BrightestNoise,
     /// Frames that take time while something moves.
     FramesInMotion(Proviso),
+    /// A figure that is set beside a noise that holds for it.
+    NoiseMovesWithFigure { figure: &'static str, condition: &'static str },
 
     /// Samples of a cube that were looked at.
     SamplesNotChecked { evaluated: usize, samples: usize },
@@ -354,6 +356,7 @@ impl Warning {
             Self::NotProved => Code::NotProved,
             Self::BrightestNoise => Code::BrightestNoise,
             Self::FramesInMotion(_) => Code::FramesInMotion,
+            Self::NoiseMovesWithFigure { .. } => Code::NoiseMovesWithFigure,
             Self::SamplesNotChecked { .. } => Code::SamplesNotChecked,
             Self::NoiseOfDemanded { .. } | Self::NoiseOfFound { .. } => Code::NoiseInCounts,
             Self::DarkSamples { .. } => Code::DarkSamples,

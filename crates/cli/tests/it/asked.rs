@@ -48,6 +48,33 @@ fn standard_input_is_read_as_a_file_is() {
     );
 }
 
+/// By the letter of the file its noise holds for whatever exposure it has: whoever turns one sees no effect, and must know why.
+#[test]
+fn a_figure_that_takes_the_noise_along_is_warned_of() {
+    let own = SCENARIO.replace(
+        "preset = \"flir-a325sc\"",
+        "exposure = \"10 ms\"\npixel = \"12 um\"\nf_number = 1.0\nfocal_length = \"24 mm\"\nnetd = \"30 mK\"",
+    );
+    assert_ne!(own, SCENARIO);
+    let folder = Folder::with(&own);
+    folder.file("stated.toml", &own.replace("netd = ", "noise_exposure = \"10 ms\"\nnetd = "));
+    let asked = |file: &str, set: &[&str]| {
+        let answer = folder.json(&[&["size", file], set].concat());
+        let codes = answer["warnings"].as_array().unwrap().iter();
+        let said = codes.filter(|one| one["code"] == "noise-moves-with-figure").count();
+        (said, answer["verdict"]["statistical_distance"].as_f64().unwrap())
+    };
+    let longer = ["--set", "camera.exposure=40 ms"];
+    let (said, before) = asked("a.toml", &[]);
+    assert_eq!(said, 0);
+    let (said, moved) = asked("a.toml", &longer);
+    assert!(said == 1 && (moved / before - 1.0).abs() < 0.01, "{moved} {before}");
+    // Stated for an exposure the noise grows as its root, and the distance as the signal over it.
+    let (said, stated) = asked("stated.toml", &longer);
+    assert!(said == 0 && (stated / before / 2.0 - 1.0).abs() < 0.02, "{stated} {before}");
+    assert_eq!(asked("a.toml", &["--set", "camera.f_number=1.4", "--set", "camera.pixel=15 um"]).0, 2);
+}
+
 #[test]
 fn what_is_set_is_as_if_the_file_said_it() {
     let folder = Folder::with(SCENARIO);

@@ -230,6 +230,8 @@ catalogue! {
     BrightestNoise = "brightest-noise", "Nothing; the verdict is on the safe side.";
     /// The frames of a camera are added up while something moves: motion blur takes them to be laid over each other.
     FramesInMotion = "frames-in-motion", "Lay the frames over each other, or take fewer.";
+    /// A figure of the camera is set in the place of the file's, and its noise is not stated for a value of it: the noise moves with it.
+    NoiseMovesWithFigure = "noise-moves-with-figure", "Write the condition into the file beside the noise.";
 
     /// A yes or no was decided by some samples of the cube, and the others were not looked at.
     SamplesNotChecked = "samples-not-checked", "Use --no-skip to have all of them checked.";

@@ -455,6 +455,11 @@ impl Display for Warning {
                 short(*time_s),
                 short(*way_m)
             ),
+            Self::NoiseMovesWithFigure { figure, condition } => write!(
+                f,
+                "camera.{figure} is set, and camera.{condition} is not stated: the noise is taken to hold for what is set, as in a file \
+                 that says so, and another {figure} is another noise"
+            ),
             Self::SamplesNotChecked { evaluated, samples } => write!(
                 f,
                 "{evaluated} of {samples} samples decided; the others were not looked at, nor checked for counts that are \

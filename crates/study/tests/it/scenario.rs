@@ -316,7 +316,8 @@ prop_compose! {
             preset,
             noise: NoiseFigures {
                 netd_k: noise(0),
-                netd_temperature_k: quantities[6],
+                // Blackbodies are from 50 K to 5000 K.
+                netd_temperature_k: quantities[6].map(|value| 50.0 + 4950.0 * (value / (1.0 + value))),
                 netd_f_number: f_numbers[1],
                 netd_pixel_m: quantities[8],
                 detectivity_cm_hz05_w: noise(1),

@@ -34,7 +34,27 @@ impl Study {
             self.filter_light(camera),
             assumed(camera),
         ];
-        found.into_iter().flatten().collect()
+        found.into_iter().flatten().chain(self.noise_that_moves()).collect()
+    }
+
+    /// Figures that are set in the place of the file's beside a noise of its own that is stated for no value of them.
+    fn noise_that_moves(&self) -> Vec<Warning> {
+        let Some(spec) = self.scenario.camera.as_ref().filter(|spec| spec.states_noise()) else {
+            return Vec::new();
+        };
+        let noise = &spec.noise;
+        let of_netd = noise.netd_k.is_some();
+        let conditions = [
+            ("exposure", "noise_exposure", spec.noise_exposure_s.is_none()),
+            ("f_number", "netd_f_number", of_netd && noise.netd_f_number.is_none()),
+            ("pixel", "netd_pixel", of_netd && noise.netd_pixel_m.is_none()),
+        ];
+        let is_set = |figure: &str| {
+            let key = format!("camera.{figure}");
+            self.scenario.source.settings.iter().any(|setting| setting.key == key)
+        };
+        let moving = conditions.into_iter().filter(|(figure, _, silent)| *silent && is_set(figure));
+        moving.map(|(figure, condition, _)| Warning::NoiseMovesWithFigure { figure, condition }).collect()
     }
 
     fn motion(&self, result: &CameraResult) -> Option<Warning> {
