@@ -2,7 +2,7 @@
 
 mod camera;
 
-pub(super) use camera::assumed;
+pub(super) use camera::{assumed, noise_that_moves};
 
 use super::identify::{NearestProof, PairResult};
 use super::{Study, Warning};

@@ -3,7 +3,8 @@
 use super::super::identify::PairResult;
 use super::super::size::CameraResult;
 use super::super::{Study, Warning};
-use hadar::instrument::Camera;
+use crate::scenario::Source;
+use hadar::instrument::{Camera, CameraSpec};
 use hadar::policy::caps::longest_wavelength_m;
 
 /// Relative difference between shortcut and exact statistical distance worth a word.
@@ -12,6 +13,23 @@ const SHORTCUT: f64 = 0.1;
 const HALF: f64 = 0.5 + 1e-9;
 /// Radius of the first dark ring of a point's image, in units of λF.
 const AIRY: f64 = 1.22;
+
+/// Figures that are set in the place of the file's beside a noise of its own that is stated for no value of them.
+pub(in crate::study) fn noise_that_moves(spec: &CameraSpec, source: &Source) -> Vec<Warning> {
+    let noise = &spec.noise;
+    let of_netd = noise.netd_k.is_some();
+    let conditions = [
+        ("exposure", "noise_exposure", spec.states_noise() && spec.noise_exposure_s.is_none()),
+        ("f_number", "netd_f_number", of_netd && noise.netd_f_number.is_none()),
+        ("pixel", "netd_pixel", of_netd && noise.netd_pixel_m.is_none()),
+    ];
+    let is_set = |figure: &str| {
+        let key = format!("camera.{figure}");
+        source.settings.iter().any(|setting| setting.key == key)
+    };
+    let moving = conditions.into_iter().filter(|(figure, _, silent)| *silent && is_set(figure));
+    moving.map(|(figure, condition, _)| Warning::NoiseMovesWithFigure { figure, condition }).collect()
+}
 
 impl Study {
     /// Warnings on the camera in the scene, against the limiting alternative.
@@ -34,27 +52,7 @@ impl Study {
             self.filter_light(camera),
             assumed(camera),
         ];
-        found.into_iter().flatten().chain(self.noise_that_moves()).collect()
-    }
-
-    /// Figures that are set in the place of the file's beside a noise of its own that is stated for no value of them.
-    fn noise_that_moves(&self) -> Vec<Warning> {
-        let Some(spec) = self.scenario.camera.as_ref().filter(|spec| spec.states_noise()) else {
-            return Vec::new();
-        };
-        let noise = &spec.noise;
-        let of_netd = noise.netd_k.is_some();
-        let conditions = [
-            ("exposure", "noise_exposure", spec.noise_exposure_s.is_none()),
-            ("f_number", "netd_f_number", of_netd && noise.netd_f_number.is_none()),
-            ("pixel", "netd_pixel", of_netd && noise.netd_pixel_m.is_none()),
-        ];
-        let is_set = |figure: &str| {
-            let key = format!("camera.{figure}");
-            self.scenario.source.settings.iter().any(|setting| setting.key == key)
-        };
-        let moving = conditions.into_iter().filter(|(figure, _, silent)| *silent && is_set(figure));
-        moving.map(|(figure, condition, _)| Warning::NoiseMovesWithFigure { figure, condition }).collect()
+        found.into_iter().flatten().collect()
     }
 
     fn motion(&self, result: &CameraResult) -> Option<Warning> {
