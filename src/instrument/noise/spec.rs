@@ -55,6 +55,15 @@ pub enum NoiseSpec {
 }
 
 impl NoiseSpec {
+    /// Whether it is stated as a figure of the sheet (NETD, D*, NEP, NESR) that counts follow from only at stated conditions.
+    #[must_use]
+    pub const fn is_of_a_sheet(&self) -> bool {
+        matches!(
+            self,
+            Self::Netd { .. } | Self::Detectivity { .. } | Self::Nep { .. } | Self::SpectralRadiance { .. }
+        )
+    }
+
     /// A table of noise from rows (wavenumber in cm⁻¹, σ in counts) in any order.
     ///
     /// # Errors

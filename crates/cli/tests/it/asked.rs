@@ -48,6 +48,35 @@ fn standard_input_is_read_as_a_file_is() {
     );
 }
 
+/// A figure at conditions that are none comes to no noise at all: refused, and no 'yes' of an ideal camera.
+#[test]
+fn a_noise_that_vanishes_is_refused() {
+    let own = SCENARIO.replace(
+        "preset = \"flir-a325sc\"",
+        "exposure = \"10 ms\"\npixel = \"12 um\"\nf_number = 1.0\nfocal_length = \"24 mm\"\nnetd = \"30 mK\"",
+    );
+    let folder = Folder::with(&own);
+    for set in [
+        "camera.netd_f_number=1e200",
+        "camera.netd_pixel=1e-200 m",
+        "camera.netd=1e-320 K",
+        "camera.noise_exposure=1e-300 s",
+        "camera.netd_temperature=50 K",
+    ] {
+        let said = folder.refusal(&["size", "a.toml", "--set", set]);
+        assert!(said.contains("the noise that is stated comes to"), "{set}: {said}");
+    }
+    assert!(
+        folder
+            .refusal(&["size", "a.toml", "--set", "camera.netd_temperature=30 K"])
+            .contains("from 50 K to 5000 K")
+    );
+    // The best detectors there are, and one of liquid nitrogen, are computed.
+    for set in ["camera.netd=1 mK", "camera.netd_temperature=77 K", "camera.noise_exposure=1 us"] {
+        assert_eq!(folder.run(&["size", "a.toml", "--set", set]).code, 0, "{set}");
+    }
+}
+
 /// By the letter of the file its noise holds for whatever exposure it has: whoever turns one sees no effect, and must know why.
 #[test]
 fn a_figure_that_takes_the_noise_along_is_warned_of() {

@@ -9,6 +9,9 @@ use std::ops::{Range, RangeInclusive};
 
 /// Photons, and noise in counts.
 const PHOTONS: Range<f64> = 1e-60..1e60;
+/// Least noise of a detector, in units of the shot noise of a reading: what a figure of its sheet comes to, in the wrong unit or at
+/// conditions that are none, is no noise at all, and the verdict that of an ideal camera.
+const QUIETEST: f64 = 1e-6;
 /// Statistical distance demanded.
 const DISTANCE: Range<f64> = 1e-9..1e9;
 /// Temperatures, K.
@@ -44,13 +47,25 @@ impl Study {
         let Some(counting) = self.counting() else { return Ok(()) };
         let photons = counting.counts_per_radiance * radiance;
         let noise = counting.var_added.iter().copied().fold(0.0, f64::max).sqrt();
-        if PHOTONS.contains(&photons) && noise < PHOTONS.end {
+        let refused = |found: String| {
+            let instead = "check the units of its exposure, pixel, noise and frames";
+            Err(Error::malformed(found, instead).at(self.scenario.place("camera")))
+        };
+        if !(PHOTONS.contains(&photons) && noise < PHOTONS.end) {
+            return refused(format!(
+                "the camera would count {photons:.0e} photons with a noise of {noise:.0e}"
+            ));
+        }
+        let Some(camera) = self.camera.as_ref().filter(|camera| camera.noise.is_of_a_sheet()) else {
+            return Ok(());
+        };
+        let shot = (photons / (self.bands.len() as f64 * f64::from(camera.frames))).sqrt();
+        let own = camera.electronic_noise_counts(&self.bands);
+        if own >= QUIETEST * shot {
             return Ok(());
         }
-        Err(Error::malformed(
-            format!("the camera would count {photons:.0e} photons with a noise of {noise:.0e}"),
-            "check the units of its exposure, pixel, noise and frames",
-        )
-        .at(self.scenario.place("camera")))
+        refused(format!(
+            "the noise that is stated comes to {own:.0e} counts of a reading, whose photons alone make one of {shot:.0e}"
+        ))
     }
 }
