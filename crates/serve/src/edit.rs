@@ -4,7 +4,7 @@ use hadar::error::{Error, Result};
 use serde::Deserialize;
 use toml_edit::{ArrayOfTables, DocumentMut, Item, Table, TableLike, Value};
 
-use crate::form::{self, Written};
+use crate::place::{self, Written};
 
 /// A change. Paths are those of messages, such as `camera.exposure` and `environment[0].lighting`.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
@@ -60,7 +60,7 @@ fn apply(root: &mut Item, edit: &Edit) -> Result<()> {
         Edit::Set { key, value } => {
             let (table, name) = table_of(root, key)?;
             keep_conditions(table, key, &name);
-            put(table, &name, form::value_at(key).parsed(value));
+            put(table, &name, place::value_at(key).parsed(value));
         }
         Edit::Remove { key } => match last(key)? {
             (above, Step::At(index)) => {
@@ -85,7 +85,7 @@ fn apply(root: &mut Item, edit: &Edit) -> Result<()> {
             }
         },
         Edit::Add { key } => {
-            let new = form::new_at(key).ok_or_else(|| not_there(key))?;
+            let new = place::new_at(key).ok_or_else(|| not_there(key))?;
             let (table, name) = table_of(root, key)?;
             match (new, table.get_mut(&name)) {
                 (Written::Entry(entry), Some(Item::ArrayOfTables(tables))) => tables.push(entry),

@@ -11,6 +11,8 @@
 //! | `route` | which question is asked where |
 //! | `engine` | the answer to a scenario |
 //! | `form` | a scenario as fields |
+//! | `place` | paths of a scenario, and what may stand there |
+//! | `slider` | the range about a number |
 //! | `edit` | fields changed in the text of a scenario |
 //! | `meaning` | what a word means, as a page |
 //! | `page/` | what the browser shows |
@@ -21,7 +23,9 @@ mod form;
 mod guard;
 mod http;
 mod meaning;
+mod place;
 mod route;
+mod slider;
 
 pub use engine::Engine;
 pub use http::serve;
