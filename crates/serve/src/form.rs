@@ -23,8 +23,6 @@ struct Section {
     /// The same without the place in a list, by which it is explained.
     word: String,
     meaning: &'static str,
-    /// Whether there may be more of it.
-    many: bool,
     /// Whether the scenario can do without it.
     removable: bool,
     fields: Vec<Field>,
@@ -66,7 +64,6 @@ pub(crate) fn of(text: &str, presets: &[String]) -> Option<Form> {
         path: String::new(),
         word: String::new(),
         meaning: "",
-        many: false,
         removable: false,
         fields: fields(root, table, "", presets),
         absent: absent(root, table, "")
@@ -95,7 +92,6 @@ fn below(
             sections.push(Section {
                 word: word(&path),
                 meaning: key.meaning,
-                many: matches!(key.value, Value::Tables(_)),
                 removable: key.silent != Silent::Refused,
                 fields: fields(inner, found, &path, presets),
                 absent: absent(inner, found, &path).map(|(_, one)| one).collect(),

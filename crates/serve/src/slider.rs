@@ -25,7 +25,10 @@ pub(crate) fn slider(key: &Key, text: &str) -> Option<Slider> {
         Value::Count(_) => (None, None, true),
         _ => return None,
     };
-    let (number, unit) = parts(text).filter(|_| text.len() <= LONGEST_NUMBER)?;
+    if text.len() > LONGEST_NUMBER {
+        return None;
+    }
+    let (number, unit) = parts(text)?;
     if dimension.is_some_and(|dimension| dimension.parse(text).is_err()) {
         return None;
     }
