@@ -102,7 +102,7 @@ pub use base::{
     allowed, cube, demand, envi_header, error, file, grid, inputs, lattice_points, minimum, root,
     spectral_unit, statistics, sum, units, words,
 };
-pub(crate) use base::{correlation, simd, wide};
+pub(crate) use base::{best_first, box_least_squares, correlation, simd, wide};
 pub use limits::{calibration, fisher, identifiability, policy, ranging};
 pub use physics::{atmosphere, material, planck, scene, spectrum};
 pub use witness::{calibrate, decompose, render, segmentation, separation, simulate};

@@ -12,18 +12,18 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 const ATTEMPTS: usize = 200;
 
 /// The problem: H, g, bounds, and the members and limit of the sum constraint.
-pub(super) struct BoundedStep<'a> {
-    pub(super) hessian: &'a DMatrix<f64>,
-    pub(super) gradient: &'a DVector<f64>,
-    pub(super) lower: &'a [f64],
-    pub(super) upper: &'a [f64],
-    pub(super) summed: &'a [bool],
-    pub(super) sum_limit: f64,
+pub(crate) struct BoxLeastSquares<'a> {
+    pub(crate) hessian: &'a DMatrix<f64>,
+    pub(crate) gradient: &'a DVector<f64>,
+    pub(crate) lower: &'a [f64],
+    pub(crate) upper: &'a [f64],
+    pub(crate) summed: &'a [bool],
+    pub(crate) sum_limit: f64,
 }
 
-impl BoundedStep<'_> {
+impl BoxLeastSquares<'_> {
     /// The minimiser, or `None` if H is not positive definite.
-    pub(super) fn solve(&self) -> Option<DVector<f64>> {
+    pub(crate) fn solve(&self) -> Option<DVector<f64>> {
         let free = self.in_box(self.gradient)?;
         if self.summed_part(&free) <= self.sum_limit {
             return Some(free);
@@ -162,8 +162,14 @@ mod tests {
         let hessian = DMatrix::from_row_slice(2, 2, &[1.0, 0.5, 0.5, 2.0]);
         let gradient = DVector::from_row_slice(&[-1.0, -1.0]);
         let summed = [true, true];
-        let step =
-            BoundedStep { hessian: &hessian, gradient: &gradient, lower, upper, summed: &summed, sum_limit };
+        let step = BoxLeastSquares {
+            hessian: &hessian,
+            gradient: &gradient,
+            lower,
+            upper,
+            summed: &summed,
+            sum_limit,
+        };
         step.solve().unwrap().as_slice().to_vec()
     }
 
@@ -200,7 +206,7 @@ mod tests {
             let (lower, upper) = ([-0.3, -0.4, -0.5], [0.6, 0.5, 0.4]);
             let summed = [true, true, false];
             let sum_limit = if case % 2 == 0 { 0.0 } else { 0.2 };
-            let problem = BoundedStep {
+            let problem = BoxLeastSquares {
                 hessian: &hessian,
                 gradient: &gradient,
                 lower: &lower,
