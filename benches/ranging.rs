@@ -5,11 +5,12 @@
 //! 5 × 5 windows), and 1080 × 1920 × 54 read from a file by rows, beside a copy of as many samples in memory.
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use hadar::cube::{Cube, MemoryCube, Shape, write_npy};
+use hadar::cube::{Cube, MemoryCube, Shape};
 use hadar::ranging::derivative::Derivative;
 use hadar::ranging::information::decide::decide;
 use hadar::ranging::information::{Cell, Request, Window, information, information_by_rows};
 use hadar::ranging::noise::{Joined, NoiseVariance};
+use hadar_formats::cube::write_npy;
 use std::hint::black_box;
 use std::ops::Range;
 
@@ -93,7 +94,7 @@ fn from_a_file(criterion: &mut Criterion) {
         bencher.iter(|| copy.copy_from_slice(black_box(&samples)));
     });
     drop((samples, copy));
-    let cube = Cube::open(&path, None).expect("the file just written");
+    let cube = hadar_formats::cube::open(&path, None).expect("the file just written");
     group.bench_function("all cells, from a file", |bencher| {
         bencher.iter(|| information(black_box(&cube), &request(5, &noise, &Cell::ALL)));
     });

@@ -1,73 +1,20 @@
-//! Heat cubes: photon counts `N[row][column][band]`, in memory or read by rows.
+//! Heat cubes: photon counts `N[row][column][band]`, in memory or given by rows.
 //!
 //! A cube is only ever asked for whole rows, in any order and by many threads at once: one that is larger than
 //! memory costs no more than the rows that are in work. Samples are `f32` or `f64`, and stay so.
 //!
-//! From a file: [`Cube::open`]; to one: [`write_npy`], or by rows [`NpyRows`]. [`first_invalid`] names the sample that is no count,
-//! [`panchromatic`] adds the bands.
+//! [`first_invalid`] names the sample that is no count, [`panchromatic`] adds the bands.
 
-#[cfg(feature = "cubes")]
-mod arrange;
-#[cfg(feature = "cubes")]
-mod axes;
-#[cfg(feature = "cubes")]
-mod band_list;
 mod band_order;
 mod band_sum;
-#[cfg(feature = "cubes")]
-mod blocks;
-#[cfg(feature = "cubes")]
-mod envi;
-#[cfg(feature = "cubes")]
-mod found;
-#[cfg(feature = "hdf5")]
-mod hdf5;
 mod invalid;
-#[cfg(feature = "cubes")]
-mod mat;
-#[cfg(feature = "cubes")]
-mod npy;
-#[cfg(feature = "cubes")]
-mod npy_rows;
-#[cfg(feature = "cubes")]
-mod npz;
-#[cfg(feature = "cubes")]
-mod open;
-#[cfg(feature = "cubes")]
-mod raw;
-#[cfg(feature = "cubes")]
-mod sample_unit;
-#[cfg(feature = "cubes")]
-mod stored;
-#[cfg(feature = "cubes")]
-mod values;
 
-#[cfg(feature = "cubes")]
-pub use axes::Axes;
 pub use band_sum::panchromatic;
-#[cfg(feature = "cubes")]
-pub use envi::{EnviBands, envi_files};
-#[cfg(feature = "cubes")]
-pub use found::{Found, Opened};
 pub use invalid::first_invalid;
-#[cfg(feature = "cubes")]
-pub use mat::mat_file;
-#[cfg(feature = "cubes")]
-pub use npy::{Value, npy_map, write_npy, write_npy_to};
-#[cfg(feature = "cubes")]
-pub use npy_rows::NpyRows;
-#[cfg(feature = "cubes")]
-pub(crate) use open::is_cube;
-#[cfg(feature = "cubes")]
-pub use sample_unit::SampleUnit;
 
 use crate::error::{Error, Result};
 use std::fmt::Debug;
 use std::ops::Range;
-
-#[cfg(feature = "cubes")]
-/// What opening a cube is called in messages.
-const READ_CUBE: &str = "read the cube";
 
 /// Rows, columns and bands of a cube; none is 0, and their product fits the address space.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
@@ -265,8 +212,9 @@ impl<S: Sample> Rows<S> for MemoryCube<S> {
     }
 }
 
-/// Rows that a cube does not have.
-pub(crate) fn beyond(rows: &Range<usize>, shape: Shape) -> Error {
+/// The error of an implementation of [`Rows::read`] that is asked for rows beyond its last.
+#[must_use]
+pub fn beyond(rows: &Range<usize>, shape: Shape) -> Error {
     let instead = format!("the cube has {} rows", shape.rows());
     Error::malformed(format!("rows {} to {} of a cube", rows.start, rows.end), instead)
 }

@@ -56,7 +56,7 @@ impl Reference {
 
     fn map(&self, what: &str) -> Vec<f64> {
         let path = self.folder.join(format!("{}_{what}.npy", self.name));
-        match Cube::open(&path, None).unwrap() {
+        match hadar_formats::cube::open(&path, None).unwrap() {
             Cube::F32(rows) => read(rows.as_ref()),
             Cube::F64(rows) => read(rows.as_ref()),
         }
@@ -65,7 +65,8 @@ impl Reference {
     fn decomposed(&self, options: &Options) -> Maps {
         let bands = Bands::uniform(720.0, 1250.0, 10.0).unwrap();
         let widths = bands.widths_cm1();
-        let cube = Cube::open(&self.folder.join(format!("{}_counts.npy", self.name)), None).unwrap();
+        let cube =
+            hadar_formats::cube::open(&self.folder.join(format!("{}_counts.npy", self.name)), None).unwrap();
         let setting = Setting {
             bands: &bands,
             library: &self.library,

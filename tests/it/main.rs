@@ -4,7 +4,6 @@ mod calibrate_noise;
 mod calibrate_stripes;
 mod cameras;
 mod classes;
-mod cubes;
 mod decision;
 mod decompose;
 mod decompose_methods;

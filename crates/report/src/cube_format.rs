@@ -1,9 +1,10 @@
 //! Cubes among the files of an answer: NPY, or ENVI with a header that says the bands.
 
 use crate::bundle::Bundle;
-use hadar::cube::{EnviBands, Sample, Shape, envi_files, write_npy_to};
+use hadar::cube::{Sample, Shape};
 use hadar::envi_header::Interleave;
 use hadar::error::Result;
+use hadar_formats::cube::{EnviBands, envi_files, write_npy_to};
 
 /// As what cubes are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

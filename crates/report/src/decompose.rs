@@ -14,8 +14,8 @@ pub use vision::{DARKEST, Vision, brightness, saturation};
 
 use crate::bundle::Bundle;
 use crate::table::{Table, number};
-use hadar::cube::npy_map;
 use hadar::error::{Error, Result};
+use hadar_formats::cube::npy_map;
 use hadar_study::decompose::{Block, Decomposed, Kept, TruthFound};
 use std::fs::File;
 use std::io::BufWriter;

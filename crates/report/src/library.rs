@@ -7,8 +7,8 @@ pub use text::text;
 
 use crate::bundle::Bundle;
 use crate::table::{Table, number};
-use hadar::cube::npy_map;
 use hadar::error::Result;
+use hadar_formats::cube::npy_map;
 use hadar_scenario::decompose::{LibrarySpec, TruthSpec};
 use hadar_scenario::{DecomposeScenario, Source};
 use hadar_study::library::LibraryFound;

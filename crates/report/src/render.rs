@@ -9,8 +9,8 @@ pub use text::text;
 use crate::bundle::Bundle;
 use crate::cube_format::CubeFormat;
 use crate::table::{Table, number};
-use hadar::cube::{mat_file, npy_map};
 use hadar::error::Result;
+use hadar_formats::cube::{mat_file, npy_map};
 use hadar_scenario::decompose::{
     CategorySpec, CubeUnit, HeatCube, LibrarySpec, LightSource, PixelUnknown, TruthSpec,
 };

@@ -11,9 +11,9 @@ pub(super) mod write;
 pub use category::{CategorySpec, SegmentationSpec};
 
 use super::{BandsSpec, CameraSpec, ClassSpec, MaterialRef, Source};
-use hadar::cube::Axes;
 use hadar::error::Place;
 use hadar_estimate::decompose::SpatialPrior;
+use hadar_formats::cube::Axes;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 

@@ -7,12 +7,12 @@ pub(super) mod read;
 pub(super) mod write;
 
 use super::{BandsSpec, CameraSpec, SceneSpec, Source};
-use hadar::cube::Axes;
 use hadar::error::Place;
 pub use hadar::ranging::depth::Demand;
 use hadar::ranging::derivative::Derivative;
 use hadar::ranging::information::Window;
 use hadar::ranging::noise::Joined;
+use hadar_formats::cube::Axes;
 use std::path::PathBuf;
 
 /// Everything a ranging scenario says, defaults filled in.

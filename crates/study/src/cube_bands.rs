@@ -4,10 +4,11 @@
 //! wavelength has; it is put right. Of a file that says nothing, that order is expected.
 
 use crate::Warning;
-use hadar::cube::{Axes, Cube, Found, Opened};
+use hadar::cube::Cube;
 use hadar::error::{Error, Result};
 use hadar::spectrum::Bands;
 use hadar::words::significant;
+use hadar_formats::cube::{Axes, Found, Opened};
 use std::path::Path;
 
 /// Neighbouring distances of bands that differ by more than this factor are no widths.
@@ -24,7 +25,7 @@ pub(super) struct InOrder {
 
 impl InOrder {
     pub(super) fn open(path: &Path, variable: Option<&str>, axes: Option<Axes>) -> Result<Self> {
-        let Opened { cube, found } = Cube::open_as(path, variable, axes)?;
+        let Opened { cube, found } = hadar_formats::cube::open_as(path, variable, axes)?;
         let mut order: Vec<usize> = (0..cube.shape().bands()).collect();
         if let Some(centres) = &found.centres_cm1 {
             let centre = |band: &usize| centres.get(*band).copied().unwrap_or(f64::NAN);

@@ -1,7 +1,7 @@
 //! Whether the samples of a cube are what is expected of them, by the unit that its file states.
 
-use hadar::cube::{Found, SampleUnit};
 use hadar::error::{Error, Result};
+use hadar_formats::cube::{Found, SampleUnit};
 
 /// Refuses samples that are no counts by their file. What is in proportion to counts is taken where `scale_is_said`: how many counts a
 /// unit of the file stands for.

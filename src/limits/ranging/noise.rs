@@ -8,8 +8,6 @@
 //!
 //! Source: paper S37, Tables S4 and S5.
 
-mod read;
-
 use crate::cube::{Cube, Shape};
 use crate::error::{Error, Result, check};
 

@@ -1,9 +1,10 @@
 //! `hadar calibrate` as its user runs it: noise and stripes, files, mistakes; and that a decomposition holds with what came out.
 
 use crate::support::folder::Folder;
-use hadar::cube::{Cube, Shape, write_npy};
+use hadar::cube::{Cube, Shape};
 use hadar::planck::photon_radiance;
 use hadar::statistics::Statistics;
+use hadar_formats::cube::write_npy;
 use hadar_simulate::draws::{Draws, generator};
 use rand::RngExt;
 
@@ -163,7 +164,7 @@ fn stripes_are_taken_out_and_the_rest_stays() {
         .map(|one| ["line", "band"].map(|key| one[key].as_u64().unwrap()))
         .collect();
     assert_eq!(lines, [[5, 3], [11, 7], [16, 7], [18, 0]]);
-    let cube = Cube::open(&folder.path().join("out/destriped.npy"), None).unwrap();
+    let cube = hadar_formats::cube::open(&folder.path().join("out/destriped.npy"), None).unwrap();
     let Cube::F64(rows) = cube else { panic!("the samples have another type") };
     let mut buffer = Vec::new();
     let own = rows.read(0..ROWS, &mut buffer).unwrap();

@@ -1,11 +1,12 @@
 //! `hadar calibrate blackbody` and `response` as their user runs them: files, numbers, mistakes.
 
 use crate::support::folder::Folder;
-use hadar::cube::{Cube, Shape, write_npy};
+use hadar::cube::{Cube, Shape};
 use hadar::planck::photon_radiance;
 use hadar::statistics::Statistics;
 use hadar::units::{PLANCK_J_S, SPEED_OF_LIGHT_M_S};
 use hadar_estimate::calibrate::twin::{FilterWheelTwin, passband};
+use hadar_formats::cube::write_npy;
 use hadar_simulate::draws::{Draws, generator};
 use std::path::Path;
 
@@ -82,7 +83,7 @@ fn spectrometer(scenario: &str) -> Folder {
 
 fn read(path: &Path) -> Vec<f64> {
     let mut buffer = Vec::new();
-    match Cube::open(path, None).unwrap() {
+    match hadar_formats::cube::open(path, None).unwrap() {
         Cube::F32(cube) => {
             let rows = cube.read(0..cube.shape().rows(), &mut buffer).unwrap();
             rows.iter().map(|x| f64::from(*x)).collect()
@@ -246,7 +247,7 @@ fn what_a_spectrometer_cannot_be_calibrated_with_is_said() {
 
 fn read_doubles(path: &Path) -> Vec<f64> {
     let mut buffer = Vec::new();
-    match Cube::open(path, None).unwrap() {
+    match hadar_formats::cube::open(path, None).unwrap() {
         Cube::F64(cube) => cube.read(0..cube.shape().rows(), &mut buffer).unwrap().to_vec(),
         Cube::F32(_) => panic!("cubes of these tests are of 64 bits"),
     }

@@ -2,14 +2,17 @@
 
 use crate::decompose::{SCENARIO, with};
 use crate::support::folder::Folder;
-use hadar::cube::{Cube, Shape, write_npy};
+use hadar::cube::{Cube, Shape};
+use hadar_formats::cube::write_npy;
 use std::fs;
 
 const BANDS: &str = "[bands]\nstart = \"800 cm^-1\"\nstop = \"1200 cm^-1\"\nstep = \"20 cm^-1\"\n";
 
 /// The counts of the scene, `[pixel][band]` of 2 x 3 pixels and 21 bands.
 fn counts(folder: &Folder) -> Vec<f64> {
-    let Cube::F64(cube) = Cube::open(&folder.path().join("counts.npy"), None).unwrap() else { panic!("f64") };
+    let Cube::F64(cube) = hadar_formats::cube::open(&folder.path().join("counts.npy"), None).unwrap() else {
+        panic!("f64")
+    };
     cube.read(0..2, &mut Vec::new()).unwrap().to_vec()
 }
 
@@ -129,7 +132,7 @@ fn destriped_cubes_are_in_rising_wavenumber() {
         .collect();
     fs::write(folder.path().join("a.img"), data).unwrap();
     folder.json(&["calibrate", "stripes", "a.hdr", "--out", "out"]);
-    let first = |path: &str| match Cube::open(&folder.path().join(path), None).unwrap() {
+    let first = |path: &str| match hadar_formats::cube::open(&folder.path().join(path), None).unwrap() {
         Cube::F32(cube) => f64::from(cube.read(0..1, &mut Vec::new()).unwrap()[0]),
         Cube::F64(cube) => cube.read(0..1, &mut Vec::new()).unwrap()[0],
     };

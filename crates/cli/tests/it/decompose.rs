@@ -1,8 +1,9 @@
 //! `hadar decompose` as its user runs it: files, numbers, mistakes.
 
 use crate::support::folder::Folder;
-use hadar::cube::{Shape, npy_map, write_npy};
+use hadar::cube::Shape;
 use hadar::planck::photon_radiance;
+use hadar_formats::cube::{npy_map, write_npy};
 use std::fs;
 
 pub(crate) const SCENARIO: &str = r#"title = "Wall and pane"

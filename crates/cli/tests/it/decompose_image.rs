@@ -1,8 +1,9 @@
 //! `hadar decompose` with a prior over the image, and the picture that it draws.
 
 use crate::support::folder::Folder;
-use hadar::cube::{Cube, Rows, Sample, Shape, write_npy};
+use hadar::cube::{Cube, Rows, Sample, Shape};
 use hadar::planck::photon_radiance;
+use hadar_formats::cube::write_npy;
 use std::collections::HashMap;
 
 const SCENARIO: &str = r#"[cube]
@@ -91,7 +92,7 @@ fn map(folder: &Folder, name: &str) -> Vec<f64> {
         let mut buffer = Vec::new();
         rows.read(0..ROWS, &mut buffer).unwrap().iter().map(|x| (*x).into()).collect()
     }
-    match Cube::open(&folder.path().join("out").join(name), None).unwrap() {
+    match hadar_formats::cube::open(&folder.path().join("out").join(name), None).unwrap() {
         Cube::F32(rows) => all(rows.as_ref()),
         Cube::F64(rows) => all(rows.as_ref()),
     }

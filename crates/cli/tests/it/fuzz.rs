@@ -5,7 +5,8 @@
 
 use crate::support::mutation::mutated;
 use crate::support::sound::{all, fault};
-use hadar::cube::{Shape, write_npy_to};
+use hadar::cube::Shape;
+use hadar_formats::cube::write_npy_to;
 use hadar_testing::repository;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};

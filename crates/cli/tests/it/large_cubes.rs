@@ -2,7 +2,8 @@
 
 use crate::decompose;
 use crate::support::folder::Folder;
-use hadar::cube::{Cube, Shape, write_npy};
+use hadar::cube::{Cube, Shape};
+use hadar_formats::cube::write_npy;
 use std::fs::OpenOptions;
 use std::process::Command;
 
@@ -60,7 +61,8 @@ fn a_cube_is_ranged_in_less_memory_than_its_pixels_would_take() {
     assert_eq!(all["signals"][1]["information_per_px2"], 0.0);
     assert_eq!(all["signals"][1]["share"], 0.0);
     assert!(result["quantile_error"].as_f64().is_some_and(|error| error < 1e-4));
-    let map = Cube::open(&folder.path().join("out/disparity_error_px_heat_cube.npy"), None).unwrap();
+    let map =
+        hadar_formats::cube::open(&folder.path().join("out/disparity_error_px_heat_cube.npy"), None).unwrap();
     assert_eq!((map.shape().rows(), map.shape().columns()), (ROWS - 4, COLUMNS - 6));
     let Cube::F64(rows) = &map else { panic!("no doubles") };
     let mut buffer = Vec::new();
@@ -84,7 +86,7 @@ fn a_cube_is_decomposed_in_less_memory_than_its_maps_would_take() {
     sparse(&folder, "counts.npy", [SIDE, SIDE, decompose::BANDS]);
     let result = limited(&folder, "decompose");
     assert_eq!(result["pixels"], SIDE * SIDE);
-    let map = Cube::open(&folder.path().join("out/temperature_k.npy"), None).unwrap();
+    let map = hadar_formats::cube::open(&folder.path().join("out/temperature_k.npy"), None).unwrap();
     assert_eq!((map.shape().rows(), map.shape().columns()), (SIDE, SIDE));
     let left = std::fs::read_dir(folder.path()).unwrap().count();
     assert_eq!(left, before + 1, "nothing is left beside the report");

@@ -1,8 +1,9 @@
 //! `hadar library` as its user runs it: files, numbers, mistakes.
 
 use crate::support::folder::Folder;
-use hadar::cube::{Shape, npy_map, write_npy};
+use hadar::cube::Shape;
 use hadar::planck::photon_radiance;
+use hadar_formats::cube::{npy_map, write_npy};
 use hadar_simulate::draws::generator;
 use rand::RngExt;
 use std::fs;

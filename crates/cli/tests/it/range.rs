@@ -1,7 +1,8 @@
 //! `hadar range` as a user runs it: scenes and cubes, bounds against closed forms, every mistake one line.
 
 use crate::support::folder::{Folder, Outcome};
-use hadar::cube::{Shape, write_npy};
+use hadar::cube::Shape;
+use hadar_formats::cube::write_npy;
 use serde_json::Value;
 use std::f64::consts::PI;
 use std::fs;
@@ -172,7 +173,7 @@ fn a_report_has_every_plot_with_its_table_and_its_maps() {
         }
     }
     let map = folder.path().join("out/disparity_error_px_heat_cube.npy");
-    let cube = hadar::cube::Cube::open(&map, None).unwrap();
+    let cube = hadar_formats::cube::open(&map, None).unwrap();
     assert_eq!((cube.shape().rows(), cube.shape().columns()), (56, 76));
     let again = folder.run(&["range", "out/scenario.toml", "-q"]);
     assert_eq!(again.code, 0, "{}", again.stderr);
@@ -487,7 +488,7 @@ fn missing_samples_cost_their_windows_alone() {
     let found = folder.json(&["range", "a.toml", "--out", "gaps"]);
     let map = |out: &str| {
         let path = folder.path().join(format!("{out}/disparity_error_px_heat_cube.npy"));
-        let hadar::cube::Cube::F64(map) = hadar::cube::Cube::open(&path, None).unwrap() else {
+        let hadar::cube::Cube::F64(map) = hadar_formats::cube::open(&path, None).unwrap() else {
             panic!("f64")
         };
         assert_eq!((map.shape().rows(), map.shape().columns()), (ROWS - 4, COLUMNS - 6));

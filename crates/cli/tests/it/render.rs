@@ -48,7 +48,7 @@ const COLUMNS: usize = 64;
 
 /// The samples of a file, and its dimensions.
 fn samples(folder: &Folder, name: &str) -> (Vec<f64>, [usize; 3]) {
-    let cube = Cube::open(&folder.path().join(name), None).unwrap();
+    let cube = hadar_formats::cube::open(&folder.path().join(name), None).unwrap();
     let shape = cube.shape();
     let rows = 0..shape.rows();
     let values = match &cube {

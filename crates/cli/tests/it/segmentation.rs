@@ -1,8 +1,9 @@
 //! `[[category]]` in `hadar decompose` and `hadar render`: categories and objects, and mistakes.
 
 use crate::support::folder::Folder;
-use hadar::cube::{Shape, npy_map, write_npy};
+use hadar::cube::Shape;
 use hadar::planck::photon_radiance;
+use hadar_formats::cube::{npy_map, write_npy};
 use std::fs;
 
 const SCENARIO: &str = r#"[cube]

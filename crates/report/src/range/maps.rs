@@ -2,8 +2,9 @@
 
 use crate::bundle::Bundle;
 use crate::folder::Scratch;
-use hadar::cube::{NpyRows, Shape, write_npy_to};
+use hadar::cube::Shape;
 use hadar::error::{Error, Result};
+use hadar_formats::cube::{NpyRows, write_npy_to};
 use hadar_study::range::{MapSink, Ranging, Signal};
 use std::sync::OnceLock;
 

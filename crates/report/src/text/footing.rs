@@ -1,8 +1,8 @@
 //! What results rest on, and what their reader must know.
 
 use super::numbers::listed;
-use hadar::cube::Found;
 use hadar::instrument::Readout;
+use hadar_formats::cube::Found;
 use hadar_scenario::{AtmosphereSource, DistanceKind, Nuisance, Scenario, Setting};
 use hadar_study::{Identification, Study, Warning};
 use std::fmt::Write as _;

@@ -3,10 +3,10 @@
 use super::super::entries::Entries;
 use super::super::paths::{Paths, axes, file, variable};
 use super::super::section::{Entry, Section};
-use hadar::cube::Axes;
 use hadar::error::{Error, Result};
 use hadar::units::Dimension;
 use hadar::words::quantity;
+use hadar_formats::cube::Axes;
 use std::path::PathBuf;
 
 const EXAMPLE: &str = "[[blackbody]] with temperature = \"10 degC\" and data = \"cold.npy\", twice or more";

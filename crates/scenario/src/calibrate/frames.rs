@@ -3,8 +3,8 @@
 use super::super::entries::Entries;
 use super::super::paths::{Paths, axes, file, is_cube, variable};
 use super::super::section::Entry;
-use hadar::cube::Axes;
 use hadar::error::Result;
+use hadar_formats::cube::Axes;
 use std::path::{Path, PathBuf};
 use toml::Value;
 

@@ -2,10 +2,11 @@
 
 use super::opened::Measured;
 use crate::Warning;
-use hadar::cube::{Cube, Found, Rows, Shape};
+use hadar::cube::{Cube, Rows, Shape};
 use hadar::demand::{Thing, Work};
 use hadar::error::{Error, Result};
 use hadar_estimate::calibrate::{Asked, Line, Transfer, photon_transfer};
+use hadar_formats::cube::Found;
 use hadar_scenario::calibrate::NoiseScenario;
 use serde::Serialize;
 

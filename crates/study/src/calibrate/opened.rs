@@ -2,8 +2,9 @@
 
 use crate::Warning;
 use crate::cube_bands::{InOrder, axes_in_doubt};
-use hadar::cube::{Cube, Found};
+use hadar::cube::Cube;
 use hadar::error::{Error, Result};
+use hadar_formats::cube::Found;
 use hadar_scenario::Source;
 use hadar_scenario::calibrate::Frames;
 

@@ -3,10 +3,11 @@
 use super::opened::Measured;
 use super::whole::check_memory;
 use crate::Warning;
-use hadar::cube::{Cube, Found, Rows, Sample, Shape};
+use hadar::cube::{Cube, Rows, Sample, Shape};
 use hadar::demand::{Thing, Work};
 use hadar::error::{Error, Result};
 use hadar_estimate::calibrate::{Destriped, Why, find_stripes};
+use hadar_formats::cube::Found;
 use hadar_scenario::calibrate::StripesScenario;
 use serde::Serialize;
 

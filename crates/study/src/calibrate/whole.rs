@@ -18,7 +18,7 @@ pub(super) fn at<'a>(source: &'a Source, key: &str) -> impl Fn(Error) -> Error +
 
 /// Opens a cube that is named under a key.
 pub(super) fn open(file: &CubeFile, source: &Source, key: &str) -> Result<Cube> {
-    let opened = Cube::open_as(&file.path, file.variable.as_deref(), file.axes);
+    let opened = hadar_formats::cube::open_as(&file.path, file.variable.as_deref(), file.axes);
     opened.map(|opened| opened.cube).map_err(at(source, key))
 }
 

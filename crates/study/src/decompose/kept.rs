@@ -1,8 +1,9 @@
 //! What is kept of every pixel: in memory, or in files where that would be too much.
 
-use hadar::cube::{NpyRows, Shape};
+use hadar::cube::Shape;
 use hadar::error::Result;
 use hadar_estimate::decompose::Maps;
+use hadar_formats::cube::NpyRows;
 use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;

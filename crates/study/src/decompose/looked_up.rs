@@ -4,12 +4,13 @@ use super::categories::parts;
 use super::truth::Truth;
 use crate::Warning;
 use crate::heat_cube::{Measured, Said, columns};
-use hadar::cube::{Cube, Found};
+use hadar::cube::Cube;
 use hadar::error::{Error, Result};
 use hadar::material::{Basis, Library, Material};
 use hadar::spectrum::Bands;
 use hadar_estimate::decompose::{Light, SpatialPrior};
 use hadar_estimate::segmentation::Categories;
+use hadar_formats::cube::Found;
 use hadar_scenario::{DecomposeScenario, MaterialRef, Spread};
 
 /// A decomposition scenario with everything it names looked up and checked.

@@ -177,7 +177,7 @@ struct Map {
 impl Map {
     /// A map of the pixels of a cube, of so many layers as one of `layers`.
     fn open(path: &Path, shape: Shape, layers: &[usize]) -> Result<Self> {
-        let cube = Cube::open(path, None)?;
+        let cube = hadar_formats::cube::open(path, None)?;
         let found = cube.shape();
         if (found.rows(), found.columns()) != (shape.rows(), shape.columns())
             || !layers.contains(&found.bands())
@@ -213,7 +213,7 @@ fn read(cube: &Cube, rows: Range<usize>) -> Result<Vec<f64>> {
 
 /// All samples of a file.
 fn all(path: &Path) -> Result<Vec<f64>> {
-    let cube = Cube::open(path, None)?;
+    let cube = hadar_formats::cube::open(path, None)?;
     read(&cube, 0..cube.shape().rows())
 }
 

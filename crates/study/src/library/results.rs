@@ -17,7 +17,7 @@ pub struct LibraryFound {
     /// The question.
     pub scenario: LibraryScenario,
     /// What the file of the cube was read as.
-    pub read: hadar::cube::Found,
+    pub read: hadar_formats::cube::Found,
     /// Rows, columns and bands.
     pub shape: Shape,
     /// Mean wavenumber of each band, cm⁻¹.

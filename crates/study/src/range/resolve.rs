@@ -6,7 +6,7 @@ use super::watched::Watch;
 use crate::cube_bands::{InOrder, axes_in_doubt};
 use crate::cube_unit::check_counts;
 use crate::{bands, camera, camera_bands, stage};
-use hadar::cube::{Cube, Opened, Shape};
+use hadar::cube::{Cube, Shape};
 use hadar::error::{Error, Result};
 use hadar::fisher::Counting;
 use hadar::instrument::{Camera, Readout, View};
@@ -14,6 +14,7 @@ use hadar::material::Library;
 use hadar::ranging::depth::StereoGeometry;
 use hadar::ranging::noise::NoiseVariance;
 use hadar::spectrum::Bands;
+use hadar_formats::cube::Opened;
 use hadar_scenario::range::{CubeSpec, DepthSource, NoiseSource, Subject};
 use hadar_scenario::{RangeScenario, SceneSpec};
 
@@ -148,7 +149,7 @@ fn cube(
         (Some(NoiseSource::Uniform(0.0)), _) => NoiseVariance::None,
         (Some(NoiseSource::Uniform(var)), _) => NoiseVariance::Uniform(*var),
         (Some(NoiseSource::File(path)), _) => {
-            NoiseVariance::from_file(path, shape).map_err(at("cube.noise_variance"))?
+            hadar_formats::noise_variance(path, shape).map_err(at("cube.noise_variance"))?
         }
         (None, Some(camera)) => {
             let Some(bands) = bands else {
@@ -164,7 +165,7 @@ fn cube(
         None => None,
         Some(DepthSource::Uniform(depth_m)) => Some(Depth::Uniform(*depth_m)),
         Some(DepthSource::File(path)) => {
-            let depth = Cube::open(path, None).map_err(at("cube.depth"))?;
+            let depth = hadar_formats::cube::open(path, None).map_err(at("cube.depth"))?;
             Some(Depth::Map(depth_map(&depth, shape).map_err(at("cube.depth"))?))
         }
     };

@@ -1,10 +1,11 @@
 //! What a ranging study finds, as data.
 
 use crate::Warning;
-use hadar::cube::{Found, Shape};
+use hadar::cube::Shape;
 use hadar::demand::Work;
 use hadar::ranging::depth::DepthSolution;
 use hadar::ranging::metrics::DepthMetrics;
+use hadar_formats::cube::Found;
 use hadar_scenario::RangeScenario;
 use hadar_scenario::range::Demand;
 use serde::Serialize;

@@ -2,10 +2,11 @@
 
 use super::watched::Watch;
 use crate::Warning;
-use hadar::cube::{Cube, Found, Shape};
+use hadar::cube::{Cube, Shape};
 use hadar::error::{Error, Result};
 use hadar::fisher::Counting;
 use hadar::ranging::noise::NoiseVariance;
+use hadar_formats::cube::Found;
 use hadar_simulate::render::{Options, Part, Rig, Scene, View};
 use std::sync::Arc;
 

@@ -1,7 +1,7 @@
 use super::super::RangePlan;
 use super::*;
-use hadar::cube::write_npy;
 use hadar::material::Library;
+use hadar_formats::cube::write_npy;
 use hadar_scenario::RangeScenario;
 
 /// Takes maps into memory.

@@ -6,11 +6,12 @@
 //! refuses, it must refuse in one short line. Time and memory are watched by whoever runs this.
 
 use hadar::Error;
-use hadar::cube::{Axes, Cube, Rows, Sample, Shape, first_invalid, panchromatic};
+use hadar::cube::{Cube, Rows, Sample, Shape, first_invalid, panchromatic};
 use hadar::material::{Library, Material, read};
 use hadar::ranging::noise::NoiseVariance;
 use hadar::spectrum::Bands;
 use hadar::units::{Dimension, Spectral};
+use hadar_formats::cube::Axes;
 use hadar_scenario::{AirRangingScenario, RangeScenario, RangingScenario, Scenario};
 use hadar_simulate::classifier::{Classifier, SavedModel};
 use std::path::{Path, PathBuf};
@@ -308,7 +309,7 @@ fn sound_rows<S: Sample>(cube: &dyn Rows<S>) {
 fn npy(folder: &Folder, bytes: &[u8]) {
     let path = folder.put("a.npy", bytes);
     for variable in [None, Some("S")] {
-        let Some(cube) = accepted(Cube::open(&path, variable)) else { continue };
+        let Some(cube) = accepted(hadar_formats::cube::open(&path, variable)) else { continue };
         // Samples are not compressed, so that there cannot be more of them than bytes.
         assert!(cube.shape().len() < bytes.len() || !bytes.starts_with(b"\x93NUMPY"));
         sound_cube(&cube);
@@ -322,7 +323,7 @@ fn npy(folder: &Folder, bytes: &[u8]) {
 fn mat(folder: &Folder, bytes: &[u8]) {
     let path = folder.put("a.mat", bytes);
     for variable in [None, Some("S")] {
-        if let Some(cube) = accepted(Cube::open(&path, variable)) {
+        if let Some(cube) = accepted(hadar_formats::cube::open(&path, variable)) {
             sound_cube(&cube);
         }
     }
@@ -335,7 +336,7 @@ fn arrays(folder: &Folder, name: &str, bytes: &[u8]) {
     for (variable, axes) in
         [(None, None), (Some("S"), None), (None, Some(images)), (Some("night/images"), Some(images))]
     {
-        if let Some(opened) = accepted(Cube::open_as(&path, variable, axes)) {
+        if let Some(opened) = accepted(hadar_formats::cube::open_as(&path, variable, axes)) {
             one_line(&opened.found.to_string());
             assert_eq!(opened.found.shape, opened.cube.shape());
             sound_cube(&opened.cube);
@@ -355,7 +356,7 @@ fn hdf5(folder: &Folder, bytes: &[u8]) {
 fn envi(folder: &Folder, bytes: &[u8]) {
     folder.put("a.img", &[0x41; 240]);
     let path = folder.put("a.hdr", bytes);
-    if let Some(opened) = accepted(Cube::open_as(&path, None, None)) {
+    if let Some(opened) = accepted(hadar_formats::cube::open_as(&path, None, None)) {
         one_line(&opened.found.to_string());
         let bands = opened.cube.shape().bands();
         for list in [&opened.found.centres_cm1, &opened.found.widths_cm1].into_iter().flatten() {
@@ -373,7 +374,7 @@ fn noise(folder: &Folder, bytes: &[u8]) {
     let path = folder.put("noise", bytes);
     for bands in [1, 3] {
         let shape = Shape::new(2, 1, bands).expect("a small shape");
-        match accepted(NoiseVariance::from_file(&path, shape)) {
+        match accepted(hadar_formats::noise_variance(&path, shape)) {
             Some(NoiseVariance::PerBand(variances)) => {
                 assert_eq!(variances.len(), bands);
                 assert!(variances.iter().all(|variance| *variance >= 0.0 && variance.is_finite()));

@@ -1,0 +1,35 @@
+//! Heat cubes from files and to files: NPY, NPZ, ENVI, MATLAB, HDF5 and NetCDF-4.
+//!
+//! From a file: [`open`], or [`open_as`], which says what the file was read as; to one: [`write_npy`], or by rows [`NpyRows`],
+//! [`envi_files`] and [`mat_file`]. A cube that is not packed is left in its file and read by rows where they are asked for.
+
+mod arrange;
+mod axes;
+mod band_list;
+mod blocks;
+mod envi;
+mod found;
+#[cfg(feature = "hdf5")]
+mod hdf5;
+mod mat;
+mod npy;
+mod npy_rows;
+mod npz;
+mod open;
+mod raw;
+mod sample_unit;
+mod stored;
+mod values;
+
+pub use axes::Axes;
+pub use envi::{EnviBands, envi_files};
+pub use found::{Found, Opened};
+pub use mat::mat_file;
+pub use npy::{Value, npy_map, write_npy, write_npy_to};
+pub use npy_rows::NpyRows;
+pub(crate) use open::is_cube;
+pub use open::{open, open_as};
+pub use sample_unit::SampleUnit;
+
+/// What opening a cube is called in messages.
+const READ_CUBE: &str = "read the cube";

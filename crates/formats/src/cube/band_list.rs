@@ -1,0 +1,101 @@
+//! Lists of wavelengths or wavenumbers beside a cube, in files of arrays with names: NPZ, MATLAB 5.
+//!
+//! One of as many numbers as the cube has bands says where they are, in its order, if its name is `wavelength` or `wavenumber`
+//! (or several of them) with a unit behind it, as in `wavelengths_um`. A unit is not guessed: of a list without one it is only
+//! said that there is one.
+
+use hadar::error::{Error, Result};
+use hadar::spectral_unit::SpectralUnit;
+
+/// Names of lists, the longer ones first, and what they count.
+const NAMES: [(&str, &str); 4] = [
+    ("wavelengths", "wavelength"),
+    ("wavelength", "wavelength"),
+    ("wavenumbers", "wavenumber"),
+    ("wavenumber", "wavenumber"),
+];
+/// By how much two lists may differ (relative), which rounding explains.
+const ROUNDED: f64 = 1e-3;
+
+/// Whether an array is called as a list is, and the unit behind its name.
+pub(super) fn unit_of(name: &str) -> Option<Option<SpectralUnit>> {
+    let lower = name.to_lowercase();
+    let (rest, quantity) =
+        NAMES.iter().find_map(|(name, quantity)| Some((lower.strip_prefix(name)?, *quantity)))?;
+    if rest.is_empty() {
+        return Some(None);
+    }
+    // A unit of something else is none.
+    SpectralUnit::spelt(rest).map(|unit| Some(unit).filter(|unit| unit.quantity() == quantity))
+}
+
+/// Centres of the bands by lists with their names, cm⁻¹; and whether there are only lists without a unit.
+///
+/// # Errors
+/// A list that says its unit with a number that is none of a band, or one number twice; two lists that differ.
+pub(super) fn centres(lists: &[(String, Vec<f64>)]) -> Result<(Option<Vec<f64>>, bool)> {
+    let mut found: Option<(&str, Vec<f64>)> = None;
+    for (name, values) in lists {
+        let Some(Some(unit)) = unit_of(name) else { continue };
+        let centres: Vec<f64> = values.iter().map(|value| unit.wavenumber_cm1(*value)).collect();
+        let mut sorted = centres.clone();
+        sorted.sort_by(f64::total_cmp);
+        let positive = |nu: &f64| *nu > 0.0 && nu.is_finite();
+        if !centres.iter().all(positive) || sorted.windows(2).any(|pair| pair.first() == pair.last()) {
+            let error = "these are no bands: one is not above 0, not finite or there twice";
+            let instead = format!("correct the array `{name}`, or leave it out of the file");
+            return Err(Error::malformed(error, instead).for_key(name.as_str()));
+        }
+        match &found {
+            None => found = Some((name, centres)),
+            Some((first, own)) => {
+                let agree = |(a, b): (&f64, &f64)| (a - b).abs() <= ROUNDED * a;
+                if !own.iter().zip(&centres).all(agree) {
+                    let error = format!("the bands are elsewhere by this list than by `{first}`");
+                    let instead = "keep the list that is true";
+                    return Err(Error::malformed(error, instead).for_key(name.as_str()));
+                }
+            }
+        }
+    }
+    let unused = found.is_none() && !lists.is_empty();
+    Ok((found.map(|(_, centres)| centres), unused))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_list_is_told_by_its_name() {
+        use SpectralUnit::{Micrometre, Nanometre, PerCentimetre};
+        for (name, unit) in [
+            ("wavelengths_um", Some(Some(Micrometre))),
+            ("Wavelength (nm)", Some(Some(Nanometre))),
+            ("wavelength_\u{3bc}m", Some(Some(Micrometre))),
+            ("wavenumber_cm1", Some(Some(PerCentimetre))),
+            ("wavenumbers", Some(None)),
+            ("wavelength", Some(None)),
+            ("wavelength_cm1", Some(None)),
+            ("wavelength_error", None),
+            ("cube", None),
+        ] {
+            assert_eq!(unit_of(name), unit, "{name}");
+        }
+    }
+
+    #[test]
+    fn lists_agree_and_have_numbers_of_bands() {
+        let list = |name: &str, values: &[f64]| (name.to_owned(), values.to_vec());
+        let (um, cm1) = (list("wavelength_um", &[8.0, 10.0]), list("wavenumber_cm1", &[1250.0, 1000.0]));
+        assert_eq!(centres(&[um.clone(), cm1]), Ok((Some(vec![1250.0, 1000.0]), false)));
+        assert_eq!(centres(&[list("wavelength", &[8.0, 10.0])]), Ok((None, true)));
+        assert_eq!(centres(&[]), Ok((None, false)));
+        let message = |lists: &[(String, Vec<f64>)]| centres(lists).unwrap_err().to_string();
+        let other = message(&[um, list("wavenumber_cm1", &[1250.0, 1002.0])]);
+        assert!(other.starts_with("wavenumber_cm1: ") && other.contains("`wavelength_um`"), "{other}");
+        for bad in [[8.0, 8.0], [0.0, 8.0], [f64::NAN, 8.0], [-1.0, 8.0]] {
+            assert!(message(&[list("wavelength_um", &bad)]).contains("no bands"));
+        }
+    }
+}

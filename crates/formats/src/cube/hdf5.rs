@@ -1,0 +1,151 @@
+//! HDF5 files, NetCDF-4 and MATLAB files of version 7.3 among them.
+//!
+//! What is not packed stands in the file as it is, and is read by rows at its place; packed chunks are read by blocks of rows
+//! where rows are the first dimension, else whole. MATLAB has its first index run fastest, which makes it the last dimension.
+//!
+//! Sources: The HDF Group, HDF5 File Format Specification 3.0; NetCDF Users Guide, Attribute Conventions.
+
+mod array;
+mod dimensions;
+mod packed;
+mod sound;
+
+use self::array::{Array, listed, wavelengths};
+use self::sound::{damaged, sound};
+use super::arrange;
+use super::axes::Axes;
+use super::found::{Found, Opened};
+use super::raw::Raw;
+use hadar::cube::{MemoryCube, Sample, Shape};
+use hadar::error::{Error, Result};
+use hdf5_pure::Layout;
+use std::fs::File;
+use std::path::Path;
+
+/// Most that one byte of a packed chunk can stand for (RFC 1951: 258 bytes in two bits).
+const MAX_INFLATION: u64 = 1032;
+
+/// Opens a file whose first bytes have been seen.
+pub(super) fn open(file: File, path: &Path, name: Option<&str>, axes: Option<Axes>) -> Result<Opened> {
+    let len = file.metadata().map_err(damaged)?.len();
+    let source = sound(|| hdf5_pure::File::open_streaming(path).map_err(damaged))?;
+    let (name, array) = sound(|| chosen(&source, name))?;
+    let axes = axes.or_else(|| sound(|| Ok(dimensions::axes(&source, &name, &array))).ok().flatten());
+    let opened = of_array(file, path, len, array, axes).map_err(|error| error.for_key(name.clone()))?;
+    let bands = opened.found.shape.bands();
+    let (centres_cm1, axis_without_unit) = sound(|| Ok(wavelengths(&source, &name, bands)))?;
+    let found = Found { variable: Some(name), centres_cm1, axis_without_unit, ..opened.found };
+    Ok(Opened { found, ..opened })
+}
+
+/// The array of this name, or the only one that can be meant.
+fn chosen(source: &hdf5_pure::File, name: Option<&str>) -> Result<(String, Array)> {
+    if let Some(name) = name {
+        let Ok(dataset) = source.dataset(name) else {
+            let names: Vec<String> = listed(source).into_iter().map(|(name, _)| name).collect();
+            return Err(Error::unknown_name("variable", name, names.iter().map(String::as_str)));
+        };
+        let array = Array::of(dataset).and_then(Array::with_values);
+        return array.map(|array| (name.to_owned(), array)).map_err(|error| error.for_key(name));
+    }
+    let arrays: Vec<(String, Array)> = listed(source)
+        .into_iter()
+        .filter_map(|(name, dataset)| Array::of(dataset).ok().map(|array| (name, array)))
+        .filter(|(_, array)| matches!(array.sides.len(), 2 | 3))
+        .collect();
+    let deep = arrays.iter().filter(|(_, array)| array.sides.len() == 3).count();
+    let shown: Vec<String> = arrays
+        .iter()
+        .map(|(name, array)| {
+            let sides: Vec<String> = array.sides.iter().map(usize::to_string).collect();
+            format!("`{name}` ({} {})", sides.join(" x "), array.stored.name())
+        })
+        .collect();
+    let several = arrays.len();
+    let mut meant = arrays.into_iter().filter(|(_, array)| deep == 0 || array.sides.len() == 3);
+    match (meant.next(), meant.next()) {
+        (Some((name, array)), None) => {
+            let array = array.with_values().map_err(|error| error.for_key(name.clone()))?;
+            Ok((name, array))
+        }
+        (None, _) => Err(Error::malformed(
+            "the file has no array of numbers in two or three dimensions",
+            "write the cube as one of floats or whole numbers",
+        )),
+        _ => Err(Error::malformed(
+            format!("the file has {several} arrays that may be meant: {}", shown.join(", ")),
+            "name one of them as the variable",
+        )),
+    }
+}
+
+fn of_array(file: File, path: &Path, len: u64, array: Array, axes: Option<Axes>) -> Result<Opened> {
+    let mut sides = array.sides.clone();
+    if array.matlab && axes.is_some() && sides.len() == 2 {
+        sides.push(1);
+    }
+    let said = axes.unwrap_or_default();
+    let shape = said.shape(&sides)?;
+    let order = if array.matlab { said.reversed() } else { said };
+    let most = len.saturating_mul(MAX_INFLATION);
+    let fits =
+        |samples: u64| samples.checked_mul(array.stored.size() as u64).is_some_and(|bytes| bytes <= most);
+    let chunk = match sound(|| array.dataset.layout().map_err(damaged))? {
+        Layout::Contiguous { address: Some(start), .. } => {
+            if start.saturating_add(Raw::bytes(shape, array.stored)) > len {
+                return Err(damaged("it ends within the array"));
+            }
+            let found = found(&array, shape, axes, &sides);
+            let Array { stored, little_endian, values, .. } = array;
+            let cube =
+                Raw { file, path: path.to_owned(), shape, start, order, stored, little_endian, values }
+                    .cube();
+            return Ok(Opened { found, cube });
+        }
+        Layout::Contiguous { address: None, .. } => return Err(damaged("the array was never written")),
+        Layout::Chunked { chunk_shape, .. } => {
+            if !fits(chunk_shape.iter().try_fold(1_u64, |n, side| n.checked_mul(*side)).unwrap_or(u64::MAX)) {
+                return Err(damaged("a chunk announces more than the file can stand for"));
+            }
+            chunk_shape.first().copied().unwrap_or(1)
+        }
+        _ => 1,
+    };
+    if !fits(shape.len() as u64) {
+        return Err(damaged("the array announces more than the file can stand for"));
+    }
+    let mut found = found(&array, shape, axes, &sides);
+    let cube = if order.place_of_rows() == 0 {
+        packed::cube(array, shape, order, usize::try_from(chunk).unwrap_or(usize::MAX))
+    } else if array.stored.is_double() {
+        found.memory_bytes = Some(8 * shape.len() as u64);
+        whole::<f64>(&array, shape, order)?.into()
+    } else {
+        found.memory_bytes = Some(4 * shape.len() as u64);
+        whole::<f32>(&array, shape, order)?.into()
+    };
+    Ok(Opened { found, cube })
+}
+
+fn found(array: &Array, shape: Shape, axes: Option<Axes>, sides: &[usize]) -> Found {
+    let format = if array.matlab { "MATLAB 7.3" } else { "HDF5" };
+    let unit = array.unit.clone();
+    let mut found = Found { axes, unit, ..Found::array(format, shape, array.stored.name(), sides) };
+    array.values.iter().for_each(|values| values.tell(&mut found));
+    found
+}
+
+fn whole<S: Sample>(array: &Array, shape: Shape, order: Axes) -> Result<MemoryCube<S>> {
+    let [_, middle, inner] = order.sides(shape);
+    let mut first = 0;
+    let mut samples = arrange::whole(shape, order, |out: &mut [S]| {
+        let count = out.len() / (middle * inner);
+        array.slices(first, count, out)?;
+        first += count;
+        Ok(())
+    })?;
+    if let Some(values) = &array.values {
+        values.of_stored(&mut samples, shape.bands());
+    }
+    MemoryCube::new(shape, samples)
+}

@@ -1,0 +1,84 @@
+//! What the samples of a cube are by the unit that its file states: counts, or something else that looks like them.
+
+/// What samples are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SampleUnit {
+    /// Photons or photoelectrons, counted; also what is said to have no unit.
+    Counts,
+    /// Temperatures.
+    Temperature,
+    /// Shares of light, such as reflectance and emissivity.
+    Share,
+    /// Something else that may be in proportion to counts, such as radiance or digital numbers.
+    Other,
+}
+
+/// Spellings in lower case, without brackets, blanks, underscores and hyphens.
+const COUNTS: &[&str] = &[
+    "",
+    "count",
+    "counts",
+    "photon",
+    "photons",
+    "photoncount",
+    "photoncounts",
+    "electron",
+    "electrons",
+    "photoelectron",
+    "photoelectrons",
+    "e",
+    "none",
+    "unitless",
+    "dimensionless",
+    "unknown",
+    "n/a",
+];
+const TEMPERATURES: &[&str] =
+    &["k", "mk", "ck", "degk", "°k", "c", "degc", "degreec", "degreesc", "°c", "℃", "f", "degf", "°f"];
+/// What a word holds that names one.
+const TEMPERATURE_WORDS: &[&str] = &["kelvin", "celsius", "centigrade", "fahrenheit", "temperature"];
+const SHARE_WORDS: &[&str] = &[
+    "reflectance",
+    "reflectivity",
+    "emissivity",
+    "emittance",
+    "albedo",
+    "transmittance",
+    "absorbance",
+    "percent",
+    "%",
+];
+
+impl SampleUnit {
+    /// What samples in a unit are, spelt as files spell it: `K`, `degrees_Celsius`, `0.01 K`, `photons`, `W m-2 sr-1 um-1`, …
+    ///
+    /// ```
+    /// use hadar_formats::cube::SampleUnit;
+    /// assert_eq!(SampleUnit::spelt("Photon counts"), SampleUnit::Counts);
+    /// assert_eq!(SampleUnit::spelt("0.01 K"), SampleUnit::Temperature);
+    /// assert_eq!(SampleUnit::spelt("toa_brightness_temperature"), SampleUnit::Temperature);
+    /// assert_eq!(SampleUnit::spelt("%"), SampleUnit::Share);
+    /// assert_eq!(SampleUnit::spelt("W m-2 sr-1 um-1"), SampleUnit::Other);
+    /// assert_eq!(SampleUnit::spelt("DN"), SampleUnit::Other);
+    /// ```
+    #[must_use]
+    pub fn spelt(text: &str) -> Self {
+        let lower = text.to_lowercase();
+        let parts = lower.split(|char: char| char.is_whitespace() || "_-()[]{}".contains(char));
+        // A factor before the unit changes nothing of what it is.
+        let is_factor = |part: &&str| part.parse::<f64>().is_ok() || matches!(*part, "*" | "x" | "·");
+        let parts: Vec<&str> = parts.filter(|part| !part.is_empty()).collect();
+        let factors = parts.iter().take_while(|part| is_factor(part)).count();
+        let unit = parts.get(factors..).unwrap_or_default().concat();
+        let holds = |words: &[&str]| words.iter().any(|word| unit.contains(word));
+        if TEMPERATURES.contains(&unit.as_str()) || holds(TEMPERATURE_WORDS) {
+            Self::Temperature
+        } else if holds(SHARE_WORDS) {
+            Self::Share
+        } else if factors == 0 && COUNTS.contains(&unit.as_str()) || parts == ["1"] {
+            Self::Counts
+        } else {
+            Self::Other
+        }
+    }
+}
