@@ -24,5 +24,5 @@ pub mod warning;
 pub mod words;
 
 #[cfg(doctest)]
-#[doc = include_str!("../../../README.md")]
-struct Readme;
+#[doc = include_str!("../../../docs/src/reference/programs.md")]
+struct Guide;

@@ -13,7 +13,7 @@ use serde_json::Value;
 const TOPICS: [&str; 9] =
     ["planck", "signal", "counts", "local", "nearest", "probability", "requirement", "stop", "identify"];
 
-/// The fast path is within every tolerance, and by far: in a fifth of it, as the README says.
+/// The fast path is within a fifth of every tolerance, as docs/src/reference/accuracy.md says.
 #[test]
 fn the_product_meets_every_vector() {
     let mut wrong = Vec::new();
