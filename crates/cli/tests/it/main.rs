@@ -32,6 +32,7 @@ mod messages;
 mod nearest;
 mod own_cameras;
 mod packs;
+mod papers;
 mod range;
 mod render;
 mod reproduce;
