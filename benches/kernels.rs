@@ -14,7 +14,7 @@ use hadar::ranging::derivative::Derivative;
 use hadar::ranging::information::{Cell, Request, Window, information};
 use hadar::ranging::noise::{Joined, NoiseVariance};
 use hadar::scene::{EnvironmentObject, State, Surroundings};
-use hadar::simulate::draws::{Draws, generator};
+use hadar_simulate::draws::{Draws, generator};
 use hadar::spectrum::Bands;
 use hadar::statistics::Statistics;
 use std::hint::black_box;

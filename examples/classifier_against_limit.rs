@@ -10,9 +10,9 @@ use hadar::identifiability::detection::probability;
 use hadar::identifiability::nearest::{NearestSolver, StateRange};
 use hadar::material::Library;
 use hadar::scene::{EnvironmentObject, Surroundings};
-use hadar::simulate::classifier::Method;
-use hadar::simulate::draws::Draws;
-use hadar::simulate::experiment::{Design, Experiment};
+use hadar_simulate::classifier::Method;
+use hadar_simulate::draws::Draws;
+use hadar_simulate::experiment::{Design, Experiment};
 use hadar::spectrum::Bands;
 use hadar::statistics::Statistics;
 

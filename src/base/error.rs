@@ -307,7 +307,7 @@ pub mod check {
     ///
     /// # Errors
     /// That of `one`.
-    pub(crate) fn each(
+    pub fn each(
         values: &[f64],
         good: impl Fn(f64) -> bool,
         one: impl Fn(f64) -> Result<f64>,

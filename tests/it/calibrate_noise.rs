@@ -1,8 +1,8 @@
 //! Photon transfer on twins whose noise is known.
 
-use hadar::calibrate::{Asked, Line, Transfer, photon_transfer};
+use hadar_estimate::calibrate::{Asked, Line, Transfer, photon_transfer};
 use hadar::cube::{MemoryCube, Rows, Shape};
-use hadar::simulate::draws::{Draws, generator};
+use hadar_simulate::draws::{Draws, generator};
 use hadar::statistics::Statistics;
 use rand::RngExt;
 

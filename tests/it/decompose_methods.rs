@@ -1,7 +1,7 @@
 //! The methods that a decomposition is compared with, against closed forms, and errors of the inverse functions against drawn counts.
 
 use hadar::cube::{Cube, MemoryCube, Shape};
-use hadar::decompose::{
+use hadar_estimate::decompose::{
     Light, Maps, Method, NO_MATERIAL, Options, Setting, decompose_by, flag, inverse_error,
 };
 use hadar::planck::{brightness_temperature, photon_radiance};

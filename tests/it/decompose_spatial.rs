@@ -1,7 +1,7 @@
 //! Priors over the image held against the plain estimator where it is known what is there.
 
 use hadar::cube::{Cube, MemoryCube, Shape};
-use hadar::decompose::{Light, Maps, Options, Setting, SpatialPrior, decompose, flag};
+use hadar_estimate::decompose::{Light, Maps, Options, Setting, SpatialPrior, decompose, flag};
 use hadar::planck::photon_radiance;
 use hadar::spectrum::Bands;
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};

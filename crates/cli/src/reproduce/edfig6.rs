@@ -5,7 +5,7 @@ use super::order::{Figures, Made, Order, Progress};
 use super::scene;
 use hadar::demand::Skipping;
 use hadar::error::Result;
-use hadar::simulate::sequential::Plan;
+use hadar_simulate::sequential::Plan;
 use hadar_report::identify;
 use hadar_study::scenario::examples;
 use hadar_study::study::{Answers, Asked, Trial, Watch};

@@ -7,7 +7,7 @@ use super::ledger::{Line, Verdict};
 use super::night::Night;
 use super::order::{Figures, Made, Order, Progress};
 use hadar::error::Result;
-use hadar::segmentation::{Agreement, Rule};
+use hadar_estimate::segmentation::{Agreement, Rule};
 use hadar::words::{share, significant};
 use hadar_report::bundle::Bundle;
 use hadar_report::figures::Plot;

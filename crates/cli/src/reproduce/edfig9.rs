@@ -7,7 +7,7 @@ use super::ledger::{Line, Verdict};
 use super::order::{Effort, Figures, Made, Order, Progress};
 use super::scene;
 use hadar::error::Result;
-use hadar::simulate::efficiency::{Errors, Verdict as Standing};
+use hadar_simulate::efficiency::{Errors, Verdict as Standing};
 use hadar_report::bundle::Bundle;
 use hadar_report::figures::Plot;
 use hadar_report::simulate::thermometry;

@@ -10,7 +10,7 @@ use hadar::ranging::derivative::Derivative;
 use hadar::ranging::information::{Cell, Request, Window, information};
 use hadar::ranging::noise::{Joined, NoiseVariance};
 use hadar::ranging::texture::{global_entropy, local_entropy, standard_deviation};
-use hadar::simulate::draws::{Draws, generator};
+use hadar_simulate::draws::{Draws, generator};
 use hadar::statistics::Statistics;
 use hadar::words::{length, significant};
 use hadar_report::bundle::Bundle;

@@ -10,7 +10,7 @@
 use super::ledger::{Line, Verdict};
 use super::order::{Figures, Made, Order};
 use super::pixels::{Street, loss, rms};
-use hadar::decompose::Method;
+use hadar_estimate::decompose::Method;
 use hadar::error::Result;
 use hadar::material::Library;
 use hadar_report::bundle::Bundle;

@@ -9,7 +9,7 @@ use super::inverse_trade_off;
 use super::ledger::{Line, Verdict};
 use super::order::{Figures, Made, Order};
 use super::pixels::{Pixel, Street, loss, rms};
-use hadar::decompose::{Maps, Method, NO_MATERIAL};
+use hadar_estimate::decompose::{Maps, Method, NO_MATERIAL};
 use hadar::error::Result;
 use hadar::material::Library;
 use hadar_report::bundle::Bundle;

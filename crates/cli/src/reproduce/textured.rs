@@ -4,7 +4,7 @@
 //! rendering in which everything but the sky is at 3 K and sends nothing, scatterings included.
 
 use hadar::cube::{Cube, MemoryCube, Shape};
-use hadar::decompose::{Distilled, Light, Maps, NO_MATERIAL, Options, Setting, Sky, decompose, distil};
+use hadar_estimate::decompose::{Distilled, Light, Maps, NO_MATERIAL, Options, Setting, Sky, decompose, distil};
 use hadar::error::{Error, Result};
 use hadar::material::Library;
 use hadar::planck::{photon_radiance, photon_radiance_slope};

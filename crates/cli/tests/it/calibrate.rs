@@ -3,7 +3,7 @@
 use crate::support::folder::Folder;
 use hadar::cube::{Cube, Shape, write_npy};
 use hadar::planck::photon_radiance;
-use hadar::simulate::draws::{Draws, generator};
+use hadar_simulate::draws::{Draws, generator};
 use hadar::statistics::Statistics;
 use rand::RngExt;
 

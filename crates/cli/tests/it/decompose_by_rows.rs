@@ -3,7 +3,7 @@
 use crate::decompose::{BANDS, SCENARIO, emissivity, sky, wavenumber, with};
 use crate::support::folder::Folder;
 use hadar::cube::{Shape, npy_map, write_npy};
-use hadar::decompose::Method;
+use hadar_estimate::decompose::Method;
 use hadar::demand::Skipping;
 use hadar::material::Library;
 use hadar::planck::photon_radiance;

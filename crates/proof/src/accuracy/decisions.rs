@@ -12,8 +12,8 @@ use hadar::identifiability::detection;
 use hadar::identifiability::lattice::{LatticeDetector, LatticeMesh};
 use hadar::identifiability::nearest::{NearestSolver, StateRange};
 use hadar::scene::{EnvironmentObject, Surroundings};
-use hadar::simulate::decision::DecisionScene;
-use hadar::simulate::sequential::Plan;
+use hadar_simulate::decision::DecisionScene;
+use hadar_simulate::sequential::Plan;
 use hadar::spectrum::Bands;
 use hadar::statistics::Statistics;
 

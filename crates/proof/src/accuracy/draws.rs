@@ -7,7 +7,7 @@ use super::chart::{Chart, Measured};
 use super::timing::{Budget, seconds_of};
 use super::{Item, Order};
 use hadar::error::Result;
-use hadar::simulate::draws::{Draws, generator};
+use hadar_simulate::draws::{Draws, generator};
 use hadar::statistics::Statistics;
 
 const DRAWS: usize = 400_000;

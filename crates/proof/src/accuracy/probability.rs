@@ -11,8 +11,8 @@ use hadar::error::Result;
 use hadar::identifiability::bracket::KnownStates;
 use hadar::identifiability::detection;
 use hadar::identifiability::ratio::{RatioLaw, Route, State};
-use hadar::simulate::draws::{Draws, generator};
-use hadar::simulate::ratio::RatioDraws;
+use hadar_simulate::draws::{Draws, generator};
+use hadar_simulate::ratio::RatioDraws;
 use hadar::statistics::Statistics;
 
 const MEANS: [f64; 2] = [150.3, 121.7];

@@ -5,7 +5,7 @@ use crate::figures::Plot;
 use crate::plot::{Axis, LineFigure, Series};
 use crate::table::{Table, number};
 use crate::text::footing::{ASSUMPTIONS, read_as, warnings};
-use hadar::calibrate::Line;
+use hadar_estimate::calibrate::Line;
 use hadar::error::Result;
 use hadar::units::Dimension;
 use hadar::words::{significant, whole};

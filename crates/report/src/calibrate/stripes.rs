@@ -6,7 +6,7 @@ use crate::figures::Plot;
 use crate::plot::{Axis, Picture, Pictures};
 use crate::table::{Table, number};
 use crate::text::footing::{ASSUMPTIONS, read_as, warnings};
-use hadar::calibrate::Why;
+use hadar_estimate::calibrate::Why;
 use hadar::cube::npy_map;
 use hadar::error::Result;
 use hadar::words::{significant, whole};

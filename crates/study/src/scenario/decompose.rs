@@ -12,7 +12,7 @@ pub use category::{CategorySpec, SegmentationSpec};
 
 use super::{BandsSpec, CameraSpec, ClassSpec, MaterialRef, Source};
 use hadar::cube::Axes;
-use hadar::decompose::SpatialPrior;
+use hadar_estimate::decompose::SpatialPrior;
 use hadar::error::Place;
 use std::collections::BTreeMap;
 use std::path::PathBuf;

@@ -23,7 +23,7 @@ use self::results::{Counted, rows, summary};
 use self::worth::Held;
 use super::{Warning, memory};
 use hadar::cube::Shape;
-use hadar::decompose::{LibraryError, Maps, Method, Options, Setting, decompose_by_rows, widen};
+use hadar_estimate::decompose::{LibraryError, Maps, Method, Options, Setting, decompose_by_rows, widen};
 use hadar::demand::Skipping;
 use hadar::error::{Error, Result};
 use std::sync::Arc;

@@ -7,7 +7,7 @@ use super::{Warning, bands, camera, camera_bands};
 use crate::scenario::decompose::{CubeUnit, HeatCube, LightSource};
 use crate::scenario::{BandSource, BandsSpec, CameraSpec, MaterialRef, Source};
 use hadar::cube::{Cube, Found, Rows, Sample};
-use hadar::decompose::Light;
+use hadar_estimate::decompose::Light;
 use hadar::error::{Error, Result};
 use hadar::grid::{Grid, READ_SPECTRUM, text_of_file};
 use hadar::instrument::View;

@@ -36,7 +36,7 @@ use hadar::ranging::depth::StereoGeometry;
 use hadar::ranging::derivative::Derivative;
 use hadar::ranging::information::{Cell, InformationMap, Request, information};
 use hadar::ranging::noise::NoiseVariance;
-use hadar::render::{Part, StereoPair};
+use hadar_simulate::render::{Part, StereoPair};
 use hadar::spectrum::Bands;
 use rayon::prelude::*;
 

@@ -9,7 +9,7 @@ use hadar::error::{Error, Place, Result};
 use hadar::instrument::Camera;
 use hadar::material::{Library, Material};
 use hadar::planck;
-use hadar::render::{
+use hadar_simulate::render::{
     Body, Bump, Emissivity, Object, Options, Rig, Road, Scene, StreetSpec, Surface, Texture, Uneven,
 };
 use hadar::spectrum::Bands;

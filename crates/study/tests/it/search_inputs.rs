@@ -6,7 +6,7 @@ use hadar::identifiability::multi::{LibraryScene, LocalMatrix};
 use hadar::identifiability::nearest::{NearestSolver, StateRange};
 use hadar::material::Library;
 use hadar::scene::{EnvironmentObject, State, Surroundings};
-use hadar::simulate::sequential::Plan;
+use hadar_simulate::sequential::Plan;
 use hadar::spectrum::Bands;
 use hadar_study::scenario::Scenario;
 use hadar_study::study::{Law, Study, Trial};

@@ -3,7 +3,7 @@
 use super::super::order::Order;
 use super::super::textured::{EXPOSURE, Textured, median, window_sums};
 use hadar::cube::{MemoryCube, Shape};
-use hadar::decompose::{Maps, NO_MATERIAL, TextureInformation, texture_information};
+use hadar_estimate::decompose::{Maps, NO_MATERIAL, TextureInformation, texture_information};
 use hadar::error::Result;
 use hadar::ranging::information::Window;
 use hadar::ranging::levels::share_left;

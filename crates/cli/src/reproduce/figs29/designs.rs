@@ -1,6 +1,6 @@
 //! Other temperatures and filters, all of them in the same time.
 
-use hadar::calibrate::twin::{FILTERS, FilterWheelTwin};
+use hadar_estimate::calibrate::twin::{FILTERS, FilterWheelTwin};
 use hadar::calibration::design::Design;
 use hadar::calibration::determined::Determined;
 use hadar::calibration::filter_wheel::FilterWheel;

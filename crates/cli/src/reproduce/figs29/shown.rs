@@ -1,9 +1,9 @@
 //! All that is shown of the response's calibration.
 
 use super::designs::Choice;
-use hadar::calibrate::coverage::FilterWheelCoverage;
-use hadar::calibrate::response::Response;
-use hadar::calibrate::twin::FilterWheelTwin;
+use hadar_estimate::calibrate::coverage::FilterWheelCoverage;
+use hadar_estimate::calibrate::response::Response;
+use hadar_estimate::calibrate::twin::FilterWheelTwin;
 use hadar::calibration::determined::Determined;
 
 /// Pixels about the centre that a reading is the mean of.

@@ -13,7 +13,7 @@ use crate::reproduce::order::{Effort, Order, Progress};
 use decided::{HALF_WIDTH, Line, Materials, line};
 use hadar::error::Result;
 use hadar::material::Library;
-use hadar::simulate::sequential::Plan;
+use hadar_simulate::sequential::Plan;
 use hadar::spectrum::Bands;
 use hadar_report::bundle::Bundle;
 use three_bands::lattice_line;

@@ -9,8 +9,8 @@ mod shown;
 mod text;
 
 use crate::reproduce::order::{Effort, Order, Progress};
-use hadar::calibrate::coverage::{Experiment, spectrometer};
-use hadar::calibrate::twin::SpectrometerTwin;
+use hadar_estimate::calibrate::coverage::{Experiment, spectrometer};
+use hadar_estimate::calibrate::twin::SpectrometerTwin;
 use hadar::calibration::choice::{Wanted, WantedSurface, best_blackbodies, emissivity_error, radiance_error};
 use hadar::error::Result;
 use hadar::material::Library;

@@ -1,6 +1,6 @@
 //! Parts of a study's page: tables, intervals in plots, errors.
 
-use hadar::simulate::sequential::Interval;
+use hadar_simulate::sequential::Interval;
 use hadar_report::plot::Series;
 
 /// A table in Markdown.

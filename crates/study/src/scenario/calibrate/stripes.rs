@@ -9,7 +9,7 @@ use super::super::section::{Entry, Section};
 use super::super::source::Source;
 use super::super::written::Written;
 use super::frames::Frames;
-use hadar::calibrate::{Axis, Sought};
+use hadar_estimate::calibrate::{Axis, Sought};
 use hadar::error::{Error, Result};
 use serde::{Serialize, Serializer};
 use std::path::Path;

@@ -3,7 +3,7 @@
 use super::super::entries::Entries;
 use super::super::section::Entry;
 use super::{Brightness, VisionSpec};
-use hadar::decompose::SpatialPrior;
+use hadar_estimate::decompose::SpatialPrior;
 use hadar::error::{Error, Result};
 use hadar::units::Dimension;
 

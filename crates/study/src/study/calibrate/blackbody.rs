@@ -8,7 +8,7 @@ use crate::scenario::calibrate::blackbodies::BlackbodySpec;
 use crate::scenario::calibrate::blackbodies::CubeFile;
 use crate::study::cube_bands::InOrder;
 use crate::study::{Warning, bands};
-use hadar::calibrate::spectrometer::Calibration;
+use hadar_estimate::calibrate::spectrometer::Calibration;
 use hadar::calibration::blackbody::{Blackbodies, Parts};
 use hadar::cube::Cube;
 use hadar::demand::{Thing, Work};

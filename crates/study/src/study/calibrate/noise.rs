@@ -3,7 +3,7 @@
 use super::opened::Measured;
 use crate::scenario::calibrate::NoiseScenario;
 use crate::study::Warning;
-use hadar::calibrate::{Asked, Line, Transfer, photon_transfer};
+use hadar_estimate::calibrate::{Asked, Line, Transfer, photon_transfer};
 use hadar::cube::{Cube, Found, Rows, Shape};
 use hadar::demand::{Thing, Work};
 use hadar::error::{Error, Result};

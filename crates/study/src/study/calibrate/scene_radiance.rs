@@ -5,7 +5,7 @@
 
 use super::whole::{at, beside, check_memory, pairs, shown};
 use crate::scenario::Source;
-use hadar::calibrate::spectrometer::Calibration;
+use hadar_estimate::calibrate::spectrometer::Calibration;
 use hadar::calibration::blackbody::Blackbodies;
 use hadar::cube::{Cube, Shape};
 use hadar::error::{Error, Result};

@@ -13,7 +13,7 @@ use super::kept::Block;
 use crate::scenario::MaterialRef;
 use crate::scenario::decompose::LightSource;
 use hadar::cube::{Cube, Rows, Sample};
-use hadar::decompose::{Light, Maps, Residue, Setting, Sky, distil};
+use hadar_estimate::decompose::{Light, Maps, Residue, Setting, Sky, distil};
 use hadar::error::Result;
 use rayon::prelude::*;
 use serde::Serialize;

@@ -8,7 +8,7 @@
 
 use super::DecomposeStudy;
 use super::truth::{There, Truth};
-use hadar::decompose::{Light, Maps, Method, flag};
+use hadar_estimate::decompose::{Light, Maps, Method, flag};
 use hadar::error::Result;
 use hadar::fisher::{Counting, Nuisance, Unknowns};
 use hadar::identifiability::detection;

@@ -3,7 +3,7 @@
 use crate::study::Study;
 use hadar::error::Result;
 use hadar::fisher::Counting;
-use hadar::simulate::draws::{Draws, GENERATOR, generator};
+use hadar_simulate::draws::{Draws, GENERATOR, generator};
 use hadar::statistics::Statistics;
 
 /// One reading of every material in the target's state.

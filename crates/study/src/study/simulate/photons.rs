@@ -9,7 +9,7 @@ use hadar::fisher::Counting;
 use hadar::instrument::{Camera, gamma_per_band};
 use hadar::planck;
 use hadar::policy;
-use hadar::simulate::draws::LARGEST_MEAN;
+use hadar_simulate::draws::LARGEST_MEAN;
 use hadar::statistics::Statistics;
 
 /// Fewest photons of an experiment, and most experiments of a sweep.

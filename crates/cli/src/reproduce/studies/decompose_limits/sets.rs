@@ -1,7 +1,7 @@
 //! Pixels and their nearest states of the other materials: how often the material is named, and how often that can be.
 
 use crate::reproduce::pixels::{Pixel, Street};
-use hadar::decompose::{Method, NO_MATERIAL};
+use hadar_estimate::decompose::{Method, NO_MATERIAL};
 use hadar::error::Result;
 use hadar::identifiability::detection;
 use hadar::identifiability::nearest::NearestSolver;

@@ -1,7 +1,7 @@
 //! Temperatures of random pixels against their Cramér–Rao bound.
 
 use crate::reproduce::pixels::{Street, rms};
-use hadar::decompose::{Method, flag};
+use hadar_estimate::decompose::{Method, flag};
 use hadar::error::Result;
 
 const PIXELS: usize = 2000;

@@ -4,7 +4,7 @@ use hadar::error::{Error, Result};
 use hadar::fisher::emissivity::Smoothness;
 use hadar::material::Library;
 use hadar::planck::photon_radiance;
-use hadar::simulate::draws::{Draws, generator};
+use hadar_simulate::draws::{Draws, generator};
 use hadar::statistics::Statistics;
 
 /// 13 to 8 µm, cm⁻¹.

@@ -9,7 +9,7 @@ use hadar::identifiability::local::LocalSolver;
 use hadar::identifiability::nearest::NearestSolver;
 use hadar::material::Library;
 use hadar::scene::State;
-use hadar::simulate::sequential::Plan;
+use hadar_simulate::sequential::Plan;
 use hadar::statistics::Statistics;
 
 /// Half of the 95 % interval of every simulated probability.

@@ -1,6 +1,6 @@
 //! All that is shown of the spectrometer's calibration.
 
-use hadar::calibrate::coverage::SpectrometerCoverage;
+use hadar_estimate::calibrate::coverage::SpectrometerCoverage;
 use hadar::calibration::choice::{EmissivityError, RadianceError};
 use hadar::error::Result;
 

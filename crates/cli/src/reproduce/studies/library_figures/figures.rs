@@ -4,7 +4,7 @@ use super::pairs::{Decided, Pair};
 use crate::reproduce::studies::page::root_mean_square;
 use hadar::error::Result;
 use hadar::identifiability::detection;
-use hadar::simulate::sequential::Interval;
+use hadar_simulate::sequential::Interval;
 use hadar_report::table::Table;
 
 /// Off by more than this counts.

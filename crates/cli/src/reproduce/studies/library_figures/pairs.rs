@@ -4,7 +4,7 @@ use crate::reproduce::studies::paper_scene::{Distances, PaperScene};
 use hadar::error::Result;
 use hadar::identifiability::detection;
 use hadar::material::Library;
-use hadar::simulate::sequential::{Interval, Plan};
+use hadar_simulate::sequential::{Interval, Plan};
 use hadar::statistics::Statistics;
 
 /// Two materials, by their place in the library, and the distances between them.

@@ -7,7 +7,7 @@ use hadar::identifiability::bayes::{BayesianBound, Distances, Pair};
 use hadar::identifiability::detection;
 use hadar::identifiability::nearest::StateRange;
 use hadar::material::Library;
-use hadar::simulate::sequential::Plan;
+use hadar_simulate::sequential::Plan;
 use hadar::spectrum::Bands;
 use hadar::statistics::Statistics;
 

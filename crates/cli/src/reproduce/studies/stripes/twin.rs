@@ -3,7 +3,7 @@
 use hadar::cube::{MemoryCube, Shape};
 use hadar::error::Result;
 use hadar::planck::photon_radiance;
-use hadar::simulate::draws::{Draws, generator};
+use hadar_simulate::draws::{Draws, generator};
 use hadar::statistics::Statistics;
 use rand::RngExt;
 
