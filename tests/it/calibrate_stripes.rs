@@ -1,7 +1,7 @@
 //! Stripes put into twins and taken out again.
 
-use hadar_estimate::calibrate::{Axis, Destriped, Sought, Why, find_stripes};
 use hadar::cube::{MemoryCube, Shape};
+use hadar_estimate::calibrate::{Axis, Destriped, Sought, Why, find_stripes};
 use hadar_simulate::draws::generator;
 use rand::RngExt;
 

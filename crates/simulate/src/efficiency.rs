@@ -222,7 +222,8 @@ impl Spread {
 
     fn bias_interval(&self, level: f64) -> Result<Interval> {
         let n = self.off.len() as f64;
-        let student = StudentsT::new(0.0, 1.0, n - 1.0).map_err(|_| Error::out_of_range("degrees of freedom", n - 1.0, "", "above 0: more estimates"))?;
+        let student = StudentsT::new(0.0, 1.0, n - 1.0)
+            .map_err(|_| Error::out_of_range("degrees of freedom", n - 1.0, "", "above 0: more estimates"))?;
         let reach = student.inverse_cdf(0.5 * (1.0 + level)) * self.deviation / n.sqrt();
         Ok(Interval { low: self.bias - reach, high: self.bias + reach })
     }
@@ -263,7 +264,10 @@ fn freedom(squares: &[f64], p: usize, fitted: f64) -> f64 {
 /// All means of a χ² variate over its degrees of freedom that `value` may be drawn about.
 fn around(value: f64, freedom: f64, level: f64) -> Result<Interval> {
     let tail = 0.5 * (1.0 - level);
-    Ok(Interval { low: value / chi_square_quantile(1.0 - tail, freedom)?, high: value / chi_square_quantile(tail, freedom)? })
+    Ok(Interval {
+        low: value / chi_square_quantile(1.0 - tail, freedom)?,
+        high: value / chi_square_quantile(tail, freedom)?,
+    })
 }
 
 fn mean(values: &[f64]) -> f64 {

@@ -5,9 +5,9 @@
 use super::ledger::{Line, Verdict};
 use super::order::{Figures, Made, Order};
 use super::textured::{EXPOSURE, Textured, correlation, median};
-use hadar_estimate::decompose::{Distilled, Maps};
 use hadar::error::Result;
 use hadar::words::significant;
+use hadar_estimate::decompose::{Distilled, Maps};
 use hadar_report::bundle::Bundle;
 use hadar_report::plot::{Axis, Picture};
 use hadar_report::range::picture_plot;

@@ -16,16 +16,16 @@ use super::ledger::{Line, Verdict};
 use super::order::{Figures, Made, Order};
 use super::textured::window_sums;
 use hadar::error::Result;
-use hadar_estimate::separation::k_means;
 use hadar::words::significant;
+use hadar_estimate::separation::k_means;
 use hadar_report::bundle::Bundle;
 use hadar_report::decompose::{DARKEST, Vision, brightness, saturation};
 use hadar_report::figures::Plot;
 use hadar_report::plot::{Axis, Painted, Picture};
 use hadar_report::range::picture_plot;
 use hadar_report::table::{Table, number};
-use hadar_study::study::decompose::hues_deg;
-use hadar_study::study::range::quantile;
+use hadar_study::decompose::hues_deg;
+use hadar_study::range::quantile;
 use std::path::Path;
 
 /// Segments of the thermal image in pseudo-TeX vision.

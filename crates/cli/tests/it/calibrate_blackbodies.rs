@@ -1,12 +1,12 @@
 //! `hadar calibrate blackbody` and `response` as their user runs them: files, numbers, mistakes.
 
 use crate::support::folder::Folder;
-use hadar_estimate::calibrate::twin::{FilterWheelTwin, passband};
 use hadar::cube::{Cube, Shape, write_npy};
 use hadar::planck::photon_radiance;
-use hadar_simulate::draws::{Draws, generator};
 use hadar::statistics::Statistics;
 use hadar::units::{PLANCK_J_S, SPEED_OF_LIGHT_M_S};
+use hadar_estimate::calibrate::twin::{FilterWheelTwin, passband};
+use hadar_simulate::draws::{Draws, generator};
 use std::path::Path;
 
 const SPECTROMETER: &str = r#"title = "FTIR of today"

@@ -58,8 +58,8 @@ pub fn widen(setting: &Setting<'_>, maps: &mut Maps, together: &[f64]) -> Result
 #[cfg(test)]
 mod tests {
     use super::*;
-    use hadar::cube::{Cube, MemoryCube, Shape};
     use crate::decompose::{Options, decompose};
+    use hadar::cube::{Cube, MemoryCube, Shape};
     use hadar::planck::{photon_radiance, photon_radiance_slope};
     use hadar::spectrum::Bands;
 

@@ -1,7 +1,7 @@
 //! Pixels of a cube that a library is made from: some of them, drawn evenly, so that the work does not grow with the cube.
 
-use hadar::cube::{Cube, MemoryCube, Rows, Sample as Stored, Shape};
 use crate::decompose::{Maps, Options, Setting, decompose};
+use hadar::cube::{Cube, MemoryCube, Rows, Sample as Stored, Shape};
 use hadar::error::Result;
 use hadar::random::generator;
 use rayon::prelude::*;

@@ -1,10 +1,10 @@
 use super::*;
+use crate::efficiency::{Criteria, Efficiency, Verdict};
 use hadar::atmosphere::Atmosphere;
 use hadar::fisher::precision::JointBound;
 use hadar::fisher::{Nuisance, Unknowns};
 use hadar::ranging::air::{AirScene, AirUnknowns, SmoothEmissivity};
 use hadar::scene::{EnvironmentObject, Surroundings};
-use crate::efficiency::{Criteria, Efficiency, Verdict};
 use hadar::spectrum::Bands;
 
 struct Fixture {

@@ -1,8 +1,8 @@
 //! Scores that are linear in the counts, and the scale they are trained on.
 
 use super::Judge;
-use hadar::error::{Error, Result, check};
 use crate::spectra::LabelledSpectra;
+use hadar::error::{Error, Result, check};
 
 /// Partial sums, so that products need not wait for each other.
 const LANES: usize = 8;

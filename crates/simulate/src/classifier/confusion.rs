@@ -1,10 +1,10 @@
 //! How often a classifier takes each class for each.
 
 use super::{Classifier, Judge};
-use hadar::error::{Error, Result};
 use crate::draws::Draws;
 use crate::sequential::Interval;
 use crate::spectra::{LabelledSpectra, check_laws, draw_one};
+use hadar::error::{Error, Result};
 use rayon::prelude::*;
 use std::ops::Range;
 

@@ -17,8 +17,8 @@
 
 use super::affine::{Affine, Scale};
 use super::{Classifier, Confusion, Judge, check_parts};
-use hadar::error::{Error, Result, check};
 use crate::spectra::LabelledSpectra;
+use hadar::error::{Error, Result, check};
 use nalgebra::{Cholesky, DMatrix};
 
 /// Shrinkages that are tried.

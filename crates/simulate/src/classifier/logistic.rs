@@ -12,8 +12,8 @@
 
 use super::affine::{Affine, Scale};
 use super::{Classifier, Judge, check_parts};
-use hadar::error::{Error, Result};
 use crate::spectra::LabelledSpectra;
+use hadar::error::{Error, Result};
 use nalgebra::{DMatrix, DVector};
 
 /// Most steps, and steps without gain on the validation part after which training ends.

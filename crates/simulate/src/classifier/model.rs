@@ -2,8 +2,8 @@
 
 use super::network::{Network, NetworkOptions, Settings};
 use super::{Classifier, Discriminant, Judge, Logistic, SHRINKAGES};
-use hadar::error::{Error, Result};
 use crate::spectra::LabelledSpectra;
+use hadar::error::{Error, Result};
 
 /// Ways to decide which class a spectrum is from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]

@@ -23,8 +23,8 @@ pub use trained::Network;
 pub use training::Outcome;
 
 use super::{Classifier, Judge};
-use hadar::error::{Error, Result};
 use crate::spectra::LabelledSpectra;
+use hadar::error::{Error, Result};
 use layers::{Layers, Workspace};
 use standard::Standard;
 

@@ -1,9 +1,9 @@
 //! Trained classifiers against the optimum of known classes, and against what theory says they lose.
 
 use super::*;
-use hadar::identifiability::detection;
 use crate::draws::Draws;
 use crate::spectra::Split;
+use hadar::identifiability::detection;
 use hadar::statistics::Statistics;
 
 /// Two Poisson classes in `bands` bands, half their separation being `distance` deviations; the difference changes

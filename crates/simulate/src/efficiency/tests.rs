@@ -31,8 +31,10 @@ fn quantiles_are_those_of_the_tables() {
         assert!((found / printed - 1.0).abs() < 3e-6, "{probability} {freedom}: {found}");
     }
     for probability in [0.025, 0.5, 0.9995] {
-        let (exact, many) =
-            (chi_square_quantile(probability, 1e5).unwrap(), chi_square_quantile(probability, 1e5 + 1e-6).unwrap());
+        let (exact, many) = (
+            chi_square_quantile(probability, 1e5).unwrap(),
+            chi_square_quantile(probability, 1e5 + 1e-6).unwrap(),
+        );
         assert!((exact / many - 1.0).abs() < 1e-7, "{exact} {many}");
     }
     let errors = Errors::of(&[1.0, 2.0, 3.0, 4.0, 5.0], 0.0, 0.95).unwrap();

@@ -9,11 +9,11 @@
 use super::texture::Texture;
 use super::trials::{Centre, Matches, MatchingTrials, Noisy, Run, Setup};
 use super::{Matcher, Search, StereoPair};
+use crate::efficiency::Errors;
+use crate::sequential::Interval;
 use hadar::cube::Shape;
 use hadar::error::{Error, Result};
 use hadar::ranging::noise::NoiseVariance;
-use crate::efficiency::Errors;
-use crate::sequential::Interval;
 
 /// At one disparity.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]

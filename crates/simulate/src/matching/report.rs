@@ -7,10 +7,10 @@
 
 use super::trials::{Centre, Matches};
 use super::{Failure, Match};
-use hadar::error::{Error, Result};
-use hadar::fisher::precision::JointBound;
 use crate::efficiency::{Criteria, Efficiency, Errors, ParameterEfficiency, Verdict};
 use crate::sequential::Interval;
+use hadar::error::{Error, Result};
+use hadar::fisher::precision::JointBound;
 
 /// Off by more than this, pixels, a match is an outlier.
 pub const OUTLIER: f64 = 1.0;

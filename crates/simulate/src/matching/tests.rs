@@ -8,10 +8,10 @@ use super::likelihood::{Interpolation, Likelihood};
 use super::texture::Texture;
 use super::trials::{Centre, Matches, MatchingTrials, Noisy, Run, Setup};
 use super::*;
+use crate::draws::generator;
 use hadar::cube::{Cube, MemoryCube, Shape};
 use hadar::error::Error;
 use hadar::ranging::noise::NoiseVariance;
-use crate::draws::generator;
 use rand::RngExt;
 
 fn window() -> Window {

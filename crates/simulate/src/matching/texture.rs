@@ -4,9 +4,9 @@
 //! uniform, a = c√(2/K): the root mean square contrast is c. As sampled values: what the pixel's size does to
 //! a wave is in its amplitude. A view at disparity d is N(x + d, y), d = 0 the left one.
 
+use crate::draws::generator;
 use hadar::cube::Shape;
 use hadar::error::{Error, Result, check};
-use crate::draws::generator;
 use rand::RngExt;
 use std::f64::consts::TAU;
 

@@ -1,8 +1,8 @@
 use super::*;
+use crate::efficiency::{Criteria, Efficiency, Verdict};
 use hadar::fisher::Nuisance;
 use hadar::planck::occupancy;
 use hadar::scene::EnvironmentObject;
-use crate::efficiency::{Criteria, Efficiency, Verdict};
 use hadar::units::SECOND_RADIATION_CM_K;
 
 struct Setup {

@@ -1,8 +1,8 @@
 //! Spectra standardised by mean and deviation of every band.
 
 use super::real::Real;
-use hadar::error::{Result, check};
 use crate::spectra::LabelledSpectra;
+use hadar::error::{Result, check};
 
 /// Mean of every band and the reciprocal of its deviation.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]

@@ -1,6 +1,6 @@
 use super::*;
-use hadar::planck::photon_radiance;
 use crate::render::{Emissivity, Part, StreetSpec, WallSpec, Wave};
+use hadar::planck::photon_radiance;
 
 const NU: f64 = 769.0;
 
