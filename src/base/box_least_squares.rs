@@ -1,8 +1,12 @@
-//! The step of a least-squares fit within bounds.
+//! Least squares in a box, with one limit on a sum: steps and fits of a handful of unknowns.
 //!
 //! Minimises ½ pᵀHp + gᵀp for positive definite H subject to lᵢ ≤ pᵢ ≤ uᵢ and, for a subset I, Σ_I pᵢ ≤ s, all of which
 //! p = 0 meets. Active-set method on the box; the one sum constraint by its multiplier μ ≥ 0, on which
 //! Σ_I pᵢ(μ) depends monotonically. A handful of unknowns, so everything is dense.
+//!
+//! Four solvers are kept beside it, for the reasons that their headers state with a measurement: of a box's linear model
+//! (`policy::envelope::linear`), over a polytope known by its vertices (`identifiability::nearest::proof::hull`), over
+//! mixtures of spectra (`identifiability::mixture::hull`), and of a pixel (`step` of the decomposition).
 //!
 //! Source: Nocedal and Wright, 'Numerical Optimization' (2006), section 16.5.
 
@@ -12,18 +16,18 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 const ATTEMPTS: usize = 200;
 
 /// The problem: H, g, bounds, and the members and limit of the sum constraint.
-pub(super) struct BoundedStep<'a> {
-    pub(super) hessian: &'a DMatrix<f64>,
-    pub(super) gradient: &'a DVector<f64>,
-    pub(super) lower: &'a [f64],
-    pub(super) upper: &'a [f64],
-    pub(super) summed: &'a [bool],
-    pub(super) sum_limit: f64,
+pub(crate) struct BoxLeastSquares<'a> {
+    pub(crate) hessian: &'a DMatrix<f64>,
+    pub(crate) gradient: &'a DVector<f64>,
+    pub(crate) lower: &'a [f64],
+    pub(crate) upper: &'a [f64],
+    pub(crate) summed: &'a [bool],
+    pub(crate) sum_limit: f64,
 }
 
-impl BoundedStep<'_> {
+impl BoxLeastSquares<'_> {
     /// The minimiser, or `None` if H is not positive definite.
-    pub(super) fn solve(&self) -> Option<DVector<f64>> {
+    pub(crate) fn solve(&self) -> Option<DVector<f64>> {
         let free = self.in_box(self.gradient)?;
         if self.summed_part(&free) <= self.sum_limit {
             return Some(free);
@@ -162,8 +166,14 @@ mod tests {
         let hessian = DMatrix::from_row_slice(2, 2, &[1.0, 0.5, 0.5, 2.0]);
         let gradient = DVector::from_row_slice(&[-1.0, -1.0]);
         let summed = [true, true];
-        let step =
-            BoundedStep { hessian: &hessian, gradient: &gradient, lower, upper, summed: &summed, sum_limit };
+        let step = BoxLeastSquares {
+            hessian: &hessian,
+            gradient: &gradient,
+            lower,
+            upper,
+            summed: &summed,
+            sum_limit,
+        };
         step.solve().unwrap().as_slice().to_vec()
     }
 
@@ -200,7 +210,7 @@ mod tests {
             let (lower, upper) = ([-0.3, -0.4, -0.5], [0.6, 0.5, 0.4]);
             let summed = [true, true, false];
             let sum_limit = if case % 2 == 0 { 0.0 } else { 0.2 };
-            let problem = BoundedStep {
+            let problem = BoxLeastSquares {
                 hessian: &hessian,
                 gradient: &gradient,
                 lower: &lower,
