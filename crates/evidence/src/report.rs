@@ -1,4 +1,4 @@
-//! Run time against error: plots, tables and text of [`hadar_proof::accuracy`].
+//! Run time against error: plots, tables and text of [`crate::accuracy`].
 
 mod brute_force;
 mod continuum;
@@ -12,11 +12,11 @@ pub use skipping::{skipping_table, skipping_text};
 pub use stress::{stress_plots, stress_text};
 pub use vectors::{vectors_bundle, vectors_text};
 
-use super::figures::Plot;
-use super::plot::{self, Axis, LineFigure, Marker, Series, Style};
-use super::table::{Table, number, optional};
+use crate::accuracy::{Chart, Measured, ROUNDED};
 use hadar::words::{quantity, significant};
-use hadar_proof::accuracy::{Chart, Measured, ROUNDED};
+use hadar_report::figures::Plot;
+use hadar_report::plot::{self, Axis, LineFigure, Marker, Series, Style};
+use hadar_report::table::{Table, number, optional};
 
 /// Errors are drawn down to this: exact to the last bit.
 const FLOOR: f64 = 0.25 * ROUNDED;

@@ -40,7 +40,7 @@ use hadar::error::Result;
 /// None, unless a vector is no possible question.
 ///
 /// ```
-/// let topics = hadar_proof::vectors::topics()?;
+/// let topics = hadar_evidence::vectors::topics()?;
 /// assert_eq!(topics[0].written()[0].0, "planck.json");
 /// # Ok::<(), hadar::Error>(())
 /// ```

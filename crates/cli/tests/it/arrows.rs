@@ -12,10 +12,10 @@ use std::path::Path;
 const PACKAGES: [(&str, &str); 6] = [
     ("hadar", "."),
     ("hadar-study", "crates/study"),
-    ("hadar-proof", "crates/proof"),
     ("hadar-report", "crates/report"),
     ("hadar-serve", "crates/serve"),
     ("hadar-cli", "crates/cli"),
+    ("hadar-evidence", "crates/evidence"),
 ];
 const STOREYS: [&str; 5] = ["base", "physics", "instrument", "limits", "witness"];
 

@@ -9,7 +9,7 @@ const RUN: Duration = Duration::from_micros(200);
 /// Seconds of one call of `work`: the least of the runs that fit into `budget`, at least three.
 ///
 /// ```
-/// use hadar_proof::accuracy::timing::{Budget, seconds_of};
+/// use hadar_evidence::accuracy::timing::{Budget, seconds_of};
 /// let short = seconds_of(Budget::QUICK, || (0..100_u64).fold(0, |a, i| a ^ i.wrapping_mul(3)));
 /// assert!(short > 0.0 && short < 0.1);
 /// ```

@@ -1,15 +1,15 @@
 //! `hadar accuracy`: run time against error, method by method.
 
-use super::global::{Global, as_json};
-use clap::Args;
+use crate::accuracy::brute_force::{BruteForcePlan, BruteForceReport, brute_force};
+use crate::accuracy::skipping::{Skipped, skipping};
+use crate::accuracy::stress::{StressPlan, StressReport, stress};
+use crate::accuracy::{Chart, Continuum, Item, Order, continuum};
+use crate::report;
+use crate::vectors::{Topic, VERSION, topics};
 use hadar::demand::{Reason, Thing, Work};
 use hadar::error::{Error, Result};
-use hadar_proof::accuracy::brute_force::{BruteForcePlan, BruteForceReport, brute_force};
-use hadar_proof::accuracy::skipping::{Skipped, skipping};
-use hadar_proof::accuracy::stress::{StressPlan, StressReport, stress};
-use hadar_proof::accuracy::{Chart, Continuum, Item, Order, continuum};
-use hadar_proof::vectors::{Topic, VERSION, topics};
-use hadar_report::accuracy as report;
+use hadar_cli::evidence::AccuracyArgs;
+use hadar_cli::{Global, as_json};
 use hadar_report::bundle::Bundle;
 use std::process::ExitCode;
 use std::time::Instant;
@@ -27,29 +27,6 @@ const SCENES: u64 = 100;
 const QUICK_SCENES: u64 = 3;
 /// No measurement, and no part of `all`.
 const VECTORS: &str = "vectors";
-
-#[derive(Debug, Args)]
-pub(super) struct AccuracyArgs {
-    /// Computations: planck, band-integrals, local, local-near-equilibrium, nearest, nearest-hard, probability, decisions, windows,
-    /// draws; continuum (what the width of bands costs); brute-force (nearest distances and their proofs held against a
-    /// brute force, set of unknowns by set of unknowns); skipping (what leaving out the needless is worth); stress (generated
-    /// extremes, each judged in extended precision); or all. Alone: vectors (questions with answers, for any other program to
-    /// be checked by)
-    #[arg(value_name = "NAME", default_value = "all")]
-    items: Vec<String>,
-    /// Fewer settings and shorter runs
-    #[arg(long)]
-    quick: bool,
-    /// Stress cases (default: 100000, or 2000 with --quick)
-    #[arg(long, value_name = "N")]
-    cases: Option<u64>,
-    /// Scenes of the brute force for every set of unknowns (default: 100, or 3 with --quick)
-    #[arg(long, value_name = "N")]
-    scenes: Option<u64>,
-    /// One scene of the brute force again, by its number
-    #[arg(long, value_name = "NUMBER", conflicts_with = "scenes")]
-    scene: Option<u64>,
-}
 
 /// What is printed with `--json`.
 #[derive(Default, serde::Serialize)]

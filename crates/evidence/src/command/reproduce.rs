@@ -1,28 +1,15 @@
 //! `hadar reproduce`: the paper's figures and tables made again, with a ledger of what agrees.
 
-use super::global::Global;
-use super::progress::Bar;
 use crate::reproduce::{Effort, FurtherStudy, Item, Line, Order, Verdict, markdown, table};
-use clap::Args;
 use hadar::demand::{Reason, Thing, Work};
 use hadar::error::{Error, Result};
 use hadar::material::Library;
+use hadar_cli::evidence::ReproduceArgs;
+use hadar_cli::{Bar, Global};
 use hadar_report::bundle::Bundle;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
-
-#[derive(Debug, Args)]
-pub(super) struct ReproduceArgs {
-    /// Figures and tables: fig3b, figs7, fig3c, fig4, figs12, figs17, figs19, figs20, edfig1, edfig5, edfig6, edfig9, tabs2, tabs5, policy, or all
-    /// of these; further studies, no part of `all`: air-ranging, decompose-limits, exact-probability, priors, library-figures (with --library FILE),
-    /// emissivity-from-data (with --library FOLDER), person-or-robot (with --library twice)
-    #[arg(value_name = "ID", default_value = "all")]
-    items: Vec<String>,
-    /// Some of the experiments only: within a minute on two cores
-    #[arg(long)]
-    quick: bool,
-}
 
 /// What is printed with `--json`.
 #[derive(serde::Serialize)]

@@ -75,7 +75,7 @@ impl Real for f64 {
 /// A number of two doubles.
 ///
 /// ```
-/// use hadar_proof::reference::double_double::{DoubleDouble, Real};
+/// use hadar_evidence::reference::double_double::{DoubleDouble, Real};
 /// let third = DoubleDouble::from(1.0) / DoubleDouble::from(3.0);
 /// assert!((third * DoubleDouble::from(3.0) - DoubleDouble::from(1.0)).to_f64().abs() < 1e-31);
 /// ```

@@ -29,7 +29,7 @@ const TABLES: u32 = 4;
 /// A number of 512 bits, 154 digits.
 ///
 /// ```
-/// use hadar_proof::reference::Extended;
+/// use hadar_evidence::reference::Extended;
 /// let third = Extended::from(1.0) / Extended::from(3.0);
 /// assert_eq!((third * Extended::from(3.0) - Extended::from(1.0)).to_f64().abs() < 1e-150, true);
 /// ```

@@ -268,7 +268,7 @@ impl<'a> Spectra<'a> {
 ///
 /// ```
 /// use hadar::fisher::{Nuisance, Unknowns};
-/// use hadar_proof::reference::local::{LocalReference, Noise, Pair};
+/// use hadar_evidence::reference::local::{LocalReference, Noise, Pair};
 /// use hadar::scene::{EnvironmentObject, Surroundings};
 /// use hadar::spectrum::Bands;
 ///

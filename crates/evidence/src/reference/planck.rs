@@ -34,7 +34,7 @@ fn modes(wavenumber: &Extended) -> Extended {
 /// Photon radiance B(ν,T), photons s⁻¹ m⁻² sr⁻¹ per cm⁻¹, at wavenumber ν (cm⁻¹) and temperature T (K).
 ///
 /// ```
-/// let exact = hadar_proof::reference::planck::photon_radiance(1000.0, 300.0).to_f64();
+/// let exact = hadar_evidence::reference::planck::photon_radiance(1000.0, 300.0).to_f64();
 /// assert!((hadar::planck::photon_radiance(1000.0, 300.0) / exact - 1.0).abs() < 1e-15);
 /// ```
 #[must_use]

@@ -22,7 +22,7 @@ const NEGLECTED: i32 = -140;
 /// Φ(−d): the probability that a normal deviate of deviation 1 lies beyond d.
 ///
 /// ```
-/// let tail = hadar_proof::reference::probability::normal_tail(37.0).to_f64();
+/// let tail = hadar_evidence::reference::probability::normal_tail(37.0).to_f64();
 /// assert!((tail / 5.725571222524577e-300 - 1.0).abs() < 1e-14);
 /// ```
 #[must_use]
@@ -157,7 +157,7 @@ impl Cumulative {
 /// ```
 /// // One count more or less: the threshold is between 2 and 3 photons.
 /// let exact = 0.5 * (1.0 - 5.0 * (-2.0_f64).exp() + 8.5 * (-3.0_f64).exp());
-/// let found = hadar_proof::reference::probability::poisson_error(&[2.0], &[3.0]).to_f64();
+/// let found = hadar_evidence::reference::probability::poisson_error(&[2.0], &[3.0]).to_f64();
 /// assert!((found / exact - 1.0).abs() < 1e-14);
 /// ```
 #[must_use]

@@ -1,8 +1,8 @@
 //! Nearest distances against the brute force: a line for every set of unknowns, and what to repeat where something is wrong.
 
-use crate::table::{Table, number};
+use crate::accuracy::brute_force::{BruteForceReport, SetReport};
 use hadar::words::{quantity, significant};
-use hadar_proof::accuracy::brute_force::{BruteForceReport, SetReport};
+use hadar_report::table::{Table, number};
 
 /// The answer in a sentence, and a line for every set.
 #[must_use]

@@ -1,10 +1,10 @@
 //! What bands of finite width cost: plot and text.
 
-use crate::figures::Plot;
-use crate::plot::{Axis, LineFigure, Rule, Series};
-use crate::table::{Table, number};
+use crate::accuracy::{Continuum, GOOD, MaterialStep, Recommended};
 use hadar::words::significant;
-use hadar_proof::accuracy::{Continuum, GOOD, MaterialStep, Recommended};
+use hadar_report::figures::Plot;
+use hadar_report::plot::{Axis, LineFigure, Rule, Series};
+use hadar_report::table::{Table, number};
 
 /// Error of the nearest distance over the step, pair by pair.
 #[must_use]

@@ -1,8 +1,8 @@
 //! What skipping is worth: text and table.
 
-use crate::table::{Table, number};
+use crate::accuracy::skipping::Skipped;
 use hadar::words::{quantity, significant};
-use hadar_proof::accuracy::skipping::Skipped;
+use hadar_report::table::{Table, number};
 
 /// A line for every question.
 #[must_use]

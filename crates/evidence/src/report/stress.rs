@@ -1,10 +1,10 @@
 //! The stress suite: text, the distribution of digits kept, and digits over the distance from equilibrium.
 
-use crate::figures::Plot;
-use crate::plot::{Axis, LineFigure, Series};
-use crate::table::{Table, number, optional};
+use crate::accuracy::stress::{FamilyReport, Point, StressReport};
 use hadar::words::significant;
-use hadar_proof::accuracy::stress::{FamilyReport, Point, StressReport};
+use hadar_report::figures::Plot;
+use hadar_report::plot::{Axis, LineFigure, Series};
+use hadar_report::table::{Table, number, optional};
 
 /// Points that a picture can show apart.
 const DRAWN: usize = 600;

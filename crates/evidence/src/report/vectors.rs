@@ -1,7 +1,7 @@
 //! Test vectors: their files, the page that defines them, and what there is of them in a few lines.
 
-use crate::bundle::Bundle;
-use hadar_proof::vectors::{Topic, VERSION};
+use crate::vectors::{Topic, VERSION};
+use hadar_report::bundle::Bundle;
 
 /// Definitions, how to read, what a tolerance means.
 const PAGE: &str = include_str!("vectors/page.md");

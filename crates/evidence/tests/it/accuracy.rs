@@ -1,6 +1,6 @@
 //! Run time against error: the errors are held here, times are not.
 
-use hadar_proof::accuracy::{Chart, Item, Measured, Order, continuum};
+use hadar_evidence::accuracy::{Chart, Item, Measured, Order, continuum};
 
 const QUICK: Order = Order { quick: true, seed: 1 };
 

@@ -1,10 +1,14 @@
-//! `hadar accuracy`: its words and its JSON; what it measures is tested beside it.
+//! The program itself: its words, its JSON and its exit codes; what it measures is tested elsewhere.
+
+use crate::support::folder::{Folder, SCENARIO};
+use crate::support::page::elements;
+use std::process::Command;
 
 /// Names that are not there, times that cannot be, and what a run says of itself.
 #[test]
 fn the_command_says_what_is_wrong_and_what_it_did() {
     let hadar = |arguments: &[&str]| {
-        let output = assert_cmd::Command::cargo_bin("hadar").unwrap().args(arguments).output().unwrap();
+        let output = Command::new(crate::PROGRAM).args(arguments).output().unwrap();
         let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
         (output.status.code(), text(output.stdout), text(output.stderr))
     };
@@ -47,30 +51,45 @@ fn the_command_says_what_is_wrong_and_what_it_did() {
     assert_eq!(json["charts"][0]["measured"][0]["method"], "search alone");
 }
 
-/// The vectors name keys of what the command itself prints, and what it prints is right.
+/// Ledger and versions, as every command has them.
 #[test]
-fn the_command_answers_the_scenarios_of_the_vectors() {
-    let folder = hadar_testing::repository().join("vectors");
-    let file = std::fs::read_to_string(folder.join("identify.json")).unwrap();
-    let file: serde_json::Value = serde_json::from_str(&file).unwrap();
-    let mut numbers = 0;
-    for vector in file["vectors"].as_array().unwrap() {
-        let command: Vec<&str> = vector["inputs"]["command"].as_str().unwrap().split(' ').skip(1).collect();
-        let output =
-            assert_cmd::Command::cargo_bin("hadar").unwrap().args(&command).current_dir(&folder).output();
-        let said: serde_json::Value = serde_json::from_slice(&output.unwrap().stdout).unwrap();
-        for (key, answer) in vector["answers"].as_object().unwrap() {
-            let (found, value) = (said.pointer(key).unwrap(), &answer["value"]);
-            let Some(exact) = value.as_str().and_then(|digits| digits.parse::<f64>().ok()) else {
-                assert!(found == value || value.is_array(), "{command:?} {key}: {found}");
-                continue;
-            };
-            let allowed = |key: &str| answer[key].as_f64().unwrap_or(0.0);
-            let tolerance = (allowed("relative_tolerance") * exact.abs()).max(allowed("absolute_tolerance"));
-            let found = found.as_f64().unwrap();
-            assert!((found - exact).abs() <= tolerance, "{command:?} {key}: {found}, not {exact}");
-            numbers += 1;
-        }
+fn answers_have_what_every_answer_has() {
+    let folder = Folder::with(SCENARIO);
+    for arguments in [["reproduce", "tabs2"].as_slice(), &["accuracy", "planck", "--quick"]] {
+        let json = folder.json(arguments);
+        assert_eq!(json["hadar"], env!("CARGO_PKG_VERSION"), "{arguments:?}");
+        assert!(json["schema"].is_u64() && json["stats"].is_object(), "{arguments:?}");
+        let ledger = folder.run(&[arguments, &["--stats"]].concat()).stderr;
+        assert!(ledger.contains("possible  computed"), "{arguments:?}: {ledger}");
+        assert_eq!(folder.run(&[arguments, &["--stats", "-q"]].concat()).stderr, "", "{arguments:?}");
     }
-    assert!(numbers > 50, "{numbers}");
+}
+
+/// Signed as `hadar` would sign it; a folder of its own for each item.
+#[test]
+fn a_report_is_one_of_hadar() {
+    let folder = Folder::with(SCENARIO);
+    folder.file("kept", "mine");
+    let said = folder.refusal(&["reproduce", "tabs2", "--out", "kept"]);
+    assert!(said.contains("part of the path is a file"), "{said}");
+    let outcome = folder.run(&["--quiet", "reproduce", "tabs2", "--out", "out", "--threads", "1"]);
+    assert_eq!((outcome.code, outcome.stderr.as_str()), (0, ""));
+    let page = std::fs::read_to_string(folder.path().join("out/tabs2/report.html")).unwrap();
+    assert!(elements(&page).iter().any(|one| one.name == "code" && one.text == "hadar reproduce tabs2"));
+}
+
+#[test]
+fn usage_has_its_exit_code_and_another_build_is_refused() {
+    let folder = Folder::with(SCENARIO);
+    for arguments in [["size", "a.toml"].as_slice(), &["accuracy", "--cameras", "a.toml"], &[]] {
+        assert_eq!(folder.run(arguments).code, 2, "{arguments:?}");
+    }
+    let output = Command::new(crate::PROGRAM)
+        .args(["reproduce", "tabs2"])
+        .env("HADAR_HANDED_OVER_BY", "0.0.9, commit abc")
+        .output()
+        .unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.code() == Some(1) && output.stdout.is_empty(), "{said}");
+    assert!(said.contains("`hadar` that asks it is 0.0.9, commit abc; build both again"), "{said}");
 }

@@ -61,7 +61,7 @@ fn a_per_cent_is_told_everywhere() {
 #[test]
 fn digits_are_those_of_other_references() {
     let agree = |answer: &Value, digits: &str| {
-        use hadar_proof::reference::Extended;
+        use hadar_evidence::reference::Extended;
         let [ours, theirs] = [answer["value"].as_str().unwrap(), digits].map(Extended::parse);
         let error = ours.relative_error_to(&theirs);
         assert!(error < 1e-24, "{ours:?} {digits}");

@@ -1,7 +1,7 @@
 //! The folder of test vectors is what the command makes of the reference, byte by byte.
 
-use hadar_proof::vectors::{VERSION, topics};
-use hadar_report::accuracy::vectors_bundle;
+use hadar_evidence::report::vectors_bundle;
+use hadar_evidence::vectors::{VERSION, topics};
 use hadar_report::bundle::About;
 use hadar_report::folder::{Folder, Strangers};
 use hadar_report::manifest::Provenance;

@@ -8,7 +8,7 @@ impl Extended {
     /// where the point would stand far from the digits.
     ///
     /// ```
-    /// use hadar_proof::reference::Extended;
+    /// use hadar_evidence::reference::Extended;
     /// assert_eq!((Extended::one() / Extended::from(3.0)).to_decimal(5), "0.33333");
     /// assert_eq!(Extended::parse("-2.99950e-12").to_decimal(4), "-3e-12");
     /// ```

@@ -1,6 +1,6 @@
 //! Answers of a program against those of the vectors.
 
-use hadar_proof::reference::Extended;
+use hadar_evidence::reference::Extended;
 use serde_json::Value;
 
 /// What a program answers.
