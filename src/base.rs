@@ -1,7 +1,7 @@
 //! What every storey stands on: errors, units, sums, lattices, one-dimensional solvers, statistics.
 
 pub mod allowed;
-pub(crate) mod correlation;
+pub mod correlation;
 pub mod cube;
 pub mod demand;
 pub mod envi_header;
@@ -11,8 +11,9 @@ pub mod grid;
 pub mod inputs;
 pub mod lattice_points;
 pub mod minimum;
+pub mod random;
 pub mod root;
-pub(crate) mod simd;
+pub mod simd;
 pub mod spectral_unit;
 pub mod statistics;
 pub mod sum;

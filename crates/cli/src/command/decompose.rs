@@ -2,8 +2,8 @@
 
 use super::global::Global;
 use clap::Args;
-use hadar::decompose::Method;
 use hadar::error::Result;
+use hadar_estimate::decompose::Method;
 use hadar_report::decompose;
 use hadar_report::folder::Scratch;
 use hadar_study::scenario::DecomposeScenario;

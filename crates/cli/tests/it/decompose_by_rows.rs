@@ -3,10 +3,10 @@
 use crate::decompose::{BANDS, SCENARIO, emissivity, sky, wavenumber, with};
 use crate::support::folder::Folder;
 use hadar::cube::{Shape, npy_map, write_npy};
-use hadar::decompose::Method;
 use hadar::demand::Skipping;
 use hadar::material::Library;
 use hadar::planck::photon_radiance;
+use hadar_estimate::decompose::Method;
 use hadar_report::bundle::About;
 use hadar_report::decompose::bundle;
 use hadar_report::folder::{self as reports, Strangers};

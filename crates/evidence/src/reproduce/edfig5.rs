@@ -7,7 +7,7 @@
 //!
 //! * Information of an equalised image: a pointwise rising map steepens image and noise alike, so that all of J stays; 256 levels take
 //!   a share away ([`hadar::ranging::levels`]).
-//! * Information of a texture: S37 with the deviation that the fit gives it ([`hadar::decompose::texture_information`]).
+//! * Information of a texture: S37 with the deviation that the fit gives it ([`hadar_estimate::decompose::texture_information`]).
 
 mod compared;
 
@@ -16,8 +16,8 @@ use super::ledger::{Line, Verdict};
 use super::order::{Figures, Made, Order};
 use super::textured::window_sums;
 use hadar::error::Result;
-use hadar::separation::k_means;
 use hadar::words::significant;
+use hadar_estimate::separation::k_means;
 use hadar_report::bundle::Bundle;
 use hadar_report::decompose::{DARKEST, Vision, brightness, saturation};
 use hadar_report::figures::Plot;

@@ -10,13 +10,13 @@ use hadar::ranging::derivative::Derivative;
 use hadar::ranging::information::{Cell, Request, Window, information};
 use hadar::ranging::noise::{Joined, NoiseVariance};
 use hadar::ranging::texture::{global_entropy, local_entropy, standard_deviation};
-use hadar::simulate::draws::{Draws, generator};
 use hadar::statistics::Statistics;
 use hadar::words::{length, significant};
 use hadar_report::bundle::Bundle;
 use hadar_report::plot::{Axis, Picture};
 use hadar_report::range;
 use hadar_report::table::{Table, number};
+use hadar_simulate::draws::{Draws, generator};
 use hadar_study::scenario::RangeScenario;
 use hadar_study::scenario::examples::{STREET, STREET_AT_ONE_TEMPERATURE};
 use hadar_study::study::range::{

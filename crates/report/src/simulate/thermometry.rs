@@ -11,7 +11,7 @@ pub use text::text;
 use crate::bundle::Bundle;
 use crate::table::{Table, number, optional};
 use hadar::error::Result;
-use hadar::simulate::efficiency::Errors;
+use hadar_simulate::efficiency::Errors;
 use hadar_study::study::{Reader, Study, Thermometry, ThermometryRow};
 use std::path::Path;
 

@@ -12,8 +12,8 @@ pub use category::{CategorySpec, SegmentationSpec};
 
 use super::{BandsSpec, CameraSpec, ClassSpec, MaterialRef, Source};
 use hadar::cube::Axes;
-use hadar::decompose::SpatialPrior;
 use hadar::error::Place;
+use hadar_estimate::decompose::SpatialPrior;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 

@@ -23,9 +23,9 @@ use self::results::{Counted, rows, summary};
 use self::worth::Held;
 use super::{Warning, memory};
 use hadar::cube::Shape;
-use hadar::decompose::{LibraryError, Maps, Method, Options, Setting, decompose_by_rows, widen};
 use hadar::demand::Skipping;
 use hadar::error::{Error, Result};
+use hadar_estimate::decompose::{LibraryError, Maps, Method, Options, Setting, decompose_by_rows, widen};
 use std::sync::Arc;
 
 /// Length over which errors of emissivities are correlated where nothing is said, cm⁻¹.

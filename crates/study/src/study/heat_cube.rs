@@ -7,7 +7,6 @@ use super::{Warning, bands, camera, camera_bands};
 use crate::scenario::decompose::{CubeUnit, HeatCube, LightSource};
 use crate::scenario::{BandSource, BandsSpec, CameraSpec, MaterialRef, Source};
 use hadar::cube::{Cube, Found, Rows, Sample};
-use hadar::decompose::Light;
 use hadar::error::{Error, Result};
 use hadar::grid::{Grid, READ_SPECTRUM, text_of_file};
 use hadar::instrument::View;
@@ -15,6 +14,7 @@ use hadar::material::{Library, Material};
 use hadar::planck;
 use hadar::spectrum::{Bands, interpolated};
 use hadar::units::{PLANCK_J_S, SPEED_OF_LIGHT_M_S};
+use hadar_estimate::decompose::Light;
 use std::path::Path;
 
 /// Counts that stand for a squared deviation of a stated noise: so many that shot noise adds nothing to it.

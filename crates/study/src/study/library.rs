@@ -8,10 +8,10 @@ use super::Warning;
 use super::decompose::Truth;
 use super::heat_cube::{Measured, Said};
 use crate::scenario::LibraryScenario;
-use hadar::decompose::{NO_MATERIAL, Setting};
 use hadar::error::{Error, Result};
 use hadar::material::Library;
-use hadar::separation::{Asked, library_from_cube};
+use hadar_estimate::decompose::{NO_MATERIAL, Setting};
+use hadar_estimate::separation::{Asked, library_from_cube};
 
 /// Share of χ²/ν above 1 up to which a cluster counts as one material.
 const MISFIT: f64 = 0.05;

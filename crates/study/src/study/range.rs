@@ -36,8 +36,8 @@ use hadar::ranging::depth::StereoGeometry;
 use hadar::ranging::derivative::Derivative;
 use hadar::ranging::information::{Cell, InformationMap, Request, information};
 use hadar::ranging::noise::NoiseVariance;
-use hadar::render::{Part, StereoPair};
 use hadar::spectrum::Bands;
+use hadar_simulate::render::{Part, StereoPair};
 use rayon::prelude::*;
 
 /// Bytes of a pixel that are kept of cubes, beside those of the file; measured.

@@ -26,9 +26,9 @@ use hadar::demand::{self, Ledger, Thing, Work};
 use hadar::error::Result;
 use hadar::fisher::Unknowns;
 use hadar::instrument::Camera;
-use hadar::simulate::classifier::{SavedModel, Trained};
-use hadar::simulate::draws::{GENERATOR, LARGEST_EXACT};
-use hadar::simulate::experiment::Design;
+use hadar_simulate::classifier::{SavedModel, Trained};
+use hadar_simulate::draws::{GENERATOR, LARGEST_EXACT};
+use hadar_simulate::experiment::Design;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 

@@ -9,10 +9,10 @@ use hadar::error::{Error, Place, Result};
 use hadar::instrument::Camera;
 use hadar::material::{Library, Material};
 use hadar::planck;
-use hadar::render::{
+use hadar::spectrum::Bands;
+use hadar_simulate::render::{
     Body, Bump, Emissivity, Object, Options, Rig, Road, Scene, StreetSpec, Surface, Texture, Uneven,
 };
-use hadar::spectrum::Bands;
 
 /// Samples of a rendered view that are held at a time, four times over; a pixel takes as much as so many beside its own.
 const MOST_SAMPLES: f64 = 2e8;

@@ -8,12 +8,12 @@ use crate::study::air_ranging::{AirPlan, AirRangingStudy};
 use crate::study::decompose::{DecomposeStudy, Keep};
 use crate::study::range::{RangePlan, RangeStudy};
 use crate::study::{PhotonLaw, Remembered, RuleAsked, RuleStudy, SimulationPlan, SizeAsked, Study};
-use hadar::decompose::Method;
 use hadar::demand::{Skipping, Work};
 use hadar::error::{Error, Result};
 use hadar::material::Library;
-use hadar::simulate::classifier;
-use hadar::simulate::experiment::Design;
+use hadar_estimate::decompose::Method;
+use hadar_simulate::classifier;
+use hadar_simulate::experiment::Design;
 use serde::Serialize;
 
 /// Spectra of a class where a classifier is judged and nobody says how many.

@@ -9,8 +9,8 @@ use super::super::section::{Entry, Section};
 use super::super::source::Source;
 use super::super::written::Written;
 use super::frames::Frames;
-use hadar::calibrate::{Axis, Sought};
 use hadar::error::{Error, Result};
+use hadar_estimate::calibrate::{Axis, Sought};
 use serde::{Serialize, Serializer};
 use std::path::Path;
 

@@ -3,7 +3,7 @@
 use super::super::entries::Entries;
 use super::super::section::{Entry, Section, without_repetition};
 use hadar::error::{Error, Result};
-use hadar::segmentation::Rule;
+use hadar_estimate::segmentation::Rule;
 
 /// A kind of thing, and what it is made of.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -3,9 +3,9 @@
 use super::super::entries::Entries;
 use super::super::section::Entry;
 use super::{Brightness, VisionSpec};
-use hadar::decompose::SpatialPrior;
 use hadar::error::{Error, Result};
 use hadar::units::Dimension;
+use hadar_estimate::decompose::SpatialPrior;
 
 /// Log-odds of a neighbour where nothing is said: below ln(1 + √q), beyond which the prior alone makes images of one material of q.
 const POTTS_WEIGHT: f64 = 1.0;

@@ -4,7 +4,7 @@ use super::AirRangingStudy;
 use hadar::error::Result;
 use hadar::fisher::Counting;
 use hadar::ranging::air::{AirSolver, AirState};
-use hadar::simulate::air_ranging::AirFitter;
+use hadar_simulate::air_ranging::AirFitter;
 
 impl AirRangingStudy {
     /// How much farther the model without sky puts the target, m, from counts without noise, and whether it ends at the end of the

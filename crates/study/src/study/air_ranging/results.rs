@@ -5,8 +5,8 @@ use crate::study::Warning;
 use hadar::demand::Work;
 use hadar::fisher::precision::Sight;
 use hadar::ranging::depth::Demand;
-use hadar::simulate::efficiency::{Errors, Verdict};
-use hadar::simulate::sequential::Interval;
+use hadar_simulate::efficiency::{Errors, Verdict};
+use hadar_simulate::sequential::Interval;
 use serde::Serialize;
 
 /// The whole answer.

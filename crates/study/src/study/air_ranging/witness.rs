@@ -5,9 +5,9 @@ use super::{AirPlan, AirRangingStudy};
 use hadar::error::{Error, Result};
 use hadar::fisher::precision::JointBound;
 use hadar::ranging::air::AirSolver;
-use hadar::simulate::air_ranging::AirFitter;
-use hadar::simulate::efficiency::{Criteria, Efficiency};
-use hadar::simulate::sequential::Interval;
+use hadar_simulate::air_ranging::AirFitter;
+use hadar_simulate::efficiency::{Criteria, Efficiency};
+use hadar_simulate::sequential::Interval;
 
 /// Distances at which spectra are drawn, at most.
 const MOST: usize = 10;

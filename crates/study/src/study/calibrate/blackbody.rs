@@ -8,13 +8,13 @@ use crate::scenario::calibrate::blackbodies::BlackbodySpec;
 use crate::scenario::calibrate::blackbodies::CubeFile;
 use crate::study::cube_bands::InOrder;
 use crate::study::{Warning, bands};
-use hadar::calibrate::spectrometer::Calibration;
 use hadar::calibration::blackbody::{Blackbodies, Parts};
 use hadar::cube::Cube;
 use hadar::demand::{Thing, Work};
 use hadar::error::{Error, Result};
 use hadar::planck;
 use hadar::words::significant;
+use hadar_estimate::calibrate::spectrometer::Calibration;
 use serde::Serialize;
 
 /// By so much the pixels of a blackbody may scatter more than the stated noise.

@@ -3,10 +3,10 @@
 use super::opened::Measured;
 use crate::scenario::calibrate::NoiseScenario;
 use crate::study::Warning;
-use hadar::calibrate::{Asked, Line, Transfer, photon_transfer};
 use hadar::cube::{Cube, Found, Rows, Shape};
 use hadar::demand::{Thing, Work};
 use hadar::error::{Error, Result};
+use hadar_estimate::calibrate::{Asked, Line, Transfer, photon_transfer};
 use serde::Serialize;
 
 /// Share of texture in what neighbours differ by from which on its removal matters.

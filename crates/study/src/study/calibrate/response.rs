@@ -6,8 +6,6 @@ use crate::scenario::calibrate::ResponseScenario;
 use crate::scenario::calibrate::blackbodies::{BlackbodySpec, CubeFile};
 use crate::study::heat_cube::columns;
 use crate::study::{Warning, WorstBlackbody};
-use hadar::calibrate::response::{FilterRadiance, Response};
-use hadar::calibrate::vignette::{Vignette, centre, subtracted};
 use hadar::calibration::determined::{CurvePrior, Determined};
 use hadar::calibration::filter_wheel::{FilterWheel, Reading};
 use hadar::cube::{Cube, Shape};
@@ -15,6 +13,8 @@ use hadar::demand::{Thing, Work};
 use hadar::error::{Error, Result};
 use hadar::planck;
 use hadar::spectrum::{FilterCurve, interpolated};
+use hadar_estimate::calibrate::response::{FilterRadiance, Response};
+use hadar_estimate::calibrate::vignette::{Vignette, centre, subtracted};
 use serde::Serialize;
 use std::path::Path;
 

@@ -5,12 +5,12 @@
 
 use super::whole::{at, beside, check_memory, pairs, shown};
 use crate::scenario::Source;
-use hadar::calibrate::spectrometer::Calibration;
 use hadar::calibration::blackbody::Blackbodies;
 use hadar::cube::{Cube, Shape};
 use hadar::error::{Error, Result};
 use hadar::planck;
 use hadar::units::{PLANCK_J_S, SPEED_OF_LIGHT_M_S};
+use hadar_estimate::calibrate::spectrometer::Calibration;
 use serde::Serialize;
 
 /// A response within so many of its deviations from 0 is none.

@@ -4,10 +4,10 @@ use super::opened::Measured;
 use super::whole::check_memory;
 use crate::scenario::calibrate::StripesScenario;
 use crate::study::Warning;
-use hadar::calibrate::{Destriped, Why, find_stripes};
 use hadar::cube::{Cube, Found, Rows, Sample, Shape};
 use hadar::demand::{Thing, Work};
 use hadar::error::{Error, Result};
+use hadar_estimate::calibrate::{Destriped, Why, find_stripes};
 use serde::Serialize;
 
 /// Bands from which on a thin object is told from a stripe.
@@ -115,8 +115,8 @@ impl StripesStudy {
             Cube::F64(cube) => band_of(cube.as_ref(), shown_band),
         }?;
         let count = destriped.stripes.len();
-        let rms = |value: &dyn Fn(&hadar::calibrate::Stripe) -> f64| {
-            let square = |stripe: &hadar::calibrate::Stripe| {
+        let rms = |value: &dyn Fn(&hadar_estimate::calibrate::Stripe) -> f64| {
+            let square = |stripe: &hadar_estimate::calibrate::Stripe| {
                 let level = destriped.levels.get(stripe.band).copied().unwrap_or(f64::NAN);
                 (value(stripe) / level).powi(2)
             };

@@ -2,7 +2,7 @@
 
 use crate::scenario::decompose::CategorySpec;
 use hadar::error::Error;
-use hadar::segmentation::{Categories, Part};
+use hadar_estimate::segmentation::{Categories, Part};
 
 /// The parts of all categories as places in the library, a class as all its members; an error with its key.
 pub(super) fn parts(

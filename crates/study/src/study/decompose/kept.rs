@@ -1,8 +1,8 @@
 //! What is kept of every pixel: in memory, or in files where that would be too much.
 
 use hadar::cube::{NpyRows, Shape};
-use hadar::decompose::Maps;
 use hadar::error::Result;
+use hadar_estimate::decompose::Maps;
 use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;

@@ -6,11 +6,11 @@ use crate::scenario::{DecomposeScenario, MaterialRef, Spread};
 use crate::study::Warning;
 use crate::study::heat_cube::{Measured, Said, columns};
 use hadar::cube::{Cube, Found};
-use hadar::decompose::{Light, SpatialPrior};
 use hadar::error::{Error, Result};
 use hadar::material::{Basis, Library, Material};
-use hadar::segmentation::Categories;
 use hadar::spectrum::Bands;
+use hadar_estimate::decompose::{Light, SpatialPrior};
+use hadar_estimate::segmentation::Categories;
 
 /// A decomposition scenario with everything it names looked up and checked.
 #[derive(Debug)]

@@ -9,9 +9,9 @@ pub use super::worth::TruthFound;
 use crate::scenario::DecomposeScenario;
 use crate::study::Warning;
 use hadar::cube::{Found, Shape};
-use hadar::decompose::{Maps, Method, Spared, Spatial, flag};
 use hadar::demand::Work;
 use hadar::error::Result;
+use hadar_estimate::decompose::{Maps, Method, Spared, Spatial, flag};
 use serde::Serialize;
 use std::collections::BTreeMap;
 

@@ -4,9 +4,11 @@ use super::DecomposeStudy;
 use super::kept::Block;
 use super::truth::Truth;
 use crate::scenario::decompose::CategorySpec;
-use hadar::decompose::Maps;
 use hadar::error::Result;
-use hadar::segmentation::{Agreement, ByBrightness, NO_CATEGORY, Object, Rule, objects, segment, smoothed};
+use hadar_estimate::decompose::Maps;
+use hadar_estimate::segmentation::{
+    Agreement, ByBrightness, NO_CATEGORY, Object, Rule, objects, segment, smoothed,
+};
 use serde::Serialize;
 
 /// Number of a pixel whose truth is not known, unless it is a label.

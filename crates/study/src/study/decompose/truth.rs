@@ -2,8 +2,8 @@
 
 use crate::scenario::decompose::TruthSpec;
 use hadar::cube::{Cube, Rows, Sample, Shape};
-use hadar::decompose::NO_MATERIAL;
 use hadar::error::{Error, Result};
+use hadar_estimate::decompose::NO_MATERIAL;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 

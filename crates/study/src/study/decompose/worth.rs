@@ -8,12 +8,12 @@
 
 use super::DecomposeStudy;
 use super::truth::{There, Truth};
-use hadar::decompose::{Light, Maps, Method, flag};
 use hadar::error::Result;
 use hadar::fisher::{Counting, Nuisance, Unknowns};
 use hadar::identifiability::detection;
 use hadar::identifiability::nearest::{NearestSolver, StateRange};
 use hadar::scene::{State, Surroundings};
+use hadar_estimate::decompose::{Light, Maps, Method, flag};
 use rayon::prelude::*;
 
 /// Pixels whose limit is computed.

@@ -19,10 +19,10 @@ use hadar::identifiability::lattice::{LatticeDetection, LatticeDetector, Lattice
 use hadar::identifiability::local::LocalSolver;
 use hadar::identifiability::nearest::StateRange;
 use hadar::policy;
-use hadar::simulate::decision::{Balanced, DecisionScene};
-use hadar::simulate::draws::{GENERATOR, LARGEST_MEAN};
-use hadar::simulate::sequential::Plan;
 use hadar::statistics::Statistics;
+use hadar_simulate::decision::{Balanced, DecisionScene};
+use hadar_simulate::draws::{GENERATOR, LARGEST_MEAN};
+use hadar_simulate::sequential::Plan;
 use rayon::prelude::*;
 
 /// Most photons for which the lattice of counts is laid.

@@ -3,8 +3,8 @@
 use crate::study::Study;
 use hadar::error::Result;
 use hadar::fisher::Counting;
-use hadar::simulate::draws::{Draws, GENERATOR, generator};
 use hadar::statistics::Statistics;
+use hadar_simulate::draws::{Draws, GENERATOR, generator};
 
 /// One reading of every material in the target's state.
 #[derive(Debug, Clone, PartialEq)]

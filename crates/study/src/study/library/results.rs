@@ -5,9 +5,9 @@ use crate::study::Warning;
 use crate::study::decompose::{FlagCount, There, flags};
 use crate::study::heat_cube::Measured;
 use hadar::cube::Shape;
-use hadar::decompose::{Maps, NO_MATERIAL};
 use hadar::demand::Work;
-use hadar::separation::{Cluster, Found, Tried};
+use hadar_estimate::decompose::{Maps, NO_MATERIAL};
+use hadar_estimate::separation::{Cluster, Found, Tried};
 use serde::Serialize;
 use std::collections::BTreeMap;
 

@@ -8,8 +8,8 @@ use hadar::ranging::depth::WindowInformation;
 use hadar::ranging::information::{Cell, InformationMap, Request, information};
 use hadar::ranging::noise::Joined;
 use hadar::ranging::reconstruction::{BesideEmission, EmissionImage};
-use hadar::render::{Part, View};
 use hadar::spectrum::Bands;
+use hadar_simulate::render::{Part, View};
 use rayon::prelude::*;
 use std::ops::Range;
 

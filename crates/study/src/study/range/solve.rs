@@ -12,7 +12,7 @@ use hadar::ranging::depth::{DepthTask, ExposureNoise, Image, WindowSamples};
 use hadar::ranging::derivative::Differentiator;
 use hadar::ranging::noise::NoiseVariance;
 use hadar::ranging::psf::{PointSpread, bands_var_m2};
-use hadar::render::{Part, StereoPair, View};
+use hadar_simulate::render::{Part, StereoPair, View};
 use std::ops::Range;
 
 /// A share of a number of windows that is whole but for rounding.

@@ -6,7 +6,7 @@ use hadar::cube::{Cube, Found, Shape};
 use hadar::error::{Error, Result};
 use hadar::fisher::Counting;
 use hadar::ranging::noise::NoiseVariance;
-use hadar::render::{Options, Part, Rig, Scene, View};
+use hadar_simulate::render::{Options, Part, Rig, Scene, View};
 use std::sync::Arc;
 
 /// The subject with its names looked up.

@@ -7,15 +7,15 @@ use hadar::cube::Shape;
 use hadar::error::{Error, Result};
 use hadar::ranging::metrics::DepthMetrics;
 use hadar::ranging::noise::{Joined, NoiseVariance};
-use hadar::render::{Part, StereoPair as Rendering, View};
-use hadar::simulate::draws::{Draws, generator};
-use hadar::simulate::efficiency::Criteria;
-use hadar::simulate::matching::block::Block;
-use hadar::simulate::matching::dense::disparity_map;
-use hadar::simulate::matching::likelihood::Likelihood;
-use hadar::simulate::matching::trials::{Centre, MatchingTrials, Noisy, Run, Setup};
-use hadar::simulate::matching::{Matcher, Search, StereoPair};
 use hadar::statistics::Statistics;
+use hadar_simulate::draws::{Draws, generator};
+use hadar_simulate::efficiency::Criteria;
+use hadar_simulate::matching::block::Block;
+use hadar_simulate::matching::dense::disparity_map;
+use hadar_simulate::matching::likelihood::Likelihood;
+use hadar_simulate::matching::trials::{Centre, MatchingTrials, Noisy, Run, Setup};
+use hadar_simulate::matching::{Matcher, Search, StereoPair};
+use hadar_simulate::render::{Part, StereoPair as Rendering, View};
 use std::ops::Range;
 
 /// Disparities tried beyond the largest true one.

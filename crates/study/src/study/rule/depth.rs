@@ -18,7 +18,7 @@ use crate::study::range::{RangePlan, RangeStudy, Signal, SignalBounds};
 use crate::study::{Shortfall, Warning};
 use hadar::error::{Error, Result};
 use hadar::material::Library;
-use hadar::render::StreetSpec;
+use hadar_simulate::render::StreetSpec;
 
 /// Ends of distances nearer to each other than by this factor have none between them.
 const ALIKE: f64 = 1.05;

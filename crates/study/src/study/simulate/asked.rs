@@ -4,10 +4,10 @@ use super::{PhotonLaw, SimulationPlan};
 use crate::study::Study;
 use hadar::error::{Error, Result, check};
 use hadar::grid::text_of_file;
-use hadar::simulate::classifier::{Method, SavedModel};
-use hadar::simulate::experiment::Design;
-use hadar::simulate::spectra::Parts;
 use hadar::units::Dimension;
+use hadar_simulate::classifier::{Method, SavedModel};
+use hadar_simulate::experiment::Design;
+use hadar_simulate::spectra::Parts;
 use std::path::{Path, PathBuf};
 
 /// Most true temperatures.

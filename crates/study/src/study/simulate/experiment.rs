@@ -12,12 +12,12 @@ use hadar::identifiability::nearest::NearestSolver;
 use hadar::identifiability::ratio::RatioLaw;
 use hadar::instrument::gamma_per_band;
 use hadar::scene::State;
-use hadar::simulate::classifier::{Method, Trained};
-use hadar::simulate::decision::DecisionScene;
-use hadar::simulate::draws::Draws;
-use hadar::simulate::draws::gaussian::gaussian_distance;
-use hadar::simulate::experiment::{Design, Experiment};
 use hadar::statistics::Statistics;
+use hadar_simulate::classifier::{Method, Trained};
+use hadar_simulate::decision::DecisionScene;
+use hadar_simulate::draws::Draws;
+use hadar_simulate::draws::gaussian::gaussian_distance;
+use hadar_simulate::experiment::{Design, Experiment};
 
 /// A class: material, state, and distance from the target in units of the noise.
 struct Class<'s> {

@@ -9,8 +9,8 @@ use hadar::fisher::Counting;
 use hadar::instrument::{Camera, gamma_per_band};
 use hadar::planck;
 use hadar::policy;
-use hadar::simulate::draws::LARGEST_MEAN;
 use hadar::statistics::Statistics;
+use hadar_simulate::draws::LARGEST_MEAN;
 
 /// Fewest photons of an experiment, and most experiments of a sweep.
 const FEWEST: f64 = 1e-9;

@@ -1,8 +1,8 @@
 //! An accuracy held against the limit.
 
 use hadar::error::Result;
-use hadar::simulate::efficiency::PhotonShare;
-use hadar::simulate::experiment::Performance;
+use hadar_simulate::efficiency::PhotonShare;
+use hadar_simulate::experiment::Performance;
 
 /// An interval with a half width above this share of what the limit has over guessing is too wide to say that it is reached.
 const NARROW: f64 = 0.25;

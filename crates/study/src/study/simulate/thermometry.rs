@@ -30,9 +30,9 @@ use hadar::error::{Error, Result};
 use hadar::fisher::precision::{JointBound, Precision, Sight};
 use hadar::fisher::{Nuisance, Unknowns};
 use hadar::scene::{Parameter, State};
-use hadar::simulate::draws::GENERATOR;
-use hadar::simulate::efficiency::{Criteria, Efficiency, Errors, JointEfficiency, ParameterEfficiency};
-use hadar::simulate::thermometry::{Conventional, Fits, Reading, Run, ThermometryScene};
+use hadar_simulate::draws::GENERATOR;
+use hadar_simulate::efficiency::{Criteria, Efficiency, Errors, JointEfficiency, ParameterEfficiency};
+use hadar_simulate::thermometry::{Conventional, Fits, Reading, Run, ThermometryScene};
 use std::collections::BTreeMap;
 
 /// The default emissivity of a thermal imager, as in the paper's figure.

@@ -9,9 +9,9 @@ use hadar::Error;
 use hadar::cube::{Axes, Cube, Rows, Sample, Shape, first_invalid, panchromatic};
 use hadar::material::{Library, Material, read};
 use hadar::ranging::noise::NoiseVariance;
-use hadar::simulate::classifier::{Classifier, SavedModel};
 use hadar::spectrum::Bands;
 use hadar::units::{Dimension, Spectral};
+use hadar_simulate::classifier::{Classifier, SavedModel};
 use hadar_study::scenario::{AirRangingScenario, RangeScenario, RangingScenario, Scenario};
 use std::path::{Path, PathBuf};
 

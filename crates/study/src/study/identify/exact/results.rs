@@ -2,7 +2,7 @@
 
 use crate::study::Warning;
 use hadar::identifiability::lattice::LatticeDetection;
-use hadar::simulate::sequential::{Interval, Plan};
+use hadar_simulate::sequential::{Interval, Plan};
 
 /// The simulated decision of one pair beside its limits.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]

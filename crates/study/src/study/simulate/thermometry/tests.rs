@@ -1,7 +1,7 @@
 use super::*;
 use crate::scenario::Scenario;
 use hadar::material::Library;
-use hadar::simulate::efficiency::Verdict;
+use hadar_simulate::efficiency::Verdict;
 
 fn study(target: &str, extra: &str, camera: &str) -> Study {
     let text = format!(
