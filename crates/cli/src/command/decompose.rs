@@ -6,8 +6,8 @@ use hadar::error::Result;
 use hadar_estimate::decompose::Method;
 use hadar_report::decompose;
 use hadar_report::folder::Scratch;
-use hadar_study::scenario::DecomposeScenario;
-use hadar_study::study::decompose::{DecomposeStudy, Keep};
+use hadar_scenario::DecomposeScenario;
+use hadar_study::decompose::{DecomposeStudy, Keep};
 use std::path::PathBuf;
 use std::process::ExitCode;
 

@@ -4,8 +4,8 @@ use crate::support::folder::{Folder, Outcome, SCENARIO};
 use hadar::demand::{Reason, Skipping, Thing};
 use hadar::fisher::{Nuisance, Unknowns};
 use hadar::material::Library;
-use hadar_study::scenario::Scenario;
-use hadar_study::study::{Asked, Study, Watch};
+use hadar_scenario::Scenario;
+use hadar_study::{Asked, Study, Watch};
 use serde_json::Value;
 
 /// Four materials, a camera that tells some of them.

@@ -24,8 +24,8 @@ use hadar_report::figures::Plot;
 use hadar_report::plot::{Axis, Painted, Picture};
 use hadar_report::range::picture_plot;
 use hadar_report::table::{Table, number};
-use hadar_study::study::decompose::hues_deg;
-use hadar_study::study::range::quantile;
+use hadar_study::decompose::hues_deg;
+use hadar_study::range::quantile;
 use std::path::Path;
 
 /// Segments of the thermal image in pseudo-TeX vision.

@@ -25,8 +25,8 @@ use hadar_report::table::{Table, number};
 use hadar_simulate::matching::block::Block;
 use hadar_simulate::matching::dense::disparity_map;
 use hadar_simulate::matching::{Search, StereoPair};
-use hadar_study::study::range;
-use hadar_study::study::render::Picture as Rendered;
+use hadar_study::range;
+use hadar_study::render::Picture as Rendered;
 use std::path::Path;
 
 /// Windows of the matcher: the paper's.

@@ -15,10 +15,10 @@ use hadar_estimate::segmentation::{
 };
 use hadar_report::plot::{Axis, Painted, Picture, Rgb, categorical};
 use hadar_report::table::Table;
+use hadar_scenario::RenderScenario;
+use hadar_scenario::decompose::CategorySpec;
 use hadar_simulate::draws::{Draws, generator};
-use hadar_study::scenario::RenderScenario;
-use hadar_study::scenario::decompose::CategorySpec;
-use hadar_study::study::render::{RenderPlan, RenderStudy, Rendered};
+use hadar_study::render::{RenderPlan, RenderStudy, Rendered};
 use rayon::prelude::*;
 
 /// Temperatures that a pixel may have, K.

@@ -10,10 +10,10 @@ use hadar::planck::{photon_radiance, photon_radiance_slope};
 use hadar_estimate::decompose::{
     Distilled, Light, Maps, NO_MATERIAL, Options, Setting, Sky, decompose, distil,
 };
-use hadar_study::scenario::RenderScenario;
-use hadar_study::scenario::scene::{Form, SurfaceSpec};
-use hadar_study::study::range;
-use hadar_study::study::render::{Picture, RenderPlan, RenderStudy, Rendered};
+use hadar_scenario::RenderScenario;
+use hadar_scenario::scene::{Form, SurfaceSpec};
+use hadar_study::range;
+use hadar_study::render::{Picture, RenderPlan, RenderStudy, Rendered};
 
 /// Exposure of the yard, as it stands there.
 pub(super) const EXPOSURE: &str = "200 us";

@@ -9,7 +9,7 @@ use hadar::error::Result;
 use hadar::units::Dimension;
 use hadar::words::{significant, whole};
 use hadar_estimate::calibrate::Line;
-use hadar_study::study::calibrate::NoiseFound;
+use hadar_study::calibrate::NoiseFound;
 use std::fmt::Write as _;
 use std::path::Path;
 

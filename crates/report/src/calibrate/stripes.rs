@@ -10,7 +10,7 @@ use hadar::cube::npy_map;
 use hadar::error::Result;
 use hadar::words::{significant, whole};
 use hadar_estimate::calibrate::Why;
-use hadar_study::study::calibrate::{Samples, StripesFound};
+use hadar_study::calibrate::{Samples, StripesFound};
 use std::fmt::Write as _;
 use std::path::Path;
 

@@ -7,7 +7,7 @@ use crate::text::significant;
 use hadar::identifiability::detection;
 use hadar_simulate::classifier::Method;
 use hadar_simulate::experiment::Performance;
-use hadar_study::study::{NoiseCurves, SimulatedPerformance, SimulatedPoint, Simulation};
+use hadar_study::{NoiseCurves, SimulatedPerformance, SimulatedPoint, Simulation};
 
 const LIMIT_COLOUR: usize = 0;
 

@@ -6,7 +6,7 @@ use crate::simulate::thermometry::{decisive, rising};
 use crate::table::Table;
 use crate::text::significant;
 use hadar_simulate::efficiency::Errors;
-use hadar_study::study::{Reader, Thermometry, ThermometryRow};
+use hadar_study::{Reader, Thermometry, ThermometryRow};
 
 fn true_temperature() -> Axis {
     Axis::linear("true temperature (°C)")

@@ -11,8 +11,8 @@ use hadar::material::{Library, Material, read};
 use hadar::ranging::noise::NoiseVariance;
 use hadar::spectrum::Bands;
 use hadar::units::{Dimension, Spectral};
+use hadar_scenario::{AirRangingScenario, RangeScenario, RangingScenario, Scenario};
 use hadar_simulate::classifier::{Classifier, SavedModel};
-use hadar_study::scenario::{AirRangingScenario, RangeScenario, RangingScenario, Scenario};
 use std::path::{Path, PathBuf};
 
 /// A reader of files, by the name of its target and of its folder of seeds.
