@@ -1,9 +1,9 @@
 //! `hadar reproduce` and `hadar accuracy`: their arguments, and the program `hadar-evidence` that answers them.
 //!
-//! That program holds references in 512 bits and the paper's figures, which nothing else needs, and is built by a command of its
-//! own. Here the arguments are parsed, so that help, manual, completions and usage errors are complete without it; then the
-//! program of that name in the folder of this one takes over with the same words. It refuses if it was built from another
-//! commit, whose name would be signed under the answer.
+//! That program contains references in 512 bits and the figures of the paper, which no other command needs, and is built
+//! separately. The arguments are parsed here, so that help, manual, completions and usage errors are complete without it. Then the
+//! program of that name in the folder of `hadar` is run with the same arguments. It refuses them if it was built from another
+//! commit: its reports would name a commit that did not make them.
 
 use super::global::Global;
 use super::provenance::COMMIT;

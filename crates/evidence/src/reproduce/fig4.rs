@@ -146,6 +146,18 @@ fn dimmer() -> String {
         .replace("window = [5, 5]", "window = [1, 25]")
 }
 
+/// Error of a method over the bound, scattered signal: the median along a line.
+fn over_bound(result: &Ranging, method: &str) -> f64 {
+    let same = |line: &&hadar_study::range::Line| {
+        line.signal == Signal::ScatteredAsMeasured && line.method == Some(method)
+    };
+    let ratio = |line: &hadar_study::range::Line| {
+        let both = line.rmse_m.iter().zip(&line.bound_without_diffraction_m);
+        median(&both.map(|(rmse, bound)| rmse / bound).collect::<Vec<_>>())
+    };
+    result.lines.iter().find(same).map_or(f64::NAN, ratio)
+}
+
 fn ledger(paper: &Ranging, night: &Ranging, dim: &Ranging, locking: &[(&str, f64)]) -> Vec<Line> {
     let place = "Fig. 4d, e";
     let error = |result: &Ranging, object: &str, signal: Signal| {
@@ -164,23 +176,7 @@ fn ledger(paper: &Ranging, night: &Ranging, dim: &Ranging, locking: &[(&str, f64
     let order = |value: f64| {
         if (30.0..=300.0).contains(&value) { Verdict::UnderAChoice } else { Verdict::NotReproduced }
     };
-    let over = |method: &str| {
-        let same = |line: &&hadar_study::range::Line| {
-            line.signal == Signal::ScatteredAsMeasured && line.method == Some(method)
-        };
-        let ratio = |line: &hadar_study::range::Line| {
-            median(
-                &line
-                    .rmse_m
-                    .iter()
-                    .zip(&line.bound_without_diffraction_m)
-                    .map(|(rmse, bound)| rmse / bound)
-                    .collect::<Vec<_>>(),
-            )
-        };
-        dim.lines.iter().find(same).map_or(f64::NAN, ratio)
-    };
-    let (block, likelihood) = (over("block matching"), over("maximum likelihood"));
+    let (block, likelihood) = (over_bound(dim, "block matching"), over_bound(dim, "maximum likelihood"));
     let by_bound = gain(paper, Signal::ScatteredAsMeasured);
     vec![
         Line::new(
@@ -258,6 +254,16 @@ fn ledger(paper: &Ranging, night: &Ranging, dim: &Ranging, locking: &[(&str, f64
     ]
 }
 
+/// A map by its key, title, axis, columns and values, as a picture from the 2nd to the 98th percentile.
+fn picture_of(
+    (key, title, axis, columns, values): (&str, &'static str, Axis, usize, Vec<f64>),
+) -> (String, Picture) {
+    let (low, high) = (quantile(&values, 0.02), quantile(&values, 0.98));
+    // What is nothing beside the rest is shown as nothing.
+    let low = if key == "entropy_bits" { low } else { low.max(1e-9 * high) };
+    (key.to_owned(), Picture::new(title, axis.range(low, high), columns, values))
+}
+
 /// Fisher information, standard deviation and entropy side by side.
 pub(super) fn textures(order: Order) -> Result<Made> {
     let paper = study(STREET_AT_ONE_TEMPERATURE)?.range(&RangePlan::default(), None, &|_, _| ())?;
@@ -327,15 +333,7 @@ pub(super) fn textures(order: Order) -> Result<Made> {
                 entropy.values.clone(),
             ),
         ];
-        let pictures = maps
-            .into_iter()
-            .map(|(key, title, axis, columns, values)| {
-                let (low, high) = (quantile(&values, 0.02), quantile(&values, 0.98));
-                // What is nothing beside the rest is shown as nothing.
-                let low = if key == "entropy_bits" { low } else { low.max(1e-9 * high) };
-                (key.to_owned(), Picture::new(title, axis.range(low, high), columns, values))
-            })
-            .collect();
+        let pictures = maps.into_iter().map(picture_of).collect();
         let subtitle = format!(
             "Windows of {SIDE} × {SIDE} pixels. Entropy of the whole image: {} bits.",
             significant(whole, 3)

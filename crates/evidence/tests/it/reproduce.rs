@@ -118,12 +118,23 @@ fn compare(name: &str, made: &Rows, kept: &Rows) -> usize {
     compared
 }
 
-/// The quick form of everything, held against the committed reports; of the ledgers, whose sentences count experiments,
-/// those of the items that the quick form makes whole.
+/// The quick form of everything.
 #[test]
 fn the_committed_reports_are_those_of_today() {
+    are_those_of(&["reproduce", "all", "--quick", "--out", "new", "-q"]);
+}
+
+#[test]
+#[ignore = "takes minutes; `.ci/evidence` runs it"]
+fn the_committed_reports_are_those_of_today_in_full() {
+    are_those_of(&["reproduce", "all", "--out", "new", "-q"]);
+}
+
+/// What is made, held against the committed reports; of the ledgers, whose sentences count experiments, those of the items that
+/// the quick form makes whole.
+fn are_those_of(arguments: &[&str]) {
     let folder = Folder::with(SCENARIO);
-    let outcome = folder.run(&["reproduce", "all", "--quick", "--out", "new", "-q"]);
+    let outcome = folder.run(arguments);
     assert_eq!(outcome.code, 0, "{}", outcome.stderr);
     assert!(outcome.stdout.starts_with("Of "), "{}", outcome.stdout);
     let committed = hadar_testing::repository().join("reports");

@@ -96,24 +96,28 @@ fn distances(main: &AirRanging) -> String {
     markdown(&header, &rows)
 }
 
-/// The page.
-pub(super) fn readme(found: &Found) -> String {
-    let main = &found.main;
-    let best = main.best_bands.as_ref();
-    let four = best.and_then(|best| best.sigma_m);
+/// Published errors, and those found here.
+fn published(main: &AirRanging) -> String {
+    let four = main.best_bands.as_ref().and_then(|best| best.sigma_m);
     let in_window = |sigma: Option<f64>| metres(sigma.map(|sigma| sigma / WINDOW.sqrt()));
-    let centres = best.map_or_else(String::new, |best| {
-        let at = |nu: &f64| format!("{nu:.0}");
-        best.centers_cm1.iter().map(at).collect::<Vec<_>>().join(", ")
-    });
-    let published = markdown(
+    markdown(
         &["", "published", "here, a pixel", "here, 5 × 5 pixels"],
         &[
             vec!["model without reflected light".into(), "over 100 m".into(), bias(&main.at), bias(&main.at)],
             vec!["four bands".into(), "6.8 m".into(), metres(four), in_window(four)],
             vec!["all bands".into(), "1.2 m".into(), metres(main.at.sigma_m), in_window(main.at.sigma_m)],
         ],
-    );
+    )
+}
+
+/// The page.
+pub(super) fn readme(found: &Found) -> String {
+    let main = &found.main;
+    let best = main.best_bands.as_ref();
+    let centres = best.map_or_else(String::new, |best| {
+        let at = |nu: &f64| format!("{nu:.0}");
+        best.centers_cm1.iter().map(at).collect::<Vec<_>>().join(", ")
+    });
     let errors: Vec<Vec<String>> = found
         .errors
         .iter()
@@ -186,6 +190,7 @@ pub(super) fn readme(found: &Found) -> String {
          All numbers are in the CSV files beside the plots, `distances.csv` and `estimates.csv`; two digits are given.\n",
         seed = found.seed,
         distances = distances(main),
+        published = published(main),
         count = main.witness.len(),
         exact = if best.is_some_and(|best| best.exact) {
             "proved to be the best choice"

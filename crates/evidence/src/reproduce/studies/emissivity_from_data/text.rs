@@ -99,24 +99,8 @@ pub(super) fn finding(spectra: &Spectra, compared: &[Compared], street: &TakenAp
     )
 }
 
-pub(super) fn readme(
-    spectra: &Spectra,
-    compared: &[Compared],
-    bounds: &Bounds,
-    street: &TakenApart,
-    ledger: &[Line],
-    seed: u64,
-) -> String {
-    let header = [
-        "sky",
-        "NEDT (K)",
-        "method",
-        "temperature rms (K)",
-        "median (K)",
-        "emissivity rms",
-        "median",
-        "answered",
-    ];
+/// Rows of every method, and of the bounds and published figures below them.
+fn rows(compared: &[Compared]) -> Vec<Vec<String>> {
     let mut rows = Vec::new();
     for one in compared {
         for (method, e) in METHODS.iter().zip(&one.errors) {
@@ -164,6 +148,27 @@ pub(super) fn readme(
             ]);
         }
     }
+    rows
+}
+
+pub(super) fn readme(
+    spectra: &Spectra,
+    compared: &[Compared],
+    bounds: &Bounds,
+    street: &TakenApart,
+    ledger: &[Line],
+    seed: u64,
+) -> String {
+    let header = [
+        "sky",
+        "NEDT (K)",
+        "method",
+        "temperature rms (K)",
+        "median (K)",
+        "emissivity rms",
+        "median",
+        "answered",
+    ];
     let known = bounds.known;
     let clusters: Vec<Vec<String>> = street
         .found
@@ -225,7 +230,7 @@ pub(super) fn readme(
         spectra.names.len(),
         spectra.metals,
         spectra.uncovered,
-        markdown(&header, &rows),
+        markdown(&header, &rows(compared)),
         known.mean,
         known.magnitude,
         known.shape,

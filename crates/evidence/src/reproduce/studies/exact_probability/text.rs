@@ -55,10 +55,10 @@ pub(super) fn finding(lines: &[Line]) -> String {
     )
 }
 
-/// README.md.
-pub(super) fn readme(lines: &[Line], lattice: &[LatticeLine], laws: &[Line], seed: u64) -> String {
+/// Rows of fewer photons and more.
+fn fewer_and_more(lines: &[Line]) -> Vec<Vec<String>> {
     let at = |level: f64| lines.iter().filter(move |l| (l.nearest - level).abs() < 1e-3);
-    let fewer_and_more: Vec<Vec<String>> = at(0.5)
+    at(0.5)
         .zip(at(2.0))
         .map(|pair| {
             let (few, _) = pair;
@@ -69,11 +69,12 @@ pub(super) fn readme(lines: &[Line], lattice: &[LatticeLine], laws: &[Line], see
             }
             cells
         })
-        .collect();
-    let (total, finding) = (lines.len(), finding(lines));
-    let above = lines.iter().filter(|l| l.fitted.low > l.limit()).count();
-    let outside = lines.iter().filter(|l| l.known.high < l.bracket[0] || l.known.low > l.bracket[1]).count();
-    let by_lattice: Vec<Vec<String>> = lattice
+        .collect()
+}
+
+/// Rows of three bands.
+fn by_lattice(lattice: &[LatticeLine]) -> Vec<Vec<String>> {
+    lattice
         .iter()
         .map(|l| {
             let p = |value: f64| format!("{value:.3}");
@@ -91,19 +92,29 @@ pub(super) fn readme(lines: &[Line], lattice: &[LatticeLine], laws: &[Line], see
                 p(l.mesh_change),
             ]
         })
-        .collect();
-    let lattice_off = lattice
-        .iter()
-        .map(|l| (0.5 * (l.lattice[0] + l.lattice[1]) - l.mean.value).abs())
-        .fold(0.0, f64::max);
-    let by_law: Vec<Vec<String>> = laws
-        .iter()
+        .collect()
+}
+
+/// Rows of other laws of counting.
+fn by_law(laws: &[Line]) -> Vec<Vec<String>> {
+    laws.iter()
         .map(|l| {
             let mut cells = row(l);
             cells.insert(3, l.law.replace('-', " "));
             cells
         })
-        .collect();
+        .collect()
+}
+
+/// README.md.
+pub(super) fn readme(lines: &[Line], lattice: &[LatticeLine], laws: &[Line], seed: u64) -> String {
+    let (total, finding) = (lines.len(), finding(lines));
+    let above = lines.iter().filter(|l| l.fitted.low > l.limit()).count();
+    let outside = lines.iter().filter(|l| l.known.high < l.bracket[0] || l.known.low > l.bracket[1]).count();
+    let lattice_off = lattice
+        .iter()
+        .map(|l| (0.5 * (l.lattice[0] + l.lattice[1]) - l.mean.value).abs())
+        .fold(0.0, f64::max);
     let mut law_header = HEADER.to_vec();
     law_header.insert(3, "law of counting");
     format!(
@@ -167,7 +178,7 @@ pub(super) fn readme(lines: &[Line], lattice: &[LatticeLine], laws: &[Line], see
                 "two-sided estimate",
                 "test of best fits",
             ],
-            &fewer_and_more
+            &fewer_and_more(lines)
         ),
         markdown(
             &[
@@ -183,8 +194,8 @@ pub(super) fn readme(lines: &[Line], lattice: &[LatticeLine], laws: &[Line], see
                 "drawn",
                 "mesh"
             ],
-            &by_lattice
+            &by_lattice(lattice)
         ),
-        markdown(&law_header, &by_law),
+        markdown(&law_header, &by_law(laws)),
     )
 }
