@@ -55,11 +55,15 @@ pub(super) fn finding(lines: &[Line]) -> String {
     )
 }
 
+/// Those with √N·d_nearest at a level.
+fn at(lines: &[Line], level: f64) -> impl Iterator<Item = &Line> {
+    lines.iter().filter(move |l| (l.nearest - level).abs() < 1e-3)
+}
+
 /// Rows of fewer photons and more.
 fn fewer_and_more(lines: &[Line]) -> Vec<Vec<String>> {
-    let at = |level: f64| lines.iter().filter(move |l| (l.nearest - level).abs() < 1e-3);
-    at(0.5)
-        .zip(at(2.0))
+    at(lines, 0.5)
+        .zip(at(lines, 2.0))
         .map(|pair| {
             let (few, _) = pair;
             let mut cells = vec![few.names[0].into(), few.names[1].into(), format!("{}", few.celsius)];
@@ -165,7 +169,7 @@ pub(super) fn readme(lines: &[Line], lattice: &[LatticeLine], laws: &[Line], see
          simulation runs until its 95 % interval is ± {HALF_WIDTH} (of one class alone it is wider); all start from the same seed, so \
          that their errors may go together. Everything is \
          in `pairs.csv`, `three_bands.csv` and `other_laws.csv`.\n",
-        markdown(&HEADER, &at(1.0).map(row).collect::<Vec<_>>()),
+        markdown(&HEADER, &at(lines, 1.0).map(row).collect::<Vec<_>>()),
         markdown(
             &[
                 "target",
