@@ -10,7 +10,6 @@ use super::tests::calls::call;
 
 /// A place where a process can be ended.
 #[cfg(not(test))]
-#[expect(clippy::unnecessary_wraps, reason = "in tests it can fail")]
 const fn call() -> io::Result<()> {
     Ok(())
 }
@@ -71,9 +70,12 @@ pub(super) fn try_lock(file: &File) -> Result<(), TryLockError> {
     file.try_lock()
 }
 
+/// What is in a folder, by name: nothing depends on the order of the disk.
 pub(super) fn entries(folder: &Path) -> io::Result<Vec<DirEntry>> {
     call()?;
-    fs::read_dir(folder)?.collect()
+    let mut entries = fs::read_dir(folder)?.collect::<io::Result<Vec<_>>>()?;
+    entries.sort_by_key(DirEntry::file_name);
+    Ok(entries)
 }
 
 pub(super) fn rename(from: &Path, to: &Path) -> io::Result<()> {

@@ -28,6 +28,9 @@ const DEAD_AFTER: Duration = Duration::from_secs(24 * 3600);
 /// Folders that are made until one is not taken for that of a dead process.
 const ATTEMPTS: usize = 100;
 
+/// What finishes a complete report that must be moved.
+pub(super) type Finish<'a> = &'a dyn Fn(&Path) -> io::Result<()>;
+
 /// A folder of this process.
 #[derive(Debug)]
 pub(super) struct Staging {
@@ -121,7 +124,7 @@ fn remove(folder: &Path, lock: &mut Option<File>) {
 
 /// Removes the staging folders in `home` whose processes are dead. Reports in them that were complete are handed to `finish` before;
 /// without it their folders stay, for the run that names `home`. What cannot be removed stays, as what may still be in use.
-pub(super) fn clear(home: &Path, finish: Option<&dyn Fn(&Path) -> io::Result<()>>) -> io::Result<()> {
+pub(super) fn clear(home: &Path, finish: Option<Finish<'_>>) -> io::Result<()> {
     let Ok(entries) = disk::entries(home) else { return Ok(()) };
     for folder in entries.iter().map(std::fs::DirEntry::path).filter(|path| is_staging(path)) {
         let Ok(lock) = disk::open_lock(&folder.join(LOCK)) else { continue };
