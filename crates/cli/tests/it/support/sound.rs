@@ -22,7 +22,9 @@ pub(crate) fn fault(folder: &Path, arguments: &[String]) -> Option<String> {
     let program = assert_cmd::cargo::cargo_bin!("hadar");
     let mut command = if cfg!(unix) {
         let mut shell = Command::new("sh");
-        shell.args(["-c", &format!("ulimit -v {MOST_MEMORY}; ulimit -t {LONGEST_WORK}; exec \"$0\" \"$@\"")]).arg(program);
+        shell
+            .args(["-c", &format!("ulimit -v {MOST_MEMORY}; ulimit -t {LONGEST_WORK}; exec \"$0\" \"$@\"")])
+            .arg(program);
         shell
     } else {
         Command::new(program)
