@@ -10,17 +10,8 @@ use proptest::prelude::*;
 pub(crate) fn sample(name: &str, figure: &Figure) {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("figures");
     fs::create_dir_all(&folder).expect("a folder for the samples");
-    let start = std::time::Instant::now();
     let svg = render_svg(figure).expect("an SVG");
-    let middle = start.elapsed();
     let png = render_png(figure).expect("a PNG");
-    let all = start.elapsed();
-    println!(
-        "{name}: SVG {} kB in {middle:?}, PNG {} kB in {:?}",
-        svg.len() / 1000,
-        png.len() / 1000,
-        all - middle
-    );
     check_svg(&svg);
     check_png(&png);
     assert!(svg.len() < 1_000_000);
