@@ -139,10 +139,11 @@ impl Paths {
 
     /// Whether the numbers after the last command are read as those of a line.
     fn is_among_lines(&self, before: usize) -> bool {
-        before == 0 || self.steps.ends_with(|last: char| last.is_ascii_digit()) && {
-            let command = self.steps.rfind(|c: char| c.is_ascii_alphabetic());
-            command.and_then(|at| self.steps.as_bytes().get(at)).is_some_and(|c| matches!(c, b'l' | b'm'))
-        }
+        before == 0
+            || self.steps.ends_with(|last: char| last.is_ascii_digit()) && {
+                let command = self.steps.rfind(|c: char| c.is_ascii_alphabetic());
+                command.and_then(|at| self.steps.as_bytes().get(at)).is_some_and(|c| matches!(c, b'l' | b'm'))
+            }
     }
 
     fn step(&mut self, command: char, to: (i64, i64)) {

@@ -44,11 +44,7 @@ pub(super) fn width(text: &str, size: f64) -> f64 {
 
 /// Calls `paint` for each pixel that a line of text covers, with its place relative to the start of the
 /// baseline and the part of it that is covered.
-pub(super) fn rasterise(
-    text: &str,
-    size: f64,
-    mut paint: impl FnMut((i32, i32), f64),
-) -> Result<()> {
+pub(super) fn rasterise(text: &str, size: f64, mut paint: impl FnMut((i32, i32), f64)) -> Result<()> {
     let font = font().ok_or_else(|| {
         Error::malformed("the embedded font cannot be read", "build hadar again from clean sources")
     })?;
