@@ -260,11 +260,11 @@ mod tests {
     #[test]
     fn neighbours_of_one_look_are_one_path_without_points_that_change_nothing() {
         let ink = Colour::hex(0x123456);
-        let line = |points: &[Point], colour| Mark::Stroke { points: points.to_vec(), width: 1.5, colour };
+        let line = |points: &[Point], colour| Mark::Stroke { points: points.to_vec(), width: 1.6, colour };
         let mut paths = Paths::default();
         paths.draw(&line(&[(1.0, 1.0), (2.0, 2.0), (2.0, 2.01), (3.0, 3.0), (2.5, 3.0), (0.0, 0.5)], ink));
         paths.draw(&line(&[(1.0, 1.0), (1.04, 1.0)], ink));
-        paths.draw(&Mark::Disc { centre: (2.0, 0.0), radius: 0.75, colour: ink });
+        paths.draw(&Mark::Disc { centre: (2.0, 0.0), radius: 0.8, colour: ink });
         let shining = ink.opacity(0.5);
         paths.draw(&line(&[(0.0, 0.0), (1.0, 0.0)], shining));
         paths.draw(&line(&[(0.0, 0.0), (0.0, 1.0)], shining));
@@ -272,9 +272,9 @@ mod tests {
         paths.draw(&Mark::Rect { area, colour: ink });
         assert_eq!(
             paths.end(),
-            "<path stroke=\"#123456\" stroke-width=\"15\" d=\"m10 10 20 20h-5l-25-25m10 5h0m10-10h0\"/>\n\
-             <path stroke=\"#123456\" stroke-width=\"15\" opacity=\"0.5\" d=\"m0 0h10\"/>\n\
-             <path stroke=\"#123456\" stroke-width=\"15\" opacity=\"0.5\" d=\"m0 0v10\"/>\n\
+            "<path stroke=\"#123456\" stroke-width=\"16\" d=\"m10 10 20 20h-5l-25-25m10 5h0m10-10h0\"/>\n\
+             <path stroke=\"#123456\" stroke-width=\"16\" opacity=\"0.5\" d=\"m0 0h10\"/>\n\
+             <path stroke=\"#123456\" stroke-width=\"16\" opacity=\"0.5\" d=\"m0 0v10\"/>\n\
              <path fill=\"#123456\" d=\"m0 0h10v20h-10z\"/>\n"
         );
     }
