@@ -1,8 +1,12 @@
-//! The step of a least-squares fit within bounds.
+//! Least squares in a box, with one limit on a sum: steps and fits of a handful of unknowns.
 //!
 //! Minimises ½ pᵀHp + gᵀp for positive definite H subject to lᵢ ≤ pᵢ ≤ uᵢ and, for a subset I, Σ_I pᵢ ≤ s, all of which
 //! p = 0 meets. Active-set method on the box; the one sum constraint by its multiplier μ ≥ 0, on which
 //! Σ_I pᵢ(μ) depends monotonically. A handful of unknowns, so everything is dense.
+//!
+//! Four solvers are kept beside it, for the reasons that their headers state with a measurement: of a box's linear model
+//! (`policy::envelope::linear`), over a polytope known by its vertices (`identifiability::nearest::proof::hull`), over
+//! mixtures of spectra (`identifiability::mixture::hull`), and of a pixel (`step` of the decomposition).
 //!
 //! Source: Nocedal and Wright, 'Numerical Optimization' (2006), section 16.5.
 
